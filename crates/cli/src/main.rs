@@ -1,0 +1,2 @@
+//! The program `etalon`.
+fn main() {}

@@ -1,0 +1,141 @@
+//! One value for each wavelength that a path carries.
+
+use crate::Real;
+use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Sub};
+
+/// `N` values, one a wavelength; lane 0 belongs to the hero wavelength.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
+pub struct Lanes<R, const N: usize>(pub [R; N]);
+
+impl<R: Real, const N: usize> Lanes<R, N> {
+    /// Zero in every lane.
+    pub const ZERO: Self = Self([R::ZERO; N]);
+    /// One in every lane.
+    pub const ONE: Self = Self([R::ONE; N]);
+
+    /// The same value in every lane.
+    #[inline(always)]
+    pub const fn splat(v: R) -> Self {
+        Self([v; N])
+    }
+
+    /// The value of `f` at each lane's index.
+    #[inline(always)]
+    pub fn from_fn(f: impl FnMut(usize) -> R) -> Self {
+        Self(std::array::from_fn(f))
+    }
+
+    /// `f` of each lane.
+    #[inline(always)]
+    pub fn map(self, f: impl FnMut(R) -> R) -> Self {
+        Self(self.0.map(f))
+    }
+
+    /// `f` of each pair of lanes.
+    #[inline(always)]
+    pub fn zip(self, o: Self, mut f: impl FnMut(R, R) -> R) -> Self {
+        Self::from_fn(|i| f(self.0[i], o.0[i]))
+    }
+
+    /// Sum over the lanes, in order.
+    #[inline(always)]
+    pub fn sum(self) -> R {
+        let mut sum = self.0[0];
+        for i in 1..N {
+            sum += self.0[i];
+        }
+        sum
+    }
+
+    /// Mean over the lanes.
+    #[inline(always)]
+    pub fn mean(self) -> R {
+        self.sum() / R::from_f64(N as f64)
+    }
+
+    /// The largest lane.
+    #[inline(always)]
+    pub fn max_lane(self) -> R {
+        self.0.iter().copied().fold(self.0[0], R::max)
+    }
+
+    /// Whether every lane is exactly zero.
+    #[inline(always)]
+    pub fn is_zero(self) -> bool {
+        self.0.iter().all(|&v| v == R::ZERO)
+    }
+
+    /// Whether every lane is neither infinite nor NaN.
+    #[inline(always)]
+    pub fn is_finite(self) -> bool {
+        self.0.iter().all(|v| v.is_finite())
+    }
+
+    /// Keeps lane 0 (the hero) and sets the others to zero.
+    #[inline(always)]
+    pub fn hero_only(self) -> Self {
+        Self::from_fn(|i| if i == 0 { self.0[0] } else { R::ZERO })
+    }
+}
+
+macro_rules! lane_operator {
+    ($trait:ident, $f:ident, $op:tt) => {
+        impl<R: Real, const N: usize> $trait for Lanes<R, N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, o: Self) -> Self {
+                Self::from_fn(|i| self.0[i] $op o.0[i])
+            }
+        }
+        impl<R: Real, const N: usize> $trait<R> for Lanes<R, N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, s: R) -> Self {
+                Self::from_fn(|i| self.0[i] $op s)
+            }
+        }
+    };
+}
+lane_operator!(Add, add, +);
+lane_operator!(Sub, sub, -);
+lane_operator!(Mul, mul, *);
+lane_operator!(Div, div, /);
+
+impl<R: Real, const N: usize> AddAssign for Lanes<R, N> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+impl<R: Real, const N: usize> MulAssign for Lanes<R, N> {
+    #[inline(always)]
+    fn mul_assign(&mut self, o: Self) {
+        *self = *self * o;
+    }
+}
+impl<R: Real, const N: usize> MulAssign<R> for Lanes<R, N> {
+    #[inline(always)]
+    fn mul_assign(&mut self, s: R) {
+        *self = *self * s;
+    }
+}
+impl<R: Real, const N: usize> DivAssign<R> for Lanes<R, N> {
+    #[inline(always)]
+    fn div_assign(&mut self, s: R) {
+        *self = *self / s;
+    }
+}
+impl<R, const N: usize> Index<usize> for Lanes<R, N> {
+    type Output = R;
+    #[inline(always)]
+    fn index(&self, lane: usize) -> &R {
+        &self.0[lane]
+    }
+}
+impl<R, const N: usize> IndexMut<usize> for Lanes<R, N> {
+    #[inline(always)]
+    fn index_mut(&mut self, lane: usize) -> &mut R {
+        &mut self.0[lane]
+    }
+}

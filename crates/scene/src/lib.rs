@@ -1,0 +1,5 @@
+//! The JSON scene description: inert, validated data.
+
+pub mod model;
+
+pub use model::*;

@@ -1,0 +1,292 @@
+//! A validated scene: inert data in SI units, every name resolved, nothing prepared for rendering.
+//!
+//! Lengths are metres, angles radians, wavelengths nanometres. World space is right-handed. Whoever holds a [`Scene`]
+//! may rely on everything that `docs/scene-format.md` lists as an error being absent from it.
+
+use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
+
+/// A whole scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The camera.
+    pub camera: Camera,
+    /// Image size and reconstruction.
+    pub film: Film,
+    /// Materials by index; objects refer to them.
+    pub materials: Vec<Material>,
+    /// Things with a surface.
+    pub objects: Vec<Object>,
+    /// Lights without a surface.
+    pub lights: Vec<Light>,
+    /// How to integrate, as far as the file says; the command line may override it.
+    pub integrator: Integrator,
+}
+
+/// A camera in world space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Position of the eye (the centre of the lens), m.
+    pub position_m: [f64; 3],
+    /// Unit vector of the viewing direction.
+    pub forward: [f64; 3],
+    /// Unit vector, orthogonal to `forward`, that is up in the picture.
+    pub up: [f64; 3],
+    /// How points project.
+    pub projection: Projection,
+}
+
+/// How a camera projects.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Projection {
+    /// Central projection, through a pinhole or a thin lens.
+    Perspective {
+        /// Full vertical field of view, rad, in (0, π). Pixels are square.
+        vertical_fov_rad: f64,
+        /// The lens; `None` is a pinhole.
+        lens: Option<ThinLens>,
+    },
+    /// Parallel projection.
+    Orthographic {
+        /// Height of the picture in the world, m.
+        height_m: f64,
+    },
+}
+
+/// An ideal thin lens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ThinLens {
+    /// Radius of the aperture, m; may be 0, which is a pinhole.
+    pub radius_m: f64,
+    /// Distance along `forward` of the plane in focus, m.
+    pub focus_distance_m: f64,
+}
+
+/// Image size and reconstruction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Pixel filter, sampled by importance so that every sample belongs to one pixel.
+    pub filter: Filter,
+}
+
+/// Pixel filter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Filter {
+    /// The pixel's own square.
+    Box,
+    /// A tent of this radius, in pixels.
+    Tent {
+        /// Radius, pixels.
+        radius_px: f64,
+    },
+    /// A Gaussian of this standard deviation, cut at three of them.
+    Gaussian {
+        /// Standard deviation, pixels.
+        sigma_px: f64,
+    },
+}
+
+/// A named material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Its name in the file.
+    pub name: String,
+    /// What it is.
+    pub kind: MaterialKind,
+}
+
+/// What a surface does to light.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MaterialKind {
+    /// Ideal diffuse reflection on both sides.
+    Lambert {
+        /// Albedo, in [0, 1] at every wavelength.
+        reflectance: Spectrum,
+    },
+    /// Ideal mirror on both sides.
+    Mirror {
+        /// Reflectance, in [0, 1] at every wavelength, at every angle.
+        reflectance: Spectrum,
+    },
+    /// Smooth metal: Fresnel reflection from a complex index of refraction, seen from vacuum.
+    Conductor {
+        /// n + ik.
+        index: ComplexIndex,
+    },
+    /// Smooth interface between two transparent media.
+    Dielectric {
+        /// Medium on the side that the surface normal points away from.
+        interior: RefractiveIndex,
+        /// Medium on the side that the surface normal points into.
+        exterior: RefractiveIndex,
+    },
+    /// Reflects nothing (an emitter that is only a light, an absorber).
+    Black,
+}
+
+/// A thing with a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Its name in the file, or `objects[i]`.
+    pub name: String,
+    /// Its shape, in its own coordinates.
+    pub shape: Shape,
+    /// From its own coordinates to the world.
+    pub transform: Transform,
+    /// Index into [`Scene::materials`].
+    pub material: usize,
+    /// What it emits, if it does.
+    pub emission: Option<Emission>,
+}
+
+/// A shape in its own coordinates, lengths in m.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// Sphere; its normal points outward.
+    Sphere {
+        /// Centre.
+        center: [f64; 3],
+        /// Radius, above 0.
+        radius_m: f64,
+    },
+    /// The points `origin + a·u + b·v` for a, b in [0, 1]; its normal is along u × v.
+    Parallelogram {
+        /// One corner.
+        origin: [f64; 3],
+        /// One edge from it.
+        u: [f64; 3],
+        /// The other edge from it.
+        v: [f64; 3],
+    },
+    /// Disk.
+    Disk {
+        /// Centre.
+        center: [f64; 3],
+        /// Unit normal.
+        normal: [f64; 3],
+        /// Radius, above 0.
+        radius_m: f64,
+    },
+    /// Triangles; the normal of (a, b, c) is along (b − a) × (c − a).
+    Mesh {
+        /// Vertex positions.
+        vertices: Vec<[f64; 3]>,
+        /// Vertex indices, all within range.
+        triangles: Vec<[u32; 3]>,
+    },
+}
+
+/// An affine map: `world = linear · local + translation`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Transform {
+    /// Rows of the linear part; never singular.
+    pub linear: [[f64; 3]; 3],
+    /// Translation, m.
+    pub translation_m: [f64; 3],
+}
+
+/// Diffuse emission of a surface: the same radiance in every direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Emission {
+    /// Emitted radiance, W·m⁻²·sr⁻¹·nm⁻¹.
+    pub radiance: Spectrum,
+    /// Which sides emit.
+    pub sides: EmissionSides,
+}
+
+/// Which sides of a surface emit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EmissionSides {
+    /// The side the surface normal points into.
+    Front,
+    /// The side the surface normal points away from (a room that is itself a lamp).
+    Back,
+    /// Both.
+    Both,
+}
+
+/// A light without a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// Its name in the file, or `lights[i]`.
+    pub name: String,
+    /// What it is.
+    pub kind: LightKind,
+}
+
+/// What a light without a surface is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightKind {
+    /// The same intensity in every direction, from a point.
+    Point {
+        /// Position, m.
+        position_m: [f64; 3],
+        /// Radiant intensity, W·sr⁻¹·nm⁻¹.
+        intensity: Spectrum,
+    },
+    /// Parallel light.
+    Directional {
+        /// Unit vector in which the light travels.
+        direction: [f64; 3],
+        /// Irradiance on a plane at right angles to it, W·m⁻²·nm⁻¹.
+        irradiance: Spectrum,
+    },
+    /// The same radiance from every direction at infinity.
+    Environment {
+        /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹.
+        radiance: Spectrum,
+    },
+}
+
+/// How to integrate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Integrator {
+    /// Samples a pixel.
+    pub spp: u32,
+    /// Seed of every random number.
+    pub seed: u64,
+    /// Number sequence.
+    pub sampler: SamplerKind,
+    /// Most path edges from the camera to a light: 1 is emission seen directly, 2 adds one bounce; `None` is no limit.
+    pub max_depth: Option<u32>,
+    /// Whether Russian roulette may end a path.
+    pub roulette: bool,
+    /// How direct light is found.
+    pub light_sampling: LightSampling,
+    /// Wavelengths rendered: the first and the last, nm.
+    pub wavelength_range_nm: [f64; 2],
+    /// Scalar type of the kernel.
+    pub precision: Precision,
+}
+
+/// Number sequence that drives the estimates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Owen-scrambled Sobol points, padded.
+    Sobol,
+    /// Independent Xoshiro256++ numbers.
+    Independent,
+}
+
+/// How direct light is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightSampling {
+    /// Shadow rays and BSDF sampling, combined by multiple importance sampling.
+    Mis,
+    /// Shadow rays wherever they can find the light.
+    Light,
+    /// BSDF sampling wherever it can find the light.
+    Bsdf,
+}
+
+/// Scalar type of the kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// 32-bit floating point.
+    F32,
+    /// 64-bit floating point.
+    F64,
+}

@@ -1,0 +1,1 @@
+//! (doc head to come)

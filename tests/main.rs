@@ -1,0 +1,1 @@
+//! Integration tests of the program and of whole renders, in one binary.
