@@ -1,0 +1,1 @@
+//! `etalon render`: a scene in, a picture out.

@@ -1,0 +1,1 @@
+//! `etalon schema`: the JSON Schema of scene files, for editors.
