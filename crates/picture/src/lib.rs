@@ -1,1 +1,32 @@
-//! (doc head to come)
+//! Pictures: buffers of named channels, to and from EXR and PNG, and how far apart two of them are.
+//!
+//! - [`Picture`] holds samples by channel name, row after row from the top, in `f32` or `f64`.
+//! - [`write_exr`] and [`read_exr`] keep every channel and every attribute; [`RenderInfo`] is how a render describes
+//!   itself. EXR is the file that keeps the radiometric truth.
+//! - [`encode_srgb8`] and [`write_png`] make the picture that a screen shows, and say what was lost on the way.
+//! - Files appear under their name whole or not at all ([`write_atomically`]), and [`check_writable`] finds out before
+//!   an hour of rendering whether they can.
+//! - [`compare`] measures RMSE and relMSE.
+//!
+//! Nothing here prints. Every error names the file and carries the cause as its source.
+
+mod atomic;
+mod attribute;
+mod error;
+mod exr_header;
+mod exr_read;
+mod exr_write;
+mod metrics;
+mod picture;
+mod png_file;
+mod srgb;
+
+pub use atomic::{check_writable, write_atomically};
+pub use attribute::{Attribute, Attributes, Chromaticities, RenderInfo};
+pub use error::PictureError;
+pub use exr_read::{ExrFile, read_exr};
+pub use exr_write::{encode_exr, write_exr};
+pub use metrics::{Metrics, RELMSE_FLOOR, compare, rel_mse, rmse};
+pub use picture::{Channel, Picture, Sample, Window};
+pub use png_file::{Rgb8, read_png, read_png8, write_png};
+pub use srgb::{Clipping, decode_srgb, encode_srgb, encode_srgb8};

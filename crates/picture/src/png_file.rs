@@ -1,0 +1,169 @@
+//! PNG files.
+
+use std::io::{BufReader, Cursor};
+use std::path::Path;
+
+use image::{DynamicImage, ImageDecoder};
+
+use crate::{Picture, PictureError, decode_srgb, write_atomically};
+
+/// A picture of 8-bit RGB pixels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rgb8 {
+    /// Width, pixels.
+    pub width: usize,
+    /// Height, pixels.
+    pub height: usize,
+    /// Red, green and blue of each pixel in turn, row after row from the top: 3 · width · height bytes.
+    pub pixels: Vec<u8>,
+}
+
+/// Writes an 8-bit PNG that says it is sRGB, atomically (see [`write_atomically`]), with a text chunk for each keyword
+/// and text. The same picture and texts give the same bytes.
+///
+/// # Errors
+/// A file that cannot be written; a keyword that PNG does not allow (1 to 79 characters of Latin-1); a number of bytes
+/// that does not fit the size.
+pub fn write_png(path: &Path, picture: &Rgb8, texts: &[(&str, &str)]) -> Result<(), PictureError> {
+    let bytes = encode_png(picture, texts).map_err(|source| PictureError::Png {
+        action: "write",
+        path: path.to_owned(),
+        source: Box::new(source),
+    })?;
+    write_atomically(path, |out| out.write_all(&bytes))
+}
+
+fn encode_png(picture: &Rgb8, texts: &[(&str, &str)]) -> Result<Vec<u8>, png::EncodingError> {
+    // A side too long for PNG becomes one that PNG refuses.
+    let side = |pixels: usize| u32::try_from(pixels).unwrap_or(0);
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, side(picture.width), side(picture.height));
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+    for (keyword, text) in texts {
+        encoder.add_itxt_chunk((*keyword).to_owned(), (*text).to_owned())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&picture.pixels)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// Reads a PNG file as linear light: sRGB decoded, in channels `R`, `G`, `B`, and `A` (not decoded) if it has one. A
+/// colour profile or gamma in the file is not looked at.
+///
+/// # Errors
+/// A file that cannot be read or is no PNG.
+pub fn read_png(path: &Path) -> Result<Picture<f32>, PictureError> {
+    let image = decode(path)?;
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let has_alpha = image.color().has_alpha();
+    let samples = image.into_rgba32f().into_raw();
+    let channel = |offset: usize| samples.iter().skip(offset).step_by(4).copied();
+    let mut picture = Picture::new(width, height)?;
+    for (offset, name) in ["R", "G", "B"].into_iter().enumerate() {
+        picture.insert(name, channel(offset).map(|value| decode_srgb(f64::from(value)) as f32).collect())?;
+    }
+    if has_alpha {
+        picture.insert("A", channel(3).collect())?;
+    }
+    Ok(picture)
+}
+
+/// Reads the 8-bit RGB pixels of a PNG file as they are. An alpha channel is dropped, and must be opaque.
+///
+/// # Errors
+/// A file that cannot be read or is no PNG; 16 bits, grey, or an alpha that is not 255 everywhere.
+pub fn read_png8(path: &Path) -> Result<Rgb8, PictureError> {
+    let not_rgb8 = |found: &str| PictureError::NotRgb8 { path: path.to_owned(), found: found.to_owned() };
+    let image = decode(path)?;
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let pixels = match image {
+        DynamicImage::ImageRgb8(image) => image.into_raw(),
+        DynamicImage::ImageRgba8(image) if image.pixels().any(|pixel| pixel.0[3] != 255) => {
+            return Err(not_rgb8("some pixels are transparent"));
+        }
+        image @ DynamicImage::ImageRgba8(_) => image.into_rgb8().into_raw(),
+        other => return Err(not_rgb8(&format!("its pixels are {:?}", other.color()))),
+    };
+    Ok(Rgb8 { width, height, pixels })
+}
+
+fn decode(path: &Path) -> Result<DynamicImage, PictureError> {
+    let bytes = std::fs::read(path).map_err(|source| PictureError::io("read", path, source))?;
+    let read = || {
+        let mut decoder = image::codecs::png::PngDecoder::new(BufReader::new(Cursor::new(bytes)))?;
+        // A header that promises more than 16 GiB is taken for a lie before memory is asked for.
+        let mut limits = image::Limits::no_limits();
+        limits.max_alloc = Some(16 << 30);
+        decoder.set_limits(limits)?;
+        DynamicImage::from_decoder(decoder)
+    };
+    read().map_err(|source: image::ImageError| PictureError::Png {
+        action: "read",
+        path: path.to_owned(),
+        source: Box::new(source),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_png_says_that_it_is_srgb_and_keeps_its_texts() {
+        let picture = Rgb8 { width: 1, height: 1, pixels: vec![1, 2, 3] };
+        let bytes = encode_png(&picture, &[("Software", "etalon"), ("Comment", "+1.5 EV · λ")]).unwrap();
+        let reader = png::Decoder::new(Cursor::new(bytes)).read_info().unwrap();
+        assert_eq!(reader.info().srgb, Some(png::SrgbRenderingIntent::RelativeColorimetric));
+        let texts: Vec<_> =
+            reader.info().utf8_text.iter().map(|text| (text.keyword.clone(), text.get_text().unwrap())).collect();
+        assert_eq!(texts, [("Software".into(), "etalon".into()), ("Comment".into(), "+1.5 EV · λ".into())]);
+    }
+
+    #[test]
+    fn a_png_with_too_few_pixels_is_refused_and_not_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("short.png");
+        let error = write_png(&path, &Rgb8 { width: 2, height: 2, pixels: vec![0; 3] }, &[]).unwrap_err();
+        assert!(error.to_string().contains("short.png"), "{error}");
+        assert!(!path.exists());
+    }
+
+    #[test]
+    fn what_is_not_opaque_rgb_is_refused_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("alpha.png");
+        image::RgbaImage::from_raw(1, 1, vec![1, 2, 3, 254]).unwrap().save(&path).unwrap();
+        assert!(read_png8(&path).unwrap_err().to_string().contains("transparent"));
+        image::RgbaImage::from_raw(1, 1, vec![1, 2, 3, 255]).unwrap().save(&path).unwrap();
+        assert_eq!(read_png8(&path).unwrap().pixels, [1, 2, 3]);
+        std::fs::write(&path, "not a picture").unwrap();
+        let error = read_png8(&path).unwrap_err();
+        assert!(matches!(error, PictureError::Png { action: "read", .. }), "{error}");
+        std::fs::remove_file(&path).unwrap();
+        assert!(matches!(read_png8(&path), Err(PictureError::Io { action: "read", .. })));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+        #[test]
+        fn eight_bit_pictures_of_any_size_come_back(
+            (width, height, pixels) in (1..40_usize, 1..40_usize).prop_flat_map(|(width, height)| {
+                (Just(width), Just(height), prop::collection::vec(any::<u8>(), 3 * width * height))
+            }),
+        ) {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("picture.png");
+            let picture = Rgb8 { width, height, pixels };
+            write_png(&path, &picture, &[]).unwrap();
+            prop_assert_eq!(&read_png8(&path).unwrap(), &picture);
+            // Decoded to light and encoded again, every level comes back.
+            let (again, clipping) = crate::encode_srgb8(&read_png(&path).unwrap(), 0.0).unwrap();
+            prop_assert_eq!(again, picture);
+            prop_assert_eq!(clipping.any, 0);
+        }
+    }
+}
