@@ -97,9 +97,8 @@ pub trait Real:
         // Exact: `u` and a multiple of 1/4 within 1/8 of it (Sterbenz), or `u` itself.
         let x = (u - quarter * Self::from_f64(0.25)) * (Self::TWO * Self::PI);
         let x2 = x * x;
-        let series = |coefficients: [f64; 8]| {
-            coefficients.iter().fold(Self::ZERO, |sum, &c| sum * x2 + Self::from_f64(c)) * x2
-        };
+        let series =
+            |coefficients: [f64; 8]| coefficients.iter().fold(Self::ZERO, |sum, &c| sum * x2 + Self::from_f64(c)) * x2;
         let sine = x + x * series(SINE);
         let cosine = Self::ONE + series(COSINE);
         // `quarter` is a small exact integer in 0..=4.

@@ -1,0 +1,152 @@
+//! Linear Rec. 709 and the sRGB transfer function.
+//!
+//! The matrices follow from the chromaticities that Recommendation ITU-R BT.709-6 states (§1.3, §1.4), with its
+//! four-digit white (0.3127, 0.3290): it is what an EXR file's `chromaticities` say and what every reader assumes.
+//! D65 by the CIE's own table has (0.31272, 0.32903), so a D65-lit perfect reflector has an RGB that differs from
+//! (1, 1, 1) by up to 2.6·10⁻⁴; that is the rounding in the Recommendation, not an error of the renderer.
+
+type Matrix = [[f64; 3]; 3];
+
+/// Chromaticities (x, y) of the red, green and blue primaries of Rec. 709.
+pub const REC709_PRIMARIES_XY: [[f64; 2]; 3] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
+/// Chromaticity (x, y) of the white of Rec. 709.
+pub const REC709_WHITE_XY: [f64; 2] = [0.3127, 0.3290];
+
+/// Takes linear Rec. 709 to XYZ; (1, 1, 1) has Y = 1.
+pub const XYZ_FROM_REC709: Matrix = rgb_to_xyz_matrix([
+    REC709_WHITE_XY[0] / REC709_WHITE_XY[1],
+    1.0,
+    (1.0 - REC709_WHITE_XY[0] - REC709_WHITE_XY[1]) / REC709_WHITE_XY[1],
+]);
+/// Takes XYZ to linear Rec. 709.
+pub const REC709_FROM_XYZ: Matrix = inverse(&XYZ_FROM_REC709);
+
+/// Takes linear RGB of the Rec. 709 primaries to XYZ such that (1, 1, 1) becomes `white` (SMPTE RP 177).
+pub(crate) const fn rgb_to_xyz_matrix(white: [f64; 3]) -> Matrix {
+    let p = REC709_PRIMARIES_XY;
+    let mut m = [[0.0; 3]; 3];
+    let mut c = 0;
+    while c < 3 {
+        m[0][c] = p[c][0] / p[c][1];
+        m[1][c] = 1.0;
+        m[2][c] = (1.0 - p[c][0] - p[c][1]) / p[c][1];
+        c += 1;
+    }
+    let s = multiply(&inverse(&m), white);
+    c = 0;
+    while c < 3 {
+        m[0][c] *= s[c];
+        m[1][c] *= s[c];
+        m[2][c] *= s[c];
+        c += 1;
+    }
+    m
+}
+
+/// Matrix times vector.
+pub(crate) const fn multiply(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
+    [
+        m[0][0] * v[0] + m[0][1] * v[1] + m[0][2] * v[2],
+        m[1][0] * v[0] + m[1][1] * v[1] + m[1][2] * v[2],
+        m[2][0] * v[0] + m[2][1] * v[1] + m[2][2] * v[2],
+    ]
+}
+
+/// The inverse by cofactors; the colour matrices are well conditioned.
+pub(crate) const fn inverse(m: &Matrix) -> Matrix {
+    let cof = [
+        [
+            m[1][1] * m[2][2] - m[1][2] * m[2][1],
+            m[0][2] * m[2][1] - m[0][1] * m[2][2],
+            m[0][1] * m[1][2] - m[0][2] * m[1][1],
+        ],
+        [
+            m[1][2] * m[2][0] - m[1][0] * m[2][2],
+            m[0][0] * m[2][2] - m[0][2] * m[2][0],
+            m[0][2] * m[1][0] - m[0][0] * m[1][2],
+        ],
+        [
+            m[1][0] * m[2][1] - m[1][1] * m[2][0],
+            m[0][1] * m[2][0] - m[0][0] * m[2][1],
+            m[0][0] * m[1][1] - m[0][1] * m[1][0],
+        ],
+    ];
+    let d = m[0][0] * cof[0][0] + m[0][1] * cof[1][0] + m[0][2] * cof[2][0];
+    [
+        [cof[0][0] / d, cof[0][1] / d, cof[0][2] / d],
+        [cof[1][0] / d, cof[1][1] / d, cof[1][2] / d],
+        [cof[2][0] / d, cof[2][1] / d, cof[2][2] / d],
+    ]
+}
+
+/// Linear Rec. 709 of an XYZ; negative where the colour is outside the gamut.
+#[inline]
+pub fn rec709_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
+    multiply(&REC709_FROM_XYZ, xyz)
+}
+
+/// XYZ of a linear Rec. 709 colour.
+#[inline]
+pub fn rec709_to_xyz(rgb: [f64; 3]) -> [f64; 3] {
+    multiply(&XYZ_FROM_REC709, rgb)
+}
+
+/// The sRGB transfer function: from linear light to a signal, both in [0, 1] (IEC 61966-2-1). Negative values mirror.
+pub fn srgb_encode(linear: f64) -> f64 {
+    let v = linear.abs();
+    let signal = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+    signal.copysign(linear)
+}
+
+/// The inverse of [`srgb_encode`]: from a signal to linear light.
+pub fn srgb_decode(signal: f64) -> f64 {
+    let v = signal.abs();
+    let linear = if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
+    linear.copysign(signal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn matrices_agree_with_the_published_four_digits() {
+        // IEC 61966-2-1, §5.2.
+        let published = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]];
+        for i in 0..3 {
+            for j in 0..3 {
+                assert!((XYZ_FROM_REC709[i][j] - published[i][j]).abs() < 5.1e-5, "{i} {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn matrices_are_inverse_and_white_is_white() {
+        for rgb in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.3, 0.5, 0.7]] {
+            let back = rec709_from_xyz(rec709_to_xyz(rgb));
+            for c in 0..3 {
+                assert!((back[c] - rgb[c]).abs() < 1e-15);
+            }
+        }
+        let white = rec709_to_xyz([1.0; 3]);
+        let sum = white[0] + white[1] + white[2];
+        assert_relative_eq!(white[1], 1.0, epsilon = 1e-15);
+        assert_relative_eq!(white[0] / sum, REC709_WHITE_XY[0], epsilon = 1e-15);
+        assert_relative_eq!(white[1] / sum, REC709_WHITE_XY[1], epsilon = 1e-15);
+    }
+
+    #[test]
+    fn the_srgb_transfer_function_round_trips_and_mirrors() {
+        for i in 0..=255 {
+            let signal = f64::from(i) / 255.0;
+            // The two branches of the standard meet only to 3e-8; powf adds a few roundoffs.
+            assert!((srgb_encode(srgb_decode(signal)) - signal).abs() < 1e-7, "{i}");
+            assert_eq!(srgb_decode(-signal), -srgb_decode(signal));
+        }
+        assert_relative_eq!(srgb_decode(0.5), 0.214_041_140_482_232_55, max_relative = 1e-14);
+        assert_relative_eq!(srgb_encode(0.18), 0.461_356_129_500_441_64, max_relative = 1e-14);
+        assert_eq!(srgb_encode(0.0), 0.0);
+        assert_relative_eq!(srgb_encode(1.0), 1.0, epsilon = 2e-16);
+    }
+}

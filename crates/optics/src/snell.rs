@@ -1,0 +1,33 @@
+//! Snell's law: directions of refraction.
+
+use crate::fresnel::refracted_cosine;
+use crate::{Real, Vec3};
+
+/// The refracted direction of `wi` at an interface of unit normal `n`, or `None` under total internal reflection.
+///
+/// `wi` is a unit vector that leaves the surface on the side light comes from (in a path traced from the camera: the side
+/// the path comes from); the result is a unit vector that leaves the surface on the other side. `eta` = n_t/n_i is the
+/// index behind the interface over the index on the side of `wi`. The normal may point to either side.
+///
+/// At `eta` = 1 the result is −`wi`, bit for bit.
+#[inline]
+pub fn refract<R: Real>(wi: Vec3<R>, n: Vec3<R>, eta: R) -> Option<Vec3<R>> {
+    let cos = wi.dot(n);
+    let (n, cos_i) = if cos < R::ZERO { (-n, -cos) } else { (n, cos) };
+    // Rounding may carry the product of two unit vectors past 1.
+    let cos_i = cos_i.min(R::ONE);
+    refracted_cosine(cos_i, eta).map(|cos_t| refract_with_cosines(wi, n, eta, cos_i, cos_t))
+}
+
+/// [`refract`] where the cosines are known already: `cos_i` = `wi`·`n`, at least 0, and `cos_t` from
+/// [`refracted_cosine`] or [`crate::fresnel::dielectric`] of the same arguments.
+///
+/// ω_t = −ω_i/n + (c/n − c_t)·n⃗, with the difference in the form (1 − n²)/(n·(c + n·c_t)), which does not cancel near n = 1.
+#[inline]
+pub fn refract_with_cosines<R: Real>(wi: Vec3<R>, n: Vec3<R>, eta: R, cos_i: R, cos_t: R) -> Vec3<R> {
+    if eta == R::ONE {
+        return -wi;
+    }
+    let along = (R::ONE - eta) * (R::ONE + eta) / (eta * (cos_i + eta * cos_t));
+    n * along - wi / eta
+}
