@@ -1,1 +1,42 @@
-//! (doc head to come)
+//! The Monte Carlo integrator: a scene is [`prepare`]d once, then [`Prepared::render`]ed.
+//!
+//! ```text
+//! Scene ──prepare──▶ Prepared (with its Plan) ──render──▶ Film
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`prepare`](mod@prepare) | shapes in world space, lights, the accelerator |
+//! | [`plan`] | which effects the scene calls for, and why |
+//! | `path` | the path loop |
+//! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
+//! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`] | what the estimates are made of |
+//! | `kernel`, [`mod@render`], [`film`] | the table of kernels, tiles over all cores, sums |
+//! | [`replay`] | one path, vertex by vertex |
+//!
+//! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
+//! into stages can change a film.
+
+pub mod bsdf;
+pub mod camera;
+pub mod film;
+pub mod filter;
+mod kernel;
+pub mod light;
+pub mod mis;
+pub mod observer;
+mod path;
+pub mod plan;
+pub mod prepare;
+pub mod render;
+pub mod replay;
+pub mod sampler;
+mod spectral;
+mod surface;
+pub mod warp;
+pub mod wavelength;
+
+pub use film::{Counters, Film, NonFinite, PixelRect};
+pub use plan::{Effect, Plan};
+pub use prepare::{PrepareError, Prepared, prepare};
+pub use render::{Control, Extent, ThreadError};

@@ -1,0 +1,79 @@
+//! Smooth interface between two transparent media: the Fresnel equations choose between reflection and refraction.
+//!
+//! Where the index depends on wavelength, the hero alone keeps the refracted direction: another lane's light would have
+//! gone elsewhere. Reflection is shared by all lanes, each with its own probability of having chosen it, which the
+//! balance heuristic over lanes needs (Wilkie et al. 2014, eq. 5).
+
+use super::BsdfSample;
+use crate::mis::Density;
+use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel, snell};
+
+/// Smooth interface of two transparent media.
+#[derive(Clone, Debug)]
+pub struct Dielectric {
+    interior: RefractiveIndex,
+    exterior: RefractiveIndex,
+    dispersive: bool,
+}
+
+impl Dielectric {
+    /// An interface with `interior` behind the outward normal and `exterior` before it.
+    pub fn new(interior: RefractiveIndex, exterior: RefractiveIndex) -> Self {
+        let dispersive = interior.is_dispersive() || exterior.is_dispersive();
+        Self { interior, exterior, dispersive }
+    }
+
+    /// n_transmitted / n_incident for a path that arrives on the outside, or on the inside.
+    fn eta<R: Real>(&self, lambda_nm: f64, from_outside: bool) -> R {
+        let (inside, outside) = (self.interior.eval(lambda_nm), self.exterior.eval(lambda_nm));
+        R::from_f64(if from_outside { inside / outside } else { outside / inside })
+    }
+
+    pub(super) fn sample<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        u: R,
+    ) -> Option<BsdfSample<R, N>> {
+        let from_outside = n.dot(wo) > R::ZERO;
+        let n = if from_outside { n } else { -n };
+        // Rounding may carry the product of two unit vectors past 1.
+        let cos_o = n.dot(wo).min(R::ONE);
+        // Whether a wavelength is reflected for certain, or how likely and, if it is not, where it goes.
+        let interface = |lane: usize| {
+            let eta: R = self.eta(lambda_nm[lane], from_outside);
+            (eta, fresnel::dielectric(cos_o, eta))
+        };
+        let (eta, hero) = interface(0);
+        let reflectance = hero.map_or(R::ONE, |f| f.reflectance);
+
+        if u < reflectance {
+            let lane_density = if self.dispersive {
+                Lanes::from_fn(|lane| match lane {
+                    0 => R::ONE,
+                    _ => interface(lane).1.map_or(R::ONE, |f| f.reflectance) / reflectance,
+                })
+            } else {
+                Lanes::ONE
+            };
+            return Some(BsdfSample {
+                wi: wo.reflected_about(n).renormalized(),
+                weight: lane_density,
+                density: Density::Delta,
+                lane_density,
+                eta: R::ONE,
+            });
+        }
+        let wi = snell::refract_with_cosines(wo, n, eta, cos_o, hero?.cos_t);
+        let lane_density = if self.dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE };
+        Some(BsdfSample {
+            wi,
+            // T/(1 − R) = 1 in exact arithmetic; radiance is compressed into the denser medium, or spread from it.
+            weight: lane_density / (eta * eta),
+            density: Density::Delta,
+            lane_density,
+            eta,
+        })
+    }
+}

@@ -1,0 +1,55 @@
+//! Ideal diffuse reflection on both sides: f = ρ/π (Lambert 1760), drawn in proportion to the cosine.
+
+use super::BsdfSample;
+use crate::mis::Density;
+use crate::spectral::PathSpectrum;
+use crate::warp::cosine_hemisphere;
+use etalon_optics::{Frame, Lanes, Real, Vec3};
+
+/// Ideal diffuse reflection.
+#[derive(Clone, Debug)]
+pub struct Lambert {
+    reflectance: PathSpectrum,
+}
+
+impl Lambert {
+    /// A surface of this albedo, in [0, 1].
+    pub fn new(reflectance: PathSpectrum) -> Self {
+        Self { reflectance }
+    }
+
+    pub(super) fn eval<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        wi: Vec3<R>,
+    ) -> (Lanes<R, N>, R) {
+        let cos_i = n.dot(wi);
+        if cos_i * n.dot(wo) <= R::ZERO {
+            return (Lanes::ZERO, R::ZERO);
+        }
+        let pdf = cos_i.abs() * R::FRAC_1_PI;
+        (self.reflectance.lanes::<R, N>(lambda_nm) * pdf, pdf)
+    }
+
+    pub(super) fn sample<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        u: [R; 2],
+    ) -> Option<BsdfSample<R, N>> {
+        let n = if n.dot(wo) < R::ZERO { -n } else { n };
+        let wi = Frame::from_normal(n).to_world(cosine_hemisphere(u)).renormalized();
+        // The density of the direction as it came out, rounding included, so that it equals what `eval` says of it.
+        let cos_i = n.dot(wi);
+        (cos_i > R::ZERO).then(|| BsdfSample {
+            wi,
+            weight: self.reflectance.lanes(lambda_nm),
+            density: Density::SolidAngle(cos_i * R::FRAC_1_PI),
+            lane_density: Lanes::ONE,
+            eta: R::ONE,
+        })
+    }
+}

@@ -1,0 +1,35 @@
+//! Ideal mirror on both sides: the same reflectance at every angle.
+
+use super::BsdfSample;
+use crate::mis::Density;
+use crate::spectral::PathSpectrum;
+use etalon_optics::{Lanes, Real, Vec3};
+
+/// Ideal mirror.
+#[derive(Clone, Debug)]
+pub struct Mirror {
+    reflectance: PathSpectrum,
+}
+
+impl Mirror {
+    /// A mirror of this reflectance, in [0, 1].
+    pub fn new(reflectance: PathSpectrum) -> Self {
+        Self { reflectance }
+    }
+
+    pub(super) fn sample<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+    ) -> Option<BsdfSample<R, N>> {
+        Some(BsdfSample {
+            // Kept at unit length, so that ten thousand reflections do not drift (hard case 33).
+            wi: wo.reflected_about(n).renormalized(),
+            weight: self.reflectance.lanes(lambda_nm),
+            density: Density::Delta,
+            lane_density: Lanes::ONE,
+            eta: R::ONE,
+        })
+    }
+}

@@ -1,0 +1,108 @@
+//! How surfaces scatter light: one material a file, one door, [`Bsdf`].
+//!
+//! `wo` points toward the camera, `wi` toward the light; both are unit vectors that leave the surface. `n` is the unit
+//! normal on the surface's own outward side. Radiance is what travels: transmission carries the factor 1/η² with
+//! η = n_transmitted / n_incident along the walk from the camera.
+
+mod conductor;
+mod dielectric;
+mod lambert;
+mod mirror;
+
+pub use conductor::Conductor;
+pub use dielectric::Dielectric;
+pub use lambert::Lambert;
+pub use mirror::Mirror;
+
+use crate::mis::Density;
+use crate::spectral::PathSpectrum;
+use etalon_optics::{Lanes, Real, Vec3};
+use etalon_scene::MaterialKind;
+
+/// A direction drawn from a BSDF.
+#[derive(Clone, Copy, Debug)]
+pub struct BsdfSample<R, const N: usize> {
+    /// Toward the light; a unit vector.
+    pub wi: Vec3<R>,
+    /// f·|cos θ|/p in each lane, where p is the **hero's** density (or probability) of this direction.
+    pub weight: Lanes<R, N>,
+    /// Density of `wi` for the hero wavelength.
+    pub density: Density<R>,
+    /// Each lane's own density of this direction relative to the hero's: 0 for a lane that cannot take it.
+    pub lane_density: Lanes<R, N>,
+    /// n_transmitted / n_incident if the path crossed an interface, else 1.
+    pub eta: R,
+}
+
+/// Scattering at a surface.
+#[derive(Clone, Debug)]
+pub enum Bsdf {
+    /// Ideal diffuse reflection.
+    Lambert(Lambert),
+    /// Ideal mirror.
+    Mirror(Mirror),
+    /// Smooth metal.
+    Conductor(Conductor),
+    /// Smooth interface of two transparent media.
+    Dielectric(Dielectric),
+    /// No scattering at all.
+    Black,
+}
+
+impl Bsdf {
+    /// The scattering that a material of a scene stands for, at wavelengths within `range_nm`.
+    pub fn new(kind: &MaterialKind, range_nm: [f64; 2]) -> Self {
+        match kind {
+            MaterialKind::Lambert { reflectance } => {
+                Self::Lambert(Lambert::new(PathSpectrum::new(reflectance, range_nm)))
+            }
+            MaterialKind::Mirror { reflectance } => Self::Mirror(Mirror::new(PathSpectrum::new(reflectance, range_nm))),
+            MaterialKind::Conductor { index } => Self::Conductor(Conductor::new(index.clone())),
+            MaterialKind::Dielectric { interior, exterior } => {
+                Self::Dielectric(Dielectric::new(interior.clone(), exterior.clone()))
+            }
+            MaterialKind::Black => Self::Black,
+        }
+    }
+
+    /// Whether light arriving from a given direction can be scattered toward the camera at all: false where every
+    /// direction is a delta, so that a shadow ray would find nothing.
+    pub fn has_solid_angle_part(&self) -> bool {
+        match self {
+            Self::Lambert(_) => true,
+            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => false,
+        }
+    }
+
+    /// The BSDF's part without deltas, f(wo, wi)·|cos θ_i| in sr⁻¹, and the density in sr⁻¹ with which
+    /// [`Bsdf::sample`] draws `wi`, which no lane may change.
+    pub fn eval<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        wi: Vec3<R>,
+    ) -> (Lanes<R, N>, R) {
+        match self {
+            Self::Lambert(lambert) => lambert.eval(lambda_nm, n, wo, wi),
+            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => (Lanes::ZERO, R::ZERO),
+        }
+    }
+
+    /// Draws a direction, with `u` = (choice of lobe, two numbers for the direction) in [0, 1)³. `None` absorbs.
+    pub fn sample<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        u: [R; 3],
+    ) -> Option<BsdfSample<R, N>> {
+        match self {
+            Self::Lambert(lambert) => lambert.sample(lambda_nm, n, wo, [u[1], u[2]]),
+            Self::Mirror(mirror) => mirror.sample(lambda_nm, n, wo),
+            Self::Conductor(conductor) => conductor.sample(lambda_nm, n, wo),
+            Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, n, wo, u[0]),
+            Self::Black => None,
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Cameras: from film and lens coordinates to a ray.
+//!
+//! A camera records the radiance along its rays, averaged over the pixel's filter and the lens; there is no cos⁴ fall-off
+//! and no exposure. The ray that belongs to the centre of the lens is the pinhole's ray.
+
+use crate::warp::concentric_disk;
+use etalon_geometry::Ray;
+use etalon_optics::{Real, Vec3};
+use etalon_scene as scene;
+use etalon_scene::Projection;
+
+/// A camera ready to make rays in scalar type `R`.
+#[derive(Clone, Debug)]
+pub struct Camera<R> {
+    position: Vec3<R>,
+    forward: Vec3<R>,
+    /// Half the width of the picture, at unit distance (perspective) or in the world (orthographic).
+    half_right: Vec3<R>,
+    /// Half its height.
+    half_up: Vec3<R>,
+    kind: Kind<R>,
+}
+
+#[derive(Clone, Debug)]
+enum Kind<R> {
+    Pinhole,
+    ThinLens { right: Vec3<R>, up: Vec3<R>, focus_distance: R },
+    Orthographic,
+}
+
+impl<R: Real> Camera<R> {
+    /// Prepares a scene's camera for a film of `width` × `height` square pixels.
+    pub fn new(camera: &scene::Camera, width: u32, height: u32) -> Self {
+        let forward = Vec3::from_array(camera.forward);
+        let up = Vec3::from_array(camera.up);
+        let right = forward.cross(up);
+        let aspect = f64::from(width) / f64::from(height);
+        let (half_height, kind) = match &camera.projection {
+            Projection::Perspective { vertical_fov_rad, lens } => {
+                let kind = match lens {
+                    // A lens of radius 0 is a pinhole, bit for bit (hard case 35).
+                    Some(lens) if lens.radius_m > 0.0 => Kind::ThinLens {
+                        right: (right * lens.radius_m).cast(),
+                        up: (up * lens.radius_m).cast(),
+                        focus_distance: R::from_f64(lens.focus_distance_m),
+                    },
+                    _ => Kind::Pinhole,
+                };
+                ((0.5 * vertical_fov_rad).tan(), kind)
+            }
+            Projection::Orthographic { height_m } => (0.5 * height_m, Kind::Orthographic),
+        };
+        Self {
+            position: Vec3::from_f64(camera.position_m),
+            forward: forward.cast(),
+            half_right: (right * (half_height * aspect)).cast(),
+            half_up: (up * half_height).cast(),
+            kind,
+        }
+    }
+
+    /// The ray through `film`, in [−1, 1]² with x to the right and y up, and through the lens at `lens_u` in [0, 1)².
+    /// Its direction is a unit vector.
+    pub fn ray(&self, film: [R; 2], lens_u: [R; 2]) -> Ray<R> {
+        let across = self.half_right * film[0] + self.half_up * film[1];
+        match &self.kind {
+            Kind::Pinhole => Ray::free(self.position, (self.forward + across).normalized()),
+            Kind::ThinLens { right, up, focus_distance } => {
+                let [x, y] = concentric_disk(lens_u);
+                let lens = *right * x + *up * y;
+                // From the lens point to the point in focus, relative to the lens's centre: the scene's origin and the
+                // eye's position do not enter, so a distant focus loses no bits.
+                let focus = (self.forward + across) * *focus_distance;
+                Ray::free(self.position + lens, (focus - lens).normalized())
+            }
+            Kind::Orthographic => Ray::free(self.position + across, self.forward),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etalon_scene::ThinLens;
+    use proptest::prelude::*;
+
+    fn camera(projection: Projection) -> scene::Camera {
+        scene::Camera { position_m: [1.0, 2.0, 3.0], forward: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], projection }
+    }
+
+    fn thin(radius_m: f64, focus_distance_m: f64) -> Camera<f64> {
+        let lens = Some(ThinLens { radius_m, focus_distance_m });
+        Camera::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens }), 300, 200)
+    }
+
+    proptest! {
+        #[test]
+        fn lens_rays_meet_in_the_plane_of_focus(
+            x in -1.0..1.0_f64, y in -1.0..1.0_f64, u in 0.0..1.0_f64, v in 0.0..1.0_f64,
+            radius in 1e-6..1.0_f64, focus in 0.1..1e6_f64,
+        ) {
+            let pinhole = thin(0.0, focus).ray([x, y], [u, v]);
+            let ray = thin(radius, focus).ray([x, y], [u, v]);
+            let at_focus = |r: &Ray<f64>| r.origin + r.direction * ((3.0 - focus - r.origin.z) / r.direction.z);
+            let gap = at_focus(&ray) - at_focus(&pinhole);
+            // A few roundings of numbers as large as the distance, and of the position.
+            prop_assert!(gap.length() <= 8.0 * f64::EPSILON * (focus * 1.5 + radius + 4.0), "{gap:?}");
+            prop_assert!((ray.direction.length() - 1.0).abs() <= 4.0 * f64::EPSILON);
+            prop_assert!((ray.origin - pinhole.origin).length() <= radius * (1.0 + 4.0 * f64::EPSILON));
+        }
+
+        #[test]
+        fn a_lens_of_radius_zero_is_the_pinhole_bit_for_bit(x in -1.0..1.0_f64, y in -1.0..1.0_f64, u in 0.0..1.0_f64) {
+            let pinhole =
+                Camera::<f64>::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens: None }), 300, 200);
+            let (a, b) = (pinhole.ray([x, y], [u, u]), thin(0.0, 5.0).ray([x, y], [u, u]));
+            prop_assert_eq!(a.direction, b.direction);
+            prop_assert_eq!(a.origin, b.origin);
+        }
+    }
+
+    #[test]
+    fn field_of_view_is_the_full_vertical_angle() {
+        let c = thin(0.0, 1.0);
+        let (top, bottom) = (c.ray([0.0, 1.0], [0.0; 2]).direction, c.ray([0.0, -1.0], [0.0; 2]).direction);
+        assert!((top.dot(bottom).acos() - 0.8).abs() < 1e-14);
+        // Right-handed: looking down −z with y up, x is to the right, and pixels are square.
+        let right = c.ray([1.0, 0.0], [0.0; 2]).direction;
+        assert!((right.x / -right.z - 1.5 * 0.4_f64.tan()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn orthographic_rays_are_parallel_and_span_the_height() {
+        let c = Camera::<f64>::new(&camera(Projection::Orthographic { height_m: 4.0 }), 200, 100);
+        let (a, b) = (c.ray([-1.0, -1.0], [0.0; 2]), c.ray([1.0, 1.0], [0.0; 2]));
+        assert_eq!(a.direction, b.direction);
+        assert_eq!(b.origin - a.origin, Vec3::new(8.0, 4.0, 0.0));
+    }
+}

@@ -1,0 +1,153 @@
+//! Lights that shadow rays aim at: one kind a file, one door, [`Light`].
+//!
+//! Everything here is computed in `f64` whatever the kernel's scalar: solid angles of near, far and enclosing lights need
+//! it, and it costs no more than scalar `f32`. A density is always a function of the reference point and the direction
+//! alone, the same function for a sampled direction and for one that the BSDF found: the two can not disagree.
+
+mod directional;
+mod disk;
+mod parallelogram;
+mod planar;
+mod point;
+mod sphere;
+mod table;
+mod triangle;
+
+pub use directional::DirectionalLight;
+pub use disk::DiskLight;
+pub use parallelogram::ParallelogramLight;
+pub use point::PointLight;
+pub use sphere::SphereLight;
+pub use table::LightTable;
+pub use triangle::TriangleLight;
+
+use crate::mis::Density;
+use crate::spectral::PathSpectrum;
+use etalon_geometry::PrimitiveId;
+use etalon_optics::Vec3;
+
+/// Where a shadow ray ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// At a point.
+    Point(Vec3<f64>),
+    /// Nowhere: the light is infinitely far away.
+    Infinity,
+}
+
+/// A direction toward a light.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit vector toward the light.
+    pub wi: Vec3<f64>,
+    /// Density of `wi` in sr⁻¹, or a delta.
+    pub density: Density<f64>,
+    /// Where the shadow ray ends.
+    pub target: Target,
+    /// The light's own primitive, which does not shadow itself.
+    pub primitive: PrimitiveId,
+    /// What the light's spectrum is multiplied by: 1 for radiance, 1/d² for a point's intensity.
+    pub scale: f64,
+}
+
+/// A light that shadow rays aim at.
+#[derive(Clone, Debug)]
+pub enum Light {
+    /// An emitting sphere.
+    Sphere(SphereLight),
+    /// An emitting parallelogram.
+    Parallelogram(ParallelogramLight),
+    /// An emitting disk.
+    Disk(DiskLight),
+    /// An emitting triangle.
+    Triangle(TriangleLight),
+    /// A point.
+    Point(PointLight),
+    /// Parallel light.
+    Directional(DirectionalLight),
+}
+
+impl Light {
+    /// Draws a direction from `from` toward the light with `u` in [0, 1)²; `None` where none of its light arrives.
+    pub fn sample(&self, from: Vec3<f64>, u: [f64; 2]) -> Option<LightSample> {
+        match self {
+            Self::Sphere(light) => light.sample(from, u),
+            Self::Parallelogram(light) => light.sample(from, u),
+            Self::Disk(light) => light.sample(from, u),
+            Self::Triangle(light) => light.sample(from, u),
+            Self::Point(light) => light.sample(from),
+            Self::Directional(light) => Some(light.sample()),
+        }
+    }
+
+    /// The density in sr⁻¹ with which [`Light::sample`] draws the direction `wi`, which meets the light, from `from`.
+    pub fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64 {
+        match self {
+            Self::Sphere(light) => light.density(from),
+            Self::Parallelogram(light) => light.density(from, wi),
+            Self::Disk(light) => light.density(from, wi),
+            Self::Triangle(light) => light.density(from, wi),
+            Self::Point(_) | Self::Directional(_) => 0.0,
+        }
+    }
+
+    /// The spectrum that [`LightSample::scale`] multiplies.
+    pub fn spectrum(&self) -> &PathSpectrum {
+        match self {
+            Self::Sphere(light) => &light.emitter.radiance,
+            Self::Parallelogram(light) => &light.emitter.radiance,
+            Self::Disk(light) => &light.emitter.radiance,
+            Self::Triangle(light) => &light.emitter.radiance,
+            Self::Point(light) => &light.intensity,
+            Self::Directional(light) => &light.irradiance,
+        }
+    }
+
+    /// What an emitting surface emits; `None` for a light without a surface.
+    pub fn emitter(&self) -> Option<&Emitter> {
+        match self {
+            Self::Sphere(light) => Some(&light.emitter),
+            Self::Parallelogram(light) => Some(&light.emitter),
+            Self::Disk(light) => Some(&light.emitter),
+            Self::Triangle(light) => Some(&light.emitter),
+            Self::Point(_) | Self::Directional(_) => None,
+        }
+    }
+
+    /// What the spectrum is to be multiplied by for the light's power, W·nm⁻¹, in a scene of this radius.
+    fn power_factor(&self, scene_radius: f64) -> f64 {
+        use std::f64::consts::PI;
+        match self {
+            Self::Sphere(light) => light.emitter.side_count() * PI * light.area(),
+            Self::Parallelogram(light) => light.emitter.side_count() * PI * light.area(),
+            Self::Disk(light) => light.emitter.side_count() * PI * light.area(),
+            Self::Triangle(light) => light.emitter.side_count() * PI * light.area(),
+            Self::Point(_) => 4.0 * PI,
+            Self::Directional(_) => PI * scene_radius * scene_radius,
+        }
+    }
+}
+
+/// What every emitting surface has: its radiance, its emitting sides and its primitive.
+#[derive(Clone, Debug)]
+pub struct Emitter {
+    /// Emitted radiance, W·m⁻²·sr⁻¹·nm⁻¹.
+    pub radiance: PathSpectrum,
+    /// Whether the side that the normal points into emits.
+    pub front: bool,
+    /// Whether the other side emits.
+    pub back: bool,
+    /// The surface.
+    pub primitive: PrimitiveId,
+}
+
+impl Emitter {
+    /// Whether light leaves along `direction` from a point whose normal is `n`.
+    pub fn emits_along(&self, n: Vec3<f64>, direction: Vec3<f64>) -> bool {
+        if n.dot(direction) > 0.0 { self.front } else { self.back }
+    }
+
+    fn side_count(&self) -> f64 {
+        f64::from(u8::from(self.front)) + f64::from(u8::from(self.back))
+    }
+}

@@ -1,0 +1,68 @@
+//! Which light a shadow ray aims at: in proportion to its power, with a share spread evenly.
+
+use super::Light;
+use crate::spectral::PathSpectrum;
+use etalon_optics::colour::colour_matching;
+
+/// Share of the choices that is spread evenly over the lights, so that a dim light beside the point is still found.
+const EVEN_SHARE: f64 = 0.1;
+
+/// All lights that shadow rays aim at, with the probability of each.
+#[derive(Clone, Debug, Default)]
+pub struct LightTable {
+    lights: Vec<Light>,
+    /// Cumulative probability after each light; the last is 1.
+    cdf: Vec<f64>,
+}
+
+impl LightTable {
+    /// A table over lights of a scene with this bounding radius; lights that emit nothing within the
+    /// wavelengths `range_nm` are left out.
+    pub fn new(lights: Vec<Light>, scene_radius: f64, range_nm: [f64; 2]) -> Self {
+        let powers = lights.iter().map(|l| l.power_factor(scene_radius) * visible_sum(l.spectrum(), range_nm));
+        let (lights, powers): (Vec<_>, Vec<_>) =
+            lights.iter().cloned().zip(powers).filter(|&(_, power)| power > 0.0).unzip();
+        let total: f64 = powers.iter().sum();
+        let even = EVEN_SHARE / powers.len() as f64;
+        let mut sum = 0.0;
+        let mut cdf: Vec<f64> = powers
+            .iter()
+            .map(|power| {
+                sum += (1.0 - EVEN_SHARE) * power / total + even;
+                sum
+            })
+            .collect();
+        if let Some(last) = cdf.last_mut() {
+            *last = 1.0;
+        }
+        Self { lights, cdf }
+    }
+
+    /// Whether there is no light to aim at.
+    pub fn is_empty(&self) -> bool {
+        self.lights.is_empty()
+    }
+
+    /// The lights, in the order of their indices.
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// The index of the light that `u` in [0, 1) chooses.
+    pub fn choose(&self, u: f64) -> usize {
+        self.cdf.partition_point(|&c| c <= u)
+    }
+
+    /// The probability of a light.
+    pub fn probability(&self, index: usize) -> f64 {
+        self.cdf[index] - if index == 0 { 0.0 } else { self.cdf[index - 1] }
+    }
+}
+
+/// ∫ S·(x̄ + ȳ + z̄ + floor) by 256 equal steps of the range: only the choice of lights depends on it. The floor keeps
+/// lights whose wavelengths are hardly visible.
+fn visible_sum(spectrum: &PathSpectrum, [first, last]: [f64; 2]) -> f64 {
+    let steps = 256;
+    let at = |i: i32| first + (last - first) * (f64::from(i) + 0.5) / f64::from(steps);
+    (0..steps).map(at).map(|nm| spectrum.eval(nm) * (colour_matching(nm).iter().sum::<f64>() + 1e-3)).sum()
+}

@@ -1,0 +1,43 @@
+//! Multiple importance sampling.
+
+use etalon_optics::Real;
+
+/// A sampling density, which keeps what can and what cannot be hit by chance apart, so that MIS cannot mix them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Density<R> {
+    /// Per unit solid angle, sr⁻¹.
+    SolidAngle(R),
+    /// A direction that only this technique can produce.
+    Delta,
+}
+
+/// The power heuristic (Veach 1997, §9.2.4, β = 2) for the technique of density `own` against one of density `other`,
+/// in the form 1/(1 + (other/own)²): it neither overflows nor becomes ∞/∞ where the squares would.
+#[inline]
+pub fn power_heuristic<R: Real>(own: R, other: R) -> R {
+    let ratio = other / own;
+    R::ONE / (R::ONE + ratio * ratio)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn weights_survive_densities_whose_squares_overflow() {
+        // Hard case 32.
+        assert!((power_heuristic(3e20_f32, 2e20) - 9.0 / 13.0).abs() <= 4.0 * f32::EPSILON);
+        assert_eq!(power_heuristic(1.0_f32, 0.0), 1.0);
+        assert_eq!(power_heuristic(1e-30_f32, 1e30), 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn weights_of_both_techniques_sum_to_one(a in -80.0..80.0_f64, b in -80.0..80.0_f64) {
+            let (a, b) = (10f64.powf(a), 10f64.powf(b));
+            // Three roundings in each weight.
+            prop_assert!((power_heuristic(a, b) + power_heuristic(b, a) - 1.0).abs() <= 6.0 * f64::EPSILON);
+        }
+    }
+}

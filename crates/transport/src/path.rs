@@ -1,0 +1,205 @@
+//! The path loop: the rendering equation, one path at a time.
+//!
+//! L(x, ω) = Le(x, ω) + ∫ f(x, ω, ω′) L(x′, −ω′) |cos θ′| dω′ is estimated along one random walk from the camera. At each
+//! vertex the light that arrives from the lights themselves is found in two ways, by a shadow ray toward a light and by
+//! the walk's own next step, combined by multiple importance sampling (Veach 1997).
+//!
+//! **Wavelengths.** All lanes follow the path that the hero drew. `beta` is f/p along it with the hero's p, and
+//! `lane_density` is each lane's own density of the same path relative to the hero's. The balance heuristic over the
+//! lanes that could have been hero (Wilkie et al. 2014, eq. 5) then weighs lane j by N·beta_j / Σ lane_density: plain
+//! `beta` as long as all lanes sample alike, N·beta_hero once dispersion has left the hero alone.
+
+use crate::bsdf::Bsdf;
+use crate::film::Counters;
+use crate::light::{LightTable, Target};
+use crate::mis::{Density, power_heuristic};
+use crate::observer::{End, Found, Observer};
+use crate::sampler::Sampler;
+use crate::spectral::PathSpectrum;
+use crate::surface::Surfaces;
+use etalon_geometry::{Geometry, Ray, SurfacePoint};
+use etalon_optics::{Lanes, Real, Vec3};
+use etalon_scene::LightSampling;
+
+/// Below this throughput a path is ended even without roulette: no film value could change (hard case 30).
+const THROUGHPUT_FLOOR: f64 = 1e-30;
+/// Vertices after which any path is cut, so that a room without absorption ends; such paths are counted and reported.
+pub(crate) const MOST_VERTICES: u32 = 1 << 16;
+/// Vertices before Russian roulette begins.
+const ROULETTE_FROM_VERTEX: u32 = 2;
+
+/// All that a path meets.
+pub(crate) struct World<'a> {
+    pub geometry: &'a Geometry,
+    pub surfaces: &'a Surfaces,
+    pub lights: &'a LightTable,
+    pub environments: &'a [PathSpectrum],
+    pub light_sampling: LightSampling,
+    /// Most path edges from the camera to a light, at most [`MOST_VERTICES`].
+    pub max_depth: u32,
+    pub roulette: bool,
+}
+
+/// The last step of the walk, as far as MIS needs it.
+#[derive(Clone, Copy)]
+enum Step<R> {
+    /// From the camera or by a delta: no shadow ray could have found what it finds.
+    Unshared,
+    /// Drawn with this density from this point, where a shadow ray was sent too.
+    Shared { from: Vec3<R>, density: R },
+}
+
+impl World<'_> {
+    /// Radiance that arrives along `ray` at each wavelength.
+    pub(crate) fn radiance<R: Real, const N: usize>(
+        &self,
+        mut ray: Ray<R>,
+        lambda_nm: &Lanes<f64, N>,
+        sampler: &Sampler,
+        counters: &mut Counters,
+        observer: &mut impl Observer<R, N>,
+    ) -> Lanes<R, N> {
+        let mut radiance = Lanes::ZERO;
+        let mut beta = Lanes::<R, N>::ONE;
+        let mut lane_density = Lanes::<R, N>::ONE;
+        // ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
+        let mut eta_squared = R::ONE;
+        let mut step = Step::Unshared;
+
+        for vertex in 0_u32.. {
+            let lane_weight = R::from_f64(N as f64) / lane_density.sum();
+            counters.rays += 1;
+            let Some(hit) = self.geometry.closest_hit(&ray) else {
+                for sky in self.environments {
+                    // Never a target of shadow rays: the BSDF's own directions are its best samples.
+                    let light = beta * sky.lanes(lambda_nm) * lane_weight;
+                    observer.light(vertex, Found::Environment, light);
+                    radiance += light;
+                }
+                observer.end(End::Escaped);
+                break;
+            };
+            let point = self.geometry.surface(&ray, &hit);
+            let surface = self.surfaces.of(point.primitive);
+            let wo = -ray.direction;
+            observer.vertex(vertex, point.position, surface.object, beta);
+
+            if let Some(emitter) = surface.emission_along(point.normal, wo) {
+                let mis = self.weight_of_hit(step, surface.light, ray.direction);
+                let light = beta * emitter.lanes(lambda_nm) * (lane_weight * mis);
+                observer.light(vertex, Found::Emitter, light);
+                radiance += light;
+            }
+            if vertex + 1 >= self.max_depth {
+                counters.cut_paths += u64::from(vertex + 1 == MOST_VERTICES);
+                observer.end(End::Depth);
+                break;
+            }
+
+            let shared = !self.lights.is_empty() && surface.bsdf.has_solid_angle_part();
+            if shared {
+                let u = sampler.vertex_set(vertex, 1);
+                if let Some((index, direct)) = self.direct_light(&point, surface.bsdf, wo, lambda_nm, u, counters) {
+                    let light = beta * direct * lane_weight;
+                    observer.light(vertex, Found::ShadowRay { light: index }, light);
+                    radiance += light;
+                }
+            }
+
+            let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(vertex, 0);
+            let Some(next) = surface.bsdf.sample(lambda_nm, point.normal, wo, [u_lobe, u1, u2]) else {
+                observer.end(End::Absorbed);
+                break;
+            };
+            beta *= next.weight;
+            lane_density *= next.lane_density;
+            eta_squared *= next.eta * next.eta;
+            step = match next.density {
+                Density::SolidAngle(density) if shared => Step::Shared { from: point.position, density },
+                Density::SolidAngle(_) | Density::Delta => Step::Unshared,
+            };
+            ray = point.spawn(next.wi);
+
+            if !beta.is_finite() {
+                // Shown to the film, which counts and locates it.
+                observer.end(End::NonFinite);
+                return beta;
+            }
+            let throughput = beta.max_lane() * (R::from_f64(N as f64) / lane_density.sum()) * eta_squared;
+            if throughput < R::from_f64(THROUGHPUT_FLOOR) {
+                observer.end(End::Vanished);
+                break;
+            }
+            if self.roulette && vertex + 1 >= ROULETTE_FROM_VERTEX {
+                // No cap below one: it would make the variance infinite between good mirrors (hard case 29).
+                let survival = throughput.min(R::ONE);
+                if u_roulette >= survival {
+                    observer.end(End::Roulette);
+                    break;
+                }
+                beta /= survival;
+            }
+        }
+        radiance
+    }
+
+    /// The MIS weight of light that the walk ran into at a surface whose light, if any, is number `light`.
+    fn weight_of_hit<R: Real>(&self, step: Step<R>, light: Option<u32>, wi: Vec3<R>) -> R {
+        match (step, light) {
+            (Step::Unshared, _) | (_, None) => R::ONE,
+            (Step::Shared { from, density }, Some(light)) => match self.light_sampling {
+                LightSampling::Light => R::ZERO,
+                LightSampling::Bsdf => R::ONE,
+                LightSampling::Mis => {
+                    let light = light as usize;
+                    let shadow_ray = self.lights.probability(light)
+                        * self.lights.lights()[light].density(from.to_f64(), wi.to_f64());
+                    power_heuristic(density, R::from_f64(shadow_ray))
+                }
+            },
+        }
+    }
+
+    /// One shadow ray: ∫ f Le |cos θ| dω over the lights, estimated by one direction toward one of them, with that
+    /// light's number.
+    fn direct_light<R: Real, const N: usize>(
+        &self,
+        point: &SurfacePoint<R>,
+        bsdf: &Bsdf,
+        wo: Vec3<R>,
+        lambda_nm: &Lanes<f64, N>,
+        [u_light, u1, u2, _]: [R; 4],
+        counters: &mut Counters,
+    ) -> Option<(u32, Lanes<R, N>)> {
+        let index = self.lights.choose(u_light.to_f64());
+        let light = &self.lights.lights()[index];
+        let sample = light.sample(point.position.to_f64(), [u1.to_f64(), u2.to_f64()])?;
+        let wi = sample.wi.cast();
+        let (f_cos, bsdf_density) = bsdf.eval(lambda_nm, point.normal, wo, wi);
+        if f_cos.is_zero() {
+            return None;
+        }
+        let shadow_ray = match sample.target {
+            Target::Point(target) => point.spawn_to(target.cast(), sample.primitive),
+            Target::Infinity => point.spawn(wi),
+        };
+        counters.shadow_rays += 1;
+        if self.geometry.occluded(&shadow_ray) {
+            return None;
+        }
+        let probability = self.lights.probability(index);
+        let weight = match sample.density {
+            Density::Delta => R::from_f64(sample.scale / probability),
+            Density::SolidAngle(density) => {
+                let density = density * probability;
+                let mis = match self.light_sampling {
+                    LightSampling::Light => R::ONE,
+                    LightSampling::Bsdf => R::ZERO,
+                    LightSampling::Mis => power_heuristic(R::from_f64(density), bsdf_density),
+                };
+                mis * R::from_f64(sample.scale / density)
+            }
+        };
+        Some((index as u32, f_cos * light.spectrum().lanes(lambda_nm) * weight))
+    }
+}

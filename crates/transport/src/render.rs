@@ -1,0 +1,92 @@
+//! Rendering: tiles over all cores, the same bytes whatever their number.
+
+use crate::film::{Film, PixelRect};
+use crate::kernel::kernel;
+use crate::prepare::Prepared;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Side of a tile, pixels.
+const TILE: u32 = 16;
+
+/// A stage of a render: which pixels, which samples, on how many threads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Pixels.
+    pub rect: PixelRect,
+    /// Numbers of the samples.
+    pub samples: Range<u32>,
+    /// Threads; `None` is one for each core.
+    pub threads: Option<usize>,
+}
+
+/// Whether to go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Begin no further tile.
+    Stop,
+}
+
+/// No thread pool could be had.
+#[derive(Debug, thiserror::Error)]
+#[error("threads for the render could not be started: {0}")]
+pub struct ThreadError(#[from] rayon::ThreadPoolBuildError);
+
+impl Prepared {
+    /// The whole film at the scene's own number of samples.
+    pub fn whole(&self, threads: Option<usize>) -> Extent {
+        let film = &self.scene.film;
+        Extent {
+            rect: PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height },
+            samples: 0..self.scene.integrator.spp,
+            threads,
+        }
+    }
+
+    /// Renders `extent` onto a new film. `on_tile` hears the number of paths that a finished tile took.
+    pub fn render(&self, extent: &Extent, on_tile: &(dyn Fn(u64) -> Control + Sync)) -> Result<Film, ThreadError> {
+        let mut film = Film::new(self.scene.film.width, self.scene.film.height);
+        self.render_onto(&mut film, extent, on_tile)?;
+        Ok(film)
+    }
+
+    /// Adds `extent` to a film of the scene's size. Samples given in ascending ranges leave the same bytes as one
+    /// range. A tile is added whole or not at all.
+    pub fn render_onto(
+        &self,
+        film: &mut Film,
+        extent: &Extent,
+        on_tile: &(dyn Fn(u64) -> Control + Sync),
+    ) -> Result<(), ThreadError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(extent.threads.unwrap_or(0)).build()?;
+        let kernel = kernel(self.scene.integrator.precision);
+        let tiles = extent.rect.tiles(TILE);
+        let stopped = AtomicBool::new(false);
+        let before: &Film = film;
+        let finished: Vec<_> = pool.install(|| {
+            tiles
+                .par_iter()
+                .map(|&tile| {
+                    if stopped.load(Ordering::Relaxed) {
+                        return None;
+                    }
+                    let done = kernel(self, tile, extent.samples.clone(), before);
+                    if on_tile(done.1.paths) == Control::Stop {
+                        stopped.store(true, Ordering::Relaxed);
+                    }
+                    Some(done)
+                })
+                .collect()
+        });
+        for (tile, done) in tiles.iter().zip(finished) {
+            if let Some((sums, counters)) = done {
+                film.put(*tile, &sums);
+                film.counters.merge(&counters);
+            }
+        }
+        Ok(())
+    }
+}

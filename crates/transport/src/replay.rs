@@ -1,0 +1,116 @@
+//! One path again, vertex by vertex.
+
+use crate::film::Counters;
+use crate::kernel::{LANES, Tracer};
+use crate::observer::{End, Found, Observer};
+use crate::prepare::Prepared;
+use etalon_optics::{Lanes, Real, Vec3};
+use etalon_scene::Precision;
+use serde::Serialize;
+
+/// All that happened on one path.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Replay {
+    /// Wavelengths, nm; the first is the hero.
+    pub wavelengths_nm: Vec<f64>,
+    /// What happened, in order.
+    pub events: Vec<Event>,
+    /// The radiance estimate at each wavelength, W·m⁻²·sr⁻¹·nm⁻¹.
+    pub radiance: Vec<f64>,
+    /// What the sample adds to the pixel, CIE XYZ.
+    pub xyz: [f64; 3],
+}
+
+/// Something that happened on a path.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+pub enum Event {
+    /// A surface was met.
+    Vertex {
+        /// Its number along the path, from 0.
+        vertex: u32,
+        /// Name of the object.
+        object: String,
+        /// Position, m.
+        position_m: [f64; 3],
+        /// Throughput of the path up to here at each wavelength.
+        beta: Vec<f64>,
+    },
+    /// Light was added.
+    Light {
+        /// At which vertex.
+        vertex: u32,
+        /// How it was found: `emitter`, `environment` or `shadow-ray to light k`.
+        found: String,
+        /// How much, at each wavelength.
+        radiance: Vec<f64>,
+    },
+    /// The path ended.
+    End {
+        /// Why.
+        because: &'static str,
+    },
+}
+
+impl Prepared {
+    /// Traces sample number `sample` of pixel (`x`, `y`) once more and says what happened.
+    pub fn replay(&self, x: u32, y: u32, sample: u32) -> Replay {
+        match self.scene.integrator.precision {
+            Precision::F32 => self.replay_in::<f32>(x, y, sample),
+            Precision::F64 => self.replay_in::<f64>(x, y, sample),
+        }
+    }
+
+    fn replay_in<R: Real>(&self, x: u32, y: u32, sample: u32) -> Replay {
+        let mut recorder = Recorder { prepared: self, events: Vec::new() };
+        let tracer = Tracer::<R>::new(self);
+        let (wavelengths, radiance) = tracer.sample(x, y, sample, &mut Counters::default(), &mut recorder);
+        Replay {
+            wavelengths_nm: wavelengths.lambda_nm.0.to_vec(),
+            events: recorder.events,
+            radiance: widen(radiance),
+            xyz: wavelengths.to_xyz(radiance),
+        }
+    }
+}
+
+struct Recorder<'a> {
+    prepared: &'a Prepared,
+    events: Vec<Event>,
+}
+
+fn widen<R: Real>(lanes: Lanes<R, LANES>) -> Vec<f64> {
+    lanes.0.iter().map(|v| v.to_f64()).collect()
+}
+
+impl<R: Real> Observer<R, LANES> for Recorder<'_> {
+    fn vertex(&mut self, vertex: u32, position: Vec3<R>, object: u32, beta: Lanes<R, LANES>) {
+        self.events.push(Event::Vertex {
+            vertex,
+            object: self.prepared.scene.objects[object as usize].name.clone(),
+            position_m: position.to_f64().to_array(),
+            beta: widen(beta),
+        });
+    }
+
+    fn light(&mut self, vertex: u32, how: Found, radiance: Lanes<R, LANES>) {
+        let found = match how {
+            Found::Emitter => "emitter".to_owned(),
+            Found::Environment => "environment".to_owned(),
+            Found::ShadowRay { light } => format!("shadow-ray to light {light}"),
+        };
+        self.events.push(Event::Light { vertex, found, radiance: widen(radiance) });
+    }
+
+    fn end(&mut self, end: End) {
+        let because = match end {
+            End::Escaped => "escaped",
+            End::Absorbed => "absorbed",
+            End::Vanished => "throughput below the floor",
+            End::Roulette => "roulette",
+            End::Depth => "limit on depth",
+            End::NonFinite => "throughput not finite",
+        };
+        self.events.push(Event::End { because });
+    }
+}
