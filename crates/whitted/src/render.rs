@@ -140,7 +140,7 @@ impl<'a, A: Arithmetic> Tracer<'a, A> {
             let cosine = A::dot(A::normalize(to_light), hit.normal).max(0.0);
             let bisector = A::normalize(to_light - ray.direction);
             let highlight = A::pow(A::dot(hit.normal, bisector).max(0.0), m.shininess);
-            lights += (m.diffuse * cosine + m.specular * highlight) * light.color / A::dot(to_light, to_light);
+            lights += (cosine * m.diffuse + highlight * m.specular).times(light.color) / A::dot(to_light, to_light);
         }
 
         let reflected = |d, n| Some(reflect::<A>(d, n));
@@ -170,12 +170,12 @@ impl<'a, A: Arithmetic> Tracer<'a, A> {
         first: &Hit<'_>,
         incoming: Vec3,
         visible: &[&Light],
-        weight: f64,
+        weight: Vec3,
         turn: impl Fn(Vec3, Vec3) -> Option<Vec3>,
         is_lit: impl Fn(Vec3, Vec3) -> bool,
     ) -> Vec3 {
         let mut sum = Vec3::default();
-        if weight == 0.0 {
+        if weight == Vec3::default() {
             return sum;
         }
         let (mut point, mut normal, mut direction) = (first.point, first.normal, incoming);
@@ -192,7 +192,7 @@ impl<'a, A: Arithmetic> Tracer<'a, A> {
                 let to_light = light.position - point;
                 let bisector = A::normalize(to_light - direction);
                 let highlight = A::pow(A::dot(normal, bisector).max(0.0), SECONDARY_SHININESS);
-                sum += weight * highlight * light.color / A::dot(to_light, to_light);
+                sum += (highlight * weight).times(light.color) / A::dot(to_light, to_light);
             }
         }
         sum
@@ -224,7 +224,7 @@ fn intersect<A: Arithmetic>(shape: &Shape, ray: &Ray) -> Option<(Vec3, Vec3)> {
             let b = 2.0 * A::dot(d, oc);
             let c = A::dot(oc, oc) - radius * radius;
             let discriminant = b * b - 4.0 * a * c;
-            if discriminant <= 0.0 {
+            if discriminant.is_nan() || discriminant <= 0.0 {
                 return None;
             }
             let root = discriminant.sqrt();

@@ -37,14 +37,14 @@ pub struct Camera {
 pub struct Material {
     /// Multiplies the scene's ambient light, channel by channel.
     pub ambient: Vec3,
-    /// Weight of the cosine term.
-    pub diffuse: f64,
+    /// Weight of the cosine term, a channel each, like the next three.
+    pub diffuse: Vec3,
     /// Weight of the highlight.
-    pub specular: f64,
+    pub specular: Vec3,
     /// Weight of the highlights seen by mirror reflection.
-    pub mirror: f64,
+    pub mirror: Vec3,
     /// Weight of the highlights seen by refraction.
-    pub refraction: f64,
+    pub refraction: Vec3,
     /// The `ri` of equation (1).
     pub refraction_index: f64,
     /// Exponent of the highlight.
@@ -148,10 +148,10 @@ impl Scene {
     pub fn seven_spheres() -> Self {
         let material = Material {
             ambient: vec3(0.0, 0.5, 0.0),
-            diffuse: 0.5,
-            specular: 0.2,
-            mirror: 0.7,
-            refraction: 0.0,
+            diffuse: vec3(0.5, 0.5, 0.5),
+            specular: vec3(0.2, 0.2, 0.2),
+            mirror: vec3(0.7, 0.7, 0.7),
+            refraction: vec3(0.0, 0.0, 0.0),
             refraction_index: 1.0,
             shininess: 256.0,
         };

@@ -102,7 +102,7 @@ proptest! {
 fn glass_spheres_render_without_a_nan_by_either_rule_and_differently() {
     let mut scene = Figure::ALL[1].scene();
     for object in &mut scene.objects {
-        object.material.refraction = 0.9;
+        object.material.refraction = vec3(0.9, 0.9, 0.9);
         object.material.refraction_index = 1.5;
     }
     let small = |refraction| Settings {
