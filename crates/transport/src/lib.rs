@@ -10,7 +10,7 @@
 //! | [`plan`] | which effects the scene calls for, and why |
 //! | `path` | the path loop |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
-//! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`] | what the estimates are made of |
+//! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`] | what the estimates are made of |
 //! | `kernel`, [`mod@render`], [`film`] | the table of kernels, tiles over all cores, sums |
 //! | [`replay`] | one path, vertex by vertex |
 //!
@@ -31,7 +31,7 @@ pub mod prepare;
 pub mod render;
 pub mod replay;
 pub mod sampler;
-mod spectral;
+pub mod spectral;
 mod surface;
 pub mod warp;
 pub mod wavelength;

@@ -10,15 +10,15 @@ pub enum PathSpectrum {
     Constant(f64),
     /// Values at each nanometre from `first_nm`, interpolated linearly.
     ///
-    /// Exact for tables whose wavelengths are whole nanometres. For smooth spectra (Planck's law, illuminants, RGB
-    /// colours) the interpolation errs by |S″|/8 nm², below 1e-5 of the largest value for anything as wide as 100 nm.
+    /// Exact for tables whose wavelengths are whole nanometres. For Planck's law and lights of an RGB colour the
+    /// interpolation errs by |S″|/8 nm², below 1e-5 of the largest value for anything as wide as 100 nm.
     Grid {
         /// Wavelength of the first value, nm.
         first_nm: f64,
         /// The values; one more than there are steps.
         values: Vec<f64>,
     },
-    /// A table with wavelengths between the nanometres, looked up as it is.
+    /// A spectrum that may have detail between the nanometres and needs no mathematics library, evaluated as it is.
     Symbolic(Spectrum),
 }
 
@@ -72,11 +72,9 @@ fn is_grid_exact(spectrum: &Spectrum) -> bool {
             table.wavelengths_nm().iter().all(whole) && !jumps
         }
         Spectrum::Scaled { spectrum, .. } => is_grid_exact(spectrum),
-        Spectrum::Constant(_)
-        | Spectrum::Blackbody(_)
-        | Spectrum::Illuminant(_)
-        | Spectrum::RgbReflectance(_)
-        | Spectrum::RgbEmission(_) => true,
+        // As steep as its colour is saturated.
+        Spectrum::RgbReflectance(_) => false,
+        Spectrum::Constant(_) | Spectrum::Blackbody(_) | Spectrum::Illuminant(_) | Spectrum::RgbEmission(_) => true,
     }
 }
 

@@ -63,8 +63,9 @@ mod tests {
         }
     }
 
-    /// Moments on a 256 × 256 midpoint grid against their exact integrals. The grid's own error falls as 1/n² for these
-    /// smooth integrands: 1e-4 is ten times what was seen, and a wrong density moves each moment by percents.
+    /// Moments on a 256 × 256 midpoint grid against their exact integrals. The grid's own error is
+    /// largest at the rim of the hemisphere, where the cosine is a square root: n^-1.5 = 2.4e-4. A wrong density moves
+    /// each moment by percents.
     #[test]
     fn moments_match_the_densities() {
         let n = 256;
@@ -72,7 +73,7 @@ mod tests {
             let grid = |i: usize| (i as f64 + 0.5) / n as f64;
             (0..n * n).map(|k| f([grid(k % n), grid(k / n)])).sum::<f64>() / (n * n) as f64
         };
-        let close = |got: f64, want: f64| assert!((got - want).abs() < 1e-4, "{got} is not {want}");
+        let close = |got: f64, want: f64| assert!((got - want).abs() < 2.4e-4, "{got} is not {want}");
         close(mean(&|u| concentric_disk(u)[0].powi(2)), 0.25);
         close(mean(&|u| cosine_hemisphere(u).z), 2.0 / 3.0);
         close(mean(&|u| uniform_sphere(u).x.powi(2)), 1.0 / 3.0);

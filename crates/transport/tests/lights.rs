@@ -1,0 +1,127 @@
+//! Lights: the density of a sample is the density that the light reports, and it is the density of the directions.
+
+use etalon_geometry::{Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
+use etalon_optics::Vec3;
+use etalon_transport::light::{DiskLight, Emitter, Light, ParallelogramLight, SphereLight, Target, TriangleLight};
+use etalon_transport::mis::Density;
+use etalon_transport::spectral::PathSpectrum;
+use proptest::prelude::*;
+use std::f64::consts::PI;
+
+fn emitter() -> Emitter {
+    Emitter { radiance: PathSpectrum::Constant(1.0), front: true, back: true, primitive: PrimitiveId(0) }
+}
+
+fn sphere(center: Vec3<f64>, radius: f64) -> Light {
+    Light::Sphere(SphereLight::new(Sphere::new(center, radius).unwrap(), emitter()))
+}
+
+fn parallelogram(corner: Vec3<f64>, a: Vec3<f64>, b: Vec3<f64>) -> Light {
+    Light::Parallelogram(ParallelogramLight::new(Parallelogram::new(corner, a, b).unwrap(), emitter()))
+}
+
+fn disk(center: Vec3<f64>, normal: Vec3<f64>, radius: f64) -> Light {
+    Light::Disk(DiskLight::new(Disk::new(center, normal.normalized(), radius).unwrap(), emitter()))
+}
+
+fn triangle(a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>) -> Light {
+    Light::Triangle(TriangleLight::new(Triangle::new(a, b, c).unwrap(), emitter()))
+}
+
+/// Solid angle of a triangle seen from the origin (Van Oosterom & Strackee 1983).
+fn triangle_solid_angle(a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>) -> f64 {
+    let (la, lb, lc) = (a.length(), b.length(), c.length());
+    let numerator = a.dot(b.cross(c)).abs();
+    let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    2.0 * numerator.atan2(denominator)
+}
+
+/// Σ g(wi)/density over an n × n midpoint grid: ∫ g dω over the light's directions from the origin.
+fn integral(light: &Light, n: usize, g: impl Fn(Vec3<f64>) -> f64) -> f64 {
+    let at = |i: usize| (i as f64 + 0.5) / n as f64;
+    let mut sum = 0.0;
+    for i in 0..n * n {
+        if let Some(sample) = light.sample(Vec3::ZERO, [at(i % n), at(i / n)]) {
+            let Density::SolidAngle(density) = sample.density else { panic!("an area light has no delta") };
+            sum += g(sample.wi) / density;
+        }
+    }
+    sum / (n * n) as f64
+}
+
+fn close(got: f64, want: f64, relative: f64, what: &str) {
+    assert!((got / want - 1.0).abs() <= relative, "{what}: {got} is not {want}");
+}
+
+#[test]
+fn sphere_light_solid_angle_and_irradiance_hold_at_any_distance() {
+    // Hard case 25: R/d from one half to 1e-5, E = πLe(R/d)² for a receiver that faces the light. The density is
+    // constant, so the solid angle is exact to rounding; the cosine is averaged by the midpoint rule, whose relative
+    // error over n × n cells is below 1/n².
+    for ratio in [0.5, 0.1, 3e-3, 2e-4, 1e-5] {
+        let light = sphere(Vec3::new(0.0, 0.0, 7.0), 7.0 * ratio);
+        let cos = ((1.0 - ratio) * (1.0 + ratio)).sqrt();
+        close(integral(&light, 4, |_| 1.0), 2.0 * PI * ratio * ratio / (1.0 + cos), 1e-14, "solid angle");
+        close(integral(&light, 64, |wi| wi.z), PI * ratio * ratio, 2.5e-4, "irradiance");
+    }
+    // Hard case 26: gap over radius from 1 to 1e-6, E = πLe/(1 + ε)².
+    for gap in [1.0, 0.1, 1e-3, 1e-6] {
+        let light = sphere(Vec3::new(0.0, 0.0, 1.0 + gap), 1.0);
+        close(integral(&light, 64, |wi| wi.z.max(0.0)), PI / (1.0 + gap).powi(2), 2.5e-4, "irradiance close by");
+    }
+    // Hard case 27: from inside, the whole sphere of directions.
+    let inside = sphere(Vec3::new(0.1, 0.3, -0.4), 1.0);
+    close(integral(&inside, 8, |_| 1.0), 4.0 * PI, 1e-14, "solid angle from inside");
+}
+
+#[test]
+fn flat_lights_fill_their_solid_angle() {
+    let (corner, a, b) = (Vec3::new(-0.5, -1.0, 1.0), Vec3::new(1.5, 0.0, 0.5), Vec3::new(0.2, 1.8, 0.0));
+    let (p, q, r) = (corner + a, corner + a + b, corner + b);
+    // The midpoint rule over a smooth integrand with n = 256: errors near 1/n² = 1.5e-5.
+    let (one, two) = (triangle_solid_angle(corner, p, q), triangle_solid_angle(corner, q, r));
+    close(integral(&parallelogram(corner, a, b), 256, |_| 1.0), one + two, 5e-5, "parallelogram");
+    // The triangle's map has a crease along the diagonal, where the rule loses one order: 1/n.
+    close(integral(&triangle(corner, p, q), 512, |_| 1.0), one, 1e-3, "triangle");
+    // A disk of radius 1 at height 1 on the axis: solid angle 2π(1 − 1/√2), irradiance πr²/(r² + h²).
+    let light = disk(Vec3::new(0.0, 0.0, 1.0), Vec3::new(0.0, 0.0, -1.0), 1.0);
+    close(integral(&light, 256, |_| 1.0), 2.0 * PI * (1.0 - 0.5_f64.sqrt()), 5e-5, "disk");
+    close(integral(&light, 256, |wi| wi.z), 0.5 * PI, 5e-5, "irradiance of a disk");
+    // A 2 × 2 square at height 1: 4g·atan g, g = a/√(1 + a²).
+    let square = parallelogram(Vec3::new(-1.0, -1.0, 1.0), Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 2.0, 0.0));
+    let g = 0.5_f64.sqrt();
+    close(integral(&square, 256, |wi| wi.z), 4.0 * g * g.atan(), 5e-5, "irradiance of a square");
+    // Lambert's formula for the triangle of the list of truths.
+    let listed = triangle(Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0), Vec3::new(0.0, 0.0, 2.0));
+    close(integral(&listed, 512, |wi| wi.z), 0.302_299_894, 1e-3, "irradiance of a triangle");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #[test]
+    fn density_of_a_sample_is_what_the_light_reports(
+        x in -3.0..3.0_f64, y in -3.0..3.0_f64, z in -3.0..3.0_f64, size in -6.0..1.0_f64,
+        u0 in 0.0..1.0_f64, u1 in 0.0..1.0_f64,
+    ) {
+        let from = Vec3::new(x, y, z);
+        let s = 10.0_f64.powf(size);
+        let axis = |k| Vec3::new(if k == 0 { s } else { 0.0 }, if k == 1 { s } else { 0.1 * s }, if k == 2 { s } else { 0.0 });
+        for light in [
+            sphere(Vec3::new(0.3, 0.2, -0.1), s),
+            parallelogram(Vec3::ZERO, axis(0), axis(1)),
+            disk(Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0), s),
+            triangle(Vec3::ZERO, axis(0), axis(2)),
+        ] {
+            let Some(sample) = light.sample(from, [u0, u1]) else { continue };
+            let Density::SolidAngle(density) = sample.density else { panic!("an area light has no delta") };
+            // The same function of the same arguments.
+            prop_assert_eq!(density, light.density(from, sample.wi));
+            let Target::Point(target) = sample.target else { panic!("an area light is not at infinity") };
+            let toward = (target - from).normalized();
+            // The target is rounded where it lies, the direction where it starts.
+            let reach = from.length() + target.length();
+            let tolerance = 8.0 * f64::EPSILON * (1.0 + reach / (target - from).length());
+            prop_assert!((toward - sample.wi).length() <= tolerance, "{:?} {:?}", toward, sample.wi);
+        }
+    }
+}
