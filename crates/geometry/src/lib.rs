@@ -3,53 +3,32 @@
 //! The door is [`Geometry`]: it is built once from primitives in `f64` and answers closest-hit and occlusion queries for
 //! rays of either scalar type. No query uses a scene epsilon: a hit carries a bound on the error of its position, and a
 //! ray that leaves a surface knows the primitive and the bound that it left.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `shapes` | [`Primitive`] and the shapes, one a file, with their intersection tests in `f64` |
+//! | `ray` | [`Ray`], [`Hit`], [`SurfacePoint`] and the rays that leave it |
+//! | `query` | a ray prepared for the intersection tests; the watertight projection |
+//! | `double_double` | the arithmetic behind `f64`, where an error bound calls for it |
+//! | `frame` | the accelerator's frame and conservative box tests in `f32` |
+//! | `build` | the tree's builder |
+//! | `geometry` | [`Geometry`]: the queries |
 
-use etalon_optics::{Real, Vec3};
+mod aabb;
+mod build;
+mod double_double;
+mod frame;
+mod geometry;
+mod query;
+mod ray;
+mod shapes;
 
-/// Index of a primitive, in the order given to [`Geometry::build`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct PrimitiveId(pub u32);
+pub use aabb::Aabb;
+pub use geometry::{Geometry, GeometryError};
+pub use ray::{Hit, PrimitiveId, Ray, SurfacePoint};
+pub use shapes::{Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, Primitive, ShapeError, Sphere, Triangle};
 
-impl PrimitiveId {
-    /// No primitive: a ray that starts in free space, a shadow ray toward no surface.
-    pub const NONE: Self = Self(u32::MAX);
-}
-
-/// A half-line `origin + t·direction`, 0 < t < `t_max`.
-#[derive(Clone, Copy, Debug)]
-pub struct Ray<R> {
-    /// Start.
-    pub origin: Vec3<R>,
-    /// Direction, of any length; t counts in units of it.
-    pub direction: Vec3<R>,
-    /// End, exclusive.
-    pub t_max: R,
-    /// The primitive that the ray leaves (a sphere left to the inside is still hit at its far side).
-    pub leaves: PrimitiveId,
-    /// The primitive at which a shadow ray aims: it never occludes.
-    pub aims_at: PrimitiveId,
-}
-
-/// A closest hit, before its surface is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit<R> {
-    /// Ray parameter.
-    pub t: R,
-    /// The primitive.
-    pub primitive: PrimitiveId,
-    /// Surface parameters (barycentric weights of b and c in a triangle; a and b of a parallelogram; else 0).
-    pub uv: [R; 2],
-}
-
-/// A point on a surface.
-#[derive(Clone, Copy, Debug)]
-pub struct SurfacePoint<R> {
-    /// Position, m.
-    pub position: Vec3<R>,
-    /// Bound on the distance between `position` and the true surface, m.
-    pub position_error: R,
-    /// Unit geometric normal, on the shape's own outward side (not turned toward the ray).
-    pub normal: Vec3<R>,
-    /// The primitive.
-    pub primitive: PrimitiveId,
-}
+#[cfg(test)]
+mod test_support;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,195 @@
+//! The accelerator's own frame, and rays in it.
+//!
+//! Boxes and their traversal are in `f32`, in a frame centred on the scene and scaled by an exact power of two so that
+//! every coordinate lies in [−1, 1]. A ray enters it with bounds on all that was rounded on the way, so that a box test
+//! never rejects a box that holds a primitive which the `f64` test would accept.
+
+use crate::Aabb;
+use crate::query::{Query, power_of_two};
+use etalon_optics::Vec3;
+
+/// A box in the accelerator's frame, rounded outward.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Box32 {
+    pub(crate) min: [f32; 3],
+    pub(crate) max: [f32; 3],
+}
+
+impl Box32 {
+    /// The box of no points.
+    pub(crate) const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
+
+    /// The smallest box around two boxes.
+    #[inline]
+    pub(crate) fn union(&self, o: &Self) -> Self {
+        Self {
+            min: std::array::from_fn(|k| self.min[k].min(o.min[k])),
+            max: std::array::from_fn(|k| self.max[k].max(o.max[k])),
+        }
+    }
+
+    /// Half the surface area; zero for the empty box.
+    #[inline]
+    pub(crate) fn half_area(&self) -> f32 {
+        let [x, y, z] = std::array::from_fn(|k| self.max[k] - self.min[k]);
+        if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
+    }
+
+    /// Twice the centre along an axis.
+    #[inline]
+    pub(crate) fn centre2(&self, axis: usize) -> f32 {
+        self.min[axis] + self.max[axis]
+    }
+}
+
+/// A translation and a scaling by a power of two.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    centre: Vec3<f64>,
+    scale: f64,
+}
+
+/// Boxes are widened by this much (2⁻⁵⁰), more than a ray whose direction component was clamped to [`MIN_DIRECTION`]
+/// can leave its slab by within the frame.
+const BOX_MARGIN: f64 = 1.0 / (1_u64 << 50) as f64;
+/// Smallest direction component that is divided by.
+const MIN_DIRECTION: f32 = 1e-18;
+/// Relative widening of the distances of a box: (b − o)·(1/d) errs by 4 roundoffs (the difference, `d` as `f32`, its
+/// reciprocal, the product), 2ε; a third ε covers the product with this factor and second order.
+pub(crate) const NEAR_FACTOR: f32 = 1.0 - 3.0 * f32::EPSILON;
+/// See [`NEAR_FACTOR`].
+pub(crate) const FAR_FACTOR: f32 = 1.0 + 3.0 * f32::EPSILON;
+
+impl Frame {
+    /// The frame in which a box becomes centred, and no larger than [−1, 1].
+    pub(crate) fn around(bounds: Aabb) -> Self {
+        let centre = bounds.centre();
+        let half = (bounds.max - centre).abs().max((bounds.min - centre).abs()).max_component();
+        let exponent = if half > 0.0 { (half.to_bits() >> 52) as i64 - 1022 } else { 0 };
+        Self { centre, scale: power_of_two(-exponent.clamp(-500, 500)) }
+    }
+
+    /// A box in this frame, rounded outward.
+    pub(crate) fn enclose(&self, b: Aabb) -> Box32 {
+        let lower = (b.min - self.centre) * self.scale;
+        let upper = (b.max - self.centre) * self.scale;
+        Box32 {
+            min: std::array::from_fn(|k| round_down(lower[k] - BOX_MARGIN)),
+            max: std::array::from_fn(|k| round_up(upper[k] + BOX_MARGIN)),
+        }
+    }
+
+    /// A ray in this frame; `None` if it certainly misses the whole frame.
+    #[inline]
+    pub(crate) fn enter(&self, q: &Query) -> Option<FrameRay> {
+        let mut o = (q.origin - self.centre) * self.scale;
+        let reach = o.abs().max_component();
+        // The f64 tests are right for a ray displaced by a few u of the distances involved: 256u of them is allowed.
+        let mut slack = (reach + 2.0) * (128.0 * f64::EPSILON);
+        let mut start = 0.0;
+        if reach > 4.0 {
+            // From far away the f32 origin would blur the boxes: begin near the frame, in f64.
+            let (near, far) = crossing(o, q.direction, 1.0 + slack);
+            if near > far || far < 0.0 {
+                return None;
+            }
+            start = (near - 1.0).max(0.0);
+            o += q.direction * start;
+            // An origin so far away that nothing is known of where the ray passes meets every box.
+            slack = slack.min(16.0);
+            let known = o.abs().max_component() < 64.0;
+            if !known {
+                o = Vec3::ZERO;
+                slack = 16.0;
+                start = 0.0;
+            }
+        }
+        let mut ray = FrameRay {
+            origin_near: [0.0; 3],
+            origin_far: [0.0; 3],
+            reciprocal: [0.0; 3],
+            negative: [false; 3],
+            scale: self.scale,
+            start,
+        };
+        for k in 0..3 {
+            let d = q.direction[k] as f32;
+            let negative = d.is_sign_negative();
+            let (lower, upper) = (round_down(o[k] - slack), round_up(o[k] + slack));
+            ray.origin_near[k] = if negative { lower } else { upper };
+            ray.origin_far[k] = if negative { upper } else { lower };
+            ray.reciprocal[k] = 1.0 / d.abs().max(MIN_DIRECTION).copysign(d);
+            ray.negative[k] = negative;
+        }
+        Some(ray)
+    }
+}
+
+/// A ray in the accelerator's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrameRay {
+    /// The origin displaced along the ray by more than its error: for the planes where the ray enters boxes.
+    pub(crate) origin_near: [f32; 3],
+    /// The origin displaced against the ray by more than its error: for the planes where the ray leaves boxes.
+    pub(crate) origin_far: [f32; 3],
+    /// 1/direction, finite, with the sign of the direction's sign bit.
+    pub(crate) reciprocal: [f32; 3],
+    /// The direction's sign bits.
+    pub(crate) negative: [bool; 3],
+    scale: f64,
+    start: f64,
+}
+
+impl FrameRay {
+    /// A distance in this frame that is not below the distance of any hit up to `t` of the [`Query`].
+    #[inline]
+    pub(crate) fn distance(&self, t: f64) -> f32 {
+        // Accepted distances err by up to 2⁻³⁰ of themselves.
+        const WIDER: f64 = 1.0 + 1.0 / (1_u64 << 29) as f64;
+        round_up(t * self.scale * WIDER - self.start).max(0.0)
+    }
+
+    /// The distance at which the ray enters a box, if it meets it at a distance in [0, `limit`].
+    #[inline]
+    pub(crate) fn enters(&self, b: &Box32, limit: f32) -> Option<f32> {
+        let (mut near, mut far) = (0.0_f32, limit);
+        for k in 0..3 {
+            let (entry, exit) = if self.negative[k] { (b.max[k], b.min[k]) } else { (b.min[k], b.max[k]) };
+            near = near.max((entry - self.origin_near[k]) * self.reciprocal[k]);
+            far = far.min((exit - self.origin_far[k]) * self.reciprocal[k]);
+        }
+        let near = near * NEAR_FACTOR;
+        (near <= far * FAR_FACTOR).then_some(near)
+    }
+}
+
+/// Where a line crosses the box [−`half`, `half`]³.
+fn crossing(o: Vec3<f64>, d: Vec3<f64>, half: f64) -> (f64, f64) {
+    let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
+    for k in 0..3 {
+        if d[k] != 0.0 {
+            let (t0, t1) = ((-half - o[k]) / d[k], (half - o[k]) / d[k]);
+            near = near.max(t0.min(t1));
+            far = far.min(t0.max(t1));
+        } else if o[k].abs() > half {
+            return (f64::INFINITY, f64::NEG_INFINITY);
+        }
+    }
+    // Each bound errs by a few u of itself.
+    let error = |t: f64| t.abs() * (8.0 * f64::EPSILON);
+    (near - error(near), far + error(far))
+}
+
+/// The largest `f32` not above `v`.
+#[inline]
+pub(crate) fn round_down(v: f64) -> f32 {
+    let r = v as f32;
+    if f64::from(r) > v { r.next_down() } else { r }
+}
+
+/// The smallest `f32` not below `v`.
+#[inline]
+pub(crate) fn round_up(v: f64) -> f32 {
+    let r = v as f32;
+    if f64::from(r) < v { r.next_up() } else { r }
+}

@@ -1,0 +1,135 @@
+//! Rays, hits and the points that rays leave.
+
+use etalon_optics::{Real, Vec3};
+
+/// Index of a primitive, in the order given to [`Geometry::build`](crate::Geometry::build).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PrimitiveId(pub u32);
+
+impl PrimitiveId {
+    /// No primitive: a ray that starts in free space, a shadow ray toward no surface.
+    pub const NONE: Self = Self(u32::MAX);
+}
+
+/// A half-line `origin + t·direction`, 0 < t < `t_max`.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray<R> {
+    /// Start.
+    pub origin: Vec3<R>,
+    /// Direction, of any length; t counts in units of it.
+    pub direction: Vec3<R>,
+    /// End, exclusive.
+    pub t_max: R,
+    /// The primitive that the ray leaves (a sphere left to the inside is still hit at its far side).
+    pub leaves: PrimitiveId,
+    /// The primitive at which a shadow ray aims: it never occludes.
+    pub aims_at: PrimitiveId,
+}
+
+impl<R: Real> Ray<R> {
+    /// A ray without end that starts in free space.
+    #[inline]
+    pub fn free(origin: Vec3<R>, direction: Vec3<R>) -> Self {
+        Self { origin, direction, t_max: R::INFINITY, leaves: PrimitiveId::NONE, aims_at: PrimitiveId::NONE }
+    }
+
+    /// The point at parameter `t`.
+    #[inline]
+    pub fn at(&self, t: R) -> Vec3<R> {
+        self.origin + self.direction * t
+    }
+}
+
+/// A closest hit, before its surface is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit<R> {
+    /// Ray parameter.
+    pub t: R,
+    /// The primitive.
+    pub primitive: PrimitiveId,
+    /// Surface parameters (barycentric weights of b and c in a triangle; a and b of a parallelogram; else 0).
+    pub uv: [R; 2],
+}
+
+/// A point on a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint<R> {
+    /// Position, m.
+    pub position: Vec3<R>,
+    /// Bound on the distance between `position` and the true surface, m.
+    pub position_error: R,
+    /// Unit geometric normal, on the shape's own outward side (not turned toward the ray).
+    pub normal: Vec3<R>,
+    /// The primitive.
+    pub primitive: PrimitiveId,
+}
+
+impl<R: Real> SurfacePoint<R> {
+    /// Rounds a surface point computed in `f64` to `R`.
+    ///
+    /// `error` bounds the error of each component of `position`; `curvature` is the surface's largest, 1/m. What the
+    /// rounding to `R` adds is measured, not estimated.
+    pub(crate) fn rounded(
+        position: Vec3<f64>,
+        error: Vec3<f64>,
+        normal: Vec3<f64>,
+        curvature: f64,
+        primitive: PrimitiveId,
+    ) -> Self {
+        let rounded: Vec3<R> = position.cast();
+        let error = error + (rounded.to_f64() - position).abs();
+        // To first order only the component along the normal leaves the surface; a step s along it leaves a curved one
+        // by at most s²/2 times the curvature.
+        let distance = normal.abs().dot(error) + 0.5 * curvature * error.length_squared();
+        // 8 roundoffs cover this sum and the rounding of the normal along which rays are moved.
+        let distance = distance * (1.0 + 8.0 * R::UNIT_ROUNDOFF.to_f64());
+        Self { position: rounded, position_error: R::from_f64(distance).next_up(), normal: normal.cast(), primitive }
+    }
+
+    /// The point moved off the surface to the side of `direction`, by the error bound and rounded away from the surface
+    /// (Pharr, Jakob & Humphreys, *Physically Based Rendering*, 4th ed., §6.8.6).
+    fn moved_off(&self, direction: Vec3<R>) -> Vec3<R> {
+        let side = R::ONE.copysign(direction.dot(self.normal));
+        let step = self.normal * (self.position_error * side);
+        let moved = |p: R, s: R| match () {
+            () if s > R::ZERO => (p + s).next_up(),
+            () if s < R::ZERO => (p + s).next_down(),
+            () => p,
+        };
+        Vec3::new(moved(self.position.x, step.x), moved(self.position.y, step.y), moved(self.position.z, step.z))
+    }
+
+    /// The ray without end that leaves this point along `direction`.
+    ///
+    /// It starts off the surface, on the side to which `direction` points, by no more than the error of the position
+    /// requires, and knows the primitive that it leaves: no scene epsilon is involved.
+    #[inline]
+    pub fn spawn(&self, direction: Vec3<R>) -> Ray<R> {
+        Ray {
+            origin: self.moved_off(direction),
+            direction,
+            t_max: R::INFINITY,
+            leaves: self.primitive,
+            aims_at: PrimitiveId::NONE,
+        }
+    }
+
+    /// The shadow ray from this point to `target` on the primitive `aims_at`
+    /// ([`PrimitiveId::NONE`] for a point in free space).
+    ///
+    /// Its direction is `target` − origin, not normalised, and it ends just below t = 1: short of the target by the
+    /// rounding errors of the two end points and of the direction, so that a neighbour of the primitive aimed at does
+    /// not hide it.
+    #[inline]
+    pub fn spawn_to(&self, target: Vec3<R>, aims_at: PrimitiveId) -> Ray<R> {
+        let origin = self.moved_off(target - self.position);
+        let direction = target - origin;
+        // Each end is a rounded point (u a component), the direction a rounded difference (u of itself, which the two
+        // ends bound): at most 2u(|target| + |origin|) in the 1-norm, and as much again for the arithmetic here.
+        let reach = target.abs() + origin.abs();
+        let error = R::from_f64(4.0) * R::UNIT_ROUNDOFF * (reach.x + reach.y + reach.z);
+        let length = direction.abs().max_component();
+        let t_max = if error < length { R::ONE_MINUS_EPSILON - error / length } else { R::ZERO };
+        Ray { origin, direction, t_max, leaves: self.primitive, aims_at }
+    }
+}

@@ -1,0 +1,120 @@
+//! The shapes, one a file: data in `f64` world space, and intersection tests without cancellation.
+
+mod disk;
+mod parallelogram;
+mod planar;
+mod sphere;
+mod triangle;
+
+pub use disk::Disk;
+pub use parallelogram::Parallelogram;
+pub use sphere::Sphere;
+pub use triangle::Triangle;
+
+use crate::query::{Query, RawHit};
+use crate::{Aabb, PrimitiveId, SurfacePoint};
+use etalon_optics::{Real, Vec3};
+
+/// Largest magnitude of a coordinate or a length, m (2¹²⁰ ≈ 1.3e36): no product in an intersection test overflows.
+pub const MAX_COORDINATE: f64 = (1_u128 << 120) as f64;
+/// Smallest length of an edge or a radius, m (2⁻¹²⁰ ≈ 7.5e-37): no product in an intersection test underflows.
+pub const MIN_LENGTH: f64 = 1.0 / MAX_COORDINATE;
+
+/// Why a shape cannot be built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ShapeError {
+    /// A coordinate is NaN or infinite.
+    #[error("a coordinate is not a finite number")]
+    NotFinite,
+    /// A coordinate or length is larger than [`MAX_COORDINATE`], or a length smaller than [`MIN_LENGTH`].
+    #[error("a coordinate or a length is beyond what can be computed with (2^±120 m)")]
+    OutOfRange,
+    /// The shape has no area, so no normal.
+    #[error("the shape has no area")]
+    NoArea,
+}
+
+/// Checks coordinates.
+fn check_points(points: &[Vec3<f64>]) -> Result<(), ShapeError> {
+    if !points.iter().all(|p| p.is_finite()) {
+        return Err(ShapeError::NotFinite);
+    }
+    if points.iter().any(|p| p.abs().max_component() > MAX_COORDINATE) {
+        return Err(ShapeError::OutOfRange);
+    }
+    Ok(())
+}
+
+/// Checks a radius.
+fn check_radius(radius: f64) -> Result<(), ShapeError> {
+    match radius {
+        r if !r.is_finite() => Err(ShapeError::NotFinite),
+        r if r <= 0.0 => Err(ShapeError::NoArea),
+        r if (MIN_LENGTH..=MAX_COORDINATE).contains(&r) => Ok(()),
+        _ => Err(ShapeError::OutOfRange),
+    }
+}
+
+/// A shape that rays meet.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Primitive {
+    /// A full sphere.
+    Sphere(Sphere),
+    /// A parallelogram.
+    Parallelogram(Parallelogram),
+    /// A flat disk.
+    Disk(Disk),
+    /// A triangle.
+    Triangle(Triangle),
+}
+
+macro_rules! primitive_from {
+    ($($shape:ident),*) => {
+        $(impl From<$shape> for Primitive {
+            fn from(shape: $shape) -> Self {
+                Self::$shape(shape)
+            }
+        })*
+    };
+}
+primitive_from!(Sphere, Parallelogram, Disk, Triangle);
+
+macro_rules! each {
+    ($primitive:expr, $shape:ident => $result:expr) => {
+        match $primitive {
+            Primitive::Sphere($shape) => $result,
+            Primitive::Parallelogram($shape) => $result,
+            Primitive::Disk($shape) => $result,
+            Primitive::Triangle($shape) => $result,
+        }
+    };
+}
+
+impl Primitive {
+    /// A box that contains the shape.
+    pub fn bounds(&self) -> Aabb {
+        each!(self, s => s.bounds())
+    }
+
+    /// Surface area, m².
+    pub fn area(&self) -> f64 {
+        each!(self, s => s.area())
+    }
+
+    /// The closest hit with 0 < t < `t_max`. `leaves`: the ray leaves this very primitive.
+    #[inline]
+    pub(crate) fn intersect(&self, query: &Query, t_max: f64, leaves: bool) -> Option<RawHit> {
+        match self {
+            Self::Triangle(s) => (!leaves).then(|| s.intersect(query, t_max)).flatten(),
+            Self::Parallelogram(s) => (!leaves).then(|| s.intersect(query, t_max)).flatten(),
+            Self::Disk(s) => (!leaves).then(|| s.intersect(query, t_max)).flatten(),
+            Self::Sphere(s) => s.intersect(query, t_max, leaves),
+        }
+    }
+
+    /// The surface at the point `p`, which lies near it.
+    #[inline]
+    pub(crate) fn surface<R: Real>(&self, p: Vec3<f64>, id: PrimitiveId) -> SurfacePoint<R> {
+        each!(self, s => s.surface(p, id))
+    }
+}

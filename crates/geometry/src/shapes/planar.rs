@@ -1,0 +1,117 @@
+//! What triangles and parallelograms share.
+
+use crate::double_double::{cross, difference, dot, round, widen};
+use crate::query::{Query, RawHit};
+use crate::{Aabb, PrimitiveId, SurfacePoint};
+use etalon_optics::{Real, Vec3};
+
+/// The cross product of two edges that leave `origin`, right to a few unit roundoffs in direction; zero if what is left
+/// of it is below the resolution of double-double arithmetic.
+pub(super) fn edge_cross(origin: Vec3<f64>, a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {
+    let (ea, eb) = (a - origin, b - origin);
+    let n = ea.cross(eb);
+    let magnitude = ea.abs().max_component() * eb.abs().max_component();
+    // The rounding errors of the edges and of the products leave less than 8u·|ea|·|eb| in each component: against
+    // 2²⁰ times as much they turn the normal by less than 1e-6 of a radian. Below, twice the precision.
+    if n.abs().max_component() > magnitude * (8.0 * 1_048_576.0 * f64::UNIT_ROUNDOFF) {
+        return n;
+    }
+    let n = round(cross(difference(a, origin), difference(b, origin)));
+    if n.abs().max_component() > magnitude * RESOLUTION { n } else { Vec3::ZERO }
+}
+
+/// Relative resolution of a sum of a few double-double products: 2⁻⁹⁶.
+const RESOLUTION: f64 = f64::UNIT_ROUNDOFF * f64::UNIT_ROUNDOFF * 1024.0;
+
+/// The unit vector of a vector of any magnitude.
+pub(super) fn unit(v: Vec3<f64>) -> Vec3<f64> {
+    (v / v.abs().max_component()).normalized()
+}
+
+/// Accepts `hit`, found by projection, if the test `accurate` of its error bound holds; else solves again in
+/// double-double arithmetic and keeps the point on the shape.
+///
+/// Whether there is a hit at all has been decided by the projected edges, consistently for all the shapes that share
+/// them, and stays decided.
+#[cold]
+#[inline(never)]
+pub(super) fn refine(
+    query: &Query,
+    corner: Vec3<f64>,
+    a: Vec3<f64>,
+    b: Vec3<f64>,
+    bounds: Aabb,
+    rough: RawHit,
+    weight_limit: f64,
+) -> RawHit {
+    let (ea, eb) = (difference(a, corner), difference(b, corner));
+    let d = widen(query.direction);
+    let r = difference(query.origin, corner);
+    // Möller & Trumbore, with every product exact to 2⁻¹⁰⁴.
+    let p = cross(d, eb);
+    let q = cross(r, ea);
+    let det = dot(ea, p);
+    let size = |v: Vec3<f64>| v.abs().max_component();
+    let reach = size(a - corner) * size(b - corner);
+    let mut hit = rough;
+    if det.to_f64().abs() > reach * RESOLUTION {
+        let (u, v) = (dot(r, p).ratio(det), dot(d, q).ratio(det));
+        hit = RawHit { t: dot(eb, q).ratio(det), uv: [u, v] };
+    }
+    // A ray that meets the shape only as far as rounding tells may have met its plane outside.
+    let u = hit.uv[0].clamp(0.0, 1.0);
+    let v = hit.uv[1].clamp(0.0, (weight_limit - u).min(1.0));
+    RawHit { t: clamp_to_box(query, bounds, hit.t), uv: [u, v] }
+}
+
+/// Moves `t` into the part of the ray that crosses a box (widened by the rounding errors of the projection).
+fn clamp_to_box(query: &Query, bounds: Aabb, t: f64) -> f64 {
+    let (lower, upper) = (bounds.min - query.origin, bounds.max - query.origin);
+    let slack = 16.0 * f64::UNIT_ROUNDOFF * lower.abs().max_component().max(upper.abs().max_component());
+    let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
+    for k in 0..3 {
+        let d = query.direction[k];
+        if d != 0.0 {
+            let (t0, t1) = ((lower[k] - slack) / d, (upper[k] + slack) / d);
+            near = near.max(t0.min(t1));
+            far = far.min(t0.max(t1));
+        }
+    }
+    t.min(far).max(near)
+}
+
+/// Whether the distance and the surface parameters that follow from three or four projected edges are determined by
+/// them: t to 2⁻³⁰ of itself, the parameters to 2⁻²⁴.
+///
+/// With M the largest magnitude of a vertex relative to the origin and e the largest |x| or |y| of a projected one, a
+/// projected coordinate errs by up to 6uM and an edge function by up to 4ue² + 24uMe ≤ 32uMe (e ≤ 2M). The distance
+/// Σ Uᵢzᵢ / ΣUᵢ is a mean of the zᵢ, so that it errs by up to 3·32uMe·(zmax − zmin)/det, and a parameter by up to
+/// 32uMe/det.
+#[inline]
+pub(super) fn is_determined(magnitude: f64, extent: f64, depth: f64, t_det: f64, det: f64) -> bool {
+    const T: f64 = 96.0 * f64::UNIT_ROUNDOFF * (1_u64 << 30) as f64;
+    const W: f64 = 32.0 * f64::UNIT_ROUNDOFF * (1_u64 << 24) as f64;
+    let error = magnitude * extent;
+    error * depth * T <= t_det && error * W <= det
+}
+
+/// The surface of a flat shape at the point of its plane nearest to `p`.
+///
+/// `point` is any point of the plane, `size` the shape's extent.
+#[inline]
+pub(super) fn surface<R: Real>(
+    p: Vec3<f64>,
+    point: Vec3<f64>,
+    normal: Vec3<f64>,
+    size: f64,
+    id: PrimitiveId,
+) -> SurfacePoint<R> {
+    let away = p - point;
+    let position = p - normal * away.dot(normal);
+    // The offset from `point` errs by u of itself, its component along the normal by a few u of its length, and
+    // the difference by u of the position. The shape's size stands for the offset's usual length, and covers the
+    // rounding errors of a neighbour that shares an edge.
+    let reach = away.abs().max_component().max(size);
+    let error = (p.abs() + position.abs() + Vec3::splat(16.0 * reach)) * f64::UNIT_ROUNDOFF;
+    SurfacePoint::rounded(position, error, normal, 0.0, id)
+}

@@ -1,0 +1,99 @@
+//! Spheres.
+
+use super::{ShapeError, check_points, check_radius};
+use crate::query::{Query, RawHit};
+use crate::{Aabb, PrimitiveId, SurfacePoint};
+use etalon_optics::{Real, Vec3};
+
+/// A full sphere; its outward side is the outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sphere {
+    centre: Vec3<f64>,
+    radius: f64,
+}
+
+impl Sphere {
+    /// A sphere about `centre` (m) of `radius` (m).
+    ///
+    /// # Errors
+    /// If a number is not finite or out of range, or the radius is not positive.
+    pub fn new(centre: Vec3<f64>, radius: f64) -> Result<Self, ShapeError> {
+        check_points(&[centre])?;
+        check_radius(radius)?;
+        Ok(Self { centre, radius })
+    }
+
+    /// Centre, m.
+    pub fn centre(&self) -> Vec3<f64> {
+        self.centre
+    }
+
+    /// Radius, m.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Surface area, m².
+    pub fn area(&self) -> f64 {
+        4.0 * std::f64::consts::PI * self.radius * self.radius
+    }
+
+    /// The smallest box around the sphere, rounded outward.
+    pub fn bounds(&self) -> Aabb {
+        let r = Vec3::splat(self.radius);
+        let (lower, upper) = (self.centre - r, self.centre + r);
+        Aabb {
+            min: Vec3::new(lower.x.next_down(), lower.y.next_down(), lower.z.next_down()),
+            max: Vec3::new(upper.x.next_up(), upper.y.next_up(), upper.z.next_up()),
+        }
+    }
+
+    /// The roots of |o + t·d − c|² = r².
+    ///
+    /// The discriminant is r² less the squared distance of the line from the centre, that distance taken from the
+    /// perpendicular vector (Haines, Günther & Akenine-Möller, *Precision Improvements for Ray/Sphere Intersection*,
+    /// Ray Tracing Gems, 2019, ch. 7), and of the two roots the one nearer to zero comes from their product, so that
+    /// neither cancels. An origin on the surface, as far as rounding tells, may have its root there on either side of
+    /// zero: a ray that leaves this sphere therefore drops the nearer root by name, and has the other one if and only
+    /// if it starts toward the centre.
+    #[inline]
+    pub(crate) fn intersect(&self, query: &Query, t_max: f64, leaves: bool) -> Option<RawHit> {
+        let d = query.direction;
+        let to_centre = self.centre - query.origin;
+        let d2 = d.length_squared();
+        let t_middle = to_centre.dot(d) / d2;
+        let perpendicular = d * t_middle - to_centre;
+        let distance = perpendicular.length();
+        let quarter = (self.radius - distance) * (self.radius + distance);
+        // NaN: an origin so far away that the arithmetic overflows.
+        if quarter < 0.0 || quarter.is_nan() {
+            return None;
+        }
+        let half_chord = (quarter / d2).sqrt();
+        let hit = |t: f64| (0.0 < t && t < t_max).then_some(RawHit { t, uv: [0.0; 2] });
+        if leaves {
+            return if t_middle > 0.0 { hit(t_middle + half_chord) } else { None };
+        }
+        let origin_distance = to_centre.length();
+        let product = (origin_distance - self.radius) * (origin_distance + self.radius) / d2;
+        if t_middle > 0.0 {
+            let far = t_middle + half_chord;
+            let near = product / far;
+            hit(if near > 0.0 { near } else { far })
+        } else if product < 0.0 {
+            // The origin is inside and the centre behind: the only root ahead.
+            hit(product / (t_middle - half_chord))
+        } else {
+            None
+        }
+    }
+
+    #[inline]
+    pub(crate) fn surface<R: Real>(&self, p: Vec3<f64>, id: PrimitiveId) -> SurfacePoint<R> {
+        let normal = (p - self.centre).normalized();
+        let position = self.centre + normal * self.radius;
+        // The normal's length is 1 to 3u, its product with r and the sum add one u each.
+        let error = (position.abs() + Vec3::splat(self.radius) * 6.0) * f64::UNIT_ROUNDOFF;
+        SurfacePoint::rounded(position, error, normal, 1.0 / self.radius, id)
+    }
+}

@@ -1,0 +1,249 @@
+//! Scenes and rays that are hard to intersect. Nothing here knows [`Geometry`](crate::Geometry).
+
+use crate::{Disk, Parallelogram, Primitive, Sphere, Triangle};
+use etalon_optics::Vec3;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng as _, SeedableRng};
+
+pub(crate) type V = Vec3<f64>;
+
+/// Random numbers of a fixed seed.
+pub(crate) struct Random(Xoshiro256PlusPlus);
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(Xoshiro256PlusPlus::seed_from_u64(seed))
+    }
+
+    /// Uniform in [0, 1).
+    pub(crate) fn unit(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 * (0.5 / (1_u64 << 52) as f64)
+    }
+
+    /// Uniform in [−1, 1).
+    pub(crate) fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
+    /// Uniform below `n`.
+    pub(crate) fn below(&mut self, n: usize) -> usize {
+        (self.unit() * n as f64) as usize
+    }
+
+    /// 10 to a power uniform in [a, b).
+    pub(crate) fn log_uniform(&mut self, a: f64, b: f64) -> f64 {
+        10.0_f64.powf(a + (b - a) * self.unit())
+    }
+
+    /// Uniform in the cube [−1, 1)³.
+    pub(crate) fn in_cube(&mut self) -> V {
+        Vec3::new(self.signed(), self.signed(), self.signed())
+    }
+
+    /// A direction, uniform over the sphere.
+    pub(crate) fn direction(&mut self) -> V {
+        loop {
+            let v = self.in_cube();
+            let l = v.length_squared();
+            if l > 1e-4 && l <= 1.0 {
+                return v.normalized();
+            }
+        }
+    }
+}
+
+pub(crate) fn v(x: f64, y: f64, z: f64) -> V {
+    Vec3::new(x, y, z)
+}
+
+/// An indexed triangle mesh.
+#[derive(Clone)]
+pub(crate) struct Mesh {
+    pub(crate) vertices: Vec<V>,
+    pub(crate) faces: Vec<[usize; 3]>,
+}
+
+impl Mesh {
+    /// The faces that have an area, moved and scaled.
+    pub(crate) fn primitives(&self) -> Vec<Primitive> {
+        self.faces
+            .iter()
+            .filter_map(|f| Triangle::new(self.vertices[f[0]], self.vertices[f[1]], self.vertices[f[2]]).ok())
+            .map(Primitive::from)
+            .collect()
+    }
+
+    pub(crate) fn map(&self, f: impl Fn(V) -> V) -> Self {
+        Self { vertices: self.vertices.iter().map(|&p| f(p)).collect(), faces: self.faces.clone() }
+    }
+
+    /// Cube [−1, 1]³, turned out of the axes.
+    pub(crate) fn cube() -> Self {
+        let vertices = (0..8).map(|i| {
+            let c = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            turned(v(c(0), c(1), c(2)))
+        });
+        let quad = |a, b, c, d| [[a, b, c], [a, c, d]];
+        let faces = [
+            quad(0, 2, 3, 1),
+            quad(4, 5, 7, 6),
+            quad(0, 1, 5, 4),
+            quad(2, 6, 7, 3),
+            quad(0, 4, 6, 2),
+            quad(1, 3, 7, 5),
+        ];
+        Self { vertices: vertices.collect(), faces: faces.concat() }
+    }
+
+    /// Sphere of `stacks` × `slices`, poles included.
+    pub(crate) fn sphere(stacks: usize, slices: usize, radius: impl Fn(V) -> f64) -> Self {
+        let mut vertices = vec![v(0.0, 0.0, 1.0), v(0.0, 0.0, -1.0)];
+        for i in 1..stacks {
+            let theta = std::f64::consts::PI * i as f64 / stacks as f64;
+            for j in 0..slices {
+                let phi = std::f64::consts::TAU * j as f64 / slices as f64;
+                vertices.push(v(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()));
+            }
+        }
+        let at = |i: usize, j: usize| match i {
+            0 => 0,
+            i if i == stacks => 1,
+            i => 2 + (i - 1) * slices + j % slices,
+        };
+        let mut faces = Vec::new();
+        for i in 0..stacks {
+            for j in 0..slices {
+                let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+                if i + 1 < stacks {
+                    faces.push([a, b, c]);
+                }
+                if i > 0 {
+                    faces.push([a, c, d]);
+                }
+            }
+        }
+        let vertices = vertices.into_iter().map(|p| p * radius(p)).collect();
+        Self { vertices, faces }
+    }
+
+    /// A closed tube of needles: long, thin triangles.
+    pub(crate) fn needles(stacks: usize, slices: usize) -> Self {
+        Self::sphere(stacks, slices, |_| 1.0).map(|p| turned(v(p.x, p.y, 3.0 * p.z)))
+    }
+
+    /// The edges, each once.
+    pub(crate) fn edges(&self) -> Vec<[usize; 2]> {
+        let mut edges: Vec<_> = self
+            .faces
+            .iter()
+            .flat_map(|f| [[f[0], f[1]], [f[1], f[2]], [f[2], f[0]]])
+            .filter(|e| e[0] < e[1])
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+}
+
+/// A rotation that leaves no axis in place.
+pub(crate) fn turned(p: V) -> V {
+    let (s, c) = (0.6, 0.8);
+    let p = v(c * p.x - s * p.y, s * p.x + c * p.y, p.z);
+    let (s, c) = (5.0 / 13.0, 12.0 / 13.0);
+    v(p.x, c * p.y - s * p.z, s * p.y + c * p.z)
+}
+
+/// `count` primitives of all kinds, their sizes spread over the decades `sizes`, in [−1, 1]³.
+pub(crate) fn soup(random: &mut Random, count: usize, sizes: std::ops::Range<f64>) -> Vec<Primitive> {
+    let mut out = Vec::with_capacity(count);
+    while out.len() < count {
+        let p = random.in_cube();
+        let size = random.log_uniform(sizes.start, sizes.end);
+        let primitive = match random.below(5) {
+            0 => Sphere::new(p, size).ok().map(Primitive::from),
+            1 => Disk::new(p, random.direction(), size).ok().map(Primitive::from),
+            2 => {
+                let edges = [random.in_cube() * size, random.in_cube() * size];
+                Parallelogram::new(p, edges[0], edges[1]).ok().map(Primitive::from)
+            }
+            3 => Triangle::new(p, p + random.in_cube() * size, p + random.in_cube() * size).ok().map(Primitive::from),
+            _ => {
+                // A needle.
+                let along = random.direction() * size;
+                let across = random.in_cube() * (size * random.log_uniform(-6.0, 0.0));
+                Triangle::new(p, p + along, p + along * random.unit() + across).ok().map(Primitive::from)
+            }
+        };
+        out.extend(primitive);
+    }
+    out
+}
+
+/// Axis-aligned rectangles and boxes of them on a coarse grid: planes shared by many boxes of a tree.
+pub(crate) fn blocks(random: &mut Random, count: usize) -> Vec<Primitive> {
+    let mut out = Vec::with_capacity(count);
+    while out.len() < count {
+        let mut cell = || (random.below(9) as f64 - 4.0) * 0.25;
+        let corner = v(cell(), cell(), cell());
+        let (k, a, b) = (random.below(3), random.below(4), random.below(4));
+        let mut edges = [[0.0; 3]; 2];
+        edges[0][(k + 1) % 3] = (a + 1) as f64 * 0.25;
+        edges[1][(k + 2) % 3] = (b + 1) as f64 * 0.25;
+        let (a, b) = (Vec3::from_f64(edges[0]), Vec3::from_f64(edges[1]));
+        if random.below(2) == 0 {
+            out.extend(Parallelogram::new(corner, a, b).ok().map(Primitive::from));
+        } else {
+            out.extend(Triangle::new(corner, corner + a, corner + b).ok().map(Primitive::from));
+        }
+    }
+    out
+}
+
+/// A ray's origin and direction.
+pub(crate) type Line = (V, V);
+
+/// A ray of one of several adversarial kinds, aimed at what is in [−1, 1]³ or at one of the points `at`.
+pub(crate) fn line(random: &mut Random, at: &[V]) -> Line {
+    let aim = if !at.is_empty() && random.below(2) == 0 { at[random.below(at.len())] } else { random.in_cube() };
+    let origin = match random.below(4) {
+        0 => random.in_cube(),
+        1 => random.in_cube() * random.log_uniform(0.0, 6.0),
+        2 => aim + random.in_cube() * random.log_uniform(-12.0, 0.0),
+        _ if !at.is_empty() => at[random.below(at.len())],
+        _ => random.in_cube() * 2.0,
+    };
+    let mut direction = (aim - origin) * random.log_uniform(-3.0, 3.0);
+    if random.below(3) == 0 {
+        // In a slab plane, with zeros of both signs or nearly.
+        let tiny = [0.0, -0.0, 1e-30, -1e-30, 1e-17, -1e-12][random.below(6)];
+        match random.below(6) {
+            0 => direction.x = tiny,
+            1 => direction.y = tiny,
+            2 => direction.z = tiny,
+            3 => (direction.x, direction.y) = (tiny, -tiny),
+            4 => (direction.y, direction.z) = (tiny, tiny),
+            _ => (direction.z, direction.x) = (-tiny, tiny),
+        }
+    }
+    (origin, direction)
+}
+
+/// Characteristic points of primitives: corners, centres, poles.
+pub(crate) fn features(primitives: &[Primitive]) -> Vec<V> {
+    let mut points = Vec::new();
+    for p in primitives {
+        match p {
+            Primitive::Sphere(s) => {
+                let r = s.radius();
+                points.extend([s.centre(), s.centre() + v(r, 0.0, 0.0), s.centre() - v(0.0, r, 0.0)]);
+            }
+            Primitive::Parallelogram(s) => points.extend(s.corners()),
+            Primitive::Disk(s) => points.push(s.centre()),
+            Primitive::Triangle(s) => {
+                let [a, b, c] = s.vertices();
+                points.extend([a, b, c, (a + b) * 0.5, (b + c) * 0.5, (a + c) * 0.5]);
+            }
+        }
+    }
+    points
+}

@@ -1,0 +1,6 @@
+//! Tests of the whole: the tree against brute force, watertightness, spheres, slabs, and rays that leave surfaces.
+
+mod spawn;
+mod spheres;
+mod tree;
+mod watertight;

@@ -1,0 +1,86 @@
+//! Spheres seen from afar and left at a grazing angle (hard cases 1 and 3).
+
+use crate::test_support::*;
+use crate::{Geometry, PrimitiveId, Ray, Sphere};
+use etalon_optics::Real;
+
+#[test]
+fn a_sphere_is_not_missed_from_a_hundred_thousand_radii() {
+    let mut random = Random::new(1);
+    for _ in 0..200_000 {
+        let distance = random.log_uniform(2.0, 5.0);
+        let d = random.direction();
+        let frame = etalon_optics::Frame::from_normal(d);
+        // A line at distance b from the centre; the closest approach is the centre plus a perpendicular.
+        let b = random.unit() * 0.999;
+        let phi = random.unit();
+        let (s, c) = f64::sin_cos_turns(phi);
+        let centre = random.in_cube();
+        let origin = centre + frame.s * (b * c) + frame.t * (b * s) - d * distance;
+        let sphere = Sphere::new(centre, 1.0).unwrap();
+        let geometry = Geometry::build(vec![sphere.into()]).unwrap();
+        let ray = Ray::free(origin, d);
+        let hit = geometry.closest_hit(&ray).expect("a false miss");
+        let truth = distance - (1.0 - b * b).sqrt();
+        // Hard case 1: 8ε·D²/r/√(1−b²), in f64; the construction itself errs as much.
+        let bound = 16.0 * f64::EPSILON * distance * distance / (1.0 - b * b).sqrt();
+        assert!((hit.t - truth).abs() <= bound, "{} {truth} {bound}", hit.t);
+        // From f32 rays only what f32 says of the ray is lost: 1e5 radii × 2⁻²⁴ sideways.
+        if b < 0.98 && geometry.closest_hit(&Ray::<f32>::free(origin.cast(), d.cast())).is_none() {
+            panic!("a false miss of an f32 ray at b = {b}");
+        }
+    }
+}
+
+#[test]
+fn a_tangential_ray_from_the_surface_does_not_hit_it_again() {
+    let mut random = Random::new(2);
+    for i in 0..1_000_000 {
+        let radius = if i % 2 == 0 { 1.0 } else { random.log_uniform(-6.0, 6.0) };
+        let geometry = Geometry::build(vec![Sphere::new(random.in_cube() * radius, radius).unwrap().into()]).unwrap();
+        let crate::Primitive::Sphere(sphere) = geometry.primitive(PrimitiveId(0)) else { unreachable!() };
+        let n = random.direction();
+        let p = sphere.surface::<f64>(sphere.centre() + n * radius, PrimitiveId(0));
+        let f = etalon_optics::Frame::from_normal(p.normal);
+        let mut d = f.s * random.signed() + f.t * random.signed();
+        if d.dot(p.normal) < 0.0 {
+            d = d - p.normal * (2.0 * d.dot(p.normal));
+        }
+        if d.dot(p.normal) >= 0.0 {
+            assert!(geometry.closest_hit(&p.spawn(d)).is_none(), "re-hit");
+        }
+        let p = sphere.surface::<f32>(sphere.centre() + n * radius, PrimitiveId(0));
+        let d = d.cast::<f32>();
+        if d.dot(p.normal) >= 0.0 {
+            assert!(geometry.closest_hit(&p.spawn(d)).is_none(), "re-hit in f32");
+        }
+    }
+}
+
+#[test]
+fn a_ray_that_enters_a_sphere_leaves_it_at_the_far_side() {
+    // The chord from a point of the surface is 2r·cos; the root at the surface itself must not be taken for it,
+    // whatever the size and the place of the sphere.
+    let mut random = Random::new(3);
+    for _ in 0..200_000 {
+        let radius = random.log_uniform(-6.0, 6.0);
+        let centre = random.in_cube() * random.log_uniform(-6.0, 6.0);
+        let sphere = Sphere::new(centre, radius).unwrap();
+        let n = random.direction();
+        let f = etalon_optics::Frame::from_normal(n);
+        let p = sphere.surface::<f64>(centre + n * radius, PrimitiveId(0));
+        let slant = random.log_uniform(-3.0, 0.0);
+        let d = (f.s * random.signed() - n * slant).normalized();
+        let geometry = Geometry::build(vec![sphere.into()]).unwrap();
+        let ray = p.spawn(d);
+        let hit = geometry.closest_hit(&ray).expect("the far side");
+        let cos = -d.dot(p.normal);
+        // The start is rounded by a few u of its coordinates: so much the chord changes for a tangential error, and
+        // over the cosine for one along the normal.
+        let reach = p.position.abs().max_component() + radius;
+        let tolerance = 32.0 * f64::UNIT_ROUNDOFF * reach / cos;
+        assert!((hit.t - 2.0 * radius * cos).abs() <= tolerance, "{} {}", hit.t, 2.0 * radius * cos);
+        let q = geometry.surface(&ray, &hit);
+        assert!(((q.position - centre).length() - radius).abs() <= q.position_error + 4.0 * f64::EPSILON * radius);
+    }
+}

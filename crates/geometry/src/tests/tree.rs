@@ -1,0 +1,225 @@
+//! The tree finds what brute force finds.
+
+use crate::test_support::*;
+use crate::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, Triangle};
+use etalon_optics::{Real, Vec3};
+
+/// Compares closest hits (bit for bit) and occlusion for one ray in both scalar types; counts hits.
+fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> usize {
+    fn one<R: Real>(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> usize {
+        let ray = Ray::<R> { t_max: R::from_f64(t_max), leaves, ..Ray::free(line.0.cast(), line.1.cast()) };
+        let Some(query) = crate::query::Query::new(&ray) else {
+            assert!(geometry.closest_hit(&ray).is_none() && !geometry.occluded(&ray));
+            return 0;
+        };
+        let (tree, flat) = (geometry.closest(&query), geometry.closest_flat(&query));
+        assert_eq!(tree, flat, "{ray:?}");
+        assert_eq!(geometry.occluded(&ray), geometry.any_flat(&query), "{ray:?}");
+        usize::from(flat.is_some())
+    }
+    one::<f64>(geometry, line, t_max, leaves) + one::<f32>(geometry, line, t_max, leaves)
+}
+
+/// Holds the tree of some primitives against brute force on `rays` adversarial rays; returns the fraction of hits.
+fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
+    let mut random = Random::new(seed);
+    let features = features(&primitives);
+    let geometry = Geometry::build(primitives).unwrap();
+    let mut hits = 0;
+    for _ in 0..rays {
+        let line = place(line(&mut random, &features));
+        let t_max = if random.below(4) == 0 { random.unit() * 2.0 } else { f64::INFINITY };
+        let leaves = match random.below(3) {
+            0 => PrimitiveId(random.below(geometry.len()) as u32),
+            _ => PrimitiveId::NONE,
+        };
+        hits += agrees(&geometry, line, t_max, leaves);
+    }
+    hits as f64 / (2 * rays) as f64
+}
+
+#[test]
+fn tree_equals_brute_force_on_soups_of_all_scales() {
+    for seed in 0..4 {
+        let primitives = soup(&mut Random::new(seed), 200, -6.0..0.0);
+        let hits = check(primitives, 20_000, 100 + seed, |l| l);
+        assert!(hits > 0.3, "only {hits} of the rays hit anything");
+    }
+}
+
+#[test]
+fn tree_equals_brute_force_in_shared_slab_planes() {
+    for seed in 0..4 {
+        let primitives = blocks(&mut Random::new(seed), 150);
+        let hits = check(primitives, 20_000, 200 + seed, |(o, d)| {
+            // Half of the origins on the grid that all the planes lie on.
+            let snap = |c: f64| if d.x > 0.0 { (c * 4.0).round() * 0.25 } else { c };
+            (v(snap(o.x), snap(o.y), snap(o.z)), d)
+        });
+        assert!(hits > 0.3, "only {hits} of the rays hit anything");
+    }
+}
+
+#[test]
+fn tree_equals_brute_force_far_from_the_origin() {
+    let offset = v(3.0e6, -1.0e6, 2.0e6);
+    let primitives: Vec<Primitive> = soup(&mut Random::new(7), 200, -3.0..0.0)
+        .into_iter()
+        .filter_map(|p| match p {
+            Primitive::Sphere(s) => Sphere::new(s.centre() + offset, s.radius()).ok().map(Primitive::from),
+            Primitive::Disk(s) => Disk::new(s.centre() + offset, s.normal(), s.radius()).ok().map(Primitive::from),
+            Primitive::Parallelogram(s) => {
+                Parallelogram::new(s.corner() + offset, s.edges()[0], s.edges()[1]).ok().map(Primitive::from)
+            }
+            Primitive::Triangle(s) => {
+                let [a, b, c] = s.vertices().map(|p| p + offset);
+                Triangle::new(a, b, c).ok().map(Primitive::from)
+            }
+        })
+        .collect();
+    let hits = check(primitives, 20_000, 300, |(o, d)| (o + offset, d));
+    assert!(hits > 0.15, "only {hits} of the rays hit anything");
+}
+
+#[test]
+fn ten_thousand_identical_primitives_neither_overflow_nor_slow_the_build() {
+    let t = Triangle::new(v(0.0, 0.0, 1.0), v(1.0, 0.0, 1.0), v(0.0, 1.0, 1.0)).unwrap();
+    let geometry = Geometry::build(vec![t.into(); 10_000]).unwrap();
+    let ray = Ray::free(v(0.2, 0.2, 0.0), v(0.0, 0.0, 1.0));
+    let hit = geometry.closest_hit(&ray).unwrap();
+    assert_eq!((hit.primitive, hit.t), (PrimitiveId(0), 1.0), "ties go to the lowest id");
+}
+
+#[test]
+fn a_million_coincident_boxes_build_in_seconds() {
+    let s = Sphere::new(v(1.0, 2.0, 3.0), 0.5).unwrap();
+    let start = std::time::Instant::now();
+    let geometry = Geometry::build(vec![s.into(); 1_000_000]).unwrap();
+    // n log n takes about a second; a quadratic build would take hours.
+    assert!(start.elapsed().as_secs() < 60);
+    assert!(geometry.occluded(&Ray::free(Vec3::<f32>::ZERO, Vec3::new(1.0, 2.0, 3.0))));
+}
+
+#[test]
+fn zeros_of_both_signs_in_a_direction_give_the_same_hit_on_both_faces() {
+    // Hard cases 15 and 16: rays in the slab planes of flat boxes.
+    let mut primitives = Vec::new();
+    for i in 0..32 {
+        let z = f64::from(i) * 0.25;
+        primitives.push(Parallelogram::new(v(0.0, 0.0, z), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0)).unwrap().into());
+        primitives.push(Parallelogram::new(v(2.0, z, 0.0), v(0.0, 0.25, 0.0), v(0.0, 0.0, 8.0)).unwrap().into());
+    }
+    let geometry = Geometry::build(primitives).unwrap();
+    for (zx, zy) in [(0.0, 0.0), (-0.0, 0.0), (0.0, -0.0), (-0.0, -0.0)] {
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.5, 0.0), (0.5, 0.5)] {
+            for (z, dz, expected) in [(-1.0, 1.0, 1.0), (9.0, -1.0, 1.25)] {
+                let hit = geometry.closest_hit(&Ray::free(v(x, y, z), v(zx, zy, dz))).unwrap();
+                assert_eq!(hit.t, expected, "{x} {y} {zx} {zy} {dz}");
+                let ray = Ray::<f32>::free(v(x, y, z).cast(), v(zx, zy, dz).cast());
+                assert_eq!(geometry.closest_hit(&ray).unwrap().t, expected as f32);
+                assert!(geometry.occluded(&ray));
+            }
+        }
+        for z in [0.0, 0.5, 7.75, 8.0] {
+            let hit = geometry.closest_hit(&Ray::free(v(1.5, 0.25, z), v(1.0, zx, zy))).unwrap();
+            assert_eq!(hit.t, 0.5, "{z} {zx} {zy}");
+        }
+    }
+}
+
+#[test]
+fn scaling_by_powers_of_two_changes_no_bit_of_a_hit() {
+    let base = soup(&mut Random::new(5), 100, -3.0..0.0);
+    let scaled: Vec<Geometry> = [-40, 0, 40]
+        .map(|e| {
+            let s = 2.0_f64.powi(e);
+            let primitives = base
+                .iter()
+                .map(|p| match p {
+                    Primitive::Sphere(q) => Sphere::new(q.centre() * s, q.radius() * s).unwrap().into(),
+                    Primitive::Disk(q) => Disk::new(q.centre() * s, q.normal(), q.radius() * s).unwrap().into(),
+                    Primitive::Parallelogram(q) => {
+                        Parallelogram::new(q.corner() * s, q.edges()[0] * s, q.edges()[1] * s).unwrap().into()
+                    }
+                    Primitive::Triangle(q) => {
+                        let [a, b, c] = q.vertices().map(|p| p * s);
+                        Triangle::new(a, b, c).unwrap().into()
+                    }
+                })
+                .collect();
+            Geometry::build(primitives).unwrap()
+        })
+        .into();
+    let mut random = Random::new(6);
+    for _ in 0..20_000 {
+        let (o, d) = line(&mut random, &[]);
+        let [a, b, c] = [-40, 0, 40].map(|e| {
+            let s = 2.0_f64.powi(e);
+            let g = &scaled[(e / 40 + 1) as usize];
+            let ray = Ray::free(o * s, d);
+            g.closest_hit(&ray).map(|h| {
+                let p = g.surface(&ray, &h);
+                (h.t / s, h.primitive, h.uv, p.position * (1.0 / s), p.position_error / s, p.normal)
+            })
+        });
+        assert_eq!(a, b);
+        assert_eq!(b, c);
+    }
+}
+
+#[test]
+fn rays_of_which_no_point_is_defined_hit_nothing() {
+    let geometry = Geometry::build(soup(&mut Random::new(1), 50, -1.0..0.0)).unwrap();
+    let nan = f64::NAN;
+    for (o, d) in [
+        (v(nan, 0.0, 0.0), v(1.0, 0.0, 0.0)),
+        (v(0.0, 0.0, 0.0), v(0.0, nan, 1.0)),
+        (v(0.0, 0.0, 0.0), v(0.0, -0.0, 0.0)),
+        (v(f64::INFINITY, 0.0, 0.0), v(-1.0, 0.0, 0.0)),
+        (v(0.0, 0.0, 0.0), v(f64::INFINITY, 0.0, 0.0)),
+    ] {
+        assert!(geometry.closest_hit(&Ray::free(o, d)).is_none());
+        assert!(!geometry.occluded(&Ray::free(o, d)));
+    }
+    for far in [1e30, 1e200, 1e307] {
+        // So far away that the scene is below the rounding of the origin: no panic, and the same as brute force.
+        let line = (v(far, 0.5 * far, 0.0), v(-2.0, -1.0, 0.0));
+        agrees(&geometry, line, f64::INFINITY, PrimitiveId::NONE);
+    }
+    let empty = Geometry::build(Vec::new()).unwrap();
+    assert!(empty.closest_hit(&Ray::free(v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0))).is_none());
+    assert!(empty.bounds().is_none() && empty.is_empty());
+}
+
+#[test]
+fn shapes_that_have_no_area_or_no_numbers_are_refused() {
+    use crate::ShapeError::{NoArea, NotFinite, OutOfRange};
+    let (o, x, y) = (v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0));
+    assert_eq!(Triangle::new(o, x, v(f64::NAN, 0.0, 0.0)), Err(NotFinite));
+    assert_eq!(Triangle::new(o, x, x), Err(NoArea));
+    assert_eq!(Triangle::new(o, x * 0.1, x * 0.3), Err(NoArea));
+    assert_eq!(Triangle::new(o, x, v(1e40, 1.0, 0.0)), Err(OutOfRange));
+    assert_eq!(Parallelogram::new(o, x, x * -2.0), Err(NoArea));
+    assert_eq!(Parallelogram::new(o, x, v(0.0, f64::INFINITY, 0.0)), Err(NotFinite));
+    assert_eq!(Parallelogram::new(v(1e20, 0.0, 0.0), x, y), Err(NoArea), "the corners round to a line");
+    assert_eq!(Sphere::new(o, 0.0), Err(NoArea));
+    assert_eq!(Sphere::new(o, -1.0), Err(NoArea));
+    assert_eq!(Sphere::new(o, f64::NAN), Err(NotFinite));
+    assert_eq!(Sphere::new(o, 1e-40), Err(OutOfRange));
+    assert_eq!(Disk::new(o, o, 1.0), Err(NoArea));
+    assert_eq!(Disk::new(o, x, f64::INFINITY), Err(NotFinite));
+    // A needle that f64 resolves is a triangle (hard case 13).
+    assert!(Triangle::new(o, x * 1e5, v(5e4, 1.0, 0.0)).is_ok());
+    assert!(Triangle::new(o, x, v(0.5, 1e-25, 0.0)).is_ok());
+}
+
+#[test]
+fn tie_at_one_distance_goes_to_the_lowest_id_in_any_order() {
+    let square = |x: f64| Parallelogram::new(v(x, -1.0, 1.0), v(2.0, 0.0, 0.0), v(0.0, 2.0, 0.0)).unwrap();
+    for n in [2, 40] {
+        let primitives: Vec<Primitive> = (0..n).map(|i| square(-1.0 - f64::from(i % 7) * 0.1).into()).collect();
+        let geometry = Geometry::build(primitives).unwrap();
+        let hit = geometry.closest_hit(&Ray::free(v(0.0, 0.0, 0.0), v(0.0, 0.0, 1.0))).unwrap();
+        assert_eq!((hit.t, hit.primitive), (1.0, PrimitiveId(0)));
+    }
+}
