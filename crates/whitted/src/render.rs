@@ -68,11 +68,11 @@ impl Film {
 
 /// Renders a scene with the arithmetic of the published figures.
 pub fn render(scene: &Scene, settings: &Settings) -> Film {
-    render_with::<Published>(scene, settings)
+    render_with::<Published>(scene, settings, |_| ())
 }
 
-/// Renders a scene with a chosen arithmetic.
-pub fn render_with<A: Arithmetic>(scene: &Scene, settings: &Settings) -> Film {
+/// Renders a scene with a chosen arithmetic, and tells `progress` after each column how many rays a column is.
+pub fn render_with<A: Arithmetic>(scene: &Scene, settings: &Settings, mut progress: impl FnMut(u64)) -> Film {
     let tracer = Tracer::<A> { scene, settings, arithmetic: PhantomData };
     let (width, height, rays) = (settings.width.get(), settings.height.get(), settings.rays.get());
     let (w, h) = (f64::from(width), f64::from(height));
@@ -102,6 +102,7 @@ pub fn render_with<A: Arithmetic>(scene: &Scene, settings: &Settings) -> Film {
                 *pixel += tracer.color(&ray) / f64::from(rays);
             }
         }
+        progress(u64::from(height) * u64::from(rays));
     }
     Film { width, height, pixels }
 }

@@ -12,7 +12,7 @@ fn settings(figure: &Figure) -> Settings {
 }
 
 fn film_with<A: Arithmetic>(figure: &Figure) -> Film {
-    render_with::<A>(&figure.scene(), &settings(figure))
+    render_with::<A>(&figure.scene(), &settings(figure), |_| ())
 }
 
 fn workspace() -> PathBuf {

@@ -1,7 +1,8 @@
-//! Equation (1) against Snell's law.
+//! Equation (1) against Snell's law: the oracle's, and what can be said of it beyond that.
 
 use std::num::NonZero;
 
+use etalon_oracle::laws;
 use etalon_whitted::{
     Arithmetic, Figure, Published, RefractionRule, Settings, Vec3, reflect, refract, refract_as_published,
     refract_snell, render, vec3,
@@ -30,6 +31,40 @@ fn snell_error(ri: f64, d: Vec3, n: Vec3, k: Vec3) -> f64 {
     let k = k / length(k);
     let sines = length(ri * d.cross(n) - k.cross(n));
     if Published::dot(k, n) <= 0.0 { sines } else { f64::INFINITY }
+}
+
+/// A formula as the oracle wants it: η is the index beyond over the index before, `ri` its reciprocal.
+fn subject(formula: fn(f64, Vec3, Vec3) -> Option<Vec3>) -> impl FnMut([f64; 3], [f64; 3], f64) -> Option<[f64; 3]> {
+    move |d, n, eta| formula(1.0 / eta, Vec3(d), Vec3(n)).map(|k| k.0)
+}
+
+#[test]
+fn the_oracles_laws_accept_the_corrected_equation() {
+    for seed in 0..10 {
+        laws::snell_sweep(subject(refract_snell::<Published>), f64::EPSILON, seed).assert();
+        laws::total_internal_reflection(subject(refract_snell::<Published>), f64::EPSILON, seed).assert();
+        let mirror = |d, n| reflect::<Published>(Vec3(d), Vec3(n)).0;
+        laws::mirror_reflection(mirror, f64::EPSILON, seed).assert();
+    }
+}
+
+#[test]
+fn the_oracles_snell_law_rejects_equation_1_as_published() {
+    for seed in 0..10 {
+        let verdict = laws::snell_sweep(subject(refract_as_published::<Published>), f64::EPSILON, seed);
+        assert!(!verdict.pass, "{verdict}");
+    }
+    // One ray is enough, also where nothing bends.
+    for eta in [1.0, 1.5, 1.0 / 1.2] {
+        let crossing = laws::Crossing { direction: [0.6, 0.0, -0.8], normal: [0.0, 0.0, 1.0], eta };
+        let mut published = subject(refract_as_published::<Published>);
+        let verdict = laws::snell(&crossing, published(crossing.direction, crossing.normal, eta), f64::EPSILON);
+        assert!(!verdict.pass, "{verdict}");
+        // Nor is it a matter of its length, which is not 1.
+        let unit = published(crossing.direction, crossing.normal, eta).map(|k| Published::normalize(Vec3(k)).0);
+        let verdict = laws::snell(&crossing, unit, f64::EPSILON);
+        assert!(!verdict.pass, "{verdict}");
+    }
 }
 
 proptest! {
