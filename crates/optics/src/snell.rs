@@ -9,13 +9,19 @@ use crate::{Real, Vec3};
 /// the path comes from); the result is a unit vector that leaves the surface on the other side. `eta` = n_t/n_i is the
 /// index behind the interface over the index on the side of `wi`. The normal may point to either side.
 ///
-/// At `eta` = 1 the result is −`wi`, bit for bit.
+/// Computed in `f64` whatever `R` is: near the critical angle and at grazing exit the cosine of an f32 product of vectors is
+/// not good enough. At `eta` = 1 the result is −`wi`, bit for bit.
 #[inline]
 pub fn refract<R: Real>(wi: Vec3<R>, n: Vec3<R>, eta: R) -> Option<Vec3<R>> {
+    refract_f64(wi.to_f64(), n.to_f64(), eta.to_f64()).map(Vec3::cast)
+}
+
+#[inline]
+fn refract_f64(wi: Vec3<f64>, n: Vec3<f64>, eta: f64) -> Option<Vec3<f64>> {
     let cos = wi.dot(n);
-    let (n, cos_i) = if cos < R::ZERO { (-n, -cos) } else { (n, cos) };
+    let (n, cos_i) = if cos < 0.0 { (-n, -cos) } else { (n, cos) };
     // Rounding may carry the product of two unit vectors past 1.
-    let cos_i = cos_i.min(R::ONE);
+    let cos_i = cos_i.min(1.0);
     refracted_cosine(cos_i, eta).map(|cos_t| refract_with_cosines(wi, n, eta, cos_i, cos_t))
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The matrices follow from the chromaticities that Recommendation ITU-R BT.709-6 states (§1.3, §1.4), with its
 //! four-digit white (0.3127, 0.3290): it is what an EXR file's `chromaticities` say and what every reader assumes.
-//! D65 by the CIE's own table has (0.31272, 0.32903), so a D65-lit perfect reflector has an RGB that differs from
+//! D65 by the CIE's own table has (0.31273, 0.32902), so a D65-lit perfect reflector has an RGB that differs from
 //! (1, 1, 1) by up to 2.6·10⁻⁴; that is the rounding in the Recommendation, not an error of the renderer.
 
 type Matrix = [[f64; 3]; 3];

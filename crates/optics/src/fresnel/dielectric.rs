@@ -71,9 +71,10 @@ pub fn refracted_cosine<R: Real>(cos_i: R, eta: R) -> Option<R> {
 /// Fresnel's equations for incidence at `cos_i` in [0, 1] from a medium of index n_i into one of n_t, with
 /// `eta` = n_t/n_i above 0; `None` under total internal reflection, where everything is reflected.
 ///
-/// With n = eta, c = cos_i, k = c + n·c_t and l = n·c + c_t, the textbook differences are rewritten so that nothing cancels
-/// near n = 1, grazing incidence or the critical angle:
-/// r_s = (1 − n²)/k², r_p = (n² − 1)(c²(n² + 1) − 1)/(n²·l²), T = 2·n·c·c_t·(1/k² + 1/l²).
+/// With n = eta, c = cos_i, s² = 1 − c², k = c + n·c_t and l = n·c + c_t, the textbook differences are rewritten so that
+/// nothing cancels near n = 1, grazing incidence or the critical angle: r_s = (1 − n²)/k²,
+/// r_p = (n² − 1)(c² − s²/n²)/l² for n > 1 and (n² − 1)(c_t² − s²)/l² for n < 1 (the same number; each is the form whose
+/// rounding errors stay below a few ε on its side), T = 2·n·c·c_t·(1/k² + 1/l²).
 /// Only r_p, where it passes through zero at Brewster's angle, is accurate absolutely and not relatively.
 #[inline]
 pub fn dielectric<R: Real>(cos_i: R, eta: R) -> Option<DielectricFresnel<R>> {
@@ -86,9 +87,10 @@ pub fn dielectric<R: Real>(cos_i: R, eta: R) -> Option<DielectricFresnel<R>> {
     let k = c + n * cos_t;
     let l = n * c + cos_t;
     let n2_minus_1 = (n - R::ONE) * (n + R::ONE);
-    let n2 = n * n;
+    let sin2 = (R::ONE - c) * (R::ONE + c);
+    let brewster = if n > R::ONE { c * c - sin2 / (n * n) } else { cos_t * cos_t - sin2 };
     let r_s = -n2_minus_1 / (k * k);
-    let r_p = n2_minus_1 * (c * c * (n2 + R::ONE) - R::ONE) / (n2 * l * l);
+    let r_p = n2_minus_1 * brewster / (l * l);
     let reflectance = R::HALF * (r_s * r_s + r_p * r_p);
     let transmittance = R::TWO * n * c * cos_t * (R::ONE / (k * k) + R::ONE / (l * l));
     Some(DielectricFresnel { r_s, r_p, reflectance, transmittance, cos_t })

@@ -1,4 +1,6 @@
 //! Refractive indices of dielectrics and metals, relative to vacuum.
+//!
+//! Named media carry published data, which were measured in air; the surrounding medium of index 1 stands for it.
 
 mod complex;
 mod glasses;
