@@ -1,5 +1,57 @@
 //! The JSON scene description: inert, validated data.
+//!
+//! [`parse`] and [`load`] turn a scene file into a [`Scene`], or into every error of the file at once
+//! ([`SceneErrors`]), each with its JSON path, line, column and a hint. [`schema`] is the JSON Schema of such files, made
+//! from the same declarations as the reader. The format is described in `docs/scene-format.md`.
+//!
+//! [`json`] is the reader itself, free of scenes, for any other JSON format.
+//!
+//! ```
+//! let (scene, warnings) = etalon_scene::parse(r#"{
+//!     "etalon": 1,
+//!     "camera": { "type": "perspective", "position_m": [0, 0, 5], "look_at_m": [0, 0, 0], "vertical_fov_deg": 40 },
+//!     "film": { "width": 64, "height": 64 },
+//!     "objects": [{ "shape": { "type": "sphere", "radius_m": 1 }, "material": { "type": "lambert", "reflectance": 0.5 } }],
+//!     "lights": [{ "type": "environment", "radiance": 1 }]
+//! }"#, "ball.json")?;
+//! assert_eq!(scene.objects.len(), 1);
+//! assert!(warnings.is_empty());
+//! # Ok::<(), etalon_scene::SceneErrors>(())
+//! ```
 
+mod format;
+pub mod json;
 pub mod model;
+mod problem;
+mod vector;
+
+use std::path::Path;
 
 pub use model::*;
+pub use problem::{Code, LoadError, Problem, Related, SceneErrors, Severity, Span};
+
+/// The JSON Schema (2020-12) of scene files.
+///
+/// Editors use it to complete and check scenes. What it cannot say (names that refer to each other, physical ranges of
+/// tables, degenerate shapes, keys that exclude each other) [`parse`] checks.
+pub fn schema() -> serde_json::Value {
+    json::document_schema::<format::SceneForm>("Etalon scene")
+}
+
+/// Reads a scene from the text of a file; `file_name` is for messages. The scene comes with the warnings.
+///
+/// # Errors
+/// Every error of the text at once, and its warnings.
+pub fn parse(text: &str, file_name: &str) -> Result<(Scene, Vec<Problem>), SceneErrors> {
+    json::read(text, file_name, |form: format::SceneForm, reader| format::scene(&form, reader))
+}
+
+/// Reads a scene file. The scene comes with the warnings.
+///
+/// # Errors
+/// [`LoadError::Io`] if the file cannot be read, else as [`parse`].
+pub fn load(path: impl AsRef<Path>) -> Result<(Scene, Vec<Problem>), LoadError> {
+    let path = path.as_ref();
+    let text = json::load_text(path)?;
+    Ok(parse(&text, &path.display().to_string())?)
+}

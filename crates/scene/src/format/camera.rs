@@ -1,0 +1,313 @@
+//! Cameras and film.
+
+use crate::json::{Code, Direction, NonNegative, Optional, Positive, Reader, Required, Span, Spanned, Whole};
+use crate::model::{Camera, Film, Filter, Projection, ThinLens};
+use crate::vector::{cross, dot, length, scale, sub, unit};
+
+crate::number! {
+    /// A full angle of view, degrees.
+    pub(crate) struct FieldOfView in super::geometry::HALF_TURN;
+}
+
+crate::record! {
+    /// Central projection through a pinhole or a thin lens. Pixels are square. The angle of view is given by exactly one of
+    /// `vertical_fov_deg`, `horizontal_fov_deg`, or `focal_length_m` with `sensor_height_m` or `sensor_width_m`.
+    pub(crate) struct PerspectiveCamera + comment {
+        /// Position of the eye (the centre of the lens), m.
+        position_m: Required<[f64; 3]>,
+        /// A point in the middle of the picture, m. Either this or `direction`.
+        look_at_m: Optional<Spanned<[f64; 3]>>,
+        /// The viewing direction; only the direction counts. Either this or `look_at_m`.
+        direction: Optional<Spanned<Direction>>,
+        /// Which way is up in the picture; only the direction counts, and only its part across the view.
+        up: Required<Spanned<Direction>> = "[0, 1, 0]",
+        /// Full vertical angle of view, degrees.
+        vertical_fov_deg: Optional<FieldOfView>,
+        /// Full horizontal angle of view, degrees.
+        horizontal_fov_deg: Optional<FieldOfView>,
+        /// Focal length, m. With a sensor size it gives the angle of view; with `lens.f_number`, the lens radius.
+        focal_length_m: Optional<Spanned<Positive>>,
+        /// Height of the sensor, m; needs `focal_length_m`.
+        sensor_height_m: Optional<Positive>,
+        /// Width of the sensor, m; needs `focal_length_m`.
+        sensor_width_m: Optional<Positive>,
+        /// A thin lens; without it, the camera is a pinhole and everything is in focus.
+        lens: Optional<Lens>,
+    }
+}
+
+crate::record! {
+    /// An ideal thin lens: exactly one of `radius_m` and `f_number`.
+    pub(crate) struct Lens {
+        /// Radius of the aperture, m; 0 is a pinhole.
+        radius_m: Optional<NonNegative>,
+        /// Focal length over the diameter of the aperture; needs the camera's `focal_length_m`.
+        f_number: Optional<Spanned<Positive>>,
+        /// Distance along the viewing direction of the plane in focus, m.
+        focus_distance_m: Required<Spanned<Positive>>,
+    }
+}
+
+crate::record! {
+    /// Parallel projection. Pixels are square.
+    pub(crate) struct OrthographicCamera + comment {
+        /// A point on the plane from which the rays start, in the middle of the picture, m.
+        position_m: Required<[f64; 3]>,
+        /// A point in the middle of the picture, m. Either this or `direction`.
+        look_at_m: Optional<Spanned<[f64; 3]>>,
+        /// The viewing direction; only the direction counts. Either this or `look_at_m`.
+        direction: Optional<Spanned<Direction>>,
+        /// Which way is up in the picture; only the direction counts, and only its part across the view.
+        up: Required<Spanned<Direction>> = "[0, 1, 0]",
+        /// Height of the picture in the world, m.
+        height_m: Required<Positive>,
+    }
+}
+
+crate::variants! {
+    /// The camera.
+    pub(crate) enum CameraForm by "type" {
+        "perspective" => Perspective(PerspectiveCamera),
+        "orthographic" => Orthographic(OrthographicCamera),
+    }
+}
+
+/// Most pixels along a side.
+pub(crate) const MAX_SIDE: u64 = 65_536;
+/// Most pixels of a picture: 2²⁸, some ten gigabytes of film.
+pub(crate) const MAX_PIXELS: u64 = 1 << 28;
+
+crate::record! {
+    /// Size and reconstruction of the picture. At most 2²⁸ pixels.
+    pub(crate) struct FilmForm + comment {
+        /// Width, pixels.
+        width: Required<Whole<1, MAX_SIDE>>,
+        /// Height, pixels.
+        height: Required<Spanned<Whole<1, MAX_SIDE>>>,
+        /// Pixel filter.
+        filter: Required<FilterForm> = r#"{ "type": "box" }"#,
+    }
+}
+
+crate::record! {
+    /// The pixel's own square.
+    pub(crate) struct BoxFilter {}
+}
+
+crate::record! {
+    /// A tent.
+    pub(crate) struct TentFilter {
+        /// Radius, pixels.
+        radius_px: Required<Positive> = "1",
+    }
+}
+
+crate::record! {
+    /// A Gaussian, cut at three standard deviations.
+    pub(crate) struct GaussianFilter {
+        /// Standard deviation, pixels.
+        sigma_px: Required<Positive> = "0.5",
+    }
+}
+
+crate::variants! {
+    /// Pixel filter, sampled by importance so that every sample belongs to one pixel.
+    pub(crate) enum FilterForm by "type" {
+        "box" => Box(BoxFilter),
+        "tent" => Tent(TentFilter),
+        "gaussian" => Gaussian(GaussianFilter),
+    }
+}
+
+/// The film of a form.
+pub(crate) fn film(form: &FilmForm, reader: &mut Reader<'_>) -> Option<Film> {
+    let filter = match form.filter.as_ref() {
+        None => None,
+        Some(FilterForm::Box(_)) => Some(Filter::Box),
+        Some(FilterForm::Tent(tent)) => tent.radius_px.map(|radius| Filter::Tent { radius_px: radius.0 }),
+        Some(FilterForm::Gaussian(gaussian)) => gaussian.sigma_px.map(|sigma| Filter::Gaussian { sigma_px: sigma.0 }),
+    };
+    let (width, height) = (form.width?.0, form.height?);
+    if width * height.value.0 > MAX_PIXELS {
+        let message = format!("{width} × {} pixels are more than {MAX_PIXELS}", height.value.0);
+        reader.error(Code::OutOfRange, height.at, message);
+        return None;
+    }
+    // Both are at most MAX_SIDE.
+    Some(Film { width: width as u32, height: height.value.0 as u32, filter: filter? })
+}
+
+/// Below this sine of the angle between `up` and the view, the roll of the picture hangs on digits that nobody meant.
+const PARALLEL: f64 = 1e-6;
+
+/// Viewing direction and the picture's upward direction, orthogonal unit vectors.
+fn orientation(
+    position_m: Option<[f64; 3]>,
+    look_at_m: &Optional<Spanned<[f64; 3]>>,
+    direction: &Optional<Spanned<Direction>>,
+    up: Option<Spanned<Direction>>,
+    at: Span,
+    reader: &mut Reader<'_>,
+) -> Option<([f64; 3], [f64; 3])> {
+    match (look_at_m.is_present(), direction.is_present()) {
+        (true, true) => {
+            let message = "\"look_at_m\" and \"direction\" exclude each other";
+            reader.error_hint(Code::KeyConflict, at.head(), message, "keep one of the two");
+        }
+        (false, false) => {
+            reader.error_hint(Code::MissingKey, at.head(), "missing key \"look_at_m\"", "or \"direction\"");
+        }
+        _ => {}
+    }
+    let forward = match (look_at_m.given(), direction.given()) {
+        (Some(target), None) => {
+            // Halved, so that the difference of two finite numbers is finite.
+            let towards = sub(scale(target.value, 0.5), scale(position_m?, 0.5));
+            let forward = unit(towards);
+            if forward.is_none() {
+                let message = "the camera looks at its own position";
+                reader.error(Code::DegenerateView, target.at, message);
+            }
+            forward?
+        }
+        (None, Some(direction)) => direction.value.0,
+        _ => return None,
+    };
+    let up = up?;
+    let right = cross(forward, up.value.0);
+    if length(right) < PARALLEL {
+        let hint = "give an \"up\" across the view";
+        reader.error_hint(Code::DegenerateView, up.at, "\"up\" is along the viewing direction", hint);
+        return None;
+    }
+    // Across the view, and once more, since rounding left a little along it.
+    let mut across = up.value.0;
+    for _ in 0..2 {
+        across = unit(sub(across, scale(forward, dot(across, forward))))?;
+    }
+    Some((forward, across))
+}
+
+/// The camera of a form; `film` gives the shape of the picture.
+pub(crate) fn camera(form: &CameraForm, film: Option<&Film>, reader: &mut Reader<'_>) -> Option<Camera> {
+    match form {
+        CameraForm::Perspective(form) => {
+            let view = orientation(form.position_m, &form.look_at_m, &form.direction, form.up, form.at, reader);
+            let projection = perspective(form, film, reader);
+            let (forward, up) = view?;
+            Some(Camera { position_m: form.position_m?, forward, up, projection: projection? })
+        }
+        CameraForm::Orthographic(form) => {
+            let view = orientation(form.position_m, &form.look_at_m, &form.direction, form.up, form.at, reader);
+            let projection = Projection::Orthographic { height_m: form.height_m?.0 };
+            let (forward, up) = view?;
+            Some(Camera { position_m: form.position_m?, forward, up, projection })
+        }
+    }
+}
+
+fn perspective(form: &PerspectiveCamera, film: Option<&Film>, reader: &mut Reader<'_>) -> Option<Projection> {
+    let lens = match &form.lens {
+        Optional::Given(lens) => self::lens(lens, form, reader).map(Some),
+        Optional::Absent => Some(None),
+        Optional::Invalid => None,
+    };
+    let sensor = form.sensor_height_m.is_present() || form.sensor_width_m.is_present();
+    let said = [
+        ("vertical_fov_deg", form.vertical_fov_deg.is_present()),
+        ("horizontal_fov_deg", form.horizontal_fov_deg.is_present()),
+        ("sensor_height_m", form.sensor_height_m.is_present()),
+        ("sensor_width_m", form.sensor_width_m.is_present()),
+    ];
+    let said: Vec<&str> = said.iter().filter(|(_, present)| *present).map(|(key, _)| *key).collect();
+    match said.as_slice() {
+        [] => {
+            let hint =
+                "or \"horizontal_fov_deg\", or \"focal_length_m\" with \"sensor_height_m\" or \"sensor_width_m\"";
+            reader.error_hint(Code::MissingKey, form.at.head(), "missing key \"vertical_fov_deg\"", hint);
+            return None;
+        }
+        [_] => {}
+        [first, second, ..] => {
+            let message = format!("\"{first}\" and \"{second}\" both give the angle of view");
+            reader.error_hint(Code::KeyConflict, form.at.head(), message, "keep one of them");
+            return None;
+        }
+    }
+    if sensor && !form.focal_length_m.is_present() {
+        let message = format!("\"{}\" needs \"focal_length_m\"", said[0]);
+        reader.error_hint(Code::MissingKey, form.at.head(), message, "add it here");
+        return None;
+    }
+    let lens = lens?;
+    // Height over width of the picture.
+    let aspect = film.map(|film| f64::from(film.height) / f64::from(film.width));
+    let tangent = if let Some(fov) = form.vertical_fov_deg.given() {
+        (0.5 * fov.0.to_radians()).tan()
+    } else if let Some(fov) = form.horizontal_fov_deg.given() {
+        (0.5 * fov.0.to_radians()).tan() * aspect?
+    } else {
+        let focal_length_m = form.focal_length_m.given()?;
+        let height_m = match form.sensor_height_m.given() {
+            Some(height) => height.0,
+            None => form.sensor_width_m.given()?.0 * aspect?,
+        };
+        0.5 * height_m / sensor_distance_m(focal_length_m, form, reader)?
+    };
+    let vertical_fov_rad = 2.0 * tangent.atan();
+    if vertical_fov_rad <= 0.0 || vertical_fov_rad >= std::f64::consts::PI {
+        let message = "the angle of view is 0° or 180° to rounding";
+        reader.error(Code::OutOfRange, form.at.head(), message);
+        return None;
+    }
+    Some(Projection::Perspective { vertical_fov_rad, lens })
+}
+
+/// Where the sensor stands behind the lens: at the focal length for a pinhole, else where the lens puts its plane of
+/// focus, 1/f = 1/z + 1/s.
+fn sensor_distance_m(
+    focal_length_m: &Spanned<Positive>,
+    form: &PerspectiveCamera,
+    reader: &mut Reader<'_>,
+) -> Option<f64> {
+    let f = focal_length_m.value.0;
+    let lens = match &form.lens {
+        Optional::Absent => return Some(f),
+        Optional::Invalid => return None,
+        Optional::Given(lens) => lens,
+    };
+    let focus = lens.focus_distance_m.as_ref()?;
+    if focus.value.0 <= f {
+        let message = format!("a lens of focal length {f} m cannot focus at {} m", focus.value.0);
+        reader.error_hint(Code::OutOfRange, focus.at, message, "it must be farther than the focal length");
+        return None;
+    }
+    Some(f / (1.0 - f / focus.value.0))
+}
+
+fn lens(lens: &Lens, form: &PerspectiveCamera, reader: &mut Reader<'_>) -> Option<ThinLens> {
+    match (lens.radius_m.is_present(), lens.f_number.is_present()) {
+        (true, true) => {
+            let message = "\"radius_m\" and \"f_number\" exclude each other";
+            reader.error_hint(Code::KeyConflict, lens.at.head(), message, "keep one of the two");
+            return None;
+        }
+        (false, false) => {
+            reader.error_hint(Code::MissingKey, lens.at.head(), "missing key \"radius_m\"", "or \"f_number\"");
+            return None;
+        }
+        _ => {}
+    }
+    let radius_m = match (lens.radius_m.given(), lens.f_number.given()) {
+        (Some(radius), _) => radius.0,
+        (None, Some(f_number)) => {
+            if !form.focal_length_m.is_present() {
+                let message = "\"f_number\" needs the camera's \"focal_length_m\"";
+                reader.error_hint(Code::MissingKey, f_number.at, message, "add it, or give \"radius_m\"");
+            }
+            form.focal_length_m.given()?.value.0 / (2.0 * f_number.value.0)
+        }
+        (None, None) => return None,
+    };
+    Some(ThinLens { radius_m, focus_distance_m: lens.focus_distance_m.as_ref()?.value.0 })
+}

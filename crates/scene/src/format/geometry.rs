@@ -1,0 +1,385 @@
+//! Shapes and transforms.
+
+use std::ops::Bound;
+
+use serde_json::json;
+
+use crate::json::{
+    Code, Decode, Direction, List, Node, Optional, Positive, Reader, Required, SchemaBuilder, SchemaValue, Span,
+    Spanned,
+};
+use crate::model::{Shape, Transform};
+use crate::vector::{Matrix, apply, cross, dot, length, product, scale, sub, unit};
+
+crate::record! {
+    /// A sphere; its normal points outward.
+    pub(crate) struct SphereShape + comment {
+        /// Centre, m.
+        center_m: Required<[f64; 3]> = "[0, 0, 0]",
+        /// Radius, m.
+        radius_m: Required<Positive>,
+    }
+}
+
+crate::record! {
+    /// The points origin + a·u + b·v for a and b from 0 to 1; its normal is along u × v.
+    pub(crate) struct ParallelogramShape + comment {
+        /// One corner, m.
+        origin_m: Required<[f64; 3]>,
+        /// One edge from it, m.
+        u_m: Required<[f64; 3]>,
+        /// The other edge from it, m.
+        v_m: Required<[f64; 3]>,
+    }
+}
+
+crate::record! {
+    /// A disk.
+    pub(crate) struct DiskShape + comment {
+        /// Centre, m.
+        center_m: Required<[f64; 3]> = "[0, 0, 0]",
+        /// Its normal; only the direction counts.
+        normal: Required<Direction>,
+        /// Radius, m.
+        radius_m: Required<Positive>,
+    }
+}
+
+crate::record! {
+    /// Triangles; the normal of (a, b, c) is along (b − a) × (c − a): counter-clockwise seen from its front.
+    pub(crate) struct MeshShape + comment {
+        /// Vertex positions, m.
+        vertices_m: Required<List<[f64; 3]>>,
+        /// Vertices of each triangle, counted from 0.
+        triangles: Required<List<Spanned<[u32; 3]>>>,
+    }
+}
+
+crate::record! {
+    /// A box along the axes: a mesh of 12 triangles whose normals point outward.
+    pub(crate) struct BoxShape + comment {
+        /// The corner with the least coordinates, m.
+        min_m: Required<[f64; 3]>,
+        /// The opposite corner, m; each coordinate above the other corner's.
+        max_m: Required<Spanned<[f64; 3]>>,
+    }
+}
+
+crate::variants! {
+    /// A shape in its own coordinates.
+    pub(crate) enum ShapeForm by "type" {
+        "sphere" => Sphere(SphereShape),
+        "parallelogram" => Parallelogram(ParallelogramShape),
+        "disk" => Disk(DiskShape),
+        "mesh" => Mesh(MeshShape),
+        "box" => Box(BoxShape),
+    }
+}
+
+/// Below this sine of the angle between two edges, fewer than four digits of the normal survive the rounding of their
+/// vector product (2⁻⁵³ each way): a parallelogram this flat is a mistake.
+const FLAT: f64 = 1e-12;
+
+/// The shape of a form.
+pub(crate) fn shape(form: &ShapeForm, object: &str, reader: &mut Reader<'_>) -> Option<Shape> {
+    match form {
+        ShapeForm::Sphere(sphere) => Some(Shape::Sphere { center: sphere.center_m?, radius_m: sphere.radius_m?.0 }),
+        ShapeForm::Parallelogram(p) => {
+            let (u, v) = (p.u_m?, p.v_m?);
+            let sine = unit(u).zip(unit(v)).map_or(0.0, |(u, v)| length(cross(u, v)));
+            if sine <= FLAT {
+                let message = "u_m and v_m span no area";
+                let hint = "they must be two edges, not zero and not parallel";
+                reader.error_hint(Code::DegenerateShape, p.at.head(), message, hint);
+                return None;
+            }
+            Some(Shape::Parallelogram { origin: p.origin_m?, u, v })
+        }
+        ShapeForm::Disk(disk) => {
+            Some(Shape::Disk { center: disk.center_m?, normal: disk.normal?.0, radius_m: disk.radius_m?.0 })
+        }
+        ShapeForm::Mesh(mesh) => self::mesh(mesh, object, reader),
+        ShapeForm::Box(block) => {
+            let (min, max) = (block.min_m?, block.max_m?);
+            if let Some(axis) = (0..3).find(|&i| max.value[i] <= min[i]) {
+                let message = format!("max_m is not above min_m along {}", ["x", "y", "z"][axis]);
+                reader.error(Code::DegenerateShape, max.at, message);
+                return None;
+            }
+            Some(box_mesh(min, max.value))
+        }
+    }
+}
+
+fn mesh(mesh: &MeshShape, object: &str, reader: &mut Reader<'_>) -> Option<Shape> {
+    let before = reader.error_count();
+    let triangles = mesh.triangles.as_ref();
+    if triangles.is_some_and(|t| t.0.is_empty()) {
+        reader.error(Code::EmptyMesh, mesh.at.head(), "the mesh has no triangles");
+    }
+    let (vertices, triangles) = (mesh.vertices_m.as_ref()?, triangles?);
+    let count = vertices.0.len();
+    let (mut kept, mut flat) = (Vec::with_capacity(triangles.0.len()), 0_usize);
+    for triangle in triangles.0.iter().flatten() {
+        if let Some(&index) = triangle.value.iter().find(|&&i| i as usize >= count) {
+            let message = format!("vertex {index} does not exist");
+            let hint = match count {
+                0 => "the mesh has no vertices".to_owned(),
+                _ => format!("the mesh has {count}, counted from 0 to {}", count - 1),
+            };
+            reader.error_hint(Code::IndexOutOfRange, triangle.at, message, hint);
+            continue;
+        }
+        let [a, b, c] = triangle.value.map(|i| vertices.0[i as usize]);
+        // A wrong vertex has been reported.
+        let (Some(a), Some(b), Some(c)) = (a, b, c) else { continue };
+        if has_area(a, b, c) {
+            kept.push(triangle.value);
+        } else {
+            flat += 1;
+        }
+    }
+    if reader.error_count() > before {
+        return None;
+    }
+    // Wrong elements have been reported when they were decoded.
+    let vertices = vertices.clone().complete()?;
+    if triangles.0.iter().any(Option::is_none) || triangles.0.is_empty() {
+        return None;
+    }
+    if kept.is_empty() {
+        let message = format!("none of the {flat} triangles of {object} has an area");
+        reader.error(Code::EmptyMesh, mesh.at.head(), message);
+        return None;
+    }
+    if flat > 0 {
+        let all = triangles.0.len();
+        let message = format!("{flat} of the {all} triangles of {object} have no area and were dropped at load");
+        reader.warning(Code::DegenerateTriangles, mesh.at.head(), message, None);
+    }
+    Some(Shape::Mesh { vertices, triangles: kept })
+}
+
+/// Whether a triangle's normal can be told at all: three corners whose edges are not parallel to rounding.
+fn has_area(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> bool {
+    // Halved, so that the difference of two finite coordinates is finite.
+    let [a, b, c] = [a, b, c].map(|p| scale(p, 0.5));
+    // Two edges from the corner with the largest angle would be best; with unit vectors any two will do down to needles
+    // of 1e-15.
+    let edges = [sub(b, a), sub(c, b), sub(a, c)];
+    let Some(units) = unit(edges[0]).zip(unit(edges[1])).zip(unit(edges[2])) else { return false };
+    let ((u, v), w) = units;
+    let sines = [length(cross(u, v)), length(cross(v, w)), length(cross(w, u))];
+    // Each component of a vector product of unit vectors is rounded three times.
+    sines.into_iter().fold(0.0, f64::max) > 4.0 * f64::EPSILON
+}
+
+fn box_mesh(min: [f64; 3], max: [f64; 3]) -> Shape {
+    // Corner i takes the larger x, y, z where bit 0, 1, 2 of i is set.
+    let corner = |i: usize| std::array::from_fn(|axis| if i >> axis & 1 == 1 { max[axis] } else { min[axis] });
+    // Each face counter-clockwise from outside, cut along the diagonal from its first corner.
+    const FACES: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    Shape::Mesh {
+        vertices: (0..8).map(corner).collect(),
+        triangles: FACES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+    }
+}
+
+crate::record! {
+    /// A rotation about an axis through the origin, counter-clockwise when the axis points at the viewer.
+    pub(crate) struct Rotation {
+        /// The axis; only the direction counts.
+        axis: Required<Direction>,
+        /// The angle, degrees.
+        angle_deg: Required<f64>,
+    }
+}
+
+/// Factors along the axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scaling([f64; 3]);
+
+impl Decode for Scaling {
+    fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
+        let factor = json!({ "type": "number", "not": { "const": 0 } });
+        let mut factors = <[f64; 3]>::schema(schema);
+        factors["items"] = factor.clone();
+        json!({ "anyOf": [factor, factors] })
+    }
+
+    fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
+        let factors = match node.elements() {
+            Some(_) => <[f64; 3]>::decode(node, reader)?,
+            None => [f64::decode(node, reader)?; 3],
+        };
+        if factors.contains(&0.0) {
+            reader.error(Code::SingularTransform, reader.span(node), "a scale of 0 flattens the object");
+            return None;
+        }
+        Some(Self(factors))
+    }
+}
+
+crate::record! {
+    /// One step of a transform: exactly one of the keys.
+    pub(crate) struct StepFields {
+        /// Moves by a vector, m.
+        translate_m: Optional<[f64; 3]>,
+        /// Turns about an axis through the origin.
+        rotate: Optional<Rotation>,
+        /// Scales about the origin: a factor, or one an axis. Negative factors mirror.
+        scale: Optional<Scaling>,
+        /// Any affine map: the upper three rows of a 4 × 4 matrix that acts on columns; the fourth numbers are metres.
+        matrix: Optional<Spanned<[[f64; 4]; 3]>>,
+    }
+}
+
+/// One step of a transform.
+#[derive(Clone, Debug)]
+pub(crate) enum Step {
+    Translate([f64; 3]),
+    Linear(Matrix),
+    Affine([[f64; 4]; 3]),
+}
+
+impl Decode for Step {
+    fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
+        let fields = StepFields::schema(schema);
+        schema.define("TransformStep", |_| json!({ "allOf": [fields], "minProperties": 1, "maxProperties": 1 }))
+    }
+
+    fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
+        let before = reader.error_count();
+        let step = StepFields::decode(node, reader)?;
+        let keys = [
+            step.translate_m.is_present(),
+            step.rotate.is_present(),
+            step.scale.is_present(),
+            step.matrix.is_present(),
+        ];
+        match keys.iter().filter(|present| **present).count() {
+            1 => {}
+            0 if reader.error_count() > before => return None,
+            0 => {
+                let hint = "one of \"translate_m\", \"rotate\", \"scale\", \"matrix\"";
+                reader.error_hint(Code::MissingKey, step.at.head(), "the step of the transform is empty", hint);
+                return None;
+            }
+            _ => {
+                let hint = "write a step for each, in the order in which they apply";
+                reader.error_hint(Code::KeyConflict, step.at.head(), "more than one transform in one step", hint);
+                return None;
+            }
+        }
+        if let Some(by) = step.translate_m.given() {
+            return Some(Self::Translate(*by));
+        }
+        if let Some(rotation) = step.rotate.given() {
+            return Some(Self::Linear(rotation_matrix(rotation.axis?.0, rotation.angle_deg?)));
+        }
+        if let Some(Scaling([x, y, z])) = step.scale.given() {
+            return Some(Self::Linear([[*x, 0.0, 0.0], [0.0, *y, 0.0], [0.0, 0.0, *z]]));
+        }
+        let matrix = step.matrix.given()?;
+        let linear = matrix.value.map(|row| [row[0], row[1], row[2]]);
+        if condition(&linear) > SINGULAR {
+            reader.error(Code::SingularTransform, matrix.at, "the matrix cannot be inverted: it flattens the object");
+            return None;
+        }
+        Some(Self::Affine(matrix.value))
+    }
+}
+
+/// Rodrigues' formula about a unit axis; exact at quarter turns.
+fn rotation_matrix(axis: [f64; 3], angle_deg: f64) -> Matrix {
+    let turn = angle_deg.rem_euclid(360.0);
+    let (sine, cosine) = match turn {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => turn.to_radians().sin_cos(),
+    };
+    let [x, y, z] = axis;
+    let versine = 1.0 - cosine;
+    [
+        [cosine + x * x * versine, x * y * versine - z * sine, x * z * versine + y * sine],
+        [y * x * versine + z * sine, cosine + y * y * versine, y * z * versine - x * sine],
+        [z * x * versine - y * sine, z * y * versine + x * sine, cosine + z * z * versine],
+    ]
+}
+
+/// Beyond this condition number, the inverse of a matrix in double precision has fewer than four right digits.
+const SINGULAR: f64 = 1e12;
+
+/// ‖A‖·‖A⁻¹‖ in the Frobenius norm; infinite for a singular matrix, or one with numbers that are not finite.
+fn condition(a: &Matrix) -> f64 {
+    let largest = a.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    if largest == 0.0 || !largest.is_finite() {
+        return f64::INFINITY;
+    }
+    let a = a.map(|row| row.map(|v| v / largest));
+    let cofactors = [cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1])];
+    let determinant = dot(a[0], cofactors[0]);
+    let norm = |m: &Matrix| m.iter().map(|row| dot(*row, *row)).sum::<f64>().sqrt();
+    let condition = norm(&a) * norm(&cofactors) / determinant.abs();
+    if condition.is_nan() { f64::INFINITY } else { condition }
+}
+
+/// The transform of a list of steps, the first of which is applied first.
+pub(crate) fn transform(steps: Option<List<Step>>, at: Span, reader: &mut Reader<'_>) -> Option<Transform> {
+    let steps = steps?.complete()?;
+    let mut linear: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut translation_m = [0.0; 3];
+    for step in steps {
+        match step {
+            Step::Translate(by) => translation_m = std::array::from_fn(|i| translation_m[i] + by[i]),
+            Step::Linear(matrix) => {
+                linear = product(&matrix, &linear);
+                translation_m = apply(&matrix, translation_m);
+            }
+            Step::Affine(rows) => {
+                let matrix = rows.map(|row| [row[0], row[1], row[2]]);
+                linear = product(&matrix, &linear);
+                let moved = apply(&matrix, translation_m);
+                translation_m = std::array::from_fn(|i| moved[i] + rows[i][3]);
+            }
+        }
+    }
+    if condition(&linear) > SINGULAR || translation_m.iter().any(|v| !v.is_finite()) {
+        let message = "together, the steps of the transform cannot be inverted";
+        reader.error(Code::SingularTransform, at, message);
+        return None;
+    }
+    Some(Transform { linear, translation_m })
+}
+
+/// How far AᵀA/s² may be from the identity for A to count as a similarity: matrices in files are often written with
+/// seven digits.
+const SIMILARITY: f64 = 1e-6;
+
+/// Reports a transform that would turn a sphere into an ellipsoid, or a disk into an ellipse.
+pub(crate) fn check_similarity(shape: &ShapeForm, transform: &Transform, at: Span, reader: &mut Reader<'_>) {
+    let what = match shape {
+        ShapeForm::Sphere(_) => "sphere",
+        ShapeForm::Disk(_) => "disk",
+        ShapeForm::Parallelogram(_) | ShapeForm::Mesh(_) | ShapeForm::Box(_) => return,
+    };
+    let largest = transform.linear.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let a = transform.linear.map(|row| row.map(|v| v / largest));
+    let column = |j: usize| [a[0][j], a[1][j], a[2][j]];
+    let square = (0..3).map(|j| dot(column(j), column(j))).sum::<f64>() / 3.0;
+    let similar = (0..3).all(|i| {
+        (0..3).all(|j| {
+            let expected = if i == j { 1.0 } else { 0.0 };
+            (dot(column(i), column(j)) / square - expected).abs() <= SIMILARITY
+        })
+    });
+    if !similar {
+        let message = format!("a {what} can only be moved, turned, mirrored and scaled alike along all axes");
+        reader.error_hint(Code::NotSimilarity, at, message, "use one factor for all axes, or a mesh");
+    }
+}
+
+/// A finite angle in (0, 180).
+pub(crate) const HALF_TURN: (Bound<f64>, Bound<f64>) = (Bound::Excluded(0.0), Bound::Excluded(180.0));

@@ -1,0 +1,87 @@
+//! How to integrate.
+
+use super::spectrum::Wavelength;
+use crate::json::{Code, Nullable, Reader, Required, Spanned, Whole};
+use crate::model::{Integrator, LightSampling, Precision, SamplerKind};
+
+crate::record! {
+    /// How to integrate. The command line may override each key.
+    pub(crate) struct IntegratorForm + comment {
+        /// Samples a pixel.
+        spp: Required<Whole<1, { u32::MAX as u64 }>> = "64",
+        /// Seed of every random number.
+        seed: Required<Whole<0, { u64::MAX }>> = "0",
+        /// Number sequence.
+        sampler: Required<SamplerKind> = r#""sobol""#,
+        /// Most path edges from the camera to a light: 1 is light seen directly, 2 adds one bounce; null is no limit.
+        max_depth: Required<Nullable<Whole<1, { u32::MAX as u64 }>>> = "null",
+        /// Whether Russian roulette may end a path.
+        roulette: Required<bool> = "true",
+        /// How direct light is found.
+        light_sampling: Required<LightSampling> = r#""mis""#,
+        /// First and last wavelength rendered, nm.
+        wavelength_range_nm: Required<Spanned<[Wavelength; 2]>> = "[360, 830]",
+        /// Scalar type of the kernel.
+        precision: Required<Precision> = r#""f32""#,
+    }
+}
+
+crate::keywords!(SamplerKind {
+    /// Owen-scrambled Sobol points: less noise.
+    "sobol" => Self::Sobol,
+    /// Independent random numbers.
+    "independent" => Self::Independent,
+});
+
+crate::keywords!(LightSampling {
+    /// Shadow rays and BSDF sampling, combined by multiple importance sampling.
+    "mis" => Self::Mis,
+    /// Shadow rays wherever they can find the light.
+    "light" => Self::Light,
+    /// BSDF sampling wherever it can find the light.
+    "bsdf" => Self::Bsdf,
+});
+
+crate::keywords!(Precision {
+    /// 32-bit floating point.
+    "f32" => Self::F32,
+    /// 64-bit floating point.
+    "f64" => Self::F64,
+});
+
+/// What the CIE 1931 observer sees, nm.
+const VISIBLE_NM: [f64; 2] = [360.0, 830.0];
+
+/// The wavelengths rendered.
+pub(crate) fn wavelength_range_nm(form: &IntegratorForm, reader: &mut Reader<'_>) -> Option<[f64; 2]> {
+    let range = form.wavelength_range_nm.as_ref()?;
+    let [first, last] = range.value.map(|w| w.0);
+    if first >= last {
+        let message = format!("the range from {first} to {last} nm is empty");
+        reader.error_hint(Code::OutOfRange, range.at, message, "the smaller wavelength comes first");
+        return None;
+    }
+    if first < VISIBLE_NM[0] || last > VISIBLE_NM[1] {
+        let message = format!("wavelengths outside {} to {} nm add nothing to a picture", VISIBLE_NM[0], VISIBLE_NM[1]);
+        reader.warning(Code::InvisibleWavelengths, range.at, message, Some("narrow the range".to_owned()));
+    }
+    Some([first, last])
+}
+
+/// The integrator of a form.
+pub(crate) fn integrator(form: &IntegratorForm, wavelength_range_nm: Option<[f64; 2]>) -> Option<Integrator> {
+    Some(Integrator {
+        // The casts are within the ranges declared above.
+        spp: form.spp?.0 as u32,
+        seed: form.seed?.0,
+        sampler: form.sampler?,
+        max_depth: match form.max_depth? {
+            Nullable::Null => None,
+            Nullable::Value(depth) => Some(depth.0 as u32),
+        },
+        roulette: form.roulette?,
+        light_sampling: form.light_sampling?,
+        wavelength_range_nm: wavelength_range_nm?,
+        precision: form.precision?,
+    })
+}

@@ -1,0 +1,14 @@
+//! The form of scene files, version 1, and what becomes of it.
+//!
+//! A module for each part: first the declarations, which are both the reader and the schema, then the checks that turn
+//! them into the model. Declarations hold `None` where something was wrong, so that checks go as far as they can.
+
+mod camera;
+mod geometry;
+mod integrator;
+mod light;
+mod material;
+mod scene;
+mod spectrum;
+
+pub(crate) use scene::{SceneForm, scene};

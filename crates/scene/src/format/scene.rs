@@ -1,0 +1,234 @@
+//! The whole file.
+
+use serde_json::json;
+
+use super::camera::{CameraForm, FilmForm, camera, film};
+use super::geometry::{ShapeForm, Step, check_similarity, shape, transform};
+use super::integrator::{IntegratorForm, integrator, wavelength_range_nm};
+use super::light::{LightForm, light};
+use super::material::{MaterialForm, material};
+use super::spectrum::{Role, Spectra, SpectrumForm};
+use crate::json::{
+    Code, Decode, Kind, List, Named, NamedEntry, Node, Optional, Reader, Required, SchemaBuilder, SchemaValue, Spanned,
+    did_you_mean, listed,
+};
+use crate::model::{Emission, EmissionSides, LightKind, Material, Object, Scene};
+
+/// The version of the format that this program reads.
+const VERSION: f64 = 1.0;
+
+/// The version that a file says.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Version;
+
+impl Decode for Version {
+    fn schema(_: &mut SchemaBuilder) -> SchemaValue {
+        json!({ "const": 1 })
+    }
+
+    fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
+        let version = f64::decode(node, reader)?;
+        if version != VERSION {
+            let message = format!("version {version} of the format is not known");
+            reader.error_hint(Code::Version, reader.span(node), message, format!("this program reads {VERSION}"));
+        }
+        Some(Self)
+    }
+}
+
+crate::record! {
+    /// A scene of Etalon, version 1 of the format. Lengths are metres, wavelengths nanometres, angles degrees; world space
+    /// is right-handed.
+    pub(crate) struct SceneForm + comment {
+        /// Version of the format: 1.
+        #[allow(dead_code, reason = "checked when it is decoded")]
+        etalon: Required<Version>,
+        /// The schema that this file follows, for editors. It changes nothing.
+        #[allow(dead_code, reason = "for editors only")]
+        schema as "$schema": Optional<String>,
+        /// The camera.
+        camera: Required<CameraForm>,
+        /// Size and reconstruction of the picture.
+        film: Required<FilmForm>,
+        /// Spectra by name.
+        spectra: Required<Named<SpectrumForm>> = "{}",
+        /// Materials by name.
+        materials: Required<Named<MaterialForm>> = "{}",
+        /// Things with a surface.
+        objects: Required<Spanned<List<ObjectForm>>> = "[]",
+        /// Lights without a surface.
+        lights: Required<List<LightForm>> = "[]",
+        /// How to integrate.
+        integrator: Required<IntegratorForm> = "{}",
+    }
+}
+
+crate::record! {
+    /// A thing with a surface.
+    pub(crate) struct ObjectForm + comment {
+        /// Its name, for messages; "objects[i]" if left out.
+        name: Optional<String>,
+        /// Its shape, in its own coordinates.
+        shape: Required<ShapeForm>,
+        /// What its surface does to light: the name of one of "materials", or a material of its own.
+        material: Required<MaterialUse>,
+        /// What its surface emits.
+        emission: Optional<EmissionForm>,
+        /// From its own coordinates to the world: steps, the first of which is applied first.
+        transform: Required<Spanned<List<Step>>> = "[]",
+    }
+}
+
+crate::record! {
+    /// Diffuse emission: the same radiance in every direction.
+    pub(crate) struct EmissionForm {
+        /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹.
+        radiance: Required<SpectrumForm>,
+        /// Which sides emit.
+        sides: Required<EmissionSides> = r#""front""#,
+    }
+}
+
+crate::keywords!(EmissionSides {
+    /// The side that the surface normal points into.
+    "front" => Self::Front,
+    /// The side that the surface normal points away from.
+    "back" => Self::Back,
+    /// Both sides.
+    "both" => Self::Both,
+});
+
+/// The material of an object.
+#[derive(Clone, Debug)]
+pub(crate) enum MaterialUse {
+    /// By name.
+    Named(Spanned<String>),
+    /// Its own.
+    Own(Box<MaterialForm>),
+}
+
+impl Decode for MaterialUse {
+    fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
+        json!({ "anyOf": [{ "type": "string" }, MaterialForm::schema(schema)] })
+    }
+
+    fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
+        match node.kind() {
+            Kind::String(_) => Spanned::decode(node, reader).map(Self::Named),
+            Kind::Object => MaterialForm::decode(node, reader).map(|own| Self::Own(Box::new(own))),
+            other => {
+                let message = format!("expected a material (a name or an object), found {}", other.name());
+                reader.error(Code::WrongType, reader.span(node), message);
+                None
+            }
+        }
+    }
+}
+
+/// The scene of a file: everything that can be wrong is reported, whatever else is.
+pub(crate) fn scene(form: &SceneForm, reader: &mut Reader<'_>) -> Option<Scene> {
+    let film = form.film.as_ref().and_then(|form| film(form, reader));
+    let camera = form.camera.as_ref().and_then(|form| camera(form, film.as_ref(), reader));
+    let range_nm = form.integrator.as_ref().and_then(|form| wavelength_range_nm(form, reader));
+    let integrator = form.integrator.as_ref().and_then(|form| integrator(form, range_nm));
+    let mut spectra = Spectra::new(form.spectra.as_ref(), range_nm, reader);
+
+    let named = form.materials.as_ref().map_or(&[][..], |named| &named.0);
+    let mut materials: Vec<Option<Material>> = Vec::with_capacity(named.len());
+    for entry in named {
+        let kind = entry.value.as_ref().and_then(|form| material(form, &mut spectra, reader));
+        materials.push(kind.map(|kind| Material { name: entry.name.clone(), kind }));
+    }
+
+    let forms = form.objects.as_ref().map_or(&[][..], |objects| &objects.value.0);
+    let mut objects = Vec::with_capacity(forms.len());
+    for (i, form) in forms.iter().enumerate() {
+        objects.push(form.as_ref().and_then(|form| object(form, i, named, &mut materials, &mut spectra, reader)));
+    }
+    let forms = form.lights.as_ref().map_or(&[][..], |lights| &lights.0);
+    let mut lights = Vec::with_capacity(forms.len());
+    for (i, form) in forms.iter().enumerate() {
+        lights.push(form.as_ref().and_then(|form| light(form, i, &mut spectra, reader)));
+    }
+
+    let scene = Scene {
+        camera: camera?,
+        film: film?,
+        materials: materials.into_iter().collect::<Option<_>>()?,
+        objects: objects.into_iter().collect::<Option<_>>()?,
+        lights: lights.into_iter().collect::<Option<_>>()?,
+        integrator: integrator?,
+    };
+    warn(&scene, form, reader);
+    Some(scene)
+}
+
+fn object<'f>(
+    form: &'f ObjectForm,
+    index: usize,
+    named: &'f [NamedEntry<MaterialForm>],
+    materials: &mut Vec<Option<Material>>,
+    spectra: &mut Spectra<'f>,
+    reader: &mut Reader<'_>,
+) -> Option<Object> {
+    let place = format!("objects[{index}]");
+    let name = form.name.clone().checked().map(|name| name.unwrap_or_else(|| place.clone()));
+    let shape = form.shape.as_ref().and_then(|form| shape(form, name.as_ref().unwrap_or(&place), reader));
+    let transform = form.transform.as_ref().and_then(|steps| {
+        let transform = transform(Some(steps.value.clone()), steps.at.head(), reader)?;
+        if let Some(shape) = &form.shape {
+            check_similarity(shape, &transform, steps.at.head(), reader);
+        }
+        Some(transform)
+    });
+    let material = form.material.as_ref().and_then(|material_use| match material_use {
+        MaterialUse::Named(name) => find_material(name, named, reader),
+        MaterialUse::Own(own) => {
+            let kind = material(own, spectra, reader)?;
+            materials.push(Some(Material { name: format!("{place}.material"), kind }));
+            Some(materials.len() - 1)
+        }
+    });
+    let emission = match &form.emission {
+        Optional::Absent => Some(None),
+        Optional::Invalid => None,
+        Optional::Given(emission) => {
+            let radiance = emission.radiance.as_ref().and_then(|form| spectra.resolve(form, Role::Emission, reader));
+            radiance.zip(emission.sides).map(|(radiance, sides)| Some(Emission { radiance, sides }))
+        }
+    };
+    Some(Object { name: name?, shape: shape?, transform: transform?, material: material?, emission: emission? })
+}
+
+fn find_material(name: &Spanned<String>, named: &[NamedEntry<MaterialForm>], reader: &mut Reader<'_>) -> Option<usize> {
+    let found = named.iter().position(|entry| entry.name == name.value);
+    if found.is_none() {
+        let names = || named.iter().map(|entry| entry.name.as_str());
+        let hint = match did_you_mean(&name.value, names()) {
+            Some(meant) => format!("did you mean \"{meant}\"?"),
+            None if named.is_empty() => "name one in \"materials\" at the top of the file".to_owned(),
+            None => format!("\"materials\" has {}", listed(names())),
+        };
+        reader.error_hint(Code::UnknownName, name.at, format!("no material is named \"{}\"", name.value), hint);
+    }
+    found
+}
+
+/// Odd scenes that can be rendered all the same.
+fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {
+    let at = form.objects.as_ref().map_or(form.at.head(), |objects| objects.at.head());
+    if scene.objects.is_empty() {
+        reader.warning(Code::NoObjects, at, "the scene has no objects", None);
+    }
+    let lit = scene.lights.iter().any(|light| match &light.kind {
+        LightKind::Point { intensity: spectrum, .. }
+        | LightKind::Directional { irradiance: spectrum, .. }
+        | LightKind::Environment { radiance: spectrum } => !spectrum.is_zero(),
+    });
+    let glowing = scene.objects.iter().filter_map(|o| o.emission.as_ref()).any(|e| !e.radiance.is_zero());
+    if !lit && !glowing {
+        let hint = "give an object an \"emission\", or add to \"lights\"".to_owned();
+        let message = "nothing emits light: the picture will be black";
+        reader.warning(Code::NoLight, form.at.head(), message, Some(hint));
+    }
+}

@@ -1,0 +1,139 @@
+//! Objects with known keys.
+
+use super::{Code, Comment, Decode, Field, FieldSchema, Node, Reader, SchemaBuilder, Span, did_you_mean, listed};
+
+/// A type that is an object with known keys; [`record!`](crate::record) declares them.
+pub trait Record: Sized {
+    /// Its keys.
+    const KEYS: &'static [&'static str];
+    /// Whether it also takes a `comment`, which is checked and forgotten.
+    const COMMENTED: bool;
+
+    /// Takes the fields out of an object.
+    fn read(object: &mut ObjectReader<'_>, reader: &mut Reader<'_>) -> Self;
+
+    /// What it is, from its documentation.
+    fn description() -> String;
+
+    /// Schemas of the fields.
+    fn fields(schema: &mut SchemaBuilder) -> Vec<FieldSchema>;
+}
+
+/// An object whose members are being taken out by key.
+///
+/// Keys that stand twice and unknown keys are reported when it is made. An unknown key that plainly is a misspelling
+/// of an absent one is read as that one, so that what its value holds is checked too, and nothing is missed twice.
+#[derive(Debug)]
+pub struct ObjectReader<'n> {
+    span: Span,
+    members: Vec<(&'n str, Span, Node<'n>)>,
+}
+
+impl<'n> ObjectReader<'n> {
+    /// Takes hold of an object that may have `keys`; `None`, and an error, if it is something else.
+    pub fn new(node: Node<'n>, keys: &[&'static str], reader: &mut Reader<'_>) -> Option<Self> {
+        let span = reader.span(node);
+        let Some(found) = node.members() else {
+            reader.error(Code::WrongType, span, format!("expected an object, found {}", node.kind().name()));
+            return None;
+        };
+        let mut members: Vec<(&str, Span, Node<'n>)> = Vec::with_capacity(found.len().min(64));
+        let mut unknown = Vec::new();
+        // A known key can be met at most once below, and unknown ones are only compared when they are.
+        let mut strangers = std::collections::HashMap::new();
+        for (key, at, value) in found {
+            if keys.contains(&key) {
+                match members.iter().find(|m| m.0 == key) {
+                    Some(first) => duplicate(key, first.1, at, reader),
+                    None => members.push((key, at, value)),
+                }
+            } else if let Some(&first) = strangers.get(key) {
+                duplicate(key, first, at, reader);
+            } else {
+                strangers.insert(key, at);
+                unknown.push((key, at, value));
+            }
+        }
+        for (key, at, value) in unknown {
+            let absent = keys.iter().copied().filter(|k| !members.iter().any(|m| m.0 == *k));
+            let message = format!("unknown key \"{key}\"");
+            if let Some(meant) = did_you_mean(key, absent) {
+                members.push((meant, at, value));
+                reader.error_hint(Code::UnknownKey, at, message, format!("did you mean \"{meant}\"?"));
+            } else if let Some(meant) = did_you_mean(key, keys.iter().copied()) {
+                reader.error_hint(Code::UnknownKey, at, message, format!("\"{meant}\" is there already"));
+            } else if keys.is_empty() {
+                reader.error_hint(Code::UnknownKey, at, message, "this object takes no keys");
+            } else {
+                let hint = format!("the keys here are {}", listed(keys.iter().copied()));
+                reader.error_hint(Code::UnknownKey, at, message, hint);
+            }
+        }
+        Some(Self { span, members })
+    }
+
+    /// Takes hold of a record's object; `tag` is a further key, which the caller reads.
+    pub fn of<R: Record>(node: Node<'n>, tag: Option<&'static str>, reader: &mut Reader<'_>) -> Option<Self> {
+        let comment = R::COMMENTED.then_some("comment");
+        let keys: Vec<&str> = tag.into_iter().chain(R::KEYS.iter().copied()).chain(comment).collect();
+        let object = Self::new(node, &keys, reader)?;
+        if let (Some(comment), Some((_, value))) = (comment, object.get("comment")) {
+            let _: (Option<Comment>, &str) = (Comment::decode(value, reader), comment);
+        }
+        Some(object)
+    }
+
+    /// The place of the object.
+    pub fn span(&self) -> Span {
+        self.span
+    }
+
+    /// Place of the key, and the value, if the key is there.
+    pub fn get(&self, key: &str) -> Option<(Span, Node<'n>)> {
+        self.members.iter().find(|m| m.0 == key).map(|&(_, at, value)| (at, value))
+    }
+
+    /// Takes out a field: its value, else its default (as JSON), else an error if it is required.
+    pub fn field<F: Field>(&mut self, key: &'static str, default: Option<&'static str>, reader: &mut Reader<'_>) -> F {
+        if let Some((_, value)) = self.get(key) {
+            return F::of(value, reader);
+        }
+        if let Some(default) = default {
+            return reader.with_default(default, self.span.head(), F::of);
+        }
+        if F::REQUIRED {
+            reader.error_hint(Code::MissingKey, self.span.head(), format!("missing key \"{key}\""), "add it here");
+        }
+        F::absent()
+    }
+}
+
+fn duplicate(key: &str, first: Span, at: Span, reader: &mut Reader<'_>) {
+    let message = format!("the key \"{key}\" stands twice");
+    reader.error_related(Code::DuplicateKey, at, message, "remove one of the two", (first, "first here"));
+}
+
+/// Decodes an object whose keys are names that the file chooses, in the order of the file.
+pub(super) fn named_entries<'n, T>(
+    node: Node<'n>,
+    reader: &mut Reader<'_>,
+    mut decode: impl FnMut(&'n str, Span, Node<'n>, &mut Reader<'_>) -> T,
+) -> Option<Vec<T>> {
+    let Some(members) = node.members() else {
+        let message = format!("expected an object of named entries, found {}", node.kind().name());
+        reader.error(Code::WrongType, reader.span(node), message);
+        return None;
+    };
+    let mut seen = std::collections::HashMap::new();
+    let mut entries = Vec::with_capacity(members.len());
+    for (name, at, value) in members {
+        match seen.insert(name, at) {
+            Some(first) => {
+                duplicate(name, first, at, reader);
+                seen.insert(name, first);
+            }
+            None => entries.push(decode(name, at, value, reader)),
+        }
+    }
+    Some(entries)
+}
