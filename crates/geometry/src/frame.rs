@@ -79,6 +79,11 @@ impl Frame {
         }
     }
 
+    /// A point in this frame, rounded.
+    pub(crate) fn point(&self, p: Vec3<f64>) -> [f32; 3] {
+        ((p - self.centre) * self.scale).to_array().map(|c| c as f32)
+    }
+
     /// A ray in this frame; `None` if it certainly misses the whole frame.
     #[inline]
     pub(crate) fn enter(&self, q: &Query) -> Option<FrameRay> {
@@ -104,11 +109,19 @@ impl Frame {
                 start = 0.0;
             }
         }
+        // Every coordinate of a vertex relative to the origin is below this, and errs by two roundoffs of it (the
+        // vertex, the origin and the difference are rounded); shearing adds six (the slope, the product, the sum).
+        let reach = 1.0 + o.abs().max_component();
+        let axes = q.axes();
         let mut ray = FrameRay {
             origin_near: [0.0; 3],
             origin_far: [0.0; 3],
             reciprocal: [0.0; 3],
-            negative: [false; 3],
+            negative: [0; 3],
+            axes,
+            origin: axes.map(|k| o[k] as f32),
+            shear: q.shear().map(|s| s as f32),
+            error: round_up(10.0 * f64::from(f32::EPSILON / 2.0) * reach + 2.0 * slack),
             scale: self.scale,
             start,
         };
@@ -119,7 +132,7 @@ impl Frame {
             ray.origin_near[k] = if negative { lower } else { upper };
             ray.origin_far[k] = if negative { upper } else { lower };
             ray.reciprocal[k] = 1.0 / d.abs().max(MIN_DIRECTION).copysign(d);
-            ray.negative[k] = negative;
+            ray.negative[k] = usize::from(negative);
         }
         Some(ray)
     }
@@ -135,7 +148,15 @@ pub(crate) struct FrameRay {
     /// 1/direction, finite, with the sign of the direction's sign bit.
     pub(crate) reciprocal: [f32; 3],
     /// The direction's sign bits.
-    pub(crate) negative: [bool; 3],
+    pub(crate) negative: [usize; 3],
+    /// The axes of the watertight projection, the direction's largest component last.
+    pub(crate) axes: [usize; 3],
+    /// The origin along `axes`, rounded.
+    pub(crate) origin: [f32; 3],
+    /// The projection's slopes and 1/(the direction's largest component), rounded.
+    pub(crate) shear: [f32; 3],
+    /// Bound on the error of a projected coordinate.
+    pub(crate) error: f32,
     scale: f64,
     start: f64,
 }
@@ -149,17 +170,11 @@ impl FrameRay {
         round_up(t * self.scale * WIDER - self.start).max(0.0)
     }
 
-    /// The distance at which the ray enters a box, if it meets it at a distance in [0, `limit`].
+    /// A distance in this frame that is not above the distance of any hit beyond `t` of the [`Query`].
     #[inline]
-    pub(crate) fn enters(&self, b: &Box32, limit: f32) -> Option<f32> {
-        let (mut near, mut far) = (0.0_f32, limit);
-        for k in 0..3 {
-            let (entry, exit) = if self.negative[k] { (b.max[k], b.min[k]) } else { (b.min[k], b.max[k]) };
-            near = near.max((entry - self.origin_near[k]) * self.reciprocal[k]);
-            far = far.min((exit - self.origin_far[k]) * self.reciprocal[k]);
-        }
-        let near = near * NEAR_FACTOR;
-        (near <= far * FAR_FACTOR).then_some(near)
+    pub(crate) fn distance_below(&self, t: f64) -> f32 {
+        const NARROWER: f64 = 1.0 - 1.0 / (1_u64 << 29) as f64;
+        round_down(t * self.scale * NARROWER - self.start)
     }
 }
 

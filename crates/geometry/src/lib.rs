@@ -11,7 +11,9 @@
 //! | `query` | a ray prepared for the intersection tests; the watertight projection |
 //! | `double_double` | the arithmetic behind `f64`, where an error bound calls for it |
 //! | `frame` | the accelerator's frame and conservative box tests in `f32` |
-//! | `build` | the tree's builder |
+//! | `build` | the builder of a binary tree |
+//! | `wide` | the tree of eight children a node that it becomes |
+//! | `traverse` | its traversal, for each instruction set |
 //! | `geometry` | [`Geometry`]: the queries |
 
 mod aabb;
@@ -22,6 +24,8 @@ mod geometry;
 mod query;
 mod ray;
 mod shapes;
+mod traverse;
+mod wide;
 
 pub use aabb::Aabb;
 pub use geometry::{Geometry, GeometryError};

@@ -59,6 +59,18 @@ impl Query {
         })
     }
 
+    /// The axes of the projection, the direction's largest component last.
+    #[inline]
+    pub(crate) fn axes(&self) -> [usize; 3] {
+        self.axes
+    }
+
+    /// The projection's two slopes and 1/(the direction's largest component).
+    #[inline]
+    pub(crate) fn shear(&self) -> [f64; 3] {
+        self.shear
+    }
+
     /// A vertex relative to the origin, sheared so that the ray runs along z and z counts ray parameters; and the
     /// magnitude to which the rounding errors of its x and y are relative.
     ///

@@ -1,6 +1,7 @@
 //! The tree finds what brute force finds.
 
 use crate::test_support::*;
+use crate::traverse;
 use crate::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, Triangle};
 use etalon_optics::{Real, Vec3};
 
@@ -14,7 +15,13 @@ fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> u
         };
         let (tree, flat) = (geometry.closest(&query), geometry.closest_flat(&query));
         assert_eq!(tree, flat, "{ray:?}");
-        assert_eq!(geometry.occluded(&ray), geometry.any_flat(&query), "{ray:?}");
+        let occluded = geometry.any_flat(&query);
+        assert_eq!(geometry.occluded(&ray), occluded, "{ray:?}");
+        if let Some(tree) = geometry.tree() {
+            let primitives = geometry.primitives();
+            assert_eq!(traverse::closest_portable(tree, primitives, &query), flat, "{ray:?}");
+            assert_eq!(traverse::any_portable(tree, primitives, &query), occluded, "{ray:?}");
+        }
         usize::from(flat.is_some())
     }
     one::<f64>(geometry, line, t_max, leaves) + one::<f32>(geometry, line, t_max, leaves)

@@ -1,0 +1,88 @@
+//! The filters in plain Rust; the wording of reference for the other instruction sets.
+
+use super::{Candidates, Entered, Filters};
+use crate::frame::{FAR_FACTOR, FrameRay, NEAR_FACTOR};
+use crate::wide::{Leaf8, Node8, UNFILTERED, WIDTH};
+
+/// Plain Rust.
+#[derive(Clone, Copy)]
+pub(super) struct Portable;
+
+impl Filters for Portable {
+    type Ray = FrameRay;
+
+    #[inline(always)]
+    fn ray(self, ray: &FrameRay) -> FrameRay {
+        *ray
+    }
+
+    #[inline(always)]
+    fn enter(self, ray: &FrameRay, node: &Node8, limit: f32) -> Entered {
+        let mut out = Entered { mask: 0, near: [0.0; WIDTH] };
+        let mut far = [limit; WIDTH];
+        for k in 0..3 {
+            let entry = &node.planes[2 * k + ray.negative[k]];
+            let exit = &node.planes[2 * k + 1 - ray.negative[k]];
+            for lane in 0..WIDTH {
+                let near = (entry[lane] - ray.origin_near[k]) * ray.reciprocal[k];
+                out.near[lane] = if near > out.near[lane] { near } else { out.near[lane] };
+                let exit = (exit[lane] - ray.origin_far[k]) * ray.reciprocal[k];
+                far[lane] = if exit < far[lane] { exit } else { far[lane] };
+            }
+        }
+        for lane in 0..WIDTH {
+            out.near[lane] *= NEAR_FACTOR;
+            out.mask |= u32::from(out.near[lane] <= far[lane] * FAR_FACTOR) << lane;
+        }
+        out
+    }
+
+    /// Woop's projection in `f32` with error bounds. With δ the error of a projected coordinate and e the largest of
+    /// them in a triangle, an edge function (cx·by − cy·bx) errs by at most 4δe + 2δ² for its factors and 4ue² for its
+    /// rounding; since e is below twice the reach of the ray and δ at least 10 roundoffs of that, 5δe + 2δ² is above
+    /// both. The distance, a mean of the vertices' weighted by the edge functions, errs by at most three times
+    /// that times their spread, over the determinant, and by less than 3δ for the rounding of distances, sum and
+    /// quotient.
+    #[inline(always)]
+    fn candidates(self, ray: &FrameRay, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
+        let mut out = Candidates { mask: 0, certain: 0, near: [0.0; WIDTH] };
+        for lane in 0..WIDTH {
+            let id = leaf.ids[lane];
+            if id == u32::MAX {
+                continue;
+            }
+            if id & UNFILTERED != 0 {
+                out.mask |= 1 << lane;
+                continue;
+            }
+            let [a, b, c] = [0, 1, 2].map(|i| {
+                let [x, y, z] = [0, 1, 2].map(|k| leaf.vertices[i][ray.axes[k]][lane] - ray.origin[k]);
+                [x - ray.shear[0] * z, y - ray.shear[1] * z, ray.shear[2] * z]
+            });
+            let edge = |p: [f32; 3], q: [f32; 3]| p[0] * q[1] - p[1] * q[0];
+            let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+            let extent = [a, b, c].iter().fold(0.0_f32, |e, p| e.max(p[0].abs()).max(p[1].abs()));
+            let error = ray.error * (6.0 * extent + 2.0 * ray.error);
+            let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+            if least < -error && most > error {
+                continue;
+            }
+            let det = u + v + w;
+            let reciprocal = 1.0 / det;
+            let t = (u * a[2] + v * b[2] + w * c[2]) * reciprocal;
+            let depth = a[2].max(b[2]).max(c[2]) - a[2].min(b[2]).min(c[2]) + 2.0 * ray.error;
+            let t_error = 6.0 * error * depth * reciprocal.abs() + 3.0 * ray.error;
+            let (near, far) = (t - t_error, t + t_error);
+            let determined = det.abs() > 6.0 * error;
+            if determined && (near > limit || far < 0.0) {
+                continue;
+            }
+            out.mask |= 1 << lane;
+            out.near[lane] = if determined { near } else { 0.0 };
+            let inside = least > error || most < -error;
+            let certain = determined && inside && near > 0.0 && far < certain_limit;
+            out.certain |= u32::from(certain) << lane;
+        }
+        out
+    }
+}
