@@ -6,8 +6,11 @@
 
 pub mod double_double;
 pub mod laws;
+pub mod quadrature;
 mod random;
 pub mod statistics;
+pub mod subjects;
+pub mod suite;
 mod vector;
 mod verdict;
 

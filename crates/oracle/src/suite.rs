@@ -1,0 +1,128 @@
+//! Whole suites for a subject, and the macros that turn them into tests.
+
+use crate::{
+    Verdict, laws,
+    statistics::Budget,
+    subjects::{Emits, Scatters},
+};
+
+/// Every law of a BSDF. The statistical ones share one budget, so that a right subject fails anything at all with
+/// probability [`crate::statistics::SUITE_SIGNIFICANCE`].
+#[must_use]
+pub fn scatters(subject: &dyn Scatters, seed: u64) -> Vec<Verdict> {
+    let budget = Budget::for_tests(3);
+    vec![
+        laws::f_and_pdf_are_proper(subject, seed),
+        laws::is_reciprocal(subject, seed),
+        laws::sample_is_consistent(subject, seed),
+        laws::etendue_is_conserved(subject, seed),
+        laws::energy_is_not_created(subject, seed),
+        laws::pdf_integrates_to_one(subject, budget, seed),
+        laws::samples_follow_pdf(subject, budget, seed),
+        laws::furnace_agrees(subject, budget, seed),
+    ]
+}
+
+/// Every law of a light, from each of the given points, m. `pdf_tolerance` as in [`laws::light_pdf_integrates_to_one`].
+#[must_use]
+pub fn emits(subject: &dyn Emits, from_m: &[[f64; 3]], pdf_tolerance: f64, seed: u64) -> Vec<Verdict> {
+    let budget = Budget::for_tests(from_m.len());
+    from_m.iter().flat_map(|point| laws::light_laws(subject, *point, pdf_tolerance, budget, seed)).collect()
+}
+
+/// Makes a module of tests, one a law, that hold a BSDF to everything the oracle knows.
+///
+/// ```
+/// # use etalon_oracle::subjects::{Scatters, Scattered};
+/// # #[derive(Clone)] struct Matte;
+/// # impl Scatters for Matte {
+/// #     fn f(&self, _: [f64; 3], _: [f64; 3], _: f64) -> f64 { 0.0 }
+/// #     fn pdf(&self, _: [f64; 3], _: [f64; 3], _: f64) -> f64 { 0.0 }
+/// #     fn sample(&self, _: [f64; 3], _: [f64; 3], _: f64) -> Option<Scattered> { None }
+/// # }
+/// etalon_oracle::scatters_suite!(matte, Matte);
+/// ```
+#[macro_export]
+macro_rules! scatters_suite {
+    ($name:ident, $subject:expr) => {
+        $crate::scatters_suite!($name, $subject, seed: 1);
+    };
+    ($name:ident, $subject:expr, seed: $seed:expr) => {
+        #[cfg(test)]
+        mod $name {
+            #[allow(unused_imports, reason = "the subject's expression may or may not need what surrounds it")]
+            use super::*;
+
+            #[test]
+            fn f_and_pdf_are_proper() {
+                $crate::laws::f_and_pdf_are_proper(&$subject, $seed).assert();
+            }
+            #[test]
+            fn is_reciprocal() {
+                $crate::laws::is_reciprocal(&$subject, $seed).assert();
+            }
+            #[test]
+            fn sample_is_consistent() {
+                $crate::laws::sample_is_consistent(&$subject, $seed).assert();
+            }
+            #[test]
+            fn etendue_is_conserved() {
+                $crate::laws::etendue_is_conserved(&$subject, $seed).assert();
+            }
+            #[test]
+            fn energy_is_not_created() {
+                $crate::laws::energy_is_not_created(&$subject, $seed).assert();
+            }
+            #[test]
+            fn pdf_integrates_to_one() {
+                $crate::laws::pdf_integrates_to_one(&$subject, $crate::statistics::Budget::for_tests(3), $seed).assert();
+            }
+            #[test]
+            fn samples_follow_pdf() {
+                $crate::laws::samples_follow_pdf(&$subject, $crate::statistics::Budget::for_tests(3), $seed).assert();
+            }
+            #[test]
+            fn furnace_agrees() {
+                $crate::laws::furnace_agrees(&$subject, $crate::statistics::Budget::for_tests(3), $seed).assert();
+            }
+        }
+    };
+}
+
+/// Makes a module of tests that hold a light to everything the oracle knows, from the given points, m.
+///
+/// `pdf_tolerance` is the error accepted in ∫pdf, which is that of quadrature at the light's rim: 1e-6 for a light that is a
+/// circular cone about the axis of its `extent`, about 1e-3 for one with corners.
+#[macro_export]
+macro_rules! emits_suite {
+    ($name:ident, $subject:expr, from: $points:expr, pdf_tolerance: $tolerance:expr) => {
+        $crate::emits_suite!($name, $subject, from: $points, pdf_tolerance: $tolerance, seed: 1);
+    };
+    ($name:ident, $subject:expr, from: $points:expr, pdf_tolerance: $tolerance:expr, seed: $seed:expr) => {
+        #[cfg(test)]
+        mod $name {
+            #[allow(unused_imports, reason = "the subject's expression may or may not need what surrounds it")]
+            use super::*;
+
+            #[test]
+            fn sample_is_consistent() {
+                for point in &$points {
+                    $crate::laws::light_sample_is_consistent(&$subject, *point, $seed).assert();
+                }
+            }
+            #[test]
+            fn pdf_integrates_to_one() {
+                for point in &$points {
+                    $crate::laws::light_pdf_integrates_to_one(&$subject, *point, $tolerance, $seed).assert();
+                }
+            }
+            #[test]
+            fn samples_follow_pdf() {
+                let budget = $crate::statistics::Budget::for_tests($points.len());
+                for point in &$points {
+                    $crate::laws::light_samples_follow_pdf(&$subject, *point, budget, $seed).assert();
+                }
+            }
+        }
+    };
+}

@@ -1,0 +1,9 @@
+//! Deliberately wrong subjects: the oracle must reject every one and accept the right ones beside them.
+//!
+//! Right subjects and mutants are written here in plain `f64`, independent of any renderer. A mutant is a right subject with one
+//! line wrong, selected by name.
+
+mod bsdf;
+mod light;
+mod surface;
+mod vector;
