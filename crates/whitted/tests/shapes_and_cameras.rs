@@ -70,7 +70,7 @@ fn an_orthographic_sphere_covers_its_disk_at_any_distance() {
 
 fn parallelogram(z: f64, scale: f64) -> Shape {
     Shape::Parallelogram {
-        origin: vec3(-1.0 * scale, -1.2 * scale, z),
+        origin: vec3(-scale, -1.2 * scale, z),
         u: vec3(1.5 * scale, 0.3 * scale, 0.0),
         v: vec3(-0.2 * scale, 2.0 * scale, 0.0),
     }
