@@ -1,1 +1,8 @@
 //! Integration tests of the program and of whole renders, in one binary.
+
+mod outputs;
+mod refusals;
+mod renders;
+mod scenes;
+mod support;
+mod usage;

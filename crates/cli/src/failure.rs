@@ -3,12 +3,13 @@
 use std::process::ExitCode;
 
 use miette::Report;
+use serde::Serialize;
 
 /// What every command returns.
 pub(crate) type Outcome = Result<(), Failure>;
 
 /// Whose mistake it was; this decides the exit status.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Blame {
     /// The machine's, or ours: files that cannot be written, a result that is wrong. Exit status 1.
     Run,
@@ -16,42 +17,91 @@ pub(crate) enum Blame {
     Input,
 }
 
-/// A failed command: what to print on standard error, and the exit status.
+/// A failed command: everything that is wrong, so that one run shows it all.
+#[derive(Default)]
 pub(crate) struct Failure {
-    blame: Blame,
-    reports: Vec<Report>,
+    problems: Vec<(Blame, Report)>,
+}
+
+/// One problem, for machines.
+#[derive(Serialize)]
+pub(crate) struct ProblemJson {
+    /// The problem and its causes in one line.
+    message: String,
+    /// A stable name for its kind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    code: Option<String>,
+    /// What to do about it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hint: Option<String>,
+    /// Where in a file, if it is in a file.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    place: Option<Place>,
+}
+
+/// A place in a JSON file.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Place {
+    /// The file.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1, in characters.
+    pub column: usize,
+    /// The value in question: `$.objects[3].shape.radius_m`.
+    pub json_path: String,
 }
 
 impl Failure {
     /// A failure of the run itself.
     pub(crate) fn run(report: impl Into<Report>) -> Self {
-        Self { blame: Blame::Run, reports: vec![report.into()] }
+        Self { problems: vec![(Blame::Run, report.into())] }
     }
 
     /// Bad usage or a bad input file.
     pub(crate) fn input(report: impl Into<Report>) -> Self {
-        Self { blame: Blame::Input, reports: vec![report.into()] }
+        Self { problems: vec![(Blame::Input, report.into())] }
     }
 
-    /// Bad input with any number of errors, all of which are printed.
-    pub(crate) fn inputs(reports: Vec<Report>) -> Self {
-        Self { blame: Blame::Input, reports }
+    /// Another problem found in the same run.
+    pub(crate) fn add(&mut self, other: Self) {
+        self.problems.extend(other.problems);
     }
 
-    /// A command that has already said on standard output what went wrong.
-    pub(crate) fn told(blame: Blame) -> Self {
-        Self { blame, reports: Vec::new() }
+    /// Success if there was no problem.
+    pub(crate) fn into_outcome(self) -> Outcome {
+        if self.problems.is_empty() { Ok(()) } else { Err(self) }
     }
 
-    /// Prints the reports on standard error and gives the exit status.
+    /// The problems, for machines.
+    pub(crate) fn to_json(&self) -> Vec<ProblemJson> {
+        self.problems.iter().map(|(_, report)| problem_json(report)).collect()
+    }
+
+    /// Prints the problems on standard error and gives the exit status: 2 if any of them is the input's.
     #[allow(clippy::print_stderr, reason = "the program is the one place that prints")]
     pub(crate) fn report(self) -> ExitCode {
-        for report in &self.reports {
+        for (_, report) in &self.problems {
             eprintln!("{report:?}");
         }
-        match self.blame {
-            Blame::Run => ExitCode::from(1),
-            Blame::Input => ExitCode::from(2),
+        match self.problems.iter().map(|(blame, _)| *blame).max() {
+            None => ExitCode::SUCCESS,
+            Some(Blame::Run) => ExitCode::from(1),
+            Some(Blame::Input) => ExitCode::from(2),
         }
+    }
+}
+
+/// A problem or a warning, for machines.
+pub(crate) fn problem_json(report: &Report) -> ProblemJson {
+    let scene_problem = report.downcast_ref::<crate::scene_report::SceneProblem>();
+    ProblemJson {
+        message: match scene_problem {
+            Some(problem) => problem.message().to_owned(),
+            None => report.chain().map(ToString::to_string).collect::<Vec<_>>().join(": "),
+        },
+        code: report.code().map(|code| code.to_string()),
+        hint: report.help().map(|help| help.to_string()),
+        place: scene_problem.map(crate::scene_report::SceneProblem::place),
     }
 }

@@ -2,8 +2,16 @@
 //!
 //! Exit status: 0 done, 1 failed, 2 bad usage or a bad scene.
 
+mod args;
 mod commands;
 mod failure;
+mod load;
+mod output;
+mod overrides;
+mod print;
+mod progress;
+mod replay_text;
+mod scene_report;
 
 use std::process::ExitCode;
 
@@ -21,11 +29,22 @@ struct Cli {
 
 /// What to do. A command is listed here once it works.
 #[derive(Subcommand)]
-enum Command {}
+enum Command {
+    Render(commands::render::Args),
+    Schema(commands::schema::Args),
+    Whitted(commands::whitted::Args),
+    Figures(commands::figures::Args),
+}
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let outcome: Outcome = match cli.command {};
+    print::set_up_reports();
+    let outcome: Outcome = match cli.command {
+        Command::Render(args) => commands::render::run(args),
+        Command::Schema(args) => commands::schema::run(args),
+        Command::Whitted(args) => commands::whitted::run(args),
+        Command::Figures(args) => commands::figures::run(args),
+    };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),

@@ -109,7 +109,9 @@ fn a_render_describes_itself() {
     write_exr(&path, &picture, &render_info().attributes().unwrap()).unwrap();
     let file = read_exr(&path).unwrap();
     assert_eq!(RenderInfo::from_attributes(&file.attributes), Some(render_info()));
-    assert_eq!(file.attributes["chromaticities"], Attribute::Chromaticities(Chromaticities::REC_709));
+    // ITU-R BT.709-6, written out here once more.
+    let rec_709 = Chromaticities { red: [0.64, 0.33], green: [0.3, 0.6], blue: [0.15, 0.06], white: [0.3127, 0.329] };
+    assert_eq!(file.attributes["chromaticities"], Attribute::Chromaticities(rec_709));
     assert_eq!(file.attributes["renderTimeSeconds"], Attribute::Float(12.5));
     assert_eq!(file.attributes["samplesPerPixel"], Attribute::Int(256));
     assert_eq!(file.attributes["seed"], Attribute::Text("18446744073709551615".to_owned()));

@@ -1,1 +1,6 @@
 //! The commands, one a module: an `Args` for clap, and `pub(crate) fn run(args: Args) -> Outcome`.
+
+pub(crate) mod figures;
+pub(crate) mod render;
+pub(crate) mod schema;
+pub(crate) mod whitted;

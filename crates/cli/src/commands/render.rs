@@ -1,1 +1,353 @@
 //! `etalon render`: a scene in, a picture out.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use etalon_picture::{Picture, RenderInfo, Window};
+use etalon_transport::{Control, Counters, Extent, Film, PixelRect, Plan, Prepared, prepare};
+use miette::{Report, miette};
+use serde::Serialize;
+
+use crate::args::{Crop, PixelAt};
+use crate::failure::{Failure, Outcome, ProblemJson, problem_json};
+use crate::load::{LoadedScene, load};
+use crate::output::{self, Output, Written};
+use crate::overrides::Overrides;
+use crate::print;
+use crate::progress::{SampleBar, si};
+
+/// Renders a scene to EXR and PNG files.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The scene, as JSON (see `etalon schema`).
+    scene: PathBuf,
+    /// Picture to write: .exr keeps the linear picture and all that is known about it, .png is what a screen shows.
+    /// Give it twice to write both.
+    #[arg(short, long, alias = "outfile", value_name = "FILE", required_unless_present = "pixel")]
+    output: Vec<PathBuf>,
+    #[command(flatten)]
+    overrides: Overrides,
+    /// Threads; all cores if not given. The picture is the same whatever their number.
+    #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    threads: Option<u32>,
+    /// Exposure of PNG files, in stops: each doubles the light. EXR files stay as they are.
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::args::finite)]
+    exposure: f64,
+    /// Render only these pixels: columns from X0 up to but not including X1, rows from Y0 to Y1, counted from the top
+    /// left. The EXR remembers where they belong.
+    #[arg(long, value_name = "X0,X1,Y0,Y1")]
+    crop: Option<Crop>,
+    /// Trace one path of this pixel again and print it vertex by vertex, instead of rendering.
+    #[arg(long, value_name = "X,Y", requires = "sample", conflicts_with_all = ["output", "crop"])]
+    pixel: Option<PixelAt>,
+    /// Which of the pixel's paths.
+    #[arg(long, value_name = "K")]
+    sample: Option<u32>,
+    /// Print one JSON object on standard output, about the render or about what is wrong, and no progress.
+    #[arg(long)]
+    json: bool,
+    /// Print nothing but warnings and errors.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What `--json` prints about a render.
+#[derive(Serialize)]
+struct RenderJson<'a> {
+    scene: String,
+    scene_sha256: &'a str,
+    /// The first output; `outputs` has all.
+    output: Option<&'a str>,
+    outputs: &'a [Written],
+    width: u32,
+    height: u32,
+    /// Columns x0 to x1, rows y0 to y1.
+    crop: [u32; 4],
+    spp: u32,
+    seed: u64,
+    threads: usize,
+    seconds: f64,
+    prepare_seconds: f64,
+    paths: u64,
+    paths_per_second: f64,
+    rays: u64,
+    shadow_rays: u64,
+    nonfinite: u64,
+    /// The first of them: column, row, number of the sample.
+    nonfinite_at: Vec<[u32; 3]>,
+    warnings: Vec<ProblemJson>,
+    errors: Vec<ProblemJson>,
+    plan: &'a Plan,
+}
+
+/// What `--json` prints when there is no render to speak of.
+#[derive(Serialize)]
+struct RefusedJson {
+    scene: String,
+    errors: Vec<ProblemJson>,
+}
+
+pub(crate) fn run(args: Args) -> Outcome {
+    let result = match (args.pixel, args.sample) {
+        (Some(pixel), Some(sample)) => replay(&args, pixel, sample),
+        // clap waives the requirement because --pixel would conflict with --output.
+        (None, Some(_)) => {
+            let failure = miette!(code = "sample-without-pixel", "--sample says which path of --pixel to trace again");
+            Err(Stop::Refused(Failure::input(failure)))
+        }
+        (_, None) => render(&args),
+    };
+    match result {
+        Ok(()) => Ok(()),
+        Err(Stop::Refused(failure)) => {
+            if args.json {
+                print::json(&RefusedJson { scene: args.scene.display().to_string(), errors: failure.to_json() });
+            }
+            Err(failure)
+        }
+        Err(Stop::Reported(failure)) => Err(failure),
+    }
+}
+
+/// Why a render ended early.
+enum Stop {
+    /// Nothing was rendered, and nothing said about it on standard output.
+    Refused(Failure),
+    /// The picture was rendered and the report printed, but something went wrong after that.
+    Reported(Failure),
+}
+
+/// A scene ready to be rendered.
+struct Job {
+    loaded: LoadedScene,
+    prepared: Prepared,
+    prepare_seconds: f64,
+    warnings: Vec<Report>,
+    rect: PixelRect,
+    threads: usize,
+}
+
+/// Does all that can fail before the work, and collects all that is wrong.
+fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
+    let mut failure = Failure::default();
+    *outputs = output::plan(&args.output, &mut failure);
+    let mut loaded = match load(&args.scene) {
+        Ok(loaded) => loaded,
+        Err(scene_failure) => {
+            failure.add(scene_failure);
+            return Err(failure);
+        }
+    };
+    args.overrides.apply(&mut loaded.scene);
+    let film = &loaded.scene.film;
+    let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
+    let rect = args.crop.map_or(whole, |crop| crop.0);
+    if rect.x1 > whole.x1 || rect.y1 > whole.y1 {
+        failure.add(Failure::input(miette!(
+            code = "crop-outside",
+            "the crop reaches to column {} and row {} of a picture of {} × {} pixels",
+            rect.x1,
+            rect.y1,
+            whole.x1,
+            whole.y1
+        )));
+    }
+    if let Some(PixelAt { x, y }) = args.pixel.filter(|at| at.x >= whole.x1 || at.y >= whole.y1) {
+        failure.add(Failure::input(miette!(
+            code = "pixel-outside",
+            "pixel {x},{y} is not in a picture of {} × {} pixels",
+            whole.x1,
+            whole.y1
+        )));
+    }
+    let start = Instant::now();
+    let prepared = match prepare(&loaded.scene) {
+        Ok(prepared) => prepared,
+        Err(error) => {
+            failure.add(Failure::input(Report::from_err(error)));
+            return Err(failure);
+        }
+    };
+    failure.into_outcome()?;
+    let mut warnings = std::mem::take(&mut loaded.warnings);
+    warnings.extend(
+        prepared
+            .warnings()
+            .iter()
+            .map(|warning| miette!(severity = miette::Severity::Warning, code = "prepare", "{warning}")),
+    );
+    if args.exposure != 0.0 && !outputs.iter().any(|output| output.format == output::Format::Png) {
+        warnings.push(miette!(
+            severity = miette::Severity::Warning,
+            code = "exposure-unused",
+            "--exposure changes PNG files only, and none is written"
+        ));
+    }
+    let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
+    Ok(Job { loaded, prepared, prepare_seconds: start.elapsed().as_secs_f64(), warnings, rect, threads })
+}
+
+fn render(args: &Args) -> Result<(), Stop> {
+    let mut outputs = Vec::new();
+    let mut job = set_up(args, &mut outputs).map_err(Stop::Refused)?;
+    print::warnings(&job.warnings);
+
+    let spp = job.loaded.scene.integrator.spp;
+    let extent = Extent { rect: job.rect, samples: 0..spp, threads: Some(job.threads) };
+    let bar = SampleBar::new(job.rect.area() * u64::from(spp), args.quiet || args.json);
+    let start = Instant::now();
+    let film = job.prepared.render(&extent, &|paths| {
+        bar.advance(paths);
+        Control::Continue
+    });
+    let seconds = start.elapsed().as_secs_f64();
+    bar.clear();
+    let film = film.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
+
+    if let Some(warning) = nonfinite_warning(args, &film.counters) {
+        print::warnings(std::slice::from_ref(&warning));
+        job.warnings.push(warning);
+    }
+    let (written, failure) = write(args, &job, &film, &outputs, seconds);
+    if args.json {
+        print::json(&report(args, &job, &film, &written, &failure, seconds));
+    } else if !args.quiet {
+        print::line(&summary(&job, &film, &written, seconds));
+    }
+    failure.into_outcome().map_err(Stop::Reported)
+}
+
+/// Writes every output, also after one of them has failed.
+fn write(args: &Args, job: &Job, film: &Film, outputs: &[Output], seconds: f64) -> (Vec<Written>, Failure) {
+    let (mut written, mut failure) = (Vec::new(), Failure::default());
+    let integrator = &job.loaded.scene.integrator;
+    let software = concat!("etalon ", env!("CARGO_PKG_VERSION"));
+    let info = RenderInfo {
+        software: software.to_owned(),
+        render_time_s: seconds,
+        samples_per_pixel: integrator.spp,
+        seed: integrator.seed,
+        scene_sha256: job.loaded.sha256.clone(),
+        plan_json: serde_json::to_string(job.prepared.plan()).expect("a plan is plain data"),
+    };
+    let comment = format!(
+        "{} samples a pixel, seed {}, exposure {:+} EV, scene {}",
+        integrator.spp, integrator.seed, args.exposure, job.loaded.sha256
+    );
+    let picture = info.attributes().and_then(|attributes| Ok((picture(film, job.rect)?, attributes)));
+    match picture {
+        Err(error) => failure.add(Failure::run(Report::from_err(error))),
+        Ok((picture, attributes)) => {
+            for output in outputs {
+                match output::write(output, &picture, &attributes, args.exposure, software, &comment) {
+                    Ok(done) => written.push(done),
+                    Err(error) => failure.add(error),
+                }
+            }
+        }
+    }
+    (written, failure)
+}
+
+/// The rendered part of the film as linear Rec. 709.
+fn picture(film: &Film, rect: PixelRect) -> Result<Picture<f32>, etalon_picture::PictureError> {
+    let whole = film.linear_rec709();
+    let at = |(x, y): (u32, u32)| whole[y as usize * film.width() as usize + x as usize];
+    let pixels: Vec<[f32; 3]> = rect.pixels().map(at).collect();
+    let window = Window {
+        origin_px: [rect.x0 as i32, rect.y0 as i32],
+        frame_px: [film.width() as usize, film.height() as usize],
+    };
+    Picture::from_rgb((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize, &pixels)?.in_frame(window)
+}
+
+/// Says which samples were not finite, and how to see their paths.
+fn nonfinite_warning(args: &Args, counters: &Counters) -> Option<Report> {
+    let first = counters.nonfinite_at.first()?;
+    let places: Vec<String> =
+        counters.nonfinite_at.iter().map(|at| format!("pixel {},{} sample {}", at.x, at.y, at.sample)).collect();
+    let more = if counters.nonfinite > counters.nonfinite_at.len() as u64 { ", …" } else { "" };
+    Some(miette!(
+        severity = miette::Severity::Warning,
+        code = "nonfinite",
+        help = format!(
+            "replay the first: etalon render {}{} --pixel {},{} --sample {}",
+            args.scene.display(),
+            args.overrides.as_flags(),
+            first.x,
+            first.y,
+            first.sample
+        ),
+        "{} samples were not finite and are left out of the picture: {}{more}",
+        counters.nonfinite,
+        places.join(", ")
+    ))
+}
+
+fn report<'a>(
+    args: &Args,
+    job: &'a Job,
+    film: &Film,
+    written: &'a [Written],
+    failure: &Failure,
+    seconds: f64,
+) -> RenderJson<'a> {
+    let counters = &film.counters;
+    RenderJson {
+        scene: args.scene.display().to_string(),
+        scene_sha256: &job.loaded.sha256,
+        output: written.first().map(|written| written.path.as_str()),
+        outputs: written,
+        width: film.width(),
+        height: film.height(),
+        crop: [job.rect.x0, job.rect.x1, job.rect.y0, job.rect.y1],
+        spp: job.loaded.scene.integrator.spp,
+        seed: job.loaded.scene.integrator.seed,
+        threads: job.threads,
+        seconds,
+        prepare_seconds: job.prepare_seconds,
+        paths: counters.paths,
+        paths_per_second: counters.paths as f64 / seconds,
+        rays: counters.rays,
+        shadow_rays: counters.shadow_rays,
+        nonfinite: counters.nonfinite,
+        nonfinite_at: counters.nonfinite_at.iter().map(|at| [at.x, at.y, at.sample]).collect(),
+        warnings: job.warnings.iter().map(problem_json).collect(),
+        errors: failure.to_json(),
+        plan: job.prepared.plan(),
+    }
+}
+
+fn summary(job: &Job, film: &Film, written: &[Written], seconds: f64) -> String {
+    let mut text = format!(
+        "{} × {} pixels, {} samples each, in {seconds:.1} s ({} paths/s on {} threads), {} not finite",
+        job.rect.x1 - job.rect.x0,
+        job.rect.y1 - job.rect.y0,
+        job.loaded.scene.integrator.spp,
+        si(film.counters.paths as f64 / seconds),
+        job.threads,
+        film.counters.nonfinite,
+    );
+    for written in written {
+        text.push_str("\n  ");
+        text.push_str(&written.path);
+        if let Some(clipping) = &written.clipping {
+            text.push_str(": ");
+            text.push_str(&output::describe_clipping(clipping));
+        }
+    }
+    text
+}
+
+/// One path again, vertex by vertex.
+fn replay(args: &Args, pixel: PixelAt, sample: u32) -> Result<(), Stop> {
+    let job = set_up(args, &mut Vec::new()).map_err(Stop::Refused)?;
+    print::warnings(&job.warnings);
+    let path = job.prepared.replay(pixel.x, pixel.y, sample);
+    if args.json {
+        print::json(&path);
+    } else {
+        print::line(&crate::replay_text::describe(&path));
+    }
+    Ok(())
+}

@@ -1,0 +1,105 @@
+//! Values on the command line that clap does not know.
+
+use std::str::FromStr;
+
+use etalon_transport::PixelRect;
+
+/// Largest side of a picture, pixels.
+const LARGEST_SIDE: u32 = 65_536;
+
+/// `WxH`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size {
+    pub width: u32,
+    pub height: u32,
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let bad = || format!("a size is WIDTHxHEIGHT, each from 1 to {LARGEST_SIDE}, such as 640x480");
+        let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(bad)?;
+        let side = |text: &str| match text.trim().parse() {
+            Ok(side @ 1..=LARGEST_SIDE) => Ok(side),
+            _ => Err(bad()),
+        };
+        Ok(Self { width: side(width)?, height: side(height)? })
+    }
+}
+
+/// `X0,X1,Y0,Y1`, not empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Crop(pub(crate) PixelRect);
+
+impl FromStr for Crop {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let [x0, x1, y0, y1] =
+            numbers(text).ok_or("a crop is X0,X1,Y0,Y1 in pixels, such as 0,320,100,340 (columns 0 to 319)")?;
+        if x0 >= x1 || y0 >= y1 {
+            return Err("the crop holds no pixel: X0 must be below X1 and Y0 below Y1".to_owned());
+        }
+        Ok(Self(PixelRect { x0, y0, x1, y1 }))
+    }
+}
+
+/// `X,Y`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PixelAt {
+    pub x: u32,
+    pub y: u32,
+}
+
+impl FromStr for PixelAt {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let [x, y] = numbers(text).ok_or("a pixel is X,Y, counted from 0 at the top left, such as 12,40")?;
+        Ok(Self { x, y })
+    }
+}
+
+/// A number that is not infinite and not NaN.
+pub(crate) fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err("it must be finite".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
+    let numbers: Result<Vec<u32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    numbers.ok()?.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_crops_and_pixels_are_read_as_they_are_written() {
+        assert_eq!("640x480".parse(), Ok(Size { width: 640, height: 480 }));
+        assert_eq!("1X65536".parse(), Ok(Size { width: 1, height: 65_536 }));
+        assert_eq!("1,3,2,7".parse(), Ok(Crop(PixelRect { x0: 1, x1: 3, y0: 2, y1: 7 })));
+        assert_eq!("12, 40".parse(), Ok(PixelAt { x: 12, y: 40 }));
+    }
+
+    #[test]
+    fn what_is_no_size_crop_or_pixel_is_refused() {
+        for text in ["", "640", "0x480", "640x", "-1x5", "640x65537", "6x4x2", "4294967297x1"] {
+            assert!(text.parse::<Size>().is_err(), "{text}");
+        }
+        for text in ["", "1,2,3", "1,2,3,4,5", "2,2,0,1", "0,1,3,2", "-1,2,0,1", "0.5,1,0,1"] {
+            assert!(text.parse::<Crop>().is_err(), "{text}");
+        }
+        for text in ["", "1", "1,2,3", "a,b"] {
+            assert!(text.parse::<PixelAt>().is_err(), "{text}");
+        }
+        for text in ["nan", "inf", "1e999", "x"] {
+            assert!(finite(text).is_err(), "{text}");
+        }
+    }
+}

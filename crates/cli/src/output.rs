@@ -1,0 +1,131 @@
+//! The files a render is written to.
+
+use std::path::{Path, PathBuf};
+
+use etalon_picture::{Attributes, Clipping, Picture, check_writable, encode_srgb8, write_exr, write_png};
+use miette::{Report, miette};
+use serde::Serialize;
+
+use crate::failure::Failure;
+
+/// What a file name's extension asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Format {
+    /// Everything, as 32-bit floats.
+    Exr,
+    /// What a screen shows, in 8 bits.
+    Png,
+}
+
+/// A file to be written.
+#[derive(Clone, Debug)]
+pub(crate) struct Output {
+    /// Its name.
+    pub path: PathBuf,
+    /// What to write.
+    pub format: Format,
+}
+
+/// A file that was written, for the report.
+#[derive(Debug, Serialize)]
+pub(crate) struct Written {
+    /// Its name.
+    pub path: String,
+    /// What it is.
+    pub format: Format,
+    /// Pixels that the format could not hold as they are; `null` for a format that holds everything.
+    pub clipped_pixels: Option<usize>,
+    #[serde(skip)]
+    pub clipping: Option<Clipping>,
+}
+
+/// Understands the names of the outputs, and finds out whether they can be written, before anything is computed.
+/// Everything that is wrong with any of them goes into `failure`.
+pub(crate) fn plan(paths: &[PathBuf], failure: &mut Failure) -> Vec<Output> {
+    let mut outputs: Vec<Output> = Vec::new();
+    for path in paths {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        let format = match extension.as_deref() {
+            Some("exr") => Format::Exr,
+            Some("png") => Format::Png,
+            _ => {
+                failure.add(Failure::input(miette!(
+                    code = "output-format",
+                    help = "name it .exr for the linear picture with all its data, or .png for 8-bit sRGB",
+                    "`{}` is not a kind of picture that can be written",
+                    path.display()
+                )));
+                continue;
+            }
+        };
+        if outputs.iter().any(|output| output.path == *path) {
+            failure.add(Failure::input(miette!(
+                code = "output-twice",
+                "`{}` is given as output twice",
+                path.display()
+            )));
+            continue;
+        }
+        if let Err(error) = check_writable(path) {
+            failure.add(Failure::run(Report::from_err(error)));
+        }
+        outputs.push(Output { path: path.clone(), format });
+    }
+    outputs
+}
+
+/// Writes the picture to one output.
+pub(crate) fn write(
+    output: &Output,
+    picture: &Picture<f32>,
+    attributes: &Attributes,
+    exposure_ev: f64,
+    software: &str,
+    comment: &str,
+) -> Result<Written, Failure> {
+    let path = output.path.as_path();
+    let clipping = match output.format {
+        Format::Exr => write_exr(path, picture, attributes).map(|()| None),
+        Format::Png => png(path, picture, exposure_ev, software, comment).map(Some),
+    }
+    .map_err(|error| Failure::run(Report::from_err(error)))?;
+    Ok(Written {
+        path: path.display().to_string(),
+        format: output.format,
+        clipped_pixels: clipping.map(|clipping| clipping.any),
+        clipping,
+    })
+}
+
+fn png(
+    path: &Path,
+    picture: &Picture<f32>,
+    exposure_ev: f64,
+    software: &str,
+    comment: &str,
+) -> Result<Clipping, etalon_picture::PictureError> {
+    let (shown, clipping) = encode_srgb8(picture, exposure_ev)?;
+    write_png(path, &shown, &[("Software", software), ("Comment", comment)])?;
+    Ok(clipping)
+}
+
+/// What an 8-bit picture could not hold, in words.
+pub(crate) fn describe_clipping(clipping: &Clipping) -> String {
+    let share = 100.0 * clipping.any as f64 / clipping.of as f64;
+    let mut kinds = Vec::new();
+    for (count, kind) in [
+        (clipping.above, "too bright"),
+        (clipping.below, "outside the sRGB gamut"),
+        (clipping.non_finite, "not finite"),
+    ] {
+        if count > 0 {
+            kinds.push(format!("{count} {kind}"));
+        }
+    }
+    if kinds.is_empty() {
+        "no pixel clipped".to_owned()
+    } else {
+        format!("{} pixels clipped ({share:.2} %: {})", clipping.any, kinds.join(", "))
+    }
+}

@@ -1,0 +1,115 @@
+//! Settings of a scene that the command line may override.
+
+use clap::ValueEnum;
+use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
+
+use crate::args::Size;
+
+/// What the command line may decide instead of the scene.
+#[derive(clap::Args)]
+pub(crate) struct Overrides {
+    /// Samples a pixel.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(i32::MAX)))]
+    spp: Option<u32>,
+    /// Seed of every random number.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Size of the picture in pixels.
+    #[arg(long, value_name = "WxH")]
+    size: Option<Size>,
+    /// Scalar type that paths are computed in.
+    #[arg(long, value_enum)]
+    precision: Option<PrecisionArg>,
+    /// Number sequence.
+    #[arg(long, value_enum)]
+    sampler: Option<SamplerArg>,
+    /// How direct light is found.
+    #[arg(long, value_enum)]
+    light_sampling: Option<LightSamplingArg>,
+    /// Most path edges from the camera to a light; 1 shows emitters only, 2 adds one bounce.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    max_depth: Option<u32>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum PrecisionArg {
+    /// 32-bit floating point.
+    F32,
+    /// 64-bit floating point.
+    F64,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum SamplerArg {
+    /// Owen-scrambled Sobol points.
+    Sobol,
+    /// Independent pseudorandom numbers.
+    Independent,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum LightSamplingArg {
+    /// Shadow rays and BSDF sampling together.
+    Mis,
+    /// Shadow rays.
+    Light,
+    /// BSDF sampling.
+    Bsdf,
+}
+
+impl Overrides {
+    /// Puts them into a scene.
+    pub(crate) fn apply(&self, scene: &mut Scene) {
+        let integrator = &mut scene.integrator;
+        if let Some(spp) = self.spp {
+            integrator.spp = spp;
+        }
+        if let Some(seed) = self.seed {
+            integrator.seed = seed;
+        }
+        if let Some(precision) = self.precision {
+            integrator.precision = match precision {
+                PrecisionArg::F32 => Precision::F32,
+                PrecisionArg::F64 => Precision::F64,
+            };
+        }
+        if let Some(sampler) = self.sampler {
+            integrator.sampler = match sampler {
+                SamplerArg::Sobol => SamplerKind::Sobol,
+                SamplerArg::Independent => SamplerKind::Independent,
+            };
+        }
+        if let Some(light_sampling) = self.light_sampling {
+            integrator.light_sampling = match light_sampling {
+                LightSamplingArg::Mis => LightSampling::Mis,
+                LightSamplingArg::Light => LightSampling::Light,
+                LightSamplingArg::Bsdf => LightSampling::Bsdf,
+            };
+        }
+        if self.max_depth.is_some() {
+            integrator.max_depth = self.max_depth;
+        }
+        if let Some(size) = self.size {
+            (scene.film.width, scene.film.height) = (size.width, size.height);
+        }
+    }
+
+    /// The same again for a command line, with a space before each.
+    pub(crate) fn as_flags(&self) -> String {
+        fn word(value: impl ValueEnum) -> Option<String> {
+            value.to_possible_value().map(|value| value.get_name().to_owned())
+        }
+        [
+            ("spp", self.spp.map(|spp| spp.to_string())),
+            ("seed", self.seed.map(|seed| seed.to_string())),
+            ("size", self.size.map(|size| format!("{}x{}", size.width, size.height))),
+            ("precision", self.precision.and_then(word)),
+            ("sampler", self.sampler.and_then(word)),
+            ("light-sampling", self.light_sampling.and_then(word)),
+            ("max-depth", self.max_depth.map(|depth| depth.to_string())),
+        ]
+        .into_iter()
+        .filter_map(|(name, value)| value.map(|value| format!(" --{name} {value}")))
+        .collect()
+    }
+}

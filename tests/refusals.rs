@@ -1,0 +1,104 @@
+//! Scenes that are refused: every error in one run, with its place, and nothing rendered.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::support::{changed_scene, entries, etalon_line};
+
+/// A box with three mistakes: a misspelt key, a wrong type, a number out of range.
+fn three_mistakes(path: &Path) {
+    changed_scene("cornell.json", path, |scene| {
+        scene["camra"] = json!(1);
+        scene["film"]["width"] = json!("wide");
+        scene["film"]["height"] = json!(-4);
+    });
+}
+
+#[test]
+fn every_error_of_a_scene_is_shown_with_its_place_and_a_hint() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("bad.json");
+    three_mistakes(&scene);
+    let text = std::fs::read_to_string(&scene).unwrap();
+    let ran = etalon_line("render {} -o {}", [&scene, &folder.path().join("x.exr")]).expect(2).says([
+        "$.camra",
+        "camera",
+        "$.film.width",
+        "$.film.height",
+    ]);
+    for key in ["camra", "width", "height"] {
+        let line = 1 + text.lines().position(|line| line.contains(&format!("\"{key}\""))).unwrap();
+        assert!(ran.stderr.contains(&format!("bad.json:{line}:")), "{key} on line {line}:\n{}", ran.stderr);
+    }
+    assert_eq!(ran.stdout, "");
+    assert_eq!(entries(folder.path()), ["bad.json"]);
+}
+
+#[test]
+fn with_json_the_errors_are_one_object_on_standard_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("bad.json");
+    three_mistakes(&scene);
+    let report = etalon_line("render {} -o {} --json", [&scene, &folder.path().join("x.exr")]).expect(2).json();
+    assert_eq!(report["scene"], scene.to_str().unwrap());
+    let errors = report["errors"].as_array().unwrap();
+    let paths: Vec<&str> = errors.iter().map(|error| error["json_path"].as_str().unwrap()).collect();
+    for path in ["$.camra", "$.film.width", "$.film.height"] {
+        assert!(paths.contains(&path), "{path} is not in {paths:?}");
+    }
+    for error in errors {
+        assert!(error["line"].as_u64().unwrap() >= 1 && error["column"].as_u64().unwrap() >= 1, "{error}");
+        for key in ["message", "code", "file"] {
+            assert!(!error[key].as_str().unwrap().is_empty(), "{key} of {error}");
+        }
+    }
+    let unknown = errors.iter().find(|error| error["json_path"] == "$.camra").unwrap();
+    assert!(unknown["hint"].as_str().unwrap().contains("camera"), "{unknown}");
+}
+
+#[test]
+fn files_that_are_no_scene_at_all_exit_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.json");
+    let output = folder.path().join("x.exr");
+    etalon_line("render {} -o {}", [&scene, &output]).expect(2).says(["scene.json", "No such file"]);
+    etalon_line("render {} -o {}", [folder.path(), &output]).expect(2).says(["directory"]);
+    for content in [&b""[..], b"{", b"[]", b"null", b"not json", b"{}", b"\xff\xfe{\0}\0", b"{\"a\": \xff}"] {
+        std::fs::write(&scene, content).unwrap();
+        let ran = etalon_line("render {} -o {} --json", [&scene, &output]).expect(2);
+        let Value::Array(errors) = &ran.json()["errors"] else { panic!("no list of errors: {}", ran.stdout) };
+        assert!(!errors.is_empty(), "{content:?}");
+        assert!(ran.stderr.contains("scene.json"), "{}", ran.stderr);
+    }
+    std::fs::write(&scene, "[".repeat(1_000_000)).unwrap();
+    etalon_line("render {} -o {}", [&scene, &output]).expect(2);
+    assert_eq!(entries(folder.path()), ["scene.json"]);
+}
+
+#[test]
+fn mistakes_in_usage_outputs_and_scene_are_all_shown_by_one_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("bad.json");
+    three_mistakes(&scene);
+    let missing = folder.path().join("missing/x.exr");
+    etalon_line("render {} -o {} -o picture.jpg -o y.exr -o y.exr", [&scene, &missing]).expect(2).says([
+        "missing",
+        "picture.jpg",
+        "y.exr",
+        "twice",
+        "$.camra",
+        "$.film.width",
+        "$.film.height",
+    ]);
+}
+
+#[test]
+fn what_lies_outside_the_picture_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = crate::support::scene("cornell.json");
+    let output = folder.path().join("x.exr");
+    etalon_line("render {} -o {} --size 8x6 --crop 0,9,0,6", [&scene, &output]).expect(2).says(["crop", "8 × 6"]);
+    etalon_line("render {} --size 8x6 --pixel 0,6 --sample 0", [&scene]).expect(2).says(["0,6", "8 × 6"]);
+    assert_eq!(entries(folder.path()), [""; 0]);
+}

@@ -1,0 +1,124 @@
+//! What a render gives: its report, its metadata, the same pixels however it is run.
+
+use etalon_picture::{Attribute, RenderInfo};
+use serde_json::Value;
+
+use crate::support::{etalon_line, pixel_bits, scene};
+
+#[test]
+fn json_is_one_object_with_what_a_machine_wants_to_know() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, output) = (scene("cornell.json"), folder.path().join("x.exr"));
+    let ran = etalon_line("render {} -o {} --spp 2 --seed 7 --size 20x10 --threads 2 --json", [&scene, &output]);
+    let report = ran.expect(0).json();
+    assert_eq!(report["scene"], scene.to_str().unwrap());
+    assert_eq!(report["output"], output.to_str().unwrap());
+    for (key, value) in [("spp", 2), ("seed", 7), ("width", 20), ("height", 10), ("threads", 2), ("nonfinite", 0)] {
+        assert_eq!(report[key], value, "{key}");
+    }
+    assert_eq!(report["paths"], 20 * 10 * 2);
+    let number = |key: &str| report[key].as_f64().unwrap();
+    assert!(number("seconds") > 0.0);
+    let rate = number("paths") / number("seconds");
+    assert!((number("paths_per_second") / rate - 1.0).abs() < 1e-12);
+    assert_eq!(report["warnings"], Value::Array(Vec::new()));
+    assert_eq!(report["errors"], Value::Array(Vec::new()));
+    assert!(report["plan"]["effects"].is_array());
+}
+
+#[test]
+fn a_picture_says_how_it_was_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, output) = (scene("cornell.json"), folder.path().join("x.exr"));
+    let line = "render {} -o {} --spp 3 --seed 18446744073709551615 --size 9x5 --precision f64 --json";
+    let report = etalon_line(line, [&scene, &output]).expect(0).json();
+    let (bits, file) = pixel_bits(&output);
+    let names: Vec<&str> = bits.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["B", "G", "R"]);
+    let info = RenderInfo::from_attributes(&file.attributes).expect("all of it is there");
+    assert_eq!(info.software, format!("etalon {}", env!("CARGO_PKG_VERSION")));
+    assert_eq!((info.samples_per_pixel, info.seed), (3, u64::MAX));
+    assert_eq!(info.scene_sha256, report["scene_sha256"]);
+    assert_eq!(info.render_time_s, f64::from(report["seconds"].as_f64().unwrap() as f32));
+    let plan: Value = serde_json::from_str(&info.plan_json).unwrap();
+    assert_eq!(plan, report["plan"]);
+    assert_eq!(plan["precision"], "f64");
+    assert!(matches!(file.attributes["chromaticities"], Attribute::Chromaticities(_)));
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_pixels_to_the_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["cornell.json", "cornell-glass.json"] {
+        for more in ["", "--precision f64", "--sampler independent"] {
+            let render = |threads: u32, seed: u32| {
+                let output = folder.path().join("x.exr");
+                let line = format!("render {{}} -o {{}} --spp 4 --size 50x37 --threads {threads} --seed {seed} {more}");
+                etalon_line(&line, [&scene(name), &output]).expect(0);
+                pixel_bits(&output).0
+            };
+            let one = render(1, 5);
+            for threads in [2, 3] {
+                assert!(render(threads, 5) == one, "{name} {more}: {threads} threads differ from one");
+            }
+            assert!(render(2, 6) != one, "{name} {more}: the seed changes nothing");
+        }
+    }
+}
+
+#[test]
+fn a_crop_has_the_pixels_of_the_whole_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, whole, part) = (scene("cornell.json"), folder.path().join("whole.exr"), folder.path().join("part.exr"));
+    etalon_line("render {} -o {} --spp 2 --size 40x30", [&scene, &whole]).expect(0);
+    etalon_line("render {} -o {} --spp 2 --size 40x30 --crop 7,29,3,20", [&scene, &part]).expect(0);
+    let (whole, _) = pixel_bits(&whole);
+    let (part, file) = pixel_bits(&part);
+    assert_eq!((file.picture.width(), file.picture.height()), (22, 17));
+    assert_eq!(file.picture.window(), etalon_picture::Window { origin_px: [7, 3], frame_px: [40, 30] });
+    for ((_, whole), (name, part)) in whole.iter().zip(&part) {
+        for (row, samples) in part.chunks(22).enumerate() {
+            let start = (row + 3) * 40 + 7;
+            assert_eq!(samples, &whole[start..start + 22], "channel {name}, row {row} of the crop");
+        }
+    }
+}
+
+#[test]
+fn a_replayed_path_is_the_one_that_made_the_pixel() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, output) = (scene("cornell.json"), folder.path().join("x.exr"));
+    let settings = "--spp 1 --size 8x8 --seed 3";
+    etalon_line(&format!("render {{}} -o {{}} {settings}"), [&scene, &output]).expect(0);
+    let file = etalon_picture::read_exr(&output).unwrap();
+    for (x, y) in [(0, 0), (3, 4), (7, 7), (4, 1)] {
+        let line = format!("render {{}} {settings} --pixel {x},{y} --sample 0");
+        let replay = etalon_line(&format!("{line} --json"), [&scene]).expect(0).json();
+        let xyz: [f64; 3] = serde_json::from_value(replay["xyz"].clone()).unwrap();
+        let rgb = etalon_optics::colour::rec709_from_xyz(xyz);
+        for (channel, expected) in ["R", "G", "B"].into_iter().zip(rgb) {
+            assert_eq!(file.picture.channel(channel).unwrap()[y * 8 + x], expected as f32, "{channel} of {x},{y}");
+        }
+        let text = etalon_line(&line, [&scene]).expect(0).stdout;
+        for event in replay["events"].as_array().unwrap() {
+            let line = match event["event"].as_str().unwrap() {
+                "vertex" => format!("vertex {}: {}", event["vertex"], event["object"]),
+                "light" => format!("light at vertex {}", event["vertex"]),
+                "end" => format!("end: {}", event["because"].as_str().unwrap()),
+                other => panic!("an event of kind {other}"),
+            };
+            assert!(text.contains(&line), "`{line}` is not in:\n{text}");
+        }
+    }
+}
+
+#[test]
+fn quiet_is_quiet_and_a_bar_is_for_terminals_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, output) = (scene("cornell.json"), folder.path().join("x.exr"));
+    let ran = etalon_line("render {} -o {} --spp 1 --size 8x8 --quiet", [&scene, &output]).expect(0);
+    assert_eq!((ran.stdout.as_str(), ran.stderr.as_str()), ("", ""));
+    let ran = etalon_line("render {} -o {} --spp 1 --size 8x8", [&scene, &output]).expect(0);
+    assert!(ran.stdout.contains("8 × 8 pixels") && ran.stdout.contains("x.exr"), "{}", ran.stdout);
+    assert_eq!(ran.stderr, "");
+}

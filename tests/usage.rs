@@ -1,0 +1,60 @@
+//! Exit statuses and messages of bad and good usage.
+
+use crate::support::{etalon, etalon_line, scene};
+
+#[test]
+fn without_a_command_the_program_explains_itself_and_exits_2() {
+    let ran = etalon::<&str>([]).expect(2);
+    assert!(ran.stderr.contains("render") && ran.stderr.contains("schema"), "{}", ran.stderr);
+}
+
+#[test]
+fn help_and_version_are_no_failures() {
+    assert!(etalon(["--help"]).expect(0).stdout.contains("render"));
+    assert_eq!(etalon(["--version"]).expect(0).stdout, format!("etalon {}\n", env!("CARGO_PKG_VERSION")));
+    for command in ["render", "schema"] {
+        etalon([command, "--help"]).expect(0);
+    }
+}
+
+#[test]
+fn what_is_no_command_or_option_exits_2_and_is_named() {
+    etalon(["rendre"]).expect(2).says(["rendre", "render"]);
+    etalon_line("render {} -o x.exr --ssp 4", [&scene("cornell.json")]).expect(2).says(["--ssp", "--spp"]);
+    etalon_line("render {}", [&scene("cornell.json")]).expect(2).says(["--output"]);
+    etalon(["render"]).expect(2).says(["SCENE"]);
+}
+
+#[test]
+fn values_out_of_range_exit_2_and_name_their_option() {
+    for (option, value) in [
+        ("--spp", "0"),
+        ("--spp", "-1"),
+        ("--spp", "2147483648"),
+        ("--seed", "-1"),
+        ("--seed", "18446744073709551616"),
+        ("--threads", "0"),
+        ("--threads", "two"),
+        ("--size", "0x10"),
+        ("--size", "640"),
+        ("--exposure", "nan"),
+        ("--exposure", "inf"),
+        ("--crop", "5,5,0,1"),
+        ("--crop", "1,2,3"),
+        ("--precision", "f16"),
+        ("--sampler", "halton"),
+        ("--max-depth", "0"),
+    ] {
+        let ran =
+            etalon_line(&format!("render {{}} -o x.exr --quiet {option}={value}"), [&scene("cornell.json")]).expect(2);
+        assert!(ran.stderr.contains(option), "{option} {value}: {}", ran.stderr);
+    }
+}
+
+#[test]
+fn a_path_is_replayed_by_pixel_and_sample_together_only() {
+    let scene = scene("cornell.json");
+    etalon_line("render {} --pixel 1,1", [&scene]).expect(2).says(["--sample"]);
+    etalon_line("render {} --sample 1 -o x.exr --spp 1 --size 4x4", [&scene]).expect(2).says(["--pixel"]);
+    etalon_line("render {} --pixel 1,1 --sample 0 -o x.exr", [&scene]).expect(2).says(["--pixel", "--output"]);
+}
