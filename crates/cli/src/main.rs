@@ -21,7 +21,7 @@ use crate::failure::Outcome;
 
 /// A physically based spectral path tracer with a test oracle.
 #[derive(Parser)]
-#[command(name = "etalon", version, about, arg_required_else_help = true)]
+#[command(name = "etalon", version, arg_required_else_help = true)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -129,3 +129,34 @@ pub(crate) fn describe_clipping(clipping: &Clipping) -> String {
         format!("{} pixels clipped ({share:.2} %: {})", clipping.any, kinds.join(", "))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_that_goes_away_during_the_render_is_an_error_that_names_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let gone = folder.path().join("gone");
+        std::fs::create_dir(&gone).unwrap();
+        let mut failure = Failure::default();
+        let outputs = plan(&[gone.join("a.exr"), gone.join("a.png")], &mut failure);
+        assert!(failure.into_outcome().is_ok());
+        std::fs::remove_dir(&gone).unwrap();
+        let picture = Picture::from_rgb(1, 1, &[[0.5_f32; 3]]).unwrap();
+        for output in &outputs {
+            let failure = write(output, &picture, &Attributes::new(), 0.0, "etalon", "").map(drop).unwrap_err();
+            let json = serde_json::to_value(failure.to_json()).unwrap();
+            let message = json[0]["message"].as_str().unwrap();
+            assert!(message.contains(&output.path.display().to_string()), "{message}");
+        }
+    }
+
+    #[test]
+    fn clipping_is_told_in_words() {
+        let none = Clipping { of: 10, ..Clipping::default() };
+        assert_eq!(describe_clipping(&none), "no pixel clipped");
+        let some = Clipping { above: 2, below: 0, non_finite: 1, any: 3, of: 200 };
+        assert_eq!(describe_clipping(&some), "3 pixels clipped (1.50 %: 2 too bright, 1 not finite)");
+    }
+}

@@ -351,3 +351,52 @@ fn replay(args: &Args, pixel: PixelAt, sample: u32) -> Result<(), Stop> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+    use etalon_transport::NonFinite;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    fn parse(line: &str) -> Args {
+        Line::try_parse_from(line.split_whitespace()).unwrap_or_else(|error| panic!("{error}")).args
+    }
+
+    #[test]
+    fn samples_that_are_not_finite_are_named_with_the_command_that_replays_them() {
+        let args = parse("render a.json -o a.exr --spp 9 --seed 3 --size 64x48 --sampler independent --precision f64");
+        assert!(nonfinite_warning(&args, &Counters::default()).is_none());
+        let mut counters = Counters::default();
+        for sample in [5, 2] {
+            counters.record_nonfinite(NonFinite { x: 7, y: 11, sample });
+        }
+        let warning = nonfinite_warning(&args, &counters).unwrap();
+        assert_eq!(warning.severity(), Some(miette::Severity::Warning));
+        assert_eq!(
+            warning.to_string(),
+            "2 samples were not finite and are left out of the picture: pixel 7,11 sample 2, pixel 7,11 sample 5"
+        );
+        let help = warning.help().unwrap().to_string();
+        let replay = parse(help.strip_prefix("replay the first: etalon ").unwrap());
+        assert_eq!((replay.pixel, replay.sample), (Some(PixelAt { x: 7, y: 11 }), Some(2)));
+        assert_eq!(replay.overrides.as_flags(), args.overrides.as_flags());
+        assert_eq!(args.overrides.as_flags(), " --spp 9 --seed 3 --size 64x48 --precision f64 --sampler independent");
+    }
+
+    #[test]
+    fn more_samples_than_are_located_are_counted_all_the_same() {
+        let args = parse("render a.json -o a.exr");
+        let mut counters = Counters::default();
+        for sample in 0..1000 {
+            counters.record_nonfinite(NonFinite { x: 0, y: 0, sample });
+        }
+        let text = nonfinite_warning(&args, &counters).unwrap().to_string();
+        assert!(text.starts_with("1000 samples") && text.ends_with(", …"), "{text}");
+    }
+}
