@@ -11,6 +11,7 @@ mod random;
 pub mod statistics;
 pub mod subjects;
 pub mod suite;
+pub mod truths;
 mod vector;
 mod verdict;
 

@@ -1,6 +1,6 @@
 //! What a renderer can hand to the oracle: traits over plain numbers.
 
-use crate::quadrature::Cone;
+use crate::{quadrature::Cone, statistics::Estimate, truths::Truth};
 
 /// How likely a sampled direction was.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,4 +126,22 @@ pub struct Hit {
 pub trait Intersects {
     /// The nearest hit with t in (0, t_max).
     fn intersect(&self, origin_m: [f64; 3], direction: [f64; 3], t_max: f64) -> Option<Hit>;
+}
+
+/// What a renderer measured on a truth's scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// The measured quantity with its standard error.
+    pub estimate: Estimate,
+    /// Samples that were NaN or infinite. A good renderer has none, and a truth fails with any.
+    pub nonfinite: u64,
+}
+
+/// A whole renderer.
+pub trait Renders {
+    /// Renders the truth's scene and reads its quantity off the picture.
+    ///
+    /// # Errors
+    /// Why it could not, as a sentence: a refused scene, an unsupported feature.
+    fn render(&mut self, truth: &Truth) -> Result<Reading, String>;
 }

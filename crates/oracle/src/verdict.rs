@@ -74,6 +74,13 @@ impl Verdict {
         }
     }
 
+    /// The same measurement, failed: the test was too weak for what it had to see. Says so in the evidence.
+    pub(crate) fn without_power(mut self, reason: &str) -> Self {
+        self.pass = false;
+        self.evidence = format!("{reason}; {}", self.evidence);
+        self
+    }
+
     /// How much of its allowance a verdict used: above 1 it failed.
     #[must_use]
     pub fn severity(&self) -> f64 {

@@ -1,0 +1,136 @@
+//! Pinholes and thin lenses.
+
+use std::f64::consts::PI;
+
+use super::{
+    Truth,
+    scene::{Scene, black, disk, parallelogram},
+};
+
+const LENS_M: f64 = 0.0125;
+const FOCUS_M: f64 = 2.0;
+
+/// Radius of the circle of confusion in the object space at depth z, m: a·|z − z_f|/z_f.
+fn confusion(depth_m: f64) -> f64 {
+    LENS_M * (depth_m - FOCUS_M).abs() / FOCUS_M
+}
+
+/// A lens of f = 50 mm at f/2, in focus at 2 m, looking along −z in a field so narrow that it is one ray.
+fn view() -> Scene {
+    Scene::lens([0.0; 3], [0.0, 0.0, -1.0], 1e-4, LENS_M, FOCUS_M)
+}
+
+/// Share of a unit disk beyond the distance x of a chord from the centre.
+fn segment(x: f64) -> f64 {
+    (x.acos() - x * (1.0 - x * x).sqrt()) / PI
+}
+
+pub(super) fn truths() -> Vec<Truth> {
+    let because = "Rays from a lens point p through the focus point on the axis pass depth z at p(1 − z/z_f): over the lens they fill a circle of \
+         radius a|z − z_f|/z_f evenly.";
+    let spot = |name: &str, depth: f64, radius: f64| {
+        let scene = view().lamp(disk([0.0, 0.0, -depth], [0.0, 0.0, 1.0], radius), black(), 1.0, "front");
+        let c = confusion(depth);
+        Truth::new(
+            name,
+            &scene,
+            (radius / c).powi(2),
+            format!("(s/c)², s = {radius}, c = a|z − z_f|/z_f = {c}, z = {depth}"),
+        )
+        .because(because)
+        .confirmed("counting lens points on a grid", 2e-3, move || {
+            let n = 2000;
+            let (mut inside, mut hit) = (0_u32, 0_u32);
+            for i in 0..n {
+                for j in 0..n {
+                    let along = |k: i32| (f64::from(k) + 0.5) / f64::from(n) * 2.0 - 1.0;
+                    let r = along(i).hypot(along(j));
+                    if r < 1.0 {
+                        inside += 1;
+                        hit += u32::from(r * LENS_M * (1.0 - depth / FOCUS_M).abs() < radius);
+                    }
+                }
+            }
+            f64::from(hit) / f64::from(inside)
+        })
+        .or_else("the lens sampled as a square", 0.25 * PI * (radius / c).powi(2))
+        .or_else("polar radius without its root", radius / c)
+        .or_else("diameter taken for radius", (2.0 * radius / c).powi(2).min(1.0))
+    };
+    let c = confusion(5.0);
+    let edge =
+        view().lamp(parallelogram([0.5 * c, -1.0, -5.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]), black(), 1.0, "front");
+    let share = LENS_M * 0.6;
+    let stop = view()
+        .lamp(disk([0.0, 0.0, -5.0], [0.0, 0.0, 1.0], 1.0), black(), 1.0, "front")
+        .object(parallelogram([0.0, -1.0, -1e-3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]), black());
+    let sharp = view().lamp(disk([0.0, 0.0, -FOCUS_M], [0.0, 0.0, 1.0], 1e-4), black(), 1.0, "front");
+    let closed = Scene::lens([0.0; 3], [0.0, 0.0, -1.0], 1e-4, 0.0, FOCUS_M).lamp(
+        disk([0.0, 0.0, -5.0], [0.0, 0.0, 1.0], 1e-4),
+        black(),
+        1.0,
+        "front",
+    );
+    // A square of side .4 at distance 1 in a picture 1 wide: .16 of it, in the lower left quarter but for the middle.
+    let window = Scene::pinhole([0.0; 3], [0.0, 0.0, -1.0], 2.0 * 0.5_f64.atan().to_degrees()).lamp(
+        parallelogram([-0.4, -0.4, -1.0], [0.4, 0.0, 0.0], [0.0, 0.4, 0.0]),
+        black(),
+        1.0,
+        "front",
+    );
+    let wide = Scene::pinhole([0.0; 3], [0.0, 0.0, -1.0], 2.0 * 0.5_f64.atan().to_degrees())
+        .film(32, 16)
+        .spp(2048)
+        .lamp(parallelogram([-0.4, -0.4, -1.0], [0.4, 0.0, 0.0], [0.0, 0.4, 0.0]), black(), 1.0, "front");
+    vec![
+        spot("lens-spot-behind-focus", 5.0, 0.01),
+        spot("lens-spot-before-focus", 1.25, 0.002),
+        Truth::new("lens-share-of-the-aperture", &view().lamp(
+            disk([0.0, 0.0, -5.0], [0.0, 0.0, 1.0], share),
+            black(),
+            1.0,
+            "front",
+        ), (share / c).powi(2), "(0.6a/c)²: a disk of .6 apertures at 5 m, focus 2 m")
+            .because(because)
+            .or_else("the lens sampled as a square", 0.25 * PI * (share / c).powi(2))
+            .or_else("circle of confusion a|z − z_f|/z", (share / (LENS_M * 0.6)).powi(2)),
+        Truth::new("lens-edge", &edge, segment(0.5), "(acos ½ − ½√¾)/π: an edge half a circle of confusion off the axis")
+            .because(because)
+            .confirmed("quadrature of the chord", 1e-6, || {
+                2.0 / PI * crate::quadrature::interval(|x| (1.0 - x * x).sqrt(), 0.5, 1.0, 1e-10).value
+            })
+            .or_else("the lens sampled as a square", 0.25)
+            .or_else("the lens sampled as a Gaussian of the same spread", 0.1587),
+        Truth::new("lens-half-covered", &stop, 0.5, "½")
+            .because("A knife edge right before the lens, through its middle, hides half of it from everything out of focus or in.")
+            .or_else("the ray starts from the lens's centre", 1.0),
+        Truth::new("lens-in-focus", &sharp, 1.0, "1")
+            .because("All rays of the lens meet in the plane of focus: a spot a hundredth of the lens wide fills the ray's picture.")
+            .or_else("focus distance off by 1 %", (1e-4 / (LENS_M * 0.01)).powi(2)),
+        Truth::new("lens-closed", &closed, 1.0, "1")
+            .because("A lens of radius 0 is a pinhole; nothing divides by it.")
+            .or_else("0/0", 0.0),
+        Truth::new("pinhole-window", &window, 0.16, "0.16, the area of the image")
+            .because("At distance 1 the picture is 1 × 1 and the square .4 × .4; central projection keeps its shape.")
+            .or_else("field of view doubled", 0.04)
+            .or_else("field of view taken for half of it", 0.16 * (0.5 / (2.0 * 0.5_f64.atan()).tan()).powi(2))
+            .sees(0.02),
+        Truth::new("pinhole-wide-window", &wide, 0.08, "0.16/2: the same in a picture twice as wide")
+            .because("The field of view is the vertical one and pixels are square: the picture is 2 × 1 at distance 1.")
+            .or_else("field of view taken as horizontal", 0.32)
+            .or_else("pixels not square", 0.16)
+            .sees(0.02),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blur_on_the_sensor_has_its_published_value() {
+        // 2a·|z − z_f|/z · f/(z_f − f): the circle of confusion, imaged.
+        let on_sensor = 2.0 * confusion(5.0) * FOCUS_M / 5.0 * 0.05 / (FOCUS_M - 0.05);
+        assert!((on_sensor - 3.846_153_85e-4).abs() < 1e-12);
+    }
+}

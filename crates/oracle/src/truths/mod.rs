@@ -1,0 +1,203 @@
+//! Whole scenes whose picture is known in closed form.
+//!
+//! A [`Truth`] is data: a scene that any renderer can be taught, the number that the mean of its picture must show, where the
+//! number comes from, a second evaluation by other means, and what plausible mistakes would show instead. [`truths`] lists
+//! them all, [`judge`] holds a reading to one.
+//!
+//! The quantity is always the mean over all pixels of the radiance (W·m⁻²·sr⁻¹·nm⁻¹) that arrives at the pixel, as a linear
+//! sensor reads it whose answer to a constant spectrum of radiance 1 is 1: CIE Y, if normalised that way. Irradiance E is read
+//! off a small Lambert plate of albedo ρ, which shows ρE/π.
+
+mod cameras;
+mod enclosures;
+mod furnaces;
+mod glass;
+mod illumination;
+mod irradiance;
+mod judge;
+mod lamps;
+mod prisms;
+mod scene;
+mod view_factors;
+
+use std::{fmt, sync::Arc};
+
+pub use irradiance::{
+    disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
+    walsh_reflectance,
+};
+pub use judge::judge;
+
+/// What a renderer must be able to do, or claims to do, for a truth to apply to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Claim {
+    /// Averages the two polarisations at every interface, as renderers that carry plain radiance do.
+    AveragesPolarisation,
+    /// Carries polarised light from interface to interface.
+    CarriesPolarisation,
+    /// Renders a band of wavelengths so narrow that it counts as one, read relative to [`Truth::white_scene`].
+    NarrowBand,
+    /// Refracts each wavelength by its own index.
+    Dispersion,
+    /// Simulates a thin lens.
+    ThinLens,
+    /// Ends every path at a given number of edges.
+    DepthLimit,
+    /// Tells the two sides of an interface inside another medium apart.
+    NestedMedia,
+}
+
+/// A mistake that a renderer might make, and what the picture would show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mistake {
+    /// The mistake.
+    pub what: &'static str,
+    /// What the picture's mean would be.
+    pub value: f64,
+}
+
+/// The value once more, by a way that shares no formula with the first.
+#[derive(Clone)]
+pub struct SecondOpinion {
+    /// The way.
+    pub how: &'static str,
+    /// Largest relative difference from the value that the way's own error explains.
+    pub tolerance: f64,
+    evaluate: Arc<dyn Fn() -> f64 + Send + Sync>,
+}
+
+impl SecondOpinion {
+    fn new(how: &'static str, tolerance: f64, evaluate: impl Fn() -> f64 + Send + Sync + 'static) -> Self {
+        Self { how, tolerance, evaluate: Arc::new(evaluate) }
+    }
+
+    /// Evaluates it, which may take a second.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        (self.evaluate)()
+    }
+}
+
+impl fmt::Debug for SecondOpinion {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.debug_struct("SecondOpinion")
+            .field("how", &self.how)
+            .field("tolerance", &self.tolerance)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A scene with a known answer.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// Its name: words joined by hyphens, unique.
+    pub name: String,
+    /// The scene as JSON text in the neutral form, version 1: SI units, camera, film, materials, objects, lights, integrator.
+    pub scene: String,
+    /// What the mean over all pixels must be.
+    pub value: f64,
+    /// The formula, with the numbers of this scene.
+    pub formula: String,
+    /// Why it holds.
+    pub derivation: &'static str,
+    /// The value by another way, where there is one.
+    pub second_opinion: Option<SecondOpinion>,
+    /// What plausible mistakes would show.
+    pub mistakes: Vec<Mistake>,
+    /// Absolute deviation that is not an error: of the scene as a stand-in for an ideal one, and of single precision.
+    pub tolerance: f64,
+    /// Where the tolerance comes from.
+    pub tolerance_reason: &'static str,
+    /// The largest relative bias that a reading may leave undetected and still be accepted. Known mistakes nearer than that
+    /// tighten it further.
+    pub must_see: f64,
+    /// What the renderer must be able to do, or claims.
+    pub claims: Vec<Claim>,
+    /// The wavelengths rendered, nm, when the truth holds for them only.
+    pub band_nm: Option<[f64; 2]>,
+}
+
+/// Relative rounding allowed to an f32 renderer: some thousand roundings of 6e-8 that do not average out.
+const SINGLE_PRECISION: f64 = 2e-5;
+
+impl Truth {
+    fn new(name: impl Into<String>, scene: &scene::Scene, value: f64, formula: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            scene: scene.to_json(),
+            value,
+            formula: formula.into(),
+            derivation: "",
+            second_opinion: None,
+            mistakes: Vec::new(),
+            tolerance: SINGLE_PRECISION * value.abs(),
+            tolerance_reason: "rounding of a renderer in single precision, 2e-5 relative",
+            must_see: 0.02,
+            claims: scene.claims(),
+            band_nm: scene.band_nm(),
+        }
+    }
+
+    fn because(mut self, derivation: &'static str) -> Self {
+        self.derivation = derivation;
+        self
+    }
+
+    fn or_else(mut self, what: &'static str, value: f64) -> Self {
+        self.mistakes.push(Mistake { what, value });
+        self
+    }
+
+    fn confirmed(
+        mut self,
+        how: &'static str,
+        tolerance: f64,
+        evaluate: impl Fn() -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.second_opinion = Some(SecondOpinion::new(how, tolerance, evaluate));
+        self
+    }
+
+    fn claims(mut self, claim: Claim) -> Self {
+        self.claims.push(claim);
+        self
+    }
+
+    /// Sets the relative bias that a reading must be able to see.
+    fn sees(mut self, relative: f64) -> Self {
+        self.must_see = relative;
+        self
+    }
+
+    /// Adds an absolute allowance with its reason to that for single precision.
+    fn allows(mut self, tolerance: f64, reason: &'static str) -> Self {
+        self.tolerance += tolerance;
+        self.tolerance_reason = reason;
+        self
+    }
+
+    /// For a truth of one wavelength: the same film and band under a constant sky of radiance 1. A sensor that does not
+    /// answer 1 to a constant spectrum cut to the band (a photometric one does not) is read relative to this picture's mean.
+    #[must_use]
+    pub fn white_scene(&self) -> Option<String> {
+        self.band_nm.map(|band| scene::Scene::white(band).to_json())
+    }
+}
+
+/// Every truth.
+#[must_use]
+pub fn truths() -> Vec<Truth> {
+    [
+        furnaces::truths(),
+        enclosures::truths(),
+        illumination::truths(),
+        lamps::truths(),
+        view_factors::truths(),
+        glass::truths(),
+        prisms::truths(),
+        cameras::truths(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}

@@ -1,0 +1,114 @@
+//! The list of truths itself: complete, consistent, confirmed, and equal to what is published.
+
+use std::collections::HashSet;
+
+use etalon_oracle::{
+    statistics::Estimate,
+    subjects::Reading,
+    truths::{Truth, judge, truths},
+};
+
+fn find(name: &str) -> Truth {
+    truths().into_iter().find(|truth| truth.name == name).unwrap_or_else(|| panic!("no truth is named {name}"))
+}
+
+#[test]
+fn there_are_at_least_forty_each_with_its_own_name_derivation_and_a_scene_that_parses() {
+    let list = truths();
+    assert!(list.len() >= 40, "{}", list.len());
+    let names: HashSet<_> = list.iter().map(|truth| truth.name.clone()).collect();
+    assert_eq!(names.len(), list.len());
+    for truth in &list {
+        let word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-.".contains(c);
+        assert!(truth.name.chars().all(word), "{}", truth.name);
+        assert!(truth.derivation.ends_with(['.', '!']) && !truth.formula.is_empty(), "{}", truth.name);
+        assert!(truth.value.is_finite() && truth.value >= 0.0, "{}", truth.name);
+        let scene: serde_json::Value = serde_json::from_str(&truth.scene).unwrap();
+        assert_eq!(scene["etalon"], 1, "{}", truth.name);
+        for mistake in &truth.mistakes {
+            let apart = (mistake.value - truth.value).abs();
+            assert!(apart > 2.0 * truth.tolerance, "{}: \"{}\" is {}", truth.name, mistake.what, mistake.value);
+        }
+        if let Some(white) = truth.white_scene() {
+            assert!(serde_json::from_str::<serde_json::Value>(&white).is_ok());
+        }
+    }
+}
+
+#[test]
+fn second_opinions_agree() {
+    let mut confirmed = 0;
+    for truth in truths() {
+        let Some(opinion) = &truth.second_opinion else { continue };
+        confirmed += 1;
+        let second = opinion.value();
+        let difference = (second - truth.value).abs() / truth.value;
+        assert!(
+            difference <= opinion.tolerance,
+            "{}: {} by {}, {} by formula",
+            truth.name,
+            second,
+            opinion.how,
+            truth.value
+        );
+    }
+    assert!(confirmed >= 40, "only {confirmed} truths have a second opinion");
+}
+
+#[test]
+#[allow(clippy::approx_constant, reason = "published decimals, not constants")]
+fn values_are_the_published_ones() {
+    let rho_over_pi = 0.5 / std::f64::consts::PI;
+    for (name, value, digits) in [
+        ("room-cube", 1.0, 1e-15),
+        ("room-cut-at-8", 0.996_093_75, 1e-15),
+        ("integrating-sphere", 1.273_239_54, 1e-8),
+        ("parallel-plates-lower", 1.538_461_54, 1e-8),
+        ("parallel-plates-upper", 1.076_923_08, 1e-8),
+        ("sphere-light-overhead", 0.785_398_163 * rho_over_pi, 1e-9),
+        ("disk-light", 1.570_796_33 * rho_over_pi, 1e-8),
+        ("square-light", 1.740_839_50 * rho_over_pi, 1e-8),
+        ("triangle-light", 0.302_299_894 * rho_over_pi, 1e-9),
+        ("view-factor-facing-squares", 0.5 * 0.199_824_896, 1e-9),
+        ("view-factor-disks", 0.5 * 0.381_966_011 * std::f64::consts::FRAC_PI_4, 1e-9),
+        ("plate-at-0-degrees", 0.923_076_923, 1e-9),
+        ("plate-at-45-degrees", 0.904_326_791, 1e-9),
+        ("plate-at-75-degrees", 0.596_092_048, 1e-9),
+        ("plate-at-89.99-degrees", 5.073_096_17e-4, 1e-12),
+        ("plate-at-75-degrees-polarised", 0.618_148_516, 1e-9),
+        ("2-plates-at-normal-incidence", 0.857_142_857, 1e-9),
+        ("eye-in-glass", 2.25, 1e-15),
+        ("glass-water-glass-at-30-degrees", 0.914_048, 1e-6),
+        ("lens-share-of-the-aperture", 0.16, 1e-12),
+        ("planck-5000-kelvin-at-560-nanometres", 1e-4 * 12_762.191_5, 1e-8),
+    ] {
+        let truth = find(name);
+        assert!((truth.value - value).abs() <= digits, "{name}: {} is not {value}", truth.value);
+    }
+}
+
+fn reading(mean: f64, standard_error: f64) -> Reading {
+    Reading { estimate: Estimate::new(mean, standard_error), nonfinite: 0 }
+}
+
+#[test]
+fn a_right_and_quiet_reading_passes_a_wrong_or_noisy_one_does_not() {
+    let truth = find("eye-in-glass");
+    let significance = 1e-8;
+    judge(&truth, &reading(2.2501, 1e-4), significance).assert();
+    assert!(!judge(&truth, &reading(2.26, 1e-4), significance).pass);
+    let without = judge(&truth, &reading(1.0001, 1e-4), significance);
+    assert!(!without.pass && without.evidence.contains("not scaled by n²"), "{without}");
+    let noisy = judge(&truth, &reading(2.3, 0.1), significance);
+    assert!(!noisy.pass && noisy.evidence.contains("times the samples"), "{noisy}");
+    assert!(!judge(&truth, &Reading { nonfinite: 1, ..reading(2.25, 1e-4) }, significance).pass);
+    assert!(!judge(&truth, &reading(f64::NAN, 1e-4), significance).pass);
+    assert!(!judge(&truth, &reading(2.25, f64::NAN), significance).pass);
+}
+
+#[test]
+fn darkness_must_be_dark() {
+    let truth = find("square-light-turned-away");
+    judge(&truth, &reading(0.0, 0.0), 1e-8).assert();
+    assert!(!judge(&truth, &reading(1e-9, 0.0), 1e-8).pass);
+}
