@@ -8,8 +8,10 @@ const SWEEP_LIMIT: usize = 64;
 const BINS: usize = 32;
 /// Above this many primitives the two halves of a node are built in parallel.
 const PARALLEL_LIMIT: usize = 4096;
-/// Below this depth nodes are halved by count, whatever their areas: it bounds the depth of any tree to this plus 32.
+/// Below this depth nodes are halved by count, whatever their areas.
 const DEPTH_LIMIT: u32 = 48;
+/// Levels of the deepest tree: 2³¹ primitives are halved 31 times.
+pub(crate) const MAX_DEPTH: usize = DEPTH_LIMIT as usize + 32;
 
 /// A node of the binary tree.
 #[derive(Clone, Copy, Debug)]

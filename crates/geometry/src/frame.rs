@@ -54,11 +54,11 @@ pub(crate) struct Frame {
 const BOX_MARGIN: f64 = 1.0 / (1_u64 << 50) as f64;
 /// Smallest direction component that is divided by.
 const MIN_DIRECTION: f32 = 1e-18;
-/// Relative widening of the distances of a box: (b − o)·(1/d) errs by 4 roundoffs (the difference, `d` as `f32`, its
-/// reciprocal, the product), 2ε; a third ε covers the product with this factor and second order.
-pub(crate) const NEAR_FACTOR: f32 = 1.0 - 3.0 * f32::EPSILON;
+/// Relative widening of the distances of a box: (b − o)·(1/d·factor) errs by 5 roundoffs (the difference, `d` as `f32`,
+/// its reciprocal, the two products), 2.5ε, and in second order.
+const NEAR_FACTOR: f32 = 1.0 - 3.0 * f32::EPSILON;
 /// See [`NEAR_FACTOR`].
-pub(crate) const FAR_FACTOR: f32 = 1.0 + 3.0 * f32::EPSILON;
+const FAR_FACTOR: f32 = 1.0 + 3.0 * f32::EPSILON;
 
 impl Frame {
     /// The frame in which a box becomes centred, and no larger than [−1, 1].
@@ -85,7 +85,7 @@ impl Frame {
     }
 
     /// A ray in this frame; `None` if it certainly misses the whole frame.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn enter(&self, q: &Query) -> Option<FrameRay> {
         let mut o = (q.origin - self.centre) * self.scale;
         let reach = o.abs().max_component();
@@ -112,26 +112,29 @@ impl Frame {
         // Every coordinate of a vertex relative to the origin is below this, and errs by two roundoffs of it (the
         // vertex, the origin and the difference are rounded); shearing adds six (the slope, the product, the sum).
         let reach = 1.0 + o.abs().max_component();
-        let axes = q.axes();
+        let axes = q.axes;
         let mut ray = FrameRay {
             origin_near: [0.0; 3],
             origin_far: [0.0; 3],
-            reciprocal: [0.0; 3],
+            reciprocal_near: [0.0; 3],
+            reciprocal_far: [0.0; 3],
             negative: [0; 3],
             axes,
-            origin: axes.map(|k| o[k] as f32),
-            shear: q.shear().map(|s| s as f32),
-            error: round_up(10.0 * f64::from(f32::EPSILON / 2.0) * reach + 2.0 * slack),
+            origin: axes.map(|k| o.to_array()[k] as f32),
+            shear: q.shear.map(|s| s as f32),
+            error: above(10.0 * f64::from(f32::EPSILON / 2.0) * reach + 2.0 * slack),
             scale: self.scale,
             start,
         };
         for k in 0..3 {
             let d = q.direction[k] as f32;
             let negative = d.is_sign_negative();
-            let (lower, upper) = (round_down(o[k] - slack), round_up(o[k] + slack));
+            let (lower, upper) = (below(o[k] - slack), above(o[k] + slack));
             ray.origin_near[k] = if negative { lower } else { upper };
             ray.origin_far[k] = if negative { upper } else { lower };
-            ray.reciprocal[k] = 1.0 / d.abs().max(MIN_DIRECTION).copysign(d);
+            let reciprocal = 1.0 / d.abs().max(MIN_DIRECTION).copysign(d);
+            ray.reciprocal_near[k] = reciprocal * NEAR_FACTOR;
+            ray.reciprocal_far[k] = reciprocal * FAR_FACTOR;
             ray.negative[k] = usize::from(negative);
         }
         Some(ray)
@@ -145,8 +148,11 @@ pub(crate) struct FrameRay {
     pub(crate) origin_near: [f32; 3],
     /// The origin displaced against the ray by more than its error: for the planes where the ray leaves boxes.
     pub(crate) origin_far: [f32; 3],
-    /// 1/direction, finite, with the sign of the direction's sign bit.
-    pub(crate) reciprocal: [f32; 3],
+    /// 1/direction, finite, with the sign of the direction's sign bit, and a little smaller: a distance ahead comes out
+    /// no larger than it is.
+    pub(crate) reciprocal_near: [f32; 3],
+    /// The same, a little larger: a distance ahead comes out no smaller than it is.
+    pub(crate) reciprocal_far: [f32; 3],
     /// The direction's sign bits.
     pub(crate) negative: [usize; 3],
     /// The axes of the watertight projection, the direction's largest component last.
@@ -167,14 +173,14 @@ impl FrameRay {
     pub(crate) fn distance(&self, t: f64) -> f32 {
         // Accepted distances err by up to 2⁻³⁰ of themselves.
         const WIDER: f64 = 1.0 + 1.0 / (1_u64 << 29) as f64;
-        round_up(t * self.scale * WIDER - self.start).max(0.0)
+        above(t * self.scale * WIDER - self.start).max(0.0)
     }
 
     /// A distance in this frame that is not above the distance of any hit beyond `t` of the [`Query`].
     #[inline]
     pub(crate) fn distance_below(&self, t: f64) -> f32 {
         const NARROWER: f64 = 1.0 - 1.0 / (1_u64 << 29) as f64;
-        round_down(t * self.scale * NARROWER - self.start)
+        below(t * self.scale * NARROWER - self.start)
     }
 }
 
@@ -207,4 +213,19 @@ pub(crate) fn round_down(v: f64) -> f32 {
 pub(crate) fn round_up(v: f64) -> f32 {
     let r = v as f32;
     if f64::from(r) < v { r.next_up() } else { r }
+}
+
+/// An `f32` not above `v` by at most two roundoffs, without a branch: a ray's rounding is as good as random.
+#[inline(always)]
+fn below(v: f64) -> f32 {
+    let r = v as f32;
+    // Of infinity, infinity: what is beyond it is beyond the frame.
+    r - (r.abs() * f32::EPSILON + f32::MIN_POSITIVE).min(f32::MAX)
+}
+
+/// An `f32` not below `v` by at most two roundoffs, without a branch.
+#[inline(always)]
+fn above(v: f64) -> f32 {
+    let r = v as f32;
+    r + (r.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }

@@ -24,18 +24,23 @@ pub(crate) struct Query {
     pub(crate) t_max: f64,
     pub(crate) leaves: PrimitiveId,
     pub(crate) aims_at: PrimitiveId,
-    axes: [usize; 3],
-    shear: [f64; 3],
+    /// The axes of the projection, the direction's largest component last.
+    pub(crate) axes: [usize; 3],
+    /// The projection's two slopes and 1/(the direction's largest component).
+    pub(crate) shear: [f64; 3],
+    /// The origin along `axes`.
+    start: [f64; 3],
 }
 
 impl Query {
     /// Prepares a ray; `None` if no point of it is defined: a component is NaN or infinite, the direction is zero or its
     /// magnitude outside 2^±900, or `t_max` is not positive.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new<R: Real>(ray: &Ray<R>) -> Option<Self> {
         let (origin, direction) = (ray.origin.to_f64(), ray.direction.to_f64());
         let t_max = ray.t_max.to_f64();
-        let magnitude = direction.abs().max_component();
+        let a = direction.abs();
+        let magnitude = a.max_component();
         let exponent = (magnitude.to_bits() >> 52) as i64 - 1023;
         let usable = origin.is_finite() && direction.is_finite() && exponent.abs() <= 900 && t_max > 0.0;
         if !usable {
@@ -43,10 +48,11 @@ impl Query {
         }
         let scale = power_of_two(-exponent);
         let direction = direction * scale;
-        let a = direction.abs();
-        let kz = if a.x >= a.y && a.x >= a.z { 0 } else { 1 + usize::from(a.z > a.y) };
-        let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
-        let rz = 1.0 / direction[kz];
+        // Without a branch: the axis of a ray is as good as random.
+        let kz = usize::from(a.y > a.x.max(a.z)) + 2 * usize::from(a.z > a.x && a.z >= a.y);
+        let axes = AXES[kz];
+        let (d, o) = (direction.to_array(), origin.to_array());
+        let rz = 1.0 / d[axes[2]];
         Some(Self {
             origin,
             direction,
@@ -54,33 +60,20 @@ impl Query {
             t_max: t_max * power_of_two(exponent),
             leaves: ray.leaves,
             aims_at: ray.aims_at,
-            axes: [kx, ky, kz],
-            shear: [direction[kx] * rz, direction[ky] * rz, rz],
+            axes,
+            shear: [d[axes[0]] * rz, d[axes[1]] * rz, rz],
+            start: axes.map(|k| o[k]),
         })
-    }
-
-    /// The axes of the projection, the direction's largest component last.
-    #[inline]
-    pub(crate) fn axes(&self) -> [usize; 3] {
-        self.axes
-    }
-
-    /// The projection's two slopes and 1/(the direction's largest component).
-    #[inline]
-    pub(crate) fn shear(&self) -> [f64; 3] {
-        self.shear
     }
 
     /// A vertex relative to the origin, sheared so that the ray runs along z and z counts ray parameters; and the
     /// magnitude to which the rounding errors of its x and y are relative.
     ///
     /// The result depends on nothing but the ray and the vertex: triangles that share a vertex agree on it to the bit.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn project(&self, vertex: Vec3<f64>) -> Projected {
-        let v = vertex - self.origin;
-        let [kx, ky, kz] = self.axes;
-        let z = v[kz];
-        let (x, y) = (v[kx], v[ky]);
+        let v = vertex.to_array();
+        let [x, y, z] = std::array::from_fn(|k| v[self.axes[k]] - self.start[k]);
         Projected {
             x: x - self.shear[0] * z,
             y: y - self.shear[1] * z,
@@ -89,6 +82,9 @@ impl Query {
         }
     }
 }
+
+/// The axes of the projection along each axis.
+const AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
 
 /// A vertex in the sheared frame of a [`Query`].
 #[derive(Clone, Copy, Debug)]

@@ -15,8 +15,8 @@ pub(crate) const UNFILTERED: u32 = 1 << 31;
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node8 {
-    /// Lower and upper x, then y, then z, of each child; a missing child has an inverted, infinite box.
-    pub(crate) planes: [[f32; WIDTH]; 6],
+    /// For x, y and z the lower and the upper planes of the children; a missing child has an inverted, infinite box.
+    pub(crate) planes: [[[f32; WIDTH]; 2]; 3],
     /// The index of a node, or of a leaf with [`LEAF`].
     pub(crate) children: [u32; WIDTH],
 }
@@ -37,14 +37,14 @@ pub(crate) struct WideTree {
     pub(crate) frame: Frame,
     pub(crate) nodes: Vec<Node8>,
     pub(crate) leaves: Vec<Leaf8>,
-    /// Entries that a traversal's stack needs at most.
-    pub(crate) stack: usize,
+    /// Levels of nodes.
+    pub(crate) depth: usize,
 }
 
 impl WideTree {
     /// Collapses a binary tree.
     pub(crate) fn collapse(frame: Frame, tree: &BinaryTree, primitives: &[Primitive]) -> Self {
-        let mut wide = Self { frame, nodes: Vec::new(), leaves: Vec::new(), stack: 0 };
+        let mut wide = Self { frame, nodes: Vec::new(), leaves: Vec::new(), depth: 0 };
         let root = wide.node(tree, primitives, 0, 1);
         debug_assert_eq!(root, 0);
         wide.nodes.shrink_to_fit();
@@ -52,7 +52,7 @@ impl WideTree {
         wide
     }
 
-    /// Appends the node that stands for a binary node, and all below it; `depth` entries of the stack are in use.
+    /// Appends the node that stands for a binary node, and all below it; it is on level `depth`.
     fn node(&mut self, tree: &BinaryTree, primitives: &[Primitive], root: u32, depth: usize) -> u32 {
         let mut children = vec![root];
         // Open the largest inner node until there are eight children.
@@ -65,25 +65,22 @@ impl WideTree {
             children.push(tree.nodes[opened as usize].first);
         }
         let index = self.nodes.len();
-        let mut node = Node8 {
-            planes: std::array::from_fn(|row| [[f32::INFINITY, f32::NEG_INFINITY][row % 2]; WIDTH]),
-            children: [0; WIDTH],
-        };
+        let mut node =
+            Node8 { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [0; WIDTH] };
         for (lane, &child) in children.iter().enumerate() {
             let Box32 { min, max } = tree.nodes[child as usize].bounds;
             for k in 0..3 {
-                node.planes[2 * k][lane] = min[k];
-                node.planes[2 * k + 1][lane] = max[k];
+                node.planes[k][0][lane] = min[k];
+                node.planes[k][1][lane] = max[k];
             }
         }
         self.nodes.push(node);
-        let depth = depth + children.len() - 1;
-        self.stack = self.stack.max(depth);
+        self.depth = self.depth.max(depth);
         for (lane, &child) in children.iter().enumerate() {
             let reference = if tree.nodes[child as usize].count > 0 {
                 self.leaf(tree, primitives, child)
             } else {
-                self.node(tree, primitives, child, depth)
+                self.node(tree, primitives, child, depth + 1)
             };
             self.nodes[index].children[lane] = reference;
         }

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::{Candidates, Entered, Filters, any_with, closest_with};
-use crate::frame::{FAR_FACTOR, FrameRay, NEAR_FACTOR};
+use crate::frame::FrameRay;
 use crate::query::{Query, RawHit};
 use crate::wide::{Leaf8, Node8, WIDTH, WideTree};
 use crate::{Primitive, PrimitiveId};
@@ -46,33 +46,138 @@ fn any(filters: Avx2, tree: &WideTree, primitives: &[Primitive], query: &Query) 
     any_with(filters, tree, primitives, query)
 }
 
+/// Eight floats. Its operations, and whatever else here uses vector instructions, are inlined by force into the two
+/// functions above, the only ones compiled for AVX2. They exist for an [`Avx2`] alone, which [`Filters`] hands on.
+#[derive(Clone, Copy)]
+struct F8(__m256);
+
+macro_rules! operator {
+    ($trait:ident, $f:ident, $instruction:ident) => {
+        impl std::ops::$trait for F8 {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, o: Self) -> Self {
+                // SAFETY: arithmetic of AVX, whose presence is proved where an `F8` comes from.
+                Self(unsafe { $instruction(self.0, o.0) })
+            }
+        }
+    };
+}
+operator!(Add, add, _mm256_add_ps);
+operator!(Sub, sub, _mm256_sub_ps);
+operator!(Mul, mul, _mm256_mul_ps);
+operator!(Div, div, _mm256_div_ps);
+operator!(BitAnd, bitand, _mm256_and_ps);
+operator!(BitOr, bitor, _mm256_or_ps);
+operator!(BitXor, bitxor, _mm256_xor_ps);
+
+impl F8 {
+    #[inline(always)]
+    fn splat(_: Avx2, v: f32) -> Self {
+        // SAFETY: the token proves AVX2.
+        Self(unsafe { _mm256_set1_ps(v) })
+    }
+
+    #[inline(always)]
+    fn load(_: Avx2, row: &[f32; WIDTH]) -> Self {
+        // SAFETY: the token proves AVX2; eight floats are readable at the reference, aligned or not.
+        Self(unsafe { _mm256_loadu_ps(row.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f32; WIDTH] {
+        let mut out = [0.0; WIDTH];
+        // SAFETY: as for the operators; eight floats are writable at the reference, aligned or not.
+        unsafe { _mm256_storeu_ps(out.as_mut_ptr(), self.0) };
+        out
+    }
+
+    /// The smaller of each pair; the second if one is NaN.
+    #[inline(always)]
+    fn min(self, o: Self) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe { _mm256_min_ps(self.0, o.0) })
+    }
+
+    /// The larger of each pair; the second if one is NaN.
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe { _mm256_max_ps(self.0, o.0) })
+    }
+
+    /// All bits of the lanes that are below; false for NaN.
+    #[inline(always)]
+    fn below(self, o: Self) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, o.0) })
+    }
+
+    /// All bits of the lanes that are not above; false for NaN.
+    #[inline(always)]
+    fn at_most(self, o: Self) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, o.0) })
+    }
+
+    /// The sign bits.
+    #[inline(always)]
+    fn mask(self) -> u32 {
+        // SAFETY: as for the operators.
+        (unsafe { _mm256_movemask_ps(self.0) }) as u32
+    }
+
+    #[inline(always)]
+    fn max_of(a: [Self; 3]) -> Self {
+        a[0].max(a[1]).max(a[2])
+    }
+
+    #[inline(always)]
+    fn min_of(a: [Self; 3]) -> Self {
+        a[0].min(a[1]).min(a[2])
+    }
+}
+
+/// The empty lanes of a leaf, and those without a filter.
+#[inline(always)]
+fn lanes(_: Avx2, ids: &[u32; WIDTH]) -> (u32, u32) {
+    // SAFETY: the token proves AVX2; eight integers are readable at the reference, aligned or not.
+    unsafe {
+        let ids = _mm256_loadu_si256(ids.as_ptr().cast());
+        let empty = _mm256_cmpeq_epi32(ids, _mm256_set1_epi32(-1));
+        let empty = _mm256_movemask_ps(_mm256_castsi256_ps(empty)) as u32;
+        (empty, _mm256_movemask_ps(_mm256_castsi256_ps(ids)) as u32 & !empty)
+    }
+}
+
 /// A ray broadcast to all lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Ray8 {
-    origin_near: [__m256; 3],
-    origin_far: [__m256; 3],
-    reciprocal: [__m256; 3],
-    /// Rows of [`Node8::planes`] where the ray enters.
+    origin_near: [F8; 3],
+    origin_far: [F8; 3],
+    reciprocal_near: [F8; 3],
+    reciprocal_far: [F8; 3],
+    /// The planes where the ray enters, 0 or 1 for each axis.
     entry: [usize; 3],
     axes: [usize; 3],
-    origin: [__m256; 3],
-    shear: [__m256; 3],
+    origin: [f32; 3],
+    shear: [f32; 3],
     error: f32,
 }
 
+/// A vertex in the projection of the ray: z is not yet scaled.
 #[inline(always)]
-fn load(row: &[f32; WIDTH]) -> __m256 {
-    // SAFETY: eight floats are readable at the reference; the load need not be aligned. Only code that holds an
-    // `Avx2` calls this.
-    unsafe { _mm256_loadu_ps(row.as_ptr()) }
+fn project(filters: Avx2, ray: &Ray8, vertex: &[[f32; WIDTH]; 3]) -> [F8; 3] {
+    let [kx, ky, kz] = ray.axes;
+    let z = F8::load(filters, &vertex[kz]) - F8::splat(filters, ray.origin[2]);
+    let x = F8::load(filters, &vertex[kx]) - F8::splat(filters, ray.origin[0]);
+    let y = F8::load(filters, &vertex[ky]) - F8::splat(filters, ray.origin[1]);
+    [x - F8::splat(filters, ray.shear[0]) * z, y - F8::splat(filters, ray.shear[1]) * z, z]
 }
 
 #[inline(always)]
-fn store(v: __m256) -> [f32; WIDTH] {
-    let mut out = [0.0; WIDTH];
-    // SAFETY: eight floats are writable at the reference; the store need not be aligned.
-    unsafe { _mm256_storeu_ps(out.as_mut_ptr(), v) };
-    out
+fn edge(p: [F8; 3], q: [F8; 3]) -> F8 {
+    p[0] * q[1] - p[1] * q[0]
 }
 
 impl Filters for Avx2 {
@@ -80,16 +185,19 @@ impl Filters for Avx2 {
 
     #[inline(always)]
     fn ray(self, ray: &FrameRay) -> Ray8 {
-        // SAFETY: `self` proves AVX2; arithmetic only.
-        let all = |v: f32| unsafe { _mm256_set1_ps(v) };
+        let [nx, ny, nz] = ray.origin_near;
+        let [fx, fy, fz] = ray.origin_far;
+        let [rx, ry, rz] = ray.reciprocal_near;
+        let [sx, sy, sz] = ray.reciprocal_far;
         Ray8 {
-            origin_near: ray.origin_near.map(all),
-            origin_far: ray.origin_far.map(all),
-            reciprocal: ray.reciprocal.map(all),
-            entry: [ray.negative[0], 2 + ray.negative[1], 4 + ray.negative[2]],
+            origin_near: [F8::splat(self, nx), F8::splat(self, ny), F8::splat(self, nz)],
+            origin_far: [F8::splat(self, fx), F8::splat(self, fy), F8::splat(self, fz)],
+            reciprocal_near: [F8::splat(self, rx), F8::splat(self, ry), F8::splat(self, rz)],
+            reciprocal_far: [F8::splat(self, sx), F8::splat(self, sy), F8::splat(self, sz)],
+            entry: ray.negative,
             axes: ray.axes,
-            origin: ray.origin.map(all),
-            shear: ray.shear.map(all),
+            origin: ray.origin,
+            shear: ray.shear,
             error: ray.error,
         }
     }
@@ -98,100 +206,73 @@ impl Filters for Avx2 {
     fn enter(self, ray: &Ray8, node: &Node8, limit: f32) -> Entered {
         let [ex, ey, ez] = ray.entry;
         let planes = &node.planes;
-        // SAFETY: `self` proves AVX2; arithmetic only.
+        // The children's numbers lie in a cache line of their own, which would be asked for only once the mask is known.
+        // SAFETY: a hint, which reads nothing; the address is within the node.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(node.children.as_ptr().cast()) };
+        let plane = |k: usize, side: usize| F8::load(self, &planes[k][side & 1]);
+        let near_x = (plane(0, ex) - ray.origin_near[0]) * ray.reciprocal_near[0];
+        let near_y = (plane(1, ey) - ray.origin_near[1]) * ray.reciprocal_near[1];
+        let near_z = (plane(2, ez) - ray.origin_near[2]) * ray.reciprocal_near[2];
+        let far_x = (plane(0, 1 - ex) - ray.origin_far[0]) * ray.reciprocal_far[0];
+        let far_y = (plane(1, 1 - ey) - ray.origin_far[1]) * ray.reciprocal_far[1];
+        let far_z = (plane(2, 1 - ez) - ray.origin_far[2]) * ray.reciprocal_far[2];
+        let near = near_x.max(near_y).max(near_z.max(F8::splat(self, 0.0)));
+        let far = far_x.min(far_y).min(far_z.min(F8::splat(self, limit)));
+        Entered { mask: near.at_most(far).mask(), near: near.to_array() }
+    }
+
+    #[inline(always)]
+    fn prefetch(self, primitive: &Primitive) {
+        let address = std::ptr::from_ref(primitive).cast::<i8>();
+        // SAFETY: a hint, which reads nothing; both addresses are within the primitive.
         unsafe {
-            let near = |k: usize, row: usize| {
-                _mm256_mul_ps(_mm256_sub_ps(load(&planes[row]), ray.origin_near[k]), ray.reciprocal[k])
-            };
-            let far = |k: usize, row: usize| {
-                _mm256_mul_ps(_mm256_sub_ps(load(&planes[row ^ 1]), ray.origin_far[k]), ray.reciprocal[k])
-            };
-            let entry =
-                _mm256_max_ps(_mm256_max_ps(near(0, ex), near(1, ey)), _mm256_max_ps(near(2, ez), _mm256_setzero_ps()));
-            let exit =
-                _mm256_min_ps(_mm256_min_ps(far(0, ex), far(1, ey)), _mm256_min_ps(far(2, ez), _mm256_set1_ps(limit)));
-            let entry = _mm256_mul_ps(entry, _mm256_set1_ps(NEAR_FACTOR));
-            let exit = _mm256_mul_ps(exit, _mm256_set1_ps(FAR_FACTOR));
-            let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32;
-            Entered { mask, near: store(entry) }
+            _mm_prefetch::<_MM_HINT_T0>(address);
+            _mm_prefetch::<_MM_HINT_T0>(address.add(size_of::<Primitive>() - 1));
         }
     }
 
     /// As the portable filter, whose doc comment derives the bounds.
     #[inline(always)]
     fn candidates(self, ray: &Ray8, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
-        // SAFETY: `self` proves AVX2; arithmetic only, and a load of eight integers through a reference to them.
-        unsafe {
-            let ids = _mm256_loadu_si256(leaf.ids.as_ptr().cast());
-            let empty = _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(ids, _mm256_set1_epi32(-1)))) as u32;
-            let unfiltered = _mm256_movemask_ps(_mm256_castsi256_ps(ids)) as u32 & !empty;
-
-            let sign = _mm256_set1_ps(-0.0);
-            let abs = |v| _mm256_andnot_ps(sign, v);
-            let [kx, ky, kz] = ray.axes;
-            let project = |vertex: &[[f32; WIDTH]; 3]| {
-                let z = _mm256_sub_ps(load(&vertex[kz]), ray.origin[2]);
-                let x = _mm256_sub_ps(_mm256_sub_ps(load(&vertex[kx]), ray.origin[0]), _mm256_mul_ps(ray.shear[0], z));
-                let y = _mm256_sub_ps(_mm256_sub_ps(load(&vertex[ky]), ray.origin[1]), _mm256_mul_ps(ray.shear[1], z));
-                (x, y, z)
-            };
-            let (ax, ay, az) = project(&leaf.vertices[0]);
-            let (bx, by, bz) = project(&leaf.vertices[1]);
-            let (cx, cy, cz) = project(&leaf.vertices[2]);
-            let edge = |px, py, qx, qy| _mm256_sub_ps(_mm256_mul_ps(px, qy), _mm256_mul_ps(py, qx));
-            let u = edge(cx, cy, bx, by);
-            let v = edge(ax, ay, cx, cy);
-            let w = edge(bx, by, ax, ay);
-            let max3 = |a, b, c| _mm256_max_ps(_mm256_max_ps(a, b), c);
-            let min3 = |a, b, c| _mm256_min_ps(_mm256_min_ps(a, b), c);
-            let extent = _mm256_max_ps(max3(abs(ax), abs(bx), abs(cx)), max3(abs(ay), abs(by), abs(cy)));
-            let error = _mm256_add_ps(
-                _mm256_mul_ps(extent, _mm256_set1_ps(6.0 * ray.error)),
-                _mm256_set1_ps(2.0 * ray.error * ray.error),
-            );
-            let minus_error = _mm256_xor_ps(error, sign);
-            let (least, most) = (min3(u, v, w), max3(u, v, w));
-            let outside = _mm256_and_ps(
-                _mm256_cmp_ps::<_CMP_LT_OQ>(least, minus_error),
-                _mm256_cmp_ps::<_CMP_GT_OQ>(most, error),
-            );
-            let mut mask = !(_mm256_movemask_ps(outside) as u32 | empty | unfiltered) & 0xFF;
-            if mask == 0 {
-                return Candidates { mask: unfiltered, certain: 0, near: [0.0; WIDTH] };
-            }
-            let det = _mm256_add_ps(_mm256_add_ps(u, v), w);
-            let reciprocal = _mm256_div_ps(ray.shear[2], det);
-            let weighted =
-                _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(u, az), _mm256_mul_ps(v, bz)), _mm256_mul_ps(w, cz));
-            let t = _mm256_mul_ps(weighted, reciprocal);
-            let spread = _mm256_sub_ps(max3(az, bz, cz), min3(az, bz, cz));
-            let depth = _mm256_add_ps(spread, _mm256_set1_ps(2.0 * ray.error));
-            let error6 = _mm256_mul_ps(error, _mm256_set1_ps(6.0));
-            let t_error = _mm256_add_ps(
-                _mm256_mul_ps(_mm256_mul_ps(error6, depth), abs(reciprocal)),
-                _mm256_set1_ps(3.0 * ray.error),
-            );
-            let determined = _mm256_cmp_ps::<_CMP_GT_OQ>(abs(det), error6);
-            // Undetermined distances count as zero.
-            let near = _mm256_and_ps(_mm256_sub_ps(t, t_error), determined);
-            let far = _mm256_add_ps(t, t_error);
-            let beyond = _mm256_and_ps(
-                determined,
-                _mm256_or_ps(
-                    _mm256_cmp_ps::<_CMP_GT_OQ>(near, _mm256_set1_ps(limit)),
-                    _mm256_cmp_ps::<_CMP_LT_OQ>(far, _mm256_setzero_ps()),
-                ),
-            );
-            mask &= !(_mm256_movemask_ps(beyond) as u32);
-            let inside =
-                _mm256_or_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(least, error), _mm256_cmp_ps::<_CMP_LT_OQ>(most, minus_error));
-            let between = _mm256_and_ps(
-                _mm256_cmp_ps::<_CMP_GT_OQ>(near, _mm256_setzero_ps()),
-                _mm256_cmp_ps::<_CMP_LT_OQ>(far, _mm256_set1_ps(certain_limit)),
-            );
-            let certain = _mm256_and_ps(_mm256_and_ps(inside, between), determined);
-            let certain = _mm256_movemask_ps(certain) as u32 & mask;
-            Candidates { mask: mask | unfiltered, certain, near: store(near) }
+        let (empty, unfiltered) = lanes(self, &leaf.ids);
+        let all = |v| F8::splat(self, v);
+        let sign = all(-0.0);
+        let magnitude = all(f32::from_bits(!0 >> 1));
+        let a = project(self, ray, &leaf.vertices[0]);
+        let b = project(self, ray, &leaf.vertices[1]);
+        let c = project(self, ray, &leaf.vertices[2]);
+        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+        let extent_x = F8::max_of([a[0] & magnitude, b[0] & magnitude, c[0] & magnitude]);
+        let extent_y = F8::max_of([a[1] & magnitude, b[1] & magnitude, c[1] & magnitude]);
+        let error = extent_x.max(extent_y) * all(6.0 * ray.error) + all(2.0 * ray.error * ray.error);
+        let minus_error = error ^ sign;
+        let (least, most) = (F8::min_of([u, v, w]), F8::max_of([u, v, w]));
+        let outside = least.below(minus_error) & error.below(most);
+        let mask = !(outside.mask() | empty | unfiltered) & 0xFF;
+        if mask == 0 {
+            return Candidates { mask: unfiltered, certain: 0, near: [0.0; WIDTH], far: [0.0; WIDTH] };
+        }
+        let det = u + v + w;
+        let reciprocal = all(ray.shear[2]) / det;
+        let t = (u * a[2] + v * b[2] + w * c[2]) * reciprocal;
+        let z = [a[2], b[2], c[2]];
+        let depth = F8::max_of(z) - F8::min_of(z) + all(2.0 * ray.error);
+        let error6 = error * all(6.0);
+        let t_error = error6 * depth * (reciprocal & magnitude) + all(3.0 * ray.error);
+        let determined = error6.below(det & magnitude);
+        // Undetermined distances count as zero.
+        let near = (t - t_error) & determined;
+        let far = t + t_error;
+        let zero = all(0.0);
+        let beyond = determined & (all(limit).below(near) | far.below(zero));
+        let mask = mask & !beyond.mask();
+        let inside = error.below(least) | most.below(minus_error);
+        let certain = inside & determined & zero.below(near) & far.below(all(certain_limit));
+        Candidates {
+            mask: mask | unfiltered,
+            certain: certain.mask() & mask,
+            near: near.to_array(),
+            far: far.to_array(),
         }
     }
 }

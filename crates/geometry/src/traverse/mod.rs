@@ -7,15 +7,15 @@
 mod avx2;
 mod portable;
 
+use crate::build::MAX_DEPTH;
 use crate::frame::FrameRay;
 use crate::geometry::Best;
 use crate::query::{Query, RawHit};
 use crate::wide::{LEAF, Leaf8, Node8, WIDTH, WideTree};
 use crate::{Primitive, PrimitiveId};
 
-/// Entries of the stack that serves all but degenerate trees, and of the one that serves any (see `build`: 80 binary
-/// levels, each of which can leave seven siblings only if eight were merged into one).
-const STACKS: [usize; 2] = [96, 640];
+/// Levels of the stack that serves all but degenerate trees, and of the one that serves any: as many as a binary tree has.
+const LEVELS: [usize; 2] = [12, MAX_DEPTH];
 
 /// The children of a node that a ray meets.
 pub(crate) struct Entered {
@@ -33,6 +33,8 @@ pub(crate) struct Candidates {
     certain: u32,
     /// Distances not above the true ones.
     near: [f32; WIDTH],
+    /// Distances not below the true ones of those certainly hit.
+    far: [f32; WIDTH],
 }
 
 /// The filters of an instruction set.
@@ -43,6 +45,8 @@ pub(crate) trait Filters: Copy {
     fn ray(self, ray: &FrameRay) -> Self::Ray;
     /// The children of a node that the ray meets in [0, `limit`].
     fn enter(self, ray: &Self::Ray, node: &Node8, limit: f32) -> Entered;
+    /// Announces that a primitive will be read.
+    fn prefetch(self, primitive: &Primitive);
     /// The primitives of a leaf that the ray may hit in [0, `limit`], and those that it certainly hits in
     /// (0, `certain_limit`).
     fn candidates(self, ray: &Self::Ray, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates;
@@ -88,21 +92,40 @@ fn closest_with<F: Filters>(
     query: &Query,
 ) -> Option<(RawHit, PrimitiveId)> {
     let ray = tree.frame.enter(query)?;
-    if tree.stack <= STACKS[0] {
-        closest_on(filters, tree, primitives, query, &ray, &mut [0; STACKS[0]])
+    if tree.depth <= LEVELS[0] {
+        closest_on::<F, { LEVELS[0] * (WIDTH - 1) }>(filters, tree, primitives, query, &ray)
     } else {
-        closest_on(filters, tree, primitives, query, &ray, &mut [0; STACKS[1]])
+        closest_deep(tree, primitives, query, &ray)
     }
 }
 
 #[inline(always)]
 fn any_with<F: Filters>(filters: F, tree: &WideTree, primitives: &[Primitive], query: &Query) -> bool {
     let Some(ray) = tree.frame.enter(query) else { return false };
-    if tree.stack <= STACKS[0] {
-        any_on(filters, tree, primitives, query, &ray, &mut [0; STACKS[0]])
+    if tree.depth <= LEVELS[0] {
+        any_on::<F, { LEVELS[0] }>(filters, tree, primitives, query, &ray)
     } else {
-        any_on(filters, tree, primitives, query, &ray, &mut [0; STACKS[1]])
+        any_deep(tree, primitives, query, &ray)
     }
+}
+
+/// Degenerate trees, by the portable filters.
+#[cold]
+#[inline(never)]
+fn closest_deep(
+    tree: &WideTree,
+    primitives: &[Primitive],
+    query: &Query,
+    ray: &FrameRay,
+) -> Option<(RawHit, PrimitiveId)> {
+    closest_on::<_, { LEVELS[1] * (WIDTH - 1) }>(portable::Portable, tree, primitives, query, ray)
+}
+
+/// Degenerate trees, by the portable filters.
+#[cold]
+#[inline(never)]
+fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query, ray: &FrameRay) -> bool {
+    any_on::<_, { LEVELS[1] }>(portable::Portable, tree, primitives, query, ray)
 }
 
 /// A stack entry: the distance's bits above (those of non-negative numbers are ordered as they are), the child below.
@@ -111,6 +134,30 @@ fn entry(near: f32, child: u32) -> u64 {
     u64::from(near.to_bits()) << 32 | u64::from(child)
 }
 
+/// Hits that are certain, but whose distances are known in `f32` only.
+struct Pending {
+    ids: [u32; Self::LIMIT],
+    near: [f32; Self::LIMIT],
+    count: usize,
+}
+
+impl Pending {
+    /// Hits that `f32` cannot order are rare, more than two of them duplicates.
+    const LIMIT: usize = 4;
+
+    /// Decides in `f64` those that are not beyond `limit`.
+    #[inline(always)]
+    fn resolve(&mut self, best: &mut Best, primitives: &[Primitive], query: &Query, limit: f32) {
+        for i in 0..self.count {
+            if self.near[i] <= limit {
+                best.test(primitives, query, PrimitiveId(self.ids[i]));
+            }
+        }
+        self.count = 0;
+    }
+}
+
+/// The closest hit, by a stack of children, nearest on top.
 #[inline(always)]
 fn closest_on<F: Filters, const N: usize>(
     filters: F,
@@ -118,11 +165,13 @@ fn closest_on<F: Filters, const N: usize>(
     primitives: &[Primitive],
     query: &Query,
     frame_ray: &FrameRay,
-    stack: &mut [u64; N],
 ) -> Option<(RawHit, PrimitiveId)> {
     let ray = filters.ray(frame_ray);
     let mut best = Best::new(query);
-    let mut limit = frame_ray.distance(best.t_max);
+    let mut limit = frame_ray.distance(query.t_max);
+    let certain_limit = frame_ray.distance_below(query.t_max);
+    let mut pending = Pending { ids: [0; Pending::LIMIT], near: [0.0; Pending::LIMIT], count: 0 };
+    let mut stack = [0_u64; N];
     let mut top = 0;
     let mut child = 0;
     loop {
@@ -130,37 +179,72 @@ fn closest_on<F: Filters, const N: usize>(
             let node = &tree.nodes[child as usize];
             let Entered { mut mask, near } = filters.enter(&ray, node, limit);
             if mask != 0 {
-                // Descend into the nearest; the others wait, nearest on top.
+                let lane = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                if mask == 0 {
+                    child = node.children[lane];
+                    continue;
+                }
+                let first = entry(near[lane], node.children[lane]);
+                let lane = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                let second = entry(near[lane], node.children[lane]);
+                let mut nearest = first.min(second);
+                stack[top] = first.max(second);
                 let base = top;
-                loop {
+                top += 1;
+                while mask != 0 {
                     let lane = mask.trailing_zeros() as usize;
                     mask &= mask - 1;
                     let new = entry(near[lane], node.children[lane]);
+                    let waiting = nearest.max(new);
+                    nearest = nearest.min(new);
                     let mut at = top;
-                    while at > base && stack[at - 1] < new {
+                    while at > base && stack[at - 1] < waiting {
                         stack[at] = stack[at - 1];
                         at -= 1;
                     }
-                    stack[at] = new;
+                    stack[at] = waiting;
                     top += 1;
-                    if mask == 0 {
-                        break;
-                    }
                 }
+                child = nearest as u32;
+                continue;
             }
         } else {
             let leaf = &tree.leaves[(child & !LEAF) as usize];
-            let mut candidates = filters.candidates(&ray, leaf, limit, 0.0);
+            let mut candidates = filters.candidates(&ray, leaf, limit, certain_limit);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
-                if candidates.near[lane] <= limit && best.test(primitives, query, leaf.id(lane)) {
-                    limit = frame_ray.distance(best.t_max);
+                let id = leaf.ids[lane];
+                // A flat primitive is not met again: it need not be fetched.
+                if id == query.leaves.0 || candidates.near[lane] > limit {
+                    continue;
+                }
+                if candidates.certain >> lane & 1 == 1 {
+                    // Its exact distance can wait until the end, when it has been fetched.
+                    filters.prefetch(&primitives[id as usize]);
+                    if pending.count == Pending::LIMIT {
+                        pending.resolve(&mut best, primitives, query, limit);
+                    }
+                    if candidates.far[lane] < limit {
+                        limit = candidates.far[lane];
+                        // Most often what waited is now beyond the limit.
+                        if pending.count == 1 && pending.near[0] > limit {
+                            pending.count = 0;
+                        }
+                    }
+                    pending.ids[pending.count] = id;
+                    pending.near[pending.count] = candidates.near[lane];
+                    pending.count += 1;
+                } else if best.test(primitives, query, leaf.id(lane)) {
+                    limit = limit.min(frame_ray.distance(best.t_max));
                 }
             }
         }
         loop {
             if top == 0 {
+                pending.resolve(&mut best, primitives, query, limit);
                 return best.hit;
             }
             top -= 1;
@@ -173,6 +257,8 @@ fn closest_on<F: Filters, const N: usize>(
     }
 }
 
+/// Whether anything is hit, in the order of the tree. A level of the stack is one entry, the children yet to be visited:
+/// that spares a loop over them whose length no branch predictor can know.
 #[inline(always)]
 fn any_on<F: Filters, const N: usize>(
     filters: F,
@@ -180,40 +266,49 @@ fn any_on<F: Filters, const N: usize>(
     primitives: &[Primitive],
     query: &Query,
     frame_ray: &FrameRay,
-    stack: &mut [u64; N],
 ) -> bool {
     let ray = filters.ray(frame_ray);
     let limit = frame_ray.distance(query.t_max);
     let certain_limit = frame_ray.distance_below(query.t_max);
-    let mut top = 0;
-    let mut child = 0;
+    let mut levels = [(0_u32, 0_u32); N];
+    let mut depth = 0;
+    let mut index = 0;
     loop {
-        if child & LEAF == 0 {
-            let node = &tree.nodes[child as usize];
-            let mut mask = filters.enter(&ray, node, limit).mask;
-            while mask != 0 {
-                stack[top] = u64::from(node.children[mask.trailing_zeros() as usize]);
-                top += 1;
-                mask &= mask - 1;
+        let mut node = &tree.nodes[index as usize];
+        let mut mask = filters.enter(&ray, node, limit).mask;
+        loop {
+            while mask == 0 {
+                if depth == 0 {
+                    return false;
+                }
+                depth -= 1;
+                (index, mask) = levels[depth];
+                node = &tree.nodes[index as usize];
             }
-        } else {
+            let lane = mask.trailing_zeros() as usize;
+            mask &= mask - 1;
+            let child = node.children[lane];
+            if child & LEAF == 0 {
+                levels[depth] = (index, mask);
+                depth += usize::from(mask != 0);
+                index = child;
+                break;
+            }
             let leaf = &tree.leaves[(child & !LEAF) as usize];
             let mut candidates = filters.candidates(&ray, leaf, limit, certain_limit);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
                 let id = leaf.id(lane);
+                if leaf.ids[lane] == query.leaves.0 {
+                    continue;
+                }
                 let certain = candidates.certain >> lane & 1 == 1;
-                if (certain && id != query.aims_at && id != query.leaves) || occludes(primitives, query, id) {
+                if (certain && id != query.aims_at) || occludes(primitives, query, id) {
                     return true;
                 }
             }
         }
-        if top == 0 {
-            return false;
-        }
-        top -= 1;
-        child = stack[top] as u32;
     }
 }
 

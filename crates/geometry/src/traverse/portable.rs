@@ -1,7 +1,8 @@
 //! The filters in plain Rust; the wording of reference for the other instruction sets.
 
 use super::{Candidates, Entered, Filters};
-use crate::frame::{FAR_FACTOR, FrameRay, NEAR_FACTOR};
+use crate::Primitive;
+use crate::frame::FrameRay;
 use crate::wide::{Leaf8, Node8, UNFILTERED, WIDTH};
 
 /// Plain Rust.
@@ -21,21 +22,23 @@ impl Filters for Portable {
         let mut out = Entered { mask: 0, near: [0.0; WIDTH] };
         let mut far = [limit; WIDTH];
         for k in 0..3 {
-            let entry = &node.planes[2 * k + ray.negative[k]];
-            let exit = &node.planes[2 * k + 1 - ray.negative[k]];
+            let entry = &node.planes[k][ray.negative[k]];
+            let exit = &node.planes[k][1 - ray.negative[k]];
             for lane in 0..WIDTH {
-                let near = (entry[lane] - ray.origin_near[k]) * ray.reciprocal[k];
+                let near = (entry[lane] - ray.origin_near[k]) * ray.reciprocal_near[k];
                 out.near[lane] = if near > out.near[lane] { near } else { out.near[lane] };
-                let exit = (exit[lane] - ray.origin_far[k]) * ray.reciprocal[k];
+                let exit = (exit[lane] - ray.origin_far[k]) * ray.reciprocal_far[k];
                 far[lane] = if exit < far[lane] { exit } else { far[lane] };
             }
         }
         for lane in 0..WIDTH {
-            out.near[lane] *= NEAR_FACTOR;
-            out.mask |= u32::from(out.near[lane] <= far[lane] * FAR_FACTOR) << lane;
+            out.mask |= u32::from(out.near[lane] <= far[lane]) << lane;
         }
         out
     }
+
+    #[inline(always)]
+    fn prefetch(self, _: &Primitive) {}
 
     /// Woop's projection in `f32` with error bounds. With δ the error of a projected coordinate and e the largest of
     /// them in a triangle, an edge function (cx·by − cy·bx) errs by at most 4δe + 2δ² for its factors and 4ue² for its
@@ -45,7 +48,7 @@ impl Filters for Portable {
     /// quotient.
     #[inline(always)]
     fn candidates(self, ray: &FrameRay, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
-        let mut out = Candidates { mask: 0, certain: 0, near: [0.0; WIDTH] };
+        let mut out = Candidates { mask: 0, certain: 0, near: [0.0; WIDTH], far: [0.0; WIDTH] };
         for lane in 0..WIDTH {
             let id = leaf.ids[lane];
             if id == u32::MAX {
@@ -79,6 +82,7 @@ impl Filters for Portable {
             }
             out.mask |= 1 << lane;
             out.near[lane] = if determined { near } else { 0.0 };
+            out.far[lane] = far;
             let inside = least > error || most < -error;
             let certain = determined && inside && near > 0.0 && far < certain_limit;
             out.certain |= u32::from(certain) << lane;

@@ -1,0 +1,191 @@
+//! Rays a second, for closest hits and shadow rays, and the same rays through Embree 3.13 where it is installed.
+//!
+//! One thread; all engines take turns on the same rays, and each figure is made of the best of several turns. Run with
+//! `cargo bench -p etalon-geometry --bench traversal -- [NAME] [--turns N]`, where NAME selects scenes by substring.
+#![allow(missing_docs, clippy::print_stdout)] // A bench prints.
+
+mod embree;
+mod scenes;
+
+use embree::{Content, Embree, ROBUST, Scene};
+use etalon_geometry::{Geometry, Hit, Primitive, Ray, SurfacePoint};
+use etalon_optics::{Frame, Vec3};
+use scenes::{Mesh, Random, balls, spheres};
+use std::time::Instant;
+
+/// Pixels a side of the camera.
+const SIDE: usize = 320;
+
+struct Options {
+    filter: String,
+    turns: usize,
+}
+
+fn main() {
+    let mut options = Options { filter: String::new(), turns: 7 };
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--bench" => {}
+            "--turns" => options.turns = arguments.next().and_then(|n| n.parse().ok()).expect("--turns takes a number"),
+            name => options.filter = name.to_owned(),
+        }
+    }
+    let threads = rayon::current_num_threads();
+    let embree = Embree::load(threads);
+    if embree.is_none() {
+        println!("libembree3.so.3 is not installed: no comparison");
+    }
+    println!("{threads} build threads; Mrays/s of one thread, and the ratio to Embree (above 1: faster than Embree)\n");
+    println!(
+        "{:<16} {:<10} {:>8} {:>9} {:>8} {:>9} {:>8}",
+        "scene", "rays", "Mrays/s", "default", "ratio", "robust", "ratio"
+    );
+    for (size, label) in [(100_000, "100k"), (1_000_000, "1M")] {
+        for kind in ["displaced", "gridded", "slivers"] {
+            let name = format!("{kind}-{label}");
+            if name.contains(&options.filter) {
+                let mesh = match kind {
+                    "displaced" => Mesh::displaced(size),
+                    "gridded" => Mesh::gridded(size),
+                    _ => Mesh::slivers(size),
+                };
+                let content = Content::Triangles(&mesh.vertices, &mesh.faces);
+                measure(&name, mesh.primitives(), embree.as_ref().map(|e| (e, content)), &options);
+            }
+        }
+    }
+    if "spheres-10k".contains(&options.filter) {
+        let balls = balls(10_000);
+        let content = Content::Spheres(&balls);
+        measure("spheres-10k", spheres(&balls), embree.as_ref().map(|e| (e, content)), &options);
+    }
+}
+
+fn measure(
+    name: &str,
+    primitives: Vec<Primitive>,
+    embree: Option<(&std::rc::Rc<Embree>, Content<'_>)>,
+    options: &Options,
+) {
+    let (count, mesh_bytes) = (primitives.len(), primitives.capacity() * size_of::<Primitive>());
+    let start = Instant::now();
+    let geometry = Geometry::build(primitives).expect("primitives that can be built");
+    let build = start.elapsed().as_secs_f64();
+    let memory = (geometry.memory_bytes() - mesh_bytes) as f64 / count as f64;
+    let mut build_text = format!("{name}: {count} primitives, built in {build:.3} s, {memory:.0} bytes a primitive");
+    let peers: Vec<Scene> = embree.map_or_else(Vec::new, |(embree, content)| {
+        [0, ROBUST]
+            .map(|flags| {
+                let start = Instant::now();
+                let scene = embree.scene(&content, flags);
+                build_text += &format!("; Embree {:.3} s", start.elapsed().as_secs_f64());
+                scene
+            })
+            .into()
+    });
+    for (kind, rays, shadow) in rays(&geometry) {
+        compare(name, kind, &geometry, &peers, &rays, shadow, options.turns);
+    }
+    println!("{build_text}\n");
+}
+
+/// Rays whose time is taken together: fewer milliseconds than a scheduler's slice.
+const CHUNK: usize = 1024;
+
+/// Times the engines in turn on the same rays. Of each chunk of rays the shortest time of all turns counts, so that what
+/// else runs on the machine is seen no more than it must.
+fn compare(
+    name: &str,
+    kind: &str,
+    geometry: &Geometry,
+    peers: &[Scene],
+    rays: &[Ray<f32>],
+    shadow: bool,
+    turns: usize,
+) {
+    let engines = 1 + peers.len();
+    let mut best = vec![vec![f64::INFINITY; rays.len().div_ceil(CHUNK)]; engines];
+    let mut hits = vec![0_usize; engines];
+    for _ in 0..turns {
+        for engine in 0..engines {
+            hits[engine] = 0;
+            for (chunk, best) in rays.chunks(CHUNK).zip(&mut best[engine]) {
+                let start = Instant::now();
+                hits[engine] += match (engine, shadow) {
+                    (0, false) => chunk.iter().filter(|r| geometry.closest_hit(r).is_some()).count(),
+                    (0, true) => chunk.iter().filter(|r| geometry.occluded(r)).count(),
+                    (_, shadow) => {
+                        let peer = &peers[engine - 1];
+                        let hit = |r: &&Ray<f32>| {
+                            let (o, d) = (r.origin.to_array(), r.direction.to_array());
+                            if shadow { peer.occluded(o, d, r.t_max) } else { peer.closest(o, d, r.t_max).is_finite() }
+                        };
+                        chunk.iter().filter(hit).count()
+                    }
+                };
+                *best = best.min(start.elapsed().as_secs_f64());
+            }
+        }
+    }
+    let rate = |engine: usize| rays.len() as f64 / best[engine].iter().sum::<f64>() * 1e-6;
+    let mut line = format!("{name:<16} {kind:<10} {:>8.2}", rate(0));
+    for engine in 1..engines {
+        line += &format!(" {:>9.2} {:>8.2}", rate(engine), rate(0) / rate(engine));
+    }
+    println!("{line}   hits {hits:?} of {}", rays.len());
+}
+
+/// Primary rays, shadow rays from what they hit, and the rays of the first and the third diffuse bounce.
+fn rays(geometry: &Geometry) -> Vec<(&'static str, Vec<Ray<f32>>, bool)> {
+    let eye = Vec3::new(2.6_f32, -2.7, 0.9);
+    let frame = Frame::from_normal((-eye).normalized());
+    // In tiles, as a renderer would.
+    let mut primary = Vec::with_capacity(SIDE * SIDE);
+    for tile in 0..(SIDE / 8) * (SIDE / 8) {
+        for pixel in 0..64 {
+            let x = (tile % (SIDE / 8)) * 8 + pixel % 8;
+            let y = (tile / (SIDE / 8)) * 8 + pixel / 8;
+            let at = |p: usize| (p as f32 + 0.5) / SIDE as f32 * 1.2 - 0.6;
+            primary.push(Ray::free(eye, frame.to_world(Vec3::new(at(x), at(y), 1.0))));
+        }
+    }
+    let mut random = Random(21);
+    let lamp = Vec3::new(0.5_f64, 0.3, 2.6);
+    let surfaces = |rays: &[Ray<f32>]| -> Vec<(SurfacePoint<f32>, Ray<f32>)> {
+        rays.iter()
+            .filter_map(|ray| {
+                let hit: Hit<f32> = geometry.closest_hit(ray)?;
+                Some((geometry.surface(ray, &hit), *ray))
+            })
+            .collect()
+    };
+    let mut bounce = |points: &[(SurfacePoint<f32>, Ray<f32>)]| -> Vec<Ray<f32>> {
+        points
+            .iter()
+            .map(|(p, ray)| {
+                let n = if p.normal.dot(ray.direction) > 0.0 { -p.normal } else { p.normal };
+                // Lambert: the normal plus a point of the unit sphere.
+                p.spawn((n.to_f64() + random.direction()).cast())
+            })
+            .collect()
+    };
+    let first_points = surfaces(&primary);
+    let first = bounce(&first_points);
+    let second = bounce(&surfaces(&first));
+    let third = bounce(&surfaces(&second));
+    let mut random = Random(22);
+    let shadow = first_points
+        .iter()
+        .map(|(p, _)| {
+            let jitter = Vec3::new(random.signed(), random.signed(), 0.0) * 0.3;
+            p.spawn_to((lamp + jitter).cast(), etalon_geometry::PrimitiveId::NONE)
+        })
+        .collect();
+    vec![
+        ("primary", primary, false),
+        ("shadow", shadow, true),
+        ("diffuse-1", first, false),
+        ("diffuse-3", third, false),
+    ]
+}
