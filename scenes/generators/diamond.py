@@ -54,18 +54,18 @@ if __name__ == "__main__":
         "comment": [
             "A round brilliant of 5 mm (0.46 carat), modelled in metres: table 53 %, crown 34.5°, pavilion 40.75° (M. Tolkowsky, Diamond",
             "Design, 1919), 57 facets and a faceted girdle, each facet plane to rounding. It lies on one of its pavilion mains, table up",
-            "and toward the viewer, under seven small lamps and three soft ones.",
-            "Look at: fire, the pure colours where a facet's image of a small lamp has been spread by dispersion; brilliance, the white",
-            "returned from the soft lamps by total reflection at the pavilion; the star of the eight mains; dark facets that look back at",
-            "the viewer; glints of light thrown on the table, the last to converge.",
+            "and toward the viewer, in a bright room with seven small lamps and three soft ones.",
+            "Look at: the dark star, in which the eight mains show the viewer's own head (a black disk behind the camera); brilliance, the",
+            "room's white light returned by total reflection at the pavilion; fire, the pure colours at the edges of the lamps' images, which",
+            "dispersion has spread; glints thrown on the table, the last to converge.",
             "The formula for diamond's index is known to 760 nm, so only 360 to 760 nm are rendered: beyond, the observer is all but blind.",
             "Written by scenes/generators/diamond.py.",
         ],
         "camera": {
-            "type": "perspective", "position_m": [0.006, 0.028, 0.036], "look_at_m": [0, 0.0019, 0.0001], "horizontal_fov_deg": 10.5,
+            "type": "perspective", "position_m": [0.0124, 0.0335, 0.0307], "look_at_m": [0, 0.0019, 0.0001], "horizontal_fov_deg": 9,
         },
-        "film": {"width": 640, "height": 512, "filter": {"type": "gaussian", "sigma_px": 0.5}},
-        "integrator": {"spp": 512, "wavelength_range_nm": [360, 760]},
+        "film": {"width": 512, "height": 448, "filter": {"type": "gaussian", "sigma_px": 0.5}},
+        "integrator": {"spp": 256, "wavelength_range_nm": [360, 760]},
         "materials": {
             "diamond": {"type": "dielectric", "interior": "diamond"},
             "table": {"type": "lambert", "reflectance": {"type": "rgb", "rgb": [0.05, 0.06, 0.09]}},
@@ -74,6 +74,9 @@ if __name__ == "__main__":
         "objects": [
             {"name": "table", "shape": {"type": "parallelogram", "origin_m": [-1, 0, 1], "u_m": [2, 0, 0], "v_m": [0, 0, -2]},
              "material": "table"},
+            {"name": "viewer's head", "comment": "A dark disk just behind the camera, some 50° across from the stone.",
+             "shape": {"type": "disk", "center_m": [0.015, 0.041, 0.0375], "normal": [-15, -39.1, -37.4], "radius_m": 0.026},
+             "material": "black"},
             *lamps,
             {
                 "name": "brilliant",
@@ -90,5 +93,5 @@ if __name__ == "__main__":
                 },
             },
         ],
-        "lights": [{"type": "environment", "name": "room", "radiance": {"type": "illuminant", "name": "D65", "scale": 0.03}}],
+        "lights": [{"type": "environment", "name": "room", "radiance": {"type": "illuminant", "name": "D65", "scale": 0.4}}],
     })

@@ -21,10 +21,10 @@ import scene_text
 SELLMEIER = [(1.73759695, 0.013188707), (0.313747346, 0.0623068142), (1.89878101, 155.23629)]
 SIDE, HEIGHT = 0.08, 0.10  # of the prism, m
 STANDS_OFF = 1e-4  # of the table, m: surfaces that coincide would have no order
-EYE, SLIT = 0.40, 0.20  # horizontal distances from the prism's axis, m
-EYE_HEIGHT, AIM_HEIGHT = 0.095, 0.05  # m
-SLIT_WIDTH, SLIT_HALF_HEIGHT = 2e-3, 0.020  # m
-RADIANCE = 14.0
+EYE, SLIT = 0.36, 0.24  # horizontal distances from the prism's axis, m
+EYE_HEIGHT, AIM_HEIGHT = 0.075, 0.05  # m
+SLIT_WIDTH, SLIT_HALF_HEIGHT = 2e-3, 0.025  # m
+RADIANCE = 8.0
 RANGE_NM = [370, 830]
 
 
@@ -120,7 +120,7 @@ for i in range(3):
     j = (i + 1) % 3
     triangles += [[i, j, j + 3], [i, j + 3, i + 3]]
 spread = math.degrees(deviation(410) - deviation(680))
-aim = rounded([front[0] - 0.06, AIM_HEIGHT - 0.004, front[1]])
+aim = rounded([front[0] - 0.065, AIM_HEIGHT - 0.004, front[1]])
 
 if __name__ == "__main__":
     for nm in (400, 435.8, 486.1327, 546.1, 587.5618, 656.2725, 700):
@@ -138,10 +138,10 @@ if __name__ == "__main__":
         ],
         "camera": {
             "type": "perspective", "position_m": rounded([eye[0], EYE_HEIGHT, eye[1]]), "look_at_m": aim,
-            "horizontal_fov_deg": 33,
+            "horizontal_fov_deg": 38,
         },
-        "film": {"width": 768, "height": 512, "filter": {"type": "gaussian", "sigma_px": 0.5}},
-        "integrator": {"comment": "From 370 nm: below, nothing is known of N-SF11.", "spp": 512, "wavelength_range_nm": RANGE_NM},
+        "film": {"width": 640, "height": 384, "filter": {"type": "gaussian", "sigma_px": 0.5}},
+        "integrator": {"comment": "From 370 nm: below, nothing is known of N-SF11.", "spp": 256, "wavelength_range_nm": RANGE_NM},
         "spectra": {
             "daylight": {"type": "illuminant", "name": "D65", "scale": RADIANCE},
             "three bands": three_bands(RADIANCE),
@@ -162,5 +162,5 @@ if __name__ == "__main__":
             {"name": "table", "shape": {"type": "parallelogram", "origin_m": [-1.5, 0, 1.5], "u_m": [3, 0, 0], "v_m": [0, 0, -2.1]},
              "material": "table"},
         ],
-        "lights": [{"type": "environment", "name": "dim room", "radiance": {"type": "illuminant", "name": "D65", "scale": 0.03}}],
+        "lights": [{"type": "environment", "name": "dim room", "radiance": {"type": "illuminant", "name": "D65", "scale": 0.06}}],
     })
