@@ -19,11 +19,11 @@ import os
 import scene_text
 
 SELLMEIER = [(1.73759695, 0.013188707), (0.313747346, 0.0623068142), (1.89878101, 155.23629)]
-SIDE, HEIGHT = 0.08, 0.10  # of the prism, m
+SIDE, HEIGHT = 0.08, 0.075  # of the prism, m
 STANDS_OFF = 1e-4  # of the table, m: surfaces that coincide would have no order
 EYE, SLIT = 0.36, 0.24  # horizontal distances from the prism's axis, m
-EYE_HEIGHT, AIM_HEIGHT = 0.075, 0.05  # m
-SLIT_WIDTH, SLIT_HALF_HEIGHT = 2e-3, 0.025  # m
+EYE_HEIGHT, AIM_HEIGHT = 0.065, 0.04  # m
+SLIT_WIDTH, SLIT_HALF_HEIGHT = 2e-3, 0.022  # m
 RADIANCE = 8.0
 RANGE_NM = [370, 830]
 
@@ -120,7 +120,7 @@ for i in range(3):
     j = (i + 1) % 3
     triangles += [[i, j, j + 3], [i, j + 3, i + 3]]
 spread = math.degrees(deviation(410) - deviation(680))
-aim = rounded([front[0] - 0.065, AIM_HEIGHT - 0.004, front[1]])
+aim = rounded([front[0] - 0.022, AIM_HEIGHT - 0.002, front[1]])
 
 if __name__ == "__main__":
     for nm in (400, 435.8, 486.1327, 546.1, 587.5618, 656.2725, 700):
@@ -129,18 +129,19 @@ if __name__ == "__main__":
         "etalon": 1,
         "comment": [
             "A spectrum: a slit of light seen through a 60° prism of N-SF11 that stands at the angle of least deviation (69.18° for the",
-            f"hydrogen line F; violet to red, 410 to 680 nm, spread over {spread:.1f}°). Behind the prism, on the left, the slit itself: white from",
-            "top to bottom. Its upper half has the spectrum of daylight; its lower half is a mixture of three narrow bands (450, 535 and",
-            "620 nm) that looks the same to the eye. The prism tells them apart: one continuous spectrum above, three images below.",
+            f"hydrogen line F; violet to red, 410 to 680 nm, spread over {spread:.1f}°). The slit itself stands outside of the picture; the",
+            "prism's left face mirrors it, white from top to bottom. Its upper half has the spectrum of daylight; its lower half is a",
+            "mixture of three narrow bands (450, 535 and 620 nm) that looks the same to the eye. The prism tells them apart: one continuous",
+            "spectrum above, three images below.",
             "Look at: pure colours in their order, red least deviated; the slightly bent lines, since rays that pass a prism obliquely are",
-            "deviated more; the reflection of the slit in the prism's faces, which stays white.",
+            "deviated more; the mirrored slit, which has no colours.",
             "Geometry, and why no screen catches the spectrum: scenes/generators/prism.py, which wrote this file.",
         ],
         "camera": {
             "type": "perspective", "position_m": rounded([eye[0], EYE_HEIGHT, eye[1]]), "look_at_m": aim,
-            "horizontal_fov_deg": 38,
+            "horizontal_fov_deg": 23,
         },
-        "film": {"width": 640, "height": 384, "filter": {"type": "gaussian", "sigma_px": 0.5}},
+        "film": {"width": 640, "height": 400, "filter": {"type": "gaussian", "sigma_px": 0.5}},
         "integrator": {"comment": "From 370 nm: below, nothing is known of N-SF11.", "spp": 256, "wavelength_range_nm": RANGE_NM},
         "spectra": {
             "daylight": {"type": "illuminant", "name": "D65", "scale": RADIANCE},
