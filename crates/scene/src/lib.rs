@@ -43,7 +43,22 @@ pub fn schema() -> serde_json::Value {
 /// # Errors
 /// Every error of the text at once, and its warnings.
 pub fn parse(text: &str, file_name: &str) -> Result<(Scene, Vec<Problem>), SceneErrors> {
-    json::read(text, file_name, |form: format::SceneForm, reader| format::scene(&form, reader))
+    parse_with_size(text, file_name, None)
+}
+
+/// As [`parse`], with a film of another width and height, in pixels, than the file says.
+///
+/// Changing [`Film`] afterwards is not the same: a camera whose horizontal angle of view, or whose sensor's width, the
+/// file states keeps that, and its vertical one follows the shape of the picture.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_with_size(
+    text: &str,
+    file_name: &str,
+    size: Option<[u32; 2]>,
+) -> Result<(Scene, Vec<Problem>), SceneErrors> {
+    json::read(text, file_name, |form: format::SceneForm, reader| format::scene(&form, size, reader))
 }
 
 /// Reads a scene file. The scene comes with the warnings.

@@ -1,6 +1,6 @@
 //! Cameras and film.
 
-use crate::json::{Code, Direction, NonNegative, Optional, Positive, Reader, Required, Span, Spanned, Whole};
+use crate::json::{Code, Direction, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
 use crate::model::{Camera, Film, Filter, Projection, ThinLens};
 use crate::vector::{cross, dot, length, scale, sub, unit};
 
@@ -33,19 +33,24 @@ crate::record! {
         sensor_width_m: Optional<Positive>,
         /// A thin lens; without it, the camera is a pinhole and everything is in focus.
         lens: Optional<Lens>,
-    }
+    } with [
+        Rule::OneOf(&["look_at_m", "direction"]),
+        Rule::OneOf(&["vertical_fov_deg", "horizontal_fov_deg", "sensor_height_m", "sensor_width_m"]),
+        Rule::Needs("sensor_height_m", &["focal_length_m"]),
+        Rule::Needs("sensor_width_m", &["focal_length_m"]),
+    ]
 }
 
 crate::record! {
     /// An ideal thin lens: exactly one of `radius_m` and `f_number`.
-    pub(crate) struct Lens {
+    pub(crate) struct Lens + comment {
         /// Radius of the aperture, m; 0 is a pinhole.
         radius_m: Optional<NonNegative>,
         /// Focal length over the diameter of the aperture; needs the camera's `focal_length_m`.
         f_number: Optional<Spanned<Positive>>,
         /// Distance along the viewing direction of the plane in focus, m.
         focus_distance_m: Required<Spanned<Positive>>,
-    }
+    } with [Rule::OneOf(&["radius_m", "f_number"])]
 }
 
 crate::record! {
@@ -61,7 +66,7 @@ crate::record! {
         up: Required<Spanned<Direction>> = "[0, 1, 0]",
         /// Height of the picture in the world, m.
         height_m: Required<Positive>,
-    }
+    } with [Rule::OneOf(&["look_at_m", "direction"])]
 }
 
 crate::variants! {
@@ -91,12 +96,12 @@ crate::record! {
 
 crate::record! {
     /// The pixel's own square.
-    pub(crate) struct BoxFilter {}
+    pub(crate) struct BoxFilter + comment {}
 }
 
 crate::record! {
     /// A tent.
-    pub(crate) struct TentFilter {
+    pub(crate) struct TentFilter + comment {
         /// Radius, pixels.
         radius_px: Required<Positive> = "1",
     }
@@ -104,7 +109,7 @@ crate::record! {
 
 crate::record! {
     /// A Gaussian, cut at three standard deviations.
-    pub(crate) struct GaussianFilter {
+    pub(crate) struct GaussianFilter + comment {
         /// Standard deviation, pixels.
         sigma_px: Required<Positive> = "0.5",
     }
@@ -119,8 +124,8 @@ crate::variants! {
     }
 }
 
-/// The film of a form.
-pub(crate) fn film(form: &FilmForm, reader: &mut Reader<'_>) -> Option<Film> {
+/// The film of a form, perhaps with another width and height.
+pub(crate) fn film(form: &FilmForm, size: Option<[u32; 2]>, reader: &mut Reader<'_>) -> Option<Film> {
     let filter = match form.filter.as_ref() {
         None => None,
         Some(FilterForm::Box(_)) => Some(Filter::Box),
@@ -134,7 +139,8 @@ pub(crate) fn film(form: &FilmForm, reader: &mut Reader<'_>) -> Option<Film> {
         return None;
     }
     // Both are at most MAX_SIDE.
-    Some(Film { width: width as u32, height: height.value.0 as u32, filter: filter? })
+    let [width, height] = size.unwrap_or([width as u32, height.value.0 as u32]);
+    Some(Film { width, height, filter: filter? })
 }
 
 /// Below this sine of the angle between `up` and the view, the roll of the picture hangs on digits that nobody meant.
@@ -146,19 +152,8 @@ fn orientation(
     look_at_m: &Optional<Spanned<[f64; 3]>>,
     direction: &Optional<Spanned<Direction>>,
     up: Option<Spanned<Direction>>,
-    at: Span,
     reader: &mut Reader<'_>,
 ) -> Option<([f64; 3], [f64; 3])> {
-    match (look_at_m.is_present(), direction.is_present()) {
-        (true, true) => {
-            let message = "\"look_at_m\" and \"direction\" exclude each other";
-            reader.error_hint(Code::KeyConflict, at.head(), message, "keep one of the two");
-        }
-        (false, false) => {
-            reader.error_hint(Code::MissingKey, at.head(), "missing key \"look_at_m\"", "or \"direction\"");
-        }
-        _ => {}
-    }
     let forward = match (look_at_m.given(), direction.given()) {
         (Some(target), None) => {
             // Halved, so that the difference of two finite numbers is finite.
@@ -192,13 +187,13 @@ fn orientation(
 pub(crate) fn camera(form: &CameraForm, film: Option<&Film>, reader: &mut Reader<'_>) -> Option<Camera> {
     match form {
         CameraForm::Perspective(form) => {
-            let view = orientation(form.position_m, &form.look_at_m, &form.direction, form.up, form.at, reader);
+            let view = orientation(form.position_m, &form.look_at_m, &form.direction, form.up, reader);
             let projection = perspective(form, film, reader);
             let (forward, up) = view?;
             Some(Camera { position_m: form.position_m?, forward, up, projection: projection? })
         }
         CameraForm::Orthographic(form) => {
-            let view = orientation(form.position_m, &form.look_at_m, &form.direction, form.up, form.at, reader);
+            let view = orientation(form.position_m, &form.look_at_m, &form.direction, form.up, reader);
             let projection = Projection::Orthographic { height_m: form.height_m?.0 };
             let (forward, up) = view?;
             Some(Camera { position_m: form.position_m?, forward, up, projection })
@@ -212,50 +207,23 @@ fn perspective(form: &PerspectiveCamera, film: Option<&Film>, reader: &mut Reade
         Optional::Absent => Some(None),
         Optional::Invalid => None,
     };
-    let sensor = form.sensor_height_m.is_present() || form.sensor_width_m.is_present();
-    let said = [
-        ("vertical_fov_deg", form.vertical_fov_deg.is_present()),
-        ("horizontal_fov_deg", form.horizontal_fov_deg.is_present()),
-        ("sensor_height_m", form.sensor_height_m.is_present()),
-        ("sensor_width_m", form.sensor_width_m.is_present()),
-    ];
-    let said: Vec<&str> = said.iter().filter(|(_, present)| *present).map(|(key, _)| *key).collect();
-    match said.as_slice() {
-        [] => {
-            let hint =
-                "or \"horizontal_fov_deg\", or \"focal_length_m\" with \"sensor_height_m\" or \"sensor_width_m\"";
-            reader.error_hint(Code::MissingKey, form.at.head(), "missing key \"vertical_fov_deg\"", hint);
-            return None;
-        }
-        [_] => {}
-        [first, second, ..] => {
-            let message = format!("\"{first}\" and \"{second}\" both give the angle of view");
-            reader.error_hint(Code::KeyConflict, form.at.head(), message, "keep one of them");
-            return None;
-        }
-    }
-    if sensor && !form.focal_length_m.is_present() {
-        let message = format!("\"{}\" needs \"focal_length_m\"", said[0]);
-        reader.error_hint(Code::MissingKey, form.at.head(), message, "add it here");
-        return None;
-    }
     let lens = lens?;
     // Height over width of the picture.
     let aspect = film.map(|film| f64::from(film.height) / f64::from(film.width));
-    let tangent = if let Some(fov) = form.vertical_fov_deg.given() {
-        (0.5 * fov.0.to_radians()).tan()
+    let vertical_fov_rad = if let Some(fov) = form.vertical_fov_deg.given() {
+        fov.0.to_radians()
     } else if let Some(fov) = form.horizontal_fov_deg.given() {
-        (0.5 * fov.0.to_radians()).tan() * aspect?
+        2.0 * ((0.5 * fov.0.to_radians()).tan() * aspect?).atan()
     } else {
         let focal_length_m = form.focal_length_m.given()?;
         let height_m = match form.sensor_height_m.given() {
             Some(height) => height.0,
             None => form.sensor_width_m.given()?.0 * aspect?,
         };
-        0.5 * height_m / sensor_distance_m(focal_length_m, form, reader)?
+        2.0 * (0.5 * height_m / sensor_distance_m(focal_length_m, form, reader)?).atan()
     };
-    let vertical_fov_rad = 2.0 * tangent.atan();
-    if vertical_fov_rad <= 0.0 || vertical_fov_rad >= std::f64::consts::PI {
+    // Also for NaN.
+    if !(vertical_fov_rad > 0.0 && vertical_fov_rad < std::f64::consts::PI) {
         let message = "the angle of view is 0° or 180° to rounding";
         reader.error(Code::OutOfRange, form.at.head(), message);
         return None;
@@ -286,18 +254,6 @@ fn sensor_distance_m(
 }
 
 fn lens(lens: &Lens, form: &PerspectiveCamera, reader: &mut Reader<'_>) -> Option<ThinLens> {
-    match (lens.radius_m.is_present(), lens.f_number.is_present()) {
-        (true, true) => {
-            let message = "\"radius_m\" and \"f_number\" exclude each other";
-            reader.error_hint(Code::KeyConflict, lens.at.head(), message, "keep one of the two");
-            return None;
-        }
-        (false, false) => {
-            reader.error_hint(Code::MissingKey, lens.at.head(), "missing key \"radius_m\"", "or \"f_number\"");
-            return None;
-        }
-        _ => {}
-    }
     let radius_m = match (lens.radius_m.given(), lens.f_number.given()) {
         (Some(radius), _) => radius.0,
         (None, Some(f_number)) => {
@@ -309,5 +265,9 @@ fn lens(lens: &Lens, form: &PerspectiveCamera, reader: &mut Reader<'_>) -> Optio
         }
         (None, None) => return None,
     };
+    if !radius_m.is_finite() {
+        reader.error(Code::OutOfRange, lens.at.head(), "the lens is infinitely large");
+        return None;
+    }
     Some(ThinLens { radius_m, focus_distance_m: lens.focus_distance_m.as_ref()?.value.0 })
 }

@@ -5,7 +5,7 @@ use std::ops::Bound;
 use serde_json::json;
 
 use crate::json::{
-    Code, Decode, Direction, List, Node, Optional, Positive, Reader, Required, SchemaBuilder, SchemaValue, Span,
+    Code, Decode, Direction, List, Node, Optional, Positive, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span,
     Spanned,
 };
 use crate::model::{Shape, Transform};
@@ -187,7 +187,7 @@ fn box_mesh(min: [f64; 3], max: [f64; 3]) -> Shape {
 
 crate::record! {
     /// A rotation about an axis through the origin, counter-clockwise when the axis points at the viewer.
-    pub(crate) struct Rotation {
+    pub(crate) struct Rotation + comment {
         /// The axis; only the direction counts.
         axis: Required<Direction>,
         /// The angle, degrees.
@@ -222,7 +222,7 @@ impl Decode for Scaling {
 
 crate::record! {
     /// One step of a transform: exactly one of the keys.
-    pub(crate) struct StepFields {
+    pub(crate) struct StepFields + comment {
         /// Moves by a vector, m.
         translate_m: Optional<[f64; 3]>,
         /// Turns about an axis through the origin.
@@ -231,7 +231,7 @@ crate::record! {
         scale: Optional<Scaling>,
         /// Any affine map: the upper three rows of a 4 × 4 matrix that acts on columns; the fourth numbers are metres.
         matrix: Optional<Spanned<[[f64; 4]; 3]>>,
-    }
+    } with [Rule::OneOf(&["translate_m", "rotate", "scale", "matrix"])]
 }
 
 /// One step of a transform.
@@ -244,33 +244,11 @@ pub(crate) enum Step {
 
 impl Decode for Step {
     fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
-        let fields = StepFields::schema(schema);
-        schema.define("TransformStep", |_| json!({ "allOf": [fields], "minProperties": 1, "maxProperties": 1 }))
+        StepFields::schema(schema)
     }
 
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
-        let before = reader.error_count();
         let step = StepFields::decode(node, reader)?;
-        let keys = [
-            step.translate_m.is_present(),
-            step.rotate.is_present(),
-            step.scale.is_present(),
-            step.matrix.is_present(),
-        ];
-        match keys.iter().filter(|present| **present).count() {
-            1 => {}
-            0 if reader.error_count() > before => return None,
-            0 => {
-                let hint = "one of \"translate_m\", \"rotate\", \"scale\", \"matrix\"";
-                reader.error_hint(Code::MissingKey, step.at.head(), "the step of the transform is empty", hint);
-                return None;
-            }
-            _ => {
-                let hint = "write a step for each, in the order in which they apply";
-                reader.error_hint(Code::KeyConflict, step.at.head(), "more than one transform in one step", hint);
-                return None;
-            }
-        }
         if let Some(by) = step.translate_m.given() {
             return Some(Self::Translate(*by));
         }
@@ -294,7 +272,8 @@ impl Decode for Step {
 fn rotation_matrix(axis: [f64; 3], angle_deg: f64) -> Matrix {
     let turn = angle_deg.rem_euclid(360.0);
     let (sine, cosine) = match turn {
-        0.0 => (0.0, 1.0),
+        // A tiny negative angle is rounded to 360.
+        0.0 | 360.0 => (0.0, 1.0),
         90.0 => (1.0, 0.0),
         180.0 => (0.0, -1.0),
         270.0 => (-1.0, 0.0),
@@ -327,16 +306,16 @@ fn condition(a: &Matrix) -> f64 {
 }
 
 /// The transform of a list of steps, the first of which is applied first.
-pub(crate) fn transform(steps: Option<List<Step>>, at: Span, reader: &mut Reader<'_>) -> Option<Transform> {
-    let steps = steps?.complete()?;
+pub(crate) fn transform(steps: &List<Box<Step>>, at: Span, reader: &mut Reader<'_>) -> Option<Transform> {
+    let steps: Vec<&Step> = steps.0.iter().map(Option::as_deref).collect::<Option<_>>()?;
     let mut linear: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut translation_m = [0.0; 3];
     for step in steps {
         match step {
             Step::Translate(by) => translation_m = std::array::from_fn(|i| translation_m[i] + by[i]),
             Step::Linear(matrix) => {
-                linear = product(&matrix, &linear);
-                translation_m = apply(&matrix, translation_m);
+                linear = product(matrix, &linear);
+                translation_m = apply(matrix, translation_m);
             }
             Step::Affine(rows) => {
                 let matrix = rows.map(|row| [row[0], row[1], row[2]]);
@@ -378,6 +357,29 @@ pub(crate) fn check_similarity(shape: &ShapeForm, transform: &Transform, at: Spa
     if !similar {
         let message = format!("a {what} can only be moved, turned, mirrored and scaled alike along all axes");
         reader.error_hint(Code::NotSimilarity, at, message, "use one factor for all axes, or a mesh");
+    }
+}
+
+/// Reports a shape that its transform would move beyond the numbers of double precision, or shrink to nothing.
+pub(crate) fn check_extent(shape: &Shape, transform: &Transform, at: Span, reader: &mut Reader<'_>) {
+    let linear = |v| apply(&transform.linear, v);
+    let point = |p| {
+        let p = linear(p);
+        std::array::from_fn(|i| p[i] + transform.translation_m[i])
+    };
+    // Squares of lengths are taken all over geometry: what would not survive that is refused as well.
+    let kept = |v: [f64; 3]| (f64::MIN_POSITIVE..f64::INFINITY).contains(&dot(v, v));
+    let finite = |p: [f64; 3]| dot(p, p).is_finite();
+    let held = match shape {
+        Shape::Sphere { center, radius_m } | Shape::Disk { center, radius_m, .. } => {
+            finite(point(*center)) && kept(linear([*radius_m, 0.0, 0.0]))
+        }
+        Shape::Parallelogram { origin, u, v } => finite(point(*origin)) && kept(linear(*u)) && kept(linear(*v)),
+        Shape::Mesh { vertices, .. } => vertices.iter().all(|v| finite(point(*v))),
+    };
+    if !held {
+        let message = "in the world, the object is too far, too large or too small for double precision";
+        reader.error(Code::OutOfRange, at, message);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Lights without a surface.
 
-use super::spectrum::{Role, Spectra, SpectrumForm};
+use super::spectra::{Role, Spectra};
+use super::spectrum::SpectrumForm;
 use crate::json::{Direction, Optional, Reader, Required};
 use crate::model::{Light, LightKind};
 

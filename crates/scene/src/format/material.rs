@@ -4,10 +4,11 @@ use etalon_optics::index::SellmeierTerm;
 use etalon_optics::{ComplexIndex, OpticsError, OutsideFit, RefractiveIndex};
 use serde_json::json;
 
-use super::spectrum::{Role, Spectra, SpectrumForm, Wavelength, accept, check_increasing, check_same_length};
+use super::spectra::{Role, Spectra, accept, outside_message, plain};
+use super::spectrum::{SpectrumForm, Wavelength, check_increasing, check_same_length};
 use crate::json::{
-    Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, SchemaBuilder, SchemaValue,
-    Span, Spanned, did_you_mean, listed,
+    Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, Rule, SchemaBuilder,
+    SchemaValue, Span, Spanned, did_you_mean, listed,
 };
 use crate::model::MaterialKind;
 
@@ -41,7 +42,12 @@ crate::record! {
         k: Optional<List<Spanned<NonNegative>>>,
         /// What holds at wavelengths for which there are no values.
         outside_fit: Required<OutsideFit> = r#""error""#,
-    }
+    } with [
+        Rule::OneOf(&["metal", "wavelengths_nm"]),
+        Rule::Needs("wavelengths_nm", &["n", "k"]),
+        Rule::Needs("n", &["wavelengths_nm"]),
+        Rule::Needs("k", &["wavelengths_nm"]),
+    ]
 }
 
 crate::keywords!(OutsideFit {
@@ -264,22 +270,6 @@ fn complex_index(
     range_nm: Option<[f64; 2]>,
     reader: &mut Reader<'_>,
 ) -> Option<ComplexIndex> {
-    let own =
-        [("wavelengths_nm", form.wavelengths_nm.is_present()), ("n", form.n.is_present()), ("k", form.k.is_present())];
-    let some_own = own.iter().any(|(_, present)| *present);
-    if form.metal.is_present() && some_own {
-        let message = "\"metal\" and own values exclude each other";
-        reader.error_hint(Code::KeyConflict, form.at.head(), message, "keep one of the two");
-    } else if !form.metal.is_present() && !some_own {
-        let hint = "or \"wavelengths_nm\", \"n\" and \"k\" of your own";
-        reader.error_hint(Code::MissingKey, form.at.head(), "missing key \"metal\"", hint);
-    } else if some_own {
-        for (key, present) in own {
-            if !present {
-                reader.error_hint(Code::MissingKey, form.at.head(), format!("missing key \"{key}\""), "add it here");
-            }
-        }
-    }
     if let Optional::Given(wavelengths) = &form.wavelengths_nm {
         check_increasing(wavelengths, form.at, reader);
         for (key, length) in [("n", form.n.given().map(|n| n.0.len())), ("k", form.k.given().map(|k| k.0.len()))] {
@@ -292,9 +282,9 @@ fn complex_index(
     let index = match form.metal.clone().checked()? {
         Some(metal) => metal.value.0,
         None => {
-            let wavelengths_nm = values(form.wavelengths_nm.given()?, |w| w.0)?;
-            let n = values(form.n.given()?, |n| n.0)?;
-            let k = values(form.k.given()?, |k| k.0)?;
+            let wavelengths_nm = plain(form.wavelengths_nm.given()?, |w| w.0)?;
+            let n = plain(form.n.given()?, |n| n.0)?;
+            let k = plain(form.k.given()?, |k| k.0)?;
             let increasing = wavelengths_nm.windows(2).all(|pair| pair[0] < pair[1]);
             if !increasing || wavelengths_nm.len() < 2 || [n.len(), k.len()] != [wavelengths_nm.len(); 2] {
                 return None;
@@ -308,10 +298,6 @@ fn complex_index(
         fits(index.check_range(range_nm), at, reader);
     }
     (reader.error_count() == before).then_some(index)
-}
-
-fn values<T, U>(list: &List<Spanned<T>>, f: impl Fn(&T) -> U) -> Option<Vec<U>> {
-    list.0.iter().map(|element| element.as_ref().map(|element| f(&element.value))).collect()
 }
 
 fn index(form: &IndexForm, range_nm: Option<[f64; 2]>, reader: &mut Reader<'_>) -> Option<RefractiveIndex> {
@@ -373,7 +359,7 @@ fn fits(checked: Result<(), OpticsError>, at: Span, reader: &mut Reader<'_>) {
     match checked {
         Ok(()) => {}
         Err(OpticsError::OutsideFit { what, fit_nm, range_nm }) => {
-            let message = super::spectrum::outside_message(&what, fit_nm, range_nm);
+            let message = outside_message(&what, fit_nm, range_nm);
             let hint = "say \"outside_fit\": \"clamp\", or narrow the integrator's wavelength_range_nm";
             reader.error_hint(Code::OutsideFit, at, message, hint);
         }

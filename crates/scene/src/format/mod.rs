@@ -8,7 +8,9 @@ mod geometry;
 mod integrator;
 mod light;
 mod material;
+mod names;
 mod scene;
+mod spectra;
 mod spectrum;
 
 pub(crate) use scene::{SceneForm, scene};

@@ -3,14 +3,15 @@
 use serde_json::json;
 
 use super::camera::{CameraForm, FilmForm, camera, film};
-use super::geometry::{ShapeForm, Step, check_similarity, shape, transform};
+use super::geometry::{ShapeForm, Step, check_extent, check_similarity, shape, transform};
 use super::integrator::{IntegratorForm, integrator, wavelength_range_nm};
 use super::light::{LightForm, light};
 use super::material::{MaterialForm, material};
-use super::spectrum::{Role, Spectra, SpectrumForm};
+use super::names::Names;
+use super::spectra::{Role, Spectra};
+use super::spectrum::SpectrumForm;
 use crate::json::{
-    Code, Decode, Kind, List, Named, NamedEntry, Node, Optional, Reader, Required, SchemaBuilder, SchemaValue, Spanned,
-    did_you_mean, listed,
+    Code, Decode, Kind, List, Named, Node, Optional, Reader, Required, SchemaBuilder, SchemaValue, Spanned,
 };
 use crate::model::{Emission, EmissionSides, LightKind, Material, Object, Scene};
 
@@ -51,13 +52,13 @@ crate::record! {
         /// Size and reconstruction of the picture.
         film: Required<FilmForm>,
         /// Spectra by name.
-        spectra: Required<Named<SpectrumForm>> = "{}",
+        spectra: Required<Named<Box<SpectrumForm>>> = "{}",
         /// Materials by name.
-        materials: Required<Named<MaterialForm>> = "{}",
+        materials: Required<Named<Box<MaterialForm>>> = "{}",
         /// Things with a surface.
-        objects: Required<Spanned<List<ObjectForm>>> = "[]",
+        objects: Required<Spanned<List<Box<ObjectForm>>>> = "[]",
         /// Lights without a surface.
-        lights: Required<List<LightForm>> = "[]",
+        lights: Required<List<Box<LightForm>>> = "[]",
         /// How to integrate.
         integrator: Required<IntegratorForm> = "{}",
     }
@@ -75,13 +76,13 @@ crate::record! {
         /// What its surface emits.
         emission: Optional<EmissionForm>,
         /// From its own coordinates to the world: steps, the first of which is applied first.
-        transform: Required<Spanned<List<Step>>> = "[]",
+        transform: Required<Spanned<List<Box<Step>>>> = "[]",
     }
 }
 
 crate::record! {
     /// Diffuse emission: the same radiance in every direction.
-    pub(crate) struct EmissionForm {
+    pub(crate) struct EmissionForm + comment {
         /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹.
         radiance: Required<SpectrumForm>,
         /// Which sides emit.
@@ -126,48 +127,76 @@ impl Decode for MaterialUse {
 }
 
 /// The scene of a file: everything that can be wrong is reported, whatever else is.
-pub(crate) fn scene(form: &SceneForm, reader: &mut Reader<'_>) -> Option<Scene> {
-    let film = form.film.as_ref().and_then(|form| film(form, reader));
+pub(crate) fn scene(form: &SceneForm, size: Option<[u32; 2]>, reader: &mut Reader<'_>) -> Option<Scene> {
+    let film = form.film.as_ref().and_then(|form| film(form, size, reader));
     let camera = form.camera.as_ref().and_then(|form| camera(form, film.as_ref(), reader));
     let range_nm = form.integrator.as_ref().and_then(|form| wavelength_range_nm(form, reader));
     let integrator = form.integrator.as_ref().and_then(|form| integrator(form, range_nm));
     let mut spectra = Spectra::new(form.spectra.as_ref(), range_nm, reader);
 
     let named = form.materials.as_ref().map_or(&[][..], |named| &named.0);
-    let mut materials: Vec<Option<Material>> = Vec::with_capacity(named.len());
+    let names = Names::new("material", "materials", named);
+    let mut materials = All::default();
     for entry in named {
         let kind = entry.value.as_ref().and_then(|form| material(form, &mut spectra, reader));
         materials.push(kind.map(|kind| Material { name: entry.name.clone(), kind }));
     }
-
-    let forms = form.objects.as_ref().map_or(&[][..], |objects| &objects.value.0);
-    let mut objects = Vec::with_capacity(forms.len());
-    for (i, form) in forms.iter().enumerate() {
-        objects.push(form.as_ref().and_then(|form| object(form, i, named, &mut materials, &mut spectra, reader)));
+    let mut objects = All::default();
+    for (i, form) in form.objects.iter().flat_map(|objects| objects.value.0.iter().enumerate()) {
+        objects.push(form.as_ref().and_then(|form| object(form, i, &names, &mut materials, &mut spectra, reader)));
     }
-    let forms = form.lights.as_ref().map_or(&[][..], |lights| &lights.0);
-    let mut lights = Vec::with_capacity(forms.len());
-    for (i, form) in forms.iter().enumerate() {
+    let mut lights = All::default();
+    for (i, form) in form.lights.iter().flat_map(|lights| lights.0.iter().enumerate()) {
         lights.push(form.as_ref().and_then(|form| light(form, i, &mut spectra, reader)));
     }
 
+    // Whatever is wrong has been reported by now; a wrong list has not become an empty one.
+    let _ = (form.spectra.as_ref()?, form.materials.as_ref()?, form.objects.as_ref()?, form.lights.as_ref()?);
     let scene = Scene {
         camera: camera?,
         film: film?,
-        materials: materials.into_iter().collect::<Option<_>>()?,
-        objects: objects.into_iter().collect::<Option<_>>()?,
-        lights: lights.into_iter().collect::<Option<_>>()?,
+        materials: materials.complete()?,
+        objects: objects.complete()?,
+        lights: lights.complete()?,
         integrator: integrator?,
     };
     warn(&scene, form, reader);
     Some(scene)
 }
 
+/// Collects things all of which must be right.
+#[derive(Debug)]
+struct All<T> {
+    right: Vec<T>,
+    wrong: bool,
+}
+
+impl<T> Default for All<T> {
+    fn default() -> Self {
+        Self { right: Vec::new(), wrong: false }
+    }
+}
+
+impl<T> All<T> {
+    /// Adds one, and returns its index; `None` is wrong, and takes no memory: a hostile file may hold millions.
+    fn push(&mut self, thing: Option<T>) -> usize {
+        match thing {
+            Some(thing) => self.right.push(thing),
+            None => self.wrong = true,
+        }
+        self.right.len().saturating_sub(1)
+    }
+
+    fn complete(self) -> Option<Vec<T>> {
+        (!self.wrong).then_some(self.right)
+    }
+}
+
 fn object<'f>(
     form: &'f ObjectForm,
     index: usize,
-    named: &'f [NamedEntry<MaterialForm>],
-    materials: &mut Vec<Option<Material>>,
+    names: &Names<'f>,
+    materials: &mut All<Material>,
     spectra: &mut Spectra<'f>,
     reader: &mut Reader<'_>,
 ) -> Option<Object> {
@@ -175,18 +204,20 @@ fn object<'f>(
     let name = form.name.clone().checked().map(|name| name.unwrap_or_else(|| place.clone()));
     let shape = form.shape.as_ref().and_then(|form| shape(form, name.as_ref().unwrap_or(&place), reader));
     let transform = form.transform.as_ref().and_then(|steps| {
-        let transform = transform(Some(steps.value.clone()), steps.at.head(), reader)?;
+        let transform = transform(&steps.value, steps.at.head(), reader)?;
         if let Some(shape) = &form.shape {
             check_similarity(shape, &transform, steps.at.head(), reader);
         }
         Some(transform)
     });
+    if let (Some(shape), Some(transform)) = (&shape, &transform) {
+        check_extent(shape, transform, form.at.head(), reader);
+    }
     let material = form.material.as_ref().and_then(|material_use| match material_use {
-        MaterialUse::Named(name) => find_material(name, named, reader),
+        MaterialUse::Named(name) => names.find(name, reader),
         MaterialUse::Own(own) => {
             let kind = material(own, spectra, reader)?;
-            materials.push(Some(Material { name: format!("{place}.material"), kind }));
-            Some(materials.len() - 1)
+            Some(materials.push(Some(Material { name: format!("{place}.material"), kind })))
         }
     });
     let emission = match &form.emission {
@@ -198,20 +229,6 @@ fn object<'f>(
         }
     };
     Some(Object { name: name?, shape: shape?, transform: transform?, material: material?, emission: emission? })
-}
-
-fn find_material(name: &Spanned<String>, named: &[NamedEntry<MaterialForm>], reader: &mut Reader<'_>) -> Option<usize> {
-    let found = named.iter().position(|entry| entry.name == name.value);
-    if found.is_none() {
-        let names = || named.iter().map(|entry| entry.name.as_str());
-        let hint = match did_you_mean(&name.value, names()) {
-            Some(meant) => format!("did you mean \"{meant}\"?"),
-            None if named.is_empty() => "name one in \"materials\" at the top of the file".to_owned(),
-            None => format!("\"materials\" has {}", listed(names())),
-        };
-        reader.error_hint(Code::UnknownName, name.at, format!("no material is named \"{}\"", name.value), hint);
-    }
-    found
 }
 
 /// Odd scenes that can be rendered all the same.

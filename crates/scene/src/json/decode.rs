@@ -130,6 +130,16 @@ impl<T: Decode> Decode for Spanned<T> {
     }
 }
 
+impl<T: Decode> Decode for Box<T> {
+    fn schema(schema: &mut SchemaBuilder) -> serde_json::Value {
+        T::schema(schema)
+    }
+
+    fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
+        T::decode(node, reader).map(Self::new)
+    }
+}
+
 fn wrong_type(expected: &str, node: Node<'_>, reader: &mut Reader<'_>) {
     let at = reader.span(node);
     let message = format!("expected {expected}, found {}", node.kind().name());
@@ -344,6 +354,8 @@ impl Decode for Comment {
 }
 
 /// A list; elements that are wrong, which has been reported, are `None`.
+///
+/// Large elements belong in a [`Box`]: a hostile file may hold millions of wrong ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct List<T>(pub Vec<Option<T>>);
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::{Code, MAX_BYTES, Problem, SceneErrors, Severity, Span};
 use crate::problem::LoadError;
 
-/// The text of a file of at most [`MAX_BYTES`].
+/// The text of a file of at most [`MAX_BYTES`], without a byte order mark.
 ///
 /// # Errors
 /// [`LoadError::Io`] if it cannot be read, [`LoadError::Invalid`] if it is too large or not UTF-8.
@@ -36,6 +36,10 @@ pub fn load_text(path: &Path) -> Result<String, LoadError> {
     if bytes.len() > MAX_BYTES {
         let message = format!("the file is larger than {MAX_BYTES} bytes, the most that is read");
         return Err(refuse(String::new(), Code::Limit, Span::new(0, 0), 1, 1, message));
+    }
+    // As `read` does, whose places count from after the mark.
+    if bytes.starts_with("\u{feff}".as_bytes()) {
+        bytes.drain(..3);
     }
     String::from_utf8(bytes).map_err(|error| {
         let good = error.utf8_error().valid_up_to();

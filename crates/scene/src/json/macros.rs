@@ -5,7 +5,8 @@
 ///
 /// Fields have a [`Field`](crate::json::Field) type, documentation (which becomes the schema's description), perhaps
 /// another key than their name (`as "Key"`), and perhaps a default, as JSON text. `struct Name + comment` also lets
-/// the object have a `comment`. A field `at` is added: the object's place.
+/// the object have a `comment`. [`Rule`](crate::json::Rule)s about which keys go together may follow: `with [...]`. A
+/// field `at` is added: the object's place.
 #[macro_export]
 macro_rules! record {
     (
@@ -17,6 +18,7 @@ macro_rules! record {
                 $field:ident $(as $key:literal)? : $type:ty $(= $default:literal)?
             ),* $(,)?
         }
+        $(with [$($rule:expr),+ $(,)?])?
     ) => {
         $(#[doc = $doc])+
         #[derive(Clone, Debug)]
@@ -30,6 +32,7 @@ macro_rules! record {
         impl $crate::json::Record for $name {
             const KEYS: &'static [&'static str] = &[$($crate::record!(@key $field $($key)?)),*];
             const COMMENTED: bool = $crate::record!(@commented $($comment)?);
+            const RULES: &'static [$crate::json::Rule] = &[$($($rule),+)?];
 
             #[allow(unused_variables, reason = "an object may have no fields")]
             fn read(
@@ -41,6 +44,7 @@ macro_rules! record {
                     $($field: object.field(
                         $crate::record!(@key $field $($key)?),
                         $crate::record!(@default $($default)?),
+                        &[$($field_doc),+],
                         reader,
                     ),)*
                 }

@@ -35,8 +35,8 @@
 //!
 //! # Limits
 //!
-//! So that no text can exhaust stack or memory: at most [`MAX_BYTES`] of text and [`MAX_DEPTH`] levels of nesting, and
-//! at most [`MAX_PROBLEMS`] problems kept (a last one says how many more there were).
+//! So that no text can exhaust stack or memory: at most [`MAX_BYTES`] of text, [`MAX_VALUES`] values and [`MAX_DEPTH`]
+//! levels of nesting, and at most [`MAX_PROBLEMS`] problems kept (a last one says how many more there were).
 
 mod decode;
 mod load;
@@ -53,15 +53,18 @@ pub use decode::{
     Spanned, Whole, bounded, bounded_schema, keyword, tag,
 };
 pub use load::load_text;
-pub use object::{ObjectReader, Record};
+pub use object::{ObjectReader, Record, Rule};
 pub use reader::{Kind, Node, Reader, read};
 pub use schema::{FieldSchema, SchemaBuilder, SchemaValue, describe, document_schema, one_of, record_schema, words};
 pub use suggest::{did_you_mean, listed};
 
 pub use crate::problem::{Code, Problem, Related, SceneErrors, Severity, Span};
 
-/// The longest text that is read, bytes: 64 MiB. The parsed form takes at most about 50 times as much memory.
+/// The longest text that is read, bytes: 64 MiB.
 pub const MAX_BYTES: usize = 64 << 20;
+/// The most values (numbers, strings, lists, objects…) of a text that is read. A value takes some 100 to 300 bytes while
+/// a file is read, so this bounds the memory.
+pub const MAX_VALUES: usize = 10_000_000;
 /// The deepest nesting of arrays and objects that is read.
 pub const MAX_DEPTH: usize = 64;
 /// The most problems that are kept of one file.

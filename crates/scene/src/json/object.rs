@@ -1,6 +1,17 @@
 //! Objects with known keys.
 
-use super::{Code, Comment, Decode, Field, FieldSchema, Node, Reader, SchemaBuilder, Span, did_you_mean, listed};
+use super::{
+    Code, Comment, Decode, Field, FieldSchema, Node, Reader, SchemaBuilder, Span, describe, did_you_mean, listed,
+};
+
+/// Which keys of an object go together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// Exactly one of these keys must be there.
+    OneOf(&'static [&'static str]),
+    /// Where the first key is, the others must be.
+    Needs(&'static str, &'static [&'static str]),
+}
 
 /// A type that is an object with known keys; [`record!`](crate::record) declares them.
 pub trait Record: Sized {
@@ -8,6 +19,8 @@ pub trait Record: Sized {
     const KEYS: &'static [&'static str];
     /// Whether it also takes a `comment`, which is checked and forgotten.
     const COMMENTED: bool;
+    /// Which keys go together.
+    const RULES: &'static [Rule];
 
     /// Takes the fields out of an object.
     fn read(object: &mut ObjectReader<'_>, reader: &mut Reader<'_>) -> Self;
@@ -55,6 +68,11 @@ impl<'n> ObjectReader<'n> {
             }
         }
         for (key, at, value) in unknown {
+            if reader.is_full() {
+                // Only counted from here on, so no time is spent on guesses.
+                reader.error(Code::UnknownKey, at, String::new());
+                continue;
+            }
             let absent = keys.iter().copied().filter(|k| !members.iter().any(|m| m.0 == *k));
             let message = format!("unknown key \"{key}\"");
             if let Some(meant) = did_you_mean(key, absent) {
@@ -77,10 +95,42 @@ impl<'n> ObjectReader<'n> {
         let comment = R::COMMENTED.then_some("comment");
         let keys: Vec<&str> = tag.into_iter().chain(R::KEYS.iter().copied()).chain(comment).collect();
         let object = Self::new(node, &keys, reader)?;
-        if let (Some(comment), Some((_, value))) = (comment, object.get("comment")) {
-            let _: (Option<Comment>, &str) = (Comment::decode(value, reader), comment);
+        if R::COMMENTED
+            && let Some((_, value)) = object.get("comment")
+        {
+            // Only for what is wrong with it.
+            let _ = Comment::decode(value, reader);
+        }
+        for rule in R::RULES {
+            object.check(rule, reader);
         }
         Some(object)
+    }
+
+    fn check(&self, rule: &Rule, reader: &mut Reader<'_>) {
+        match *rule {
+            Rule::OneOf(keys) => {
+                let mut present = keys.iter().filter_map(|key| Some((key, self.get(key)?.0)));
+                match (present.next(), present.next()) {
+                    (None, _) => {
+                        let hint = format!("exactly one of {} must be there", listed(keys.iter().copied()));
+                        reader.error_hint(Code::MissingKey, self.span.head(), "a choice is missing", hint);
+                    }
+                    (Some((first, at)), Some((second, other))) => {
+                        let message = format!("\"{first}\" and \"{second}\" exclude each other");
+                        let label = (at, "the other one");
+                        reader.error_related(Code::KeyConflict, other, message, "keep one of them", label);
+                    }
+                    (Some(_), None) => {}
+                }
+            }
+            Rule::Needs(key, others) => {
+                let Some((at, _)) = self.get(key) else { return };
+                for other in others.iter().filter(|other| self.get(other).is_none()) {
+                    reader.error_hint(Code::MissingKey, at, format!("\"{key}\" needs \"{other}\""), "add it");
+                }
+            }
+        }
     }
 
     /// The place of the object.
@@ -94,7 +144,13 @@ impl<'n> ObjectReader<'n> {
     }
 
     /// Takes out a field: its value, else its default (as JSON), else an error if it is required.
-    pub fn field<F: Field>(&mut self, key: &'static str, default: Option<&'static str>, reader: &mut Reader<'_>) -> F {
+    pub fn field<F: Field>(
+        &mut self,
+        key: &'static str,
+        default: Option<&'static str>,
+        documentation: &[&str],
+        reader: &mut Reader<'_>,
+    ) -> F {
         if let Some((_, value)) = self.get(key) {
             return F::of(value, reader);
         }
@@ -102,7 +158,8 @@ impl<'n> ObjectReader<'n> {
             return reader.with_default(default, self.span.head(), F::of);
         }
         if F::REQUIRED {
-            reader.error_hint(Code::MissingKey, self.span.head(), format!("missing key \"{key}\""), "add it here");
+            let hint = format!("\"{key}\": {}", describe(documentation).trim_end_matches('.'));
+            reader.error_hint(Code::MissingKey, self.span.head(), format!("missing key \"{key}\""), hint);
         }
         F::absent()
     }

@@ -108,7 +108,7 @@ impl<'a> Reader<'a> {
         self.report(Severity::Error, code, at, message.into(), None, None);
     }
 
-    /// Reports an error and what to do about it.
+    /// Reports an error and what to do about it; an empty hint is none.
     pub fn error_hint(&mut self, code: Code, at: Span, message: impl Into<String>, hint: impl Into<String>) {
         self.report(Severity::Error, code, at, message.into(), Some(hint.into()), None);
     }
@@ -131,6 +131,11 @@ impl<'a> Reader<'a> {
         self.report(Severity::Warning, code, at, message.into(), hint, None);
     }
 
+    /// Whether further problems are only counted ([`MAX_PROBLEMS`]).
+    pub fn is_full(&self) -> bool {
+        self.problems.len() >= MAX_PROBLEMS
+    }
+
     /// Errors so far.
     pub fn error_count(&self) -> usize {
         self.errors
@@ -146,11 +151,12 @@ impl<'a> Reader<'a> {
         related: Option<Related>,
     ) {
         self.errors += usize::from(severity == Severity::Error);
-        if self.problems.len() >= MAX_PROBLEMS {
+        if self.is_full() {
             self.uncounted[usize::from(severity == Severity::Warning)] += 1;
             return;
         }
         let json_path = self.root.map_or_else(|| "$".to_owned(), |root| path::json_path(root, at));
+        let hint = hint.filter(|hint| !hint.is_empty());
         // Line and column follow when all problems are sorted.
         self.problems.push(Problem { severity, code, message, json_path, line: 0, column: 0, span: at, hint, related });
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use super::{Comment, Decode, Field, Record, syntax};
+use super::{Comment, Decode, Field, Record, Rule, syntax};
 
 /// A JSON Schema, or a part of one.
 pub type SchemaValue = Value;
@@ -79,13 +79,32 @@ pub fn record_schema<R: Record>(tag: Option<(&str, &str)>, schema: &mut SchemaBu
         comment["description"] = "A remark, or a list of lines. It changes nothing.".into();
         properties.insert("comment".to_owned(), comment);
     }
-    json!({
+    let mut record = json!({
         "type": "object",
         "description": R::description(),
         "properties": properties,
         "required": required,
         "additionalProperties": false,
-    })
+    });
+    let (mut choices, mut needs) = (Vec::new(), Map::new());
+    for rule in R::RULES {
+        match *rule {
+            Rule::OneOf(keys) => {
+                let each: Vec<Value> = keys.iter().map(|key| json!({ "required": [key] })).collect();
+                choices.push(json!({ "oneOf": each }));
+            }
+            Rule::Needs(key, others) => {
+                needs.insert(key.to_owned(), json!(others));
+            }
+        }
+    }
+    if !choices.is_empty() {
+        record["allOf"] = choices.into();
+    }
+    if !needs.is_empty() {
+        record["dependentRequired"] = needs.into();
+    }
+    record
 }
 
 /// The schema of a value that is of exactly one of several kinds.

@@ -9,7 +9,7 @@ use jsonc_parser::errors::{ParseError, ParseErrorKind};
 use jsonc_parser::tokens::{Token, TokenAndRange};
 use jsonc_parser::{CollectOptions, CommentCollectionStrategy, ParseOptions, parse_to_ast};
 
-use super::{Code, MAX_BYTES, MAX_DEPTH, Span};
+use super::{Code, MAX_BYTES, MAX_DEPTH, MAX_PROBLEMS, MAX_VALUES, Span};
 
 /// An error of syntax.
 pub(super) struct Fault {
@@ -53,10 +53,14 @@ pub(super) fn parse(text: &str) -> Parsed<'_> {
         let message = format!("the file has {} bytes; at most {MAX_BYTES} are read", text.len());
         return Parsed { value: None, faults: vec![Fault::new(Code::Limit, Span::new(0, 0), message, "")] };
     }
-    let (mut faults, deep) = lexical_faults(text);
+    let Scan { mut faults, deep, values } = scan(text);
+    let refuse = |fault| Parsed { value: None, faults: vec![fault] };
     if let Some(at) = deep {
-        let message = format!("nested deeper than {MAX_DEPTH} levels");
-        return Parsed { value: None, faults: vec![Fault::new(Code::Limit, at, message, "")] };
+        return refuse(Fault::new(Code::Limit, at, format!("nested deeper than {MAX_DEPTH} levels"), ""));
+    }
+    if values > MAX_VALUES {
+        let message = format!("the file holds more than {MAX_VALUES} values");
+        return refuse(Fault::new(Code::Limit, Span::new(0, 0), message, ""));
     }
     let strict = match parse_to_ast(text, &CollectOptions::default(), &STRICT) {
         Ok(parsed) => {
@@ -67,11 +71,19 @@ pub(super) fn parse(text: &str) -> Parsed<'_> {
         }
         Err(error) => fault_of(&error),
     };
+    if values > MAX_RECOVERED.0 || text.len() > MAX_RECOVERED.1 {
+        return refuse(strict);
+    }
     let collect = CollectOptions { comments: CommentCollectionStrategy::AsTokens, tokens: true };
     // The lexical faults were found on the premise that quotes and brackets are where strict JSON has them.
     match parse_to_ast(text, &collect, &ParseOptions::default()) {
         Ok(parsed) => {
-            let mut faults = liberties(text, &parsed.tokens.unwrap_or_default());
+            let tokens = parsed.tokens.unwrap_or_default();
+            let mut faults = liberties(text, &tokens);
+            if tokens.windows(2).any(|pair| is_needless_zero(&pair[0], &pair[1])) {
+                // Each such number became two values: whatever they are decoded to would mislead.
+                return Parsed { value: None, faults };
+            }
             if !faults.iter().any(|f| f.span.start == strict.span.start) {
                 faults.push(strict);
             }
@@ -85,10 +97,22 @@ pub(super) fn parse(text: &str) -> Parsed<'_> {
     }
 }
 
-/// What strict JSON forbids and the parser lets pass (control characters in strings, blanks other than JSON's four),
-/// and the place where the nesting becomes too deep.
-fn lexical_faults(text: &str) -> (Vec<Fault>, Option<Span>) {
-    let (mut faults, mut deep) = (Vec::new(), None);
+/// The most values and bytes of a text that is parsed again for the sake of further errors: its tokens are kept for
+/// that, some 60 bytes each.
+const MAX_RECOVERED: (usize, usize) = (1_000_000, 16 << 20);
+
+/// What can be told of a text before it is parsed, if quotes and brackets are where strict JSON has them.
+struct Scan {
+    /// What strict JSON forbids and the parser lets pass: control characters in strings, blanks other than JSON's four.
+    faults: Vec<Fault>,
+    /// Where the nesting becomes too deep.
+    deep: Option<Span>,
+    /// Number of values, or a little more.
+    values: usize,
+}
+
+fn scan(text: &str) -> Scan {
+    let (mut faults, mut deep, mut values) = (Vec::new(), None, 1);
     let (mut in_string, mut escaped, mut depth) = (false, false, 0_usize);
     for (i, &byte) in text.as_bytes().iter().enumerate() {
         if in_string {
@@ -96,7 +120,7 @@ fn lexical_faults(text: &str) -> (Vec<Fault>, Option<Span>) {
                 _ if escaped => escaped = false,
                 b'\\' => escaped = true,
                 b'"' => in_string = false,
-                0..0x20 => faults.push(Fault::syntax(
+                0..0x20 if faults.len() <= MAX_PROBLEMS => faults.push(Fault::syntax(
                     Span::new(i, i + 1),
                     format!("a control character (code {byte}) in a string"),
                     "write it as an escape such as \\n or \\t",
@@ -109,13 +133,15 @@ fn lexical_faults(text: &str) -> (Vec<Fault>, Option<Span>) {
             b'"' => in_string = true,
             b'[' | b'{' => {
                 depth += 1;
+                values += 1;
                 if depth > MAX_DEPTH && deep.is_none() {
                     deep = Some(Span::new(i, i + 1));
                 }
             }
             b']' | b'}' => depth = depth.saturating_sub(1),
+            b',' => values += 1,
             // Any other character of several bytes is an error of the grammar as well; the parser says so.
-            0xC0.. | 0x0B | 0x0C => {
+            0xC0.. | 0x0B | 0x0C if faults.len() <= MAX_PROBLEMS => {
                 if let Some(c) = text[i..].chars().next().filter(|c| c.is_whitespace()) {
                     faults.push(Fault::syntax(
                         Span::new(i, i + c.len_utf8()),
@@ -127,7 +153,7 @@ fn lexical_faults(text: &str) -> (Vec<Fault>, Option<Span>) {
             _ => {}
         }
     }
-    (faults, deep)
+    Scan { faults, deep, values }
 }
 
 /// Every liberty that a text takes with JSON, from its tokens.
@@ -135,6 +161,9 @@ fn liberties(text: &str, tokens: &[TokenAndRange<'_>]) -> Vec<Fault> {
     let mut faults = Vec::new();
     let mut before: Option<&TokenAndRange<'_>> = None;
     for token in tokens {
+        if faults.len() > MAX_PROBLEMS {
+            break;
+        }
         let span = Span::new(token.range.start, token.range.end);
         if matches!(token.token, Token::CommentLine(_) | Token::CommentBlock(_)) {
             faults.push(Fault::syntax(span, "JSON has no comments", "move the text to a \"comment\" key"));
@@ -147,7 +176,7 @@ fn liberties(text: &str, tokens: &[TokenAndRange<'_>]) -> Vec<Fault> {
                     let comma = Span::new(before.range.start, before.range.end);
                     faults.push(Fault::syntax(comma, "a comma after the last entry", "remove it"));
                 }
-                (Token::Number("0" | "-0"), Token::Number(_)) if before.range.end == token.range.start => {
+                _ if is_needless_zero(before, token) => {
                     let number = Span::new(before.range.start, token.range.end);
                     faults.push(Fault::syntax(number, "a number that starts with a needless 0", "remove the 0"));
                 }
@@ -202,6 +231,12 @@ fn string_liberties(source: &str, offset: usize, faults: &mut Vec<Fault>) {
             faults.push(Fault::syntax(span, "an escape that JSON does not know", "write \\\\ for a backslash"));
         }
     }
+}
+
+/// Whether two tokens are what the parser makes of a number such as 042.
+fn is_needless_zero(before: &TokenAndRange<'_>, token: &TokenAndRange<'_>) -> bool {
+    matches!((&before.token, &token.token), (Token::Number("0" | "-0"), Token::Number(_)))
+        && before.range.end == token.range.start
 }
 
 fn starts_value(token: &Token<'_>) -> bool {

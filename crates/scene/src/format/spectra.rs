@@ -1,0 +1,291 @@
+//! What spectra become where they are used.
+
+use std::collections::{HashMap, HashSet};
+
+use etalon_optics::spectrum::Outside;
+use etalon_optics::{Illuminant, OpticsError, Spectrum};
+
+use super::names::Names;
+use super::spectrum::{
+    Density, OutsideTable, RgbSpectrum, SpectrumForm, SpectrumObject, TabulatedSpectrum, check_table, sound,
+};
+use crate::json::{Code, List, Named, NamedEntry, Reader, Span, Spanned};
+
+/// The largest emission: with the squares of distances, it stays within single precision (3·10³⁸).
+const BRIGHTEST: f64 = 1e30;
+
+/// What a spectrum is used as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Role {
+    /// A share of light, in [0, 1].
+    Reflectance,
+    /// A density of light, 0 or above.
+    Emission,
+}
+
+/// How a spectrum is used.
+#[derive(Clone, Copy, Debug)]
+struct Use {
+    role: Role,
+    /// Where, if that is not where it is written.
+    at: Option<Span>,
+}
+
+/// Turns forms into spectra.
+#[derive(Debug)]
+pub(crate) struct Spectra<'f> {
+    entries: &'f [NamedEntry<Box<SpectrumForm>>],
+    names: Names<'f>,
+    /// For each entry the one that it stands for, itself if it is not another's name.
+    targets: Vec<Option<usize>>,
+    /// The wavelengths to be rendered; `None` if the file does not say them rightly.
+    pub(crate) range_nm: Option<[f64; 2]>,
+    /// What has been said already about a place: a named spectrum is used more than once.
+    said: HashSet<(Span, Code)>,
+    /// Named spectra that have been made: upsampling a colour takes milliseconds.
+    made: HashMap<(usize, Role), Option<Spectrum>>,
+}
+
+impl<'f> Spectra<'f> {
+    /// Checks what is wrong with named spectra whatever they are used for.
+    pub(crate) fn new(
+        named: Option<&'f Named<Box<SpectrumForm>>>,
+        range_nm: Option<[f64; 2]>,
+        reader: &mut Reader<'_>,
+    ) -> Self {
+        let entries = named.map_or(&[][..], |named| &named.0);
+        let names = Names::new("spectrum", "spectra", entries);
+        for entry in entries {
+            if let Some(SpectrumForm::Object(SpectrumObject::Tabulated(table))) = entry.value.as_deref() {
+                check_table(table, reader);
+            }
+        }
+        let targets = targets(entries, &names, reader);
+        Self { entries, names, targets, range_nm, said: HashSet::new(), made: HashMap::new() }
+    }
+
+    /// The spectrum of a form in a role.
+    pub(crate) fn resolve(&mut self, form: &'f SpectrumForm, role: Role, reader: &mut Reader<'_>) -> Option<Spectrum> {
+        let SpectrumForm::Name(name) = form else {
+            if let SpectrumForm::Object(SpectrumObject::Tabulated(table)) = form {
+                check_table(table, reader);
+            }
+            return self.make(form, Use { role, at: None }, reader);
+        };
+        let target = self.targets[self.names.find(name, reader)?]?;
+        if let Some(made) = self.made.get(&(target, role)) {
+            return made.clone();
+        }
+        let form = self.entries[target].value.as_deref()?;
+        let made = self.make(form, Use { role, at: Some(name.at) }, reader);
+        self.made.insert((target, role), made.clone());
+        made
+    }
+
+    fn make(&mut self, form: &SpectrumForm, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
+        let spectrum = match form {
+            // `targets` has followed these.
+            SpectrumForm::Name(_) => return None,
+            SpectrumForm::Number(number) => self.constant(number, used, reader),
+            SpectrumForm::Object(SpectrumObject::Constant(constant)) => {
+                self.constant(constant.value.as_ref()?, used, reader)
+            }
+            SpectrumForm::Object(SpectrumObject::Tabulated(table)) => self.table(table, used, reader),
+            SpectrumForm::Object(SpectrumObject::Rgb(colour)) => self.rgb(colour, used, reader),
+            SpectrumForm::Object(SpectrumObject::Blackbody(body)) => {
+                self.light_only("a black body", body.at, used, reader)?;
+                accept(Spectrum::blackbody(body.temperature_k?.0, body.scale?.0), body.at, reader)
+            }
+            SpectrumForm::Object(SpectrumObject::Illuminant(illuminant)) => {
+                self.light_only("an illuminant", illuminant.at, used, reader)?;
+                let name = illuminant.name?;
+                self.covered(illuminant_range_nm(name), illuminant.at, "the illuminant", "", used, reader);
+                accept(Spectrum::illuminant(name, illuminant.scale?.0), illuminant.at, reader)
+            }
+        }?;
+        let largest = spectrum.max_over(self.range_nm?);
+        if largest > BRIGHTEST || largest.is_nan() {
+            let message = format!("an emission of {largest:e} is more than {BRIGHTEST:e}");
+            self.complain(
+                Code::OutOfRange,
+                form.at().head(),
+                message,
+                "single precision could not carry it",
+                used,
+                reader,
+            );
+            return None;
+        }
+        Some(spectrum)
+    }
+
+    /// Reports what is wrong with a spectrum as it is used: where it is written, and once.
+    fn complain(&mut self, code: Code, at: Span, message: String, hint: &str, used: Use, reader: &mut Reader<'_>) {
+        if self.said.insert((at, code)) {
+            match used.at {
+                Some(use_at) => reader.error_related(code, at, message, hint, (use_at, "used here")),
+                None => reader.error_hint(code, at, message, hint),
+            }
+        }
+    }
+
+    /// Whether a value is possible in its role.
+    fn admits(&mut self, value: f64, at: Span, used: Use, reader: &mut Reader<'_>) -> bool {
+        let (code, message) = match used.role {
+            Role::Reflectance if !(0.0..=1.0).contains(&value) => {
+                (Code::Reflectance, format!("{value} is no reflectance: those lie from 0 to 1"))
+            }
+            Role::Emission if value < 0.0 => (Code::NegativeEmission, format!("an emission of {value} is below 0")),
+            _ => return true,
+        };
+        self.complain(code, at, message, "", used, reader);
+        false
+    }
+
+    fn constant(&mut self, number: &Spanned<Density>, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
+        self.admits(number.value.0, number.at, used, reader).then_some(Spectrum::Constant(number.value.0))
+    }
+
+    fn light_only(&mut self, what: &str, at: Span, used: Use, reader: &mut Reader<'_>) -> Option<()> {
+        if used.role == Role::Emission {
+            return Some(());
+        }
+        let message = format!("{what} is a light, not a reflectance");
+        let hint = "a reflectance is a number, a table or an rgb colour";
+        self.complain(Code::Reflectance, at.head(), message, hint, used, reader);
+        None
+    }
+
+    fn table(&mut self, table: &TabulatedSpectrum, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
+        let scale = table.scale.map(|scale| scale.0);
+        let mut possible = true;
+        for value in table.values.iter().flat_map(|values| values.0.iter().flatten()) {
+            // With a wrong scale only the sign can be judged.
+            let scaled = if value.value.0 < 0.0 { value.value.0 } else { value.value.0 * scale.unwrap_or(0.0) };
+            possible &= self.admits(scaled, value.at, used, reader);
+        }
+        let wavelengths_nm = plain(table.wavelengths_nm.as_ref()?, |w| w.0)?;
+        let values = plain(table.values.as_ref()?, |v| v.0)?;
+        let (scale, outside) = (scale?, table.outside?);
+        if let (OutsideTable::Error, Some(first), Some(last)) = (outside, wavelengths_nm.first(), wavelengths_nm.last())
+        {
+            let hint = "add \"outside\": \"clamp\" or \"zero\", or narrow the integrator's wavelength_range_nm";
+            self.covered([*first, *last], table.at, "this table", hint, used, reader);
+        }
+        if !possible || !sound(&wavelengths_nm, &values) {
+            return None;
+        }
+        // "error" cannot be met any more: the table covers what will be rendered.
+        let outside = if outside == OutsideTable::Zero { Outside::Zero } else { Outside::Hold };
+        let values = values.iter().map(|v| v * scale).collect();
+        accept(Spectrum::tabulated(wavelengths_nm, values, outside), table.at, reader)
+    }
+
+    fn rgb(&mut self, colour: &RgbSpectrum, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
+        if used.role == Role::Reflectance {
+            let stray = [
+                ("white", colour.white.given().map(|white| white.at)),
+                ("scale", colour.scale.given().map(|scale| scale.at)),
+            ];
+            for (key, at) in stray {
+                if let Some(at) = at {
+                    let message = format!("\"{key}\" belongs to an emission, and this colour is used as a reflectance");
+                    self.complain(Code::KeyConflict, at, message, "remove it", used, reader);
+                }
+            }
+        }
+        let channels = colour.rgb.as_ref()?;
+        let mut possible = true;
+        for channel in channels {
+            possible &= self.admits(channel.value.0, channel.at, used, reader);
+        }
+        if !possible {
+            return None;
+        }
+        let rgb = channels.map(|channel| channel.value.0);
+        if used.role == Role::Reflectance {
+            return accept(Spectrum::rgb_reflectance(rgb), colour.at, reader);
+        }
+        let white = colour.white.clone().checked()?.map_or(Illuminant::D65, |white| white.value);
+        let scale = colour.scale.clone().checked()?.map_or(1.0, |scale| scale.value.0);
+        self.covered(illuminant_range_nm(white), colour.at, "the white", "", used, reader);
+        accept(Spectrum::rgb_emission(rgb.map(|v| v * scale), white), colour.at, reader)
+    }
+
+    /// Reports wavelengths of the rendered range for which there are no data.
+    fn covered(&mut self, known_nm: [f64; 2], at: Span, what: &str, hint: &str, used: Use, reader: &mut Reader<'_>) {
+        let Some(range_nm) = self.range_nm else { return };
+        if known_nm[0] <= range_nm[0] && range_nm[1] <= known_nm[1] {
+            return;
+        }
+        let message = outside_message(what, known_nm, range_nm);
+        let hint = if hint.is_empty() { "narrow the integrator's wavelength_range_nm" } else { hint };
+        self.complain(Code::OutsideFit, at.head(), message, hint, used, reader);
+    }
+}
+
+/// For each entry the one that it stands for through any number of names; `None`, and an error, where there is none.
+fn targets(
+    entries: &[NamedEntry<Box<SpectrumForm>>],
+    names: &Names<'_>,
+    reader: &mut Reader<'_>,
+) -> Vec<Option<usize>> {
+    let alias = |i: usize| match entries[i].value.as_deref() {
+        Some(SpectrumForm::Name(name)) => Some(name),
+        _ => None,
+    };
+    let mut targets: Vec<Option<Option<usize>>> = vec![None; entries.len()];
+    let mut met_in = vec![usize::MAX; entries.len()];
+    for start in 0..entries.len() {
+        // Follows names as far as nothing is known; then what is found holds for all that were passed.
+        let (mut passed, mut at) = (Vec::<usize>::new(), start);
+        let found = loop {
+            if let Some(known) = targets[at] {
+                break known;
+            }
+            if met_in[at] == start {
+                for &i in passed.iter().skip_while(|i| **i != at) {
+                    let message = format!("the spectrum \"{}\" stands, through its name, for itself", entries[i].name);
+                    reader.error(Code::Circular, entries[i].at, message);
+                }
+                break None;
+            }
+            met_in[at] = start;
+            passed.push(at);
+            match alias(at) {
+                None => break Some(at),
+                Some(name) => match names.find(name, reader) {
+                    Some(next) => at = next,
+                    None => break None,
+                },
+            }
+        };
+        for i in passed {
+            targets[i] = Some(found);
+        }
+    }
+    targets.into_iter().map(Option::flatten).collect()
+}
+
+pub(super) fn outside_message(what: &str, known_nm: [f64; 2], range_nm: [f64; 2]) -> String {
+    let [first, last] = known_nm;
+    let [from, to] = range_nm;
+    format!("{what} is known from {first} to {last} nm only, and {from} to {to} nm are rendered")
+}
+
+/// The wavelengths for which the CIE defines an illuminant, nm.
+fn illuminant_range_nm(illuminant: Illuminant) -> [f64; 2] {
+    match illuminant {
+        Illuminant::D65 => [300.0, 830.0],
+        Illuminant::E | Illuminant::A => [0.0, f64::INFINITY],
+    }
+}
+
+pub(super) fn plain<T, U>(list: &List<Spanned<T>>, f: impl Fn(&T) -> U) -> Option<Vec<U>> {
+    list.0.iter().map(|element| element.as_ref().map(|element| f(&element.value))).collect()
+}
+
+/// What optics made of checked numbers; should it refuse them after all, its reason.
+pub(super) fn accept<T>(made: Result<T, OpticsError>, at: Span, reader: &mut Reader<'_>) -> Option<T> {
+    made.map_err(|error| reader.error(Code::OutOfRange, at.head(), error.to_string())).ok()
+}

@@ -1,0 +1,302 @@
+//! Every field of a file arrives in the model.
+
+mod common;
+
+use common::{EVERYTHING, Parts, RIGHT};
+use etalon_optics::index::SellmeierTerm;
+use etalon_optics::spectrum::Outside;
+use etalon_optics::{ComplexIndex, Illuminant, OutsideFit, RefractiveIndex, Spectrum};
+use etalon_scene::*;
+
+fn scene(text: &str) -> Scene {
+    parse(text, "test.json").unwrap_or_else(|errors| panic!("{errors}")).0
+}
+
+fn kind<'s>(scene: &'s Scene, name: &str) -> &'s MaterialKind {
+    &scene.materials.iter().find(|m| m.name == name).expect("a material").kind
+}
+
+#[test]
+fn camera_film_and_integrator() {
+    let scene = scene(EVERYTHING);
+    // 1/f = 1/z + 1/s for the sensor's distance s behind a lens that is in focus at z.
+    let sensor_m = 1.0 / (1.0 / 0.05 - 1.0 / 2.0);
+    let Projection::Perspective { vertical_fov_rad, lens } = &scene.camera.projection else { panic!("perspective") };
+    // A few roundings each way.
+    assert!((vertical_fov_rad - 2.0 * (0.012_f64 / sensor_m).atan()).abs() < 1e-15);
+    assert_eq!(lens, &Some(ThinLens { radius_m: 0.0125, focus_distance_m: 2.0 }));
+    assert_eq!(scene.camera.position_m, [1.0, 2.0, 3.0]);
+    assert_eq!((scene.camera.forward, scene.camera.up), ([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
+    assert_eq!(scene.film, Film { width: 320, height: 200, filter: Filter::Gaussian { sigma_px: 0.75 } });
+    assert_eq!(
+        scene.integrator,
+        Integrator {
+            spp: 16,
+            seed: u64::MAX,
+            sampler: SamplerKind::Independent,
+            max_depth: Some(8),
+            roulette: false,
+            light_sampling: LightSampling::Light,
+            wavelength_range_nm: [380.0, 780.0],
+            precision: Precision::F64,
+        }
+    );
+}
+
+#[test]
+fn defaults() {
+    let scene = scene(&RIGHT.text());
+    assert_eq!(
+        scene.integrator,
+        Integrator {
+            spp: 64,
+            seed: 0,
+            sampler: SamplerKind::Sobol,
+            max_depth: None,
+            roulette: true,
+            light_sampling: LightSampling::Mis,
+            wavelength_range_nm: [360.0, 830.0],
+            precision: Precision::F32,
+        }
+    );
+    assert_eq!(scene.film.filter, Filter::Box);
+    assert_eq!(scene.camera.up, [0.0, 1.0, 0.0]);
+    let object = &scene.objects[0];
+    assert_eq!((object.name.as_str(), object.material, &object.emission), ("objects[0]", 0, &None));
+    assert_eq!(object.shape, Shape::Sphere { center: [0.0; 3], radius_m: 1.0 });
+    let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    assert_eq!(object.transform, Transform { linear: identity, translation_m: [0.0; 3] });
+    assert_eq!(scene.lights[0].name, "lights[0]");
+}
+
+#[test]
+fn materials_and_spectra() {
+    let scene = scene(EVERYTHING);
+    let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(
+        names,
+        [
+            "lambert",
+            "red",
+            "table",
+            "mirror",
+            "perfect",
+            "gold",
+            "own metal",
+            "glass",
+            "dispersive",
+            "own glass",
+            "black",
+            "objects[3].material"
+        ]
+    );
+    let reflects = |reflectance| MaterialKind::Lambert { reflectance };
+    assert_eq!(kind(&scene, "lambert"), &reflects(Spectrum::Constant(0.5)));
+    assert_eq!(kind(&scene, "red"), &reflects(Spectrum::rgb_reflectance([0.8, 0.1, 0.1]).expect("right")));
+    let table = Spectrum::tabulated(vec![400.0, 500.0, 700.0], vec![0.2, 0.4, 0.6], Outside::Hold).expect("right");
+    assert_eq!(kind(&scene, "table"), &reflects(table));
+    assert_eq!(kind(&scene, "mirror"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9) });
+    assert_eq!(kind(&scene, "perfect"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(1.0) });
+    let gold = ComplexIndex::named("Au").expect("gold").with_outside(OutsideFit::Clamp);
+    assert_eq!(kind(&scene, "gold"), &MaterialKind::Conductor { index: gold });
+    let own = ComplexIndex::tabulated(vec![300.0, 900.0], vec![0.2, 0.3], vec![3.0, 4.0]).expect("right");
+    assert_eq!(kind(&scene, "own metal"), &MaterialKind::Conductor { index: own });
+    let glass = |name| RefractiveIndex::named(name).expect("a glass");
+    assert_eq!(
+        kind(&scene, "glass"),
+        &MaterialKind::Dielectric { interior: glass("N-BK7"), exterior: RefractiveIndex::VACUUM }
+    );
+    assert_eq!(
+        kind(&scene, "dispersive"),
+        &MaterialKind::Dielectric {
+            interior: glass("N-SF11").with_outside(OutsideFit::Clamp),
+            exterior: RefractiveIndex::Constant(1.33),
+        }
+    );
+    let terms = vec![SellmeierTerm { b: 1.039_612_12, c_um2: 0.006_000_698_67 }];
+    assert_eq!(
+        kind(&scene, "own glass"),
+        &MaterialKind::Dielectric {
+            interior: RefractiveIndex::sellmeier(terms, Some([300.0, 2500.0])).expect("right"),
+            exterior: RefractiveIndex::cauchy(1.5, 0.004, 0.0001, Some([400.0, 700.0]))
+                .expect("right")
+                .with_outside(OutsideFit::Clamp),
+        }
+    );
+    assert_eq!(kind(&scene, "black"), &MaterialKind::Black);
+    assert_eq!(kind(&scene, "objects[3].material"), &reflects(Spectrum::Constant(1.0)));
+}
+
+#[test]
+fn objects_and_lights() {
+    let scene = scene(EVERYTHING);
+    let [ball, sheet, disk, pyramid, block] = scene.objects.as_slice() else { panic!("five") };
+    assert_eq!((ball.name.as_str(), ball.material), ("ball", 0));
+    assert_eq!(ball.shape, Shape::Sphere { center: [1.0, 0.0, 0.0], radius_m: 0.5 });
+    assert_eq!(sheet.shape, Shape::Parallelogram { origin: [0.0; 3], u: [1.0, 0.0, 0.0], v: [0.0, 2.0, 0.0] });
+    let radiance = Spectrum::rgb_emission([4.0, 4.0 * 0.8, 2.0], Illuminant::A).expect("right");
+    assert_eq!(sheet.emission, Some(Emission { radiance, sides: EmissionSides::Both }));
+    assert_eq!((sheet.name.as_str(), sheet.material), ("objects[1]", 10));
+    assert_eq!(disk.shape, Shape::Disk { center: [0.0, 1.0, 0.0], normal: [0.0, -0.6, 0.8], radius_m: 2.0 });
+    let radiance = Spectrum::blackbody(5000.0, 1e-3).expect("right");
+    assert_eq!(disk.emission, Some(Emission { radiance, sides: EmissionSides::Front }));
+    let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    assert_eq!(pyramid.shape, Shape::Mesh { vertices, triangles });
+    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 11));
+    // By hand: (x, y, z) → (2x, −2y, 6z) → a quarter turn: (2y, 2x, 6z) → moved → x and y swapped, moved.
+    let linear = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]];
+    assert_eq!(pyramid.transform, Transform { linear, translation_m: [25.0, 16.0, 37.0] });
+    assert_eq!(block.material, 7);
+
+    let kinds: Vec<&LightKind> = scene.lights.iter().map(|l| &l.kind).collect();
+    let day = Spectrum::illuminant(Illuminant::D65, 3.0).expect("right");
+    let within = Spectrum::tabulated(vec![400.0, 700.0], vec![1.0, 1.0], Outside::Zero).expect("right");
+    assert_eq!(
+        kinds,
+        [
+            &LightKind::Point { position_m: [0.0, 9.0, 0.0], intensity: day },
+            &LightKind::Directional { direction: [0.0, -1.0, 0.0], irradiance: within },
+            &LightKind::Environment { radiance: Spectrum::Constant(0.25) },
+        ]
+    );
+    assert_eq!(scene.lights[0].name, "bulb");
+    assert_eq!(scene.lights[2].name, "lights[2]");
+}
+
+#[test]
+fn a_box_is_a_closed_mesh_whose_normals_point_outward() {
+    let scene = scene(EVERYTHING);
+    let Shape::Mesh { vertices, triangles } = &scene.objects[4].shape else { panic!("a mesh") };
+    assert_eq!((vertices.len(), triangles.len()), (8, 12));
+    let mut edges = std::collections::HashMap::new();
+    let (mut volume, mut area) = (0.0, 0.0);
+    for t in triangles {
+        let [a, b, c] = t.map(|i| vertices[i as usize]);
+        let (u, v) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
+        let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        // The divergence theorem: six times the volume is Σ a·n, positive only for outward normals.
+        volume += (a[0] * n[0] + a[1] * n[1] + a[2] * n[2]) / 6.0;
+        area += 0.5 * (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+        for k in 0..3 {
+            *edges.entry((t[k], t[(k + 1) % 3])).or_insert(0) += 1;
+        }
+    }
+    assert_eq!((volume, area), (6.0, 22.0));
+    // Closed and oriented: each edge is walked once each way.
+    assert!(edges.iter().all(|(&(a, b), &n)| n == 1 && edges.get(&(b, a)) == Some(&1)));
+}
+
+fn camera(camera: &str, film: &str) -> Camera {
+    scene(&Parts { camera, film, ..RIGHT }.text()).camera
+}
+
+fn fov_rad(camera: &Camera) -> f64 {
+    match camera.projection {
+        Projection::Perspective { vertical_fov_rad, .. } => vertical_fov_rad,
+        Projection::Orthographic { .. } => panic!("perspective"),
+    }
+}
+
+#[test]
+fn the_angle_of_view_can_be_said_in_four_ways() {
+    let view = |rest: &str| {
+        let text =
+            format!("{{\"type\": \"perspective\", \"position_m\": [0, 0, 5], \"look_at_m\": [0, 0, 0], {rest}}}");
+        fov_rad(&camera(&text, "{\"width\": 200, \"height\": 100}"))
+    };
+    assert_eq!(view("\"vertical_fov_deg\": 90"), std::f64::consts::FRAC_PI_2);
+    // A few roundings.
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} {b}");
+    near(view("\"horizontal_fov_deg\": 90"), 2.0 * 0.5_f64.atan());
+    near(view("\"focal_length_m\": 0.05, \"sensor_height_m\": 0.1"), std::f64::consts::FRAC_PI_2);
+    near(view("\"focal_length_m\": 0.05, \"sensor_width_m\": 0.1"), 2.0 * 0.5_f64.atan());
+    // A lens of radius 0 focuses all the same: the sensor stands where the image is.
+    near(
+        view("\"focal_length_m\": 1, \"sensor_height_m\": 4, \"lens\": {\"radius_m\": 0, \"focus_distance_m\": 2}"),
+        std::f64::consts::FRAC_PI_2,
+    );
+}
+
+#[test]
+fn another_size_keeps_the_angle_that_the_file_says() {
+    let fov = |key: &str, size| {
+        let camera = format!(
+            "{{\"type\": \"perspective\", \"position_m\": [0, 0, 5], \"look_at_m\": [0, 0, 0], \"{key}\": 90}}"
+        );
+        let text = Parts { camera: &camera, ..RIGHT }.text();
+        let (scene, _) = parse_with_size(&text, "test.json", size).expect("right");
+        if let Some([width, height]) = size {
+            assert_eq!([scene.film.width, scene.film.height], [width, height]);
+        }
+        fov_rad(&scene.camera)
+    };
+    assert_eq!(fov("vertical_fov_deg", None), fov("vertical_fov_deg", Some([300, 100])));
+    assert!((fov("horizontal_fov_deg", Some([300, 100])) - 2.0 * (1.0_f64 / 3.0).atan()).abs() < 1e-15);
+}
+
+#[test]
+fn orthographic_cameras() {
+    let text = "{\"type\": \"orthographic\", \"position_m\": [0, 3, 0], \"direction\": [0, -2, 0], \"up\": [0, 1, -1], \"height_m\": 4}";
+    let camera = camera(text, "{\"width\": 2, \"height\": 1}");
+    assert_eq!(camera.projection, Projection::Orthographic { height_m: 4.0 });
+    assert_eq!((camera.forward, camera.up), ([0.0, -1.0, 0.0], [0.0, 0.0, -1.0]));
+}
+
+#[test]
+fn rotations_are_proper_and_exact_at_quarter_turns() {
+    let linear = |axis: &str, angle: &str| {
+        let objects = format!(
+            "[{{\"shape\": {{\"type\": \"sphere\", \"radius_m\": 1}}, \"material\": \"white\", \
+             \"transform\": [{{\"rotate\": {{\"axis\": {axis}, \"angle_deg\": {angle}}}}}]}}]"
+        );
+        scene(&Parts { objects: &objects, ..RIGHT }.text()).objects[0].transform.linear
+    };
+    assert_eq!(linear("[0, 0, 7]", "90"), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
+    assert_eq!(linear("[0, 0, 7]", "-270"), linear("[0, 0, 1]", "450"));
+    assert_eq!(linear("[3, 0, 0]", "180"), [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]);
+    assert_eq!(linear("[0, 1, 0]", "-1e-30"), linear("[0, 1, 0]", "0"));
+    // Hard case 18: the axis (1, 2, 3) is normalised; ‖RᵀR − 1‖ < 4ε for unit axes to one rounding.
+    let r = linear("[1, 2, 3]", "77");
+    for i in 0..3 {
+        for j in 0..3 {
+            let dot: f64 = (0..3).map(|k| r[k][i] * r[k][j]).sum();
+            let expected = if i == j { 1.0 } else { 0.0 };
+            assert!((dot - expected).abs() < 4.0 * f64::EPSILON, "{i}{j}: {dot}");
+        }
+    }
+    // The axis stays where it is.
+    let axis = [1.0, 2.0, 3.0];
+    for i in 0..3 {
+        let turned: f64 = (0..3).map(|k| r[i][k] * axis[k]).sum();
+        assert!((turned - axis[i]).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn needles_are_kept_and_only_triangles_without_area_are_dropped() {
+    let objects = "[{\"shape\": {\"type\": \"mesh\", \"vertices_m\": \
+        [[0,0,0],[1e5,0,0],[5e4,1,0],[1e-300,0,0],[0,1e-300,0],[1,1,1],[2,2,2],[3,3,3],[1e300,0,0]], \
+        \"triangles\": [[0,1,2],[0,3,4],[5,6,7],[0,0,1]]}, \"material\": \"white\"}]";
+    // The last vertex is too far for the squares of distances; without it all is well.
+    assert!(parse(&Parts { objects, ..RIGHT }.text(), "test.json").is_err());
+    let objects = objects.replace("[1e300,0,0]", "[0,0,1]");
+    let scene = scene(&Parts { objects: &objects, ..RIGHT }.text());
+    let Shape::Mesh { triangles, .. } = &scene.objects[0].shape else { panic!("a mesh") };
+    assert_eq!(triangles, &[[0, 1, 2], [0, 3, 4]]);
+}
+
+#[test]
+fn a_file_is_read_from_the_disk() {
+    let missing = load("no/such/scene.json").expect_err("there is none");
+    assert!(matches!(missing, LoadError::Io { .. }), "{missing}");
+    let path = std::env::temp_dir().join(format!("etalon-scene-test-{}.json", std::process::id()));
+    std::fs::write(&path, format!("\u{feff}{EVERYTHING}")).expect("written");
+    assert_eq!(load(&path).expect("right").0, scene(EVERYTHING));
+    std::fs::write(&path, b"{\n\"etalon\": \"\xFF\"}").expect("written");
+    let Err(LoadError::Invalid(errors)) = load(&path) else { panic!("it is not UTF-8") };
+    std::fs::remove_file(&path).expect("removed");
+    let problem = &errors.problems[0];
+    assert_eq!((problem.code, problem.line, problem.column), (Code::NotUtf8, 2, 12));
+    assert_eq!(&errors.text[problem.span.start..problem.span.end], "\u{fffd}");
+}
