@@ -17,7 +17,7 @@ use crate::observer::{End, Found, Observer};
 use crate::sampler::Sampler;
 use crate::spectral::PathSpectrum;
 use crate::surface::Surfaces;
-use etalon_geometry::{Geometry, Ray, SurfacePoint};
+use etalon_geometry::{Geometry, PrimitiveId, Ray, SurfacePoint};
 use etalon_optics::{Lanes, Real, Vec3};
 use etalon_scene::LightSampling;
 
@@ -45,8 +45,8 @@ pub(crate) struct World<'a> {
 enum Step<R> {
     /// From the camera or by a delta: no shadow ray could have found what it finds.
     Unshared,
-    /// Drawn with this density from this point, where a shadow ray was sent too.
-    Shared { from: Vec3<R>, density: R },
+    /// Drawn with this density from this point of this primitive, where a shadow ray was sent too.
+    Shared { from: Vec3<R>, leaves: PrimitiveId, density: R },
 }
 
 impl World<'_> {
@@ -85,7 +85,7 @@ impl World<'_> {
             observer.vertex(vertex, point.position, surface.object, beta);
 
             if let Some(emitter) = surface.emission_along(point.normal, wo) {
-                let mis = self.weight_of_hit(step, surface.light, ray.direction);
+                let mis = self.weight_of_hit(step, point.primitive, surface.light, ray.direction);
                 let light = beta * emitter.lanes(lambda_nm) * (lane_weight * mis);
                 observer.light(vertex, Found::Emitter, light);
                 radiance += light;
@@ -115,7 +115,9 @@ impl World<'_> {
             lane_density *= next.lane_density;
             eta_squared *= next.eta * next.eta;
             step = match next.density {
-                Density::SolidAngle(density) if shared => Step::Shared { from: point.position, density },
+                Density::SolidAngle(density) if shared => {
+                    Step::Shared { from: point.position, leaves: point.primitive, density }
+                }
                 Density::SolidAngle(_) | Density::Delta => Step::Unshared,
             };
             ray = point.spawn(next.wi);
@@ -143,20 +145,25 @@ impl World<'_> {
         radiance
     }
 
-    /// The MIS weight of light that the walk ran into at a surface whose light, if any, is number `light`.
-    fn weight_of_hit<R: Real>(&self, step: Step<R>, light: Option<u32>, wi: Vec3<R>) -> R {
+    /// The MIS weight of light that the walk ran into on `primitive`, whose light, if any, is number `light`.
+    fn weight_of_hit<R: Real>(&self, step: Step<R>, primitive: PrimitiveId, light: Option<u32>, wi: Vec3<R>) -> R {
         match (step, light) {
             (Step::Unshared, _) | (_, None) => R::ONE,
-            (Step::Shared { from, density }, Some(light)) => match self.light_sampling {
-                LightSampling::Light => R::ZERO,
-                LightSampling::Bsdf => R::ONE,
-                LightSampling::Mis => {
-                    let light = light as usize;
-                    let shadow_ray = self.lights.probability(light)
-                        * self.lights.lights()[light].density(from.to_f64(), wi.to_f64());
-                    power_heuristic(density, R::from_f64(shadow_ray))
+            // The far side of the sphere that it left: see `direct_light`.
+            (Step::Shared { leaves, .. }, _) if leaves == primitive => R::ONE,
+            (Step::Shared { from, density, .. }, Some(light)) => {
+                let light = light as usize;
+                let of_direction = self.lights.lights()[light].density(from.to_f64(), wi.to_f64());
+                match self.light_sampling {
+                    // No shadow ray could have found it.
+                    _ if of_direction == 0.0 => R::ONE,
+                    LightSampling::Light => R::ZERO,
+                    LightSampling::Bsdf => R::ONE,
+                    LightSampling::Mis => {
+                        power_heuristic(density, R::from_f64(self.lights.probability(light) * of_direction))
+                    }
                 }
-            },
+            }
         }
     }
 
@@ -174,6 +181,11 @@ impl World<'_> {
         let index = self.lights.choose(u_light.to_f64());
         let light = &self.lights.lights()[index];
         let sample = light.sample(point.position.to_f64(), [u1.to_f64(), u2.to_f64()])?;
+        if sample.primitive == point.primitive {
+            // A surface is no target for its own points: rounding decides on which side of a sphere they lie, and the
+            // BSDF's directions find the sphere's inside at least as well.
+            return None;
+        }
         let wi = sample.wi.cast();
         let (f_cos, bsdf_density) = bsdf.eval(lambda_nm, point.normal, wo, wi);
         if f_cos.is_zero() {

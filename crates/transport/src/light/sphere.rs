@@ -51,10 +51,12 @@ impl SphereLight {
         View::Outside { axis: toward / distance, distance, one_minus_cos: sin * sin / (1.0 + cos) }
     }
 
+    /// Zero where [`SphereLight::sample`] finds that the side it sees is dark.
     pub(super) fn density(&self, from: Vec3<f64>) -> f64 {
         match self.view(from) {
-            View::Outside { one_minus_cos, .. } => 1.0 / (2.0 * PI * one_minus_cos),
-            View::Inside => 1.0 / (4.0 * PI),
+            View::Outside { one_minus_cos, .. } if self.emitter.front => 1.0 / (2.0 * PI * one_minus_cos),
+            View::Inside if self.emitter.back => 1.0 / (4.0 * PI),
+            View::Outside { .. } | View::Inside => 0.0,
         }
     }
 
