@@ -32,6 +32,30 @@ fn the_schema_accepts_right_scenes() {
 }
 
 #[test]
+fn every_scene_of_the_repository_is_right() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
+    let files = std::fs::read_dir(folder).expect("the folder of scenes").map(|entry| entry.expect("an entry").path());
+    let scenes: Vec<_> = files.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
+    assert!(scenes.len() >= 8, "{}", scenes.len());
+    for path in scenes {
+        let text = std::fs::read_to_string(&path).expect("readable");
+        let value = serde_json::from_str(&text).expect("JSON");
+        let faults: Vec<String> =
+            VALIDATOR.iter_errors(&value).map(|e| format!("{}: {e}", e.instance_path())).collect();
+        assert!(faults.is_empty(), "{}: {faults:#?}", path.display());
+        match etalon_scene::load(&path) {
+            Ok((_, warnings)) => assert_eq!(warnings, [], "{}", path.display()),
+            Err(errors) => panic!("{errors}"),
+        }
+        assert!(
+            value["comment"].is_string() || value["comment"].is_array(),
+            "{} does not say what it is",
+            path.display()
+        );
+    }
+}
+
+#[test]
 fn the_schema_refuses_what_it_can_see_to_be_wrong() {
     for (path, value) in [
         ("/etalon", json!(2)),

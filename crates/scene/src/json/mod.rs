@@ -41,6 +41,7 @@
 mod decode;
 mod load;
 mod macros;
+mod number;
 mod object;
 mod path;
 mod reader;
@@ -49,10 +50,10 @@ mod suggest;
 mod syntax;
 
 pub use decode::{
-    Comment, Decode, Direction, Field, List, Named, NamedEntry, NonNegative, Nullable, Optional, Positive, Required,
-    Spanned, Whole, bounded, bounded_schema, keyword, tag,
+    Comment, Decode, Direction, Field, List, Named, NamedEntry, Nullable, Optional, Required, Spanned, keyword, tag,
 };
 pub use load::load_text;
+pub use number::{NonNegative, Positive, Whole, bounded, bounded_schema};
 pub use object::{ObjectReader, Record, Rule};
 pub use reader::{Kind, Node, Reader, read};
 pub use schema::{FieldSchema, SchemaBuilder, SchemaValue, describe, document_schema, one_of, record_schema, words};

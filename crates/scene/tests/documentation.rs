@@ -1,0 +1,101 @@
+//! docs/scene-format.md says what the reader does.
+
+mod common;
+
+use common::{Parts, RIGHT};
+use etalon_scene::{Code, json};
+use std::collections::BTreeSet;
+
+const PAGE: &str = include_str!("../../../docs/scene-format.md");
+
+/// The page's JSON examples: what each is of, and its text.
+fn examples() -> Vec<(&'static str, &'static str)> {
+    let blocks = PAGE.split("\n```json ").skip(1);
+    blocks
+        .map(|block| {
+            let (kind, rest) = block.split_once('\n').expect("a line");
+            (kind, rest.split_once("\n```").expect("an end").0)
+        })
+        .collect()
+}
+
+#[test]
+fn every_example_is_right() {
+    let all = examples();
+    assert!(all.len() >= 20, "{}", all.len());
+    for (kind, text) in all {
+        let object = |shape: &str, transform: &str| {
+            format!("[{{\"shape\": {shape}, \"material\": {{\"type\": \"black\"}}, \"transform\": {transform}}}]")
+        };
+        let ball = "{\"type\": \"sphere\", \"radius_m\": 1}";
+        let scene = match kind {
+            "scene" => text.to_owned(),
+            "camera" => Parts { camera: text, ..RIGHT }.text(),
+            "film" => Parts { film: text, ..RIGHT }.text(),
+            "spectra" => Parts { spectra: &text.replacen('{', "{\"grey\": 0.5,", 1), ..RIGHT }.text(),
+            "materials" => {
+                let white = "{\"white\": {\"type\": \"black\"},";
+                // A name that an example has itself is not given twice.
+                let materials = if text.contains("\"white\"") { text.to_owned() } else { text.replacen('{', white, 1) };
+                Parts { materials: &materials, ..RIGHT }.text()
+            }
+            "object" => Parts { objects: &format!("[{text}]"), ..RIGHT }.text(),
+            "shape" => Parts { objects: &object(text, "[]"), ..RIGHT }.text(),
+            "transform" => Parts { objects: &object(ball, text), ..RIGHT }.text(),
+            "lights" => Parts { lights: text, ..RIGHT }.text(),
+            "integrator" => Parts { integrator: text, ..RIGHT }.text(),
+            "fragment" => {
+                let _: serde_json::Value = serde_json::from_str(text).expect("JSON");
+                continue;
+            }
+            other => panic!("an example of {other:?}?"),
+        };
+        match etalon_scene::parse(&scene, "example.json") {
+            Ok((_, warnings)) => assert_eq!(warnings, [], "{text}"),
+            Err(errors) => panic!("{errors}\n{scene}"),
+        }
+    }
+}
+
+#[test]
+fn every_error_and_warning_is_listed() {
+    for code in Code::ALL {
+        assert!(PAGE.contains(&format!("\n| `{code}` |")), "{code}");
+    }
+}
+
+#[test]
+fn every_key_and_word_of_the_schema_is_described() {
+    fn collect(schema: &serde_json::Value, found: &mut BTreeSet<String>) {
+        match schema {
+            serde_json::Value::Object(members) => {
+                if let Some(serde_json::Value::Object(properties)) = members.get("properties") {
+                    found.extend(properties.keys().cloned());
+                }
+                found.extend(members.get("const").and_then(|word| word.as_str()).map(str::to_owned));
+                let words = members.get("enum").and_then(|words| words.as_array()).into_iter().flatten();
+                found.extend(words.filter_map(|word| word.as_str()).map(str::to_owned));
+                members.values().for_each(|member| collect(member, found));
+            }
+            serde_json::Value::Array(elements) => elements.iter().for_each(|element| collect(element, found)),
+            _ => {}
+        }
+    }
+    let mut all = BTreeSet::new();
+    collect(&etalon_scene::schema(), &mut all);
+    assert!(all.len() > 80, "{}", all.len());
+    let missing: Vec<&String> = all
+        .iter()
+        .filter(|word| !PAGE.contains(&format!("`{word}`")) && !PAGE.contains(&format!("\"{word}\"")))
+        .collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
+#[test]
+fn limits_are_the_ones_stated() {
+    assert_eq!(json::MAX_BYTES, 64 << 20);
+    for text in ["10,000,000 |", "64 levels", "| 1000; "] {
+        assert!(PAGE.contains(text), "{text}");
+    }
+    assert_eq!((json::MAX_VALUES, json::MAX_DEPTH, json::MAX_PROBLEMS), (10_000_000, 64, 1000));
+}
