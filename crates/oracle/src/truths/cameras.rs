@@ -79,8 +79,8 @@ pub(super) fn truths() -> Vec<Truth> {
         "front",
     );
     let wide = Scene::pinhole([0.0; 3], [0.0, 0.0, -1.0], 2.0 * 0.5_f64.atan().to_degrees())
-        .film(32, 16)
-        .spp(2048)
+        .film(64, 32)
+        .spp(512)
         .lamp(parallelogram([-0.4, -0.4, -1.0], [0.4, 0.0, 0.0], [0.0, 0.4, 0.0]), black(), 1.0, "front");
     vec![
         spot("lens-spot-behind-focus", 5.0, 0.01),
@@ -93,7 +93,8 @@ pub(super) fn truths() -> Vec<Truth> {
         ), (share / c).powi(2), "(0.6a/c)²: a disk of .6 apertures at 5 m, focus 2 m")
             .because(because)
             .or_else("the lens sampled as a square", 0.25 * PI * (share / c).powi(2))
-            .or_else("circle of confusion a|z − z_f|/z", (share / (LENS_M * 0.6)).powi(2)),
+            .or_else("circle of confusion a|z − z_f|/z", (share / (LENS_M * 0.6)).powi(2))
+            .sees(0.03),
         Truth::new("lens-edge", &edge, segment(0.5), "(acos ½ − ½√¾)/π: an edge half a circle of confusion off the axis")
             .because(because)
             .confirmed("quadrature of the chord", 1e-6, || {

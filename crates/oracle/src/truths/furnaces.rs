@@ -16,7 +16,7 @@ pub(super) fn truths() -> Vec<Truth> {
 }
 
 fn sky() -> Truth {
-    Truth::new("sky-alone", &Scene::pinhole([0.0; 3], [0.0, 0.0, -1.0], 60.0).sky(1.0), 1.0, "L")
+    Truth::new("sky-alone", &Scene::pinhole([0.0; 3], [0.0, 0.0, -1.0], 60.0).sky(1.0).spp(4096), 1.0, "L")
         .because("Nothing is in the way: every pixel shows the sky, and a constant spectrum of radiance 1 reads 1.")
         .or_else("wavelength density not normalised over the sampled range", 1.001)
         .sees(1e-3)
@@ -26,10 +26,10 @@ const FURNACE: &str =
     "A convex body of albedo ρ sees only sky: E = π, so it shows ρE/π = ρ everywhere, whatever its shape.";
 
 fn opaque_bodies() -> Vec<Truth> {
-    let ball = Scene::pinhole([0.0, 0.0, 5.0], [0.0; 3], 20.0).object(sphere([0.0; 3], 1.0), lambert(0.7)).sky(1.0);
+    let ball = Scene::pinhole([0.0, 0.0, 5.0], [0.0; 3], 14.0).object(sphere([0.0; 3], 1.0), lambert(0.7)).sky(1.0);
     let cube =
         Scene::orthographic([2.0, 4.0, 6.0], [0.0; 3], 0.8).object(block([-0.5; 3], [0.5; 3]), lambert(0.3)).sky(1.0);
-    let chrome = Scene::pinhole([0.0, 0.0, 5.0], [0.0; 3], 20.0).object(sphere([0.0; 3], 1.0), mirror(0.9)).sky(1.0);
+    let chrome = Scene::pinhole([0.0, 0.0, 5.0], [0.0; 3], 14.0).object(sphere([0.0; 3], 1.0), mirror(0.9)).sky(1.0);
     vec![
         Truth::new("furnace-lambert-sphere", &ball, 0.7, "ρL = 0.7")
             .because(FURNACE)
@@ -47,7 +47,7 @@ fn white_bodies() -> Truth {
         .object(sphere([-1.0, 0.0, 0.0], 1.0), lambert(1.0))
         .object(sphere([1.0, 0.0, 0.0], 1.0), lambert(1.0))
         .sky(1.0)
-        .spp(1024);
+        .spp(256);
     Truth::new("furnace-white-spheres", &scene, 1.0, "L = 1")
         .because(
             "Nothing absorbs, so every path ends in the sky with weight 1: in uniform light a white body of any shape, here two \
@@ -104,7 +104,7 @@ fn eyes() -> Vec<Truth> {
         let scene = Scene::pinhole([0.2, 0.1, 0.0], [1.0, 0.5, -1.0], 60.0)
             .object(sphere([0.0; 3], 1.0), glass(n))
             .sky(1.0)
-            .spp(1024);
+            .spp(256);
         Truth::new(name, &scene, n * n, formula)
             .because(INVARIANT)
             .or_else("radiance not scaled by n²", 1.0)
@@ -114,7 +114,7 @@ fn eyes() -> Vec<Truth> {
         .object(sphere([0.0; 3], 2.0), glass(1.33))
         .object(sphere([0.3, 0.0, 0.0], 1.0), glass_in(1.5, 1.33))
         .sky(1.0)
-        .spp(1024);
+        .spp(256);
     vec![
         eye_in("eye-in-glass", 1.5, "n² = 2.25"),
         eye_in("eye-in-water", 1.33, "n² = 1.33²"),

@@ -230,7 +230,7 @@ fn ways_of_sampling() -> Vec<Truth> {
                 Truth::new(format!("sphere-light-by-{how}"), &round, shown(0.25 * PI), "(ρ/π)·π(R/d)²")
                     .because(because)
                     .or_else("both ways in full", 2.0 * shown(0.25 * PI))
-                    .sees(0.015),
+                    .sees(0.02),
             ]
         })
         .collect()
@@ -328,7 +328,7 @@ fn mirrors() -> Vec<Truth> {
     ]
     .into_iter()
     .fold(
-        Scene::light_meter().lamp(level_square([0.0, 0.0, 5.0], 0.5, false), black(), 1.0, "front"),
+        Scene::light_meter().lamp(level_square([0.0, 0.0, 5.0], 0.5, false), black(), 1.0, "front").spp(512),
         |scene, (origin, along)| scene.object(parallelogram(origin, along, [0.0, 0.0, 5.1]), mirror(1.0)),
     );
     vec![

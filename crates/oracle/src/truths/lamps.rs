@@ -90,7 +90,7 @@ fn planck() -> Truth {
     let scene = Scene::pinhole([0.0, 0.0, 1.0], [0.0; 3], 20.0)
         .thermal_lamp(disk([0.0; 3], [0.0, 0.0, 1.0], 1.0), 5000.0, 1e-4)
         .band(band)
-        .spp(256);
+        .spp(64);
     Truth::new(
         "planck-5000-kelvin-at-560-nanometres",
         &scene,

@@ -26,8 +26,9 @@ impl Scene {
     fn new(camera: Value) -> Self {
         Self {
             camera,
-            film: (16, 16),
-            spp: 4096,
+            // Four tiles of a usual size, so that several cores take part.
+            film: (32, 32),
+            spp: 1024,
             objects: Vec::new(),
             lights: Vec::new(),
             max_depth: None,

@@ -50,7 +50,7 @@ pub(super) fn truths() -> Vec<Truth> {
     // The square [−½, ½]² from 60° off its normal: 1 wide, ½ high.
     let oblique = |azimuth: Vec3, at: Vec3| {
         let eye = [at[0] + 3.0 * 0.75_f64.sqrt() * azimuth[0], at[1] + 3.0 * 0.75_f64.sqrt() * azimuth[1], at[2] + 1.5];
-        Scene::orthographic(eye, at, 0.5).up([0.0, 0.0, 1.0]).film(32, 16).spp(2048)
+        Scene::orthographic(eye, at, 0.5).up([0.0, 0.0, 1.0]).film(64, 32).spp(512)
     };
     let facing = oblique([0.0, -1.0, 0.0], [0.0; 3]).object(level_square([0.0; 3], 0.5, true), lambert(ALBEDO)).lamp(
         level_square([0.0, 0.0, 1.0], 0.5, false),
@@ -72,8 +72,8 @@ pub(super) fn truths() -> Vec<Truth> {
         let (sine, cosine) = ((8.0_f64 / 9.0).sqrt(), 1.0 / 3.0);
         Scene::orthographic([0.0, -6.0 * sine, 6.0 * cosine], [0.0; 3], 2.0 / 3.0)
             .up(up)
-            .film(48, 16)
-            .spp(2048)
+            .film(96, 32)
+            .spp(512)
             .object(disk([0.0; 3], up, 1.0), lambert(ALBEDO))
     };
     let rings = |irradiance: fn(f64) -> f64| {
