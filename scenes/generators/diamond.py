@@ -38,13 +38,13 @@ if __name__ == "__main__":
     for key, value in found.items():
         print(f"{key}: {value}")
     lamps = [
-        lamp("lamp 1", (-60, 35), 0.3, 0.012, 120),
-        lamp("lamp 2", (-25, 68), 0.3, 0.012, 120),
-        lamp("lamp 3", (35, 60), 0.3, 0.012, 120),
-        lamp("lamp 4", (75, 40), 0.3, 0.012, 120),
-        lamp("lamp 5", (140, 55), 0.3, 0.012, 120),
-        lamp("lamp 6", (-140, 50), 0.3, 0.012, 120),
-        lamp("lamp 7", (12, 80), 0.3, 0.012, 120),
+        lamp("lamp 1", (-60, 35), 0.3, 0.016, 70),
+        lamp("lamp 2", (-25, 68), 0.3, 0.016, 70),
+        lamp("lamp 3", (35, 60), 0.3, 0.016, 70),
+        lamp("lamp 4", (75, 40), 0.3, 0.016, 70),
+        lamp("lamp 5", (140, 55), 0.3, 0.016, 70),
+        lamp("lamp 6", (-140, 50), 0.3, 0.016, 70),
+        lamp("lamp 7", (12, 80), 0.3, 0.016, 70),
         lamp("softbox, left", (-75, 50), 0.4, 0.11, 2.5),
         lamp("softbox, right", (60, 25), 0.4, 0.08, 2.5),
         lamp("softbox, behind", (170, 40), 0.4, 0.13, 2.5),
@@ -68,7 +68,7 @@ if __name__ == "__main__":
         "integrator": {"spp": 256, "wavelength_range_nm": [360, 760]},
         "materials": {
             "diamond": {"type": "dielectric", "interior": "diamond"},
-            "table": {"type": "lambert", "reflectance": {"type": "rgb", "rgb": [0.05, 0.06, 0.09]}},
+            "table": {"type": "lambert", "reflectance": {"type": "rgb", "rgb": [0.03, 0.036, 0.055]}},
             "black": {"type": "black"},
         },
         "objects": [
