@@ -13,7 +13,9 @@ fn json_is_one_object_with_what_a_machine_wants_to_know() {
     let report = ran.expect(0).json();
     assert_eq!(report["scene"], scene.to_str().unwrap());
     assert_eq!(report["output"], output.to_str().unwrap());
-    for (key, value) in [("spp", 2), ("seed", 7), ("width", 20), ("height", 10), ("threads", 2), ("nonfinite", 0)] {
+    for (key, value) in
+        [("spp", 2), ("seed", 7), ("width", 20), ("height", 10), ("threads", 2), ("nonfinite", 0), ("cut_paths", 0)]
+    {
         assert_eq!(report[key], value, "{key}");
     }
     assert_eq!(report["paths"], 20 * 10 * 2);

@@ -79,11 +79,8 @@ impl Failure {
     }
 
     /// Prints the problems on standard error and gives the exit status: 2 if any of them is the input's.
-    #[allow(clippy::print_stderr, reason = "the program is the one place that prints")]
     pub(crate) fn report(self) -> ExitCode {
-        for (_, report) in &self.problems {
-            eprintln!("{report:?}");
-        }
+        crate::print::warnings(self.problems.iter().map(|(_, report)| report));
         match self.problems.iter().map(|(blame, _)| *blame).max() {
             None => ExitCode::SUCCESS,
             Some(Blame::Run) => ExitCode::from(1),

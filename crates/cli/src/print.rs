@@ -21,11 +21,11 @@ pub(crate) fn line(text: &str) {
     }
 }
 
-/// Prints warnings on standard error.
-#[allow(clippy::print_stderr, reason = "the program is the one place that prints")]
-pub(crate) fn warnings(warnings: &[Report]) {
+/// Prints warnings and errors on standard error.
+pub(crate) fn warnings<'a>(warnings: impl IntoIterator<Item = &'a Report>) {
     for warning in warnings {
-        eprintln!("{warning:?}");
+        // Where standard error has gone there is nobody left to tell.
+        let _ = writeln!(std::io::stderr().lock(), "{warning:?}");
     }
 }
 

@@ -1,20 +1,23 @@
 //! `etalon render`: a scene in, a picture out.
 
+mod report;
+mod warnings;
+
 use std::path::PathBuf;
 use std::time::Instant;
 
 use etalon_picture::{Picture, RenderInfo, Window};
-use etalon_transport::{Control, Counters, Extent, Film, PixelRect, Plan, Prepared, prepare};
+use etalon_transport::{Control, Extent, Film, PixelRect, Prepared, prepare};
 use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::args::{Crop, PixelAt};
-use crate::failure::{Failure, Outcome, ProblemJson, problem_json};
+use crate::failure::{Failure, Outcome, ProblemJson};
 use crate::load::{LoadedScene, load};
 use crate::output::{self, Output, Written};
 use crate::overrides::Overrides;
 use crate::print;
-use crate::progress::{SampleBar, si};
+use crate::progress::SampleBar;
 
 /// Renders a scene to EXR and PNG files.
 #[derive(clap::Args)]
@@ -49,35 +52,6 @@ pub(crate) struct Args {
     /// Print nothing but warnings and errors.
     #[arg(short, long)]
     quiet: bool,
-}
-
-/// What `--json` prints about a render.
-#[derive(Serialize)]
-struct RenderJson<'a> {
-    scene: String,
-    scene_sha256: &'a str,
-    /// The first output; `outputs` has all.
-    output: Option<&'a str>,
-    outputs: &'a [Written],
-    width: u32,
-    height: u32,
-    /// Columns x0 to x1, rows y0 to y1.
-    crop: [u32; 4],
-    spp: u32,
-    seed: u64,
-    threads: usize,
-    seconds: f64,
-    prepare_seconds: f64,
-    paths: u64,
-    paths_per_second: f64,
-    rays: u64,
-    shadow_rays: u64,
-    nonfinite: u64,
-    /// The first of them: column, row, number of the sample.
-    nonfinite_at: Vec<[u32; 3]>,
-    warnings: Vec<ProblemJson>,
-    errors: Vec<ProblemJson>,
-    plan: &'a Plan,
 }
 
 /// What `--json` prints when there is no render to speak of.
@@ -204,15 +178,14 @@ fn render(args: &Args) -> Result<(), Stop> {
     bar.clear();
     let film = film.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
 
-    if let Some(warning) = nonfinite_warning(args, &film.counters) {
-        print::warnings(std::slice::from_ref(&warning));
-        job.warnings.push(warning);
-    }
+    let noticed = warnings::of(args, &film.counters);
+    print::warnings(&noticed);
+    job.warnings.extend(noticed);
     let (written, failure) = write(args, &job, &film, &outputs, seconds);
     if args.json {
-        print::json(&report(args, &job, &film, &written, &failure, seconds));
+        print::json(&report::json(args, &job, &film, &written, &failure, seconds));
     } else if !args.quiet {
-        print::line(&summary(&job, &film, &written, seconds));
+        print::line(&report::summary(&job, &film, &written, seconds));
     }
     failure.into_outcome().map_err(Stop::Reported)
 }
@@ -261,84 +234,6 @@ fn picture(film: &Film, rect: PixelRect) -> Result<Picture<f32>, etalon_picture:
     Picture::from_rgb((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize, &pixels)?.in_frame(window)
 }
 
-/// Says which samples were not finite, and how to see their paths.
-fn nonfinite_warning(args: &Args, counters: &Counters) -> Option<Report> {
-    let first = counters.nonfinite_at.first()?;
-    let places: Vec<String> =
-        counters.nonfinite_at.iter().map(|at| format!("pixel {},{} sample {}", at.x, at.y, at.sample)).collect();
-    let more = if counters.nonfinite > counters.nonfinite_at.len() as u64 { ", …" } else { "" };
-    Some(miette!(
-        severity = miette::Severity::Warning,
-        code = "nonfinite",
-        help = format!(
-            "replay the first: etalon render {}{} --pixel {},{} --sample {}",
-            args.scene.display(),
-            args.overrides.as_flags(),
-            first.x,
-            first.y,
-            first.sample
-        ),
-        "{} samples were not finite and are left out of the picture: {}{more}",
-        counters.nonfinite,
-        places.join(", ")
-    ))
-}
-
-fn report<'a>(
-    args: &Args,
-    job: &'a Job,
-    film: &Film,
-    written: &'a [Written],
-    failure: &Failure,
-    seconds: f64,
-) -> RenderJson<'a> {
-    let counters = &film.counters;
-    RenderJson {
-        scene: args.scene.display().to_string(),
-        scene_sha256: &job.loaded.sha256,
-        output: written.first().map(|written| written.path.as_str()),
-        outputs: written,
-        width: film.width(),
-        height: film.height(),
-        crop: [job.rect.x0, job.rect.x1, job.rect.y0, job.rect.y1],
-        spp: job.loaded.scene.integrator.spp,
-        seed: job.loaded.scene.integrator.seed,
-        threads: job.threads,
-        seconds,
-        prepare_seconds: job.prepare_seconds,
-        paths: counters.paths,
-        paths_per_second: counters.paths as f64 / seconds,
-        rays: counters.rays,
-        shadow_rays: counters.shadow_rays,
-        nonfinite: counters.nonfinite,
-        nonfinite_at: counters.nonfinite_at.iter().map(|at| [at.x, at.y, at.sample]).collect(),
-        warnings: job.warnings.iter().map(problem_json).collect(),
-        errors: failure.to_json(),
-        plan: job.prepared.plan(),
-    }
-}
-
-fn summary(job: &Job, film: &Film, written: &[Written], seconds: f64) -> String {
-    let mut text = format!(
-        "{} × {} pixels, {} samples each, in {seconds:.1} s ({} paths/s on {} threads), {} not finite",
-        job.rect.x1 - job.rect.x0,
-        job.rect.y1 - job.rect.y0,
-        job.loaded.scene.integrator.spp,
-        si(film.counters.paths as f64 / seconds),
-        job.threads,
-        film.counters.nonfinite,
-    );
-    for written in written {
-        text.push_str("\n  ");
-        text.push_str(&written.path);
-        if let Some(clipping) = &written.clipping {
-            text.push_str(": ");
-            text.push_str(&output::describe_clipping(clipping));
-        }
-    }
-    text
-}
-
 /// One path again, vertex by vertex.
 fn replay(args: &Args, pixel: PixelAt, sample: u32) -> Result<(), Stop> {
     let job = set_up(args, &mut Vec::new()).map_err(Stop::Refused)?;
@@ -350,53 +245,4 @@ fn replay(args: &Args, pixel: PixelAt, sample: u32) -> Result<(), Stop> {
         print::line(&crate::replay_text::describe(&path));
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::Parser;
-    use etalon_transport::NonFinite;
-
-    #[derive(Parser)]
-    struct Line {
-        #[command(flatten)]
-        args: Args,
-    }
-
-    fn parse(line: &str) -> Args {
-        Line::try_parse_from(line.split_whitespace()).unwrap_or_else(|error| panic!("{error}")).args
-    }
-
-    #[test]
-    fn samples_that_are_not_finite_are_named_with_the_command_that_replays_them() {
-        let args = parse("render a.json -o a.exr --spp 9 --seed 3 --size 64x48 --sampler independent --precision f64");
-        assert!(nonfinite_warning(&args, &Counters::default()).is_none());
-        let mut counters = Counters::default();
-        for sample in [5, 2] {
-            counters.record_nonfinite(NonFinite { x: 7, y: 11, sample });
-        }
-        let warning = nonfinite_warning(&args, &counters).unwrap();
-        assert_eq!(warning.severity(), Some(miette::Severity::Warning));
-        assert_eq!(
-            warning.to_string(),
-            "2 samples were not finite and are left out of the picture: pixel 7,11 sample 2, pixel 7,11 sample 5"
-        );
-        let help = warning.help().unwrap().to_string();
-        let replay = parse(help.strip_prefix("replay the first: etalon ").unwrap());
-        assert_eq!((replay.pixel, replay.sample), (Some(PixelAt { x: 7, y: 11 }), Some(2)));
-        assert_eq!(replay.overrides.as_flags(), args.overrides.as_flags());
-        assert_eq!(args.overrides.as_flags(), " --spp 9 --seed 3 --size 64x48 --precision f64 --sampler independent");
-    }
-
-    #[test]
-    fn more_samples_than_are_located_are_counted_all_the_same() {
-        let args = parse("render a.json -o a.exr");
-        let mut counters = Counters::default();
-        for sample in 0..1000 {
-            counters.record_nonfinite(NonFinite { x: 0, y: 0, sample });
-        }
-        let text = nonfinite_warning(&args, &counters).unwrap().to_string();
-        assert!(text.starts_with("1000 samples") && text.ends_with(", …"), "{text}");
-    }
 }
