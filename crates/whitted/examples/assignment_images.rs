@@ -8,7 +8,8 @@ use std::num::NonZero;
 use std::path::PathBuf;
 
 use etalon_whitted::{
-    Arithmetic, Figure, Film, Published, Settings, Vec3, refract_as_published, refract_snell, render, render_with, vec3,
+    Arithmetic, Figure, Film, Published, Scene, Settings, Vec3, refract_as_published, refract_snell, render,
+    render_with, vec3,
 };
 use image::{Rgb, RgbImage, imageops};
 
@@ -96,7 +97,7 @@ const RED: &str = "stroke=\"#c0392b\" stroke-width=\"2\"";
 /// The camera and the pixel grid from the side, to scale: 40 units of drawing a unit of length.
 fn grid() -> Result<String, std::fmt::Error> {
     let at = |z: f64, y: f64| [60.0 + 40.0 * (5.0 - z), 215.0 - 40.0 * y];
-    let half_tangent = Published::tan(0.7854 / 2.0);
+    let half_tangent = Published::tan(Scene::seven_spheres().camera.field_of_view_rad / 2.0);
     let (textbook, published) = (5.0 * half_tangent, 2.0 * 5.0 * half_tangent);
     let mut out = String::new();
     line(&mut out, at(5.0, 0.0), at(-6.0, 0.0), THIN)?;
