@@ -93,7 +93,9 @@ pub trait Real:
     /// The turn is reduced exactly to an eighth, where Taylor series to x¹⁷ are used; the error is below 4 unit
     /// roundoffs of a value of magnitude 1.
     fn sin_cos_turns(u: Self) -> (Self, Self) {
-        let quarter = (u * Self::from_f64(4.0) + Self::HALF).floor();
+        // Rounding to the nearest quarter by truncation: a floor would be a library call on the baseline processor.
+        let quarters = (u * Self::from_f64(4.0) + Self::HALF).to_f64() as u32;
+        let quarter = Self::from_f64(f64::from(quarters));
         // Exact: `u` and a multiple of 1/4 within 1/8 of it (Sterbenz), or `u` itself.
         let x = (u - quarter * Self::from_f64(0.25)) * (Self::TWO * Self::PI);
         let x2 = x * x;
@@ -101,8 +103,7 @@ pub trait Real:
             |coefficients: [f64; 8]| coefficients.iter().fold(Self::ZERO, |sum, &c| sum * x2 + Self::from_f64(c)) * x2;
         let sine = x + x * series(SINE);
         let cosine = Self::ONE + series(COSINE);
-        // `quarter` is a small exact integer in 0..=4.
-        match quarter.to_f64() as u32 % 4 {
+        match quarters % 4 {
             0 => (sine, cosine),
             1 => (cosine, -sine),
             2 => (-sine, -cosine),
