@@ -34,6 +34,7 @@ enum Command {
     Schema(commands::schema::Args),
     Whitted(commands::whitted::Args),
     Figures(commands::figures::Args),
+    Verify(commands::verify::Args),
 }
 
 fn main() -> ExitCode {
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Command::Schema(args) => commands::schema::run(args),
         Command::Whitted(args) => commands::whitted::run(args),
         Command::Figures(args) => commands::figures::run(args),
+        Command::Verify(args) => commands::verify::run(args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,4 +3,5 @@
 pub(crate) mod figures;
 pub(crate) mod render;
 pub(crate) mod schema;
+pub(crate) mod verify;
 pub(crate) mod whitted;

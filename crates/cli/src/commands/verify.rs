@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use clap::ValueEnum;
-use etalon_oracle::statistics::{Budget, Welford};
+use etalon_oracle::Verdict;
+use etalon_oracle::statistics::{Budget, POWER, SUITE_SIGNIFICANCE, Welford};
 use etalon_oracle::subjects::{Reading, Renders};
 use etalon_oracle::truths::{Truth, judge, truths};
-use etalon_oracle::{POWER, SUITE_SIGNIFICANCE, Verdict};
 use etalon_scene::Precision;
 use etalon_transport::{Control, Extent, prepare};
 use miette::miette;
@@ -49,10 +49,10 @@ enum PrecisionArg {
 /// with each other. With 64 of them Student's t at the suite's significance is close to the normal distribution.
 const REPLICATES: u32 = 64;
 /// Paths of a truth, all replicates together, at the first try.
-const PATHS: u64 = 1 << 19;
+const PATHS: u64 = 1 << 18;
 /// A reading that could not exclude a known mistake is taken again with this many times the paths, so many times.
-const MORE: u64 = 8;
-const TRIES: u32 = 3;
+const MORE: u64 = 4;
+const TRIES: u32 = 5;
 
 /// Our renderer, as the oracle sees one.
 struct Etalon {
