@@ -46,6 +46,13 @@ fn two_product(a: f64, b: f64) -> Dd {
     Dd { hi, lo: ((ah * bh - hi) + ah * bl + al * bh) + al * bl }
 }
 
+/// a·b − c·d with the right sign, short of overflow and underflow.
+pub(crate) fn product_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let (p, q) = (two_product(a, b), two_product(c, d));
+    // Where the differences could cancel, both are exact.
+    (p.hi - q.hi) + (p.lo - q.lo)
+}
+
 impl Dd {
     /// a − b, exactly.
     pub(crate) fn difference(a: f64, b: f64) -> Self {
@@ -143,6 +150,15 @@ mod tests {
         let p = Dd::from(1.0 + e) * Dd::from(1.0 - e) - Dd::from(1.0);
         assert_eq!(p.to_f64(), -(e * e));
         assert_eq!((1.0 + e) * (1.0 - e) - 1.0, 0.0);
+    }
+
+    #[test]
+    fn a_product_difference_that_f64_loses_keeps_its_sign() {
+        let e = 2.0_f64.powi(-30);
+        assert_eq!(product_difference(1.0 + e, 1.0 - e, 1.0, 1.0), -(e * e));
+        assert_eq!(product_difference(1.0, 1.0, 1.0 + e, 1.0 - e), e * e);
+        assert_eq!(product_difference(3.0, 7.0, 7.0, 3.0), 0.0);
+        assert_eq!(product_difference(3.0, 7.0, 5.0, 4.0), 1.0);
     }
 
     #[test]

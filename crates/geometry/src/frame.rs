@@ -7,6 +7,7 @@
 use crate::Aabb;
 use crate::query::{Query, power_of_two};
 use etalon_optics::Vec3;
+use std::array::from_fn;
 
 /// A box in the accelerator's frame, rounded outward.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,16 +23,13 @@ impl Box32 {
     /// The smallest box around two boxes.
     #[inline]
     pub(crate) fn union(&self, o: &Self) -> Self {
-        Self {
-            min: std::array::from_fn(|k| self.min[k].min(o.min[k])),
-            max: std::array::from_fn(|k| self.max[k].max(o.max[k])),
-        }
+        Self { min: from_fn(|k| self.min[k].min(o.min[k])), max: from_fn(|k| self.max[k].max(o.max[k])) }
     }
 
     /// Half the surface area; zero for the empty box.
     #[inline]
     pub(crate) fn half_area(&self) -> f32 {
-        let [x, y, z] = std::array::from_fn(|k| self.max[k] - self.min[k]);
+        let [x, y, z] = from_fn(|k| self.max[k] - self.min[k]);
         if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
     }
 
@@ -47,6 +45,7 @@ impl Box32 {
 pub(crate) struct Frame {
     centre: Vec3<f64>,
     scale: f64,
+    unscale: f64,
 }
 
 /// Boxes are widened by this much (2⁻⁵⁰), more than a ray whose direction component was clamped to [`MIN_DIRECTION`]
@@ -61,22 +60,22 @@ const NEAR_FACTOR: f32 = 1.0 - 3.0 * f32::EPSILON;
 const FAR_FACTOR: f32 = 1.0 + 3.0 * f32::EPSILON;
 
 impl Frame {
-    /// The frame in which a box becomes centred, and no larger than [−1, 1].
+    /// The frame in which a box becomes no larger than [−1, 1], and centred unless it holds the origin.
+    ///
+    /// About the origin nothing is translated, so that coordinates which `f32` represents stay exact.
     pub(crate) fn around(bounds: Aabb) -> Self {
-        let centre = bounds.centre();
+        let centre = if bounds.contains(Vec3::ZERO) { Vec3::ZERO } else { bounds.centre() };
         let half = (bounds.max - centre).abs().max((bounds.min - centre).abs()).max_component();
         let exponent = if half > 0.0 { (half.to_bits() >> 52) as i64 - 1022 } else { 0 };
-        Self { centre, scale: power_of_two(-exponent.clamp(-500, 500)) }
+        let exponent = exponent.clamp(-500, 500);
+        Self { centre, scale: power_of_two(-exponent), unscale: power_of_two(exponent) }
     }
 
     /// A box in this frame, rounded outward.
     pub(crate) fn enclose(&self, b: Aabb) -> Box32 {
         let lower = (b.min - self.centre) * self.scale;
         let upper = (b.max - self.centre) * self.scale;
-        Box32 {
-            min: std::array::from_fn(|k| round_down(lower[k] - BOX_MARGIN)),
-            max: std::array::from_fn(|k| round_up(upper[k] + BOX_MARGIN)),
-        }
+        Box32 { min: from_fn(|k| round_down(lower[k] - BOX_MARGIN)), max: from_fn(|k| round_up(upper[k] + BOX_MARGIN)) }
     }
 
     /// A point in this frame, rounded.
@@ -84,61 +83,77 @@ impl Frame {
         ((p - self.centre) * self.scale).to_array().map(|c| c as f32)
     }
 
+    /// Whether the coordinates of a point in this frame are exact in `f32`.
+    pub(crate) fn is_exact(&self, p: Vec3<f64>) -> bool {
+        self.centre == Vec3::ZERO && self.unscaled(self.point(p)) == p
+    }
+
+    /// The point of which [`Frame::point`] gave the coordinates, if they are exact.
+    #[inline(always)]
+    pub(crate) fn unscaled(&self, p: [f32; 3]) -> Vec3<f64> {
+        Vec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])) * self.unscale
+    }
+
     /// A ray in this frame; `None` if it certainly misses the whole frame.
     #[inline(always)]
     pub(crate) fn enter(&self, q: &Query) -> Option<FrameRay> {
-        let mut o = (q.origin - self.centre) * self.scale;
-        let reach = o.abs().max_component();
+        let d = q.direction.to_array();
+        let mut o = ((q.origin - self.centre) * self.scale).to_array();
+        let mut reach = max_magnitude(o);
         // The f64 tests are right for a ray displaced by a few u of the distances involved: 256u of them is allowed.
         let mut slack = (reach + 2.0) * (128.0 * f64::EPSILON);
         let mut start = 0.0;
         if reach > 4.0 {
-            // From far away the f32 origin would blur the boxes: begin near the frame, in f64.
-            let (near, far) = crossing(o, q.direction, 1.0 + slack);
-            if near > far || far < 0.0 {
-                return None;
-            }
-            start = (near - 1.0).max(0.0);
-            o += q.direction * start;
-            // An origin so far away that nothing is known of where the ray passes meets every box.
-            slack = slack.min(16.0);
-            let known = o.abs().max_component() < 64.0;
-            if !known {
-                o = Vec3::ZERO;
-                slack = 16.0;
-                start = 0.0;
-            }
+            (o, slack, start) = approach(o, d, slack)?;
+            reach = max_magnitude(o);
         }
-        // Every coordinate of a vertex relative to the origin is below this, and errs by two roundoffs of it (the
-        // vertex, the origin and the difference are rounded); shearing adds six (the slope, the product, the sum).
-        let reach = 1.0 + o.abs().max_component();
-        let axes = q.axes;
-        let mut ray = FrameRay {
-            origin_near: [0.0; 3],
-            origin_far: [0.0; 3],
-            reciprocal_near: [0.0; 3],
-            reciprocal_far: [0.0; 3],
-            negative: [0; 3],
-            axes,
-            origin: axes.map(|k| o.to_array()[k] as f32),
+        let slacks = [slack; 3];
+        let nearest: [f64; 3] = from_fn(|k| o[k] - slacks[k]);
+        let farthest: [f64; 3] = from_fn(|k| o[k] + slacks[k]);
+        let lower: [f32; 3] = from_fn(|k| below(nearest[k]));
+        let upper: [f32; 3] = from_fn(|k| above(farthest[k]));
+        let d32 = d.map(|d| d as f32);
+        let reciprocal: [f32; 3] = from_fn(|k| 1.0 / d32[k].abs().max(MIN_DIRECTION).copysign(d32[k]));
+        let negative = d32.map(f32::is_sign_negative);
+        Some(FrameRay {
+            origin_near: from_fn(|k| if negative[k] { lower[k] } else { upper[k] }),
+            origin_far: from_fn(|k| if negative[k] { upper[k] } else { lower[k] }),
+            reciprocal_near: reciprocal.map(|r| r * NEAR_FACTOR),
+            reciprocal_far: reciprocal.map(|r| r * FAR_FACTOR),
+            negative: negative.map(usize::from),
+            axes: q.axes,
+            origin: q.axes.map(|k| o[k] as f32),
             shear: q.shear.map(|s| s as f32),
-            error: above(10.0 * f64::from(f32::EPSILON / 2.0) * reach + 2.0 * slack),
+            // Every coordinate of a vertex relative to the origin is below the reach, and errs by two roundoffs of it
+            // (the vertex, the origin and the difference are rounded); shearing adds six (the slope, the product, the
+            // sum).
+            error: above(10.0 * f64::from(f32::EPSILON / 2.0) * (1.0 + reach) + 2.0 * slack),
             scale: self.scale,
             start,
-        };
-        for k in 0..3 {
-            let d = q.direction[k] as f32;
-            let negative = d.is_sign_negative();
-            let (lower, upper) = (below(o[k] - slack), above(o[k] + slack));
-            ray.origin_near[k] = if negative { lower } else { upper };
-            ray.origin_far[k] = if negative { upper } else { lower };
-            let reciprocal = 1.0 / d.abs().max(MIN_DIRECTION).copysign(d);
-            ray.reciprocal_near[k] = reciprocal * NEAR_FACTOR;
-            ray.reciprocal_far[k] = reciprocal * FAR_FACTOR;
-            ray.negative[k] = usize::from(negative);
-        }
-        Some(ray)
+        })
     }
+}
+
+#[inline(always)]
+fn max_magnitude(v: [f64; 3]) -> f64 {
+    v[0].abs().max(v[1].abs()).max(v[2].abs())
+}
+
+/// Moves the origin of a ray from far away to near the frame, in `f64`: from there its `f32` origin would blur the boxes.
+/// Returns the origin, the slack and the distance moved; `None` if the ray misses the frame.
+#[cold]
+#[inline(never)]
+fn approach(o: [f64; 3], d: [f64; 3], slack: f64) -> Option<([f64; 3], f64, f64)> {
+    let (near, far) = crossing(o, d, 1.0 + slack);
+    if near > far || far < 0.0 {
+        return None;
+    }
+    let start = (near - 1.0).max(0.0);
+    let moved: [f64; 3] = from_fn(|k| o[k] + d[k] * start);
+    let slack = slack.min(16.0);
+    let known = max_magnitude(moved) < 64.0;
+    // An origin so far away that nothing is known of where the ray passes meets every box.
+    Some(if known { (moved, slack, start) } else { ([0.0; 3], 16.0, 0.0) })
 }
 
 /// A ray in the accelerator's frame.
@@ -185,7 +200,7 @@ impl FrameRay {
 }
 
 /// Where a line crosses the box [−`half`, `half`]³.
-fn crossing(o: Vec3<f64>, d: Vec3<f64>, half: f64) -> (f64, f64) {
+fn crossing(o: [f64; 3], d: [f64; 3], half: f64) -> (f64, f64) {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for k in 0..3 {
         if d[k] != 0.0 {

@@ -5,8 +5,8 @@ use crate::frame::Frame;
 use crate::query::{Query, RawHit};
 use crate::traverse;
 use crate::wide::WideTree;
-use crate::{Aabb, Hit, Primitive, PrimitiveId, Ray, SurfacePoint};
-use etalon_optics::Real;
+use crate::{Aabb, Hit, Primitive, PrimitiveId, Ray, SurfacePoint, Triangle};
+use etalon_optics::{Real, Vec3};
 
 /// Up to this many primitives are tested one by one, without a tree.
 const FLAT_LIMIT: usize = 8;
@@ -14,7 +14,7 @@ const FLAT_LIMIT: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeometryError {
     /// More primitives than ids.
-    #[error("{0} primitives are more than the 2^31 that can be indexed")]
+    #[error("{0} primitives are more than the 2^30 that can be indexed")]
     TooMany(usize),
 }
 
@@ -33,16 +33,17 @@ impl Geometry {
     /// Builds the accelerator. No primitives at all are allowed.
     ///
     /// # Errors
-    /// If there are more than 2³¹ primitives.
+    /// If there are more than 2³⁰ primitives.
     pub fn build(primitives: Vec<Primitive>) -> Result<Self, GeometryError> {
-        if primitives.len() > 1 << 31 {
+        if primitives.len() > 1 << 30 {
             return Err(GeometryError::TooMany(primitives.len()));
         }
         let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
         let tree = bounds.filter(|_| primitives.len() > FLAT_LIMIT).map(|bounds| {
             let frame = Frame::around(bounds);
             let boxes: Vec<_> = primitives.iter().map(|p| frame.enclose(p.bounds())).collect();
-            let binary = build(&boxes, Costs { block: 4, leaf_limit: 8, node: 1.0 });
+            let binary = build(&boxes, Costs { block: 8, leaf_limit: 8, node: 0.5 });
+            drop(boxes);
             WideTree::collapse(frame, &binary, &primitives)
         });
         Ok(Self { primitives, bounds, tree })
@@ -162,12 +163,23 @@ impl Best {
     /// Tests a primitive and tells whether its hit is the best so far.
     #[inline]
     pub(crate) fn test(&mut self, primitives: &[Primitive], query: &Query, id: PrimitiveId) -> bool {
+        self.take(id, |t_max| primitives[id.0 as usize].intersect(query, t_max, query.leaves == id))
+    }
+
+    /// As [`Best::test`], for a triangle at hand that the ray does not leave.
+    #[inline]
+    pub(crate) fn test_triangle(&mut self, vertices: [Vec3<f64>; 3], query: &Query, id: PrimitiveId) -> bool {
+        self.take(id, |t_max| Triangle::intersect_vertices(vertices, query, t_max))
+    }
+
+    #[inline(always)]
+    fn take(&mut self, id: PrimitiveId, intersect: impl FnOnce(f64) -> Option<RawHit>) -> bool {
         // An equal distance counts for a lower id, whatever the order of the tests.
         let t_max = match self.hit {
             Some((hit, best)) if id < best => hit.t.next_up(),
             _ => self.t_max,
         };
-        let found = primitives[id.0 as usize].intersect(query, t_max, query.leaves == id);
+        let found = intersect(t_max);
         if let Some(hit) = found {
             self.hit = Some((hit, id));
             self.t_max = hit.t;

@@ -13,6 +13,7 @@
 //! | `frame` | the accelerator's frame and conservative box tests in `f32` |
 //! | `build` | the builder of a binary tree |
 //! | `wide` | the tree of eight children a node that it becomes |
+//! | `pages` | arrays in large pages |
 //! | `traverse` | its traversal, for each instruction set |
 //! | `geometry` | [`Geometry`]: the queries |
 
@@ -21,6 +22,7 @@ mod build;
 mod double_double;
 mod frame;
 mod geometry;
+mod pages;
 mod query;
 mod ray;
 mod shapes;

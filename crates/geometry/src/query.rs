@@ -1,5 +1,6 @@
 //! A ray prepared for the intersection tests, which are all computed in `f64`.
 
+use crate::double_double::product_difference;
 use crate::{PrimitiveId, Ray};
 use etalon_optics::{Real, Vec3};
 
@@ -73,7 +74,8 @@ impl Query {
     #[inline(always)]
     pub(crate) fn project(&self, vertex: Vec3<f64>) -> Projected {
         let v = vertex.to_array();
-        let [x, y, z] = std::array::from_fn(|k| v[self.axes[k]] - self.start[k]);
+        let [kx, ky, kz] = self.axes;
+        let (x, y, z) = (v[kx] - self.start[0], v[ky] - self.start[1], v[kz] - self.start[2]);
         Projected {
             x: x - self.shear[0] * z,
             y: y - self.shear[1] * z,
@@ -101,10 +103,18 @@ impl Projected {
     /// Both products are rounded before the difference. Rounding is monotonic, so the sign is never wrong, only zero
     /// where the exact value may not be; and swapping the ends swaps the sign exactly. Both are needed for
     /// watertightness, and a fused multiply-add would break them (Woop, Benthin & Wald, *Watertight Ray/Triangle
-    /// Intersection*, JCGT 2(1), 2013).
-    #[inline]
+    /// Intersection*, JCGT 2(1), 2013). A zero is computed again, exactly: the edge of a triangle that is tiny beside its
+    /// distance from the ray would otherwise seem to pass through the ray.
+    #[inline(always)]
     pub(crate) fn edge(self, o: Self) -> f64 {
-        self.x * o.y - self.y * o.x
+        let area = self.x * o.y - self.y * o.x;
+        if area == 0.0 { self.exact_edge(o) } else { area }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn exact_edge(self, o: Self) -> f64 {
+        product_difference(self.x, o.y, self.y, o.x)
     }
 }
 

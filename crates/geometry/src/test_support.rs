@@ -179,6 +179,34 @@ pub(crate) fn soup(random: &mut Random, count: usize, sizes: std::ops::Range<f64
     out
 }
 
+/// The same triangles with vertices that `f32` represents.
+pub(crate) fn representable(primitives: &[Primitive]) -> Vec<Primitive> {
+    let round = |p: V| p.cast::<f32>().to_f64();
+    primitives
+        .iter()
+        .filter_map(|p| match p {
+            Primitive::Triangle(t) => {
+                let [a, b, c] = t.vertices().map(round);
+                Triangle::new(a, b, c).ok().map(Primitive::from)
+            }
+            other => Some(other.clone()),
+        })
+        .collect()
+}
+
+/// Triangles whose sizes and distances from a corner halve at every step: a tree as deep as they are many.
+pub(crate) fn converging(count: i32) -> Vec<Primitive> {
+    (0..count)
+        .map(|i| {
+            let s = 0.5_f64.powi(i);
+            let p = v(-1.0, -1.0, -1.0) + v(s, s, s);
+            let (a, b) = (v(0.2 * s, 0.0, 0.1 * s), v(0.0, 0.2 * s, -0.1 * s));
+            Triangle::new(p, p + a, p + b).map(Primitive::from)
+        })
+        .filter_map(Result::ok)
+        .collect()
+}
+
 /// Axis-aligned rectangles and boxes of them on a coarse grid: planes shared by many boxes of a tree.
 pub(crate) fn blocks(random: &mut Random, count: usize) -> Vec<Primitive> {
     let mut out = Vec::with_capacity(count);

@@ -2,7 +2,10 @@
 
 use crate::build::BinaryTree;
 use crate::frame::{Box32, Frame};
+use crate::pages::Pages;
 use crate::{Primitive, PrimitiveId};
+use bytemuck::{Pod, Zeroable};
+use etalon_optics::Vec3;
 
 /// Children of a node, and primitives of a leaf.
 pub(crate) const WIDTH: usize = 8;
@@ -10,33 +13,39 @@ pub(crate) const WIDTH: usize = 8;
 pub(crate) const LEAF: u32 = 1 << 31;
 /// Marks a primitive that has no filter: it is tested in `f64` whenever a ray enters its leaf.
 pub(crate) const UNFILTERED: u32 = 1 << 31;
+/// Marks a triangle whose vertices are exact in its leaf: it need not be fetched to be tested in `f64`.
+pub(crate) const EXACT: u32 = 1 << 30;
 
 /// A node: the boxes of up to eight children.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct Node8 {
     /// For x, y and z the lower and the upper planes of the children; a missing child has an inverted, infinite box.
     pub(crate) planes: [[[f32; WIDTH]; 2]; 3],
     /// The index of a node, or of a leaf with [`LEAF`].
     pub(crate) children: [u32; WIDTH],
+    padding: [u32; 8],
 }
 
 /// A leaf: up to eight primitives.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C, align(32))]
 pub(crate) struct Leaf8 {
     /// The vertices of triangles in the accelerator's frame, rounded: x, y, z of a, then of b, then of c.
     pub(crate) vertices: [[[f32; WIDTH]; 3]; 3],
-    /// Ids, with [`UNFILTERED`] where there is no triangle; `u32::MAX` for an empty lane.
+    /// Ids, with [`UNFILTERED`] where there is no triangle and [`EXACT`] where it is exact; `u32::MAX` for an empty lane.
     pub(crate) ids: [u32; WIDTH],
+    /// The largest extent of the triangles' common box along an axis.
+    pub(crate) extent: f32,
+    padding: [u32; 7],
 }
 
 /// The tree.
 #[derive(Debug)]
 pub(crate) struct WideTree {
     pub(crate) frame: Frame,
-    pub(crate) nodes: Vec<Node8>,
-    pub(crate) leaves: Vec<Leaf8>,
+    nodes: Pages<Node8>,
+    leaves: Pages<Leaf8>,
     /// Levels of nodes.
     pub(crate) depth: usize,
 }
@@ -44,56 +53,130 @@ pub(crate) struct WideTree {
 impl WideTree {
     /// Collapses a binary tree.
     pub(crate) fn collapse(frame: Frame, tree: &BinaryTree, primitives: &[Primitive]) -> Self {
-        let mut wide = Self { frame, nodes: Vec::new(), leaves: Vec::new(), depth: 0 };
-        let root = wide.node(tree, primitives, 0, 1);
-        debug_assert_eq!(root, 0);
-        wide.nodes.shrink_to_fit();
-        wide.leaves.shrink_to_fit();
+        let mut size = Size::default();
+        size.count(tree, 0, 1);
+        let mut wide =
+            Self { frame, nodes: Pages::new(size.nodes), leaves: Pages::new(size.leaves), depth: size.depth };
+        let (nodes, leaves) = (wide.nodes.as_mut_slice(), wide.leaves.as_mut_slice());
+        Filler { frame: &frame, tree, primitives, nodes, leaves, node_count: 0, leaf_count: 0 }.node(0);
         wide
     }
 
-    /// Appends the node that stands for a binary node, and all below it; it is on level `depth`.
-    fn node(&mut self, tree: &BinaryTree, primitives: &[Primitive], root: u32, depth: usize) -> u32 {
-        let mut children = vec![root];
-        // Open the largest inner node until there are eight children.
-        while children.len() < WIDTH {
-            let area = |&i: &u32| tree.nodes[i as usize].bounds.half_area();
-            let inner = (0..children.len()).filter(|&c| tree.nodes[children[c] as usize].count == 0);
-            let Some(widest) = inner.max_by(|&a, &b| area(&children[a]).total_cmp(&area(&children[b]))) else { break };
-            let opened = children[widest];
-            children[widest] = opened + 1;
-            children.push(tree.nodes[opened as usize].first);
+    /// The nodes, the root first.
+    #[inline(always)]
+    pub(crate) fn nodes(&self) -> &[Node8] {
+        self.nodes.as_slice()
+    }
+
+    /// The leaves.
+    #[inline(always)]
+    pub(crate) fn leaves(&self) -> &[Leaf8] {
+        self.leaves.as_slice()
+    }
+
+    /// Memory held beside the struct itself, bytes.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        size_of_val(self.nodes()) + size_of_val(self.leaves())
+    }
+}
+
+/// The up to eight binary nodes that become the children of a node: the largest inner one is opened until there are
+/// eight.
+fn open(tree: &BinaryTree, root: u32) -> ([u32; WIDTH], usize) {
+    let mut children = [root; WIDTH];
+    let mut count = 1;
+    while count < WIDTH {
+        let mut widest = (None, -1.0);
+        for (c, &child) in children[..count].iter().enumerate() {
+            let node = &tree.nodes[child as usize];
+            let area = node.bounds.half_area();
+            if node.count == 0 && area > widest.1 {
+                widest = (Some(c), area);
+            }
         }
-        let index = self.nodes.len();
-        let mut node =
-            Node8 { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], children: [0; WIDTH] };
-        for (lane, &child) in children.iter().enumerate() {
-            let Box32 { min, max } = tree.nodes[child as usize].bounds;
+        let Some(c) = widest.0 else { break };
+        let opened = children[c];
+        children[c] = opened + 1;
+        children[count] = tree.nodes[opened as usize].first;
+        count += 1;
+    }
+    (children, count)
+}
+
+/// What a tree will need.
+#[derive(Default)]
+struct Size {
+    nodes: usize,
+    leaves: usize,
+    depth: usize,
+}
+
+impl Size {
+    fn count(&mut self, tree: &BinaryTree, root: u32, depth: usize) {
+        self.nodes += 1;
+        self.depth = self.depth.max(depth);
+        let (children, count) = open(tree, root);
+        for &child in &children[..count] {
+            if tree.nodes[child as usize].count > 0 {
+                self.leaves += 1;
+            } else {
+                self.count(tree, child, depth + 1);
+            }
+        }
+    }
+}
+
+/// Fills a tree.
+struct Filler<'a> {
+    frame: &'a Frame,
+    tree: &'a BinaryTree,
+    primitives: &'a [Primitive],
+    nodes: &'a mut [Node8],
+    leaves: &'a mut [Leaf8],
+    node_count: usize,
+    leaf_count: usize,
+}
+
+impl Filler<'_> {
+    /// Adds the node that stands for a binary node, and all below it.
+    fn node(&mut self, root: u32) -> u32 {
+        let index = self.node_count;
+        self.node_count += 1;
+        let (children, count) = open(self.tree, root);
+        let mut node = Node8 {
+            planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
+            children: [0; WIDTH],
+            padding: [0; 8],
+        };
+        for (lane, &child) in children[..count].iter().enumerate() {
+            let child_node = &self.tree.nodes[child as usize];
+            let Box32 { min, max } = child_node.bounds;
             for k in 0..3 {
                 node.planes[k][0][lane] = min[k];
                 node.planes[k][1][lane] = max[k];
             }
+            node.children[lane] = if child_node.count > 0 { self.leaf(child) } else { self.node(child) };
         }
-        self.nodes.push(node);
-        self.depth = self.depth.max(depth);
-        for (lane, &child) in children.iter().enumerate() {
-            let reference = if tree.nodes[child as usize].count > 0 {
-                self.leaf(tree, primitives, child)
-            } else {
-                self.node(tree, primitives, child, depth + 1)
-            };
-            self.nodes[index].children[lane] = reference;
-        }
+        self.nodes[index] = node;
         index as u32
     }
 
-    fn leaf(&mut self, tree: &BinaryTree, primitives: &[Primitive], node: u32) -> u32 {
-        let node = &tree.nodes[node as usize];
+    fn leaf(&mut self, node: u32) -> u32 {
+        let node = &self.tree.nodes[node as usize];
         let first = node.first as usize;
-        let mut leaf = Leaf8 { vertices: [[[0.0; WIDTH]; 3]; 3], ids: [u32::MAX; WIDTH] };
-        for (lane, &id) in tree.order[first..first + node.count as usize].iter().enumerate() {
+        let extent = |k: usize| node.bounds.max[k] - node.bounds.min[k];
+        let mut leaf = Leaf8 {
+            vertices: [[[0.0; WIDTH]; 3]; 3],
+            ids: [u32::MAX; WIDTH],
+            extent: extent(0).max(extent(1)).max(extent(2)),
+            padding: [0; 7],
+        };
+        for (lane, &id) in self.tree.order[first..first + node.count as usize].iter().enumerate() {
             leaf.ids[lane] = id;
-            if let Primitive::Triangle(t) = &primitives[id as usize] {
+            if let Primitive::Triangle(t) = &self.primitives[id as usize] {
+                if t.vertices().into_iter().all(|v| self.frame.is_exact(v)) {
+                    leaf.ids[lane] |= EXACT;
+                }
                 for (vertex, row) in t.vertices().into_iter().zip(&mut leaf.vertices) {
                     for (c, row) in self.frame.point(vertex).into_iter().zip(row) {
                         row[lane] = c;
@@ -103,13 +186,10 @@ impl WideTree {
                 leaf.ids[lane] |= UNFILTERED;
             }
         }
-        self.leaves.push(leaf);
-        (self.leaves.len() - 1) as u32 | LEAF
-    }
-
-    /// Memory held beside the struct itself, bytes.
-    pub(crate) fn memory_bytes(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node8>() + self.leaves.capacity() * size_of::<Leaf8>()
+        let index = self.leaf_count;
+        self.leaf_count += 1;
+        self.leaves[index] = leaf;
+        index as u32 | LEAF
     }
 }
 
@@ -117,6 +197,18 @@ impl Leaf8 {
     /// The primitive in a lane.
     #[inline(always)]
     pub(crate) fn id(&self, lane: usize) -> PrimitiveId {
-        PrimitiveId(self.ids[lane] & !UNFILTERED)
+        PrimitiveId(self.ids[lane] & !(UNFILTERED | EXACT))
+    }
+
+    /// The vertices of the triangle in a lane, if they are exact.
+    #[inline(always)]
+    pub(crate) fn triangle(&self, frame: &Frame, lane: usize) -> Option<[Vec3<f64>; 3]> {
+        let exact = self.ids[lane] & (EXACT | UNFILTERED) == EXACT;
+        if !exact {
+            return None;
+        }
+        let [a, b, c] = &self.vertices;
+        let at = |v: &[[f32; WIDTH]; 3]| frame.unscaled([v[0][lane], v[1][lane], v[2][lane]]);
+        Some([at(a), at(b), at(c)])
     }
 }

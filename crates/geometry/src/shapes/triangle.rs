@@ -63,7 +63,13 @@ impl Triangle {
     /// of the triangles around it.
     #[inline]
     pub(crate) fn intersect(&self, query: &Query, t_max: f64) -> Option<RawHit> {
-        let [a, b, c] = [query.project(self.a), query.project(self.b), query.project(self.c)];
+        Self::intersect_vertices(self.vertices(), query, t_max)
+    }
+
+    /// [`Triangle::intersect`] of three vertices.
+    #[inline]
+    pub(crate) fn intersect_vertices(vertices: [Vec3<f64>; 3], query: &Query, t_max: f64) -> Option<RawHit> {
+        let (a, b, c) = (query.project(vertices[0]), query.project(vertices[1]), query.project(vertices[2]));
         let (u, v, w) = (c.edge(b), a.edge(c), b.edge(a));
         // Inclusive: an edge that passes through the ray as far as rounding tells belongs to both its triangles.
         let outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
@@ -81,7 +87,7 @@ impl Triangle {
         let extent = a.x.abs().max(a.y.abs()).max(b.x.abs().max(b.y.abs())).max(c.x.abs().max(c.y.abs()));
         let depth = a.z.max(b.z).max(c.z) - a.z.min(b.z).min(c.z);
         if !planar::is_determined(magnitude, extent, depth, t_det.abs(), det.abs()) {
-            hit = planar::refine(query, self.a, self.b, self.c, self.bounds(), hit, 1.0);
+            hit = planar::refine(query, vertices[0], vertices[1], vertices[2], Aabb::of_points(vertices), hit, 1.0);
         }
         (0.0 < hit.t && hit.t < t_max).then_some(hit)
     }

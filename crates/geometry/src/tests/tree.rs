@@ -21,6 +21,11 @@ fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> u
             let primitives = geometry.primitives();
             assert_eq!(traverse::closest_portable(tree, primitives, &query), flat, "{ray:?}");
             assert_eq!(traverse::any_portable(tree, primitives, &query), occluded, "{ray:?}");
+            if let Some(frame_ray) = tree.frame.enter(&query) {
+                let deep = traverse::closest_deep(tree, primitives, &query, &frame_ray);
+                assert_eq!(deep, flat, "{ray:?}");
+                assert_eq!(traverse::any_deep(tree, primitives, &query, &frame_ray), occluded, "{ray:?}");
+            }
         }
         usize::from(flat.is_some())
     }
@@ -52,6 +57,71 @@ fn tree_equals_brute_force_on_soups_of_all_scales() {
         let hits = check(primitives, 20_000, 100 + seed, |l| l);
         assert!(hits > 0.3, "only {hits} of the rays hit anything");
     }
+}
+
+#[test]
+fn tree_equals_brute_force_on_vertices_that_f32_represents() {
+    // Such triangles are tested from the leaf, without their primitives.
+    for seed in 0..2 {
+        let primitives = representable(&soup(&mut Random::new(20 + seed), 200, -4.0..0.0));
+        let hits = check(primitives, 20_000, 120 + seed, |l| l);
+        assert!(hits > 0.3, "only {hits} of the rays hit anything");
+    }
+    let mesh = Mesh::sphere(40, 60, |p| 1.0 + 0.2 * (9.0 * p.x).sin() * (7.0 * p.y).cos());
+    for primitives in [representable(&mesh.primitives()), mesh.primitives()] {
+        let hits = check(primitives, 1_000, 130, |l| l);
+        assert!(hits > 0.3, "only {hits} of the rays hit anything");
+    }
+}
+
+#[test]
+fn a_ray_misses_a_tiny_triangle_beside_it() {
+    // The edges' products round to the same value, which must not pass for an edge through the ray.
+    let mut random = Random::new(8);
+    let mut missed = 0;
+    for _ in 0..100_000 {
+        let size = random.log_uniform(-18.0, -13.0);
+        let corners = [0, 1, 2].map(|_| random.in_cube() * size);
+        let Ok(triangle) = Triangle::new(corners[0], corners[1], corners[2]) else { continue };
+        let origin = random.in_cube();
+        // At least a hundredth beside the triangle.
+        let d = random.direction();
+        let closest = origin - d * origin.dot(d);
+        if closest.length() < 1e-2 {
+            continue;
+        }
+        let geometry = Geometry::build(vec![triangle.into()]).unwrap();
+        assert!(geometry.closest_hit(&Ray::free(origin, d)).is_none(), "{origin:?} {d:?} {corners:?}");
+        missed += 1;
+    }
+    assert!(missed > 90_000);
+}
+
+#[test]
+fn tree_equals_brute_force_on_triangles_that_converge() {
+    // Triangles of 2⁰ to 2⁻⁵⁰ around a corner.
+    let shifted = |p: &Primitive| match p {
+        Primitive::Triangle(t) => {
+            let [a, b, c] = t.vertices().map(|q| q + v(1.0, 1.0, 1.0));
+            Triangle::new(a, b, c).ok().map(Primitive::from)
+        }
+        _ => None,
+    };
+    let primitives: Vec<Primitive> = converging(50).iter().filter_map(shifted).collect();
+    let mut all = primitives.clone();
+    for k in 1..6 {
+        // Copies at other places about the same corner.
+        let s = 1.0 + 0.13 * f64::from(k);
+        all.extend(primitives.iter().filter_map(|p| match p {
+            Primitive::Triangle(t) => {
+                let [a, b, c] = t.vertices().map(|q| v(q.y * s, q.z, q.x / s));
+                Triangle::new(a, b, c).ok().map(Primitive::from)
+            }
+            _ => None,
+        }));
+    }
+    let hits = check(all, 20_000, 140, |l| l);
+    assert!(hits > 0.1, "only {hits} of the rays hit anything");
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! The filters in AVX2, eight lanes at once.
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
-use super::{Candidates, Entered, Filters, any_with, closest_with};
+use super::{Candidates, Entered, Filters, any_with, closest_with, leaf_error};
 use crate::frame::FrameRay;
 use crate::query::{Query, RawHit};
-use crate::wide::{Leaf8, Node8, WIDTH, WideTree};
+use crate::wide::{EXACT, Leaf8, Node8, WIDTH, WideTree};
 use crate::{Primitive, PrimitiveId};
 use std::arch::x86_64::*;
 
@@ -138,15 +138,20 @@ impl F8 {
     }
 }
 
-/// The empty lanes of a leaf, and those without a filter.
+/// The lanes of a leaf that are no triangles to be tested (empty, of other primitives, or the one that the ray leaves), and
+/// those of other primitives.
 #[inline(always)]
-fn lanes(_: Avx2, ids: &[u32; WIDTH]) -> (u32, u32) {
+fn lanes(_: Avx2, ids: &[u32; WIDTH], leaves: PrimitiveId) -> (u32, u32) {
     // SAFETY: the token proves AVX2; eight integers are readable at the reference, aligned or not.
     unsafe {
         let ids = _mm256_loadu_si256(ids.as_ptr().cast());
+        let plain = _mm256_andnot_si256(_mm256_set1_epi32(EXACT as i32), ids);
         let empty = _mm256_cmpeq_epi32(ids, _mm256_set1_epi32(-1));
+        let left = _mm256_cmpeq_epi32(plain, _mm256_set1_epi32(leaves.0 as i32));
+        let other = _mm256_movemask_ps(_mm256_castsi256_ps(ids)) as u32;
         let empty = _mm256_movemask_ps(_mm256_castsi256_ps(empty)) as u32;
-        (empty, _mm256_movemask_ps(_mm256_castsi256_ps(ids)) as u32 & !empty)
+        let left = _mm256_movemask_ps(_mm256_castsi256_ps(left)) as u32;
+        (other | left, other & !empty)
     }
 }
 
@@ -163,6 +168,7 @@ pub(super) struct Ray8 {
     origin: [f32; 3],
     shear: [f32; 3],
     error: f32,
+    leaves: PrimitiveId,
 }
 
 /// A vertex in the projection of the ray: z is not yet scaled.
@@ -184,7 +190,7 @@ impl Filters for Avx2 {
     type Ray = Ray8;
 
     #[inline(always)]
-    fn ray(self, ray: &FrameRay) -> Ray8 {
+    fn ray(self, ray: &FrameRay, leaves: PrimitiveId) -> Ray8 {
         let [nx, ny, nz] = ray.origin_near;
         let [fx, fy, fz] = ray.origin_far;
         let [rx, ry, rz] = ray.reciprocal_near;
@@ -199,6 +205,7 @@ impl Filters for Avx2 {
             origin: ray.origin,
             shear: ray.shear,
             error: ray.error,
+            leaves,
         }
     }
 
@@ -234,24 +241,22 @@ impl Filters for Avx2 {
     /// As the portable filter, whose doc comment derives the bounds.
     #[inline(always)]
     fn candidates(self, ray: &Ray8, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
-        let (empty, unfiltered) = lanes(self, &leaf.ids);
+        let (excluded, unfiltered) = lanes(self, &leaf.ids, ray.leaves);
         let all = |v| F8::splat(self, v);
         let sign = all(-0.0);
-        let magnitude = all(f32::from_bits(!0 >> 1));
         let a = project(self, ray, &leaf.vertices[0]);
         let b = project(self, ray, &leaf.vertices[1]);
         let c = project(self, ray, &leaf.vertices[2]);
         let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-        let extent_x = F8::max_of([a[0] & magnitude, b[0] & magnitude, c[0] & magnitude]);
-        let extent_y = F8::max_of([a[1] & magnitude, b[1] & magnitude, c[1] & magnitude]);
-        let error = extent_x.max(extent_y) * all(6.0 * ray.error) + all(2.0 * ray.error * ray.error);
+        let error = all(leaf_error(ray.error, leaf.extent));
         let minus_error = error ^ sign;
         let (least, most) = (F8::min_of([u, v, w]), F8::max_of([u, v, w]));
         let outside = least.below(minus_error) & error.below(most);
-        let mask = !(outside.mask() | empty | unfiltered) & 0xFF;
+        let mask = !(outside.mask() | excluded) & 0xFF;
         if mask == 0 {
             return Candidates { mask: unfiltered, certain: 0, near: [0.0; WIDTH], far: [0.0; WIDTH] };
         }
+        let magnitude = all(f32::from_bits(!0 >> 1));
         let det = u + v + w;
         let reciprocal = all(ray.shear[2]) / det;
         let t = (u * a[2] + v * b[2] + w * c[2]) * reciprocal;

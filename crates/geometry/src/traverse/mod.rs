@@ -6,13 +6,15 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod portable;
+mod stack;
 
 use crate::build::MAX_DEPTH;
 use crate::frame::FrameRay;
 use crate::geometry::Best;
 use crate::query::{Query, RawHit};
-use crate::wide::{LEAF, Leaf8, Node8, WIDTH, WideTree};
-use crate::{Primitive, PrimitiveId};
+use crate::wide::{EXACT, LEAF, Leaf8, Node8, WIDTH, WideTree};
+use crate::{Primitive, PrimitiveId, Triangle};
+use stack::Stack;
 
 /// Levels of the stack that serves all but degenerate trees, and of the one that serves any: as many as a binary tree has.
 const LEVELS: [usize; 2] = [12, MAX_DEPTH];
@@ -42,13 +44,13 @@ pub(crate) trait Filters: Copy {
     /// The ray as the filters want it.
     type Ray: Copy;
     /// Prepares a ray.
-    fn ray(self, ray: &FrameRay) -> Self::Ray;
+    fn ray(self, ray: &FrameRay, leaves: PrimitiveId) -> Self::Ray;
     /// The children of a node that the ray meets in [0, `limit`].
     fn enter(self, ray: &Self::Ray, node: &Node8, limit: f32) -> Entered;
     /// Announces that a primitive will be read.
     fn prefetch(self, primitive: &Primitive);
     /// The primitives of a leaf that the ray may hit in [0, `limit`], and those that it certainly hits in
-    /// (0, `certain_limit`).
+    /// (0, `certain_limit`). A triangle that it leaves is none of them.
     fn candidates(self, ray: &Self::Ray, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates;
 }
 
@@ -112,7 +114,7 @@ fn any_with<F: Filters>(filters: F, tree: &WideTree, primitives: &[Primitive], q
 /// Degenerate trees, by the portable filters.
 #[cold]
 #[inline(never)]
-fn closest_deep(
+pub(crate) fn closest_deep(
     tree: &WideTree,
     primitives: &[Primitive],
     query: &Query,
@@ -124,7 +126,7 @@ fn closest_deep(
 /// Degenerate trees, by the portable filters.
 #[cold]
 #[inline(never)]
-fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query, ray: &FrameRay) -> bool {
+pub(crate) fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query, ray: &FrameRay) -> bool {
     any_on::<_, { LEVELS[1] }>(portable::Portable, tree, primitives, query, ray)
 }
 
@@ -136,7 +138,8 @@ fn entry(near: f32, child: u32) -> u64 {
 
 /// Hits that are certain, but whose distances are known in `f32` only.
 struct Pending {
-    ids: [u32; Self::LIMIT],
+    /// The leaf and the lane.
+    at: [(u32, u32); Self::LIMIT],
     near: [f32; Self::LIMIT],
     count: usize,
 }
@@ -147,13 +150,24 @@ impl Pending {
 
     /// Decides in `f64` those that are not beyond `limit`.
     #[inline(always)]
-    fn resolve(&mut self, best: &mut Best, primitives: &[Primitive], query: &Query, limit: f32) {
+    fn resolve(&mut self, best: &mut Best, tree: &WideTree, primitives: &[Primitive], query: &Query, limit: f32) {
+        let leaves = tree.leaves();
         for i in 0..self.count {
             if self.near[i] <= limit {
-                best.test(primitives, query, PrimitiveId(self.ids[i]));
+                let (leaf, lane) = self.at[i];
+                test(best, tree, &leaves[leaf as usize], lane as usize, primitives, query);
             }
         }
         self.count = 0;
+    }
+}
+
+/// Decides in `f64` whether a lane of a leaf holds the closest hit so far.
+#[inline(always)]
+fn test(best: &mut Best, tree: &WideTree, leaf: &Leaf8, lane: usize, primitives: &[Primitive], query: &Query) -> bool {
+    match leaf.triangle(&tree.frame, lane) {
+        Some(vertices) => best.test_triangle(vertices, query, leaf.id(lane)),
+        None => best.test(primitives, query, leaf.id(lane)),
     }
 }
 
@@ -166,17 +180,17 @@ fn closest_on<F: Filters, const N: usize>(
     query: &Query,
     frame_ray: &FrameRay,
 ) -> Option<(RawHit, PrimitiveId)> {
-    let ray = filters.ray(frame_ray);
+    let ray = filters.ray(frame_ray, query.leaves);
     let mut best = Best::new(query);
     let mut limit = frame_ray.distance(query.t_max);
     let certain_limit = frame_ray.distance_below(query.t_max);
-    let mut pending = Pending { ids: [0; Pending::LIMIT], near: [0.0; Pending::LIMIT], count: 0 };
-    let mut stack = [0_u64; N];
-    let mut top = 0;
+    let mut pending = Pending { at: [(0, 0); Pending::LIMIT], near: [0.0; Pending::LIMIT], count: 0 };
+    let (nodes, leaves) = (tree.nodes(), tree.leaves());
+    let mut stack = Stack::<u64, N>::new();
     let mut child = 0;
     loop {
         if child & LEAF == 0 {
-            let node = &tree.nodes[child as usize];
+            let node = &nodes[child as usize];
             let Entered { mut mask, near } = filters.enter(&ray, node, limit);
             if mask != 0 {
                 let lane = mask.trailing_zeros() as usize;
@@ -190,42 +204,36 @@ fn closest_on<F: Filters, const N: usize>(
                 mask &= mask - 1;
                 let second = entry(near[lane], node.children[lane]);
                 let mut nearest = first.min(second);
-                stack[top] = first.max(second);
-                let base = top;
-                top += 1;
+                let base = stack.len();
+                stack.push(first.max(second));
                 while mask != 0 {
                     let lane = mask.trailing_zeros() as usize;
                     mask &= mask - 1;
                     let new = entry(near[lane], node.children[lane]);
-                    let waiting = nearest.max(new);
+                    stack.insert(base, nearest.max(new));
                     nearest = nearest.min(new);
-                    let mut at = top;
-                    while at > base && stack[at - 1] < waiting {
-                        stack[at] = stack[at - 1];
-                        at -= 1;
-                    }
-                    stack[at] = waiting;
-                    top += 1;
                 }
                 child = nearest as u32;
                 continue;
             }
         } else {
-            let leaf = &tree.leaves[(child & !LEAF) as usize];
+            let index = child & !LEAF;
+            let leaf = &leaves[index as usize];
             let mut candidates = filters.candidates(&ray, leaf, limit, certain_limit);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
-                let id = leaf.ids[lane];
-                // A flat primitive is not met again: it need not be fetched.
-                if id == query.leaves.0 || candidates.near[lane] > limit {
+                let id = leaf.id(lane);
+                if candidates.near[lane] > limit {
                     continue;
                 }
                 if candidates.certain >> lane & 1 == 1 {
                     // Its exact distance can wait until the end, when it has been fetched.
-                    filters.prefetch(&primitives[id as usize]);
+                    if leaf.ids[lane] & EXACT == 0 {
+                        filters.prefetch(&primitives[id.0 as usize]);
+                    }
                     if pending.count == Pending::LIMIT {
-                        pending.resolve(&mut best, primitives, query, limit);
+                        pending.resolve(&mut best, tree, primitives, query, limit);
                     }
                     if candidates.far[lane] < limit {
                         limit = candidates.far[lane];
@@ -234,21 +242,19 @@ fn closest_on<F: Filters, const N: usize>(
                             pending.count = 0;
                         }
                     }
-                    pending.ids[pending.count] = id;
+                    pending.at[pending.count] = (index, lane as u32);
                     pending.near[pending.count] = candidates.near[lane];
                     pending.count += 1;
-                } else if best.test(primitives, query, leaf.id(lane)) {
+                } else if test(&mut best, tree, leaf, lane, primitives, query) {
                     limit = limit.min(frame_ray.distance(best.t_max));
                 }
             }
         }
         loop {
-            if top == 0 {
-                pending.resolve(&mut best, primitives, query, limit);
+            let Some(next) = stack.pop() else {
+                pending.resolve(&mut best, tree, primitives, query, limit);
                 return best.hit;
-            }
-            top -= 1;
-            let next = stack[top];
+            };
             if f32::from_bits((next >> 32) as u32) <= limit {
                 child = next as u32;
                 break;
@@ -267,49 +273,66 @@ fn any_on<F: Filters, const N: usize>(
     query: &Query,
     frame_ray: &FrameRay,
 ) -> bool {
-    let ray = filters.ray(frame_ray);
+    let ray = filters.ray(frame_ray, query.leaves);
     let limit = frame_ray.distance(query.t_max);
     let certain_limit = frame_ray.distance_below(query.t_max);
-    let mut levels = [(0_u32, 0_u32); N];
-    let mut depth = 0;
+    let (nodes, leaves) = (tree.nodes(), tree.leaves());
+    let mut levels = Stack::<(u32, u32), N>::new();
     let mut index = 0;
     loop {
-        let mut node = &tree.nodes[index as usize];
+        let mut node = &nodes[index as usize];
         let mut mask = filters.enter(&ray, node, limit).mask;
         loop {
             while mask == 0 {
-                if depth == 0 {
-                    return false;
+                match levels.pop() {
+                    Some(level) => (index, mask) = level,
+                    None => return false,
                 }
-                depth -= 1;
-                (index, mask) = levels[depth];
-                node = &tree.nodes[index as usize];
+                node = &nodes[index as usize];
             }
             let lane = mask.trailing_zeros() as usize;
             mask &= mask - 1;
             let child = node.children[lane];
             if child & LEAF == 0 {
-                levels[depth] = (index, mask);
-                depth += usize::from(mask != 0);
+                if mask != 0 {
+                    levels.push((index, mask));
+                }
                 index = child;
                 break;
             }
-            let leaf = &tree.leaves[(child & !LEAF) as usize];
+            let leaf = &leaves[(child & !LEAF) as usize];
             let mut candidates = filters.candidates(&ray, leaf, limit, certain_limit);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
                 let id = leaf.id(lane);
-                if leaf.ids[lane] == query.leaves.0 {
+                if id == query.aims_at {
                     continue;
                 }
                 let certain = candidates.certain >> lane & 1 == 1;
-                if (certain && id != query.aims_at) || occludes(primitives, query, id) {
+                if certain
+                    || match leaf.triangle(&tree.frame, lane) {
+                        Some(vertices) => Triangle::intersect_vertices(vertices, query, query.t_max).is_some(),
+                        None => occludes(primitives, query, id),
+                    }
+                {
                     return true;
                 }
             }
         }
     }
+}
+
+/// Bound on the error of the edge functions of a leaf's triangles in the projection of a ray that meets the leaf's box.
+///
+/// `error` is the bound δ on the error of a projected coordinate. With e the largest of them, an edge function
+/// (cx·by − cy·bx) errs by at most 4δe + 2δ² for its factors and 4ue² for its rounding; e is below twice the reach of the
+/// ray, of which δ is at least 10 roundoffs, so that 5δe + 2δ² covers both. A vertex is no farther than the `extent` of
+/// the box along any axis from a point of the ray, which projects to zero, so that e is at most twice the extent, plus
+/// twice the slack with which the ray may miss the box, below 3δ: its 3ε a distance (`frame`).
+#[inline(always)]
+fn leaf_error(error: f32, extent: f32) -> f32 {
+    error * (12.0 * extent + 32.0 * error)
 }
 
 /// Whether a primitive hides the end of a ray from its start.

@@ -1,24 +1,24 @@
 //! The filters in plain Rust; the wording of reference for the other instruction sets.
 
-use super::{Candidates, Entered, Filters};
-use crate::Primitive;
+use super::{Candidates, Entered, Filters, leaf_error};
 use crate::frame::FrameRay;
 use crate::wide::{Leaf8, Node8, UNFILTERED, WIDTH};
+use crate::{Primitive, PrimitiveId};
 
 /// Plain Rust.
 #[derive(Clone, Copy)]
 pub(super) struct Portable;
 
 impl Filters for Portable {
-    type Ray = FrameRay;
+    type Ray = (FrameRay, PrimitiveId);
 
     #[inline(always)]
-    fn ray(self, ray: &FrameRay) -> FrameRay {
-        *ray
+    fn ray(self, ray: &FrameRay, leaves: PrimitiveId) -> (FrameRay, PrimitiveId) {
+        (*ray, leaves)
     }
 
     #[inline(always)]
-    fn enter(self, ray: &FrameRay, node: &Node8, limit: f32) -> Entered {
+    fn enter(self, (ray, _): &Self::Ray, node: &Node8, limit: f32) -> Entered {
         let mut out = Entered { mask: 0, near: [0.0; WIDTH] };
         let mut far = [limit; WIDTH];
         for k in 0..3 {
@@ -40,15 +40,13 @@ impl Filters for Portable {
     #[inline(always)]
     fn prefetch(self, _: &Primitive) {}
 
-    /// Woop's projection in `f32` with error bounds. With δ the error of a projected coordinate and e the largest of
-    /// them in a triangle, an edge function (cx·by − cy·bx) errs by at most 4δe + 2δ² for its factors and 4ue² for its
-    /// rounding; since e is below twice the reach of the ray and δ at least 10 roundoffs of that, 5δe + 2δ² is above
-    /// both. The distance, a mean of the vertices' weighted by the edge functions, errs by at most three times
-    /// that times their spread, over the determinant, and by less than 3δ for the rounding of distances, sum and
-    /// quotient.
+    /// Woop's projection in `f32` with error bounds: an edge function errs by [`leaf_error`]. The distance, a mean of the
+    /// vertices' weighted by the edge functions, errs by at most three times that times their spread, over the determinant,
+    /// and by less than 3δ for the rounding of distances, sum and quotient.
     #[inline(always)]
-    fn candidates(self, ray: &FrameRay, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
+    fn candidates(self, (ray, leaves): &Self::Ray, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
         let mut out = Candidates { mask: 0, certain: 0, near: [0.0; WIDTH], far: [0.0; WIDTH] };
+        let error = leaf_error(ray.error, leaf.extent);
         for lane in 0..WIDTH {
             let id = leaf.ids[lane];
             if id == u32::MAX {
@@ -58,14 +56,15 @@ impl Filters for Portable {
                 out.mask |= 1 << lane;
                 continue;
             }
+            if leaf.id(lane) == *leaves {
+                continue;
+            }
             let [a, b, c] = [0, 1, 2].map(|i| {
                 let [x, y, z] = [0, 1, 2].map(|k| leaf.vertices[i][ray.axes[k]][lane] - ray.origin[k]);
                 [x - ray.shear[0] * z, y - ray.shear[1] * z, ray.shear[2] * z]
             });
             let edge = |p: [f32; 3], q: [f32; 3]| p[0] * q[1] - p[1] * q[0];
             let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-            let extent = [a, b, c].iter().fold(0.0_f32, |e, p| e.max(p[0].abs()).max(p[1].abs()));
-            let error = ray.error * (6.0 * extent + 2.0 * ray.error);
             let (least, most) = (u.min(v).min(w), u.max(v).max(w));
             if least < -error && most > error {
                 continue;

@@ -1,0 +1,56 @@
+//! A stack on the stack, without the cost of clearing it for every ray.
+#![allow(unsafe_code)] // To read back what was pushed; see the block.
+
+use std::mem::MaybeUninit;
+
+/// Up to `N` entries.
+pub(super) struct Stack<T, const N: usize> {
+    entries: [MaybeUninit<T>; N],
+    /// The entries below are initialised, always.
+    length: usize,
+}
+
+impl<T: Copy, const N: usize> Stack<T, N> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self { entries: [const { MaybeUninit::uninit() }; N], length: 0 }
+    }
+
+    /// Panics if the stack is full, which the depth of trees rules out.
+    #[inline(always)]
+    pub(super) fn push(&mut self, entry: T) {
+        self.entries[self.length].write(entry);
+        self.length += 1;
+    }
+
+    #[inline(always)]
+    pub(super) fn pop(&mut self) -> Option<T> {
+        self.length = self.length.checked_sub(1)?;
+        // SAFETY: the entry lies below what the length was, so it has been pushed.
+        Some(unsafe { self.entries[self.length].assume_init() })
+    }
+
+    #[inline(always)]
+    pub(super) fn len(&self) -> usize {
+        self.length
+    }
+}
+
+impl<T: Copy + Ord, const N: usize> Stack<T, N> {
+    /// Pushes an entry below those from `base` on that are smaller, which lie in order.
+    #[inline(always)]
+    pub(super) fn insert(&mut self, base: usize, entry: T) {
+        self.push(entry);
+        let mut at = self.length - 1;
+        while at > base {
+            // SAFETY: `at - 1` is below the length.
+            let below = unsafe { self.entries[at - 1].assume_init() };
+            if below >= entry {
+                break;
+            }
+            self.entries[at].write(below);
+            at -= 1;
+        }
+        self.entries[at].write(entry);
+    }
+}
