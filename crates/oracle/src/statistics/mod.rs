@@ -14,7 +14,8 @@ pub use estimate::{Estimate, Welford};
 pub use power::{Budget, POWER, SUITE_SIGNIFICANCE, resolvable_bias, samples_needed, sidak};
 pub use tails::{
     chi_square_upper_tail, chi_square_upper_tail_quantile, kolmogorov_upper_tail, normal_two_sided_quantile,
-    normal_two_sided_tail, normal_upper_tail, normal_upper_tail_quantile, student_two_sided_tail,
+    normal_two_sided_tail, normal_upper_tail, normal_upper_tail_quantile, student_two_sided_quantile,
+    student_two_sided_tail,
 };
 pub use welch::{WelchT, tiles_agree, uniformity, welch_t};
 
@@ -41,7 +42,17 @@ pub fn z_verdict(
         Some(freedom) => student_two_sided_tail(z, freedom),
         None => normal_two_sided_tail(z),
     };
-    let seen = tolerance + resolvable_bias(estimate.standard_error, significance);
+    let seen = tolerance
+        + match estimate.degrees_of_freedom {
+            Some(freedom) => {
+                let tails = [
+                    student_two_sided_quantile(significance, freedom),
+                    student_two_sided_quantile(2.0 * (1.0 - POWER), freedom),
+                ];
+                (tails[0] + tails[1]) * estimate.standard_error
+            }
+            None => resolvable_bias(estimate.standard_error, significance),
+        };
     let evidence = format!(
         "measured {:.10} ± {:.2e}, truth {truth:.10}, difference {deviation:+.3e} (allowance {tolerance:.1e}); a bias of \
          {seen:.2e} would be seen with power {POWER}",
@@ -62,6 +73,15 @@ mod tests {
         assert!((verdict.p.unwrap() - 0.045_500_263_896_358_4).abs() < 1e-11);
         assert!(verdict.pass);
         assert!(!z_verdict("x", &estimate, 1.1, 0.0, 1e-6).pass);
+    }
+
+    #[test]
+    fn few_degrees_of_freedom_see_less() {
+        let many = Estimate::new(1.0, 0.01);
+        let few = Estimate { degrees_of_freedom: Some(15.0), ..many };
+        let seen = |estimate: &Estimate| z_verdict("x", estimate, 1.0, 0.0, 1e-8).resolvable_bias;
+        assert!(seen(&few) > 1.5 * seen(&many));
+        assert!((seen(&Estimate { degrees_of_freedom: Some(1e6), ..many }) / seen(&many) - 1.0).abs() < 1e-3);
     }
 
     #[test]

@@ -40,6 +40,13 @@ pub fn student_two_sided_tail(t: f64, degrees_of_freedom: f64) -> f64 {
     beta_reg(0.5 * degrees_of_freedom, 0.5, x)
 }
 
+/// The t ≥ 0 with P(|T| > t) = `p` of Student's distribution, for p in (0, 1).
+#[must_use]
+pub fn student_two_sided_quantile(p: f64, degrees_of_freedom: f64) -> f64 {
+    // Heavy tails: at one degree of freedom p = 1e-12 lies at 6e11.
+    invert_falling(|log_t| student_two_sided_tail(log_t.exp(), degrees_of_freedom), p, -40.0, 40.0).exp()
+}
+
 /// P(X > x) of the χ² distribution.
 #[must_use]
 pub fn chi_square_upper_tail(x: f64, degrees_of_freedom: f64) -> f64 {
@@ -118,6 +125,7 @@ mod tests {
         for p in [0.9, 0.5, 1e-3, 1e-9] {
             close(normal_upper_tail(normal_upper_tail_quantile(p)), p, 1e-9);
             for freedom in [1.0, 7.0, 300.0] {
+                close(student_two_sided_tail(student_two_sided_quantile(p, freedom), freedom), p, 1e-7);
                 close(chi_square_upper_tail(chi_square_upper_tail_quantile(p, freedom), freedom), p, 1e-8);
             }
         }

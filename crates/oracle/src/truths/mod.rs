@@ -47,6 +47,18 @@ pub enum Claim {
     NestedMedia,
 }
 
+impl Claim {
+    /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
+    pub const UNPOLARISED: [Self; 6] = [
+        Self::AveragesPolarisation,
+        Self::NarrowBand,
+        Self::Dispersion,
+        Self::ThinLens,
+        Self::DepthLimit,
+        Self::NestedMedia,
+    ];
+}
+
 /// A mistake that a renderer might make, and what the picture would show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
@@ -176,6 +188,12 @@ impl Truth {
         self
     }
 
+    /// Whether the truth applies to a renderer that meets these claims and no others.
+    #[must_use]
+    pub fn applies_to(&self, claims: &[Claim]) -> bool {
+        self.claims.iter().all(|claim| claims.contains(claim))
+    }
+
     /// For a truth of one wavelength: the same film and band under a constant sky of radiance 1. A sensor that does not
     /// answer 1 to a constant spectrum cut to the band (a photometric one does not) is read relative to this picture's mean.
     #[must_use]
@@ -184,7 +202,7 @@ impl Truth {
     }
 }
 
-/// Every truth.
+/// Every truth, those for polarised light included: filter by [`Truth::applies_to`].
 #[must_use]
 pub fn truths() -> Vec<Truth> {
     [

@@ -183,7 +183,7 @@ impl Scene {
     }
 
     pub(super) fn to_json(&self) -> String {
-        let mut integrator = json!({ "spp": self.spp, "sampler": "independent" });
+        let mut integrator = json!({ "spp": self.spp });
         if let Some(edges) = self.max_depth {
             integrator["max_depth"] = json!(edges);
         }

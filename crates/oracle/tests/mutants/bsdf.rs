@@ -277,3 +277,13 @@ fn wrong_rough_metals_are_rejected() {
         rejected(&Rough { alpha: 0.5, fault }, fault);
     }
 }
+
+#[test]
+#[ignore = "a hundred whole suites take minutes; run by hand when laws change"]
+fn right_bsdfs_raise_no_false_alarm_in_a_hundred_seeds() {
+    for seed in 1000..1100 {
+        accepted(&Lambert { albedo: 0.7, fault: "" }, seed);
+        accepted(&Dielectric { n: 1.5, fault: "" }, seed);
+        accepted(&Rough { alpha: 0.5, fault: "" }, seed);
+    }
+}

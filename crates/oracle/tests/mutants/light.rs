@@ -246,3 +246,14 @@ fn wrong_panel_lights_are_rejected() {
         assert!(verdicts.iter().any(|verdict| !verdict.pass), "the mutant \"{fault}\" survived");
     }
 }
+
+#[test]
+#[ignore = "a hundred whole suites take minutes; run by hand when laws change"]
+fn right_lights_raise_no_false_alarm_in_a_hundred_seeds() {
+    for seed in 1000..1100 {
+        for distance in [1.5, 10.0, 0.5] {
+            ball_verdicts(distance, "", seed).iter().for_each(Verdict::assert);
+        }
+        panel_verdicts("", seed).iter().for_each(Verdict::assert);
+    }
+}

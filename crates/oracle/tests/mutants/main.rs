@@ -5,5 +5,7 @@
 
 mod bsdf;
 mod light;
+mod pictures;
+mod renderer;
 mod surface;
 mod vector;

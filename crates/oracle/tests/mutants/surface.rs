@@ -243,3 +243,16 @@ fn rays_in_a_slab_plane_are_kept_and_a_nan_that_loses_them_rejected() {
     let fault = "a comparison that drops NaN the wrong way";
     assert!(!laws::signed_zeros_are_equal(&Slabs { fault }, &through, 5.0).pass);
 }
+
+#[test]
+#[ignore = "a hundred whole suites take minutes; run by hand when laws change"]
+fn right_surfaces_raise_no_false_alarm_in_a_hundred_seeds() {
+    let mesh = ClosedMesh::sphere(16, 16);
+    for seed in 1000..1100 {
+        refraction_verdicts("", seed).iter().for_each(Verdict::assert);
+        for distance in [3.0, 1e3, 1e5] {
+            laws::far_sphere_is_hit(|c, r, o, d| hit_sphere("", c, r, o, d), distance, f64::EPSILON, seed).assert();
+        }
+        laws::closed_mesh_is_tight(&mesh, &Triangles::of(&mesh, 1.0, ""), 3_000, f64::EPSILON, seed).assert();
+    }
+}
