@@ -178,6 +178,8 @@ mod tests {
             close(walsh_reflectance(n), crate::quadrature::interval(integrand, 0.0, 1.0, 1e-12).value, 1e-10);
         }
         close(walsh_reflectance(1.5), 0.091_777_959_4, 1e-10);
+        // From inside, by the same light the other way: 1 − (1 − r)/n².
+        close(1.0 - (1.0 - walsh_reflectance(1.5)) / 2.25, 0.596_345_76, 1e-8);
     }
 
     #[test]

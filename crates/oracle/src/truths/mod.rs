@@ -19,6 +19,7 @@ mod lamps;
 mod prisms;
 mod scene;
 mod view_factors;
+mod water;
 
 use std::{fmt, sync::Arc};
 
@@ -212,6 +213,7 @@ pub fn truths() -> Vec<Truth> {
         lamps::truths(),
         view_factors::truths(),
         glass::truths(),
+        water::truths(),
         prisms::truths(),
         cameras::truths(),
     ]

@@ -7,5 +7,7 @@ mod bsdf;
 mod light;
 mod pictures;
 mod renderer;
+mod shapes;
 mod surface;
 mod vector;
+mod world;

@@ -3,44 +3,16 @@
 
 use std::f64::consts::PI;
 
+use crate::{
+    vector::{Vec3, cross, dot, frame, minus, plus, times, unit},
+    world::{Light, Material, World, number, vec3},
+};
 use etalon_oracle::{
     Uniform,
     statistics::{Estimate, Welford},
     subjects::{Reading, Renders},
     truths::Truth,
 };
-use serde_json::Value;
-
-use crate::vector::{Vec3, cross, dot, frame, minus, plus, times, unit};
-
-enum Shape {
-    Sphere { center: Vec3, radius: f64 },
-    Disk { center: Vec3, normal: Vec3, radius: f64 },
-    Quad { origin: Vec3, u: Vec3, v: Vec3 },
-    Triangle([Vec3; 3]),
-}
-
-enum Material {
-    Lambert(f64),
-    Mirror(f64),
-    Conductor(f64, f64),
-    Dielectric { inside: f64, outside: f64 },
-    Black,
-}
-
-struct Primitive {
-    shape: Shape,
-    object: usize,
-}
-
-struct Object {
-    material: Material,
-    radiance: f64,
-    front: bool,
-    back: bool,
-    /// Sampled by shadow rays: a black body that shines outward. All others are found by BSDF rays.
-    sampled: bool,
-}
 
 struct Hit {
     t: f64,
@@ -55,159 +27,7 @@ pub(crate) struct Tracer {
     pub(crate) seed: u64,
 }
 
-struct World {
-    fault: &'static str,
-    primitives: Vec<Primitive>,
-    objects: Vec<Object>,
-    lights: Vec<Light>,
-    sky: f64,
-    most_edges: u64,
-    camera: Value,
-    aspect: f64,
-}
-
-enum Light {
-    Primitive(usize),
-    Point { at: Vec3, intensity: f64 },
-    Directional { along: Vec3, irradiance: f64 },
-}
-
-fn vec3(value: &Value) -> Vec3 {
-    [0, 1, 2].map(|i| value[i].as_f64().expect("a number"))
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().expect("a number")
-}
-
-/// Index of refraction in the middle of the band; blackbodies and other tables are not read here.
-fn index(value: &Value, wavelength_nm: f64) -> f64 {
-    if value.is_null() {
-        return 1.0;
-    }
-    value.as_f64().unwrap_or_else(|| {
-        let square = (wavelength_nm * 1e-3).powi(2);
-        let term = |i: usize| number(&value["b"][i]) * square / (square - number(&value["c_um2"][i]));
-        (1.0 + (0..3).map(term).sum::<f64>()).sqrt()
-    })
-}
-
 impl World {
-    fn read(json: &str, fault: &'static str) -> Result<Self, String> {
-        let scene: Value = serde_json::from_str(json).map_err(|error| error.to_string())?;
-        let band = &scene["integrator"]["wavelength_range_nm"];
-        let mut wavelength_nm = if band.is_null() { 550.0 } else { 0.5 * (number(&band[0]) + number(&band[1])) };
-        if fault == "the index of the d line at every wavelength" {
-            wavelength_nm = 587.5618;
-        }
-        let film = &scene["film"];
-        let mut world = Self {
-            fault,
-            primitives: Vec::new(),
-            objects: Vec::new(),
-            lights: Vec::new(),
-            sky: 0.0,
-            most_edges: scene["integrator"]["max_depth"].as_u64().unwrap_or(u64::MAX),
-            camera: scene["camera"].clone(),
-            aspect: number(&film["width"]) / number(&film["height"]),
-        };
-        if fault == "one edge more" {
-            world.most_edges = world.most_edges.saturating_add(1);
-        }
-        for object in scene["objects"].as_array().into_iter().flatten() {
-            world.add(object, wavelength_nm)?;
-        }
-        for light in scene["lights"].as_array().into_iter().flatten() {
-            match light["type"].as_str() {
-                Some("environment") => world.sky += number(&light["radiance"]),
-                Some("point") => {
-                    let (at, intensity) = (vec3(&light["position_m"]), number(&light["intensity"]));
-                    world.lights.push(Light::Point { at, intensity });
-                }
-                _ => {
-                    let (along, irradiance) = (unit(vec3(&light["direction"])), number(&light["irradiance"]));
-                    world.lights.push(Light::Directional { along, irradiance });
-                }
-            }
-        }
-        Ok(world)
-    }
-
-    fn add(&mut self, object: &Value, wavelength_nm: f64) -> Result<(), String> {
-        let material = match object["material"]["type"].as_str() {
-            Some("lambert") => Material::Lambert(number(&object["material"]["reflectance"])),
-            Some("mirror") => Material::Mirror(number(&object["material"]["reflectance"])),
-            Some("conductor") => {
-                Material::Conductor(number(&object["material"]["n"][0]), number(&object["material"]["k"][0]))
-            }
-            Some("dielectric") => Material::Dielectric {
-                inside: index(&object["material"]["interior"], wavelength_nm),
-                outside: index(&object["material"]["exterior"], wavelength_nm),
-            },
-            _ => Material::Black,
-        };
-        let emission = &object["emission"];
-        let radiance = if emission.is_null() {
-            0.0
-        } else {
-            emission["radiance"].as_f64().ok_or("only constant spectra are read")?
-        };
-        let sides = emission["sides"].as_str().unwrap_or("front");
-        let (mut front, back) = (sides != "back", sides != "front");
-        if self.fault == "lights shine on both sides" {
-            front = true;
-        }
-        let both = self.fault == "lights shine on both sides" || back;
-        let sampled = radiance > 0.0 && matches!(material, Material::Black) && sides != "back";
-        let index = self.objects.len();
-        self.objects.push(Object { material, radiance, front, back: both, sampled });
-        let shape = &object["shape"];
-        let mut shapes = Vec::new();
-        match shape["type"].as_str() {
-            Some("sphere") => {
-                shapes.push(Shape::Sphere { center: vec3(&shape["center_m"]), radius: number(&shape["radius_m"]) })
-            }
-            Some("disk") => shapes.push(Shape::Disk {
-                center: vec3(&shape["center_m"]),
-                normal: unit(vec3(&shape["normal"])),
-                radius: number(&shape["radius_m"]),
-            }),
-            Some("parallelogram") => shapes.push(Shape::Quad {
-                origin: vec3(&shape["origin_m"]),
-                u: vec3(&shape["u_m"]),
-                v: vec3(&shape["v_m"]),
-            }),
-            Some("box") => {
-                let (low, high) = (vec3(&shape["min_m"]), vec3(&shape["max_m"]));
-                for axis in 0..3 {
-                    let edge = |i: usize| {
-                        let mut e = [0.0; 3];
-                        e[(axis + i) % 3] = high[(axis + i) % 3] - low[(axis + i) % 3];
-                        e
-                    };
-                    let top = plus(low, 1.0, edge(0));
-                    shapes.push(Shape::Quad { origin: low, u: edge(2), v: edge(1) });
-                    shapes.push(Shape::Quad { origin: top, u: edge(1), v: edge(2) });
-                }
-            }
-            _ => {
-                let vertices: Vec<Vec3> =
-                    shape["vertices_m"].as_array().ok_or("no vertices")?.iter().map(vec3).collect();
-                for triangle in shape["triangles"].as_array().ok_or("no triangles")? {
-                    let corner = |i: usize| vertices[triangle[i].as_u64().expect("an index") as usize];
-                    shapes.push(Shape::Triangle([corner(0), corner(1), corner(2)]));
-                }
-            }
-        }
-        for shape in shapes {
-            if sampled {
-                self.lights.push(Light::Primitive(self.primitives.len()));
-            }
-            self.primitives.push(Primitive { shape, object: index });
-        }
-        Ok(())
-    }
-
     /// Nearest hit beyond the primitive left.
     fn hit(&self, origin: Vec3, d: Vec3, leaving: Option<usize>) -> Option<Hit> {
         let least = if self.fault == "hits nearer than 1e-4 lost" { 1e-4 } else { 0.0 };
@@ -409,101 +229,6 @@ impl World {
         let start = plus(plus(position, radius * a, right), radius * b, up);
         (start, unit(minus(plus(position, focus, d), start)))
     }
-}
-
-impl Shape {
-    fn hit(&self, origin: Vec3, d: Vec3, leaving: bool) -> Option<(f64, Vec3)> {
-        match self {
-            Self::Sphere { center, radius } => {
-                let to = minus(*center, origin);
-                let b = dot(to, d);
-                let foot = plus(to, -b, d);
-                let reach = radius * radius - dot(foot, foot);
-                if reach < 0.0 {
-                    return None;
-                }
-                let (near, far) = (b - reach.sqrt(), b + reach.sqrt());
-                // From the sphere itself one of the two is the point left.
-                let t = if leaving { Some(2.0 * b) } else { [near, far].into_iter().find(|t| *t > 0.0) };
-                let t = t.filter(|t| *t > 0.0)?;
-                Some((t, times(1.0 / radius, minus(plus(origin, t, d), *center))))
-            }
-            _ if leaving => None,
-            Self::Disk { center, normal, radius } => {
-                let t = dot(minus(*center, origin), *normal) / dot(d, *normal);
-                let off = minus(plus(origin, t, d), *center);
-                (t > 0.0 && dot(off, off) <= radius * radius).then_some((t, *normal))
-            }
-            Self::Quad { origin: corner, u, v } => {
-                let (t, a, b) = planar(*corner, *u, *v, origin, d)?;
-                ((0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b)).then(|| (t, unit(cross(*u, *v))))
-            }
-            Self::Triangle([a, b, c]) => {
-                let (u, v) = (minus(*b, *a), minus(*c, *a));
-                let (t, x, y) = planar(*a, u, v, origin, d)?;
-                (x >= 0.0 && y >= 0.0 && x + y <= 1.0).then(|| (t, unit(cross(u, v))))
-            }
-        }
-    }
-
-    /// A direction towards it: unit vector, whether it leads to the front, and 1/density over solid angle.
-    fn towards(&self, from: Vec3, u: [f64; 2], fault: &str) -> Option<(Vec3, bool, f64)> {
-        let (point, normal, area) = match self {
-            Self::Sphere { center, radius } => {
-                let to = minus(*center, from);
-                let distance = dot(to, to).sqrt();
-                if distance <= *radius {
-                    return None;
-                }
-                let s = radius / distance;
-                let cosine = ((distance - radius) * (distance + radius)).sqrt() / distance;
-                let lift = match fault {
-                    "1 - cos in single precision" => f64::from(1.0_f32 - cosine as f32),
-                    "half of the cone" => 0.5 * s * s / (1.0 + cosine),
-                    _ => s * s / (1.0 + cosine),
-                };
-                let (x, y) = frame(times(1.0 / distance, to));
-                let rise = u[0] * lift;
-                let r = (rise * (2.0 - rise)).sqrt();
-                let phi = 2.0 * PI * u[1];
-                let d = plus(plus(times((1.0 - rise) / distance, to), r * phi.cos(), x), r * phi.sin(), y);
-                return Some((unit(d), true, 2.0 * PI * lift));
-            }
-            Self::Disk { center, normal, radius } => {
-                let (x, y) = frame(*normal);
-                let (r, phi) = (radius * u[0].sqrt(), 2.0 * PI * u[1]);
-                (plus(plus(*center, r * phi.cos(), x), r * phi.sin(), y), *normal, PI * radius * radius)
-            }
-            Self::Quad { origin, u: a, v: b } => {
-                let normal = cross(*a, *b);
-                (plus(plus(*origin, u[0], *a), u[1], *b), unit(normal), dot(normal, normal).sqrt())
-            }
-            Self::Triangle([a, b, c]) => {
-                let normal = cross(minus(*b, *a), minus(*c, *a));
-                let root = u[0].sqrt();
-                let point = plus(plus(times(1.0 - root, *a), root * (1.0 - u[1]), *b), root * u[1], *c);
-                (point, unit(normal), 0.5 * dot(normal, normal).sqrt())
-            }
-        };
-        let to = minus(point, from);
-        let d2 = dot(to, to);
-        let d = unit(to);
-        let cosine = -dot(d, normal);
-        let seen = if fault == "cosine of the light dropped" { 1.0 } else { cosine.abs() };
-        Some((d, cosine > 0.0, area * seen / d2))
-    }
-}
-
-/// Where a ray meets the plane through a corner: t and the coordinates along u and v.
-fn planar(corner: Vec3, u: Vec3, v: Vec3, origin: Vec3, d: Vec3) -> Option<(f64, f64, f64)> {
-    let normal = cross(u, v);
-    let t = dot(minus(corner, origin), normal) / dot(d, normal);
-    if t.is_nan() || t <= 0.0 {
-        return None;
-    }
-    let at = minus(plus(origin, t, d), corner);
-    let scale = 1.0 / dot(normal, normal);
-    Some((t, dot(cross(at, v), normal) * scale, dot(cross(u, at), normal) * scale))
 }
 
 /// Reflectance of a metal by the real formulas of ellipsometry.
