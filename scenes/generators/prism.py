@@ -1,30 +1,26 @@
-"""Writes scenes/prism.json: a spectrum seen through a prism of N-SF11.
+"""Writes scenes/prism.json: a prism of N-SF11 throws the spectrum of a strip light on a wall.
 
-The prism is equilateral and stands upright; in plan (x to the right, z toward the viewer) its edge A points along +x and
-its base faces −x. A ray of the hydrogen line F that runs parallel to the base inside is deviated least, by
-δ = 2·asin(n_F/2) − 60° = 69.18°, half of it at each face; the eye stands on that ray's one end and the slit on its other.
+In plan (x to the right, z up the page) the prism's edge points along +z, and light of 520 nm runs along +x inside, deviated
+least. A screen with a gap stands before the prism. Strip and gap are as wide as they can be before red and violet
+overlap: the image of the strip in one colour, as wide on the wall as twice the gap and once the strip, is about half as
+wide as the spectrum is long.
 
-Why the eye looks through the prism, instead of at a screen behind it: a point of a screen that shows a pure colour sees
-the slit through the prism in one narrow range of wavelengths and directions. With the collimation that keeps colours
-apart, of the directions that a matt screen scatters into about 1 in 1000 meet the prism, and of their wavelengths about
-1 in 10 meets the slit. The eye behind the prism spends every path on the prism, and 1 in 15 meets the slit.
+A point of the wall sees the strip through the prism in about 1 of 1000 directions, and in half of its wavelengths: such a
+picture needs thousands of paths a pixel from an integrator that walks from the eye alone.
 
 Plain standard library.
 """
 
-import csv
 import math
-import os
 
 import scene_text
 
 SELLMEIER = [(1.73759695, 0.013188707), (0.313747346, 0.0623068142), (1.89878101, 155.23629)]
-SIDE, HEIGHT = 0.08, 0.075  # of the prism, m
-STANDS_OFF = 1e-4  # of the table, m: surfaces that coincide would have no order
-EYE, SLIT = 0.36, 0.24  # horizontal distances from the prism's axis, m
-EYE_HEIGHT, AIM_HEIGHT = 0.065, 0.04  # m
-SLIT_WIDTH, SLIT_HALF_HEIGHT = 2e-3, 0.022  # m
-RADIANCE = 8.0
+SIDE, HALF_HEIGHT = 0.09, 0.7  # of the prism, m
+STRIP_WIDTH, STRIP_HALF_HEIGHT, STRIP_DISTANCE = 0.04, 0.6, 1.0  # m
+GAP, GAP_DISTANCE, SCREEN_REACH = 0.02, 0.06, 1.2  # m
+WALL_DISTANCE, WALL_HALF_WIDTH, WALL_HALF_HEIGHT = 1.0, 1.5, 1.0  # m
+RADIANCE = 400.0
 RANGE_NM = [370, 830]
 
 
@@ -33,135 +29,93 @@ def index(wavelength_nm):
     return math.sqrt(1 + sum(b * um2 / (um2 - c) for b, c in SELLMEIER))
 
 
-def deviation(wavelength_nm):
-    return 2 * math.asin(index(wavelength_nm) / 2) - math.pi / 3
-
-
-def observer():
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../crates/optics/data/cie-1931-2deg-1nm.csv")
-    with open(path, encoding="utf-8") as rows:
-        return [tuple(map(float, row)) for row in csv.reader(line for line in rows if line[0].isdigit())]
-
-
-def solve(columns, target):
-    """Amounts of three colours that mix to a fourth: Cramer's rule."""
-
-    def det(a, b, c):
-        return (a[0] * (b[1] * c[2] - b[2] * c[1]) - b[0] * (a[1] * c[2] - a[2] * c[1])
-                + c[0] * (a[1] * b[2] - a[2] * b[1]))
-
-    whole = det(*columns)
-    return [det(*(target if j == i else c for j, c in enumerate(columns))) / whole for i in range(3)]
-
-
-def three_bands(scale):
-    """Tabulated light of three narrow bands that looks like D65 with the luminance of the constant spectrum `scale`."""
-    half_width = 12
-    centres = [450, 535, 620]
-    rows = observer()
-    total = sum(y for _, _, y, _ in rows)
-    columns = []
-    for centre in centres:
-        xyz = [0.0, 0.0, 0.0]
-        for wavelength, *cmf in rows:
-            value = max(0.0, 1 - abs(wavelength - centre) / half_width)
-            xyz = [s + value * c / total for s, c in zip(xyz, cmf)]
-        columns.append(xyz)
-    white = [0.950456, 1.0, 1.089058]  # D65 for Y = 1
-    amounts = solve(columns, [scale * w for w in white])
-    wavelengths, values = [], []
-    for centre, amount in zip(centres, amounts):
-        wavelengths += [centre - half_width, centre, centre + half_width]
-        values += [0, round(amount, 4), 0]
-    return {"type": "tabulated", "wavelengths_nm": wavelengths, "values": values, "outside": "zero"}
-
-
 def rounded(v):
     return [round(x, 6) for x in v]
 
 
-half = deviation(486.1327) / 2
-view = (math.sin(half), -math.cos(half))  # of the eye, in plan (x, z)
-r = SIDE / math.sqrt(3)
-corners = [(r, 0.0), (-r / 2, -SIDE / 2), (-r / 2, SIDE / 2)]  # A, then the base; counter-clockwise seen from above
-# The ray of least deviation through the middle of both faces runs at x = r/4.
-middle = r / 4
-front = (middle, SIDE / 4)
-eye = (front[0] - EYE * view[0], front[1] - EYE * view[1])
-out = (-view[0], view[1])
-slit = (middle + SLIT * out[0], -SIDE / 4 + SLIT * out[1])
-# The line of sight goes on falling behind the prism.
-slope = (EYE_HEIGHT - AIM_HEIGHT) / EYE
-slit_height = AIM_HEIGHT - slope * SLIT
-# The slit faces half way between the prism and the eye, so that the eye sees it too.
-to_prism = (-out[0], -out[1])
-to_eye = (eye[0] - slit[0], eye[1] - slit[1])
-length = math.hypot(*to_eye)
-facing = (to_prism[0] + 0.5 * to_eye[0] / length, to_prism[1] + 0.5 * to_eye[1] / length)
-length = math.hypot(*facing)
-facing = (facing[0] / length, facing[1] / length)
-across = (facing[1], -facing[0])  # across × up = facing: (x, z) of u for u × v along `facing` with v up
-edge = (slit[0] - across[0] * SLIT_WIDTH / 2, slit[1] - across[1] * SLIT_WIDTH / 2)
+def at(p, y=0.0):
+    """A point of the plan at a height."""
+    return [p[0], y, p[1]]
 
 
-def strip(low, high):
+def along(p, d, s):
+    return (p[0] + s * d[0], p[1] + s * d[1])
+
+
+half = math.asin(index(520) / 2) - math.pi / 6  # half of the deviation
+incoming, outgoing = (math.cos(half), math.sin(half)), (math.cos(half), -math.sin(half))
+beside_incoming, beside_outgoing = (-incoming[1], incoming[0]), (-outgoing[1], outgoing[0])
+
+height = SIDE * math.sqrt(3) / 2
+base, edge = -0.62 * height, 0.38 * height  # the beam crosses at z = 0, nearer to the edge
+corners = [(-SIDE / 2, base), (0.0, edge), (SIDE / 2, base)]  # clockwise in plan: counter-clockwise seen from above
+entry = (-edge / (edge - base) * SIDE / 2, 0.0)
+exit_ = (-entry[0], 0.0)
+
+vertices = [rounded(at(c, y)) for y in (-HALF_HEIGHT, HALF_HEIGHT) for c in corners]
+triangles = [[0, 1, 2], [3, 5, 4]]
+for i in range(3):
+    j = (i + 1) % 3
+    triangles += [[i, i + 3, j], [j, i + 3, j + 3]]
+
+
+def outward(triangle):
+    """The triangle, wound so that its normal points away from the middle of the prism."""
+    a, b, c = (vertices[k] for k in triangle)
+    u, v = ([q[k] - a[k] for k in range(3)] for q in (b, c))
+    normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    middle = [sum(p[k] for p in vertices) / 6 for k in range(3)]
+    points_out = sum(n * (sum(p[k] for p in (a, b, c)) / 3 - middle[k]) for k, n in enumerate(normal)) > 0
+    return triangle if points_out else [triangle[0], triangle[2], triangle[1]]
+
+
+def upright(centre, direction, left, right, half_height):
+    """An upright rectangle from `left` to `right` of a point along a horizontal direction."""
     return {
         "type": "parallelogram",
-        "origin_m": rounded([edge[0], low, edge[1]]),
-        "u_m": rounded([across[0] * SLIT_WIDTH, 0, across[1] * SLIT_WIDTH]),
-        "v_m": rounded([0, high - low, 0]),
+        "origin_m": rounded(at(along(centre, direction, left), -half_height)),
+        "u_m": rounded([(right - left) * direction[0], 0.0, (right - left) * direction[1]]),
+        "v_m": [0.0, 2 * half_height, 0.0],
     }
 
 
-vertices = [rounded([x, y, z]) for y in (STANDS_OFF, HEIGHT + STANDS_OFF) for x, z in corners]
-# Corners 0, 1, 2 run counter-clockwise seen from above.
-triangles = [[0, 2, 1], [3, 4, 5]]
-for i in range(3):
-    j = (i + 1) % 3
-    triangles += [[i, j, j + 3], [i, j + 3, i + 3]]
-spread = math.degrees(deviation(410) - deviation(680))
-aim = rounded([front[0] - 0.022, AIM_HEIGHT - 0.002, front[1]])
+strip = along(entry, incoming, -STRIP_DISTANCE)
+screen = along(entry, incoming, -GAP_DISTANCE)
+wall = along(exit_, outgoing, WALL_DISTANCE)
+eye = along(along(exit_, outgoing, 0.25), beside_outgoing, 0.42)
 
 if __name__ == "__main__":
-    for nm in (400, 435.8, 486.1327, 546.1, 587.5618, 656.2725, 700):
-        print(f"{nm} nm: n {index(nm):.5f}, least deviation {math.degrees(deviation(nm)):.3f}°")
     scene_text.write("prism", {
         "etalon": 1,
         "comment": [
-            "A spectrum: a slit of light seen through a 60° prism of N-SF11 that stands at the angle of least deviation (69.18° for the",
-            f"hydrogen line F; violet to red, 410 to 680 nm, spread over {spread:.1f}°). The slit itself stands outside of the picture; the",
-            "prism's left face mirrors it, white from top to bottom. Its upper half has the spectrum of daylight; its lower half is a",
-            "mixture of three narrow bands (450, 535 and 620 nm) that looks the same to the eye. The prism tells them apart: one continuous",
-            "spectrum above, three images below.",
-            "Look at: pure colours in their order, red least deviated; the slightly bent lines, since rays that pass a prism obliquely are",
-            "deviated more; the mirrored slit, which has no colours.",
-            "Geometry, and why no screen catches the spectrum: scenes/generators/prism.py, which wrote this file.",
+            "Newton's experiment: a strip light, a screen with a gap, a 60° prism of N-SF11 and the spectrum that it throws on a wall.",
+            "Look at: red least deviated, violet most; colours that are purest at the ends, since strip and gap have a width; the edges,",
+            "bent because rays that pass a prism obliquely are deviated more.",
+            "The light reaches the wall through glass, where no shadow ray can follow: only about one path in a thousand finds it, so the",
+            "picture is grainy for its time. spectroscope.json looks through the prism instead and sees purer colours at once.",
+            "Geometry: scenes/generators/prism.py, which wrote this file.",
         ],
         "camera": {
-            "type": "perspective", "position_m": rounded([eye[0], EYE_HEIGHT, eye[1]]), "look_at_m": aim,
-            "horizontal_fov_deg": 23,
+            "type": "perspective", "position_m": rounded(at(eye, 0.25)), "look_at_m": rounded(at(along(wall, beside_outgoing, -0.02))),
+            "horizontal_fov_deg": 36,
         },
-        "film": {"width": 640, "height": 400, "filter": {"type": "gaussian", "sigma_px": 0.5}},
-        "integrator": {"comment": "From 370 nm: below, nothing is known of N-SF11.", "spp": 256, "wavelength_range_nm": RANGE_NM},
-        "spectra": {
-            "daylight": {"type": "illuminant", "name": "D65", "scale": RADIANCE},
-            "three bands": three_bands(RADIANCE),
-        },
+        "film": {"width": 320, "height": 200, "filter": {"type": "gaussian", "sigma_px": 0.5}},
+        "integrator": {"comment": "From 370 nm: below, nothing is known of N-SF11.", "spp": 2048, "wavelength_range_nm": RANGE_NM},
         "materials": {
-            "glass": {"type": "dielectric", "interior": "N-SF11"},
-            "table": {"type": "lambert", "reflectance": 0.3},
-            "black": {"type": "black"},
+            "flint": {"type": "dielectric", "interior": "N-SF11"},
+            "white": {"type": "lambert", "reflectance": 0.8},
+            "soot": {"type": "lambert", "reflectance": 0.03},
+            "lamp": {"type": "black"},
         },
         "objects": [
-            {"name": "prism", "shape": {"type": "mesh", "vertices_m": vertices, "triangles": triangles}, "material": "glass"},
-            {"name": "slit, upper half", "shape": strip(slit_height, slit_height + SLIT_HALF_HEIGHT), "material": "black",
-             "emission": {"radiance": "daylight"}},
-            {"name": "slit, lower half", "shape": strip(slit_height - SLIT_HALF_HEIGHT, slit_height), "material": "black",
-             "emission": {"radiance": "three bands"}},
-            {"name": "wall", "shape": {"type": "parallelogram", "origin_m": [-1.5, 0, -0.6], "u_m": [3, 0, 0], "v_m": [0, 1.5, 0]},
-             "material": "table"},
-            {"name": "table", "shape": {"type": "parallelogram", "origin_m": [-1.5, 0, 1.5], "u_m": [3, 0, 0], "v_m": [0, 0, -2.1]},
-             "material": "table"},
+            {"name": "prism", "shape": {"type": "mesh", "vertices_m": vertices, "triangles": [outward(t) for t in triangles]},
+             "material": "flint"},
+            {"name": "strip", "shape": upright(strip, beside_incoming, STRIP_WIDTH / 2, -STRIP_WIDTH / 2, STRIP_HALF_HEIGHT),
+             "material": "lamp", "emission": {"radiance": {"type": "illuminant", "name": "D65", "scale": RADIANCE}}},
+            {"name": "screen, left", "shape": upright(screen, beside_incoming, GAP / 2, SCREEN_REACH, 0.8), "material": "soot"},
+            {"name": "screen, right", "shape": upright(screen, beside_incoming, -GAP / 2, -SCREEN_REACH, 0.8), "material": "soot"},
+            {"name": "wall", "shape": upright(wall, beside_outgoing, -WALL_HALF_WIDTH, WALL_HALF_WIDTH, WALL_HALF_HEIGHT),
+             "material": "white"},
         ],
-        "lights": [{"type": "environment", "name": "dim room", "radiance": {"type": "illuminant", "name": "D65", "scale": 0.06}}],
+        "lights": [{"type": "environment", "name": "dim room", "radiance": {"type": "illuminant", "name": "D65", "scale": 0.02}}],
     })
