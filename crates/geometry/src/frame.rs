@@ -5,7 +5,7 @@
 //! never rejects a box that holds a primitive which the `f64` test would accept.
 
 use crate::Aabb;
-use crate::query::{Query, power_of_two};
+use crate::query::{Query, larger, power_of_two};
 use etalon_optics::Vec3;
 use std::array::from_fn;
 
@@ -88,6 +88,12 @@ impl Frame {
         self.centre == Vec3::ZERO && self.unscaled(self.point(p)) == p
     }
 
+    /// What a unit of this frame is, m.
+    #[inline(always)]
+    pub(crate) fn unscale(&self) -> f64 {
+        self.unscale
+    }
+
     /// The point of which [`Frame::point`] gave the coordinates, if they are exact.
     #[inline(always)]
     pub(crate) fn unscaled(&self, p: [f32; 3]) -> Vec3<f64> {
@@ -113,7 +119,10 @@ impl Frame {
         let lower: [f32; 3] = from_fn(|k| below(nearest[k]));
         let upper: [f32; 3] = from_fn(|k| above(farthest[k]));
         let d32 = d.map(|d| d as f32);
-        let reciprocal: [f32; 3] = from_fn(|k| 1.0 / d32[k].abs().max(MIN_DIRECTION).copysign(d32[k]));
+        let reciprocal: [f32; 3] = from_fn(|k| {
+            let d = d32[k].abs();
+            1.0 / if d > MIN_DIRECTION { d } else { MIN_DIRECTION }.copysign(d32[k])
+        });
         let negative = d32.map(f32::is_sign_negative);
         Some(FrameRay {
             origin_near: from_fn(|k| if negative[k] { lower[k] } else { upper[k] }),
@@ -136,7 +145,7 @@ impl Frame {
 
 #[inline(always)]
 fn max_magnitude(v: [f64; 3]) -> f64 {
-    v[0].abs().max(v[1].abs()).max(v[2].abs())
+    larger(larger(v[0].abs(), v[1].abs()), v[2].abs())
 }
 
 /// Moves the origin of a ray from far away to near the frame, in `f64`: from there its `f32` origin would blur the boxes.
@@ -195,7 +204,9 @@ impl FrameRay {
     #[inline]
     pub(crate) fn distance_below(&self, t: f64) -> f32 {
         const NARROWER: f64 = 1.0 - 1.0 / (1_u64 << 29) as f64;
-        below(t * self.scale * NARROWER - self.start)
+        let t = t * self.scale * NARROWER - self.start;
+        // Beyond this nothing is in the frame.
+        below(if t < 1e30 { t } else { 1e30 })
     }
 }
 
@@ -234,8 +245,7 @@ pub(crate) fn round_up(v: f64) -> f32 {
 #[inline(always)]
 fn below(v: f64) -> f32 {
     let r = v as f32;
-    // Of infinity, infinity: what is beyond it is beyond the frame.
-    r - (r.abs() * f32::EPSILON + f32::MIN_POSITIVE).min(f32::MAX)
+    r - (r.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }
 
 /// An `f32` not below `v` by at most two roundoffs, without a branch.

@@ -5,8 +5,8 @@ use crate::frame::Frame;
 use crate::query::{Query, RawHit};
 use crate::traverse;
 use crate::wide::WideTree;
-use crate::{Aabb, Hit, Primitive, PrimitiveId, Ray, SurfacePoint, Triangle};
-use etalon_optics::{Real, Vec3};
+use crate::{Aabb, Hit, Primitive, PrimitiveId, Ray, SurfacePoint};
+use etalon_optics::Real;
 
 /// Up to this many primitives are tested one by one, without a tree.
 const FLAT_LIMIT: usize = 8;
@@ -166,14 +166,9 @@ impl Best {
         self.take(id, |t_max| primitives[id.0 as usize].intersect(query, t_max, query.leaves == id))
     }
 
-    /// As [`Best::test`], for a triangle at hand that the ray does not leave.
-    #[inline]
-    pub(crate) fn test_triangle(&mut self, vertices: [Vec3<f64>; 3], query: &Query, id: PrimitiveId) -> bool {
-        self.take(id, |t_max| Triangle::intersect_vertices(vertices, query, t_max))
-    }
-
+    /// Takes what a test with a limit finds for a primitive, if it is the best so far.
     #[inline(always)]
-    fn take(&mut self, id: PrimitiveId, intersect: impl FnOnce(f64) -> Option<RawHit>) -> bool {
+    pub(crate) fn take(&mut self, id: PrimitiveId, intersect: impl FnOnce(f64) -> Option<RawHit>) -> bool {
         // An equal distance counts for a lower id, whatever the order of the tests.
         let t_max = match self.hit {
             Some((hit, best)) if id < best => hit.t.next_up(),

@@ -34,23 +34,26 @@ pub(crate) struct Query {
 }
 
 impl Query {
-    /// Prepares a ray; `None` if no point of it is defined: a component is NaN or infinite, the direction is zero or its
-    /// magnitude outside 2^±900, or `t_max` is not positive.
+    /// Prepares a ray; `None` if no point of it is defined: a component is NaN or infinite (or so large that their sum is),
+    /// the direction is zero or its magnitude outside 2^±900, or `t_max` is not positive.
     #[inline(always)]
     pub(crate) fn new<R: Real>(ray: &Ray<R>) -> Option<Self> {
         let (origin, direction) = (ray.origin.to_f64(), ray.direction.to_f64());
         let t_max = ray.t_max.to_f64();
         let a = direction.abs();
-        let magnitude = a.max_component();
+        let magnitude = larger(larger(a.x, a.y), a.z);
         let exponent = (magnitude.to_bits() >> 52) as i64 - 1023;
-        let usable = origin.is_finite() && direction.is_finite() && exponent.abs() <= 900 && t_max > 0.0;
+        // A sum is finite if its terms are, short of overflow.
+        let reach = origin.abs();
+        let sums = [reach.x + reach.y + reach.z, a.x + a.y + a.z];
+        let usable = sums[0].is_finite() && sums[1].is_finite() && exponent.abs() <= 900 && t_max > 0.0;
         if !usable {
             return None;
         }
         let scale = power_of_two(-exponent);
         let direction = direction * scale;
         // Without a branch: the axis of a ray is as good as random.
-        let kz = usize::from(a.y > a.x.max(a.z)) + 2 * usize::from(a.z > a.x && a.z >= a.y);
+        let kz = usize::from(a.y > larger(a.x, a.z)) + 2 * usize::from(a.z > a.x && a.z >= a.y);
         let axes = AXES[kz];
         let (d, o) = (direction.to_array(), origin.to_array());
         let rz = 1.0 / d[axes[2]];
@@ -67,6 +70,18 @@ impl Query {
         })
     }
 
+    /// [`Query::project`] of a vertex whose coordinates are already in the order of `axes`.
+    #[inline(always)]
+    pub(crate) fn project_permuted(&self, v: [f64; 3]) -> Projected {
+        let (x, y, z) = (v[0] - self.start[0], v[1] - self.start[1], v[2] - self.start[2]);
+        Projected {
+            x: x - self.shear[0] * z,
+            y: y - self.shear[1] * z,
+            z: z * self.shear[2],
+            magnitude: larger(larger(x.abs(), y.abs()), z.abs()),
+        }
+    }
+
     /// A vertex relative to the origin, sheared so that the ray runs along z and z counts ray parameters; and the
     /// magnitude to which the rounding errors of its x and y are relative.
     ///
@@ -75,14 +90,14 @@ impl Query {
     pub(crate) fn project(&self, vertex: Vec3<f64>) -> Projected {
         let v = vertex.to_array();
         let [kx, ky, kz] = self.axes;
-        let (x, y, z) = (v[kx] - self.start[0], v[ky] - self.start[1], v[kz] - self.start[2]);
-        Projected {
-            x: x - self.shear[0] * z,
-            y: y - self.shear[1] * z,
-            z: z * self.shear[2],
-            magnitude: x.abs().max(y.abs()).max(z.abs()),
-        }
+        self.project_permuted([v[kx], v[ky], v[kz]])
     }
+}
+
+/// The larger of two numbers; the second if one is NaN. One instruction, unlike [`f64::max`].
+#[inline(always)]
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// The axes of the projection along each axis.

@@ -3,9 +3,9 @@
 use crate::build::BinaryTree;
 use crate::frame::{Box32, Frame};
 use crate::pages::Pages;
-use crate::{Primitive, PrimitiveId};
+use crate::query::{Query, RawHit};
+use crate::{Primitive, PrimitiveId, Triangle};
 use bytemuck::{Pod, Zeroable};
-use etalon_optics::Vec3;
 
 /// Children of a node, and primitives of a leaf.
 pub(crate) const WIDTH: usize = 8;
@@ -200,15 +200,26 @@ impl Leaf8 {
         PrimitiveId(self.ids[lane] & !(UNFILTERED | EXACT))
     }
 
-    /// The vertices of the triangle in a lane, if they are exact.
+    /// Whether the vertices in a lane are those of its triangle.
     #[inline(always)]
-    pub(crate) fn triangle(&self, frame: &Frame, lane: usize) -> Option<[Vec3<f64>; 3]> {
-        let exact = self.ids[lane] & (EXACT | UNFILTERED) == EXACT;
-        if !exact {
-            return None;
-        }
+    pub(crate) fn is_exact(&self, lane: usize) -> bool {
+        self.ids[lane] & (EXACT | UNFILTERED) == EXACT
+    }
+
+    /// The intersection with the triangle in a lane, whose vertices are exact: what the triangle itself would answer.
+    #[inline(always)]
+    pub(crate) fn intersect(&self, frame: &Frame, lane: usize, query: &Query, t_max: f64) -> Option<RawHit> {
+        let lane = lane % WIDTH;
+        let [kx, ky, kz] = query.axes;
+        let unscale = frame.unscale();
+        let projected = |v: &[[f32; WIDTH]; 3]| {
+            query.project_permuted([v[kx][lane], v[ky][lane], v[kz][lane]].map(|c| f64::from(c) * unscale))
+        };
         let [a, b, c] = &self.vertices;
-        let at = |v: &[[f32; WIDTH]; 3]| frame.unscaled([v[0][lane], v[1][lane], v[2][lane]]);
-        Some([at(a), at(b), at(c)])
+        let vertices = || {
+            let at = |v: &[[f32; WIDTH]; 3]| frame.unscaled([v[0][lane], v[1][lane], v[2][lane]]);
+            [at(a), at(b), at(c)]
+        };
+        Triangle::intersect_projected([projected(a), projected(b), projected(c)], vertices, query, t_max)
     }
 }

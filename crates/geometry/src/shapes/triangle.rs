@@ -1,7 +1,7 @@
 //! Triangles.
 
 use super::{ShapeError, check_points, planar};
-use crate::query::{Query, RawHit};
+use crate::query::{Projected, Query, RawHit, larger};
 use crate::{Aabb, PrimitiveId, SurfacePoint};
 use etalon_optics::{Real, Vec3};
 
@@ -63,13 +63,18 @@ impl Triangle {
     /// of the triangles around it.
     #[inline]
     pub(crate) fn intersect(&self, query: &Query, t_max: f64) -> Option<RawHit> {
-        Self::intersect_vertices(self.vertices(), query, t_max)
+        let projected = self.vertices().map(|v| query.project(v));
+        Self::intersect_projected(projected, || self.vertices(), query, t_max)
     }
 
-    /// [`Triangle::intersect`] of three vertices.
-    #[inline]
-    pub(crate) fn intersect_vertices(vertices: [Vec3<f64>; 3], query: &Query, t_max: f64) -> Option<RawHit> {
-        let (a, b, c) = (query.project(vertices[0]), query.project(vertices[1]), query.project(vertices[2]));
+    /// [`Triangle::intersect`] of three projected vertices.
+    #[inline(always)]
+    pub(crate) fn intersect_projected(
+        [a, b, c]: [Projected; 3],
+        vertices: impl FnOnce() -> [Vec3<f64>; 3],
+        query: &Query,
+        t_max: f64,
+    ) -> Option<RawHit> {
         let (u, v, w) = (c.edge(b), a.edge(c), b.edge(a));
         // Inclusive: an edge that passes through the ray as far as rounding tells belongs to both its triangles.
         let outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
@@ -83,10 +88,12 @@ impl Triangle {
         }
         let t_det = (u * a.z + v * b.z) + w * c.z;
         let mut hit = RawHit { t: t_det / det, uv: [v / det, w / det] };
-        let magnitude = a.magnitude.max(b.magnitude).max(c.magnitude);
-        let extent = a.x.abs().max(a.y.abs()).max(b.x.abs().max(b.y.abs())).max(c.x.abs().max(c.y.abs()));
-        let depth = a.z.max(b.z).max(c.z) - a.z.min(b.z).min(c.z);
+        let magnitude = larger(larger(a.magnitude, b.magnitude), c.magnitude);
+        let side = |p: Projected| larger(p.x.abs(), p.y.abs());
+        let extent = larger(larger(side(a), side(b)), side(c));
+        let depth = larger(larger(a.z, b.z), c.z) + larger(larger(-a.z, -b.z), -c.z);
         if !planar::is_determined(magnitude, extent, depth, t_det.abs(), det.abs()) {
+            let vertices = vertices();
             hit = planar::refine(query, vertices[0], vertices[1], vertices[2], Aabb::of_points(vertices), hit, 1.0);
         }
         (0.0 < hit.t && hit.t < t_max).then_some(hit)

@@ -13,7 +13,7 @@ use crate::frame::FrameRay;
 use crate::geometry::Best;
 use crate::query::{Query, RawHit};
 use crate::wide::{EXACT, LEAF, Leaf8, Node8, WIDTH, WideTree};
-use crate::{Primitive, PrimitiveId, Triangle};
+use crate::{Primitive, PrimitiveId};
 use stack::Stack;
 
 /// Levels of the stack that serves all but degenerate trees, and of the one that serves any: as many as a binary tree has.
@@ -163,11 +163,13 @@ impl Pending {
 }
 
 /// Decides in `f64` whether a lane of a leaf holds the closest hit so far.
-#[inline(always)]
+#[inline(never)]
 fn test(best: &mut Best, tree: &WideTree, leaf: &Leaf8, lane: usize, primitives: &[Primitive], query: &Query) -> bool {
-    match leaf.triangle(&tree.frame, lane) {
-        Some(vertices) => best.test_triangle(vertices, query, leaf.id(lane)),
-        None => best.test(primitives, query, leaf.id(lane)),
+    let id = leaf.id(lane);
+    if leaf.is_exact(lane) {
+        best.take(id, |t_max| leaf.intersect(&tree.frame, lane, query, t_max))
+    } else {
+        best.test(primitives, query, id)
     }
 }
 
@@ -310,12 +312,13 @@ fn any_on<F: Filters, const N: usize>(
                     continue;
                 }
                 let certain = candidates.certain >> lane & 1 == 1;
-                if certain
-                    || match leaf.triangle(&tree.frame, lane) {
-                        Some(vertices) => Triangle::intersect_vertices(vertices, query, query.t_max).is_some(),
-                        None => occludes(primitives, query, id),
-                    }
-                {
+                let hit = certain
+                    || if leaf.is_exact(lane) {
+                        leaf.intersect(&tree.frame, lane, query, query.t_max).is_some()
+                    } else {
+                        occludes(primitives, query, id)
+                    };
+                if hit {
                     return true;
                 }
             }
