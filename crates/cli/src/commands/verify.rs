@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use etalon_oracle::Verdict;
 use etalon_oracle::statistics::{Budget, POWER, SUITE_SIGNIFICANCE, Welford};
 use etalon_oracle::subjects::{Reading, Renders};
-use etalon_oracle::truths::{Truth, judge, truths};
+use etalon_oracle::truths::{Claim, Truth, judge, truths};
 use etalon_scene::Precision;
 use etalon_transport::{Control, Extent, prepare};
 use miette::miette;
@@ -48,16 +48,18 @@ enum PrecisionArg {
 /// Independent renders of each truth: their scatter is the standard error, whatever the samples within one have to do
 /// with each other. With 64 of them Student's t at the suite's significance is close to the normal distribution.
 const REPLICATES: u32 = 64;
-/// Paths of a truth, all replicates together, at the first try.
-const PATHS: u64 = 1 << 18;
-/// A reading that could not exclude a known mistake is taken again with this many times the paths, so many times.
+/// At the first try, all replicates together take this part of the samples that the truth's scene suggests: those are meant
+/// for independent numbers.
+const FIRST: u32 = 4;
+/// A reading too noisy to count is taken again with this many times the paths, so many times.
 const MORE: u64 = 4;
 const TRIES: u32 = 5;
 
 /// Our renderer, as the oracle sees one.
 struct Etalon {
     seed: u64,
-    paths: u64,
+    /// In parts of the samples that the scene suggests, [`FIRST`] of them.
+    effort: u64,
     precision: Precision,
     threads: Option<usize>,
 }
@@ -66,8 +68,8 @@ impl Etalon {
     /// Mean Y of the whole film in one replicate, and its non-finite samples.
     fn mean_y(&self, json: &str, replicate: u32) -> Result<(f64, u64), String> {
         let (mut scene, _) = etalon_scene::parse(json, "truth").map_err(|errors| errors.summary())?;
-        let pixels = u64::from(scene.film.width) * u64::from(scene.film.height);
-        let spp = self.paths.div_ceil(pixels * u64::from(REPLICATES)).next_power_of_two();
+        let suggested = self.effort * u64::from(scene.integrator.spp);
+        let spp = suggested.div_ceil(u64::from(FIRST * REPLICATES)).next_power_of_two();
         scene.integrator.precision = self.precision;
         // Distinct for each pair: fewer replicates than 2¹⁶.
         scene.integrator.seed = self.seed << 16 | u64::from(replicate);
@@ -131,6 +133,8 @@ pub(crate) fn run(args: Args) -> Outcome {
     let start = Instant::now();
     let chosen: Vec<Truth> = truths()
         .into_iter()
+        // What we claim is plain radiance, polarisations averaged at every interface.
+        .filter(|truth| truth.applies_to(&Claim::UNPOLARISED))
         .filter(|truth| args.names.is_empty() || args.names.iter().any(|name| truth.name.contains(name.as_str())))
         .collect();
     if chosen.is_empty() {
@@ -190,7 +194,7 @@ fn judged(args: &Args, truth: &Truth, significance: f64) -> Result<Row, Failure>
     let start = Instant::now();
     let mut renderer = Etalon {
         seed: args.seed,
-        paths: if args.thorough { 64 * PATHS } else { PATHS },
+        effort: if args.thorough { 64 } else { 1 },
         precision: match args.precision {
             PrecisionArg::F32 => Precision::F32,
             PrecisionArg::F64 => Precision::F64,
@@ -203,13 +207,12 @@ fn judged(args: &Args, truth: &Truth, significance: f64) -> Result<Row, Failure>
             .render(truth)
             .map_err(|why| Failure::run(miette!(code = "truth-not-rendered", "{}: {why}", truth.name)))?;
         let verdict = judge(truth, &reading, significance);
-        let nearest = truth.mistakes.iter().map(|mistake| (mistake.value - truth.value).abs());
-        let told_apart = nearest.fold(f64::INFINITY, f64::min) >= verdict.resolvable_bias;
-        if told_apart || tries == TRIES {
+        let seen = verdict.resolvable_bias <= truth.must_resolve();
+        if seen || tries == TRIES {
             break (reading, verdict);
         }
         tries += 1;
-        renderer.paths *= MORE;
+        renderer.effort *= MORE;
     };
     Ok(Row {
         name: truth.name.clone(),

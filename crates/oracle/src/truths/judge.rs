@@ -1,6 +1,6 @@
 //! Holding a reading to a truth.
 
-use super::{Mistake, Truth};
+use super::Truth;
 use crate::{Verdict, statistics::z_verdict, subjects::Reading};
 
 /// Holds what a renderer measured to the truth, at the significance of one test
@@ -15,17 +15,13 @@ pub fn judge(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
         return Verdict::broken(&truth.name, format!("{} samples were not finite numbers", reading.nonfinite));
     }
     let mut verdict = z_verdict(&truth.name, &reading.estimate, truth.value, truth.tolerance, significance);
-    let apart = |mistake: &Mistake| (mistake.value - truth.value).abs();
-    let nearest = truth.mistakes.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
-    let mistaken = nearest.map_or(f64::INFINITY, apart);
-    // Of nothing there is no relative bias: a dark picture is held to its mistakes alone.
-    let relative = if truth.value == 0.0 { f64::INFINITY } else { truth.must_see * truth.value };
-    let needed = mistaken.min(relative);
+    let needed = truth.must_resolve();
     if verdict.pass && verdict.resolvable_bias > needed {
         let noise = (verdict.resolvable_bias - truth.tolerance) / (needed - truth.tolerance).max(0.0);
+        let nearest = truth.mistakes.iter().find(|mistake| (mistake.value - truth.value).abs() <= needed);
         let what = match nearest {
-            Some(mistake) if mistaken <= relative => format!("\"{}\" ({:.10})", mistake.what, mistake.value),
-            _ => format!("a bias of {} %", 100.0 * truth.must_see),
+            Some(mistake) => format!("\"{}\" ({:.10})", mistake.what, mistake.value),
+            None => format!("a bias of {} %", 100.0 * truth.must_see),
         };
         return verdict
             .without_power(&format!("too noisy to exclude {what}: take {:.1} times the samples", noise * noise));

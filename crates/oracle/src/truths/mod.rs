@@ -195,6 +195,14 @@ impl Truth {
         self.claims.iter().all(|claim| claims.contains(claim))
     }
 
+    /// The absolute bias that a reading must be able to see to count: [`must_see`](Self::must_see) of the value, and the
+    /// distance of the nearest known mistake. A dark picture is held to its mistakes alone.
+    #[must_use]
+    pub fn must_resolve(&self) -> f64 {
+        let relative = if self.value == 0.0 { f64::INFINITY } else { self.must_see * self.value };
+        self.mistakes.iter().map(|mistake| (mistake.value - self.value).abs()).fold(relative, f64::min)
+    }
+
     /// For a truth of one wavelength: the same film and band under a constant sky of radiance 1. A sensor that does not
     /// answer 1 to a constant spectrum cut to the band (a photometric one does not) is read relative to this picture's mean.
     #[must_use]
