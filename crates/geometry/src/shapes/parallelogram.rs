@@ -1,7 +1,7 @@
 //! Parallelograms.
 
 use super::{ShapeError, check_points, planar};
-use crate::query::{Query, RawHit};
+use crate::query::{Projected, Query, RawHit};
 use crate::{Aabb, PrimitiveId, SurfacePoint};
 use etalon_optics::{Real, Vec3};
 
@@ -11,6 +11,9 @@ pub struct Parallelogram {
     corner: Vec3<f64>,
     a: Vec3<f64>,
     b: Vec3<f64>,
+    /// Unit normal and largest extent of the bounds: every hit asks for them.
+    normal: Vec3<f64>,
+    extent: f64,
 }
 
 impl Parallelogram {
@@ -21,14 +24,17 @@ impl Parallelogram {
     /// `corner` + `a` and `corner` + `b` are rounded.
     pub fn new(corner: Vec3<f64>, a: Vec3<f64>, b: Vec3<f64>) -> Result<Self, ShapeError> {
         check_points(&[corner, a, b])?;
-        let shape = Self { corner, a, b };
+        let mut shape = Self { corner, a, b, normal: Vec3::ZERO, extent: 0.0 };
         check_points(&shape.corners())?;
-        if shape.cross() == Vec3::ZERO {
+        let cross = shape.cross();
+        if cross == Vec3::ZERO {
             return Err(ShapeError::NoArea);
         }
-        if shape.bounds().extent().max_component() < super::MIN_LENGTH {
+        shape.extent = shape.bounds().extent().max_component();
+        if shape.extent < super::MIN_LENGTH {
             return Err(ShapeError::OutOfRange);
         }
+        shape.normal = planar::unit(cross);
         Ok(shape)
     }
 
@@ -50,7 +56,7 @@ impl Parallelogram {
 
     /// Unit normal on the outward side.
     pub fn normal(&self) -> Vec3<f64> {
-        planar::unit(self.cross())
+        self.normal
     }
 
     /// Area of one side, m².
@@ -71,7 +77,9 @@ impl Parallelogram {
     /// neighbours.
     #[inline]
     pub(crate) fn intersect(&self, query: &Query, t_max: f64) -> Option<RawHit> {
-        let p = self.corners().map(|corner| query.project(corner));
+        let [c0, c1, c2, c3] = self.corners();
+        // Written out: `map` over an array is not inlined, and this is the hot path of every flat wall.
+        let p = [query.project(c0), query.project(c1), query.project(c2), query.project(c3)];
         let e = [p[0].edge(p[1]), p[1].edge(p[2]), p[2].edge(p[3]), p[3].edge(p[0])];
         if e.iter().any(|&e| e < 0.0) && e.iter().any(|&e| e > 0.0) {
             return None;
@@ -84,11 +92,11 @@ impl Parallelogram {
         let (u, v) = (e[3] / det, e[0] / det);
         let t = p[0].z + (u * (p[1].z - p[0].z) + v * (p[3].z - p[0].z));
         let mut hit = RawHit { t, uv: [u, v] };
-        let fold =
-            |f: fn(f64, f64) -> f64, start: f64, g: fn(&crate::query::Projected) -> f64| p.iter().map(g).fold(start, f);
-        let magnitude = fold(f64::max, 0.0, |p| p.magnitude);
-        let extent = fold(f64::max, 0.0, |p| p.x.abs().max(p.y.abs()));
-        let depth = fold(f64::max, f64::NEG_INFINITY, |p| p.z) - fold(f64::min, f64::INFINITY, |p| p.z);
+        let largest = |v: [f64; 4]| v[0].max(v[1]).max(v[2].max(v[3]));
+        let magnitude = largest([p[0].magnitude, p[1].magnitude, p[2].magnitude, p[3].magnitude]);
+        let extent = |q: &Projected| q.x.abs().max(q.y.abs());
+        let extent = largest([extent(&p[0]), extent(&p[1]), extent(&p[2]), extent(&p[3])]);
+        let depth = largest([p[0].z, p[1].z, p[2].z, p[3].z]) + largest([-p[0].z, -p[1].z, -p[2].z, -p[3].z]);
         if !planar::is_determined(magnitude, extent, depth, (t * det).abs(), det.abs()) {
             let (a, b) = (self.corner + self.a, self.corner + self.b);
             hit = planar::refine(query, self.corner, a, b, self.bounds(), hit, 2.0);
@@ -98,6 +106,6 @@ impl Parallelogram {
 
     #[inline]
     pub(crate) fn surface<R: Real>(&self, p: Vec3<f64>, id: PrimitiveId) -> SurfacePoint<R> {
-        planar::surface(p, self.corner, self.normal(), self.bounds().extent().max_component(), id)
+        planar::surface(p, self.corner, self.normal, self.extent, id)
     }
 }
