@@ -38,7 +38,7 @@ fn camera_film_and_integrator() {
             roulette: false,
             light_sampling: LightSampling::Light,
             wavelength_range_nm: [380.0, 780.0],
-            precision: Precision::F64,
+            precision: Precision::F32,
         }
     );
 }
@@ -56,7 +56,7 @@ fn defaults() {
             roulette: true,
             light_sampling: LightSampling::Mis,
             wavelength_range_nm: [360.0, 830.0],
-            precision: Precision::F32,
+            precision: Precision::F64,
         }
     );
     assert_eq!(scene.film.filter, Filter::Box);

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use etalon_oracle::Verdict;
-use etalon_oracle::statistics::{Budget, POWER, SUITE_SIGNIFICANCE, Welford};
+use etalon_oracle::statistics::{Budget, Estimate, POWER, SUITE_SIGNIFICANCE, Welford};
 use etalon_oracle::subjects::{Reading, Renders};
 use etalon_oracle::truths::{Claim, Truth, judge, truths};
 use etalon_scene::Precision;
@@ -30,7 +30,7 @@ pub(crate) struct Args {
     #[arg(long)]
     thorough: bool,
     /// Scalar type that paths are computed in.
-    #[arg(long, value_enum, default_value_t = PrecisionArg::F32)]
+    #[arg(long, value_enum, default_value_t = PrecisionArg::F64)]
     precision: PrecisionArg,
     /// Threads; all cores if not given.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
@@ -149,7 +149,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     }
     let mut rows = Vec::new();
     for truth in &chosen {
-        let row = judged(&args, truth, budget.each())?;
+        let row = judged(&args, truth, budget.each());
         if !args.json {
             print::line(&format!(
                 "{:<44} {:>14.10} {:>14.10} {:>9.1e} {:>6.2} {:>9.1e}{}",
@@ -190,7 +190,7 @@ pub(crate) fn run(args: Args) -> Outcome {
 
 /// Renders and judges one truth; takes more samples, never more seeds to choose from, where the reading was too noisy to
 /// exclude a known mistake. Whether it was depends on the noise alone, so that stopping does not favour a verdict.
-fn judged(args: &Args, truth: &Truth, significance: f64) -> Result<Row, Failure> {
+fn judged(args: &Args, truth: &Truth, significance: f64) -> Row {
     let start = Instant::now();
     let mut renderer = Etalon {
         seed: args.seed,
@@ -203,10 +203,13 @@ fn judged(args: &Args, truth: &Truth, significance: f64) -> Result<Row, Failure>
     };
     let mut tries = 1;
     let (reading, verdict): (Reading, Verdict) = loop {
-        let reading = renderer
-            .render(truth)
-            .map_err(|why| Failure::run(miette!(code = "truth-not-rendered", "{}: {why}", truth.name)))?;
-        let verdict = judge(truth, &reading, significance);
+        let (reading, verdict) = match renderer.render(truth) {
+            Ok(reading) => (reading, judge(truth, &reading, significance)),
+            Err(why) => {
+                let estimate = Estimate::new(f64::NAN, f64::NAN);
+                break (Reading { estimate, nonfinite: 0 }, Verdict::broken(&truth.name, why));
+            }
+        };
         let seen = verdict.resolvable_bias <= truth.must_resolve();
         if seen || tries == TRIES {
             break (reading, verdict);
@@ -214,7 +217,7 @@ fn judged(args: &Args, truth: &Truth, significance: f64) -> Result<Row, Failure>
         tries += 1;
         renderer.effort *= MORE;
     };
-    Ok(Row {
+    Row {
         name: truth.name.clone(),
         formula: truth.formula.clone(),
         truth: truth.value,
@@ -225,5 +228,5 @@ fn judged(args: &Args, truth: &Truth, significance: f64) -> Result<Row, Failure>
         pass: verdict.pass,
         evidence: verdict.evidence,
         seconds: start.elapsed().as_secs_f64(),
-    })
+    }
 }

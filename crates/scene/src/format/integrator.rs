@@ -22,7 +22,7 @@ crate::record! {
         /// First and last wavelength rendered, nm.
         wavelength_range_nm: Required<Spanned<[Wavelength; 2]>> = "[360, 830]",
         /// Scalar type of the kernel.
-        precision: Required<Precision> = r#""f32""#,
+        precision: Required<Precision> = r#""f64""#,
     }
 }
 
