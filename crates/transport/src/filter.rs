@@ -13,7 +13,7 @@ const GAUSSIAN_CUT: f64 = 3.0;
 pub enum FilterSampler {
     /// Uniform over the pixel.
     Box,
-    /// Offsets at probabilities i/[`CELLS`]; the density is constant between them.
+    /// Offsets at probabilities i/`CELLS`; the density is constant between them.
     Table(Vec<f64>),
 }
 

@@ -1,4 +1,4 @@
-//! The Monte Carlo integrator: a scene is [`prepare`]d once, then [`Prepared::render`]ed.
+//! The Monte Carlo integrator: a scene is [`prepare()`]d once, then [`Prepared::render`]ed.
 //!
 //! ```text
 //! Scene ──prepare──▶ Prepared (with its Plan) ──render──▶ Film
