@@ -10,8 +10,8 @@ const BINS: usize = 32;
 const PARALLEL_LIMIT: usize = 4096;
 /// Below this depth nodes are halved by count, whatever their areas.
 const DEPTH_LIMIT: u32 = 48;
-/// Levels of the deepest tree: 2³⁰ primitives are halved 30 times.
-pub(crate) const MAX_DEPTH: usize = DEPTH_LIMIT as usize + 31;
+/// Levels of the deepest tree: 2²⁹ primitives are halved 29 times.
+pub(crate) const MAX_DEPTH: usize = DEPTH_LIMIT as usize + 30;
 
 /// A node of the binary tree.
 #[derive(Clone, Copy, Debug)]

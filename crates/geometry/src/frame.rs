@@ -88,6 +88,11 @@ impl Frame {
         self.centre == Vec3::ZERO && self.unscaled(self.point(p)) == p
     }
 
+    /// A length in this frame, rounded.
+    pub(crate) fn length(&self, l: f64) -> f32 {
+        (l * self.scale) as f32
+    }
+
     /// What a unit of this frame is, m.
     #[inline(always)]
     pub(crate) fn unscale(&self) -> f64 {

@@ -14,7 +14,7 @@ const FLAT_LIMIT: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeometryError {
     /// More primitives than ids.
-    #[error("{0} primitives are more than the 2^30 that can be indexed")]
+    #[error("{0} primitives are more than the 2^29 that can be indexed")]
     TooMany(usize),
 }
 
@@ -33,16 +33,16 @@ impl Geometry {
     /// Builds the accelerator. No primitives at all are allowed.
     ///
     /// # Errors
-    /// If there are more than 2³⁰ primitives.
+    /// If there are more than 2²⁹ primitives.
     pub fn build(primitives: Vec<Primitive>) -> Result<Self, GeometryError> {
-        if primitives.len() > 1 << 30 {
+        if primitives.len() > 1 << 29 {
             return Err(GeometryError::TooMany(primitives.len()));
         }
         let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
         let tree = bounds.filter(|_| primitives.len() > FLAT_LIMIT).map(|bounds| {
             let frame = Frame::around(bounds);
             let boxes: Vec<_> = primitives.iter().map(|p| frame.enclose(p.bounds())).collect();
-            let binary = build(&boxes, Costs { block: 8, leaf_limit: 8, node: 0.5 });
+            let binary = build(&boxes, costs(&primitives));
             drop(boxes);
             WideTree::collapse(frame, &binary, &primitives)
         });
@@ -147,6 +147,13 @@ impl Geometry {
     pub(crate) fn primitives(&self) -> &[Primitive] {
         &self.primitives
     }
+}
+
+/// What the tree's builder weighs: a leaf tests eight triangles or spheres at once, but other primitives one by one.
+fn costs(primitives: &[Primitive]) -> Costs {
+    let filtered = |p: &&Primitive| matches!(p, Primitive::Triangle(_) | Primitive::Sphere(_));
+    let most = primitives.iter().filter(filtered).count() > primitives.len() / 2;
+    Costs { block: if most { 8 } else { 1 }, leaf_limit: 8, node: 0.5 }
 }
 
 /// The closest hit so far.

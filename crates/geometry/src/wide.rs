@@ -11,8 +11,11 @@ use bytemuck::{Pod, Zeroable};
 pub(crate) const WIDTH: usize = 8;
 /// Marks a child that is a leaf.
 pub(crate) const LEAF: u32 = 1 << 31;
-/// Marks a primitive that has no filter: it is tested in `f64` whenever a ray enters its leaf.
-pub(crate) const UNFILTERED: u32 = 1 << 31;
+/// Marks a primitive that is no triangle. Unless it is a sphere it has no filter: it is tested in `f64` whenever a ray
+/// enters its leaf.
+pub(crate) const OTHER: u32 = 1 << 31;
+/// Marks a sphere, beside [`OTHER`]: the rows of the first vertex hold its centre, the first row of the second its radius.
+pub(crate) const SPHERE: u32 = 1 << 29;
 /// Marks a triangle whose vertices are exact in its leaf: it need not be fetched to be tested in `f64`.
 pub(crate) const EXACT: u32 = 1 << 30;
 
@@ -33,7 +36,7 @@ pub(crate) struct Node8 {
 pub(crate) struct Leaf8 {
     /// The vertices of triangles in the accelerator's frame, rounded: x, y, z of a, then of b, then of c.
     pub(crate) vertices: [[[f32; WIDTH]; 3]; 3],
-    /// Ids, with [`UNFILTERED`] where there is no triangle and [`EXACT`] where it is exact; `u32::MAX` for an empty lane.
+    /// Ids, with the marks [`OTHER`], [`SPHERE`] and [`EXACT`]; `u32::MAX` for an empty lane.
     pub(crate) ids: [u32; WIDTH],
     /// The largest extent of the triangles' common box along an axis.
     pub(crate) extent: f32,
@@ -173,17 +176,24 @@ impl Filler<'_> {
         };
         for (lane, &id) in self.tree.order[first..first + node.count as usize].iter().enumerate() {
             leaf.ids[lane] = id;
-            if let Primitive::Triangle(t) = &self.primitives[id as usize] {
-                if t.vertices().into_iter().all(|v| self.frame.is_exact(v)) {
-                    leaf.ids[lane] |= EXACT;
+            let mut put = |i: usize, vertex| {
+                for (c, row) in self.frame.point(vertex).into_iter().zip(&mut leaf.vertices[i]) {
+                    row[lane] = c;
                 }
-                for (vertex, row) in t.vertices().into_iter().zip(&mut leaf.vertices) {
-                    for (c, row) in self.frame.point(vertex).into_iter().zip(row) {
-                        row[lane] = c;
+            };
+            match &self.primitives[id as usize] {
+                Primitive::Triangle(t) => {
+                    t.vertices().into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
+                    if t.vertices().into_iter().all(|v| self.frame.is_exact(v)) {
+                        leaf.ids[lane] |= EXACT;
                     }
                 }
-            } else {
-                leaf.ids[lane] |= UNFILTERED;
+                Primitive::Sphere(s) => {
+                    put(0, s.centre());
+                    leaf.vertices[1][0][lane] = self.frame.length(s.radius());
+                    leaf.ids[lane] |= OTHER | SPHERE;
+                }
+                _ => leaf.ids[lane] |= OTHER,
             }
         }
         let index = self.leaf_count;
@@ -197,13 +207,19 @@ impl Leaf8 {
     /// The primitive in a lane.
     #[inline(always)]
     pub(crate) fn id(&self, lane: usize) -> PrimitiveId {
-        PrimitiveId(self.ids[lane] & !(UNFILTERED | EXACT))
+        PrimitiveId(self.ids[lane] & !(OTHER | EXACT | SPHERE))
+    }
+
+    /// Whether a lane holds a triangle.
+    #[inline(always)]
+    pub(crate) fn is_triangle(&self, lane: usize) -> bool {
+        self.ids[lane] & OTHER == 0
     }
 
     /// Whether the vertices in a lane are those of its triangle.
     #[inline(always)]
     pub(crate) fn is_exact(&self, lane: usize) -> bool {
-        self.ids[lane] & (EXACT | UNFILTERED) == EXACT
+        self.ids[lane] & (EXACT | OTHER) == EXACT
     }
 
     /// The intersection with the triangle in a lane, whose vertices are exact: what the triangle itself would answer.

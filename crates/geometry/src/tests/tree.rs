@@ -75,6 +75,18 @@ fn tree_equals_brute_force_on_vertices_that_f32_represents() {
 }
 
 #[test]
+fn tree_equals_brute_force_on_spheres_of_all_scales() {
+    for (seed, sizes) in [(30, -9.0..0.0), (31, -2.0..1.5)] {
+        let mut random = Random::new(seed);
+        let spheres: Vec<Primitive> = (0..300)
+            .map(|_| Sphere::new(random.in_cube(), random.log_uniform(sizes.start, sizes.end)).unwrap().into())
+            .collect();
+        let hits = check(spheres, 20_000, 130 + seed, |l| l);
+        assert!(hits > 0.3, "only {hits} of the rays hit anything");
+    }
+}
+
+#[test]
 fn a_ray_misses_a_tiny_triangle_beside_it() {
     // The edges' products round to the same value, which must not pass for an edge through the ray.
     let mut random = Random::new(8);

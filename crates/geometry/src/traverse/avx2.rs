@@ -1,10 +1,10 @@
 //! The filters in AVX2, eight lanes at once.
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
-use super::{Candidates, Entered, Filters, any_with, closest_with, leaf_error};
+use super::{Candidates, Entered, Filters, any_with, closest_with, leaf_error, sphere_bounds};
 use crate::frame::FrameRay;
 use crate::query::{Query, RawHit};
-use crate::wide::{EXACT, Leaf8, Node8, WIDTH, WideTree};
+use crate::wide::{EXACT, Leaf8, Node8, SPHERE, WIDTH, WideTree};
 use crate::{Primitive, PrimitiveId};
 use std::arch::x86_64::*;
 
@@ -138,10 +138,18 @@ impl F8 {
     }
 }
 
-/// The lanes of a leaf that are no triangles to be tested (empty, of other primitives, or the one that the ray leaves), and
-/// those of other primitives.
+/// Sets of lanes of a leaf.
+struct Lanes {
+    /// Empty ones, those of other primitives than triangles, and the one that the ray leaves.
+    excluded: u32,
+    /// Those of other primitives than triangles.
+    others: u32,
+    /// Those of spheres.
+    spheres: u32,
+}
+
 #[inline(always)]
-fn lanes(_: Avx2, ids: &[u32; WIDTH], leaves: PrimitiveId) -> (u32, u32) {
+fn lanes(_: Avx2, ids: &[u32; WIDTH], leaves: PrimitiveId) -> Lanes {
     // SAFETY: the token proves AVX2; eight integers are readable at the reference, aligned or not.
     unsafe {
         let ids = _mm256_loadu_si256(ids.as_ptr().cast());
@@ -151,8 +159,29 @@ fn lanes(_: Avx2, ids: &[u32; WIDTH], leaves: PrimitiveId) -> (u32, u32) {
         let other = _mm256_movemask_ps(_mm256_castsi256_ps(ids)) as u32;
         let empty = _mm256_movemask_ps(_mm256_castsi256_ps(empty)) as u32;
         let left = _mm256_movemask_ps(_mm256_castsi256_ps(left)) as u32;
-        (other | left, other & !empty)
+        // The mark of spheres, moved to the sign.
+        let sphere = _mm256_slli_epi32::<{ 31 - SPHERE.trailing_zeros() as i32 }>(ids);
+        let sphere = _mm256_movemask_ps(_mm256_castsi256_ps(sphere)) as u32;
+        let others = other & !empty;
+        Lanes { excluded: other | left, others, spheres: sphere & others }
     }
+}
+
+/// The lanes whose spheres the ray may meet; as the portable filter.
+#[inline(always)]
+fn spheres(filters: Avx2, ray: &Ray8, leaf: &Leaf8, limit: f32) -> u32 {
+    let all = |v| F8::splat(filters, v);
+    let [sx, sy, sz] = ray.shear;
+    let [x, y, z] = project(filters, ray, &leaf.vertices[0]);
+    let along = x * all(sx) + y * all(sy);
+    let flat = all(1.0 / (1.0 + sx * sx + sy * sy));
+    let squared = x * x + y * y - along * along * flat;
+    let (slack, factor) = sphere_bounds(ray.error);
+    let reach = F8::load(filters, &leaf.vertices[1][0]) + all(slack);
+    let middle = (z + along * flat) * all(sz);
+    let beside = (reach * reach * all(factor)).below(squared);
+    let beyond = all(limit).below(middle - reach) | (middle + reach).below(all(0.0));
+    !(beside | beyond).mask()
 }
 
 /// A ray broadcast to all lanes.
@@ -241,7 +270,14 @@ impl Filters for Avx2 {
     /// As the portable filter, whose doc comment derives the bounds.
     #[inline(always)]
     fn candidates(self, ray: &Ray8, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
-        let (excluded, unfiltered) = lanes(self, &leaf.ids, ray.leaves);
+        let Lanes { excluded, others, spheres: balls } = lanes(self, &leaf.ids, ray.leaves);
+        let mut unfiltered = others;
+        if balls != 0 {
+            unfiltered &= !balls | spheres(self, ray, leaf, limit);
+            if excluded == 0xFF {
+                return Candidates { mask: unfiltered, certain: 0, near: [0.0; WIDTH], far: [0.0; WIDTH] };
+            }
+        }
         let all = |v| F8::splat(self, v);
         let sign = all(-0.0);
         let a = project(self, ray, &leaf.vertices[0]);

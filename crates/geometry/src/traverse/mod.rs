@@ -33,7 +33,7 @@ pub(crate) struct Candidates {
     mask: u32,
     /// Those that are certainly hit between the origin and the certain limit.
     certain: u32,
-    /// Distances not above the true ones.
+    /// Distances of triangles, not above the true ones.
     near: [f32; WIDTH],
     /// Distances not below the true ones of those certainly hit.
     far: [f32; WIDTH],
@@ -226,7 +226,7 @@ fn closest_on<F: Filters, const N: usize>(
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
                 let id = leaf.id(lane);
-                if candidates.near[lane] > limit {
+                if candidates.near[lane] > limit && leaf.is_triangle(lane) {
                     continue;
                 }
                 if candidates.certain >> lane & 1 == 1 {
@@ -336,6 +336,17 @@ fn any_on<F: Filters, const N: usize>(
 #[inline(always)]
 fn leaf_error(error: f32, extent: f32) -> f32 {
     error * (12.0 * extent + 32.0 * error)
+}
+
+/// Bounds for spheres in the projection of a ray: on the error of a centre's distance from the ray and of its place along
+/// it, and a relative one on the squared distance.
+///
+/// A centre relative to the origin and sheared, (x, y), errs by δ in each coordinate, its distance from the ray,
+/// √(x² + y² − (x·sx + y·sy)²/(1 + sx² + sy²)), by no more than √2·δ and, since the difference is at least a third of
+/// x² + y², by 30 roundoffs of itself; the radius errs by one. Along the ray the centre errs by at most 4δ.
+#[inline(always)]
+fn sphere_bounds(error: f32) -> (f32, f32) {
+    (6.0 * error, 1.0 + 32.0 * f32::EPSILON)
 }
 
 /// Whether a primitive hides the end of a ray from its start.

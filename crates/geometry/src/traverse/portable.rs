@@ -1,8 +1,8 @@
 //! The filters in plain Rust; the wording of reference for the other instruction sets.
 
-use super::{Candidates, Entered, Filters, leaf_error};
+use super::{Candidates, Entered, Filters, leaf_error, sphere_bounds};
 use crate::frame::FrameRay;
-use crate::wide::{Leaf8, Node8, UNFILTERED, WIDTH};
+use crate::wide::{Leaf8, Node8, OTHER, SPHERE, WIDTH};
 use crate::{Primitive, PrimitiveId};
 
 /// Plain Rust.
@@ -52,7 +52,20 @@ impl Filters for Portable {
             if id == u32::MAX {
                 continue;
             }
-            if id & UNFILTERED != 0 {
+            if id & SPHERE != 0 {
+                let [x, y, z] = [0, 1, 2].map(|k| leaf.vertices[0][ray.axes[k]][lane] - ray.origin[k]);
+                let (x, y) = (x - ray.shear[0] * z, y - ray.shear[1] * z);
+                let along = x * ray.shear[0] + y * ray.shear[1];
+                let flat = 1.0 / (1.0 + ray.shear[0] * ray.shear[0] + ray.shear[1] * ray.shear[1]);
+                let squared = x * x + y * y - along * along * flat;
+                let (slack, factor) = sphere_bounds(ray.error);
+                let reach = leaf.vertices[1][0][lane] + slack;
+                let middle = (z + along * flat) * ray.shear[2];
+                let missed = squared > reach * reach * factor || middle - reach > limit || middle + reach < 0.0;
+                out.mask |= u32::from(!missed) << lane;
+                continue;
+            }
+            if id & OTHER != 0 {
                 out.mask |= 1 << lane;
                 continue;
             }
