@@ -58,6 +58,29 @@ fn a_tangential_ray_from_the_surface_does_not_hit_it_again() {
 }
 
 #[test]
+fn a_ray_knows_the_sphere_it_leaves_even_from_the_wrong_side_of_its_surface() {
+    // Rounding may put an origin on either side: the root at the surface is dropped by name, not by its sign.
+    let mut random = Random::new(5);
+    for _ in 0..200_000 {
+        let radius = random.log_uniform(-6.0, 6.0);
+        let sphere = Sphere::new(random.in_cube() * radius, radius).unwrap();
+        let n = random.direction();
+        let f = etalon_optics::Frame::from_normal(n);
+        let slant = random.log_uniform(-4.0, 0.0);
+        let inward = (f.s * random.signed() + f.t * random.signed() - n * slant).normalized();
+        let cos = -inward.dot(n);
+        let off = random.signed() * 1e-14;
+        let origin = sphere.centre() + n * (radius * (1.0 + off));
+        let geometry = Geometry::build(vec![sphere.into()]).unwrap();
+        let leaving = |d| Ray { leaves: PrimitiveId(0), ..Ray::free(origin, d) };
+        assert!(geometry.closest_hit(&leaving(-inward)).is_none() && !geometry.occluded(&leaving(-inward)));
+        let hit = geometry.closest_hit(&leaving(inward)).expect("the far side");
+        // The chord, to what the displaced origin changes of it.
+        assert!((hit.t / (2.0 * radius * cos) - 1.0).abs() < 1e-13 / (cos * cos), "{} {cos}", hit.t);
+    }
+}
+
+#[test]
 fn a_ray_that_enters_a_sphere_leaves_it_at_the_far_side() {
     // The chord from a point of the surface is 2r·cos; the root at the surface itself must not be taken for it,
     // whatever the size and the place of the sphere.
