@@ -1,7 +1,7 @@
 //! Vectors over any [`Real`], and orthonormal frames.
 //!
-//! glam has no vector that is generic over its scalar, so the kernels use this small one; glam serves at the doors
-//! (transforms of the scene, the accelerator's builder).
+//! glam has no vector that is generic over its scalar, so the kernels use this small one; glam serves where a scene's
+//! transforms are applied.
 
 use crate::Real;
 use std::ops::{Add, AddAssign, Div, Index, Mul, Neg, Sub, SubAssign};
