@@ -40,6 +40,24 @@ impl Random {
         Vec3::new(self.signed(), self.signed(), self.signed())
     }
 
+    /// Any bit pattern: mostly numbers of extreme magnitude, sometimes NaN, infinity or zero.
+    pub(crate) fn any_number(&mut self) -> f64 {
+        match self.below(8) {
+            0 => [0.0, -0.0, 1.0, -1.0, f64::NAN, f64::INFINITY, f64::MIN_POSITIVE, f64::MAX][self.below(8)],
+            1 => f64::from_bits(self.0.next_u64()),
+            2 => f64::from(f32::from_bits(self.0.next_u32())),
+            // Within the range of coordinates.
+            3 => self.signed() * 2.0_f64.powi(self.below(240) as i32 - 120),
+            _ => self.signed() * 2.0_f64.powi(self.below(8) as i32),
+        }
+    }
+
+    /// Three of any.
+    pub(crate) fn any_vector(&mut self) -> V {
+        let scale = if self.below(2) == 0 { 1.0 } else { self.any_number() };
+        Vec3::new(self.any_number(), self.any_number(), self.any_number()) * scale
+    }
+
     /// A direction, uniform over the sphere.
     pub(crate) fn direction(&mut self) -> V {
         loop {

@@ -281,6 +281,44 @@ fn rays_of_which_no_point_is_defined_hit_nothing() {
 }
 
 #[test]
+fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
+    let mut random = Random::new(40);
+    let (mut shapes, mut hits) = (0, 0);
+    for _ in 0..3_000 {
+        let primitives: Vec<Primitive> = (0..60)
+            .filter_map(|_| {
+                let [a, b, c] = [0, 1, 2].map(|_| random.any_vector());
+                match random.below(4) {
+                    0 => Sphere::new(a, b.x).ok().map(Primitive::from),
+                    1 => Disk::new(a, b, c.x).ok().map(Primitive::from),
+                    2 => Parallelogram::new(a, b, c).ok().map(Primitive::from),
+                    _ => Triangle::new(a, b, c).ok().map(Primitive::from),
+                }
+            })
+            .collect();
+        shapes += primitives.len();
+        let features = features(&primitives);
+        let geometry = Geometry::build(primitives).unwrap();
+        for _ in 0..30 {
+            let mut point = || match random.below(2) {
+                0 if !features.is_empty() => features[random.below(features.len())],
+                _ => random.any_vector(),
+            };
+            let (origin, target) = (point(), point());
+            let ray = Ray::free(origin, target - origin);
+            if let Some(hit) = geometry.closest_hit(&ray) {
+                let p = geometry.surface(&ray, &hit);
+                p.spawn(ray.direction);
+                p.spawn_to(origin, PrimitiveId::NONE);
+            }
+            let t_max = random.any_number();
+            hits += agrees(&geometry, (origin, target - origin), t_max, PrimitiveId(random.below(9) as u32));
+        }
+    }
+    assert!(shapes > 30_000 && hits > 10_000, "{shapes} {hits}");
+}
+
+#[test]
 fn shapes_that_have_no_area_or_no_numbers_are_refused() {
     use crate::ShapeError::{NoArea, NotFinite, OutOfRange};
     let (o, x, y) = (v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0));
