@@ -75,7 +75,10 @@ impl Geometry {
         size_of::<Self>() + self.primitives.capacity() * size_of::<Primitive>() + tree
     }
 
-    /// The closest hit along a ray. A ray of which no point is defined (NaN, zero direction) hits nothing.
+    /// The closest hit along a ray.
+    ///
+    /// A ray of which no point is defined (NaN, zero direction) hits nothing, nor does one that starts beyond 2²⁰⁰ m or
+    /// whose direction is outside 2^±900.
     pub fn closest_hit<R: Real>(&self, ray: &Ray<R>) -> Option<Hit<R>> {
         let query = Query::new(ray)?;
         self.closest(&query).map(|(hit, primitive)| Hit {

@@ -34,8 +34,8 @@ pub(crate) struct Query {
 }
 
 impl Query {
-    /// Prepares a ray; `None` if no point of it is defined: a component is NaN or infinite (or so large that their sum is),
-    /// the direction is zero or its magnitude outside 2^±900, or `t_max` is not positive.
+    /// Prepares a ray; `None` if no point of it can be computed with: a component is NaN or infinite, the origin lies beyond
+    /// [`MAX_ORIGIN`], the direction is zero or its magnitude outside 2^±900, or `t_max` is not positive.
     #[inline(always)]
     pub(crate) fn new<R: Real>(ray: &Ray<R>) -> Option<Self> {
         let (origin, direction) = (ray.origin.to_f64(), ray.direction.to_f64());
@@ -43,10 +43,10 @@ impl Query {
         let a = direction.abs();
         let magnitude = larger(larger(a.x, a.y), a.z);
         let exponent = (magnitude.to_bits() >> 52) as i64 - 1023;
-        // A sum is finite if its terms are, short of overflow.
+        // Sums are finite only if their terms are.
         let reach = origin.abs();
         let sums = [reach.x + reach.y + reach.z, a.x + a.y + a.z];
-        let usable = sums[0].is_finite() && sums[1].is_finite() && exponent.abs() <= 900 && t_max > 0.0;
+        let usable = sums[0] < MAX_ORIGIN && sums[1].is_finite() && exponent.abs() <= 900 && t_max > 0.0;
         if !usable {
             return None;
         }
@@ -99,6 +99,9 @@ impl Query {
 pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
+
+/// Origins within this (2²⁰⁰, in the 1-norm) keep every product of an intersection test finite.
+const MAX_ORIGIN: f64 = (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
 
 /// The axes of the projection along each axis.
 const AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];

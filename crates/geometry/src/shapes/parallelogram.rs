@@ -89,7 +89,8 @@ impl Parallelogram {
             return None;
         }
         // o = p₀ + u·(p₁ − p₀) + v·(p₃ − p₀), solved by Cramer's rule.
-        let (u, v) = (e[3] / det, e[0] / det);
+        // The edges have decided that the point is inside; against their mean a parameter may err by a few roundoffs.
+        let (u, v) = ((e[3] / det).clamp(0.0, 1.0), (e[0] / det).clamp(0.0, 1.0));
         let t = p[0].z + (u * (p[1].z - p[0].z) + v * (p[3].z - p[0].z));
         let mut hit = RawHit { t, uv: [u, v] };
         let largest = |v: [f64; 4]| v[0].max(v[1]).max(v[2].max(v[3]));

@@ -307,6 +307,7 @@ fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
             let (origin, target) = (point(), point());
             let ray = Ray::free(origin, target - origin);
             if let Some(hit) = geometry.closest_hit(&ray) {
+                assert!(!hit.t.is_nan() && hit.uv.iter().all(|w| (0.0..=1.0).contains(w)), "{ray:?} {hit:?}");
                 let p = geometry.surface(&ray, &hit);
                 p.spawn(ray.direction);
                 p.spawn_to(origin, PrimitiveId::NONE);
