@@ -27,6 +27,12 @@ fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> u
                 assert_eq!(traverse::any_deep(tree, primitives, &query, &frame_ray), occluded, "{ray:?}");
             }
         }
+        if let Some((_, closest)) = flat {
+            // What a shadow ray aims at does not hide it.
+            let aimed = Ray { aims_at: closest, ..ray };
+            let query = crate::query::Query::new(&aimed).unwrap();
+            assert_eq!(geometry.occluded(&aimed), geometry.any_flat(&query), "{aimed:?}");
+        }
         usize::from(flat.is_some())
     }
     one::<f64>(geometry, line, t_max, leaves) + one::<f32>(geometry, line, t_max, leaves)
