@@ -2,6 +2,7 @@
 
 use etalon_picture::{Attribute, RenderInfo};
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 
 use crate::support::{etalon_line, pixel_bits, scene};
 
@@ -41,6 +42,8 @@ fn a_picture_says_how_it_was_made() {
     assert_eq!(info.software, format!("etalon {}", env!("CARGO_PKG_VERSION")));
     assert_eq!((info.samples_per_pixel, info.seed), (3, u64::MAX));
     assert_eq!(info.scene_sha256, report["scene_sha256"]);
+    let hash = Sha256::digest(std::fs::read(&scene).unwrap());
+    assert_eq!(info.scene_sha256, hash.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
     assert_eq!(info.render_time_s, f64::from(report["seconds"].as_f64().unwrap() as f32));
     let plan: Value = serde_json::from_str(&info.plan_json).unwrap();
     assert_eq!(plan, report["plan"]);

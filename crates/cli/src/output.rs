@@ -153,6 +153,20 @@ mod tests {
     }
 
     #[test]
+    fn every_kind_of_clipped_pixel_counts_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let outputs = plan(&[folder.path().join("a.png"), folder.path().join("a.exr")], &mut Failure::default());
+        let pixels = [[0.5_f32; 3], [9.0, 9.0, 0.0], [-9.0, 0.5, 0.5], [9.0, -9.0, 0.0], [f32::NAN, 0.0, 0.0]];
+        let picture = Picture::from_rgb(5, 1, &pixels).unwrap();
+        let clipped = outputs.iter().map(|output| {
+            write(output, &picture, &Attributes::new(), 0.0, "etalon", "")
+                .unwrap_or_else(|_| panic!("writable"))
+                .clipped_pixels
+        });
+        assert_eq!(clipped.collect::<Vec<_>>(), [Some(4), None]);
+    }
+
+    #[test]
     fn clipping_is_told_in_words() {
         let none = Clipping { of: 10, ..Clipping::default() };
         assert_eq!(describe_clipping(&none), "no pixel clipped");
