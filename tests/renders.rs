@@ -4,7 +4,7 @@ use etalon_picture::{Attribute, RenderInfo};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::support::{etalon_line, pixel_bits, scene};
+use crate::support::{changed_scene, etalon_line, pixel_bits, scene};
 
 #[test]
 fn json_is_one_object_with_what_a_machine_wants_to_know() {
@@ -126,4 +126,23 @@ fn quiet_is_quiet_and_a_bar_is_for_terminals_only() {
     let ran = etalon_line("render {} -o {} --spp 1 --size 8x8", [&scene, &output]).expect(0);
     assert!(ran.stdout.contains("8 × 8 pixels") && ran.stdout.contains("x.exr"), "{}", ran.stdout);
     assert_eq!(ran.stderr, "");
+}
+
+#[test]
+fn a_size_from_the_command_line_is_the_size_in_the_file() {
+    // A camera whose angle is stated across the width: it must not be taken from the file's own proportions.
+    let folder = tempfile::tempdir().unwrap();
+    let pixels_of = |film: Value, flags: &str| {
+        let (scene, output) = (folder.path().join("scene.json"), folder.path().join("x.exr"));
+        changed_scene("metals.json", &scene, |scene| {
+            let camera = scene["camera"].as_object_mut().unwrap();
+            camera.remove("vertical_fov_deg");
+            camera.insert("horizontal_fov_deg".to_owned(), 40.into());
+            scene["film"] = film;
+        });
+        etalon_line(&format!("render {{}} -o {{}} --spp 1 -q {flags}"), [&scene, &output]).expect(0);
+        pixel_bits(&output).0
+    };
+    let said = pixels_of(serde_json::json!({ "width": 24, "height": 36 }), "");
+    assert_eq!(pixels_of(serde_json::json!({ "width": 40, "height": 10 }), "--size 24x36"), said);
 }

@@ -20,8 +20,9 @@ pub(crate) struct LoadedScene {
     pub sha256: String,
 }
 
-/// Reads a scene. A file that cannot be read is bad input as much as one that makes no sense.
-pub(crate) fn load(path: &Path) -> Result<LoadedScene, Failure> {
+/// Reads a scene. A file that cannot be read is bad input as much as one that makes no sense. `film_size`, if given, stands
+/// for the file's width and height in pixels, so that a stated horizontal field of view stays what it says.
+pub(crate) fn load(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedScene, Failure> {
     let refused = |error| match error {
         LoadError::Io { path, source } => {
             Failure::input(Report::from_err(source).wrap_err(format!("cannot read the scene `{}`", path.display())))
@@ -30,7 +31,7 @@ pub(crate) fn load(path: &Path) -> Result<LoadedScene, Failure> {
     };
     let name = path.display().to_string();
     let text = etalon_scene::json::load_text(path).map_err(refused)?;
-    let (scene, warnings) = etalon_scene::parse(&text, &name).map_err(scene_failure)?;
+    let (scene, warnings) = etalon_scene::parse_with_size(&text, &name, film_size).map_err(scene_failure)?;
     let sha256 = sha256(text.as_bytes());
     Ok(LoadedScene { scene, warnings: scene_warnings(&name, text, warnings), sha256 })
 }

@@ -89,9 +89,11 @@ impl Overrides {
         if self.max_depth.is_some() {
             integrator.max_depth = self.max_depth;
         }
-        if let Some(size) = self.size {
-            (scene.film.width, scene.film.height) = (size.width, size.height);
-        }
+    }
+
+    /// The film's width and height in pixels, which the reader of the scene must know: a camera's angle may follow them.
+    pub(crate) fn film_size(&self) -> Option<[u32; 2]> {
+        self.size.map(|size| [size.width, size.height])
     }
 
     /// The same again for a command line, with a space before each.

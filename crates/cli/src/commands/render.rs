@@ -105,7 +105,7 @@ struct Job {
 fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
     let mut failure = Failure::default();
     *outputs = output::plan(&args.output, &mut failure);
-    let mut loaded = match load(&args.scene) {
+    let mut loaded = match load(&args.scene, args.overrides.film_size()) {
         Ok(loaded) => loaded,
         Err(scene_failure) => {
             failure.add(scene_failure);
