@@ -74,13 +74,6 @@ pub trait Real:
     /// Next representable value toward −∞.
     fn next_down(self) -> Self;
 
-    /// The relative error bound γₙ = n·u / (1 − n·u) of n rounded operations (Higham, *Accuracy and Stability of
-    /// Numerical Algorithms*, §3.1).
-    fn gamma(n: u32) -> Self {
-        let nu = Self::from_f64(f64::from(n)) * Self::UNIT_ROUNDOFF;
-        nu / (Self::ONE - nu)
-    }
-
     /// √max(self, 0): for differences of squares that rounding may have pushed below zero.
     ///
     /// Only for arguments whose exact value is known to be non-negative.

@@ -69,16 +69,10 @@ impl<R: Real> Vec3<R> {
         self.x * o.x + self.y * o.y + self.z * o.z
     }
 
-    /// Vector product. Cancels for nearly parallel arguments; use [`Vec3::cross_f64`] where that matters.
+    /// Vector product. Cancels for nearly parallel arguments.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
         Self::new(self.y * o.z - self.z * o.y, self.z * o.x - self.x * o.z, self.x * o.y - self.y * o.x)
-    }
-
-    /// Vector product computed in `f64`, then rounded.
-    #[inline(always)]
-    pub fn cross_f64(self, o: Self) -> Self {
-        self.to_f64().cross(o.to_f64()).cast()
     }
 
     /// Squared length.

@@ -44,8 +44,6 @@ impl PixelRect {
 pub struct PixelSum {
     /// Sum of the samples' CIE XYZ.
     pub xyz: [f64; 3],
-    /// Sum of the squares of the samples' Y.
-    pub y_squared: f64,
     /// Finite samples summed.
     pub count: u32,
 }

@@ -44,7 +44,6 @@ fn render_tile<R: Real>(
                 counters.paths += 1;
                 if xyz.iter().all(|v| v.is_finite()) {
                     (0..3).for_each(|c| sum.xyz[c] += xyz[c]);
-                    sum.y_squared += xyz[1] * xyz[1];
                     sum.count += 1;
                 } else {
                     counters.record_nonfinite(NonFinite { y, x, sample });
