@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use etalon_scene::{LoadError, Scene};
+use etalon_scene::{FileUse, LoadError, Scene};
 use miette::Report;
 use sha2::{Digest, Sha256};
 
@@ -16,7 +16,7 @@ pub(crate) struct LoadedScene {
     pub scene: Scene,
     /// What is odd in the file and not an error.
     pub warnings: Vec<Report>,
-    /// SHA-256 of the file's bytes, in hex.
+    /// SHA-256 of the file's bytes and of those of all files that it refers to, in hex.
     pub sha256: String,
 }
 
@@ -31,9 +31,21 @@ pub(crate) fn load(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedSce
     };
     let name = path.display().to_string();
     let text = etalon_scene::json::load_text(path).map_err(refused)?;
-    let (scene, warnings) = etalon_scene::parse_with_size(&text, &name, film_size).map_err(scene_failure)?;
-    let sha256 = sha256(text.as_bytes());
-    Ok(LoadedScene { scene, warnings: scene_warnings(&name, text, warnings), sha256 })
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let loaded = etalon_scene::parse_in(&text, &name, Some(folder), film_size).map_err(scene_failure)?;
+    let sha256 = scene_sha256(&text, &loaded.files);
+    Ok(LoadedScene { scene: loaded.scene, warnings: scene_warnings(&name, text, loaded.warnings), sha256 })
+}
+
+/// The hash of a scene: that of its text, or, where it refers to files, that of the list of all hashes, a line each as
+/// `sha256sum` prints them: first the text's, without a name, then the files' in the order in which they were read.
+fn scene_sha256(text: &str, files: &[FileUse]) -> String {
+    let of_text = sha256(text.as_bytes());
+    if files.is_empty() {
+        return of_text;
+    }
+    let list: String = files.iter().map(|file| format!("{}  {}\n", file.sha256, file.name)).collect();
+    sha256(format!("{of_text}  \n{list}").as_bytes())
 }
 
 fn sha256(bytes: &[u8]) -> String {

@@ -19,14 +19,17 @@
 //! # Ok::<(), etalon_scene::SceneErrors>(())
 //! ```
 
+mod files;
 mod format;
 pub mod json;
+pub mod mesh;
 pub mod model;
 mod problem;
 mod vector;
 
 use std::path::Path;
 
+pub use files::{FileUse, MAX_FILE_BYTES};
 pub use model::*;
 pub use problem::{Code, LoadError, Problem, Related, SceneErrors, Severity, Span};
 
@@ -58,7 +61,35 @@ pub fn parse_with_size(
     file_name: &str,
     size: Option<[u32; 2]>,
 ) -> Result<(Scene, Vec<Problem>), SceneErrors> {
-    json::read(text, file_name, |form: format::SceneForm, reader| format::scene(&form, size, reader))
+    parse_in(text, file_name, None, size).map(|loaded| (loaded.scene, loaded.warnings))
+}
+
+/// A scene, and what it was made from.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Scene,
+    /// What is odd and not an error.
+    pub warnings: Vec<Problem>,
+    /// The files that the scene refers to, in the order in which they were first read.
+    pub files: Vec<FileUse>,
+}
+
+/// As [`parse_with_size`], with the folder to which names of files are relative; without one, a scene that refers to
+/// files is refused.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_in(
+    text: &str,
+    file_name: &str,
+    folder: Option<&Path>,
+    size: Option<[u32; 2]>,
+) -> Result<Loaded, SceneErrors> {
+    let mut files = files::Files::new(folder);
+    let read =
+        json::read(text, file_name, |form: format::SceneForm, reader| format::scene(&form, size, &mut files, reader));
+    read.map(|(scene, warnings)| Loaded { scene, warnings, files: files.used() })
 }
 
 /// Reads a scene file. The scene comes with the warnings.
@@ -68,5 +99,7 @@ pub fn parse_with_size(
 pub fn load(path: impl AsRef<Path>) -> Result<(Scene, Vec<Problem>), LoadError> {
     let path = path.as_ref();
     let text = json::load_text(path)?;
-    Ok(parse(&text, &path.display().to_string())?)
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let loaded = parse_in(&text, &path.display().to_string(), Some(folder), None)?;
+    Ok((loaded.scene, loaded.warnings))
 }

@@ -3,6 +3,8 @@
 //! Lengths are metres, angles radians, wavelengths nanometres. World space is right-handed. Whoever holds a [`Scene`]
 //! may rely on everything that `docs/scene-format.md` lists as an error being absent from it.
 
+use std::sync::Arc;
+
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 
 /// A whole scene.
@@ -170,13 +172,23 @@ pub enum Shape {
         /// Radius, above 0.
         radius_m: f64,
     },
-    /// Triangles; the normal of (a, b, c) is along (b − a) × (c − a).
-    Mesh {
-        /// Vertex positions.
-        vertices: Vec<[f64; 3]>,
-        /// Vertex indices, all within range.
-        triangles: Vec<[u32; 3]>,
-    },
+    /// Triangles; objects that name the same file share them.
+    Mesh(Arc<Mesh>),
+}
+
+/// Triangles, and what their vertices carry.
+///
+/// The geometric normal of a triangle (a, b, c) is along (b − a) × (c − a).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Vertex positions, m.
+    pub vertices: Vec<[f64; 3]>,
+    /// Vertex indices, all within range.
+    pub triangles: Vec<[u32; 3]>,
+    /// Shading normals: none, or for each vertex a unit vector, or (0, 0, 0) where it has none.
+    pub normals: Vec<[f32; 3]>,
+    /// Texture coordinates: none, or one pair for each vertex.
+    pub uvs: Vec<[f32; 2]>,
 }
 
 /// An affine map: `world = linear · local + translation`.

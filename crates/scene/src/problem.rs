@@ -133,6 +133,14 @@ codes! {
     NegativeEmission = "negative-emission",
     /// A wavelength at which something is not known.
     OutsideFit = "outside-fit",
+    /// A file that the scene names cannot be read.
+    File = "file",
+    /// A file that the scene names is of a kind that is not read there.
+    FileFormat = "file-format",
+    /// A mesh file that is damaged, or holds what makes no sense.
+    MeshFile = "mesh-file",
+    /// Something in a file that is not used (a warning).
+    LeftOut = "left-out",
     /// Triangles without area were left out (a warning).
     DegenerateTriangles = "degenerate-triangles",
     /// Nothing in the scene emits light (a warning).

@@ -21,6 +21,7 @@ fn examples() -> Vec<(&'static str, &'static str)> {
 
 #[test]
 fn every_example_is_right() {
+    let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests"));
     let all = examples();
     assert!(all.len() >= 20, "{}", all.len());
     for (kind, text) in all {
@@ -50,8 +51,8 @@ fn every_example_is_right() {
             }
             other => panic!("an example of {other:?}?"),
         };
-        match etalon_scene::parse(&scene, "example.json") {
-            Ok((_, warnings)) => assert_eq!(warnings, [], "{text}"),
+        match etalon_scene::parse_in(&scene, "example.json", Some(folder), None) {
+            Ok(loaded) => assert_eq!(loaded.warnings, [], "{text}"),
             Err(errors) => panic!("{errors}\n{scene}"),
         }
     }

@@ -7,6 +7,7 @@ use etalon_optics::index::SellmeierTerm;
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{ComplexIndex, Illuminant, OutsideFit, RefractiveIndex, Spectrum};
 use etalon_scene::*;
+use std::sync::Arc;
 
 fn scene(text: &str) -> Scene {
     parse(text, "test.json").unwrap_or_else(|errors| panic!("{errors}")).0
@@ -142,7 +143,7 @@ fn objects_and_lights() {
     assert_eq!(disk.emission, Some(Emission { radiance, sides: EmissionSides::Front }));
     let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-    assert_eq!(pyramid.shape, Shape::Mesh { vertices, triangles });
+    assert_eq!(pyramid.shape, Shape::Mesh(Arc::new(Mesh { vertices, triangles, ..Mesh::default() })));
     assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 11));
     // By hand: (x, y, z) → (2x, −2y, 6z) → a quarter turn: (2y, 2x, 6z) → moved → x and y swapped, moved.
     let linear = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]];
@@ -167,7 +168,8 @@ fn objects_and_lights() {
 #[test]
 fn a_box_is_a_closed_mesh_whose_normals_point_outward() {
     let scene = scene(EVERYTHING);
-    let Shape::Mesh { vertices, triangles } = &scene.objects[4].shape else { panic!("a mesh") };
+    let Shape::Mesh(mesh) = &scene.objects[4].shape else { panic!("a mesh") };
+    let Mesh { vertices, triangles, .. } = &**mesh;
     assert_eq!((vertices.len(), triangles.len()), (8, 12));
     let mut edges = std::collections::HashMap::new();
     let (mut volume, mut area) = (0.0, 0.0);
@@ -282,7 +284,8 @@ fn needles_are_kept_and_only_triangles_without_area_are_dropped() {
     assert!(parse(&Parts { objects, ..RIGHT }.text(), "test.json").is_err());
     let objects = objects.replace("[1e300,0,0]", "[0,0,1]");
     let scene = scene(&Parts { objects: &objects, ..RIGHT }.text());
-    let Shape::Mesh { triangles, .. } = &scene.objects[0].shape else { panic!("a mesh") };
+    let Shape::Mesh(mesh) = &scene.objects[0].shape else { panic!("a mesh") };
+    let triangles = &mesh.triangles;
     assert_eq!(triangles, &[[0, 1, 2], [0, 3, 4]]);
 }
 

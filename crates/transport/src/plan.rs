@@ -123,7 +123,7 @@ fn effects(scene: &Scene) -> Vec<Effect> {
         });
     let shadow_rays = target.filter(|_| used(&diffuse).is_some());
     let mesh = scene.objects.iter().find_map(|object| match &object.shape {
-        Shape::Mesh { triangles, .. } => Some(format!("\"{}\": {} triangles", object.name, triangles.len())),
+        Shape::Mesh(mesh) => Some(format!("\"{}\": {} triangles", object.name, mesh.triangles.len())),
         Shape::Sphere { .. } | Shape::Parallelogram { .. } | Shape::Disk { .. } => None,
     });
     let filter = match scene.film.filter {

@@ -163,10 +163,10 @@ impl Builder {
                 let shape = Disk::new(to_world.point(*center), normal, radius_m * to_world.uniform_scale())?;
                 self.add(index, shape, object, |shape, emitter| Light::Disk(DiskLight::new(shape, emitter)));
             }
-            Shape::Mesh { vertices, triangles } => {
-                let vertices: Vec<_> = vertices.iter().map(|v| to_world.point(*v)).collect();
+            Shape::Mesh(mesh) => {
+                let vertices: Vec<_> = mesh.vertices.iter().map(|v| to_world.point(*v)).collect();
                 let mut dropped = 0_usize;
-                for triangle in triangles {
+                for triangle in &mesh.triangles {
                     let [a, b, c] = triangle.map(|i| vertices[i as usize]);
                     let (b, c) = to_world.oriented(b, c);
                     match Triangle::new(a, b, c) {
@@ -181,7 +181,7 @@ impl Builder {
                     self.warnings.push(format!(
                         "object \"{}\": {dropped} of {} triangles have no area and were left out",
                         object.name,
-                        triangles.len()
+                        mesh.triangles.len()
                     ));
                 }
             }

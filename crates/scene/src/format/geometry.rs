@@ -1,15 +1,18 @@
 //! Shapes and transforms.
 
 use std::ops::Bound;
+use std::sync::Arc;
 
 use serde_json::json;
 
+use super::mesh;
+use crate::files::Files;
 use crate::json::{
     Code, Decode, Direction, List, Node, Optional, Positive, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span,
     Spanned,
 };
-use crate::model::{Shape, Transform};
-use crate::vector::{Matrix, apply, cross, dot, length, product, scale, sub, unit};
+use crate::model::{Mesh, Shape, Transform};
+use crate::vector::{Matrix, apply, cross, dot, length, product, unit};
 
 crate::record! {
     /// A sphere; its normal points outward.
@@ -46,14 +49,52 @@ crate::record! {
 }
 
 crate::record! {
-    /// Triangles; the normal of (a, b, c) is along (b − a) × (c − a): counter-clockwise seen from its front.
+    /// Triangles, of a file or listed here; the normal of (a, b, c) is along (b − a) × (c − a): counter-clockwise seen
+    /// from its front.
     pub(crate) struct MeshShape + comment {
+        /// A PLY or OBJ file (.ply, .obj), relative to this file's folder; its lengths are metres.
+        file: Optional<Spanned<String>>,
+        /// Only the faces of this group or object of an OBJ file.
+        group: Optional<Spanned<String>>,
         /// Vertex positions, m.
-        vertices_m: Required<List<[f64; 3]>>,
+        vertices_m: Optional<List<[f64; 3]>>,
         /// Vertices of each triangle, counted from 0.
-        triangles: Required<List<Spanned<[u32; 3]>>>,
-    }
+        triangles: Optional<List<Spanned<[u32; 3]>>>,
+        /// A shading normal for each vertex; only the direction counts.
+        normals: Optional<Spanned<List<Direction>>>,
+        /// Texture coordinates for each vertex.
+        uvs: Optional<Spanned<List<[f64; 2]>>>,
+        /// Which normals light is scattered by.
+        shading: Required<Shading> = r#""auto""#,
+    } with [
+        Rule::OneOf(&["file", "vertices_m"]),
+        Rule::Needs("vertices_m", &["triangles"]),
+        Rule::Needs("triangles", &["vertices_m"]),
+        Rule::Needs("normals", &["vertices_m"]),
+        Rule::Needs("uvs", &["vertices_m"]),
+        Rule::Needs("group", &["file"]),
+    ]
 }
+
+/// Which normals a mesh is shaded by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Shading {
+    /// Those of the vertices, if there are any.
+    Auto,
+    /// The triangles' own.
+    Flat,
+    /// Vertex normals, made from the triangles if there are none.
+    Smooth,
+}
+
+crate::keywords!(Shading {
+    /// The normals of the vertices where they have some, else the triangles' own.
+    "auto" => Self::Auto,
+    /// The triangles' own normals.
+    "flat" => Self::Flat,
+    /// The normals of the vertices, made from the triangles around them if they have none.
+    "smooth" => Self::Smooth,
+});
 
 crate::record! {
     /// A box along the axes: a mesh of 12 triangles whose normals point outward.
@@ -81,7 +122,7 @@ crate::variants! {
 const FLAT: f64 = 1e-12;
 
 /// The shape of a form.
-pub(crate) fn shape(form: &ShapeForm, object: &str, reader: &mut Reader<'_>) -> Option<Shape> {
+pub(crate) fn shape(form: &ShapeForm, object: &str, files: &mut Files, reader: &mut Reader<'_>) -> Option<Shape> {
     match form {
         ShapeForm::Sphere(sphere) => Some(Shape::Sphere { center: sphere.center_m?, radius_m: sphere.radius_m?.0 }),
         ShapeForm::Parallelogram(p) => {
@@ -98,7 +139,7 @@ pub(crate) fn shape(form: &ShapeForm, object: &str, reader: &mut Reader<'_>) -> 
         ShapeForm::Disk(disk) => {
             Some(Shape::Disk { center: disk.center_m?, normal: disk.normal?.0, radius_m: disk.radius_m?.0 })
         }
-        ShapeForm::Mesh(mesh) => self::mesh(mesh, object, reader),
+        ShapeForm::Mesh(mesh) => mesh::mesh(mesh, object, files, reader).map(Shape::Mesh),
         ShapeForm::Box(block) => {
             let (min, max) = (block.min_m?, block.max_m?);
             if let Some(axis) = (0..3).find(|&i| max.value[i] <= min[i]) {
@@ -106,82 +147,20 @@ pub(crate) fn shape(form: &ShapeForm, object: &str, reader: &mut Reader<'_>) -> 
                 reader.error(Code::DegenerateShape, max.at, message);
                 return None;
             }
-            Some(box_mesh(min, max.value))
+            Some(Shape::Mesh(Arc::new(box_mesh(min, max.value))))
         }
     }
 }
 
-fn mesh(mesh: &MeshShape, object: &str, reader: &mut Reader<'_>) -> Option<Shape> {
-    let before = reader.error_count();
-    let triangles = mesh.triangles.as_ref();
-    if triangles.is_some_and(|t| t.0.is_empty()) {
-        reader.error(Code::EmptyMesh, mesh.at.head(), "the mesh has no triangles");
-    }
-    let (vertices, triangles) = (mesh.vertices_m.as_ref()?, triangles?);
-    let count = vertices.0.len();
-    let (mut kept, mut flat) = (Vec::with_capacity(triangles.0.len()), 0_usize);
-    for triangle in triangles.0.iter().flatten() {
-        if let Some(&index) = triangle.value.iter().find(|&&i| i as usize >= count) {
-            let message = format!("vertex {index} does not exist");
-            let hint = match count {
-                0 => "the mesh has no vertices".to_owned(),
-                _ => format!("the mesh has {count}, counted from 0 to {}", count - 1),
-            };
-            reader.error_hint(Code::IndexOutOfRange, triangle.at, message, hint);
-            continue;
-        }
-        let [a, b, c] = triangle.value.map(|i| vertices.0[i as usize]);
-        // A wrong vertex has been reported.
-        let (Some(a), Some(b), Some(c)) = (a, b, c) else { continue };
-        if has_area(a, b, c) {
-            kept.push(triangle.value);
-        } else {
-            flat += 1;
-        }
-    }
-    if reader.error_count() > before {
-        return None;
-    }
-    // Wrong elements have been reported when they were decoded.
-    let vertices = vertices.clone().complete()?;
-    if triangles.0.iter().any(Option::is_none) || triangles.0.is_empty() {
-        return None;
-    }
-    if kept.is_empty() {
-        let message = format!("none of the {flat} triangles of {object} has an area");
-        reader.error(Code::EmptyMesh, mesh.at.head(), message);
-        return None;
-    }
-    if flat > 0 {
-        let all = triangles.0.len();
-        let message = format!("{flat} of the {all} triangles of {object} have no area and were dropped at load");
-        reader.warning(Code::DegenerateTriangles, mesh.at.head(), message, None);
-    }
-    Some(Shape::Mesh { vertices, triangles: kept })
-}
-
-/// Whether a triangle's normal can be told at all: three corners whose edges are not parallel to rounding.
-fn has_area(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> bool {
-    // Halved, so that the difference of two finite coordinates is finite.
-    let [a, b, c] = [a, b, c].map(|p| scale(p, 0.5));
-    // Two edges from the corner with the largest angle would be best; with unit vectors any two will do down to needles
-    // of 1e-15.
-    let edges = [sub(b, a), sub(c, b), sub(a, c)];
-    let Some(units) = unit(edges[0]).zip(unit(edges[1])).zip(unit(edges[2])) else { return false };
-    let ((u, v), w) = units;
-    let sines = [length(cross(u, v)), length(cross(v, w)), length(cross(w, u))];
-    // Each component of a vector product of unit vectors is rounded three times.
-    sines.into_iter().fold(0.0, f64::max) > 4.0 * f64::EPSILON
-}
-
-fn box_mesh(min: [f64; 3], max: [f64; 3]) -> Shape {
+fn box_mesh(min: [f64; 3], max: [f64; 3]) -> Mesh {
     // Corner i takes the larger x, y, z where bit 0, 1, 2 of i is set.
     let corner = |i: usize| std::array::from_fn(|axis| if i >> axis & 1 == 1 { max[axis] } else { min[axis] });
     // Each face counter-clockwise from outside, cut along the diagonal from its first corner.
     const FACES: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    Shape::Mesh {
+    Mesh {
         vertices: (0..8).map(corner).collect(),
         triangles: FACES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+        ..Mesh::default()
     }
 }
 
@@ -375,7 +354,7 @@ pub(crate) fn check_extent(shape: &Shape, transform: &Transform, at: Span, reade
             finite(point(*center)) && kept(linear([*radius_m, 0.0, 0.0]))
         }
         Shape::Parallelogram { origin, u, v } => finite(point(*origin)) && kept(linear(*u)) && kept(linear(*v)),
-        Shape::Mesh { vertices, .. } => vertices.iter().all(|v| finite(point(*v))),
+        Shape::Mesh(mesh) => mesh.vertices.iter().all(|v| finite(point(*v))),
     };
     if !held {
         let message = "in the world, the object is too far, too large or too small for double precision";

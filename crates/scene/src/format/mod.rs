@@ -8,9 +8,11 @@ mod geometry;
 mod integrator;
 mod light;
 mod material;
+mod mesh;
 mod names;
 mod scene;
 mod spectra;
 mod spectrum;
 
+pub(crate) use geometry::Shading;
 pub(crate) use scene::{SceneForm, scene};

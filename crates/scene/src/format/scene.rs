@@ -10,6 +10,7 @@ use super::material::{MaterialForm, material};
 use super::names::Names;
 use super::spectra::{Role, Spectra};
 use super::spectrum::SpectrumForm;
+use crate::files::Files;
 use crate::json::{
     Code, Decode, Kind, List, Named, Node, Optional, Reader, Required, SchemaBuilder, SchemaValue, Spanned,
 };
@@ -127,7 +128,12 @@ impl Decode for MaterialUse {
 }
 
 /// The scene of a file: everything that can be wrong is reported, whatever else is.
-pub(crate) fn scene(form: &SceneForm, size: Option<[u32; 2]>, reader: &mut Reader<'_>) -> Option<Scene> {
+pub(crate) fn scene(
+    form: &SceneForm,
+    size: Option<[u32; 2]>,
+    files: &mut Files,
+    reader: &mut Reader<'_>,
+) -> Option<Scene> {
     let film = form.film.as_ref().and_then(|form| film(form, size, reader));
     let camera = form.camera.as_ref().and_then(|form| camera(form, film.as_ref(), reader));
     let range_nm = form.integrator.as_ref().and_then(|form| wavelength_range_nm(form, reader));
@@ -143,7 +149,8 @@ pub(crate) fn scene(form: &SceneForm, size: Option<[u32; 2]>, reader: &mut Reade
     }
     let mut objects = All::default();
     for (i, form) in form.objects.iter().flat_map(|objects| objects.value.0.iter().enumerate()) {
-        objects.push(form.as_ref().and_then(|form| object(form, i, &names, &mut materials, &mut spectra, reader)));
+        objects
+            .push(form.as_ref().and_then(|form| object(form, i, &names, &mut materials, &mut spectra, files, reader)));
     }
     let mut lights = All::default();
     for (i, form) in form.lights.iter().flat_map(|lights| lights.0.iter().enumerate()) {
@@ -198,11 +205,12 @@ fn object<'f>(
     names: &Names<'f>,
     materials: &mut All<Material>,
     spectra: &mut Spectra<'f>,
+    files: &mut Files,
     reader: &mut Reader<'_>,
 ) -> Option<Object> {
     let place = format!("objects[{index}]");
     let name = form.name.clone().checked().map(|name| name.unwrap_or_else(|| place.clone()));
-    let shape = form.shape.as_ref().and_then(|form| shape(form, name.as_ref().unwrap_or(&place), reader));
+    let shape = form.shape.as_ref().and_then(|form| shape(form, name.as_ref().unwrap_or(&place), files, reader));
     let transform = form.transform.as_ref().and_then(|steps| {
         let transform = transform(&steps.value, steps.at.head(), reader)?;
         if let Some(shape) = &form.shape {

@@ -1,0 +1,109 @@
+//! Files that a scene refers to: each read once, and remembered by its hash.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use sha2::{Digest, Sha256};
+
+use crate::format::Shading;
+use crate::json::{Code, Reader, Spanned};
+use crate::model::Mesh;
+
+/// The largest file that a scene may refer to, bytes: 4 GiB.
+pub const MAX_FILE_BYTES: u64 = 4 << 30;
+
+/// A file that a scene refers to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileUse {
+    /// Its name, as the scene writes it.
+    pub name: String,
+    /// SHA-256 of its bytes, in hex.
+    pub sha256: String,
+}
+
+/// What makes a mesh of a file.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct MeshKey {
+    pub(crate) file: String,
+    pub(crate) group: Option<String>,
+    pub(crate) shading: Shading,
+}
+
+/// The files of one scene.
+#[derive(Debug)]
+pub(crate) struct Files {
+    folder: Option<PathBuf>,
+    meshes: HashMap<MeshKey, Option<Arc<Mesh>>>,
+    used: Vec<FileUse>,
+}
+
+impl Files {
+    pub(crate) fn new(folder: Option<&Path>) -> Self {
+        Self { folder: folder.map(Path::to_owned), meshes: HashMap::new(), used: Vec::new() }
+    }
+
+    /// The files that have been read.
+    pub(crate) fn used(self) -> Vec<FileUse> {
+        self.used
+    }
+
+    /// The bytes of a file; why there are none is reported at the name.
+    pub(crate) fn bytes(&mut self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Vec<u8>> {
+        let Some(folder) = &self.folder else {
+            let message = format!("\"{}\" cannot be found: this scene is a text without a folder", name.value);
+            reader.error(Code::File, name.at, message);
+            return None;
+        };
+        let path = folder.join(&name.value);
+        match read(&path) {
+            Ok(bytes) => {
+                if !self.used.iter().any(|file| file.name == name.value) {
+                    self.used.push(FileUse { name: name.value.clone(), sha256: sha256(&bytes) });
+                }
+                Some(bytes)
+            }
+            Err(why) => {
+                let hint = "names of files are relative to the folder of the scene";
+                reader.error_hint(Code::File, name.at, format!("cannot read {}: {why}", path.display()), hint);
+                None
+            }
+        }
+    }
+
+    /// The mesh of a key, made by `make` if it has not been asked for before.
+    pub(crate) fn mesh(&mut self, key: MeshKey, make: impl FnOnce(&mut Self) -> Option<Mesh>) -> Option<Arc<Mesh>> {
+        if let Some(known) = self.meshes.get(&key) {
+            return known.clone();
+        }
+        let made = make(self).map(Arc::new);
+        self.meshes.insert(key, made.clone());
+        made
+    }
+}
+
+/// The bytes of a file of at most [`MAX_FILE_BYTES`].
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let kind = file.metadata().map_err(|error| error.to_string())?;
+    if !kind.is_file() {
+        return Err("it is not a plain file".to_owned());
+    }
+    if kind.len() > MAX_FILE_BYTES {
+        return Err(format!("it has {} bytes, and {MAX_FILE_BYTES} is the most that is read", kind.len()));
+    }
+    let mut bytes = Vec::with_capacity(kind.len() as usize);
+    file.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold(String::new(), |mut hex, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}

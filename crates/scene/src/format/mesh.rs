@@ -1,0 +1,201 @@
+//! Meshes, listed in the scene or in a file of their own.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::geometry::{MeshShape, Shading};
+use crate::files::{Files, MeshKey};
+use crate::json::{Code, Optional, Reader, Span, Spanned};
+use crate::mesh::{self, Part};
+use crate::model::Mesh;
+use crate::vector::{cross, length, scale, sub, unit};
+
+/// The mesh of a form.
+pub(super) fn mesh(form: &MeshShape, object: &str, files: &mut Files, reader: &mut Reader<'_>) -> Option<Arc<Mesh>> {
+    let shading = form.shading?;
+    let group = form.group.clone().checked()?;
+    if let Some(file) = form.file.clone().checked()? {
+        let key = MeshKey { file: file.value.clone(), group: group.as_ref().map(|g| g.value.clone()), shading };
+        return files.mesh(key, |files| from_file(&file, group.as_ref(), shading, object, files, reader));
+    }
+    if form.vertices_m.is_present() || form.triangles.is_present() {
+        listed(form, shading, object, reader)
+    } else {
+        None
+    }
+}
+
+/// The mesh of a file.
+fn from_file(
+    file: &Spanned<String>,
+    group: Option<&Spanned<String>>,
+    shading: Shading,
+    object: &str,
+    files: &mut Files,
+    reader: &mut Reader<'_>,
+) -> Option<Mesh> {
+    let extension = Path::new(&file.value).extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
+    if !matches!(extension.as_str(), "ply" | "obj") {
+        let hint = "a mesh file is .ply or .obj; other models become scenes by `etalon import`";
+        reader.error_hint(Code::FileFormat, file.at, format!("\"{}\" is no mesh file", file.value), hint);
+        return None;
+    }
+    let bytes = files.bytes(file, reader)?;
+    let read = match extension.as_str() {
+        "ply" => mesh::read_ply(&bytes).map(|part| vec![part]),
+        // Materials are the scene's own business here.
+        _ => mesh::read_obj(&bytes, |_| Ok(Vec::new())).map(|obj| obj.parts),
+    };
+    drop(bytes);
+    let refuse = |message: String, reader: &mut Reader<'_>| {
+        reader.error(Code::MeshFile, file.at, format!("{}: {message}", file.value));
+        None
+    };
+    let mut parts = match read {
+        Ok(parts) => parts,
+        Err(error) => return refuse(error.to_string(), reader),
+    };
+    if let Some(group) = group {
+        let names: Vec<String> = parts.iter().filter_map(|part| part.name.clone()).collect();
+        parts.retain(|part| part.name.as_ref() == Some(&group.value));
+        if parts.is_empty() {
+            let message = format!("{} has no group named \"{}\"", file.value, group.value);
+            let hint = match names.is_empty() {
+                true => "it has no named groups".to_owned(),
+                false => format!("it has {}", crate::json::listed(names.iter().map(String::as_str))),
+            };
+            reader.error_hint(Code::UnknownName, group.at, message, hint);
+            return None;
+        }
+    }
+    for left_out in parts.iter().flat_map(|part| &part.left_out) {
+        reader.warning(Code::LeftOut, file.at, format!("{}: {left_out}", file.value), None);
+    }
+    let mut mesh = match merged(parts) {
+        Some(mesh) => mesh,
+        None => return refuse("it has no triangles".to_owned(), reader),
+    };
+    keep_those_with_area(&mut mesh, object, file.at, reader)?;
+    shade(&mut mesh, shading);
+    Some(mesh)
+}
+
+/// All parts as one. Normals and texture coordinates are kept where any part has them; vertices of others have normal
+/// (0, 0, 0), which is none, and texture coordinates (0, 0).
+fn merged(parts: Vec<Part>) -> Option<Mesh> {
+    let mut parts = parts.into_iter().map(|part| part.mesh).filter(|mesh| !mesh.triangles.is_empty());
+    let mut all = parts.next()?;
+    for part in parts {
+        let first = all.vertices.len() as u32;
+        if !part.normals.is_empty() || !all.normals.is_empty() {
+            all.normals.resize(all.vertices.len(), [0.0; 3]);
+            all.normals.extend(part.normals);
+            all.normals.resize(all.vertices.len() + part.vertices.len(), [0.0; 3]);
+        }
+        if !part.uvs.is_empty() || !all.uvs.is_empty() {
+            all.uvs.resize(all.vertices.len(), [0.0; 2]);
+            all.uvs.extend(part.uvs);
+            all.uvs.resize(all.vertices.len() + part.vertices.len(), [0.0; 2]);
+        }
+        all.vertices.extend(part.vertices);
+        all.triangles.extend(part.triangles.into_iter().map(|t| t.map(|i| first + i)));
+    }
+    Some(all)
+}
+
+/// The mesh of the lists in a scene.
+fn listed(form: &MeshShape, shading: Shading, object: &str, reader: &mut Reader<'_>) -> Option<Arc<Mesh>> {
+    let before = reader.error_count();
+    let triangles = form.triangles.given();
+    if triangles.is_some_and(|t| t.0.is_empty()) {
+        reader.error(Code::EmptyMesh, form.at.head(), "the mesh has no triangles");
+    }
+    let (vertices, triangles) = (form.vertices_m.given()?, triangles?);
+    let count = vertices.0.len();
+    for triangle in triangles.0.iter().flatten() {
+        if let Some(&index) = triangle.value.iter().find(|&&i| i as usize >= count) {
+            let message = format!("vertex {index} does not exist");
+            let hint = match count {
+                0 => "the mesh has no vertices".to_owned(),
+                _ => format!("the mesh has {count}, counted from 0 to {}", count - 1),
+            };
+            reader.error_hint(Code::IndexOutOfRange, triangle.at, message, hint);
+        }
+    }
+    let normals = for_each_vertex("normals", &form.normals, count, |n| n.0.map(|v| v as f32), reader);
+    let uvs = for_each_vertex("uvs", &form.uvs, count, |uv| uv.map(|v| v as f32), reader);
+    if reader.error_count() > before {
+        return None;
+    }
+    // Wrong elements have been reported when they were decoded.
+    let triangles: Option<Vec<[u32; 3]>> = triangles.0.iter().map(|t| t.as_ref().map(|t| t.value)).collect();
+    let mut mesh = Mesh { vertices: vertices.clone().complete()?, triangles: triangles?, normals: normals?, uvs: uvs? };
+    keep_those_with_area(&mut mesh, object, form.at.head(), reader)?;
+    shade(&mut mesh, shading);
+    Some(Arc::new(mesh))
+}
+
+fn for_each_vertex<T, U>(
+    key: &str,
+    given: &Optional<Spanned<crate::json::List<T>>>,
+    count: usize,
+    convert: impl Fn(&T) -> U,
+    reader: &mut Reader<'_>,
+) -> Option<Vec<U>> {
+    match given {
+        Optional::Absent => Some(Vec::new()),
+        Optional::Invalid => None,
+        Optional::Given(list) => {
+            let length = list.value.0.len();
+            if length != count {
+                let message = format!("{length} {key} for {count} vertices");
+                reader.error(Code::WrongLength, list.at.head(), message);
+                return None;
+            }
+            list.value.0.iter().map(|element| element.as_ref().map(&convert)).collect()
+        }
+    }
+}
+
+/// Leaves out triangles without area, with a warning; none left is an error.
+fn keep_those_with_area(mesh: &mut Mesh, object: &str, at: Span, reader: &mut Reader<'_>) -> Option<()> {
+    let all = mesh.triangles.len();
+    let vertices = &mesh.vertices;
+    mesh.triangles.retain(|t| {
+        let [a, b, c] = t.map(|i| vertices[i as usize]);
+        has_area(a, b, c)
+    });
+    let flat = all - mesh.triangles.len();
+    if mesh.triangles.is_empty() {
+        reader.error(Code::EmptyMesh, at, format!("none of the {flat} triangles of {object} has an area"));
+        return None;
+    }
+    if flat > 0 {
+        let message = format!("{flat} of the {all} triangles of {object} have no area and were dropped at load");
+        reader.warning(Code::DegenerateTriangles, at, message, None);
+    }
+    Some(())
+}
+
+fn shade(mesh: &mut Mesh, shading: Shading) {
+    match shading {
+        Shading::Auto => {}
+        Shading::Flat => mesh.normals = Vec::new(),
+        Shading::Smooth if mesh.normals.is_empty() => mesh.normals = mesh::smooth_normals(mesh),
+        Shading::Smooth => {}
+    }
+}
+
+/// Whether a triangle's normal can be told at all: three corners whose edges are not parallel to rounding.
+fn has_area(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> bool {
+    // Halved, so that the difference of two finite coordinates is finite.
+    let [a, b, c] = [a, b, c].map(|p| scale(p, 0.5));
+    // Two edges from the corner with the largest angle would be best; with unit vectors any two will do down to needles
+    // of 1e-15.
+    let edges = [sub(b, a), sub(c, b), sub(a, c)];
+    let Some(units) = unit(edges[0]).zip(unit(edges[1])).zip(unit(edges[2])) else { return false };
+    let ((u, v), w) = units;
+    let sines = [length(cross(u, v)), length(cross(v, w)), length(cross(w, u))];
+    // Each component of a vector product of unit vectors is rounded three times.
+    sines.into_iter().fold(0.0, f64::max) > 4.0 * f64::EPSILON
+}
