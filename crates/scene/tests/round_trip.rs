@@ -143,7 +143,10 @@ fn objects_and_lights() {
     assert_eq!(disk.emission, Some(Emission { radiance, sides: EmissionSides::Front }));
     let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-    assert_eq!(pyramid.shape, Shape::Mesh(Arc::new(Mesh { vertices, triangles, ..Mesh::default() })));
+    let corner = -(1.0 / 3.0_f64.sqrt()) as f32;
+    let normals = vec![[corner; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let uvs = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5]];
+    assert_eq!(pyramid.shape, Shape::Mesh(Arc::new(Mesh { vertices, triangles, normals, uvs })));
     assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 11));
     // By hand: (x, y, z) → (2x, −2y, 6z) → a quarter turn: (2y, 2x, 6z) → moved → x and y swapped, moved.
     let linear = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]];
