@@ -7,3 +7,4 @@ mod renders;
 mod scenes;
 mod support;
 mod usage;
+mod verify;

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use etalon_oracle::{
     statistics::Estimate,
     subjects::Reading,
-    truths::{Truth, judge, truths},
+    truths::{Truth, exchange_files, judge, truths},
 };
 
 fn find(name: &str) -> Truth {
@@ -111,4 +111,42 @@ fn darkness_must_be_dark() {
     let truth = find("square-light-turned-away");
     judge(&truth, &reading(0.0, 0.0), 1e-8).assert();
     assert!(!judge(&truth, &reading(1e-9, 0.0), 1e-8).pass);
+}
+
+#[test]
+fn every_exported_scene_keeps_to_the_neutral_form_and_every_truth_is_listed() {
+    let list = truths();
+    let files = exchange_files(&list);
+    let text = |path: &str| -> &str {
+        &files.iter().find(|file| file.path == path).unwrap_or_else(|| panic!("{path} is not exported")).text
+    };
+    let json = |path: &str| -> serde_json::Value { serde_json::from_str(text(path)).unwrap() };
+    let form = jsonschema::validator_for(&json("neutral.schema.json")).unwrap();
+    for file in files.iter().filter(|file| file.path.starts_with("scenes/")) {
+        let scene = json(&file.path);
+        let errors: Vec<_> = form.iter_errors(&scene).map(|error| error.to_string()).collect();
+        assert!(errors.is_empty(), "{}: {errors:?}", file.path);
+    }
+    let index = json("truths.json");
+    let entries = index["truths"].as_array().unwrap();
+    assert_eq!(entries.len(), list.len());
+    for (entry, truth) in entries.iter().zip(&list) {
+        assert_eq!(entry["name"], truth.name.as_str());
+        assert_eq!(entry["value"], truth.value);
+        let scene = json(entry["scene"].as_str().unwrap());
+        assert_eq!((&entry["width"], &entry["height"]), (&scene["film"]["width"], &scene["film"]["height"]));
+        if let Some(white) = entry["white_scene"].as_str() {
+            let white = json(white);
+            assert_eq!(white["film"], scene["film"], "{}: the same film", truth.name);
+            assert_eq!(white["integrator"]["wavelength_range_nm"], entry["band_nm"]);
+        }
+        for claim in entry["claims"].as_array().unwrap() {
+            let named = format!("| `{}` |", claim.as_str().unwrap());
+            assert!(text("README.md").contains(&named), "the README explains {claim}");
+        }
+    }
+    // A key that the form does not know, and a sphere of no size, are seen.
+    let mut wrong = json(&format!("scenes/{}.json", list[0].name));
+    wrong["films"] = 1.into();
+    assert!(!form.is_valid(&wrong));
 }

@@ -2,7 +2,7 @@
 //!
 //! A [`Truth`] is data: a scene that any renderer can be taught, the number that the mean of its picture must show, where the
 //! number comes from, a second evaluation by other means, and what plausible mistakes would show instead. [`truths`] lists
-//! them all, [`judge`] holds a reading to one.
+//! them all, [`judge`] holds a reading to one, [`exchange_files`] writes them down for a renderer in another language.
 //!
 //! The quantity is always the mean over all pixels of the radiance (W·m⁻²·sr⁻¹·nm⁻¹) that arrives at the pixel, as a linear
 //! sensor reads it whose answer to a constant spectrum of radiance 1 is 1: CIE Y, if normalised that way. Irradiance E is read
@@ -10,6 +10,7 @@
 
 mod cameras;
 mod enclosures;
+mod exchange;
 mod furnaces;
 mod glass;
 mod illumination;
@@ -23,6 +24,7 @@ mod water;
 
 use std::{fmt, sync::Arc};
 
+pub use exchange::{ExchangeFile, exchange_files};
 pub use irradiance::{
     disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
     walsh_reflectance,

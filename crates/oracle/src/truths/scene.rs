@@ -112,7 +112,8 @@ impl Scene {
     /// A thermal emitter at a temperature, K, multiplied by a factor.
     pub(super) fn thermal_lamp(mut self, shape: Value, temperature_k: f64, scale: f64) -> Self {
         let radiance = json!({ "type": "blackbody", "temperature_k": temperature_k, "scale": scale });
-        self.objects.push(json!({ "shape": shape, "material": black(), "emission": { "radiance": radiance } }));
+        let emission = json!({ "radiance": radiance, "sides": "front" });
+        self.objects.push(json!({ "shape": shape, "material": black(), "emission": emission }));
         self
     }
 

@@ -1,0 +1,161 @@
+//! What is said about each truth: a table for people, one JSON object for machines.
+
+use std::time::Instant;
+
+use etalon_oracle::Verdict;
+use etalon_oracle::statistics::{Estimate, POWER, SUITE_SIGNIFICANCE};
+use etalon_oracle::subjects::Reading;
+use etalon_oracle::truths::{Truth, judge};
+use miette::miette;
+use serde::Serialize;
+
+use crate::failure::{Failure, Outcome};
+use crate::print;
+
+/// One truth, judged.
+#[derive(Serialize)]
+pub(super) struct Row {
+    name: String,
+    formula: String,
+    truth: f64,
+    measured: f64,
+    standard_error: f64,
+    z: f64,
+    /// The smallest bias that this very test would have caught, in the units of the truth.
+    resolvable_bias: f64,
+    pass: bool,
+    evidence: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seconds: Option<f64>,
+}
+
+impl Row {
+    /// Judges a reading, or says why there is none.
+    pub(super) fn new(truth: &Truth, reading: Result<Reading, String>, significance: f64) -> Self {
+        let (estimate, verdict) = match reading {
+            Ok(reading) => (reading.estimate, judge(truth, &reading, significance)),
+            Err(why) => (Estimate::new(f64::NAN, f64::NAN), Verdict::broken(&truth.name, why)),
+        };
+        Self {
+            name: truth.name.clone(),
+            formula: truth.formula.clone(),
+            truth: truth.value,
+            measured: estimate.mean,
+            standard_error: estimate.standard_error,
+            z: verdict.statistic,
+            resolvable_bias: verdict.resolvable_bias,
+            pass: verdict.pass,
+            evidence: verdict.evidence,
+            seconds: None,
+        }
+    }
+
+    pub(super) fn took(mut self, seconds: f64) -> Self {
+        self.seconds = Some(seconds);
+        self
+    }
+}
+
+/// Everything that was judged together.
+#[derive(Serialize)]
+pub(super) struct Report {
+    significance: f64,
+    power: f64,
+    /// Where the pictures came from; absent when they are our own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    images: Option<String>,
+    /// Absent when the pictures are not our own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seed: Option<u64>,
+    seconds: f64,
+    passed: usize,
+    failed: usize,
+    truths: Vec<Row>,
+    /// Truths of which there is no picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    missing: Option<Vec<String>>,
+    #[serde(skip)]
+    start: Instant,
+    #[serde(skip)]
+    table: bool,
+}
+
+impl Report {
+    /// An empty report; with `table` every row is printed as it comes.
+    pub(super) fn new(table: bool) -> Self {
+        if table {
+            print::line(&format!(
+                "{:<44} {:>14} {:>14} {:>9} {:>6} {:>9}",
+                "truth", "value", "measured", "± error", "z", "sees"
+            ));
+        }
+        Self {
+            significance: SUITE_SIGNIFICANCE,
+            power: POWER,
+            images: None,
+            seed: None,
+            seconds: 0.0,
+            passed: 0,
+            failed: 0,
+            truths: Vec::new(),
+            missing: None,
+            start: Instant::now(),
+            table,
+        }
+    }
+
+    pub(super) fn with_seed(self, seed: u64) -> Self {
+        Self { seed: Some(seed), ..self }
+    }
+
+    pub(super) fn of_images(self, folder: String) -> Self {
+        Self { images: Some(folder), missing: Some(Vec::new()), ..self }
+    }
+
+    pub(super) fn push(&mut self, row: Row) {
+        if self.table {
+            print::line(&format!(
+                "{:<44} {:>14.10} {:>14.10} {:>9.1e} {:>6.2} {:>9.1e}{}",
+                row.name,
+                row.truth,
+                row.measured,
+                row.standard_error,
+                row.z,
+                row.resolvable_bias,
+                if row.pass { String::new() } else { format!("  FAILED: {}", row.evidence) }
+            ));
+        }
+        *if row.pass { &mut self.passed } else { &mut self.failed } += 1;
+        self.truths.push(row);
+    }
+
+    pub(super) fn push_missing(&mut self, truth: &Truth) {
+        if self.table {
+            print::line(&format!("{:<44} {:>14.10} {:>14}", truth.name, truth.value, "no picture"));
+        }
+        self.missing.get_or_insert_default().push(truth.name.clone());
+    }
+
+    /// Prints what is left to say; a failure if any truth does not hold.
+    pub(super) fn finish(mut self) -> Outcome {
+        self.seconds = self.start.elapsed().as_secs_f64();
+        if self.table {
+            let missing = match &self.missing {
+                Some(missing) if !missing.is_empty() => format!(", {} without a picture", missing.len()),
+                _ => String::new(),
+            };
+            print::line(&format!(
+                "{} passed, {} failed{missing}, in {:.1} s; a right renderer fails any of them with probability {:.0e}",
+                self.passed, self.failed, self.seconds, SUITE_SIGNIFICANCE
+            ));
+        } else {
+            print::json(&self);
+        }
+        match self.failed {
+            0 => Ok(()),
+            failed => {
+                Err(Failure::run(miette!(code = "truths", "{failed} of {} truths do not hold", self.truths.len())))
+            }
+        }
+    }
+}

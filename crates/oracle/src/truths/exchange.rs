@@ -1,0 +1,170 @@
+//! The truths as files for a renderer in any language.
+//!
+//! [`exchange_files`] gives the folder that such a renderer reads; [`Reading::from_pixels`] and
+//! [`Reading::from_means`](crate::subjects::Reading::from_means) read what it drew.
+
+use serde_json::{Value, json};
+
+use super::{Claim, Truth};
+use crate::{
+    statistics::{Estimate, Welford},
+    subjects::Reading,
+};
+
+/// A file of the exchange folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExchangeFile {
+    /// Its path in the folder, with `/` between names.
+    pub path: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// The folder with which a renderer joins: a README, the JSON Schema of the neutral form, the list of truths, and a scene
+/// for each.
+#[must_use]
+pub fn exchange_files(truths: &[Truth]) -> Vec<ExchangeFile> {
+    let file = |path: &str, text: &str| ExchangeFile { path: path.to_owned(), text: text.to_owned() };
+    let list = json!({ "format": 1, "truths": truths.iter().map(entry).collect::<Vec<_>>() });
+    let list = serde_json::to_string_pretty(&list).expect("a JSON value always prints") + "\n";
+    let mut files = vec![
+        file("README.md", include_str!("exchange/README.md")),
+        file("neutral.schema.json", include_str!("exchange/neutral.schema.json")),
+        file("truths.json", &list),
+    ];
+    for truth in truths {
+        files.push(file(&format!("scenes/{}.json", truth.name), &(truth.scene.clone() + "\n")));
+        if let Some(white) = truth.white_scene() {
+            files.push(file(&format!("scenes/{}.white.json", truth.name), &(white + "\n")));
+        }
+    }
+    files
+}
+
+/// A truth's entry in `truths.json`.
+fn entry(truth: &Truth) -> Value {
+    let [width, height] = truth.film_px();
+    let name = &truth.name;
+    let known: Vec<_> = truth.mistakes.iter().map(|m| json!({ "what": m.what, "value": m.value })).collect();
+    json!({
+        "name": name,
+        "scene": format!("scenes/{name}.json"),
+        "picture": format!("{name}.exr"),
+        "white_scene": truth.band_nm.map(|_| format!("scenes/{name}.white.json")),
+        "white_picture": truth.band_nm.map(|_| format!("{name}.white.exr")),
+        "width": width,
+        "height": height,
+        "band_nm": truth.band_nm,
+        "value": truth.value,
+        "formula": truth.formula,
+        "derivation": truth.derivation,
+        "mistakes": known,
+        "tolerance": truth.tolerance,
+        "tolerance_reason": truth.tolerance_reason,
+        // A dark picture without known mistakes need not be measured finely: nothing may come through at all.
+        "must_resolve": Some(truth.must_resolve()).filter(|bias| bias.is_finite()),
+        "claims": truth.claims.iter().map(|claim| claim.name()).collect::<Vec<_>>(),
+    })
+}
+
+impl Claim {
+    /// Its name in files: words joined by hyphens.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AveragesPolarisation => "averages-polarisation",
+            Self::CarriesPolarisation => "carries-polarisation",
+            Self::NarrowBand => "narrow-band",
+            Self::Dispersion => "dispersion",
+            Self::ThinLens => "thin-lens",
+            Self::DepthLimit => "depth-limit",
+            Self::NestedMedia => "nested-media",
+        }
+    }
+}
+
+impl Truth {
+    /// Width and height of its film, pixels.
+    #[must_use]
+    pub fn film_px(&self) -> [usize; 2] {
+        let scene: Value = serde_json::from_str(&self.scene).expect("a truth's scene is JSON");
+        ["width", "height"].map(|side| scene["film"][side].as_u64().expect("a film has two sides") as usize)
+    }
+}
+
+impl Reading {
+    /// Reads one picture: its pixels and the standard error of each, with noise that is independent from pixel to pixel.
+    ///
+    /// A pixel that is not finite, in value or error, counts as non-finite and is left out.
+    ///
+    /// # Panics
+    /// When there are not as many errors as pixels, or none of either.
+    #[must_use]
+    pub fn from_pixels(values: &[f64], standard_errors: &[f64]) -> Self {
+        assert_eq!(values.len(), standard_errors.len(), "an error for each pixel");
+        assert!(!values.is_empty(), "a picture has pixels");
+        let finite = || values.iter().zip(standard_errors).filter(|(v, e)| v.is_finite() && e.is_finite());
+        let count = finite().count() as f64;
+        let mean = finite().map(|(value, _)| value).sum::<f64>() / count;
+        let variance = finite().map(|(_, error)| error * error).sum::<f64>();
+        Self { estimate: Estimate::new(mean, variance.sqrt() / count), nonfinite: values.len() as u64 - count as u64 }
+    }
+
+    /// Reads several pictures of the same scene with different seeds and equally many paths: the mean of each. Their
+    /// scatter is the error, with one degree of freedom less than there are pictures.
+    #[must_use]
+    pub fn from_means(means: &[f64], nonfinite: u64) -> Self {
+        let moments: Welford = means.iter().copied().collect();
+        Self { estimate: moments.estimate(), nonfinite }
+    }
+
+    /// The reading in units of another, such as a band's in units of white; their noise is taken to be independent.
+    #[must_use]
+    pub fn relative_to(self, white: Self) -> Self {
+        let (a, b) = (self.estimate, white.estimate);
+        let mean = a.mean / b.mean;
+        // The error of a quotient to first order.
+        let standard_error = (a.standard_error / b.mean).hypot(mean * b.standard_error / b.mean);
+        let fewer = match (a.degrees_of_freedom, b.degrees_of_freedom) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (some, None) | (None, some) => some,
+        };
+        Self {
+            estimate: Estimate { mean, standard_error, degrees_of_freedom: fewer },
+            nonfinite: self.nonfinite + white.nonfinite,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_average_and_their_errors_add_in_quadrature() {
+        let reading = Reading::from_pixels(&[1.0, 3.0, 5.0, 7.0], &[3.0, 0.0, 4.0, 0.0]);
+        assert_eq!(reading, Reading { estimate: Estimate::new(4.0, 1.25), nonfinite: 0 });
+        let broken = Reading::from_pixels(&[1.0, f64::NAN, 3.0, 9.0], &[0.0, 0.0, 0.0, f64::INFINITY]);
+        assert_eq!(broken, Reading { estimate: Estimate::new(2.0, 0.0), nonfinite: 2 });
+    }
+
+    #[test]
+    fn several_pictures_have_one_degree_of_freedom_less() {
+        let reading = Reading::from_means(&[1.0, 2.0, 3.0], 0);
+        assert_eq!(reading.estimate.degrees_of_freedom, Some(2.0));
+        assert!((reading.estimate.standard_error - (1.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+        assert!(Reading::from_means(&[1.0], 0).estimate.standard_error.is_nan());
+    }
+
+    #[test]
+    fn a_quotient_carries_both_errors() {
+        let part = Reading { estimate: Estimate::new(3.0, 0.3), nonfinite: 1 };
+        let white =
+            Reading { estimate: Estimate { degrees_of_freedom: Some(5.0), ..Estimate::new(2.0, 0.2) }, nonfinite: 2 };
+        let ratio = part.relative_to(white);
+        assert_eq!(ratio.estimate.mean, 1.5);
+        // Each is a tenth of its mean, so the quotient's is √2 tenths of it.
+        assert!((ratio.estimate.standard_error - 0.15 * 2.0_f64.sqrt()).abs() < 1e-15);
+        assert_eq!((ratio.estimate.degrees_of_freedom, ratio.nonfinite), (Some(5.0), 3));
+    }
+}

@@ -1,0 +1,140 @@
+//! `etalon verify`: our own renders, and pictures that come from elsewhere.
+
+use std::path::Path;
+
+use etalon_picture::{Attributes, Picture, read_exr, write_exr};
+use serde_json::Value;
+
+use crate::support::{entries, etalon, etalon_line};
+
+fn exported(folder: &Path) {
+    etalon_line("verify --export {}", [folder]).expect(0);
+}
+
+/// A picture of one channel, the same everywhere, and what it says about its noise.
+fn flat(path: &Path, size: (usize, usize), channels: &[(&str, f32)]) {
+    let mut picture = Picture::new(size.0, size.1).unwrap();
+    for (name, value) in channels {
+        picture.insert(name, vec![*value; size.0 * size.1]).unwrap();
+    }
+    write_exr(path, &picture, &Attributes::new()).unwrap();
+}
+
+fn row<'a>(report: &'a Value, name: &str) -> &'a Value {
+    report["truths"].as_array().unwrap().iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("no {name}"))
+}
+
+#[test]
+fn a_few_truths_hold_and_are_reported_in_the_documented_form() {
+    let report = etalon_line("verify eye-in-water sky-alone lens-closed --json", []).expect(0).json();
+    let rows = report["truths"].as_array().unwrap();
+    assert_eq!((rows.len(), &report["passed"], &report["failed"]), (3, &3.into(), &0.into()));
+    for row in rows {
+        for key in ["truth", "measured", "standard_error", "z", "resolvable_bias"] {
+            assert!(row[key].is_number(), "{key} of {row}");
+        }
+        assert_eq!(row["pass"], true);
+    }
+    assert_eq!(row(&report, "eye-in-water")["truth"], 1.33 * 1.33);
+    let table = etalon(["verify", "lens-closed"]).expect(0).stdout;
+    assert!(table.contains("lens-closed") && table.contains("1 passed, 0 failed"), "{table}");
+}
+
+#[test]
+fn an_export_holds_every_truth_and_our_own_renders_of_it_pass_as_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let (truths, pictures) = (folder.path().join("truths"), folder.path().join("pictures"));
+    exported(&truths);
+    assert_eq!(entries(&truths), ["README.md", "neutral.schema.json", "scenes", "truths.json"]);
+    let list: Value = serde_json::from_str(&std::fs::read_to_string(truths.join("truths.json")).unwrap()).unwrap();
+    assert!(list["truths"].as_array().unwrap().len() >= 136);
+
+    std::fs::create_dir(&pictures).unwrap();
+    // One scene of one wavelength, which a film of CIE Y reads relative to white, and one that shines everywhere.
+    for name in ["eye-in-glass", "prism-bk7-at-656.2725-nanometres", "prism-bk7-at-656.2725-nanometres.white"] {
+        for seed in 1..=16 {
+            let (scene, picture) =
+                (truths.join(format!("scenes/{name}.json")), pictures.join(format!("{name}.{seed}.exr")));
+            etalon_line(&format!("render {{}} -o {{}} --quiet --spp 64 --seed {seed}"), [&scene, &picture]).expect(0);
+        }
+    }
+    let report = etalon_line("verify --images {} --json", [&pictures]).expect(0).json();
+    assert_eq!((&report["passed"], &report["failed"]), (&2.into(), &0.into()), "{report}");
+    assert_eq!(report["missing"].as_array().unwrap().len() + 2, list["truths"].as_array().unwrap().len());
+    assert_eq!(report["images"], pictures.to_str().unwrap());
+    // The same pictures averaged, with the variance of each pixel's mean.
+    let mean = folder.path().join("mean");
+    std::fs::create_dir(&mean).unwrap();
+    let (mut sum, mut squares) = (vec![[0.0_f64; 3]; 1024], vec![[0.0_f64; 3]; 1024]);
+    for seed in 1..=16 {
+        let file = read_exr(&pictures.join(format!("eye-in-glass.{seed}.exr"))).unwrap().picture;
+        for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
+            for (pixel, sample) in file.channel(name).unwrap().iter().enumerate() {
+                sum[pixel][c] += f64::from(*sample) / 16.0;
+                squares[pixel][c] += f64::from(*sample).powi(2) / 16.0;
+            }
+        }
+    }
+    let mut picture = Picture::new(32, 32).unwrap();
+    for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
+        picture.insert(name, sum.iter().map(|pixel| pixel[c] as f32).collect()).unwrap();
+        let variance = (0..1024).map(|p| ((squares[p][c] - sum[p][c].powi(2)) / 15.0).max(0.0) as f32).collect();
+        picture.insert(&format!("Variance.{name}"), variance).unwrap();
+    }
+    write_exr(&mean.join("eye-in-glass.exr"), &picture, &Attributes::new()).unwrap();
+    let averaged = etalon_line("verify --images {} --json", [&mean]).expect(0).json();
+    let (one, several) = (row(&averaged, "eye-in-glass"), row(&report, "eye-in-glass"));
+    let close = |key: &str, relative: f64| {
+        let (a, b) = (one[key].as_f64().unwrap(), several[key].as_f64().unwrap());
+        assert!((a / b - 1.0).abs() < relative, "{key}: {a} {b}");
+    };
+    close("measured", 1e-6);
+    // Colours whose noise is taken to go together look noisier than they are; sixteen values know an error to 18 %.
+    assert!(one["standard_error"].as_f64().unwrap() > 0.5 * several["standard_error"].as_f64().unwrap());
+}
+
+#[test]
+fn wrong_and_noisy_pictures_fail_missing_ones_are_said_and_strangers_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    flat(&at("eye-in-glass.exr"), (32, 32), &[("Y", 1.0), ("Error.Y", 0.01)]);
+    flat(&at("eye-in-water.exr"), (32, 32), &[("Y", 1.7689), ("Variance.Y", 1e-4)]);
+    flat(&at("plate-at-89.9-degrees.exr"), (32, 32), &[("Y", 5.0696e-3), ("Error.Y", 1.0)]);
+    flat(&at("eye-in-galss.exr"), (32, 32), &[("Y", 2.25)]);
+    let ran = etalon_line("verify --images {} --json", [folder.path()]).expect(1).says(["eye-in-galss.exr", "2 of 3"]);
+    let report = ran.json();
+    assert_eq!((&report["passed"], &report["failed"]), (&1.into(), &2.into()));
+    let said = |name: &str| row(&report, name)["evidence"].as_str().unwrap().to_owned();
+    assert!(said("eye-in-glass").contains("radiance not scaled by n²"), "{}", said("eye-in-glass"));
+    assert!(said("plate-at-89.9-degrees").contains("too noisy"), "{}", said("plate-at-89.9-degrees"));
+    assert!(report["missing"].as_array().unwrap().contains(&"sky-alone".into()));
+    let table = etalon_line("verify eye-in --images {}", [folder.path()]).expect(1).stdout;
+    assert!(table.contains("no picture") && table.contains("2 without a picture"), "{table}");
+
+    flat(&at("eye-in-glass.exr"), (32, 32), &[("Y", f32::NAN), ("Error.Y", 0.01)]);
+    etalon_line("verify eye-in-glass --images {}", [folder.path()]).expect(1);
+}
+
+#[test]
+fn pictures_that_cannot_be_used_exit_2_with_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    etalon_line("verify --images {}", [folder.path()]).expect(2).says(["no picture", "--export"]);
+    etalon_line("verify --images {}", [&at("nowhere")]).expect(2).says(["nowhere"]);
+    etalon_line("verify --images {} --thorough", [folder.path()]).expect(2).says(["--thorough"]);
+    etalon(["verify", "no-such-truth"]).expect(2).says(["no-such-truth"]);
+    for (channels, size, why) in [
+        (vec![("Y", 2.25)], (32, 32), "noisy"),
+        (vec![("Y", 2.25), ("Error.Y", 0.01)], (32, 16), "32 × 16"),
+        (vec![("Z", 2.25), ("Error.Z", 0.01)], (32, 32), "Y, or R, G and B"),
+    ] {
+        flat(&at("eye-in-glass.exr"), size, &channels);
+        etalon_line("verify --images {}", [folder.path()]).expect(2).says([why]);
+    }
+    std::fs::write(at("eye-in-glass.exr"), "no picture").unwrap();
+    etalon_line("verify --images {}", [folder.path()]).expect(2).says(["eye-in-glass.exr"]);
+    flat(&at("eye-in-glass.1.exr"), (32, 32), &[("Y", 2.25)]);
+    etalon_line("verify --images {}", [folder.path()]).expect(2).says(["which counts"]);
+    std::fs::remove_file(at("eye-in-glass.exr")).unwrap();
+    etalon_line("verify --images {}", [folder.path()]).expect(2).says(["alone"]);
+}
