@@ -1,6 +1,7 @@
 //! Integration tests of the program and of whole renders, in one binary.
 
 mod assignment;
+mod explain;
 mod outputs;
 mod refusals;
 mod renders;

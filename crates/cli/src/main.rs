@@ -31,6 +31,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Render(commands::render::Args),
+    Explain(commands::explain::Args),
     Schema(commands::schema::Args),
     Whitted(commands::whitted::Args),
     Figures(commands::figures::Args),
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
     print::set_up_reports();
     let outcome: Outcome = match cli.command {
         Command::Render(args) => commands::render::run(args),
+        Command::Explain(args) => commands::explain::run(args),
         Command::Schema(args) => commands::schema::run(args),
         Command::Whitted(args) => commands::whitted::run(args),
         Command::Figures(args) => commands::figures::run(args),

@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
+use etalon_transport::{EffectName, Study};
 
 use crate::args::Size;
 
@@ -29,6 +30,12 @@ pub(crate) struct Overrides {
     /// Most path edges from the camera to a light; 1 shows emitters only, 2 adds one bounce.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_depth: Option<u32>,
+    /// For study: simulate an effect that the scene does not call for (see `etalon explain`).
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
+    force: Vec<EffectName>,
+    /// For study: leave an effect out that the scene calls for. The picture is then an approximation, and says so.
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
+    without: Vec<EffectName>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -91,6 +98,11 @@ impl Overrides {
         }
     }
 
+    /// What to simulate otherwise than the scene calls for.
+    pub(crate) fn study(&self) -> Study {
+        Study { force: self.force.clone(), without: self.without.clone() }
+    }
+
     /// The film's width and height in pixels, which the reader of the scene must know: a camera's angle may follow them.
     pub(crate) fn film_size(&self) -> Option<[u32; 2]> {
         self.size.map(|size| [size.width, size.height])
@@ -101,6 +113,10 @@ impl Overrides {
         fn word(value: impl ValueEnum) -> Option<String> {
             value.to_possible_value().map(|value| value.get_name().to_owned())
         }
+        let names = |effects: &[EffectName]| {
+            let names: Vec<_> = effects.iter().map(|effect| effect.as_str()).collect();
+            (!names.is_empty()).then(|| names.join(","))
+        };
         [
             ("spp", self.spp.map(|spp| spp.to_string())),
             ("seed", self.seed.map(|seed| seed.to_string())),
@@ -109,6 +125,8 @@ impl Overrides {
             ("sampler", self.sampler.and_then(word)),
             ("light-sampling", self.light_sampling.and_then(word)),
             ("max-depth", self.max_depth.map(|depth| depth.to_string())),
+            ("force", names(&self.force)),
+            ("without", names(&self.without)),
         ]
         .into_iter()
         .filter_map(|(name, value)| value.map(|value| format!(" --{name} {value}")))

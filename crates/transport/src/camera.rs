@@ -30,20 +30,24 @@ enum Kind<R> {
 
 impl<R: Real> Camera<R> {
     /// Prepares a scene's camera for a film of `width` × `height` square pixels.
-    pub fn new(camera: &scene::Camera, width: u32, height: u32) -> Self {
+    ///
+    /// `lens` gives a pinhole a lens of radius 0, which draws points on it and changes no ray.
+    pub fn new(camera: &scene::Camera, width: u32, height: u32, lens: bool) -> Self {
         let forward = Vec3::from_array(camera.forward);
         let up = Vec3::from_array(camera.up);
         let right = forward.cross(up);
         let aspect = f64::from(width) / f64::from(height);
         let (half_height, kind) = match &camera.projection {
-            Projection::Perspective { vertical_fov_rad, lens } => {
-                let kind = match lens {
+            Projection::Perspective { vertical_fov_rad, lens: thin } => {
+                let of = |radius_m: f64, focus_distance_m: f64| Kind::ThinLens {
+                    right: (right * radius_m).cast(),
+                    up: (up * radius_m).cast(),
+                    focus_distance: R::from_f64(focus_distance_m),
+                };
+                let kind = match thin {
                     // A lens of radius 0 is a pinhole, bit for bit (hard case 35).
-                    Some(lens) if lens.radius_m > 0.0 => Kind::ThinLens {
-                        right: (right * lens.radius_m).cast(),
-                        up: (up * lens.radius_m).cast(),
-                        focus_distance: R::from_f64(lens.focus_distance_m),
-                    },
+                    Some(thin) if thin.radius_m > 0.0 => of(thin.radius_m, thin.focus_distance_m),
+                    _ if lens => of(0.0, 1.0),
                     _ => Kind::Pinhole,
                 };
                 ((0.5 * vertical_fov_rad).tan(), kind)
@@ -57,6 +61,11 @@ impl<R: Real> Camera<R> {
             half_up: (up * half_height).cast(),
             kind,
         }
+    }
+
+    /// Whether [`Camera::ray`] draws a point on a lens.
+    pub fn has_lens(&self) -> bool {
+        matches!(self.kind, Kind::ThinLens { .. })
     }
 
     /// The ray through `film`, in [−1, 1]² with x to the right and y up, and through the lens at `lens_u` in [0, 1)².
@@ -90,7 +99,7 @@ mod tests {
 
     fn thin(radius_m: f64, focus_distance_m: f64) -> Camera<f64> {
         let lens = Some(ThinLens { radius_m, focus_distance_m });
-        Camera::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens }), 300, 200)
+        Camera::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens }), 300, 200, false)
     }
 
     proptest! {
@@ -112,10 +121,15 @@ mod tests {
         #[test]
         fn a_lens_of_radius_zero_is_the_pinhole_bit_for_bit(x in -1.0..1.0_f64, y in -1.0..1.0_f64, u in 0.0..1.0_f64) {
             let pinhole =
-                Camera::<f64>::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens: None }), 300, 200);
-            let (a, b) = (pinhole.ray([x, y], [u, u]), thin(0.0, 5.0).ray([x, y], [u, u]));
-            prop_assert_eq!(a.direction, b.direction);
-            prop_assert_eq!(a.origin, b.origin);
+                Camera::<f64>::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens: None }), 300, 200, false);
+            let forced =
+                Camera::<f64>::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens: None }), 300, 200, true);
+            prop_assert!(forced.has_lens() && !pinhole.has_lens());
+            let a = pinhole.ray([x, y], [u, u]);
+            for b in [thin(0.0, 5.0).ray([x, y], [u, u]), forced.ray([x, y], [u, u])] {
+                prop_assert_eq!(a.direction, b.direction);
+                prop_assert_eq!(a.origin, b.origin);
+            }
         }
     }
 
@@ -131,7 +145,7 @@ mod tests {
 
     #[test]
     fn orthographic_rays_are_parallel_and_span_the_height() {
-        let c = Camera::<f64>::new(&camera(Projection::Orthographic { height_m: 4.0 }), 200, 100);
+        let c = Camera::<f64>::new(&camera(Projection::Orthographic { height_m: 4.0 }), 200, 100, false);
         let (a, b) = (c.ray([-1.0, -1.0], [0.0; 2]), c.ray([1.0, 1.0], [0.0; 2]));
         assert_eq!(a.direction, b.direction);
         assert_eq!(b.origin - a.origin, Vec3::new(8.0, 4.0, 0.0));

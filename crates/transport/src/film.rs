@@ -71,6 +71,12 @@ pub struct Counters {
     pub rays: u64,
     /// Rays that asked whether a light is in sight.
     pub shadow_rays: u64,
+    /// Points drawn on a lens.
+    pub lens_draws: u64,
+    /// Times that a light at infinity was asked for its radiance.
+    pub environment_lookups: u64,
+    /// Vertices at which weights of the lanes were carried, because dispersion may part them.
+    pub lane_weights: u64,
     /// Paths cut at the internal limit on vertices rather than ended by the scene: each may lack light.
     pub cut_paths: u64,
     /// Samples that were not finite.
@@ -91,6 +97,9 @@ impl Counters {
         self.paths += other.paths;
         self.rays += other.rays;
         self.shadow_rays += other.shadow_rays;
+        self.lens_draws += other.lens_draws;
+        self.environment_lookups += other.environment_lookups;
+        self.lane_weights += other.lane_weights;
         self.cut_paths += other.cut_paths;
         self.nonfinite += other.nonfinite;
         self.locate(&other.nonfinite_at);

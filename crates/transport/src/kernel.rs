@@ -1,32 +1,62 @@
-//! The kernels: the path loop instantiated for a scalar type, and the table that names them.
+//! The kernels: the path loop instantiated for a scalar type and a model of wavelengths, and the table that names them.
 
 use crate::camera::Camera;
 use crate::film::{Counters, Film, NonFinite, PixelRect, PixelSum};
+use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
+use crate::plan::{EffectName, LaneModel};
 use crate::prepare::Prepared;
+use crate::replay::{Replay, replay};
 use crate::sampler::Sampler;
 use crate::wavelength::Wavelengths;
 use etalon_optics::{Lanes, Real};
 use etalon_scene::Precision;
 use std::ops::Range;
 
-/// Wavelengths that a path carries.
+/// Wavelengths that a path carries where they differ.
 pub(crate) const LANES: usize = 4;
 
-/// A kernel: adds samples to one tile.
-pub(crate) type Kernel = fn(&Prepared, PixelRect, Range<u32>, &Film) -> (Vec<PixelSum>, Counters);
+/// The path loop for one scalar type and one model of wavelengths.
+pub(crate) struct Kernel {
+    pub precision: Precision,
+    pub lanes: LaneModel,
+    /// Its name: the model, the number of lanes, the scalar.
+    pub name: &'static str,
+    /// Adds samples to one tile.
+    pub render: fn(&Prepared, PixelRect, Range<u32>, &Film) -> (Vec<PixelSum>, Counters),
+    /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
+    pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
+}
 
-/// The whole table.
-pub(crate) fn kernel(precision: Precision) -> Kernel {
-    match precision {
-        Precision::F32 => render_tile::<f32>,
-        Precision::F64 => render_tile::<f64>,
-    }
+/// The whole table. What is no type parameter is decided by the plan, at run time: a branch costs nothing, work does.
+static KERNELS: [Kernel; 6] = [
+    entry::<f32, OneLane, 1>(Precision::F32, LaneModel::One, "one-lane-f32"),
+    entry::<f64, OneLane, 1>(Precision::F64, LaneModel::One, "one-lane-f64"),
+    entry::<f32, Shared, LANES>(Precision::F32, LaneModel::Shared, "shared-4-f32"),
+    entry::<f64, Shared, LANES>(Precision::F64, LaneModel::Shared, "shared-4-f64"),
+    entry::<f32, Hero<f32, LANES>, LANES>(Precision::F32, LaneModel::Hero, "hero-4-f32"),
+    entry::<f64, Hero<f64, LANES>, LANES>(Precision::F64, LaneModel::Hero, "hero-4-f64"),
+];
+
+const fn entry<R: Real, M: WavelengthModel<R, N>, const N: usize>(
+    precision: Precision,
+    lanes: LaneModel,
+    name: &'static str,
+) -> Kernel {
+    Kernel { precision, lanes, name, render: render_tile::<R, M, N>, replay: replay::<R, M, N> }
+}
+
+/// The kernel of a scalar type and a model of wavelengths.
+pub(crate) fn kernel(precision: Precision, lanes: LaneModel) -> &'static Kernel {
+    KERNELS
+        .iter()
+        .find(|kernel| kernel.precision == precision && kernel.lanes == lanes)
+        .expect("the table has every pair")
 }
 
 /// The samples `samples` of every pixel of `tile`, added to what the film holds in the order of their numbers.
-fn render_tile<R: Real>(
+fn render_tile<R: Real, M: WavelengthModel<R, N>, const N: usize>(
     prepared: &Prepared,
     tile: PixelRect,
     samples: Range<u32>,
@@ -39,8 +69,8 @@ fn render_tile<R: Real>(
         .map(|(x, y)| {
             let mut sum = film.pixels()[film.index(x, y)];
             for sample in samples.clone() {
-                let (wavelengths, radiance) = tracer.sample(x, y, sample, &mut counters, &mut ());
-                let xyz = wavelengths.to_xyz(radiance);
+                let (wavelengths, radiance) = tracer.sample::<M, N>(x, y, sample, &mut counters, &mut ());
+                let xyz = M::to_xyz(prepared, &wavelengths, radiance);
                 counters.paths += 1;
                 if xyz.iter().all(|v| v.is_finite()) {
                     (0..3).for_each(|c| sum.xyz[c] += xyz[c]);
@@ -66,15 +96,18 @@ impl<'a, R: Real> Tracer<'a, R> {
     pub(crate) fn new(prepared: &'a Prepared) -> Self {
         let integrator = &prepared.scene.integrator;
         let film = &prepared.scene.film;
+        let plan = prepared.plan();
         Self {
             prepared,
-            camera: Camera::new(&prepared.scene.camera, film.width, film.height),
+            camera: Camera::new(&prepared.scene.camera, film.width, film.height, plan.runs(EffectName::Lens)),
             world: World {
                 geometry: &prepared.geometry,
                 surfaces: &prepared.surfaces,
                 lights: &prepared.lights,
                 environments: &prepared.environments,
                 light_sampling: integrator.light_sampling,
+                shadow_rays: prepared.shadow_rays(),
+                weigh_hits: prepared.lights.has_surfaces() || plan.runs(EffectName::Mis),
                 max_depth: integrator.max_depth.unwrap_or(MOST_VERTICES).min(MOST_VERTICES),
                 roulette: integrator.roulette,
             },
@@ -82,27 +115,50 @@ impl<'a, R: Real> Tracer<'a, R> {
     }
 
     /// One camera path: a pure function of the scene, its seed, the pixel and the number of the sample.
-    pub(crate) fn sample(
+    pub(crate) fn sample<M: WavelengthModel<R, N>, const N: usize>(
         &self,
         x: u32,
         y: u32,
         sample: u32,
         counters: &mut Counters,
-        observer: &mut impl Observer<R, LANES>,
-    ) -> (Wavelengths<LANES>, Lanes<R, LANES>) {
+        observer: &mut impl Observer<R, N>,
+    ) -> (Wavelengths<N>, Lanes<R, N>) {
         let scene = &self.prepared.scene;
         let (width, height) = (f64::from(scene.film.width), f64::from(scene.film.height));
         let pixel = u64::from(y) << 32 | u64::from(x);
         let sampler = Sampler::new(scene.integrator.sampler, scene.integrator.seed, pixel, sample);
         let [film_x, film_y, lens_1, lens_2] = sampler.set::<R>(0);
-        let [wavelength, ..] = sampler.set::<R>(1);
 
-        let wavelengths = self.prepared.wavelengths.sample_lanes(wavelength.to_f64());
+        let wavelengths = M::wavelengths(self.prepared, || {
+            let [wavelength, ..] = sampler.set::<R>(1);
+            wavelength
+        });
         let column = f64::from(x) + 0.5 + self.prepared.filter.offset(film_x.to_f64());
         let row = f64::from(y) + 0.5 + self.prepared.filter.offset(film_y.to_f64());
         let film = [R::from_f64(2.0 * column / width - 1.0), R::from_f64(1.0 - 2.0 * row / height)];
+        counters.lens_draws += u64::from(self.camera.has_lens());
         let ray = self.camera.ray(film, [lens_1, lens_2]);
-        let radiance = self.world.radiance(ray, &wavelengths.lambda_nm, &sampler, counters, observer);
+        let radiance = self.world.radiance::<R, M, N>(ray, &wavelengths.lambda_nm, &sampler, counters, observer);
         (wavelengths, radiance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    /// Each kernel costs build time and size; what can be a branch at run time is to stay one.
+    #[test]
+    fn the_table_of_kernels_stays_short_and_names_each_once() {
+        const MOST: usize = 8;
+        assert!(KERNELS.len() <= MOST);
+        let names: HashSet<_> = KERNELS.iter().map(|kernel| kernel.name).collect();
+        assert_eq!(names.len(), KERNELS.len());
+        for precision in [Precision::F32, Precision::F64] {
+            for lanes in [LaneModel::One, LaneModel::Shared, LaneModel::Hero] {
+                kernel(precision, lanes);
+            }
+        }
     }
 }

@@ -11,7 +11,7 @@
 //! | `path` | the path loop |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`] | what the estimates are made of |
-//! | `kernel`, [`mod@render`], [`film`] | the table of kernels, tiles over all cores, sums |
+//! | `kernel`, `model`, [`mod@render`], [`film`] | the table of kernels, what their lanes stand for, tiles over all cores, sums |
 //! | [`replay`] | one path, vertex by vertex |
 //!
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
@@ -24,6 +24,7 @@ pub mod filter;
 mod kernel;
 pub mod light;
 pub mod mis;
+mod model;
 pub mod observer;
 mod path;
 pub mod plan;
@@ -37,6 +38,6 @@ pub mod warp;
 pub mod wavelength;
 
 pub use film::{Counters, Film, NonFinite, PixelRect};
-pub use plan::{Effect, Plan};
-pub use prepare::{PrepareError, Prepared, prepare};
+pub use plan::{Effect, EffectName, Plan, Study, StudyError};
+pub use prepare::{PrepareError, Prepared, prepare, prepare_study};
 pub use render::{Control, Extent, ThreadError};

@@ -4,15 +4,17 @@
 //! vertex the light that arrives from the lights themselves is found in two ways, by a shadow ray toward a light and by
 //! the walk's own next step, combined by multiple importance sampling (Veach 1997).
 //!
-//! **Wavelengths.** All lanes follow the path that the hero drew. `beta` is f/p along it with the hero's p, and
-//! `lane_density` is each lane's own density of the same path relative to the hero's. The balance heuristic over the
-//! lanes that could have been hero (Wilkie et al. 2014, eq. 5) then weighs lane j by N·beta_j / Σ lane_density: plain
-//! `beta` as long as all lanes sample alike, N·beta_hero once dispersion has left the hero alone.
+//! **Wavelengths.** All lanes follow the path that the hero drew. `beta` is f/p along it with the hero's p, and `lanes`
+//! ([`WavelengthModel`]) knows each lane's own density of the same path relative to the hero's, where they can differ. The
+//! balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5) then weighs lane j by
+//! N·beta_j / Σ densities: plain `beta` as long as all lanes sample alike, N·beta_hero once dispersion has left the hero
+//! alone.
 
 use crate::bsdf::Bsdf;
 use crate::film::Counters;
 use crate::light::{LightTable, Target};
 use crate::mis::{Density, power_heuristic};
+use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
 use crate::sampler::Sampler;
 use crate::spectral::PathSpectrum;
@@ -35,9 +37,22 @@ pub(crate) struct World<'a> {
     pub lights: &'a LightTable,
     pub environments: &'a [PathSpectrum],
     pub light_sampling: LightSampling,
+    pub shadow_rays: ShadowRays,
+    /// Whether light that the walk runs into may have been found by a shadow ray too.
+    pub weigh_hits: bool,
     /// Most path edges from the camera to a light, at most [`MOST_VERTICES`].
     pub max_depth: u32,
     pub roulette: bool,
+}
+
+/// From which surfaces shadow rays are sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ShadowRays {
+    Never,
+    /// From those that can scatter what arrives from a given direction.
+    WhereUseful,
+    /// From every surface, although some can make nothing of it: for the study of what that costs.
+    Everywhere,
 }
 
 /// The last step of the walk, as far as MIS needs it.
@@ -51,7 +66,7 @@ enum Step<R> {
 
 impl World<'_> {
     /// Radiance that arrives along `ray` at each wavelength.
-    pub(crate) fn radiance<R: Real, const N: usize>(
+    pub(crate) fn radiance<R: Real, M: WavelengthModel<R, N>, const N: usize>(
         &self,
         mut ray: Ray<R>,
         lambda_nm: &Lanes<f64, N>,
@@ -61,17 +76,19 @@ impl World<'_> {
     ) -> Lanes<R, N> {
         let mut radiance = Lanes::ZERO;
         let mut beta = Lanes::<R, N>::ONE;
-        let mut lane_density = Lanes::<R, N>::ONE;
+        let mut lanes = M::start();
         // ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
         let mut eta_squared = R::ONE;
         let mut step = Step::Unshared;
 
         for vertex in 0_u32.. {
-            let lane_weight = R::from_f64(N as f64) / lane_density.sum();
+            let lane_weight = lanes.weight();
+            counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
             counters.rays += 1;
             let Some(hit) = self.geometry.closest_hit(&ray) else {
                 for sky in self.environments {
                     // Never a target of shadow rays: the BSDF's own directions are its best samples.
+                    counters.environment_lookups += 1;
                     let light = beta * sky.lanes(lambda_nm) * lane_weight;
                     observer.light(vertex, Found::Environment, light);
                     radiance += light;
@@ -85,7 +102,11 @@ impl World<'_> {
             observer.vertex(vertex, point.position, surface.object, beta);
 
             if let Some(emitter) = surface.emission_along(point.normal, wo) {
-                let mis = self.weight_of_hit(step, point.primitive, surface.light, ray.direction);
+                let mis = if self.weigh_hits {
+                    self.weight_of_hit(step, point.primitive, surface.light, ray.direction)
+                } else {
+                    R::ONE
+                };
                 let light = beta * emitter.lanes(lambda_nm) * (lane_weight * mis);
                 observer.light(vertex, Found::Emitter, light);
                 radiance += light;
@@ -96,7 +117,11 @@ impl World<'_> {
                 break;
             }
 
-            let shared = !self.lights.is_empty() && surface.bsdf.has_solid_angle_part();
+            let shared = match self.shadow_rays {
+                ShadowRays::Never => false,
+                ShadowRays::WhereUseful => surface.bsdf.has_solid_angle_part(),
+                ShadowRays::Everywhere => true,
+            };
             if shared {
                 let u = sampler.vertex_set(vertex, 1);
                 if let Some((index, direct)) = self.direct_light(&point, surface.bsdf, wo, lambda_nm, u, counters) {
@@ -112,7 +137,7 @@ impl World<'_> {
                 break;
             };
             beta *= next.weight;
-            lane_density *= next.lane_density;
+            lanes.follow(next.lane_density);
             eta_squared *= next.eta * next.eta;
             step = match next.density {
                 Density::SolidAngle(density) if shared => {
@@ -127,7 +152,7 @@ impl World<'_> {
                 observer.end(End::NonFinite);
                 return beta;
             }
-            let throughput = beta.max_lane() * (R::from_f64(N as f64) / lane_density.sum()) * eta_squared;
+            let throughput = beta.max_lane() * lanes.weight() * eta_squared;
             if throughput < R::from_f64(THROUGHPUT_FLOOR) {
                 observer.end(End::Vanished);
                 break;
@@ -178,6 +203,9 @@ impl World<'_> {
         [u_light, u1, u2, _]: [R; 4],
         counters: &mut Counters,
     ) -> Option<(u32, Lanes<R, N>)> {
+        if self.lights.is_empty() {
+            return None;
+        }
         let index = self.lights.choose(u_light.to_f64());
         let light = &self.lights.lights()[index];
         let sample = light.sample(point.position.to_f64(), [u1.to_f64(), u2.to_f64()])?;

@@ -2,10 +2,12 @@
 
 use crate::bsdf::Bsdf;
 use crate::filter::FilterSampler;
+use crate::kernel::{Kernel, kernel};
 use crate::light::{
     DirectionalLight, DiskLight, Emitter, Light, LightTable, ParallelogramLight, PointLight, SphereLight, TriangleLight,
 };
-use crate::plan::Plan;
+use crate::path::ShadowRays;
+use crate::plan::{EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, NO_LIGHT, ObjectSurface, Surfaces};
 use crate::wavelength::WavelengthDistribution;
@@ -23,6 +25,7 @@ pub struct Prepared {
     pub(crate) lights: LightTable,
     pub(crate) environments: Vec<PathSpectrum>,
     pub(crate) wavelengths: WavelengthDistribution,
+    pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
     plan: Plan,
     warnings: Vec<String>,
@@ -42,10 +45,21 @@ pub enum PrepareError {
     /// The scene as a whole cannot be built.
     #[error("the scene's geometry: {0}")]
     Geometry(#[from] GeometryError),
+    /// What the study asks for makes no sense.
+    #[error(transparent)]
+    Study(#[from] StudyError),
 }
 
 /// Prepares a scene: shapes in world space, the accelerator, the table of lights and the plan.
 pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
+    prepare_study(scene, &Study::default())
+}
+
+/// As [`prepare`], with effects that the scene does not call for, or without some that it does.
+pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareError> {
+    let plan = Plan::new(scene, study)?;
+    let simulated = simulated(scene, study);
+    let scene = &simulated;
     let range_nm = scene.integrator.wavelength_range_nm;
     let spectrum = |s: &Spectrum| PathSpectrum::new(s, range_nm);
     let mut builder = Builder::new(range_nm);
@@ -72,8 +86,12 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
                 let toward = -Vec3::from_array(*direction);
                 emitters.push(Light::Directional(DirectionalLight { toward, irradiance: spectrum(irradiance) }));
             }
+            LightKind::Environment { radiance } if radiance.is_zero() => {}
             LightKind::Environment { radiance } => environments.push(spectrum(radiance)),
         }
+    }
+    if plan.forces(EffectName::Environment) {
+        environments.push(PathSpectrum::Constant(0.0));
     }
     let lights = LightTable::new(emitters, radius, range_nm);
     let mut light_of = vec![NO_LIGHT; object_of.len()];
@@ -101,10 +119,11 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
         lights,
         environments,
         wavelengths: WavelengthDistribution::new(range_nm),
+        one_lane: OneLaneFilm::new(scene),
         filter: FilterSampler::new(&scene.film.filter),
-        plan: Plan::new(scene),
+        plan,
         warnings,
-        scene: scene.clone(),
+        scene: simulated,
     })
 }
 
@@ -117,6 +136,21 @@ impl Prepared {
     /// What will be simulated, and why.
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// The kernel that the plan chose.
+    pub(crate) fn kernel(&self) -> &'static Kernel {
+        kernel(self.scene.integrator.precision, self.plan.lane_model)
+    }
+
+    /// From which surfaces shadow rays are sent.
+    pub(crate) fn shadow_rays(&self) -> ShadowRays {
+        match () {
+            () if self.plan.forces(EffectName::ShadowRays) => ShadowRays::Everywhere,
+            // A lamp may shine in no wavelength that is rendered.
+            () if self.plan.runs(EffectName::ShadowRays) && !self.lights.is_empty() => ShadowRays::WhereUseful,
+            () => ShadowRays::Never,
+        }
     }
 
     /// What was noticed and is not an error, such as triangles without area that were left out.

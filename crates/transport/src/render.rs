@@ -1,7 +1,6 @@
 //! Rendering: tiles over all cores, the same bytes whatever their number.
 
 use crate::film::{Film, PixelRect};
-use crate::kernel::kernel;
 use crate::prepare::Prepared;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -62,7 +61,7 @@ impl Prepared {
         on_tile: &(dyn Fn(u64) -> Control + Sync),
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(extent.threads.unwrap_or(0)).build()?;
-        let kernel = kernel(self.scene.integrator.precision);
+        let render_tile = self.kernel().render;
         let tiles = extent.rect.tiles(TILE);
         let stopped = AtomicBool::new(false);
         let before: &Film = film;
@@ -73,7 +72,7 @@ impl Prepared {
                     if stopped.load(Ordering::Relaxed) {
                         return None;
                     }
-                    let done = kernel(self, tile, extent.samples.clone(), before);
+                    let done = render_tile(self, tile, extent.samples.clone(), before);
                     if on_tile(done.1.paths) == Control::Stop {
                         stopped.store(true, Ordering::Relaxed);
                     }

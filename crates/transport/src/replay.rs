@@ -1,11 +1,11 @@
 //! One path again, vertex by vertex.
 
 use crate::film::Counters;
-use crate::kernel::{LANES, Tracer};
+use crate::kernel::Tracer;
+use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
 use crate::prepare::Prepared;
 use etalon_optics::{Lanes, Real, Vec3};
-use etalon_scene::Precision;
 use serde::Serialize;
 
 /// All that happened on one path.
@@ -55,22 +55,25 @@ pub enum Event {
 impl Prepared {
     /// Traces sample number `sample` of pixel (`x`, `y`) once more and says what happened.
     pub fn replay(&self, x: u32, y: u32, sample: u32) -> Replay {
-        match self.scene.integrator.precision {
-            Precision::F32 => self.replay_in::<f32>(x, y, sample),
-            Precision::F64 => self.replay_in::<f64>(x, y, sample),
-        }
+        (self.kernel().replay)(self, x, y, sample)
     }
+}
 
-    fn replay_in<R: Real>(&self, x: u32, y: u32, sample: u32) -> Replay {
-        let mut recorder = Recorder { prepared: self, events: Vec::new() };
-        let tracer = Tracer::<R>::new(self);
-        let (wavelengths, radiance) = tracer.sample(x, y, sample, &mut Counters::default(), &mut recorder);
-        Replay {
-            wavelengths_nm: wavelengths.lambda_nm.0.to_vec(),
-            events: recorder.events,
-            radiance: widen(radiance),
-            xyz: wavelengths.to_xyz(radiance),
-        }
+/// [`Prepared::replay`] by one kernel.
+pub(crate) fn replay<R: Real, M: WavelengthModel<R, N>, const N: usize>(
+    prepared: &Prepared,
+    x: u32,
+    y: u32,
+    sample: u32,
+) -> Replay {
+    let mut recorder = Recorder { prepared, events: Vec::new() };
+    let tracer = Tracer::<R>::new(prepared);
+    let (wavelengths, radiance) = tracer.sample::<M, N>(x, y, sample, &mut Counters::default(), &mut recorder);
+    Replay {
+        wavelengths_nm: wavelengths.lambda_nm.0.to_vec(),
+        events: recorder.events,
+        radiance: widen(radiance),
+        xyz: M::to_xyz(prepared, &wavelengths, radiance),
     }
 }
 
@@ -79,12 +82,12 @@ struct Recorder<'a> {
     events: Vec<Event>,
 }
 
-fn widen<R: Real>(lanes: Lanes<R, LANES>) -> Vec<f64> {
+fn widen<R: Real, const N: usize>(lanes: Lanes<R, N>) -> Vec<f64> {
     lanes.0.iter().map(|v| v.to_f64()).collect()
 }
 
-impl<R: Real> Observer<R, LANES> for Recorder<'_> {
-    fn vertex(&mut self, vertex: u32, position: Vec3<R>, object: u32, beta: Lanes<R, LANES>) {
+impl<R: Real, const N: usize> Observer<R, N> for Recorder<'_> {
+    fn vertex(&mut self, vertex: u32, position: Vec3<R>, object: u32, beta: Lanes<R, N>) {
         self.events.push(Event::Vertex {
             vertex,
             object: self.prepared.scene.objects[object as usize].name.clone(),
@@ -93,7 +96,7 @@ impl<R: Real> Observer<R, LANES> for Recorder<'_> {
         });
     }
 
-    fn light(&mut self, vertex: u32, how: Found, radiance: Lanes<R, LANES>) {
+    fn light(&mut self, vertex: u32, how: Found, radiance: Lanes<R, N>) {
         let found = match how {
             Found::Emitter => "emitter".to_owned(),
             Found::Environment => "environment".to_owned(),

@@ -202,9 +202,14 @@ fn a_room_that_is_a_lamp_shows_the_series_cut_after_n_terms() {
         let estimate = mean_y(&scene, 0..16);
         let truth = 1.0 - 0.5_f64.powi(n);
         let (mean, error) = (estimate.mean(), estimate.standard_error());
-        // Only wavelengths vary. The next term of the series would be 0.4 % at n = 8.
+        // A room that is grey has no noise of wavelengths, and two of these none at all: all that is left then is that Y is
+        // normalised by a sum that differs by 2e-8 from the integral. The next term of the series would be 0.4 % at n = 8.
+        let rounding = 3e-8 * truth;
         assert!(error < 3e-4 * truth, "{n} {light_sampling}: the test sees too little, {error}");
-        assert!(((mean - truth) / error).abs() < 5.0, "{n} {light_sampling} {sides}: {mean} ± {error} is not {truth}");
+        assert!(
+            (mean - truth).abs() < 5.0 * error + rounding,
+            "{n} {light_sampling} {sides}: {mean} ± {error} is not {truth}"
+        );
     }
 }
 

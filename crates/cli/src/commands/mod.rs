@@ -1,5 +1,6 @@
 //! The commands, one a module: an `Args` for clap, and `pub(crate) fn run(args: Args) -> Outcome`.
 
+pub(crate) mod explain;
 pub(crate) mod figures;
 pub(crate) mod render;
 pub(crate) mod schema;

@@ -6,8 +6,8 @@ mod warnings;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use etalon_picture::{Picture, RenderInfo, Window};
-use etalon_transport::{Control, Extent, Film, PixelRect, Prepared, prepare};
+use etalon_picture::{Attribute, Picture, RenderInfo, Window};
+use etalon_transport::{Control, Extent, Film, PixelRect, Prepared, prepare_study};
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -135,7 +135,7 @@ fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
         )));
     }
     let start = Instant::now();
-    let prepared = match prepare(&loaded.scene) {
+    let prepared = match prepare_study(&loaded.scene, &args.overrides.study()) {
         Ok(prepared) => prepared,
         Err(error) => {
             failure.add(Failure::input(Report::from_err(error)));
@@ -150,6 +150,13 @@ fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
             .iter()
             .map(|warning| miette!(severity = miette::Severity::Warning, code = "prepare", "{warning}")),
     );
+    warnings.extend(prepared.plan().approximations.iter().map(|lost| {
+        miette!(
+            severity = miette::Severity::Warning,
+            code = "approximation",
+            "the picture is an approximation, without {lost}"
+        )
+    }));
     if args.exposure != 0.0 && !outputs.iter().any(|output| output.format == output::Format::Png) {
         warnings.push(miette!(
             severity = miette::Severity::Warning,
@@ -203,11 +210,21 @@ fn write(args: &Args, job: &Job, film: &Film, outputs: &[Output], seconds: f64) 
         scene_sha256: job.loaded.sha256.clone(),
         plan_json: serde_json::to_string(job.prepared.plan()).expect("a plan is plain data"),
     };
-    let comment = format!(
+    let approximation = job.prepared.plan().approximations.join("; without ");
+    let mut comment = format!(
         "{} samples a pixel, seed {}, exposure {:+} EV, scene {}",
         integrator.spp, integrator.seed, args.exposure, job.loaded.sha256
     );
-    let picture = info.attributes().and_then(|attributes| Ok((picture(film, job.rect)?, attributes)));
+    if !approximation.is_empty() {
+        comment += &format!(", approximation without {approximation}");
+    }
+    let picture = info.attributes().and_then(|mut attributes| {
+        if !approximation.is_empty() {
+            let text = Attribute::Text(format!("without {approximation}"));
+            attributes.insert("approximation".to_owned(), text);
+        }
+        Ok((picture(film, job.rect)?, attributes))
+    });
     match picture {
         Err(error) => failure.add(Failure::run(Report::from_err(error))),
         Ok((picture, attributes)) => {

@@ -43,6 +43,11 @@ impl LightTable {
         self.lights.is_empty()
     }
 
+    /// Whether the walk itself may run into a light that is aimed at.
+    pub fn has_surfaces(&self) -> bool {
+        self.lights.iter().any(|light| light.emitter().is_some())
+    }
+
     /// The lights, in the order of their indices.
     pub fn lights(&self) -> &[Light] {
         &self.lights

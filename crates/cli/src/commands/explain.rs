@@ -1,0 +1,150 @@
+//! `etalon explain`: what a scene calls for, what will be done about it, and what was not needed.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use etalon_scene::Scene;
+use etalon_transport::plan::{Decision, Effect, LaneModel, Plan};
+use etalon_transport::{Control, EffectName, Extent, Prepared, Study, prepare_study};
+use miette::Report;
+use serde::Serialize;
+
+use crate::failure::{Failure, Outcome};
+use crate::load::load;
+use crate::overrides::Overrides;
+use crate::print;
+
+/// Says which effects of light a scene calls for and by which object, and how it will be rendered.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The scene, as JSON.
+    scene: PathBuf,
+    #[command(flatten)]
+    overrides: Overrides,
+    /// Measure what each effect that is off would have cost, by short renders that alternate with and without it.
+    #[arg(long)]
+    measure: bool,
+    /// Print one JSON object on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct ExplainJson<'a> {
+    scene: String,
+    plan: &'a Plan,
+    /// What effects that are off would have cost, if it was measured.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    costs: Vec<Cost>,
+}
+
+/// The time of a render with an effect that nothing calls for, over that without.
+#[derive(Serialize)]
+struct Cost {
+    effect: EffectName,
+    /// Median over the pairs.
+    ratio: f64,
+    /// First and third quartile.
+    quartiles: [f64; 2],
+    /// Pairs of renders, alternating.
+    pairs: usize,
+}
+
+pub(crate) fn run(args: Args) -> Outcome {
+    let mut loaded = load(&args.scene, args.overrides.film_size())?;
+    args.overrides.apply(&mut loaded.scene);
+    print::warnings(&loaded.warnings);
+    let study = args.overrides.study();
+    let prepared = prepared(&loaded.scene, &study)?;
+    let plan = prepared.plan();
+    let costs = if args.measure { measure(&loaded.scene, &study, &prepared)? } else { Vec::new() };
+    if args.json {
+        print::json(&ExplainJson { scene: args.scene.display().to_string(), plan, costs });
+    } else {
+        print::line(&describe(plan, &costs));
+    }
+    Ok(())
+}
+
+fn prepared(scene: &Scene, study: &Study) -> Result<Prepared, Failure> {
+    prepare_study(scene, study).map_err(|error| Failure::input(Report::from_err(error)))
+}
+
+/// The plan, for people: a line an effect, then how the paths are traced.
+fn describe(plan: &Plan, costs: &[Cost]) -> String {
+    let mut lines: Vec<String> = plan.effects.iter().map(|effect| line(effect, costs)).collect();
+    lines.push(String::new());
+    lines.extend(how(plan).into_iter().map(|(what, value)| format!("{what:<16} {value}")));
+    for lost in &plan.approximations {
+        lines.push(format!("{:<16} without {lost}", "approximation"));
+    }
+    lines.join("\n")
+}
+
+fn line(effect: &Effect, costs: &[Cost]) -> String {
+    let state = if effect.on { "on" } else { "off" };
+    let study = match effect.study {
+        Some(Decision::Forced) => "forced, although: ",
+        Some(Decision::LeftOut) => "left out, although called for by ",
+        None => "",
+    };
+    let cost = costs.iter().find(|cost| cost.effect == effect.name).map_or(String::new(), |cost| {
+        let percent = |ratio: f64| format!("{:+.0} %", 100.0 * (ratio - 1.0));
+        let [low, high] = cost.quartiles.map(percent);
+        format!(" (would cost {}, quartiles {low} to {high})", percent(cost.ratio))
+    });
+    format!("{:<16} {state:<4} {study}{}{cost}", effect.name, effect.because)
+}
+
+fn how(plan: &Plan) -> Vec<(&'static str, String)> {
+    let lanes = match plan.lane_model {
+        LaneModel::One => "1: radiance is a number times the one spectrum of all light".to_owned(),
+        LaneModel::Shared => format!("{} wavelengths that always go the same way", plan.lanes),
+        LaneModel::Hero => format!("{} wavelengths that dispersion may part from the hero", plan.lanes),
+    };
+    let [first, last] = plan.wavelength_range_nm;
+    let depth = plan.max_depth.map_or("no limit".to_owned(), |depth| format!("at most {depth} path edges"));
+    let roulette = if plan.roulette { "Russian roulette" } else { "no Russian roulette" };
+    vec![
+        ("kernel", plan.kernel.to_owned()),
+        ("lanes", lanes),
+        ("wavelengths", format!("{first}–{last} nm")),
+        ("precision", plan.precision.to_owned()),
+        ("bounces", format!("{depth}, {roulette}")),
+        ("light sampling", plan.light_sampling.to_owned()),
+        ("numbers", plan.sampler.to_owned()),
+    ]
+}
+
+/// Pairs of renders that each cost is measured by.
+const PAIRS: usize = 9;
+
+/// What each effect that is off would have cost. The renders alternate, so that what else the machine does falls on both.
+fn measure(scene: &Scene, study: &Study, lean: &Prepared) -> Result<Vec<Cost>, Failure> {
+    let mut costs = Vec::new();
+    for effect in lean.plan().effects.iter().filter(|effect| !effect.on && effect.study.is_none()) {
+        let mut more = study.clone();
+        more.force.push(effect.name);
+        // What cannot be forced has no cost: there is nothing that it would do.
+        let Ok(forced) = prepare_study(scene, &more) else { continue };
+        let mut ratios = Vec::with_capacity(PAIRS);
+        for pair in 0..PAIRS {
+            // Whoever comes second finds warmer caches.
+            let (first, second) = if pair % 2 == 0 { (lean, &forced) } else { (&forced, lean) };
+            let times = [seconds(first)?, seconds(second)?];
+            ratios.push(if pair % 2 == 0 { times[1] / times[0] } else { times[0] / times[1] });
+        }
+        ratios.sort_by(f64::total_cmp);
+        let quartiles = [ratios[PAIRS / 4], ratios[PAIRS - 1 - PAIRS / 4]];
+        costs.push(Cost { effect: effect.name, ratio: ratios[PAIRS / 2], quartiles, pairs: PAIRS });
+    }
+    Ok(costs)
+}
+
+/// How long one sample of each pixel takes.
+fn seconds(prepared: &Prepared) -> Result<f64, Failure> {
+    let extent = Extent { samples: 0..1, ..prepared.whole(None) };
+    let start = Instant::now();
+    prepared.render(&extent, &|_| Control::Continue).map_err(|error| Failure::run(Report::from_err(error)))?;
+    Ok(start.elapsed().as_secs_f64())
+}

@@ -1,0 +1,121 @@
+//! What the lanes of a path stand for: the type parameter that tells the kernels apart, beside the scalar.
+//!
+//! | model | lanes | when |
+//! |---|---|---|
+//! | [`OneLane`] | 1 | every surface is grey and all light has one spectrum: radiance is a number times that spectrum |
+//! | [`Shared`] | N | lanes differ in what they carry, never in where they go |
+//! | [`Hero`] | N | dispersion may send the lanes apart: each lane's own density of the path is carried along |
+//!
+//! Where both cover a scene, [`Shared`] and [`Hero`] give the same bits: without dispersion every relative density is
+//! exactly 1, and so is the weight N/Σ that comes of it.
+
+use crate::prepare::Prepared;
+use crate::wavelength::Wavelengths;
+use etalon_optics::{Lanes, Real};
+
+/// How the lanes of one path relate to each other and to the film.
+pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
+    /// Whether weights of lanes are carried at all; counted once a vertex.
+    const CARRIES_WEIGHTS: bool;
+
+    /// At the camera.
+    fn start() -> Self;
+
+    /// The path takes a step whose density in each lane, relative to the hero's, is `lane_density`.
+    fn follow(&mut self, lane_density: Lanes<R, N>);
+
+    /// The balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5): N / Σ densities.
+    fn weight(&self) -> R;
+
+    /// The wavelengths of a path; `u` gives the hero's number, if one is to be drawn.
+    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> R) -> Wavelengths<N>;
+
+    /// What the path's radiance adds to the film, CIE XYZ.
+    fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3];
+}
+
+/// One lane at a fixed wavelength that stands for all of them.
+#[derive(Clone, Copy)]
+pub(crate) struct OneLane;
+
+/// Lanes that always go the same way.
+#[derive(Clone, Copy)]
+pub(crate) struct Shared;
+
+/// Lanes that dispersion may part from the hero's path: their densities relative to it.
+#[derive(Clone, Copy)]
+pub(crate) struct Hero<R, const N: usize>(Lanes<R, N>);
+
+impl<R: Real> WavelengthModel<R, 1> for OneLane {
+    const CARRIES_WEIGHTS: bool = false;
+
+    fn start() -> Self {
+        Self
+    }
+
+    #[inline(always)]
+    fn follow(&mut self, _: Lanes<R, 1>) {}
+
+    #[inline(always)]
+    fn weight(&self) -> R {
+        R::ONE
+    }
+
+    fn wavelengths(prepared: &Prepared, _: impl FnOnce() -> R) -> Wavelengths<1> {
+        Wavelengths { lambda_nm: Lanes([prepared.one_lane.wavelength_nm]), pdf: Lanes([f64::INFINITY]) }
+    }
+
+    fn to_xyz(prepared: &Prepared, _: &Wavelengths<1>, radiance: Lanes<R, 1>) -> [f64; 3] {
+        prepared.one_lane.xyz_of_unit.map(|v| v * radiance[0].to_f64())
+    }
+}
+
+impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
+    const CARRIES_WEIGHTS: bool = false;
+
+    fn start() -> Self {
+        Self
+    }
+
+    #[inline(always)]
+    fn follow(&mut self, _: Lanes<R, N>) {}
+
+    #[inline(always)]
+    fn weight(&self) -> R {
+        R::ONE
+    }
+
+    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> R) -> Wavelengths<N> {
+        prepared.wavelengths.sample_lanes(u().to_f64())
+    }
+
+    fn to_xyz(_: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
+        wavelengths.to_xyz(radiance)
+    }
+}
+
+impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
+    const CARRIES_WEIGHTS: bool = true;
+
+    fn start() -> Self {
+        Self(Lanes::ONE)
+    }
+
+    #[inline(always)]
+    fn follow(&mut self, lane_density: Lanes<R, N>) {
+        self.0 *= lane_density;
+    }
+
+    #[inline(always)]
+    fn weight(&self) -> R {
+        R::from_f64(N as f64) / self.0.sum()
+    }
+
+    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> R) -> Wavelengths<N> {
+        prepared.wavelengths.sample_lanes(u().to_f64())
+    }
+
+    fn to_xyz(_: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
+        wavelengths.to_xyz(radiance)
+    }
+}

@@ -1,0 +1,216 @@
+//! Which object of a scene calls for an effect, and by what number.
+
+use super::EffectName;
+use super::grey::{same_shape, steps};
+use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
+use etalon_scene::{Filter, Light, LightKind, LightSampling, Material, MaterialKind, Object, Projection, Scene};
+
+/// What calls for an effect (`Ok`), or why nothing does (`Err`).
+pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
+    let nothing = |why: &str| Err(why.to_owned());
+    match name {
+        EffectName::Wavelengths => wavelengths(scene),
+        EffectName::Dispersion => match first_surface(scene, |material, range| dispersion(&material.kind, range)) {
+            Some(found) => Ok(found),
+            None => nothing("no index of refraction varies"),
+        },
+        EffectName::Lens => lens(&scene.camera.projection),
+        EffectName::ShadowRays => shadow_rays(scene),
+        EffectName::Mis => mis(scene),
+        EffectName::Environment => match scene.lights.iter().find(|light| is_environment(&light.kind)) {
+            Some(light) => Ok(format!("light \"{}\"", light.name)),
+            None => nothing("no light at infinity"),
+        },
+        EffectName::SpecularChains => match first_surface(scene, |material, _| specular(&material.kind)) {
+            Some(found) => Ok(found),
+            None => nothing("no mirror, metal or glass"),
+        },
+        EffectName::WideFilter => match scene.film.filter {
+            Filter::Box => nothing("a pixel is its own square"),
+            Filter::Tent { radius_px } => Ok(format!("film: tent of radius {radius_px} px")),
+            Filter::Gaussian { sigma_px } => Ok(format!("film: Gaussian of σ {sigma_px} px")),
+        },
+    }
+}
+
+/// The first object whose material has something to say, which it says. Materials that no object is made of are silent.
+fn first_surface(scene: &Scene, says: impl Fn(&Material, [f64; 2]) -> Option<String>) -> Option<String> {
+    scene.objects.iter().find_map(|object| {
+        let material = &scene.materials[object.material];
+        says(material, scene.integrator.wavelength_range_nm)
+            .map(|what| format!("{}: {what}", surface(object, material)))
+    })
+}
+
+fn surface(object: &Object, material: &Material) -> String {
+    format!("material \"{}\" of \"{}\"", material.name, object.name)
+}
+
+fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
+    match kind {
+        MaterialKind::Dielectric { interior, exterior } => [interior, exterior]
+            .into_iter()
+            .find(|index| index.is_dispersive())
+            .map(|index| index_range(index, range_nm)),
+        MaterialKind::Lambert { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::Conductor { .. }
+        | MaterialKind::Black => None,
+    }
+}
+
+/// How the light that a material hands on depends on the wavelength, if it does.
+fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
+    match kind {
+        MaterialKind::Lambert { reflectance } | MaterialKind::Mirror { reflectance } => {
+            (!reflectance.is_constant()).then(|| format!("reflectance {}", spread(range_nm, |nm| reflectance.eval(nm))))
+        }
+        MaterialKind::Conductor { index } => index.is_dispersive().then(|| metal_range(index, range_nm)),
+        MaterialKind::Dielectric { .. } => dispersion(kind, range_nm),
+        MaterialKind::Black => None,
+    }
+}
+
+fn specular(kind: &MaterialKind) -> Option<String> {
+    match kind {
+        MaterialKind::Mirror { .. } => Some("a mirror".to_owned()),
+        MaterialKind::Conductor { .. } => Some("smooth metal".to_owned()),
+        MaterialKind::Dielectric { .. } => Some("a smooth interface of two media".to_owned()),
+        MaterialKind::Lambert { .. } | MaterialKind::Black => None,
+    }
+}
+
+/// Whether a shadow ray from the surface could find light.
+fn is_diffuse(kind: &MaterialKind) -> bool {
+    match kind {
+        MaterialKind::Lambert { reflectance } => !reflectance.is_zero(),
+        MaterialKind::Mirror { .. }
+        | MaterialKind::Conductor { .. }
+        | MaterialKind::Dielectric { .. }
+        | MaterialKind::Black => false,
+    }
+}
+
+fn is_environment(kind: &LightKind) -> bool {
+    match kind {
+        LightKind::Environment { radiance } => !radiance.is_zero(),
+        LightKind::Point { .. } | LightKind::Directional { .. } => false,
+    }
+}
+
+/// Whether only a shadow ray finds the light.
+fn is_target(kind: &LightKind) -> bool {
+    match kind {
+        LightKind::Point { intensity: spectrum, .. } | LightKind::Directional { irradiance: spectrum, .. } => {
+            !spectrum.is_zero()
+        }
+        LightKind::Environment { .. } => false,
+    }
+}
+
+/// The spectrum of a light.
+pub(super) fn spectrum(light: &Light) -> &Spectrum {
+    match &light.kind {
+        LightKind::Point { intensity, .. } => intensity,
+        LightKind::Directional { irradiance, .. } => irradiance,
+        LightKind::Environment { radiance } => radiance,
+    }
+}
+
+fn lens(projection: &Projection) -> Result<String, String> {
+    match projection {
+        Projection::Perspective { lens: Some(lens), .. } if lens.radius_m > 0.0 => {
+            Ok(format!("camera: aperture of radius {:.4} m, in focus at {:.4} m", lens.radius_m, lens.focus_distance_m))
+        }
+        Projection::Perspective { .. } => Err("the camera is a pinhole".to_owned()),
+        Projection::Orthographic { .. } => Err("the camera is orthographic".to_owned()),
+    }
+}
+
+fn emitter(scene: &Scene) -> Option<&Object> {
+    scene.objects.iter().find(|object| object.emission.as_ref().is_some_and(|e| !e.radiance.is_zero()))
+}
+
+/// A diffuse surface, one that does not shine itself if there is any.
+fn diffuse_surface(scene: &Scene) -> Option<String> {
+    let diffuse = |object: &&Object| is_diffuse(&scene.materials[object.material].kind);
+    let lit = scene.objects.iter().filter(|object| object.emission.is_none()).find(diffuse);
+    let object = lit.or_else(|| scene.objects.iter().find(diffuse))?;
+    Some(surface(object, &scene.materials[object.material]))
+}
+
+fn shadow_rays(scene: &Scene) -> Result<String, String> {
+    let Some(diffuse) = diffuse_surface(scene) else {
+        return Err("no diffuse surface on which a shadow ray could find light".to_owned());
+    };
+    if let Some(light) = scene.lights.iter().find(|light| is_target(&light.kind)) {
+        return Ok(format!("light \"{}\" on {diffuse}", light.name));
+    }
+    match (emitter(scene), scene.integrator.light_sampling) {
+        (None, _) => Err("no lamp that a shadow ray could aim at".to_owned()),
+        (Some(_), LightSampling::Bsdf) => Err("integrator.light_sampling is \"bsdf\"".to_owned()),
+        (Some(lamp), LightSampling::Mis | LightSampling::Light) => {
+            Ok(format!("emission of \"{}\" on {diffuse}", lamp.name))
+        }
+    }
+}
+
+fn mis(scene: &Scene) -> Result<String, String> {
+    match (scene.integrator.light_sampling, emitter(scene), diffuse_surface(scene)) {
+        (LightSampling::Light, ..) => Err("integrator.light_sampling is \"light\"".to_owned()),
+        (LightSampling::Bsdf, ..) => Err("integrator.light_sampling is \"bsdf\"".to_owned()),
+        (LightSampling::Mis, None, _) => Err("no lamp with a surface, which paths could run into".to_owned()),
+        (LightSampling::Mis, _, None) => Err("no diffuse surface, where shadow rays and paths compete".to_owned()),
+        (LightSampling::Mis, Some(lamp), Some(diffuse)) => {
+            Ok(format!("emission of \"{}\" is found from {diffuse} by shadow rays and by paths", lamp.name))
+        }
+    }
+}
+
+/// Whether one number cannot stand for all wavelengths.
+fn wavelengths(scene: &Scene) -> Result<String, String> {
+    if let Some(found) = first_surface(scene, |material, range| colour(&material.kind, range)) {
+        return Ok(found);
+    }
+    let range_nm = scene.integrator.wavelength_range_nm;
+    let lamps = sources(scene);
+    let Some((first, shape)) = lamps.first() else {
+        return Err("nothing shines".to_owned());
+    };
+    match lamps.iter().find(|(_, other)| !same_shape(shape, other, range_nm)) {
+        Some((second, _)) => Ok(format!("{first} and {second} differ in spectrum")),
+        None => Err(format!("every surface is grey, and all light has the spectrum of {first}")),
+    }
+}
+
+/// What shines, with its name.
+pub(super) fn sources(scene: &Scene) -> Vec<(String, &Spectrum)> {
+    let emitters = scene
+        .objects
+        .iter()
+        .filter_map(|object| Some((format!("emission of \"{}\"", object.name), &object.emission.as_ref()?.radiance)));
+    let lights = scene.lights.iter().map(|light| (format!("light \"{}\"", light.name), spectrum(light)));
+    emitters.chain(lights).filter(|(_, spectrum)| !spectrum.is_zero()).collect()
+}
+
+fn index_range(index: &RefractiveIndex, range_nm: [f64; 2]) -> String {
+    format!("n {}", spread(range_nm, |nm| index.eval(nm)))
+}
+
+fn metal_range(index: &ComplexIndex, range_nm: [f64; 2]) -> String {
+    let n = extremes(range_nm, |nm| index.eval(nm).0);
+    let k = extremes(range_nm, |nm| index.eval(nm).1);
+    let [n, k] = [n, k].map(|[low, high]| format!("{low:.3}–{high:.3}"));
+    format!("n {n} and k {k} over {}–{} nm", range_nm[0], range_nm[1])
+}
+
+/// `1.61–1.66 over 380–780 nm`.
+fn spread(range_nm: [f64; 2], value: impl Fn(f64) -> f64) -> String {
+    let [low, high] = extremes(range_nm, value);
+    format!("{low:.3}–{high:.3} over {}–{} nm", range_nm[0], range_nm[1])
+}
+
+/// The least and the largest value at whole nanometres and at the ends.
+fn extremes(range_nm: [f64; 2], value: impl Fn(f64) -> f64) -> [f64; 2] {
+    steps(range_nm).map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}

@@ -1,0 +1,257 @@
+//! What a scene calls for, and what will therefore be simulated.
+//!
+//! Effects are derived, never declared: each material, light, camera and film says in an exhaustive `match` what it calls
+//! for ([`evidence`](self)), and what nothing calls for is not done. A [`Study`] may have it otherwise.
+
+mod evidence;
+mod grey;
+mod study;
+
+pub use study::{Study, StudyError};
+
+pub(crate) use grey::OneLaneFilm;
+pub(crate) use study::simulated;
+
+use crate::kernel::kernel;
+use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
+use serde::{Serialize, Serializer};
+use std::fmt;
+use std::str::FromStr;
+
+/// Something that light may do, or that finds it, which a scene may or may not call for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EffectName {
+    /// Wavelengths differ in more than the spectrum of all light.
+    Wavelengths,
+    /// Wavelengths go different ways.
+    Dispersion,
+    /// The camera's aperture has an extent.
+    Lens,
+    /// Shadow rays look for direct light.
+    ShadowRays,
+    /// Multiple importance sampling weighs them against the walk that finds the same light.
+    Mis,
+    /// Light comes from infinity.
+    Environment,
+    /// Mirrors, metals and glass hand light on in single directions.
+    SpecularChains,
+    /// A pixel looks beyond its own square.
+    WideFilter,
+}
+
+impl EffectName {
+    /// All of them, in the order of a plan.
+    pub const ALL: [Self; 8] = [
+        Self::Wavelengths,
+        Self::Dispersion,
+        Self::Lens,
+        Self::ShadowRays,
+        Self::Mis,
+        Self::Environment,
+        Self::SpecularChains,
+        Self::WideFilter,
+    ];
+
+    /// The name on the command line and in files.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Wavelengths => "wavelengths",
+            Self::Dispersion => "dispersion",
+            Self::Lens => "lens",
+            Self::ShadowRays => "shadow-rays",
+            Self::Mis => "mis",
+            Self::Environment => "environment",
+            Self::SpecularChains => "specular-chains",
+            Self::WideFilter => "wide-filter",
+        }
+    }
+
+    /// What a picture lacks that is rendered without it although the scene calls for it.
+    pub const fn lost_without(self) -> &'static str {
+        match self {
+            Self::Wavelengths => "every spectrum is replaced by its mean as the eye weighs it: no colours",
+            Self::Dispersion => "every index of refraction is that of one wavelength",
+            Self::Lens => "everything is in focus",
+            Self::ShadowRays => {
+                "lights without a surface are left out; the others are found by chance, with more noise"
+            }
+            Self::Mis => "the same mean, with more noise where shadow rays are a bad guess",
+            Self::Environment => "light from infinity is left out",
+            Self::SpecularChains => "mirrors, metals and glass are black",
+            Self::WideFilter => "a pixel is its own square",
+        }
+    }
+
+    /// Whether there is anything to be done for it in a scene that does not call for it.
+    pub const fn can_be_forced(self) -> bool {
+        match self {
+            Self::Wavelengths | Self::Dispersion | Self::Lens | Self::ShadowRays | Self::Mis | Self::Environment => {
+                true
+            }
+            // They are what the surfaces, or the film, are made of.
+            Self::SpecularChains | Self::WideFilter => false,
+        }
+    }
+}
+
+impl fmt::Display for EffectName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+impl FromStr for EffectName {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL.into_iter().find(|name| name.as_str() == text).ok_or_else(|| {
+            let names: Vec<_> = Self::ALL.iter().map(|name| name.as_str()).collect();
+            format!("there is no effect \"{text}\"; there are {}", names.join(", "))
+        })
+    }
+}
+
+impl Serialize for EffectName {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.as_str())
+    }
+}
+
+/// An effect, as the plan has it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Effect {
+    /// Its name.
+    pub name: EffectName,
+    /// Whether it will be simulated.
+    pub on: bool,
+    /// The object and the number that called for it, or why nothing did.
+    pub because: String,
+    /// Where a study decided otherwise than the scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub study: Option<Decision>,
+}
+
+/// What a study decided on an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Decision {
+    /// Simulated although nothing calls for it.
+    Forced,
+    /// Left out although the scene calls for it.
+    LeftOut,
+}
+
+/// What the lanes of a path stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LaneModel {
+    /// One lane: radiance is a number times the one spectrum of all light.
+    One,
+    /// Wavelengths that always go the same way.
+    Shared,
+    /// Wavelengths that dispersion may part from the hero's path.
+    Hero,
+}
+
+/// What will be simulated, why, and with what.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    /// The kernel, by name.
+    pub kernel: &'static str,
+    /// What its lanes stand for.
+    pub lane_model: LaneModel,
+    /// Scalar type.
+    pub precision: &'static str,
+    /// Lanes that a path carries.
+    pub lanes: usize,
+    /// Range of the wavelengths, nm.
+    pub wavelength_range_nm: [f64; 2],
+    /// Number sequence.
+    pub sampler: &'static str,
+    /// How direct light is found.
+    pub light_sampling: &'static str,
+    /// Most path edges, if there is a limit.
+    pub max_depth: Option<u32>,
+    /// Whether Russian roulette ends paths.
+    pub roulette: bool,
+    /// Each effect, on or off, with what called for it.
+    pub effects: Vec<Effect>,
+    /// What a study left out although the scene calls for it, with what the picture lacks: it is an approximation.
+    pub approximations: Vec<String>,
+}
+
+impl Plan {
+    /// Reads a scene, as it is before the study takes anything from it.
+    ///
+    /// # Errors
+    /// If the study contradicts the scene or itself.
+    pub fn new(scene: &Scene, study: &Study) -> Result<Self, StudyError> {
+        study.check(scene)?;
+        let mut approximations = Vec::new();
+        let effects: Vec<Effect> = EffectName::ALL
+            .into_iter()
+            .map(|name| {
+                let (called_for, because) = match evidence::of(name, scene) {
+                    Ok(called_for) => (true, called_for),
+                    Err(otherwise) => (false, otherwise),
+                };
+                let study = match called_for {
+                    true if study.leaves_out(name) => Some(Decision::LeftOut),
+                    false if study.force.contains(&name) => Some(Decision::Forced),
+                    _ => None,
+                };
+                if study == Some(Decision::LeftOut) {
+                    approximations.push(format!("{name}: {}", name.lost_without()));
+                }
+                let on = called_for && study != Some(Decision::LeftOut) || study == Some(Decision::Forced);
+                Effect { name, on, because, study }
+            })
+            .collect();
+        let runs = |name| effects.iter().any(|effect: &Effect| effect.name == name && effect.on);
+        // Without wavelengths there is none that could go another way.
+        let lane_model = if runs(EffectName::Dispersion) {
+            LaneModel::Hero
+        } else if runs(EffectName::Wavelengths) {
+            LaneModel::Shared
+        } else {
+            LaneModel::One
+        };
+        let i = &scene.integrator;
+        Ok(Self {
+            kernel: kernel(i.precision, lane_model).name,
+            lane_model,
+            precision: match i.precision {
+                Precision::F32 => "f32",
+                Precision::F64 => "f64",
+            },
+            lanes: match lane_model {
+                LaneModel::One => 1,
+                LaneModel::Shared | LaneModel::Hero => crate::kernel::LANES,
+            },
+            wavelength_range_nm: i.wavelength_range_nm,
+            sampler: match i.sampler {
+                SamplerKind::Sobol => "sobol",
+                SamplerKind::Independent => "independent",
+            },
+            light_sampling: match study.light_sampling(i.light_sampling) {
+                LightSampling::Mis => "mis",
+                LightSampling::Light => "light",
+                LightSampling::Bsdf => "bsdf",
+            },
+            max_depth: i.max_depth,
+            roulette: i.roulette,
+            effects,
+            approximations,
+        })
+    }
+
+    /// Whether an effect will be simulated.
+    pub fn runs(&self, name: EffectName) -> bool {
+        self.effects.iter().any(|effect| effect.name == name && effect.on)
+    }
+
+    /// Whether an effect will be simulated that nothing calls for.
+    pub(crate) fn forces(&self, name: EffectName) -> bool {
+        self.effects.iter().any(|effect| effect.name == name && effect.study == Some(Decision::Forced))
+    }
+}

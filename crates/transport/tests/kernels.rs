@@ -1,0 +1,166 @@
+//! The kernel law, on every ready-made scene: each kernel that covers a scene gives its image, and what a scene does not
+//! call for changes nothing and costs no count.
+
+use etalon_oracle::statistics::Welford;
+use etalon_scene::{Precision, Scene};
+use etalon_transport::plan::LaneModel;
+use etalon_transport::{Control, EffectName, Film, Prepared, Study, prepare_study};
+use std::path::Path;
+
+/// The ready-made scenes at a size and number of samples that a test can afford.
+fn scenes() -> Vec<(String, Scene)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut scenes: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .map(|path| {
+            let text = etalon_scene::json::load_text(&path).unwrap();
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            let (mut scene, _) = etalon_scene::parse_with_size(&text, &name, Some([24, 18])).unwrap();
+            scene.integrator.spp = 4;
+            (name, scene)
+        })
+        .collect();
+    scenes.sort_by(|a, b| a.0.cmp(&b.0));
+    assert!(scenes.len() >= 11);
+    scenes
+}
+
+fn prepared(scene: &Scene, force: &[EffectName]) -> Prepared {
+    prepare_study(scene, &Study { force: force.to_vec(), without: Vec::new() }).unwrap()
+}
+
+fn render(prepared: &Prepared) -> Film {
+    prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap()
+}
+
+#[test]
+fn forcing_what_a_scene_does_not_call_for_leaves_every_bit_as_it_is() {
+    let mut tried = 0;
+    for (name, scene) in scenes() {
+        let plan = prepared(&scene, &[]);
+        let plain = render(&plan);
+        assert_eq!(plain.counters.nonfinite, 0, "{name}");
+        for effect in EffectName::ALL {
+            // Wavelengths that are not needed add noise of their own: they are held to the mean, below.
+            let wavelengths = plan.plan().lane_model == LaneModel::One
+                && matches!(effect, EffectName::Wavelengths | EffectName::Dispersion);
+            let study = Study { force: vec![effect], without: Vec::new() };
+            let Ok(forced) = prepare_study(&scene, &study) else { continue };
+            if plan.plan().runs(effect) || wavelengths {
+                continue;
+            }
+            assert!(forced.plan().runs(effect), "{name}: {effect} is not forced");
+            let forced = render(&forced);
+            assert!(forced.pixels() == plain.pixels(), "{name}: {effect} changes the picture");
+            tried += 1;
+        }
+    }
+    assert!(tried >= 20, "only {tried} pairs were tried");
+}
+
+#[test]
+fn shared_lanes_and_hero_lanes_agree_bit_for_bit_where_nothing_disperses() {
+    let mut tried = 0;
+    for (name, mut scene) in scenes() {
+        if prepared(&scene, &[]).plan().runs(EffectName::Dispersion) {
+            continue;
+        }
+        for precision in [Precision::F32, Precision::F64] {
+            scene.integrator.precision = precision;
+            let shared = prepared(&scene, &[EffectName::Wavelengths]);
+            let hero = prepared(&scene, &[EffectName::Dispersion]);
+            assert_eq!((shared.plan().lane_model, hero.plan().lane_model), (LaneModel::Shared, LaneModel::Hero));
+            assert!(render(&shared).pixels() == render(&hero).pixels(), "{name} {precision:?}");
+            tried += 1;
+        }
+    }
+    assert!(tried >= 10);
+}
+
+/// Means of (a − b)/mean(b) over seeds, in X, Y and Z of the whole film, with both on the same random numbers: |t| < 6 with
+/// 31 degrees of freedom is exceeded by a right pair once in 10⁶. What the test could see is asserted.
+fn assert_same_mean(name: &str, a: &dyn Fn(u64) -> Prepared, b: &dyn Fn(u64) -> Prepared, sees: f64) {
+    let mut differences = [Welford::new(); 3];
+    let mut scale = 0.0;
+    let mean = |prepared: Prepared| {
+        let film = render(&prepared);
+        let n = film.pixels().len() as f64;
+        film.xyz().fold([0.0; 3], |sum, xyz| std::array::from_fn(|c| sum[c] + xyz[c] / n))
+    };
+    for seed in 0..32 {
+        let (a, b) = (mean(a(seed)), mean(b(seed)));
+        (0..3).for_each(|c| differences[c].push(a[c] - b[c]));
+        scale += b[1] / 32.0;
+    }
+    for (c, difference) in differences.iter().enumerate() {
+        let (mean, error) = (difference.mean(), difference.standard_error());
+        // Two ways to sum the same numbers differ by their rounding.
+        let rounding = 1e-6 * scale;
+        assert!(error <= sees * scale, "{name}: the test sees too little, {} of Y", error / scale);
+        assert!(mean.abs() <= 6.0 * error + rounding, "{name}: component {c} is off by {mean} ± {error}");
+    }
+}
+
+#[test]
+fn single_and_double_precision_agree_in_the_mean() {
+    for (name, scene) in scenes() {
+        let with = |precision, seed| {
+            let mut scene = scene.clone();
+            (scene.integrator.precision, scene.integrator.seed) = (precision, seed);
+            prepared(&scene, &[])
+        };
+        // Where a path parts from its twin by rounding, through a prism's edge, a lamp is gained or lost.
+        let sees = 0.02;
+        assert_same_mean(&name, &|seed| with(Precision::F32, seed), &|seed| with(Precision::F64, seed), sees);
+    }
+}
+
+#[test]
+fn one_lane_and_four_agree_in_the_mean_and_one_lane_has_no_noise_of_colour() {
+    let mut tried = 0;
+    for (name, scene) in scenes() {
+        if prepared(&scene, &[]).plan().lane_model != LaneModel::One {
+            continue;
+        }
+        let with = |force: &[EffectName], seed| {
+            let mut scene = scene.clone();
+            scene.integrator.seed = seed;
+            prepared(&scene, force)
+        };
+        assert_same_mean(&name, &|seed| with(&[], seed), &|seed| with(&[EffectName::Wavelengths], seed), 2e-3);
+        let film = render(&with(&[], 0));
+        let xyz: Vec<_> = film.xyz().collect();
+        let [x, y, z] = *xyz.iter().find(|xyz| xyz[1] > 0.0).unwrap();
+        for pixel in &xyz {
+            // One number times one colour: two roundings.
+            assert!((pixel[0] - pixel[1] * x / y).abs() <= 4.0 * f64::EPSILON * pixel[0], "{name}");
+            assert!((pixel[2] - pixel[1] * z / y).abs() <= 4.0 * f64::EPSILON * pixel[2], "{name}");
+        }
+        tried += 1;
+    }
+    assert!(tried >= 2);
+}
+
+#[test]
+fn what_a_scene_does_not_call_for_is_counted_zero_times_and_what_it_does_is_counted() {
+    type Count = fn(&Film) -> u64;
+    let counted: [(EffectName, Count); 4] = [
+        (EffectName::ShadowRays, |film| film.counters.shadow_rays),
+        (EffectName::Lens, |film| film.counters.lens_draws),
+        (EffectName::Environment, |film| film.counters.environment_lookups),
+        (EffectName::Dispersion, |film| film.counters.lane_weights),
+    ];
+    let mut seen = [[false; 2]; 4];
+    for (name, scene) in scenes() {
+        let prepared = prepared(&scene, &[]);
+        let film = render(&prepared);
+        for (i, (effect, count)) in counted.iter().enumerate() {
+            let on = prepared.plan().runs(*effect);
+            assert_eq!(count(&film) > 0, on, "{name}: {effect}");
+            seen[i][usize::from(on)] = true;
+        }
+    }
+    assert!(seen.iter().all(|both| both[0] && both[1]), "{seen:?}: some effect is always on, or never");
+}
