@@ -17,14 +17,16 @@ use std::ops::Range;
 /// Wavelengths that a path carries where they differ.
 pub(crate) const LANES: usize = 4;
 
+/// Adds samples to one tile.
+pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, &Film) -> (Vec<PixelSum>, Counters);
+
 /// The path loop for one scalar type and one model of wavelengths.
 pub(crate) struct Kernel {
     pub precision: Precision,
     pub lanes: LaneModel,
     /// Its name: the model, the number of lanes, the scalar.
     pub name: &'static str,
-    /// Adds samples to one tile.
-    pub render: fn(&Prepared, PixelRect, Range<u32>, &Film) -> (Vec<PixelSum>, Counters),
+    pub render: RenderTile,
     /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
 }
