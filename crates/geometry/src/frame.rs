@@ -44,6 +44,7 @@ impl Box32 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     centre: Vec3<f64>,
+    centre4: [f64; 4],
     scale: f64,
     unscale: f64,
 }
@@ -68,7 +69,7 @@ impl Frame {
         let half = (bounds.max - centre).abs().max((bounds.min - centre).abs()).max_component();
         let exponent = if half > 0.0 { (half.to_bits() >> 52) as i64 - 1022 } else { 0 };
         let exponent = exponent.clamp(-500, 500);
-        Self { centre, scale: power_of_two(-exponent), unscale: power_of_two(exponent) }
+        Self { centre, centre4: padded(centre), scale: power_of_two(-exponent), unscale: power_of_two(exponent) }
     }
 
     /// A box in this frame, rounded outward.
@@ -100,16 +101,16 @@ impl Frame {
     }
 
     /// The point of which [`Frame::point`] gave the coordinates, if they are exact.
-    #[inline(always)]
-    pub(crate) fn unscaled(&self, p: [f32; 3]) -> Vec3<f64> {
+    fn unscaled(&self, p: [f32; 3]) -> Vec3<f64> {
         Vec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])) * self.unscale
     }
 
     /// A ray in this frame; `None` if it certainly misses the whole frame.
     #[inline(always)]
     pub(crate) fn enter(&self, q: &Query) -> Option<FrameRay> {
-        let d = q.direction.to_array();
-        let mut o = ((q.origin - self.centre) * self.scale).to_array();
+        // Four lanes, the last unused, for the sake of vector instructions.
+        let d = padded(q.direction);
+        let mut o = lanes(padded(q.origin), |k, o| (o - self.centre4[k]) * self.scale);
         let mut reach = max_magnitude(o);
         // The f64 tests are right for a ray displaced by a few u of the distances involved: 256u of them is allowed.
         let mut slack = (reach + 2.0) * (128.0 * f64::EPSILON);
@@ -118,38 +119,52 @@ impl Frame {
             (o, slack, start) = approach(o, d, slack)?;
             reach = max_magnitude(o);
         }
-        let slacks = [slack; 3];
-        let nearest: [f64; 3] = from_fn(|k| o[k] - slacks[k]);
-        let farthest: [f64; 3] = from_fn(|k| o[k] + slacks[k]);
-        let lower: [f32; 3] = from_fn(|k| below(nearest[k]));
-        let upper: [f32; 3] = from_fn(|k| above(farthest[k]));
-        let d32 = d.map(|d| d as f32);
-        let reciprocal: [f32; 3] = from_fn(|k| {
-            let d = d32[k].abs();
-            1.0 / if d > MIN_DIRECTION { d } else { MIN_DIRECTION }.copysign(d32[k])
+        let origin: [f32; 4] = lanes(o, |_, o| o as f32);
+        let direction: [f32; 4] = lanes(d, |_, d| d as f32);
+        let slack32 = above(slack);
+        // The origin is displaced along the ray and against it by more than its error: an `f32` ε of it covers its rounding and
+        // that of the displaced one, half an ε each; another one, second orders.
+        let displaced: [f32; 4] =
+            from_fn(|k| (origin[k].abs() * (2.0 * f32::EPSILON) + slack32).copysign(direction[k]));
+        let reciprocal: [f32; 4] = from_fn(|k| {
+            let magnitude = direction[k].abs();
+            1.0 / if magnitude > MIN_DIRECTION { magnitude } else { MIN_DIRECTION }.copysign(direction[k])
         });
-        let negative = d32.map(f32::is_sign_negative);
+        let [kx, ky, kz] = q.axes;
+        let slope = 1.0 / direction[kz];
         Some(FrameRay {
-            origin_near: from_fn(|k| if negative[k] { lower[k] } else { upper[k] }),
-            origin_far: from_fn(|k| if negative[k] { upper[k] } else { lower[k] }),
-            reciprocal_near: reciprocal.map(|r| r * NEAR_FACTOR),
-            reciprocal_far: reciprocal.map(|r| r * FAR_FACTOR),
-            negative: negative.map(usize::from),
+            origin_near: from_fn(|k| origin[k] + displaced[k]),
+            origin_far: from_fn(|k| origin[k] - displaced[k]),
+            reciprocal_near: from_fn(|k| reciprocal[k] * NEAR_FACTOR),
+            reciprocal_far: from_fn(|k| reciprocal[k] * FAR_FACTOR),
+            negative: from_fn(|k| usize::from(direction[k].is_sign_negative())),
             axes: q.axes,
-            origin: q.axes.map(|k| o[k] as f32),
-            shear: q.shear.map(|s| s as f32),
+            origin: [origin[kx], origin[ky], origin[kz]],
+            shear: [direction[kx] * slope, direction[ky] * slope, slope],
             // Every coordinate of a vertex relative to the origin is below the reach, and errs by two roundoffs of it
-            // (the vertex, the origin and the difference are rounded); shearing adds six (the slope, the product, the
-            // sum).
-            error: above(10.0 * f64::from(f32::EPSILON / 2.0) * (1.0 + reach) + 2.0 * slack),
+            // (the vertex, the origin and the difference are rounded); shearing adds nine (the slope four, for the two
+            // components, the reciprocal and the product, the other difference two, the product, the sum two).
+            error: above(12.0 * f64::from(f32::EPSILON / 2.0) * (1.0 + reach) + 2.0 * slack),
             scale: self.scale,
             start,
         })
     }
 }
 
+/// A vector with a fourth component of zero.
 #[inline(always)]
-fn max_magnitude(v: [f64; 3]) -> f64 {
+fn padded(v: Vec3<f64>) -> [f64; 4] {
+    [v.x, v.y, v.z, 0.0]
+}
+
+/// A function of each lane and its index.
+#[inline(always)]
+fn lanes<T>(v: [f64; 4], f: impl Fn(usize, f64) -> T) -> [T; 4] {
+    [f(0, v[0]), f(1, v[1]), f(2, v[2]), f(3, v[3])]
+}
+
+#[inline(always)]
+fn max_magnitude(v: [f64; 4]) -> f64 {
     larger(larger(v[0].abs(), v[1].abs()), v[2].abs())
 }
 
@@ -157,17 +172,17 @@ fn max_magnitude(v: [f64; 3]) -> f64 {
 /// Returns the origin, the slack and the distance moved; `None` if the ray misses the frame.
 #[cold]
 #[inline(never)]
-fn approach(o: [f64; 3], d: [f64; 3], slack: f64) -> Option<([f64; 3], f64, f64)> {
+fn approach(o: [f64; 4], d: [f64; 4], slack: f64) -> Option<([f64; 4], f64, f64)> {
     let (near, far) = crossing(o, d, 1.0 + slack);
     if near > far || far < 0.0 {
         return None;
     }
     let start = (near - 1.0).max(0.0);
-    let moved: [f64; 3] = from_fn(|k| o[k] + d[k] * start);
+    let moved: [f64; 4] = from_fn(|k| o[k] + d[k] * start);
     let slack = slack.min(16.0);
     let known = max_magnitude(moved) < 64.0;
     // An origin so far away that nothing is known of where the ray passes meets every box.
-    Some(if known { (moved, slack, start) } else { ([0.0; 3], 16.0, 0.0) })
+    Some(if known { (moved, slack, start) } else { ([0.0; 4], 16.0, 0.0) })
 }
 
 /// A ray in the accelerator's frame.
@@ -216,7 +231,7 @@ impl FrameRay {
 }
 
 /// Where a line crosses the box [−`half`, `half`]³.
-fn crossing(o: [f64; 3], d: [f64; 3], half: f64) -> (f64, f64) {
+fn crossing(o: [f64; 4], d: [f64; 4], half: f64) -> (f64, f64) {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for k in 0..3 {
         if d[k] != 0.0 {

@@ -10,6 +10,10 @@ use etalon_optics::Real;
 
 /// Up to this many primitives are tested one by one, without a tree.
 const FLAT_LIMIT: usize = 8;
+
+/// A hit and its primitive.
+pub(crate) type Found = (RawHit, PrimitiveId);
+
 /// Why primitives cannot be built into a [`Geometry`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeometryError {
@@ -80,17 +84,22 @@ impl Geometry {
     /// A ray of which no point is defined (NaN, zero direction) hits nothing, nor does one that starts beyond 2²⁰⁰ m or
     /// whose direction is outside 2^±900.
     pub fn closest_hit<R: Real>(&self, ray: &Ray<R>) -> Option<Hit<R>> {
-        let query = Query::new(ray)?;
-        self.closest(&query).map(|(hit, primitive)| Hit {
-            t: R::from_f64(hit.t * query.scale),
-            primitive,
-            uv: hit.uv.map(R::from_f64),
-        })
+        let found = match &self.tree {
+            Some(tree) => traverse::closest(tree, &self.primitives, ray),
+            None => {
+                let query = Query::new(ray)?;
+                self.closest_flat(&query).map(|(hit, id)| (RawHit { t: hit.t * query.scale, ..hit }, id))
+            }
+        };
+        found.map(|(hit, primitive)| Hit { t: R::from_f64(hit.t), primitive, uv: hit.uv.map(R::from_f64) })
     }
 
     /// Whether anything but the primitive aimed at lies on a ray before `t_max`.
     pub fn occluded<R: Real>(&self, ray: &Ray<R>) -> bool {
-        Query::new(ray).is_some_and(|query| self.any(&query))
+        match &self.tree {
+            Some(tree) => traverse::any(tree, &self.primitives, ray),
+            None => Query::new(ray).is_some_and(|query| self.any_flat(&query)),
+        }
     }
 
     /// The surface at a hit, as [`Geometry::closest_hit`] returned it for `ray`.
@@ -112,7 +121,7 @@ impl Geometry {
     }
 
     /// The closest hit, by testing every primitive: the specification that the tree is held against.
-    pub(crate) fn closest_flat(&self, query: &Query) -> Option<(RawHit, PrimitiveId)> {
+    pub(crate) fn closest_flat(&self, query: &Query) -> Option<Found> {
         let mut best = Best::new(query);
         for i in 0..self.primitives.len() as u32 {
             best.test(&self.primitives, query, PrimitiveId(i));
@@ -125,17 +134,11 @@ impl Geometry {
         (0..self.primitives.len() as u32).any(|i| traverse::occludes(&self.primitives, query, PrimitiveId(i)))
     }
 
-    pub(crate) fn closest(&self, query: &Query) -> Option<(RawHit, PrimitiveId)> {
+    #[cfg(test)]
+    pub(crate) fn closest(&self, query: &Query) -> Option<Found> {
         match &self.tree {
             Some(tree) => traverse::closest(tree, &self.primitives, query),
             None => self.closest_flat(query),
-        }
-    }
-
-    pub(crate) fn any(&self, query: &Query) -> bool {
-        match &self.tree {
-            Some(tree) => traverse::any(tree, &self.primitives, query),
-            None => self.any_flat(query),
         }
     }
 

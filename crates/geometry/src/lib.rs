@@ -12,7 +12,7 @@
 //! | `double_double` | the arithmetic behind `f64`, where an error bound calls for it |
 //! | `frame` | the accelerator's frame and conservative box tests in `f32` |
 //! | `build` | the builder of a binary tree |
-//! | `wide` | the tree of eight children a node that it becomes |
+//! | `wide` | the tree of sixteen children a node that it becomes |
 //! | `pages` | arrays in large pages |
 //! | `traverse` | its traversal, for each instruction set |
 //! | `geometry` | [`Geometry`]: the queries |

@@ -3,6 +3,7 @@
 use crate::double_double::product_difference;
 use crate::{PrimitiveId, Ray};
 use etalon_optics::{Real, Vec3};
+use std::array::from_fn;
 
 /// What an intersection test finds, in the parameters of [`Query`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +71,20 @@ impl Query {
         })
     }
 
+    /// [`Query::project`] of three vertices at once: lanes of their coordinates in the order of `axes`, the fourth lane a
+    /// repetition. The second result is the largest magnitude.
+    #[inline(always)]
+    pub(crate) fn project_three(&self, v: [[f64; 4]; 3]) -> ([[f64; 4]; 3], f64) {
+        let [x, y, z]: [[f64; 4]; 3] = from_fn(|k| from_fn(|i| v[k][i] - self.start[k]));
+        let magnitudes: [f64; 4] = from_fn(|i| larger(larger(x[i].abs(), y[i].abs()), z[i].abs()));
+        let projected = [
+            from_fn(|i| x[i] - self.shear[0] * z[i]),
+            from_fn(|i| y[i] - self.shear[1] * z[i]),
+            from_fn(|i| z[i] * self.shear[2]),
+        ];
+        (projected, largest(magnitudes))
+    }
+
     /// [`Query::project`] of a vertex whose coordinates are already in the order of `axes`.
     #[inline(always)]
     pub(crate) fn project_permuted(&self, v: [f64; 3]) -> Projected {
@@ -100,6 +115,12 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
+/// The largest of four numbers, none of them NaN.
+#[inline(always)]
+pub(crate) fn largest(v: [f64; 4]) -> f64 {
+    larger(larger(v[0], v[2]), larger(v[1], v[3]))
+}
+
 /// Origins within this (2²⁰⁰, in the 1-norm) keep every product of an intersection test finite.
 const MAX_ORIGIN: f64 = (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
 
@@ -126,14 +147,15 @@ impl Projected {
     #[inline(always)]
     pub(crate) fn edge(self, o: Self) -> f64 {
         let area = self.x * o.y - self.y * o.x;
-        if area == 0.0 { self.exact_edge(o) } else { area }
+        if area == 0.0 { exact_edge([self.x, self.y], [o.x, o.y]) } else { area }
     }
+}
 
-    #[cold]
-    #[inline(never)]
-    fn exact_edge(self, o: Self) -> f64 {
-        product_difference(self.x, o.y, self.y, o.x)
-    }
+/// The edge function (see [`Projected::edge`]) of two projected points where it rounds to zero.
+#[cold]
+#[inline(never)]
+pub(crate) fn exact_edge(p: [f64; 2], o: [f64; 2]) -> f64 {
+    product_difference(p[0], o[1], p[1], o[0])
 }
 
 /// 2ᵉ for |e| ≤ 1022.

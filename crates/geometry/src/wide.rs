@@ -1,53 +1,61 @@
-//! The tree that rays traverse: eight children a node, leaves of up to eight primitives, both in SoA order.
+//! The tree that rays traverse: sixteen children a node, leaves of up to eight primitives, both in SoA order.
 
 use crate::build::BinaryTree;
 use crate::frame::{Box32, Frame};
 use crate::pages::Pages;
-use crate::query::{Query, RawHit};
-use crate::{Primitive, PrimitiveId, Triangle};
+use crate::query::Query;
+use crate::{Primitive, PrimitiveId};
 use bytemuck::{Pod, Zeroable};
 
-/// Children of a node, and primitives of a leaf.
-pub(crate) const WIDTH: usize = 8;
+/// Children of a node. A ray waits for each node's answer before it knows where to go next: sixteen at once shorten the way.
+pub(crate) const NODE_WIDTH: usize = 16;
+/// Primitives of a leaf.
+pub(crate) const LEAF_WIDTH: usize = 8;
 /// Marks a child that is a leaf.
 pub(crate) const LEAF: u32 = 1 << 31;
-/// Marks a primitive that is no triangle. Unless it is a sphere it has no filter: it is tested in `f64` whenever a ray
-/// enters its leaf.
-pub(crate) const OTHER: u32 = 1 << 31;
-/// Marks a sphere, beside [`OTHER`]: the rows of the first vertex hold its centre, the first row of the second its radius.
-pub(crate) const SPHERE: u32 = 1 << 29;
-/// Marks a triangle whose vertices are exact in its leaf: it need not be fetched to be tested in `f64`.
-pub(crate) const EXACT: u32 = 1 << 30;
 
-/// A node: the boxes of up to eight children.
+/// A node: the boxes of up to sixteen children.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]
-pub(crate) struct Node8 {
+pub(crate) struct Node16 {
     /// For x, y and z the lower and the upper planes of the children; a missing child has an inverted, infinite box.
-    pub(crate) planes: [[[f32; WIDTH]; 2]; 3],
+    pub(crate) planes: [[[f32; NODE_WIDTH]; 2]; 3],
     /// The index of a node, or of a leaf with [`LEAF`].
-    pub(crate) children: [u32; WIDTH],
-    padding: [u32; 8],
+    pub(crate) children: Children,
 }
+
+/// The children of a node, in one cache line.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C, align(64))]
+pub(crate) struct Children(pub(crate) [u32; NODE_WIDTH]);
 
 /// A leaf: up to eight primitives.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub(crate) struct Leaf8 {
-    /// The vertices of triangles in the accelerator's frame, rounded: x, y, z of a, then of b, then of c.
-    pub(crate) vertices: [[[f32; WIDTH]; 3]; 3],
-    /// Ids, with the marks [`OTHER`], [`SPHERE`] and [`EXACT`]; `u32::MAX` for an empty lane.
-    pub(crate) ids: [u32; WIDTH],
-    /// The largest extent of the triangles' common box along an axis.
+    /// The vertices of triangles in the accelerator's frame, rounded: x, y, z of a, then of b, then of c. The rows of the
+    /// first vertex hold a sphere's centre, the first row of the second its radius. NaN in all other lanes, which no filter
+    /// for triangles or spheres keeps.
+    pub(crate) vertices: [[[f32; LEAF_WIDTH]; 3]; 3],
+    /// Ids; `u32::MAX` for an empty lane.
+    pub(crate) ids: [u32; LEAF_WIDTH],
+    /// The largest extent of the primitives' common box along an axis.
     pub(crate) extent: f32,
-    padding: [u32; 7],
+    /// The lanes of spheres, one bit each.
+    pub(crate) spheres: u8,
+    /// The lanes of primitives that are neither triangles nor spheres. They have no filter: they are tested in `f64`
+    /// whenever a ray enters the leaf.
+    pub(crate) others: u8,
+    /// The lanes of triangles whose vertices are exact: they need not be fetched to be tested in `f64`.
+    pub(crate) exact: u8,
+    padding: [u8; 25],
 }
 
 /// The tree.
 #[derive(Debug)]
 pub(crate) struct WideTree {
     pub(crate) frame: Frame,
-    nodes: Pages<Node8>,
+    nodes: Pages<Node16>,
     leaves: Pages<Leaf8>,
     /// Levels of nodes.
     pub(crate) depth: usize,
@@ -67,7 +75,7 @@ impl WideTree {
 
     /// The nodes, the root first.
     #[inline(always)]
-    pub(crate) fn nodes(&self) -> &[Node8] {
+    pub(crate) fn nodes(&self) -> &[Node16] {
         self.nodes.as_slice()
     }
 
@@ -83,12 +91,12 @@ impl WideTree {
     }
 }
 
-/// The up to eight binary nodes that become the children of a node: the largest inner one is opened until there are
-/// eight.
-fn open(tree: &BinaryTree, root: u32) -> ([u32; WIDTH], usize) {
-    let mut children = [root; WIDTH];
+/// The up to sixteen binary nodes that become the children of a node: the largest inner one is opened until there are
+/// sixteen.
+fn open(tree: &BinaryTree, root: u32) -> ([u32; NODE_WIDTH], usize) {
+    let mut children = [root; NODE_WIDTH];
     let mut count = 1;
-    while count < WIDTH {
+    while count < NODE_WIDTH {
         let mut widest = (None, -1.0);
         for (c, &child) in children[..count].iter().enumerate() {
             let node = &tree.nodes[child as usize];
@@ -134,7 +142,7 @@ struct Filler<'a> {
     frame: &'a Frame,
     tree: &'a BinaryTree,
     primitives: &'a [Primitive],
-    nodes: &'a mut [Node8],
+    nodes: &'a mut [Node16],
     leaves: &'a mut [Leaf8],
     node_count: usize,
     leaf_count: usize,
@@ -146,10 +154,9 @@ impl Filler<'_> {
         let index = self.node_count;
         self.node_count += 1;
         let (children, count) = open(self.tree, root);
-        let mut node = Node8 {
-            planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
-            children: [0; WIDTH],
-            padding: [0; 8],
+        let mut node = Node16 {
+            planes: [[[f32::INFINITY; NODE_WIDTH], [f32::NEG_INFINITY; NODE_WIDTH]]; 3],
+            children: Children([0; NODE_WIDTH]),
         };
         for (lane, &child) in children[..count].iter().enumerate() {
             let child_node = &self.tree.nodes[child as usize];
@@ -158,7 +165,7 @@ impl Filler<'_> {
                 node.planes[k][0][lane] = min[k];
                 node.planes[k][1][lane] = max[k];
             }
-            node.children[lane] = if child_node.count > 0 { self.leaf(child) } else { self.node(child) };
+            node.children.0[lane] = if child_node.count > 0 { self.leaf(child) } else { self.node(child) };
         }
         self.nodes[index] = node;
         index as u32
@@ -169,10 +176,13 @@ impl Filler<'_> {
         let first = node.first as usize;
         let extent = |k: usize| node.bounds.max[k] - node.bounds.min[k];
         let mut leaf = Leaf8 {
-            vertices: [[[0.0; WIDTH]; 3]; 3],
-            ids: [u32::MAX; WIDTH],
+            vertices: [[[f32::NAN; LEAF_WIDTH]; 3]; 3],
+            ids: [u32::MAX; LEAF_WIDTH],
             extent: extent(0).max(extent(1)).max(extent(2)),
-            padding: [0; 7],
+            spheres: 0,
+            others: 0,
+            exact: 0,
+            padding: [0; 25],
         };
         for (lane, &id) in self.tree.order[first..first + node.count as usize].iter().enumerate() {
             leaf.ids[lane] = id;
@@ -184,16 +194,15 @@ impl Filler<'_> {
             match &self.primitives[id as usize] {
                 Primitive::Triangle(t) => {
                     t.vertices().into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
-                    if t.vertices().into_iter().all(|v| self.frame.is_exact(v)) {
-                        leaf.ids[lane] |= EXACT;
-                    }
+                    let exact = t.vertices().into_iter().all(|v| self.frame.is_exact(v));
+                    leaf.exact |= u8::from(exact) << lane;
                 }
                 Primitive::Sphere(s) => {
                     put(0, s.centre());
                     leaf.vertices[1][0][lane] = self.frame.length(s.radius());
-                    leaf.ids[lane] |= OTHER | SPHERE;
+                    leaf.spheres |= 1 << lane;
                 }
-                _ => leaf.ids[lane] |= OTHER,
+                _ => leaf.others |= 1 << lane,
             }
         }
         let index = self.leaf_count;
@@ -207,35 +216,23 @@ impl Leaf8 {
     /// The primitive in a lane.
     #[inline(always)]
     pub(crate) fn id(&self, lane: usize) -> PrimitiveId {
-        PrimitiveId(self.ids[lane] & !(OTHER | EXACT | SPHERE))
-    }
-
-    /// Whether a lane holds a triangle.
-    #[inline(always)]
-    pub(crate) fn is_triangle(&self, lane: usize) -> bool {
-        self.ids[lane] & OTHER == 0
+        PrimitiveId(self.ids[lane % LEAF_WIDTH])
     }
 
     /// Whether the vertices in a lane are those of its triangle.
     #[inline(always)]
     pub(crate) fn is_exact(&self, lane: usize) -> bool {
-        self.ids[lane] & (EXACT | OTHER) == EXACT
+        self.exact >> lane & 1 == 1
     }
 
-    /// The intersection with the triangle in a lane, whose vertices are exact: what the triangle itself would answer.
+    /// The vertices in a lane if they are exact: what [`Triangle::lanes`] gives for it.
+    ///
+    /// [`Triangle::lanes`]: crate::Triangle::lanes
     #[inline(always)]
-    pub(crate) fn intersect(&self, frame: &Frame, lane: usize, query: &Query, t_max: f64) -> Option<RawHit> {
-        let lane = lane % WIDTH;
-        let [kx, ky, kz] = query.axes;
-        let unscale = frame.unscale();
-        let projected = |v: &[[f32; WIDTH]; 3]| {
-            query.project_permuted([v[kx][lane], v[ky][lane], v[kz][lane]].map(|c| f64::from(c) * unscale))
-        };
+    pub(crate) fn lanes(&self, frame: &Frame, lane: usize, query: &Query) -> [[f64; 4]; 3] {
+        let lane = lane % LEAF_WIDTH;
         let [a, b, c] = &self.vertices;
-        let vertices = || {
-            let at = |v: &[[f32; WIDTH]; 3]| frame.unscaled([v[0][lane], v[1][lane], v[2][lane]]);
-            [at(a), at(b), at(c)]
-        };
-        Triangle::intersect_projected([projected(a), projected(b), projected(c)], vertices, query, t_max)
+        let unscale = frame.unscale();
+        query.axes.map(|k| [a[k][lane], b[k][lane], c[k][lane], c[k][lane]].map(|v| f64::from(v) * unscale))
     }
 }

@@ -1,9 +1,10 @@
 //! Triangles.
 
 use super::{ShapeError, check_points, planar};
-use crate::query::{Projected, Query, RawHit, larger};
+use crate::query::{Query, RawHit, exact_edge, larger, largest};
 use crate::{Aabb, PrimitiveId, SurfacePoint};
 use etalon_optics::{Real, Vec3};
+use std::array::from_fn;
 
 /// A triangle, seen by rays from both sides; its outward side is the one from which a, b, c turn counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,19 +64,37 @@ impl Triangle {
     /// of the triangles around it.
     #[inline]
     pub(crate) fn intersect(&self, query: &Query, t_max: f64) -> Option<RawHit> {
-        let projected = self.vertices().map(|v| query.project(v));
-        Self::intersect_projected(projected, || self.vertices(), query, t_max)
+        Self::intersect_lanes(self.lanes(query), || self, query, t_max)
     }
 
-    /// [`Triangle::intersect`] of three projected vertices.
+    /// Lanes of the vertices' coordinates in the order of a query's axes; the fourth lane repeats the third.
     #[inline(always)]
-    pub(crate) fn intersect_projected(
-        [a, b, c]: [Projected; 3],
-        vertices: impl FnOnce() -> [Vec3<f64>; 3],
+    pub(crate) fn lanes(&self, query: &Query) -> [[f64; 4]; 3] {
+        let [a, b, c] = [self.a.to_array(), self.b.to_array(), self.c.to_array()];
+        query.axes.map(|k| [a[k], b[k], c[k], c[k]])
+    }
+
+    /// [`Triangle::intersect`] with the result of [`Triangle::lanes`], for the triangle itself where that does not suffice.
+    #[inline(always)]
+    pub(crate) fn intersect_lanes<'a>(
+        lanes: [[f64; 4]; 3],
+        triangle: impl FnOnce() -> &'a Self,
         query: &Query,
         t_max: f64,
     ) -> Option<RawHit> {
-        let (u, v, w) = (c.edge(b), a.edge(c), b.edge(a));
+        let ([x, y, z], magnitude) = query.project_three(lanes);
+        // (c, a, b, ·) × (b, c, a, ·)
+        let edges: [f64; 4] = from_fn(|i| {
+            let (p, q) = ([2, 0, 1, 1][i], [1, 2, 0, 0][i]);
+            x[p] * y[q] - y[p] * x[q]
+        });
+        let [mut u, mut v, mut w, _] = edges;
+        if u == 0.0 || v == 0.0 || w == 0.0 {
+            let edge = |p: usize, q: usize, area: f64| {
+                if area == 0.0 { exact_edge([x[p], y[p]], [x[q], y[q]]) } else { area }
+            };
+            (u, v, w) = (edge(2, 1, u), edge(0, 2, v), edge(1, 0, w));
+        }
         // Inclusive: an edge that passes through the ray as far as rounding tells belongs to both its triangles.
         let outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
         if outside {
@@ -86,15 +105,13 @@ impl Triangle {
         if det == 0.0 || det.is_nan() {
             return None;
         }
-        let t_det = (u * a.z + v * b.z) + w * c.z;
+        let t_det = (u * z[0] + v * z[1]) + w * z[2];
         let mut hit = RawHit { t: t_det / det, uv: [v / det, w / det] };
-        let magnitude = larger(larger(a.magnitude, b.magnitude), c.magnitude);
-        let side = |p: Projected| larger(p.x.abs(), p.y.abs());
-        let extent = larger(larger(side(a), side(b)), side(c));
-        let depth = larger(larger(a.z, b.z), c.z) + larger(larger(-a.z, -b.z), -c.z);
+        let extent = largest(from_fn(|i| larger(x[i].abs(), y[i].abs())));
+        let depth = largest(z) + largest(z.map(|z| -z));
         if !planar::is_determined(magnitude, extent, depth, t_det.abs(), det.abs()) {
-            let vertices = vertices();
-            hit = planar::refine(query, vertices[0], vertices[1], vertices[2], Aabb::of_points(vertices), hit, 1.0);
+            let &Self { a, b, c } = triangle();
+            hit = planar::refine(query, a, b, c, Aabb::of_points([a, b, c]), hit, 1.0);
         }
         (0.0 < hit.t && hit.t < t_max).then_some(hit)
     }

@@ -21,11 +21,15 @@ fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> u
             let primitives = geometry.primitives();
             assert_eq!(traverse::closest_portable(tree, primitives, &query), flat, "{ray:?}");
             assert_eq!(traverse::any_portable(tree, primitives, &query), occluded, "{ray:?}");
-            if let Some(frame_ray) = tree.frame.enter(&query) {
-                let deep = traverse::closest_deep(tree, primitives, &query, &frame_ray);
-                assert_eq!(deep, flat, "{ray:?}");
-                assert_eq!(traverse::any_deep(tree, primitives, &query, &frame_ray), occluded, "{ray:?}");
+            #[cfg(target_arch = "x86_64")]
+            if let Some(found) = traverse::closest_avx2(tree, primitives, &query) {
+                assert_eq!(found, flat, "{ray:?}");
+                assert_eq!(traverse::any_avx2(tree, primitives, &query), Some(occluded), "{ray:?}");
             }
+            let scaled = flat.map(|(hit, id)| (R::from_f64(hit.t * query.scale), id));
+            assert_eq!(geometry.closest_hit(&ray).map(|hit| (hit.t, hit.primitive)), scaled, "{ray:?}");
+            assert_eq!(traverse::closest_deep(tree, primitives, &query), flat, "{ray:?}");
+            assert_eq!(traverse::any_deep(tree, primitives, &query), occluded, "{ray:?}");
         }
         if let Some((_, closest)) = flat {
             // What a shadow ray aims at does not hide it.

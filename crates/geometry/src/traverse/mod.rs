@@ -5,129 +5,187 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod leaf;
 mod portable;
 mod stack;
+mod vector;
 
 use crate::build::MAX_DEPTH;
 use crate::frame::FrameRay;
-use crate::geometry::Best;
+use crate::geometry::{Best, Found};
 use crate::query::{Query, RawHit};
-use crate::wide::{EXACT, LEAF, Leaf8, Node8, WIDTH, WideTree};
-use crate::{Primitive, PrimitiveId};
-use stack::Stack;
+use crate::wide::{LEAF, LEAF_WIDTH, Leaf8, NODE_WIDTH, Node16, WideTree};
+use crate::{Primitive, PrimitiveId, Ray, Triangle};
+use etalon_optics::Real;
+use leaf::candidates;
+use stack::{Room, Stack};
+use vector::Vector;
 
 /// Levels of the stack that serves all but degenerate trees, and of the one that serves any: as many as a binary tree has.
 const LEVELS: [usize; 2] = [12, MAX_DEPTH];
 
 /// The children of a node that a ray meets.
-pub(crate) struct Entered {
+struct Entered {
     /// One bit a child.
     mask: u32,
     /// The distances at which it enters them, not above the true ones.
-    near: [f32; WIDTH],
+    near: [f32; NODE_WIDTH],
 }
 
 /// The primitives of a leaf that a ray may hit.
-pub(crate) struct Candidates {
-    /// Those to be decided in `f64`, and those certainly hit, one bit each.
+struct Candidates {
+    /// Those that may be hit, one bit each.
     mask: u32,
-    /// Those that are certainly hit between the origin and the certain limit.
+    /// Those among them of which no distance is known.
+    unbounded: u32,
+    /// Those among them that are certainly hit between the origin and the certain limit.
     certain: u32,
-    /// Distances of triangles, not above the true ones.
-    near: [f32; WIDTH],
+    /// Distances not above the true ones.
+    near: [f32; LEAF_WIDTH],
     /// Distances not below the true ones of those certainly hit.
-    far: [f32; WIDTH],
+    far: [f32; LEAF_WIDTH],
 }
 
 /// The filters of an instruction set.
-pub(crate) trait Filters: Copy {
-    /// The ray as the filters want it.
+trait Filters: Copy + Into<<Self::Vector as Vector>::Token> {
+    /// The ray as the filter of nodes wants it.
     type Ray: Copy;
+    /// Eight floats.
+    type Vector: Vector;
     /// Prepares a ray.
-    fn ray(self, ray: &FrameRay, leaves: PrimitiveId) -> Self::Ray;
+    fn ray(self, ray: &FrameRay) -> Self::Ray;
     /// The children of a node that the ray meets in [0, `limit`].
-    fn enter(self, ray: &Self::Ray, node: &Node8, limit: f32) -> Entered;
-    /// Announces that a primitive will be read.
-    fn prefetch(self, primitive: &Primitive);
-    /// The primitives of a leaf that the ray may hit in [0, `limit`], and those that it certainly hits in
-    /// (0, `certain_limit`). A triangle that it leaves is none of them.
-    fn candidates(self, ray: &Self::Ray, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates;
+    fn enter(self, ray: &Self::Ray, node: &Node16, limit: f32) -> Entered;
+    /// Announces that an item will be read, if it is a small one.
+    fn prefetch<T>(self, item: &T);
 }
 
-/// The closest hit.
-pub(crate) fn closest(tree: &WideTree, primitives: &[Primitive], query: &Query) -> Option<(RawHit, PrimitiveId)> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(filters) = avx2::Avx2::detect() {
-        return filters.closest(tree, primitives, query);
+/// What a traversal starts with: a ray, or a query made of one.
+pub(crate) trait Start: Copy {
+    /// The query; none if it cannot be computed with.
+    fn query(self) -> Option<Query>;
+    /// A distance along the query's direction in the units of what it starts with.
+    fn distance(self, query: &Query, t: f64) -> f64;
+}
+
+impl Start for &Query {
+    #[inline(always)]
+    fn query(self) -> Option<Query> {
+        Some(*self)
     }
-    closest_portable(tree, primitives, query)
+
+    #[inline(always)]
+    fn distance(self, _: &Query, t: f64) -> f64 {
+        t
+    }
+}
+
+impl<R: Real> Start for &Ray<R> {
+    #[inline(always)]
+    fn query(self) -> Option<Query> {
+        Query::new(self)
+    }
+
+    #[inline(always)]
+    fn distance(self, query: &Query, t: f64) -> f64 {
+        t * query.scale
+    }
+}
+
+/// The closest hit, its distance in the units of the start.
+///
+/// The query is made within, where its numbers can stay in registers.
+#[inline]
+pub(crate) fn closest<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(filters) = avx512::Avx512::detect() {
+        return filters.closest(tree, primitives, start);
+    } else if let Some(filters) = avx2::Avx2::detect() {
+        return filters.closest(tree, primitives, start);
+    }
+    closest_portable(tree, primitives, start)
 }
 
 /// Whether anything but the primitive aimed at is hit.
-pub(crate) fn any(tree: &WideTree, primitives: &[Primitive], query: &Query) -> bool {
+#[inline]
+pub(crate) fn any<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
     #[cfg(target_arch = "x86_64")]
-    if let Some(filters) = avx2::Avx2::detect() {
-        return filters.any(tree, primitives, query);
+    if let Some(filters) = avx512::Avx512::detect() {
+        return filters.any(tree, primitives, start);
+    } else if let Some(filters) = avx2::Avx2::detect() {
+        return filters.any(tree, primitives, start);
     }
-    any_portable(tree, primitives, query)
+    any_portable(tree, primitives, start)
 }
 
 /// [`closest`] on any machine.
-pub(crate) fn closest_portable(
-    tree: &WideTree,
-    primitives: &[Primitive],
-    query: &Query,
-) -> Option<(RawHit, PrimitiveId)> {
-    closest_with(portable::Portable, tree, primitives, query)
+pub(crate) fn closest_portable<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+    closest_with(portable::Portable, tree, primitives, start)
 }
 
 /// [`any`] on any machine.
-pub(crate) fn any_portable(tree: &WideTree, primitives: &[Primitive], query: &Query) -> bool {
-    any_with(portable::Portable, tree, primitives, query)
+pub(crate) fn any_portable<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+    any_with(portable::Portable, tree, primitives, start)
+}
+
+/// [`closest`] with AVX2 alone; none without.
+#[cfg(all(test, target_arch = "x86_64"))]
+pub(crate) fn closest_avx2<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Option<Found>> {
+    avx2::Avx2::detect().map(|filters| filters.closest(tree, primitives, start))
+}
+
+/// [`any`] with AVX2 alone; none without.
+#[cfg(all(test, target_arch = "x86_64"))]
+pub(crate) fn any_avx2<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<bool> {
+    avx2::Avx2::detect().map(|filters| filters.any(tree, primitives, start))
 }
 
 #[inline(always)]
-fn closest_with<F: Filters>(
+fn closest_with<F: Filters, S: Start>(
     filters: F,
     tree: &WideTree,
     primitives: &[Primitive],
-    query: &Query,
-) -> Option<(RawHit, PrimitiveId)> {
-    let ray = tree.frame.enter(query)?;
-    if tree.depth <= LEVELS[0] {
-        closest_on::<F, { LEVELS[0] * (WIDTH - 1) }>(filters, tree, primitives, query, &ray)
+    start: S,
+) -> Option<Found> {
+    let query = start.query()?;
+    let ray = tree.frame.enter(&query)?;
+    let (mut hit, id) = if tree.depth <= LEVELS[0] {
+        closest_on::<F, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, &query, &ray)?
     } else {
-        closest_deep(tree, primitives, query, &ray)
-    }
+        closest_deep(tree, primitives, &query)?
+    };
+    hit.t = start.distance(&query, hit.t);
+    Some((hit, id))
 }
 
 #[inline(always)]
-fn any_with<F: Filters>(filters: F, tree: &WideTree, primitives: &[Primitive], query: &Query) -> bool {
-    let Some(ray) = tree.frame.enter(query) else { return false };
+fn any_with<F: Filters, S: Start>(filters: F, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+    let Some(query) = start.query() else { return false };
+    let Some(ray) = tree.frame.enter(&query) else { return false };
     if tree.depth <= LEVELS[0] {
-        any_on::<F, { LEVELS[0] }>(filters, tree, primitives, query, &ray)
+        any_on::<F, { LEVELS[0] }>(filters, tree, primitives, &query, &ray)
     } else {
-        any_deep(tree, primitives, query, &ray)
+        any_deep(tree, primitives, &query)
     }
 }
 
 /// Degenerate trees, by the portable filters.
 #[cold]
 #[inline(never)]
-pub(crate) fn closest_deep(
-    tree: &WideTree,
-    primitives: &[Primitive],
-    query: &Query,
-    ray: &FrameRay,
-) -> Option<(RawHit, PrimitiveId)> {
-    closest_on::<_, { LEVELS[1] * (WIDTH - 1) }>(portable::Portable, tree, primitives, query, ray)
+pub(crate) fn closest_deep(tree: &WideTree, primitives: &[Primitive], query: &Query) -> Option<Found> {
+    let ray = tree.frame.enter(query)?;
+    closest_on::<_, { LEVELS[1] * (NODE_WIDTH - 1) }>(portable::Portable, tree, primitives, query, &ray)
 }
 
 /// Degenerate trees, by the portable filters.
 #[cold]
 #[inline(never)]
-pub(crate) fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query, ray: &FrameRay) -> bool {
-    any_on::<_, { LEVELS[1] }>(portable::Portable, tree, primitives, query, ray)
+pub(crate) fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query) -> bool {
+    tree.frame
+        .enter(query)
+        .is_some_and(|ray| any_on::<_, { LEVELS[1] }>(portable::Portable, tree, primitives, query, &ray))
 }
 
 /// A stack entry: the distance's bits above (those of non-negative numbers are ordered as they are), the child below.
@@ -136,11 +194,19 @@ fn entry(near: f32, child: u32) -> u64 {
     u64::from(near.to_bits()) << 32 | u64::from(child)
 }
 
-/// Hits that are certain, but whose distances are known in `f32` only.
+/// What is likely to be the closest hit, though its exact distance is not yet known.
+#[derive(Clone, Copy)]
+struct Waiting {
+    leaf: u32,
+    lane: u32,
+    /// Not above its distance.
+    near: f32,
+}
+
+/// Hits whose decision in `f64` can wait until the end, when most of them are beyond another and what they need has been
+/// fetched.
 struct Pending {
-    /// The leaf and the lane.
-    at: [(u32, u32); Self::LIMIT],
-    near: [f32; Self::LIMIT],
+    list: [Waiting; Self::LIMIT],
     count: usize,
 }
 
@@ -148,14 +214,13 @@ impl Pending {
     /// Hits that `f32` cannot order are rare, more than two of them duplicates.
     const LIMIT: usize = 4;
 
-    /// Decides in `f64` those that are not beyond `limit`.
-    #[inline(always)]
+    /// Decides those that are not beyond `limit`.
+    #[cold]
+    #[inline(never)]
     fn resolve(&mut self, best: &mut Best, tree: &WideTree, primitives: &[Primitive], query: &Query, limit: f32) {
-        let leaves = tree.leaves();
-        for i in 0..self.count {
-            if self.near[i] <= limit {
-                let (leaf, lane) = self.at[i];
-                test(best, tree, &leaves[leaf as usize], lane as usize, primitives, query);
+        for waiting in &self.list[..self.count] {
+            if waiting.near <= limit {
+                decide(best, tree, waiting.leaf, waiting.lane, primitives, query);
             }
         }
         self.count = 0;
@@ -163,14 +228,40 @@ impl Pending {
 }
 
 /// Decides in `f64` whether a lane of a leaf holds the closest hit so far.
-#[inline(never)]
-fn test(best: &mut Best, tree: &WideTree, leaf: &Leaf8, lane: usize, primitives: &[Primitive], query: &Query) -> bool {
+#[inline(always)]
+fn decide(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives: &[Primitive], query: &Query) -> bool {
+    let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
     if leaf.is_exact(lane) {
-        best.take(id, |t_max| leaf.intersect(&tree.frame, lane, query, t_max))
+        best.take(id, |t_max| intersect_exact(tree, leaf, lane, primitives, query, t_max))
     } else {
         best.test(primitives, query, id)
     }
+}
+
+/// The intersection with a triangle whose vertices are exact in its leaf. The triangle lies elsewhere and is not touched, as
+/// a rule.
+#[inline(always)]
+fn intersect_exact(
+    tree: &WideTree,
+    leaf: &Leaf8,
+    lane: usize,
+    primitives: &[Primitive],
+    query: &Query,
+    t_max: f64,
+) -> Option<RawHit> {
+    let triangle = || match &primitives[leaf.id(lane).0 as usize] {
+        Primitive::Triangle(triangle) => triangle,
+        _ => unreachable!("only triangles have exact vertices"),
+    };
+    Triangle::intersect_lanes(leaf.lanes(&tree.frame, lane, query), triangle, query, t_max)
+}
+
+/// [`decide`] where it is not the rule.
+#[cold]
+#[inline(never)]
+fn decide_now(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives: &[Primitive], query: &Query) -> bool {
+    decide(best, tree, leaf, lane, primitives, query)
 }
 
 /// The closest hit, by a stack of children, nearest on top.
@@ -181,14 +272,16 @@ fn closest_on<F: Filters, const N: usize>(
     primitives: &[Primitive],
     query: &Query,
     frame_ray: &FrameRay,
-) -> Option<(RawHit, PrimitiveId)> {
-    let ray = filters.ray(frame_ray, query.leaves);
+) -> Option<Found> {
+    let ray = filters.ray(frame_ray);
     let mut best = Best::new(query);
     let mut limit = frame_ray.distance(query.t_max);
     let certain_limit = frame_ray.distance_below(query.t_max);
-    let mut pending = Pending { at: [(0, 0); Pending::LIMIT], near: [0.0; Pending::LIMIT], count: 0 };
+    let nothing = Waiting { leaf: 0, lane: 0, near: 0.0 };
+    let mut pending = Pending { list: [nothing; Pending::LIMIT], count: 0 };
     let (nodes, leaves) = (tree.nodes(), tree.leaves());
-    let mut stack = Stack::<u64, N>::new();
+    let mut room = Room::<u64, N>::new();
+    let mut stack = Stack::new(&mut room);
     let mut child = 0;
     loop {
         if child & LEAF == 0 {
@@ -198,20 +291,20 @@ fn closest_on<F: Filters, const N: usize>(
                 let lane = mask.trailing_zeros() as usize;
                 mask &= mask - 1;
                 if mask == 0 {
-                    child = node.children[lane];
+                    child = node.children.0[lane];
                     continue;
                 }
-                let first = entry(near[lane], node.children[lane]);
+                let first = entry(near[lane], node.children.0[lane]);
                 let lane = mask.trailing_zeros() as usize;
                 mask &= mask - 1;
-                let second = entry(near[lane], node.children[lane]);
+                let second = entry(near[lane], node.children.0[lane]);
                 let mut nearest = first.min(second);
                 let base = stack.len();
                 stack.push(first.max(second));
                 while mask != 0 {
                     let lane = mask.trailing_zeros() as usize;
                     mask &= mask - 1;
-                    let new = entry(near[lane], node.children[lane]);
+                    let new = entry(near[lane], node.children.0[lane]);
                     stack.insert(base, nearest.max(new));
                     nearest = nearest.min(new);
                 }
@@ -221,17 +314,20 @@ fn closest_on<F: Filters, const N: usize>(
         } else {
             let index = child & !LEAF;
             let leaf = &leaves[index as usize];
-            let mut candidates = filters.candidates(&ray, leaf, limit, certain_limit);
+            let mut candidates = candidates(filters, frame_ray, leaf, limit, certain_limit);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
                 let id = leaf.id(lane);
-                if candidates.near[lane] > limit && leaf.is_triangle(lane) {
+                if candidates.near[lane % LEAF_WIDTH] > limit && candidates.unbounded >> lane & 1 == 0 {
+                    continue;
+                }
+                if id == query.leaves && leaf.spheres >> lane & 1 == 0 {
                     continue;
                 }
                 if candidates.certain >> lane & 1 == 1 {
                     // Its exact distance can wait until the end, when it has been fetched.
-                    if leaf.ids[lane] & EXACT == 0 {
+                    if !leaf.is_exact(lane) {
                         filters.prefetch(&primitives[id.0 as usize]);
                     }
                     if pending.count == Pending::LIMIT {
@@ -240,21 +336,26 @@ fn closest_on<F: Filters, const N: usize>(
                     if candidates.far[lane] < limit {
                         limit = candidates.far[lane];
                         // Most often what waited is now beyond the limit.
-                        if pending.count == 1 && pending.near[0] > limit {
+                        if pending.count == 1 && pending.list[0].near > limit {
                             pending.count = 0;
                         }
                     }
-                    pending.at[pending.count] = (index, lane as u32);
-                    pending.near[pending.count] = candidates.near[lane];
+                    pending.list[pending.count] =
+                        Waiting { leaf: index, lane: lane as u32, near: candidates.near[lane] };
                     pending.count += 1;
-                } else if test(&mut best, tree, leaf, lane, primitives, query) {
+                } else if decide_now(&mut best, tree, index, lane as u32, primitives, query) {
                     limit = limit.min(frame_ray.distance(best.t_max));
                 }
             }
         }
         loop {
             let Some(next) = stack.pop() else {
-                pending.resolve(&mut best, tree, primitives, query, limit);
+                if pending.count == 1 {
+                    let Waiting { leaf, lane, .. } = pending.list[0];
+                    decide(&mut best, tree, leaf, lane, primitives, query);
+                } else {
+                    pending.resolve(&mut best, tree, primitives, query, limit);
+                }
                 return best.hit;
             };
             if f32::from_bits((next >> 32) as u32) <= limit {
@@ -275,11 +376,12 @@ fn any_on<F: Filters, const N: usize>(
     query: &Query,
     frame_ray: &FrameRay,
 ) -> bool {
-    let ray = filters.ray(frame_ray, query.leaves);
+    let ray = filters.ray(frame_ray);
     let limit = frame_ray.distance(query.t_max);
     let certain_limit = frame_ray.distance_below(query.t_max);
     let (nodes, leaves) = (tree.nodes(), tree.leaves());
-    let mut levels = Stack::<(u32, u32), N>::new();
+    let mut room = Room::<(u32, u32), N>::new();
+    let mut levels = Stack::new(&mut room);
     let mut index = 0;
     loop {
         let mut node = &nodes[index as usize];
@@ -294,7 +396,7 @@ fn any_on<F: Filters, const N: usize>(
             }
             let lane = mask.trailing_zeros() as usize;
             mask &= mask - 1;
-            let child = node.children[lane];
+            let child = node.children.0[lane];
             if child & LEAF == 0 {
                 if mask != 0 {
                     levels.push((index, mask));
@@ -303,18 +405,18 @@ fn any_on<F: Filters, const N: usize>(
                 break;
             }
             let leaf = &leaves[(child & !LEAF) as usize];
-            let mut candidates = filters.candidates(&ray, leaf, limit, certain_limit);
+            let mut candidates = candidates(filters, frame_ray, leaf, limit, certain_limit);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
                 let id = leaf.id(lane);
-                if id == query.aims_at {
+                if id == query.aims_at || id == query.leaves && leaf.spheres >> lane & 1 == 0 {
                     continue;
                 }
                 let certain = candidates.certain >> lane & 1 == 1;
                 let hit = certain
                     || if leaf.is_exact(lane) {
-                        leaf.intersect(&tree.frame, lane, query, query.t_max).is_some()
+                        intersect_exact(tree, leaf, lane, primitives, query, query.t_max).is_some()
                     } else {
                         occludes(primitives, query, id)
                     };
@@ -324,29 +426,6 @@ fn any_on<F: Filters, const N: usize>(
             }
         }
     }
-}
-
-/// Bound on the error of the edge functions of a leaf's triangles in the projection of a ray that meets the leaf's box.
-///
-/// `error` is the bound δ on the error of a projected coordinate. With e the largest of them, an edge function
-/// (cx·by − cy·bx) errs by at most 4δe + 2δ² for its factors and 4ue² for its rounding; e is below twice the reach of the
-/// ray, of which δ is at least 10 roundoffs, so that 5δe + 2δ² covers both. A vertex is no farther than the `extent` of
-/// the box along any axis from a point of the ray, which projects to zero, so that e is at most twice the extent, plus
-/// twice the slack with which the ray may miss the box, below 3δ: its 3ε a distance (`frame`).
-#[inline(always)]
-fn leaf_error(error: f32, extent: f32) -> f32 {
-    error * (12.0 * extent + 32.0 * error)
-}
-
-/// Bounds for spheres in the projection of a ray: on the error of a centre's distance from the ray and of its place along
-/// it, and a relative one on the squared distance.
-///
-/// A centre relative to the origin and sheared, (x, y), errs by δ in each coordinate, its distance from the ray,
-/// √(x² + y² − (x·sx + y·sy)²/(1 + sx² + sy²)), by no more than √2·δ and, since the difference is at least a third of
-/// x² + y², by 30 roundoffs of itself; the radius errs by one. Along the ray the centre errs by at most 4δ.
-#[inline(always)]
-fn sphere_bounds(error: f32) -> (f32, f32) {
-    (6.0 * error, 1.0 + 32.0 * f32::EPSILON)
 }
 
 /// Whether a primitive hides the end of a ray from its start.

@@ -3,17 +3,27 @@
 
 use std::mem::MaybeUninit;
 
-/// Up to `N` entries.
-pub(super) struct Stack<T, const N: usize> {
-    entries: [MaybeUninit<T>; N],
+/// Room for up to `N` entries of a [`Stack`].
+pub(super) struct Room<T, const N: usize>([MaybeUninit<T>; N]);
+
+impl<T, const N: usize> Room<T, N> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self([const { MaybeUninit::uninit() }; N])
+    }
+}
+
+/// Up to `N` entries. Their number lies apart from them, so that it can be kept in a register.
+pub(super) struct Stack<'a, T, const N: usize> {
+    entries: &'a mut [MaybeUninit<T>; N],
     /// The entries below are initialised, always.
     length: usize,
 }
 
-impl<T: Copy, const N: usize> Stack<T, N> {
+impl<'a, T: Copy, const N: usize> Stack<'a, T, N> {
     #[inline(always)]
-    pub(super) fn new() -> Self {
-        Self { entries: [const { MaybeUninit::uninit() }; N], length: 0 }
+    pub(super) fn new(room: &'a mut Room<T, N>) -> Self {
+        Self { entries: &mut room.0, length: 0 }
     }
 
     /// Panics if the stack is full, which the depth of trees rules out.
@@ -36,7 +46,7 @@ impl<T: Copy, const N: usize> Stack<T, N> {
     }
 }
 
-impl<T: Copy + Ord, const N: usize> Stack<T, N> {
+impl<T: Copy + Ord, const N: usize> Stack<'_, T, N> {
     /// Pushes an entry below those from `base` on that are smaller, which lie in order.
     #[inline(always)]
     pub(super) fn insert(&mut self, base: usize, entry: T) {
