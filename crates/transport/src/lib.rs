@@ -9,6 +9,7 @@
 //! | [`prepare`](mod@prepare) | shapes in world space, lights, the accelerator |
 //! | [`plan`] | which effects the scene calls for, and why |
 //! | `path` | the path loop |
+//! | `coordinates` | shading normals and texture coordinates |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`] | what the estimates are made of |
 //! | `kernel`, `model`, [`mod@render`], [`film`] | the table of kernels, what their lanes stand for, tiles over all cores, sums |
@@ -19,6 +20,7 @@
 
 pub mod bsdf;
 pub mod camera;
+mod coordinates;
 pub mod film;
 pub mod filter;
 mod kernel;

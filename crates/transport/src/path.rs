@@ -10,7 +10,6 @@
 //! N·beta_j / Σ densities: plain `beta` as long as all lanes sample alike, N·beta_hero once dispersion has left the hero
 //! alone.
 
-use crate::bsdf::Bsdf;
 use crate::film::Counters;
 use crate::light::{LightTable, Target};
 use crate::mis::{Density, power_heuristic};
@@ -18,7 +17,7 @@ use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
 use crate::sampler::Sampler;
 use crate::spectral::PathSpectrum;
-use crate::surface::Surfaces;
+use crate::surface::{Scattering, Surfaces};
 use etalon_geometry::{Geometry, PrimitiveId, Ray, SurfacePoint};
 use etalon_optics::{Lanes, Real, Vec3};
 use etalon_scene::LightSampling;
@@ -117,6 +116,7 @@ impl World<'_> {
                 break;
             }
 
+            let scattering = surface.scattering(&point, &hit);
             let shared = match self.shadow_rays {
                 ShadowRays::Never => false,
                 ShadowRays::WhereUseful => surface.bsdf.has_solid_angle_part(),
@@ -124,7 +124,7 @@ impl World<'_> {
             };
             if shared {
                 let u = sampler.vertex_set(vertex, 1);
-                if let Some((index, direct)) = self.direct_light(&point, surface.bsdf, wo, lambda_nm, u, counters) {
+                if let Some((index, direct)) = self.direct_light(&point, &scattering, wo, lambda_nm, u, counters) {
                     let light = beta * direct * lane_weight;
                     observer.light(vertex, Found::ShadowRay { light: index }, light);
                     radiance += light;
@@ -132,7 +132,7 @@ impl World<'_> {
             }
 
             let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(vertex, 0);
-            let Some(next) = surface.bsdf.sample(lambda_nm, point.normal, wo, [u_lobe, u1, u2]) else {
+            let Some(next) = scattering.sample(lambda_nm, wo, [u_lobe, u1, u2]) else {
                 observer.end(End::Absorbed);
                 break;
             };
@@ -197,7 +197,7 @@ impl World<'_> {
     fn direct_light<R: Real, const N: usize>(
         &self,
         point: &SurfacePoint<R>,
-        bsdf: &Bsdf,
+        scattering: &Scattering<'_, R>,
         wo: Vec3<R>,
         lambda_nm: &Lanes<f64, N>,
         [u_light, u1, u2, _]: [R; 4],
@@ -215,7 +215,7 @@ impl World<'_> {
             return None;
         }
         let wi = sample.wi.cast();
-        let (f_cos, bsdf_density) = bsdf.eval(lambda_nm, point.normal, wo, wi);
+        let (f_cos, bsdf_density) = scattering.eval(lambda_nm, wo, wi);
         if f_cos.is_zero() {
             return None;
         }

@@ -1,6 +1,7 @@
 //! From a scene to what the kernels trace. After this nothing fails.
 
 use crate::bsdf::Bsdf;
+use crate::coordinates::{Coordinates, MeshCoordinates};
 use crate::filter::FilterSampler;
 use crate::kernel::{Kernel, kernel};
 use crate::light::{
@@ -16,6 +17,7 @@ use etalon_geometry::{
 };
 use etalon_optics::{Spectrum, Vec3};
 use etalon_scene::{EmissionSides, LightKind, LightSampling, Object, Scene, Shape, Transform};
+use std::sync::Arc;
 
 /// A scene that is ready to be rendered.
 pub struct Prepared {
@@ -68,7 +70,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
             .add_object(index as u32, object)
             .map_err(|source| PrepareError::Shape { object: object.name.clone(), source })?;
     }
-    let Builder { primitives, object_of, mut emitters, warnings, .. } = builder;
+    let Builder { primitives, object_of, mut emitters, warnings, coordinates, .. } = builder;
     let geometry = Geometry::build(primitives)?;
     let radius = geometry.bounds().map_or(0.0, |b| 0.5 * b.extent().length());
 
@@ -105,9 +107,11 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         objects: scene
             .objects
             .iter()
-            .map(|o| ObjectSurface {
+            .zip(coordinates)
+            .map(|(o, coordinates)| ObjectSurface {
                 material: o.material,
                 emission: o.emission.as_ref().map(|e| Emission { radiance: spectrum(&e.radiance), sides: e.sides }),
+                coordinates,
             })
             .collect(),
         object_of,
@@ -170,16 +174,26 @@ struct Builder {
     primitives: Vec<Primitive>,
     object_of: Vec<u32>,
     emitters: Vec<Light>,
+    /// Of each object.
+    coordinates: Vec<Coordinates>,
     warnings: Vec<String>,
 }
 
 impl Builder {
     fn new(range_nm: [f64; 2]) -> Self {
-        Self { range_nm, primitives: Vec::new(), object_of: Vec::new(), emitters: Vec::new(), warnings: Vec::new() }
+        Self {
+            range_nm,
+            primitives: Vec::new(),
+            object_of: Vec::new(),
+            emitters: Vec::new(),
+            coordinates: Vec::new(),
+            warnings: Vec::new(),
+        }
     }
 
     fn add_object(&mut self, index: u32, object: &Object) -> Result<(), ShapeError> {
         let to_world = Affine::new(&object.transform);
+        let mut coordinates = Coordinates::None;
         match &object.shape {
             Shape::Sphere { center, radius_m } => {
                 let shape = Sphere::new(to_world.point(*center), radius_m * to_world.uniform_scale())?;
@@ -188,6 +202,7 @@ impl Builder {
             Shape::Parallelogram { origin, u, v } => {
                 let (u, v) = to_world.oriented(to_world.vector(*u), to_world.vector(*v));
                 let shape = Parallelogram::new(to_world.point(*origin), u, v)?;
+                coordinates = Coordinates::Parallelogram { swapped: to_world.mirrors };
                 self.add(index, shape, object, |shape, emitter| {
                     Light::Parallelogram(ParallelogramLight::new(shape, emitter))
                 });
@@ -199,27 +214,41 @@ impl Builder {
             }
             Shape::Mesh(mesh) => {
                 let vertices: Vec<_> = mesh.vertices.iter().map(|v| to_world.point(*v)).collect();
-                let mut dropped = 0_usize;
-                for triangle in &mesh.triangles {
+                let first = self.primitives.len() as u32;
+                let mut dropped = Vec::new();
+                for (number, triangle) in mesh.triangles.iter().enumerate() {
                     let [a, b, c] = triangle.map(|i| vertices[i as usize]);
                     let (b, c) = to_world.oriented(b, c);
                     match Triangle::new(a, b, c) {
                         Ok(shape) => self.add(index, shape, object, |shape, emitter| {
                             Light::Triangle(TriangleLight::new(shape, emitter))
                         }),
-                        Err(ShapeError::NoArea) => dropped += 1,
+                        Err(ShapeError::NoArea) => dropped.push(number as u32),
                         Err(other) => return Err(other),
                     }
                 }
-                if dropped > 0 {
+                if !(mesh.normals.is_empty() && mesh.uvs.is_empty()) {
+                    coordinates = Coordinates::Mesh(MeshCoordinates {
+                        mesh: Arc::clone(mesh),
+                        first,
+                        kept: (!dropped.is_empty()).then(|| {
+                            (0..mesh.triangles.len() as u32).filter(|i| dropped.binary_search(i).is_err()).collect()
+                        }),
+                        normal_to_world: to_world.normal_matrix(),
+                        swapped: to_world.mirrors,
+                    });
+                }
+                if !dropped.is_empty() {
                     self.warnings.push(format!(
-                        "object \"{}\": {dropped} of {} triangles have no area and were left out",
+                        "object \"{}\": {} of {} triangles have no area and were left out",
                         object.name,
+                        dropped.len(),
                         mesh.triangles.len()
                     ));
                 }
             }
         }
+        self.coordinates.push(coordinates);
         Ok(())
     }
 
@@ -264,6 +293,18 @@ impl Affine {
 
     fn vector(&self, v: [f64; 3]) -> Vec3<f64> {
         Vec3::from_array(self.matrix.transform_vector3(v.into()).into())
+    }
+
+    /// Rows of the inverse transpose of the linear part, times its determinant: positive multiples of world normals, or
+    /// negative ones if the transform mirrors.
+    fn normal_matrix(&self) -> [Vec3<f64>; 3] {
+        let m = &self.matrix.matrix3;
+        let columns = [m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis)];
+        let sign = if self.mirrors { -1.0 } else { 1.0 };
+        // Scaled so that neither it nor what it maps leaves the numbers of double precision.
+        let largest = columns.iter().map(|c| c.abs().max_element()).fold(0.0, f64::max);
+        let row = |k: usize| Vec3::from_array(columns.map(|c| sign * c[k] / largest));
+        [row(0), row(1), row(2)]
     }
 
     /// The factor by which a similarity scales lengths.

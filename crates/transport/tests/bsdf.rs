@@ -3,7 +3,7 @@
 use etalon_optics::{ComplexIndex, Frame, Lanes, Real, RefractiveIndex, Spectrum, Vec3};
 use etalon_oracle::laws;
 use etalon_scene::MaterialKind;
-use etalon_transport::bsdf::{Bsdf, BsdfSample};
+use etalon_transport::bsdf::{Bsdf, BsdfSample, Shading};
 use etalon_transport::mis::Density;
 use etalon_transport::warp::uniform_sphere;
 use proptest::prelude::*;
@@ -26,7 +26,7 @@ fn glass(interior: RefractiveIndex) -> Bsdf {
 }
 
 fn sample<R: Real>(bsdf: &Bsdf, n: Vec3<R>, wo: Vec3<R>, u: [f64; 3]) -> Option<BsdfSample<R, 4>> {
-    bsdf.sample(&LAMBDA_NM, n, wo, u.map(R::from_f64))
+    bsdf.sample(&LAMBDA_NM, &Shading::flat(n), wo, u.map(R::from_f64))
 }
 
 /// The refracted direction that the material takes when the number that chooses is as large as can be.
@@ -131,7 +131,7 @@ proptest! {
                 if probability == 0.0 {
                     continue;
                 }
-                let s = bsdf.sample::<f64, 4>(&lambda, up, wo, [u, 0.5, 0.5]).unwrap();
+                let s = bsdf.sample::<f64, 4>(&lambda, &Shading::flat(up), wo, [u, 0.5, 0.5]).unwrap();
                 let mutant_density = Lanes::<f64, 4>::ONE;
                 for lane in 0..4 {
                     // Radiance without its n².
@@ -158,15 +158,15 @@ proptest! {
         let frame = Frame::from_normal(if below { -n } else { n });
         let wo = frame.to_world(direction_at(0.01 + 0.99 * v0, v1));
         let s = sample(&bsdf, n, wo, [0.3, u0, u1]).unwrap();
-        let (f_cos, density) = bsdf.eval::<f64, 4>(&LAMBDA_NM, n, wo, s.wi);
+        let (f_cos, density) = bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), wo, s.wi);
         prop_assert_eq!(s.density, Density::SolidAngle(density));
         // weight = f·cos/p, up to the rounding of one quotient.
         prop_assert!((s.weight[0] * density - f_cos[0]).abs() <= 4.0 * f64::EPSILON * f_cos[0]);
-        let (back, _) = bsdf.eval::<f64, 4>(&LAMBDA_NM, n, s.wi, wo);
+        let (back, _) = bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), s.wi, wo);
         let (forth, reverse) = (f_cos[0] / n.dot(s.wi).abs(), back[0] / n.dot(wo).abs());
         prop_assert!((forth - reverse).abs() <= 8.0 * f64::EPSILON * forth);
         // Nothing passes through.
-        prop_assert!(bsdf.eval::<f64, 4>(&LAMBDA_NM, n, wo, -s.wi).0.is_zero());
+        prop_assert!(bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), wo, -s.wi).0.is_zero());
     }
 }
 
@@ -180,7 +180,7 @@ fn lambert_integrates_to_its_albedo_and_its_density_to_one() {
     let (mut albedo, mut total) = (0.0, 0.0);
     for i in 0..m * m {
         let wi = uniform_sphere([at(i % m), at(i / m)]);
-        let (f_cos, density) = bsdf.eval::<f64, 4>(&LAMBDA_NM, n, wo, wi);
+        let (f_cos, density) = bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), wo, wi);
         albedo += f_cos[0] * 4.0 * PI / (m * m) as f64;
         total += density * 4.0 * PI / (m * m) as f64;
     }

@@ -7,7 +7,7 @@ use etalon_oracle::quadrature::Cone;
 use etalon_oracle::subjects::{DeltaLobe, Density, Emits, Emitted, Scattered, Scatters};
 use etalon_oracle::{emits_suite, scatters_suite};
 use etalon_scene::MaterialKind;
-use etalon_transport::bsdf::Bsdf;
+use etalon_transport::bsdf::{Bsdf, Shading};
 use etalon_transport::light::{DiskLight, Emitter, Light, ParallelogramLight, SphereLight, Target, TriangleLight};
 use etalon_transport::mis;
 use etalon_transport::spectral::PathSpectrum;
@@ -30,7 +30,8 @@ impl<R: Real> Material<R> {
 
     fn eval(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> (f64, f64) {
         let lambda = Lanes::<f64, 4>::splat(wavelength_nm);
-        let (f_cos, pdf) = self.bsdf.eval::<R, 4>(&lambda, Vec3::from_f64(UP), Vec3::from_f64(wo), Vec3::from_f64(wi));
+        let (f_cos, pdf) =
+            self.bsdf.eval::<R, 4>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), Vec3::from_f64(wi));
         (f_cos[0].to_f64(), pdf.to_f64())
     }
 }
@@ -49,7 +50,7 @@ impl<R: Real> Scatters for Material<R> {
         let lambda = Lanes::<f64, 4>::splat(wavelength_nm);
         // Rounding up to 1 would leave the interval that a sampler promises.
         let u = u.map(|u| R::from_f64(u).min(R::ONE_MINUS_EPSILON));
-        let s = self.bsdf.sample::<R, 4>(&lambda, Vec3::from_f64(UP), Vec3::from_f64(wo), u)?;
+        let s = self.bsdf.sample::<R, 4>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), u)?;
         let wi = s.wi.to_f64().to_array();
         let density = match s.density {
             mis::Density::SolidAngle(pdf) => Density::SolidAngle(pdf.to_f64()),

@@ -1,18 +1,21 @@
 //! How surfaces scatter light: one material a file, one door, [`Bsdf`].
 //!
-//! `wo` points toward the camera, `wi` toward the light; both are unit vectors that leave the surface. `n` is the unit
-//! normal on the surface's own outward side. Radiance is what travels: transmission carries the factor 1/η² with
+//! `wo` points toward the camera, `wi` toward the light; both are unit vectors that leave the surface. Each material
+//! knows one unit normal, on the surface's own outward side; [`Shading`] is what the door knows of the point, and says how
+//! a normal that is not the surface's own is dealt with. Radiance is what travels: transmission carries the factor 1/η² with
 //! η = n_transmitted / n_incident along the walk from the camera.
 
 mod conductor;
 mod dielectric;
 mod lambert;
 mod mirror;
+mod shading;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
+pub use shading::Shading;
 
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
@@ -76,10 +79,42 @@ impl Bsdf {
 
     /// The BSDF's part without deltas, f(wo, wi)·|cos θ_i| in sr⁻¹, and the density in sr⁻¹ with which
     /// [`Bsdf::sample`] draws `wi`, which no lane may change.
+    #[inline]
     pub fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
+        at: &Shading<R>,
+        wo: Vec3<R>,
+        wi: Vec3<R>,
+    ) -> (Lanes<R, N>, R) {
+        match at.is_bent() {
+            false => self.eval_around(lambda_nm, at.normal, at, wo, wi),
+            true => shading::eval(self, lambda_nm, at, wo, wi),
+        }
+    }
+
+    /// Draws a direction, with `u` = (choice of lobe, two numbers for the direction) in [0, 1)³. `None` absorbs.
+    #[inline]
+    pub fn sample<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        at: &Shading<R>,
+        wo: Vec3<R>,
+        u: [R; 3],
+    ) -> Option<BsdfSample<R, N>> {
+        match at.is_bent() {
+            false => self.sample_around(lambda_nm, at.normal, at, wo, u),
+            true => shading::sample(self, lambda_nm, at, wo, u),
+        }
+    }
+
+    /// [`Bsdf::eval`] with `n` for the only normal.
+    #[inline]
+    fn eval_around<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
         n: Vec3<R>,
+        _at: &Shading<R>,
         wo: Vec3<R>,
         wi: Vec3<R>,
     ) -> (Lanes<R, N>, R) {
@@ -89,11 +124,13 @@ impl Bsdf {
         }
     }
 
-    /// Draws a direction, with `u` = (choice of lobe, two numbers for the direction) in [0, 1)³. `None` absorbs.
-    pub fn sample<R: Real, const N: usize>(
+    /// [`Bsdf::sample`] with `n` for the only normal.
+    #[inline]
+    fn sample_around<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<R>,
+        _at: &Shading<R>,
         wo: Vec3<R>,
         u: [R; 3],
     ) -> Option<BsdfSample<R, N>> {

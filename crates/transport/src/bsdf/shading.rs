@@ -1,0 +1,130 @@
+//! What scattering needs to know of a point besides directions, and scattering around a normal that is not the surface's.
+//!
+//! # Shading normals
+//!
+//! A mesh that stands for a smooth surface scatters around normals interpolated between its vertices. They contradict the
+//! flat triangles that rays meet, and the contradiction is settled so:
+//!
+//! 1. **The triangle decides sides.** What is reflected, what is transmitted, which side emits and from which side a ray
+//!    leaves follow from the geometric normal alone. A wall lets no light through, whatever its vertices' normals.
+//! 2. A shading normal on the far side of the triangle is turned around.
+//! 3. A viewer below the horizon of the shading normal counts as its mirror image in that horizon. No silhouette turns
+//!    black.
+//! 4. A direction that the BSDF scatters to the wrong side of the triangle is replaced by its mirror image in the
+//!    triangle's plane: the BSDF becomes f(ω) + f(ω mirrored) over those of the two that belong to the side.
+//!
+//! Mirroring keeps solid angles, so a surface scatters as much as its BSDF does: a white furnace stays white. Light still
+//! ends where the triangle turns away from a lamp, not where the shading normal does; finer meshes close the gap. As with
+//! every shading normal, scattering is not reciprocal (Veach 1996, *Non-symmetric Scattering in Light Transport
+//! Algorithms*): paths from the camera are estimated rightly, paths from lights would need a correction.
+
+use super::{Bsdf, BsdfSample};
+use crate::mis::Density;
+use etalon_optics::{Lanes, Real, Vec3};
+
+/// A surface point as scattering sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Shading<R> {
+    /// Unit normal of the surface itself, on its own outward side.
+    pub normal: Vec3<R>,
+    /// Unit normal to scatter around, on the same side, where it is another one.
+    bent: Option<Vec3<R>>,
+    /// Texture coordinates; 0 on a surface without.
+    pub uv: [f64; 2],
+}
+
+impl<R: Real> Shading<R> {
+    /// Of a surface that is what it looks like, without texture coordinates.
+    pub fn flat(normal: Vec3<R>) -> Self {
+        Self { normal, bent: None, uv: [0.0; 2] }
+    }
+
+    /// The same with texture coordinates.
+    #[must_use]
+    pub fn with_uv(self, uv: [f64; 2]) -> Self {
+        Self { uv, ..self }
+    }
+
+    /// The same with a unit vector to scatter around; one on the other side of the surface is turned around.
+    #[must_use]
+    pub fn bent_to(self, shading_normal: Vec3<R>) -> Self {
+        let cos = shading_normal.dot(self.normal);
+        let turned = if cos < R::ZERO { -shading_normal } else { shading_normal };
+        // Along the surface it has no sides.
+        Self { bent: (cos != R::ZERO && turned != self.normal).then_some(turned), ..self }
+    }
+
+    /// The unit normal to scatter around.
+    pub fn shading_normal(&self) -> Vec3<R> {
+        self.bent.unwrap_or(self.normal)
+    }
+
+    pub(super) fn is_bent(&self) -> bool {
+        self.bent.is_some()
+    }
+
+    /// The mirror image of a direction in the surface.
+    fn mirrored(&self, d: Vec3<R>) -> Vec3<R> {
+        (d - self.normal * (R::TWO * self.normal.dot(d))).renormalized()
+    }
+
+    /// The viewer on its own side of the shading normal's horizon (rule 3).
+    fn viewer(&self, wo: Vec3<R>) -> Vec3<R> {
+        let n = self.shading_normal();
+        let cos = n.dot(wo);
+        if cos * self.normal.dot(wo) < R::ZERO { (wo - n * (R::TWO * cos)).renormalized() } else { wo }
+    }
+
+    /// Whether the BSDF may scatter to `d` in the name of a direction on the side of `wi` (rule 4).
+    fn belongs(&self, d: Vec3<R>, wi: Vec3<R>) -> bool {
+        self.shading_normal().dot(d) * self.normal.dot(wi) > R::ZERO
+    }
+}
+
+/// [`Bsdf::eval`] around a bent normal.
+pub(super) fn eval<R: Real, const N: usize>(
+    bsdf: &Bsdf,
+    lambda_nm: &Lanes<f64, N>,
+    at: &Shading<R>,
+    wo: Vec3<R>,
+    wi: Vec3<R>,
+) -> (Lanes<R, N>, R) {
+    let (n, viewer) = (at.shading_normal(), at.viewer(wo));
+    let mut sum = (Lanes::ZERO, R::ZERO);
+    for direction in [wi, at.mirrored(wi)] {
+        if at.belongs(direction, wi) {
+            let (f_cos, density) = bsdf.eval_around(lambda_nm, n, at, viewer, direction);
+            sum = (sum.0 + f_cos, sum.1 + density);
+        }
+    }
+    sum
+}
+
+/// [`Bsdf::sample`] around a bent normal.
+pub(super) fn sample<R: Real, const N: usize>(
+    bsdf: &Bsdf,
+    lambda_nm: &Lanes<f64, N>,
+    at: &Shading<R>,
+    wo: Vec3<R>,
+    u: [R; 3],
+) -> Option<BsdfSample<R, N>> {
+    let (n, viewer) = (at.shading_normal(), at.viewer(wo));
+    let mut next = bsdf.sample_around(lambda_nm, n, at, viewer, u)?;
+    // The side that the BSDF meant is the one that the triangle gives it.
+    if at.normal.dot(next.wi) * n.dot(next.wi) < R::ZERO {
+        next.wi = at.mirrored(next.wi);
+    }
+    if at.normal.dot(next.wi) == R::ZERO {
+        return None;
+    }
+    if let Density::SolidAngle(_) = next.density {
+        // Both directions that this one may stand for.
+        let (f_cos, density) = eval(bsdf, lambda_nm, at, wo, next.wi);
+        if density <= R::ZERO {
+            return None;
+        }
+        next.weight = f_cos / density;
+        next.density = Density::SolidAngle(density);
+    }
+    Some(next)
+}
