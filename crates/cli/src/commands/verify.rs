@@ -30,7 +30,7 @@ pub(crate) struct Args {
     /// Seed of every random number.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Sixty-four times the samples: sees an eighth of the bias.
+    /// Take more samples until a bias of one part in ten thousand would show, at most 64 times as many.
     #[arg(long)]
     thorough: bool,
     /// Scalar type that paths are computed in.

@@ -34,8 +34,8 @@ pub fn exchange_files(truths: &[Truth]) -> Vec<ExchangeFile> {
     ];
     for truth in truths {
         files.push(file(&format!("scenes/{}.json", truth.name), &(truth.scene.clone() + "\n")));
-        if let Some(white) = truth.white_scene() {
-            files.push(file(&format!("scenes/{}.white.json", truth.name), &(white + "\n")));
+        if truth.band_nm.is_some() {
+            files.push(file(&format!("scenes/{}.white.json", truth.name), &(truth.white_scene() + "\n")));
         }
     }
     files

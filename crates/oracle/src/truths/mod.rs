@@ -24,6 +24,8 @@ mod water;
 
 use std::{fmt, sync::Arc};
 
+use serde_json::{Value, json};
+
 pub use exchange::{ExchangeFile, exchange_files};
 pub use irradiance::{
     disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
@@ -205,11 +207,15 @@ impl Truth {
         self.mistakes.iter().map(|mistake| (mistake.value - self.value).abs()).fold(relative, f64::min)
     }
 
-    /// For a truth of one wavelength: the same film and band under a constant sky of radiance 1. A sensor that does not
-    /// answer 1 to a constant spectrum cut to the band (a photometric one does not) is read relative to this picture's mean.
+    /// The same camera, film and band under a constant sky of radiance 1, and nothing else: a sensor that answers 1 to a
+    /// constant spectrum reads 1. One that does not answer 1 to a constant spectrum cut to a band (a photometric one does not)
+    /// is read relative to this picture's mean where the truth has a [`band_nm`](Self::band_nm).
     #[must_use]
-    pub fn white_scene(&self) -> Option<String> {
-        self.band_nm.map(|band| scene::Scene::white(band).to_json())
+    pub fn white_scene(&self) -> String {
+        let mut scene: Value = serde_json::from_str(&self.scene).expect("a truth's scene is JSON");
+        scene["objects"] = json!([]);
+        scene["lights"] = json!([{ "type": "environment", "radiance": 1.0 }]);
+        serde_json::to_string_pretty(&scene).expect("a JSON value always prints")
     }
 }
 

@@ -92,11 +92,6 @@ impl Scene {
         )
     }
 
-    /// A constant sky of radiance 1 in a band of wavelengths, and nothing else.
-    pub(super) fn white(band_nm: [f64; 2]) -> Self {
-        Self::pinhole([0.0; 3], [0.0, 0.0, -1.0], 45.0).sky(1.0).band(band_nm)
-    }
-
     pub(super) fn object(mut self, shape: Value, material: Value) -> Self {
         self.objects.push(json!({ "shape": shape, "material": material }));
         self

@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use etalon_oracle::statistics::{Budget, Welford};
+use etalon_oracle::statistics::{Budget, with_control};
 use etalon_oracle::subjects::{Reading, Renders};
 use etalon_oracle::truths::{Claim, Truth, judge};
-use etalon_scene::Precision;
+use etalon_scene::{Precision, Scene};
 use etalon_transport::{Control, Extent, prepare};
 
 use super::report::{Report, Row};
@@ -21,6 +21,9 @@ const FIRST: u32 = 4;
 /// A reading too noisy to count is taken again with this many times the paths, so many times.
 const MORE: u64 = 4;
 const TRIES: u32 = 5;
+/// What a thorough run wants to see of each truth, relative, and after how many tries it gives up: 64 times the paths.
+const THOROUGH_SEES: f64 = 1e-4;
+const THOROUGH_TRIES: u32 = 4;
 
 /// Our renderer, as the oracle sees one.
 struct Etalon {
@@ -32,8 +35,8 @@ struct Etalon {
 }
 
 impl Etalon {
-    /// Mean Y of the whole film in one replicate, and its non-finite samples.
-    fn mean_y(&self, json: &str, replicate: u32) -> Result<(f64, u64), String> {
+    /// The scene as one replicate renders it.
+    fn replicate(&self, json: &str, replicate: u32) -> Result<Scene, String> {
         let (mut scene, _) = etalon_scene::parse(json, "truth").map_err(|errors| errors.summary())?;
         let suggested = self.effort * u64::from(scene.integrator.spp);
         let spp = suggested.div_ceil(u64::from(FIRST * REPLICATES)).next_power_of_two();
@@ -41,7 +44,12 @@ impl Etalon {
         // Distinct for each pair: fewer replicates than 2¹⁶.
         scene.integrator.seed = self.seed << 16 | u64::from(replicate);
         scene.integrator.spp = u32::try_from(spp).map_err(|error| error.to_string())?;
-        let prepared = prepare(&scene).map_err(|error| error.to_string())?;
+        Ok(scene)
+    }
+
+    /// Mean Y of the whole film, and its non-finite samples.
+    fn mean_y(&self, scene: &Scene) -> Result<(f64, u64), String> {
+        let prepared = prepare(scene).map_err(|error| error.to_string())?;
         let extent = Extent { threads: self.threads, ..prepared.whole(None) };
         let film = prepared.render(&extent, &|_| Control::Continue).map_err(|error| error.to_string())?;
         if film.counters.cut_paths > 0 {
@@ -52,20 +60,25 @@ impl Etalon {
 }
 
 impl Renders for Etalon {
+    /// Every path draws wavelengths, and CIE Y of what it finds scatters with them even where radiance does not. A white sky
+    /// before the same film with the same random numbers draws the same wavelengths and must read 1, as the truth of the sky
+    /// alone tests by itself: what the two have in common is taken off.
     fn render(&mut self, truth: &Truth) -> Result<Reading, String> {
-        let mut moments = Welford::new();
-        let mut nonfinite = 0;
+        let (mut pairs, mut nonfinite) = (Vec::new(), 0);
         for replicate in 0..REPLICATES {
-            let (mean, bad) = self.mean_y(&truth.scene, replicate)?;
-            // A film of CIE Y reads a narrow band relative to a white sky in the same band.
-            let white = match truth.white_scene() {
-                Some(white) => self.mean_y(&white, replicate)?.0,
-                None => 1.0,
-            };
-            moments.push(mean / white);
+            let (scene, white) =
+                (self.replicate(&truth.scene, replicate)?, self.replicate(&truth.white_scene(), replicate)?);
+            let (mean, bad) = self.mean_y(&scene)?;
             nonfinite += bad;
+            pairs.push(if white == scene {
+                (mean, 1.0)
+            } else {
+                let white = self.mean_y(&white)?.0;
+                // A film of CIE Y reads a narrow band relative to white.
+                if truth.band_nm.is_some() { (mean / white, 1.0) } else { (mean, white) }
+            });
         }
-        Ok(Reading { estimate: moments.estimate(), nonfinite })
+        Ok(Reading { estimate: with_control(&pairs, 1.0), nonfinite })
     }
 }
 
@@ -81,12 +94,13 @@ pub(super) fn run(args: &Args, chosen: Vec<Truth>) -> Outcome {
 }
 
 /// Renders and judges one truth; takes more samples, never more seeds to choose from, where the reading was too noisy to
-/// exclude a known mistake. Whether it was depends on the noise alone, so that stopping does not favour a verdict.
+/// exclude a known mistake, or for a thorough run to see what it wants to. Whether it was depends on the noise alone, so that
+/// stopping does not favour a verdict.
 fn judged(args: &Args, truth: &Truth, significance: f64) -> Row {
     let start = Instant::now();
     let mut renderer = Etalon {
         seed: args.seed,
-        effort: if args.thorough { 64 } else { 1 },
+        effort: 1,
         precision: match args.precision {
             PrecisionArg::F32 => Precision::F32,
             PrecisionArg::F64 => Precision::F64,
@@ -97,8 +111,10 @@ fn judged(args: &Args, truth: &Truth, significance: f64) -> Row {
     let reading = loop {
         let reading = renderer.render(truth);
         let Ok(read) = &reading else { break reading };
-        let seen = judge(truth, read, significance).resolvable_bias <= truth.must_resolve();
-        if seen || tries == TRIES {
+        let seen = judge(truth, read, significance).resolvable_bias;
+        let enough = seen <= truth.must_resolve() || tries >= TRIES;
+        let thorough = seen <= THOROUGH_SEES * truth.value || tries >= THOROUGH_TRIES;
+        if enough && (thorough || !args.thorough) {
             break reading;
         }
         tries += 1;
