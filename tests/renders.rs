@@ -37,7 +37,7 @@ fn a_picture_says_how_it_was_made() {
     let report = etalon_line(line, [&scene, &output]).expect(0).json();
     let (bits, file) = pixel_bits(&output);
     let names: Vec<&str> = bits.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["B", "G", "R"]);
+    assert_eq!(names, ["B", "Error.B", "Error.G", "Error.R", "G", "R"]);
     let info = RenderInfo::from_attributes(&file.attributes).expect("all of it is there");
     assert_eq!(info.software, format!("etalon {}", env!("CARGO_PKG_VERSION")));
     assert_eq!((info.samples_per_pixel, info.seed), (3, u64::MAX));

@@ -1,7 +1,7 @@
 //! Settings of a scene that the command line may override.
 
 use clap::ValueEnum;
-use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
+use etalon_scene::{LightSampling, MOST_REPLICATES, Precision, SamplerKind, Scene};
 use etalon_transport::{EffectName, Study};
 
 use crate::args::Size;
@@ -12,6 +12,9 @@ pub(crate) struct Overrides {
     /// Samples a pixel.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(i32::MAX)))]
     spp: Option<u32>,
+    /// Independent replicates that the samples are dealt to: their scatter is the error bar, 1 is without.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_REPLICATES)))]
+    replicates: Option<u32>,
     /// Seed of every random number.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -71,6 +74,9 @@ impl Overrides {
         if let Some(spp) = self.spp {
             integrator.spp = spp;
         }
+        if let Some(replicates) = self.replicates {
+            integrator.replicates = replicates;
+        }
         if let Some(seed) = self.seed {
             integrator.seed = seed;
         }
@@ -119,6 +125,7 @@ impl Overrides {
         };
         [
             ("spp", self.spp.map(|spp| spp.to_string())),
+            ("replicates", self.replicates.map(|replicates| replicates.to_string())),
             ("seed", self.seed.map(|seed| seed.to_string())),
             ("size", self.size.map(|size| format!("{}x{}", size.width, size.height))),
             ("precision", self.precision.and_then(word)),

@@ -63,6 +63,14 @@ pub(crate) fn si(value: f64) -> String {
     format!("{scaled:.decimals$}{prefix}")
 }
 
+/// A share with two or three digits in per cent, such as `2.4 %`.
+pub(crate) fn percent(share: f64) -> String {
+    let value = 100.0 * share;
+    // Two digits after rounding, for which the exponent must be known.
+    let decimals = if value > 0.0 { (1.0 - value.log10().floor()).clamp(0.0, 12.0) as usize } else { 0 };
+    format!("{value:.decimals$} %")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,6 +88,15 @@ mod tests {
             (1.5e9, "1.50 G"),
         ] {
             assert_eq!(si(value), text);
+        }
+    }
+
+    #[test]
+    fn shares_have_two_digits() {
+        for (share, text) in
+            [(0.0, "0 %"), (0.024, "2.4 %"), (0.0102, "1.0 %"), (0.235, "24 %"), (1.5, "150 %"), (0.000_12, "0.012 %")]
+        {
+            assert_eq!(percent(share), text);
         }
     }
 

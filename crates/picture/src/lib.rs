@@ -13,6 +13,7 @@
 mod atomic;
 mod attribute;
 mod error;
+mod error_info;
 mod exr_header;
 mod exr_read;
 mod exr_write;
@@ -24,6 +25,7 @@ mod srgb;
 pub use atomic::{check_writable, write_atomically};
 pub use attribute::{Attribute, Attributes, Chromaticities, RenderInfo};
 pub use error::PictureError;
+pub use error_info::{ERROR_PREFIX, ErrorInfo};
 pub use exr_read::{ExrFile, read_exr};
 pub use exr_write::{encode_exr, write_exr};
 pub use metrics::{Metrics, RELMSE_FLOOR, compare, rel_mse, rmse};

@@ -258,6 +258,8 @@ pub enum LightKind {
 pub struct Integrator {
     /// Samples a pixel.
     pub spp: u32,
+    /// Independent replicates that the samples are dealt to, from 1 to [`MOST_REPLICATES`].
+    pub replicates: u32,
     /// Seed of every random number.
     pub seed: u64,
     /// Number sequence.
@@ -273,6 +275,9 @@ pub struct Integrator {
     /// Scalar type of the kernel.
     pub precision: Precision,
 }
+
+/// Most replicates that samples can be dealt to.
+pub const MOST_REPLICATES: u32 = 64;
 
 /// Number sequence that drives the estimates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -33,6 +33,7 @@ fn camera_film_and_integrator() {
         scene.integrator,
         Integrator {
             spp: 16,
+            replicates: 8,
             seed: u64::MAX,
             sampler: SamplerKind::Independent,
             max_depth: Some(8),
@@ -51,6 +52,7 @@ fn defaults() {
         scene.integrator,
         Integrator {
             spp: 64,
+            replicates: 4,
             seed: 0,
             sampler: SamplerKind::Sobol,
             max_depth: None,

@@ -39,13 +39,67 @@ impl PixelRect {
     }
 }
 
-/// What one pixel has gathered.
+/// What one replicate of one pixel has gathered.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PixelSum {
+pub struct XyzSum {
     /// Sum of the samples' CIE XYZ.
     pub xyz: [f64; 3],
     /// Finite samples summed.
     pub count: u32,
+}
+
+impl XyzSum {
+    pub(crate) fn add(&mut self, xyz: [f64; 3]) {
+        (0..3).for_each(|c| self.xyz[c] += xyz[c]);
+        self.count += 1;
+    }
+}
+
+/// One pixel: the sums of its independent replicates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pixel<'a>(&'a [XyzSum]);
+
+impl<'a> Pixel<'a> {
+    /// The sums, one a replicate.
+    pub fn sums(&self) -> &'a [XyzSum] {
+        self.0
+    }
+
+    /// Finite samples of all replicates.
+    pub fn count(&self) -> u32 {
+        self.0.iter().map(|sum| sum.count).sum()
+    }
+
+    /// Mean CIE XYZ, Y = 1 for a constant radiance of 1 W·m⁻²·sr⁻¹·nm⁻¹; zero where nothing was sampled.
+    pub fn xyz(&self) -> [f64; 3] {
+        let count = f64::from(self.count());
+        if count == 0.0 {
+            [0.0; 3]
+        } else {
+            [0, 1, 2].map(|c| self.0.iter().map(|sum| sum.xyz[c]).sum::<f64>() / count)
+        }
+    }
+
+    /// Variance of the mean of `of`, a linear function of XYZ, and its degrees of freedom; `None` with fewer than two
+    /// replicates that hold samples.
+    ///
+    /// K independent replicates of nₖ samples each and means mₖ scatter about the mean m = Σnₖmₖ/N by
+    /// E Σnₖ(mₖ − m)² = (K − 1)·N·Var(m), if the variance of each falls with its number of samples; these differ by one at
+    /// most, unless samples that were not finite are missing. A covariance of X, Y and Z is in it, since `of` is applied to
+    /// the means of each replicate.
+    pub fn variance<const N: usize>(&self, of: impl Fn([f64; 3]) -> [f64; N]) -> Option<([f64; N], u32)> {
+        let mean = of(self.xyz());
+        let (mut scatter, mut held) = ([0.0; N], 0_u32);
+        for sum in self.0.iter().filter(|sum| sum.count > 0) {
+            let count = f64::from(sum.count);
+            let own = of(sum.xyz.map(|v| v / count));
+            (0..N).for_each(|c| scatter[c] += count * (own[c] - mean[c]) * (own[c] - mean[c]));
+            held += 1;
+        }
+        let freedom = held.checked_sub(1).filter(|&freedom| freedom > 0)?;
+        let scale = 1.0 / (f64::from(freedom) * f64::from(self.count()));
+        Some((scatter.map(|s| s * scale), freedom))
+    }
 }
 
 /// A sample that was not a finite number: excluded from the sums, and reported so that it can be replayed.
@@ -114,21 +168,23 @@ impl Counters {
     }
 }
 
-/// An image in the making.
+/// An image in the making: for each pixel the sums of R independent replicates, 32·R bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     width: u32,
     height: u32,
-    pixels: Vec<PixelSum>,
+    replicates: u32,
+    /// Pixel by pixel, in each replicate by replicate.
+    sums: Vec<XyzSum>,
     /// What was counted on the way.
     pub counters: Counters,
 }
 
 impl Film {
     /// A black film.
-    pub fn new(width: u32, height: u32) -> Self {
-        let pixels = vec![PixelSum::default(); width as usize * height as usize];
-        Self { width, height, pixels, counters: Counters::default() }
+    pub fn new(width: u32, height: u32, replicates: u32) -> Self {
+        let sums = vec![XyzSum::default(); width as usize * height as usize * replicates as usize];
+        Self { width, height, replicates, sums, counters: Counters::default() }
     }
 
     /// Width in pixels.
@@ -141,25 +197,38 @@ impl Film {
         self.height
     }
 
+    /// Independent replicates of each pixel.
+    pub fn replicates(&self) -> u32 {
+        self.replicates
+    }
+
+    /// The pixel in column `x` and row `y`.
+    pub fn pixel(&self, x: u32, y: u32) -> Pixel<'_> {
+        let start = (y as usize * self.width as usize + x as usize) * self.replicates as usize;
+        Pixel(&self.sums[start..start + self.replicates as usize])
+    }
+
     /// All pixels, row by row from the top.
-    pub fn pixels(&self) -> &[PixelSum] {
-        &self.pixels
+    pub fn pixels(&self) -> impl Iterator<Item = Pixel<'_>> {
+        self.sums.chunks_exact(self.replicates as usize).map(Pixel)
     }
 
-    pub(crate) fn index(&self, x: u32, y: u32) -> usize {
-        y as usize * self.width as usize + x as usize
+    /// The sums of a rectangle's pixels, row by row.
+    pub(crate) fn sums_of(&self, rect: PixelRect) -> Vec<XyzSum> {
+        rect.pixels().flat_map(|(x, y)| self.pixel(x, y).sums()).copied().collect()
     }
 
-    pub(crate) fn put(&mut self, rect: PixelRect, sums: &[PixelSum]) {
-        for ((x, y), sum) in rect.pixels().zip(sums) {
-            let index = self.index(x, y);
-            self.pixels[index] = *sum;
+    pub(crate) fn put(&mut self, rect: PixelRect, sums: &[XyzSum]) {
+        let replicates = self.replicates as usize;
+        for ((x, y), sums) in rect.pixels().zip(sums.chunks_exact(replicates)) {
+            let start = (y as usize * self.width as usize + x as usize) * replicates;
+            self.sums[start..start + replicates].copy_from_slice(sums);
         }
     }
 
-    /// Mean CIE XYZ of each pixel, Y = 1 for a constant radiance of 1 W·m⁻²·sr⁻¹·nm⁻¹; zero where nothing was sampled.
+    /// Mean CIE XYZ of each pixel: see [`Pixel::xyz`].
     pub fn xyz(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        self.pixels.iter().map(|p| p.xyz.map(|v| if p.count == 0 { 0.0 } else { v / f64::from(p.count) }))
+        self.pixels().map(|pixel| pixel.xyz())
     }
 
     /// Linear Rec. 709 of each pixel, row by row from the top.
@@ -167,13 +236,24 @@ impl Film {
         self.xyz().map(|xyz| colour::rec709_from_xyz(xyz).map(|v| v as f32)).collect()
     }
 
+    /// Standard error of linear Rec. 709 of each pixel, row by row from the top: infinite where fewer than two replicates
+    /// hold samples, since nothing is known there.
+    pub fn linear_rec709_error(&self) -> Vec<[f32; 3]> {
+        let error = |pixel: Pixel<'_>| match pixel.variance(colour::rec709_from_xyz) {
+            Some((variance, _)) => variance.map(|v| v.sqrt() as f32),
+            None => [f32::INFINITY; 3],
+        };
+        self.pixels().map(error).collect()
+    }
+
     /// Mean Y over a rectangle: the mean radiance where the scene is the same at every wavelength.
     pub fn mean_y(&self, rect: PixelRect) -> f64 {
         let (mut sum, mut count) = (0.0, 0_u64);
         for (x, y) in rect.pixels() {
-            let p = &self.pixels[self.index(x, y)];
-            sum += p.xyz[1];
-            count += u64::from(p.count);
+            for part in self.pixel(x, y).sums() {
+                sum += part.xyz[1];
+                count += u64::from(part.count);
+            }
         }
         sum / count as f64
     }

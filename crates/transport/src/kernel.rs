@@ -1,7 +1,7 @@
 //! The kernels: the path loop instantiated for a scalar type and a model of wavelengths, and the table that names them.
 
 use crate::camera::Camera;
-use crate::film::{Counters, Film, NonFinite, PixelRect, PixelSum};
+use crate::film::{Counters, NonFinite, PixelRect, XyzSum};
 use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
@@ -17,8 +17,8 @@ use std::ops::Range;
 /// Wavelengths that a path carries where they differ.
 pub(crate) const LANES: usize = 4;
 
-/// Adds samples to one tile.
-pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, &Film) -> (Vec<PixelSum>, Counters);
+/// Adds samples to one tile: to the sums of its pixels, row by row, in each replicate by replicate.
+pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, &mut [XyzSum]) -> Counters;
 
 /// The path loop for one scalar type and one model of wavelengths.
 pub(crate) struct Kernel {
@@ -57,34 +57,29 @@ pub(crate) fn kernel(precision: Precision, lanes: LaneModel) -> &'static Kernel 
         .expect("the table has every pair")
 }
 
-/// The samples `samples` of every pixel of `tile`, added to what the film holds in the order of their numbers.
+/// The samples `samples` of every pixel of `tile`, added to `sums` in the order of their numbers.
 fn render_tile<R: Real, M: WavelengthModel<R, N>, const N: usize>(
     prepared: &Prepared,
     tile: PixelRect,
     samples: Range<u32>,
-    film: &Film,
-) -> (Vec<PixelSum>, Counters) {
+    sums: &mut [XyzSum],
+) -> Counters {
     let tracer = Tracer::<R>::new(prepared);
     let mut counters = Counters::default();
-    let sums = tile
-        .pixels()
-        .map(|(x, y)| {
-            let mut sum = film.pixels()[film.index(x, y)];
-            for sample in samples.clone() {
-                let (wavelengths, radiance) = tracer.sample::<M, N>(x, y, sample, &mut counters, &mut ());
-                let xyz = M::to_xyz(prepared, &wavelengths, radiance);
-                counters.paths += 1;
-                if xyz.iter().all(|v| v.is_finite()) {
-                    (0..3).for_each(|c| sum.xyz[c] += xyz[c]);
-                    sum.count += 1;
-                } else {
-                    counters.record_nonfinite(NonFinite { y, x, sample });
-                }
+    let replicates = prepared.scene.integrator.replicates as usize;
+    for ((x, y), sums) in tile.pixels().zip(sums.chunks_exact_mut(replicates)) {
+        for sample in samples.clone() {
+            let (wavelengths, radiance) = tracer.sample::<M, N>(x, y, sample, &mut counters, &mut ());
+            let xyz = M::to_xyz(prepared, &wavelengths, radiance);
+            counters.paths += 1;
+            if xyz.iter().all(|v| v.is_finite()) {
+                sums[sample as usize % replicates].add(xyz);
+            } else {
+                counters.record_nonfinite(NonFinite { y, x, sample });
             }
-            sum
-        })
-        .collect();
-    (sums, counters)
+        }
+    }
+    counters
 }
 
 /// One scene in one scalar type.
@@ -128,7 +123,8 @@ impl<'a, R: Real> Tracer<'a, R> {
         let scene = &self.prepared.scene;
         let (width, height) = (f64::from(scene.film.width), f64::from(scene.film.height));
         let pixel = u64::from(y) << 32 | u64::from(x);
-        let sampler = Sampler::new(scene.integrator.sampler, scene.integrator.seed, pixel, sample);
+        let integrator = &scene.integrator;
+        let sampler = Sampler::new(integrator.sampler, integrator.seed, pixel, sample, integrator.replicates);
         let [film_x, film_y, lens_1, lens_2] = sampler.set::<R>(0);
 
         let wavelengths = M::wavelengths(self.prepared, || {

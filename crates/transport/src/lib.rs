@@ -13,11 +13,13 @@
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`] | what the estimates are made of |
 //! | `kernel`, `model`, [`mod@render`], [`film`] | the table of kernels, what their lanes stand for, tiles over all cores, sums |
+//! | [`accuracy`] | how wrong a film is |
 //! | [`replay`] | one path, vertex by vertex |
 //!
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
 //! into stages can change a film.
 
+pub mod accuracy;
 pub mod bsdf;
 pub mod camera;
 mod coordinates;
@@ -39,7 +41,8 @@ mod surface;
 pub mod warp;
 pub mod wavelength;
 
-pub use film::{Counters, Film, NonFinite, PixelRect};
+pub use accuracy::ImageError;
+pub use film::{Counters, Film, NonFinite, Pixel, PixelRect};
 pub use plan::{Effect, EffectName, Plan, Study, StudyError};
 pub use prepare::{PrepareError, Prepared, prepare, prepare_study};
 pub use render::{Control, Extent, ThreadError};

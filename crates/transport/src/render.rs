@@ -1,6 +1,6 @@
 //! Rendering: tiles over all cores, the same bytes whatever their number.
 
-use crate::film::{Film, PixelRect};
+use crate::film::{Counters, Film, PixelRect};
 use crate::prepare::Prepared;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -45,9 +45,18 @@ impl Prepared {
         }
     }
 
-    /// Renders `extent` onto a new film. `on_tile` hears the number of paths that a finished tile took.
-    pub fn render(&self, extent: &Extent, on_tile: &(dyn Fn(u64) -> Control + Sync)) -> Result<Film, ThreadError> {
-        let mut film = Film::new(self.scene.film.width, self.scene.film.height);
+    /// A black film for this scene.
+    pub fn film(&self) -> Film {
+        Film::new(self.scene.film.width, self.scene.film.height, self.scene.integrator.replicates)
+    }
+
+    /// Renders `extent` onto a new film. `on_tile` hears what a finished tile took.
+    pub fn render(
+        &self,
+        extent: &Extent,
+        on_tile: &(dyn Fn(&Counters) -> Control + Sync),
+    ) -> Result<Film, ThreadError> {
+        let mut film = self.film();
         self.render_onto(&mut film, extent, on_tile)?;
         Ok(film)
     }
@@ -58,7 +67,7 @@ impl Prepared {
         &self,
         film: &mut Film,
         extent: &Extent,
-        on_tile: &(dyn Fn(u64) -> Control + Sync),
+        on_tile: &(dyn Fn(&Counters) -> Control + Sync),
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(extent.threads.unwrap_or(0)).build()?;
         let render_tile = self.kernel().render;
@@ -72,11 +81,12 @@ impl Prepared {
                     if stopped.load(Ordering::Relaxed) {
                         return None;
                     }
-                    let done = render_tile(self, tile, extent.samples.clone(), before);
-                    if on_tile(done.1.paths) == Control::Stop {
+                    let mut sums = before.sums_of(tile);
+                    let counters = render_tile(self, tile, extent.samples.clone(), &mut sums);
+                    if on_tile(&counters) == Control::Stop {
                         stopped.store(true, Ordering::Relaxed);
                     }
-                    Some(done)
+                    Some((sums, counters))
                 })
                 .collect()
         });

@@ -2,6 +2,9 @@
 //!
 //! Numbers come in sets of four. A path owns two sets for the camera and [`SETS_PER_VERTEX`] for each vertex, whether it
 //! uses them or not: an effect that is not called for leaves every other effect's numbers as they are.
+//!
+//! Sample k of a pixel is number k div R of replicate k mod R. The R replicates are independent, so that the scatter of
+//! their means is the error of the whole; and the first samples of a pixel are the same however many follow.
 
 use etalon_optics::Real;
 use etalon_scene::SamplerKind;
@@ -13,7 +16,7 @@ pub const CAMERA_SETS: u32 = 2;
 /// Sets that each path vertex owns: (lobe, BSDF 1, BSDF 2, roulette), (light choice, light 1, light 2, –).
 pub const SETS_PER_VERTEX: u32 = 2;
 
-/// Longest Owen-scrambled Sobol point set of the library; further samples come from independent replicates.
+/// Longest Owen-scrambled Sobol point set of the library; further samples come from independent sets.
 const SOBOL_POINTS: u32 = 1 << 16;
 
 /// The numbers of one sample of one pixel.
@@ -21,24 +24,32 @@ const SOBOL_POINTS: u32 = 1 << 16;
 pub struct Sampler {
     kind: SamplerKind,
     pixel_seed: u64,
+    /// Number of the sample, counted over all replicates.
     sample: u32,
+    /// Number of the sample within its replicate.
+    index: u32,
+    /// Number of the replicate.
+    replicate: u32,
 }
 
 impl Sampler {
-    /// The numbers of sample number `sample` of pixel number `pixel` under `seed`.
-    pub fn new(kind: SamplerKind, seed: u64, pixel: u64, sample: u32) -> Self {
-        Self { kind, pixel_seed: mix(mix(seed) ^ pixel), sample }
+    /// The numbers of sample number `sample` of pixel number `pixel` under `seed`, the samples being dealt in turn to
+    /// `replicates` independent sequences.
+    pub fn new(kind: SamplerKind, seed: u64, pixel: u64, sample: u32, replicates: u32) -> Self {
+        let pixel_seed = mix(mix(seed) ^ pixel);
+        Self { kind, pixel_seed, sample, index: sample / replicates, replicate: sample % replicates }
     }
 
     /// The four numbers of set `set`, each in [0, 1).
     pub fn set<R: Real>(&self, set: u32) -> [R; 4] {
         match self.kind {
             SamplerKind::Sobol => {
-                let replicate = self.sample / SOBOL_POINTS;
+                // Fewer than 2⁶ replicates of fewer than 2¹⁶ point sets each.
+                let points = ((self.index / SOBOL_POINTS) << 6) | self.replicate;
                 // The high half of a 64-bit hash: sets and replicates are independent scrambles of the same points
                 // (padding; Burley 2020, *Practical Hash-based Owen Scrambling*, §5).
-                let scramble = mix(self.pixel_seed ^ (u64::from(set) << 32 | u64::from(replicate))) >> 32;
-                sobol_burley::sample_4d(self.sample % SOBOL_POINTS, 0, scramble as u32)
+                let scramble = mix(self.pixel_seed ^ (u64::from(set) << 32 | u64::from(points))) >> 32;
+                sobol_burley::sample_4d(self.index % SOBOL_POINTS, 0, scramble as u32)
                     .map(|u| R::from_f64(f64::from(u)))
             }
             SamplerKind::Independent => {
@@ -78,7 +89,7 @@ mod tests {
     fn numbers_are_in_the_half_open_unit_interval_and_repeatable() {
         for kind in [SamplerKind::Sobol, SamplerKind::Independent] {
             for sample in (0..200_000).step_by(997) {
-                let sampler = Sampler::new(kind, 7, 12, sample);
+                let sampler = Sampler::new(kind, 7, 12, sample, 4);
                 let a: [f32; 4] = sampler.set(3);
                 assert_eq!(a, sampler.set::<f32>(3));
                 assert!(a.iter().all(|u| (0.0..1.0).contains(u)));
@@ -96,7 +107,7 @@ mod tests {
     fn streams_are_uncorrelated() {
         let n = 16_384;
         let stream = |kind, seed, pixel, set, component: usize| -> Vec<f64> {
-            (0..n).map(|s| Sampler::new(kind, seed, pixel, s).set::<f64>(set)[component] - 0.5).collect()
+            (0..n).map(|s| Sampler::new(kind, seed, pixel, s, 1).set::<f64>(set)[component] - 0.5).collect()
         };
         for kind in [SamplerKind::Sobol, SamplerKind::Independent] {
             let base = stream(kind, 1, 5, 2, 0);
@@ -114,7 +125,7 @@ mod tests {
         // 256 points of a (0, 8, 2)-net in base 2 put one into each of 16 × 16 cells of the first two dimensions.
         let mut cells = [0; 256];
         for s in 0..256 {
-            let u: [f64; 4] = Sampler::new(SamplerKind::Sobol, 3, 9, s).set(0);
+            let u: [f64; 4] = Sampler::new(SamplerKind::Sobol, 3, 9, s, 1).set(0);
             cells[(u[0] * 16.0) as usize * 16 + (u[1] * 16.0) as usize] += 1;
         }
         assert!(cells.iter().all(|&c| c == 1), "{cells:?}");

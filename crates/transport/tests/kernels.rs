@@ -53,7 +53,7 @@ fn forcing_what_a_scene_does_not_call_for_leaves_every_bit_as_it_is() {
             }
             assert!(forced.plan().runs(effect), "{name}: {effect} is not forced");
             let forced = render(&forced);
-            assert!(forced.pixels() == plain.pixels(), "{name}: {effect} changes the picture");
+            assert!(forced.pixels().eq(plain.pixels()), "{name}: {effect} changes the picture");
             tried += 1;
         }
     }
@@ -72,7 +72,7 @@ fn shared_lanes_and_hero_lanes_agree_bit_for_bit_where_nothing_disperses() {
             let shared = prepared(&scene, &[EffectName::Wavelengths]);
             let hero = prepared(&scene, &[EffectName::Dispersion]);
             assert_eq!((shared.plan().lane_model, hero.plan().lane_model), (LaneModel::Shared, LaneModel::Hero));
-            assert!(render(&shared).pixels() == render(&hero).pixels(), "{name} {precision:?}");
+            assert!(render(&shared).pixels().eq(render(&hero).pixels()), "{name} {precision:?}");
             tried += 1;
         }
     }
@@ -86,7 +86,7 @@ fn assert_same_mean(name: &str, a: &dyn Fn(u64) -> Prepared, b: &dyn Fn(u64) -> 
     let mut scale = 0.0;
     let mean = |prepared: Prepared| {
         let film = render(&prepared);
-        let n = film.pixels().len() as f64;
+        let n = film.pixels().count() as f64;
         film.xyz().fold([0.0; 3], |sum, xyz| std::array::from_fn(|c| sum[c] + xyz[c] / n))
     };
     for seed in 0..32 {

@@ -6,8 +6,8 @@ mod warnings;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use etalon_picture::{Attribute, Picture, RenderInfo, Window};
-use etalon_transport::{Control, Extent, Film, PixelRect, Prepared, prepare_study};
+use etalon_picture::{Attribute, ERROR_PREFIX, ErrorInfo, Picture, RenderInfo, Window};
+use etalon_transport::{Control, Extent, Film, ImageError, PixelRect, Prepared, prepare_study};
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -177,28 +177,36 @@ fn render(args: &Args) -> Result<(), Stop> {
     let extent = Extent { rect: job.rect, samples: 0..spp, threads: Some(job.threads) };
     let bar = SampleBar::new(job.rect.area() * u64::from(spp), args.quiet || args.json);
     let start = Instant::now();
-    let film = job.prepared.render(&extent, &|paths| {
-        bar.advance(paths);
+    let film = job.prepared.render(&extent, &|counters| {
+        bar.advance(counters.paths);
         Control::Continue
     });
     let seconds = start.elapsed().as_secs_f64();
     bar.clear();
     let film = film.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
 
+    let error = film.error(job.rect);
     let noticed = warnings::of(args, &film.counters);
     print::warnings(&noticed);
     job.warnings.extend(noticed);
-    let (written, failure) = write(args, &job, &film, &outputs, seconds);
+    let (written, failure) = write(args, &job, &film, error.as_ref(), &outputs, seconds);
     if args.json {
-        print::json(&report::json(args, &job, &film, &written, &failure, seconds));
+        print::json(&report::json(args, &job, &film, error.as_ref(), &written, &failure, seconds));
     } else if !args.quiet {
-        print::line(&report::summary(&job, &film, &written, seconds));
+        print::line(&report::summary(&job, &film, error.as_ref(), &written, seconds));
     }
     failure.into_outcome().map_err(Stop::Reported)
 }
 
 /// Writes every output, also after one of them has failed.
-fn write(args: &Args, job: &Job, film: &Film, outputs: &[Output], seconds: f64) -> (Vec<Written>, Failure) {
+fn write(
+    args: &Args,
+    job: &Job,
+    film: &Film,
+    error: Option<&ImageError>,
+    outputs: &[Output],
+    seconds: f64,
+) -> (Vec<Written>, Failure) {
     let (mut written, mut failure) = (Vec::new(), Failure::default());
     let integrator = &job.loaded.scene.integrator;
     let software = concat!("etalon ", env!("CARGO_PKG_VERSION"));
@@ -227,7 +235,8 @@ fn write(args: &Args, job: &Job, film: &Film, outputs: &[Output], seconds: f64) 
     });
     match picture {
         Err(error) => failure.add(Failure::run(Report::from_err(error))),
-        Ok((picture, attributes)) => {
+        Ok((picture, mut attributes)) => {
+            attributes.extend(error.map(|error| error_info(film, error).attributes()).unwrap_or_default());
             for output in outputs {
                 match output::write(output, &picture, &attributes, args.exposure, software, &comment) {
                     Ok(done) => written.push(done),
@@ -239,16 +248,37 @@ fn write(args: &Args, job: &Job, film: &Film, outputs: &[Output], seconds: f64) 
     (written, failure)
 }
 
-/// The rendered part of the film as linear Rec. 709.
+/// What the file says about the error of its picture.
+fn error_info(film: &Film, error: &ImageError) -> ErrorInfo {
+    let tile = error.noisiest.rect;
+    ErrorInfo {
+        replicates: film.replicates(),
+        relative_rmse: error.relative_rmse,
+        interval: error.interval,
+        tail_index: error.tail_index,
+        noisiest_tile: [tile.x0, tile.x1, tile.y0, tile.y1],
+    }
+}
+
+/// The rendered part of the film as linear Rec. 709, and the standard error of each channel where it is known.
 fn picture(film: &Film, rect: PixelRect) -> Result<Picture<f32>, etalon_picture::PictureError> {
-    let whole = film.linear_rec709();
-    let at = |(x, y): (u32, u32)| whole[y as usize * film.width() as usize + x as usize];
-    let pixels: Vec<[f32; 3]> = rect.pixels().map(at).collect();
+    let cut = |whole: Vec<[f32; 3]>| -> Vec<[f32; 3]> {
+        rect.pixels().map(|(x, y)| whole[y as usize * film.width() as usize + x as usize]).collect()
+    };
     let window = Window {
         origin_px: [rect.x0 as i32, rect.y0 as i32],
         frame_px: [film.width() as usize, film.height() as usize],
     };
-    Picture::from_rgb((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize, &pixels)?.in_frame(window)
+    let (width, height) = ((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize);
+    let mut picture = Picture::from_rgb(width, height, &cut(film.linear_rec709()))?.in_frame(window)?;
+    let errors = cut(film.linear_rec709_error());
+    // Where nothing at all is known there is nothing to say.
+    if errors.iter().any(|error| error[0].is_finite()) {
+        for (index, name) in ["R", "G", "B"].into_iter().enumerate() {
+            picture.insert(&format!("{ERROR_PREFIX}{name}"), errors.iter().map(|error| error[index]).collect())?;
+        }
+    }
+    Ok(picture)
 }
 
 /// One path again, vertex by vertex.

@@ -2,13 +2,16 @@
 
 use super::spectrum::Wavelength;
 use crate::json::{Code, Nullable, Reader, Required, Spanned, Whole};
-use crate::model::{Integrator, LightSampling, Precision, SamplerKind};
+use crate::model::{Integrator, LightSampling, MOST_REPLICATES, Precision, SamplerKind};
 
 crate::record! {
     /// How to integrate. The command line may override each key.
     pub(crate) struct IntegratorForm + comment {
         /// Samples a pixel.
         spp: Required<Whole<1, { u32::MAX as u64 }>> = "64",
+        /// Independent replicates that the samples are dealt to in turn, so that their scatter tells the error of each pixel.
+        /// With 1 there are no error bars, and no sample is spent on them.
+        replicates: Required<Whole<1, { MOST_REPLICATES as u64 }>> = "4",
         /// Seed of every random number.
         seed: Required<Whole<0, { u64::MAX }>> = "0",
         /// Number sequence.
@@ -73,6 +76,7 @@ pub(crate) fn integrator(form: &IntegratorForm, wavelength_range_nm: Option<[f64
     Some(Integrator {
         // The casts are within the ranges declared above.
         spp: form.spp?.0 as u32,
+        replicates: form.replicates?.0 as u32,
         seed: form.seed?.0,
         sampler: form.sampler?,
         max_depth: match form.max_depth? {

@@ -1,12 +1,12 @@
 //! What is said about a render that is done.
 
-use etalon_transport::{Film, Plan};
+use etalon_transport::{Film, ImageError, Plan};
 use serde::Serialize;
 
 use super::{Args, Job};
 use crate::failure::{Failure, ProblemJson, problem_json};
 use crate::output::{self, Written};
-use crate::progress::si;
+use crate::progress::{percent, si};
 
 /// What `--json` prints about a render.
 #[derive(Serialize)]
@@ -37,9 +37,77 @@ pub(super) struct RenderJson<'a> {
     nonfinite: u64,
     /// The first of them: column, row, number of the sample.
     nonfinite_at: Vec<[u32; 3]>,
+    /// `null` with a single replicate, of whose error nothing is known.
+    error: Option<ErrorJson>,
     warnings: Vec<ProblemJson>,
     errors: Vec<ProblemJson>,
     plan: &'a Plan,
+}
+
+/// The error of the picture.
+#[derive(Serialize)]
+pub(super) struct ErrorJson {
+    /// Root mean square over all pixels of the standard error of Y, in units of the mean Y.
+    relative_rmse: f64,
+    interval_95: [f64; 2],
+    mean_y: f64,
+    replicates: u32,
+    /// 0: normal replicates, 1: each pixel's error is one outlier.
+    tail_index: Option<f64>,
+    heavy_tailed: bool,
+    noisiest: NoisiestJson,
+    unknown_pixels: u64,
+}
+
+/// The tile with the largest error.
+#[derive(Serialize)]
+struct NoisiestJson {
+    /// Columns x0 to x1, rows y0 to y1.
+    crop: [u32; 4],
+    relative_rmse: f64,
+    /// Share of the squared error of the picture.
+    share: f64,
+}
+
+fn error_json(film: &Film, error: &ImageError) -> ErrorJson {
+    let tile = error.noisiest.rect;
+    ErrorJson {
+        relative_rmse: error.relative_rmse,
+        interval_95: error.interval,
+        mean_y: error.mean_y,
+        replicates: film.replicates(),
+        tail_index: error.tail_index,
+        heavy_tailed: error.is_heavy_tailed(),
+        noisiest: NoisiestJson {
+            crop: [tile.x0, tile.x1, tile.y0, tile.y1],
+            relative_rmse: error.noisiest.relative_rmse,
+            share: error.noisiest.share,
+        },
+        unknown_pixels: error.unknown_pixels,
+    }
+}
+
+/// The error in words.
+fn describe_error(error: &ImageError) -> String {
+    let tile = error.noisiest.rect;
+    let mut text = format!(
+        "relative error {} (95 % sure: {} to {}); noisiest in columns {} to {}, rows {} to {}: {}, {:.0} % of the squared error",
+        percent(error.relative_rmse),
+        percent(error.interval[0]),
+        percent(error.interval[1]),
+        tile.x0,
+        tile.x1 - 1,
+        tile.y0,
+        tile.y1 - 1,
+        percent(error.noisiest.relative_rmse),
+        100.0 * error.noisiest.share,
+    );
+    if error.is_heavy_tailed() {
+        text.push_str(
+            "\n  rare bright paths carry most of this error: it is likely to be larger than these numbers say",
+        );
+    }
+    text
 }
 
 /// The report for machines.
@@ -47,6 +115,7 @@ pub(super) fn json<'a>(
     args: &Args,
     job: &'a Job,
     film: &Film,
+    error: Option<&ImageError>,
     written: &'a [Written],
     failure: &Failure,
     seconds: f64,
@@ -75,6 +144,7 @@ pub(super) fn json<'a>(
         cut_paths: counters.cut_paths,
         nonfinite: counters.nonfinite,
         nonfinite_at: counters.nonfinite_at.iter().map(|at| [at.x, at.y, at.sample]).collect(),
+        error: error.map(|error| error_json(film, error)),
         warnings: job.warnings.iter().map(problem_json).collect(),
         errors: failure.to_json(),
         plan: job.prepared.plan(),
@@ -82,7 +152,7 @@ pub(super) fn json<'a>(
 }
 
 /// The report for people.
-pub(super) fn summary(job: &Job, film: &Film, written: &[Written], seconds: f64) -> String {
+pub(super) fn summary(job: &Job, film: &Film, error: Option<&ImageError>, written: &[Written], seconds: f64) -> String {
     let mut text = format!(
         "{} × {} pixels, {} samples each, in {seconds:.1} s ({} paths/s on {} threads), {} not finite",
         job.rect.x1 - job.rect.x0,
@@ -92,6 +162,10 @@ pub(super) fn summary(job: &Job, film: &Film, written: &[Written], seconds: f64)
         job.threads,
         film.counters.nonfinite,
     );
+    if let Some(error) = error {
+        text.push_str("\n  ");
+        text.push_str(&describe_error(error));
+    }
     for written in written {
         text.push_str("\n  ");
         text.push_str(&written.path);

@@ -43,6 +43,8 @@ impl Etalon {
         scene.integrator.precision = self.precision;
         // Distinct for each pair: fewer replicates than 2¹⁶.
         scene.integrator.seed = self.seed << 16 | u64::from(replicate);
+        // Each render is one replicate here.
+        scene.integrator.replicates = 1;
         scene.integrator.spp = u32::try_from(spp).map_err(|error| error.to_string())?;
         Ok(scene)
     }
