@@ -79,6 +79,7 @@ impl Claim {
             Self::ThinLens => "thin-lens",
             Self::DepthLimit => "depth-limit",
             Self::NestedMedia => "nested-media",
+            Self::PhotometricSensor => "photometric-sensor",
         }
     }
 }

@@ -32,6 +32,7 @@ pub use irradiance::{
     walsh_reflectance,
 };
 pub use judge::judge;
+pub use prisms::photometric_weight;
 
 /// What a renderer must be able to do, or claims to do, for a truth to apply to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -50,17 +51,20 @@ pub enum Claim {
     DepthLimit,
     /// Tells the two sides of an interface inside another medium apart.
     NestedMedia,
+    /// Its sensor is CIE Y: a wavelength counts as ȳ of the CIE 1931 2° observer.
+    PhotometricSensor,
 }
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 6] = [
+    pub const UNPOLARISED: [Self; 7] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
         Self::ThinLens,
         Self::DepthLimit,
         Self::NestedMedia,
+        Self::PhotometricSensor,
     ];
 }
 

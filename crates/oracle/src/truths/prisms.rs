@@ -1,5 +1,7 @@
 //! The deviation of light by a prism, line by line.
 
+use std::sync::LazyLock;
+
 use super::{
     Claim, Truth,
     scene::{Scene, black, parallelogram, sellmeier_glass, triangular_prism},
@@ -26,8 +28,9 @@ fn half_deviation(n: f64) -> f64 {
 const BEAM_M: f64 = 1e-3;
 const DISTANCE_M: f64 = 1.0;
 
-/// A beam through a prism of side 2 at least deviation for an index, and a strip 1 m beyond whose edge halves the beam.
-fn scene(wavelength_nm: f64) -> Scene {
+/// A beam through a prism of side 2 at least deviation for an index, and a strip 1 m beyond whose edge halves the beam; it
+/// reaches this far to the side of longer waves.
+fn scene(wavelength_nm: f64, beam_m: f64, strip_m: f64) -> Scene {
     let half = half_deviation(bk7(wavelength_nm));
     let (sine, cosine) = half.sin_cos();
     // Inside, the beam runs along +x at height .6 of an equilateral prism that stands on y = 0.
@@ -38,14 +41,18 @@ fn scene(wavelength_nm: f64) -> Scene {
     let across = [sine, cosine, 0.0];
     let middle = add(exit, scale(DISTANCE_M, outward));
     let corner = sub(middle, [0.0, 0.0, 0.5]);
-    Scene::orthographic(sub(entry, scale(0.5, inward)), entry, BEAM_M)
+    Scene::orthographic(sub(entry, scale(0.5, inward)), entry, beam_m)
         .up([0.0, 0.0, 1.0])
         .object(
             triangular_prism([[-1.0, 0.0], [1.0, 0.0], [0.0, 3.0_f64.sqrt()]], [-1.0, 1.0]),
             sellmeier_glass(BK7_B, BK7_C),
         )
-        .lamp(parallelogram(corner, scale(2.0 * BEAM_M, across), [0.0, 0.0, 1.0]), black(), 1.0, "both")
-        .band([wavelength_nm - 5e-4, wavelength_nm + 5e-4])
+        .lamp(parallelogram(corner, scale(strip_m, across), [0.0, 0.0, 1.0]), black(), 1.0, "both")
+}
+
+/// The same in one wavelength, the beam 1 mm wide.
+fn one_line(wavelength_nm: f64) -> Scene {
+    scene(wavelength_nm, BEAM_M, 2.0 * BEAM_M).band([wavelength_nm - 5e-4, wavelength_nm + 5e-4])
 }
 
 /// Share of the beam that would land on the strip if the index were another, faces unchanged.
@@ -86,7 +93,7 @@ pub(super) fn truths() -> Vec<Truth> {
             let wrong = if wavelength_nm == 587.5618 { bk7(589.3) } else { bk7(587.5618) };
             Truth::new(
                 format!("prism-bk7-at-{wavelength_nm}-nanometres"),
-                &scene(wavelength_nm),
+                &one_line(wavelength_nm),
                 0.5 * transmitted,
                 format!(
                     "½(1 − R)²; deviation 2·asin(n·sin 30°) − 60° = {:.7}°, n = {n:.8}",
@@ -110,7 +117,7 @@ pub(super) fn truths() -> Vec<Truth> {
     list.push(
         Truth::new(
             "prism-bk7-polarised",
-            &scene(587.5618),
+            &one_line(587.5618),
             0.25 * (powers.t_s.powi(2) + powers.t_p.powi(2)),
             "½·mean of T_s² and T_p²",
         )
@@ -119,12 +126,83 @@ pub(super) fn truths() -> Vec<Truth> {
         .claims(Claim::CarriesPolarisation)
         .claims(Claim::Dispersion),
     );
+    list.push(rainbow());
     list
+}
+
+/// ȳ of the CIE 1931 2° observer at 360, 361, …, 830 nm.
+static CIE_Y: LazyLock<Vec<f64>> = LazyLock::new(|| {
+    let rows = include_str!("cie-y-1nm.csv").lines().filter(|line| !line.starts_with('#'));
+    rows.map(|row| row.parse().expect("a number a line")).collect()
+});
+
+/// What a sensor of CIE Y makes of light of one wavelength, nm⁻¹: ȳ/Σȳ, linear between whole nanometres.
+#[must_use]
+pub fn photometric_weight(wavelength_nm: f64) -> f64 {
+    let x = wavelength_nm - 360.0;
+    if !(0.0..=470.0).contains(&x) {
+        return 0.0;
+    }
+    let i = (x as usize).min(469);
+    let t = x - i as f64;
+    ((1.0 - t) * CIE_Y[i] + t * CIE_Y[i + 1]) / CIE_Y.iter().sum::<f64>()
+}
+
+/// The edge of a shining strip cuts the spectrum of white light in two.
+fn rainbow() -> Truth {
+    const EDGE_NM: f64 = 600.0;
+    let incidence = (0.5 * bk7(EDGE_NM)).asin();
+    let through = move |wavelength_nm: f64| {
+        let n = bk7(wavelength_nm);
+        let inside = (incidence.sin() / n).asin();
+        let second = 60.0_f64.to_radians() - inside;
+        fresnel_exact(incidence.cos(), n).transmittance() * fresnel_exact(second.cos(), 1.0 / n).transmittance()
+    };
+    // By the midpoint rule in steps of 0.02 nm: ȳ has a corner at each nanometre, on a border between steps.
+    let over = |from_nm: f64, integrand: &dyn Fn(f64) -> f64| -> f64 {
+        let steps = ((830.0 - from_nm) * 50.0).round();
+        (0..steps as u32).map(|i| 0.02 * integrand(from_nm + 0.02 * (f64::from(i) + 0.5))).sum()
+    };
+    let value = over(EDGE_NM, &|nm| photometric_weight(nm) * through(nm));
+    // Four wavelengths a quarter of an even distribution apart, all of them along the path of the first.
+    let turned = |nm: f64, lane: u32| 360.0 + (nm - 360.0 + 117.5 * f64::from(lane)) % 470.0;
+    let kept =
+        over(EDGE_NM, &|nm| through(nm) * 0.25 * (0..4).map(|lane| photometric_weight(turned(nm, lane))).sum::<f64>());
+    Truth::new(
+        "rainbow-cut-in-two",
+        &scene(EDGE_NM, 1e-6, 0.1),
+        value,
+        "∫ȳT₁T₂dλ/∫ȳdλ from 600 nm on, ȳ of the CIE 1931 observer",
+    )
+    .because(
+        "White light that falls on a prism at one angle leaves it at an angle for each wavelength; a shining strip whose edge stands \
+         where 600 nm land is met by the longer waves alone. The beam is a micrometre wide, in which the edge is sharp to \
+         0.02 nm. A wavelength that is carried along the path of another lands on the wrong side.",
+    )
+    .confirmed("Simpson's rule over each nanometre of the table", 1e-6, move || {
+        let f = |nm: f64| photometric_weight(nm) * through(nm);
+        (600..830).map(f64::from).map(|nm| (f(nm) + 4.0 * f(nm + 0.5) + f(nm + 1.0)) / 6.0).sum()
+    })
+    .or_else("the other wavelengths of a path kept after dispersion (four, drawn evenly from 360 to 830 nm)", kept)
+    .or_else("one of four wavelengths kept, and not weighed up", 0.25 * value)
+    .or_else("one index for all wavelengths, that of the d line: all of it on the other side", 0.0)
+    .allows(1e-5, "2e-5 for single precision, 1e-5 for the width of the beam where ȳ is not even over 0.02 nm")
+    .claims(Claim::AveragesPolarisation)
+    .claims(Claim::Dispersion)
+    .claims(Claim::PhotometricSensor)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_sensor_has_its_published_sum_and_peak() {
+        assert!((CIE_Y.iter().sum::<f64>() - 106.856_917).abs() < 1e-6 && CIE_Y.len() == 471);
+        assert_eq!((CIE_Y[555 - 360], photometric_weight(300.0)), (1.0, 0.0));
+        let total: f64 = (0..47_000).map(|i| 0.01 * photometric_weight(360.0 + 0.01 * (f64::from(i) + 0.5))).sum();
+        assert!((total - 1.0).abs() < 1e-7, "{total}");
+    }
 
     #[test]
     fn deviations_have_their_published_values() {

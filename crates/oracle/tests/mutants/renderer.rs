@@ -11,7 +11,7 @@ use etalon_oracle::{
     Uniform,
     statistics::{Estimate, Welford},
     subjects::{Reading, Renders},
-    truths::Truth,
+    truths::{Claim, Truth, photometric_weight},
 };
 
 struct Hit {
@@ -242,9 +242,30 @@ fn conductor(n: f64, k: f64, c: f64) -> f64 {
     0.5 * r_s * (1.0 + (t3 - t4) / (t3 + t4))
 }
 
+impl Tracer {
+    /// What the sensor makes of a path of this wavelength, drawn evenly from 360 to 830 nm; 1 where all count alike.
+    fn sensor(&self, wavelength_nm: f64) -> f64 {
+        let lane = |k: u32| 470.0 * photometric_weight(360.0 + (wavelength_nm - 360.0 + 117.5 * f64::from(k)) % 470.0);
+        match self.fault {
+            _ if wavelength_nm == 0.0 => 1.0,
+            "a wavelength lane kept after dispersion" => 0.25 * (0..4).map(lane).sum::<f64>(),
+            "the hero not weighed up" => 0.25 * lane(0),
+            _ => lane(0),
+        }
+    }
+}
+
 impl Renders for Tracer {
     fn render(&mut self, truth: &Truth) -> Result<Reading, String> {
-        let world = World::read(&truth.scene, self.fault)?;
+        // The scene at each of many wavelengths, even steps over the visible range, for a sensor that tells them apart.
+        let worlds: Vec<(f64, World)> = if truth.claims.contains(&Claim::PhotometricSensor) {
+            let at = |i: u32| 360.0 + 470.0 * (f64::from(i) + 0.5) / 4700.0;
+            (0..4700)
+                .map(|i| Ok((at(i), World::read(&truth.scene, self.fault, Some(at(i)))?)))
+                .collect::<Result<_, String>>()?
+        } else {
+            vec![(0.0, World::read(&truth.scene, self.fault, None)?)]
+        };
         let mut numbers = Uniform::new(self.seed);
         // Strata over the picture; the variance is taken within pairs of samples in one stratum.
         let strata = ((self.paths / 2) as f64).sqrt().ceil() as u32;
@@ -254,8 +275,9 @@ impl Renders for Tracer {
                 let pair = [0, 1].map(|_| {
                     let x = (f64::from(i) + numbers.number()) / f64::from(strata);
                     let y = (f64::from(j) + numbers.number()) / f64::from(strata);
+                    let (wavelength_nm, world) = &worlds[(numbers.number() * worlds.len() as f64) as usize];
                     let (origin, d) = world.camera_ray(x, y, &mut numbers);
-                    let value = world.radiance(origin, d, &mut numbers);
+                    let value = world.radiance(origin, d, &mut numbers) * self.sensor(*wavelength_nm);
                     let value = if self.fault == "0/0 in one of a thousand" && numbers.number() < 1e-3 {
                         f64::NAN
                     } else {

@@ -67,10 +67,12 @@ fn index(value: &Value, wavelength_nm: f64) -> f64 {
 }
 
 impl World {
-    pub(crate) fn read(json: &str, fault: &'static str) -> Result<Self, String> {
+    /// The scene at one wavelength; by default in the middle of its band.
+    pub(crate) fn read(json: &str, fault: &'static str, wavelength_nm: Option<f64>) -> Result<Self, String> {
         let scene: Value = serde_json::from_str(json).map_err(|error| error.to_string())?;
         let band = &scene["integrator"]["wavelength_range_nm"];
-        let mut wavelength_nm = if band.is_null() { 550.0 } else { 0.5 * (number(&band[0]) + number(&band[1])) };
+        let middle = if band.is_null() { 550.0 } else { 0.5 * (number(&band[0]) + number(&band[1])) };
+        let mut wavelength_nm = wavelength_nm.unwrap_or(middle);
         if fault == "the index of the d line at every wavelength" {
             wavelength_nm = 587.5618;
         }
