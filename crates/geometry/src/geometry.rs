@@ -3,16 +3,19 @@
 use crate::build::{Costs, build};
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
+use crate::ray::ExactPoint;
 use crate::traverse;
 use crate::wide::WideTree;
-use crate::{Aabb, Hit, Primitive, PrimitiveId, Ray, SurfacePoint};
-use etalon_optics::Real;
+use crate::{Aabb, Hit, Instance, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
+use etalon_optics::{Real, Vec3};
 
 /// Up to this many primitives are tested one by one, without a tree.
 const FLAT_LIMIT: usize = 8;
+/// Most instances within each other: a ray descends through them by recursion.
+pub const MAX_NESTING: u32 = 32;
 
-/// A hit and its primitive.
-pub(crate) type Found = (RawHit, PrimitiveId);
+/// A hit and its surface.
+pub(crate) type Found = (RawHit, SurfaceId);
 
 /// Why primitives cannot be built into a [`Geometry`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -20,6 +23,12 @@ pub enum GeometryError {
     /// More primitives than ids.
     #[error("{0} primitives are more than the 2^29 that can be indexed")]
     TooMany(usize),
+    /// More instances, those within instances counted wherever they are placed, than numbers for them.
+    #[error("{0} placed instances are more than the 2^31 that can be numbered")]
+    TooManyInstances(u64),
+    /// Instances within instances, too many of them.
+    #[error("instances within instances, {0} of them: more than {MAX_NESTING}")]
+    TooDeep(u32),
 }
 
 /// Primitives and the accelerator over them; immutable.
@@ -31,16 +40,40 @@ pub struct Geometry {
     primitives: Vec<Primitive>,
     bounds: Option<Aabb>,
     tree: Option<WideTree>,
+    /// Which primitives are instances.
+    instances: Vec<u32>,
+    /// Numbers that instances take, 1 for the geometry itself among them.
+    instance_count: u64,
+    /// Instances within each other.
+    nesting: u32,
+    label: u32,
 }
 
 impl Geometry {
     /// Builds the accelerator. No primitives at all are allowed.
     ///
     /// # Errors
-    /// If there are more than 2²⁹ primitives.
-    pub fn build(primitives: Vec<Primitive>) -> Result<Self, GeometryError> {
+    /// If there are more than 2²⁹ primitives, more than 2³¹ instances, or more than [`MAX_NESTING`] of them within each
+    /// other.
+    pub fn build(mut primitives: Vec<Primitive>) -> Result<Self, GeometryError> {
         if primitives.len() > 1 << 29 {
             return Err(GeometryError::TooMany(primitives.len()));
+        }
+        let (mut instances, mut instance_count, mut nesting) = (Vec::new(), 1, 0);
+        for (index, primitive) in primitives.iter_mut().enumerate() {
+            if let Primitive::Instance(instance) = primitive {
+                instances.push(index as u32);
+                instance.first = instance_count as u32;
+                // Each is at most 2³¹, and they are checked as they come: no overflow.
+                instance_count += instance.count();
+                nesting = nesting.max(instance.geometry().nesting + 1);
+                if instance_count > 1 << 31 {
+                    return Err(GeometryError::TooManyInstances(instance_count));
+                }
+            }
+        }
+        if nesting > MAX_NESTING {
+            return Err(GeometryError::TooDeep(nesting));
         }
         let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
         let tree = bounds.filter(|_| primitives.len() > FLAT_LIMIT).map(|bounds| {
@@ -50,7 +83,22 @@ impl Geometry {
             drop(boxes);
             WideTree::collapse(frame, &binary, &primitives)
         });
-        Ok(Self { primitives, bounds, tree })
+        Ok(Self { primitives, bounds, tree, instances, instance_count, nesting, label: 0 })
+    }
+
+    /// The same geometry with a number of the caller's, by which points on its surfaces tell that they are its.
+    #[must_use]
+    pub fn with_label(self, label: u32) -> Self {
+        Self { label, ..self }
+    }
+
+    /// The number given to [`Geometry::with_label`], 0 without.
+    pub fn label(&self) -> u32 {
+        self.label
+    }
+
+    pub(crate) fn instance_count(&self) -> u64 {
+        self.instance_count
     }
 
     /// The primitive of an id. Panics if the id is none of this geometry's.
@@ -73,10 +121,77 @@ impl Geometry {
         self.bounds
     }
 
-    /// Memory held, bytes: the primitives and the accelerator.
+    /// Memory held, bytes: the primitives, the accelerator and every shared geometry, each once.
     pub fn memory_bytes(&self) -> usize {
+        let mut seen = Vec::new();
+        self.memory_beside(&mut seen)
+    }
+
+    fn memory_beside(&self, seen: &mut Vec<*const Self>) -> usize {
         let tree = self.tree.as_ref().map_or(0, WideTree::memory_bytes);
-        size_of::<Self>() + self.primitives.capacity() * size_of::<Primitive>() + tree
+        let own = size_of::<Self>() + self.primitives.capacity() * size_of::<Primitive>() + tree;
+        let places = self.instances.len() * (size_of::<Instance>() + size_of::<u32>());
+        let mut shared = 0;
+        for instance in self.own_instances() {
+            let address = std::sync::Arc::as_ptr(instance.geometry());
+            if let Err(place) = seen.binary_search(&address) {
+                seen.insert(place, address);
+                shared += instance.geometry().memory_beside(seen);
+            }
+        }
+        own + places + shared
+    }
+
+    /// The instances, each with the [number](SurfaceId::instance) of what it places: surfaces within have that plus their
+    /// number in the geometry placed.
+    pub fn instances(&self) -> impl Iterator<Item = (u32, &Instance)> {
+        self.own_instances().map(|instance| (instance.first, instance))
+    }
+
+    fn own_instances(&self) -> impl Iterator<Item = &Instance> {
+        self.instances.iter().filter_map(|&index| self.instance_at(index))
+    }
+
+    fn instance_at(&self, index: u32) -> Option<&Instance> {
+        match &self.primitives[index as usize] {
+            Primitive::Instance(instance) => Some(instance),
+            _ => None,
+        }
+    }
+
+    /// The instance that holds a surface which is not this geometry's own.
+    fn instance_of(&self, surface: SurfaceId) -> Option<(u32, &Instance)> {
+        let first = |&index: &u32| self.instance_at(index).map_or(0, |instance| instance.first);
+        let after = self.instances.partition_point(|index| first(index) <= surface.instance);
+        let index = *self.instances.get(after.checked_sub(1)?)?;
+        self.instance_at(index).map(|instance| (index, instance))
+    }
+
+    /// The instances that place a surface, the outermost first: each by its index among the primitives of the geometry that
+    /// it is part of. Empty for one of this geometry's own.
+    pub fn path(&self, mut surface: SurfaceId) -> Vec<PrimitiveId> {
+        let (mut geometry, mut path) = (self, Vec::new());
+        while surface.instance > 0
+            && let Some((index, instance)) = geometry.instance_of(surface)
+        {
+            path.push(PrimitiveId(index));
+            surface.instance -= instance.first;
+            geometry = instance.geometry();
+        }
+        path
+    }
+
+    /// A normal at a surface, from the coordinates of the geometry that holds the surface's primitive to those of this one:
+    /// of any length.
+    #[inline]
+    pub fn placed_normal(&self, surface: SurfaceId, normal: Vec3<f64>) -> Vec3<f64> {
+        if surface.instance == 0 { normal } else { self.normal_within(surface, normal) }
+    }
+
+    fn normal_within(&self, surface: SurfaceId, normal: Vec3<f64>) -> Vec3<f64> {
+        let Some((_, instance)) = self.instance_of(surface) else { return normal };
+        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+        instance.placement().normal(instance.geometry().placed_normal(inner, normal))
     }
 
     /// The closest hit along a ray.
@@ -88,13 +203,13 @@ impl Geometry {
             Some(tree) => traverse::closest(tree, &self.primitives, ray),
             None => {
                 let query = Query::new(ray)?;
-                self.closest_flat(&query).map(|(hit, id)| (RawHit { t: hit.t * query.scale, ..hit }, id))
+                self.closest_flat(&query).map(|(hit, surface)| (RawHit { t: hit.t * query.scale, ..hit }, surface))
             }
         };
-        found.map(|(hit, primitive)| Hit { t: R::from_f64(hit.t), primitive, uv: hit.uv.map(R::from_f64) })
+        found.map(|(hit, surface)| Hit { t: R::from_f64(hit.t), surface, uv: hit.uv.map(R::from_f64) })
     }
 
-    /// Whether anything but the primitive aimed at lies on a ray before `t_max`.
+    /// Whether anything but the surface aimed at lies on a ray before `t_max`.
     pub fn occluded<R: Real>(&self, ray: &Ray<R>) -> bool {
         match &self.tree {
             Some(tree) => traverse::any(tree, &self.primitives, ray),
@@ -103,21 +218,42 @@ impl Geometry {
     }
 
     /// The surface at a hit, as [`Geometry::closest_hit`] returned it for `ray`.
+    ///
+    /// # Panics
+    /// If the hit is not one of this geometry's with this ray.
     pub fn surface<R: Real>(&self, ray: &Ray<R>, hit: &Hit<R>) -> SurfacePoint<R> {
-        let primitive = self.primitive(hit.primitive);
-        let (origin, direction) = (ray.origin.to_f64(), ray.direction.to_f64());
-        let mut t = hit.t.to_f64();
-        if R::UNIT_ROUNDOFF.to_f64() > f64::UNIT_ROUNDOFF
-            && let Primitive::Sphere(_) = primitive
-        {
-            // What the rounding of t displaces along the ray would turn the normal of a curved surface.
-            let precise = Query::new(ray).and_then(|query| {
-                let hit = primitive.intersect(&query, query.t_max, query.leaves == hit.primitive)?;
-                Some(hit.t * query.scale)
-            });
-            t = precise.unwrap_or(t);
+        // What the rounding of t displaces along the ray would turn the normal of a curved surface.
+        let refine = R::UNIT_ROUNDOFF.to_f64() > f64::UNIT_ROUNDOFF;
+        let primitive = self.primitives.get(hit.surface.primitive.0 as usize).filter(|_| hit.surface.instance == 0);
+        if let Some(primitive) = primitive.filter(|p| !(refine && p.is_curved())) {
+            let p = ray.origin.to_f64() + ray.direction.to_f64() * hit.t.to_f64();
+            return SurfacePoint::rounded(&primitive.surface(p), hit.surface, self.label);
         }
-        primitive.surface(origin + direction * t, hit.primitive)
+        let found = Query::new(ray)
+            .and_then(|query| self.exact_point(&query, hit.t.to_f64() / query.scale, refine, hit.surface));
+        let Some((point, label)) = found else { panic!("the hit is of another geometry or another ray") };
+        SurfacePoint::rounded(&point, hit.surface, label)
+    }
+
+    /// The surface at parameter `t` of a query, and the label of the geometry that it belongs to; `refine` if `t` is
+    /// rounded to less than `f64`.
+    pub(crate) fn exact_point(
+        &self,
+        query: &Query,
+        mut t: f64,
+        refine: bool,
+        surface: SurfaceId,
+    ) -> Option<(ExactPoint, u32)> {
+        if surface.instance > 0 {
+            let (_, instance) = self.instance_of(surface)?;
+            return instance.exact_point(query, t, refine, surface);
+        }
+        let primitive = self.primitives.get(surface.primitive.0 as usize)?;
+        if refine && primitive.is_curved() {
+            let precise = primitive.intersect(query, query.t_max, query.leaves == surface.primitive);
+            t = precise.map_or(t, |hit| hit.t);
+        }
+        Some((primitive.surface(query.origin + query.direction * t), self.label))
     }
 
     /// The closest hit, by testing every primitive: the specification that the tree is held against.
@@ -126,7 +262,7 @@ impl Geometry {
         for i in 0..self.primitives.len() as u32 {
             best.test(&self.primitives, query, PrimitiveId(i));
         }
-        best.hit
+        best.found()
     }
 
     /// Whether anything occludes, by testing every primitive.
@@ -134,11 +270,18 @@ impl Geometry {
         (0..self.primitives.len() as u32).any(|i| traverse::occludes(&self.primitives, query, PrimitiveId(i)))
     }
 
-    #[cfg(test)]
     pub(crate) fn closest(&self, query: &Query) -> Option<Found> {
         match &self.tree {
             Some(tree) => traverse::closest(tree, &self.primitives, query),
             None => self.closest_flat(query),
+        }
+    }
+
+    /// Whether anything but the surface aimed at is hit.
+    pub(crate) fn any(&self, query: &Query) -> bool {
+        match &self.tree {
+            Some(tree) => traverse::any(tree, &self.primitives, query),
+            None => self.any_flat(query),
         }
     }
 
@@ -157,26 +300,52 @@ impl Geometry {
 
 /// What the tree's builder weighs: a leaf tests eight triangles or spheres at once, but other primitives one by one.
 fn costs(primitives: &[Primitive]) -> Costs {
+    // What is within an instance costs far more than a node.
+    let leaf_limit = if primitives.iter().any(|p| matches!(p, Primitive::Instance(_))) { 1 } else { 8 };
     let filtered = |p: &&Primitive| matches!(p, Primitive::Triangle(_) | Primitive::Sphere(_));
     let most = primitives.iter().filter(filtered).count() > primitives.len() / 2;
-    Costs { block: if most { 8 } else { 1 }, leaf_limit: 8, node: 0.5 }
+    Costs { block: if most { 8 } else { 1 }, leaf_limit, node: 0.5 }
 }
 
 /// The closest hit so far.
 pub(crate) struct Best {
-    pub(crate) hit: Option<(RawHit, PrimitiveId)>,
+    hit: Option<(RawHit, PrimitiveId)>,
+    /// The surface of the hit, if it is within an instance.
+    within: Option<SurfaceId>,
     pub(crate) t_max: f64,
 }
 
 impl Best {
     pub(crate) fn new(query: &Query) -> Self {
-        Self { hit: None, t_max: query.t_max }
+        Self { hit: None, within: None, t_max: query.t_max }
+    }
+
+    /// The hit with its surface.
+    #[inline(always)]
+    pub(crate) fn found(&self) -> Option<Found> {
+        self.hit.map(|(hit, id)| (hit, self.within.unwrap_or(SurfaceId::from(id))))
     }
 
     /// Tests a primitive and tells whether its hit is the best so far.
     #[inline]
     pub(crate) fn test(&mut self, primitives: &[Primitive], query: &Query, id: PrimitiveId) -> bool {
-        self.take(id, |t_max| primitives[id.0 as usize].intersect(query, t_max, query.leaves == id))
+        match &primitives[id.0 as usize] {
+            // Left as a whole.
+            Primitive::Instance(_) if query.leaves == id => false,
+            Primitive::Instance(instance) => {
+                let mut surface = None;
+                let found = self.take(id, |t_max| {
+                    let (hit, within) = instance.closest(query, t_max)?;
+                    surface = Some(within);
+                    Some(hit)
+                });
+                if found {
+                    self.within = surface;
+                }
+                found
+            }
+            shape => self.take(id, |t_max| shape.intersect(query, t_max, query.leaves == id)),
+        }
     }
 
     /// Takes what a test with a limit finds for a primitive, if it is the best so far.
@@ -190,6 +359,7 @@ impl Best {
         let found = intersect(t_max);
         if let Some(hit) = found {
             self.hit = Some((hit, id));
+            self.within = None;
             self.t_max = hit.t;
         }
         found.is_some()

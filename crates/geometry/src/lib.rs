@@ -16,12 +16,14 @@
 //! | `pages` | arrays in large pages |
 //! | `traverse` | its traversal, for each instruction set |
 //! | `geometry` | [`Geometry`]: the queries |
+//! | `instance` | [`Instance`]: a geometry within another, placed by an affine map |
 
 mod aabb;
 mod build;
 mod double_double;
 mod frame;
 mod geometry;
+mod instance;
 mod pages;
 mod query;
 mod ray;
@@ -30,8 +32,9 @@ mod traverse;
 mod wide;
 
 pub use aabb::Aabb;
-pub use geometry::{Geometry, GeometryError};
-pub use ray::{Hit, PrimitiveId, Ray, SurfacePoint};
+pub use geometry::{Geometry, GeometryError, MAX_NESTING};
+pub use instance::{Instance, Placement};
+pub use ray::{Hit, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 pub use shapes::{Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, Primitive, ShapeError, Sphere, Triangle};
 
 #[cfg(test)]

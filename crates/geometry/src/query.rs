@@ -1,7 +1,7 @@
 //! A ray prepared for the intersection tests, which are all computed in `f64`.
 
 use crate::double_double::product_difference;
-use crate::{PrimitiveId, Ray};
+use crate::{PrimitiveId, Ray, SurfaceId};
 use etalon_optics::{Real, Vec3};
 use std::array::from_fn;
 
@@ -24,8 +24,12 @@ pub(crate) struct Query {
     pub(crate) scale: f64,
     /// End, exclusive, along [`Query::direction`].
     pub(crate) t_max: f64,
+    /// The primitive left, and the one aimed at, if they are not within an instance.
     pub(crate) leaves: PrimitiveId,
     pub(crate) aims_at: PrimitiveId,
+    /// The same wherever they are.
+    pub(crate) leaves_placed: SurfaceId,
+    pub(crate) aims_at_placed: SurfaceId,
     /// The axes of the projection, the direction's largest component last.
     pub(crate) axes: [usize; 3],
     /// The projection's two slopes and 1/(the direction's largest component).
@@ -63,8 +67,10 @@ impl Query {
             direction,
             scale,
             t_max: t_max * power_of_two(exponent),
-            leaves: ray.leaves,
-            aims_at: ray.aims_at,
+            leaves: ray.leaves.own(),
+            aims_at: ray.aims_at.own(),
+            leaves_placed: ray.leaves,
+            aims_at_placed: ray.aims_at,
             axes,
             shear: [d[axes[0]] * rz, d[axes[1]] * rz, rz],
             start: axes.map(|k| o[k]),

@@ -7,8 +7,38 @@ use etalon_optics::{Real, Vec3};
 pub struct PrimitiveId(pub u32);
 
 impl PrimitiveId {
-    /// No primitive: a ray that starts in free space, a shadow ray toward no surface.
+    /// No primitive.
     pub const NONE: Self = Self(u32::MAX);
+}
+
+/// A primitive where it is placed: which one, and by which instances.
+///
+/// The same triangle in two instances is two surfaces: a ray that leaves one may meet the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SurfaceId {
+    /// 0: one of the geometry's own primitives. Else the number of an instance, or of an instance within instances, in the
+    /// order in which [`Geometry::build`](crate::Geometry::build) was given them, depth first.
+    pub instance: u32,
+    /// The primitive, in the geometry that the instance places. An instance itself stands for all that is within it.
+    pub primitive: PrimitiveId,
+}
+
+impl SurfaceId {
+    /// No surface: a ray that starts in free space, a shadow ray toward no surface.
+    pub const NONE: Self = Self { instance: 0, primitive: PrimitiveId::NONE };
+
+    /// The primitive among those that are not within an instance.
+    #[inline(always)]
+    pub(crate) fn own(self) -> PrimitiveId {
+        if self.instance == 0 { self.primitive } else { PrimitiveId::NONE }
+    }
+}
+
+impl From<PrimitiveId> for SurfaceId {
+    #[inline(always)]
+    fn from(primitive: PrimitiveId) -> Self {
+        Self { instance: 0, primitive }
+    }
 }
 
 /// A half-line `origin + t·direction`, 0 < t < `t_max`.
@@ -20,17 +50,17 @@ pub struct Ray<R> {
     pub direction: Vec3<R>,
     /// End, exclusive.
     pub t_max: R,
-    /// The primitive that the ray leaves (a sphere left to the inside is still hit at its far side).
-    pub leaves: PrimitiveId,
-    /// The primitive at which a shadow ray aims: it never occludes.
-    pub aims_at: PrimitiveId,
+    /// The surface that the ray leaves (a sphere left to the inside is still hit at its far side).
+    pub leaves: SurfaceId,
+    /// The surface at which a shadow ray aims: it never occludes.
+    pub aims_at: SurfaceId,
 }
 
 impl<R: Real> Ray<R> {
     /// A ray without end that starts in free space.
     #[inline]
     pub fn free(origin: Vec3<R>, direction: Vec3<R>) -> Self {
-        Self { origin, direction, t_max: R::INFINITY, leaves: PrimitiveId::NONE, aims_at: PrimitiveId::NONE }
+        Self { origin, direction, t_max: R::INFINITY, leaves: SurfaceId::NONE, aims_at: SurfaceId::NONE }
     }
 
     /// The point at parameter `t`.
@@ -45,10 +75,23 @@ impl<R: Real> Ray<R> {
 pub struct Hit<R> {
     /// Ray parameter.
     pub t: R,
-    /// The primitive.
-    pub primitive: PrimitiveId,
+    /// What was hit.
+    pub surface: SurfaceId,
     /// Surface parameters (barycentric weights of b and c in a triangle; a and b of a parallelogram; else 0).
     pub uv: [R; 2],
+}
+
+/// A point on a surface as computed in `f64`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ExactPoint {
+    /// Position, m.
+    pub(crate) position: Vec3<f64>,
+    /// Bound on the error of each component of the position, m.
+    pub(crate) error: Vec3<f64>,
+    /// Unit normal on the outward side.
+    pub(crate) normal: Vec3<f64>,
+    /// The surface's largest curvature, 1/m.
+    pub(crate) curvature: f64,
 }
 
 /// A point on a surface.
@@ -60,22 +103,16 @@ pub struct SurfacePoint<R> {
     pub position_error: R,
     /// Unit geometric normal, on the shape's own outward side (not turned toward the ray).
     pub normal: Vec3<R>,
-    /// The primitive.
-    pub primitive: PrimitiveId,
+    /// What it is a point of.
+    pub surface: SurfaceId,
+    /// The [label](crate::Geometry::label) of the geometry whose primitive it is.
+    pub label: u32,
 }
 
 impl<R: Real> SurfacePoint<R> {
-    /// Rounds a surface point computed in `f64` to `R`.
-    ///
-    /// `error` bounds the error of each component of `position`; `curvature` is the surface's largest, 1/m. What the
-    /// rounding to `R` adds is measured, not estimated.
-    pub(crate) fn rounded(
-        position: Vec3<f64>,
-        error: Vec3<f64>,
-        normal: Vec3<f64>,
-        curvature: f64,
-        primitive: PrimitiveId,
-    ) -> Self {
+    /// Rounds a surface point computed in `f64` to `R`. What the rounding adds to its error is measured, not estimated.
+    pub(crate) fn rounded(point: &ExactPoint, surface: SurfaceId, label: u32) -> Self {
+        let ExactPoint { position, error, normal, curvature } = *point;
         let rounded: Vec3<R> = position.cast();
         let error = error + (rounded.to_f64() - position).abs();
         // To first order only the component along the normal leaves the surface; a step s along it leaves a curved one
@@ -83,7 +120,8 @@ impl<R: Real> SurfacePoint<R> {
         let distance = normal.abs().dot(error) + 0.5 * curvature * error.length_squared();
         // 8 roundoffs cover this sum and the rounding of the normal along which rays are moved.
         let distance = distance * (1.0 + 8.0 * R::UNIT_ROUNDOFF.to_f64());
-        Self { position: rounded, position_error: R::from_f64(distance).next_up(), normal: normal.cast(), primitive }
+        let position_error = R::from_f64(distance).next_up();
+        Self { position: rounded, position_error, normal: normal.cast(), surface, label }
     }
 
     /// The point moved off the surface to the side of `direction`, by the error bound and rounded away from the surface
@@ -109,19 +147,19 @@ impl<R: Real> SurfacePoint<R> {
             origin: self.moved_off(direction),
             direction,
             t_max: R::INFINITY,
-            leaves: self.primitive,
-            aims_at: PrimitiveId::NONE,
+            leaves: self.surface,
+            aims_at: SurfaceId::NONE,
         }
     }
 
-    /// The shadow ray from this point to `target` on the primitive `aims_at`
-    /// ([`PrimitiveId::NONE`] for a point in free space).
+    /// The shadow ray from this point to `target` on the surface `aims_at`
+    /// ([`SurfaceId::NONE`] for a point in free space).
     ///
     /// Its direction is `target` − origin, not normalised, and it ends just below t = 1: short of the target by the
     /// rounding errors of the two end points and of the direction, so that a neighbour of the primitive aimed at does
     /// not hide it.
     #[inline]
-    pub fn spawn_to(&self, target: Vec3<R>, aims_at: PrimitiveId) -> Ray<R> {
+    pub fn spawn_to(&self, target: Vec3<R>, aims_at: SurfaceId) -> Ray<R> {
         let origin = self.moved_off(target - self.position);
         let direction = target - origin;
         // Each end is a rounded point (u a component), the direction a rounded difference (u of itself, which the two
@@ -130,6 +168,6 @@ impl<R: Real> SurfacePoint<R> {
         let error = R::from_f64(4.0) * R::UNIT_ROUNDOFF * (reach.x + reach.y + reach.z);
         let length = direction.abs().max_component();
         let t_max = if error < length { R::ONE_MINUS_EPSILON - error / length } else { R::ZERO };
-        Ray { origin, direction, t_max, leaves: self.primitive, aims_at }
+        Ray { origin, direction, t_max, leaves: self.surface, aims_at }
     }
 }

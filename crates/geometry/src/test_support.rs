@@ -1,6 +1,6 @@
 //! Scenes and rays that are hard to intersect. Nothing here knows [`Geometry`](crate::Geometry).
 
-use crate::{Disk, Parallelogram, Primitive, Sphere, Triangle};
+use crate::{Disk, Instance, Parallelogram, Placement, Primitive, Sphere, Triangle};
 use etalon_optics::Vec3;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng};
@@ -197,6 +197,27 @@ pub(crate) fn soup(random: &mut Random, count: usize, sizes: std::ops::Range<f64
     out
 }
 
+/// A primitive scaled, then moved.
+pub(crate) fn placed(primitive: &Primitive, s: f64, by: V) -> Option<Primitive> {
+    let point = |p: V| p * s + by;
+    match primitive {
+        Primitive::Sphere(q) => Sphere::new(point(q.centre()), q.radius() * s).ok().map(Primitive::from),
+        Primitive::Disk(q) => Disk::new(point(q.centre()), q.normal(), q.radius() * s).ok().map(Primitive::from),
+        Primitive::Parallelogram(q) => {
+            Parallelogram::new(point(q.corner()), q.edges()[0] * s, q.edges()[1] * s).ok().map(Primitive::from)
+        }
+        Primitive::Triangle(q) => {
+            let [a, b, c] = q.vertices().map(point);
+            Triangle::new(a, b, c).ok().map(Primitive::from)
+        }
+        Primitive::Instance(q) => {
+            let rows = q.placement().linear().map(|row| (row * s).to_array());
+            let placement = Placement::new(rows, point(q.placement().translation()).to_array()).ok()?;
+            Instance::new(q.geometry().clone(), placement).ok().map(Primitive::from)
+        }
+    }
+}
+
 /// The same triangles with vertices that `f32` represents.
 pub(crate) fn representable(primitives: &[Primitive]) -> Vec<Primitive> {
     let round = |p: V| p.cast::<f32>().to_f64();
@@ -288,6 +309,11 @@ pub(crate) fn features(primitives: &[Primitive]) -> Vec<V> {
             Primitive::Triangle(s) => {
                 let [a, b, c] = s.vertices();
                 points.extend([a, b, c, (a + b) * 0.5, (b + c) * 0.5, (a + c) * 0.5]);
+            }
+            Primitive::Instance(s) => {
+                let inner = features(s.geometry().primitives());
+                points.extend(inner.into_iter().map(|p| s.placement().point(p)));
+                points.extend([s.bounds().min, s.bounds().max]);
             }
         }
     }

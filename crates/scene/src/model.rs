@@ -18,10 +18,31 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Things with a surface.
     pub objects: Vec<Object>,
+    /// Objects that are defined once and placed by instances. A group's own instances place groups before it.
+    pub groups: Vec<Group>,
+    /// Groups placed in the scene.
+    pub instances: Vec<Instance>,
     /// Lights without a surface.
     pub lights: Vec<Light>,
     /// How to integrate, as far as the file says; the command line may override it.
     pub integrator: Integrator,
+}
+
+impl Scene {
+    /// Every object that is somewhere in the scene, once however often it is placed: the scene's own, then those of each
+    /// group that an instance places.
+    pub fn placed_objects(&self) -> impl Iterator<Item = &Object> {
+        let mut placed = vec![false; self.groups.len()];
+        self.instances.iter().for_each(|instance| placed[instance.group] = true);
+        // Groups place only groups before them.
+        for (index, group) in self.groups.iter().enumerate().rev() {
+            if placed[index] {
+                group.instances.iter().for_each(|instance| placed[instance.group] = true);
+            }
+        }
+        let groups = self.groups.iter().zip(placed).filter(|(_, placed)| *placed);
+        self.objects.iter().chain(groups.flat_map(|(group, _)| &group.objects))
+    }
 }
 
 /// A camera in world space.
@@ -144,6 +165,28 @@ pub struct Object {
     pub emission: Option<Emission>,
 }
 
+/// Objects that are placed together, in the group's own coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Its name in the file.
+    pub name: String,
+    /// Things with a surface.
+    pub objects: Vec<Object>,
+    /// Groups before this one, placed within it.
+    pub instances: Vec<Instance>,
+}
+
+/// A group placed in the scene, or in another group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// Its name in the file, or `instances[i]`.
+    pub name: String,
+    /// Index into [`Scene::groups`].
+    pub group: usize,
+    /// From the group's coordinates to those where it is placed.
+    pub transform: Transform,
+}
+
 /// A shape in its own coordinates, lengths in m.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
@@ -198,6 +241,12 @@ pub struct Transform {
     pub linear: [[f64; 3]; 3],
     /// Translation, m.
     pub translation_m: [f64; 3],
+}
+
+impl Transform {
+    /// Leaves everything in place.
+    pub const IDENTITY: Self =
+        Self { linear: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation_m: [0.0; 3] };
 }
 
 /// Diffuse emission of a surface: the same radiance in every direction.

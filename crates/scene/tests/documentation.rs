@@ -43,6 +43,11 @@ fn every_example_is_right() {
             "object" => Parts { objects: &format!("[{text}]"), ..RIGHT }.text(),
             "shape" => Parts { objects: &object(text, "[]"), ..RIGHT }.text(),
             "transform" => Parts { objects: &object(ball, text), ..RIGHT }.text(),
+            "placed" => {
+                // Two keys of the top level.
+                let keys = text.trim().trim_start_matches('{').trim_end_matches('}');
+                RIGHT.text().replacen('{', &format!("{{{keys},"), 1)
+            }
             "lights" => Parts { lights: text, ..RIGHT }.text(),
             "integrator" => Parts { integrator: text, ..RIGHT }.text(),
             "fragment" => {

@@ -308,3 +308,19 @@ fn a_file_is_read_from_the_disk() {
     assert_eq!((problem.code, problem.line, problem.column), (Code::NotUtf8, 2, 12));
     assert_eq!(&errors.text[problem.span.start..problem.span.end], "\u{fffd}");
 }
+
+#[test]
+fn groups_come_after_what_they_place_and_transforms_make_an_instance_each() {
+    let scene = scene(EVERYTHING);
+    let names: Vec<&str> = scene.groups.iter().map(|group| group.name.as_str()).collect();
+    assert_eq!(names, ["ball", "pair", "unused"]);
+    let [ball, pair, unused] = scene.groups.as_slice() else { panic!("three") };
+    assert_eq!((ball.objects.len(), ball.objects[0].name.as_str()), (1, "groups.ball.objects[0]"));
+    assert_eq!((&unused.objects, &unused.instances), (&Vec::new(), &Vec::new()));
+    let stretched = Transform { linear: [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, -3.0]], translation_m: [0.0; 3] };
+    let instance = |name: &str, group, transform| Instance { name: name.to_owned(), group, transform };
+    assert_eq!(pair.instances, [instance("two[0]", 0, Transform::IDENTITY), instance("two[1]", 0, stretched)]);
+    let moved = Transform { translation_m: [0.0, 0.0, 9.0], ..Transform::IDENTITY };
+    assert_eq!(scene.instances, [instance("instances[0]", 1, moved), instance("alone", 0, Transform::IDENTITY)]);
+    assert_eq!(scene.placed_objects().count(), scene.objects.len() + 1);
+}

@@ -35,22 +35,35 @@ pub(crate) struct MeshCoordinates {
 }
 
 impl Coordinates {
-    /// The point of `primitive` whose own normal is `normal` and whose surface parameters are `uv`.
+    /// The point of `primitive` whose own normal is `normal` and whose surface parameters are `uv`; `outward` takes a normal
+    /// from the coordinates of the primitive to those of `normal`.
     #[inline]
-    pub(crate) fn at<R: Real>(&self, normal: Vec3<R>, primitive: PrimitiveId, uv: [R; 2]) -> Shading<R> {
+    pub(crate) fn at<R: Real>(
+        &self,
+        normal: Vec3<R>,
+        primitive: PrimitiveId,
+        uv: [R; 2],
+        outward: impl FnOnce(Vec3<f64>) -> Vec3<f64>,
+    ) -> Shading<R> {
         match self {
             Self::None => Shading::flat(normal),
             Self::Parallelogram { swapped } => {
                 let [a, b] = uv.map(Real::to_f64);
                 Shading::flat(normal).with_uv(if *swapped { [b, a] } else { [a, b] })
             }
-            Self::Mesh(mesh) => mesh.at(normal, primitive, uv),
+            Self::Mesh(mesh) => mesh.at(normal, primitive, uv, outward),
         }
     }
 }
 
 impl MeshCoordinates {
-    fn at<R: Real>(&self, normal: Vec3<R>, primitive: PrimitiveId, uv: [R; 2]) -> Shading<R> {
+    fn at<R: Real>(
+        &self,
+        normal: Vec3<R>,
+        primitive: PrimitiveId,
+        uv: [R; 2],
+        outward: impl FnOnce(Vec3<f64>) -> Vec3<f64>,
+    ) -> Shading<R> {
         let index = primitive.0 - self.first;
         let triangle = self.kept.as_ref().map_or(index, |kept| kept[index as usize]);
         let corners = self.mesh.triangles[triangle as usize].map(|i| i as usize);
@@ -67,7 +80,7 @@ impl MeshCoordinates {
         if !self.mesh.normals.is_empty() {
             let [a, b, c] = corners.map(|i| Vec3::from_array(self.mesh.normals[i].map(f64::from)));
             let local = a * weights[0] + b * weights[1] + c * weights[2];
-            let world = Vec3::from_array(self.normal_to_world.map(|row| row.dot(local)));
+            let world = outward(Vec3::from_array(self.normal_to_world.map(|row| row.dot(local))));
             // Opposite normals may cancel: then the triangle's own stands for them.
             if world.length_squared() > 0.0 {
                 shading = shading.bent_to(world.normalized().cast());

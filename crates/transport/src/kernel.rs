@@ -96,7 +96,7 @@ impl<'a, R: Real> Tracer<'a, R> {
         let plan = prepared.plan();
         Self {
             prepared,
-            camera: Camera::new(&prepared.scene.camera, film.width, film.height, plan.runs(EffectName::Lens)),
+            camera: Camera::new(&prepared.camera, film.width, film.height, plan.runs(EffectName::Lens)),
             world: World {
                 geometry: &prepared.geometry,
                 surfaces: &prepared.surfaces,

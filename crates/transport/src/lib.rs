@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`prepare`](mod@prepare) | shapes in world space, lights, the accelerator |
 //! | [`plan`] | which effects the scene calls for, and why |
+//! | [`frame`] | centring and scaling |
 //! | `path` | the path loop |
 //! | `coordinates` | shading normals and texture coordinates |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
@@ -25,6 +26,7 @@ pub mod camera;
 mod coordinates;
 pub mod film;
 pub mod filter;
+pub mod frame;
 mod kernel;
 pub mod light;
 pub mod mis;
@@ -36,6 +38,7 @@ pub mod prepare;
 pub mod render;
 pub mod replay;
 pub mod sampler;
+mod shapes;
 pub mod spectral;
 mod surface;
 pub mod warp;

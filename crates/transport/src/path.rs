@@ -18,7 +18,7 @@ use crate::observer::{End, Found, Observer};
 use crate::sampler::Sampler;
 use crate::spectral::PathSpectrum;
 use crate::surface::{Scattering, Surfaces};
-use etalon_geometry::{Geometry, PrimitiveId, Ray, SurfacePoint};
+use etalon_geometry::{Geometry, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Real, Vec3};
 use etalon_scene::LightSampling;
 
@@ -60,7 +60,7 @@ enum Step<R> {
     /// From the camera or by a delta: no shadow ray could have found what it finds.
     Unshared,
     /// Drawn with this density from this point of this primitive, where a shadow ray was sent too.
-    Shared { from: Vec3<R>, leaves: PrimitiveId, density: R },
+    Shared { from: Vec3<R>, leaves: SurfaceId, density: R },
 }
 
 impl World<'_> {
@@ -96,13 +96,13 @@ impl World<'_> {
                 break;
             };
             let point = self.geometry.surface(&ray, &hit);
-            let surface = self.surfaces.of(point.primitive);
+            let surface = self.surfaces.of(&point);
             let wo = -ray.direction;
             observer.vertex(vertex, point.position, surface.object, beta);
 
             if let Some(emitter) = surface.emission_along(point.normal, wo) {
                 let mis = if self.weigh_hits {
-                    self.weight_of_hit(step, point.primitive, surface.light, ray.direction)
+                    self.weight_of_hit(step, point.surface, surface.light, ray.direction)
                 } else {
                     R::ONE
                 };
@@ -116,7 +116,7 @@ impl World<'_> {
                 break;
             }
 
-            let scattering = surface.scattering(&point, &hit);
+            let scattering = surface.scattering(self.geometry, &point, &hit);
             let shared = match self.shadow_rays {
                 ShadowRays::Never => false,
                 ShadowRays::WhereUseful => surface.bsdf.has_solid_angle_part(),
@@ -141,7 +141,7 @@ impl World<'_> {
             eta_squared *= next.eta * next.eta;
             step = match next.density {
                 Density::SolidAngle(density) if shared => {
-                    Step::Shared { from: point.position, leaves: point.primitive, density }
+                    Step::Shared { from: point.position, leaves: point.surface, density }
                 }
                 Density::SolidAngle(_) | Density::Delta => Step::Unshared,
             };
@@ -170,12 +170,12 @@ impl World<'_> {
         radiance
     }
 
-    /// The MIS weight of light that the walk ran into on `primitive`, whose light, if any, is number `light`.
-    fn weight_of_hit<R: Real>(&self, step: Step<R>, primitive: PrimitiveId, light: Option<u32>, wi: Vec3<R>) -> R {
+    /// The MIS weight of light that the walk ran into `on` a surface whose light, if any, is number `light`.
+    fn weight_of_hit<R: Real>(&self, step: Step<R>, on: SurfaceId, light: Option<u32>, wi: Vec3<R>) -> R {
         match (step, light) {
             (Step::Unshared, _) | (_, None) => R::ONE,
             // The far side of the sphere that it left: see `direct_light`.
-            (Step::Shared { leaves, .. }, _) if leaves == primitive => R::ONE,
+            (Step::Shared { leaves, .. }, _) if leaves == on => R::ONE,
             (Step::Shared { from, density, .. }, Some(light)) => {
                 let light = light as usize;
                 let of_direction = self.lights.lights()[light].density(from.to_f64(), wi.to_f64());
@@ -209,7 +209,7 @@ impl World<'_> {
         let index = self.lights.choose(u_light.to_f64());
         let light = &self.lights.lights()[index];
         let sample = light.sample(point.position.to_f64(), [u1.to_f64(), u2.to_f64()])?;
-        if sample.primitive == point.primitive {
+        if sample.surface == point.surface {
             // A surface is no target for its own points: rounding decides on which side of a sphere they lie, and the
             // BSDF's directions find the sphere's inside at least as well.
             return None;
@@ -220,7 +220,7 @@ impl World<'_> {
             return None;
         }
         let shadow_ray = match sample.target {
-            Target::Point(target) => point.spawn_to(target.cast(), sample.primitive),
+            Target::Point(target) => point.spawn_to(target.cast(), sample.surface),
             Target::Infinity => point.spawn(wi),
         };
         counters.shadow_rays += 1;

@@ -90,8 +90,8 @@ impl<R: Real, const N: usize> Observer<R, N> for Recorder<'_> {
     fn vertex(&mut self, vertex: u32, position: Vec3<R>, object: u32, beta: Lanes<R, N>) {
         self.events.push(Event::Vertex {
             vertex,
-            object: self.prepared.scene.objects[object as usize].name.clone(),
-            position_m: position.to_f64().to_array(),
+            object: self.prepared.object(object).map_or_else(String::new, |object| object.name.clone()),
+            position_m: self.prepared.frame.to_world_m(position.to_f64()).to_array(),
             beta: widen(beta),
         });
     }

@@ -3,7 +3,7 @@
 use crate::bsdf::{Bsdf, BsdfSample, Shading};
 use crate::coordinates::Coordinates;
 use crate::spectral::PathSpectrum;
-use etalon_geometry::{Hit, PrimitiveId, SurfacePoint};
+use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Real, Vec3};
 use etalon_scene::EmissionSides;
 
@@ -28,13 +28,11 @@ pub(crate) struct Surfaces {
     /// Scattering of each material.
     pub bsdfs: Vec<Bsdf>,
     pub objects: Vec<ObjectSurface>,
-    /// Object of each primitive.
-    pub object_of: Vec<u32>,
-    /// Light of each primitive, [`NO_LIGHT`] without one.
-    pub light_of: Vec<u32>,
+    /// Object of each primitive, for each geometry by its label.
+    pub object_of: Vec<Vec<u32>>,
+    /// The surfaces that shadow rays aim at, in their order, and the number of the light.
+    pub light_of: Vec<(SurfaceId, u32)>,
 }
-
-pub(crate) const NO_LIGHT: u32 = u32::MAX;
 
 /// The surface at a point.
 pub(crate) struct Surface<'a> {
@@ -47,25 +45,29 @@ pub(crate) struct Surface<'a> {
 
 impl Surfaces {
     #[inline]
-    pub(crate) fn of(&self, primitive: PrimitiveId) -> Surface<'_> {
-        let object = self.object_of[primitive.0 as usize];
+    pub(crate) fn of<R>(&self, point: &SurfacePoint<R>) -> Surface<'_> {
+        let object = self.object_of[point.label as usize][point.surface.primitive.0 as usize];
         let of_object = &self.objects[object as usize];
-        let light = self.light_of[primitive.0 as usize];
-        Surface {
-            object,
-            bsdf: &self.bsdfs[of_object.material],
-            light: (light != NO_LIGHT).then_some(light),
-            emission: of_object.emission.as_ref(),
-            coordinates: &of_object.coordinates,
-        }
+        let emission = of_object.emission.as_ref();
+        let light = emission.and_then(|_| {
+            let place = self.light_of.binary_search_by_key(&point.surface, |&(surface, _)| surface).ok()?;
+            Some(self.light_of[place].1)
+        });
+        Surface { object, bsdf: &self.bsdfs[of_object.material], light, emission, coordinates: &of_object.coordinates }
     }
 }
 
 impl<'a> Surface<'a> {
     /// Scattering at a point of it.
     #[inline]
-    pub(crate) fn scattering<R: Real>(&self, point: &SurfacePoint<R>, hit: &Hit<R>) -> Scattering<'a, R> {
-        Scattering { bsdf: self.bsdf, at: self.coordinates.at(point.normal, hit.primitive, hit.uv) }
+    pub(crate) fn scattering<R: Real>(
+        &self,
+        geometry: &Geometry,
+        point: &SurfacePoint<R>,
+        hit: &Hit<R>,
+    ) -> Scattering<'a, R> {
+        let outward = |normal| geometry.placed_normal(hit.surface, normal);
+        Scattering { bsdf: self.bsdf, at: self.coordinates.at(point.normal, hit.surface.primitive, hit.uv, outward) }
     }
 
     /// The radiance emitted along `wo` where the normal is `n`, if that side emits.

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 
 fn emitter() -> Emitter {
-    Emitter { radiance: PathSpectrum::Constant(1.0), front: true, back: true, primitive: PrimitiveId(0) }
+    Emitter { radiance: PathSpectrum::Constant(1.0), front: true, back: true, surface: PrimitiveId(0).into() }
 }
 
 fn sphere(center: Vec3<f64>, radius: f64) -> Light {

@@ -157,7 +157,7 @@ impl Lamp {
         light: impl FnOnce(S, Emitter) -> Light,
     ) -> Self {
         let emitter =
-            Emitter { radiance: PathSpectrum::Constant(2.0), front: true, back: true, primitive: PrimitiveId(0) };
+            Emitter { radiance: PathSpectrum::Constant(2.0), front: true, back: true, surface: PrimitiveId(0).into() };
         let geometry = Geometry::build(vec![shape.clone().into()]).unwrap();
         Self { light: light(shape, emitter), geometry, center, radius }
     }

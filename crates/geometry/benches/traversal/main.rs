@@ -179,7 +179,7 @@ fn rays(geometry: &Geometry) -> Vec<(&'static str, Vec<Ray<f32>>, bool)> {
         .iter()
         .map(|(p, _)| {
             let jitter = Vec3::new(random.signed(), random.signed(), 0.0) * 0.3;
-            p.spawn_to((lamp + jitter).cast(), etalon_geometry::PrimitiveId::NONE)
+            p.spawn_to((lamp + jitter).cast(), etalon_geometry::SurfaceId::NONE)
         })
         .collect();
     vec![

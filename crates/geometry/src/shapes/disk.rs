@@ -1,8 +1,9 @@
 //! Flat disks.
 
 use super::{ShapeError, check_points, check_radius, planar};
+use crate::Aabb;
 use crate::query::{Query, RawHit};
-use crate::{Aabb, PrimitiveId, SurfacePoint};
+use crate::ray::ExactPoint;
 use etalon_optics::{Real, Vec3};
 
 /// A flat disk, seen by rays from both sides; its outward side is the one to which the normal points.
@@ -76,7 +77,7 @@ impl Disk {
     }
 
     #[inline]
-    pub(crate) fn surface<R: Real>(&self, p: Vec3<f64>, id: PrimitiveId) -> SurfacePoint<R> {
-        planar::surface(p, self.centre, self.normal, self.radius, id)
+    pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {
+        planar::surface(p, self.centre, self.normal, self.radius)
     }
 }

@@ -12,8 +12,9 @@ pub use sphere::Sphere;
 pub use triangle::Triangle;
 
 use crate::query::{Query, RawHit};
-use crate::{Aabb, PrimitiveId, SurfacePoint};
-use etalon_optics::{Real, Vec3};
+use crate::ray::ExactPoint;
+use crate::{Aabb, Instance};
+use etalon_optics::Vec3;
 
 /// Largest magnitude of a coordinate or a length, m (2¹²⁰ ≈ 1.3e36): no product in an intersection test overflows.
 pub const MAX_COORDINATE: f64 = (1_u128 << 120) as f64;
@@ -32,10 +33,16 @@ pub enum ShapeError {
     /// The shape has no area, so no normal.
     #[error("the shape has no area")]
     NoArea,
+    /// The placement of an instance cannot be inverted.
+    #[error("the placement flattens what it places")]
+    Singular,
+    /// An instance of a geometry without primitives.
+    #[error("the instance places nothing")]
+    Empty,
 }
 
 /// Checks coordinates.
-fn check_points(points: &[Vec3<f64>]) -> Result<(), ShapeError> {
+pub(crate) fn check_points(points: &[Vec3<f64>]) -> Result<(), ShapeError> {
     if !points.iter().all(|p| p.is_finite()) {
         return Err(ShapeError::NotFinite);
     }
@@ -66,6 +73,8 @@ pub enum Primitive {
     Disk(Disk),
     /// A triangle.
     Triangle(Triangle),
+    /// A geometry placed by an affine map.
+    Instance(Box<Instance>),
 }
 
 macro_rules! primitive_from {
@@ -79,6 +88,12 @@ macro_rules! primitive_from {
 }
 primitive_from!(Sphere, Parallelogram, Disk, Triangle);
 
+impl From<Instance> for Primitive {
+    fn from(instance: Instance) -> Self {
+        Self::Instance(Box::new(instance))
+    }
+}
+
 macro_rules! each {
     ($primitive:expr, $shape:ident => $result:expr) => {
         match $primitive {
@@ -86,6 +101,7 @@ macro_rules! each {
             Primitive::Parallelogram($shape) => $result,
             Primitive::Disk($shape) => $result,
             Primitive::Triangle($shape) => $result,
+            Primitive::Instance($shape) => $result,
         }
     };
 }
@@ -96,9 +112,9 @@ impl Primitive {
         each!(self, s => s.bounds())
     }
 
-    /// Surface area, m².
-    pub fn area(&self) -> f64 {
-        each!(self, s => s.area())
+    /// Whether its normal depends on the place.
+    pub(crate) fn is_curved(&self) -> bool {
+        matches!(self, Self::Sphere(_))
     }
 
     /// The closest hit with 0 < t < `t_max`. `leaves`: the ray leaves this very primitive.
@@ -109,12 +125,19 @@ impl Primitive {
             Self::Parallelogram(s) => (!leaves).then(|| s.intersect(query, t_max)).flatten(),
             Self::Disk(s) => (!leaves).then(|| s.intersect(query, t_max)).flatten(),
             Self::Sphere(s) => s.intersect(query, t_max, leaves),
+            Self::Instance(s) => s.closest(query, t_max).map(|(hit, _)| hit),
         }
     }
 
     /// The surface at the point `p`, which lies near it.
     #[inline]
-    pub(crate) fn surface<R: Real>(&self, p: Vec3<f64>, id: PrimitiveId) -> SurfacePoint<R> {
-        each!(self, s => s.surface(p, id))
+    pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {
+        match self {
+            Self::Sphere(s) => s.surface(p),
+            Self::Parallelogram(s) => s.surface(p),
+            Self::Disk(s) => s.surface(p),
+            Self::Triangle(s) => s.surface(p),
+            Self::Instance(_) => unreachable!("a hit names the shape within an instance"),
+        }
     }
 }

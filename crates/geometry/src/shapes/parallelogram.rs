@@ -1,9 +1,10 @@
 //! Parallelograms.
 
 use super::{ShapeError, check_points, planar};
+use crate::Aabb;
 use crate::query::{Projected, Query, RawHit};
-use crate::{Aabb, PrimitiveId, SurfacePoint};
-use etalon_optics::{Real, Vec3};
+use crate::ray::ExactPoint;
+use etalon_optics::Vec3;
 
 /// A parallelogram, seen by rays from both sides; its outward side is the one to which a × b points.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +107,7 @@ impl Parallelogram {
     }
 
     #[inline]
-    pub(crate) fn surface<R: Real>(&self, p: Vec3<f64>, id: PrimitiveId) -> SurfacePoint<R> {
-        planar::surface(p, self.corner, self.normal, self.extent, id)
+    pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {
+        planar::surface(p, self.corner, self.normal, self.extent)
     }
 }

@@ -1,8 +1,9 @@
 //! What triangles and parallelograms share.
 
+use crate::Aabb;
 use crate::double_double::{cross, difference, dot, round, widen};
 use crate::query::{Query, RawHit};
-use crate::{Aabb, PrimitiveId, SurfacePoint};
+use crate::ray::ExactPoint;
 use etalon_optics::{Real, Vec3};
 
 /// The cross product of two edges that leave `origin`, right to a few unit roundoffs in direction; zero if what is left
@@ -61,6 +62,11 @@ pub(super) fn refine(
     // A ray that meets the shape only as far as rounding tells may have met its plane outside.
     let u = hit.uv[0].clamp(0.0, 1.0);
     let v = hit.uv[1].clamp(0.0, (weight_limit - u).min(1.0));
+    if [u, v] != hit.uv {
+        // A ray within the plane to rounding meets it anywhere: what counts is where it passes the point of the shape.
+        let towards = (corner - query.origin) + (a - corner) * u + (b - corner) * v;
+        hit.t = towards.dot(query.direction) / query.direction.length_squared();
+    }
     RawHit { t: clamp_to_box(query, bounds, hit.t), uv: [u, v] }
 }
 
@@ -99,13 +105,7 @@ pub(super) fn is_determined(magnitude: f64, extent: f64, depth: f64, t_det: f64,
 ///
 /// `point` is any point of the plane, `size` the shape's extent.
 #[inline]
-pub(super) fn surface<R: Real>(
-    p: Vec3<f64>,
-    point: Vec3<f64>,
-    normal: Vec3<f64>,
-    size: f64,
-    id: PrimitiveId,
-) -> SurfacePoint<R> {
+pub(super) fn surface(p: Vec3<f64>, point: Vec3<f64>, normal: Vec3<f64>, size: f64) -> ExactPoint {
     let away = p - point;
     let position = p - normal * away.dot(normal);
     // The offset from `point` errs by u of itself, its component along the normal by a few u of its length, and
@@ -113,5 +113,5 @@ pub(super) fn surface<R: Real>(
     // rounding errors of a neighbour that shares an edge.
     let reach = away.abs().max_component().max(size);
     let error = (p.abs() + position.abs() + Vec3::splat(16.0 * reach)) * f64::UNIT_ROUNDOFF;
-    SurfacePoint::rounded(position, error, normal, 0.0, id)
+    ExactPoint { position, error, normal, curvature: 0.0 }
 }

@@ -1,8 +1,9 @@
 //! Spheres.
 
 use super::{ShapeError, check_points, check_radius};
+use crate::Aabb;
 use crate::query::{Query, RawHit};
-use crate::{Aabb, PrimitiveId, SurfacePoint};
+use crate::ray::ExactPoint;
 use etalon_optics::{Real, Vec3};
 
 /// A full sphere; its outward side is the outside.
@@ -89,11 +90,11 @@ impl Sphere {
     }
 
     #[inline]
-    pub(crate) fn surface<R: Real>(&self, p: Vec3<f64>, id: PrimitiveId) -> SurfacePoint<R> {
+    pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {
         let normal = (p - self.centre).normalized();
         let position = self.centre + normal * self.radius;
         // The normal's length is 1 to 3u, its product with r and the sum add one u each.
         let error = (position.abs() + Vec3::splat(self.radius) * 6.0) * f64::UNIT_ROUNDOFF;
-        SurfacePoint::rounded(position, error, normal, 1.0 / self.radius, id)
+        ExactPoint { position, error, normal, curvature: 1.0 / self.radius }
     }
 }

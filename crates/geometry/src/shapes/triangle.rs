@@ -1,9 +1,10 @@
 //! Triangles.
 
 use super::{ShapeError, check_points, planar};
+use crate::Aabb;
 use crate::query::{Query, RawHit, exact_edge, larger, largest};
-use crate::{Aabb, PrimitiveId, SurfacePoint};
-use etalon_optics::{Real, Vec3};
+use crate::ray::ExactPoint;
+use etalon_optics::Vec3;
 use std::array::from_fn;
 
 /// A triangle, seen by rays from both sides; its outward side is the one from which a, b, c turn counter-clockwise.
@@ -117,7 +118,7 @@ impl Triangle {
     }
 
     #[inline]
-    pub(crate) fn surface<R: Real>(&self, p: Vec3<f64>, id: PrimitiveId) -> SurfacePoint<R> {
-        planar::surface(p, self.a, self.normal(), self.size(), id)
+    pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {
+        planar::surface(p, self.a, self.normal(), self.size())
     }
 }

@@ -1,5 +1,6 @@
 //! Tests of the whole: the tree against brute force, watertightness, spheres, slabs, and rays that leave surfaces.
 
+mod instances;
 mod spawn;
 mod spheres;
 mod tree;

@@ -98,10 +98,10 @@ fn a_light_close_above_a_shared_edge_is_seen_from_it() {
             let s = random.signed() * 0.99;
             let ray = Ray::free(v(s, s, 0.1 + 0.5 * lift), v(0.0, 0.0, -1.0));
             let hit = geometry.closest_hit(&ray).unwrap();
-            assert!(hit.primitive.0 < 2);
+            assert!(hit.surface.primitive.0 < 2);
             let p = geometry.surface(&ray, &hit);
             let target = light + v(random.unit(), random.unit(), 0.0);
-            assert!(!geometry.occluded(&p.spawn_to(target, PrimitiveId(2))));
+            assert!(!geometry.occluded(&p.spawn_to(target, PrimitiveId(2).into())));
         }
     }
 }
@@ -124,7 +124,7 @@ fn a_shadow_ray_ends_before_the_neighbours_of_its_target() {
             let hit = geometry.closest_hit(&ray).unwrap();
             let p = geometry.surface(&ray, &hit);
             let s = random.signed();
-            let ray = p.spawn_to(v(s, s, 2.3).cast(), PrimitiveId(1));
+            let ray = p.spawn_to(v(s, s, 2.3).cast(), PrimitiveId(1).into());
             assert!(!geometry.occluded(&ray), "{ray:?}");
         }
     }

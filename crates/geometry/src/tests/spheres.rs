@@ -1,5 +1,6 @@
 //! Spheres seen from afar and left at a grazing angle (hard cases 1 and 3).
 
+use crate::SurfacePoint;
 use crate::test_support::*;
 use crate::{Geometry, PrimitiveId, Ray, Sphere};
 use etalon_optics::Real;
@@ -32,6 +33,11 @@ fn a_sphere_is_not_missed_from_a_hundred_thousand_radii() {
     }
 }
 
+/// The point of a sphere, the only primitive of a geometry, near `p`.
+fn on<R: Real>(sphere: &Sphere, p: V) -> SurfacePoint<R> {
+    SurfacePoint::rounded(&sphere.surface(p), PrimitiveId(0).into(), 0)
+}
+
 #[test]
 fn a_tangential_ray_from_the_surface_does_not_hit_it_again() {
     let mut random = Random::new(2);
@@ -40,7 +46,7 @@ fn a_tangential_ray_from_the_surface_does_not_hit_it_again() {
         let geometry = Geometry::build(vec![Sphere::new(random.in_cube() * radius, radius).unwrap().into()]).unwrap();
         let crate::Primitive::Sphere(sphere) = geometry.primitive(PrimitiveId(0)) else { unreachable!() };
         let n = random.direction();
-        let p = sphere.surface::<f64>(sphere.centre() + n * radius, PrimitiveId(0));
+        let p = on::<f64>(sphere, sphere.centre() + n * radius);
         let f = etalon_optics::Frame::from_normal(p.normal);
         let mut d = f.s * random.signed() + f.t * random.signed();
         if d.dot(p.normal) < 0.0 {
@@ -49,7 +55,7 @@ fn a_tangential_ray_from_the_surface_does_not_hit_it_again() {
         if d.dot(p.normal) >= 0.0 {
             assert!(geometry.closest_hit(&p.spawn(d)).is_none(), "re-hit");
         }
-        let p = sphere.surface::<f32>(sphere.centre() + n * radius, PrimitiveId(0));
+        let p = on::<f32>(sphere, sphere.centre() + n * radius);
         let d = d.cast::<f32>();
         if d.dot(p.normal) >= 0.0 {
             assert!(geometry.closest_hit(&p.spawn(d)).is_none(), "re-hit in f32");
@@ -72,7 +78,7 @@ fn a_ray_knows_the_sphere_it_leaves_even_from_the_wrong_side_of_its_surface() {
         let off = random.signed() * 1e-14;
         let origin = sphere.centre() + n * (radius * (1.0 + off));
         let geometry = Geometry::build(vec![sphere.into()]).unwrap();
-        let leaving = |d| Ray { leaves: PrimitiveId(0), ..Ray::free(origin, d) };
+        let leaving = |d| Ray { leaves: PrimitiveId(0).into(), ..Ray::free(origin, d) };
         assert!(geometry.closest_hit(&leaving(-inward)).is_none() && !geometry.occluded(&leaving(-inward)));
         let hit = geometry.closest_hit(&leaving(inward)).expect("the far side");
         // The chord, to what the displaced origin changes of it.
@@ -91,7 +97,7 @@ fn a_ray_that_enters_a_sphere_leaves_it_at_the_far_side() {
         let sphere = Sphere::new(centre, radius).unwrap();
         let n = random.direction();
         let f = etalon_optics::Frame::from_normal(n);
-        let p = sphere.surface::<f64>(centre + n * radius, PrimitiveId(0));
+        let p = on::<f64>(&sphere, centre + n * radius);
         let slant = random.log_uniform(-3.0, 0.0);
         let d = (f.s * random.signed() - n * slant).normalized();
         let geometry = Geometry::build(vec![sphere.into()]).unwrap();

@@ -2,12 +2,13 @@
 
 use crate::test_support::*;
 use crate::traverse;
-use crate::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, Triangle};
+use crate::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, SurfaceId, Triangle};
 use etalon_optics::{Real, Vec3};
 
 /// Compares closest hits (bit for bit) and occlusion for one ray in both scalar types; counts hits.
-fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> usize {
+pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> usize {
     fn one<R: Real>(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> usize {
+        let leaves = leaves.into();
         let ray = Ray::<R> { t_max: R::from_f64(t_max), leaves, ..Ray::free(line.0.cast(), line.1.cast()) };
         let Some(query) = crate::query::Query::new(&ray) else {
             assert!(geometry.closest_hit(&ray).is_none() && !geometry.occluded(&ray));
@@ -27,7 +28,7 @@ fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> u
                 assert_eq!(traverse::any_avx2(tree, primitives, &query), Some(occluded), "{ray:?}");
             }
             let scaled = flat.map(|(hit, id)| (R::from_f64(hit.t * query.scale), id));
-            assert_eq!(geometry.closest_hit(&ray).map(|hit| (hit.t, hit.primitive)), scaled, "{ray:?}");
+            assert_eq!(geometry.closest_hit(&ray).map(|hit| (hit.t, hit.surface)), scaled, "{ray:?}");
             assert_eq!(traverse::closest_deep(tree, primitives, &query), flat, "{ray:?}");
             assert_eq!(traverse::any_deep(tree, primitives, &query), occluded, "{ray:?}");
         }
@@ -43,7 +44,7 @@ fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> u
 }
 
 /// Holds the tree of some primitives against brute force on `rays` adversarial rays; returns the fraction of hits.
-fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
+pub(super) fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
     let mut random = Random::new(seed);
     let features = features(&primitives);
     let geometry = Geometry::build(primitives).unwrap();
@@ -162,20 +163,7 @@ fn tree_equals_brute_force_in_shared_slab_planes() {
 #[test]
 fn tree_equals_brute_force_far_from_the_origin() {
     let offset = v(3.0e6, -1.0e6, 2.0e6);
-    let primitives: Vec<Primitive> = soup(&mut Random::new(7), 200, -3.0..0.0)
-        .into_iter()
-        .filter_map(|p| match p {
-            Primitive::Sphere(s) => Sphere::new(s.centre() + offset, s.radius()).ok().map(Primitive::from),
-            Primitive::Disk(s) => Disk::new(s.centre() + offset, s.normal(), s.radius()).ok().map(Primitive::from),
-            Primitive::Parallelogram(s) => {
-                Parallelogram::new(s.corner() + offset, s.edges()[0], s.edges()[1]).ok().map(Primitive::from)
-            }
-            Primitive::Triangle(s) => {
-                let [a, b, c] = s.vertices().map(|p| p + offset);
-                Triangle::new(a, b, c).ok().map(Primitive::from)
-            }
-        })
-        .collect();
+    let primitives = soup(&mut Random::new(7), 200, -3.0..0.0).iter().filter_map(|p| placed(p, 1.0, offset)).collect();
     let hits = check(primitives, 20_000, 300, |(o, d)| (o + offset, d));
     assert!(hits > 0.15, "only {hits} of the rays hit anything");
 }
@@ -186,7 +174,7 @@ fn ten_thousand_identical_primitives_neither_overflow_nor_slow_the_build() {
     let geometry = Geometry::build(vec![t.into(); 10_000]).unwrap();
     let ray = Ray::free(v(0.2, 0.2, 0.0), v(0.0, 0.0, 1.0));
     let hit = geometry.closest_hit(&ray).unwrap();
-    assert_eq!((hit.primitive, hit.t), (PrimitiveId(0), 1.0), "ties go to the lowest id");
+    assert_eq!((hit.surface, hit.t), (PrimitiveId(0).into(), 1.0), "ties go to the lowest id");
 }
 
 #[test]
@@ -232,20 +220,7 @@ fn scaling_by_powers_of_two_changes_no_bit_of_a_hit() {
     let scaled: Vec<Geometry> = [-40, 0, 40]
         .map(|e| {
             let s = 2.0_f64.powi(e);
-            let primitives = base
-                .iter()
-                .map(|p| match p {
-                    Primitive::Sphere(q) => Sphere::new(q.centre() * s, q.radius() * s).unwrap().into(),
-                    Primitive::Disk(q) => Disk::new(q.centre() * s, q.normal(), q.radius() * s).unwrap().into(),
-                    Primitive::Parallelogram(q) => {
-                        Parallelogram::new(q.corner() * s, q.edges()[0] * s, q.edges()[1] * s).unwrap().into()
-                    }
-                    Primitive::Triangle(q) => {
-                        let [a, b, c] = q.vertices().map(|p| p * s);
-                        Triangle::new(a, b, c).unwrap().into()
-                    }
-                })
-                .collect();
+            let primitives = base.iter().filter_map(|p| placed(p, s, Vec3::ZERO)).collect();
             Geometry::build(primitives).unwrap()
         })
         .into();
@@ -258,7 +233,7 @@ fn scaling_by_powers_of_two_changes_no_bit_of_a_hit() {
             let ray = Ray::free(o * s, d);
             g.closest_hit(&ray).map(|h| {
                 let p = g.surface(&ray, &h);
-                (h.t / s, h.primitive, h.uv, p.position * (1.0 / s), p.position_error / s, p.normal)
+                (h.t / s, h.surface, h.uv, p.position * (1.0 / s), p.position_error / s, p.normal)
             })
         });
         assert_eq!(a, b);
@@ -320,7 +295,7 @@ fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
                 assert!(!hit.t.is_nan() && hit.uv.iter().all(|w| (0.0..=1.0).contains(w)), "{ray:?} {hit:?}");
                 let p = geometry.surface(&ray, &hit);
                 p.spawn(ray.direction);
-                p.spawn_to(origin, PrimitiveId::NONE);
+                p.spawn_to(origin, SurfaceId::NONE);
             }
             let t_max = random.any_number();
             hits += agrees(&geometry, (origin, target - origin), t_max, PrimitiveId(random.below(9) as u32));
@@ -358,6 +333,6 @@ fn tie_at_one_distance_goes_to_the_lowest_id_in_any_order() {
         let primitives: Vec<Primitive> = (0..n).map(|i| square(-1.0 - f64::from(i % 7) * 0.1).into()).collect();
         let geometry = Geometry::build(primitives).unwrap();
         let hit = geometry.closest_hit(&Ray::free(v(0.0, 0.0, 0.0), v(0.0, 0.0, 1.0))).unwrap();
-        assert_eq!((hit.t, hit.primitive), (1.0, PrimitiveId(0)));
+        assert_eq!((hit.t, hit.surface), (1.0, PrimitiveId(0).into()));
     }
 }

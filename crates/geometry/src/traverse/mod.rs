@@ -356,7 +356,7 @@ fn closest_on<F: Filters, const N: usize>(
                 } else {
                     pending.resolve(&mut best, tree, primitives, query, limit);
                 }
-                return best.hit;
+                return best.found();
             };
             if f32::from_bits((next >> 32) as u32) <= limit {
                 child = next as u32;
@@ -431,5 +431,8 @@ fn any_on<F: Filters, const N: usize>(
 /// Whether a primitive hides the end of a ray from its start.
 #[inline]
 pub(crate) fn occludes(primitives: &[Primitive], query: &Query, id: PrimitiveId) -> bool {
-    id != query.aims_at && primitives[id.0 as usize].intersect(query, query.t_max, query.leaves == id).is_some()
+    match &primitives[id.0 as usize] {
+        Primitive::Instance(instance) => id != query.aims_at && id != query.leaves && instance.occludes(query),
+        shape => id != query.aims_at && shape.intersect(query, query.t_max, query.leaves == id).is_some(),
+    }
 }

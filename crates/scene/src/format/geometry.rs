@@ -323,20 +323,34 @@ pub(crate) fn check_similarity(shape: &ShapeForm, transform: &Transform, at: Spa
         ShapeForm::Disk(_) => "disk",
         ShapeForm::Parallelogram(_) | ShapeForm::Mesh(_) | ShapeForm::Box(_) => return,
     };
+    if !is_similarity(transform) {
+        let message = format!("a {what} can only be moved, turned, mirrored and scaled alike along all axes");
+        let hint = "use one factor for all axes, or a mesh; or put it in a group and place that";
+        reader.error_hint(Code::NotSimilarity, at, message, hint);
+    }
+}
+
+/// Reports an instance that would make an ellipsoid or an ellipse of an emitter.
+pub(crate) fn check_instance_similarity(what: &str, transform: &Transform, at: Span, reader: &mut Reader<'_>) {
+    if !is_similarity(transform) {
+        let message = format!(
+            "the group holds an emitting {what}, which can only be moved, turned, mirrored and scaled alike along all axes"
+        );
+        reader.error_hint(Code::NotSimilarity, at, message, "use one factor for all axes, or an emitting mesh");
+    }
+}
+
+fn is_similarity(transform: &Transform) -> bool {
     let largest = transform.linear.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let a = transform.linear.map(|row| row.map(|v| v / largest));
     let column = |j: usize| [a[0][j], a[1][j], a[2][j]];
     let square = (0..3).map(|j| dot(column(j), column(j))).sum::<f64>() / 3.0;
-    let similar = (0..3).all(|i| {
+    (0..3).all(|i| {
         (0..3).all(|j| {
             let expected = if i == j { 1.0 } else { 0.0 };
             (dot(column(i), column(j)) / square - expected).abs() <= SIMILARITY
         })
-    });
-    if !similar {
-        let message = format!("a {what} can only be moved, turned, mirrored and scaled alike along all axes");
-        reader.error_hint(Code::NotSimilarity, at, message, "use one factor for all axes, or a mesh");
-    }
+    })
 }
 
 /// Reports a shape that its transform would move beyond the numbers of double precision, or shrink to nothing.

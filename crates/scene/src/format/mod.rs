@@ -5,6 +5,7 @@
 
 mod camera;
 mod geometry;
+mod group;
 mod integrator;
 mod light;
 mod material;

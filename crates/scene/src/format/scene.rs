@@ -4,6 +4,7 @@ use serde_json::json;
 
 use super::camera::{CameraForm, FilmForm, camera, film};
 use super::geometry::{ShapeForm, Step, check_extent, check_similarity, shape, transform};
+use super::group::{GroupForm, InstanceForm, groups};
 use super::integrator::{IntegratorForm, integrator, wavelength_range_nm};
 use super::light::{LightForm, light};
 use super::material::{MaterialForm, material};
@@ -58,6 +59,10 @@ crate::record! {
         materials: Required<Named<Box<MaterialForm>>> = "{}",
         /// Things with a surface.
         objects: Required<Spanned<List<Box<ObjectForm>>>> = "[]",
+        /// Groups of objects by name, to be placed by "instances".
+        groups: Required<Named<Box<GroupForm>>> = "{}",
+        /// Groups placed in the scene.
+        instances: Required<List<Box<InstanceForm>>> = "[]",
         /// Lights without a surface.
         lights: Required<List<Box<LightForm>>> = "[]",
         /// How to integrate.
@@ -149,9 +154,17 @@ pub(crate) fn scene(
     }
     let mut objects = All::default();
     for (i, form) in form.objects.iter().flat_map(|objects| objects.value.0.iter().enumerate()) {
-        objects
-            .push(form.as_ref().and_then(|form| object(form, i, &names, &mut materials, &mut spectra, files, reader)));
+        let place = format!("objects[{i}]");
+        objects.push(
+            form.as_ref().and_then(|form| object(form, place, &names, &mut materials, &mut spectra, files, reader)),
+        );
     }
+    let grouped = groups(
+        form.groups.as_ref().map_or(&[][..], |named| &named.0),
+        form.instances.as_ref(),
+        |form, place, reader| object(form, place, &names, &mut materials, &mut spectra, files, reader),
+        reader,
+    );
     let mut lights = All::default();
     for (i, form) in form.lights.iter().flat_map(|lights| lights.0.iter().enumerate()) {
         lights.push(form.as_ref().and_then(|form| light(form, i, &mut spectra, reader)));
@@ -159,11 +172,15 @@ pub(crate) fn scene(
 
     // Whatever is wrong has been reported by now; a wrong list has not become an empty one.
     let _ = (form.spectra.as_ref()?, form.materials.as_ref()?, form.objects.as_ref()?, form.lights.as_ref()?);
+    let _ = form.groups.as_ref()?;
+    let (groups, instances) = grouped?;
     let scene = Scene {
         camera: camera?,
         film: film?,
         materials: materials.complete()?,
         objects: objects.complete()?,
+        groups,
+        instances,
         lights: lights.complete()?,
         integrator: integrator?,
     };
@@ -201,14 +218,13 @@ impl<T> All<T> {
 
 fn object<'f>(
     form: &'f ObjectForm,
-    index: usize,
+    place: String,
     names: &Names<'f>,
     materials: &mut All<Material>,
     spectra: &mut Spectra<'f>,
     files: &mut Files,
     reader: &mut Reader<'_>,
 ) -> Option<Object> {
-    let place = format!("objects[{index}]");
     let name = form.name.clone().checked().map(|name| name.unwrap_or_else(|| place.clone()));
     let shape = form.shape.as_ref().and_then(|form| shape(form, name.as_ref().unwrap_or(&place), files, reader));
     let transform = form.transform.as_ref().and_then(|steps| {
@@ -242,7 +258,7 @@ fn object<'f>(
 /// Odd scenes that can be rendered all the same.
 fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {
     let at = form.objects.as_ref().map_or(form.at.head(), |objects| objects.at.head());
-    if scene.objects.is_empty() {
+    if scene.objects.is_empty() && scene.instances.is_empty() {
         reader.warning(Code::NoObjects, at, "the scene has no objects", None);
     }
     let lit = scene.lights.iter().any(|light| match &light.kind {
@@ -250,7 +266,7 @@ fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {
         | LightKind::Directional { irradiance: spectrum, .. }
         | LightKind::Environment { radiance: spectrum } => !spectrum.is_zero(),
     });
-    let glowing = scene.objects.iter().filter_map(|o| o.emission.as_ref()).any(|e| !e.radiance.is_zero());
+    let glowing = scene.placed_objects().filter_map(|o| o.emission.as_ref()).any(|e| !e.radiance.is_zero());
     if !lit && !glowing {
         let hint = "give an object an \"emission\", or add to \"lights\"".to_owned();
         let message = "nothing emits light: the picture will be black";

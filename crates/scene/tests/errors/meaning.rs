@@ -317,3 +317,66 @@ fn odd_scenes_are_warned_about() {
         &integrator("{\"wavelength_range_nm\": «[300, 700]»}").text(),
     );
 }
+
+/// The right scene with groups and instances.
+fn grouped(groups: &str, instances: &str) -> String {
+    let placed = format!("{{\n\"groups\": {groups},\n\"instances\": {instances},");
+    RIGHT.text().replacen('{', &placed, 1)
+}
+
+#[test]
+fn groups_and_instances() {
+    let ball = "{\"objects\": [{\"shape\": {\"type\": \"sphere\", \"radius_m\": 1}, \"material\": \"white\"}]}";
+    let lamp = "{\"objects\": [{\"shape\": {\"type\": \"sphere\", \"radius_m\": 1}, \"material\": \"white\", \
+                \"emission\": {\"radiance\": 1}}]}";
+    let refused =
+        |groups: &str, instances: &str, code, path: &str| one(Severity::Error, code, path, &grouped(groups, instances));
+    let balls = format!("{{\"ball\": {ball}}}");
+    refused(&balls, "[{\"group\": «\"bal\"»}]", Code::UnknownName, "$.instances[0].group");
+    refused(&balls, "[«{»}]", Code::MissingKey, "$.instances[0]");
+    refused(&balls, "[{\"group\": \"ball\", \"transforms\": «[»]}]", Code::WrongLength, "$.instances[0].transforms");
+    refused(
+        &balls,
+        "[{\"group\": \"ball\", \"transform\": [], \"transforms\": «[»[]]}]",
+        Code::KeyConflict,
+        "$.instances[0].transforms",
+    );
+    refused(
+        &balls,
+        "[{\"group\": \"ball\", \"transform\": [{\"scale\": «[1, 0, 1]»}]}]",
+        Code::SingularTransform,
+        "$.instances[0].transform[0].scale",
+    );
+    refused(
+        &balls,
+        "[{\"group\": \"ball\", \"transforms\": [[], [{\"matrix\": «[[1,0,0,0],[2,0,0,0],[0,0,1,0]]»}]]}]",
+        Code::SingularTransform,
+        "$.instances[0].transforms[1][0].matrix",
+    );
+    // A stretched ball is an ellipsoid; a stretched lamp is refused, also where a group within stretches it.
+    assert_eq!(problems(&grouped(&balls, "[{\"group\": \"ball\", \"transform\": [{\"scale\": [1, 2, 3]}]}]")), []);
+    let lamps = format!("{{\"lamp\": {lamp}, \"pair\": {{\"instances\": [{{\"group\": \"lamp\"}}]}}}}");
+    for group in ["lamp", "pair"] {
+        let stretched = format!("[«{{»\"group\": \"{group}\", \"transform\": [{{\"scale\": [1, 2, 3]}}]}}]");
+        refused(&lamps, &stretched, Code::NotSimilarity, "$.instances[0]");
+    }
+    // In a circle, or too many.
+    refused(
+        "{\"a\": {\"instances\": [{\"group\": \"b\"}]}, \"b\": {\"instances\": [{\"group\": «\"a\"»}]}}",
+        "[]",
+        Code::Circular,
+        "$.groups.b.instances[0].group",
+    );
+    let nest = |count: usize, width: usize| {
+        let placed = |i: usize| vec![format!("{{\"group\": \"g{}\"}}", i - 1); width].join(", ");
+        let groups = (1..count).map(|i| format!("\"g{i}\": {{\"instances\": [{}]}}", placed(i)));
+        let all: Vec<String> = std::iter::once(format!("\"g0\": {ball}")).chain(groups).collect();
+        format!("{{{}}}", all.join(", "))
+    };
+    assert_eq!(problems(&grouped(&nest(16, 1), "[{\"group\": \"g15\"}]")), []);
+    refused(&nest(17, 1), "[«{»\"group\": \"g16\"}]", Code::Limit, "$.instances[0]");
+    refused(&nest(16, 8), "[«{»\"group\": \"g15\"}]", Code::Limit, "$.instances[0]");
+    // What is wrong within a group is told like anything else.
+    let text = grouped(&balls.replace("\"radius_m\": 1", "\"radius_m\": «-1»"), "[]");
+    one(Severity::Error, Code::OutOfRange, "$.groups.ball.objects[0].shape.radius_m", &text);
+}

@@ -3,7 +3,7 @@
 use super::{LightSample, Target};
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
-use etalon_geometry::PrimitiveId;
+use etalon_geometry::SurfaceId;
 use etalon_optics::Vec3;
 
 /// Parallel light.
@@ -21,7 +21,7 @@ impl DirectionalLight {
             wi: self.toward,
             density: Density::Delta,
             target: Target::Infinity,
-            primitive: PrimitiveId::NONE,
+            surface: SurfaceId::NONE,
             scale: 1.0,
         }
     }

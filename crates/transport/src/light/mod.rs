@@ -23,7 +23,7 @@ pub use triangle::TriangleLight;
 
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
-use etalon_geometry::PrimitiveId;
+use etalon_geometry::SurfaceId;
 use etalon_optics::Vec3;
 
 /// Where a shadow ray ends.
@@ -44,8 +44,8 @@ pub struct LightSample {
     pub density: Density<f64>,
     /// Where the shadow ray ends.
     pub target: Target,
-    /// The light's own primitive, which does not shadow itself.
-    pub primitive: PrimitiveId,
+    /// The light's own surface, which does not shadow itself.
+    pub surface: SurfaceId,
     /// What the light's spectrum is multiplied by: 1 for radiance, 1/d² for a point's intensity.
     pub scale: f64,
 }
@@ -114,7 +114,7 @@ impl Light {
         }
     }
 
-    /// What the spectrum is to be multiplied by for the light's power, W·nm⁻¹, in a scene of this radius.
+    /// What the spectrum is to be multiplied by for the light's power in a scene of this radius.
     fn power_factor(&self, scene_radius: f64) -> f64 {
         use std::f64::consts::PI;
         match self {
@@ -122,13 +122,13 @@ impl Light {
             Self::Parallelogram(light) => light.emitter.side_count() * PI * light.area(),
             Self::Disk(light) => light.emitter.side_count() * PI * light.area(),
             Self::Triangle(light) => light.emitter.side_count() * PI * light.area(),
-            Self::Point(_) => 4.0 * PI,
+            Self::Point(light) => 4.0 * PI * light.per_m * light.per_m,
             Self::Directional(_) => PI * scene_radius * scene_radius,
         }
     }
 }
 
-/// What every emitting surface has: its radiance, its emitting sides and its primitive.
+/// What every emitting surface has: its radiance, its emitting sides and where it is.
 #[derive(Clone, Debug)]
 pub struct Emitter {
     /// Emitted radiance, W·m⁻²·sr⁻¹·nm⁻¹.
@@ -138,7 +138,7 @@ pub struct Emitter {
     /// Whether the other side emits.
     pub back: bool,
     /// The surface.
-    pub primitive: PrimitiveId,
+    pub surface: SurfaceId,
 }
 
 impl Emitter {

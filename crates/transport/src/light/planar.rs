@@ -33,7 +33,7 @@ pub(super) fn sample(
         wi,
         density: Density::SolidAngle(density),
         target: Target::Point(point),
-        primitive: emitter.primitive,
+        surface: emitter.surface,
         scale: 1.0,
     })
 }

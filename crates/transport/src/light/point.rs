@@ -3,16 +3,18 @@
 use super::{LightSample, Target};
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
-use etalon_geometry::PrimitiveId;
+use etalon_geometry::SurfaceId;
 use etalon_optics::Vec3;
 
 /// A point light.
 #[derive(Clone, Debug)]
 pub struct PointLight {
-    /// Position, m.
+    /// Position.
     pub position: Vec3<f64>,
     /// Radiant intensity, W·sr⁻¹·nm⁻¹.
     pub intensity: PathSpectrum,
+    /// Units of length in a metre, a power of two.
+    pub per_m: f64,
 }
 
 impl PointLight {
@@ -24,8 +26,8 @@ impl PointLight {
             wi: toward / distance_squared.sqrt(),
             density: Density::Delta,
             target: Target::Point(self.position),
-            primitive: PrimitiveId::NONE,
-            scale: 1.0 / distance_squared,
+            surface: SurfaceId::NONE,
+            scale: self.per_m * self.per_m / distance_squared,
         })
     }
 }

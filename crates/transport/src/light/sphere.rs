@@ -95,7 +95,7 @@ impl SphereLight {
             wi,
             density: Density::SolidAngle(self.density(from)),
             target: Target::Point(from + wi * t),
-            primitive: self.emitter.primitive,
+            surface: self.emitter.surface,
             scale: 1.0,
         })
     }

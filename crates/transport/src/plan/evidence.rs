@@ -35,7 +35,7 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
 
 /// The first object whose material has something to say, which it says. Materials that no object is made of are silent.
 fn first_surface(scene: &Scene, says: impl Fn(&Material, [f64; 2]) -> Option<String>) -> Option<String> {
-    scene.objects.iter().find_map(|object| {
+    scene.placed_objects().find_map(|object| {
         let material = &scene.materials[object.material];
         says(material, scene.integrator.wavelength_range_nm)
             .map(|what| format!("{}: {what}", surface(object, material)))
@@ -128,14 +128,14 @@ fn lens(projection: &Projection) -> Result<String, String> {
 }
 
 fn emitter(scene: &Scene) -> Option<&Object> {
-    scene.objects.iter().find(|object| object.emission.as_ref().is_some_and(|e| !e.radiance.is_zero()))
+    scene.placed_objects().find(|object| object.emission.as_ref().is_some_and(|e| !e.radiance.is_zero()))
 }
 
 /// A diffuse surface, one that does not shine itself if there is any.
 fn diffuse_surface(scene: &Scene) -> Option<String> {
     let diffuse = |object: &&Object| is_diffuse(&scene.materials[object.material].kind);
-    let lit = scene.objects.iter().filter(|object| object.emission.is_none()).find(diffuse);
-    let object = lit.or_else(|| scene.objects.iter().find(diffuse))?;
+    let lit = scene.placed_objects().filter(|object| object.emission.is_none()).find(diffuse);
+    let object = lit.or_else(|| scene.placed_objects().find(diffuse))?;
     Some(surface(object, &scene.materials[object.material]))
 }
 
@@ -186,8 +186,7 @@ fn wavelengths(scene: &Scene) -> Result<String, String> {
 /// What shines, with its name.
 pub(super) fn sources(scene: &Scene) -> Vec<(String, &Spectrum)> {
     let emitters = scene
-        .objects
-        .iter()
+        .placed_objects()
         .filter_map(|object| Some((format!("emission of \"{}\"", object.name), &object.emission.as_ref()?.radiance)));
     let lights = scene.lights.iter().map(|light| (format!("light \"{}\"", light.name), spectrum(light)));
     emitters.chain(lights).filter(|(_, spectrum)| !spectrum.is_zero()).collect()

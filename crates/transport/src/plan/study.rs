@@ -99,7 +99,8 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 }
             }
             leave_out(EffectName::Dispersion, scene);
-            for emission in scene.objects.iter_mut().filter_map(|object| object.emission.as_mut()) {
+            let grouped = scene.groups.iter_mut().flat_map(|group| &mut group.objects);
+            for emission in scene.objects.iter_mut().chain(grouped).filter_map(|object| object.emission.as_mut()) {
                 emission.radiance = grey(&emission.radiance, range_nm);
             }
             for light in &mut scene.lights {

@@ -1,0 +1,254 @@
+//! A geometry within another, placed by an affine map.
+//!
+//! Rays are taken into the instance's own coordinates with their direction as the map leaves it, not normalised: the ray
+//! parameter is then the same on both sides. What the map and its inverse round is part of the error bound of every
+//! point that comes back, so that a ray leaves an instanced surface as safely as any other.
+
+use crate::double_double::{cross, dot, widen};
+use crate::geometry::Found;
+use crate::query::Query;
+use crate::ray::ExactPoint;
+use crate::{Aabb, Geometry, MAX_COORDINATE, Ray, ShapeError, SurfaceId};
+use etalon_optics::{Real, Vec3};
+use std::sync::Arc;
+
+/// Beyond this (2⁵⁰) for the largest component of |L|·|L⁻¹|, `f64` cannot tell where a placed surface is.
+const MAX_CONDITION: f64 = (1_u64 << 50) as f64;
+
+/// An affine map p ↦ L·p + T from the coordinates of what is placed to those where it is placed, and its inverse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Rows of L.
+    linear: [Vec3<f64>; 3],
+    translation: Vec3<f64>,
+    /// Rows of L⁻¹, each right to a few unit roundoffs of the largest.
+    inverse: [Vec3<f64>; 3],
+}
+
+impl Placement {
+    /// The map with these rows of L and this T (m).
+    ///
+    /// # Errors
+    /// If a number is not finite or out of range, or L cannot be inverted in double precision.
+    pub fn new(linear: [[f64; 3]; 3], translation_m: [f64; 3]) -> Result<Self, ShapeError> {
+        let linear = linear.map(Vec3::from_array);
+        let translation = Vec3::from_array(translation_m);
+        super::shapes::check_points(&[linear[0], linear[1], linear[2], translation])?;
+        let rows = linear.map(widen);
+        // The columns of the inverse are these over the determinant.
+        let columns = [cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])];
+        let determinant = dot(rows[0], columns[0]);
+        if determinant.to_f64() == 0.0 {
+            return Err(ShapeError::Singular);
+        }
+        let inverse = [0, 1, 2].map(|i| Vec3::from_array(columns.map(|column| column[i].ratio(determinant))));
+        let placement = Self { linear, translation, inverse };
+        let condition = placement.spread(Vec3::splat(1.0)).max_component();
+        if condition.is_nan() || condition > MAX_CONDITION {
+            return Err(ShapeError::Singular);
+        }
+        super::shapes::check_points(&inverse)?;
+        Ok(placement)
+    }
+
+    /// Rows of L.
+    pub fn linear(&self) -> [Vec3<f64>; 3] {
+        self.linear
+    }
+
+    /// T, m.
+    pub fn translation(&self) -> Vec3<f64> {
+        self.translation
+    }
+
+    /// L·p + T.
+    pub fn point(&self, p: Vec3<f64>) -> Vec3<f64> {
+        product(&self.linear, p) + self.translation
+    }
+
+    /// L⁻ᵀ·n to any scale: right for any map, and a mirror leaves the outward side outward.
+    pub(crate) fn normal(&self, n: Vec3<f64>) -> Vec3<f64> {
+        let normal = transposed_product(&self.inverse, n);
+        normal / normal.abs().max_component()
+    }
+
+    /// |L|·|L⁻¹|·|L|·v for v ≥ 0, at least |L|·v: what a relative error of the inverse map makes of a vector.
+    fn spread(&self, v: Vec3<f64>) -> Vec3<f64> {
+        let forward = magnitudes(&self.linear);
+        product(&forward, product(&magnitudes(&self.inverse), v))
+    }
+
+    /// A box around the image of a box, wide enough for the rounding of points and of rays that start near it.
+    fn bounds(&self, inner: Aabb) -> Aabb {
+        let forward = magnitudes(&self.linear);
+        let centre = inner.centre();
+        let half = (inner.max - centre).max(centre - inner.min);
+        let (middle, reach) = (self.point(centre), product(&forward, half));
+        let far = product(&forward, centre.abs() + half);
+        let margin = (self.spread(far) + far + self.translation.abs()) * (32.0 * f64::UNIT_ROUNDOFF);
+        Aabb { min: middle - reach - margin, max: middle + reach + margin }
+    }
+
+    /// A point of a placed surface where it is placed.
+    ///
+    /// The map errs by 4u of |L|·|p| + |T|. A ray that leaves the point is taken back by L⁻¹·(o − T), which errs by u of
+    /// the difference and, the inverse being rounded too, by less than 8u of |L⁻¹| times it: seen from outside by
+    /// |L|·|L⁻¹| times as much.
+    fn outward(&self, p: &ExactPoint) -> ExactPoint {
+        let forward = magnitudes(&self.linear);
+        let turned = product(&forward, p.position.abs());
+        let rounding = (turned + self.translation.abs()) * 4.0 + self.spread(turned) * 10.0;
+        // The inverse transpose: right for any map, and a mirror leaves the outward side outward.
+        let normal = transposed_product(&self.inverse, p.normal);
+        let shrink = normal.abs().max_component();
+        // An error δ outside is L⁻¹·δ inside and leaves a curved surface there by ½κ|L⁻¹·δ|², outside by that over
+        // |L⁻ᵀ·n|.
+        let stretch: f64 = self.inverse.iter().map(|row| row.length_squared()).sum();
+        ExactPoint {
+            position: self.point(p.position),
+            error: product(&forward, p.error) + rounding * f64::UNIT_ROUNDOFF,
+            normal: (normal / shrink).normalized(),
+            curvature: if p.curvature == 0.0 { 0.0 } else { p.curvature * stretch / normal.length() },
+        }
+    }
+}
+
+fn product(rows: &[Vec3<f64>; 3], v: Vec3<f64>) -> Vec3<f64> {
+    Vec3::new(rows[0].dot(v), rows[1].dot(v), rows[2].dot(v))
+}
+
+fn transposed_product(rows: &[Vec3<f64>; 3], v: Vec3<f64>) -> Vec3<f64> {
+    rows[0] * v.x + rows[1] * v.y + rows[2] * v.z
+}
+
+fn magnitudes(rows: &[Vec3<f64>; 3]) -> [Vec3<f64>; 3] {
+    rows.map(Vec3::abs)
+}
+
+/// A geometry that is shared, and where it is placed.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    geometry: Arc<Geometry>,
+    placement: Placement,
+    bounds: Aabb,
+    /// The [`SurfaceId::instance`] of its own primitives in the geometry that it is part of.
+    pub(crate) first: u32,
+}
+
+impl PartialEq for Instance {
+    /// Whether both place the same geometry at the same place.
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.geometry, &other.geometry) && self.placement == other.placement
+    }
+}
+
+impl Instance {
+    /// Places a geometry.
+    ///
+    /// # Errors
+    /// If the geometry is empty, or would reach beyond [`MAX_COORDINATE`].
+    pub fn new(geometry: Arc<Geometry>, placement: Placement) -> Result<Self, ShapeError> {
+        let bounds = placement.bounds(geometry.bounds().ok_or(ShapeError::Empty)?);
+        let largest = bounds.min.abs().max(bounds.max.abs()).max_component();
+        if largest.is_nan() || largest > MAX_COORDINATE {
+            return Err(ShapeError::OutOfRange);
+        }
+        Ok(Self { geometry, placement, bounds, first: 0 })
+    }
+
+    /// What is placed.
+    pub fn geometry(&self) -> &Arc<Geometry> {
+        &self.geometry
+    }
+
+    /// How it is placed.
+    pub fn placement(&self) -> &Placement {
+        &self.placement
+    }
+
+    /// A box around it.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// How many numbers it and the instances within it take.
+    pub(crate) fn count(&self) -> u64 {
+        self.geometry.instance_count()
+    }
+
+    /// The surface of a ray's in the numbers of what is placed; none if it is not within this instance.
+    fn inward(&self, surface: SurfaceId) -> SurfaceId {
+        match surface.instance.checked_sub(self.first) {
+            Some(instance) if surface.instance > 0 && u64::from(instance) < self.count() => {
+                SurfaceId { instance, primitive: surface.primitive }
+            }
+            _ => SurfaceId::NONE,
+        }
+    }
+
+    /// The query in the coordinates of what is placed, up to `t_max` of the given one; its parameter times its `scale` is
+    /// that of the given one. `None` if no ray can be computed with there.
+    pub(crate) fn enter(&self, query: &Query, t_max: f64) -> Option<Query> {
+        let Placement { translation, inverse, .. } = &self.placement;
+        Query::new(&Ray {
+            origin: product(inverse, query.origin - *translation),
+            direction: product(inverse, query.direction),
+            t_max,
+            leaves: self.inward(query.leaves_placed),
+            aims_at: self.inward(query.aims_at_placed),
+        })
+    }
+
+    /// Whether a ray meets the bounds before `t_max`, to rounding.
+    ///
+    /// Every test of the instance asks this first, with a tree around it or without: where the ray's rounding in the
+    /// instance's coordinates would let it hit something while it passes by outside, both agree that it does not.
+    fn is_met(&self, query: &Query, t_max: f64) -> bool {
+        let (mut near, mut far) = (0.0_f64, t_max);
+        for k in 0..3 {
+            let (d, o) = (query.direction[k], query.origin[k]);
+            let (lower, upper) = (self.bounds.min[k] - o, self.bounds.max[k] - o);
+            if d != 0.0 {
+                let (t0, t1) = (lower / d, upper / d);
+                near = near.max(t0.min(t1));
+                far = far.min(t0.max(t1));
+            } else if lower > 0.0 || upper < 0.0 {
+                return false;
+            }
+        }
+        near <= far * (1.0 + 8.0 * f64::EPSILON)
+    }
+
+    /// The closest hit with 0 < t < `t_max`.
+    #[inline(never)]
+    pub(crate) fn closest(&self, query: &Query, t_max: f64) -> Option<Found> {
+        if !self.is_met(query, t_max) {
+            return None;
+        }
+        let inner = self.enter(query, t_max)?;
+        let (mut hit, mut surface) = self.geometry.closest(&inner)?;
+        hit.t *= inner.scale;
+        surface.instance += self.first;
+        // False where t is so small that the change of units lost it.
+        (0.0 < hit.t && hit.t < t_max).then_some((hit, surface))
+    }
+
+    /// Whether anything but the surface aimed at is hit.
+    #[inline(never)]
+    pub(crate) fn occludes(&self, query: &Query) -> bool {
+        self.is_met(query, query.t_max) && self.enter(query, query.t_max).is_some_and(|inner| self.geometry.any(&inner))
+    }
+
+    /// The point of a surface within at parameter `t` of the query; see [`Geometry::exact_point`].
+    pub(crate) fn exact_point(
+        &self,
+        query: &Query,
+        t: f64,
+        refine: bool,
+        surface: SurfaceId,
+    ) -> Option<(ExactPoint, u32)> {
+        let inner = self.enter(query, query.t_max)?;
+        let (point, label) = self.geometry.exact_point(&inner, t / inner.scale, refine, self.inward(surface))?;
+        Some((self.placement.outward(&point), label))
+    }
+}

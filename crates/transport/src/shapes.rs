@@ -1,0 +1,247 @@
+//! The scene's shapes as the accelerator wants them, and the lights that they are.
+
+use crate::coordinates::{Coordinates, MeshCoordinates};
+use crate::frame::{Affine, SceneFrame};
+use crate::light::{DiskLight, Emitter, Light, ParallelogramLight, SphereLight, TriangleLight};
+use crate::prepare::PrepareError;
+use crate::spectral::PathSpectrum;
+use etalon_geometry::{
+    Aabb, Disk, Geometry, Instance, Parallelogram, Placement, Primitive, PrimitiveId, ShapeError, Sphere, SurfaceId,
+    Triangle,
+};
+use etalon_optics::Vec3;
+use etalon_scene as scene;
+use etalon_scene::{EmissionSides, Object, Scene, Shape};
+use std::sync::Arc;
+
+/// All shapes of a scene. Objects are numbered through: the scene's own, then those of each group.
+pub(crate) struct SceneShapes {
+    pub frame: SceneFrame,
+    /// In the frame. Its label is 0, those of the groups count from 1.
+    pub geometry: Geometry,
+    /// By label: the object of each primitive, [`NO_OBJECT`] for an instance.
+    pub object_of: Vec<Vec<u32>>,
+    /// In the frame.
+    pub emitters: Vec<Light>,
+    /// By the number of the object.
+    pub coordinates: Vec<Coordinates>,
+    pub warnings: Vec<String>,
+}
+
+const NO_OBJECT: u32 = u32::MAX;
+
+/// The scene's objects, numbered as in [`SceneShapes`].
+pub(crate) fn objects(scene: &Scene) -> impl Iterator<Item = &Object> {
+    scene.objects.iter().chain(scene.groups.iter().flat_map(|group| &group.objects))
+}
+
+/// Builds the geometry of a scene and of each of its groups.
+pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, PrepareError> {
+    let mut warnings = Vec::new();
+    let mut object_of = vec![Vec::new()];
+    let mut shared: Vec<Arc<Geometry>> = Vec::with_capacity(scene.groups.len());
+    let placed = placed(scene);
+    let mut first_object = scene.objects.len();
+    let mut grouped_coordinates = Vec::new();
+    for (index, group) in scene.groups.iter().enumerate() {
+        let mut collected = Collected::default();
+        if placed[index] {
+            collected.add_all(first_object, &group.objects, &group.instances, &shared, &mut warnings)?;
+        }
+        collected.coordinates.resize(group.objects.len(), Coordinates::None);
+        grouped_coordinates.append(&mut collected.coordinates);
+        first_object += group.objects.len();
+        object_of.push(collected.object_of);
+        shared.push(Arc::new(Geometry::build(collected.primitives)?.with_label(index as u32 + 1)));
+    }
+    let mut collected = Collected::default();
+    collected.add_all(0, &scene.objects, &scene.instances, &shared, &mut warnings)?;
+    let Collected { primitives, object_of: own, mut coordinates } = collected;
+    coordinates.append(&mut grouped_coordinates);
+    let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
+    let frame = bounds.map_or(SceneFrame::WORLD, SceneFrame::around);
+    let framed: Result<Vec<Primitive>, PrepareError> = primitives
+        .into_iter()
+        .enumerate()
+        .map(|(i, shape)| {
+            let name = || own.get(i).and_then(|&o| scene.objects.get(o as usize)).map_or("", |o| o.name.as_str());
+            frame.shape(shape).map_err(|source| PrepareError::Shape { object: name().to_owned(), source })
+        })
+        .collect();
+    object_of[0] = own;
+    let geometry = Geometry::build(framed?)?;
+
+    let objects: Vec<&Object> = objects(scene).collect();
+    let emits =
+        |label: usize| object_of[label].iter().any(|&o| o != NO_OBJECT && objects[o as usize].emission.is_some());
+    let mut lit: Vec<bool> = (0..object_of.len()).map(emits).collect();
+    for (index, group) in scene.groups.iter().enumerate() {
+        // Groups place only groups before them.
+        lit[index + 1] |= group.instances.iter().any(|instance| lit[instance.group + 1]);
+    }
+    lit[0] |= scene.instances.iter().any(|instance| lit[instance.group + 1]);
+    let mut lamps = Lamps { objects: &objects, object_of: &object_of, lit: &lit, range_nm, lights: Vec::new() };
+    lamps.add(&geometry, 0, &Affine::IDENTITY)?;
+    let emitters = lamps.lights;
+    Ok(SceneShapes { frame, geometry, object_of, emitters, coordinates, warnings })
+}
+
+/// Which groups are placed somewhere.
+fn placed(scene: &Scene) -> Vec<bool> {
+    let mut placed = vec![false; scene.groups.len()];
+    scene.instances.iter().for_each(|instance| placed[instance.group] = true);
+    for (index, group) in scene.groups.iter().enumerate().rev() {
+        if placed[index] {
+            group.instances.iter().for_each(|instance| placed[instance.group] = true);
+        }
+    }
+    placed
+}
+
+/// Primitives, each with the number of its object.
+#[derive(Default)]
+struct Collected {
+    primitives: Vec<Primitive>,
+    object_of: Vec<u32>,
+    /// Of each object.
+    coordinates: Vec<Coordinates>,
+}
+
+impl Collected {
+    fn add_all(
+        &mut self,
+        first_object: usize,
+        objects: &[Object],
+        instances: &[scene::Instance],
+        shared: &[Arc<Geometry>],
+        warnings: &mut Vec<String>,
+    ) -> Result<(), PrepareError> {
+        for (index, object) in objects.iter().enumerate() {
+            self.add_object((first_object + index) as u32, object, warnings)
+                .map_err(|source| PrepareError::Shape { object: object.name.clone(), source })?;
+        }
+        for instance in instances {
+            let geometry = &shared[instance.group];
+            if geometry.is_empty() {
+                continue;
+            }
+            let made = Placement::new(instance.transform.linear, instance.transform.translation_m)
+                .and_then(|placement| Instance::new(geometry.clone(), placement))
+                .map_err(|source| PrepareError::Instance { instance: instance.name.clone(), source })?;
+            self.primitives.push(made.into());
+            self.object_of.push(NO_OBJECT);
+        }
+        Ok(())
+    }
+
+    fn add_object(&mut self, index: u32, object: &Object, warnings: &mut Vec<String>) -> Result<(), ShapeError> {
+        let to_world = Affine::new(&object.transform);
+        let mut coordinates = Coordinates::None;
+        match &object.shape {
+            Shape::Sphere { center, radius_m } => {
+                self.add(index, Sphere::new(to_world.point(*center), radius_m * to_world.uniform_scale())?);
+            }
+            Shape::Parallelogram { origin, u, v } => {
+                let (u, v) = to_world.oriented(to_world.vector(*u), to_world.vector(*v));
+                coordinates = Coordinates::Parallelogram { swapped: to_world.mirrors() };
+                self.add(index, Parallelogram::new(to_world.point(*origin), u, v)?);
+            }
+            Shape::Disk { center, normal, radius_m } => {
+                let normal = to_world.vector(*normal).normalized();
+                self.add(index, Disk::new(to_world.point(*center), normal, radius_m * to_world.uniform_scale())?);
+            }
+            Shape::Mesh(mesh) => {
+                let vertices: Vec<Vec3<f64>> = mesh.vertices.iter().map(|v| to_world.point(*v)).collect();
+                let first = self.primitives.len() as u32;
+                let mut dropped = Vec::new();
+                for (number, triangle) in mesh.triangles.iter().enumerate() {
+                    let [a, b, c] = triangle.map(|i| vertices[i as usize]);
+                    let (b, c) = to_world.oriented(b, c);
+                    match Triangle::new(a, b, c) {
+                        Ok(shape) => self.add(index, shape),
+                        Err(ShapeError::NoArea) => dropped.push(number as u32),
+                        Err(other) => return Err(other),
+                    }
+                }
+                if !(mesh.normals.is_empty() && mesh.uvs.is_empty()) {
+                    coordinates = Coordinates::Mesh(MeshCoordinates {
+                        mesh: Arc::clone(mesh),
+                        first,
+                        kept: (!dropped.is_empty()).then(|| {
+                            (0..mesh.triangles.len() as u32).filter(|i| dropped.binary_search(i).is_err()).collect()
+                        }),
+                        normal_to_world: to_world.normal_matrix(),
+                        swapped: to_world.mirrors(),
+                    });
+                }
+                if !dropped.is_empty() {
+                    warnings.push(format!(
+                        "object \"{}\": {} of {} triangles have no area and were left out",
+                        object.name,
+                        dropped.len(),
+                        mesh.triangles.len()
+                    ));
+                }
+            }
+        }
+        self.coordinates.push(coordinates);
+        Ok(())
+    }
+
+    fn add(&mut self, object: u32, shape: impl Into<Primitive>) {
+        self.primitives.push(shape.into());
+        self.object_of.push(object);
+    }
+}
+
+/// Collects a light for each emitting primitive wherever it is placed.
+struct Lamps<'a> {
+    objects: &'a [&'a Object],
+    object_of: &'a [Vec<u32>],
+    /// By label: whether anything within emits.
+    lit: &'a [bool],
+    range_nm: [f64; 2],
+    lights: Vec<Light>,
+}
+
+impl Lamps<'_> {
+    /// Adds those of a geometry that is placed by `to_frame` and whose own primitives have the instance number `number`.
+    fn add(&mut self, geometry: &Geometry, number: u32, to_frame: &Affine) -> Result<(), PrepareError> {
+        let label = geometry.label() as usize;
+        if !self.lit[label] {
+            return Ok(());
+        }
+        for (i, &object) in self.object_of[label].iter().enumerate() {
+            let primitive = PrimitiveId(i as u32);
+            if object == NO_OBJECT {
+                continue;
+            }
+            let object = self.objects[object as usize];
+            let Some(emission) = &object.emission else { continue };
+            let emitter = Emitter {
+                radiance: PathSpectrum::new(&emission.radiance, self.range_nm),
+                front: emission.sides != EmissionSides::Back,
+                back: emission.sides != EmissionSides::Front,
+                surface: SurfaceId { instance: number, primitive },
+            };
+            // The scene's own shapes are in place, to the bit.
+            let shape = match number {
+                0 => geometry.primitive(primitive).clone(),
+                _ => to_frame
+                    .shape(geometry.primitive(primitive))
+                    .map_err(|source| PrepareError::Shape { object: object.name.clone(), source })?,
+            };
+            self.lights.push(match shape {
+                Primitive::Sphere(shape) => Light::Sphere(SphereLight::new(shape, emitter)),
+                Primitive::Parallelogram(shape) => Light::Parallelogram(ParallelogramLight::new(shape, emitter)),
+                Primitive::Disk(shape) => Light::Disk(DiskLight::new(shape, emitter)),
+                Primitive::Triangle(shape) => Light::Triangle(TriangleLight::new(shape, emitter)),
+                Primitive::Instance(_) => continue,
+            });
+        }
+        for (inner, instance) in geometry.instances() {
+            self.add(instance.geometry(), number + inner, &to_frame.after(instance.placement()))?;
+        }
+        Ok(())
+    }
+}

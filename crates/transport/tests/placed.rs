@@ -1,0 +1,215 @@
+//! Where a scene stands, how large it is and how often a part of it is placed must not matter.
+
+use etalon_optics::Spectrum;
+use etalon_scene::{LightKind, Projection, Scene, Transform};
+use etalon_transport::{Control, Film, prepare};
+use serde_json::{Value, json};
+
+fn parse(json: &Value) -> Scene {
+    let (scene, warnings) = etalon_scene::parse(&json.to_string(), "test").unwrap_or_else(|e| panic!("{e}"));
+    assert!(warnings.is_empty(), "{warnings:?}");
+    scene
+}
+
+fn render(scene: &Scene) -> Film {
+    let prepared = prepare(scene).unwrap();
+    let film = prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap();
+    assert_eq!((film.counters.nonfinite, film.counters.cut_paths), (0, 0));
+    film
+}
+
+/// A room lit by a lamp, with more objects, groups and instances in it.
+fn room(objects: &Value, groups: &Value, instances: &Value) -> Scene {
+    let wall = |origin: [f64; 3], u: [f64; 3], v: [f64; 3], reflectance: f64| {
+        json!({
+            "material": {"type": "lambert", "reflectance": reflectance},
+            "shape": {"type": "parallelogram", "origin_m": origin, "u_m": u, "v_m": v}
+        })
+    };
+    let mut all = vec![
+        wall([-1.0, 0.0, -1.0], [0.0, 0.0, 5.0], [2.0, 0.0, 0.0], 0.7),
+        wall([-1.0, 2.0, -1.0], [2.0, 0.0, 0.0], [0.0, 0.0, 5.0], 0.7),
+        wall([-1.0, 0.0, -1.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], 0.5),
+        wall([-1.0, 0.0, -1.0], [0.0, 2.0, 0.0], [0.0, 0.0, 5.0], 0.3),
+        wall([1.0, 0.0, -1.0], [0.0, 0.0, 5.0], [0.0, 2.0, 0.0], 0.6),
+    ];
+    all.extend(objects.as_array().unwrap().iter().cloned());
+    parse(&json!({
+        "etalon": 1,
+        "camera": {
+            "type": "perspective", "position_m": [0.1, 1.0, 3.5], "look_at_m": [0.0, 0.9, 0.0],
+            "vertical_fov_deg": 40, "lens": {"radius_m": 0.02, "focus_distance_m": 3.5}
+        },
+        "film": {"width": 40, "height": 30},
+        "materials": {
+            "white": {"type": "lambert", "reflectance": 0.8},
+            "gold": {"type": "conductor", "metal": "Au"},
+            "glass": {"type": "dielectric", "interior": "N-BK7"},
+            "black": {"type": "black"}
+        },
+        "objects": all,
+        "groups": groups,
+        "instances": instances,
+        "lights": [{"type": "point", "position_m": [0.5, 1.5, 1.5], "intensity": 0.2}],
+        "integrator": {"spp": 16, "seed": 11}
+    }))
+}
+
+/// A lamp of triangles, a lamp that is a ball, a glass ball, a metal block and a disk.
+fn furniture(transform: &Value) -> Value {
+    let object = |shape: Value, material: &str, radiance: f64| {
+        let mut object = json!({"shape": shape, "material": material, "transform": transform});
+        if radiance > 0.0 {
+            object["emission"] = json!({"radiance": radiance});
+        }
+        object
+    };
+    let corners = json!([[-0.2, 0.9, -0.2], [0.2, 0.9, -0.2], [0.2, 0.9, 0.2], [-0.2, 0.9, 0.2]]);
+    let lamp = json!({"type": "mesh", "vertices_m": corners, "triangles": [[0, 1, 2], [0, 2, 3]]});
+    let disk = json!({"type": "disk", "center_m": [0.3, 0.1, 0.3], "normal": [1, 2, 1], "radius_m": 0.15});
+    // Normals that are not the triangles'.
+    let roof = json!({
+        "type": "mesh", "triangles": [[0, 2, 1], [0, 3, 2], [0, 1, 3]],
+        "vertices_m": [[-0.1, 0.6, 0.3], [-0.4, 0.5, 0.2], [0.1, 0.5, 0.2], [-0.1, 0.5, 0.6]],
+        "normals": [[0, 1, 0.1], [-1, 1, 0], [1, 0.9, -0.2], [0, 0.5, 1]]
+    });
+    json!([
+        object(roof, "white", 0.0),
+        object(lamp, "black", 6.0),
+        object(json!({"type": "sphere", "center_m": [0.3, 0.7, 0.1], "radius_m": 0.08}), "black", 9.0),
+        object(json!({"type": "sphere", "center_m": [0.0, 0.3, 0.0], "radius_m": 0.25}), "glass", 0.0),
+        object(json!({"type": "box", "min_m": [-0.5, 0.0, -0.3], "max_m": [-0.3, 0.5, 0.0]}), "gold", 0.0),
+        object(disk, "white", 0.0)
+    ])
+}
+
+#[test]
+fn placed_lamps_glass_and_metal_render_as_if_they_were_written_out() {
+    let steps = json!([
+        {"scale": [-0.9, 0.9, 0.9]}, {"rotate": {"axis": [1, 4, 2], "angle_deg": 25}}, {"translate_m": [0.1, 0.4, 0.3]}
+    ]);
+    let written = room(&furniture(&steps), &json!({}), &json!([]));
+    // Scaled down within, up outside, by what is no power of two.
+    let small = json!([{"scale": 1e-4}]);
+    let mut large = json!([{"scale": 1e4}]);
+    large.as_array_mut().unwrap().extend(steps.as_array().unwrap().iter().cloned());
+    for (groups, instances) in [
+        (json!({"all": {"objects": furniture(&json!([]))}}), json!([{"group": "all", "transform": steps}])),
+        (
+            json!({
+                "inner": {"objects": furniture(&json!([]))},
+                "outer": {"instances": [{"group": "inner", "transform": small}]}
+            }),
+            json!([{"group": "outer", "transform": large}]),
+        ),
+    ] {
+        let placed = room(&json!([]), &groups, &instances);
+        let (a, b) = (render(&written), render(&placed));
+        let largest = a.pixels().iter().map(|p| p.xyz[1]).fold(0.0, f64::max);
+        let differing = a.pixels().iter().zip(b.pixels()).filter(|(p, q)| {
+            // Paths differ by roundings, which mirrors and lenses of the scene do not make larger than this; now and then
+            // one tips a decision of roulette.
+            (0..3).any(|c| (p.xyz[c] - q.xyz[c]).abs() > 1e-6 * largest)
+        });
+        let differing = differing.count();
+        assert!(differing <= 2, "{differing} of {} pixels differ", a.pixels().len());
+        assert_eq!(a.counters.paths, b.counters.paths);
+    }
+}
+
+/// The scene `factor` times as large, as bright as before.
+fn scaled(scene: &Scene, factor: f64) -> Scene {
+    let mut scene = scene.clone();
+    let larger = |v: &mut [f64; 3]| v.iter_mut().for_each(|c| *c *= factor);
+    let grow = |t: &mut Transform| {
+        t.linear.iter_mut().for_each(larger);
+        larger(&mut t.translation_m);
+    };
+    larger(&mut scene.camera.position_m);
+    match &mut scene.camera.projection {
+        Projection::Perspective { lens, .. } => {
+            if let Some(lens) = lens {
+                lens.radius_m *= factor;
+                lens.focus_distance_m *= factor;
+            }
+        }
+        Projection::Orthographic { height_m } => *height_m *= factor,
+    }
+    scene.objects.iter_mut().for_each(|object| grow(&mut object.transform));
+    scene.instances.iter_mut().for_each(|instance| grow(&mut instance.transform));
+    for light in &mut scene.lights {
+        if let LightKind::Point { position_m, intensity } = &mut light.kind {
+            larger(position_m);
+            let Spectrum::Constant(value) = intensity else { panic!("a constant intensity") };
+            *value *= factor * factor;
+        }
+    }
+    scene
+}
+
+/// Scenes of all kinds: shapes, lamps, cameras, instances, a place away from the origin.
+fn scenes() -> Vec<Scene> {
+    let identity = json!([]);
+    let moved = json!([{"rotate": {"axis": [1, 4, 2], "angle_deg": 25}}, {"translate_m": [0.1, 0.4, 0.3]}]);
+    let groups = json!({"all": {"objects": furniture(&identity)}});
+    let instances = json!([{"group": "all", "transform": moved}]);
+    let plain = room(&furniture(&moved), &json!({}), &json!([]));
+    let instanced = room(&json!([]), &groups, &instances);
+    let mut away = plain.clone();
+    let shift = [37.25, -5.5, 1000.0];
+    let displace = |p: &mut [f64; 3]| (0..3).for_each(|k| p[k] += shift[k]);
+    displace(&mut away.camera.position_m);
+    away.objects.iter_mut().for_each(|object| displace(&mut object.transform.translation_m));
+    if let LightKind::Point { position_m, .. } = &mut away.lights[0].kind {
+        displace(position_m);
+    }
+    let mut flat = instanced.clone();
+    flat.camera.projection = Projection::Orthographic { height_m: 2.0 };
+    vec![plain, instanced, away, flat]
+}
+
+#[test]
+fn scaling_a_scene_by_a_power_of_two_changes_no_bit_of_its_image() {
+    for mut scene in scenes() {
+        for precision in [etalon_scene::Precision::F64, etalon_scene::Precision::F32] {
+            scene.integrator.precision = precision;
+            scene.integrator.spp = 4;
+            let film = render(&scene);
+            for exponent in [-20, -7, 1, 20] {
+                assert!(render(&scaled(&scene, 2.0_f64.powi(exponent))) == film, "2^{exponent} in {precision:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn zeros_of_both_signs_in_the_camera_change_no_bit_of_an_image() {
+    for mut scene in scenes() {
+        scene.camera.forward = [0.0, 0.0, -1.0];
+        scene.camera.up = [0.0, 1.0, 0.0];
+        let film = render(&scene);
+        scene.camera.forward = [-0.0, -0.0, -1.0];
+        scene.camera.up = [-0.0, 1.0, -0.0];
+        assert!(render(&scene) == film);
+    }
+}
+
+#[test]
+fn a_replay_tells_positions_in_the_world() {
+    let scene = &scenes()[2];
+    let large = scaled(scene, 4096.0);
+    let vertices = |scene: &Scene| -> Vec<[f64; 3]> {
+        let replay = prepare(scene).unwrap().replay(20, 15, 0);
+        let position = |event| match event {
+            etalon_transport::replay::Event::Vertex { position_m, .. } => Some(position_m),
+            _ => None,
+        };
+        replay.events.into_iter().filter_map(position).collect()
+    };
+    let (one, other) = (vertices(scene), vertices(&large));
+    assert!(!one.is_empty());
+    for (p, q) in one.iter().zip(&other) {
+        assert!((p[2] - 1000.0).abs() < 6.0, "{p:?} is not where the room is");
+        assert_eq!(p.map(|c| c * 4096.0), *q);
+    }
+}
