@@ -105,14 +105,14 @@ fn placed_lamps_glass_and_metal_render_as_if_they_were_written_out() {
     ] {
         let placed = room(&json!([]), &groups, &instances);
         let (a, b) = (render(&written), render(&placed));
-        let largest = a.pixels().iter().map(|p| p.xyz[1]).fold(0.0, f64::max);
-        let differing = a.pixels().iter().zip(b.pixels()).filter(|(p, q)| {
+        let largest = a.pixels().map(|p| p.xyz()[1]).fold(0.0, f64::max);
+        let differing = a.pixels().zip(b.pixels()).filter(|(p, q)| {
             // Paths differ by roundings, which mirrors and lenses of the scene do not make larger than this; now and then
             // one tips a decision of roulette.
-            (0..3).any(|c| (p.xyz[c] - q.xyz[c]).abs() > 1e-6 * largest)
+            (0..3).any(|c| (p.xyz()[c] - q.xyz()[c]).abs() > 1e-6 * largest)
         });
         let differing = differing.count();
-        assert!(differing <= 2, "{differing} of {} pixels differ", a.pixels().len());
+        assert!(differing <= 2, "{differing} of {} pixels differ", a.pixels().count());
         assert_eq!(a.counters.paths, b.counters.paths);
     }
 }
