@@ -112,6 +112,9 @@ pub enum Filter {
     },
 }
 
+/// The least width α of a rough surface's facets. Below it directions in single precision no longer resolve the lobe.
+pub const LEAST_ALPHA: f64 = 1e-4;
+
 /// A named material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -145,6 +148,26 @@ pub enum MaterialKind {
         interior: RefractiveIndex,
         /// Medium on the side that the surface normal points into.
         exterior: RefractiveIndex,
+    },
+    /// Rough metal, seen from vacuum.
+    RoughConductor {
+        /// n + ik.
+        index: ComplexIndex,
+        /// Width of the GGX distribution of facets, in [[`LEAST_ALPHA`], 1].
+        alpha: f64,
+        /// Whether light that meets several facets is counted.
+        compensated: bool,
+    },
+    /// Rough interface between two transparent media.
+    RoughDielectric {
+        /// Medium on the side that the surface normal points away from.
+        interior: RefractiveIndex,
+        /// Medium on the side that the surface normal points into.
+        exterior: RefractiveIndex,
+        /// Width of the GGX distribution of facets, in [[`LEAST_ALPHA`], 1].
+        alpha: f64,
+        /// Whether light that meets several facets is counted.
+        compensated: bool,
     },
     /// Reflects nothing (an emitter that is only a light, an absorber).
     Black,

@@ -101,7 +101,7 @@ fn materials_and_spectra() {
     assert_eq!(kind(&scene, "mirror"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9) });
     assert_eq!(kind(&scene, "perfect"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(1.0) });
     let gold = ComplexIndex::named("Au").expect("gold").with_outside(OutsideFit::Clamp);
-    assert_eq!(kind(&scene, "gold"), &MaterialKind::Conductor { index: gold });
+    assert_eq!(kind(&scene, "gold"), &MaterialKind::RoughConductor { index: gold, alpha: 0.25, compensated: false });
     let own = ComplexIndex::tabulated(vec![300.0, 900.0], vec![0.2, 0.3], vec![3.0, 4.0]).expect("right");
     assert_eq!(kind(&scene, "own metal"), &MaterialKind::Conductor { index: own });
     let glass = |name| RefractiveIndex::named(name).expect("a glass");
@@ -111,9 +111,11 @@ fn materials_and_spectra() {
     );
     assert_eq!(
         kind(&scene, "dispersive"),
-        &MaterialKind::Dielectric {
+        &MaterialKind::RoughDielectric {
             interior: glass("N-SF11").with_outside(OutsideFit::Clamp),
             exterior: RefractiveIndex::Constant(1.33),
+            alpha: 1.0,
+            compensated: true,
         }
     );
     let terms = vec![SellmeierTerm { b: 1.039_612_12, c_um2: 0.006_000_698_67 }];

@@ -254,8 +254,10 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                         M::Lambert { reflectance } | M::Mirror { reflectance } => {
                             (0.0..=1.0).contains(&reflectance.eval(nm))
                         }
-                        M::Conductor { index } => index.eval(nm).0 > 0.0,
-                        M::Dielectric { interior, exterior } => interior.eval(nm) > 0.0 && exterior.eval(nm) > 0.0,
+                        M::Conductor { index } | M::RoughConductor { index, .. } => index.eval(nm).0 > 0.0,
+                        M::Dielectric { interior, exterior } | M::RoughDielectric { interior, exterior, .. } => {
+                            interior.eval(nm) > 0.0 && exterior.eval(nm) > 0.0
+                        }
                         M::Black => true,
                     };
                     prop_assert!(good, "{material:?} at {nm}");

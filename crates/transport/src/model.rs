@@ -21,8 +21,12 @@ pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
     /// At the camera.
     fn start() -> Self;
 
-    /// The path takes a step whose density in each lane, relative to the hero's, is `lane_density`.
-    fn follow(&mut self, lane_density: Lanes<R, N>);
+    /// The path takes a step whose density in each lane, relative to the hero's, is `lane_density`. Returns the mean of
+    /// those over the lanes, each weighed by its density of the path before the step.
+    fn follow(&mut self, lane_density: Lanes<R, N>) -> R;
+
+    /// The mean of the lanes' own densities of a step, each weighed by its density of the path so far.
+    fn mean_density(&self, density: Lanes<R, N>) -> R;
 
     /// The balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5): N / Σ densities.
     fn weight(&self) -> R;
@@ -54,7 +58,14 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
     }
 
     #[inline(always)]
-    fn follow(&mut self, _: Lanes<R, 1>) {}
+    fn follow(&mut self, _: Lanes<R, 1>) -> R {
+        R::ONE
+    }
+
+    #[inline(always)]
+    fn mean_density(&self, density: Lanes<R, 1>) -> R {
+        density[0]
+    }
 
     #[inline(always)]
     fn weight(&self) -> R {
@@ -78,7 +89,14 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
     }
 
     #[inline(always)]
-    fn follow(&mut self, _: Lanes<R, N>) {}
+    fn follow(&mut self, _: Lanes<R, N>) -> R {
+        R::ONE
+    }
+
+    #[inline(always)]
+    fn mean_density(&self, density: Lanes<R, N>) -> R {
+        density[0]
+    }
 
     #[inline(always)]
     fn weight(&self) -> R {
@@ -102,8 +120,17 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
     }
 
     #[inline(always)]
-    fn follow(&mut self, lane_density: Lanes<R, N>) {
+    fn follow(&mut self, lane_density: Lanes<R, N>) -> R {
+        let before = self.0.sum();
         self.0 *= lane_density;
+        self.0.sum() / before
+    }
+
+    #[inline(always)]
+    fn mean_density(&self, density: Lanes<R, N>) -> R {
+        // In differences from the hero's, so that equal densities give exactly that.
+        let difference = density - Lanes::splat(density[0]);
+        density[0] + (self.0 * difference).sum() / self.0.sum()
     }
 
     #[inline(always)]

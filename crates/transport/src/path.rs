@@ -9,6 +9,10 @@
 //! balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5) then weighs lane j by
 //! N·beta_j / Σ densities: plain `beta` as long as all lanes sample alike, N·beta_hero once dispersion has left the hero
 //! alone.
+//!
+//! **Wavelengths and MIS.** Where the lanes' densities of a direction differ, the weights of shadow rays and of the walk
+//! must not depend on which lane is the hero, or the two no longer add up to one for the lanes together. So what meets a
+//! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
 use crate::film::Counters;
 use crate::light::{LightTable, Target};
@@ -59,7 +63,7 @@ pub(crate) enum ShadowRays {
 enum Step<R> {
     /// From the camera or by a delta: no shadow ray could have found what it finds.
     Unshared,
-    /// Drawn with this density from this point of this primitive, where a shadow ray was sent too.
+    /// Drawn with this density, the mean over the lanes, from this point of this primitive, where a shadow ray was sent too.
     Shared { from: Vec3<R>, leaves: SurfaceId, density: R },
 }
 
@@ -124,7 +128,9 @@ impl World<'_> {
             };
             if shared {
                 let u = sampler.vertex_set(vertex, 1);
-                if let Some((index, direct)) = self.direct_light(&point, &scattering, wo, lambda_nm, u, counters) {
+                if let Some((index, direct)) =
+                    self.direct_light(&point, &scattering, wo, (lambda_nm, &lanes), u, counters)
+                {
                     let light = beta * direct * lane_weight;
                     observer.light(vertex, Found::ShadowRay { light: index }, light);
                     radiance += light;
@@ -137,10 +143,11 @@ impl World<'_> {
                 break;
             };
             beta *= next.weight;
-            lanes.follow(next.lane_density);
+            let mean_of_hero = lanes.follow(next.lane_density);
             eta_squared *= next.eta * next.eta;
             step = match next.density {
                 Density::SolidAngle(density) if shared => {
+                    let density = density * mean_of_hero;
                     Step::Shared { from: point.position, leaves: point.surface, density }
                 }
                 Density::SolidAngle(_) | Density::Delta => Step::Unshared,
@@ -194,12 +201,12 @@ impl World<'_> {
 
     /// One shadow ray: ∫ f Le |cos θ| dω over the lights, estimated by one direction toward one of them, with that
     /// light's number.
-    fn direct_light<R: Real, const N: usize>(
+    fn direct_light<R: Real, M: WavelengthModel<R, N>, const N: usize>(
         &self,
         point: &SurfacePoint<R>,
         scattering: &Scattering<'_, R>,
         wo: Vec3<R>,
-        lambda_nm: &Lanes<f64, N>,
+        (lambda_nm, lanes): (&Lanes<f64, N>, &M),
         [u_light, u1, u2, _]: [R; 4],
         counters: &mut Counters,
     ) -> Option<(u32, Lanes<R, N>)> {
@@ -215,7 +222,7 @@ impl World<'_> {
             return None;
         }
         let wi = sample.wi.cast();
-        let (f_cos, bsdf_density) = scattering.eval(lambda_nm, wo, wi);
+        let (f_cos, densities) = scattering.eval(lambda_nm, wo, wi);
         if f_cos.is_zero() {
             return None;
         }
@@ -235,7 +242,7 @@ impl World<'_> {
                 let mis = match self.light_sampling {
                     LightSampling::Light => R::ONE,
                     LightSampling::Bsdf => R::ZERO,
-                    LightSampling::Mis => power_heuristic(R::from_f64(density), bsdf_density),
+                    LightSampling::Mis => power_heuristic(R::from_f64(density), lanes.mean_density(densities)),
                 };
                 mis * R::from_f64(sample.scale / density)
             }

@@ -37,6 +37,18 @@ impl PathSpectrum {
         Self::Grid { first_nm: first, values }
     }
 
+    /// Tabulates a smooth function of the wavelength (nm) at each nanometre of `range_nm`.
+    pub fn tabulate(range_nm: [f64; 2], value: impl Fn(f64) -> f64) -> Self {
+        let (first, last) = (range_nm[0].floor(), range_nm[1].floor() + 1.0);
+        // Beyond the range, where nothing may be known, the value at its end.
+        let at = |nm: f64| value(nm.clamp(range_nm[0], range_nm[1]));
+        let values: Vec<f64> = (0..=(last - first) as usize).map(|i| at(first + i as f64)).collect();
+        if values.iter().all(|v| *v == values[0]) {
+            return Self::Constant(values[0]);
+        }
+        Self::Grid { first_nm: first, values }
+    }
+
     /// Value at a wavelength within the range, nm.
     #[inline]
     pub fn eval(&self, wavelength_nm: f64) -> f64 {

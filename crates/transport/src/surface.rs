@@ -93,7 +93,12 @@ pub(crate) struct Scattering<'a, R> {
 impl<R: Real> Scattering<'_, R> {
     /// See [`Bsdf::eval`].
     #[inline]
-    pub(crate) fn eval<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wo: Vec3<R>, wi: Vec3<R>) -> (Lanes<R, N>, R) {
+    pub(crate) fn eval<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        wo: Vec3<R>,
+        wi: Vec3<R>,
+    ) -> (Lanes<R, N>, Lanes<R, N>) {
         self.bsdf.eval(lambda_nm, &self.at, wo, wi)
     }
 

@@ -159,6 +159,7 @@ proptest! {
         let wo = frame.to_world(direction_at(0.01 + 0.99 * v0, v1));
         let s = sample(&bsdf, n, wo, [0.3, u0, u1]).unwrap();
         let (f_cos, density) = bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), wo, s.wi);
+        let density = density[0];
         prop_assert_eq!(s.density, Density::SolidAngle(density));
         // weight = f·cos/p, up to the rounding of one quotient.
         prop_assert!((s.weight[0] * density - f_cos[0]).abs() <= 4.0 * f64::EPSILON * f_cos[0]);
@@ -182,7 +183,7 @@ fn lambert_integrates_to_its_albedo_and_its_density_to_one() {
         let wi = uniform_sphere([at(i % m), at(i / m)]);
         let (f_cos, density) = bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), wo, wi);
         albedo += f_cos[0] * 4.0 * PI / (m * m) as f64;
-        total += density * 4.0 * PI / (m * m) as f64;
+        total += density[0] * 4.0 * PI / (m * m) as f64;
     }
     // The integrand is linear in the grid's variable on both halves, whose border is a grid line: exact to rounding.
     assert!((albedo - 0.6).abs() < 1e-12 && (total - 1.0).abs() < 1e-12, "{albedo} {total}");

@@ -29,10 +29,10 @@ impl<R: Real> Material<R> {
     }
 
     fn eval(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> (f64, f64) {
-        let lambda = Lanes::<f64, 4>::splat(wavelength_nm);
+        let lambda = Lanes([wavelength_nm]);
         let (f_cos, pdf) =
-            self.bsdf.eval::<R, 4>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), Vec3::from_f64(wi));
-        (f_cos[0].to_f64(), pdf.to_f64())
+            self.bsdf.eval::<R, 1>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), Vec3::from_f64(wi));
+        (f_cos[0].to_f64(), pdf[0].to_f64())
     }
 }
 
@@ -47,10 +47,10 @@ impl<R: Real> Scatters for Material<R> {
     }
 
     fn sample(&self, wo: [f64; 3], u: [f64; 3], wavelength_nm: f64) -> Option<Scattered> {
-        let lambda = Lanes::<f64, 4>::splat(wavelength_nm);
+        let lambda = Lanes([wavelength_nm]);
         // Rounding up to 1 would leave the interval that a sampler promises.
         let u = u.map(|u| R::from_f64(u).min(R::ONE_MINUS_EPSILON));
-        let s = self.bsdf.sample::<R, 4>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), u)?;
+        let s = self.bsdf.sample::<R, 1>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), u)?;
         let wi = s.wi.to_f64().to_array();
         let density = match s.density {
             mis::Density::SolidAngle(pdf) => Density::SolidAngle(pdf.to_f64()),
@@ -70,7 +70,10 @@ impl<R: Real> Scatters for Material<R> {
         let mirrored = [-wo[0], -wo[1], wo[2]];
         let cos = wo[2].abs().min(1.0);
         match &self.kind {
-            MaterialKind::Lambert { .. } | MaterialKind::Black => Vec::new(),
+            MaterialKind::Lambert { .. }
+            | MaterialKind::RoughConductor { .. }
+            | MaterialKind::RoughDielectric { .. }
+            | MaterialKind::Black => Vec::new(),
             MaterialKind::Mirror { reflectance } => {
                 vec![DeltaLobe { wi: mirrored, weight: reflectance.eval(wavelength_nm), probability: 1.0 }]
             }
@@ -98,7 +101,8 @@ impl<R: Real> Scatters for Material<R> {
 
     fn index(&self, above: bool, wavelength_nm: f64) -> f64 {
         match &self.kind {
-            MaterialKind::Dielectric { interior, exterior } => {
+            MaterialKind::Dielectric { interior, exterior }
+            | MaterialKind::RoughDielectric { interior, exterior, .. } => {
                 if above { exterior } else { interior }.eval(wavelength_nm)
             }
             _ => 1.0,
@@ -106,7 +110,11 @@ impl<R: Real> Scatters for Material<R> {
     }
 
     fn wavelengths_nm(&self) -> Vec<f64> {
-        vec![400.0, 550.0, 700.0]
+        match &self.kind {
+            // Seconds a wavelength.
+            MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => vec![550.0],
+            _ => vec![400.0, 550.0, 700.0],
+        }
     }
 
     fn epsilon(&self) -> f64 {
@@ -131,6 +139,23 @@ fn glass<R: Real>(interior: &str, exterior: &str) -> Material<R> {
     Material::new(MaterialKind::Dielectric { interior: index(interior), exterior: index(exterior) })
 }
 
+fn rough_metal<R: Real>(name: &str, alpha: f64, compensated: bool) -> Material<R> {
+    let index = ComplexIndex::named(name).unwrap();
+    Material::new(MaterialKind::RoughConductor { index, alpha, compensated })
+}
+
+/// Reflects everything: n → 0 with k > 0.
+fn lossless_metal(alpha: f64) -> Material<f64> {
+    let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
+    Material::new(MaterialKind::RoughConductor { index, alpha, compensated: true })
+}
+
+fn rough_glass<R: Real>(interior: &str, exterior: &str, alpha: f64, compensated: bool) -> Material<R> {
+    let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
+    let (interior, exterior) = (index(interior), index(exterior));
+    Material::new(MaterialKind::RoughDielectric { interior, exterior, alpha, compensated })
+}
+
 scatters_suite!(lambert_f32, lambert::<f32>());
 scatters_suite!(lambert_f64, lambert::<f64>());
 scatters_suite!(mirror_f32, mirror::<f32>());
@@ -140,6 +165,11 @@ scatters_suite!(aluminium_f64, metal::<f64>("Al"));
 scatters_suite!(glass_f32, glass::<f32>("N-SF11", "vacuum"));
 scatters_suite!(glass_f64, glass::<f64>("N-SF11", "vacuum"));
 scatters_suite!(glass_in_water_f64, glass::<f64>("N-BK7", "water"));
+scatters_suite!(rough_gold_f32, rough_metal::<f32>("Au", 0.3, true));
+scatters_suite!(lossless_metal_furnace, lossless_metal(1.0));
+scatters_suite!(rough_silver_without_compensation, rough_metal::<f64>("Ag", 0.3, false));
+scatters_suite!(rough_glass_f32, rough_glass::<f32>("N-BK7", "vacuum", 0.4, true));
+scatters_suite!(very_rough_diamond_in_water, rough_glass::<f64>("diamond", "water", 1.0, true));
 
 /// One of our area lights, alone in the world.
 struct Lamp {

@@ -9,6 +9,7 @@ mod directions;
 mod fresnel;
 mod intersection;
 mod light;
+mod microfacet;
 mod numerics;
 mod refraction;
 mod sampling;
@@ -25,6 +26,7 @@ pub use light::{
     light_gives_irradiance, light_is_uniform_in_solid_angle, light_laws, light_pdf_integrates_to_one,
     light_sample_is_consistent, light_samples_follow_pdf, rectangle_solid_angle, sphere_solid_angle,
 };
+pub use microfacet::{Masking, SingleScattering, ggx_albedo};
 pub use numerics::{film_mean_is_exact, frame_is_orthonormal, mis_weights_add_up, wavelengths_follow_density};
 pub use refraction::{Crossing, mirror_reflection, snell, snell_sweep, total_internal_reflection};
 pub use sampling::{energy_is_not_created, furnace_agrees, pdf_integrates_to_one, samples_follow_pdf};

@@ -4,13 +4,15 @@ use etalon_optics::index::SellmeierTerm;
 use etalon_optics::{ComplexIndex, OpticsError, OutsideFit, RefractiveIndex};
 use serde_json::json;
 
+use std::ops::Bound;
+
 use super::spectra::{Role, Spectra, accept, outside_message, plain};
 use super::spectrum::{SpectrumForm, Wavelength, check_increasing, check_same_length};
 use crate::json::{
     Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, Rule, SchemaBuilder,
     SchemaValue, Span, Spanned, did_you_mean, listed,
 };
-use crate::model::MaterialKind;
+use crate::model::{LEAST_ALPHA, MaterialKind};
 
 crate::record! {
     /// Ideal diffuse reflection, on both sides.
@@ -29,8 +31,8 @@ crate::record! {
 }
 
 crate::record! {
-    /// Smooth metal: Fresnel reflection from a complex index of refraction n + ik, seen from vacuum. Either the name of a
-    /// metal, or own values.
+    /// Metal: Fresnel reflection from a complex index of refraction n + ik, seen from vacuum. Either the name of a metal, or
+    /// own values.
     pub(crate) struct ConductorMaterial + comment {
         /// A metal with built-in n and k: "Ag", "Au", "Cu" or "Al".
         metal: Optional<Spanned<Metal>>,
@@ -42,6 +44,10 @@ crate::record! {
         k: Optional<List<Spanned<NonNegative>>>,
         /// What holds at wavelengths for which there are no values.
         outside_fit: Required<OutsideFit> = r#""error""#,
+        /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
+        alpha: Required<Spanned<Alpha>> = "0",
+        /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
+        multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
     } with [
         Rule::OneOf(&["metal", "wavelengths_nm"]),
         Rule::Needs("wavelengths_nm", &["n", "k"]),
@@ -57,13 +63,36 @@ crate::keywords!(OutsideFit {
     "clamp" => Self::Clamp,
 });
 
+crate::number! {
+    /// A width of a distribution of facets: 0 or a width that directions can resolve, at most 1.
+    pub(crate) struct Alpha in (Bound::Included(0.0), Bound::Included(1.0));
+}
+
+/// What becomes of light that meets several facets of a rough surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MultipleScattering {
+    Compensated,
+    Lost,
+}
+
+crate::keywords!(MultipleScattering {
+    /// A diffuse lobe gives back what single scattering loses.
+    "compensated" => Self::Compensated,
+    /// Single scattering only, as most renderers do: rough surfaces are too dark.
+    "lost" => Self::Lost,
+});
+
 crate::record! {
-    /// Smooth interface between two transparent media, with dispersion.
+    /// Interface between two transparent media, with dispersion.
     pub(crate) struct DielectricMaterial + comment {
         /// Medium on the side that the surface normal points away from (inside a sphere or a closed mesh).
         interior: Required<IndexForm>,
         /// Medium on the side that the surface normal points into.
         exterior: Required<IndexForm> = "1",
+        /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
+        alpha: Required<Spanned<Alpha>> = "0",
+        /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
+        multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
     }
 }
 
@@ -254,15 +283,38 @@ pub(crate) fn material<'f>(
             Some(MaterialKind::Mirror { reflectance })
         }
         MaterialForm::Conductor(conductor) => {
-            Some(MaterialKind::Conductor { index: complex_index(conductor, spectra.range_nm, reader)? })
+            let index = complex_index(conductor, spectra.range_nm, reader);
+            let alpha = width(conductor.alpha.as_ref(), reader);
+            let compensated = conductor.multiple_scattering? == MultipleScattering::Compensated;
+            Some(match (index?, alpha?) {
+                (index, 0.0) => MaterialKind::Conductor { index },
+                (index, alpha) => MaterialKind::RoughConductor { index, alpha, compensated },
+            })
         }
         MaterialForm::Dielectric(dielectric) => {
             let interior = dielectric.interior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let exterior = dielectric.exterior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
-            Some(MaterialKind::Dielectric { interior: interior?, exterior: exterior? })
+            let alpha = width(dielectric.alpha.as_ref(), reader);
+            let compensated = dielectric.multiple_scattering? == MultipleScattering::Compensated;
+            let (interior, exterior) = (interior?, exterior?);
+            Some(match alpha? {
+                0.0 => MaterialKind::Dielectric { interior, exterior },
+                alpha => MaterialKind::RoughDielectric { interior, exterior, alpha, compensated },
+            })
         }
         MaterialForm::Black(_) => Some(MaterialKind::Black),
     }
+}
+
+/// A width of facets that can be rendered.
+fn width(alpha: Option<&Spanned<Alpha>>, reader: &mut Reader<'_>) -> Option<f64> {
+    let (alpha, at) = alpha.map(|alpha| (alpha.value.0, alpha.at))?;
+    if alpha > 0.0 && alpha < LEAST_ALPHA {
+        let message = format!("a width of {alpha} is narrower than {LEAST_ALPHA}, the least that is rendered");
+        reader.error_hint(Code::OutOfRange, at, message, "0 is smooth");
+        return None;
+    }
+    Some(alpha)
 }
 
 fn complex_index(

@@ -24,13 +24,13 @@ impl Lambert {
         n: Vec3<R>,
         wo: Vec3<R>,
         wi: Vec3<R>,
-    ) -> (Lanes<R, N>, R) {
+    ) -> (Lanes<R, N>, Lanes<R, N>) {
         let cos_i = n.dot(wi);
         if cos_i * n.dot(wo) <= R::ZERO {
-            return (Lanes::ZERO, R::ZERO);
+            return (Lanes::ZERO, Lanes::ZERO);
         }
         let pdf = cos_i.abs() * R::FRAC_1_PI;
-        (self.reflectance.lanes::<R, N>(lambda_nm) * pdf, pdf)
+        (self.reflectance.lanes::<R, N>(lambda_nm) * pdf, Lanes::splat(pdf))
     }
 
     pub(super) fn sample<R: Real, const N: usize>(

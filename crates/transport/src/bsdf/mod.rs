@@ -5,16 +5,22 @@
 //! a normal that is not the surface's own is dealt with. Radiance is what travels: transmission carries the factor 1/η² with
 //! η = n_transmitted / n_incident along the walk from the camera.
 
+mod albedo;
 mod conductor;
 mod dielectric;
 mod lambert;
+mod microfacet;
 mod mirror;
+mod rough_conductor;
+mod rough_dielectric;
 mod shading;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
+pub use rough_conductor::RoughConductor;
+pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
 
 use crate::mis::Density;
@@ -37,6 +43,21 @@ pub struct BsdfSample<R, const N: usize> {
     pub eta: R,
 }
 
+impl<R: Real, const N: usize> BsdfSample<R, N> {
+    /// The sample of a direction drawn with each lane's own `density` as if it were the hero, from what [`Bsdf::eval`] says
+    /// of it; `None` where the hero's density is 0, which rounding may have made of the edge of a lobe.
+    fn scattered(wi: Vec3<R>, f_cos: Lanes<R, N>, density: Lanes<R, N>, eta: R) -> Option<Self> {
+        let hero = density[0];
+        (hero > R::ZERO).then(|| Self {
+            wi,
+            weight: f_cos / hero,
+            density: Density::SolidAngle(hero),
+            lane_density: density / hero,
+            eta,
+        })
+    }
+}
+
 /// Scattering at a surface.
 #[derive(Clone, Debug)]
 pub enum Bsdf {
@@ -48,6 +69,10 @@ pub enum Bsdf {
     Conductor(Conductor),
     /// Smooth interface of two transparent media.
     Dielectric(Dielectric),
+    /// Rough metal.
+    RoughConductor(RoughConductor),
+    /// Rough interface of two transparent media.
+    RoughDielectric(RoughDielectric),
     /// No scattering at all.
     Black,
 }
@@ -64,6 +89,13 @@ impl Bsdf {
             MaterialKind::Dielectric { interior, exterior } => {
                 Self::Dielectric(Dielectric::new(interior.clone(), exterior.clone()))
             }
+            MaterialKind::RoughConductor { index, alpha, compensated } => {
+                Self::RoughConductor(RoughConductor::new(index.clone(), *alpha, *compensated, range_nm))
+            }
+            MaterialKind::RoughDielectric { interior, exterior, alpha, compensated } => {
+                let (interior, exterior) = (interior.clone(), exterior.clone());
+                Self::RoughDielectric(RoughDielectric::new(interior, exterior, *alpha, *compensated, range_nm))
+            }
             MaterialKind::Black => Self::Black,
         }
     }
@@ -72,13 +104,13 @@ impl Bsdf {
     /// direction is a delta, so that a shadow ray would find nothing.
     pub fn has_solid_angle_part(&self) -> bool {
         match self {
-            Self::Lambert(_) => true,
+            Self::Lambert(_) | Self::RoughConductor(_) | Self::RoughDielectric(_) => true,
             Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => false,
         }
     }
 
     /// The BSDF's part without deltas, f(wo, wi)·|cos θ_i| in sr⁻¹, and the density in sr⁻¹ with which
-    /// [`Bsdf::sample`] draws `wi`, which no lane may change.
+    /// [`Bsdf::sample`] would draw `wi` if that lane's wavelength were the hero.
     #[inline]
     pub fn eval<R: Real, const N: usize>(
         &self,
@@ -86,7 +118,7 @@ impl Bsdf {
         at: &Shading<R>,
         wo: Vec3<R>,
         wi: Vec3<R>,
-    ) -> (Lanes<R, N>, R) {
+    ) -> (Lanes<R, N>, Lanes<R, N>) {
         match at.is_bent() {
             false => self.eval_around(lambda_nm, at.normal, at, wo, wi),
             true => shading::eval(self, lambda_nm, at, wo, wi),
@@ -117,10 +149,12 @@ impl Bsdf {
         _at: &Shading<R>,
         wo: Vec3<R>,
         wi: Vec3<R>,
-    ) -> (Lanes<R, N>, R) {
+    ) -> (Lanes<R, N>, Lanes<R, N>) {
         match self {
             Self::Lambert(lambert) => lambert.eval(lambda_nm, n, wo, wi),
-            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => (Lanes::ZERO, R::ZERO),
+            Self::RoughConductor(metal) => metal.eval(lambda_nm, n, wo, wi),
+            Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, wo, wi),
+            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => (Lanes::ZERO, Lanes::ZERO),
         }
     }
 
@@ -139,6 +173,8 @@ impl Bsdf {
             Self::Mirror(mirror) => mirror.sample(lambda_nm, n, wo),
             Self::Conductor(conductor) => conductor.sample(lambda_nm, n, wo),
             Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, n, wo, u[0]),
+            Self::RoughConductor(metal) => metal.sample(lambda_nm, n, wo, u),
+            Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, wo, u),
             Self::Black => None,
         }
     }

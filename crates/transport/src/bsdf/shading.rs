@@ -88,9 +88,9 @@ pub(super) fn eval<R: Real, const N: usize>(
     at: &Shading<R>,
     wo: Vec3<R>,
     wi: Vec3<R>,
-) -> (Lanes<R, N>, R) {
+) -> (Lanes<R, N>, Lanes<R, N>) {
     let (n, viewer) = (at.shading_normal(), at.viewer(wo));
-    let mut sum = (Lanes::ZERO, R::ZERO);
+    let mut sum = (Lanes::ZERO, Lanes::ZERO);
     for direction in [wi, at.mirrored(wi)] {
         if at.belongs(direction, wi) {
             let (f_cos, density) = bsdf.eval_around(lambda_nm, n, at, viewer, direction);
@@ -120,11 +120,7 @@ pub(super) fn sample<R: Real, const N: usize>(
     if let Density::SolidAngle(_) = next.density {
         // Both directions that this one may stand for.
         let (f_cos, density) = eval(bsdf, lambda_nm, at, wo, next.wi);
-        if density <= R::ZERO {
-            return None;
-        }
-        next.weight = f_cos / density;
-        next.density = Density::SolidAngle(density);
+        return BsdfSample::scattered(next.wi, f_cos, density, next.eta);
     }
     Some(next)
 }

@@ -48,13 +48,16 @@ fn surface(object: &Object, material: &Material) -> String {
 
 fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
     match kind {
-        MaterialKind::Dielectric { interior, exterior } => [interior, exterior]
-            .into_iter()
-            .find(|index| index.is_dispersive())
-            .map(|index| index_range(index, range_nm)),
+        MaterialKind::Dielectric { interior, exterior } | MaterialKind::RoughDielectric { interior, exterior, .. } => {
+            [interior, exterior]
+                .into_iter()
+                .find(|index| index.is_dispersive())
+                .map(|index| index_range(index, range_nm))
+        }
         MaterialKind::Lambert { .. }
         | MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
+        | MaterialKind::RoughConductor { .. }
         | MaterialKind::Black => None,
     }
 }
@@ -65,8 +68,10 @@ fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
         MaterialKind::Lambert { reflectance } | MaterialKind::Mirror { reflectance } => {
             (!reflectance.is_constant()).then(|| format!("reflectance {}", spread(range_nm, |nm| reflectance.eval(nm))))
         }
-        MaterialKind::Conductor { index } => index.is_dispersive().then(|| metal_range(index, range_nm)),
-        MaterialKind::Dielectric { .. } => dispersion(kind, range_nm),
+        MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
+            index.is_dispersive().then(|| metal_range(index, range_nm))
+        }
+        MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } => dispersion(kind, range_nm),
         MaterialKind::Black => None,
     }
 }
@@ -76,7 +81,10 @@ fn specular(kind: &MaterialKind) -> Option<String> {
         MaterialKind::Mirror { .. } => Some("a mirror".to_owned()),
         MaterialKind::Conductor { .. } => Some("smooth metal".to_owned()),
         MaterialKind::Dielectric { .. } => Some("a smooth interface of two media".to_owned()),
-        MaterialKind::Lambert { .. } | MaterialKind::Black => None,
+        MaterialKind::Lambert { .. }
+        | MaterialKind::RoughConductor { .. }
+        | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::Black => None,
     }
 }
 
@@ -84,6 +92,7 @@ fn specular(kind: &MaterialKind) -> Option<String> {
 fn is_diffuse(kind: &MaterialKind) -> bool {
     match kind {
         MaterialKind::Lambert { reflectance } => !reflectance.is_zero(),
+        MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => true,
         MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
         | MaterialKind::Dielectric { .. }

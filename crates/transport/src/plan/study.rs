@@ -94,8 +94,10 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                     MaterialKind::Lambert { reflectance } | MaterialKind::Mirror { reflectance } => {
                         *reflectance = grey(reflectance, range_nm);
                     }
-                    MaterialKind::Conductor { index } => *index = grey_metal(index, range_nm),
-                    MaterialKind::Dielectric { .. } | MaterialKind::Black => {}
+                    MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
+                        *index = grey_metal(index, range_nm);
+                    }
+                    MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Black => {}
                 }
             }
             leave_out(EffectName::Dispersion, scene);
@@ -114,7 +116,8 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::Dispersion => {
             for material in &mut scene.materials {
                 match &mut material.kind {
-                    MaterialKind::Dielectric { interior, exterior } => {
+                    MaterialKind::Dielectric { interior, exterior }
+                    | MaterialKind::RoughDielectric { interior, exterior, .. } => {
                         for index in [interior, exterior] {
                             let n = index.eval(middle(range_nm));
                             *index = RefractiveIndex::constant(n).expect("an index of refraction is positive");
@@ -123,6 +126,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                     MaterialKind::Lambert { .. }
                     | MaterialKind::Mirror { .. }
                     | MaterialKind::Conductor { .. }
+                    | MaterialKind::RoughConductor { .. }
                     | MaterialKind::Black => {}
                 }
             }
@@ -149,7 +153,10 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                     MaterialKind::Mirror { .. } | MaterialKind::Conductor { .. } | MaterialKind::Dielectric { .. } => {
                         material.kind = MaterialKind::Black;
                     }
-                    MaterialKind::Lambert { .. } | MaterialKind::Black => {}
+                    MaterialKind::Lambert { .. }
+                    | MaterialKind::RoughConductor { .. }
+                    | MaterialKind::RoughDielectric { .. }
+                    | MaterialKind::Black => {}
                 }
             }
         }

@@ -1,0 +1,148 @@
+//! What single scattering between microfacets loses, tabulated when a scene is prepared, and how it is given back.
+//!
+//! A microfacet model counts light that meets one facet; what meets two is lost, half of it on the roughest metal at grazing
+//! angles. Following Kulla & Conty (2017, *Revisiting Physically Based Shading at Imageworks*) the loss 1 − E(µ) of each
+//! direction comes back as a diffuse lobe (1 − E(µ_o))(1 − E(µ_i))/(π(1 − E_avg)), which is reciprocal and exactly fills the
+//! loss. The table lies below the loss between its nodes too, so that no energy is created: what a lossless surface fails to
+//! return is what the table's interpolation misses, which a test bounds.
+
+use etalon_optics::{Real, Vec3};
+use rayon::prelude::*;
+use std::f64::consts::FRAC_1_PI;
+
+/// Nodes in µ, at (i/(NODES−1))²: dense towards grazing, where the loss changes fastest.
+const NODES: usize = 65;
+/// Nodes in the relative index where it depends on wavelength.
+const INDICES: usize = 2;
+
+/// A loss in [0, 1], linear between nodes in µ and in the relative index η.
+#[derive(Clone, Debug)]
+pub(crate) struct LossTable {
+    /// The index of the first row, and what one row more adds; 0 for a single row.
+    eta: f64,
+    step: f64,
+    rows: Vec<Row>,
+    /// Cumulative share, up to each node, of loss·µ dµ, the mean over the rows: directions are drawn by it.
+    cdf: [f64; NODES],
+}
+
+#[derive(Clone, Debug)]
+struct Row {
+    loss: [f64; NODES],
+    /// 2∫ loss·µ dµ, of the interpolated loss.
+    average: f64,
+}
+
+/// Where an argument lies between nodes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Between {
+    index: usize,
+    share: f64,
+}
+
+fn node(i: usize) -> f64 {
+    let x = i as f64 / (NODES - 1) as f64;
+    x * x
+}
+
+impl LossTable {
+    /// Tabulates `loss(µ, η)`, known to the relative error `error`, for relative indices within `eta`.
+    pub(crate) fn new(eta: [f64; 2], error: f64, loss: impl Fn(f64, f64) -> f64 + Sync) -> Self {
+        let count = if eta[0] == eta[1] { 1 } else { INDICES };
+        let step = if count == 1 { 0.0 } else { (eta[1] - eta[0]) / (count - 1) as f64 };
+        let at = |r: f64| eta[0] + step * r;
+        let row = |r: usize| {
+            let values: Vec<f64> =
+                (0..NODES).into_par_iter().map(|i| loss(node(i).max(1e-6), at(r as f64)).max(0.0)).collect();
+            Row { loss: std::array::from_fn(|i| values[i]), average: 0.0 }
+        };
+        let rows = (0..count).map(row).collect();
+        let mut table = Self { eta: eta[0], step, rows, cdf: [0.0; NODES] };
+        // In the middle between nodes the table errs most. Where it is too high there, its nodes are lowered, which cannot
+        // raise it anywhere else.
+        for r in 0..count {
+            for half in if r + 1 < count { &[0.0, 0.5][..] } else { &[0.0] } {
+                let eta = at(r as f64 + half);
+                let mu = |i: usize| 0.5 * (node(i - 1) + node(i));
+                let exact: Vec<f64> = (1..NODES).into_par_iter().map(|i| loss(mu(i), eta).max(0.0)).collect();
+                for i in 1..NODES {
+                    let (exact, held) = (exact[i - 1], table.eval(mu(i), eta));
+                    if held > exact {
+                        let lowered = &mut table.rows[r..(r + 2).min(count)];
+                        lowered.iter_mut().flat_map(|row| &mut row.loss[i - 1..=i]).for_each(|v| *v *= exact / held);
+                    }
+                }
+            }
+        }
+        for row in &mut table.rows {
+            row.loss.iter_mut().for_each(|v| *v *= 1.0 - error);
+            row.average = (1..NODES).map(|i| cell(&row.loss, i)).sum();
+        }
+        let mean: f64 = table.rows.iter().map(|row| row.average).sum();
+        for i in 1..NODES {
+            let share: f64 = table.rows.iter().map(|row| cell(&row.loss, i)).sum();
+            // Nothing is lost: nothing is ever drawn.
+            table.cdf[i] = table.cdf[i - 1] + if mean > 0.0 { share / mean } else { 0.0 };
+        }
+        table.cdf[NODES - 1] = 1.0;
+        table
+    }
+
+    /// A direction (z > 0) whose cosine follows loss·µ: uniform in µ² between two nodes.
+    pub(crate) fn sample(&self, u: [f64; 2]) -> Vec3<f64> {
+        let i = self.cdf.partition_point(|c| *c <= u[0]).clamp(1, NODES - 1);
+        let within = (u[0] - self.cdf[i - 1]) / (self.cdf[i] - self.cdf[i - 1]);
+        let (a2, b2) = (node(i - 1) * node(i - 1), node(i) * node(i));
+        let z2 = a2 + (b2 - a2) * within;
+        let (sin_phi, cos_phi) = f64::sin_cos_turns(u[1]);
+        let sin = (1.0 - z2).sqrt_nonnegative();
+        Vec3::new(sin * cos_phi, sin * sin_phi, z2.sqrt())
+    }
+
+    /// The density of [`LossTable::sample`] at the cosine `mu`, sr⁻¹.
+    pub(crate) fn density(&self, mu: f64) -> f64 {
+        let i = cell_of(mu);
+        let (a2, b2) = (node(i) * node(i), node(i + 1) * node(i + 1));
+        (self.cdf[i + 1] - self.cdf[i]) / (b2 - a2) * mu * FRAC_1_PI
+    }
+
+    fn row(&self, eta: f64) -> Between {
+        if self.rows.len() == 1 {
+            return Between { index: 0, share: 0.0 };
+        }
+        let x = ((eta - self.eta) / self.step).clamp(0.0, (self.rows.len() - 1) as f64);
+        let index = (x as usize).min(self.rows.len() - 2);
+        Between { index, share: x - index as f64 }
+    }
+
+    /// The loss at the cosine `mu`, in [0, 1], and the relative index `eta`.
+    pub(crate) fn eval(&self, mu: f64, eta: f64) -> f64 {
+        let i = cell_of(mu);
+        let share = ((mu - node(i)) / (node(i + 1) - node(i))).min(1.0);
+        let along = |row: &Row| row.loss[i] + share * (row.loss[i + 1] - row.loss[i]);
+        self.between(eta, along)
+    }
+
+    /// 2∫ loss·µ dµ.
+    pub(crate) fn average(&self, eta: f64) -> f64 {
+        self.between(eta, |row| row.average)
+    }
+
+    fn between(&self, eta: f64, value: impl Fn(&Row) -> f64) -> f64 {
+        let Between { index, share } = self.row(eta);
+        let first = value(&self.rows[index]);
+        if share == 0.0 { first } else { first + share * (value(&self.rows[index + 1]) - first) }
+    }
+}
+
+/// The cell of a cosine: it lies between nodes `i` and `i + 1`.
+fn cell_of(mu: f64) -> usize {
+    ((mu.sqrt() * (NODES - 1) as f64) as usize).min(NODES - 2)
+}
+
+/// 2∫ v·µ dµ between nodes `i − 1` and `i` of values that are linear there: Simpson's rule is exact.
+fn cell(values: &[f64; NODES], i: usize) -> f64 {
+    let (a, b) = (node(i - 1), node(i));
+    let (fa, fb) = (values[i - 1], values[i]);
+    2.0 * (b - a) / 6.0 * (fa * a + (fa + fb) * (a + b) + fb * b)
+}

@@ -1,0 +1,101 @@
+//! Rough metal: GGX facets of Fresnel's reflectance, and what light that meets several facets adds.
+//!
+//! f = F(wo·h) D(h) G₂/(4 cos θ_o cos θ_i) + F_ms (1 − E(µ_o))(1 − E(µ_i))/(π(1 − E_avg)) with
+//! F_ms = F_avg² E_avg/(1 − F_avg(1 − E_avg)): Kulla & Conty 2017, with the colour of the series of bounces, the first of
+//! which cannot escape. E is the albedo of the same facets if they reflected everything.
+
+use super::BsdfSample;
+use super::albedo::LossTable;
+use super::microfacet::{Facing, Ggx, gauss_rule, mean_over_facets};
+use crate::spectral::PathSpectrum;
+use etalon_optics::{ComplexIndex, Lanes, Real, Vec3, fresnel};
+use std::f64::consts::FRAC_1_PI;
+
+/// Rough metal.
+#[derive(Clone, Debug)]
+pub struct RoughConductor {
+    index: ComplexIndex,
+    ggx: Ggx,
+    compensation: Option<Box<Compensation>>,
+}
+
+#[derive(Clone, Debug)]
+struct Compensation {
+    loss: LossTable,
+    /// F_ms/(π(1 − E_avg)).
+    factor: PathSpectrum,
+}
+
+impl RoughConductor {
+    /// A metal of this index whose facets have the width `alpha`, with or without the light that meets several facets.
+    pub fn new(index: ComplexIndex, alpha: f64, compensated: bool, range_nm: [f64; 2]) -> Self {
+        let ggx = Ggx::new(alpha);
+        let compensation = compensated.then(|| {
+            let loss = LossTable::new([1.0, 1.0], 1e-3, |mu, _| mean_over_facets(&ggx, mu, |f| 1.0 - f.mirrored));
+            let missing = loss.average(1.0);
+            let rule = gauss_rule(24);
+            let factor = PathSpectrum::tabulate(range_nm, |nm| {
+                let (n, k) = index.eval(nm);
+                let mean: f64 =
+                    rule.iter().map(|(mu, w)| 2.0 * w * mu * fresnel::conductor(*mu, n, k).reflectance).sum();
+                let several = mean * mean * (1.0 - missing) / (1.0 - mean * missing);
+                if missing > 0.0 { several * FRAC_1_PI / missing } else { 0.0 }
+            });
+            Box::new(Compensation { loss, factor })
+        });
+        Self { index, ggx, compensation }
+    }
+
+    fn loss(&self, mu: f64) -> f64 {
+        self.compensation.as_ref().map_or(0.0, |c| c.loss.eval(mu, 1.0))
+    }
+
+    pub(super) fn eval<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        wi: Vec3<R>,
+    ) -> (Lanes<R, N>, Lanes<R, N>) {
+        let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
+        let (wo, wi) = (facing.wo, facing.local(wi));
+        if wi.z <= 0.0 {
+            return (Lanes::ZERO, Lanes::ZERO);
+        }
+        let single = self.ggx.reflection(wo, wi);
+        let loss = self.loss(wo.z);
+        let several = loss * self.loss(wi.z);
+        let f_cos = Lanes::from_fn(|lane| {
+            let (eta, k) = self.index.eval(lambda_nm[lane]);
+            let mut f = fresnel::conductor(single.cos, eta, k).reflectance * single.term;
+            if let Some(compensation) = &self.compensation {
+                f += several * compensation.factor.eval(lambda_nm[lane]);
+            }
+            R::from_f64(f * wi.z)
+        });
+        let diffuse = self.compensation.as_ref().map_or(0.0, |c| c.loss.density(wi.z));
+        let density = (1.0 - loss) * single.density + loss * diffuse;
+        (f_cos, Lanes::splat(R::from_f64(density)))
+    }
+
+    pub(super) fn sample<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        u: [R; 3],
+    ) -> Option<BsdfSample<R, N>> {
+        let facing = Facing::new(n, wo)?;
+        let [u_lobe, u1, u2] = u.map(R::to_f64);
+        let wi = match &self.compensation {
+            Some(compensation) if u_lobe < compensation.loss.eval(facing.wo.z, 1.0) => {
+                compensation.loss.sample([u1, u2])
+            }
+            _ => facing.wo.reflected_about(self.ggx.visible_normal(facing.wo, [u1, u2])),
+        };
+        let wi = facing.world(wi);
+        // Of the direction as it came out, rounding included: below the surface the light is lost.
+        let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
+        BsdfSample::scattered(wi, f_cos, density, R::ONE)
+    }
+}

@@ -1,0 +1,259 @@
+//! Rough interface between two transparent media: GGX facets that reflect and refract by Fresnel's equations, and what
+//! light that meets several facets adds.
+//!
+//! Single scattering is that of Walter et al. 2007. What it loses comes back as diffuse light on both sides (after Kulla &
+//! Conty 2017), with A, B the mean losses seen from above and from below, M the larger of the two and T_a the mean
+//! transmittance from above, so that Fresnel's reciprocity T_a n_a² = T_b n_b² holds of what is passed on:
+//!
+//! | | f | share of the loss |
+//! |---|---|---|
+//! | above ↔ above | (1 − T_a B/M) ℓ_a(µ_o) ℓ_a(µ_i)/(πA) | 1 − T_a B/M |
+//! | above → below | T_a n_a²/(n_b² π M) ℓ_a(µ_o) ℓ_b(µ_i) | T_a B/M |
+//! | below ↔ below | (1 − T_b A/M) ℓ_b(µ_o) ℓ_b(µ_i)/(πB) | 1 − T_b A/M |
+//!
+//! Facets bend each wavelength by its own angle, but a rough interface sends every wavelength everywhere: all lanes go on
+//! along the hero's direction, each with its own value and its own density of that direction.
+
+use super::BsdfSample;
+use super::albedo::LossTable;
+use super::microfacet::{Facing, Ggx, gauss_rule, mean_over_facets};
+use crate::mis::Density;
+use crate::spectral::PathSpectrum;
+use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel, snell};
+use std::f64::consts::FRAC_1_PI;
+
+/// Rough interface of two transparent media.
+#[derive(Clone, Debug)]
+pub struct RoughDielectric {
+    interior: RefractiveIndex,
+    exterior: RefractiveIndex,
+    ggx: Ggx,
+    dispersive: bool,
+    compensation: Option<Box<Compensation>>,
+}
+
+/// Losses from outside and from inside, over η = n_interior/n_exterior.
+#[derive(Clone, Debug)]
+struct Compensation {
+    outside: LossTable,
+    inside: LossTable,
+    /// Mean of Fresnel's T over diffuse light from outside, at each wavelength.
+    transmittance: PathSpectrum,
+}
+
+/// The interface at one wavelength, seen from the side of `wo`: index 0 is that side, 1 the other.
+#[derive(Clone, Copy)]
+struct Sides<'a> {
+    n: [f64; 2],
+    /// n_interior/n_exterior and the losses.
+    tables: Option<(f64, [&'a LossTable; 2])>,
+    /// Loss in the direction `wo`.
+    loss_o: f64,
+    /// Mean loss on either side.
+    mean_loss: [f64; 2],
+    /// Share of the loss that crosses.
+    crossing: f64,
+}
+
+impl Sides<'_> {
+    /// Loss in a direction on `side`.
+    fn loss_i(&self, side: usize, mu: f64) -> f64 {
+        self.tables.map_or(0.0, |(eta, tables)| tables[side].eval(mu, eta))
+    }
+
+    /// Density with which a direction on `side` is drawn for light that meets several facets.
+    fn diffuse(&self, side: usize, mu: f64) -> f64 {
+        self.tables.map_or(0.0, |(_, tables)| tables[side].density(mu))
+    }
+}
+
+impl RoughDielectric {
+    /// An interface with `interior` behind the outward normal and `exterior` before it, whose facets have the width `alpha`,
+    /// with or without the light that meets several facets.
+    pub fn new(
+        interior: RefractiveIndex,
+        exterior: RefractiveIndex,
+        alpha: f64,
+        compensated: bool,
+        range_nm: [f64; 2],
+    ) -> Self {
+        let ggx = Ggx::new(alpha);
+        let dispersive = interior.is_dispersive() || exterior.is_dispersive();
+        let compensation = compensated.then(|| {
+            let ratio = |nm: f64| interior.eval(nm) / exterior.eval(nm);
+            let mut eta = [ratio(range_nm[0]); 2];
+            for i in 0..=64 {
+                let at = ratio(range_nm[0] + (range_nm[1] - range_nm[0]) * f64::from(i) / 64.0);
+                eta = [eta[0].min(at), eta[1].max(at)];
+            }
+            Box::new(Compensation {
+                outside: LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, eta)),
+                inside: LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, 1.0 / eta)),
+                transmittance: PathSpectrum::tabulate(range_nm, |nm| mean_transmittance(ratio(nm))),
+            })
+        });
+        Self { interior, exterior, ggx, dispersive, compensation }
+    }
+
+    fn sides(&self, wavelength_nm: f64, from_outside: bool, mu: f64) -> Sides<'_> {
+        let (inside, outside) = (self.interior.eval(wavelength_nm), self.exterior.eval(wavelength_nm));
+        let n = if from_outside { [outside, inside] } else { [inside, outside] };
+        let Some(tables) = &self.compensation else {
+            return Sides { n, tables: None, loss_o: 0.0, mean_loss: [0.0; 2], crossing: 0.0 };
+        };
+        let eta = inside / outside;
+        let (near, far) =
+            if from_outside { (&tables.outside, &tables.inside) } else { (&tables.inside, &tables.outside) };
+        let mean_loss = [near.average(eta), far.average(eta)];
+        let larger = mean_loss[0].max(mean_loss[1]);
+        let from_above = tables.transmittance.eval(wavelength_nm);
+        let transmittance = if from_outside { from_above } else { from_above / (eta * eta) };
+        let crossing = if larger > 0.0 { transmittance * mean_loss[1] / larger } else { 0.0 };
+        Sides { n, tables: Some((eta, [near, far])), loss_o: near.eval(mu, eta), mean_loss, crossing }
+    }
+
+    /// f·|cos θ_i| and the density of `wi` at one wavelength.
+    fn at(&self, wavelength_nm: f64, from_outside: bool, wo: Vec3<f64>, wi: Vec3<f64>) -> (f64, f64) {
+        let sides = self.sides(wavelength_nm, from_outside, wo.z);
+        let eta = sides.n[1] / sides.n[0];
+        if eta == 1.0 {
+            // Nothing there: `sample` passes straight through.
+            return (0.0, 0.0);
+        }
+        let mu = wi.z.abs();
+        if wi.z > 0.0 {
+            let facets = self.ggx.reflection(wo, wi);
+            let reflectance = fresnel::dielectric(facets.cos, eta).map_or(1.0, |f| f.reflectance);
+            let (mut f, mut density) = (reflectance * facets.term, reflectance * facets.density);
+            if sides.loss_o > 0.0 {
+                let kept = 1.0 - sides.crossing;
+                let loss_i = sides.loss_i(0, mu);
+                f += kept * sides.loss_o * loss_i * FRAC_1_PI / sides.mean_loss[0];
+                density = (1.0 - sides.loss_o) * density + sides.loss_o * kept * sides.diffuse(0, mu);
+            }
+            return (f * mu, density);
+        }
+        // In an order that does not depend on which of the two is `wo`, so that the BSDF is reciprocal to the last bits.
+        let facets = if from_outside {
+            self.ggx.refraction(wo, sides.n[0], wi, sides.n[1])
+        } else {
+            self.ggx.refraction(-wi, sides.n[1], -wo, sides.n[0])
+        };
+        let (mut f, mut density) = (0.0, 0.0);
+        if let Some(facets) = facets {
+            let (eta_above, g_o) =
+                if from_outside { (eta, facets.g_above) } else { (sides.n[0] / sides.n[1], facets.g_below) };
+            let transmittance = fresnel::dielectric(facets.cos_above, eta_above).map_or(0.0, |f| f.transmittance);
+            f = transmittance * facets.common * facets.g_above * facets.g_below * (sides.n[0] * sides.n[0]);
+            density = transmittance * facets.common * g_o * (sides.n[1] * sides.n[1]);
+        }
+        if sides.loss_o > 0.0 {
+            let loss_i = sides.loss_i(1, mu);
+            if sides.mean_loss[1] > 0.0 {
+                f += sides.crossing * sides.loss_o * loss_i * FRAC_1_PI / (sides.mean_loss[1] * eta * eta);
+            }
+            density = (1.0 - sides.loss_o) * density + sides.loss_o * sides.crossing * sides.diffuse(1, mu);
+        }
+        (f * mu, density)
+    }
+
+    pub(super) fn eval<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        wi: Vec3<R>,
+    ) -> (Lanes<R, N>, Lanes<R, N>) {
+        let from_outside = n.dot(wo) > R::ZERO;
+        let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
+        let wi = facing.local(wi);
+        if wi.z == 0.0 {
+            return (Lanes::ZERO, Lanes::ZERO);
+        }
+        let at = |lane: usize| self.at(lambda_nm[lane], from_outside, facing.wo, wi);
+        if !self.dispersive {
+            let (f_cos, density) = at(0);
+            return (Lanes::splat(R::from_f64(f_cos)), Lanes::splat(R::from_f64(density)));
+        }
+        let both: [(f64, f64); N] = std::array::from_fn(at);
+        (Lanes::from_fn(|lane| R::from_f64(both[lane].0)), Lanes::from_fn(|lane| R::from_f64(both[lane].1)))
+    }
+
+    pub(super) fn sample<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        u: [R; 3],
+    ) -> Option<BsdfSample<R, N>> {
+        let from_outside = n.dot(wo) > R::ZERO;
+        let facing = Facing::new(n, wo)?;
+        let [u_lobe, u1, u2] = u.map(R::to_f64);
+        let hero = self.sides(lambda_nm[0], from_outside, facing.wo.z);
+        let eta = hero.n[1] / hero.n[0];
+        if eta == 1.0 {
+            let lanes = if self.dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE };
+            let (wi, density) = (-wo, Density::Delta);
+            return Some(BsdfSample { wi, weight: lanes, density, lane_density: lanes, eta: R::ONE });
+        }
+        let wi = if u_lobe < hero.loss_o {
+            let crosses = u_lobe < hero.loss_o * hero.crossing;
+            let (_, tables) = hero.tables?;
+            if crosses { -tables[1].sample([u1, u2]) } else { tables[0].sample([u1, u2]) }
+        } else {
+            let u_facet = (u_lobe - hero.loss_o) / (1.0 - hero.loss_o);
+            let h = self.ggx.visible_normal(facing.wo, [u1, u2]);
+            let cos_o = facing.wo.dot(h).min(1.0);
+            match fresnel::dielectric(cos_o, eta) {
+                Some(f) if u_facet >= f.reflectance => {
+                    let wi = snell::refract_with_cosines(facing.wo, h, eta, cos_o, f.cos_t);
+                    // A facet may refract back to the side that the light came from, where the model has no light.
+                    if wi.z >= 0.0 {
+                        return None;
+                    }
+                    wi
+                }
+                _ => {
+                    let wi = facing.wo.reflected_about(h);
+                    if wi.z <= 0.0 {
+                        return None;
+                    }
+                    wi
+                }
+            }
+        };
+        let crossed = wi.z < 0.0;
+        let wi: Vec3<R> = facing.world(wi);
+        // Of the direction as it came out, rounding included.
+        if (facing.local(wi).z < 0.0) != crossed {
+            return None;
+        }
+        let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
+        BsdfSample::scattered(wi, f_cos, density, if crossed { R::from_f64(eta) } else { R::ONE })
+    }
+}
+
+/// What one scattering loses of light from above, for η = n_below/n_above.
+fn loss(ggx: &Ggx, mu: f64, eta: f64) -> f64 {
+    if eta == 1.0 {
+        return 0.0;
+    }
+    mean_over_facets(ggx, mu, |facet| {
+        let Some(f) = fresnel::dielectric(facet.cos, eta) else { return 1.0 - facet.mirrored };
+        let wi = snell::refract_with_cosines(facet.wo, facet.h, eta, facet.cos, f.cos_t);
+        let passed = if wi.z < 0.0 { -2.0 * wi.z / (-wi.z + ggx.stretch(wi)) } else { 0.0 };
+        f.reflectance * (1.0 - facet.mirrored) + f.transmittance * (1.0 - passed)
+    })
+}
+
+/// Mean of Fresnel's T over diffuse light that arrives at an interface of relative index `eta`.
+pub(super) fn mean_transmittance(eta: f64) -> f64 {
+    // In t = √µ the integrand is smooth at grazing angles, and from the denser side it begins at the critical angle.
+    let least = if eta < 1.0 { (1.0 - eta * eta).sqrt() } else { 0.0 };
+    let integral = |(x, weight): &(f64, f64)| {
+        let mu = least + (1.0 - least) * x * x;
+        let t = fresnel::dielectric(mu, eta).map_or(0.0, |f| f.transmittance);
+        weight * 2.0 * mu * t * (1.0 - least) * 2.0 * x
+    };
+    gauss_rule(48).iter().map(integral).sum()
+}
