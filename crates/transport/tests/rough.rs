@@ -89,8 +89,8 @@ fn a_lossless_rough_surface_returns_all_light_and_no_more() {
     for alpha in [1e-3, 0.05, 0.3, 1.0] {
         for mu in [1.0, 0.2, 0.03] {
             let close = |read: f64, what: &str| {
-                // The 2¹⁶ points' own error is about 2e-3.
-                assert!((-7e-3..3e-3).contains(&(read - 1.0)), "{what}, α {alpha}, µ {mu}: {read}");
+                // The 2¹⁶ points leave an error of some 4e-3 where half the light is diffuse.
+                assert!((-1e-2..6e-3).contains(&(read - 1.0)), "{what}, α {alpha}, µ {mu}: {read}");
             };
             close(shares(&mirrors(alpha, true), direction(mu), 1 << 16)[0], "metal");
             let bsdf = glass(RefractiveIndex::Constant(1.5), alpha, true);
