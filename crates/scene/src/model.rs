@@ -148,6 +148,9 @@ pub enum MaterialKind {
         interior: RefractiveIndex,
         /// Medium on the side that the surface normal points into.
         exterior: RefractiveIndex,
+        /// Given, the object is a closed solid of `interior` that is tracked among others: where several overlap, the
+        /// highest priority fills the place, of equal ones the later object. `exterior` is then vacuum and means nothing.
+        priority: Option<u32>,
     },
     /// Rough metal, seen from vacuum.
     RoughConductor {

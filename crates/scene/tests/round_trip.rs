@@ -107,7 +107,7 @@ fn materials_and_spectra() {
     let glass = |name| RefractiveIndex::named(name).expect("a glass");
     assert_eq!(
         kind(&scene, "glass"),
-        &MaterialKind::Dielectric { interior: glass("N-BK7"), exterior: RefractiveIndex::VACUUM }
+        &MaterialKind::Dielectric { interior: glass("N-BK7"), exterior: RefractiveIndex::VACUUM, priority: None }
     );
     assert_eq!(
         kind(&scene, "dispersive"),
@@ -126,7 +126,12 @@ fn materials_and_spectra() {
             exterior: RefractiveIndex::cauchy(1.5, 0.004, 0.0001, Some([400.0, 700.0]))
                 .expect("right")
                 .with_outside(OutsideFit::Clamp),
+            priority: None,
         }
+    );
+    assert_eq!(
+        kind(&scene, "solid"),
+        &MaterialKind::Dielectric { interior: glass("water"), exterior: RefractiveIndex::VACUUM, priority: Some(7) }
     );
     assert_eq!(kind(&scene, "black"), &MaterialKind::Black);
     assert_eq!(kind(&scene, "objects[3].material"), &reflects(Spectrum::Constant(1.0)));

@@ -255,7 +255,7 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                             (0.0..=1.0).contains(&reflectance.eval(nm))
                         }
                         M::Conductor { index } | M::RoughConductor { index, .. } => index.eval(nm).0 > 0.0,
-                        M::Dielectric { interior, exterior } | M::RoughDielectric { interior, exterior, .. } => {
+                        M::Dielectric { interior, exterior, .. } | M::RoughDielectric { interior, exterior, .. } => {
                             interior.eval(nm) > 0.0 && exterior.eval(nm) > 0.0
                         }
                         M::Black => true,

@@ -44,7 +44,7 @@ impl Coordinates {
         primitive: PrimitiveId,
         uv: [R; 2],
         outward: impl FnOnce(Vec3<f64>) -> Vec3<f64>,
-    ) -> Shading<R> {
+    ) -> Shading<'static, R> {
         match self {
             Self::None => Shading::flat(normal),
             Self::Parallelogram { swapped } => {
@@ -63,7 +63,7 @@ impl MeshCoordinates {
         primitive: PrimitiveId,
         uv: [R; 2],
         outward: impl FnOnce(Vec3<f64>) -> Vec3<f64>,
-    ) -> Shading<R> {
+    ) -> Shading<'static, R> {
         let index = primitive.0 - self.first;
         let triangle = self.kept.as_ref().map_or(index, |kept| kept[index as usize]);
         let corners = self.mesh.triangles[triangle as usize].map(|i| i as usize);

@@ -131,6 +131,8 @@ pub struct Counters {
     pub environment_lookups: u64,
     /// Vertices at which weights of the lanes were carried, because dispersion may part them.
     pub lane_weights: u64,
+    /// Boundaries that contradicted what was known of the media around a path, such as a solid left that was not entered.
+    pub lost_media: u64,
     /// Paths cut at the internal limit on vertices rather than ended by the scene: each may lack light.
     pub cut_paths: u64,
     /// Samples that were not finite.
@@ -154,6 +156,7 @@ impl Counters {
         self.lens_draws += other.lens_draws;
         self.environment_lookups += other.environment_lookups;
         self.lane_weights += other.lane_weights;
+        self.lost_media += other.lost_media;
         self.cut_paths += other.cut_paths;
         self.nonfinite += other.nonfinite;
         self.locate(&other.nonfinite_at);

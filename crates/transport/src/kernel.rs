@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use crate::film::{Counters, NonFinite, PixelRect, XyzSum};
+use crate::media::Inside;
 use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
@@ -102,6 +103,7 @@ impl<'a, R: Real> Tracer<'a, R> {
                 surfaces: &prepared.surfaces,
                 lights: &prepared.lights,
                 environments: &prepared.environments,
+                media: prepared.media.as_ref(),
                 light_sampling: integrator.light_sampling,
                 shadow_rays: prepared.shadow_rays(),
                 weigh_hits: prepared.lights.has_surfaces() || plan.runs(EffectName::Mis),
@@ -136,7 +138,14 @@ impl<'a, R: Real> Tracer<'a, R> {
         let film = [R::from_f64(2.0 * column / width - 1.0), R::from_f64(1.0 - 2.0 * row / height)];
         counters.lens_draws += u64::from(self.camera.has_lens());
         let ray = self.camera.ray(film, [lens_1, lens_2]);
-        let radiance = self.world.radiance::<R, M, N>(ray, &wavelengths.lambda_nm, &sampler, counters, observer);
+        let inside = match self.world.media {
+            None => Inside::NOTHING,
+            Some(media) => {
+                media.around(&self.prepared.geometry, &self.prepared.surfaces, &ray, &mut counters.lost_media)
+            }
+        };
+        let radiance =
+            self.world.radiance::<R, M, N>(ray, inside, &wavelengths.lambda_nm, &sampler, counters, observer);
         (wavelengths, radiance)
     }
 }

@@ -9,7 +9,7 @@
 //! | [`prepare`](mod@prepare) | shapes in world space, lights, the accelerator |
 //! | [`plan`] | which effects the scene calls for, and why |
 //! | [`frame`] | centring and scaling |
-//! | `path` | the path loop |
+//! | `path`, `media` | the path loop; which medium it is in |
 //! | `coordinates` | shading normals and texture coordinates |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`] | what the estimates are made of |
@@ -29,6 +29,7 @@ pub mod filter;
 pub mod frame;
 mod kernel;
 pub mod light;
+mod media;
 pub mod mis;
 mod model;
 pub mod observer;

@@ -16,6 +16,7 @@
 
 use crate::film::Counters;
 use crate::light::{LightTable, Target};
+use crate::media::{Inside, Media, Met};
 use crate::mis::{Density, power_heuristic};
 use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
@@ -39,6 +40,8 @@ pub(crate) struct World<'a> {
     pub surfaces: &'a Surfaces,
     pub lights: &'a LightTable,
     pub environments: &'a [PathSpectrum],
+    /// The media, if the scene's solids are nested.
+    pub media: Option<&'a Media>,
     pub light_sampling: LightSampling,
     pub shadow_rays: ShadowRays,
     /// Whether light that the walk runs into may have been found by a shadow ray too.
@@ -72,6 +75,7 @@ impl World<'_> {
     pub(crate) fn radiance<R: Real, M: WavelengthModel<R, N>, const N: usize>(
         &self,
         mut ray: Ray<R>,
+        mut inside: Inside,
         lambda_nm: &Lanes<f64, N>,
         sampler: &Sampler,
         counters: &mut Counters,
@@ -88,7 +92,8 @@ impl World<'_> {
             let lane_weight = lanes.weight();
             counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
             counters.rays += 1;
-            let Some(hit) = self.geometry.closest_hit(&ray) else {
+            let Some(Met { hit, point, surface, interface, beyond }) = self.meet(&mut ray, &mut inside, counters)
+            else {
                 for sky in self.environments {
                     // Never a target of shadow rays: the BSDF's own directions are its best samples.
                     counters.environment_lookups += 1;
@@ -99,8 +104,6 @@ impl World<'_> {
                 observer.end(End::Escaped);
                 break;
             };
-            let point = self.geometry.surface(&ray, &hit);
-            let surface = self.surfaces.of(&point);
             let wo = -ray.direction;
             observer.vertex(vertex, point.position, surface.object, beta);
 
@@ -120,7 +123,7 @@ impl World<'_> {
                 break;
             }
 
-            let scattering = surface.scattering(self.geometry, &point, &hit);
+            let scattering = surface.scattering(self.geometry, &point, &hit, interface);
             let shared = match self.shadow_rays {
                 ShadowRays::Never => false,
                 ShadowRays::WhereUseful => surface.bsdf.has_solid_angle_part(),
@@ -129,7 +132,7 @@ impl World<'_> {
             if shared {
                 let u = sampler.vertex_set(vertex, 1);
                 if let Some((index, direct)) =
-                    self.direct_light(&point, &scattering, wo, (lambda_nm, &lanes), u, counters)
+                    self.direct_light(&point, &scattering, wo, (lambda_nm, &lanes), u, &inside, counters)
                 {
                     let light = beta * direct * lane_weight;
                     observer.light(vertex, Found::ShadowRay { light: index }, light);
@@ -153,6 +156,12 @@ impl World<'_> {
                 Density::SolidAngle(_) | Density::Delta => Step::Unshared,
             };
             ray = point.spawn(next.wi);
+            if let Some(beyond) = beyond {
+                ray.leaves = beyond.leaves;
+                if point.normal.dot(next.wi) * point.normal.dot(wo) < R::ZERO {
+                    inside = beyond.inside;
+                }
+            }
 
             if !beta.is_finite() {
                 // Shown to the film, which counts and locates it.
@@ -175,6 +184,19 @@ impl World<'_> {
             }
         }
         radiance
+    }
+
+    /// What the walk meets next: the closest surface, or the closest that is one where media are nested.
+    #[inline(always)]
+    fn meet<R: Real>(&self, ray: &mut Ray<R>, inside: &mut Inside, counters: &mut Counters) -> Option<Met<'_, R>> {
+        match self.media {
+            None => {
+                let hit = self.geometry.closest_hit(ray)?;
+                let point = self.geometry.surface(ray, &hit);
+                Some(Met { hit, point, surface: self.surfaces.of(&point), interface: None, beyond: None })
+            }
+            Some(media) => media.meet(self.geometry, self.surfaces, ray, inside, &mut counters.lost_media),
+        }
     }
 
     /// The MIS weight of light that the walk ran into `on` a surface whose light, if any, is number `light`.
@@ -201,6 +223,7 @@ impl World<'_> {
 
     /// One shadow ray: ∫ f Le |cos θ| dω over the lights, estimated by one direction toward one of them, with that
     /// light's number.
+    #[allow(clippy::too_many_arguments, reason = "the arguments of the rendering equation, and what counts them")]
     fn direct_light<R: Real, M: WavelengthModel<R, N>, const N: usize>(
         &self,
         point: &SurfacePoint<R>,
@@ -208,6 +231,7 @@ impl World<'_> {
         wo: Vec3<R>,
         (lambda_nm, lanes): (&Lanes<f64, N>, &M),
         [u_light, u1, u2, _]: [R; 4],
+        inside: &Inside,
         counters: &mut Counters,
     ) -> Option<(u32, Lanes<R, N>)> {
         if self.lights.is_empty() {
@@ -231,7 +255,11 @@ impl World<'_> {
             Target::Infinity => point.spawn(wi),
         };
         counters.shadow_rays += 1;
-        if self.geometry.occluded(&shadow_ray) {
+        let occluded = match self.media {
+            None => self.geometry.occluded(&shadow_ray),
+            Some(media) => media.occluded(self.geometry, self.surfaces, shadow_ray, *inside, &mut counters.lost_media),
+        };
+        if occluded {
             return None;
         }
         let probability = self.lights.probability(index);

@@ -5,6 +5,7 @@ use crate::filter::FilterSampler;
 use crate::frame::SceneFrame;
 use crate::kernel::{Kernel, kernel};
 use crate::light::{DirectionalLight, Light, LightTable, PointLight};
+use crate::media::{Media, Solid, open_edges};
 use crate::path::ShadowRays;
 use crate::plan::{EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
 use crate::shapes::{self, SceneShapes};
@@ -13,7 +14,7 @@ use crate::surface::{Emission, ObjectSurface, Surfaces};
 use crate::wavelength::WavelengthDistribution;
 use etalon_geometry::{Geometry, GeometryError, ShapeError, SurfaceId};
 use etalon_optics::{Spectrum, Vec3};
-use etalon_scene::{LightKind, LightSampling, Object, Scene};
+use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, Scene};
 
 /// A scene that is ready to be rendered.
 pub struct Prepared {
@@ -25,6 +26,7 @@ pub struct Prepared {
     pub(crate) surfaces: Surfaces,
     pub(crate) lights: LightTable,
     pub(crate) environments: Vec<PathSpectrum>,
+    pub(crate) media: Option<Media>,
     pub(crate) wavelengths: WavelengthDistribution,
     pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
@@ -54,6 +56,14 @@ pub enum PrepareError {
     /// The scene as a whole cannot be built.
     #[error("the scene's geometry: {0}")]
     Geometry(#[from] GeometryError),
+    /// A dielectric with a priority whose surface bounds no solid.
+    #[error("object \"{object}\" has a dielectric with a priority, but {why}: it bounds no solid")]
+    OpenSolid {
+        /// Name of the object.
+        object: String,
+        /// Where it is open.
+        why: String,
+    },
     /// What the study asks for makes no sense.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -118,9 +128,11 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         object_of,
         light_of,
     };
+    let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene)).transpose()?;
     Ok(Prepared {
         frame,
         camera: frame.camera(&scene.camera),
+        media,
         geometry,
         surfaces,
         lights,
@@ -132,6 +144,22 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         warnings,
         scene: simulated,
     })
+}
+
+/// The solids that carry priorities.
+fn media(scene: &Scene) -> Result<Media, PrepareError> {
+    let solid = |object: &Object| {
+        let MaterialKind::Dielectric { interior, priority: Some(priority), .. } =
+            &scene.materials[object.material].kind
+        else {
+            return Ok(None);
+        };
+        match open_edges(&object.shape) {
+            None => Ok(Some(Solid { priority: *priority, index: interior.clone() })),
+            Some(why) => Err(PrepareError::OpenSolid { object: object.name.clone(), why }),
+        }
+    };
+    Ok(Media { solids: shapes::objects(scene).map(solid).collect::<Result<_, _>>()? })
 }
 
 impl Prepared {

@@ -2,6 +2,7 @@
 
 use crate::bsdf::{Bsdf, BsdfSample, Shading};
 use crate::coordinates::Coordinates;
+use crate::media::Interface;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Real, Vec3};
@@ -58,16 +59,23 @@ impl Surfaces {
 }
 
 impl<'a> Surface<'a> {
-    /// Scattering at a point of it.
+    /// Scattering at a point of it; `interface` has the media on both sides where the place decides them.
     #[inline]
     pub(crate) fn scattering<R: Real>(
         &self,
         geometry: &Geometry,
         point: &SurfacePoint<R>,
         hit: &Hit<R>,
+        interface: Option<Interface<'a>>,
     ) -> Scattering<'a, R> {
         let outward = |normal| geometry.placed_normal(hit.surface, normal);
-        Scattering { bsdf: self.bsdf, at: self.coordinates.at(point.normal, hit.surface.primitive, hit.uv, outward) }
+        let at = self.coordinates.at(point.normal, hit.surface.primitive, hit.uv, outward);
+        Scattering { bsdf: self.bsdf, at: at.between(interface) }
+    }
+
+    /// Whether what the surface does depends on the medium that it stands in.
+    pub(crate) fn takes_medium(&self) -> bool {
+        self.bsdf.takes_medium()
     }
 
     /// The radiance emitted along `wo` where the normal is `n`, if that side emits.
@@ -87,7 +95,7 @@ impl<'a> Surface<'a> {
 /// Scattering at one point.
 pub(crate) struct Scattering<'a, R> {
     bsdf: &'a Bsdf,
-    at: Shading<R>,
+    at: Shading<'a, R>,
 }
 
 impl<R: Real> Scattering<'_, R> {

@@ -22,7 +22,7 @@ fn mirror() -> Bsdf {
 
 fn glass(interior: RefractiveIndex) -> Bsdf {
     let exterior = RefractiveIndex::constant(1.0).unwrap();
-    Bsdf::new(&MaterialKind::Dielectric { interior, exterior }, RANGE_NM)
+    Bsdf::new(&MaterialKind::Dielectric { interior, exterior, priority: None }, RANGE_NM)
 }
 
 fn sample<R: Real>(bsdf: &Bsdf, n: Vec3<R>, wo: Vec3<R>, u: [f64; 3]) -> Option<BsdfSample<R, 4>> {

@@ -101,7 +101,7 @@ impl<R: Real> Scatters for Material<R> {
 
     fn index(&self, above: bool, wavelength_nm: f64) -> f64 {
         match &self.kind {
-            MaterialKind::Dielectric { interior, exterior }
+            MaterialKind::Dielectric { interior, exterior, .. }
             | MaterialKind::RoughDielectric { interior, exterior, .. } => {
                 if above { exterior } else { interior }.eval(wavelength_nm)
             }
@@ -136,7 +136,7 @@ fn metal<R: Real>(name: &str) -> Material<R> {
 
 fn glass<R: Real>(interior: &str, exterior: &str) -> Material<R> {
     let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
-    Material::new(MaterialKind::Dielectric { interior: index(interior), exterior: index(exterior) })
+    Material::new(MaterialKind::Dielectric { interior: index(interior), exterior: index(exterior), priority: None })
 }
 
 fn rough_metal<R: Real>(name: &str, alpha: f64, compensated: bool) -> Material<R> {

@@ -20,7 +20,7 @@ fn direction(u: [f64; 2]) -> Vec3<f64> {
     uniform_sphere(u)
 }
 
-fn bent(tilt: f64, turns: f64) -> Shading<f64> {
+fn bent(tilt: f64, turns: f64) -> Shading<'static, f64> {
     let (sin_phi, cos_phi) = (turns * 2.0 * PI).sin_cos();
     Shading::flat(UP).bent_to(Vec3::new(tilt.sin() * cos_phi, tilt.sin() * sin_phi, tilt.cos()).normalized())
 }
@@ -78,7 +78,7 @@ proptest! {
         let s = mirror.sample(&LAMBDA_NM, &at, wo, [u, 0.5, 0.5]).unwrap();
         prop_assert!(s.wi.z * wo.z > 0.0 && s.weight[0] == 1.0);
         let (interior, exterior) = (RefractiveIndex::constant(1.5).unwrap(), RefractiveIndex::constant(1.0).unwrap());
-        let glass = Bsdf::new(&MaterialKind::Dielectric { interior, exterior }, [380.0, 780.0]);
+        let glass = Bsdf::new(&MaterialKind::Dielectric { interior, exterior, priority: None }, [380.0, 780.0]);
         let s = glass.sample(&LAMBDA_NM, &at, wo, [u, 0.5, 0.5]).unwrap();
         let crosses = s.wi.z * wo.z < 0.0;
         let eta = if wo.z > 0.0 { 1.5 } else { 1.0 / 1.5 };

@@ -80,6 +80,7 @@ impl Claim {
             Self::DepthLimit => "depth-limit",
             Self::NestedMedia => "nested-media",
             Self::PhotometricSensor => "photometric-sensor",
+            Self::Priorities => "priorities",
         }
     }
 }

@@ -19,6 +19,7 @@ mod judge;
 mod lamps;
 mod prisms;
 mod scene;
+mod solids;
 mod view_factors;
 mod water;
 
@@ -53,11 +54,13 @@ pub enum Claim {
     NestedMedia,
     /// Its sensor is CIE Y: a wavelength counts as ȳ of the CIE 1931 2° observer.
     PhotometricSensor,
+    /// Knows which of several solids fills a place that they share: the one of the highest priority, of equal ones the later.
+    Priorities,
 }
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 7] = [
+    pub const UNPOLARISED: [Self; 8] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -65,6 +68,7 @@ impl Claim {
         Self::DepthLimit,
         Self::NestedMedia,
         Self::PhotometricSensor,
+        Self::Priorities,
     ];
 }
 
@@ -233,6 +237,7 @@ pub fn truths() -> Vec<Truth> {
         lamps::truths(),
         view_factors::truths(),
         glass::truths(),
+        solids::truths(),
         water::truths(),
         prisms::truths(),
         cameras::truths(),

@@ -229,6 +229,11 @@ pub(super) fn glass_in(interior: f64, exterior: f64) -> Value {
     json!({ "type": "dielectric", "interior": interior, "exterior": exterior })
 }
 
+/// A closed solid of this index among others: where they overlap, the highest priority fills the place.
+pub(super) fn solid(interior: f64, priority: u32) -> Value {
+    json!({ "type": "dielectric", "interior": interior, "priority": priority })
+}
+
 /// A glass by Sellmeier's formula, coefficients B and C (µm²).
 pub(super) fn sellmeier_glass(b: [f64; 3], c_um2: [f64; 3]) -> Value {
     let index = json!({ "type": "sellmeier", "b": b, "c_um2": c_um2, "range_nm": [300, 2500] });

@@ -10,7 +10,7 @@ use super::spectra::{Role, Spectra, accept, outside_message, plain};
 use super::spectrum::{SpectrumForm, Wavelength, check_increasing, check_same_length};
 use crate::json::{
     Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, Rule, SchemaBuilder,
-    SchemaValue, Span, Spanned, did_you_mean, listed,
+    SchemaValue, Span, Spanned, Whole, did_you_mean, listed,
 };
 use crate::model::{LEAST_ALPHA, MaterialKind};
 
@@ -93,7 +93,10 @@ crate::record! {
         alpha: Required<Spanned<Alpha>> = "0",
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
         multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
-    }
+        /// For a smooth, closed solid that touches, overlaps or holds other solids: where several overlap, the one of the highest
+        /// priority fills the place; of equal priorities, the object that comes later. It replaces `exterior`.
+        priority: Optional<Whole<0, { u32::MAX as u64 }>>,
+    } with [Rule::NotBoth("exterior", "priority"), Rule::NotBoth("alpha", "priority")]
 }
 
 crate::record! {
@@ -296,9 +299,10 @@ pub(crate) fn material<'f>(
             let exterior = dielectric.exterior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let alpha = width(dielectric.alpha.as_ref(), reader);
             let compensated = dielectric.multiple_scattering? == MultipleScattering::Compensated;
+            let priority = dielectric.priority.clone().checked()?.map(|priority| priority.0 as u32);
             let (interior, exterior) = (interior?, exterior?);
             Some(match alpha? {
-                0.0 => MaterialKind::Dielectric { interior, exterior },
+                0.0 => MaterialKind::Dielectric { interior, exterior, priority },
                 alpha => MaterialKind::RoughDielectric { interior, exterior, alpha, compensated },
             })
         }

@@ -11,6 +11,8 @@ pub enum Rule {
     OneOf(&'static [&'static str]),
     /// Where the first key is, the others must be.
     Needs(&'static str, &'static [&'static str]),
+    /// Two keys that exclude each other.
+    NotBoth(&'static str, &'static str),
 }
 
 /// A type that is an object with known keys; [`record!`](crate::record) declares them.
@@ -122,6 +124,13 @@ impl<'n> ObjectReader<'n> {
                         reader.error_related(Code::KeyConflict, other, message, "keep one of them", label);
                     }
                     (Some(_), None) => {}
+                }
+            }
+            Rule::NotBoth(first, second) => {
+                if let (Some((first_at, _)), Some((second_at, _))) = (self.get(first), self.get(second)) {
+                    let message = format!("\"{first}\" and \"{second}\" exclude each other");
+                    let label = (first_at, "the other one");
+                    reader.error_related(Code::KeyConflict, second_at, message, "keep one of them", label);
                 }
             }
             Rule::Needs(key, others) => {

@@ -93,6 +93,9 @@ pub fn record_schema<R: Record>(tag: Option<(&str, &str)>, schema: &mut SchemaBu
                 let each: Vec<Value> = keys.iter().map(|key| json!({ "required": [key] })).collect();
                 choices.push(json!({ "oneOf": each }));
             }
+            Rule::NotBoth(first, second) => {
+                choices.push(json!({ "not": { "required": [first, second] } }));
+            }
             Rule::Needs(key, others) => {
                 needs.insert(key.to_owned(), json!(others));
             }

@@ -344,3 +344,15 @@ fn keys_that_go_together() {
         ),
     );
 }
+
+#[test]
+fn a_priority_replaces_the_exterior() {
+    error(
+        Code::KeyConflict,
+        "$.objects[0].material.priority",
+        objects(
+            "[{\"shape\": {\"type\": \"sphere\", \"radius_m\": 1}, \"material\": {\"type\": \"dielectric\", \"interior\": 1.5, \
+             \"exterior\": 1.33, \"priority\": «2»}}]",
+        ),
+    );
+}

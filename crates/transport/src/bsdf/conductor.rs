@@ -1,6 +1,8 @@
-//! Smooth metal: Fresnel reflection from a complex refractive index n + ik, seen from vacuum, s and p averaged.
+//! Smooth metal: Fresnel reflection from a complex refractive index n + ik, relative to the medium it stands in (vacuum, if
+//! media are not tracked), s and p averaged.
 
 use super::BsdfSample;
+use crate::media::Interface;
 use crate::mis::Density;
 use etalon_optics::{ComplexIndex, Lanes, Real, Vec3, fresnel};
 
@@ -21,6 +23,7 @@ impl Conductor {
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<R>,
         wo: Vec3<R>,
+        interface: Option<Interface<'_>>,
     ) -> Option<BsdfSample<R, N>> {
         // Rounding may carry the product of two unit vectors past 1.
         let cos_o = n.dot(wo).abs().min(R::ONE);
@@ -28,7 +31,8 @@ impl Conductor {
             wi: wo.reflected_about(n).renormalized(),
             weight: Lanes::from_fn(|lane| {
                 let (eta, k) = self.index.eval(lambda_nm[lane]);
-                fresnel::conductor(cos_o, R::from_f64(eta), R::from_f64(k)).reflectance
+                let around = interface.map_or(1.0, |media| media.incident.eval(lambda_nm[lane]));
+                fresnel::conductor(cos_o, R::from_f64(eta / around), R::from_f64(k / around)).reflectance
             }),
             density: Density::Delta,
             lane_density: Lanes::ONE,

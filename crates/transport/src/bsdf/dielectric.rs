@@ -5,6 +5,7 @@
 //! balance heuristic over lanes needs (Wilkie et al. 2014, eq. 5).
 
 use super::BsdfSample;
+use crate::media::Interface;
 use crate::mis::Density;
 use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel, snell};
 
@@ -24,7 +25,10 @@ impl Dielectric {
     }
 
     /// n_transmitted / n_incident for a path that arrives on the outside, or on the inside.
-    fn eta<R: Real>(&self, lambda_nm: f64, from_outside: bool) -> R {
+    fn eta<R: Real>(&self, lambda_nm: f64, from_outside: bool, interface: Option<Interface<'_>>) -> R {
+        if let Some(media) = interface {
+            return R::from_f64(media.transmitted.eval(lambda_nm) / media.incident.eval(lambda_nm));
+        }
         let (inside, outside) = (self.interior.eval(lambda_nm), self.exterior.eval(lambda_nm));
         R::from_f64(if from_outside { inside / outside } else { outside / inside })
     }
@@ -35,24 +39,29 @@ impl Dielectric {
         n: Vec3<R>,
         wo: Vec3<R>,
         u: R,
+        interface: Option<Interface<'_>>,
     ) -> Option<BsdfSample<R, N>> {
         let from_outside = n.dot(wo) > R::ZERO;
         let n = if from_outside { n } else { -n };
         // Rounding may carry the product of two unit vectors past 1.
         let cos_o = n.dot(wo).min(R::ONE);
+        let dispersive = match interface {
+            Some(media) => media.incident.is_dispersive() || media.transmitted.is_dispersive(),
+            None => self.dispersive,
+        };
         // Whether a wavelength is reflected for certain, or how likely and, if it is not, where it goes.
-        let interface = |lane: usize| {
-            let eta: R = self.eta(lambda_nm[lane], from_outside);
+        let at = |lane: usize| {
+            let eta: R = self.eta(lambda_nm[lane], from_outside, interface);
             (eta, fresnel::dielectric(cos_o, eta))
         };
-        let (eta, hero) = interface(0);
+        let (eta, hero) = at(0);
         let reflectance = hero.map_or(R::ONE, |f| f.reflectance);
 
         if u < reflectance {
-            let lane_density = if self.dispersive {
+            let lane_density = if dispersive {
                 Lanes::from_fn(|lane| match lane {
                     0 => R::ONE,
-                    _ => interface(lane).1.map_or(R::ONE, |f| f.reflectance) / reflectance,
+                    _ => at(lane).1.map_or(R::ONE, |f| f.reflectance) / reflectance,
                 })
             } else {
                 Lanes::ONE
@@ -66,7 +75,7 @@ impl Dielectric {
             });
         }
         let wi = snell::refract_with_cosines(wo, n, eta, cos_o, hero?.cos_t);
-        let lane_density = if self.dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE };
+        let lane_density = if dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE };
         Some(BsdfSample {
             wi,
             // T/(1 − R) = 1 in exact arithmetic; radiance is compressed into the denser medium, or spread from it.

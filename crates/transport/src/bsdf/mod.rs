@@ -86,7 +86,7 @@ impl Bsdf {
             }
             MaterialKind::Mirror { reflectance } => Self::Mirror(Mirror::new(PathSpectrum::new(reflectance, range_nm))),
             MaterialKind::Conductor { index } => Self::Conductor(Conductor::new(index.clone())),
-            MaterialKind::Dielectric { interior, exterior } => {
+            MaterialKind::Dielectric { interior, exterior, .. } => {
                 Self::Dielectric(Dielectric::new(interior.clone(), exterior.clone()))
             }
             MaterialKind::RoughConductor { index, alpha, compensated } => {
@@ -164,18 +164,30 @@ impl Bsdf {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<R>,
-        _at: &Shading<R>,
+        at: &Shading<R>,
         wo: Vec3<R>,
         u: [R; 3],
     ) -> Option<BsdfSample<R, N>> {
         match self {
             Self::Lambert(lambert) => lambert.sample(lambda_nm, n, wo, [u[1], u[2]]),
             Self::Mirror(mirror) => mirror.sample(lambda_nm, n, wo),
-            Self::Conductor(conductor) => conductor.sample(lambda_nm, n, wo),
-            Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, n, wo, u[0]),
+            Self::Conductor(conductor) => conductor.sample(lambda_nm, n, wo, at.media()),
+            Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, n, wo, u[0], at.media()),
             Self::RoughConductor(metal) => metal.sample(lambda_nm, n, wo, u),
             Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, wo, u),
             Self::Black => None,
+        }
+    }
+
+    /// Whether what it does depends on the medium that it stands in.
+    pub(crate) fn takes_medium(&self) -> bool {
+        match self {
+            Self::Conductor(_) => true,
+            // It states its own, unless it bounds a solid with a priority.
+            Self::Dielectric(_) | Self::RoughDielectric(_) => false,
+            // Its table of lost light is made for vacuum.
+            Self::RoughConductor(_) => false,
+            Self::Lambert(_) | Self::Mirror(_) | Self::Black => false,
         }
     }
 }

@@ -19,30 +19,44 @@
 //! Algorithms*): paths from the camera are estimated rightly, paths from lights would need a correction.
 
 use super::{Bsdf, BsdfSample};
+use crate::media::Interface;
 use crate::mis::Density;
 use etalon_optics::{Lanes, Real, Vec3};
 
 /// A surface point as scattering sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Shading<R> {
+pub struct Shading<'a, R> {
     /// Unit normal of the surface itself, on its own outward side.
     pub normal: Vec3<R>,
     /// Unit normal to scatter around, on the same side, where it is another one.
     bent: Option<Vec3<R>>,
     /// Texture coordinates; 0 on a surface without.
     pub uv: [f64; 2],
+    /// The media on both sides, where the place decides them and not the material.
+    media: Option<Interface<'a>>,
 }
 
-impl<R: Real> Shading<R> {
+impl<'a, R: Real> Shading<'a, R> {
     /// Of a surface that is what it looks like, without texture coordinates.
     pub fn flat(normal: Vec3<R>) -> Self {
-        Self { normal, bent: None, uv: [0.0; 2] }
+        Self { normal, bent: None, uv: [0.0; 2], media: None }
     }
 
     /// The same with texture coordinates.
     #[must_use]
     pub fn with_uv(self, uv: [f64; 2]) -> Self {
         Self { uv, ..self }
+    }
+
+    /// The same between two media.
+    #[must_use]
+    pub(crate) fn between(self, media: Option<Interface<'a>>) -> Self {
+        Self { media, ..self }
+    }
+
+    /// The media on both sides, where the place decides them.
+    pub(super) fn media(&self) -> Option<Interface<'a>> {
+        self.media
     }
 
     /// The same with a unit vector to scatter around; one on the other side of the surface is turned around.

@@ -25,6 +25,10 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             Some(found) => Ok(found),
             None => nothing("no mirror, metal or glass"),
         },
+        EffectName::NestedDielectrics => match first_surface(scene, |material, _| nested(&material.kind)) {
+            Some(found) => Ok(found),
+            None => nothing("no dielectric carries a priority"),
+        },
         EffectName::WideFilter => match scene.film.filter {
             Filter::Box => nothing("a pixel is its own square"),
             Filter::Tent { radius_px } => Ok(format!("film: tent of radius {radius_px} px")),
@@ -48,12 +52,11 @@ fn surface(object: &Object, material: &Material) -> String {
 
 fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
     match kind {
-        MaterialKind::Dielectric { interior, exterior } | MaterialKind::RoughDielectric { interior, exterior, .. } => {
-            [interior, exterior]
-                .into_iter()
-                .find(|index| index.is_dispersive())
-                .map(|index| index_range(index, range_nm))
-        }
+        MaterialKind::Dielectric { interior, exterior, .. }
+        | MaterialKind::RoughDielectric { interior, exterior, .. } => [interior, exterior]
+            .into_iter()
+            .find(|index| index.is_dispersive())
+            .map(|index| index_range(index, range_nm)),
         MaterialKind::Lambert { .. }
         | MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
@@ -84,6 +87,17 @@ fn specular(kind: &MaterialKind) -> Option<String> {
         MaterialKind::Lambert { .. }
         | MaterialKind::RoughConductor { .. }
         | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::Black => None,
+    }
+}
+
+fn nested(kind: &MaterialKind) -> Option<String> {
+    match kind {
+        MaterialKind::Dielectric { priority, .. } => priority.map(|priority| format!("priority {priority}")),
+        MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => None,
+        MaterialKind::Lambert { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::Conductor { .. }
         | MaterialKind::Black => None,
     }
 }

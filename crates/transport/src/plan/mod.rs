@@ -35,13 +35,15 @@ pub enum EffectName {
     Environment,
     /// Mirrors, metals and glass hand light on in single directions.
     SpecularChains,
+    /// Solids of different media touch, overlap or hold each other.
+    NestedDielectrics,
     /// A pixel looks beyond its own square.
     WideFilter,
 }
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Lens,
@@ -49,6 +51,7 @@ impl EffectName {
         Self::Mis,
         Self::Environment,
         Self::SpecularChains,
+        Self::NestedDielectrics,
         Self::WideFilter,
     ];
 
@@ -62,6 +65,7 @@ impl EffectName {
             Self::Mis => "mis",
             Self::Environment => "environment",
             Self::SpecularChains => "specular-chains",
+            Self::NestedDielectrics => "nested-dielectrics",
             Self::WideFilter => "wide-filter",
         }
     }
@@ -78,6 +82,7 @@ impl EffectName {
             Self::Mis => "the same mean, with more noise where shadow rays are a bad guess",
             Self::Environment => "light from infinity is left out",
             Self::SpecularChains => "mirrors, metals and glass are black",
+            Self::NestedDielectrics => "each solid is treated as if it stood in vacuum",
             Self::WideFilter => "a pixel is its own square",
         }
     }
@@ -88,6 +93,7 @@ impl EffectName {
             Self::Wavelengths | Self::Dispersion | Self::Lens | Self::ShadowRays | Self::Mis | Self::Environment => {
                 true
             }
+            Self::NestedDielectrics => true,
             // They are what the surfaces, or the film, are made of.
             Self::SpecularChains | Self::WideFilter => false,
         }

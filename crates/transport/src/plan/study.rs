@@ -116,7 +116,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::Dispersion => {
             for material in &mut scene.materials {
                 match &mut material.kind {
-                    MaterialKind::Dielectric { interior, exterior }
+                    MaterialKind::Dielectric { interior, exterior, .. }
                     | MaterialKind::RoughDielectric { interior, exterior, .. } => {
                         for index in [interior, exterior] {
                             let n = index.eval(middle(range_nm));
@@ -156,6 +156,18 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                     MaterialKind::Lambert { .. }
                     | MaterialKind::RoughConductor { .. }
                     | MaterialKind::RoughDielectric { .. }
+                    | MaterialKind::Black => {}
+                }
+            }
+        }
+        EffectName::NestedDielectrics => {
+            for material in &mut scene.materials {
+                match &mut material.kind {
+                    MaterialKind::Dielectric { priority, .. } => *priority = None,
+                    MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => {}
+                    MaterialKind::Lambert { .. }
+                    | MaterialKind::Mirror { .. }
+                    | MaterialKind::Conductor { .. }
                     | MaterialKind::Black => {}
                 }
             }

@@ -32,6 +32,7 @@ pub(super) struct RenderJson<'a> {
     lens_draws: u64,
     environment_lookups: u64,
     lane_weights: u64,
+    lost_media: u64,
     /// Paths cut at the renderer's own limit on vertices.
     cut_paths: u64,
     nonfinite: u64,
@@ -141,6 +142,7 @@ pub(super) fn json<'a>(
         lens_draws: counters.lens_draws,
         environment_lookups: counters.environment_lookups,
         lane_weights: counters.lane_weights,
+        lost_media: counters.lost_media,
         cut_paths: counters.cut_paths,
         nonfinite: counters.nonfinite,
         nonfinite_at: counters.nonfinite_at.iter().map(|at| [at.x, at.y, at.sample]).collect(),

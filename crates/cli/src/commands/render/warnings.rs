@@ -7,7 +7,7 @@ use super::Args;
 
 /// Everything that the counters give reason to warn of.
 pub(super) fn of(args: &Args, counters: &Counters) -> Vec<Report> {
-    nonfinite(args, counters).into_iter().chain(cut_paths(counters)).collect()
+    nonfinite(args, counters).into_iter().chain(cut_paths(counters)).chain(lost_media(counters)).collect()
 }
 
 /// Says which samples were not finite, and how to see their paths.
@@ -42,6 +42,20 @@ fn cut_paths(counters: &Counters) -> Option<Report> {
             help = "with Russian roulette, and any absorption, paths end by themselves",
             "{} of {} paths were cut at the most vertices that are traced, and may lack light",
             counters.cut_paths,
+            counters.paths
+        )
+    })
+}
+
+/// Says how often the media around a path contradicted themselves.
+fn lost_media(counters: &Counters) -> Option<Report> {
+    (counters.lost_media > 0).then(|| {
+        miette!(
+            severity = miette::Severity::Warning,
+            code = "lost-media",
+            help = "solids with a priority must be closed, and their normals point outward",
+            "{} times a path left a solid that it had not entered, or entered too many ({} paths in all)",
+            counters.lost_media,
             counters.paths
         )
     })
