@@ -91,7 +91,7 @@ fn what_was_not_needed_can_be_measured() {
     let report = etalon_line("explain {} --measure --json", [&small]).expect(0).json();
     let costs = report["costs"].as_array().unwrap();
     let names: Vec<_> = costs.iter().map(|cost| cost["effect"].as_str().unwrap()).collect();
-    assert_eq!(names, ["wavelengths", "dispersion", "lens", "shadow-rays", "mis"]);
+    assert_eq!(names, ["wavelengths", "dispersion", "lens", "shadow-rays", "mis", "nested-dielectrics"]);
     assert!(costs.iter().all(|cost| cost["ratio"].as_f64().unwrap() > 0.0));
     let text = etalon_line("explain {} --measure", [&small]).expect(0).stdout;
     assert_eq!(text.matches("(would cost ").count(), names.len(), "{text}");

@@ -74,9 +74,9 @@ fn prepared(scene: &Scene, study: &Study) -> Result<Prepared, Failure> {
 fn describe(plan: &Plan, costs: &[Cost]) -> String {
     let mut lines: Vec<String> = plan.effects.iter().map(|effect| line(effect, costs)).collect();
     lines.push(String::new());
-    lines.extend(how(plan).into_iter().map(|(what, value)| format!("{what:<16} {value}")));
+    lines.extend(how(plan).into_iter().map(|(what, value)| format!("{what:<18} {value}")));
     for lost in &plan.approximations {
-        lines.push(format!("{:<16} without {lost}", "approximation"));
+        lines.push(format!("{:<18} without {lost}", "approximation"));
     }
     lines.join("\n")
 }
@@ -93,7 +93,7 @@ fn line(effect: &Effect, costs: &[Cost]) -> String {
         let [low, high] = cost.quartiles.map(percent);
         format!(" (would cost {}, quartiles {low} to {high})", percent(cost.ratio))
     });
-    format!("{:<16} {state:<4} {study}{}{cost}", effect.name, effect.because)
+    format!("{:<18} {state:<4} {study}{}{cost}", effect.name, effect.because)
 }
 
 fn how(plan: &Plan) -> Vec<(&'static str, String)> {

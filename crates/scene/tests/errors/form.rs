@@ -352,7 +352,7 @@ fn a_priority_replaces_the_exterior() {
         "$.objects[0].material.priority",
         objects(
             "[{\"shape\": {\"type\": \"sphere\", \"radius_m\": 1}, \"material\": {\"type\": \"dielectric\", \"interior\": 1.5, \
-             \"exterior\": 1.33, \"priority\": «2»}}]",
+             \"exterior\": 1.33, «\"priority\"»: 2}}]",
         ),
     );
 }
