@@ -304,7 +304,7 @@ fn costs(primitives: &[Primitive]) -> Costs {
     let leaf_limit = if primitives.iter().any(|p| matches!(p, Primitive::Instance(_))) { 1 } else { 8 };
     let filtered = |p: &&Primitive| matches!(p, Primitive::Triangle(_) | Primitive::Sphere(_));
     let most = primitives.iter().filter(filtered).count() > primitives.len() / 2;
-    Costs { block: if most { 8 } else { 1 }, leaf_limit, node: 0.5 }
+    Costs { block: if most { 8 } else { 1 }, leaf_limit, node: 0.35 }
 }
 
 /// The closest hit so far.
@@ -351,17 +351,28 @@ impl Best {
     /// Takes what a test with a limit finds for a primitive, if it is the best so far.
     #[inline(always)]
     pub(crate) fn take(&mut self, id: PrimitiveId, intersect: impl FnOnce(f64) -> Option<RawHit>) -> bool {
-        // An equal distance counts for a lower id, whatever the order of the tests.
-        let t_max = match self.hit {
-            Some((hit, best)) if id < best => hit.t.next_up(),
-            _ => self.t_max,
-        };
-        let found = intersect(t_max);
+        let found = intersect(self.limit(id));
         if let Some(hit) = found {
-            self.hit = Some((hit, id));
-            self.within = None;
-            self.t_max = hit.t;
+            self.set(hit, id);
         }
         found.is_some()
+    }
+
+    /// The end, exclusive, up to which a hit of a primitive is the best so far.
+    #[inline(always)]
+    pub(crate) fn limit(&self, id: PrimitiveId) -> f64 {
+        // An equal distance counts for a lower id, whatever the order of the tests.
+        match self.hit {
+            Some((hit, best)) if id < best => hit.t.next_up(),
+            _ => self.t_max,
+        }
+    }
+
+    /// Takes a hit that is the best so far.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, hit: RawHit, id: PrimitiveId) {
+        self.hit = Some((hit, id));
+        self.within = None;
+        self.t_max = hit.t;
     }
 }

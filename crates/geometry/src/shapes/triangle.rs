@@ -72,7 +72,9 @@ impl Triangle {
     #[inline(always)]
     pub(crate) fn lanes(&self, query: &Query) -> [[f64; 4]; 3] {
         let [a, b, c] = [self.a.to_array(), self.b.to_array(), self.c.to_array()];
-        query.axes.map(|k| [a[k], b[k], c[k], c[k]])
+        let [kx, ky, kz] = query.axes;
+        let row = |k: usize| [a[k], b[k], c[k], c[k]];
+        [row(kx), row(ky), row(kz)]
     }
 
     /// [`Triangle::intersect`] with the result of [`Triangle::lanes`], for the triangle itself where that does not suffice.

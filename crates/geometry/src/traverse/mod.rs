@@ -233,7 +233,11 @@ fn decide(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives: &[
     let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
     if leaf.is_exact(lane) {
-        best.take(id, |t_max| intersect_exact(tree, leaf, lane, primitives, query, t_max))
+        let found = intersect_exact(tree, leaf, lane, primitives, query, best.limit(id));
+        if let Some(hit) = found {
+            best.set(hit, id);
+        }
+        found.is_some()
     } else {
         best.test(primitives, query, id)
     }
