@@ -44,7 +44,6 @@ impl Box32 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     centre: Vec3<f64>,
-    centre4: [f64; 4],
     scale: f64,
     unscale: f64,
 }
@@ -52,8 +51,8 @@ pub(crate) struct Frame {
 /// Boxes are widened by this much (2⁻⁵⁰), more than a ray whose direction component was clamped to [`MIN_DIRECTION`]
 /// can leave its slab by within the frame.
 const BOX_MARGIN: f64 = 1.0 / (1_u64 << 50) as f64;
-/// Smallest direction component that is divided by.
-const MIN_DIRECTION: f32 = 1e-18;
+/// Smallest direction component that is divided by: 1e-18 of the largest, at most, for all usual directions.
+const MIN_DIRECTION: f32 = 1e-21;
 /// Relative widening of the distances of a box: (b − o)·(1/d·factor) errs by 5 roundoffs (the difference, `d` as `f32`,
 /// its reciprocal, the two products), 2.5ε, and in second order.
 const NEAR_FACTOR: f32 = 1.0 - 3.0 * f32::EPSILON;
@@ -69,7 +68,7 @@ impl Frame {
         let half = (bounds.max - centre).abs().max((bounds.min - centre).abs()).max_component();
         let exponent = if half > 0.0 { (half.to_bits() >> 52) as i64 - 1022 } else { 0 };
         let exponent = exponent.clamp(-500, 500);
-        Self { centre, centre4: padded(centre), scale: power_of_two(-exponent), unscale: power_of_two(exponent) }
+        Self { centre, scale: power_of_two(-exponent), unscale: power_of_two(exponent) }
     }
 
     /// A box in this frame, rounded outward.
@@ -108,39 +107,29 @@ impl Frame {
     /// A ray in this frame; `None` if it certainly misses the whole frame.
     #[inline(always)]
     pub(crate) fn enter(&self, q: &Query) -> Option<FrameRay> {
-        // Four lanes, the last unused, for the sake of vector instructions.
-        let d = padded(q.direction);
-        let mut o = lanes(padded(q.origin), |k, o| (o - self.centre4[k]) * self.scale);
+        let mut o = frame_coordinates(q.origin, self);
         let mut reach = max_magnitude(o);
-        // The f64 tests are right for a ray displaced by a few u of the distances involved: 256u of them is allowed.
-        let mut slack = (reach + 2.0) * (128.0 * f64::EPSILON);
         let mut start = 0.0;
-        if reach > 4.0 {
-            (o, slack, start) = approach(o, d, slack)?;
+        let mut slack = SLACK;
+        if reach > NEAR_REACH {
+            (o, slack, start) = approach(o, q.direction.to_array(), (reach + 2.0) * (128.0 * f64::EPSILON))?;
             reach = max_magnitude(o);
         }
-        let origin: [f32; 4] = lanes(o, |_, o| o as f32);
-        let direction: [f32; 4] = lanes(d, |_, d| d as f32);
-        let slack32 = above(slack);
-        // The origin is displaced along the ray and against it by more than its error: an `f32` ε of it covers its rounding and
-        // that of the displaced one, half an ε each; another one, second orders.
-        let displaced: [f32; 4] =
-            from_fn(|k| (origin[k].abs() * (2.0 * f32::EPSILON) + slack32).copysign(direction[k]));
-        let reciprocal: [f32; 4] = from_fn(|k| {
-            let magnitude = direction[k].abs();
-            1.0 / if magnitude > MIN_DIRECTION { magnitude } else { MIN_DIRECTION }.copysign(direction[k])
-        });
-        let [kx, ky, kz] = q.axes;
+        let origin = o.map(|o| o as f32);
+        // Most directions need not be scaled: their reciprocals are.
+        let usual = (USUAL_SCALE..=1.0 / USUAL_SCALE).contains(&q.scale);
+        let (direction, unit) = if usual { (q.given, q.scale.recip() as f32) } else { (q.direction, 1.0) };
+        let direction = direction.to_array().map(|d| d as f32);
+        let [kx, ky, kz] = q.axes.map(|k| k.min(2));
         let slope = 1.0 / direction[kz];
         Some(FrameRay {
-            origin_near: from_fn(|k| origin[k] + displaced[k]),
-            origin_far: from_fn(|k| origin[k] - displaced[k]),
-            reciprocal_near: from_fn(|k| reciprocal[k] * NEAR_FACTOR),
-            reciprocal_far: from_fn(|k| reciprocal[k] * FAR_FACTOR),
-            negative: from_fn(|k| usize::from(direction[k].is_sign_negative())),
-            axes: q.axes,
-            origin: [origin[kx], origin[ky], origin[kz]],
-            shear: [direction[kx] * slope, direction[ky] * slope, slope],
+            origin,
+            direction,
+            unit,
+            slack: above(slack),
+            axes: [kx, ky, kz],
+            start_along: [origin[kx], origin[ky], origin[kz]],
+            shear: [direction[kx] * slope, direction[ky] * slope, slope * unit],
             // Every coordinate of a vertex relative to the origin is below the reach, and errs by two roundoffs of it
             // (the vertex, the origin and the difference are rounded); shearing adds nine (the slope four, for the two
             // components, the reciprocal and the product, the other difference two, the product, the sum two).
@@ -151,20 +140,21 @@ impl Frame {
     }
 }
 
-/// A vector with a fourth component of zero.
-#[inline(always)]
-fn padded(v: Vec3<f64>) -> [f64; 4] {
-    [v.x, v.y, v.z, 0.0]
-}
-
-/// A function of each lane and its index.
-#[inline(always)]
-fn lanes<T>(v: [f64; 4], f: impl Fn(usize, f64) -> T) -> [T; 4] {
-    [f(0, v[0]), f(1, v[1]), f(2, v[2]), f(3, v[3])]
-}
+/// A ray whose origin's coordinates in the frame are below this is near the frame.
+const NEAR_REACH: f64 = 4.0;
+/// The f64 tests are right for a ray displaced by a few u of the distances involved: 256u of them is allowed.
+const SLACK: f64 = (NEAR_REACH + 2.0) * (128.0 * f64::EPSILON);
+/// Directions whose scale to [`Query::direction`] is no smaller than this, nor larger than its inverse, are taken as they
+/// are.
+const USUAL_SCALE: f64 = 1.0 / 256.0;
 
 #[inline(always)]
-fn max_magnitude(v: [f64; 4]) -> f64 {
+fn frame_coordinates(p: Vec3<f64>, frame: &Frame) -> [f64; 3] {
+    ((p - frame.centre) * frame.scale).to_array()
+}
+
+#[inline(always)]
+fn max_magnitude(v: [f64; 3]) -> f64 {
     larger(larger(v[0].abs(), v[1].abs()), v[2].abs())
 }
 
@@ -172,37 +162,34 @@ fn max_magnitude(v: [f64; 4]) -> f64 {
 /// Returns the origin, the slack and the distance moved; `None` if the ray misses the frame.
 #[cold]
 #[inline(never)]
-fn approach(o: [f64; 4], d: [f64; 4], slack: f64) -> Option<([f64; 4], f64, f64)> {
+fn approach(o: [f64; 3], d: [f64; 3], slack: f64) -> Option<([f64; 3], f64, f64)> {
     let (near, far) = crossing(o, d, 1.0 + slack);
     if near > far || far < 0.0 {
         return None;
     }
     let start = (near - 1.0).max(0.0);
-    let moved: [f64; 4] = from_fn(|k| o[k] + d[k] * start);
+    let moved: [f64; 3] = from_fn(|k| o[k] + d[k] * start);
     let slack = slack.min(16.0);
     let known = max_magnitude(moved) < 64.0;
     // An origin so far away that nothing is known of where the ray passes meets every box.
-    Some(if known { (moved, slack, start) } else { ([0.0; 4], 16.0, 0.0) })
+    Some(if known { (moved, slack, start) } else { ([0.0; 3], 16.0, 0.0) })
 }
 
 /// A ray in the accelerator's frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameRay {
-    /// The origin displaced along the ray by more than its error: for the planes where the ray enters boxes.
-    pub(crate) origin_near: [f32; 3],
-    /// The origin displaced against the ray by more than its error: for the planes where the ray leaves boxes.
-    pub(crate) origin_far: [f32; 3],
-    /// 1/direction, finite, with the sign of the direction's sign bit, and a little smaller: a distance ahead comes out
-    /// no larger than it is.
-    pub(crate) reciprocal_near: [f32; 3],
-    /// The same, a little larger: a distance ahead comes out no smaller than it is.
-    pub(crate) reciprocal_far: [f32; 3],
-    /// The direction's sign bits.
-    pub(crate) negative: [usize; 3],
+    /// The origin, rounded.
+    origin: [f32; 3],
+    /// The direction as it was given, or [`Query::direction`]; rounded.
+    direction: [f32; 3],
+    /// Parameters along [`Query::direction`] for one along `direction`.
+    unit: f32,
+    /// Bound on the error of the origin before it was rounded.
+    slack: f32,
     /// The axes of the watertight projection, the direction's largest component last.
     pub(crate) axes: [usize; 3],
-    /// The origin along `axes`, rounded.
-    pub(crate) origin: [f32; 3],
+    /// The origin along `axes`.
+    pub(crate) start_along: [f32; 3],
     /// The projection's slopes and 1/(the direction's largest component), rounded.
     pub(crate) shear: [f32; 3],
     /// Bound on the error of a projected coordinate.
@@ -211,7 +198,42 @@ pub(crate) struct FrameRay {
     start: f64,
 }
 
+/// What the test of boxes needs of a ray; the fourth lanes are not used.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BoxRay {
+    /// The origin displaced along the ray by more than its error: for the planes where the ray enters boxes.
+    pub(crate) origin_near: [f32; 4],
+    /// The origin displaced against the ray by more than its error: for the planes where the ray leaves boxes.
+    pub(crate) origin_far: [f32; 4],
+    /// 1/direction, finite, with the sign of the direction's sign bit, and a little smaller: a distance ahead comes out
+    /// no larger than it is.
+    pub(crate) reciprocal_near: [f32; 4],
+    /// The same, a little larger: a distance ahead comes out no smaller than it is.
+    pub(crate) reciprocal_far: [f32; 4],
+    /// The direction's sign bits.
+    pub(crate) negative: [usize; 3],
+}
+
 impl FrameRay {
+    /// What the test of boxes needs.
+    #[inline(always)]
+    pub(crate) fn for_boxes<L: Lanes4>(&self) -> BoxRay {
+        let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
+        let (o, d) = (L::new([ox, oy, oz, 0.0]), L::new([dx, dy, dz, 1.0]));
+        // The origin is displaced along the ray and against it by more than its error: an `f32` ε of it covers its rounding and
+        // that of the displaced one, half an ε each; another one, second orders.
+        let displaced = o.abs().times(2.0 * f32::EPSILON).plus(self.slack).signed_as(d);
+        let reciprocal = d.abs().at_least(MIN_DIRECTION).signed_as(d).reciprocal();
+        let unit = self.unit;
+        BoxRay {
+            origin_near: o.sum(displaced).to_array(),
+            origin_far: o.difference(displaced).to_array(),
+            reciprocal_near: reciprocal.times(unit * NEAR_FACTOR).to_array(),
+            reciprocal_far: reciprocal.times(unit * FAR_FACTOR).to_array(),
+            negative: d.negative(),
+        }
+    }
+
     /// A distance in this frame that is not below the distance of any hit up to `t` of the [`Query`].
     #[inline]
     pub(crate) fn distance(&self, t: f64) -> f32 {
@@ -230,8 +252,86 @@ impl FrameRay {
     }
 }
 
+/// Four floats, whatever the instruction set.
+pub(crate) trait Lanes4: Copy {
+    fn new(v: [f32; 4]) -> Self;
+    fn to_array(self) -> [f32; 4];
+    fn abs(self) -> Self;
+    fn sum(self, o: Self) -> Self;
+    fn difference(self, o: Self) -> Self;
+    fn times(self, factor: f32) -> Self;
+    fn plus(self, v: f32) -> Self;
+    fn at_least(self, v: f32) -> Self;
+    fn reciprocal(self) -> Self;
+    /// The magnitudes of positive numbers with the sign bits of others.
+    fn signed_as(self, o: Self) -> Self;
+    /// The sign bits of the first three.
+    fn negative(self) -> [usize; 3];
+}
+
+/// [`Lanes4`] in plain Rust.
+#[derive(Clone, Copy)]
+pub(crate) struct Plain([f32; 4]);
+
+impl Lanes4 for Plain {
+    #[inline(always)]
+    fn new(v: [f32; 4]) -> Self {
+        Self(v)
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f32; 4] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f32::abs))
+    }
+
+    #[inline(always)]
+    fn sum(self, o: Self) -> Self {
+        Self(from_fn(|i| self.0[i] + o.0[i]))
+    }
+
+    #[inline(always)]
+    fn difference(self, o: Self) -> Self {
+        Self(from_fn(|i| self.0[i] - o.0[i]))
+    }
+
+    #[inline(always)]
+    fn times(self, factor: f32) -> Self {
+        Self(self.0.map(|v| v * factor))
+    }
+
+    #[inline(always)]
+    fn plus(self, v: f32) -> Self {
+        Self(self.0.map(|w| w + v))
+    }
+
+    #[inline(always)]
+    fn at_least(self, v: f32) -> Self {
+        Self(self.0.map(|w| if w > v { w } else { v }))
+    }
+
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        Self(self.0.map(|v| 1.0 / v))
+    }
+
+    #[inline(always)]
+    fn signed_as(self, o: Self) -> Self {
+        Self(from_fn(|i| self.0[i].copysign(o.0[i])))
+    }
+
+    #[inline(always)]
+    fn negative(self) -> [usize; 3] {
+        from_fn(|i| usize::from(self.0[i].is_sign_negative()))
+    }
+}
+
 /// Where a line crosses the box [−`half`, `half`]³.
-fn crossing(o: [f64; 4], d: [f64; 4], half: f64) -> (f64, f64) {
+fn crossing(o: [f64; 3], d: [f64; 3], half: f64) -> (f64, f64) {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for k in 0..3 {
         if d[k] != 0.0 {

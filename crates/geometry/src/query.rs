@@ -4,6 +4,7 @@ use crate::double_double::product_difference;
 use crate::{PrimitiveId, Ray, SurfaceId};
 use etalon_optics::{Real, Vec3};
 use std::array::from_fn;
+use std::ops::{Add, Mul, Sub};
 
 /// What an intersection test finds, in the parameters of [`Query`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +21,8 @@ pub(crate) struct Query {
     pub(crate) origin: Vec3<f64>,
     /// Direction with its largest component in [1, 2).
     pub(crate) direction: Vec3<f64>,
+    /// The direction as it was given.
+    pub(crate) given: Vec3<f64>,
     /// Ray parameter = parameter along [`Query::direction`] × `scale`, a power of two.
     pub(crate) scale: f64,
     /// End, exclusive, along [`Query::direction`].
@@ -56,7 +59,8 @@ impl Query {
             return None;
         }
         let scale = power_of_two(-exponent);
-        let direction = direction * scale;
+        let given = direction;
+        let direction = given * scale;
         // Without a branch: the axis of a ray is as good as random.
         let kz = usize::from(a.y > larger(a.x, a.z)) + 2 * usize::from(a.z > a.x && a.z >= a.y);
         let axes = AXES[kz];
@@ -65,6 +69,7 @@ impl Query {
         Some(Self {
             origin,
             direction,
+            given,
             scale,
             t_max: t_max * power_of_two(exponent),
             leaves: ray.leaves.own(),
@@ -78,17 +83,14 @@ impl Query {
     }
 
     /// [`Query::project`] of three vertices at once: lanes of their coordinates in the order of `axes`, the fourth lane a
-    /// repetition. The second result is the largest magnitude.
+    /// repetition. The second result holds their magnitudes.
     #[inline(always)]
-    pub(crate) fn project_three(&self, v: [[f64; 4]; 3]) -> ([[f64; 4]; 3], f64) {
-        let [x, y, z]: [[f64; 4]; 3] = from_fn(|k| from_fn(|i| v[k][i] - self.start[k]));
-        let magnitudes: [f64; 4] = from_fn(|i| larger(larger(x[i].abs(), y[i].abs()), z[i].abs()));
-        let projected = [
-            from_fn(|i| x[i] - self.shear[0] * z[i]),
-            from_fn(|i| y[i] - self.shear[1] * z[i]),
-            from_fn(|i| z[i] * self.shear[2]),
-        ];
-        (projected, largest(magnitudes))
+    pub(crate) fn project_three<F: Four>(&self, token: F::Token, v: [F; 3]) -> ([F; 3], F) {
+        let all = |v| F::splat(token, v);
+        let (x, y, z) = (v[0] - all(self.start[0]), v[1] - all(self.start[1]), v[2] - all(self.start[2]));
+        let magnitudes = x.abs().max(y.abs()).max(z.abs());
+        let (x, y) = (x - all(self.shear[0]) * z, y - all(self.shear[1]) * z);
+        ([x, y, z * all(self.shear[2])], magnitudes)
     }
 
     /// [`Query::project`] of a vertex whose coordinates are already in the order of `axes`.
@@ -121,10 +123,83 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The largest of four numbers, none of them NaN.
-#[inline(always)]
-pub(crate) fn largest(v: [f64; 4]) -> f64 {
-    larger(larger(v[0], v[2]), larger(v[1], v[3]))
+/// Four numbers at once, whatever the instruction set.
+pub(crate) trait Four: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// The proof that the processor has the instructions.
+    type Token: Copy;
+    /// Four times the same.
+    fn splat(token: Self::Token, v: f64) -> Self;
+    /// Four numbers.
+    fn new(token: Self::Token, v: [f64; 4]) -> Self;
+    /// The numbers.
+    fn to_array(self) -> [f64; 4];
+    /// Magnitudes.
+    fn abs(self) -> Self;
+    /// The larger of each pair, none of them NaN.
+    fn max(self, o: Self) -> Self;
+    /// The third, the first and the second number, and any fourth.
+    fn turned(self) -> Self;
+
+    /// The largest of four numbers, none of them NaN.
+    #[inline(always)]
+    fn largest(self) -> f64 {
+        let v = self.to_array();
+        larger(larger(v[0], v[2]), larger(v[1], v[3]))
+    }
+}
+
+/// [`Four`] in plain Rust.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plain4([f64; 4]);
+
+macro_rules! operator {
+    ($trait:ident, $f:ident, $operator:tt) => {
+        impl $trait for Plain4 {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, o: Self) -> Self {
+                Self(from_fn(|i| self.0[i] $operator o.0[i]))
+            }
+        }
+    };
+}
+operator!(Add, add, +);
+operator!(Sub, sub, -);
+operator!(Mul, mul, *);
+
+impl Four for Plain4 {
+    type Token = ();
+
+    #[inline(always)]
+    fn splat((): (), v: f64) -> Self {
+        Self([v; 4])
+    }
+
+    #[inline(always)]
+    fn new((): (), v: [f64; 4]) -> Self {
+        Self(v)
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f64; 4] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(from_fn(|i| self.0[i].abs()))
+    }
+
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        Self(from_fn(|i| larger(self.0[i], o.0[i])))
+    }
+
+    #[inline(always)]
+    fn turned(self) -> Self {
+        let [a, b, c, _] = self.0;
+        Self([c, a, b, b])
+    }
 }
 
 /// Origins within this (2²⁰⁰, in the 1-norm) keep every product of an intersection test finite.

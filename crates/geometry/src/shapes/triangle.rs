@@ -2,10 +2,9 @@
 
 use super::{ShapeError, check_points, planar};
 use crate::Aabb;
-use crate::query::{Query, RawHit, exact_edge, larger, largest};
+use crate::query::{Four, Plain4, Query, RawHit, exact_edge, larger};
 use crate::ray::ExactPoint;
 use etalon_optics::Vec3;
-use std::array::from_fn;
 
 /// A triangle, seen by rays from both sides; its outward side is the one from which a, b, c turn counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +64,7 @@ impl Triangle {
     /// of the triangles around it.
     #[inline]
     pub(crate) fn intersect(&self, query: &Query, t_max: f64) -> Option<RawHit> {
-        Self::intersect_lanes(self.lanes(query), || self, query, t_max)
+        Self::intersect_lanes::<Plain4>((), self.lanes(query), || self, query, t_max)
     }
 
     /// Lanes of the vertices' coordinates in the order of a query's axes; the fourth lane repeats the third.
@@ -79,20 +78,21 @@ impl Triangle {
 
     /// [`Triangle::intersect`] with the result of [`Triangle::lanes`], for the triangle itself where that does not suffice.
     #[inline(always)]
-    pub(crate) fn intersect_lanes<'a>(
+    pub(crate) fn intersect_lanes<'a, F: Four>(
+        token: F::Token,
         lanes: [[f64; 4]; 3],
         triangle: impl FnOnce() -> &'a Self,
         query: &Query,
         t_max: f64,
     ) -> Option<RawHit> {
-        let ([x, y, z], magnitude) = query.project_three(lanes);
-        // (c, a, b, ·) × (b, c, a, ·)
-        let edges: [f64; 4] = from_fn(|i| {
-            let (p, q) = ([2, 0, 1, 1][i], [1, 2, 0, 0][i]);
-            x[p] * y[q] - y[p] * x[q]
-        });
-        let [mut u, mut v, mut w, _] = edges;
+        let lanes = [F::new(token, lanes[0]), F::new(token, lanes[1]), F::new(token, lanes[2])];
+        let ([x, y, z], magnitudes) = query.project_three(token, lanes);
+        // (c, a, b) × (b, c, a)
+        let (px, py) = (x.turned(), y.turned());
+        let (qx, qy) = (px.turned(), py.turned());
+        let [mut u, mut v, mut w, _] = (px * qy - py * qx).to_array();
         if u == 0.0 || v == 0.0 || w == 0.0 {
+            let (x, y) = (x.to_array(), y.to_array());
             let edge = |p: usize, q: usize, area: f64| {
                 if area == 0.0 { exact_edge([x[p], y[p]], [x[q], y[q]]) } else { area }
             };
@@ -108,11 +108,12 @@ impl Triangle {
         if det == 0.0 || det.is_nan() {
             return None;
         }
-        let t_det = (u * z[0] + v * z[1]) + w * z[2];
+        let [za, zb, zc, _] = z.to_array();
+        let t_det = (u * za + v * zb) + w * zc;
         let mut hit = RawHit { t: t_det / det, uv: [v / det, w / det] };
-        let extent = largest(from_fn(|i| larger(x[i].abs(), y[i].abs())));
-        let depth = largest(z) + largest(z.map(|z| -z));
-        if !planar::is_determined(magnitude, extent, depth, t_det.abs(), det.abs()) {
+        let extent = x.abs().max(y.abs()).largest();
+        let depth = larger(larger(za, zb), zc) + larger(larger(-za, -zb), -zc);
+        if !planar::is_determined(magnitudes.largest(), extent, depth, t_det.abs(), det.abs()) {
             let &Self { a, b, c } = triangle();
             hit = planar::refine(query, a, b, c, Aabb::of_points([a, b, c]), hit, 1.0);
         }

@@ -4,8 +4,9 @@
 use super::vector::Vector;
 use super::{Entered, Filters, Start, any_with, closest_with};
 use crate::Primitive;
-use crate::frame::FrameRay;
+use crate::frame::{FrameRay, Lanes4};
 use crate::geometry::Found;
+use crate::query::Four;
 use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
 use std::arch::x86_64::*;
 
@@ -126,6 +127,148 @@ impl Vector for F8 {
     }
 }
 
+/// Four numbers, likewise.
+#[derive(Clone, Copy)]
+pub(super) struct D4(__m256d);
+
+macro_rules! operator4 {
+    ($trait:ident, $f:ident, $instruction:ident) => {
+        impl std::ops::$trait for D4 {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, o: Self) -> Self {
+                // SAFETY: arithmetic of AVX, whose presence is proved where a `D4` comes from.
+                Self(unsafe { $instruction(self.0, o.0) })
+            }
+        }
+    };
+}
+operator4!(Add, add, _mm256_add_pd);
+operator4!(Sub, sub, _mm256_sub_pd);
+operator4!(Mul, mul, _mm256_mul_pd);
+
+impl Four for D4 {
+    type Token = Avx2;
+
+    #[inline(always)]
+    fn splat(_: Avx2, v: f64) -> Self {
+        // SAFETY: the token proves AVX2.
+        Self(unsafe { _mm256_set1_pd(v) })
+    }
+
+    #[inline(always)]
+    fn new(_: Avx2, v: [f64; 4]) -> Self {
+        // SAFETY: the token proves AVX2.
+        Self(unsafe { _mm256_setr_pd(v[0], v[1], v[2], v[3]) })
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f64; 4] {
+        let mut out = [0.0; 4];
+        // SAFETY: as for the operators; four numbers are writable at the reference, aligned or not.
+        unsafe { _mm256_storeu_pd(out.as_mut_ptr(), self.0) };
+        out
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+    }
+
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe { _mm256_max_pd(self.0, o.0) })
+    }
+
+    #[inline(always)]
+    fn turned(self) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe { _mm256_permute4x64_pd::<0b01_01_00_10>(self.0) })
+    }
+}
+
+/// Four floats, by what every x86-64 processor has.
+#[derive(Clone, Copy)]
+pub(super) struct F4(__m128);
+
+/// An instruction that every x86-64 processor has.
+macro_rules! sse {
+    ($instruction:expr) => {{
+        // SAFETY: SSE is part of x86-64.
+        unsafe { $instruction }
+    }};
+}
+
+impl F4 {
+    #[inline(always)]
+    fn splat(v: f32) -> __m128 {
+        sse!(_mm_set1_ps(v))
+    }
+}
+
+impl Lanes4 for F4 {
+    #[inline(always)]
+    fn new([a, b, c, d]: [f32; 4]) -> Self {
+        Self(sse!(_mm_setr_ps(a, b, c, d)))
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f32; 4] {
+        let mut out = [0.0; 4];
+        // SAFETY: four floats are writable at the reference, aligned or not.
+        unsafe { _mm_storeu_ps(out.as_mut_ptr(), self.0) };
+        out
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(sse!(_mm_andnot_ps(Self::splat(-0.0), self.0)))
+    }
+
+    #[inline(always)]
+    fn sum(self, o: Self) -> Self {
+        Self(sse!(_mm_add_ps(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn difference(self, o: Self) -> Self {
+        Self(sse!(_mm_sub_ps(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn times(self, factor: f32) -> Self {
+        Self(sse!(_mm_mul_ps(self.0, Self::splat(factor))))
+    }
+
+    #[inline(always)]
+    fn plus(self, v: f32) -> Self {
+        Self(sse!(_mm_add_ps(self.0, Self::splat(v))))
+    }
+
+    #[inline(always)]
+    fn at_least(self, v: f32) -> Self {
+        Self(sse!(_mm_max_ps(self.0, Self::splat(v))))
+    }
+
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        Self(sse!(_mm_div_ps(Self::splat(1.0), self.0)))
+    }
+
+    #[inline(always)]
+    fn signed_as(self, o: Self) -> Self {
+        Self(sse!(_mm_or_ps(self.0, _mm_and_ps(Self::splat(-0.0), o.0))))
+    }
+
+    #[inline(always)]
+    fn negative(self) -> [usize; 3] {
+        let bits = sse!(_mm_movemask_ps(self.0)) as usize;
+        [bits & 1, bits >> 1 & 1, bits >> 2 & 1]
+    }
+}
+
 /// A ray broadcast to all lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Ray8 {
@@ -140,10 +283,12 @@ pub(super) struct Ray8 {
 impl Filters for Avx2 {
     type Ray = Ray8;
     type Vector = F8;
+    type Four = D4;
 
     #[inline(always)]
     fn ray(self, ray: &FrameRay) -> Ray8 {
-        let all = |[x, y, z]: [f32; 3]| [F8::splat(self, x), F8::splat(self, y), F8::splat(self, z)];
+        let ray = ray.for_boxes::<F4>();
+        let all = |[x, y, z, _]: [f32; 4]| [F8::splat(self, x), F8::splat(self, y), F8::splat(self, z)];
         Ray8 {
             origin_near: all(ray.origin_near),
             origin_far: all(ray.origin_far),

@@ -1,7 +1,7 @@
 //! The filters in AVX-512: all children of a node at once.
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
-use super::avx2::{Avx2, F8, prefetch};
+use super::avx2::{Avx2, D4, F4, F8, prefetch};
 use super::{Entered, Filters, Start, any_with, closest_with};
 use crate::Primitive;
 use crate::frame::FrameRay;
@@ -63,11 +63,13 @@ pub(super) struct Ray16 {
 impl Filters for Avx512 {
     type Ray = Ray16;
     type Vector = F8;
+    type Four = D4;
 
     #[inline(always)]
     fn ray(self, ray: &FrameRay) -> Ray16 {
+        let ray = ray.for_boxes::<F4>();
         // SAFETY: the token proves AVX-512.
-        let all = |[x, y, z]: [f32; 3]| unsafe { [_mm512_set1_ps(x), _mm512_set1_ps(y), _mm512_set1_ps(z)] };
+        let all = |[x, y, z, _]: [f32; 4]| unsafe { [_mm512_set1_ps(x), _mm512_set1_ps(y), _mm512_set1_ps(z)] };
         Ray16 {
             origin_near: all(ray.origin_near),
             origin_far: all(ray.origin_far),

@@ -58,7 +58,7 @@ pub(super) fn candidates<F: Filters>(
 fn project<F: Filters>(filters: F, ray: &FrameRay, vertex: &[[f32; LEAF_WIDTH]; 3]) -> [F::Vector; 3] {
     let [kx, ky, kz] = ray.axes;
     let all = |v| F::Vector::splat(filters.into(), v);
-    let from_origin = |row: usize, k: usize| F::Vector::load(filters.into(), &vertex[row]) - all(ray.origin[k]);
+    let from_origin = |row: usize, k: usize| F::Vector::load(filters.into(), &vertex[row]) - all(ray.start_along[k]);
     let (x, y, z) = (from_origin(kx, 0), from_origin(ky, 1), from_origin(kz, 2));
     [x - all(ray.shear[0]) * z, y - all(ray.shear[1]) * z, z]
 }

@@ -15,7 +15,7 @@ mod vector;
 use crate::build::MAX_DEPTH;
 use crate::frame::FrameRay;
 use crate::geometry::{Best, Found};
-use crate::query::{Query, RawHit};
+use crate::query::{Four, Query, RawHit};
 use crate::wide::{LEAF, LEAF_WIDTH, Leaf8, NODE_WIDTH, Node16, WideTree};
 use crate::{Primitive, PrimitiveId, Ray, Triangle};
 use etalon_optics::Real;
@@ -49,11 +49,13 @@ struct Candidates {
 }
 
 /// The filters of an instruction set.
-trait Filters: Copy + Into<<Self::Vector as Vector>::Token> {
+trait Filters: Copy + Into<<Self::Vector as Vector>::Token> + Into<<Self::Four as Four>::Token> {
     /// The ray as the filter of nodes wants it.
     type Ray: Copy;
     /// Eight floats.
     type Vector: Vector;
+    /// Four numbers.
+    type Four: Four;
     /// Prepares a ray.
     fn ray(self, ray: &FrameRay) -> Self::Ray;
     /// The children of a node that the ray meets in [0, `limit`].
@@ -220,7 +222,7 @@ impl Pending {
     fn resolve(&mut self, best: &mut Best, tree: &WideTree, primitives: &[Primitive], query: &Query, limit: f32) {
         for waiting in &self.list[..self.count] {
             if waiting.near <= limit {
-                decide(best, tree, waiting.leaf, waiting.lane, primitives, query);
+                decide(portable::Portable, best, tree, waiting.leaf, waiting.lane, primitives, query);
             }
         }
         self.count = 0;
@@ -229,11 +231,19 @@ impl Pending {
 
 /// Decides in `f64` whether a lane of a leaf holds the closest hit so far.
 #[inline(always)]
-fn decide(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives: &[Primitive], query: &Query) -> bool {
+fn decide<F: Filters>(
+    filters: F,
+    best: &mut Best,
+    tree: &WideTree,
+    leaf: u32,
+    lane: u32,
+    primitives: &[Primitive],
+    query: &Query,
+) -> bool {
     let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
     if leaf.is_exact(lane) {
-        let found = intersect_exact(tree, leaf, lane, primitives, query, best.limit(id));
+        let found = intersect_exact(filters, tree, leaf, lane, primitives, query, best.limit(id));
         if let Some(hit) = found {
             best.set(hit, id);
         }
@@ -246,7 +256,8 @@ fn decide(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives: &[
 /// The intersection with a triangle whose vertices are exact in its leaf. The triangle lies elsewhere and is not touched, as
 /// a rule.
 #[inline(always)]
-fn intersect_exact(
+fn intersect_exact<F: Filters>(
+    filters: F,
     tree: &WideTree,
     leaf: &Leaf8,
     lane: usize,
@@ -258,14 +269,15 @@ fn intersect_exact(
         Primitive::Triangle(triangle) => triangle,
         _ => unreachable!("only triangles have exact vertices"),
     };
-    Triangle::intersect_lanes(leaf.lanes(&tree.frame, lane, query), triangle, query, t_max)
+    let lanes = leaf.lanes(&tree.frame, lane, query);
+    Triangle::intersect_lanes::<F::Four>(filters.into(), lanes, triangle, query, t_max)
 }
 
 /// [`decide`] where it is not the rule.
 #[cold]
 #[inline(never)]
 fn decide_now(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives: &[Primitive], query: &Query) -> bool {
-    decide(best, tree, leaf, lane, primitives, query)
+    decide(portable::Portable, best, tree, leaf, lane, primitives, query)
 }
 
 /// The closest hit, by a stack of children, nearest on top.
@@ -356,7 +368,7 @@ fn closest_on<F: Filters, const N: usize>(
             let Some(next) = stack.pop() else {
                 if pending.count == 1 {
                     let Waiting { leaf, lane, .. } = pending.list[0];
-                    decide(&mut best, tree, leaf, lane, primitives, query);
+                    decide(filters, &mut best, tree, leaf, lane, primitives, query);
                 } else {
                     pending.resolve(&mut best, tree, primitives, query, limit);
                 }
@@ -418,17 +430,23 @@ fn any_on<F: Filters, const N: usize>(
                     continue;
                 }
                 let certain = candidates.certain >> lane & 1 == 1;
-                let hit = certain
-                    || if leaf.is_exact(lane) {
-                        intersect_exact(tree, leaf, lane, primitives, query, query.t_max).is_some()
-                    } else {
-                        occludes(primitives, query, id)
-                    };
+                let hit = certain || occludes_by(tree, leaf, lane, primitives, query);
                 if hit {
                     return true;
                 }
             }
         }
+    }
+}
+
+/// Whether the primitive in a lane of a leaf hides the end of a ray from its start, where `f32` does not tell.
+#[cold]
+#[inline(never)]
+fn occludes_by(tree: &WideTree, leaf: &Leaf8, lane: usize, primitives: &[Primitive], query: &Query) -> bool {
+    if leaf.is_exact(lane) {
+        intersect_exact(portable::Portable, tree, leaf, lane, primitives, query, query.t_max).is_some()
+    } else {
+        occludes(primitives, query, leaf.id(lane))
     }
 }
 

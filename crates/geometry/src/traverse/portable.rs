@@ -2,7 +2,8 @@
 
 use super::vector::Vector;
 use super::{Entered, Filters};
-use crate::frame::FrameRay;
+use crate::frame::{BoxRay, FrameRay, Plain};
+use crate::query::Plain4;
 use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16};
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Sub};
@@ -10,6 +11,10 @@ use std::ops::{Add, Div, Mul, Sub};
 /// Plain Rust.
 #[derive(Clone, Copy)]
 pub(super) struct Portable;
+
+impl From<Portable> for () {
+    fn from(_: Portable) {}
+}
 
 /// Eight floats.
 #[derive(Clone, Copy)]
@@ -76,16 +81,17 @@ impl Vector for Floats {
 }
 
 impl Filters for Portable {
-    type Ray = FrameRay;
+    type Ray = BoxRay;
     type Vector = Floats;
+    type Four = Plain4;
 
     #[inline(always)]
-    fn ray(self, ray: &FrameRay) -> FrameRay {
-        *ray
+    fn ray(self, ray: &FrameRay) -> BoxRay {
+        ray.for_boxes::<Plain>()
     }
 
     #[inline(always)]
-    fn enter(self, ray: &FrameRay, node: &Node16, limit: f32) -> Entered {
+    fn enter(self, ray: &BoxRay, node: &Node16, limit: f32) -> Entered {
         let mut out = Entered { mask: 0, near: [0.0; NODE_WIDTH] };
         let mut far = [limit; NODE_WIDTH];
         for k in 0..3 {
