@@ -130,10 +130,8 @@ impl Frame {
             axes: [kx, ky, kz],
             start_along: [origin[kx], origin[ky], origin[kz]],
             shear: [direction[kx] * slope, direction[ky] * slope, slope * unit],
-            // Every coordinate of a vertex relative to the origin is below the reach, and errs by two roundoffs of it
-            // (the vertex, the origin and the difference are rounded); shearing adds nine (the slope four, for the two
-            // components, the reciprocal and the product, the other difference two, the product, the sum two).
-            error: above(12.0 * f64::from(f32::EPSILON / 2.0) * (1.0 + reach) + 2.0 * slack),
+            reach: above(reach),
+            slack2: above(2.0 * slack),
             scale: self.scale,
             start,
         })
@@ -192,8 +190,10 @@ pub(crate) struct FrameRay {
     pub(crate) start_along: [f32; 3],
     /// The projection's slopes and 1/(the direction's largest component), rounded.
     pub(crate) shear: [f32; 3],
-    /// Bound on the error of a projected coordinate.
-    pub(crate) error: f32,
+    /// The largest magnitude of a coordinate of the origin.
+    reach: f32,
+    /// Twice the slack.
+    slack2: f32,
     scale: f64,
     start: f64,
 }
@@ -215,6 +215,16 @@ pub(crate) struct BoxRay {
 }
 
 impl FrameRay {
+    /// Bound δ on the error of the projected coordinates of a vertex whose own are no larger than `magnitude`.
+    ///
+    /// Relative to the origin they are below the sum of both magnitudes, and err by two roundoffs of it (the vertex, the origin
+    /// and the difference are rounded); shearing adds nine (the slope four, for the two components, the reciprocal and the
+    /// product, the other difference two, the product, the sum two); the bound itself is rounded.
+    #[inline(always)]
+    pub(crate) fn error(&self, magnitude: f32) -> f32 {
+        (magnitude + self.reach) * (12.0 * 0.5 * f32::EPSILON) + self.slack2
+    }
+
     /// What the test of boxes needs.
     #[inline(always)]
     pub(crate) fn for_boxes<L: Lanes4>(&self) -> BoxRay {

@@ -41,14 +41,18 @@ pub(crate) struct Leaf8 {
     pub(crate) ids: [u32; LEAF_WIDTH],
     /// The largest extent of the primitives' common box along an axis.
     pub(crate) extent: f32,
-    /// The lanes of spheres, one bit each.
+    /// The largest magnitude in `vertices`.
+    pub(crate) magnitude: f32,
+    /// The lanes of triangles, one bit each.
+    pub(crate) triangles: u8,
+    /// The lanes of spheres.
     pub(crate) spheres: u8,
     /// The lanes of primitives that are neither triangles nor spheres. They have no filter: they are tested in `f64`
     /// whenever a ray enters the leaf.
     pub(crate) others: u8,
     /// The lanes of triangles whose vertices are exact: they need not be fetched to be tested in `f64`.
     pub(crate) exact: u8,
-    padding: [u8; 25],
+    padding: [u8; 20],
 }
 
 /// The tree.
@@ -226,10 +230,12 @@ impl Filler<'_> {
             vertices: [[[f32::NAN; LEAF_WIDTH]; 3]; 3],
             ids: [u32::MAX; LEAF_WIDTH],
             extent: extent(0).max(extent(1)).max(extent(2)),
+            magnitude: 0.0,
+            triangles: 0,
             spheres: 0,
             others: 0,
             exact: 0,
-            padding: [0; 25],
+            padding: [0; 20],
         };
         for (lane, &id) in self.tree.order[first..first + node.count as usize].iter().enumerate() {
             leaf.ids[lane] = id;
@@ -241,6 +247,7 @@ impl Filler<'_> {
             match &self.primitives[id as usize] {
                 Primitive::Triangle(t) => {
                     t.vertices().into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
+                    leaf.triangles |= 1 << lane;
                     let exact = t.vertices().into_iter().all(|v| self.frame.is_exact(v));
                     leaf.exact |= u8::from(exact) << lane;
                 }
@@ -252,6 +259,8 @@ impl Filler<'_> {
                 _ => leaf.others |= 1 << lane,
             }
         }
+        // NaN is never the larger.
+        leaf.magnitude = leaf.vertices.iter().flatten().flatten().fold(0.0, |m, c| c.abs().max(m));
         let index = self.leaf_count;
         self.leaf_count += 1;
         self.leaves[index] = leaf;

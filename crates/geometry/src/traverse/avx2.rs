@@ -115,6 +115,12 @@ impl Vector for F8 {
     }
 
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe { _mm256_sqrt_ps(self.0) })
+    }
+
+    #[inline(always)]
     fn below(self, o: Self) -> u32 {
         // SAFETY: as for the operators.
         Self::mask(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, o.0) })

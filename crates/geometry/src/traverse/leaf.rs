@@ -5,12 +5,8 @@ use super::{Candidates, Filters};
 use crate::frame::FrameRay;
 use crate::wide::{LEAF_WIDTH, Leaf8};
 
-/// The primitives of a leaf that the ray may hit in [0, `limit`], and the triangles that it certainly hits in
+/// The primitives of a leaf that the ray may hit in [0, `limit`], and the triangles and spheres that it certainly hits in
 /// (0, `certain_limit`). The primitive that the ray leaves may be among them.
-///
-/// For triangles it is Woop's projection in `f32` with error bounds: an edge function errs by [`leaf_error`]. The distance, a
-/// mean of the vertices' weighted by the edge functions, errs by at most three times that times their spread, over the
-/// determinant, and by less than 3δ for the rounding of distances, sum and quotient.
 #[inline(always)]
 pub(super) fn candidates<F: Filters>(
     filters: F,
@@ -19,35 +15,60 @@ pub(super) fn candidates<F: Filters>(
     limit: f32,
     certain_limit: f32,
 ) -> Candidates {
-    let all = |v| F::Vector::splat(filters.into(), v);
-    let mut unbounded = u32::from(leaf.others);
-    if leaf.spheres != 0 {
-        unbounded |= u32::from(leaf.spheres) & spheres(filters, ray, leaf, limit);
+    let others = u32::from(leaf.others);
+    let mut found = if leaf.triangles != 0 {
+        triangles(filters, ray, leaf, limit, certain_limit)
+    } else {
+        spheres(filters, ray, leaf, limit, certain_limit)
+    };
+    if leaf.triangles != 0 && leaf.spheres != 0 {
+        // Mixed leaves are rare: of their spheres no distance is known.
+        let balls = spheres(filters, ray, leaf, limit, certain_limit);
+        let met = balls.mask & u32::from(leaf.spheres);
+        found.mask |= met;
+        found.unbounded |= met;
+        found.left |= balls.left & met;
     }
+    found.mask |= others;
+    found.unbounded |= others;
+    found.left |= u32::from(leaf.triangles);
+    found
+}
+
+/// [`candidates`] among the triangles: Woop's projection in `f32` with error bounds.
+///
+/// An edge function errs by [`leaf_error`]. The distance, a mean of the vertices' weighted by the edge functions, errs by at
+/// most three times that times their spread, over the determinant, and by less than 3δ for the rounding of distances, sum and
+/// quotient.
+#[inline(always)]
+fn triangles<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
+    let all = |v| F::Vector::splat(filters.into(), v);
     let a = project(filters, ray, &leaf.vertices[0]);
     let b = project(filters, ray, &leaf.vertices[1]);
     let c = project(filters, ray, &leaf.vertices[2]);
     let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-    let error = leaf_error(ray.error, leaf.extent);
+    let delta = ray.error(leaf.magnitude);
+    let error = leaf_error(delta, leaf.extent);
     let (least, most) = (u.min(v).min(w), u.max(v).max(w));
     let met = all(-error).at_most(least) | most.at_most(all(error));
     if met == 0 {
-        return Candidates { mask: unbounded, unbounded, certain: 0, near: [0.0; LEAF_WIDTH], far: [0.0; LEAF_WIDTH] };
+        return Candidates::NONE;
     }
     let det = u + v + w;
     let reciprocal = all(ray.shear[2]) / det;
     let t = (u * a[2] + v * b[2] + w * c[2]) * reciprocal;
-    let depth = a[2].max(b[2]).max(c[2]) - a[2].min(b[2]).min(c[2]) + all(2.0 * ray.error);
-    let t_error = all(6.0 * error) * depth * reciprocal.abs() + all(3.0 * ray.error);
+    let depth = a[2].max(b[2]).max(c[2]) - a[2].min(b[2]).min(c[2]) + all(2.0 * delta);
+    let t_error = all(6.0 * error) * depth * reciprocal.abs() + all(3.0 * delta);
     let determined = all(6.0 * error).below(det.abs());
     let (near, far) = (t - t_error, t + t_error);
     let met = met & !(determined & (all(limit).below(near) | far.below(all(0.0))));
     let inside = all(error).below(least) | most.below(all(-error));
     let ahead = all(0.0).below(near) & far.below(all(certain_limit));
     Candidates {
-        mask: met | unbounded,
-        unbounded: unbounded | met & !determined,
+        mask: met,
+        unbounded: met & !determined,
         certain: met & determined & inside & ahead,
+        left: 0,
         near: near.to_array(),
         far: far.to_array(),
     }
@@ -68,21 +89,47 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
     p[0] * q[1] - p[1] * q[0]
 }
 
-/// The lanes whose spheres the ray may meet.
+/// [`candidates`] among the spheres.
+///
+/// With δ the bound on the error of a projected coordinate, the slopes s of the projection and n = 1 + s² ∈ [1, 3],
+/// a centre that projects to (x, y) is √(x² + y² − (x·sx + y·sy)²/n) from the ray and abreast of it at z + (x·sx + y·sy)/n.
+/// The distance errs by no more than √2·δ, and its square, since the difference is at least a third of x² + y², by 30
+/// roundoffs of itself besides; the radius errs by one; the place along the ray by at most 4δ. So the half chord
+/// √((r² − d²)/n) lies between those of a radius 6δ smaller and of one 6δ larger, and both ends of the chord err by at most
+/// 4δ, by 16 roundoffs of the half chord, and by 4 of the place itself, whose magnitude is below that of which δ is at least 12.
 #[inline(always)]
-fn spheres<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32) -> u32 {
+fn spheres<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
     let all = |v| F::Vector::splat(filters.into(), v);
     let [sx, sy, sz] = ray.shear;
     let [x, y, z] = project(filters, ray, &leaf.vertices[0]);
+    let radius = F::Vector::load(filters.into(), &leaf.vertices[1][0]);
+    let n = 1.0 + sx * sx + sy * sy;
     let along = x * all(sx) + y * all(sy);
-    let flat = all(1.0 / (1.0 + sx * sx + sy * sy));
-    let squared = x * x + y * y - along * along * flat;
-    let (slack, factor) = sphere_bounds(ray.error);
-    let reach = F::Vector::load(filters.into(), &leaf.vertices[1][0]) + all(slack);
-    let middle = (z + along * flat) * all(sz);
-    squared.at_most(reach * reach * all(factor))
-        & (middle - reach).at_most(all(limit))
-        & all(0.0).at_most(middle + reach)
+    // n times the squares of the distance, of the radii and of the half chords.
+    let squared = (x * x + y * y) * all(n) - along * along;
+    let delta = ray.error(leaf.magnitude);
+    let slack = all(6.0 * delta);
+    let (inner, outer) = (radius - slack, radius + slack);
+    let longest = outer * outer * all(n) - squared * all(1.0 - 32.0 * f32::EPSILON);
+    let met = all(0.0).at_most(longest);
+    if met == 0 {
+        return Candidates::NONE;
+    }
+    let per_n = sz / n;
+    let middle = z * all(sz) + along * all(per_n);
+    // Lanes of NaN are none of `met`, or not certain.
+    let longer = longest.sqrt() * all(per_n.abs() * (1.0 + 32.0 * f32::EPSILON));
+    let shortest = inner * inner * all(n) - squared * all(1.0 + 32.0 * f32::EPSILON);
+    let shorter = shortest.sqrt() * all(per_n.abs() * (1.0 - 32.0 * f32::EPSILON));
+    let t_error = all(8.0 * delta);
+    let (near, far) = (middle - longer - t_error, middle - shorter + t_error);
+    let met = met & near.at_most(all(limit)) & all(0.0).at_most(middle + longer + t_error);
+    // The first root is the hit only where it is certainly ahead.
+    let ahead = all(0.0).below(near) & far.below(all(certain_limit));
+    let certain = met & ahead & all(0.0).below(shortest) & all(0.0).below(inner);
+    // A sphere that the ray leaves is hit again only if its centre is ahead.
+    let left = (middle + t_error).below(all(0.0));
+    Candidates { mask: met, unbounded: 0, certain, left, near: near.to_array(), far: far.to_array() }
 }
 
 /// Bound on the error of the edge functions of a leaf's triangles in the projection of a ray that meets the leaf's box.
@@ -95,15 +142,4 @@ fn spheres<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32) -> 
 #[inline(always)]
 fn leaf_error(error: f32, extent: f32) -> f32 {
     error * (12.0 * extent + 32.0 * error)
-}
-
-/// Bounds for spheres in the projection of a ray: on the error of a centre's distance from the ray and of its place along
-/// it, and a relative one on the squared distance.
-///
-/// A centre relative to the origin and sheared, (x, y), errs by δ in each coordinate, its distance from the ray,
-/// √(x² + y² − (x·sx + y·sy)²/(1 + sx² + sy²)), by no more than √2·δ and, since the difference is at least a third of
-/// x² + y², by 30 roundoffs of itself; the radius errs by one. Along the ray the centre errs by at most 4δ.
-#[inline(always)]
-fn sphere_bounds(error: f32) -> (f32, f32) {
-    (6.0 * error, 1.0 + 32.0 * f32::EPSILON)
 }

@@ -42,10 +42,17 @@ struct Candidates {
     unbounded: u32,
     /// Those among them that are certainly hit between the origin and the certain limit.
     certain: u32,
+    /// Those that are certainly not hit if it is they that the ray leaves.
+    left: u32,
     /// Distances not above the true ones.
     near: [f32; LEAF_WIDTH],
     /// Distances not below the true ones of those certainly hit.
     far: [f32; LEAF_WIDTH],
+}
+
+impl Candidates {
+    const NONE: Self =
+        Self { mask: 0, unbounded: 0, certain: 0, left: 0, near: [0.0; LEAF_WIDTH], far: [0.0; LEAF_WIDTH] };
 }
 
 /// The filters of an instruction set.
@@ -338,10 +345,10 @@ fn closest_on<F: Filters, const N: usize>(
                 if candidates.near[lane % LEAF_WIDTH] > limit && candidates.unbounded >> lane & 1 == 0 {
                     continue;
                 }
-                if id == query.leaves && leaf.spheres >> lane & 1 == 0 {
+                if id == query.leaves && candidates.left >> lane & 1 == 1 {
                     continue;
                 }
-                if candidates.certain >> lane & 1 == 1 {
+                if candidates.certain >> lane & 1 == 1 && id != query.leaves {
                     // Its exact distance can wait until the end, when it has been fetched.
                     if !leaf.is_exact(lane) {
                         filters.prefetch(&primitives[id.0 as usize]);
@@ -426,10 +433,10 @@ fn any_on<F: Filters, const N: usize>(
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
                 let id = leaf.id(lane);
-                if id == query.aims_at || id == query.leaves && leaf.spheres >> lane & 1 == 0 {
+                if id == query.aims_at || id == query.leaves && candidates.left >> lane & 1 == 1 {
                     continue;
                 }
-                let certain = candidates.certain >> lane & 1 == 1;
+                let certain = candidates.certain >> lane & 1 == 1 && id != query.leaves;
                 let hit = certain || occludes_by(tree, leaf, lane, primitives, query);
                 if hit {
                     return true;

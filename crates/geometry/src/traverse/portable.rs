@@ -70,6 +70,11 @@ impl Vector for Floats {
     }
 
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f32::sqrt))
+    }
+
+    #[inline(always)]
     fn below(self, o: Self) -> u32 {
         (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(self.0[i] < o.0[i]) << i)
     }

@@ -21,6 +21,8 @@ pub(super) trait Vector:
     fn max(self, o: Self) -> Self;
     /// Magnitudes.
     fn abs(self) -> Self;
+    /// Square roots.
+    fn sqrt(self) -> Self;
     /// The lanes that are below, one bit each; none that is NaN.
     fn below(self, o: Self) -> u32;
     /// The lanes that are not above, one bit each; none that is NaN.
