@@ -107,6 +107,19 @@ pub trait Emits {
         Cone::SPHERE
     }
 
+    /// The solid angle that the light subtends, sr, if its closed form is known: the laws then hold the samples to it.
+    fn solid_angle_sr(&self, from_m: [f64; 3]) -> Option<f64> {
+        let _ = from_m;
+        None
+    }
+
+    /// The irradiance on a surface of this unit normal with nothing in between, W·m⁻²·nm⁻¹, if its closed form is known: the
+    /// laws then hold the samples to it.
+    fn irradiance(&self, from_m: [f64; 3], normal: [f64; 3]) -> Option<f64> {
+        let _ = (from_m, normal);
+        None
+    }
+
     /// Machine epsilon of the arithmetic.
     fn epsilon(&self) -> f64 {
         f64::EPSILON

@@ -26,7 +26,7 @@ pub fn scatters(subject: &dyn Scatters, seed: u64) -> Vec<Verdict> {
 /// Every law of a light, from each of the given points, m. `pdf_tolerance` as in [`laws::light_pdf_integrates_to_one`].
 #[must_use]
 pub fn emits(subject: &dyn Emits, from_m: &[[f64; 3]], pdf_tolerance: f64, seed: u64) -> Vec<Verdict> {
-    let budget = Budget::for_tests(from_m.len());
+    let budget = Budget::for_tests(4 * from_m.len());
     from_m.iter().flat_map(|point| laws::light_laws(subject, *point, pdf_tolerance, budget, seed)).collect()
 }
 
@@ -118,9 +118,18 @@ macro_rules! emits_suite {
             }
             #[test]
             fn samples_follow_pdf() {
-                let budget = $crate::statistics::Budget::for_tests($points.len());
+                let budget = $crate::statistics::Budget::for_tests(4 * $points.len());
                 for point in &$points {
                     $crate::laws::light_samples_follow_pdf(&$subject, *point, budget, $seed).assert();
+                }
+            }
+            #[test]
+            fn closed_forms_hold() {
+                let budget = $crate::statistics::Budget::for_tests(4 * $points.len());
+                for point in &$points {
+                    for verdict in $crate::laws::light_closed_forms(&$subject, *point, budget, $seed) {
+                        verdict.assert();
+                    }
                 }
             }
         }

@@ -267,6 +267,17 @@ mod tests {
     use super::*;
 
     #[test]
+    fn very_many_samples_keep_their_mean() {
+        // Hard case 31.
+        etalon_oracle::laws::film_mean_is_exact(|samples| {
+            let mut sum = XyzSum::default();
+            samples.for_each(|sample| sum.add([0.0, sample, 0.0]));
+            sum.xyz[1] / f64::from(sum.count)
+        })
+        .assert();
+    }
+
+    #[test]
     fn tiles_cover_every_pixel_once() {
         let rect = PixelRect { x0: 3, y0: 1, x1: 40, y1: 38 };
         let mut seen: Vec<_> = rect.tiles(16).iter().flat_map(PixelRect::pixels).collect();

@@ -49,6 +49,23 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    #[test]
+    fn the_axes_of_the_square_become_the_axes_of_the_disk() {
+        let close = |u: [f64; 2], want: [f64; 2]| {
+            let got = concentric_disk(u);
+            assert!((got[0] - want[0]).hypot(got[1] - want[1]) < 1e-15, "{u:?}: {got:?} is not {want:?}");
+        };
+        close([0.5, 0.5], [0.0, 0.0]);
+        for (u, r) in [(0.75, 0.5), (0.125, -0.75), (0.0, -1.0)] {
+            close([u, 0.5], [r, 0.0]);
+            close([0.5, u], [0.0, r]);
+            // The diagonals, where both halves of the map meet.
+            let d = r * 0.5_f64.sqrt();
+            close([u, u], [d, d]);
+            close([u, 1.0 - u], [d, -d]);
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4096))]
         #[test]

@@ -135,6 +135,13 @@ mod tests {
     }
 
     #[test]
+    fn a_lane_that_is_turned_to_the_very_end_begins_anew() {
+        let d = WavelengthDistribution::new([360.0, 830.0]);
+        // Three quarters and one quarter are exactly 1.
+        assert_eq!(d.sample_lanes::<4>(0.75).lambda_nm[1], d.sample(0.0).0);
+    }
+
+    #[test]
     fn lanes_are_a_quarter_of_the_probability_apart() {
         let d = WavelengthDistribution::new([360.0, 830.0]);
         let w = d.sample_lanes::<4>(0.8);

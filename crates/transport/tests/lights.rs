@@ -2,7 +2,9 @@
 
 use etalon_geometry::{Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
 use etalon_optics::Vec3;
-use etalon_transport::light::{DiskLight, Emitter, Light, ParallelogramLight, SphereLight, Target, TriangleLight};
+use etalon_transport::light::{
+    DirectionalLight, DiskLight, Emitter, Light, ParallelogramLight, PointLight, SphereLight, Target, TriangleLight,
+};
 use etalon_transport::mis::Density;
 use etalon_transport::spectral::PathSpectrum;
 use proptest::prelude::*;
@@ -75,6 +77,20 @@ fn sphere_light_solid_angle_and_irradiance_hold_at_any_distance() {
 }
 
 #[test]
+fn a_shadow_ray_ends_on_the_near_side_of_a_sphere_or_on_the_far_one_from_inside() {
+    let (center, radius) = (Vec3::new(0.5, 1.0, 4.0), 1.5);
+    for (from, outward) in [(Vec3::ZERO, -1.0), (Vec3::new(0.0, 1.0, 3.5), 1.0)] {
+        for u in [[0.0, 0.0], [0.3, 0.1], [0.7, 0.8], [0.99, 0.4]] {
+            let sample = sphere(center, radius).sample(from, u).unwrap();
+            let Target::Point(target) = sample.target else { panic!("a sphere is not at infinity") };
+            let normal = (target - center) / radius;
+            assert!((normal.length() - 1.0).abs() < 1e-14, "{u:?}: {target:?} is not on the sphere");
+            assert!(normal.dot(sample.wi) * outward > 0.0, "{u:?}: the other root");
+        }
+    }
+}
+
+#[test]
 fn flat_lights_fill_their_solid_angle() {
     let (corner, a, b) = (Vec3::new(-0.5, -1.0, 1.0), Vec3::new(1.5, 0.0, 0.5), Vec3::new(0.2, 1.8, 0.0));
     let (p, q, r) = (corner + a, corner + a + b, corner + b);
@@ -94,6 +110,22 @@ fn flat_lights_fill_their_solid_angle() {
     // Lambert's formula for the triangle of the list of truths.
     let listed = triangle(Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0), Vec3::new(0.0, 0.0, 2.0));
     close(integral(&listed, 512, |wi| wi.z), 0.302_299_894, 1e-3, "irradiance of a triangle");
+}
+
+#[test]
+fn lights_without_a_surface_shine_from_where_they_are() {
+    let from = Vec3::new(1.0, 2.0, 3.0);
+    let point = Light::Point(PointLight { position: Vec3::new(3.0, 2.0, 3.0), intensity: PathSpectrum::Constant(1.0) });
+    let sample = point.sample(from, [0.3, 0.7]).unwrap();
+    // I/d² at two metres.
+    assert_eq!((sample.wi, sample.scale, sample.density), (Vec3::new(1.0, 0.0, 0.0), 0.25, Density::Delta));
+    assert_eq!(sample.target, Target::Point(Vec3::new(3.0, 2.0, 3.0)));
+    assert!(point.sample(Vec3::new(3.0, 2.0, 3.0), [0.5; 2]).is_none());
+    let toward = Vec3::new(0.0, 0.6, 0.8);
+    let sun = Light::Directional(DirectionalLight { toward, irradiance: PathSpectrum::Constant(1.0) });
+    let sample = sun.sample(from, [0.3, 0.7]).unwrap();
+    assert_eq!((sample.wi, sample.scale, sample.density), (toward, 1.0, Density::Delta));
+    assert_eq!((sample.target, point.density(from, toward), sun.density(from, toward)), (Target::Infinity, 0.0, 0.0));
 }
 
 proptest! {

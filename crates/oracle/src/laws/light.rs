@@ -5,7 +5,7 @@ use crate::{
     quadrature::directions,
     statistics::{Budget, Welford, chi_square_verdict, z_verdict},
     subjects::Emits,
-    vector::{Vec3, dot, is_finite, length, normalize, representable},
+    vector::{Vec3, add, cross, dot, frame, is_finite, length, normalize, representable, scale},
 };
 
 const SAMPLES: u32 = 65_536;
@@ -164,6 +164,51 @@ pub fn light_gives_irradiance(
     verdict
 }
 
+/// The samples fill the light's solid angle, no more and no less: E[1/pdf] = Ω. 65536 samples.
+///
+/// `tolerance` is relative and deterministic: the subject's rounding.
+pub fn light_fills_its_solid_angle(
+    subject: &dyn Emits,
+    from_m: [f64; 3],
+    solid_angle_sr: f64,
+    tolerance: f64,
+    budget: Budget,
+    seed: u64,
+) -> Verdict {
+    const LAW: &str = "a light's samples fill the solid angle that it subtends";
+    let mut numbers = Uniform::new(seed);
+    let readings: Welford = (0..SAMPLES)
+        .map(|_| {
+            let u = representable([numbers.number(), numbers.number(), 0.0], subject.epsilon());
+            subject.sample(from_m, [u[0], u[1]]).map_or(0.0, |drawn| 1.0 / drawn.pdf)
+        })
+        .collect();
+    let mut verdict = z_verdict(LAW, &readings.estimate(), solid_angle_sr, tolerance * solid_angle_sr, budget.each());
+    verdict.evidence = format!("from {from_m:?}: {}", verdict.evidence);
+    verdict
+}
+
+/// The closed forms that a light states, its [solid angle](Emits::solid_angle_sr) and its [irradiance](Emits::irradiance) on a
+/// surface that faces it and on one turned away by 50°, against its samples; nothing for a light that states none.
+#[must_use]
+pub fn light_closed_forms(subject: &dyn Emits, from_m: [f64; 3], budget: Budget, seed: u64) -> Vec<Verdict> {
+    // The statistical error, 1e-3 or so, is larger; this keeps a noise-free light's rounding from failing.
+    let tolerance = RELATIVE_BOUND * subject.epsilon();
+    let mut verdicts = Vec::new();
+    if let Some(solid_angle) = subject.solid_angle_sr(from_m) {
+        verdicts.push(light_fills_its_solid_angle(subject, from_m, solid_angle, tolerance, budget, seed));
+    }
+    let axis = normalize(subject.extent(from_m).axis);
+    let (across, _) = frame(axis);
+    let (sine, cosine) = 50.0_f64.to_radians().sin_cos();
+    for normal in [axis, normalize(add(scale(cosine, axis), scale(sine, across)))] {
+        if let Some(truth) = subject.irradiance(from_m, normal) {
+            verdicts.push(light_gives_irradiance(subject, from_m, normal, truth, tolerance, budget, seed));
+        }
+    }
+    verdicts
+}
+
 /// A light sampled uniformly over the solid angle it subtends: 1/pdf is that solid angle, sr, in *every* sample, so that a
 /// far light is noise-free. Relative bound `tolerance`; 4000 samples.
 pub fn light_is_uniform_in_solid_angle(
@@ -199,6 +244,15 @@ pub fn sphere_solid_angle(radius_m: f64, distance_m: f64) -> f64 {
     std::f64::consts::TAU * s * s / (1.0 + cosine)
 }
 
+/// Solid angle of a triangle seen from the origin, sr (Van Oosterom & Strackee 1983).
+#[must_use]
+pub fn triangle_solid_angle(corners_m: [[f64; 3]; 3]) -> f64 {
+    let [a, b, c] = corners_m;
+    let (la, lb, lc) = (length(a), length(b), length(c));
+    let denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+    2.0 * dot(a, cross(b, c)).abs().atan2(denominator)
+}
+
 /// Solid angle of a centred rectangle of the given sides at a height above its centre, sr:
 /// 4·atan(a·b/(h·√(a² + b² + h²))) with half sides a, b.
 #[must_use]
@@ -207,8 +261,8 @@ pub fn rectangle_solid_angle(width_m: f64, length_m: f64, height_m: f64) -> f64 
     4.0 * (a * b / (h * (a * a + b * b + h * h).sqrt())).atan()
 }
 
-/// The whole set of laws for a light seen from one point; `budget` is shared by them. `pdf_tolerance` as in
-/// [`light_pdf_integrates_to_one`].
+/// The whole set of laws for a light seen from one point; `budget` is that of each statistical one, of which there are at
+/// most four. `pdf_tolerance` as in [`light_pdf_integrates_to_one`].
 #[must_use]
 pub fn light_laws(
     subject: &dyn Emits,
@@ -217,11 +271,13 @@ pub fn light_laws(
     budget: Budget,
     seed: u64,
 ) -> Vec<Verdict> {
-    vec![
+    let mut verdicts = vec![
         light_sample_is_consistent(subject, from_m, seed),
         light_pdf_integrates_to_one(subject, from_m, pdf_tolerance, seed),
         light_samples_follow_pdf(subject, from_m, budget, seed),
-    ]
+    ];
+    verdicts.extend(light_closed_forms(subject, from_m, budget, seed));
+    verdicts
 }
 
 #[cfg(test)]
@@ -235,6 +291,13 @@ mod tests {
         assert!((sphere_solid_angle(1.0, 2.0) - 2.0 * PI * (1.0 - 0.75_f64.sqrt())).abs() < 1e-14);
         assert!((sphere_solid_angle(1e-9, 1.0) / (PI * 1e-18) - 1.0).abs() < 1e-12);
         assert_eq!(sphere_solid_angle(2.0, 1.0), 4.0 * PI);
+        // An octant, and a cube's face seen from its centre in two halves.
+        assert!((triangle_solid_angle([[2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3.0]]) - 0.5 * PI).abs() < 1e-14);
+        let halves = [
+            [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0]],
+            [[-1.0, -1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0]],
+        ];
+        assert!((halves.map(triangle_solid_angle).iter().sum::<f64>() - 4.0 * PI / 6.0).abs() < 1e-14);
         // A cube's face seen from its centre is a sixth of the sphere.
         assert!((rectangle_solid_angle(2.0, 2.0, 1.0) - 4.0 * PI / 6.0).abs() < 1e-14);
         let cone = Cone::new([0.0, 0.0, 1.0], 0.5_f64.asin());

@@ -23,8 +23,9 @@ pub use intersection::{
     Aim, ClosedMesh, closed_mesh_is_tight, far_sphere_is_hit, powers_of_two_are_exact, signed_zeros_are_equal,
 };
 pub use light::{
-    light_gives_irradiance, light_is_uniform_in_solid_angle, light_laws, light_pdf_integrates_to_one,
-    light_sample_is_consistent, light_samples_follow_pdf, rectangle_solid_angle, sphere_solid_angle,
+    light_closed_forms, light_fills_its_solid_angle, light_gives_irradiance, light_is_uniform_in_solid_angle,
+    light_laws, light_pdf_integrates_to_one, light_sample_is_consistent, light_samples_follow_pdf,
+    rectangle_solid_angle, sphere_solid_angle, triangle_solid_angle,
 };
 pub use microfacet::{Masking, SingleScattering, ggx_albedo};
 pub use numerics::{film_mean_is_exact, frame_is_orthonormal, mis_weights_add_up, wavelengths_follow_density};

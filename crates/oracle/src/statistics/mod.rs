@@ -4,14 +4,12 @@
 //! test reports the smallest bias it would have caught with probability [`POWER`].
 
 mod chi_square;
-mod control;
 mod estimate;
 mod power;
 mod tails;
 mod welch;
 
 pub use chi_square::{ChiSquare, chi_square, chi_square_verdict};
-pub use control::with_control;
 pub use estimate::{Estimate, Welford};
 pub use power::{Budget, POWER, SUITE_SIGNIFICANCE, resolvable_bias, samples_needed, sidak};
 pub use tails::{

@@ -71,3 +71,45 @@ fn visible_sum(spectrum: &PathSpectrum, [first, last]: [f64; 2]) -> f64 {
     let at = |i: i32| first + (last - first) * (f64::from(i) + 0.5) / f64::from(steps);
     (0..steps).map(at).map(|nm| spectrum.eval(nm) * (colour_matching(nm).iter().sum::<f64>() + 1e-3)).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::{
+        DirectionalLight, DiskLight, Emitter, ParallelogramLight, PointLight, SphereLight, TriangleLight,
+    };
+    use etalon_geometry::{Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
+    use etalon_optics::Vec3;
+    use std::f64::consts::PI;
+
+    /// Radiant power of a surface is π times radiance, area and sides, of a point 4π times intensity, of parallel light the
+    /// irradiance on the scene's disk. Only the noise depends on it.
+    #[test]
+    fn lights_are_chosen_by_their_power() {
+        let (x, y) = (Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 3.0, 0.0));
+        let shines =
+            |front, back| Emitter { radiance: PathSpectrum::Constant(1.0), front, back, primitive: PrimitiveId(0) };
+        let one = || PathSpectrum::Constant(1.0);
+        let lights = vec![
+            Light::Sphere(SphereLight::new(Sphere::new(Vec3::ZERO, 2.0).unwrap(), shines(true, false))),
+            Light::Parallelogram(ParallelogramLight::new(
+                Parallelogram::new(Vec3::ZERO, x, y).unwrap(),
+                shines(true, true),
+            )),
+            Light::Disk(DiskLight::new(
+                Disk::new(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.0), 3.0).unwrap(),
+                shines(false, true),
+            )),
+            Light::Triangle(TriangleLight::new(Triangle::new(Vec3::ZERO, x, y).unwrap(), shines(true, true))),
+            Light::Point(PointLight { position: Vec3::ZERO, intensity: one() }),
+            Light::Directional(DirectionalLight { toward: Vec3::new(0.0, 0.0, 1.0), irradiance: one() }),
+        ];
+        let powers = [16.0 * PI, 2.0 * 6.0, 9.0 * PI, 2.0 * 3.0, 4.0, 25.0].map(|power: f64| power * PI);
+        let total: f64 = powers.iter().sum();
+        let table = LightTable::new(lights, 5.0, [360.0, 830.0]);
+        for (i, power) in powers.iter().enumerate() {
+            let share = 0.9 * power / total + 0.1 / 6.0;
+            assert!((table.probability(i) - share).abs() < 1e-14, "{i}: {} is not {share}", table.probability(i));
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use etalon_oracle::statistics::{Budget, with_control};
+use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::{Reading, Renders};
 use etalon_oracle::truths::{Claim, Truth, judge};
 use etalon_scene::{Precision, Scene};
@@ -62,25 +62,19 @@ impl Etalon {
 }
 
 impl Renders for Etalon {
-    /// Every path draws wavelengths, and CIE Y of what it finds scatters with them even where radiance does not. A white sky
-    /// before the same film with the same random numbers draws the same wavelengths and must read 1, as the truth of the sky
-    /// alone tests by itself: what the two have in common is taken off.
     fn render(&mut self, truth: &Truth) -> Result<Reading, String> {
-        let (mut pairs, mut nonfinite) = (Vec::new(), 0);
+        let (mut moments, mut nonfinite) = (Welford::new(), 0);
         for replicate in 0..REPLICATES {
-            let (scene, white) =
-                (self.replicate(&truth.scene, replicate)?, self.replicate(&truth.white_scene(), replicate)?);
-            let (mean, bad) = self.mean_y(&scene)?;
+            let (mean, bad) = self.mean_y(&self.replicate(&truth.scene, replicate)?)?;
+            // A film of CIE Y reads a narrow band relative to a white sky in the same band.
+            let white = match truth.band_nm {
+                Some(_) => self.mean_y(&self.replicate(&truth.white_scene(), replicate)?)?.0,
+                None => 1.0,
+            };
+            moments.push(mean / white);
             nonfinite += bad;
-            pairs.push(if white == scene {
-                (mean, 1.0)
-            } else {
-                let white = self.mean_y(&white)?.0;
-                // A film of CIE Y reads a narrow band relative to white.
-                if truth.band_nm.is_some() { (mean / white, 1.0) } else { (mean, white) }
-            });
         }
-        Ok(Reading { estimate: with_control(&pairs, 1.0), nonfinite })
+        Ok(Reading { estimate: moments.estimate(), nonfinite })
     }
 }
 
