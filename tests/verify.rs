@@ -50,8 +50,8 @@ fn an_export_holds_every_truth_and_our_own_renders_of_it_pass_as_pictures() {
     assert!(list["truths"].as_array().unwrap().len() >= 136);
 
     std::fs::create_dir(&pictures).unwrap();
-    // One scene of one wavelength, which a film of CIE Y reads relative to white, and one that shines everywhere.
-    for name in ["eye-in-glass", "prism-bk7-at-656.2725-nanometres", "prism-bk7-at-656.2725-nanometres.white"] {
+    // One scene of one wavelength, which a film of CIE Y reads relative to white, and one of all.
+    for name in ["plate-at-0-degrees", "prism-bk7-at-656.2725-nanometres", "prism-bk7-at-656.2725-nanometres.white"] {
         for seed in 1..=16 {
             let (scene, picture) =
                 (truths.join(format!("scenes/{name}.json")), pictures.join(format!("{name}.{seed}.exr")));
@@ -67,7 +67,7 @@ fn an_export_holds_every_truth_and_our_own_renders_of_it_pass_as_pictures() {
     std::fs::create_dir(&mean).unwrap();
     let (mut sum, mut squares) = (vec![[0.0_f64; 3]; 1024], vec![[0.0_f64; 3]; 1024]);
     for seed in 1..=16 {
-        let file = read_exr(&pictures.join(format!("eye-in-glass.{seed}.exr"))).unwrap().picture;
+        let file = read_exr(&pictures.join(format!("plate-at-0-degrees.{seed}.exr"))).unwrap().picture;
         for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
             for (pixel, sample) in file.channel(name).unwrap().iter().enumerate() {
                 sum[pixel][c] += f64::from(*sample) / 16.0;
@@ -81,16 +81,16 @@ fn an_export_holds_every_truth_and_our_own_renders_of_it_pass_as_pictures() {
         let variance = (0..1024).map(|p| ((squares[p][c] - sum[p][c].powi(2)) / 15.0).max(0.0) as f32).collect();
         picture.insert(&format!("Variance.{name}"), variance).unwrap();
     }
-    write_exr(&mean.join("eye-in-glass.exr"), &picture, &Attributes::new()).unwrap();
+    write_exr(&mean.join("plate-at-0-degrees.exr"), &picture, &Attributes::new()).unwrap();
     let averaged = etalon_line("verify --images {} --json", [&mean]).expect(0).json();
-    let (one, several) = (row(&averaged, "eye-in-glass"), row(&report, "eye-in-glass"));
+    let (one, several) = (row(&averaged, "plate-at-0-degrees"), row(&report, "plate-at-0-degrees"));
     let close = |key: &str, relative: f64| {
         let (a, b) = (one[key].as_f64().unwrap(), several[key].as_f64().unwrap());
         assert!((a / b - 1.0).abs() < relative, "{key}: {a} {b}");
     };
     close("measured", 1e-6);
-    // Colours whose noise is taken to go together look noisier than they are; sixteen values know an error to 18 %.
-    assert!(one["standard_error"].as_f64().unwrap() > 0.5 * several["standard_error"].as_f64().unwrap());
+    // Sixteen values know an error to 18 %; the three colours of a grey scene go together, as a picture is taken to be.
+    close("standard_error", 0.8);
 }
 
 #[test]

@@ -135,3 +135,33 @@ macro_rules! emits_suite {
         }
     };
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::subjects::{Density, Scattered, Scatters};
+
+    /// Absorbs everything, but for what its fault lets through.
+    struct Black {
+        lets_through: f64,
+    }
+
+    impl Scatters for Black {
+        fn f(&self, _: [f64; 3], _: [f64; 3], _: f64) -> f64 {
+            0.0
+        }
+
+        fn pdf(&self, _: [f64; 3], _: [f64; 3], _: f64) -> f64 {
+            0.0
+        }
+
+        fn sample(&self, wo: [f64; 3], u: [f64; 3], _: f64) -> Option<Scattered> {
+            (u[0] < self.lets_through).then_some(Scattered { wi: wo, weight: 0.0, density: Density::Delta(1.0) })
+        }
+    }
+
+    #[test]
+    fn a_body_that_absorbs_everything_obeys_every_law_and_one_that_does_not_quite_breaks_one() {
+        super::scatters(&Black { lets_through: 0.0 }, 1).iter().for_each(crate::Verdict::assert);
+        assert!(super::scatters(&Black { lets_through: 0.01 }, 1).iter().any(|verdict| !verdict.pass));
+    }
+}

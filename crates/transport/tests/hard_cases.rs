@@ -20,7 +20,7 @@ fn a_square_light_fills_its_solid_angle_from_ten_thousand_sides_across_to_a_hund
         let corner = Vec3::new(-a, -a, 1.0);
         let shape = Parallelogram::new(corner, Vec3::new(side, 0.0, 0.0), Vec3::new(0.0, side, 0.0)).unwrap();
         let emitter =
-            Emitter { radiance: PathSpectrum::Constant(1.0), front: true, back: true, primitive: PrimitiveId(0) };
+            Emitter { radiance: PathSpectrum::Constant(1.0), front: true, back: true, surface: PrimitiveId(0).into() };
         let light = Light::Parallelogram(ParallelogramLight::new(shape, emitter));
         let per_sample = |u: f64, v: f64| match light.sample(from, [u, v]).map(|sample| sample.density) {
             Some(Density::SolidAngle(density)) => 1.0 / density,
@@ -47,10 +47,9 @@ fn the_weights_of_two_ways_of_sampling_add_up() {
     laws::mis_weights_add_up(|a, b| f64::from(power_heuristic(a as f32, b as f32)), SINGLE, 1).assert();
 }
 
-/// A room with glass, a mirror, a lens and lights of several kinds, `scale` times as large; `zero` is how it writes 0.
-fn room(scale: f64, zero: f64) -> Value {
-    let at = |v: [f64; 3]| v.map(|x| if x == 0.0 { zero } else { scale * x });
-    let along = |v: [f64; 3]| v.map(|x| if x == 0.0 { zero } else { x });
+/// A room with glass, a mirror, a lens and lights of several kinds; `zero` is how it writes 0.
+fn room(zero: f64) -> Value {
+    let at = |v: [f64; 3]| v.map(|x| if x == 0.0 { zero } else { x });
     let wall = |origin: [f64; 3], u: [f64; 3], v: [f64; 3], reflectance: f64| {
         json!({
             "material": {"type": "lambert", "reflectance": reflectance},
@@ -60,9 +59,9 @@ fn room(scale: f64, zero: f64) -> Value {
     json!({
         "etalon": 1,
         "camera": {
-            "type": "perspective", "position_m": at([0.0, 0.0, 2.0]), "direction": along([0.0, 0.0, -1.0]),
-            "up": along([0.0, 1.0, 0.0]), "vertical_fov_deg": 60,
-            "lens": {"radius_m": scale * 0.0625, "focus_distance_m": scale * 2.0}
+            "type": "perspective", "position_m": at([0.0, 0.0, 2.0]), "direction": at([0.0, 0.0, -1.0]),
+            "up": at([0.0, 1.0, 0.0]), "vertical_fov_deg": 60,
+            "lens": {"radius_m": 0.0625, "focus_distance_m": 2.0}
         },
         "film": {"width": 24, "height": 16},
         "objects": [
@@ -71,7 +70,7 @@ fn room(scale: f64, zero: f64) -> Value {
             wall([1.5, -1.0, -1.0], [0.0, 0.0, 3.0], [0.0, 2.0, 0.0], 0.3),
             {
                 "material": {"type": "dielectric", "interior": "N-BK7"},
-                "shape": {"type": "sphere", "center_m": at([0.0, 0.0, 0.0]), "radius_m": scale * 0.5}
+                "shape": {"type": "sphere", "center_m": at([0.0, 0.0, 0.0]), "radius_m": 0.5}
             },
             {
                 "material": {"type": "mirror", "reflectance": 0.9},
@@ -79,13 +78,13 @@ fn room(scale: f64, zero: f64) -> Value {
             },
             {
                 "material": {"type": "black"}, "emission": {"radiance": 3},
-                "shape": {"type": "disk", "center_m": at([0.0, 0.9375, 0.0]), "normal": along([0.0, -1.0, 0.0]),
-                          "radius_m": scale * 0.25}
+                "shape": {"type": "disk", "center_m": at([0.0, 0.9375, 0.0]), "normal": at([0.0, -1.0, 0.0]),
+                          "radius_m": 0.25}
             }
         ],
         "lights": [
-            {"type": "point", "position_m": at([0.0, 0.5, 1.0]), "intensity": 0.25 * scale * scale},
-            {"type": "directional", "direction": along([0.0, -1.0, 0.0]), "irradiance": 0.25},
+            {"type": "point", "position_m": at([0.0, 0.5, 1.0]), "intensity": 0.25},
+            {"type": "directional", "direction": at([0.0, -1.0, 0.0]), "irradiance": 0.25},
             {"type": "environment", "radiance": 0.125}
         ],
         "integrator": {"spp": 4, "seed": 5}
@@ -99,24 +98,11 @@ fn film(json: &Value, precision: Precision) -> Film {
     prepared.render(&prepared.whole(Some(1)), &|_| Control::Continue).unwrap()
 }
 
-/// Nothing in the renderer knows how large the world is: not one bit of the film changes.
-#[test]
-fn a_world_larger_by_a_power_of_two_gives_the_same_film_bit_for_bit() {
-    for precision in [Precision::F32, Precision::F64] {
-        let one = film(&room(1.0, 0.0), precision);
-        for exponent in [-24, -7, 13, 24] {
-            let other = film(&room(2.0_f64.powi(exponent), 0.0), precision);
-            let differing = one.xyz().zip(other.xyz()).filter(|(a, b)| a != b).count();
-            assert_eq!(differing, 0, "pixels that differ at 2^{exponent}, {precision:?}");
-        }
-    }
-}
-
 /// Hard case 15 for whole pictures: zeros of either sign in positions and directions.
 #[test]
 fn the_sign_of_a_zero_changes_no_bit_of_the_film() {
     for precision in [Precision::F32, Precision::F64] {
-        let (plus, minus) = (film(&room(1.0, 0.0), precision), film(&room(1.0, -0.0), precision));
+        let (plus, minus) = (film(&room(0.0), precision), film(&room(-0.0), precision));
         let differing = plus.xyz().zip(minus.xyz()).filter(|(a, b)| a != b).count();
         assert_eq!(differing, 0, "pixels that differ, {precision:?}");
     }

@@ -115,7 +115,11 @@ fn flat_lights_fill_their_solid_angle() {
 #[test]
 fn lights_without_a_surface_shine_from_where_they_are() {
     let from = Vec3::new(1.0, 2.0, 3.0);
-    let point = Light::Point(PointLight { position: Vec3::new(3.0, 2.0, 3.0), intensity: PathSpectrum::Constant(1.0) });
+    let point = Light::Point(PointLight {
+        position: Vec3::new(3.0, 2.0, 3.0),
+        intensity: PathSpectrum::Constant(1.0),
+        per_m: 1.0,
+    });
     let sample = point.sample(from, [0.3, 0.7]).unwrap();
     // I/d² at two metres.
     assert_eq!((sample.wi, sample.scale, sample.density), (Vec3::new(1.0, 0.0, 0.0), 0.25, Density::Delta));

@@ -61,7 +61,8 @@ pub fn pdf_integrates_to_one(subject: &dyn Scatters, budget: Budget, seed: u64) 
             (0..SAMPLES).filter(|_| subject.sample(wo, draw(subject, &mut numbers), wavelength_nm).is_none()).count();
         let share = absorbed as f64 / f64::from(SAMPLES);
         let spread = (missing * (1.0 - missing).max(0.0) / f64::from(SAMPLES)).sqrt();
-        let z = (share - missing) / spread;
+        // A subject that absorbs everything leaves nothing to chance.
+        let z = if share == missing { 0.0 } else { (share - missing) / spread };
         let seen = resolvable_bias(spread, significance);
         let story = format!("{story}, and {absorbed} of {SAMPLES} samples were absorbed");
         Verdict::tested(LAW, z, normal_two_sided_tail(z), significance, seen, story)

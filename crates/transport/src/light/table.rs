@@ -87,8 +87,12 @@ mod tests {
     #[test]
     fn lights_are_chosen_by_their_power() {
         let (x, y) = (Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 3.0, 0.0));
-        let shines =
-            |front, back| Emitter { radiance: PathSpectrum::Constant(1.0), front, back, primitive: PrimitiveId(0) };
+        let shines = |front, back| Emitter {
+            radiance: PathSpectrum::Constant(1.0),
+            front,
+            back,
+            surface: PrimitiveId(0).into(),
+        };
         let one = || PathSpectrum::Constant(1.0);
         let lights = vec![
             Light::Sphere(SphereLight::new(Sphere::new(Vec3::ZERO, 2.0).unwrap(), shines(true, false))),
@@ -101,7 +105,7 @@ mod tests {
                 shines(false, true),
             )),
             Light::Triangle(TriangleLight::new(Triangle::new(Vec3::ZERO, x, y).unwrap(), shines(true, true))),
-            Light::Point(PointLight { position: Vec3::ZERO, intensity: one() }),
+            Light::Point(PointLight { position: Vec3::ZERO, intensity: one(), per_m: 1.0 }),
             Light::Directional(DirectionalLight { toward: Vec3::new(0.0, 0.0, 1.0), irradiance: one() }),
         ];
         let powers = [16.0 * PI, 2.0 * 6.0, 9.0 * PI, 2.0 * 3.0, 4.0, 25.0].map(|power: f64| power * PI);
@@ -111,5 +115,12 @@ mod tests {
             let share = 0.9 * power / total + 0.1 / 6.0;
             assert!((table.probability(i) - share).abs() < 1e-14, "{i}: {} is not {share}", table.probability(i));
         }
+    }
+
+    #[test]
+    fn a_spectrum_counts_by_what_an_observer_makes_of_it() {
+        // x̄, ȳ and z̄ have the same integral, 106.857 nm; the floor adds 0.47.
+        let mean = visible_sum(&PathSpectrum::Constant(1.0), [360.0, 830.0]) * 470.0 / 256.0;
+        assert!((mean - (3.0 * 106.857 + 0.47)).abs() < 0.1, "{mean}");
     }
 }
