@@ -90,6 +90,8 @@ class Translator:
 
     def bsdf(self, m):
         kind = m["type"]
+        if "priority" in m:
+            raise Unsupported("solids that share a place")
         if kind == "dielectric":
             return {"type": "dielectric", "int_ior": self.index(m["interior"]), "ext_ior": self.index(m.get("exterior", 1.0))}
         if kind in ("black", "lambert"):

@@ -205,6 +205,7 @@ fn more_than_two_hundred_instances_of_laws_hold() {
     let dielectric = |interior: &str, exterior: &str| MaterialKind::Dielectric {
         interior: index(interior),
         exterior: index(exterior),
+        priority: None,
     };
     let mut kinds = vec![
         MaterialKind::Black,
