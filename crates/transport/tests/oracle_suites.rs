@@ -200,6 +200,7 @@ fn functions<R: Real>() -> Vec<Verdict> {
 /// The whole of our materials, lights and functions under every law, counted; the count and the closest call are printed by
 /// `cargo test --release -p etalon-transport --test oracle_suites -- --nocapture two_hundred`.
 #[test]
+#[allow(clippy::print_stdout, reason = "the count is for whoever asks for it")]
 fn more_than_two_hundred_instances_of_laws_hold() {
     let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
     let dielectric = |interior: &str, exterior: &str| MaterialKind::Dielectric {
