@@ -172,6 +172,36 @@ pub enum MaterialKind {
         /// Whether light that meets several facets is counted.
         compensated: bool,
     },
+    /// Rough diffuse reflection on both sides (EON).
+    OrenNayar {
+        /// Albedo parameter, in [0, 1] at every wavelength.
+        reflectance: Spectrum,
+        /// Roughness, in [0, 1].
+        roughness: f64,
+    },
+    /// A diffuse ground under a clear coat, on both sides, seen from vacuum.
+    Plastic {
+        /// Albedo of the ground, in [0, 1] at every wavelength.
+        reflectance: Spectrum,
+        /// Index of the coat.
+        coat: RefractiveIndex,
+        /// Width of the coat's facets: 0 (smooth) or in [[`LEAST_ALPHA`], 1].
+        alpha: f64,
+    },
+    /// A pane without thickness.
+    ThinDielectric {
+        /// Index relative to what surrounds it.
+        index: RefractiveIndex,
+    },
+    /// Two materials side by side, finer than can be seen.
+    Blend {
+        /// The one.
+        first: Box<MaterialKind>,
+        /// The other.
+        second: Box<MaterialKind>,
+        /// The other's share of the surface, in [0, 1].
+        weight: f64,
+    },
     /// Reflects nothing (an emitter that is only a light, an absorber).
     Black,
 }
@@ -189,6 +219,8 @@ pub struct Object {
     pub material: usize,
     /// What it emits, if it does.
     pub emission: Option<Emission>,
+    /// Share of light that meets the surface at all, in [0, 1]; the rest passes as if it were not there.
+    pub opacity: f64,
 }
 
 /// Objects that are placed together, in the group's own coordinates.
@@ -312,6 +344,17 @@ pub enum LightKind {
         /// Position, m.
         position_m: [f64; 3],
         /// Radiant intensity, W·sr⁻¹·nm⁻¹.
+        intensity: Spectrum,
+    },
+    /// A point that shines into a cone, less and less towards its edge.
+    Spot {
+        /// Position, m.
+        position_m: [f64; 3],
+        /// Unit vector along the axis of the cone.
+        axis: [f64; 3],
+        /// Half angles, rad, at which the intensity begins to fall and is 0; in [0, π], ordered.
+        half_angles_rad: [f64; 2],
+        /// Radiant intensity along the axis, W·sr⁻¹·nm⁻¹.
         intensity: Spectrum,
     },
     /// Parallel light.

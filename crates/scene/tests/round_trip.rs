@@ -89,7 +89,12 @@ fn materials_and_spectra() {
             "glass",
             "dispersive",
             "own glass",
+            "solid",
             "black",
+            "clay",
+            "toy",
+            "pane",
+            "dusty",
             "objects[3].material"
         ]
     );
@@ -134,6 +139,15 @@ fn materials_and_spectra() {
         &MaterialKind::Dielectric { interior: glass("water"), exterior: RefractiveIndex::VACUUM, priority: Some(7) }
     );
     assert_eq!(kind(&scene, "black"), &MaterialKind::Black);
+    let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5), roughness: 0.4 };
+    assert_eq!(kind(&scene, "clay"), &clay);
+    let (reflectance, coat) = (Spectrum::Constant(0.25), RefractiveIndex::Constant(1.5));
+    let toy = MaterialKind::Plastic { reflectance, coat, alpha: 0.1 };
+    assert_eq!(kind(&scene, "toy"), &toy);
+    assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7") });
+    let dusty = MaterialKind::Blend { first: Box::new(toy), second: Box::new(MaterialKind::Black), weight: 0.125 };
+    assert_eq!(kind(&scene, "dusty"), &dusty);
+    assert_eq!((scene.objects[0].opacity, scene.objects[1].opacity), (0.75, 1.0));
     assert_eq!(kind(&scene, "objects[3].material"), &reflects(Spectrum::Constant(1.0)));
 }
 
@@ -146,7 +160,7 @@ fn objects_and_lights() {
     assert_eq!(sheet.shape, Shape::Parallelogram { origin: [0.0; 3], u: [1.0, 0.0, 0.0], v: [0.0, 2.0, 0.0] });
     let radiance = Spectrum::rgb_emission([4.0, 4.0 * 0.8, 2.0], Illuminant::A).expect("right");
     assert_eq!(sheet.emission, Some(Emission { radiance, sides: EmissionSides::Both }));
-    assert_eq!((sheet.name.as_str(), sheet.material), ("objects[1]", 10));
+    assert_eq!((sheet.name.as_str(), sheet.material), ("objects[1]", 11));
     assert_eq!(disk.shape, Shape::Disk { center: [0.0, 1.0, 0.0], normal: [0.0, -0.6, 0.8], radius_m: 2.0 });
     let radiance = Spectrum::blackbody(5000.0, 1e-3).expect("right");
     assert_eq!(disk.emission, Some(Emission { radiance, sides: EmissionSides::Front }));
@@ -156,7 +170,7 @@ fn objects_and_lights() {
     let normals = vec![[corner; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let uvs = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5]];
     assert_eq!(pyramid.shape, Shape::Mesh(Arc::new(Mesh { vertices, triangles, normals, uvs })));
-    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 11));
+    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 16));
     // By hand: (x, y, z) → (2x, −2y, 6z) → a quarter turn: (2y, 2x, 6z) → moved → x and y swapped, moved.
     let linear = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]];
     assert_eq!(pyramid.transform, Transform { linear, translation_m: [25.0, 16.0, 37.0] });
@@ -171,6 +185,12 @@ fn objects_and_lights() {
             &LightKind::Point { position_m: [0.0, 9.0, 0.0], intensity: day },
             &LightKind::Directional { direction: [0.0, -1.0, 0.0], irradiance: within },
             &LightKind::Environment { radiance: Spectrum::Constant(0.25) },
+            &LightKind::Spot {
+                position_m: [0.0, 3.0, 0.0],
+                axis: [0.0, -1.0, 0.0],
+                half_angles_rad: [std::f64::consts::FRAC_PI_4, std::f64::consts::FRAC_PI_2],
+                intensity: Spectrum::Constant(2.0),
+            },
         ]
     );
     assert_eq!(scene.lights[0].name, "bulb");

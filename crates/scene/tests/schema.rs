@@ -126,10 +126,7 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
     keys(&schema, &mut all);
     let unused: Vec<&String> = all.iter().filter(|key| !EVERYTHING.contains(&format!("\"{key}\":"))).collect();
     // These exclude others that the file has, or name files; the tests of camera, film and meshes have them.
-    assert_eq!(
-        unused,
-        ["file", "group", "height_m", "horizontal_fov_deg", "radius_px", "sensor_width_m", "vertical_fov_deg"]
-    );
+    assert_eq!(unused, ["file", "height_m", "horizontal_fov_deg", "radius_px", "sensor_width_m", "vertical_fov_deg"]);
 }
 
 /// Places in a JSON value: every value below the root.
@@ -258,6 +255,11 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                         M::Dielectric { interior, exterior, .. } | M::RoughDielectric { interior, exterior, .. } => {
                             interior.eval(nm) > 0.0 && exterior.eval(nm) > 0.0
                         }
+                        M::OrenNayar { reflectance, .. } | M::Plastic { reflectance, .. } => {
+                            (0.0..=1.0).contains(&reflectance.eval(nm))
+                        }
+                        M::ThinDielectric { index } => index.eval(nm) > 0.0,
+                        M::Blend { weight, .. } => (0.0..=1.0).contains(weight),
                         M::Black => true,
                     };
                     prop_assert!(good, "{material:?} at {nm}");

@@ -15,7 +15,7 @@
 //! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
 use crate::film::Counters;
-use crate::light::{LightTable, Target};
+use crate::light::{LightSample, LightTable, Target};
 use crate::media::{Inside, Media, Met};
 use crate::mis::{Density, power_heuristic};
 use crate::model::WavelengthModel;
@@ -44,6 +44,8 @@ pub(crate) struct World<'a> {
     pub media: Option<&'a Media>,
     pub light_sampling: LightSampling,
     pub shadow_rays: ShadowRays,
+    /// Whether some surface lets a part of the light pass as if it were not there.
+    pub masks: bool,
     /// Whether light that the walk runs into may have been found by a shadow ray too.
     pub weigh_hits: bool,
     /// Most path edges from the camera to a light, at most [`MOST_VERTICES`].
@@ -87,6 +89,8 @@ impl World<'_> {
         // ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
         let mut eta_squared = R::ONE;
         let mut step = Step::Unshared;
+        // Surfaces passed as if they were not there, which are no vertices of the path.
+        let mut passed = 0;
 
         for vertex in 0_u32.. {
             let lane_weight = lanes.weight();
@@ -117,7 +121,20 @@ impl World<'_> {
                 observer.light(vertex, Found::Emitter, light);
                 radiance += light;
             }
-            if vertex + 1 >= self.max_depth {
+            if self.masks && surface.opacity < 1.0 {
+                let [.., u_mask] = sampler.vertex_set::<R>(vertex, 1);
+                if u_mask.to_f64() >= surface.opacity && vertex + 1 < MOST_VERTICES {
+                    // The last step goes on, and with it what MIS knows of it: the shadow ray passed here too.
+                    passed += 1;
+                    ray = point.spawn(ray.direction);
+                    if let Some(beyond) = beyond {
+                        ray.leaves = beyond.leaves;
+                        inside = beyond.inside;
+                    }
+                    continue;
+                }
+            }
+            if vertex + 1 - passed >= self.max_depth || vertex + 1 == MOST_VERTICES {
                 counters.cut_paths += u64::from(vertex + 1 == MOST_VERTICES);
                 observer.end(End::Depth);
                 break;
@@ -255,11 +272,18 @@ impl World<'_> {
             Target::Infinity => point.spawn(wi),
         };
         counters.shadow_rays += 1;
-        let occluded = match self.media {
-            None => self.geometry.occluded(&shadow_ray),
-            Some(media) => media.occluded(self.geometry, self.surfaces, shadow_ray, *inside, &mut counters.lost_media),
+        let arriving = if self.masks {
+            self.passing(shadow_ray, *inside, &sample, counters)
+        } else {
+            let occluded = match self.media {
+                None => self.geometry.occluded(&shadow_ray),
+                Some(media) => {
+                    media.occluded(self.geometry, self.surfaces, shadow_ray, *inside, &mut counters.lost_media)
+                }
+            };
+            if occluded { R::ZERO } else { R::ONE }
         };
-        if occluded {
+        if arriving == R::ZERO {
             return None;
         }
         let probability = self.lights.probability(index);
@@ -275,6 +299,37 @@ impl World<'_> {
                 mis * R::from_f64(sample.scale / density)
             }
         };
-        Some((index as u32, f_cos * light.spectrum().lanes(lambda_nm) * weight))
+        Some((index as u32, f_cos * light.spectrum().lanes(lambda_nm) * (weight * arriving)))
+    }
+
+    /// The share of light from a sampled light that reaches the start of the shadow ray: masks let their part through.
+    fn passing<R: Real>(
+        &self,
+        mut shadow_ray: Ray<R>,
+        mut inside: Inside,
+        sample: &LightSample,
+        counters: &mut Counters,
+    ) -> R {
+        let mut share = R::ONE;
+        for _ in 0..MOST_VERTICES {
+            let Some(met) = self.meet(&mut shadow_ray, &mut inside, counters) else { return share };
+            let aims_at = shadow_ray.aims_at;
+            if self.media.is_some() && met.point.surface == aims_at {
+                return share;
+            }
+            share *= R::from_f64(1.0 - met.surface.opacity);
+            if share == R::ZERO {
+                break;
+            }
+            shadow_ray = match sample.target {
+                Target::Point(target) => met.point.spawn_to(target.cast(), sample.surface),
+                Target::Infinity => met.point.spawn(shadow_ray.direction),
+            };
+            if let Some(beyond) = met.beyond {
+                shadow_ray.leaves = beyond.leaves;
+                inside = beyond.inside;
+            }
+        }
+        R::ZERO
     }
 }

@@ -4,7 +4,7 @@ use crate::bsdf::Bsdf;
 use crate::filter::FilterSampler;
 use crate::frame::SceneFrame;
 use crate::kernel::{Kernel, kernel};
-use crate::light::{DirectionalLight, Light, LightTable, PointLight};
+use crate::light::{DirectionalLight, Light, LightTable, PointLight, SpotLight};
 use crate::media::{Media, Solid, open_edges};
 use crate::path::ShadowRays;
 use crate::plan::{EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
@@ -96,6 +96,12 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
                 let (intensity, per_m) = (spectrum(intensity), frame.per_m());
                 emitters.push(Light::Point(PointLight { position, intensity, per_m }));
             }
+            LightKind::Spot { position_m, axis, half_angles_rad, intensity } => {
+                let position = frame.point(Vec3::from_array(*position_m));
+                let point = PointLight { position, intensity: spectrum(intensity), per_m: frame.per_m() };
+                let (axis, cosines) = (Vec3::from_array(*axis), half_angles_rad.map(f64::cos));
+                emitters.push(Light::Spot(SpotLight { point, axis, cosines }));
+            }
             LightKind::Directional { direction, irradiance } => {
                 let toward = -Vec3::from_array(*direction);
                 emitters.push(Light::Directional(DirectionalLight { toward, irradiance: spectrum(irradiance) }));
@@ -122,6 +128,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
             .map(|(o, coordinates)| ObjectSurface {
                 material: o.material,
                 emission: o.emission.as_ref().map(|e| Emission { radiance: spectrum(&e.radiance), sides: e.sides }),
+                opacity: o.opacity,
                 coordinates,
             })
             .collect(),

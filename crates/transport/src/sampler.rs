@@ -13,7 +13,7 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// Sets drawn by the camera: (film x, film y, lens 1, lens 2), (wavelength, time, –, –).
 pub const CAMERA_SETS: u32 = 2;
-/// Sets that each path vertex owns: (lobe, BSDF 1, BSDF 2, roulette), (light choice, light 1, light 2, –).
+/// Sets that each path vertex owns: (lobe, BSDF 1, BSDF 2, roulette), (light choice, light 1, light 2, mask).
 pub const SETS_PER_VERTEX: u32 = 2;
 
 /// Longest Owen-scrambled Sobol point set of the library; further samples come from independent sets.

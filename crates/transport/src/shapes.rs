@@ -211,15 +211,23 @@ impl Lamps<'_> {
         if !self.lit[label] {
             return Ok(());
         }
+        // One spectrum for each object, not for each of its triangles.
+        let mut radiance: Option<(u32, Arc<PathSpectrum>)> = None;
         for (i, &object) in self.object_of[label].iter().enumerate() {
             let primitive = PrimitiveId(i as u32);
             if object == NO_OBJECT {
                 continue;
             }
+            let number_of_object = object;
             let object = self.objects[object as usize];
             let Some(emission) = &object.emission else { continue };
+            let shared = match &radiance {
+                Some((of, shared)) if *of == number_of_object => shared.clone(),
+                _ => Arc::new(PathSpectrum::new(&emission.radiance, self.range_nm)),
+            };
+            radiance = Some((number_of_object, shared.clone()));
             let emitter = Emitter {
-                radiance: PathSpectrum::new(&emission.radiance, self.range_nm),
+                radiance: shared,
                 front: emission.sides != EmissionSides::Back,
                 back: emission.sides != EmissionSides::Front,
                 surface: SurfaceId { instance: number, primitive },

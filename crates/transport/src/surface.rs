@@ -13,6 +13,8 @@ use etalon_scene::EmissionSides;
 pub(crate) struct ObjectSurface {
     pub material: usize,
     pub emission: Option<Emission>,
+    /// Share of light that meets the surface at all; the rest passes.
+    pub opacity: f64,
     pub coordinates: Coordinates,
 }
 
@@ -40,6 +42,8 @@ pub(crate) struct Surface<'a> {
     pub object: u32,
     pub bsdf: &'a Bsdf,
     pub light: Option<u32>,
+    /// Share of light that meets the surface at all; the rest passes.
+    pub opacity: f64,
     emission: Option<&'a Emission>,
     coordinates: &'a Coordinates,
 }
@@ -54,7 +58,14 @@ impl Surfaces {
             let place = self.light_of.binary_search_by_key(&point.surface, |&(surface, _)| surface).ok()?;
             Some(self.light_of[place].1)
         });
-        Surface { object, bsdf: &self.bsdfs[of_object.material], light, emission, coordinates: &of_object.coordinates }
+        Surface {
+            object,
+            bsdf: &self.bsdfs[of_object.material],
+            light,
+            opacity: of_object.opacity,
+            emission,
+            coordinates: &of_object.coordinates,
+        }
     }
 }
 

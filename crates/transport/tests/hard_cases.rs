@@ -19,8 +19,12 @@ fn a_square_light_fills_its_solid_angle_from_ten_thousand_sides_across_to_a_hund
         let (a, from) = (0.5 * side, Vec3::ZERO);
         let corner = Vec3::new(-a, -a, 1.0);
         let shape = Parallelogram::new(corner, Vec3::new(side, 0.0, 0.0), Vec3::new(0.0, side, 0.0)).unwrap();
-        let emitter =
-            Emitter { radiance: PathSpectrum::Constant(1.0), front: true, back: true, surface: PrimitiveId(0).into() };
+        let emitter = Emitter {
+            radiance: PathSpectrum::Constant(1.0).into(),
+            front: true,
+            back: true,
+            surface: PrimitiveId(0).into(),
+        };
         let light = Light::Parallelogram(ParallelogramLight::new(shape, emitter));
         let per_sample = |u: f64, v: f64| match light.sample(from, [u, v]).map(|sample| sample.density) {
             Some(Density::SolidAngle(density)) => 1.0 / density,

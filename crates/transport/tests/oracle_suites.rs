@@ -74,7 +74,37 @@ impl<R: Real> Scatters for Material<R> {
             MaterialKind::Lambert { .. }
             | MaterialKind::RoughConductor { .. }
             | MaterialKind::RoughDielectric { .. }
+            | MaterialKind::OrenNayar { .. }
             | MaterialKind::Black => Vec::new(),
+            MaterialKind::Plastic { alpha, .. } if *alpha > 0.0 => Vec::new(),
+            MaterialKind::Plastic { reflectance, coat, .. } => {
+                let (n, rho) = (coat.eval(wavelength_nm), reflectance.eval(wavelength_nm));
+                let weight = laws::fresnel_exact(cos, n).reflectance();
+                let passed = 1.0 - etalon_oracle::truths::walsh_reflectance(n);
+                let ground = passed * rho / (n * n * (1.0 - rho * (1.0 - passed / (n * n))));
+                let probability = weight / (weight + (1.0 - weight) * ground);
+                vec![DeltaLobe { wi: mirrored, weight, probability }]
+            }
+            MaterialKind::ThinDielectric { index } => {
+                let face = laws::fresnel_exact(cos, index.eval(wavelength_nm)).reflectance();
+                let (weight, through) = (2.0 * face / (1.0 + face), (1.0 - face) / (1.0 + face));
+                vec![
+                    DeltaLobe { wi: mirrored, weight, probability: weight },
+                    DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight: through, probability: through },
+                ]
+            }
+            MaterialKind::Blend { first, second, weight } => {
+                let part = |kind: &MaterialKind, share: f64| {
+                    let lobes = Self::new(kind.clone()).deltas(wo, wavelength_nm);
+                    let scaled = |l: DeltaLobe| DeltaLobe {
+                        wi: l.wi,
+                        weight: l.weight * share,
+                        probability: l.probability * share,
+                    };
+                    lobes.into_iter().map(scaled).collect::<Vec<_>>()
+                };
+                [part(first, 1.0 - weight), part(second, *weight)].concat()
+            }
             MaterialKind::Mirror { reflectance } => {
                 vec![DeltaLobe { wi: mirrored, weight: reflectance.eval(wavelength_nm), probability: 1.0 }]
             }
@@ -113,7 +143,10 @@ impl<R: Real> Scatters for Material<R> {
     fn wavelengths_nm(&self) -> Vec<f64> {
         match &self.kind {
             // Seconds a wavelength.
-            MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => vec![550.0],
+            MaterialKind::RoughConductor { .. }
+            | MaterialKind::RoughDielectric { .. }
+            | MaterialKind::Plastic { .. }
+            | MaterialKind::Blend { .. } => vec![550.0],
             _ => vec![400.0, 550.0, 700.0],
         }
     }
@@ -161,6 +194,34 @@ scatters_suite!(lossless_metal_furnace, lossless_metal(1.0));
 scatters_suite!(rough_silver_without_compensation, rough_metal::<f64>("Ag", 0.3, false));
 scatters_suite!(rough_glass_f32, rough_glass::<f32>("N-BK7", "vacuum", 0.4, true));
 scatters_suite!(very_rough_diamond_in_water, rough_glass::<f64>("diamond", "water", 1.0, true));
+
+fn plastic<R: Real>(rho: f64, alpha: f64) -> Material<R> {
+    let (reflectance, coat) = (Spectrum::Constant(rho), RefractiveIndex::Constant(1.5));
+    Material::new(MaterialKind::Plastic { reflectance, coat, alpha })
+}
+
+fn oren_nayar<R: Real>(rho: f64, roughness: f64) -> Material<R> {
+    Material::new(MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho), roughness })
+}
+
+fn pane<R: Real>() -> Material<R> {
+    Material::new(MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5) })
+}
+
+fn mixture() -> Material<f64> {
+    let first = Box::new(MaterialKind::Mirror { reflectance: Spectrum::Constant(0.8) });
+    let second = Box::new(MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.6), roughness: 0.5 });
+    Material::new(MaterialKind::Blend { first, second, weight: 0.3 })
+}
+
+scatters_suite!(smooth_plastic_f32, plastic::<f32>(0.7, 0.0));
+scatters_suite!(white_smooth_plastic_f64, plastic::<f64>(1.0, 0.0));
+scatters_suite!(white_rough_plastic_f64, plastic::<f64>(1.0, 0.4));
+scatters_suite!(oren_nayar_f32, oren_nayar::<f32>(0.5, 0.4));
+scatters_suite!(white_oren_nayar_f64, oren_nayar::<f64>(1.0, 1.0));
+scatters_suite!(pane_f32, pane::<f32>());
+scatters_suite!(pane_f64, pane::<f64>());
+scatters_suite!(mirror_and_clay, mixture());
 
 /// Every law for a material in both scalars.
 fn in_both_scalars(kind: &MaterialKind) -> Vec<Verdict> {
@@ -262,8 +323,12 @@ impl Lamp {
         form: Form,
         light: impl FnOnce(S, Emitter) -> Light,
     ) -> Self {
-        let emitter =
-            Emitter { radiance: PathSpectrum::Constant(2.0), front: true, back: true, surface: PrimitiveId(0).into() };
+        let emitter = Emitter {
+            radiance: PathSpectrum::Constant(2.0).into(),
+            front: true,
+            back: true,
+            surface: PrimitiveId(0).into(),
+        };
         let geometry = Geometry::build(vec![shape.clone().into()]).unwrap();
         Self { light: light(shape, emitter), geometry, center, radius, form }
     }

@@ -6,6 +6,8 @@ use serde_json::json;
 
 use std::ops::Bound;
 
+use super::names::Names;
+use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra, accept, outside_message, plain};
 use super::spectrum::{SpectrumForm, Wavelength, check_increasing, check_same_length};
 use crate::json::{
@@ -99,6 +101,53 @@ crate::record! {
     } with [Rule::NotBoth("exterior", "priority"), Rule::NotBoth("alpha", "priority")]
 }
 
+crate::number! {
+    /// A share, from 0 to 1.
+    pub(crate) struct Share in (Bound::Included(0.0), Bound::Included(1.0));
+}
+
+crate::record! {
+    /// Rough diffuse reflection, on both sides: chalk, clay, the moon.
+    pub(crate) struct OrenNayarMaterial + comment {
+        /// Albedo parameter, from 0 to 1: what a white surface multiplies at each bounce within its roughness.
+        reflectance: Required<SpectrumForm>,
+        /// Roughness, from 0 (as `lambert`) to 1.
+        roughness: Required<Share>,
+    }
+}
+
+crate::record! {
+    /// A diffuse ground under a clear coat, seen from vacuum, on both sides.
+    pub(crate) struct PlasticMaterial + comment {
+        /// Share of light that the ground reflects, from 0 to 1.
+        reflectance: Required<SpectrumForm>,
+        /// Index of the coat.
+        coat: Required<IndexForm> = "1.5",
+        /// Roughness of the coat: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
+        alpha: Required<Spanned<Alpha>> = "0",
+    }
+}
+
+crate::record! {
+    /// A pane of glass without thickness: mirrors light, or lets it pass straight on.
+    pub(crate) struct ThinDielectricMaterial + comment {
+        /// Index relative to what surrounds it.
+        index: Required<IndexForm> = "1.5",
+    }
+}
+
+crate::record! {
+    /// Two materials side by side, finer than can be seen.
+    pub(crate) struct BlendMaterial + comment {
+        /// The one: the name of one of "materials" that stands before this one, or a material of its own.
+        first: Required<Box<MaterialUse>>,
+        /// The other.
+        second: Required<Box<MaterialUse>>,
+        /// The other's share of the surface, from 0 to 1.
+        weight: Required<Share>,
+    }
+}
+
 crate::record! {
     /// Reflects nothing: for a lamp that is only a light, or an absorber.
     pub(crate) struct BlackMaterial + comment {}
@@ -111,6 +160,10 @@ crate::variants! {
         "mirror" => Mirror(MirrorMaterial),
         "conductor" => Conductor(ConductorMaterial),
         "dielectric" => Dielectric(DielectricMaterial),
+        "oren-nayar" => OrenNayar(OrenNayarMaterial),
+        "plastic" => Plastic(PlasticMaterial),
+        "thin-dielectric" => ThinDielectric(ThinDielectricMaterial),
+        "blend" => Blend(BlendMaterial),
         "black" => Black(BlackMaterial),
     }
 }
@@ -270,9 +323,45 @@ impl Decode for IndexForm {
     }
 }
 
+/// The most materials that a blend may come down to: names can double them line by line.
+const MOST_PARTS: usize = 64;
+
+/// Materials that are no blends in a material.
+fn parts(kind: &MaterialKind) -> usize {
+    match kind {
+        MaterialKind::Blend { first, second, .. } => parts(first) + parts(second),
+        _ => 1,
+    }
+}
+
+/// Named materials that a blend may be made of: those that stand before it, so that none is made of itself.
+#[derive(Debug)]
+pub(crate) struct Before<'m> {
+    /// All of the file's names.
+    pub(crate) names: &'m Names<'m>,
+    /// The materials read so far, by their place in the file; `None` is wrong, which has been reported.
+    pub(crate) made: &'m [Option<MaterialKind>],
+}
+
+impl Before<'_> {
+    fn find(&self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<MaterialKind> {
+        let place = self.names.find(name, reader)?;
+        match self.made.get(place) {
+            Some(made) => made.clone(),
+            None => {
+                let message =
+                    format!("the material \"{}\" does not stand before the blend that is made of it", name.value);
+                reader.error_hint(Code::Circular, name.at, message, "move it up");
+                None
+            }
+        }
+    }
+}
+
 /// The material of a form.
 pub(crate) fn material<'f>(
     form: &'f MaterialForm,
+    before: &Before<'_>,
     spectra: &mut Spectra<'f>,
     reader: &mut Reader<'_>,
 ) -> Option<MaterialKind> {
@@ -305,6 +394,45 @@ pub(crate) fn material<'f>(
                 0.0 => MaterialKind::Dielectric { interior, exterior, priority },
                 alpha => MaterialKind::RoughDielectric { interior, exterior, alpha, compensated },
             })
+        }
+        MaterialForm::OrenNayar(rough) => {
+            let reflectance = spectra.resolve(rough.reflectance.as_ref()?, Role::Reflectance, reader)?;
+            Some(MaterialKind::OrenNayar { reflectance, roughness: rough.roughness?.0 })
+        }
+        MaterialForm::Plastic(plastic) => {
+            let reflectance =
+                plastic.reflectance.as_ref().and_then(|form| spectra.resolve(form, Role::Reflectance, reader));
+            let coat = plastic.coat.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
+            let alpha = width(plastic.alpha.as_ref(), reader);
+            Some(MaterialKind::Plastic { reflectance: reflectance?, coat: coat?, alpha: alpha? })
+        }
+        MaterialForm::ThinDielectric(pane) => {
+            let index = pane.index.as_ref().and_then(|form| index(form, spectra.range_nm, reader))?;
+            Some(MaterialKind::ThinDielectric { index })
+        }
+        MaterialForm::Blend(blend) => {
+            let mut part = |part: &'f Option<Box<MaterialUse>>| match part.as_deref()? {
+                MaterialUse::Own(own) => material(own, before, spectra, reader).map(Box::new),
+                MaterialUse::Named(name) => before.find(name, reader).map(Box::new),
+            };
+            let (first, second) = (part(&blend.first), part(&blend.second));
+            let (first, second) = (first?, second?);
+            if [&first, &second]
+                .iter()
+                .any(|part| matches!(***part, MaterialKind::Dielectric { priority: Some(_), .. }))
+            {
+                let message = "a part of a blend bounds no solid: its dielectric cannot have a priority";
+                reader.error_hint(Code::KeyConflict, blend.at.head(), message, "say its exterior instead");
+                return None;
+            }
+            let kind = MaterialKind::Blend { first, second, weight: blend.weight?.0 };
+            let count = parts(&kind);
+            if count > MOST_PARTS {
+                let message = format!("a blend of {count} materials, blends in blends counted");
+                reader.error_hint(Code::OutOfRange, blend.at.head(), message, format!("at most {MOST_PARTS}"));
+                return None;
+            }
+            Some(kind)
         }
         MaterialForm::Black(_) => Some(MaterialKind::Black),
     }

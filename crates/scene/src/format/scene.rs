@@ -7,7 +7,7 @@ use super::geometry::{ShapeForm, Step, check_extent, check_similarity, shape, tr
 use super::group::{GroupForm, InstanceForm, groups};
 use super::integrator::{IntegratorForm, integrator, wavelength_range_nm};
 use super::light::{LightForm, light};
-use super::material::{MaterialForm, material};
+use super::material::{Before, MaterialForm, Share, material};
 use super::names::Names;
 use super::spectra::{Role, Spectra};
 use super::spectrum::SpectrumForm;
@@ -81,6 +81,8 @@ crate::record! {
         material: Required<MaterialUse>,
         /// What its surface emits.
         emission: Optional<EmissionForm>,
+        /// Share of light that meets the surface at all, from 0 to 1; the rest passes as if it were not there.
+        opacity: Required<Share> = "1",
         /// From its own coordinates to the world: steps, the first of which is applied first.
         transform: Required<Spanned<List<Box<Step>>>> = "[]",
     }
@@ -148,21 +150,25 @@ pub(crate) fn scene(
     let named = form.materials.as_ref().map_or(&[][..], |named| &named.0);
     let names = Names::new("material", "materials", named);
     let mut materials = All::default();
+    let mut made = Vec::with_capacity(named.len());
     for entry in named {
-        let kind = entry.value.as_ref().and_then(|form| material(form, &mut spectra, reader));
+        let before = Before { names: &names, made: &made };
+        let kind = entry.value.as_ref().and_then(|form| material(form, &before, &mut spectra, reader));
+        made.push(kind.clone());
         materials.push(kind.map(|kind| Material { name: entry.name.clone(), kind }));
     }
+    let named = Before { names: &names, made: &made };
     let mut objects = All::default();
     for (i, form) in form.objects.iter().flat_map(|objects| objects.value.0.iter().enumerate()) {
         let place = format!("objects[{i}]");
         objects.push(
-            form.as_ref().and_then(|form| object(form, place, &names, &mut materials, &mut spectra, files, reader)),
+            form.as_ref().and_then(|form| object(form, place, &named, &mut materials, &mut spectra, files, reader)),
         );
     }
     let grouped = groups(
         form.groups.as_ref().map_or(&[][..], |named| &named.0),
         form.instances.as_ref(),
-        |form, place, reader| object(form, place, &names, &mut materials, &mut spectra, files, reader),
+        |form, place, reader| object(form, place, &named, &mut materials, &mut spectra, files, reader),
         reader,
     );
     let mut lights = All::default();
@@ -219,7 +225,7 @@ impl<T> All<T> {
 fn object<'f>(
     form: &'f ObjectForm,
     place: String,
-    names: &Names<'f>,
+    named: &Before<'_>,
     materials: &mut All<Material>,
     spectra: &mut Spectra<'f>,
     files: &mut Files,
@@ -238,9 +244,9 @@ fn object<'f>(
         check_extent(shape, transform, form.at.head(), reader);
     }
     let material = form.material.as_ref().and_then(|material_use| match material_use {
-        MaterialUse::Named(name) => names.find(name, reader),
+        MaterialUse::Named(name) => named.names.find(name, reader),
         MaterialUse::Own(own) => {
-            let kind = material(own, spectra, reader)?;
+            let kind = material(own, named, spectra, reader)?;
             Some(materials.push(Some(Material { name: format!("{place}.material"), kind })))
         }
     });
@@ -252,7 +258,14 @@ fn object<'f>(
             radiance.zip(emission.sides).map(|(radiance, sides)| Some(Emission { radiance, sides }))
         }
     };
-    Some(Object { name: name?, shape: shape?, transform: transform?, material: material?, emission: emission? })
+    Some(Object {
+        name: name?,
+        shape: shape?,
+        transform: transform?,
+        material: material?,
+        emission: emission?,
+        opacity: form.opacity?.0,
+    })
 }
 
 /// Odd scenes that can be rendered all the same.
@@ -263,6 +276,7 @@ fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {
     }
     let lit = scene.lights.iter().any(|light| match &light.kind {
         LightKind::Point { intensity: spectrum, .. }
+        | LightKind::Spot { intensity: spectrum, .. }
         | LightKind::Directional { irradiance: spectrum, .. }
         | LightKind::Environment { radiance: spectrum } => !spectrum.is_zero(),
     });

@@ -6,22 +6,30 @@
 //! η = n_transmitted / n_incident along the walk from the camera.
 
 mod albedo;
+mod blend;
 mod conductor;
 mod dielectric;
 mod lambert;
 mod microfacet;
 mod mirror;
+mod oren_nayar;
+mod plastic;
 mod rough_conductor;
 mod rough_dielectric;
 mod shading;
+mod thin_dielectric;
 
+pub use blend::Blend;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
+pub use oren_nayar::OrenNayar;
+pub use plastic::Plastic;
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
+pub use thin_dielectric::ThinDielectric;
 
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
@@ -73,6 +81,14 @@ pub enum Bsdf {
     RoughConductor(RoughConductor),
     /// Rough interface of two transparent media.
     RoughDielectric(RoughDielectric),
+    /// Rough diffuse reflection.
+    OrenNayar(OrenNayar),
+    /// A coated diffuse surface.
+    Plastic(Plastic),
+    /// A thin pane.
+    ThinDielectric(ThinDielectric),
+    /// A mixture of two.
+    Blend(Blend),
     /// No scattering at all.
     Black,
 }
@@ -96,6 +112,19 @@ impl Bsdf {
                 let (interior, exterior) = (interior.clone(), exterior.clone());
                 Self::RoughDielectric(RoughDielectric::new(interior, exterior, *alpha, *compensated, range_nm))
             }
+            MaterialKind::OrenNayar { reflectance, roughness } => {
+                Self::OrenNayar(OrenNayar::new(PathSpectrum::new(reflectance, range_nm), *roughness))
+            }
+            MaterialKind::Plastic { reflectance, coat, alpha } => {
+                let reflectance = PathSpectrum::new(reflectance, range_nm);
+                Self::Plastic(Plastic::new(reflectance, coat.clone(), *alpha, range_nm))
+            }
+            MaterialKind::ThinDielectric { index } => {
+                Self::ThinDielectric(ThinDielectric::new(index.clone(), range_nm))
+            }
+            MaterialKind::Blend { first, second, weight } => {
+                Self::Blend(Blend::new(Self::new(first, range_nm), Self::new(second, range_nm), *weight))
+            }
             MaterialKind::Black => Self::Black,
         }
     }
@@ -104,8 +133,13 @@ impl Bsdf {
     /// direction is a delta, so that a shadow ray would find nothing.
     pub fn has_solid_angle_part(&self) -> bool {
         match self {
-            Self::Lambert(_) | Self::RoughConductor(_) | Self::RoughDielectric(_) => true,
-            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => false,
+            Self::Lambert(_)
+            | Self::RoughConductor(_)
+            | Self::RoughDielectric(_)
+            | Self::OrenNayar(_)
+            | Self::Plastic(_) => true,
+            Self::Blend(blend) => blend.has_solid_angle_part(),
+            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Black => false,
         }
     }
 
@@ -146,7 +180,7 @@ impl Bsdf {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<R>,
-        _at: &Shading<R>,
+        at: &Shading<R>,
         wo: Vec3<R>,
         wi: Vec3<R>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
@@ -154,7 +188,12 @@ impl Bsdf {
             Self::Lambert(lambert) => lambert.eval(lambda_nm, n, wo, wi),
             Self::RoughConductor(metal) => metal.eval(lambda_nm, n, wo, wi),
             Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, wo, wi),
-            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => (Lanes::ZERO, Lanes::ZERO),
+            Self::OrenNayar(rough) => rough.eval(lambda_nm, n, wo, wi),
+            Self::Plastic(plastic) => plastic.eval(lambda_nm, n, wo, wi),
+            Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
+            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Black => {
+                (Lanes::ZERO, Lanes::ZERO)
+            }
         }
     }
 
@@ -175,6 +214,10 @@ impl Bsdf {
             Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, n, wo, u[0], at.media()),
             Self::RoughConductor(metal) => metal.sample(lambda_nm, n, wo, u),
             Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, wo, u),
+            Self::OrenNayar(rough) => rough.sample(lambda_nm, n, wo, [u[1], u[2]]),
+            Self::Plastic(plastic) => plastic.sample(lambda_nm, n, wo, u),
+            Self::ThinDielectric(pane) => pane.sample(lambda_nm, n, wo, u[0]),
+            Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
             Self::Black => None,
         }
     }
@@ -185,9 +228,10 @@ impl Bsdf {
             Self::Conductor(_) => true,
             // It states its own, unless it bounds a solid with a priority.
             Self::Dielectric(_) | Self::RoughDielectric(_) => false,
-            // Its table of lost light is made for vacuum.
-            Self::RoughConductor(_) => false,
-            Self::Lambert(_) | Self::Mirror(_) | Self::Black => false,
+            Self::Blend(blend) => blend.takes_medium(),
+            // Their tables, and the coat, are made for vacuum; a pane's index is relative.
+            Self::RoughConductor(_) | Self::Plastic(_) | Self::ThinDielectric(_) => false,
+            Self::Lambert(_) | Self::Mirror(_) | Self::OrenNayar(_) | Self::Black => false,
         }
     }
 }

@@ -10,6 +10,7 @@ mod parallelogram;
 mod planar;
 mod point;
 mod sphere;
+mod spot;
 mod table;
 mod triangle;
 
@@ -18,6 +19,7 @@ pub use disk::DiskLight;
 pub use parallelogram::ParallelogramLight;
 pub use point::PointLight;
 pub use sphere::SphereLight;
+pub use spot::SpotLight;
 pub use table::LightTable;
 pub use triangle::TriangleLight;
 
@@ -25,6 +27,7 @@ use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::SurfaceId;
 use etalon_optics::Vec3;
+use std::sync::Arc;
 
 /// Where a shadow ray ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +66,8 @@ pub enum Light {
     Triangle(TriangleLight),
     /// A point.
     Point(PointLight),
+    /// A point that shines into a cone.
+    Spot(SpotLight),
     /// Parallel light.
     Directional(DirectionalLight),
 }
@@ -76,6 +81,7 @@ impl Light {
             Self::Disk(light) => light.sample(from, u),
             Self::Triangle(light) => light.sample(from, u),
             Self::Point(light) => light.sample(from),
+            Self::Spot(light) => light.sample(from),
             Self::Directional(light) => Some(light.sample()),
         }
     }
@@ -87,7 +93,7 @@ impl Light {
             Self::Parallelogram(light) => light.density(from, wi),
             Self::Disk(light) => light.density(from, wi),
             Self::Triangle(light) => light.density(from, wi),
-            Self::Point(_) | Self::Directional(_) => 0.0,
+            Self::Point(_) | Self::Spot(_) | Self::Directional(_) => 0.0,
         }
     }
 
@@ -99,6 +105,7 @@ impl Light {
             Self::Disk(light) => &light.emitter.radiance,
             Self::Triangle(light) => &light.emitter.radiance,
             Self::Point(light) => &light.intensity,
+            Self::Spot(light) => &light.point.intensity,
             Self::Directional(light) => &light.irradiance,
         }
     }
@@ -110,7 +117,7 @@ impl Light {
             Self::Parallelogram(light) => Some(&light.emitter),
             Self::Disk(light) => Some(&light.emitter),
             Self::Triangle(light) => Some(&light.emitter),
-            Self::Point(_) | Self::Directional(_) => None,
+            Self::Point(_) | Self::Spot(_) | Self::Directional(_) => None,
         }
     }
 
@@ -123,6 +130,7 @@ impl Light {
             Self::Disk(light) => light.emitter.side_count() * PI * light.area(),
             Self::Triangle(light) => light.emitter.side_count() * PI * light.area(),
             Self::Point(light) => 4.0 * PI * light.per_m * light.per_m,
+            Self::Spot(light) => light.power_factor(),
             Self::Directional(_) => PI * scene_radius * scene_radius,
         }
     }
@@ -132,7 +140,7 @@ impl Light {
 #[derive(Clone, Debug)]
 pub struct Emitter {
     /// Emitted radiance, W·m⁻²·sr⁻¹·nm⁻¹.
-    pub radiance: PathSpectrum,
+    pub radiance: Arc<PathSpectrum>,
     /// Whether the side that the normal points into emits.
     pub front: bool,
     /// Whether the other side emits.

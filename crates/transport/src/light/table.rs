@@ -19,7 +19,17 @@ impl LightTable {
     /// A table over lights of a scene with this bounding radius; lights that emit nothing within the
     /// wavelengths `range_nm` are left out.
     pub fn new(lights: Vec<Light>, scene_radius: f64, range_nm: [f64; 2]) -> Self {
-        let powers = lights.iter().map(|l| l.power_factor(scene_radius) * visible_sum(l.spectrum(), range_nm));
+        // The triangles of a mesh share their spectrum, and come one after the other.
+        let mut last: Option<(*const PathSpectrum, f64)> = None;
+        let powers = lights.iter().map(|light| {
+            let spectrum = light.spectrum();
+            let visible = match last {
+                Some((of, visible)) if std::ptr::eq(of, spectrum) => visible,
+                _ => visible_sum(spectrum, range_nm),
+            };
+            last = Some((spectrum, visible));
+            light.power_factor(scene_radius) * visible
+        });
         let (lights, powers): (Vec<_>, Vec<_>) =
             lights.iter().cloned().zip(powers).filter(|&(_, power)| power > 0.0).unzip();
         let total: f64 = powers.iter().sum();

@@ -61,7 +61,13 @@ fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
         | MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
         | MaterialKind::RoughConductor { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Plastic { .. }
+        | MaterialKind::ThinDielectric { .. }
         | MaterialKind::Black => None,
+        MaterialKind::Blend { first, second, .. } => {
+            dispersion(first, range_nm).or_else(|| dispersion(second, range_nm))
+        }
     }
 }
 
@@ -75,6 +81,15 @@ fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
             index.is_dispersive().then(|| metal_range(index, range_nm))
         }
         MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } => dispersion(kind, range_nm),
+        MaterialKind::OrenNayar { reflectance, .. } => {
+            (!reflectance.is_constant()).then(|| format!("reflectance {}", spread(range_nm, |nm| reflectance.eval(nm))))
+        }
+        MaterialKind::Plastic { reflectance, coat, .. } => match reflectance.is_constant() {
+            true => coat.is_dispersive().then(|| index_range(coat, range_nm)),
+            false => Some(format!("reflectance {}", spread(range_nm, |nm| reflectance.eval(nm)))),
+        },
+        MaterialKind::ThinDielectric { index } => index.is_dispersive().then(|| index_range(index, range_nm)),
+        MaterialKind::Blend { first, second, .. } => colour(first, range_nm).or_else(|| colour(second, range_nm)),
         MaterialKind::Black => None,
     }
 }
@@ -84,9 +99,13 @@ fn specular(kind: &MaterialKind) -> Option<String> {
         MaterialKind::Mirror { .. } => Some("a mirror".to_owned()),
         MaterialKind::Conductor { .. } => Some("smooth metal".to_owned()),
         MaterialKind::Dielectric { .. } => Some("a smooth interface of two media".to_owned()),
+        MaterialKind::ThinDielectric { .. } => Some("a thin pane".to_owned()),
+        MaterialKind::Blend { first, second, .. } => specular(first).or_else(|| specular(second)),
         MaterialKind::Lambert { .. }
         | MaterialKind::RoughConductor { .. }
         | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Plastic { .. }
         | MaterialKind::Black => None,
     }
 }
@@ -94,8 +113,14 @@ fn specular(kind: &MaterialKind) -> Option<String> {
 fn nested(kind: &MaterialKind) -> Option<String> {
     match kind {
         MaterialKind::Dielectric { priority, .. } => priority.map(|priority| format!("priority {priority}")),
-        MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => None,
-        MaterialKind::Lambert { .. }
+        // The reader refuses priorities in the parts of a blend.
+        MaterialKind::RoughConductor { .. }
+        | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Plastic { .. }
+        | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::Blend { .. }
+        | MaterialKind::Lambert { .. }
         | MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
         | MaterialKind::Black => None,
@@ -105,11 +130,15 @@ fn nested(kind: &MaterialKind) -> Option<String> {
 /// Whether a shadow ray from the surface could find light.
 fn is_diffuse(kind: &MaterialKind) -> bool {
     match kind {
-        MaterialKind::Lambert { reflectance } => !reflectance.is_zero(),
-        MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => true,
+        MaterialKind::Lambert { reflectance } | MaterialKind::OrenNayar { reflectance, .. } => !reflectance.is_zero(),
+        MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Plastic { .. } => {
+            true
+        }
+        MaterialKind::Blend { first, second, .. } => is_diffuse(first) || is_diffuse(second),
         MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
         | MaterialKind::Dielectric { .. }
+        | MaterialKind::ThinDielectric { .. }
         | MaterialKind::Black => false,
     }
 }
@@ -117,16 +146,16 @@ fn is_diffuse(kind: &MaterialKind) -> bool {
 fn is_environment(kind: &LightKind) -> bool {
     match kind {
         LightKind::Environment { radiance } => !radiance.is_zero(),
-        LightKind::Point { .. } | LightKind::Directional { .. } => false,
+        LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Directional { .. } => false,
     }
 }
 
 /// Whether only a shadow ray finds the light.
 fn is_target(kind: &LightKind) -> bool {
     match kind {
-        LightKind::Point { intensity: spectrum, .. } | LightKind::Directional { irradiance: spectrum, .. } => {
-            !spectrum.is_zero()
-        }
+        LightKind::Point { intensity: spectrum, .. }
+        | LightKind::Spot { intensity: spectrum, .. }
+        | LightKind::Directional { irradiance: spectrum, .. } => !spectrum.is_zero(),
         LightKind::Environment { .. } => false,
     }
 }
@@ -134,7 +163,7 @@ fn is_target(kind: &LightKind) -> bool {
 /// The spectrum of a light.
 pub(super) fn spectrum(light: &Light) -> &Spectrum {
     match &light.kind {
-        LightKind::Point { intensity, .. } => intensity,
+        LightKind::Point { intensity, .. } | LightKind::Spot { intensity, .. } => intensity,
         LightKind::Directional { irradiance, .. } => irradiance,
         LightKind::Environment { radiance } => radiance,
     }

@@ -89,17 +89,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
     let range_nm = scene.integrator.wavelength_range_nm;
     match effect {
         EffectName::Wavelengths => {
-            for material in &mut scene.materials {
-                match &mut material.kind {
-                    MaterialKind::Lambert { reflectance } | MaterialKind::Mirror { reflectance } => {
-                        *reflectance = grey(reflectance, range_nm);
-                    }
-                    MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
-                        *index = grey_metal(index, range_nm);
-                    }
-                    MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Black => {}
-                }
-            }
+            scene.materials.iter_mut().for_each(|material| turn_grey(&mut material.kind, range_nm));
             leave_out(EffectName::Dispersion, scene);
             let grouped = scene.groups.iter_mut().flat_map(|group| &mut group.objects);
             for emission in scene.objects.iter_mut().chain(grouped).filter_map(|object| object.emission.as_mut()) {
@@ -108,28 +98,14 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             for light in &mut scene.lights {
                 match &mut light.kind {
                     LightKind::Point { intensity: spectrum, .. }
+                    | LightKind::Spot { intensity: spectrum, .. }
                     | LightKind::Directional { irradiance: spectrum, .. }
                     | LightKind::Environment { radiance: spectrum } => *spectrum = grey(spectrum, range_nm),
                 }
             }
         }
         EffectName::Dispersion => {
-            for material in &mut scene.materials {
-                match &mut material.kind {
-                    MaterialKind::Dielectric { interior, exterior, .. }
-                    | MaterialKind::RoughDielectric { interior, exterior, .. } => {
-                        for index in [interior, exterior] {
-                            let n = index.eval(middle(range_nm));
-                            *index = RefractiveIndex::constant(n).expect("an index of refraction is positive");
-                        }
-                    }
-                    MaterialKind::Lambert { .. }
-                    | MaterialKind::Mirror { .. }
-                    | MaterialKind::Conductor { .. }
-                    | MaterialKind::RoughConductor { .. }
-                    | MaterialKind::Black => {}
-                }
-            }
+            scene.materials.iter_mut().for_each(|material| fix_indices(&mut material.kind, range_nm));
         }
         EffectName::Lens => match &mut scene.camera.projection {
             Projection::Perspective { lens, .. } => *lens = None,
@@ -137,7 +113,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         },
         EffectName::ShadowRays => {
             scene.lights.retain(|light| match light.kind {
-                LightKind::Point { .. } | LightKind::Directional { .. } => false,
+                LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Directional { .. } => false,
                 LightKind::Environment { .. } => true,
             });
         }
@@ -145,35 +121,88 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::Mis => {}
         EffectName::Environment => scene.lights.retain(|light| match light.kind {
             LightKind::Environment { .. } => false,
-            LightKind::Point { .. } | LightKind::Directional { .. } => true,
+            LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Directional { .. } => true,
         }),
-        EffectName::SpecularChains => {
-            for material in &mut scene.materials {
-                match material.kind {
-                    MaterialKind::Mirror { .. } | MaterialKind::Conductor { .. } | MaterialKind::Dielectric { .. } => {
-                        material.kind = MaterialKind::Black;
-                    }
-                    MaterialKind::Lambert { .. }
-                    | MaterialKind::RoughConductor { .. }
-                    | MaterialKind::RoughDielectric { .. }
-                    | MaterialKind::Black => {}
-                }
-            }
-        }
+        EffectName::SpecularChains => scene.materials.iter_mut().for_each(|material| blacken(&mut material.kind)),
         EffectName::NestedDielectrics => {
             for material in &mut scene.materials {
-                match &mut material.kind {
-                    MaterialKind::Dielectric { priority, .. } => *priority = None,
-                    MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => {}
-                    MaterialKind::Lambert { .. }
-                    | MaterialKind::Mirror { .. }
-                    | MaterialKind::Conductor { .. }
-                    | MaterialKind::Black => {}
+                if let MaterialKind::Dielectric { priority, .. } = &mut material.kind {
+                    *priority = None;
                 }
             }
         }
         EffectName::WideFilter => scene.film.filter = Filter::Box,
     }
+}
+
+/// Makes a material treat all wavelengths alike.
+fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
+    match kind {
+        MaterialKind::Lambert { reflectance }
+        | MaterialKind::Mirror { reflectance }
+        | MaterialKind::OrenNayar { reflectance, .. } => *reflectance = grey(reflectance, range_nm),
+        MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
+            *index = grey_metal(index, range_nm);
+        }
+        MaterialKind::Plastic { reflectance, coat, .. } => {
+            *reflectance = grey(reflectance, range_nm);
+            *coat = index_at_middle(coat, range_nm);
+        }
+        MaterialKind::ThinDielectric { index } => *index = index_at_middle(index, range_nm),
+        MaterialKind::Blend { first, second, .. } => {
+            turn_grey(first, range_nm);
+            turn_grey(second, range_nm);
+        }
+        MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Black => {}
+    }
+}
+
+/// Makes every wavelength that a material refracts take the way of one.
+fn fix_indices(kind: &mut MaterialKind, range_nm: [f64; 2]) {
+    match kind {
+        MaterialKind::Dielectric { interior, exterior, .. }
+        | MaterialKind::RoughDielectric { interior, exterior, .. } => {
+            for index in [interior, exterior] {
+                *index = index_at_middle(index, range_nm);
+            }
+        }
+        MaterialKind::Blend { first, second, .. } => {
+            fix_indices(first, range_nm);
+            fix_indices(second, range_nm);
+        }
+        MaterialKind::Lambert { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::Conductor { .. }
+        | MaterialKind::RoughConductor { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Plastic { .. }
+        | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::Black => {}
+    }
+}
+
+/// Makes black what hands light on in single directions.
+fn blacken(kind: &mut MaterialKind) {
+    match kind {
+        MaterialKind::Mirror { .. }
+        | MaterialKind::Conductor { .. }
+        | MaterialKind::Dielectric { .. }
+        | MaterialKind::ThinDielectric { .. } => *kind = MaterialKind::Black,
+        MaterialKind::Blend { first, second, .. } => {
+            blacken(first);
+            blacken(second);
+        }
+        MaterialKind::Lambert { .. }
+        | MaterialKind::RoughConductor { .. }
+        | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Plastic { .. }
+        | MaterialKind::Black => {}
+    }
+}
+
+fn index_at_middle(index: &RefractiveIndex, range_nm: [f64; 2]) -> RefractiveIndex {
+    RefractiveIndex::constant(index.eval(middle(range_nm))).expect("an index of refraction is positive")
 }
 
 /// The helium line d, at which catalogues state indices, or the wavelength of the range nearest to it.

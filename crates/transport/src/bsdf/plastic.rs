@@ -1,0 +1,148 @@
+//! Plastic: a diffuse ground under a clear coat, seen from vacuum, on both sides.
+//!
+//! The coat reflects as a smooth or rough dielectric. What it lets in, T(µ) = 1 − R(µ), is scattered by the ground, and what
+//! does not get out is reflected back down, r_i of it, by the inside of the coat:
+//! f = f_coat + T(µ_o) T(µ_i)·ρ/(π n² (1 − ρ r_i)), r_i = 1 − T_avg/n². The relation of r_i to T_avg = 2∫Tµ dµ is étendue's, so
+//! that a white ground returns all that the coat lets in (Walsh 1926; Duntley 1942). T is exact for a smooth coat; for a
+//! rough one 1 − R of its facets, tabulated. Facets of the coat that hide each other pass their light to the ground.
+
+use super::BsdfSample;
+use super::albedo::LossTable;
+use super::microfacet::{Facing, Ggx, mean_over_facets};
+use super::rough_dielectric::mean_transmittance;
+use crate::mis::Density;
+use crate::spectral::PathSpectrum;
+use crate::warp::cosine_hemisphere;
+use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel};
+use std::f64::consts::FRAC_1_PI;
+
+/// A coated diffuse surface.
+#[derive(Clone, Debug)]
+pub struct Plastic {
+    reflectance: PathSpectrum,
+    coat: RefractiveIndex,
+    /// T_avg of the coat from outside.
+    mean_transmittance: PathSpectrum,
+    rough: Option<Box<Rough>>,
+    /// Index of the coat by which the lobe is chosen, and the ground's share in it: every wavelength chooses alike.
+    reference: f64,
+    ground: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Rough {
+    ggx: Ggx,
+    /// T(µ).
+    transmittance: LossTable,
+}
+
+impl Plastic {
+    /// A ground of albedo `reflectance` under a coat of index `coat`, smooth if `alpha` is 0.
+    pub fn new(reflectance: PathSpectrum, coat: RefractiveIndex, alpha: f64, range_nm: [f64; 2]) -> Self {
+        let [first, last] = range_nm;
+        let steps = || (0..=64).map(move |i| first + (last - first) * f64::from(i) / 64.0);
+        let rough = (alpha > 0.0).then(|| {
+            let ggx = Ggx::new(alpha);
+            let eta = steps().map(|nm| coat.eval(nm)).fold([f64::MAX, 0.0_f64], |e, n| [e[0].min(n), e[1].max(n)]);
+            let reflected = |facet: f64, eta: f64| fresnel::dielectric(facet, eta).map_or(1.0, |f| f.reflectance);
+            let transmittance = LossTable::new(eta, 1e-3, |mu, eta| {
+                1.0 - mean_over_facets(&ggx, mu, |facet| reflected(facet.cos, eta) * facet.mirrored)
+            });
+            Box::new(Rough { ggx, transmittance })
+        });
+        let mean_transmittance = PathSpectrum::tabulate(range_nm, |nm| match &rough {
+            Some(rough) => rough.transmittance.average(coat.eval(nm)),
+            None => mean_transmittance(coat.eval(nm)),
+        });
+        let middle = 0.5 * (first + last);
+        let mut plastic =
+            Self { reference: coat.eval(middle), ground: 0.0, reflectance, coat, mean_transmittance, rough };
+        plastic.ground = steps().map(|nm| plastic.ground(nm) * plastic.mean_transmittance.eval(nm)).sum::<f64>() / 65.0;
+        plastic
+    }
+
+    /// ρ/(n²(1 − ρ r_i)).
+    fn ground(&self, wavelength_nm: f64) -> f64 {
+        let n = self.coat.eval(wavelength_nm);
+        let inward = self.mean_transmittance.eval(wavelength_nm) / (n * n);
+        let rho = self.reflectance.eval(wavelength_nm);
+        rho / (n * n * (1.0 - rho * (1.0 - inward)))
+    }
+
+    /// T(µ) of the coat.
+    fn transmittance(&self, mu: f64, index: f64) -> f64 {
+        match &self.rough {
+            Some(rough) => rough.transmittance.eval(mu, index),
+            None => fresnel::dielectric(mu.min(1.0), index).map_or(0.0, |f| f.transmittance),
+        }
+    }
+
+    /// The probability of the coat's lobe.
+    fn coat_share(&self, mu: f64) -> f64 {
+        let passed = self.transmittance(mu, self.reference);
+        let (coat, ground) = (1.0 - passed, passed * self.ground);
+        // Never 0: at normal incidence an index near 1 reflects next to nothing, but not nothing.
+        coat / (coat + ground)
+    }
+
+    pub(super) fn eval<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        wi: Vec3<R>,
+    ) -> (Lanes<R, N>, Lanes<R, N>) {
+        let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
+        let (wo, wi) = (facing.wo, facing.local(wi));
+        if wi.z <= 0.0 {
+            return (Lanes::ZERO, Lanes::ZERO);
+        }
+        let share = self.coat_share(wo.z);
+        let facets = self.rough.as_ref().map(|rough| rough.ggx.reflection(wo, wi));
+        let diffuse = wi.z * FRAC_1_PI;
+        let f_cos = Lanes::from_fn(|lane| {
+            let nm = lambda_nm[lane];
+            let index = self.coat.eval(nm);
+            let mut f = self.transmittance(wo.z, index) * self.transmittance(wi.z, index) * self.ground(nm) * diffuse;
+            if let Some(facets) = &facets {
+                let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
+                f += reflectance * facets.term * wi.z;
+            }
+            R::from_f64(f)
+        });
+        let mut density = (1.0 - share) * diffuse;
+        if let Some(facets) = &facets {
+            density += share * facets.density;
+        }
+        (f_cos, Lanes::splat(R::from_f64(density)))
+    }
+
+    pub(super) fn sample<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<R>,
+        wo: Vec3<R>,
+        u: [R; 3],
+    ) -> Option<BsdfSample<R, N>> {
+        let facing = Facing::new(n, wo)?;
+        let [u_lobe, u1, u2] = u.map(R::to_f64);
+        let mu = facing.wo.z.min(1.0);
+        let share = self.coat_share(facing.wo.z);
+        let wi = match &self.rough {
+            _ if u_lobe >= share => facing.world(cosine_hemisphere([u1, u2])),
+            Some(rough) => facing.world(facing.wo.reflected_about(rough.ggx.visible_normal(facing.wo, [u1, u2]))),
+            None => {
+                let reflected = |nm: f64| fresnel::dielectric(mu, self.coat.eval(nm)).map_or(1.0, |f| f.reflectance);
+                return Some(BsdfSample {
+                    wi: wo.reflected_about(n).renormalized(),
+                    weight: Lanes::from_fn(|lane| R::from_f64(reflected(lambda_nm[lane]) / share)),
+                    density: Density::Delta,
+                    lane_density: Lanes::ONE,
+                    eta: R::ONE,
+                });
+            }
+        };
+        let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
+        BsdfSample::scattered(wi, f_cos, density, R::ONE)
+    }
+}

@@ -1,0 +1,45 @@
+//! A spot: a point whose intensity falls smoothly to nothing at the edge of a cone.
+//!
+//! I(θ) = I₀·(3x² − 2x³) with x = (cos θ − cos θ_outer)/(cos θ_inner − cos θ_outer) cut to [0, 1]: I₀ within the inner angle,
+//! nothing beyond the outer. Its power is 2πI₀·(1 − ½cos θ_inner − ½cos θ_outer).
+
+use super::{LightSample, PointLight};
+use etalon_optics::Vec3;
+
+/// A spot light.
+#[derive(Clone, Debug)]
+pub struct SpotLight {
+    /// The point, with the intensity along the axis.
+    pub point: PointLight,
+    /// Unit vector along the axis.
+    pub axis: Vec3<f64>,
+    /// Cosines of the inner and the outer half angle; the inner one at least as large.
+    pub cosines: [f64; 2],
+}
+
+impl SpotLight {
+    /// I(θ)/I₀.
+    fn falloff(&self, cos: f64) -> f64 {
+        let [inner, outer] = self.cosines;
+        if cos >= inner {
+            return 1.0;
+        }
+        if cos <= outer {
+            return 0.0;
+        }
+        let x = (cos - outer) / (inner - outer);
+        x * x * (3.0 - 2.0 * x)
+    }
+
+    pub(super) fn sample(&self, from: Vec3<f64>) -> Option<LightSample> {
+        let sample = self.point.sample(from)?;
+        let falloff = self.falloff(-sample.wi.dot(self.axis));
+        (falloff > 0.0).then(|| LightSample { scale: sample.scale * falloff, ..sample })
+    }
+
+    /// Power over the intensity along the axis.
+    pub(super) fn power_factor(&self) -> f64 {
+        let [inner, outer] = self.cosines;
+        std::f64::consts::TAU * self.point.per_m * self.point.per_m * (1.0 - 0.5 * (inner + outer))
+    }
+}

@@ -1,0 +1,194 @@
+//! Coated and rough diffuse surfaces, panes, masks and spots against closed forms.
+
+use etalon_optics::{Lanes, RefractiveIndex, Spectrum, Vec3};
+use etalon_oracle::laws::fresnel_exact;
+use etalon_oracle::statistics::Welford;
+use etalon_oracle::truths::walsh_reflectance;
+use etalon_scene::MaterialKind;
+use etalon_transport::bsdf::{Bsdf, Shading};
+use etalon_transport::light::{Light, PointLight, SpotLight};
+use etalon_transport::spectral::PathSpectrum;
+use etalon_transport::{Control, prepare};
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+
+const RANGE_NM: [f64; 2] = [380.0, 780.0];
+
+fn direction(mu: f64, turns: f64) -> Vec3<f64> {
+    let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
+    Vec3::new(sin * (2.0 * PI * turns).cos(), sin * (2.0 * PI * turns).sin(), mu)
+}
+
+/// ∫ f cos over the upper hemisphere without the deltas, by midpoints in cos² and azimuth.
+fn albedo(bsdf: &Bsdf, mu: f64) -> f64 {
+    let n = 256;
+    let at = |i: usize| (i as f64 + 0.5) / n as f64;
+    let up = Shading::flat(Vec3::new(0.0, 0.0, 1.0));
+    let mut sum = 0.0;
+    for i in 0..n * n {
+        let wi = direction(at(i % n).sqrt(), at(i / n));
+        let (f_cos, _) = bsdf.eval::<f64, 1>(&Lanes([550.0]), &up, direction(mu, 0.0), wi);
+        // dω cos = π d(cos²) d(turns).
+        sum += f_cos[0] / wi.z * PI;
+    }
+    sum / (n * n) as f64
+}
+
+#[test]
+fn smooth_plastic_has_the_albedo_of_its_closed_form() {
+    let n = 1.5;
+    for rho in [0.2, 0.8, 1.0] {
+        let (reflectance, coat) = (Spectrum::Constant(rho), RefractiveIndex::Constant(n));
+        let bsdf = Bsdf::new(&MaterialKind::Plastic { reflectance, coat, alpha: 0.0 }, RANGE_NM);
+        for mu in [1.0, 0.5, 0.1] {
+            let passed = fresnel_exact(mu, n).transmittance();
+            let mean = 1.0 - walsh_reflectance(n);
+            let series = |r_i: f64| passed * mean * rho / (n * n * (1.0 - rho * r_i));
+            // Inside, a diffuse ray meets 1 − (1 − r)/n² = 0.596 of mirror.
+            let truth = series(1.0 - mean / (n * n));
+            let read = albedo(&bsdf, mu);
+            // The midpoint rule: T is a square root in cos² at grazing angles, n^-1.5.
+            assert!((read - truth).abs() < 3e-4, "ρ {rho} µ {mu}: {read} is not {truth}");
+            // Without n² inside, or with the outside's reflectance inside.
+            assert!((read - series(walsh_reflectance(n))).abs() > 2e-3);
+            assert!((read - truth * n * n).abs() > 0.01);
+        }
+    }
+}
+
+/// Averaged over diffuse light and with the ground too dark for a second bounce, EON returns
+/// ρA(1 + r(2/3 − 28/(15π))), A = 1/(1 + r(1/2 − 2/(3π))).
+#[test]
+fn rough_diffuse_reflection_has_the_mean_albedo_of_its_closed_form() {
+    for roughness in [0.0, 0.5, 1.0] {
+        let rho = 1e-6;
+        let kind = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho), roughness };
+        let bsdf = Bsdf::new(&kind, RANGE_NM);
+        let n = 24;
+        let mean: f64 =
+            (0..n).map(|i| albedo(&bsdf, ((f64::from(i) + 0.5) / f64::from(n)).sqrt())).sum::<f64>() / f64::from(n);
+        let scale = 1.0 / (1.0 + roughness * (0.5 - 2.0 / (3.0 * PI)));
+        let truth = scale * (1.0 + roughness * (2.0 / 3.0 - 28.0 / (15.0 * PI)));
+        // The midpoint rule over 24 angles.
+        assert!((mean / rho - truth).abs() < 2e-3, "r {roughness}: {} is not {truth}", mean / rho);
+    }
+}
+
+#[test]
+fn a_spot_has_its_intensity_and_its_power() {
+    let intensity = PathSpectrum::Constant(3.0);
+    let point = PointLight { position: Vec3::new(0.0, 0.0, 2.0), intensity, per_m: 1.0 };
+    let cosines = [0.9, 0.6];
+    let spot = Light::Spot(SpotLight { point, axis: Vec3::new(0.0, 0.0, -1.0), cosines });
+    let intensity = |toward: Vec3<f64>| {
+        let from = Vec3::new(0.0, 0.0, 2.0) + toward * 5.0;
+        spot.sample(from, [0.5; 2]).map_or(0.0, |s| s.scale * 25.0)
+    };
+    // Half way between the cosines half of the intensity is left, by symmetry of 3x² − 2x³.
+    for (cos, share) in [(1.0, 1.0), (0.9, 1.0), (0.75, 0.5), (0.6, 0.0), (-1.0, 0.0)] {
+        let read = intensity(direction(-cos, 0.3));
+        assert!((read - share).abs() < 1e-14, "{cos}: {read} is not {share}");
+    }
+    // ∫ I dω = 2π(1 − (cos i + cos o)/2), by midpoints.
+    let n = 10_000;
+    let power: f64 = (0..n)
+        .map(|i| intensity(direction((f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0, 0.0)) * 4.0 * PI / f64::from(n))
+        .sum();
+    assert!((power - 2.0 * PI * (1.0 - 0.75)).abs() < 1e-6, "{power}");
+}
+
+/// Mean Y over 8 seeds.
+fn read(json: &Value) -> Welford {
+    let (scene, _) = etalon_scene::parse(&json.to_string(), "test").unwrap_or_else(|e| panic!("{e:?}"));
+    let mut estimate = Welford::default();
+    for seed in 0..8 {
+        let mut scene = scene.clone();
+        scene.integrator.seed = seed;
+        scene.integrator.replicates = 1;
+        let prepared = prepare(&scene).unwrap();
+        let whole = prepared.whole(Some(1));
+        estimate.push(prepared.render(&whole, &|_| Control::Continue).unwrap().mean_y(whole.rect));
+    }
+    estimate
+}
+
+/// A sheet of opacity 0.4 hangs under a disk light of radius 1 at height 1 over a white floor of albedo 1: the floor's radiance
+/// is E/π = 0.5·0.6, by shadow rays, by the walk and by both, and even two edges of a path reach the lamp through it. The
+/// sheet is black.
+#[test]
+fn a_mask_passes_its_share_to_shadow_rays_and_to_the_walk_alike() {
+    let scene = |sampling: &str, opacity: f64| {
+        json!({
+            "etalon": 1,
+            "camera": {
+                "type": "orthographic", "position_m": [0, 0.2, 0], "direction": [0, -1, 0], "up": [0, 0, 1], "height_m": 1e-6
+            },
+            "film": {"width": 2, "height": 2},
+            "objects": [
+                {
+                    "material": {"type": "lambert", "reflectance": 1},
+                    "shape": {"type": "disk", "normal": [0, 1, 0], "radius_m": 0.5}
+                },
+                {
+                    "material": {"type": "black"}, "opacity": opacity,
+                    "shape": {"type": "disk", "center_m": [0, 0.5, 0], "normal": [0, 1, 0], "radius_m": 4}
+                },
+                {
+                    "material": {"type": "black"}, "emission": {"radiance": 1},
+                    "shape": {"type": "disk", "center_m": [0, 1, 0], "normal": [0, -1, 0], "radius_m": 1}
+                }
+            ],
+            "integrator": {"spp": 4096, "max_depth": 2, "light_sampling": sampling}
+        })
+    };
+    for sampling in ["mis", "light", "bsdf"] {
+        for opacity in [0.4, 1.0] {
+            let estimate = read(&scene(sampling, opacity));
+            let (mean, error) = (estimate.mean(), estimate.standard_error());
+            let truth = 0.5 * (1.0 - opacity);
+            // Counting the lamp twice, or once where a mask is met, would be off by a factor of two.
+            assert!(error < 2e-3, "{sampling}: the test sees too little, {error}");
+            assert!(
+                (mean - truth).abs() <= 5.0 * error + 1e-12,
+                "{sampling} {opacity}: {mean} ± {error} is not {truth}"
+            );
+        }
+    }
+}
+
+/// Rough flint under a lamp, lit by shadow rays, by the walk and by both: lanes whose densities differ must add up to the
+/// same light. |t| < 6 with 7 + 7 degrees of freedom; a bias of 9 % would be seen.
+#[test]
+fn every_strategy_finds_the_same_light_through_rough_flint() {
+    let scene = |sampling: &str| {
+        json!({
+            "etalon": 1,
+            "camera": {
+                "type": "perspective", "position_m": [0, 0, 4], "look_at_m": [0, 0, 0], "vertical_fov_deg": 40
+            },
+            "film": {"width": 8, "height": 8},
+            "objects": [
+                {
+                    "material": {
+                        "type": "dielectric", "alpha": 0.3, "interior": {"type": "glass", "name": "N-SF11", "outside_fit": "clamp"}
+                    },
+                    "shape": {"type": "box", "min_m": [-2, -2, -0.5], "max_m": [2, 2, 0.5]},
+                    "transform": [{"rotate": {"axis": [0, 1, 0], "angle_deg": 40}}]
+                },
+                {
+                    "material": {"type": "black"}, "emission": {"radiance": 1, "sides": "both"},
+                    "shape": {"type": "disk", "center_m": [0, 0, -2.5], "normal": [0, 0, 1], "radius_m": 1.5}
+                }
+            ],
+            "integrator": {"spp": 256, "light_sampling": sampling}
+        })
+    };
+    let reference = read(&scene("mis"));
+    for sampling in ["light", "bsdf"] {
+        let other = read(&scene(sampling));
+        let error = reference.standard_error().hypot(other.standard_error());
+        let (a, b) = (other.mean(), reference.mean());
+        assert!(error < 0.015 * b, "{sampling}: the test sees too little, {error} of {b}");
+        assert!(((a - b) / error).abs() < 6.0, "{sampling}: {a} is not {b} ± {error}");
+    }
+}
