@@ -98,7 +98,7 @@ mod tests {
     fn lights_are_chosen_by_their_power() {
         let (x, y) = (Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 3.0, 0.0));
         let shines = |front, back| Emitter {
-            radiance: PathSpectrum::Constant(1.0),
+            radiance: PathSpectrum::Constant(1.0).into(),
             front,
             back,
             surface: PrimitiveId(0).into(),
