@@ -1,5 +1,6 @@
 //! Integration tests of the program and of whole renders, in one binary.
 
+mod accuracy;
 mod assignment;
 mod explain;
 mod outputs;

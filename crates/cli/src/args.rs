@@ -70,6 +70,43 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A share: `1%`, `1 %` or `0.01`.
+pub(crate) fn percentage(text: &str) -> Result<f64, String> {
+    let bad = || "a share such as 1% or 0.01".to_owned();
+    let (number, unit) = match text.trim().strip_suffix('%') {
+        Some(number) => (number.trim_end(), 0.01),
+        None => (text.trim(), 1.0),
+    };
+    let share = unit * number.parse::<f64>().map_err(|_| bad())?;
+    // A bare number from 1 on is more likely to have lost its per cent sign than to mean an error of all there is.
+    let plausible = if unit < 1.0 { share.is_finite() } else { share < 1.0 };
+    if share > 0.0 && plausible { Ok(share) } else { Err(bad()) }
+}
+
+/// A time: `90`, `90s`, `1.5m`, `2h`, or several of these, `1h30m`. Seconds.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    let bad = || "a time such as 90s, 5m or 1h30m".to_owned();
+    let mut total = 0.0;
+    let mut rest = text.trim();
+    if rest.is_empty() {
+        return Err(bad());
+    }
+    while !rest.is_empty() {
+        let end = rest.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(rest.len());
+        let number: f64 = rest[..end].parse().map_err(|_| bad())?;
+        rest = rest[end..].trim_start();
+        let unit = match rest.chars().next() {
+            None | Some('s') => 1.0,
+            Some('m') => 60.0,
+            Some('h') => 3600.0,
+            Some(_) => return Err(bad()),
+        };
+        total += unit * number;
+        rest = rest.get(1..).unwrap_or("").trim_start();
+    }
+    if total > 0.0 && f64::is_finite(total) { Ok(total) } else { Err(bad()) }
+}
+
 fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
     let numbers: Result<Vec<u32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
     numbers.ok()?.try_into().ok()
@@ -85,6 +122,22 @@ mod tests {
         assert_eq!("1X65536".parse(), Ok(Size { width: 1, height: 65_536 }));
         assert_eq!("1,3,2,7".parse(), Ok(Crop(PixelRect { x0: 1, x1: 3, y0: 2, y1: 7 })));
         assert_eq!("12, 40".parse(), Ok(PixelAt { x: 12, y: 40 }));
+    }
+
+    #[test]
+    fn shares_and_times_are_read_as_they_are_written() {
+        for (text, share) in [("1%", 0.01), ("0.5 %", 0.005), ("0.02", 0.02), ("250%", 2.5)] {
+            assert!((percentage(text).unwrap() - share).abs() < 1e-15, "{text}");
+        }
+        for text in ["", "1", "0%", "-1%", "nan%", "inf%", "x", "%"] {
+            assert!(percentage(text).is_err(), "{text}");
+        }
+        for (text, expected) in [("90", 90.0), ("90s", 90.0), ("1.5m", 90.0), ("1h30m", 5400.0), ("2h 5s", 7205.0)] {
+            assert_eq!(seconds(text), Ok(expected), "{text}");
+        }
+        for text in ["", "s", "0s", "1d", "-3s", "1m!", "5é"] {
+            assert!(seconds(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod args;
 mod commands;
 mod failure;
 mod load;
+mod machine;
 mod output;
 mod overrides;
 mod print;
@@ -31,6 +32,9 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Render(commands::render::Args),
+    Quote(commands::quote::Args),
+    Compare(commands::compare::Args),
+    Study(commands::study::Args),
     Explain(commands::explain::Args),
     Schema(commands::schema::Args),
     Whitted(commands::whitted::Args),
@@ -43,6 +47,9 @@ fn main() -> ExitCode {
     print::set_up_reports();
     let outcome: Outcome = match cli.command {
         Command::Render(args) => commands::render::run(args),
+        Command::Quote(args) => commands::quote::run(args),
+        Command::Compare(args) => commands::compare::run(args),
+        Command::Study(args) => commands::study::run(args),
         Command::Explain(args) => commands::explain::run(args),
         Command::Schema(args) => commands::schema::run(args),
         Command::Whitted(args) => commands::whitted::run(args),

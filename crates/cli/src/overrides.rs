@@ -68,6 +68,11 @@ enum LightSamplingArg {
 }
 
 impl Overrides {
+    /// Samples a pixel, if given.
+    pub(crate) fn spp(&self) -> Option<u32> {
+        self.spp
+    }
+
     /// Puts them into a scene.
     pub(crate) fn apply(&self, scene: &mut Scene) {
         let integrator = &mut scene.integrator;

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::Duration;
 
+use etalon_transport::{Counters, Film, Foretold, PixelRect, Watch};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// A bar that counts samples: how many, what share, how fast, how long still.
@@ -12,17 +13,7 @@ pub(crate) struct SampleBar(ProgressBar);
 impl SampleBar {
     /// A bar over `samples` samples, hidden if `hidden` or if standard error is not a terminal.
     pub(crate) fn new(samples: u64, hidden: bool) -> Self {
-        let target = if hidden || !std::io::stderr().is_terminal() {
-            ProgressDrawTarget::hidden()
-        } else {
-            ProgressDrawTarget::stderr()
-        };
-        let bar = ProgressBar::with_draw_target(Some(samples), target).with_style(style());
-        if !bar.is_hidden() {
-            // A tile can take seconds; the clock must not stand still meanwhile.
-            bar.enable_steady_tick(Duration::from_millis(200));
-        }
-        Self(bar)
+        Self(bar(Some(samples), None, hidden))
     }
 
     /// Counts samples that are done.
@@ -36,15 +27,124 @@ impl SampleBar {
     }
 }
 
-fn style() -> ProgressStyle {
+/// A line that says what is being done.
+pub(crate) fn spinner(hidden: bool) -> ProgressBar {
+    let line = bar(None, None, hidden);
+    line.set_style(ProgressStyle::with_template("{spinner} {elapsed}  {msg}").expect("the template is well formed"));
+    line
+}
+
+fn bar(samples: Option<u64>, seconds: Option<f64>, hidden: bool) -> ProgressBar {
+    let target = if hidden || !std::io::stderr().is_terminal() {
+        ProgressDrawTarget::hidden()
+    } else {
+        ProgressDrawTarget::stderr()
+    };
+    let bar = ProgressBar::with_draw_target(samples, target).with_style(style(seconds));
+    if !bar.is_hidden() {
+        // A tile can take seconds; the clock must not stand still meanwhile.
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
+    bar
+}
+
+/// The bar of a render: with the error so far, and the time left to its target.
+pub(crate) struct RenderBar {
+    bar: ProgressBar,
+    rect: PixelRect,
+    target: Option<f64>,
+}
+
+impl RenderBar {
+    /// A bar for the pixels of `rect`, hidden if `hidden` or if standard error is not a terminal. `seconds` is when the
+    /// render is to end, `target` its relative error.
+    pub(crate) fn new(rect: PixelRect, seconds: Option<f64>, target: Option<f64>, hidden: bool) -> Self {
+        let bar = bar(None, seconds, hidden);
+        if target.is_some() {
+            bar.set_message("pilot");
+        }
+        Self { bar, rect, target }
+    }
+
+    /// Takes the bar off the screen.
+    pub(crate) fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Watch for RenderBar {
+    fn work(&self, counters: &Counters) {
+        self.bar.inc(counters.paths);
+    }
+
+    fn planned(&self, samples: u32, _: Option<&Foretold>) {
+        self.bar.set_length(self.rect.area() * u64::from(samples));
+        self.bar.set_position(0);
+        // The pilot's pace is not the picture's.
+        self.bar.reset_eta();
+        self.bar.set_message("");
+    }
+
+    fn pass(&self, film: &Film, _: u32) {
+        // The error of a large picture takes time to add up.
+        if self.bar.is_hidden() {
+            return;
+        }
+        if let Some(error) = film.error(self.rect) {
+            let target = self.target.map(|target| format!(" of {}", percent(target))).unwrap_or_default();
+            self.bar.set_message(format!("error {}{target}", percent(error.relative_rmse)));
+        }
+    }
+}
+
+fn style(seconds: Option<f64>) -> ProgressStyle {
     let rate = |state: &ProgressState, out: &mut dyn Write| {
         // Writing to the bar's own buffer cannot fail.
         let _ = write!(out, "{} samples/s", si(state.per_sec()));
     };
-    ProgressStyle::with_template("{wide_bar:.green/dim} {percent:>3} %  {rate:>16}  {elapsed} gone, {eta} to go")
+    let left = move |state: &ProgressState, out: &mut dyn Write| {
+        let by_samples = state.len().map(|_| state.eta().as_secs_f64());
+        let by_time = seconds.map(|seconds| (seconds - state.elapsed().as_secs_f64()).max(0.0));
+        let _ = match by_samples.into_iter().chain(by_time).reduce(f64::min) {
+            Some(left) => write!(out, "{} to go", duration(left)),
+            None => Ok(()),
+        };
+    };
+    ProgressStyle::with_template("{wide_bar:.green/dim} {percent:>3} %  {msg}  {rate:>16}  {elapsed} gone, {left}")
         .expect("the template is well formed")
         .with_key("rate", rate)
+        .with_key("left", left)
         .progress_chars("━╸─")
+}
+
+/// A time in words: `0.25 s`, `14 s`, `3 min 20 s`, `5 h 12 min`, `3 d 4 h`.
+pub(crate) fn duration(seconds: f64) -> String {
+    if !seconds.is_finite() {
+        return "?".to_owned();
+    }
+    if seconds < 59.5 {
+        return format!("{} s", two_digits(seconds));
+    }
+    let whole = |unit: f64, small: f64| {
+        let parts = (seconds / small).round();
+        ((parts * small / unit).floor(), parts % (unit / small))
+    };
+    let (large, small, names) = match seconds {
+        s if s < 3570.0 => (60.0, 1.0, ["min", "s"]),
+        s if s < 86_370.0 => (3600.0, 60.0, ["h", "min"]),
+        _ => (86_400.0, 3600.0, ["d", "h"]),
+    };
+    let (count, rest) = whole(large, small);
+    format!("{count:.0} {} {rest:.0} {}", names[0], names[1])
+}
+
+/// A number that is 0 or above with at least two digits and no more decimals than that needs.
+pub(crate) fn two_digits(value: f64) -> String {
+    if !value.is_finite() {
+        return "?".to_owned();
+    }
+    let decimals = if value > 0.0 { (1.0 - value.log10().floor()).clamp(0.0, 12.0) as usize } else { 0 };
+    format!("{value:.decimals$}")
 }
 
 /// A number with three digits and a decimal prefix, such as `2.35 M`.
@@ -65,10 +165,7 @@ pub(crate) fn si(value: f64) -> String {
 
 /// A share with two or three digits in per cent, such as `2.4 %`.
 pub(crate) fn percent(share: f64) -> String {
-    let value = 100.0 * share;
-    // Two digits after rounding, for which the exponent must be known.
-    let decimals = if value > 0.0 { (1.0 - value.log10().floor()).clamp(0.0, 12.0) as usize } else { 0 };
-    format!("{value:.decimals$} %")
+    format!("{} %", two_digits(100.0 * share))
 }
 
 #[cfg(test)]
@@ -101,16 +198,36 @@ mod tests {
     }
 
     #[test]
+    fn times_are_told_in_two_units() {
+        for (seconds, text) in [
+            (0.254, "0.25 s"),
+            (14.2, "14 s"),
+            (59.6, "1 min 0 s"),
+            (200.0, "3 min 20 s"),
+            (3599.0, "1 h 0 min"),
+            (18_720.0, "5 h 12 min"),
+            (273_600.0, "3 d 4 h"),
+            (f64::INFINITY, "?"),
+        ] {
+            assert_eq!(duration(seconds), text);
+        }
+    }
+
+    #[test]
     fn a_hidden_bar_draws_nothing_and_counts() {
-        let bar = SampleBar::new(10, true);
-        bar.advance(4);
-        assert!(bar.0.is_hidden());
-        assert_eq!(bar.0.position(), 4);
+        let rect = PixelRect { x0: 0, y0: 0, x1: 2, y1: 2 };
+        let bar = RenderBar::new(rect, Some(1.0), Some(0.01), true);
+        assert_eq!(bar.bar.message(), "pilot");
+        bar.work(&Counters { paths: 9, ..Counters::default() });
+        bar.planned(8, None);
+        bar.work(&Counters { paths: 4, ..Counters::default() });
+        assert!(bar.bar.is_hidden());
+        assert_eq!((bar.bar.position(), bar.bar.length()), (4, Some(32)));
         bar.clear();
     }
 
     #[test]
     fn the_template_is_well_formed() {
-        let _ = style();
+        let _ = style(None);
     }
 }

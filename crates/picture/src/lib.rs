@@ -6,7 +6,7 @@
 //! - [`encode_srgb8`] and [`write_png`] make the picture that a screen shows, and say what was lost on the way.
 //! - Files appear under their name whole or not at all ([`write_atomically`]), and [`check_writable`] finds out before
 //!   an hour of rendering whether they can.
-//! - [`compare`] measures RMSE and relMSE.
+//! - [`compare`] measures RMSE and relMSE, [`flip`](fn@flip) what the eye sees.
 //!
 //! Nothing here prints. Every error names the file and carries the cause as its source.
 
@@ -17,6 +17,7 @@ mod error_info;
 mod exr_header;
 mod exr_read;
 mod exr_write;
+mod flip;
 mod metrics;
 mod picture;
 mod png_file;
@@ -28,6 +29,7 @@ pub use error::PictureError;
 pub use error_info::{ERROR_PREFIX, ErrorInfo};
 pub use exr_read::{ExrFile, read_exr};
 pub use exr_write::{encode_exr, write_exr};
+pub use flip::{PIXELS_PER_DEGREE, flip};
 pub use metrics::{Metrics, RELMSE_FLOOR, compare, rel_mse, rmse};
 pub use picture::{Channel, Picture, Sample, Window};
 pub use png_file::{Rgb8, read_png, read_png8, write_png};

@@ -60,6 +60,10 @@ impl XyzSum {
 pub struct Pixel<'a>(&'a [XyzSum]);
 
 impl<'a> Pixel<'a> {
+    pub(crate) fn new(sums: &'a [XyzSum]) -> Self {
+        Self(sums)
+    }
+
     /// The sums, one a replicate.
     pub fn sums(&self) -> &'a [XyzSum] {
         self.0

@@ -14,7 +14,7 @@
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`] | what the estimates are made of |
 //! | `kernel`, `model`, [`mod@render`], [`film`] | the table of kernels, what their lanes stand for, tiles over all cores, sums |
-//! | [`accuracy`] | how wrong a film is |
+//! | [`accuracy`], [`pilot`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
 //! | [`replay`] | one path, vertex by vertex |
 //!
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
@@ -34,6 +34,7 @@ pub mod mis;
 mod model;
 pub mod observer;
 mod path;
+pub mod pilot;
 pub mod plan;
 pub mod prepare;
 pub mod render;
@@ -41,12 +42,15 @@ pub mod replay;
 pub mod sampler;
 mod shapes;
 pub mod spectral;
+pub mod stop;
 mod surface;
 pub mod warp;
 pub mod wavelength;
 
 pub use accuracy::ImageError;
 pub use film::{Counters, Film, NonFinite, Pixel, PixelRect};
+pub use pilot::{Pilot, Price};
 pub use plan::{Effect, EffectName, Plan, Study, StudyError};
 pub use prepare::{PrepareError, Prepared, prepare, prepare_study};
 pub use render::{Control, Extent, ThreadError};
+pub use stop::{Finished, Foretold, Limits, Reached, Watch};

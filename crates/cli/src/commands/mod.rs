@@ -1,8 +1,11 @@
 //! The commands, one a module: an `Args` for clap, and `pub(crate) fn run(args: Args) -> Outcome`.
 
+pub(crate) mod compare;
 pub(crate) mod explain;
 pub(crate) mod figures;
+pub(crate) mod quote;
 pub(crate) mod render;
 pub(crate) mod schema;
+pub(crate) mod study;
 pub(crate) mod verify;
 pub(crate) mod whitted;

@@ -7,17 +7,18 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use etalon_picture::{Attribute, ERROR_PREFIX, ErrorInfo, Picture, RenderInfo, Window};
-use etalon_transport::{Control, Extent, Film, ImageError, PixelRect, Prepared, prepare_study};
+use etalon_transport::{Film, Finished, ImageError, Limits, PixelRect, Prepared, prepare_study};
 use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::args::{Crop, PixelAt};
 use crate::failure::{Failure, Outcome, ProblemJson};
 use crate::load::{LoadedScene, load};
+use crate::machine::{Clock, ClockKind};
 use crate::output::{self, Output, Written};
 use crate::overrides::Overrides;
 use crate::print;
-use crate::progress::SampleBar;
+use crate::progress::RenderBar;
 
 /// Renders a scene to EXR and PNG files.
 #[derive(clap::Args)]
@@ -30,6 +31,17 @@ pub(crate) struct Args {
     output: Vec<PathBuf>,
     #[command(flatten)]
     overrides: Overrides,
+    /// End when the relative error is this small. A pilot, none of whose samples are kept, tells how many samples that
+    /// takes; the scene's own number of samples does not count then. Of --error, --time and --spp the first one wins.
+    #[arg(long, value_name = "PERCENT", value_parser = crate::args::percentage)]
+    error: Option<f64>,
+    /// End when this time is up, such as 90s or 1h30m; the scene's own number of samples does not count then.
+    #[arg(long, value_name = "TIME", value_parser = crate::args::seconds)]
+    time: Option<f64>,
+    /// Which clock counts for --time and for reports: that on the wall, or the processor's over the number of threads, which
+    /// other programs do not slow down.
+    #[arg(long, value_enum, default_value_t = ClockKind::Wall)]
+    clock: ClockKind,
     /// Threads; all cores if not given. The picture is the same whatever their number.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
@@ -41,7 +53,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X0,X1,Y0,Y1")]
     crop: Option<Crop>,
     /// Trace one path of this pixel again and print it vertex by vertex, instead of rendering.
-    #[arg(long, value_name = "X,Y", requires = "sample", conflicts_with_all = ["output", "crop"])]
+    #[arg(long, value_name = "X,Y", requires = "sample", conflicts_with_all = ["output", "crop", "error", "time"])]
     pixel: Option<PixelAt>,
     /// Which of the pixel's paths.
     #[arg(long, value_name = "K")]
@@ -173,47 +185,53 @@ fn render(args: &Args) -> Result<(), Stop> {
     let mut job = set_up(args, &mut outputs).map_err(Stop::Refused)?;
     print::warnings(&job.warnings);
 
-    let spp = job.loaded.scene.integrator.spp;
-    let extent = Extent { rect: job.rect, samples: 0..spp, threads: Some(job.threads) };
-    let bar = SampleBar::new(job.rect.area() * u64::from(spp), args.quiet || args.json);
-    let start = Instant::now();
-    let film = job.prepared.render(&extent, &|counters| {
-        bar.advance(counters.paths);
-        Control::Continue
-    });
-    let seconds = start.elapsed().as_secs_f64();
+    let limits = limits(args, &job);
+    let bar = RenderBar::new(job.rect, limits.seconds, limits.relative_rmse, args.quiet || args.json);
+    let clock = Clock::start(args.clock, job.threads);
+    let done = job.prepared.render_within(job.rect, &limits, Some(job.threads), &|| clock.seconds(), &bar);
     bar.clear();
-    let film = film.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
+    let done = done.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
 
-    let error = film.error(job.rect);
-    let noticed = warnings::of(args, &film.counters);
+    let done = Done { error: done.film.error(job.rect), finished: done };
+    let noticed = warnings::of(args, &done.finished.film.counters);
     print::warnings(&noticed);
     job.warnings.extend(noticed);
-    let (written, failure) = write(args, &job, &film, error.as_ref(), &outputs, seconds);
+    let (written, failure) = write(args, &job, &done, &outputs);
     if args.json {
-        print::json(&report::json(args, &job, &film, error.as_ref(), &written, &failure, seconds));
+        print::json(&report::json(args, &job, &done, &written, &failure));
     } else if !args.quiet {
-        print::line(&report::summary(&job, &film, error.as_ref(), &written, seconds));
+        print::line(&report::summary(&job, &done, &written));
     }
     failure.into_outcome().map_err(Stop::Reported)
 }
 
+/// A render that is done, and how wrong it is.
+struct Done {
+    finished: Finished,
+    error: Option<ImageError>,
+}
+
+/// What ends the render. The scene's own number of samples counts where the command line says nothing.
+fn limits(args: &Args, job: &Job) -> Limits {
+    let otherwise = args.error.is_some() || args.time.is_some();
+    let samples = match args.overrides.spp() {
+        Some(spp) => spp,
+        None if otherwise => i32::MAX as u32,
+        None => job.loaded.scene.integrator.spp,
+    };
+    Limits { samples, relative_rmse: args.error, seconds: args.time }
+}
+
 /// Writes every output, also after one of them has failed.
-fn write(
-    args: &Args,
-    job: &Job,
-    film: &Film,
-    error: Option<&ImageError>,
-    outputs: &[Output],
-    seconds: f64,
-) -> (Vec<Written>, Failure) {
+fn write(args: &Args, job: &Job, done: &Done, outputs: &[Output]) -> (Vec<Written>, Failure) {
+    let Finished { film, samples, seconds, .. } = &done.finished;
     let (mut written, mut failure) = (Vec::new(), Failure::default());
     let integrator = &job.loaded.scene.integrator;
     let software = concat!("etalon ", env!("CARGO_PKG_VERSION"));
     let info = RenderInfo {
         software: software.to_owned(),
-        render_time_s: seconds,
-        samples_per_pixel: integrator.spp,
+        render_time_s: *seconds,
+        samples_per_pixel: *samples,
         seed: integrator.seed,
         scene_sha256: job.loaded.sha256.clone(),
         plan_json: serde_json::to_string(job.prepared.plan()).expect("a plan is plain data"),
@@ -221,7 +239,7 @@ fn write(
     let approximation = job.prepared.plan().approximations.join("; without ");
     let mut comment = format!(
         "{} samples a pixel, seed {}, exposure {:+} EV, scene {}",
-        integrator.spp, integrator.seed, args.exposure, job.loaded.sha256
+        samples, integrator.seed, args.exposure, job.loaded.sha256
     );
     if !approximation.is_empty() {
         comment += &format!(", approximation without {approximation}");
@@ -236,7 +254,8 @@ fn write(
     match picture {
         Err(error) => failure.add(Failure::run(Report::from_err(error))),
         Ok((picture, mut attributes)) => {
-            attributes.extend(error.map(|error| error_info(film, error).attributes()).unwrap_or_default());
+            attributes
+                .extend(done.error.as_ref().map(|error| error_info(film, error).attributes()).unwrap_or_default());
             for output in outputs {
                 match output::write(output, &picture, &attributes, args.exposure, software, &comment) {
                     Ok(done) => written.push(done),

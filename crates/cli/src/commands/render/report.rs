@@ -1,12 +1,12 @@
 //! What is said about a render that is done.
 
-use etalon_transport::{Film, ImageError, Plan};
+use etalon_transport::{Film, Finished, Foretold, ImageError, Plan, Reached};
 use serde::Serialize;
 
-use super::{Args, Job};
+use super::{Args, Done, Job};
 use crate::failure::{Failure, ProblemJson, problem_json};
 use crate::output::{self, Written};
-use crate::progress::{percent, si};
+use crate::progress::{duration, percent, si, two_digits};
 
 /// What `--json` prints about a render.
 #[derive(Serialize)]
@@ -23,7 +23,12 @@ pub(super) struct RenderJson<'a> {
     spp: u32,
     seed: u64,
     threads: usize,
+    /// From the start of the pilot, or of the render without one.
     seconds: f64,
+    /// What ended the render: "samples", "error" or "time".
+    reached: &'static str,
+    /// What the pilot foretold for the error asked for.
+    foretold: Option<ForetoldJson>,
     prepare_seconds: f64,
     paths: u64,
     paths_per_second: f64,
@@ -56,6 +61,9 @@ pub(super) struct ErrorJson {
     /// 0: normal replicates, 1: each pixel's error is one outlier.
     tail_index: Option<f64>,
     heavy_tailed: bool,
+    /// The same, every noisy pixel counted alike.
+    pixel_tail_index: Option<f64>,
+    heavy_tailed_pixels: bool,
     noisiest: NoisiestJson,
     unknown_pixels: u64,
 }
@@ -79,6 +87,8 @@ fn error_json(film: &Film, error: &ImageError) -> ErrorJson {
         replicates: film.replicates(),
         tail_index: error.tail_index,
         heavy_tailed: error.is_heavy_tailed(),
+        pixel_tail_index: error.pixel_tail_index,
+        heavy_tailed_pixels: error.has_heavy_tailed_pixels(),
         noisiest: NoisiestJson {
             crop: [tile.x0, tile.x1, tile.y0, tile.y1],
             relative_rmse: error.noisiest.relative_rmse,
@@ -86,6 +96,55 @@ fn error_json(film: &Film, error: &ImageError) -> ErrorJson {
         },
         unknown_pixels: error.unknown_pixels,
     }
+}
+
+/// What a pilot foretold: seconds of rendering, its own left out.
+#[derive(Serialize)]
+pub(super) struct ForetoldJson {
+    relative_rmse: f64,
+    samples: f64,
+    seconds: f64,
+    pilot_seconds: f64,
+}
+
+fn foretold_json(foretold: &Foretold) -> ForetoldJson {
+    ForetoldJson {
+        relative_rmse: foretold.price.relative_rmse,
+        samples: foretold.price.samples,
+        seconds: foretold.price.seconds,
+        pilot_seconds: foretold.pilot_seconds,
+    }
+}
+
+fn word(reached: Reached) -> &'static str {
+    match reached {
+        Reached::Samples => "samples",
+        Reached::Error => "error",
+        Reached::Time => "time",
+    }
+}
+
+/// Seconds that went into a pilot.
+fn pilot_seconds(done: &Done) -> f64 {
+    done.finished.foretold.map_or(0.0, |foretold| foretold.pilot_seconds)
+}
+
+/// What was foretold beside what came.
+fn describe_foretold(done: &Done, foretold: &Foretold) -> String {
+    let took = done.finished.seconds - foretold.pilot_seconds;
+    let mut text = format!(
+        "the pilot ({}) foretold {} for {}, with {} samples",
+        duration(foretold.pilot_seconds),
+        duration(foretold.price.seconds),
+        percent(foretold.price.relative_rmse),
+        two_digits(foretold.price.samples),
+    );
+    text += &match done.finished.reached {
+        Reached::Error => format!("; it took {}, {:.2} times that", duration(took), took / foretold.price.seconds),
+        Reached::Time => "; time was up before".to_owned(),
+        Reached::Samples => "; so many samples were not wanted".to_owned(),
+    };
+    text
 }
 
 /// The error in words.
@@ -107,6 +166,10 @@ fn describe_error(error: &ImageError) -> String {
         text.push_str(
             "\n  rare bright paths carry most of this error: it is likely to be larger than these numbers say",
         );
+    } else if error.has_heavy_tailed_pixels() {
+        text.push_str(
+            "\n  rare bright paths: error bars of single pixels are too short, those of larger regions are right",
+        );
     }
     text
 }
@@ -115,12 +178,11 @@ fn describe_error(error: &ImageError) -> String {
 pub(super) fn json<'a>(
     args: &Args,
     job: &'a Job,
-    film: &Film,
-    error: Option<&ImageError>,
+    done: &Done,
     written: &'a [Written],
     failure: &Failure,
-    seconds: f64,
 ) -> RenderJson<'a> {
+    let Finished { film, samples, seconds, .. } = &done.finished;
     let counters = &film.counters;
     RenderJson {
         scene: args.scene.display().to_string(),
@@ -130,13 +192,15 @@ pub(super) fn json<'a>(
         width: film.width(),
         height: film.height(),
         crop: [job.rect.x0, job.rect.x1, job.rect.y0, job.rect.y1],
-        spp: job.loaded.scene.integrator.spp,
+        spp: *samples,
         seed: job.loaded.scene.integrator.seed,
         threads: job.threads,
-        seconds,
+        seconds: *seconds,
+        reached: word(done.finished.reached),
+        foretold: done.finished.foretold.as_ref().map(foretold_json),
         prepare_seconds: job.prepare_seconds,
         paths: counters.paths,
-        paths_per_second: counters.paths as f64 / seconds,
+        paths_per_second: counters.paths as f64 / (seconds - pilot_seconds(done)),
         rays: counters.rays,
         shadow_rays: counters.shadow_rays,
         lens_draws: counters.lens_draws,
@@ -146,7 +210,7 @@ pub(super) fn json<'a>(
         cut_paths: counters.cut_paths,
         nonfinite: counters.nonfinite,
         nonfinite_at: counters.nonfinite_at.iter().map(|at| [at.x, at.y, at.sample]).collect(),
-        error: error.map(|error| error_json(film, error)),
+        error: done.error.as_ref().map(|error| error_json(film, error)),
         warnings: job.warnings.iter().map(problem_json).collect(),
         errors: failure.to_json(),
         plan: job.prepared.plan(),
@@ -154,19 +218,24 @@ pub(super) fn json<'a>(
 }
 
 /// The report for people.
-pub(super) fn summary(job: &Job, film: &Film, error: Option<&ImageError>, written: &[Written], seconds: f64) -> String {
+pub(super) fn summary(job: &Job, done: &Done, written: &[Written]) -> String {
+    let Finished { film, samples, seconds, .. } = &done.finished;
     let mut text = format!(
         "{} × {} pixels, {} samples each, in {seconds:.1} s ({} paths/s on {} threads), {} not finite",
         job.rect.x1 - job.rect.x0,
         job.rect.y1 - job.rect.y0,
-        job.loaded.scene.integrator.spp,
-        si(film.counters.paths as f64 / seconds),
+        samples,
+        si(film.counters.paths as f64 / (seconds - pilot_seconds(done))),
         job.threads,
         film.counters.nonfinite,
     );
-    if let Some(error) = error {
+    if let Some(error) = &done.error {
         text.push_str("\n  ");
         text.push_str(&describe_error(error));
+    }
+    if let Some(foretold) = &done.finished.foretold {
+        text.push_str("\n  ");
+        text.push_str(&describe_foretold(done, foretold));
     }
     for written in written {
         text.push_str("\n  ");

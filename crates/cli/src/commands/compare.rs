@@ -1,0 +1,179 @@
+//! `etalon compare`: how far apart two pictures are, and whether that is more than their noise.
+
+mod tiles;
+
+use std::path::PathBuf;
+
+use etalon_picture::{
+    ExrFile, PIXELS_PER_DEGREE, Picture, RenderInfo, compare, encode_srgb8, flip, read_exr, write_png,
+};
+use miette::{Report, miette};
+use serde::Serialize;
+
+use crate::failure::{Failure, Outcome};
+use crate::print;
+
+/// Compares two EXR pictures; exit status 1 if they differ by more than their noise explains.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// A picture.
+    image: PathBuf,
+    /// The picture that it is held against: relative measures are in units of this one.
+    reference: PathBuf,
+    /// Probability of calling two pictures of the same thing different.
+    #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = probability)]
+    significance: f64,
+    /// Side of the tiles that are compared, pixels.
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
+    tile: u32,
+    /// Exposure for FLIP and the picture of the difference, in stops.
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::args::finite)]
+    exposure: f64,
+    /// Write where the pictures look different as a PNG file: FLIP from black over red and yellow to white.
+    #[arg(long, value_name = "PNG")]
+    diff: Option<PathBuf>,
+    /// Print one JSON object on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("a probability between 0 and 1, such as 0.001".to_owned()),
+    }
+}
+
+/// What the noise has to say about the difference.
+#[derive(Serialize)]
+struct Test {
+    significance: f64,
+    /// Whether the pictures differ beyond their noise.
+    differ: bool,
+    /// Below this p a single question is answered "different".
+    accepted_from: f64,
+    channels: Vec<tiles::Channel>,
+}
+
+#[derive(Serialize)]
+struct Comparison {
+    image: String,
+    reference: String,
+    width: usize,
+    height: usize,
+    rmse: f64,
+    rel_mse: f64,
+    flip: f64,
+    /// `null` where a picture does not know its errors.
+    test: Option<Test>,
+    /// Why there is no test, or why it must not be believed.
+    note: Option<String>,
+}
+
+/// Channels compared.
+const CHANNELS: [&str; 3] = ["R", "G", "B"];
+
+pub(crate) fn run(args: Args) -> Outcome {
+    let read = |path| read_exr(path).map_err(|error| Failure::input(Report::from_err(error)));
+    let (image, reference) = (read(&args.image)?, read(&args.reference)?);
+    let input = |error| Failure::input(Report::from_err(error));
+    let metrics = compare(&image.picture, &reference.picture, &CHANNELS).map_err(input)?;
+    let scale = args.exposure.exp2();
+    let map = flip(&image.picture, &reference.picture, scale, PIXELS_PER_DEGREE).map_err(input)?;
+    let (test, note) = test(&args, &image, &reference);
+    let comparison = Comparison {
+        image: args.image.display().to_string(),
+        reference: args.reference.display().to_string(),
+        width: image.picture.width(),
+        height: image.picture.height(),
+        rmse: metrics.rmse,
+        rel_mse: metrics.rel_mse,
+        flip: map.iter().sum::<f64>() / map.len() as f64,
+        test,
+        note,
+    };
+    if let Some(path) = &args.diff {
+        write_map(path, &map, &image).map_err(|error| Failure::run(Report::from_err(error)))?;
+    }
+    if args.json {
+        print::json(&comparison);
+    } else {
+        print::line(&describe(&comparison));
+    }
+    match &comparison.test {
+        Some(test) if test.differ => Err(Failure::run(miette!(
+            code = "pictures-differ",
+            "the pictures differ by more than their noise explains"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+fn test(args: &Args, image: &ExrFile, reference: &ExrFile) -> (Option<Test>, Option<String>) {
+    let [a, b] = [image, reference].map(|file| RenderInfo::from_attributes(&file.attributes));
+    let same_numbers = matches!((&a, &b), (Some(a), Some(b)) if a.seed == b.seed && a.scene_sha256 == b.scene_sha256);
+    let mut channels = Vec::new();
+    for name in CHANNELS {
+        let (Some(a), Some(b)) = (tiles::Measured::new(image, name), tiles::Measured::new(reference, name)) else {
+            let lacking = if tiles::Measured::new(image, name).is_none() { &args.image } else { &args.reference };
+            let note =
+                format!("`{}` has no channel Error.{name}, so noise cannot be told from difference", lacking.display());
+            return (None, Some(note));
+        };
+        channels.push(tiles::test(name, &a, &b, image.picture.width(), args.tile as usize));
+    }
+    let accepted_from = tiles::each(args.significance, channels.len());
+    let differ = channels.iter().any(|channel| channel.p() < accepted_from);
+    let note = same_numbers.then(|| {
+        "both were rendered from the same scene with the same seed: their noise is not independent, and the test sees too \
+         little"
+            .to_owned()
+    });
+    (Some(Test { significance: args.significance, differ, accepted_from, channels }), note)
+}
+
+fn describe(comparison: &Comparison) -> String {
+    let Comparison { width, height, rmse, rel_mse, flip, .. } = comparison;
+    let mut text = format!(
+        "{width} × {height} pixels: RMSE {rmse:.6e}, relative MSE {rel_mse:.6e}, FLIP {flip:.6} (0 looks alike, 1 does not)"
+    );
+    if let Some(test) = &comparison.test {
+        for channel in &test.channels {
+            text.push_str(&format!("\n  {}: ", channel.channel));
+            if let Some(tile) = &channel.worst {
+                let [x0, x1, y0, y1] = tile.crop;
+                text.push_str(&format!(
+                    "of {} tiles the worst is columns {x0} to {}, rows {y0} to {}: {:.6} against {:.6}, t {:.2}, ",
+                    channel.tiles,
+                    x1 - 1,
+                    y1 - 1,
+                    tile.means[0],
+                    tile.means[1],
+                    tile.t
+                ));
+            }
+            text.push_str(&format!("p {:.2e} for the worst, {:.2e} for all", channel.p_worst, channel.p_spread));
+            if channel.untested_tiles > 0 {
+                text.push_str(&format!("; {} tiles without known errors", channel.untested_tiles));
+            }
+        }
+        let verdict = if test.differ { "they differ beyond their noise" } else { "no difference beyond their noise" };
+        text.push_str(&format!(
+            "\n  {verdict} (pictures of the same thing are called different with probability {})",
+            test.significance
+        ));
+    }
+    if let Some(note) = &comparison.note {
+        text.push_str(&format!("\n  {note}"));
+    }
+    text
+}
+
+/// The map in colours whose lightness grows with the difference.
+fn write_map(path: &std::path::Path, map: &[f64], image: &ExrFile) -> Result<(), etalon_picture::PictureError> {
+    let ramp = |v: f64, from: f64| ((v - from) * 3.0).clamp(0.0, 1.0) as f32;
+    let pixels: Vec<[f32; 3]> = map.iter().map(|&v| [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|from| ramp(v, from))).collect();
+    let (width, height) = (image.picture.width(), image.picture.height());
+    let (shown, _) = encode_srgb8(&Picture::from_rgb(width, height, &pixels)?, 0.0)?;
+    write_png(path, &shown, &[("Software", concat!("etalon ", env!("CARGO_PKG_VERSION")))])
+}

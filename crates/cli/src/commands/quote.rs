@@ -1,0 +1,184 @@
+//! `etalon quote`: what accuracy will cost, before it is paid for.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use etalon_transport::{Pilot, PixelRect, Price, prepare_study};
+use miette::Report;
+use serde::Serialize;
+
+use crate::args::percentage;
+use crate::failure::{Failure, Outcome};
+use crate::load::load;
+use crate::machine::{Clock, ClockKind, Machine};
+use crate::overrides::Overrides;
+use crate::print;
+use crate::progress::{duration, percent, two_digits};
+
+/// Says what each accuracy of a scene will cost in samples and seconds on this machine.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The scene, as JSON.
+    scene: PathBuf,
+    #[command(flatten)]
+    overrides: Overrides,
+    /// Relative errors to quote.
+    #[arg(long = "error", value_name = "PERCENT", value_delimiter = ',', value_parser = percentage,
+        default_values = ["10%", "5%", "2%", "1%", "0.5%", "0.1%"])]
+    errors: Vec<f64>,
+    /// Longest time that the pilot may take.
+    #[arg(long, value_name = "TIME", value_parser = crate::args::seconds, default_value = "10s")]
+    pilot: f64,
+    /// Threads; all cores if not given.
+    #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    threads: Option<u32>,
+    /// Which clock counts: that on the wall, or the processor's, which other programs do not slow down.
+    #[arg(long, value_enum, default_value_t = ClockKind::Wall)]
+    clock: ClockKind,
+    /// Print one JSON object on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct QuoteJson {
+    scene: String,
+    scene_sha256: String,
+    width: u32,
+    height: u32,
+    machine: Machine,
+    pilot: PilotJson,
+    /// Seconds before the first sample.
+    prepare_seconds: f64,
+    prices: Vec<PriceJson>,
+}
+
+#[derive(Serialize)]
+struct PilotJson {
+    seconds: f64,
+    /// The error of the whole picture as the pilot saw it grow smaller.
+    points: Vec<PointJson>,
+}
+
+#[derive(Serialize)]
+struct PointJson {
+    samples: u32,
+    relative_rmse: f64,
+    /// Relative standard error of `relative_rmse`.
+    uncertainty: f64,
+    seconds: f64,
+}
+
+#[derive(Serialize)]
+struct PriceJson {
+    relative_rmse: f64,
+    samples: f64,
+    samples_interval: [f64; 2],
+    seconds: f64,
+    seconds_interval: [f64; 2],
+}
+
+pub(crate) fn run(args: Args) -> Outcome {
+    let mut loaded = load(&args.scene, args.overrides.film_size())?;
+    args.overrides.apply(&mut loaded.scene);
+    print::warnings(&loaded.warnings);
+    let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
+    let clock = Clock::start(args.clock, threads);
+    let prepared = prepare_study(&loaded.scene, &args.overrides.study())
+        .map_err(|error| Failure::input(Report::from_err(error)))?;
+    let prepare_seconds = clock.seconds();
+
+    let film = &loaded.scene.film;
+    let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
+    let started = |error| Failure::run(Report::from_err(error));
+    let mut pilot = Pilot::new(&prepared, whole, Some(threads)).map_err(started)?;
+    let mut next = pilot.first_step();
+    let finest = args.errors.iter().copied().fold(f64::INFINITY, f64::min);
+    loop {
+        pilot.advance(next, &|| clock.seconds(), &|_| ());
+        let reached = pilot.points().last().is_some_and(|point| point.relative_rmse <= finest);
+        // To double the samples takes as long again as all of them did.
+        if reached || 2.0 * pilot.seconds() > args.pilot || next > i32::MAX as u32 / 2 {
+            break;
+        }
+        next *= 2;
+    }
+    let quote = QuoteJson {
+        scene: args.scene.display().to_string(),
+        scene_sha256: loaded.sha256,
+        width: film.width,
+        height: film.height,
+        machine: Machine::with_threads(threads),
+        pilot: PilotJson {
+            seconds: pilot.seconds(),
+            points: pilot
+                .points()
+                .iter()
+                .map(|p| PointJson {
+                    samples: p.samples,
+                    relative_rmse: p.relative_rmse,
+                    uncertainty: p.uncertainty,
+                    seconds: p.seconds,
+                })
+                .collect(),
+        },
+        prepare_seconds,
+        prices: args.errors.iter().map(|&error| price_json(&pilot.price(error))).collect(),
+    };
+    if args.json {
+        print::json(&quote);
+    } else {
+        print::line(&describe(&quote));
+    }
+    Ok(())
+}
+
+fn price_json(price: &Price) -> PriceJson {
+    PriceJson {
+        relative_rmse: price.relative_rmse,
+        samples: price.samples,
+        samples_interval: price.samples_interval,
+        seconds: price.seconds,
+        seconds_interval: price.seconds_interval,
+    }
+}
+
+fn describe(quote: &QuoteJson) -> String {
+    let mut text = format!(
+        "{}, {} × {} pixels, on {} threads of {}, {}\n\n{:>8} {:>10}  {:<22} {:>10}  {}\n",
+        quote.scene,
+        quote.width,
+        quote.height,
+        quote.machine.threads,
+        quote.machine.processor,
+        quote.machine.software,
+        "error",
+        "samples",
+        "(95 % sure)",
+        "time",
+        "(95 % sure)",
+    );
+    for price in &quote.prices {
+        let between = |interval: [f64; 2], show: &dyn Fn(f64) -> String| {
+            format!("{} to {}", show(interval[0]), show(interval[1]))
+        };
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{:>8} {:>10}  {:<22} {:>10}  {}",
+            percent(price.relative_rmse),
+            two_digits(price.samples),
+            between(price.samples_interval, &two_digits),
+            duration(price.seconds),
+            between(price.seconds_interval, &duration),
+        );
+    }
+    let _ = write!(
+        text,
+        "\nThe error is the root mean square over all pixels of the standard error of luminance, in units of the picture's\n\
+         mean luminance; samples are of each pixel. The pilot took {}, preparing the scene {}.",
+        duration(quote.pilot.seconds),
+        duration(quote.prepare_seconds),
+    );
+    text
+}

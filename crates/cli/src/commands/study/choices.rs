@@ -1,0 +1,79 @@
+//! What a study compares: a table of choices, each a change of a scene's integrator or of its effects.
+
+use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
+use etalon_transport::{EffectName, Plan, Study};
+
+/// A choice, applied to a scene.
+pub(super) struct Choice {
+    /// Its name.
+    pub name: String,
+    /// What is chosen.
+    pub group: &'static str,
+    /// The scene with it.
+    pub scene: Scene,
+    /// Effects forced or left out.
+    pub study: Study,
+}
+
+/// The choice that the others are held against: the scene as it is.
+pub(super) const BASELINE: &str = "as it is";
+
+/// Most edges of paths without roulette, so that rooms that absorb little end.
+const DEEPEST: u32 = 64;
+
+/// All choices that a scene allows and that differ from what it says, the baseline first.
+pub(super) fn of(scene: &Scene, plan: &Plan) -> Vec<Choice> {
+    let mut choices = Vec::new();
+    let mut add = |group, name: &str, study: Study, change: &dyn Fn(&mut Scene)| {
+        let mut changed = scene.clone();
+        change(&mut changed);
+        if name == BASELINE || changed != *scene || study != Study::default() {
+            choices.push(Choice { name: name.to_owned(), group, scene: changed, study });
+        }
+    };
+    let plain = Study::default;
+    add("baseline", BASELINE, plain(), &|_| ());
+    for (name, kind) in [("Owen-Sobol", SamplerKind::Sobol), ("independent numbers", SamplerKind::Independent)] {
+        add("sampler", name, plain(), &|scene| scene.integrator.sampler = kind);
+    }
+    add("error bars", "one replicate: no error bars", plain(), &|scene| scene.integrator.replicates = 1);
+    for (name, precision) in [("f32", Precision::F32), ("f64", Precision::F64)] {
+        add("scalar", name, plain(), &|scene| scene.integrator.precision = precision);
+    }
+    let runs_mis = plan.runs(EffectName::Mis);
+    for (name, kind) in [
+        ("lights and BSDF by MIS", LightSampling::Mis),
+        ("lights only", LightSampling::Light),
+        ("BSDF only", LightSampling::Bsdf),
+    ] {
+        // Where nothing is found both ways, the three are one.
+        if runs_mis || scene.integrator.light_sampling != LightSampling::Mis {
+            add("direct light", name, plain(), &|scene| scene.integrator.light_sampling = kind);
+        }
+    }
+    add("roulette", "no roulette", plain(), &|scene| {
+        scene.integrator.roulette = false;
+        scene.integrator.max_depth = Some(scene.integrator.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST)));
+    });
+    for depth in [2, 3, 5, 9] {
+        if scene.integrator.max_depth.is_none_or(|most| depth < most) {
+            add("path depth", &format!("at most {depth} edges"), plain(), &|scene| {
+                scene.integrator.max_depth = Some(depth);
+            });
+        }
+    }
+    for effect in &plan.effects {
+        // These are the choices of direct light above.
+        if matches!(effect.name, EffectName::Mis | EffectName::ShadowRays) {
+            continue;
+        }
+        if effect.on {
+            let study = Study { force: Vec::new(), without: vec![effect.name] };
+            add("effects", &format!("without {}", effect.name), study, &|_| ());
+        } else if effect.name.can_be_forced() {
+            let study = Study { force: vec![effect.name], without: Vec::new() };
+            add("effects", &format!("{} forced", effect.name), study, &|_| ());
+        }
+    }
+    choices
+}

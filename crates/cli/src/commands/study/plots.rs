@@ -1,0 +1,147 @@
+//! The plots of a study, as SVG.
+
+use plotters::prelude::*;
+
+use super::measure::{Row, SceneStudy};
+
+/// Okabe & Ito's colours, which most people can tell apart, the baseline's black first.
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 0, 0),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+];
+
+const SIZE: (u32, u32) = (620, 400);
+
+/// A plot: its name, which is also the stem of its file, and the SVG.
+pub(super) struct Plot {
+    pub name: String,
+    pub svg: String,
+}
+
+/// Groups that share a plot of error against time.
+const PLOTS: [(&str, &str, &[&str]); 4] = [
+    ("numbers", "numbers and scalars", &["sampler", "error bars", "scalar"]),
+    ("light", "finding light", &["direct light"]),
+    ("depth", "path depth and roulette", &["path depth", "roulette"]),
+    ("effects", "effects on and off", &["effects"]),
+];
+
+/// All plots of a scene.
+pub(super) fn of(study: &SceneStudy) -> Result<Vec<Plot>, String> {
+    let mut plots = Vec::new();
+    for (name, title, groups) in PLOTS {
+        let rows: Vec<&Row> = study.rows.iter().filter(|row| groups.contains(&row.group)).collect();
+        if !rows.is_empty() {
+            let title = format!("{}: {title}", study.scene);
+            let svg = curves(&title, &study.rows[0], &rows).map_err(|error| error.to_string())?;
+            plots.push(Plot { name: format!("{}-{name}", study.scene), svg });
+        }
+    }
+    let svg = prices(study).map_err(|error| error.to_string())?;
+    plots.push(Plot { name: format!("{}-prices", study.scene), svg });
+    Ok(plots)
+}
+
+type Drawn<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// Error against time, both logarithmic, a curve a choice.
+fn curves(title: &str, baseline: &Row, rows: &[&Row]) -> Drawn<String> {
+    let all: Vec<&Row> = std::iter::once(baseline).chain(rows.iter().copied()).collect();
+    let points = |row: &Row| -> Vec<(f64, f64)> {
+        let error = |point: &super::measure::Point| point.error.or(point.scatter).filter(|&error| error > 0.0);
+        row.points.iter().filter_map(|point| Some((point.seconds.max(1e-6), error(point)?))).collect()
+    };
+    let everything: Vec<(f64, f64)> = all.iter().flat_map(|row| points(row)).collect();
+    let span = |pick: fn(&(f64, f64)) -> f64| {
+        let low = everything.iter().map(pick).fold(f64::INFINITY, f64::min);
+        let high = everything.iter().map(pick).fold(0.0, f64::max);
+        if low.is_finite() { (low / 1.3, high * 1.3) } else { (0.1, 1.0) }
+    };
+    let ((x0, x1), (y0, y1)) = (span(|p| p.0), span(|p| p.1));
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        root.fill(&WHITE)?;
+        // Room at the top for the legend, so that it covers no curve.
+        let room = (y1 / y0).powf(0.11 * all.len() as f64 + 0.1);
+        let mut chart = ChartBuilder::on(&root)
+            .caption(title, ("sans-serif", 17))
+            .margin(8)
+            .x_label_area_size(42)
+            .y_label_area_size(66)
+            .build_cartesian_2d((x0..x1).log_scale(), (y0..y1 * room).log_scale())?;
+        chart
+            .configure_mesh()
+            .x_labels(5)
+            .y_labels(6)
+            .x_desc("seconds")
+            .y_desc("relative error")
+            .label_style(("sans-serif", 13))
+            .axis_desc_style(("sans-serif", 14))
+            .light_line_style(BLACK.mix(0.06))
+            .bold_line_style(BLACK.mix(0.16))
+            .x_label_formatter(&|x| plain(*x))
+            .y_label_formatter(&|y| if *y > 1.001 * y1 { String::new() } else { format!("{} %", plain(100.0 * y)) })
+            .draw()?;
+        for (index, row) in all.iter().enumerate() {
+            let colour = COLOURS[index % COLOURS.len()];
+            let width = if index == 0 { 3 } else { 2 };
+            chart
+                .draw_series(LineSeries::new(points(row), colour.stroke_width(width)))?
+                .label(row.choice.clone())
+                .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], colour.stroke_width(width)));
+            chart.draw_series(points(row).into_iter().map(|p| Circle::new(p, 3, colour.filled())))?;
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .label_font(("sans-serif", 13))
+            .background_style(WHITE.mix(0.85))
+            .border_style(BLACK.mix(0.3))
+            .draw()?;
+        root.present()?;
+    }
+    Ok(svg)
+}
+
+/// What each effect adds to the time of a sample, and what else a choice costs or saves.
+fn prices(study: &SceneStudy) -> Drawn<String> {
+    let bars: Vec<(String, f64)> = study.rows.iter().skip(1).map(price).collect();
+    let height = 62 + 24 * bars.len() as u32;
+    let most = bars.iter().map(|bar| bar.1.abs()).fold(5.0, f64::max);
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, (SIZE.0, height)).into_drawing_area();
+        root.fill(&WHITE)?;
+        let title = format!("{}: time of a sample beside that of the scene as it is", study.scene);
+        root.draw(&Text::new(title, (8, 8), ("sans-serif", 17).into_font()))?;
+        let (left, middle, reach) = (240, 420, 120.0);
+        root.draw(&PathElement::new(vec![(middle, 34), (middle, height as i32 - 12)], BLACK.mix(0.5)))?;
+        for (index, (name, percent)) in bars.iter().enumerate() {
+            let y = 40 + 24 * index as i32;
+            let end = middle + (reach * percent / most).round() as i32;
+            let colour = if *percent > 0.0 { COLOURS[3] } else { COLOURS[2] };
+            root.draw(&Text::new(name.clone(), (8, y + 2), ("sans-serif", 13).into_font()))?;
+            root.draw(&Rectangle::new([(middle.min(end), y), (middle.max(end), y + 16)], colour.filled()))?;
+            let at = if *percent > 0.0 { end + 5 } else { middle + 5 };
+            root.draw(&Text::new(format!("{percent:+.0} %"), (at.max(left), y + 2), ("sans-serif", 13).into_font()))?;
+        }
+        root.present()?;
+    }
+    Ok(svg)
+}
+
+fn price(row: &Row) -> (String, f64) {
+    (row.choice.clone(), 100.0 * (row.relative_cost - 1.0))
+}
+
+/// A tick of a logarithmic axis.
+fn plain(value: f64) -> String {
+    let digits = (-value.log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{value:.digits$}")
+}

@@ -1,0 +1,175 @@
+//! When a render ends: by samples, by error or by time, whichever is reached first.
+//!
+//! The number of samples for an error is chosen by a [`Pilot`] before the picture begins, so the picture's own values have
+//! no say in it. A deadline decides by how long passes take, which depends on the length of paths, not on what they bring.
+
+use crate::film::{Counters, Film, PixelRect};
+use crate::pilot::{Pilot, Price, between};
+use crate::prepare::Prepared;
+use crate::render::{Control, Extent, ThreadError};
+
+/// What a render may cost, or must reach. Without any limit it would not end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Most samples a pixel.
+    pub samples: u32,
+    /// The relative error at which it is good enough: see [`crate::accuracy`].
+    pub relative_rmse: Option<f64>,
+    /// Seconds from the start of the render, the pilot included.
+    pub seconds: Option<f64>,
+}
+
+/// Which limit ended a render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reached {
+    /// The number of samples.
+    Samples,
+    /// The relative error.
+    Error,
+    /// The time.
+    Time,
+}
+
+/// What was foretold before a render for the sake of its error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foretold {
+    /// What the error was to cost: the samples chosen, and seconds of rendering.
+    pub price: Price,
+    /// Seconds that the pilot took.
+    pub pilot_seconds: f64,
+}
+
+/// A render that has ended.
+#[derive(Clone, Debug)]
+pub struct Finished {
+    /// The film.
+    pub film: Film,
+    /// Samples of each pixel.
+    pub samples: u32,
+    /// Why no more.
+    pub reached: Reached,
+    /// Seconds from the start to the end, the pilot included.
+    pub seconds: f64,
+    /// What was foretold, if a relative error was asked for.
+    pub foretold: Option<Foretold>,
+}
+
+/// How a render goes on, for whoever watches it.
+pub trait Watch: Sync {
+    /// Work was done: camera paths and rays, of the pilot or of the picture.
+    fn work(&self, counters: &Counters) {
+        let _ = counters;
+    }
+    /// The picture begins; it will take so many samples a pixel, or fewer if time is up.
+    fn planned(&self, samples: u32, foretold: Option<&Foretold>) {
+        let _ = (samples, foretold);
+    }
+    /// A pass has ended: samples a pixel so far.
+    fn pass(&self, film: &Film, samples: u32) {
+        let _ = (film, samples);
+    }
+}
+
+impl Watch for () {}
+
+/// Part of the remaining time that passes are planned for: what is left pays for passes that take longer than the last.
+const USE_OF_TIME: f64 = 0.98;
+
+impl Prepared {
+    /// Renders `rect` until the first of the limits. `clock` tells seconds since the start. The film is the one that
+    /// [`Prepared::render`] gives for the same number of samples; at least one sample for each replicate is taken.
+    pub fn render_within(
+        &self,
+        rect: PixelRect,
+        limits: &Limits,
+        threads: Option<usize>,
+        clock: &(dyn Fn() -> f64 + Sync),
+        watch: &dyn Watch,
+    ) -> Result<Finished, ThreadError> {
+        let mut samples = limits.samples;
+        let mut reached = Reached::Samples;
+        let mut foretold = None;
+        if let Some(target) = limits.relative_rmse {
+            let mut pilot = Pilot::new(self, rect, threads)?;
+            let needed = pilot.samples_for(target, limits, clock, &|counters| watch.work(counters));
+            let price = pilot.price(target);
+            let point = pilot.points().last().expect("a pilot takes a step at least");
+            foretold = Some(Foretold {
+                price: match needed {
+                    // What was chosen, not what a law through the pilot's points says.
+                    Some(needed) => Price {
+                        samples: f64::from(needed),
+                        seconds: point.seconds / f64::from(point.samples) * f64::from(needed),
+                        ..price
+                    },
+                    None => price,
+                },
+                pilot_seconds: pilot.seconds(),
+            });
+            if let Some(needed) = needed.filter(|&needed| needed <= samples) {
+                (samples, reached) = (needed, Reached::Error);
+            }
+        }
+        watch.planned(samples, foretold.as_ref());
+
+        let mut film = self.film();
+        let replicates = self.scene.integrator.replicates;
+        let (start, mut done) = (clock(), 0_u32);
+        while done < samples {
+            // As many again as there are: the rate is known by half of the work, the error after each pass.
+            let mut pass = done.max(replicates).min(samples - done);
+            if let (Some(seconds), true) = (limits.seconds, done > 0) {
+                let now = clock();
+                let affordable = USE_OF_TIME * (seconds - now) / ((now - start) / f64::from(done));
+                // Whole rounds of replicates, so that all weigh alike.
+                let affordable = affordable.max(0.0) as u32 / replicates * replicates;
+                if affordable == 0 {
+                    reached = Reached::Time;
+                    break;
+                }
+                pass = pass.min(affordable);
+            }
+            let extent = Extent { rect, samples: done..done + pass, threads };
+            self.render_onto(&mut film, &extent, &|counters| {
+                watch.work(counters);
+                Control::Continue
+            })?;
+            done += pass;
+            watch.pass(&film, done);
+        }
+        Ok(Finished { film, samples: done, reached, seconds: clock(), foretold })
+    }
+}
+
+impl Pilot<'_> {
+    /// Goes on until the error is `target` and returns the number of samples a pixel for it; `None` as soon as that is
+    /// certain to exceed the other limits.
+    fn samples_for(
+        &mut self,
+        target: f64,
+        limits: &Limits,
+        clock: &(dyn Fn() -> f64 + Sync),
+        on_work: &(dyn Fn(&Counters) + Sync),
+    ) -> Option<u32> {
+        let replicates = self.first_step();
+        let mut next = replicates;
+        loop {
+            self.advance(next, clock, on_work);
+            let &point = self.points().last().expect("it has just advanced");
+            if point.relative_rmse <= target {
+                // Whole rounds of replicates, so that all weigh alike.
+                let samples = between(self.points(), target).unwrap_or(f64::from(point.samples));
+                return Some((samples / f64::from(replicates)).ceil() as u32 * replicates);
+            }
+            if point.samples >= limits.samples || limits.seconds.is_some_and(|s| clock() + point.seconds > s) {
+                return None;
+            }
+            // No further than the law of the error says, nor twice as far, for that law is a guess.
+            let foretold = self.price(target).samples / f64::from(replicates);
+            let rounds = point.samples / replicates;
+            let rounds =
+                (foretold.ceil().min(f64::from(u32::MAX)) as u32).clamp(rounds + rounds.div_ceil(16), 2 * rounds);
+            next = rounds.saturating_mul(replicates).min(i32::MAX as u32);
+        }
+    }
+}

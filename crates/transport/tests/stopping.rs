@@ -1,0 +1,164 @@
+//! Renders that end by error or by time: the right number of samples, the same bytes, no bias.
+
+use etalon_oracle::statistics::{Welford, resolvable_bias};
+use etalon_scene::Scene;
+use etalon_transport::{Control, Counters, Extent, Film, Limits, Pilot, Prepared, Reached, Watch, prepare};
+use serde_json::json;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Height of the lamp over its radius: the share of a diffuse floor's sky that it fills right below it is 1/25.
+const SHARE: f64 = 0.04;
+
+/// A floor right below a ball that shines, found by chance: each pixel's sample is 0 or 1, and the mean is [`SHARE`] since
+/// E = πL·sin²α below a sphere of half angle α that is above the horizon, and the floor gives back E/π.
+fn lottery(seed: u64) -> Prepared {
+    let (scene, _) = etalon_scene::parse(
+        &json!({
+            "etalon": 1,
+            "camera": {"type": "perspective", "position_m": [3, 3, 0], "look_at_m": [0, 0, 0], "vertical_fov_deg": 0.01},
+            "film": {"width": 8, "height": 8},
+            "materials": {"white": {"type": "lambert", "reflectance": 1}, "black": {"type": "black"}},
+            "objects": [
+                {"material": "white", "shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 1, 0], "radius_m": 1}},
+                {
+                    "material": "black", "emission": {"radiance": 1},
+                    "shape": {"type": "sphere", "center_m": [0, 5, 0], "radius_m": 1}
+                }
+            ],
+            "integrator": {"light_sampling": "bsdf", "max_depth": 2, "sampler": "independent"}
+        })
+        .to_string(),
+        "lottery",
+    )
+    .unwrap_or_else(|e| panic!("{e:?}"));
+    let scene = Scene { integrator: etalon_scene::Integrator { seed, ..scene.integrator }, ..scene };
+    prepare(&scene).unwrap()
+}
+
+fn mean_y(prepared: &Prepared, film: &Film) -> f64 {
+    film.mean_y(prepared.whole(None).rect)
+}
+
+/// 5000 pictures of about 60 hits each, as a rule may end them: |z| < 5 is exceeded by chance once in 2·10⁶; a bias of 1.5 %
+/// would be seen with power 0.999.
+fn bias(name: &str, picture: impl Fn(u64) -> f64) -> f64 {
+    let moments: Welford = (0..5000).map(picture).collect();
+    let error = moments.standard_error();
+    assert!(resolvable_bias(error, 6e-7) < 0.016 * SHARE, "{name}: the test sees too little, {}", error / SHARE);
+    (moments.mean() - SHARE) / error
+}
+
+#[test]
+fn a_picture_whose_samples_a_pilot_chose_is_not_biased() {
+    let z = bias("pilot", |seed| {
+        let prepared = lottery(seed);
+        let limits = Limits { samples: 4096, relative_rmse: Some(1.0), seconds: None };
+        let done = prepared.render_within(prepared.whole(None).rect, &limits, Some(1), &|| 0.0, &()).unwrap();
+        assert_eq!(done.reached, Reached::Error);
+        mean_y(&prepared, &done.film)
+    });
+    assert!(z.abs() < 5.0, "z {z}");
+}
+
+/// The mutant: a rule that looks at the picture itself.
+#[test]
+fn a_picture_that_ends_when_it_looks_good_itself_would_be_seen_to_be_biased() {
+    let z = bias("own error", |seed| {
+        let prepared = lottery(seed);
+        let whole = prepared.whole(Some(1));
+        let mut film = prepared.film();
+        for first in (0..4096).step_by(4) {
+            let extent = Extent { samples: first..first + 4, ..whole.clone() };
+            prepared.render_onto(&mut film, &extent, &|_| Control::Continue).unwrap();
+            if film.error(whole.rect).is_some_and(|error| error.mean_y > 0.0 && error.relative_rmse <= 1.0) {
+                break;
+            }
+        }
+        mean_y(&prepared, &film)
+    });
+    assert!(z.abs() > 5.0, "z {z}: it is right by accident, or the test is blind");
+}
+
+/// A clock on which each path takes a second, and each that finds light ten: as bad as it can be.
+struct CostlyLight(AtomicU64);
+
+impl Watch for CostlyLight {
+    fn pass(&self, film: &Film, _: u32) {
+        let seconds = film.pixels().map(|p| f64::from(p.count()) * (1.0 + 9.0 * p.xyz()[1])).sum::<f64>();
+        self.0.store(seconds as u64, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn a_deadline_does_not_bias_even_where_light_is_what_takes_time() {
+    let z = bias("deadline", |seed| {
+        let prepared = lottery(seed);
+        let watch = CostlyLight(AtomicU64::new(0));
+        let limits = Limits { samples: 4096, relative_rmse: None, seconds: Some(64.0 * 24.0 * 1.36) };
+        let clock = || watch.0.load(Ordering::Relaxed) as f64;
+        let done = prepared.render_within(prepared.whole(None).rect, &limits, Some(1), &clock, &watch).unwrap();
+        assert_eq!(done.reached, Reached::Time);
+        mean_y(&prepared, &done.film)
+    });
+    assert!(z.abs() < 5.0, "z {z}");
+}
+
+#[test]
+fn the_first_limit_wins_and_the_film_is_that_of_as_many_samples() {
+    let prepared = lottery(3);
+    let rect = prepared.whole(None).rect;
+    let paths = AtomicU64::new(0);
+    struct Paths<'a>(&'a AtomicU64);
+    impl Watch for Paths<'_> {
+        fn work(&self, counters: &Counters) {
+            self.0.fetch_add(counters.paths, Ordering::Relaxed);
+        }
+    }
+    // A millisecond a path.
+    let clock = || 1e-3 * paths.load(Ordering::Relaxed) as f64;
+    let render = |samples, relative_rmse, seconds| {
+        paths.store(0, Ordering::Relaxed);
+        let limits = Limits { samples, relative_rmse, seconds };
+        let done = prepared.render_within(rect, &limits, Some(2), &clock, &Paths(&paths)).unwrap();
+        let extent = Extent { rect, samples: 0..done.samples, threads: Some(1) };
+        assert_eq!(done.film, prepared.render(&extent, &|_| Control::Continue).unwrap());
+        assert!(done.film.pixels().all(|pixel| pixel.count() == done.samples));
+        done
+    };
+    let by_samples = render(18, Some(0.001), None);
+    assert_eq!((by_samples.reached, by_samples.samples), (Reached::Samples, 18));
+    assert_eq!(render(18, None, Some(1e6)).reached, Reached::Samples);
+    // 64 pixels take 0.064 s a sample.
+    let by_time = render(1_000_000, None, Some(3.2));
+    assert_eq!(by_time.reached, Reached::Time);
+    assert!((40..=50).contains(&by_time.samples) && by_time.seconds <= 3.2, "{}", by_time.samples);
+    let by_time = render(1_000_000, Some(1e-3), Some(3.2));
+    assert_eq!(by_time.reached, Reached::Time);
+    assert!(by_time.seconds <= 3.2 && by_time.foretold.is_some());
+    // E = √((1 − p)/(pN)) = 1 at N = 24; the pilot of 64 pixels knows it to a tenth.
+    let by_error = render(1_000_000, Some(1.0), Some(1e6));
+    assert_eq!(by_error.reached, Reached::Error);
+    assert!((12..=44).contains(&by_error.samples), "{}", by_error.samples);
+    // A picture must have something in it, however little time there is.
+    assert_eq!(render(1_000_000, None, Some(1e-9)).samples, 4);
+}
+
+#[test]
+fn a_pilot_sees_the_error_that_the_picture_has_whatever_the_number_of_replicates() {
+    for replicates in [1, 2, 3, 4, 8] {
+        let mut seen = Welford::new();
+        for seed in 0..20 {
+            let mut scene = lottery(seed).scene().clone();
+            scene.integrator.replicates = replicates;
+            let prepared = prepare(&scene).unwrap();
+            let mut pilot = Pilot::new(&prepared, prepared.whole(None).rect, Some(2)).unwrap();
+            pilot.advance(24, &|| 0.0, &|_| ());
+            pilot.advance(96, &|| 0.0, &|_| ());
+            seen.push(pilot.points()[1].relative_rmse);
+        }
+        // √(24/96), by the binomial distribution.
+        let z = (seen.mean() - 0.5) / seen.standard_error();
+        // The root of a variance with few degrees of freedom is biased by some 1 %, which 5 standard errors include.
+        assert!(z.abs() < 5.0 && seen.standard_error() < 0.01, "{replicates}: {} z {z}", seen.mean());
+    }
+}
