@@ -197,7 +197,7 @@ impl Geometry {
     /// The closest hit along a ray.
     ///
     /// A ray of which no point is defined (NaN, zero direction) hits nothing, nor does one that starts beyond 2²⁰⁰ m or
-    /// whose direction is outside 2^±900.
+    /// whose direction is outside 2^±900; nor is there a hit whose parameter `R` cannot represent.
     pub fn closest_hit<R: Real>(&self, ray: &Ray<R>) -> Option<Hit<R>> {
         let found = match &self.tree {
             Some(tree) => traverse::closest(tree, &self.primitives, ray),
@@ -206,7 +206,9 @@ impl Geometry {
                 self.closest_flat(&query).map(|(hit, surface)| (RawHit { t: hit.t * query.scale, ..hit }, surface))
             }
         };
-        found.map(|(hit, surface)| Hit { t: R::from_f64(hit.t), surface, uv: hit.uv.map(R::from_f64) })
+        let (hit, surface) = found?;
+        let t = R::from_f64(hit.t);
+        (t < R::INFINITY).then(|| Hit { t, surface, uv: hit.uv.map(R::from_f64) })
     }
 
     /// Whether anything but the surface aimed at lies on a ray before `t_max`.

@@ -35,7 +35,7 @@ pub use aabb::Aabb;
 pub use geometry::{Geometry, GeometryError, MAX_NESTING};
 pub use instance::{Instance, Placement};
 pub use ray::{Hit, PrimitiveId, Ray, SurfaceId, SurfacePoint};
-pub use shapes::{Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, Primitive, ShapeError, Sphere, Triangle};
+pub use shapes::{Cylinder, Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, Primitive, ShapeError, Sphere, Triangle};
 
 #[cfg(test)]
 mod test_support;

@@ -116,8 +116,9 @@ impl<R: Real> SurfacePoint<R> {
         let rounded: Vec3<R> = position.cast();
         let error = error + (rounded.to_f64() - position).abs();
         // To first order only the component along the normal leaves the surface; a step s along it leaves a curved one
-        // by at most s²/2 times the curvature.
-        let distance = normal.abs().dot(error) + 0.5 * curvature * error.length_squared();
+        // by at most s²/2 times the curvature, and never by more than s.
+        let squared = error.length_squared();
+        let distance = normal.abs().dot(error) + (0.5 * curvature * squared).min(squared.sqrt());
         // 8 roundoffs cover this sum and the rounding of the normal along which rays are moved.
         let distance = distance * (1.0 + 8.0 * R::UNIT_ROUNDOFF.to_f64());
         let position_error = R::from_f64(distance).next_up();

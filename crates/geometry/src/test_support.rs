@@ -1,6 +1,6 @@
 //! Scenes and rays that are hard to intersect. Nothing here knows [`Geometry`](crate::Geometry).
 
-use crate::{Disk, Instance, Parallelogram, Placement, Primitive, Sphere, Triangle};
+use crate::{Cylinder, Disk, Instance, Parallelogram, Placement, Primitive, Sphere, Triangle};
 use etalon_optics::Vec3;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng};
@@ -177,14 +177,19 @@ pub(crate) fn soup(random: &mut Random, count: usize, sizes: std::ops::Range<f64
     while out.len() < count {
         let p = random.in_cube();
         let size = random.log_uniform(sizes.start, sizes.end);
-        let primitive = match random.below(5) {
+        let primitive = match random.below(6) {
             0 => Sphere::new(p, size).ok().map(Primitive::from),
             1 => Disk::new(p, random.direction(), size).ok().map(Primitive::from),
             2 => {
                 let edges = [random.in_cube() * size, random.in_cube() * size];
                 Parallelogram::new(p, edges[0], edges[1]).ok().map(Primitive::from)
             }
-            3 => Triangle::new(p, p + random.in_cube() * size, p + random.in_cube() * size).ok().map(Primitive::from),
+            3 => {
+                let capped = random.below(2) == 0;
+                let end = p + random.direction() * (size * random.log_uniform(-2.0, 1.0));
+                Cylinder::new(p, end, size, capped).ok().map(Primitive::from)
+            }
+            4 => Triangle::new(p, p + random.in_cube() * size, p + random.in_cube() * size).ok().map(Primitive::from),
             _ => {
                 // A needle.
                 let along = random.direction() * size;
@@ -209,6 +214,10 @@ pub(crate) fn placed(primitive: &Primitive, s: f64, by: V) -> Option<Primitive> 
         Primitive::Triangle(q) => {
             let [a, b, c] = q.vertices().map(point);
             Triangle::new(a, b, c).ok().map(Primitive::from)
+        }
+        Primitive::Cylinder(q) => {
+            let [a, b] = q.ends().map(point);
+            Cylinder::new(a, b, q.radius() * s, q.is_capped()).ok().map(Primitive::from)
         }
         Primitive::Instance(q) => {
             let rows = q.placement().linear().map(|row| (row * s).to_array());
@@ -309,6 +318,11 @@ pub(crate) fn features(primitives: &[Primitive]) -> Vec<V> {
             Primitive::Triangle(s) => {
                 let [a, b, c] = s.vertices();
                 points.extend([a, b, c, (a + b) * 0.5, (b + c) * 0.5, (a + c) * 0.5]);
+            }
+            Primitive::Cylinder(s) => {
+                let frame = etalon_optics::Frame::from_normal(s.axis());
+                let rim = s.ends().map(|end| end + frame.s * s.radius());
+                points.extend(s.ends().into_iter().chain(rim).chain([s.centre() + frame.t * s.radius()]));
             }
             Primitive::Instance(s) => {
                 let inner = features(s.geometry().primitives());

@@ -273,6 +273,17 @@ pub enum Shape {
         /// Radius, above 0.
         radius_m: f64,
     },
+    /// Cylinder; its normal points outward.
+    Cylinder {
+        /// Middle of one end.
+        start: [f64; 3],
+        /// Middle of the other.
+        end: [f64; 3],
+        /// Radius, above 0.
+        radius_m: f64,
+        /// Whether disks close its ends.
+        capped: bool,
+    },
     /// Triangles; objects that name the same file share them.
     Mesh(Arc<Mesh>),
 }

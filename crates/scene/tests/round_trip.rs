@@ -343,7 +343,8 @@ fn groups_come_after_what_they_place_and_transforms_make_an_instance_each() {
     assert_eq!(names, ["ball", "pair", "unused"]);
     let [ball, pair, unused] = scene.groups.as_slice() else { panic!("three") };
     assert_eq!((ball.objects.len(), ball.objects[0].name.as_str()), (1, "groups.ball.objects[0]"));
-    assert_eq!((&unused.objects, &unused.instances), (&Vec::new(), &Vec::new()));
+    let tube = Shape::Cylinder { start: [0.0; 3], end: [0.0, 1.0, 0.0], radius_m: 1.0, capped: false };
+    assert_eq!((&unused.objects[0].shape, &unused.instances), (&tube, &Vec::new()));
     let stretched = Transform { linear: [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, -3.0]], translation_m: [0.0; 3] };
     let instance = |name: &str, group, transform| Instance { name: name.to_owned(), group, transform };
     assert_eq!(pair.instances, [instance("two[0]", 0, Transform::IDENTITY), instance("two[1]", 0, stretched)]);

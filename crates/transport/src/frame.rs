@@ -5,7 +5,7 @@
 //! where every coordinate c of the scene is between half of the centre and twice it, in which case c − centre is exact
 //! (Sterbenz, *Floating-Point Computation*, 1974). Scaling a scene by a power of two therefore changes no bit of its image.
 
-use etalon_geometry::{Aabb, Disk, Parallelogram, Placement, Primitive, ShapeError, Sphere, Triangle};
+use etalon_geometry::{Aabb, Cylinder, Disk, Parallelogram, Placement, Primitive, ShapeError, Sphere, Triangle};
 use etalon_optics::Vec3;
 use etalon_scene::{Camera, Projection, ThinLens, Transform};
 
@@ -85,6 +85,10 @@ impl SceneFrame {
             Primitive::Triangle(q) => {
                 let [a, b, c] = q.vertices().map(|p| self.point(p));
                 Triangle::new(a, b, c)?.into()
+            }
+            Primitive::Cylinder(q) => {
+                let [start, end] = q.ends().map(|p| self.point(p));
+                Cylinder::new(start, end, q.radius() * s, q.is_capped())?.into()
             }
             Primitive::Instance(q) => {
                 let placement = Placement::new(
@@ -177,6 +181,10 @@ impl Affine {
                 let [a, b, c] = q.vertices().map(point);
                 let (b, c) = self.oriented(b, c);
                 Triangle::new(a, b, c)?.into()
+            }
+            Primitive::Cylinder(q) => {
+                let [start, end] = q.ends().map(point);
+                Cylinder::new(start, end, q.radius() * self.uniform_scale(), q.is_capped())?.into()
             }
             Primitive::Instance(q) => return Ok(Primitive::Instance(q.clone())),
         })

@@ -2,12 +2,12 @@
 
 use crate::coordinates::{Coordinates, MeshCoordinates};
 use crate::frame::{Affine, SceneFrame};
-use crate::light::{DiskLight, Emitter, Light, ParallelogramLight, SphereLight, TriangleLight};
+use crate::light::{CylinderLight, DiskLight, Emitter, Light, ParallelogramLight, SphereLight, TriangleLight};
 use crate::prepare::PrepareError;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{
-    Aabb, Disk, Geometry, Instance, Parallelogram, Placement, Primitive, PrimitiveId, ShapeError, Sphere, SurfaceId,
-    Triangle,
+    Aabb, Cylinder, Disk, Geometry, Instance, Parallelogram, Placement, Primitive, PrimitiveId, ShapeError, Sphere,
+    SurfaceId, Triangle,
 };
 use etalon_optics::Vec3;
 use etalon_scene as scene;
@@ -150,6 +150,10 @@ impl Collected {
                 let normal = to_world.vector(*normal).normalized();
                 self.add(index, Disk::new(to_world.point(*center), normal, radius_m * to_world.uniform_scale())?);
             }
+            Shape::Cylinder { start, end, radius_m, capped } => {
+                let (start, end) = (to_world.point(*start), to_world.point(*end));
+                self.add(index, Cylinder::new(start, end, radius_m * to_world.uniform_scale(), *capped)?);
+            }
             Shape::Mesh(mesh) => {
                 let vertices: Vec<Vec3<f64>> = mesh.vertices.iter().map(|v| to_world.point(*v)).collect();
                 let first = self.primitives.len() as u32;
@@ -244,6 +248,7 @@ impl Lamps<'_> {
                 Primitive::Parallelogram(shape) => Light::Parallelogram(ParallelogramLight::new(shape, emitter)),
                 Primitive::Disk(shape) => Light::Disk(DiskLight::new(shape, emitter)),
                 Primitive::Triangle(shape) => Light::Triangle(TriangleLight::new(shape, emitter)),
+                Primitive::Cylinder(shape) => Light::Cylinder(CylinderLight::new(shape, emitter)?),
                 Primitive::Instance(_) => continue,
             });
         }

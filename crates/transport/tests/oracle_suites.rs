@@ -1,6 +1,6 @@
 //! Every material and every area light, held to the oracle's whole suite for its kind.
 
-use etalon_geometry::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, Triangle};
+use etalon_geometry::{Cylinder, Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, Triangle};
 use etalon_optics::{ComplexIndex, Frame, Lanes, Real, RefractiveIndex, Spectrum, Vec3, fresnel};
 use etalon_oracle::laws::{self, FresnelPowers, SINGLE};
 use etalon_oracle::quadrature::Cone;
@@ -9,7 +9,9 @@ use etalon_oracle::truths::{lambert_polygon, sphere_irradiance};
 use etalon_oracle::{Verdict, emits_suite, scatters_suite, suite};
 use etalon_scene::MaterialKind;
 use etalon_transport::bsdf::{Bsdf, Shading};
-use etalon_transport::light::{DiskLight, Emitter, Light, ParallelogramLight, SphereLight, Target, TriangleLight};
+use etalon_transport::light::{
+    CylinderLight, DiskLight, Emitter, Light, ParallelogramLight, SphereLight, Target, TriangleLight,
+};
 use etalon_transport::mis;
 use etalon_transport::spectral::PathSpectrum;
 use std::marker::PhantomData;
@@ -313,7 +315,7 @@ enum Form {
     Sphere,
     Polygon(Vec<Vec3<f64>>),
     /// None is held to one here.
-    Disk,
+    Other,
 }
 
 impl Lamp {
@@ -376,7 +378,7 @@ impl Emits for Lamp {
                     .map(|i| laws::triangle_solid_angle([&corners[0], &corners[i - 1], &corners[i]].map(toward)))
                     .sum(),
             ),
-            Form::Disk => None,
+            Form::Other => None,
         }
     }
 
@@ -392,7 +394,7 @@ impl Emits for Lamp {
                 let seen: Vec<_> = corners.iter().map(|c| (*c - Vec3::from_array(from_m)).to_array()).collect();
                 Some(2.0 * lambert_polygon(&seen, normal))
             }
-            Form::Disk => None,
+            Form::Other => None,
         }
     }
 }
@@ -406,7 +408,7 @@ fn sphere_lamp() -> Lamp {
 fn disk_lamp() -> Lamp {
     let (center, radius) = (Vec3::new(0.3, 0.0, 1.0), 0.7);
     let disk = Disk::new(center, Vec3::new(0.6, 0.0, -0.8), radius).unwrap();
-    Lamp::new(disk, (center, radius), Form::Disk, |s, e| Light::Disk(DiskLight::new(s, e)))
+    Lamp::new(disk, (center, radius), Form::Other, |s, e| Light::Disk(DiskLight::new(s, e)))
 }
 
 fn parallelogram_lamp() -> Lamp {
@@ -426,9 +428,21 @@ fn triangle_lamp() -> Lamp {
     Lamp::new(Triangle::new(a, b, c).unwrap(), (center, radius), Form::Polygon(vec![a, b, c]), light)
 }
 
+fn cylinder_lamp(capped: bool) -> Lamp {
+    let (start, end, radius) = (Vec3::new(-0.3, -0.2, 1.4), Vec3::new(0.5, 0.2, 1.9), 0.3);
+    let cylinder = Cylinder::new(start, end, radius, capped).unwrap();
+    let reach = (0.25 * (end - start).length_squared() + radius * radius).sqrt();
+    Lamp::new(cylinder, ((start + end) * 0.5, reach), Form::Other, |s, e| {
+        Light::Cylinder(CylinderLight::new(s, e).unwrap())
+    })
+}
+
 // The quadrature meets the rim of a flat light with the resolution of its grid: 2 % of the integral is what it can tell
 // there. A sphere fills its cone.
 emits_suite!(sphere_light, sphere_lamp(), from: [[0.0; 3], [1.0, 2.0, 0.0], [0.1, 0.0, 2.2]], pdf_tolerance: 1e-6);
 emits_suite!(disk_light, disk_lamp(), from: [[0.0; 3], [1.0, 2.0, 0.0], [0.0, 0.0, 2.0]], pdf_tolerance: 0.02);
 emits_suite!(parallelogram_light, parallelogram_lamp(), from: [[0.0; 3], [1.0, 2.0, 0.0]], pdf_tolerance: 0.02);
 emits_suite!(triangle_light, triangle_lamp(), from: [[0.0; 3], [1.0, 2.0, 0.0]], pdf_tolerance: 0.02);
+// From outside, from within, and through an open end.
+emits_suite!(cylinder_light, cylinder_lamp(true), from: [[0.0; 3], [1.0, 2.0, 0.0], [0.1, 0.0, 1.65]], pdf_tolerance: 0.02);
+emits_suite!(tube_light, cylinder_lamp(false), from: [[0.0; 3], [0.1, 0.0, 1.65], [2.1, 1.0, 2.9]], pdf_tolerance: 0.02);

@@ -1,11 +1,13 @@
 //! The shapes, one a file: data in `f64` world space, and intersection tests without cancellation.
 
+mod cylinder;
 mod disk;
 mod parallelogram;
 mod planar;
 mod sphere;
 mod triangle;
 
+pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use parallelogram::Parallelogram;
 pub use sphere::Sphere;
@@ -62,6 +64,12 @@ fn check_radius(radius: f64) -> Result<(), ShapeError> {
     }
 }
 
+/// The unit vector from an axis or a centre to a point of a round surface. One below the resolution of its place may have
+/// its points rounded to its centre or next to it: any direction is as good there.
+fn outward(v: Vec3<f64>) -> Vec3<f64> {
+    if v.length_squared() > f64::MIN_POSITIVE { v.normalized() } else { Vec3::new(1.0, 0.0, 0.0) }
+}
+
 /// A shape that rays meet.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Primitive {
@@ -73,6 +81,8 @@ pub enum Primitive {
     Disk(Disk),
     /// A triangle.
     Triangle(Triangle),
+    /// A cylinder.
+    Cylinder(Cylinder),
     /// A geometry placed by an affine map.
     Instance(Box<Instance>),
 }
@@ -86,7 +96,7 @@ macro_rules! primitive_from {
         })*
     };
 }
-primitive_from!(Sphere, Parallelogram, Disk, Triangle);
+primitive_from!(Sphere, Parallelogram, Disk, Triangle, Cylinder);
 
 impl From<Instance> for Primitive {
     fn from(instance: Instance) -> Self {
@@ -101,6 +111,7 @@ macro_rules! each {
             Primitive::Parallelogram($shape) => $result,
             Primitive::Disk($shape) => $result,
             Primitive::Triangle($shape) => $result,
+            Primitive::Cylinder($shape) => $result,
             Primitive::Instance($shape) => $result,
         }
     };
@@ -114,7 +125,7 @@ impl Primitive {
 
     /// Whether its normal depends on the place.
     pub(crate) fn is_curved(&self) -> bool {
-        matches!(self, Self::Sphere(_))
+        matches!(self, Self::Sphere(_) | Self::Cylinder(_))
     }
 
     /// The closest hit with 0 < t < `t_max`. `leaves`: the ray leaves this very primitive.
@@ -125,6 +136,7 @@ impl Primitive {
             Self::Parallelogram(s) => (!leaves).then(|| s.intersect(query, t_max)).flatten(),
             Self::Disk(s) => (!leaves).then(|| s.intersect(query, t_max)).flatten(),
             Self::Sphere(s) => s.intersect(query, t_max, leaves),
+            Self::Cylinder(s) => s.intersect(query, t_max, leaves),
             Self::Instance(s) => s.closest(query, t_max).map(|(hit, _)| hit),
         }
     }
@@ -137,6 +149,7 @@ impl Primitive {
             Self::Parallelogram(s) => s.surface(p),
             Self::Disk(s) => s.surface(p),
             Self::Triangle(s) => s.surface(p),
+            Self::Cylinder(s) => s.surface(p),
             Self::Instance(_) => unreachable!("a hit names the shape within an instance"),
         }
     }

@@ -1,6 +1,6 @@
 //! Spheres.
 
-use super::{ShapeError, check_points, check_radius};
+use super::{ShapeError, check_points, check_radius, outward};
 use crate::Aabb;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
@@ -91,7 +91,7 @@ impl Sphere {
 
     #[inline]
     pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {
-        let normal = (p - self.centre).normalized();
+        let normal = outward(p - self.centre);
         let position = self.centre + normal * self.radius;
         // The normal's length is 1 to 3u, its product with r and the sum add one u each.
         let error = (position.abs() + Vec3::splat(self.radius) * 6.0) * f64::UNIT_ROUNDOFF;

@@ -2,7 +2,7 @@
 
 use super::tree;
 use crate::test_support::*;
-use crate::{Disk, Triangle};
+use crate::{Cylinder, Disk, Triangle};
 use crate::{Geometry, Instance, Parallelogram, Placement, Primitive, PrimitiveId, Ray, ShapeError, Sphere, SurfaceId};
 use etalon_optics::{Real, Vec3};
 use std::sync::Arc;
@@ -48,6 +48,10 @@ fn baked(primitive: &Primitive, rows: &Rows, by: V) -> Primitive {
     match primitive {
         Primitive::Sphere(q) => Sphere::new(point(q.centre()), q.radius() * scale).unwrap().into(),
         Primitive::Disk(q) => Disk::new(point(q.centre()), vector(q.normal()), q.radius() * scale).unwrap().into(),
+        Primitive::Cylinder(q) => {
+            let [a, b] = q.ends().map(point);
+            Cylinder::new(a, b, q.radius() * scale, q.is_capped()).unwrap().into()
+        }
         Primitive::Parallelogram(q) => {
             let [a, b] = q.edges().map(vector);
             let (a, b) = if mirrors { (b, a) } else { (a, b) };

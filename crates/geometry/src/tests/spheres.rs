@@ -113,3 +113,12 @@ fn a_ray_that_enters_a_sphere_leaves_it_at_the_far_side() {
         assert!(((q.position - centre).length() - radius).abs() <= q.position_error + 4.0 * f64::EPSILON * radius);
     }
 }
+
+#[test]
+fn a_sphere_below_the_resolution_of_its_place_still_has_a_normal() {
+    let sphere = Sphere::new(v(0.5, 0.5, 0.5), 1e-23).unwrap();
+    let geometry = Geometry::build(vec![sphere.into()]).unwrap();
+    let ray = Ray::free(v(0.5, 0.5, 0.5), v(0.5, 0.0, -0.0625));
+    let p = geometry.surface(&ray, &geometry.closest_hit(&ray).expect("from within"));
+    assert!((p.normal.length() - 1.0).abs() < 1e-15 && p.position.is_finite() && p.position_error < 1e-15, "{p:?}");
+}

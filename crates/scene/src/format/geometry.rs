@@ -12,7 +12,7 @@ use crate::json::{
     Spanned,
 };
 use crate::model::{Mesh, Shape, Transform};
-use crate::vector::{Matrix, apply, cross, dot, length, product, unit};
+use crate::vector::{Matrix, apply, cross, dot, length, product, sub, unit};
 
 crate::record! {
     /// A sphere; its normal points outward.
@@ -106,12 +106,27 @@ crate::record! {
     }
 }
 
+crate::record! {
+    /// A circular cylinder; its normal points outward.
+    pub(crate) struct CylinderShape + comment {
+        /// Middle of one end, m.
+        start_m: Required<[f64; 3]>,
+        /// Middle of the other end, m.
+        end_m: Required<[f64; 3]>,
+        /// Radius, m.
+        radius_m: Required<Positive>,
+        /// Whether disks close its ends.
+        capped: Required<bool> = "true",
+    }
+}
+
 crate::variants! {
     /// A shape in its own coordinates.
     pub(crate) enum ShapeForm by "type" {
         "sphere" => Sphere(SphereShape),
         "parallelogram" => Parallelogram(ParallelogramShape),
         "disk" => Disk(DiskShape),
+        "cylinder" => Cylinder(CylinderShape),
         "mesh" => Mesh(MeshShape),
         "box" => Box(BoxShape),
     }
@@ -138,6 +153,20 @@ pub(crate) fn shape(form: &ShapeForm, object: &str, files: &mut Files, reader: &
         }
         ShapeForm::Disk(disk) => {
             Some(Shape::Disk { center: disk.center_m?, normal: disk.normal?.0, radius_m: disk.radius_m?.0 })
+        }
+        ShapeForm::Cylinder(c) => {
+            let (start, end) = (c.start_m?, c.end_m?);
+            if start == end {
+                let message = "start_m and end_m are the same point";
+                reader.error_hint(
+                    Code::DegenerateShape,
+                    c.at.head(),
+                    message,
+                    "a cylinder has a length; a disk has none",
+                );
+                return None;
+            }
+            Some(Shape::Cylinder { start, end, radius_m: c.radius_m?.0, capped: c.capped? })
         }
         ShapeForm::Mesh(mesh) => mesh::mesh(mesh, object, files, reader).map(Shape::Mesh),
         ShapeForm::Box(block) => {
@@ -321,6 +350,7 @@ pub(crate) fn check_similarity(shape: &ShapeForm, transform: &Transform, at: Spa
     let what = match shape {
         ShapeForm::Sphere(_) => "sphere",
         ShapeForm::Disk(_) => "disk",
+        ShapeForm::Cylinder(_) => "cylinder",
         ShapeForm::Parallelogram(_) | ShapeForm::Mesh(_) | ShapeForm::Box(_) => return,
     };
     if !is_similarity(transform) {
@@ -366,6 +396,10 @@ pub(crate) fn check_extent(shape: &Shape, transform: &Transform, at: Span, reade
     let held = match shape {
         Shape::Sphere { center, radius_m } | Shape::Disk { center, radius_m, .. } => {
             finite(point(*center)) && kept(linear([*radius_m, 0.0, 0.0]))
+        }
+        Shape::Cylinder { start, end, radius_m, .. } => {
+            let (start, end) = (point(*start), point(*end));
+            finite(start) && finite(end) && kept(sub(end, start)) && kept(linear([*radius_m, 0.0, 0.0]))
         }
         Shape::Parallelogram { origin, u, v } => finite(point(*origin)) && kept(linear(*u)) && kept(linear(*v)),
         Shape::Mesh(mesh) => mesh.vertices.iter().all(|v| finite(point(*v))),

@@ -259,6 +259,7 @@ fn round(shape: &Shape) -> Option<&'static str> {
     match shape {
         Shape::Sphere { .. } => Some("sphere"),
         Shape::Disk { .. } => Some("disk"),
+        Shape::Cylinder { .. } => Some("cylinder"),
         Shape::Parallelogram { .. } | Shape::Mesh(_) => None,
     }
 }

@@ -104,6 +104,14 @@ fn degenerate_shapes_and_transforms() {
         Code::DegenerateShape,
         "$.objects[0].shape",
         objects(&shaped(
+            "«{»\"type\": \"cylinder\", \"start_m\": [1, 2, 3], \"end_m\": [1, 2, 3], \"radius_m\": 1}",
+            "[]",
+        )),
+    );
+    error(
+        Code::DegenerateShape,
+        "$.objects[0].shape",
+        objects(&shaped(
             "«{»\"type\": \"parallelogram\", \"origin_m\": [0,0,0], \"u_m\": [1, 2, 3], \"v_m\": [-2, -4, -6]}",
             "[]",
         )),

@@ -4,6 +4,7 @@
 //! it, and it costs no more than scalar `f32`. A density is always a function of the reference point and the direction
 //! alone, the same function for a sampled direction and for one that the BSDF found: the two can not disagree.
 
+mod cylinder;
 mod directional;
 mod disk;
 mod parallelogram;
@@ -14,6 +15,7 @@ mod spot;
 mod table;
 mod triangle;
 
+pub use cylinder::CylinderLight;
 pub use directional::DirectionalLight;
 pub use disk::DiskLight;
 pub use parallelogram::ParallelogramLight;
@@ -64,6 +66,8 @@ pub enum Light {
     Disk(DiskLight),
     /// An emitting triangle.
     Triangle(TriangleLight),
+    /// An emitting cylinder.
+    Cylinder(CylinderLight),
     /// A point.
     Point(PointLight),
     /// A point that shines into a cone.
@@ -80,6 +84,7 @@ impl Light {
             Self::Parallelogram(light) => light.sample(from, u),
             Self::Disk(light) => light.sample(from, u),
             Self::Triangle(light) => light.sample(from, u),
+            Self::Cylinder(light) => light.sample(from, u),
             Self::Point(light) => light.sample(from),
             Self::Spot(light) => light.sample(from),
             Self::Directional(light) => Some(light.sample()),
@@ -93,6 +98,7 @@ impl Light {
             Self::Parallelogram(light) => light.density(from, wi),
             Self::Disk(light) => light.density(from, wi),
             Self::Triangle(light) => light.density(from, wi),
+            Self::Cylinder(light) => light.density(from, wi),
             Self::Point(_) | Self::Spot(_) | Self::Directional(_) => 0.0,
         }
     }
@@ -104,6 +110,7 @@ impl Light {
             Self::Parallelogram(light) => &light.emitter.radiance,
             Self::Disk(light) => &light.emitter.radiance,
             Self::Triangle(light) => &light.emitter.radiance,
+            Self::Cylinder(light) => &light.emitter.radiance,
             Self::Point(light) => &light.intensity,
             Self::Spot(light) => &light.point.intensity,
             Self::Directional(light) => &light.irradiance,
@@ -117,6 +124,7 @@ impl Light {
             Self::Parallelogram(light) => Some(&light.emitter),
             Self::Disk(light) => Some(&light.emitter),
             Self::Triangle(light) => Some(&light.emitter),
+            Self::Cylinder(light) => Some(&light.emitter),
             Self::Point(_) | Self::Spot(_) | Self::Directional(_) => None,
         }
     }
@@ -129,6 +137,7 @@ impl Light {
             Self::Parallelogram(light) => light.emitter.side_count() * PI * light.area(),
             Self::Disk(light) => light.emitter.side_count() * PI * light.area(),
             Self::Triangle(light) => light.emitter.side_count() * PI * light.area(),
+            Self::Cylinder(light) => light.emitter.side_count() * PI * light.area(),
             Self::Point(light) => 4.0 * PI * light.per_m * light.per_m,
             Self::Spot(light) => light.power_factor(),
             Self::Directional(_) => PI * scene_radius * scene_radius,

@@ -1,0 +1,99 @@
+//! An emitting cylinder, sampled uniformly by area: every direction counts for the nearest point that it meets.
+
+use super::{Emitter, LightSample, Target};
+use crate::mis::Density;
+use crate::warp::concentric_disk;
+use etalon_geometry::{Cylinder, Geometry, Ray, SurfacePoint};
+use etalon_optics::{Frame, Vec3};
+use std::sync::Arc;
+
+/// An emitting cylinder.
+#[derive(Clone, Debug)]
+pub struct CylinderLight {
+    shape: Cylinder,
+    /// The shape alone: which of its points a direction meets first.
+    alone: Arc<Geometry>,
+    /// What it emits.
+    pub emitter: Emitter,
+}
+
+/// A sampled point is the one that its direction meets first if they differ by less than this share of their distance; their
+/// roundings are below 2⁻⁴⁰ of it, and of the others of the same direction a share of 2⁻²⁰ at most is taken for it.
+const SAME: f64 = 1.0 / (1 << 20) as f64;
+
+impl CylinderLight {
+    /// A light of this shape.
+    ///
+    /// # Errors
+    /// None: one shape can always be built.
+    pub fn new(shape: Cylinder, emitter: Emitter) -> Result<Self, etalon_geometry::GeometryError> {
+        let alone = Arc::new(Geometry::build(vec![shape.clone().into()])?);
+        Ok(Self { shape, alone, emitter })
+    }
+
+    /// Area of its outside, m².
+    pub fn area(&self) -> f64 {
+        self.shape.area()
+    }
+
+    /// The point that a direction meets first, and its distance.
+    fn first(&self, from: Vec3<f64>, wi: Vec3<f64>) -> Option<(SurfacePoint<f64>, f64)> {
+        let ray = Ray::free(from, wi);
+        let hit = self.alone.closest_hit(&ray)?;
+        Some((self.alone.surface(&ray, &hit), hit.t))
+    }
+
+    /// d²/(|cos|·A) at the point that `wi` meets first; zero where it meets none, or a side that is dark.
+    pub(super) fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64 {
+        let Some((point, distance)) = self.first(from, wi) else { return 0.0 };
+        if !self.emitter.emits_along(point.normal, -wi) {
+            return 0.0;
+        }
+        distance * distance / (wi.dot(point.normal).abs() * self.area())
+    }
+
+    /// The square of the distance of a uniform point of the unit disk from its middle is uniform too, and independent of its
+    /// direction: the one chooses the height or the place on a cap, the other the place around the axis.
+    pub(super) fn sample(&self, from: Vec3<f64>, u: [f64; 2]) -> Option<LightSample> {
+        let [x, y] = concentric_disk(u);
+        let squared = x * x + y * y;
+        let around = if squared > 0.0 {
+            let r = squared.sqrt();
+            [x / r, y / r]
+        } else {
+            [1.0, 0.0]
+        };
+        let (radius, half_length) = (self.shape.radius(), self.shape.half_length());
+        let cap_share = if self.shape.is_capped() { 0.5 * radius / (2.0 * half_length + radius) } else { 0.0 };
+        let wall_share = 1.0 - 2.0 * cap_share;
+        let (reach, height) = if squared < wall_share {
+            (radius, half_length * (2.0 * squared / wall_share - 1.0))
+        } else {
+            // The last step may round to just above 1.
+            let rest = (squared - wall_share) / cap_share;
+            let (side, rest) = if rest < 1.0 { (-1.0, rest) } else { (1.0, (rest - 1.0).min(1.0)) };
+            (radius * rest.sqrt(), half_length * side)
+        };
+        let frame = Frame::from_normal(self.shape.axis());
+        let point = self.shape.centre() + (frame.s * around[0] + frame.t * around[1]) * reach + frame.n * height;
+        let toward = point - from;
+        let distance = toward.length();
+        if distance == 0.0 {
+            return None;
+        }
+        let wi = toward / distance;
+        // What lies behind another part of the cylinder is hidden by it.
+        let (_, first) = self.first(from, wi)?;
+        if (first - distance).abs() > SAME * distance {
+            return None;
+        }
+        let density = self.density(from, wi);
+        (density > 0.0 && density.is_finite()).then_some(LightSample {
+            wi,
+            density: Density::SolidAngle(density),
+            target: Target::Point(point),
+            surface: self.emitter.surface,
+            scale: 1.0,
+        })
+    }
+}
