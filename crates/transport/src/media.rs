@@ -284,6 +284,7 @@ fn place<R>(surfaces: &Surfaces, point: &SurfacePoint<R>) -> Place {
 pub(crate) fn open_edges(shape: &Shape) -> Option<String> {
     match shape {
         Shape::Sphere { .. } => None,
+        Shape::Cylinder { capped, .. } => (!capped).then(|| "a tube is open at its ends".to_owned()),
         Shape::Parallelogram { .. } => Some("a parallelogram has an edge".to_owned()),
         Shape::Disk { .. } => Some("a disk has an edge".to_owned()),
         Shape::Mesh(mesh) => {
