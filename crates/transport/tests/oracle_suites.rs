@@ -4,6 +4,7 @@ use etalon_geometry::{Cylinder, Disk, Geometry, Parallelogram, Primitive, Primit
 use etalon_optics::{ComplexIndex, Frame, Lanes, Real, RefractiveIndex, Spectrum, Vec3, fresnel};
 use etalon_oracle::laws::{self, FresnelPowers, SINGLE};
 use etalon_oracle::quadrature::Cone;
+use etalon_oracle::statistics::Welford;
 use etalon_oracle::subjects::{DeltaLobe, Density, Emits, Emitted, Scattered, Scatters};
 use etalon_oracle::truths::{lambert_polygon, sphere_irradiance};
 use etalon_oracle::{Verdict, emits_suite, scatters_suite, suite};
@@ -443,6 +444,41 @@ emits_suite!(sphere_light, sphere_lamp(), from: [[0.0; 3], [1.0, 2.0, 0.0], [0.1
 emits_suite!(disk_light, disk_lamp(), from: [[0.0; 3], [1.0, 2.0, 0.0], [0.0, 0.0, 2.0]], pdf_tolerance: 0.02);
 emits_suite!(parallelogram_light, parallelogram_lamp(), from: [[0.0; 3], [1.0, 2.0, 0.0]], pdf_tolerance: 0.02);
 emits_suite!(triangle_light, triangle_lamp(), from: [[0.0; 3], [1.0, 2.0, 0.0]], pdf_tolerance: 0.02);
-// From outside, from within, and through an open end.
-emits_suite!(cylinder_light, cylinder_lamp(true), from: [[0.0; 3], [1.0, 2.0, 0.0], [0.1, 0.0, 1.65]], pdf_tolerance: 0.02);
-emits_suite!(tube_light, cylinder_lamp(false), from: [[0.0; 3], [0.1, 0.0, 1.65], [2.1, 1.0, 2.9]], pdf_tolerance: 0.02);
+/// From outside, from within, and through an open end of the tube.
+const BESIDE_CYLINDERS: [[f64; 3]; 4] = [[0.0; 3], [1.0, 2.0, 0.0], [0.1, 0.0, 1.65], [1.9, 1.2, 2.7]];
+
+/// The suite's χ² cannot integrate a density that grows without bound toward a silhouette; the laws that can be checked are,
+/// and the samples are held to the density by moments: the mean of g/p over samples is ∫g over the directions that meet the
+/// lamp, here for the solid angle and the mean direction, found anew by uniform directions.
+#[test]
+fn cylinders_are_sampled_as_their_density_says() {
+    for (capped, seed) in [(true, 1), (false, 2)] {
+        let lamp = cylinder_lamp(capped);
+        let mut random = etalon_oracle::Uniform::new(seed);
+        for from in BESIDE_CYLINDERS {
+            laws::light_sample_is_consistent(&lamp, from, seed).assert();
+            laws::light_pdf_integrates_to_one(&lamp, from, 0.02, seed).assert();
+            let mut sampled = [Welford::default(); 4];
+            let mut uniform = [Welford::default(); 4];
+            for _ in 0..200_000 {
+                let sample = lamp.sample(from, [random.number(), random.number()]);
+                let g = |wi: [f64; 3]| [1.0, wi[0], wi[1], wi[2]];
+                let of_sample = sample.map_or([0.0; 4], |s| g(s.wi).map(|g| g / s.pdf));
+                let wi = random.direction();
+                let met = if lamp.is_met(from, wi) { 4.0 * std::f64::consts::PI } else { 0.0 };
+                for k in 0..4 {
+                    sampled[k].push(of_sample[k]);
+                    uniform[k].push(g(wi)[k] * met);
+                }
+            }
+            for (a, b) in sampled.iter().zip(&uniform) {
+                let error = a.standard_error().hypot(b.standard_error());
+                let z = (a.estimate().mean - b.estimate().mean) / error;
+                // 32 comparisons at 5 sigma: one wrong alarm in 50,000. A fifth of the solid angle would be seen.
+                assert!(z.abs() < 5.0, "{from:?}: {a:?} {b:?}, z = {z}");
+            }
+            let of_solid_angle = uniform[0].standard_error() / uniform[0].estimate().mean;
+            assert!(6.0 * of_solid_angle < 0.2, "{of_solid_angle}");
+        }
+    }
+}

@@ -1,4 +1,5 @@
-//! An emitting cylinder, sampled uniformly by area: every direction counts for the nearest point that it meets.
+//! An emitting cylinder: a point uniform on its area gives the direction, and the direction the point that is seen. No sample
+//! is lost on points that hide behind others, and the density of a direction is the sum over all the points that give it.
 
 use super::{Emitter, LightSample, Target};
 use crate::mis::Density;
@@ -17,10 +18,6 @@ pub struct CylinderLight {
     pub emitter: Emitter,
 }
 
-/// A sampled point is the one that its direction meets first if they differ by less than this share of their distance; their
-/// roundings are below 2⁻⁴⁰ of it, and of the others of the same direction a share of 2⁻²⁰ at most is taken for it.
-const SAME: f64 = 1.0 / (1 << 20) as f64;
-
 impl CylinderLight {
     /// A light of this shape.
     ///
@@ -36,20 +33,29 @@ impl CylinderLight {
         self.shape.area()
     }
 
-    /// The point that a direction meets first, and its distance.
-    fn first(&self, from: Vec3<f64>, wi: Vec3<f64>) -> Option<(SurfacePoint<f64>, f64)> {
+    /// The point that a direction meets first, and the density of the direction: the sum of d²/(|cos|·A) over the points
+    /// that it meets, which for a cylinder are two at most.
+    fn seen(&self, from: Vec3<f64>, wi: Vec3<f64>) -> Option<(SurfacePoint<f64>, f64)> {
         let ray = Ray::free(from, wi);
-        let hit = self.alone.closest_hit(&ray)?;
-        Some((self.alone.surface(&ray, &hit), hit.t))
+        let share = |point: &SurfacePoint<f64>| {
+            let toward = point.position - from;
+            toward.length_squared() / (wi.dot(point.normal).abs() * self.area())
+        };
+        let first = self.alone.surface(&ray, &self.alone.closest_hit(&ray)?);
+        let mut density = share(&first);
+        let on = first.spawn(wi);
+        if let Some(hit) = self.alone.closest_hit(&on) {
+            density += share(&self.alone.surface(&on, &hit));
+        }
+        Some((first, density))
     }
 
-    /// d²/(|cos|·A) at the point that `wi` meets first; zero where it meets none, or a side that is dark.
+    /// Zero where `wi` meets nothing, or first a side that is dark.
     pub(super) fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64 {
-        let Some((point, distance)) = self.first(from, wi) else { return 0.0 };
-        if !self.emitter.emits_along(point.normal, -wi) {
-            return 0.0;
+        match self.seen(from, wi) {
+            Some((first, density)) if self.emitter.emits_along(first.normal, -wi) => density,
+            _ => 0.0,
         }
-        distance * distance / (wi.dot(point.normal).abs() * self.area())
     }
 
     /// The square of the distance of a uniform point of the unit disk from its middle is uniform too, and independent of its
@@ -82,16 +88,15 @@ impl CylinderLight {
             return None;
         }
         let wi = toward / distance;
-        // What lies behind another part of the cylinder is hidden by it.
-        let (_, first) = self.first(from, wi)?;
-        if (first - distance).abs() > SAME * distance {
+        let (first, density) = self.seen(from, wi)?;
+        if !self.emitter.emits_along(first.normal, -wi) {
             return None;
         }
-        let density = self.density(from, wi);
+        // Along the surface up to rounding, the density is infinite and the light's share zero.
         (density > 0.0 && density.is_finite()).then_some(LightSample {
             wi,
             density: Density::SolidAngle(density),
-            target: Target::Point(point),
+            target: Target::Point(first.position),
             surface: self.emitter.surface,
             scale: 1.0,
         })
