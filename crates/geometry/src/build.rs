@@ -6,13 +6,14 @@
 //! Those trees also overflow the stack on thousands of identical primitives, which this builder halves by count.
 
 use crate::frame::Box32;
+use std::array::from_fn;
 
 /// Above this many primitives a node is split between bins, below at any of their sorted centres.
 const SWEEP_LIMIT: usize = 64;
 /// Bins an axis.
 const BINS: usize = 32;
 /// Above this many primitives the two halves of a node are built in parallel.
-const PARALLEL_LIMIT: usize = 4096;
+const PARALLEL_LIMIT: usize = 16_384;
 /// Below this depth nodes are halved by count, whatever their areas.
 const DEPTH_LIMIT: u32 = 48;
 /// Levels of the deepest tree: 2²⁹ primitives are halved 29 times.
@@ -31,7 +32,7 @@ pub(crate) struct Node {
 /// A binary tree of boxes.
 #[derive(Debug)]
 pub(crate) struct BinaryTree {
-    /// The root is the first; subtrees are contiguous, with unused slots.
+    /// The root is the first; a subtree is contiguous.
     pub(crate) nodes: Vec<Node>,
     /// Primitive indices, leaf by leaf.
     pub(crate) order: Vec<u32>,
@@ -54,19 +55,115 @@ impl Costs {
     }
 }
 
-/// Builds a tree over at least one box. The result does not depend on the number of threads.
-pub(crate) fn build(boxes: &[Box32], costs: Costs) -> BinaryTree {
-    assert!(!boxes.is_empty(), "a tree has at least one primitive");
-    let empty = Node { bounds: Box32::EMPTY, first: 0, count: 0 };
-    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-    let mut nodes = vec![empty; 2 * boxes.len() - 1];
-    let builder = Builder { boxes, costs };
-    builder.subtree(&mut nodes, &mut order, 0, 0, 0);
-    BinaryTree { nodes, order }
+/// A box as one vector, so that a union is one maximum: its lower corner negated, a lane for a primitive's index, its upper
+/// corner, an unused lane.
+#[derive(Clone, Copy, Debug)]
+struct Span([f32; 8]);
+
+impl Span {
+    const EMPTY: Self = Self([f32::NEG_INFINITY; 8]);
+
+    #[inline(always)]
+    fn union(self, o: Self) -> Self {
+        Self(from_fn(|i| if self.0[i] > o.0[i] { self.0[i] } else { o.0[i] }))
+    }
+
+    /// Twice the centre.
+    #[inline(always)]
+    fn centre2(self) -> [f32; 4] {
+        from_fn(|k| self.0[k + 4] - self.0[k])
+    }
+
+    /// The box of twice the centre alone.
+    #[inline(always)]
+    fn centre(self) -> Self {
+        let c = self.centre2();
+        Self(from_fn(|i| if i < 4 { -c[i] } else { c[i - 4] }))
+    }
+
+    #[inline(always)]
+    fn lower(self, axis: usize) -> f32 {
+        -self.0[axis]
+    }
+
+    #[inline(always)]
+    fn upper(self, axis: usize) -> f32 {
+        self.0[axis + 4]
+    }
+
+    /// Half the surface area; zero for the empty box.
+    #[inline(always)]
+    fn half_area(self) -> f32 {
+        let [x, y, z] = from_fn(|k| self.0[k + 4] + self.0[k]);
+        if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
+    }
+
+    fn to_box(self) -> Box32 {
+        Box32 { min: from_fn(|k| self.lower(k)), max: from_fn(|k| self.upper(k)) }
+    }
 }
 
-struct Builder<'a> {
-    boxes: &'a [Box32],
+/// A primitive: its box, and its index in the bits of the lane for it. Items are moved as the tree is built, so that what is
+/// read together lies together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Item(Span);
+
+impl Item {
+    pub(crate) fn new(b: &Box32, id: u32) -> Self {
+        let [x, y, z] = b.min;
+        Self(Span([-x, -y, -z, f32::from_bits(id), b.max[0], b.max[1], b.max[2], 0.0]))
+    }
+
+    fn id(&self) -> u32 {
+        self.0.0[3].to_bits()
+    }
+
+    #[inline(always)]
+    fn centre2(&self, axis: usize) -> f32 {
+        self.0.centre2()[axis]
+    }
+
+    /// What two primitives are ordered by along an axis: their centres, then their indices. Total.
+    fn key(&self, axis: usize) -> (u32, u32) {
+        let bits = self.centre2(axis).to_bits();
+        (if bits >> 31 == 1 { !bits } else { bits | 1 << 31 }, self.id())
+    }
+}
+
+/// Some primitives' box, and that of their centres.
+#[derive(Clone, Copy)]
+struct Extent {
+    bounds: Span,
+    centres: Span,
+}
+
+impl Extent {
+    const EMPTY: Self = Self { bounds: Span::EMPTY, centres: Span::EMPTY };
+
+    #[inline(always)]
+    fn add(&mut self, item: &Item) {
+        self.bounds = self.bounds.union(item.0);
+        self.centres = self.centres.union(item.0.centre());
+    }
+
+    fn of(items: &[Item]) -> Self {
+        items.iter().fold(Self::EMPTY, |mut extent, item| {
+            extent.add(item);
+            extent
+        })
+    }
+}
+
+/// Builds a tree over at least one primitive. The result does not depend on the number of threads.
+pub(crate) fn build(mut items: Vec<Item>, costs: Costs) -> BinaryTree {
+    assert!(!items.is_empty(), "a tree has at least one primitive");
+    let mut nodes = Vec::new();
+    let extent = Extent::of(&items);
+    Builder { costs }.subtree(&mut items, 0, 0, extent, &mut nodes);
+    BinaryTree { nodes, order: items.iter().map(Item::id).collect() }
+}
+
+struct Builder {
     costs: Costs,
 }
 
@@ -78,7 +175,7 @@ struct Split {
 }
 
 enum Position {
-    /// Twice-centres below this go left.
+    /// Twice-centres below this bin go left.
     Bin(BinMap, usize),
     /// This many of the primitives sorted along the axis go left.
     Rank(usize),
@@ -97,125 +194,124 @@ impl BinMap {
         (upper > lower && per_unit.is_finite()).then_some(Self { lower, per_unit })
     }
 
+    #[inline(always)]
     fn bin(self, centre2: f32) -> usize {
-        (((centre2 - self.lower) * self.per_unit) as usize).min(BINS - 1)
+        (((centre2 - self.lower) * self.per_unit) as i32 as usize).min(BINS - 1)
     }
 }
 
-impl Builder<'_> {
-    fn centre2(&self, i: u32, axis: usize) -> f32 {
-        self.boxes[i as usize].centre2(axis)
-    }
-
-    /// Builds the subtree of `order` into `nodes`, whose first slot is node `node` of the tree; `first` is the place of
-    /// `order` in the tree's order.
-    fn subtree(&self, nodes: &mut [Node], order: &mut [u32], node: u32, first: u32, depth: u32) {
-        let count = order.len();
-        let mut bounds = Box32::EMPTY;
-        let mut centres = Box32::EMPTY;
-        for &i in &*order {
-            let b = &self.boxes[i as usize];
-            bounds = bounds.union(b);
-            let c = std::array::from_fn(|k| b.centre2(k));
-            centres = centres.union(&Box32 { min: c, max: c });
-        }
+impl Builder {
+    /// Appends the subtree of `items`; `first` is their place in the tree's order.
+    fn subtree(&self, items: &mut [Item], first: u32, depth: u32, extent: Extent, nodes: &mut Vec<Node>) {
+        let count = items.len();
+        let bounds = extent.bounds.to_box();
         let leaf = Node { bounds, first, count: count as u32 };
+        let index = nodes.len();
+        nodes.push(leaf);
         if count == 1 {
-            nodes[0] = leaf;
             return;
         }
         let split = if depth >= DEPTH_LIMIT {
             None
         } else if count <= SWEEP_LIMIT {
-            self.sweep(order, &centres)
+            self.sweep(items, &extent)
         } else {
-            self.bins(order, &centres)
+            self.bins(items, &extent)
         };
-        let fits = count as u32 <= self.costs.leaf_limit;
-        if fits {
-            let leaf_cost = self.costs.leaf(count) * bounds.half_area();
-            let pays = split.as_ref().is_some_and(|s| s.cost + self.costs.node * bounds.half_area() < leaf_cost);
-            if !pays {
-                nodes[0] = leaf;
+        if count as u32 <= self.costs.leaf_limit {
+            let area = extent.bounds.half_area();
+            let leaf_cost = self.costs.leaf(count) * area;
+            if !split.as_ref().is_some_and(|s| s.cost + self.costs.node * area < leaf_cost) {
                 return;
             }
         }
-        let left_count = self.partition(order, split, &centres);
-        let right = node + 2 * left_count as u32;
-        nodes[0] = Node { bounds, first: right, count: 0 };
-        let (left_nodes, right_nodes) = nodes[1..].split_at_mut(2 * left_count - 1);
-        let (left_order, right_order) = order.split_at_mut(left_count);
-        let build_left = || self.subtree(left_nodes, left_order, node + 1, first, depth + 1);
-        let mut build_right = || self.subtree(right_nodes, right_order, right, first + left_count as u32, depth + 1);
-        if count > PARALLEL_LIMIT {
-            rayon::join(build_left, build_right);
+        let (left_count, [left_extent, right_extent]) = self.partition(items, split, &extent);
+        let (left, right) = items.split_at_mut(left_count);
+        let right_first = first + left_count as u32;
+        let right_child = if count > PARALLEL_LIMIT {
+            let (mut left_nodes, mut right_nodes) = (Vec::new(), Vec::new());
+            rayon::join(
+                || self.subtree(left, first, depth + 1, left_extent, &mut left_nodes),
+                || self.subtree(right, right_first, depth + 1, right_extent, &mut right_nodes),
+            );
+            append(nodes, &left_nodes);
+            drop(left_nodes);
+            let right_child = nodes.len() as u32;
+            append(nodes, &right_nodes);
+            right_child
         } else {
-            let mut build_left = build_left;
-            build_left();
-            build_right();
-        }
+            self.subtree(left, first, depth + 1, left_extent, nodes);
+            let right_child = nodes.len() as u32;
+            self.subtree(right, right_first, depth + 1, right_extent, nodes);
+            right_child
+        };
+        nodes[index] = Node { bounds, first: right_child, count: 0 };
     }
 
-    /// Puts the left primitives before the right ones and counts them.
-    fn partition(&self, order: &mut [u32], split: Option<Split>, centres: &Box32) -> usize {
-        match split {
+    /// Puts the left primitives before the right ones, counts them and measures both.
+    fn partition(&self, items: &mut [Item], split: Option<Split>, extent: &Extent) -> (usize, [Extent; 2]) {
+        let rank = match split {
             Some(Split { axis, position: Position::Bin(map, bin), .. }) => {
-                // Stable, so that the order follows the input's.
-                let (left, right): (Vec<u32>, Vec<u32>) =
-                    order.iter().partition(|&&i| map.bin(self.centre2(i, axis)) < bin);
-                order[..left.len()].copy_from_slice(&left);
-                order[left.len()..].copy_from_slice(&right);
-                left.len()
+                let (mut left, mut right) = (Extent::EMPTY, Extent::EMPTY);
+                let (mut i, mut j) = (0, items.len());
+                while i < j {
+                    if map.bin(items[i].centre2(axis)) < bin {
+                        left.add(&items[i]);
+                        i += 1;
+                    } else {
+                        right.add(&items[i]);
+                        j -= 1;
+                        items.swap(i, j);
+                    }
+                }
+                return (i, [left, right]);
             }
             Some(Split { axis, position: Position::Rank(rank), .. }) => {
-                order.sort_unstable_by(|&i, &j| self.along(axis, i, j));
+                items.sort_unstable_by_key(|item| item.key(axis));
                 rank
             }
             None => {
                 // No plane separates the centres, or the tree is too deep: halve.
-                let extent = |k: usize| centres.max[k] - centres.min[k];
-                let axis = (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best });
-                let half = order.len() / 2;
-                order.select_nth_unstable_by(half, |&i, &j| self.along(axis, i, j));
+                let size = |k: usize| extent.centres.upper(k) - extent.centres.lower(k);
+                let axis = (1..3).fold(0, |best, k| if size(k) > size(best) { k } else { best });
+                let half = items.len() / 2;
+                items.select_nth_unstable_by_key(half, |item| item.key(axis));
                 half
             }
-        }
+        };
+        (rank, [Extent::of(&items[..rank]), Extent::of(&items[rank..])])
     }
 
-    /// The order of two primitives along an axis: total, whatever the sort.
-    fn along(&self, axis: usize, i: u32, j: u32) -> std::cmp::Ordering {
-        self.centre2(i, axis).total_cmp(&self.centre2(j, axis)).then(i.cmp(&j))
-    }
-
-    fn bins(&self, order: &[u32], centres: &Box32) -> Option<Split> {
-        let maps: [Option<BinMap>; 3] = std::array::from_fn(|k| BinMap::new(centres.min[k], centres.max[k]));
-        let mut bins = [[(Box32::EMPTY, 0_usize); BINS]; 3];
-        for &i in order {
-            let b = &self.boxes[i as usize];
+    fn bins(&self, items: &[Item], extent: &Extent) -> Option<Split> {
+        let maps: [Option<BinMap>; 3] = from_fn(|k| BinMap::new(extent.centres.lower(k), extent.centres.upper(k)));
+        // An axis without a map has one bin.
+        let all = maps.map(|map| map.unwrap_or(BinMap { lower: 0.0, per_unit: 0.0 }));
+        let mut bins = [[(Span::EMPTY, 0_u32); BINS]; 3];
+        for item in items {
+            let centre2 = item.0.centre2();
             for k in 0..3 {
-                if let Some(map) = maps[k] {
-                    let bin = &mut bins[k][map.bin(b.centre2(k))];
-                    bin.0 = bin.0.union(b);
-                    bin.1 += 1;
-                }
+                let bin = &mut bins[k][all[k].bin(centre2[k])];
+                bin.0 = bin.0.union(item.0);
+                bin.1 += 1;
             }
         }
         let mut best: Option<Split> = None;
         for k in 0..3 {
             let Some(map) = maps[k] else { continue };
-            let mut right = [(0.0_f32, 0_usize); BINS];
-            let mut sum = (Box32::EMPTY, 0);
+            let mut right = [(0.0_f32, 0_u32); BINS];
+            let mut sum = (Span::EMPTY, 0);
             for bin in (1..BINS).rev() {
-                sum = (sum.0.union(&bins[k][bin].0), sum.1 + bins[k][bin].1);
+                sum = (sum.0.union(bins[k][bin].0), sum.1 + bins[k][bin].1);
                 right[bin] = (sum.0.half_area(), sum.1);
             }
-            let mut sum = (Box32::EMPTY, 0);
+            let mut sum = (Span::EMPTY, 0);
             for bin in 1..BINS {
-                sum = (sum.0.union(&bins[k][bin - 1].0), sum.1 + bins[k][bin - 1].1);
+                sum = (sum.0.union(bins[k][bin - 1].0), sum.1 + bins[k][bin - 1].1);
                 if sum.1 == 0 || right[bin].1 == 0 {
                     continue;
                 }
-                let cost = sum.0.half_area() * self.costs.leaf(sum.1) + right[bin].0 * self.costs.leaf(right[bin].1);
+                let (left_cost, right_cost) = (self.costs.leaf(sum.1 as usize), self.costs.leaf(right[bin].1 as usize));
+                let cost = sum.0.half_area() * left_cost + right[bin].0 * right_cost;
                 if best.as_ref().is_none_or(|b| cost < b.cost) {
                     best = Some(Split { cost, axis: k, position: Position::Bin(map, bin) });
                 }
@@ -224,26 +320,29 @@ impl Builder<'_> {
         best
     }
 
-    fn sweep(&self, order: &[u32], centres: &Box32) -> Option<Split> {
+    fn sweep(&self, items: &[Item], extent: &Extent) -> Option<Split> {
         let mut best: Option<Split> = None;
-        let mut sorted = [0_u32; SWEEP_LIMIT];
-        let sorted = &mut sorted[..order.len()];
+        let mut keys = [(0_u64, 0_u8); SWEEP_LIMIT];
+        let keys = &mut keys[..items.len()];
         let mut right = [0.0_f32; SWEEP_LIMIT];
         for k in 0..3 {
-            if centres.min[k] >= centres.max[k] {
+            if extent.centres.lower(k) >= extent.centres.upper(k) {
                 continue;
             }
-            sorted.copy_from_slice(order);
-            sorted.sort_unstable_by(|&i, &j| self.along(k, i, j));
-            let mut sum = Box32::EMPTY;
-            for rank in (1..sorted.len()).rev() {
-                sum = sum.union(&self.boxes[sorted[rank] as usize]);
+            for (place, (key, item)) in keys.iter_mut().zip(items).enumerate() {
+                let (centre, id) = item.key(k);
+                *key = (u64::from(centre) << 32 | u64::from(id), place as u8);
+            }
+            keys.sort_unstable();
+            let mut sum = Span::EMPTY;
+            for rank in (1..keys.len()).rev() {
+                sum = sum.union(items[usize::from(keys[rank].1)].0);
                 right[rank] = sum.half_area();
             }
-            let mut sum = Box32::EMPTY;
-            for rank in 1..sorted.len() {
-                sum = sum.union(&self.boxes[sorted[rank - 1] as usize]);
-                let cost = sum.half_area() * self.costs.leaf(rank) + right[rank] * self.costs.leaf(sorted.len() - rank);
+            let mut sum = Span::EMPTY;
+            for rank in 1..keys.len() {
+                sum = sum.union(items[usize::from(keys[rank - 1].1)].0);
+                let cost = sum.half_area() * self.costs.leaf(rank) + right[rank] * self.costs.leaf(keys.len() - rank);
                 if best.as_ref().is_none_or(|b| cost < b.cost) {
                     best = Some(Split { cost, axis: k, position: Position::Rank(rank) });
                 }
@@ -251,4 +350,13 @@ impl Builder<'_> {
         }
         best
     }
+}
+
+/// Appends the nodes of a subtree.
+fn append(nodes: &mut Vec<Node>, subtree: &[Node]) {
+    let base = nodes.len() as u32;
+    nodes.extend(subtree.iter().map(|&node| match node.count {
+        0 => Node { first: node.first + base, ..node },
+        _ => node,
+    }));
 }

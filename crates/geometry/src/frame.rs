@@ -17,26 +17,11 @@ pub(crate) struct Box32 {
 }
 
 impl Box32 {
-    /// The box of no points.
-    pub(crate) const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
-
-    /// The smallest box around two boxes.
-    #[inline]
-    pub(crate) fn union(&self, o: &Self) -> Self {
-        Self { min: from_fn(|k| self.min[k].min(o.min[k])), max: from_fn(|k| self.max[k].max(o.max[k])) }
-    }
-
     /// Half the surface area; zero for the empty box.
     #[inline]
     pub(crate) fn half_area(&self) -> f32 {
         let [x, y, z] = from_fn(|k| self.max[k] - self.min[k]);
         if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
-    }
-
-    /// Twice the centre along an axis.
-    #[inline]
-    pub(crate) fn centre2(&self, axis: usize) -> f32 {
-        self.min[axis] + self.max[axis]
     }
 }
 

@@ -1,6 +1,6 @@
 //! The door: a set of primitives that answers ray queries.
 
-use crate::build::{Costs, build};
+use crate::build::{Costs, Item, build};
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
@@ -8,6 +8,7 @@ use crate::traverse;
 use crate::wide::WideTree;
 use crate::{Aabb, Hit, Instance, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Real, Vec3};
+use rayon::prelude::*;
 
 /// Up to this many primitives are tested one by one, without a tree.
 const FLAT_LIMIT: usize = 8;
@@ -78,9 +79,9 @@ impl Geometry {
         let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
         let tree = bounds.filter(|_| primitives.len() > FLAT_LIMIT).map(|bounds| {
             let frame = Frame::around(bounds);
-            let boxes: Vec<_> = primitives.iter().map(|p| frame.enclose(p.bounds())).collect();
-            let binary = build(&boxes, costs(&primitives));
-            drop(boxes);
+            let item = |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32);
+            let items = primitives.par_iter().enumerate().map(item).collect();
+            let binary = build(items, costs(&primitives));
             WideTree::collapse(frame, &binary, &primitives)
         });
         Ok(Self { primitives, bounds, tree, instances, instance_count, nesting, label: 0 })
