@@ -73,6 +73,11 @@ impl Frame {
         self.centre == Vec3::ZERO && self.unscaled(self.point(p)) == p
     }
 
+    /// The part of a leaf in the bound on the error of its vertices' projected coordinates, if none is larger than `magnitude`.
+    pub(crate) fn projection_error(magnitude: f32) -> f32 {
+        above(f64::from(magnitude) * PROJECTION_ERROR)
+    }
+
     /// A length in this frame, rounded.
     pub(crate) fn length(&self, l: f64) -> f32 {
         (l * self.scale) as f32
@@ -115,13 +120,20 @@ impl Frame {
             axes: [kx, ky, kz],
             start_along: [origin[kx], origin[ky], origin[kz]],
             shear: [direction[kx] * slope, direction[ky] * slope, slope * unit],
-            reach: above(reach),
-            slack2: above(2.0 * slack),
+            error: above(reach * PROJECTION_ERROR + 2.0 * slack),
             scale: self.scale,
             start,
         })
     }
 }
+
+/// Bound on the error of the projected coordinates of a vertex, over the sum of the largest magnitudes of its own and of the
+/// origin's.
+///
+/// Relative to the origin they are below that sum, and err by two roundoffs of it (the vertex, the origin and the difference
+/// are rounded); shearing adds nine (the slope four, for the two components, the reciprocal and the product, the other
+/// difference two, the product, the sum two). One more is for the rounding of the bound.
+const PROJECTION_ERROR: f64 = 12.0 * 0.5 * f32::EPSILON as f64;
 
 /// A ray whose origin's coordinates in the frame are below this is near the frame.
 const NEAR_REACH: f64 = 4.0;
@@ -175,10 +187,8 @@ pub(crate) struct FrameRay {
     pub(crate) start_along: [f32; 3],
     /// The projection's slopes and 1/(the direction's largest component), rounded.
     pub(crate) shear: [f32; 3],
-    /// The largest magnitude of a coordinate of the origin.
-    reach: f32,
-    /// Twice the slack.
-    slack2: f32,
+    /// The ray's part of the bound on the error of a vertex's projected coordinates.
+    pub(crate) error: f32,
     scale: f64,
     start: f64,
 }
@@ -200,16 +210,6 @@ pub(crate) struct BoxRay {
 }
 
 impl FrameRay {
-    /// Bound δ on the error of the projected coordinates of a vertex whose own are no larger than `magnitude`.
-    ///
-    /// Relative to the origin they are below the sum of both magnitudes, and err by two roundoffs of it (the vertex, the origin
-    /// and the difference are rounded); shearing adds nine (the slope four, for the two components, the reciprocal and the
-    /// product, the other difference two, the product, the sum two); the bound itself is rounded.
-    #[inline(always)]
-    pub(crate) fn error(&self, magnitude: f32) -> f32 {
-        (magnitude + self.reach) * (12.0 * 0.5 * f32::EPSILON) + self.slack2
-    }
-
     /// What the test of boxes needs.
     #[inline(always)]
     pub(crate) fn for_boxes<L: Lanes4>(&self) -> BoxRay {

@@ -41,8 +41,8 @@ pub(crate) struct Leaf8 {
     pub(crate) ids: [u32; LEAF_WIDTH],
     /// The largest extent of the primitives' common box along an axis.
     pub(crate) extent: f32,
-    /// The largest magnitude in `vertices`.
-    pub(crate) magnitude: f32,
+    /// Its part of the bound on the error of projected coordinates.
+    pub(crate) error: f32,
     /// The lanes of triangles, one bit each.
     pub(crate) triangles: u8,
     /// The lanes of spheres.
@@ -230,7 +230,7 @@ impl Filler<'_> {
             vertices: [[[f32::NAN; LEAF_WIDTH]; 3]; 3],
             ids: [u32::MAX; LEAF_WIDTH],
             extent: extent(0).max(extent(1)).max(extent(2)),
-            magnitude: 0.0,
+            error: 0.0,
             triangles: 0,
             spheres: 0,
             others: 0,
@@ -260,7 +260,8 @@ impl Filler<'_> {
             }
         }
         // NaN is never the larger.
-        leaf.magnitude = leaf.vertices.iter().flatten().flatten().fold(0.0, |m, c| c.abs().max(m));
+        let magnitude = leaf.vertices.iter().flatten().flatten().fold(0.0, |m, c| c.abs().max(m));
+        leaf.error = Frame::projection_error(magnitude);
         let index = self.leaf_count;
         self.leaf_count += 1;
         self.leaves[index] = leaf;

@@ -335,15 +335,19 @@ impl Filters for Avx2 {
     }
 }
 
-/// Announces that the cache lines of an item's first and last byte will be read.
+/// Announces that an item will be read.
 #[inline(always)]
 pub(super) fn prefetch<T>(item: &T) {
     let address = std::ptr::from_ref(item).cast::<i8>();
-    // SAFETY: hints, which read nothing; both addresses are within the item.
-    unsafe {
-        _mm_prefetch::<_MM_HINT_T0>(address);
-        if align_of::<T>() < 64 && size_of::<T>() > 1 {
-            _mm_prefetch::<_MM_HINT_T0>(address.add(size_of::<T>() - 1));
-        }
+    // The first and the last byte, and one in each line between.
+    let mut at = 0;
+    while at < size_of::<T>() {
+        // SAFETY: a hint, which reads nothing; the address is within the item.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.add(at)) };
+        at += 64;
+    }
+    if align_of::<T>() < 64 {
+        // SAFETY: as above.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.add(size_of::<T>().saturating_sub(1))) };
     }
 }

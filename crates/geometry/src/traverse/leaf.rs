@@ -47,7 +47,7 @@ fn triangles<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32, c
     let b = project(filters, ray, &leaf.vertices[1]);
     let c = project(filters, ray, &leaf.vertices[2]);
     let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-    let delta = ray.error(leaf.magnitude);
+    let delta = ray.error + leaf.error;
     let error = leaf_error(delta, leaf.extent);
     let (least, most) = (u.min(v).min(w), u.max(v).max(w));
     let met = all(-error).at_most(least) | most.at_most(all(error));
@@ -107,7 +107,7 @@ fn spheres<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32, cer
     let along = x * all(sx) + y * all(sy);
     // n times the squares of the distance, of the radii and of the half chords.
     let squared = (x * x + y * y) * all(n) - along * along;
-    let delta = ray.error(leaf.magnitude);
+    let delta = ray.error + leaf.error;
     let slack = all(6.0 * delta);
     let (inner, outer) = (radius - slack, radius + slack);
     let longest = outer * outer * all(n) - squared * all(1.0 - 32.0 * f32::EPSILON);

@@ -67,7 +67,7 @@ trait Filters: Copy + Into<<Self::Vector as Vector>::Token> + Into<<Self::Four a
     fn ray(self, ray: &FrameRay) -> Self::Ray;
     /// The children of a node that the ray meets in [0, `limit`].
     fn enter(self, ray: &Self::Ray, node: &Node16, limit: f32) -> Entered;
-    /// Announces that an item will be read, if it is a small one.
+    /// Announces that an item will be read.
     fn prefetch<T>(self, item: &T);
 }
 
@@ -287,6 +287,17 @@ fn decide_now(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives
     decide(portable::Portable, best, tree, leaf, lane, primitives, query)
 }
 
+/// Announces that a child that waits on the stack will be visited. Without it rays that share nothing are a tenth slower in
+/// trees that no cache holds.
+#[inline(always)]
+fn prefetch<F: Filters>(filters: F, tree: &WideTree, child: u32) {
+    if child & LEAF == 0 {
+        filters.prefetch(&tree.nodes()[child as usize]);
+    } else {
+        filters.prefetch(&tree.leaves()[(child & !LEAF) as usize]);
+    }
+}
+
 /// The closest hit, by a stack of children, nearest on top.
 #[inline(always)]
 fn closest_on<F: Filters, const N: usize>(
@@ -322,12 +333,14 @@ fn closest_on<F: Filters, const N: usize>(
                 mask &= mask - 1;
                 let second = entry(near[lane], node.children.0[lane]);
                 let mut nearest = first.min(second);
+                prefetch(filters, tree, first.max(second) as u32);
                 let base = stack.len();
                 stack.push(first.max(second));
                 while mask != 0 {
                     let lane = mask.trailing_zeros() as usize;
                     mask &= mask - 1;
                     let new = entry(near[lane], node.children.0[lane]);
+                    prefetch(filters, tree, node.children.0[lane]);
                     stack.insert(base, nearest.max(new));
                     nearest = nearest.min(new);
                 }
