@@ -33,9 +33,14 @@ pub(crate) struct Frame {
     unscale: f64,
 }
 
-/// Boxes are widened by this much (2⁻⁵⁰), more than a ray whose direction component was clamped to [`MIN_DIRECTION`]
-/// can leave its slab by within the frame.
-const BOX_MARGIN: f64 = 1.0 / (1_u64 << 50) as f64;
+/// Boxes are widened by this much (2⁻⁴²): more than [`SLACK`], and more than a ray whose direction component was clamped to
+/// [`MIN_DIRECTION`] can leave its slab by within the frame.
+///
+/// An origin that `f32` represents is therefore taken as it is, and a box that ends at it is not entered: all that is in the box
+/// lies farther back. For a ray that leaves a plane this spares the way down to the plane's other primitives.
+const BOX_MARGIN: f64 = 1.0 / (1_u64 << 42) as f64;
+/// Least distance at which boxes are entered: above zero, so that those that end at the origin are not.
+pub(crate) const LEAST_DISTANCE: f32 = f32::MIN_POSITIVE;
 /// Smallest direction component that is divided by: 1e-18 of the largest, at most, for all usual directions.
 const MIN_DIRECTION: f32 = 1e-21;
 /// Relative widening of the distances of a box: (b − o)·(1/d·factor) errs by 5 roundoffs (the difference, `d` as `f32`,
@@ -106,6 +111,8 @@ impl Frame {
             reach = max_magnitude(o);
         }
         let origin = o.map(|o| o as f32);
+        let inexact = |k: usize| if slack > SLACK || f64::from(origin[k]) != o[k] { 1.0 } else { 0.0 };
+        let inexact = [inexact(0), inexact(1), inexact(2)];
         // Most directions need not be scaled: their reciprocals are.
         let usual = (USUAL_SCALE..=1.0 / USUAL_SCALE).contains(&q.scale);
         let (direction, unit) = if usual { (q.given, q.scale.recip() as f32) } else { (q.direction, 1.0) };
@@ -114,6 +121,7 @@ impl Frame {
         let slope = 1.0 / direction[kz];
         Some(FrameRay {
             origin,
+            inexact,
             direction,
             unit,
             slack: above(slack),
@@ -175,6 +183,8 @@ fn approach(o: [f64; 3], d: [f64; 3], slack: f64) -> Option<([f64; 3], f64, f64)
 pub(crate) struct FrameRay {
     /// The origin, rounded.
     origin: [f32; 3],
+    /// 1 where that changed it, or where it is not known, else 0.
+    inexact: [f32; 3],
     /// The direction as it was given, or [`Query::direction`]; rounded.
     direction: [f32; 3],
     /// Parameters along [`Query::direction`] for one along `direction`.
@@ -215,9 +225,11 @@ impl FrameRay {
     pub(crate) fn for_boxes<L: Lanes4>(&self) -> BoxRay {
         let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
         let (o, d) = (L::new([ox, oy, oz, 0.0]), L::new([dx, dy, dz, 1.0]));
-        // The origin is displaced along the ray and against it by more than its error: an `f32` ε of it covers its rounding and
+        let [ix, iy, iz] = self.inexact;
+        // Unless it is exact the origin is displaced along the ray and against it by more than its error: an `f32` ε of it covers its rounding and
         // that of the displaced one, half an ε each; another one, second orders.
-        let displaced = o.abs().times(2.0 * f32::EPSILON).plus(self.slack).signed_as(d);
+        let error = o.abs().times(2.0 * f32::EPSILON).plus(self.slack);
+        let displaced = error.product(L::new([ix, iy, iz, 0.0])).signed_as(d);
         let reciprocal = d.abs().at_least(MIN_DIRECTION).signed_as(d).reciprocal();
         let unit = self.unit;
         BoxRay {
@@ -254,6 +266,7 @@ pub(crate) trait Lanes4: Copy {
     fn abs(self) -> Self;
     fn sum(self, o: Self) -> Self;
     fn difference(self, o: Self) -> Self;
+    fn product(self, o: Self) -> Self;
     fn times(self, factor: f32) -> Self;
     fn plus(self, v: f32) -> Self;
     fn at_least(self, v: f32) -> Self;
@@ -292,6 +305,11 @@ impl Lanes4 for Plain {
     #[inline(always)]
     fn difference(self, o: Self) -> Self {
         Self(from_fn(|i| self.0[i] - o.0[i]))
+    }
+
+    #[inline(always)]
+    fn product(self, o: Self) -> Self {
+        Self(from_fn(|i| self.0[i] * o.0[i]))
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@
 use super::vector::Vector;
 use super::{Entered, Filters, Start, any_with, closest_with};
 use crate::Primitive;
-use crate::frame::{FrameRay, Lanes4};
+use crate::frame::{FrameRay, LEAST_DISTANCE, Lanes4};
 use crate::geometry::Found;
 use crate::query::Four;
 use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
@@ -244,6 +244,11 @@ impl Lanes4 for F4 {
     }
 
     #[inline(always)]
+    fn product(self, o: Self) -> Self {
+        Self(sse!(_mm_mul_ps(self.0, o.0)))
+    }
+
+    #[inline(always)]
     fn times(self, factor: f32) -> Self {
         Self(sse!(_mm_mul_ps(self.0, Self::splat(factor))))
     }
@@ -321,7 +326,7 @@ impl Filters for Avx2 {
             let far_x = (plane(0, 1 - ex) - ray.origin_far[0]) * ray.reciprocal_far[0];
             let far_y = (plane(1, 1 - ey) - ray.origin_far[1]) * ray.reciprocal_far[1];
             let far_z = (plane(2, 1 - ez) - ray.origin_far[2]) * ray.reciprocal_far[2];
-            let near = near_x.max(near_y).max(near_z.max(F8::splat(self, 0.0)));
+            let near = near_x.max(near_y).max(near_z.max(F8::splat(self, LEAST_DISTANCE)));
             let far = far_x.min(far_y).min(far_z.min(F8::splat(self, limit)));
             out.mask |= near.at_most(far) << (half * LEAF_WIDTH);
             out.near[half * LEAF_WIDTH..][..LEAF_WIDTH].copy_from_slice(&near.to_array());

@@ -4,7 +4,7 @@
 use super::avx2::{Avx2, D4, F4, F8, prefetch};
 use super::{Entered, Filters, Start, any_with, closest_with};
 use crate::Primitive;
-use crate::frame::FrameRay;
+use crate::frame::{FrameRay, LEAST_DISTANCE};
 use crate::geometry::Found;
 use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use std::arch::x86_64::*;
@@ -93,7 +93,8 @@ impl Filters for Avx512 {
             };
             let near = |k: usize| slab(plane(k, ray.entry[k]), ray.origin_near[k], ray.reciprocal_near[k]);
             let far = |k: usize| slab(plane(k, 1 - ray.entry[k]), ray.origin_far[k], ray.reciprocal_far[k]);
-            let near = _mm512_max_ps(_mm512_max_ps(near(0), near(1)), _mm512_max_ps(near(2), _mm512_setzero_ps()));
+            let near =
+                _mm512_max_ps(_mm512_max_ps(near(0), near(1)), _mm512_max_ps(near(2), _mm512_set1_ps(LEAST_DISTANCE)));
             let far = _mm512_min_ps(_mm512_min_ps(far(0), far(1)), _mm512_min_ps(far(2), _mm512_set1_ps(limit)));
             _mm512_storeu_ps(near_array.as_mut_ptr(), near);
             _mm512_cmp_ps_mask::<_CMP_LE_OQ>(near, far)

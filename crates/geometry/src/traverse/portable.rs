@@ -2,7 +2,7 @@
 
 use super::vector::Vector;
 use super::{Entered, Filters};
-use crate::frame::{BoxRay, FrameRay, Plain};
+use crate::frame::{BoxRay, FrameRay, LEAST_DISTANCE, Plain};
 use crate::query::Plain4;
 use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16};
 use std::array::from_fn;
@@ -97,7 +97,7 @@ impl Filters for Portable {
 
     #[inline(always)]
     fn enter(self, ray: &BoxRay, node: &Node16, limit: f32) -> Entered {
-        let mut out = Entered { mask: 0, near: [0.0; NODE_WIDTH] };
+        let mut out = Entered { mask: 0, near: [LEAST_DISTANCE; NODE_WIDTH] };
         let mut far = [limit; NODE_WIDTH];
         for k in 0..3 {
             let entry = &node.planes[k][ray.negative[k]];
