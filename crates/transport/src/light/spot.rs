@@ -34,7 +34,7 @@ impl SpotLight {
     pub(super) fn sample(&self, from: Vec3<f64>) -> Option<LightSample> {
         let sample = self.point.sample(from)?;
         let falloff = self.falloff(-sample.wi.dot(self.axis));
-        (falloff > 0.0).then(|| LightSample { scale: sample.scale * falloff, ..sample })
+        (falloff > 0.0).then_some(LightSample { scale: sample.scale * falloff, ..sample })
     }
 
     /// Power over the intensity along the axis.
