@@ -3,6 +3,7 @@
 //! A camera records the radiance along its rays, averaged over the pixel's filter and the lens; there is no cos⁴ fall-off
 //! and no exposure. The ray that belongs to the centre of the lens is the pinhole's ray.
 
+use crate::compiled;
 use crate::warp::concentric_disk;
 use etalon_geometry::Ray;
 use etalon_optics::{Real, Vec3};
@@ -73,8 +74,7 @@ impl<R: Real> Camera<R> {
     pub fn ray(&self, film: [R; 2], lens_u: [R; 2]) -> Ray<R> {
         let across = self.half_right * film[0] + self.half_up * film[1];
         match &self.kind {
-            Kind::Pinhole => Ray::free(self.position, (self.forward + across).normalized()),
-            Kind::ThinLens { right, up, focus_distance } => {
+            Kind::ThinLens { right, up, focus_distance } if compiled::LENS => {
                 let [x, y] = concentric_disk(lens_u);
                 let lens = *right * x + *up * y;
                 // From the lens point to the point in focus, relative to the lens's centre: the scene's origin and the
@@ -82,6 +82,7 @@ impl<R: Real> Camera<R> {
                 let focus = (self.forward + across) * *focus_distance;
                 Ray::free(self.position + lens, (focus - lens).normalized())
             }
+            Kind::Pinhole | Kind::ThinLens { .. } => Ray::free(self.position, (self.forward + across).normalized()),
             Kind::Orthographic => Ray::free(self.position + across, self.forward),
         }
     }

@@ -1,6 +1,7 @@
 //! The kernels: the path loop instantiated for a scalar type and a model of wavelengths, and the table that names them.
 
 use crate::camera::Camera;
+use crate::compiled;
 use crate::film::{Counters, NonFinite, PixelRect, XyzSum};
 use crate::media::Inside;
 use crate::model::{Hero, OneLane, Shared, WavelengthModel};
@@ -137,13 +138,13 @@ impl<'a, R: Real> Tracer<'a, R> {
         let column = f64::from(x) + 0.5 + self.prepared.filter.offset(film_x.to_f64());
         let row = f64::from(y) + 0.5 + self.prepared.filter.offset(film_y.to_f64());
         let film = [R::from_f64(2.0 * column / width - 1.0), R::from_f64(1.0 - 2.0 * row / height)];
-        counters.lens_draws += u64::from(self.camera.has_lens());
+        counters.lens_draws += u64::from(compiled::LENS && self.camera.has_lens());
         let ray = self.camera.ray(film, [lens_1, lens_2]);
         let inside = match self.world.media {
-            None => Inside::NOTHING,
-            Some(media) => {
+            Some(media) if compiled::NESTED_DIELECTRICS => {
                 media.around(&self.prepared.geometry, &self.prepared.surfaces, &ray, &mut counters.lost_media)
             }
+            _ => Inside::NOTHING,
         };
         let radiance =
             self.world.radiance::<R, M, N>(ray, inside, &wavelengths.lambda_nm, &sampler, counters, observer);

@@ -23,6 +23,7 @@
 pub mod accuracy;
 pub mod bsdf;
 pub mod camera;
+mod compiled;
 mod coordinates;
 pub mod film;
 pub mod filter;

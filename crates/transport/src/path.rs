@@ -14,6 +14,7 @@
 //! must not depend on which lane is the hero, or the two no longer add up to one for the lanes together. So what meets a
 //! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
+use crate::compiled;
 use crate::film::Counters;
 use crate::light::{LightSample, LightTable, Target};
 use crate::media::{Inside, Media, Met};
@@ -98,7 +99,8 @@ impl World<'_> {
             counters.rays += 1;
             let Some(Met { hit, point, surface, interface, beyond }) = self.meet(&mut ray, &mut inside, counters)
             else {
-                for sky in self.environments {
+                let environments = if compiled::ENVIRONMENT { self.environments } else { &[] };
+                for sky in environments {
                     // Never a target of shadow rays: the BSDF's own directions are its best samples.
                     counters.environment_lookups += 1;
                     let light = beta * sky.lanes(lambda_nm) * lane_weight;
@@ -112,7 +114,7 @@ impl World<'_> {
             observer.vertex(vertex, point.position, surface.object, beta);
 
             if let Some(emitter) = surface.emission_along(point.normal, wo) {
-                let mis = if self.weigh_hits {
+                let mis = if compiled::MIS && self.weigh_hits {
                     self.weight_of_hit(step, point.surface, surface.light, ray.direction)
                 } else {
                     R::ONE
@@ -142,6 +144,7 @@ impl World<'_> {
 
             let scattering = surface.scattering(self.geometry, &point, &hit, interface);
             let shared = match self.shadow_rays {
+                _ if !compiled::SHADOW_RAYS => false,
                 ShadowRays::Never => false,
                 ShadowRays::WhereUseful => surface.bsdf.has_solid_angle_part(),
                 ShadowRays::Everywhere => true,
@@ -207,12 +210,14 @@ impl World<'_> {
     #[inline(always)]
     fn meet<R: Real>(&self, ray: &mut Ray<R>, inside: &mut Inside, counters: &mut Counters) -> Option<Met<'_, R>> {
         match self.media {
-            None => {
+            Some(media) if compiled::NESTED_DIELECTRICS => {
+                media.meet(self.geometry, self.surfaces, ray, inside, &mut counters.lost_media)
+            }
+            _ => {
                 let hit = self.geometry.closest_hit(ray)?;
                 let point = self.geometry.surface(ray, &hit);
                 Some(Met { hit, point, surface: self.surfaces.of(&point), interface: None, beyond: None })
             }
-            Some(media) => media.meet(self.geometry, self.surfaces, ray, inside, &mut counters.lost_media),
         }
     }
 
@@ -276,10 +281,10 @@ impl World<'_> {
             self.passing(shadow_ray, *inside, &sample, counters)
         } else {
             let occluded = match self.media {
-                None => self.geometry.occluded(&shadow_ray),
-                Some(media) => {
+                Some(media) if compiled::NESTED_DIELECTRICS => {
                     media.occluded(self.geometry, self.surfaces, shadow_ray, *inside, &mut counters.lost_media)
                 }
+                _ => self.geometry.occluded(&shadow_ray),
             };
             if occluded { R::ZERO } else { R::ONE }
         };

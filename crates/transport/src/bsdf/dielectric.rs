@@ -5,6 +5,7 @@
 //! balance heuristic over lanes needs (Wilkie et al. 2014, eq. 5).
 
 use super::BsdfSample;
+use crate::compiled;
 use crate::media::Interface;
 use crate::mis::Density;
 use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel, snell};
@@ -45,10 +46,11 @@ impl Dielectric {
         let n = if from_outside { n } else { -n };
         // Rounding may carry the product of two unit vectors past 1.
         let cos_o = n.dot(wo).min(R::ONE);
-        let dispersive = match interface {
-            Some(media) => media.incident.is_dispersive() || media.transmitted.is_dispersive(),
-            None => self.dispersive,
-        };
+        let dispersive = compiled::DISPERSION
+            && match interface {
+                Some(media) => media.incident.is_dispersive() || media.transmitted.is_dispersive(),
+                None => self.dispersive,
+            };
         // Whether a wavelength is reflected for certain, or how likely and, if it is not, where it goes.
         let at = |lane: usize| {
             let eta: R = self.eta(lambda_nm[lane], from_outside, interface);

@@ -31,6 +31,7 @@ pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
 pub use thin_dielectric::ThinDielectric;
 
+use crate::compiled;
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use etalon_optics::{Lanes, Real, Vec3};
@@ -209,16 +210,19 @@ impl Bsdf {
     ) -> Option<BsdfSample<R, N>> {
         match self {
             Self::Lambert(lambert) => lambert.sample(lambda_nm, n, wo, [u[1], u[2]]),
-            Self::Mirror(mirror) => mirror.sample(lambda_nm, n, wo),
-            Self::Conductor(conductor) => conductor.sample(lambda_nm, n, wo, at.media()),
-            Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, n, wo, u[0], at.media()),
+            Self::Mirror(mirror) if compiled::SPECULAR_CHAINS => mirror.sample(lambda_nm, n, wo),
+            Self::Conductor(conductor) if compiled::SPECULAR_CHAINS => conductor.sample(lambda_nm, n, wo, at.media()),
+            Self::Dielectric(dielectric) if compiled::SPECULAR_CHAINS => {
+                dielectric.sample(lambda_nm, n, wo, u[0], at.media())
+            }
             Self::RoughConductor(metal) => metal.sample(lambda_nm, n, wo, u),
             Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, wo, u),
             Self::OrenNayar(rough) => rough.sample(lambda_nm, n, wo, [u[1], u[2]]),
             Self::Plastic(plastic) => plastic.sample(lambda_nm, n, wo, u),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, n, wo, u[0]),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
-            Self::Black => None,
+            // Left out of this build.
+            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => None,
         }
     }
 
