@@ -33,6 +33,9 @@ pub(crate) struct Overrides {
     /// Most path edges from the camera to a light; 1 shows emitters only, 2 adds one bounce.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_depth: Option<u32>,
+    /// Follow light with its polarisation, instead of averaging s and p at every surface.
+    #[arg(long)]
+    polarised: bool,
     /// For study: simulate an effect that the scene does not call for (see `etalon explain`).
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
     force: Vec<EffectName>,
@@ -111,7 +114,7 @@ impl Overrides {
 
     /// What to simulate otherwise than the scene calls for.
     pub(crate) fn study(&self) -> Study {
-        Study { force: self.force.clone(), without: self.without.clone() }
+        Study { force: self.force.clone(), without: self.without.clone(), polarised: self.polarised }
     }
 
     /// The film's width and height in pixels, which the reader of the scene must know: a camera's angle may follow them.
@@ -142,6 +145,7 @@ impl Overrides {
         ]
         .into_iter()
         .filter_map(|(name, value)| value.map(|value| format!(" --{name} {value}")))
+        .chain(self.polarised.then(|| " --polarised".to_owned()))
         .collect()
     }
 }

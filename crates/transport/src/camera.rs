@@ -64,6 +64,11 @@ impl<R: Real> Camera<R> {
         }
     }
 
+    /// Along the picture's right; not of unit length.
+    pub(crate) fn right(&self) -> Vec3<R> {
+        self.half_right
+    }
+
     /// Whether [`Camera::ray`] draws a point on a lens.
     pub fn has_lens(&self) -> bool {
         matches!(self.kind, Kind::ThinLens { .. })

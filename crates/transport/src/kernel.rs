@@ -8,6 +8,7 @@ use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
 use crate::plan::{EffectName, LaneModel};
+use crate::polarisation::{Averaged, Mueller, Polarisation};
 use crate::prepare::Prepared;
 use crate::replay::{Replay, replay};
 use crate::sampler::Sampler;
@@ -26,6 +27,8 @@ pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, &mut [XyzSum])
 pub(crate) struct Kernel {
     pub precision: Precision,
     pub lanes: LaneModel,
+    /// Whether it carries Stokes vectors.
+    pub polarised: bool,
     /// Its name: the model, the number of lanes, the scalar.
     pub name: &'static str,
     pub render: RenderTile,
@@ -34,33 +37,44 @@ pub(crate) struct Kernel {
 }
 
 /// The whole table. What is no type parameter is decided by the plan, at run time: a branch costs nothing, work does.
-static KERNELS: [Kernel; 6] = [
-    entry::<f32, OneLane, 1>(Precision::F32, LaneModel::One, "one-lane-f32"),
-    entry::<f64, OneLane, 1>(Precision::F64, LaneModel::One, "one-lane-f64"),
-    entry::<f32, Shared, LANES>(Precision::F32, LaneModel::Shared, "shared-4-f32"),
-    entry::<f64, Shared, LANES>(Precision::F64, LaneModel::Shared, "shared-4-f64"),
-    entry::<f32, Hero<f32, LANES>, LANES>(Precision::F32, LaneModel::Hero, "hero-4-f32"),
-    entry::<f64, Hero<f64, LANES>, LANES>(Precision::F64, LaneModel::Hero, "hero-4-f64"),
+static KERNELS: [Kernel; 7] = [
+    entry::<f32, OneLane, Averaged, 1>(Precision::F32, LaneModel::One, "one-lane-f32"),
+    entry::<f64, OneLane, Averaged, 1>(Precision::F64, LaneModel::One, "one-lane-f64"),
+    entry::<f32, Shared, Averaged, LANES>(Precision::F32, LaneModel::Shared, "shared-4-f32"),
+    entry::<f64, Shared, Averaged, LANES>(Precision::F64, LaneModel::Shared, "shared-4-f64"),
+    entry::<f32, Hero<f32, LANES>, Averaged, LANES>(Precision::F32, LaneModel::Hero, "hero-4-f32"),
+    entry::<f64, Hero<f64, LANES>, Averaged, LANES>(Precision::F64, LaneModel::Hero, "hero-4-f64"),
+    Kernel {
+        polarised: true,
+        ..entry::<f64, Hero<f64, LANES>, Mueller<f64, LANES>, LANES>(
+            Precision::F64,
+            LaneModel::Hero,
+            "polarised-hero-4-f64",
+        )
+    },
 ];
 
-const fn entry<R: Real, M: WavelengthModel<R, N>, const N: usize>(
+const fn entry<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
     precision: Precision,
     lanes: LaneModel,
     name: &'static str,
 ) -> Kernel {
-    Kernel { precision, lanes, name, render: render_tile::<R, M, N>, replay: replay::<R, M, N> }
+    let (render, replay) = (render_tile::<R, M, P, N>, replay::<R, M, P, N>);
+    Kernel { precision, lanes, polarised: false, name, render, replay }
 }
 
-/// The kernel of a scalar type and a model of wavelengths.
-pub(crate) fn kernel(precision: Precision, lanes: LaneModel) -> &'static Kernel {
+/// The kernel of a scalar type and a model of wavelengths; the one for polarised light covers them all.
+pub(crate) fn kernel(precision: Precision, lanes: LaneModel, polarised: bool) -> &'static Kernel {
     KERNELS
         .iter()
-        .find(|kernel| kernel.precision == precision && kernel.lanes == lanes)
+        .find(|kernel| {
+            kernel.polarised == polarised && (polarised || (kernel.precision, kernel.lanes) == (precision, lanes))
+        })
         .expect("the table has every pair")
 }
 
 /// The samples `samples` of every pixel of `tile`, added to `sums` in the order of their numbers.
-fn render_tile<R: Real, M: WavelengthModel<R, N>, const N: usize>(
+fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
     prepared: &Prepared,
     tile: PixelRect,
     samples: Range<u32>,
@@ -71,7 +85,7 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, const N: usize>(
     let replicates = prepared.scene.integrator.replicates as usize;
     for ((x, y), sums) in tile.pixels().zip(sums.chunks_exact_mut(replicates)) {
         for sample in samples.clone() {
-            let (wavelengths, radiance) = tracer.sample::<M, N>(x, y, sample, &mut counters, &mut ());
+            let (wavelengths, radiance, _) = tracer.sample::<M, P, N>(x, y, sample, &mut counters, &mut ());
             let xyz = M::to_xyz(prepared, &wavelengths, radiance);
             counters.paths += 1;
             if xyz.iter().all(|v| v.is_finite()) {
@@ -116,14 +130,14 @@ impl<'a, R: Real> Tracer<'a, R> {
     }
 
     /// One camera path: a pure function of the scene, its seed, the pixel and the number of the sample.
-    pub(crate) fn sample<M: WavelengthModel<R, N>, const N: usize>(
+    pub(crate) fn sample<M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
         &self,
         x: u32,
         y: u32,
         sample: u32,
         counters: &mut Counters,
         observer: &mut impl Observer<R, N>,
-    ) -> (Wavelengths<N>, Lanes<R, N>) {
+    ) -> (Wavelengths<N>, Lanes<R, N>, P) {
         let scene = &self.prepared.scene;
         let (width, height) = (f64::from(scene.film.width), f64::from(scene.film.height));
         let pixel = u64::from(y) << 32 | u64::from(x);
@@ -146,9 +160,17 @@ impl<'a, R: Real> Tracer<'a, R> {
             }
             _ => Inside::NOTHING,
         };
-        let radiance =
-            self.world.radiance::<R, M, N>(ray, inside, &wavelengths.lambda_nm, &sampler, counters, observer);
-        (wavelengths, radiance)
+        let mut polarisation = P::at_camera(ray.direction, self.camera.right());
+        let radiance = self.world.radiance::<R, M, P, N>(
+            ray,
+            inside,
+            &mut polarisation,
+            &wavelengths.lambda_nm,
+            &sampler,
+            counters,
+            observer,
+        );
+        (wavelengths, radiance, polarisation)
     }
 }
 
@@ -166,7 +188,7 @@ mod tests {
         assert_eq!(names.len(), KERNELS.len());
         for precision in [Precision::F32, Precision::F64] {
             for lanes in [LaneModel::One, LaneModel::Shared, LaneModel::Hero] {
-                kernel(precision, lanes);
+                kernel(precision, lanes, false);
             }
         }
     }

@@ -21,6 +21,7 @@ use crate::media::{Inside, Media, Met};
 use crate::mis::{Density, power_heuristic};
 use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
+use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::spectral::PathSpectrum;
 use crate::surface::{Scattering, Surfaces};
@@ -75,10 +76,11 @@ enum Step<R> {
 
 impl World<'_> {
     /// Radiance that arrives along `ray` at each wavelength.
-    pub(crate) fn radiance<R: Real, M: WavelengthModel<R, N>, const N: usize>(
+    pub(crate) fn radiance<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
         &self,
         mut ray: Ray<R>,
         mut inside: Inside,
+        polarisation: &mut P,
         lambda_nm: &Lanes<f64, N>,
         sampler: &Sampler,
         counters: &mut Counters,
@@ -103,7 +105,7 @@ impl World<'_> {
                 for sky in environments {
                     // Never a target of shadow rays: the BSDF's own directions are its best samples.
                     counters.environment_lookups += 1;
-                    let light = beta * sky.lanes(lambda_nm) * lane_weight;
+                    let light = polarisation.receive(beta * sky.lanes(lambda_nm) * lane_weight);
                     observer.light(vertex, Found::Environment, light);
                     radiance += light;
                 }
@@ -119,7 +121,7 @@ impl World<'_> {
                 } else {
                     R::ONE
                 };
-                let light = beta * emitter.lanes(lambda_nm) * (lane_weight * mis);
+                let light = polarisation.receive(beta * emitter.lanes(lambda_nm) * (lane_weight * mis));
                 observer.light(vertex, Found::Emitter, light);
                 radiance += light;
             }
@@ -154,7 +156,7 @@ impl World<'_> {
                 if let Some((index, direct)) =
                     self.direct_light(&point, &scattering, wo, (lambda_nm, &lanes), u, &inside, counters)
                 {
-                    let light = beta * direct * lane_weight;
+                    let light = polarisation.receive(beta * direct * lane_weight);
                     observer.light(vertex, Found::ShadowRay { light: index }, light);
                     radiance += light;
                 }
@@ -166,6 +168,7 @@ impl World<'_> {
                 break;
             };
             beta *= next.weight;
+            polarisation.follow(wo, next.wi, || scattering.retarder(lambda_nm, wo, next.wi));
             let mean_of_hero = lanes.follow(next.lane_density);
             eta_squared *= next.eta * next.eta;
             step = match next.density {

@@ -182,7 +182,7 @@ impl Prepared {
 
     /// The kernel that the plan chose.
     pub(crate) fn kernel(&self) -> &'static Kernel {
-        kernel(self.scene.integrator.precision, self.plan.lane_model)
+        kernel(self.scene.integrator.precision, self.plan.lane_model, self.plan.runs(EffectName::Polarisation))
     }
 
     /// From which surfaces shadow rays are sent.

@@ -4,6 +4,7 @@ use crate::film::Counters;
 use crate::kernel::Tracer;
 use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
+use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
 use etalon_optics::{Lanes, Real, Vec3};
 use serde::Serialize;
@@ -17,6 +18,10 @@ pub struct Replay {
     pub events: Vec<Event>,
     /// The radiance estimate at each wavelength, W·m⁻²·sr⁻¹·nm⁻¹.
     pub radiance: Vec<f64>,
+    /// S₁, S₂ and S₃ at each wavelength, where polarisation is carried: S₁ is light along the picture's right less that along
+    /// its up, S₂ along the diagonal that rises to the right less the other, seen from the eye, `radiance` is S₀.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stokes: Option<[Vec<f64>; 3]>,
     /// What the sample adds to the pixel, CIE XYZ.
     pub xyz: [f64; 3],
 }
@@ -60,7 +65,7 @@ impl Prepared {
 }
 
 /// [`Prepared::replay`] by one kernel.
-pub(crate) fn replay<R: Real, M: WavelengthModel<R, N>, const N: usize>(
+pub(crate) fn replay<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
     prepared: &Prepared,
     x: u32,
     y: u32,
@@ -68,11 +73,13 @@ pub(crate) fn replay<R: Real, M: WavelengthModel<R, N>, const N: usize>(
 ) -> Replay {
     let mut recorder = Recorder { prepared, events: Vec::new() };
     let tracer = Tracer::<R>::new(prepared);
-    let (wavelengths, radiance) = tracer.sample::<M, N>(x, y, sample, &mut Counters::default(), &mut recorder);
+    let (wavelengths, radiance, polarisation) =
+        tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut recorder);
     Replay {
         wavelengths_nm: wavelengths.lambda_nm.0.to_vec(),
         events: recorder.events,
         radiance: widen(radiance),
+        stokes: polarisation.received().map(|stokes| stokes.map(widen)),
         xyz: M::to_xyz(prepared, &wavelengths, radiance),
     }
 }

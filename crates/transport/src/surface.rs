@@ -3,6 +3,7 @@
 use crate::bsdf::{Bsdf, BsdfSample, Shading};
 use crate::coordinates::Coordinates;
 use crate::media::Interface;
+use crate::polarisation::Retarder;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Real, Vec3};
@@ -119,6 +120,16 @@ impl<R: Real> Scattering<'_, R> {
         wi: Vec3<R>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         self.bsdf.eval(lambda_nm, &self.at, wo, wi)
+    }
+
+    /// See [`Bsdf::retarder`].
+    pub(crate) fn retarder<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        wo: Vec3<R>,
+        wi: Vec3<R>,
+    ) -> Option<Retarder<R, N>> {
+        self.bsdf.retarder(lambda_nm, &self.at, wo, wi)
     }
 
     /// See [`Bsdf::sample`].

@@ -28,7 +28,7 @@ fn scenes() -> Vec<(String, Scene)> {
 }
 
 fn prepared(scene: &Scene, force: &[EffectName]) -> Prepared {
-    prepare_study(scene, &Study { force: force.to_vec(), without: Vec::new() }).unwrap()
+    prepare_study(scene, &Study { force: force.to_vec(), ..Study::default() }).unwrap()
 }
 
 fn render(prepared: &Prepared) -> Film {
@@ -45,8 +45,8 @@ fn forcing_what_a_scene_does_not_call_for_leaves_every_bit_as_it_is() {
         for effect in EffectName::ALL {
             // Wavelengths that are not needed add noise of their own: they are held to the mean, below.
             let wavelengths = plan.plan().lane_model == LaneModel::One
-                && matches!(effect, EffectName::Wavelengths | EffectName::Dispersion);
-            let study = Study { force: vec![effect], without: Vec::new() };
+                && matches!(effect, EffectName::Wavelengths | EffectName::Dispersion | EffectName::Polarisation);
+            let study = Study { force: vec![effect], ..Study::default() };
             let Ok(forced) = prepare_study(&scene, &study) else { continue };
             if plan.plan().runs(effect) || wavelengths {
                 continue;

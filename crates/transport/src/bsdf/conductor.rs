@@ -18,6 +18,13 @@ impl Conductor {
         Self { index }
     }
 
+    /// n and k relative to the medium in front of the metal.
+    pub(super) fn relative_index(&self, wavelength_nm: f64, interface: Option<Interface<'_>>) -> (f64, f64) {
+        let (n, k) = self.index.eval(wavelength_nm);
+        let around = interface.map_or(1.0, |media| media.incident.eval(wavelength_nm));
+        (n / around, k / around)
+    }
+
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
@@ -30,9 +37,8 @@ impl Conductor {
         Some(BsdfSample {
             wi: wo.reflected_about(n).renormalized(),
             weight: Lanes::from_fn(|lane| {
-                let (eta, k) = self.index.eval(lambda_nm[lane]);
-                let around = interface.map_or(1.0, |media| media.incident.eval(lambda_nm[lane]));
-                fresnel::conductor(cos_o, R::from_f64(eta / around), R::from_f64(k / around)).reflectance
+                let (n, k) = self.relative_index(lambda_nm[lane], interface);
+                fresnel::conductor(cos_o, R::from_f64(n), R::from_f64(k)).reflectance
             }),
             density: Density::Delta,
             lane_density: Lanes::ONE,

@@ -26,7 +26,7 @@ impl Dielectric {
     }
 
     /// n_transmitted / n_incident for a path that arrives on the outside, or on the inside.
-    fn eta<R: Real>(&self, lambda_nm: f64, from_outside: bool, interface: Option<Interface<'_>>) -> R {
+    pub(super) fn eta<R: Real>(&self, lambda_nm: f64, from_outside: bool, interface: Option<Interface<'_>>) -> R {
         if let Some(media) = interface {
             return R::from_f64(media.transmitted.eval(lambda_nm) / media.incident.eval(lambda_nm));
         }

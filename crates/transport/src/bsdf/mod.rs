@@ -33,8 +33,9 @@ pub use thin_dielectric::ThinDielectric;
 
 use crate::compiled;
 use crate::mis::Density;
+use crate::polarisation::{self, Retarder};
 use crate::spectral::PathSpectrum;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Real, Vec3, fresnel};
 use etalon_scene::MaterialKind;
 
 /// A direction drawn from a BSDF.
@@ -223,6 +224,41 @@ impl Bsdf {
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
             // Left out of this build.
             Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => None,
+        }
+    }
+
+    /// What it does to the polarisation of light that comes along −`wi` and leaves along `wo`; `None` depolarises.
+    pub(crate) fn retarder<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        at: &Shading<R>,
+        wo: Vec3<R>,
+        wi: Vec3<R>,
+    ) -> Option<Retarder<R, N>> {
+        let n = at.shading_normal();
+        let cos = n.dot(wo).abs().min(R::ONE).to_f64();
+        let of = |matrix: &dyn Fn(f64) -> [f64; 3]| {
+            let lanes = lambda_nm.0.map(matrix);
+            let part = |i: usize| Lanes::from_fn(|lane| R::from_f64(lanes[lane][i]));
+            Some(Retarder { a: part(0), c: part(1), d: part(2) })
+        };
+        match self {
+            Self::Mirror(_) => of(&|_| [0.0, -1.0, 0.0]),
+            Self::Conductor(metal) => of(&|nm| {
+                let (n, k) = metal.relative_index(nm, at.media());
+                polarisation::conductor_reflection(cos, n, k)
+            }),
+            Self::Dielectric(glass) => {
+                let reflects = at.normal.dot(wo) * at.normal.dot(wi) > R::ZERO;
+                of(&|nm| {
+                    let eta: f64 = glass.eta(nm, n.dot(wo) > R::ZERO, at.media());
+                    match fresnel::refracted_cosine(cos, eta) {
+                        Some(cos_t) if !reflects => polarisation::dielectric_transmission(cos, eta, cos_t),
+                        _ => polarisation::dielectric_reflection(cos, eta),
+                    }
+                })
+            }
+            Self::Lambert(_) | Self::RoughConductor(_) | Self::RoughDielectric(_) | Self::Black => None,
         }
     }
 

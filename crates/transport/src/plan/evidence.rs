@@ -2,7 +2,7 @@
 
 use super::EffectName;
 use super::grey::{same_shape, steps};
-use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
+use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, fresnel};
 use etalon_scene::{Filter, Light, LightKind, LightSampling, Material, MaterialKind, Object, Projection, Scene};
 
 /// What calls for an effect (`Ok`), or why nothing does (`Err`).
@@ -29,6 +29,7 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             Some(found) => Ok(found),
             None => nothing("no dielectric carries a priority"),
         },
+        EffectName::Polarisation => polarisation(scene, false),
         EffectName::WideFilter => match scene.film.filter {
             Filter::Box => nothing("a pixel is its own square"),
             Filter::Tent { radius_px } => Ok(format!("film: tent of radius {radius_px} px")),
@@ -123,6 +124,47 @@ fn nested(kind: &MaterialKind) -> Option<String> {
         | MaterialKind::Lambert { .. }
         | MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
+        | MaterialKind::Black => None,
+    }
+}
+
+/// Why polarisation is not carried where it could make no difference.
+pub(super) const UNPOLARISED: &str = "no surface polarises light";
+
+/// Whether polarisation is carried: only where it is asked for. Where it could matter, how much it could.
+pub(super) fn polarisation(scene: &Scene, asked_for: bool) -> Result<String, String> {
+    if asked_for {
+        return Ok("asked for by --polarised".to_owned());
+    }
+    match first_surface(scene, |material, _| polarises(&material.kind)) {
+        None => Err(UNPOLARISED.to_owned()),
+        Some(found) => Err(format!("not asked for (--polarised); the picture averages s and p at {found}")),
+    }
+}
+
+/// By how much averaging s and p at a surface can be off after two of them.
+fn polarises(kind: &MaterialKind) -> Option<String> {
+    match kind {
+        // Both reflections at Brewster's angle: R_s² where (R_s/2)² is counted, less half of the light.
+        MaterialKind::Dielectric { .. } => Some(
+            "up to a factor of 2 after two reflections at Brewster's angle; 3.6 % behind a plate of index 1.5 at 75°"
+                .to_owned(),
+        ),
+        MaterialKind::Conductor { index } => {
+            let nm = 555.0_f64.clamp(index.range_nm()[0], index.range_nm()[1]);
+            let (n, k) = index.eval(nm);
+            let most = (1..1000)
+                .map(|i| {
+                    let f = fresnel::conductor(f64::from(i) / 1000.0, n, k);
+                    ((f.reflectance_s - f.reflectance_p) / (f.reflectance_s + f.reflectance_p)).abs()
+                })
+                .fold(0.0, f64::max);
+            Some(format!("up to {:.1} % after two reflections", 100.0 * most * most))
+        }
+        MaterialKind::Mirror { .. }
+        | MaterialKind::Lambert { .. }
+        | MaterialKind::RoughConductor { .. }
+        | MaterialKind::RoughDielectric { .. }
         | MaterialKind::Black => None,
     }
 }

@@ -37,13 +37,15 @@ pub enum EffectName {
     SpecularChains,
     /// Solids of different media touch, overlap or hold each other.
     NestedDielectrics,
+    /// Light is polarised by what reflects and refracts it.
+    Polarisation,
     /// A pixel looks beyond its own square.
     WideFilter,
 }
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Lens,
@@ -52,6 +54,7 @@ impl EffectName {
         Self::Environment,
         Self::SpecularChains,
         Self::NestedDielectrics,
+        Self::Polarisation,
         Self::WideFilter,
     ];
 
@@ -66,6 +69,7 @@ impl EffectName {
             Self::Environment => "environment",
             Self::SpecularChains => "specular-chains",
             Self::NestedDielectrics => "nested-dielectrics",
+            Self::Polarisation => "polarisation",
             Self::WideFilter => "wide-filter",
         }
     }
@@ -83,6 +87,7 @@ impl EffectName {
             Self::Environment => "light from infinity is left out",
             Self::SpecularChains => "mirrors, metals and glass are black",
             Self::NestedDielectrics => "each solid is treated as if it stood in vacuum",
+            Self::Polarisation => "light is taken for unpolarised at every surface",
             Self::WideFilter => "a pixel is its own square",
         }
     }
@@ -93,7 +98,7 @@ impl EffectName {
             Self::Wavelengths | Self::Dispersion | Self::Lens | Self::ShadowRays | Self::Mis | Self::Environment => {
                 true
             }
-            Self::NestedDielectrics => true,
+            Self::NestedDielectrics | Self::Polarisation => true,
             // They are what the surfaces, or the film, are made of.
             Self::SpecularChains | Self::WideFilter => false,
         }
@@ -197,7 +202,11 @@ impl Plan {
         let effects: Vec<Effect> = EffectName::ALL
             .into_iter()
             .map(|name| {
-                let (called_for, because) = match evidence::of(name, scene) {
+                let evidence = match name {
+                    EffectName::Polarisation => evidence::polarisation(scene, study.polarised),
+                    _ => evidence::of(name, scene),
+                };
+                let (called_for, because) = match evidence {
                     Ok(called_for) => (true, called_for),
                     Err(otherwise) => (false, otherwise),
                 };
@@ -215,7 +224,7 @@ impl Plan {
             .collect();
         let runs = |name| effects.iter().any(|effect: &Effect| effect.name == name && effect.on);
         // Without wavelengths there is none that could go another way.
-        let lane_model = if runs(EffectName::Dispersion) {
+        let lane_model = if runs(EffectName::Dispersion) || runs(EffectName::Polarisation) {
             LaneModel::Hero
         } else if runs(EffectName::Wavelengths) {
             LaneModel::Shared
@@ -224,9 +233,10 @@ impl Plan {
         };
         let i = &scene.integrator;
         Ok(Self {
-            kernel: kernel(i.precision, lane_model).name,
+            kernel: kernel(i.precision, lane_model, runs(EffectName::Polarisation)).name,
             lane_model,
             precision: match i.precision {
+                _ if runs(EffectName::Polarisation) => "f64",
                 Precision::F32 => "f32",
                 Precision::F64 => "f64",
             },

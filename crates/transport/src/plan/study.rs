@@ -13,6 +13,8 @@ pub struct Study {
     pub force: Vec<EffectName>,
     /// Effects to leave out although the scene calls for them: the picture is then an approximation.
     pub without: Vec<EffectName>,
+    /// Whether light is to be followed with its polarisation.
+    pub polarised: bool,
 }
 
 /// Why a study makes no sense.
@@ -25,7 +27,7 @@ pub enum StudyError {
     #[error("{0} cannot be forced: it is what surfaces and film are made of, and without them there is nothing to do")]
     NothingToForce(EffectName),
     /// The integrator's setting stands against it.
-    #[error("{effect} cannot be forced: {because}")]
+    #[error("{effect} cannot be simulated: {because}")]
     Contradicted {
         /// The effect.
         effect: EffectName,
@@ -52,6 +54,19 @@ impl Study {
     }
 
     pub(super) fn check(&self, scene: &Scene) -> Result<(), StudyError> {
+        let rough = |object: &etalon_scene::Object| match scene.materials[object.material].kind {
+            MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => true,
+            MaterialKind::Lambert { .. }
+            | MaterialKind::Mirror { .. }
+            | MaterialKind::Conductor { .. }
+            | MaterialKind::Dielectric { .. }
+            | MaterialKind::Black => false,
+        };
+        if let Some(object) = scene.placed_objects().find(|object| self.polarised && rough(object)) {
+            let because =
+                format!("\"{}\" is rough, and what roughness does to polarisation is not simulated", object.name);
+            return Err(StudyError::Contradicted { effect: EffectName::Polarisation, because });
+        }
         for &effect in &self.force {
             if self.leaves_out(effect) {
                 return Err(StudyError::Both(effect));
@@ -64,6 +79,8 @@ impl Study {
             let contradicted = match effect {
                 EffectName::Mis => sampling != LightSampling::Mis,
                 EffectName::ShadowRays => sampling == LightSampling::Bsdf,
+                // Where surfaces polarise, following it is no work without a result.
+                EffectName::Polarisation => because != evidence::UNPOLARISED,
                 EffectName::Lens => matches!(scene.camera.projection, Projection::Orthographic { .. }),
                 _ => false,
             };
@@ -131,6 +148,8 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 }
             }
         }
+        // It is not in the scene.
+        EffectName::Polarisation => {}
         EffectName::WideFilter => scene.film.filter = Filter::Box,
     }
 }

@@ -1,0 +1,163 @@
+//! Polarised light in whole renders.
+
+use etalon_oracle::statistics::Welford;
+use etalon_oracle::truths::{Claim, truths};
+use etalon_scene::Scene;
+use etalon_transport::plan::EffectName;
+use etalon_transport::{Control, Prepared, Study, prepare_study};
+use serde_json::json;
+
+fn parse(json: &str) -> Scene {
+    etalon_scene::parse(json, "test").unwrap_or_else(|e| panic!("{e:?}")).0
+}
+
+fn prepared(scene: &Scene, polarised: bool) -> Prepared {
+    prepare_study(scene, &Study { polarised, ..Study::default() }).unwrap()
+}
+
+/// Mean Y and its standard error over 32 seeds.
+fn mean_y(scene: &Scene, polarised: bool, spp: u32) -> Welford {
+    let mut estimate = Welford::new();
+    for seed in 0..32 {
+        let mut scene = scene.clone();
+        (scene.integrator.seed, scene.integrator.spp) = (seed, spp);
+        let prepared = prepared(&scene, polarised);
+        let film = prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap();
+        assert_eq!(film.counters.nonfinite, 0);
+        estimate.push(film.xyz().map(|xyz| xyz[1]).sum::<f64>() / f64::from(film.width() * film.height()));
+    }
+    estimate
+}
+
+/// A glass plate at 45, 75 and 89°: unpolarised light that is followed with its polarisation, against the mean of s and p; and
+/// the kernel without, against s and p averaged at each face. |z| < 5 on each; the errors, asserted below a third of the
+/// difference of the two, tell one from the other by more than their sum.
+#[test]
+fn plates_read_what_polarised_light_does_and_the_other_kernel_what_averaged_light_does() {
+    let mut tried = 0;
+    for truth in truths().into_iter().filter(|truth| truth.claims.contains(&Claim::CarriesPolarisation)) {
+        let averaged_name = truth.name.replace("-polarised", "");
+        let Some(averaged) = truths().into_iter().find(|other| other.name == averaged_name) else { continue };
+        let scene = parse(&truth.scene);
+        let apart = (truth.value - averaged.value).abs();
+        for (polarised, value) in [(true, truth.value), (false, averaged.value)] {
+            let read = mean_y(&scene, polarised, 16);
+            let (mean, error) = (read.mean(), read.standard_error());
+            assert!(
+                ((mean - value) / error).abs() < 5.0,
+                "{} {polarised}: {mean} ± {error} is not {value}",
+                truth.name
+            );
+            // At 89° the two differ by 0.7 %, which takes more samples to see than a test has.
+            assert!(3.0 * error < apart || truth.name.contains("89"), "{}: {error} of {apart}", truth.name);
+        }
+        tried += 1;
+    }
+    assert!(tried >= 3);
+}
+
+/// A plate of index 1.5 under Brewster's angle, a lamp in the mirrored direction: every reflection, at either face, leaves s
+/// alone. The eye looks along the plane of incidence with s upward in the picture, so S₁ = −S₀ in each sample.
+#[test]
+fn at_brewsters_angle_reflected_light_is_fully_polarised_in_s1() {
+    let (sine, cosine) = 1.5_f64.atan().sin_cos();
+    let scene = parse(
+        &json!({
+            "etalon": 1,
+            "camera": {
+                "type": "orthographic", "position_m": [sine, 0, cosine], "look_at_m": [0, 0, 0], "up": [0, 1, 0], "height_m": 1e-3
+            },
+            "film": {"width": 8, "height": 8},
+            "objects": [
+                {
+                    "shape": {"type": "box", "min_m": [-20, -20, -0.01], "max_m": [20, 20, 0]},
+                    "material": {"type": "dielectric", "interior": 1.5}
+                },
+                {
+                    "shape": {"type": "disk", "center_m": [-sine, 0, cosine], "normal": [sine, 0, -cosine], "radius_m": 0.5},
+                    "material": {"type": "black"}, "emission": {"radiance": 1}
+                }
+            ],
+            "integrator": {"spp": 16}
+        })
+        .to_string(),
+    );
+    let prepared = prepared(&scene, true);
+    let (mut lit, mut sum) = (0, 0.0);
+    for pixel in 0..64 {
+        for sample in 0..16 {
+            let path = prepared.replay(pixel % 8, pixel / 8, sample);
+            let [s1, s2, s3] = path.stokes.expect("the kernel carries polarisation");
+            for (lane, s0) in path.radiance.iter().enumerate() {
+                // r_p vanishes at the angle, which is rounded.
+                assert!((s1[lane] + s0).abs() < 1e-12 && s2[lane].abs() < 1e-9 && s3[lane].abs() < 1e-9);
+                lit += usize::from(*s0 > 0.0);
+                sum += s0;
+            }
+        }
+    }
+    assert!(lit > 100 && sum > 0.0, "{lit} of 4096 lanes have light");
+}
+
+/// Two surfaces of glass under Brewster's angle, one after the other, and a lamp where the light that both reflect comes from.
+/// With one plane of incidence s passes both: R_s²/2. With crossed planes what is s at one is p at the other, and nothing is
+/// left. Averaged light does not know the difference and reads (R_s/2)² both times: as a frame would that is not turned.
+#[test]
+fn crossed_brewster_mirrors_are_dark_and_parallel_ones_twice_as_bright_as_averaged_light() {
+    let (sine, cosine) = 1.5_f64.atan().sin_cos();
+    let scene = |crossed: bool| {
+        // A ray from the eye meets the first mirror at the origin, goes up along z and meets the second at (0, 0, 5).
+        let first = [sine, 0.0, cosine];
+        let second = if crossed { [0.0, sine, -cosine] } else { [sine, 0.0, -cosine] };
+        let eye = [0, 1, 2].map(|i| -3.0 * (f64::from(u8::from(i == 2)) - 2.0 * cosine * first[i]));
+        let onward = [0, 1, 2].map(|i| f64::from(u8::from(i == 2)) + 2.0 * cosine * second[i]);
+        let lamp = [2.0 * onward[0], 2.0 * onward[1], 5.0 + 2.0 * onward[2]];
+        let disk = |center: [f64; 3], normal: [f64; 3]| json!({"type": "disk", "center_m": center, "normal": normal, "radius_m": 0.5});
+        let glass = json!({"type": "dielectric", "interior": 1.5, "exterior": 1});
+        parse(
+            &json!({
+                "etalon": 1,
+                "camera": {"type": "orthographic", "position_m": eye, "look_at_m": [0, 0, 0], "up": [0, 1, 0], "height_m": 1e-3},
+                "film": {"width": 8, "height": 8},
+                "objects": [
+                    {"shape": disk([0.0; 3], first), "material": glass},
+                    {"shape": disk([0.0, 0.0, 5.0], second), "material": glass},
+                    {
+                        "shape": disk(lamp, onward.map(|v| -v)),
+                        "material": {"type": "black"}, "emission": {"radiance": 1}
+                    }
+                ],
+                "integrator": {"roulette": false}
+            })
+            .to_string(),
+        )
+    };
+    let r_s = ((1.0 - 2.25) / (1.0 + 2.25_f64)).powi(2);
+    for (crossed, polarised, value) in [
+        (false, true, 0.5 * r_s * r_s),
+        (false, false, 0.25 * r_s * r_s),
+        (true, false, 0.25 * r_s * r_s),
+        (true, true, 0.0),
+    ] {
+        let read = mean_y(&scene(crossed), polarised, 64);
+        let (mean, error) = (read.mean(), read.standard_error());
+        // Brewster's angle is rounded, so that a little p is left, with probability one in a thousand millions.
+        assert!((mean - value).abs() <= 5.0 * error + 1e-9, "{crossed} {polarised}: {mean} ± {error} is not {value}");
+        assert!(error < 0.1 * r_s * r_s * 0.25 || value == 0.0, "the test sees too little: {error}");
+        assert!(value > 0.0 || mean < 1e-9, "{mean} comes through crossed mirrors");
+    }
+}
+
+#[test]
+fn a_scene_that_polarises_nothing_is_the_same_to_the_bit() {
+    let scene =
+        parse(&std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/cornell.json")).unwrap());
+    let mut scene = scene;
+    (scene.film.width, scene.film.height, scene.integrator.spp) = (24, 24, 4);
+    let film = |polarised| {
+        let prepared = prepared(&scene, polarised);
+        assert_eq!(prepared.plan().runs(EffectName::Polarisation), polarised);
+        prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap()
+    };
+    assert!(film(true).pixels().eq(film(false).pixels()));
+}
