@@ -91,8 +91,29 @@ fn what_was_not_needed_can_be_measured() {
     let report = etalon_line("explain {} --measure --json", [&small]).expect(0).json();
     let costs = report["costs"].as_array().unwrap();
     let names: Vec<_> = costs.iter().map(|cost| cost["effect"].as_str().unwrap()).collect();
-    assert_eq!(names, ["wavelengths", "dispersion", "lens", "shadow-rays", "mis", "nested-dielectrics"]);
+    assert_eq!(
+        names,
+        ["wavelengths", "dispersion", "lens", "shadow-rays", "mis", "nested-dielectrics", "polarisation"]
+    );
     assert!(costs.iter().all(|cost| cost["ratio"].as_f64().unwrap() > 0.0));
     let text = etalon_line("explain {} --measure", [&small]).expect(0).stdout;
     assert_eq!(text.matches("(would cost ").count(), names.len(), "{text}");
+}
+
+#[test]
+fn polarisation_is_followed_where_it_is_asked_for_and_what_it_would_change_is_said_elsewhere() {
+    let glass = scene("cornell-glass.json");
+    let plain = etalon_line("explain {} --json", [&glass]).expect(0).json();
+    let polarised = etalon_line("explain {} --json --polarised", [&glass]).expect(0).json();
+    let effect = |plan: &Value| {
+        let effects = plan["plan"]["effects"].as_array().unwrap();
+        effects.iter().find(|effect| effect["name"] == "polarisation").unwrap().clone()
+    };
+    assert_eq!((&effect(&plain)["on"], &effect(&polarised)["on"]), (&Value::Bool(false), &Value::Bool(true)));
+    assert!(effect(&plain)["because"].as_str().unwrap().contains("factor of 2"));
+    assert_eq!(polarised["plan"]["kernel"], "polarised-hero-4-f64");
+    let path = etalon_line("render {} --pixel 300,300 --sample 0 --polarised --json", [&glass]).expect(0).json();
+    assert_eq!(path["stokes"].as_array().unwrap().len(), 3);
+    let path = etalon_line("render {} --pixel 300,300 --sample 0 --json", [&glass]).expect(0).json();
+    assert!(path.get("stokes").is_none());
 }

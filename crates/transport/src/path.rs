@@ -76,6 +76,7 @@ enum Step<R> {
 
 impl World<'_> {
     /// Radiance that arrives along `ray` at each wavelength.
+    #[allow(clippy::too_many_arguments, reason = "what a path starts with, draws from, and tells")]
     pub(crate) fn radiance<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
         &self,
         mut ray: Ray<R>,

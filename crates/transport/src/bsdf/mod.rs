@@ -258,7 +258,13 @@ impl Bsdf {
                     }
                 })
             }
-            Self::Lambert(_) | Self::RoughConductor(_) | Self::RoughDielectric(_) | Self::Black => None,
+            Self::Lambert(_) | Self::OrenNayar(_) | Self::Black => None,
+            // A study of polarisation refuses scenes with these.
+            Self::RoughConductor(_)
+            | Self::RoughDielectric(_)
+            | Self::Plastic(_)
+            | Self::ThinDielectric(_)
+            | Self::Blend(_) => None,
         }
     }
 

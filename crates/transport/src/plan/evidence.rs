@@ -136,20 +136,29 @@ pub(super) fn polarisation(scene: &Scene, asked_for: bool) -> Result<String, Str
     if asked_for {
         return Ok("asked for by --polarised".to_owned());
     }
-    match first_surface(scene, |material, _| polarises(&material.kind)) {
+    let worst = scene
+        .placed_objects()
+        .filter_map(|object| {
+            let material = &scene.materials[object.material];
+            polarises(&material.kind).map(|(share, how)| (share, format!("{}: {how}", surface(object, material))))
+        })
+        // The first of the worst.
+        .reduce(|worst, other| if other.0 > worst.0 { other } else { worst });
+    match worst {
         None => Err(UNPOLARISED.to_owned()),
-        Some(found) => Err(format!("not asked for (--polarised); the picture averages s and p at {found}")),
+        Some((_, found)) => Err(format!("not asked for (--polarised); the picture averages s and p at {found}")),
     }
 }
 
-/// By how much averaging s and p at a surface can be off after two of them.
-fn polarises(kind: &MaterialKind) -> Option<String> {
+/// By which share averaging s and p at a surface can be off after two of them, (R_s − R_p)²/(R_s + R_p)² at its largest, and
+/// that in words.
+fn polarises(kind: &MaterialKind) -> Option<(f64, String)> {
     match kind {
-        // Both reflections at Brewster's angle: R_s² where (R_s/2)² is counted, less half of the light.
-        MaterialKind::Dielectric { .. } => Some(
-            "up to a factor of 2 after two reflections at Brewster's angle; 3.6 % behind a plate of index 1.5 at 75°"
-                .to_owned(),
-        ),
+        // At Brewster's angle.
+        MaterialKind::Dielectric { .. } => {
+            let how = "up to a factor of 2 after two reflections, by 3.6 % behind a plate of index 1.5 at 75°";
+            Some((1.0, how.to_owned()))
+        }
         MaterialKind::Conductor { index } => {
             let nm = 555.0_f64.clamp(index.range_nm()[0], index.range_nm()[1]);
             let (n, k) = index.eval(nm);
@@ -159,12 +168,17 @@ fn polarises(kind: &MaterialKind) -> Option<String> {
                     ((f.reflectance_s - f.reflectance_p) / (f.reflectance_s + f.reflectance_p)).abs()
                 })
                 .fold(0.0, f64::max);
-            Some(format!("up to {:.1} % after two reflections", 100.0 * most * most))
+            let share = most * most;
+            Some((share, format!("up to {:.2} % after two reflections", 100.0 * share)))
         }
-        MaterialKind::Mirror { .. }
-        | MaterialKind::Lambert { .. }
-        | MaterialKind::RoughConductor { .. }
-        | MaterialKind::RoughDielectric { .. }
+        MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Plastic { .. } => {
+            Some((1.0, "its polarisation is not simulated".to_owned()))
+        }
+        MaterialKind::ThinDielectric { .. } => Some((1.0, "its polarisation is not simulated".to_owned())),
+        MaterialKind::Blend { first, second, .. } => polarises(first).or_else(|| polarises(second)),
+        MaterialKind::Lambert { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::OrenNayar { .. }
         | MaterialKind::Black => None,
     }
 }

@@ -54,17 +54,21 @@ impl Study {
     }
 
     pub(super) fn check(&self, scene: &Scene) -> Result<(), StudyError> {
-        let rough = |object: &etalon_scene::Object| match scene.materials[object.material].kind {
-            MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } => true,
+        let unknown = |object: &etalon_scene::Object| match scene.materials[object.material].kind {
+            MaterialKind::RoughConductor { .. }
+            | MaterialKind::RoughDielectric { .. }
+            | MaterialKind::Plastic { .. }
+            | MaterialKind::ThinDielectric { .. }
+            | MaterialKind::Blend { .. } => true,
             MaterialKind::Lambert { .. }
             | MaterialKind::Mirror { .. }
             | MaterialKind::Conductor { .. }
             | MaterialKind::Dielectric { .. }
+            | MaterialKind::OrenNayar { .. }
             | MaterialKind::Black => false,
         };
-        if let Some(object) = scene.placed_objects().find(|object| self.polarised && rough(object)) {
-            let because =
-                format!("\"{}\" is rough, and what roughness does to polarisation is not simulated", object.name);
+        if let Some(object) = scene.placed_objects().find(|object| self.polarised && unknown(object)) {
+            let because = format!("what the material of \"{}\" does to polarisation is not known", object.name);
             return Err(StudyError::Contradicted { effect: EffectName::Polarisation, because });
         }
         for &effect in &self.force {
