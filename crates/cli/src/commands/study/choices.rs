@@ -68,11 +68,17 @@ pub(super) fn of(scene: &Scene, plan: &Plan) -> Vec<Choice> {
             continue;
         }
         if effect.on {
-            let study = Study { force: Vec::new(), without: vec![effect.name] };
+            let study = Study { without: vec![effect.name], ..Study::default() };
             add("effects", &format!("without {}", effect.name), study, &|_| ());
         } else if effect.name.can_be_forced() {
-            let study = Study { force: vec![effect.name], without: Vec::new() };
-            add("effects", &format!("{} forced", effect.name), study, &|_| ());
+            let (study, how) = match effect.name {
+                // It changes the picture, where anything polarises.
+                EffectName::Polarisation => (Study { polarised: true, ..Study::default() }, "followed"),
+                forced => (Study { force: vec![forced], ..Study::default() }, "forced"),
+            };
+            if Plan::new(scene, &study).is_ok() {
+                add("effects", &format!("{} {how}", effect.name), study, &|_| ());
+            }
         }
     }
     choices
