@@ -145,20 +145,25 @@ impl Cylinder {
     #[inline]
     pub(crate) fn intersect(&self, query: &Query, t_max: f64, leaves: bool) -> Option<RawHit> {
         let (round, flat) = self.spans(query)?;
-        let hit = |t: f64| (0.0 < t && t < t_max).then_some(RawHit { t, uv: [0.0; 2] });
-        if self.capped {
+        let t = if self.capped {
             let (near, far) = (round[0].max(flat[0]), round[1].min(flat[1]));
-            return match () {
+            match () {
                 () if near > far => None,
-                () if leaves => (near + far > 0.0).then(|| hit(far)).flatten(),
-                () => hit(near).or_else(|| hit(far).filter(|_| near <= 0.0)),
-            };
-        }
-        let on_wall = |t: f64| (flat[0] <= t && t <= flat[1]).then(|| hit(t)).flatten();
-        if leaves {
-            return (round[0] + round[1] > 0.0).then(|| on_wall(round[1])).flatten();
-        }
-        on_wall(round[0]).or_else(|| on_wall(round[1]))
+                () if leaves => (near + far > 0.0).then_some(far),
+                () => Some(if near > 0.0 { near } else { far }),
+            }
+        } else {
+            let on_wall = |t: &f64| 0.0 < *t && flat[0] <= *t && *t <= flat[1];
+            // Of a line that touches the wall the two may have changed places.
+            let (near, far) = (round[0].min(round[1]), round[0].max(round[1]));
+            if leaves {
+                (near + far > 0.0).then_some(far).filter(on_wall)
+            } else {
+                [near, far].into_iter().find(on_wall)
+            }
+        };
+        // The limit comes last: which of the points counts must not depend on it.
+        t.filter(|&t| 0.0 < t && t < t_max).map(|t| RawHit { t, uv: [0.0; 2] })
     }
 
     #[inline]

@@ -159,3 +159,12 @@ fn cylinders_without_extent_or_numbers_are_refused() {
     assert_eq!(Cylinder::new(o, x * 1e40, 1.0, true), Err(OutOfRange));
     assert_eq!(Cylinder::new(o, x * 1e-40, 1.0, true), Err(OutOfRange));
 }
+
+#[test]
+fn two_equal_tubes_that_a_ray_touches_are_met_at_one_distance() {
+    // The roots of a touching ray may round past each other; which of them counts must not depend on what was met before.
+    let tube = |_| Cylinder::new(v(0.0, 4.6875, 4.625), v(0.0, 0.9375, 4.9375), 4.625, false).unwrap().into();
+    let ray = Ray::free(v(4.625, 2.875, 4.625), v(0.0, 4.625, 6.5));
+    let hits = [1, 2, 20].map(|n| Geometry::build((0..n).map(tube).collect()).unwrap().closest_hit(&ray));
+    assert!(hits[0].is_some() && hits.iter().all(|hit| *hit == hits[0]), "{hits:?}");
+}
