@@ -122,3 +122,11 @@ fn a_sphere_below_the_resolution_of_its_place_still_has_a_normal() {
     let p = geometry.surface(&ray, &geometry.closest_hit(&ray).expect("from within"));
     assert!((p.normal.length() - 1.0).abs() < 1e-15 && p.position.is_finite() && p.position_error < 1e-15, "{p:?}");
 }
+
+#[test]
+fn a_hit_whose_parameter_single_precision_cannot_hold_is_none_there() {
+    let geometry = Geometry::build(vec![Sphere::new(v(0.0, 0.0, 0.0), 1.0).unwrap().into()]).unwrap();
+    let (origin, direction) = (v(0.0, 0.0, -1e20), v(0.0, 0.0, 1e-30));
+    assert!(geometry.closest_hit(&Ray::free(origin, direction)).is_some());
+    assert!(geometry.closest_hit(&Ray::<f32>::free(origin.cast(), direction.cast())).is_none());
+}
