@@ -3,11 +3,13 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use etalon_scene::import::{Imported, import, is_model};
 use etalon_scene::{FileUse, LoadError, Scene};
-use miette::Report;
+use miette::{Report, Severity, miette};
 use sha2::{Digest, Sha256};
 
 use crate::failure::Failure;
+pub(crate) use crate::scene_report::scene_failure as refused_scene;
 use crate::scene_report::{scene_failure, scene_warnings};
 
 /// A scene and the file it came from.
@@ -29,12 +31,34 @@ pub(crate) fn load(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedSce
         }
         LoadError::Invalid(errors) => scene_failure(errors),
     };
+    if is_model(path) {
+        return load_model(path, film_size);
+    }
     let name = path.display().to_string();
     let text = etalon_scene::json::load_text(path).map_err(refused)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let loaded = etalon_scene::parse_in(&text, &name, Some(folder), film_size).map_err(scene_failure)?;
     let sha256 = scene_sha256(&text, &loaded.files);
     Ok(LoadedScene { scene: loaded.scene, warnings: scene_warnings(&name, text, loaded.warnings), sha256 })
+}
+
+/// A model as a scene, with a folder's name before the names of its files.
+pub(crate) fn import_model(path: &Path, prefix: &str) -> Result<Imported, Failure> {
+    import(path, prefix).map_err(|error| Failure::input(miette!(code = "model", "{error}")))
+}
+
+/// A model rendered directly: what it does not say is added, what is not honoured listed, both as warnings.
+fn load_model(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedScene, Failure> {
+    let imported = import_model(path, "")?;
+    let name = format!("{} as a scene", path.display());
+    let loaded = etalon_scene::parse_imported(&imported, &name, film_size).map_err(scene_failure)?;
+    let sha256 = scene_sha256(&imported.text, &loaded.files);
+    let note = |code: &str, text: String| miette!(severity = Severity::Warning, code = code.to_owned(), "{text}");
+    let mut warnings: Vec<Report> = imported.added.into_iter().map(|added| note("added", added)).collect();
+    let left_out = imported.left_out.into_iter().map(|l| note("not-honoured", format!("{}: {}", l.place, l.what)));
+    warnings.extend(left_out);
+    warnings.extend(scene_warnings(&name, imported.text, loaded.warnings));
+    Ok(LoadedScene { scene: loaded.scene, warnings, sha256 })
 }
 
 /// The hash of a scene: that of its text, or, where it refers to files, that of the list of all hashes, a line each as

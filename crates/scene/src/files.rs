@@ -10,8 +10,10 @@ use std::sync::Arc;
 use sha2::{Digest, Sha256};
 
 use crate::format::Shading;
+use crate::import::ImportedFile;
 use crate::json::{Code, Reader, Spanned};
 use crate::model::Mesh;
+use crate::texture::{Encoding, Image};
 
 /// The largest file that a scene may refer to, bytes: 4 GiB.
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
@@ -37,13 +39,28 @@ pub(crate) struct MeshKey {
 #[derive(Debug)]
 pub(crate) struct Files {
     folder: Option<PathBuf>,
+    /// Files in memory, by name.
+    given: HashMap<String, Vec<u8>>,
     meshes: HashMap<MeshKey, Option<Arc<Mesh>>>,
+    images: HashMap<(String, Encoding), Option<Arc<Image>>>,
     used: Vec<FileUse>,
 }
 
 impl Files {
     pub(crate) fn new(folder: Option<&Path>) -> Self {
-        Self { folder: folder.map(Path::to_owned), meshes: HashMap::new(), used: Vec::new() }
+        Self {
+            folder: folder.map(Path::to_owned),
+            given: HashMap::new(),
+            meshes: HashMap::new(),
+            images: HashMap::new(),
+            used: Vec::new(),
+        }
+    }
+
+    /// Files that are in memory.
+    pub(crate) fn given(files: &[ImportedFile]) -> Self {
+        let given = files.iter().map(|file| (file.name.clone(), file.bytes.clone())).collect();
+        Self { given, ..Self::new(None) }
     }
 
     /// The files that have been read.
@@ -53,6 +70,11 @@ impl Files {
 
     /// The bytes of a file; why there are none is reported at the name.
     pub(crate) fn bytes(&mut self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Vec<u8>> {
+        // Each is asked for once: meshes and images are remembered.
+        if let Some(bytes) = self.given.get_mut(&name.value).map(std::mem::take) {
+            self.used.push(FileUse { name: name.value.clone(), sha256: sha256(&bytes) });
+            return Some(bytes);
+        }
         let Some(folder) = &self.folder else {
             let message = format!("\"{}\" cannot be found: this scene is a text without a folder", name.value);
             reader.error(Code::File, name.at, message);
@@ -83,10 +105,37 @@ impl Files {
         self.meshes.insert(key, made.clone());
         made
     }
+
+    /// The image of a file; why there is none is reported at the name.
+    pub(crate) fn image(
+        &mut self,
+        name: &Spanned<String>,
+        encoding: Encoding,
+        reader: &mut Reader<'_>,
+    ) -> Option<Arc<Image>> {
+        let key = (name.value.clone(), encoding);
+        if let Some(known) = self.images.get(&key) {
+            return known.clone();
+        }
+        let made = self.bytes(name, reader).and_then(|bytes| match Image::decode(&bytes, encoding) {
+            Ok((image, left_out)) => {
+                if let Some(what) = left_out {
+                    reader.warning(Code::LeftOut, name.at, format!("{}: {what}", name.value), None);
+                }
+                Some(Arc::new(image))
+            }
+            Err(why) => {
+                reader.error(Code::ImageFile, name.at, format!("{}: {why}", name.value));
+                None
+            }
+        });
+        self.images.insert(key, made.clone());
+        made
+    }
 }
 
 /// The bytes of a file of at most [`MAX_FILE_BYTES`].
-fn read(path: &Path) -> Result<Vec<u8>, String> {
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let kind = file.metadata().map_err(|error| error.to_string())?;
     if !kind.is_file() {

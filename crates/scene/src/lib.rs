@@ -21,10 +21,12 @@
 
 mod files;
 mod format;
+pub mod import;
 pub mod json;
 pub mod mesh;
 pub mod model;
 mod problem;
+mod texture;
 mod vector;
 
 use std::path::Path;
@@ -32,6 +34,7 @@ use std::path::Path;
 pub use files::{FileUse, MAX_FILE_BYTES};
 pub use model::*;
 pub use problem::{Code, LoadError, Problem, Related, SceneErrors, Severity, Span};
+pub use texture::{Encoding, Image, ImageTexture, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, Texels, TextureFilter, Wrap};
 
 /// The JSON Schema (2020-12) of scene files.
 ///
@@ -86,7 +89,27 @@ pub fn parse_in(
     folder: Option<&Path>,
     size: Option<[u32; 2]>,
 ) -> Result<Loaded, SceneErrors> {
-    let mut files = files::Files::new(folder);
+    read_scene(text, file_name, files::Files::new(folder), size)
+}
+
+/// Reads an imported scene, with a film of another width and height, in pixels, if they are given.
+///
+/// # Errors
+/// As [`parse`]: what the model holds may make no sense as a scene.
+pub fn parse_imported(
+    imported: &import::Imported,
+    file_name: &str,
+    size: Option<[u32; 2]>,
+) -> Result<Loaded, SceneErrors> {
+    read_scene(&imported.text, file_name, files::Files::given(&imported.files), size)
+}
+
+fn read_scene(
+    text: &str,
+    file_name: &str,
+    mut files: files::Files,
+    size: Option<[u32; 2]>,
+) -> Result<Loaded, SceneErrors> {
     let read =
         json::read(text, file_name, |form: format::SceneForm, reader| format::scene(&form, size, &mut files, reader));
     read.map(|(scene, warnings)| Loaded { scene, warnings, files: files.used() })

@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use crate::texture::ImageTexture;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 
 /// A whole scene.
@@ -130,12 +131,12 @@ pub enum MaterialKind {
     /// Ideal diffuse reflection on both sides.
     Lambert {
         /// Albedo, in [0, 1] at every wavelength.
-        reflectance: Spectrum,
+        reflectance: SpectrumTexture,
     },
     /// Ideal mirror on both sides.
     Mirror {
         /// Reflectance, in [0, 1] at every wavelength, at every angle.
-        reflectance: Spectrum,
+        reflectance: SpectrumTexture,
     },
     /// Smooth metal: Fresnel reflection from a complex index of refraction, seen from vacuum.
     Conductor {
@@ -204,6 +205,89 @@ pub enum MaterialKind {
     },
     /// Reflects nothing (an emitter that is only a light, an absorber).
     Black,
+}
+
+impl MaterialKind {
+    /// The first image that varies it over a surface.
+    pub fn image(&self) -> Option<&ImageTexture> {
+        match self {
+            Self::Lambert { reflectance } | Self::Mirror { reflectance } => reflectance.image(),
+            Self::Blend { first, second, .. } => first.image().or_else(|| second.image()),
+            Self::Conductor { .. }
+            | Self::Dielectric { .. }
+            | Self::RoughConductor { .. }
+            | Self::RoughDielectric { .. }
+            | Self::OrenNayar { .. }
+            | Self::Plastic { .. }
+            | Self::ThinDielectric { .. }
+            | Self::Black => None,
+        }
+    }
+
+    /// Changes every reflectance that may vary over a surface.
+    pub fn change_textures(&mut self, change: &dyn Fn(&mut SpectrumTexture)) {
+        match self {
+            Self::Lambert { reflectance } | Self::Mirror { reflectance } => change(reflectance),
+            Self::Blend { first, second, .. } => {
+                first.change_textures(change);
+                second.change_textures(change);
+            }
+            Self::Conductor { .. }
+            | Self::Dielectric { .. }
+            | Self::RoughConductor { .. }
+            | Self::RoughDielectric { .. }
+            | Self::OrenNayar { .. }
+            | Self::Plastic { .. }
+            | Self::ThinDielectric { .. }
+            | Self::Black => {}
+        }
+    }
+}
+
+/// A spectrum that may vary over a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SpectrumTexture {
+    /// The same everywhere.
+    Uniform(Spectrum),
+    /// An image, whose colours are reflectances of a linear Rec. 709 colour under D65 in [0, 1]
+    /// ([`RgbBasis`](etalon_optics::spectrum::RgbBasis)).
+    Image(ImageTexture),
+}
+
+impl SpectrumTexture {
+    /// Whether it is known to be zero everywhere.
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Self::Uniform(spectrum) => spectrum.is_zero(),
+            Self::Image(texture) => texture.factor == [0.0; 3],
+        }
+    }
+
+    /// Whether it is the same at every wavelength, as far as is known.
+    pub fn is_grey(&self) -> bool {
+        match self {
+            Self::Uniform(spectrum) => spectrum.is_constant(),
+            Self::Image(texture) => {
+                texture.factor[0] == texture.factor[1]
+                    && texture.factor[1] == texture.factor[2]
+                    && texture.image.is_grey()
+            }
+        }
+    }
+
+    /// Its image, if it has one.
+    pub fn image(&self) -> Option<&ImageTexture> {
+        match self {
+            Self::Uniform(_) => None,
+            Self::Image(texture) => Some(texture),
+        }
+    }
+}
+
+impl From<Spectrum> for SpectrumTexture {
+    fn from(spectrum: Spectrum) -> Self {
+        Self::Uniform(spectrum)
+    }
 }
 
 /// A thing with a surface.

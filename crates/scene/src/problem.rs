@@ -139,6 +139,10 @@ codes! {
     FileFormat = "file-format",
     /// A mesh file that is damaged, or holds what makes no sense.
     MeshFile = "mesh-file",
+    /// An image file that is damaged, of a kind that is not read, or larger than is read.
+    ImageFile = "image-file",
+    /// An image over a surface without texture coordinates.
+    NoTextureCoordinates = "no-texture-coordinates",
     /// Something in a file that is not used (a warning).
     LeftOut = "left-out",
     /// Triangles without area were left out (a warning).

@@ -98,13 +98,13 @@ fn materials_and_spectra() {
             "objects[3].material"
         ]
     );
-    let reflects = |reflectance| MaterialKind::Lambert { reflectance };
+    let reflects = |spectrum: Spectrum| MaterialKind::Lambert { reflectance: spectrum.into() };
     assert_eq!(kind(&scene, "lambert"), &reflects(Spectrum::Constant(0.5)));
     assert_eq!(kind(&scene, "red"), &reflects(Spectrum::rgb_reflectance([0.8, 0.1, 0.1]).expect("right")));
     let table = Spectrum::tabulated(vec![400.0, 500.0, 700.0], vec![0.2, 0.4, 0.6], Outside::Hold).expect("right");
     assert_eq!(kind(&scene, "table"), &reflects(table));
-    assert_eq!(kind(&scene, "mirror"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9) });
-    assert_eq!(kind(&scene, "perfect"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(1.0) });
+    assert_eq!(kind(&scene, "mirror"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9).into() });
+    assert_eq!(kind(&scene, "perfect"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(1.0).into() });
     let gold = ComplexIndex::named("Au").expect("gold").with_outside(OutsideFit::Clamp);
     assert_eq!(kind(&scene, "gold"), &MaterialKind::RoughConductor { index: gold, alpha: 0.25, compensated: false });
     let own = ComplexIndex::tabulated(vec![300.0, 900.0], vec![0.2, 0.3], vec![3.0, 4.0]).expect("right");

@@ -125,8 +125,12 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
     let mut all = BTreeSet::new();
     keys(&schema, &mut all);
     let unused: Vec<&String> = all.iter().filter(|key| !EVERYTHING.contains(&format!("\"{key}\":"))).collect();
-    // These exclude others that the file has, or name files; the tests of camera, film and meshes have them.
-    assert_eq!(unused, ["file", "height_m", "horizontal_fov_deg", "radius_px", "sensor_width_m", "vertical_fov_deg"]);
+    // These exclude others that the file has, or name files; the tests of camera, film, meshes and textures have them.
+    let exclusive = ["height_m", "horizontal_fov_deg", "radius_px", "sensor_width_m", "vertical_fov_deg"];
+    let of_files = ["encoding", "factor", "file", "uv_offset", "uv_scale", "wrap", "wrap_v"];
+    let mut expected = [exclusive.as_slice(), &of_files].concat();
+    expected.sort_unstable();
+    assert_eq!(unused, expected);
 }
 
 /// Places in a JSON value: every value below the root.
@@ -245,11 +249,15 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
             // Everything that is known over the range is a number there.
             let [first, last] = scene.integrator.wavelength_range_nm;
             for material in &scene.materials {
-                use etalon_scene::MaterialKind as M;
+                use etalon_scene::{MaterialKind as M, SpectrumTexture};
                 for nm in [first, 0.5 * (first + last), last] {
                     let good = match &material.kind {
                         M::Lambert { reflectance } | M::Mirror { reflectance } => {
-                            (0.0..=1.0).contains(&reflectance.eval(nm))
+                            match reflectance {
+                                SpectrumTexture::Uniform(spectrum) => (0.0..=1.0).contains(&spectrum.eval(nm)),
+                                // This scene names no files.
+                                SpectrumTexture::Image(_) => false,
+                            }
                         }
                         M::Conductor { index } | M::RoughConductor { index, .. } => index.eval(nm).0 > 0.0,
                         M::Dielectric { interior, exterior, .. } | M::RoughDielectric { interior, exterior, .. } => {

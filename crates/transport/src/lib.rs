@@ -12,7 +12,7 @@
 //! | `path`, `media`, `polarisation` | the path loop; which medium it is in; the Stokes vector that it carries |
 //! | `coordinates` | shading normals and texture coordinates |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
-//! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`] | what the estimates are made of |
+//! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`], [`texture`] | what the estimates are made of |
 //! | `kernel`, `model`, [`mod@render`], [`film`] | the table of kernels, what their lanes stand for, tiles over all cores, sums |
 //! | [`accuracy`], [`pilot`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
 //! | [`replay`] | one path, vertex by vertex |
@@ -46,6 +46,7 @@ mod shapes;
 pub mod spectral;
 pub mod stop;
 mod surface;
+pub mod texture;
 pub mod warp;
 pub mod wavelength;
 

@@ -13,11 +13,11 @@ const RANGE_NM: [f64; 2] = [380.0, 780.0];
 const LAMBDA_NM: Lanes<f64, 4> = Lanes([440.0, 520.0, 600.0, 680.0]);
 
 fn lambert(albedo: f64) -> Bsdf {
-    Bsdf::new(&MaterialKind::Lambert { reflectance: Spectrum::Constant(albedo) }, RANGE_NM)
+    Bsdf::new(&MaterialKind::Lambert { reflectance: Spectrum::Constant(albedo).into() }, RANGE_NM)
 }
 
 fn mirror() -> Bsdf {
-    Bsdf::new(&MaterialKind::Mirror { reflectance: Spectrum::ONE }, RANGE_NM)
+    Bsdf::new(&MaterialKind::Mirror { reflectance: Spectrum::ONE.into() }, RANGE_NM)
 }
 
 fn glass(interior: RefractiveIndex) -> Bsdf {

@@ -8,7 +8,7 @@ use etalon_oracle::statistics::Welford;
 use etalon_oracle::subjects::{DeltaLobe, Density, Emits, Emitted, Scattered, Scatters};
 use etalon_oracle::truths::{lambert_polygon, sphere_irradiance};
 use etalon_oracle::{Verdict, emits_suite, scatters_suite, suite};
-use etalon_scene::MaterialKind;
+use etalon_scene::{MaterialKind, SpectrumTexture};
 use etalon_transport::bsdf::{Bsdf, Shading};
 use etalon_transport::light::{
     CylinderLight, DiskLight, Emitter, Light, ParallelogramLight, SphereLight, Target, TriangleLight,
@@ -25,6 +25,13 @@ struct Material<R> {
     kind: MaterialKind,
     bsdf: Bsdf,
     scalar: PhantomData<R>,
+}
+
+fn uniform(texture: &SpectrumTexture) -> &Spectrum {
+    match texture {
+        SpectrumTexture::Uniform(spectrum) => spectrum,
+        SpectrumTexture::Image(_) => panic!("these materials are the same everywhere"),
+    }
 }
 
 impl<R: Real> Material<R> {
@@ -109,7 +116,7 @@ impl<R: Real> Scatters for Material<R> {
                 [part(first, 1.0 - weight), part(second, *weight)].concat()
             }
             MaterialKind::Mirror { reflectance } => {
-                vec![DeltaLobe { wi: mirrored, weight: reflectance.eval(wavelength_nm), probability: 1.0 }]
+                vec![DeltaLobe { wi: mirrored, weight: uniform(reflectance).eval(wavelength_nm), probability: 1.0 }]
             }
             MaterialKind::Conductor { index } => {
                 let (n, k) = index.eval(wavelength_nm);
@@ -160,7 +167,7 @@ impl<R: Real> Scatters for Material<R> {
 }
 
 fn lambert<R: Real>() -> Material<R> {
-    Material::new(MaterialKind::Lambert { reflectance: Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap() })
+    Material::new(MaterialKind::Lambert { reflectance: Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap().into() })
 }
 
 fn metal<R: Real>(name: &str) -> Material<R> {
@@ -212,7 +219,7 @@ fn pane<R: Real>() -> Material<R> {
 }
 
 fn mixture() -> Material<f64> {
-    let first = Box::new(MaterialKind::Mirror { reflectance: Spectrum::Constant(0.8) });
+    let first = Box::new(MaterialKind::Mirror { reflectance: Spectrum::Constant(0.8).into() });
     let second = Box::new(MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.6), roughness: 0.5 });
     Material::new(MaterialKind::Blend { first, second, weight: 0.3 })
 }
@@ -274,8 +281,8 @@ fn more_than_two_hundred_instances_of_laws_hold() {
     };
     let mut kinds = vec![
         MaterialKind::Black,
-        MaterialKind::Lambert { reflectance: Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap() },
-        MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9) },
+        MaterialKind::Lambert { reflectance: Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap().into() },
+        MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9).into() },
     ];
     kinds.extend(["Al", "Cu"].map(|name| MaterialKind::Conductor { index: ComplexIndex::named(name).unwrap() }));
     kinds.extend(["N-BK7", "N-SF11", "fused-silica", "diamond", "water"].map(|name| dielectric(name, "vacuum")));

@@ -13,7 +13,7 @@ const LAMBDA_NM: Lanes<f64, 4> = Lanes([440.0, 520.0, 600.0, 680.0]);
 const UP: Vec3<f64> = Vec3 { x: 0.0, y: 0.0, z: 1.0 };
 
 fn lambert(albedo: f64) -> Bsdf {
-    Bsdf::new(&MaterialKind::Lambert { reflectance: Spectrum::Constant(albedo) }, [380.0, 780.0])
+    Bsdf::new(&MaterialKind::Lambert { reflectance: Spectrum::Constant(albedo).into() }, [380.0, 780.0])
 }
 
 fn direction(u: [f64; 2]) -> Vec3<f64> {
@@ -74,7 +74,7 @@ proptest! {
         tilt in 0.0..1.2_f64, turns in 0.0..1.0_f64, view in any::<[u16; 2]>(), u in 0.0..1.0_f64,
     ) {
         let (at, wo) = (bent(tilt, turns), direction(view.map(|v| (f64::from(v) + 0.5) / 65536.0)));
-        let mirror = Bsdf::new(&MaterialKind::Mirror { reflectance: Spectrum::ONE }, [380.0, 780.0]);
+        let mirror = Bsdf::new(&MaterialKind::Mirror { reflectance: Spectrum::ONE.into() }, [380.0, 780.0]);
         let s = mirror.sample(&LAMBDA_NM, &at, wo, [u, 0.5, 0.5]).unwrap();
         prop_assert!(s.wi.z * wo.z > 0.0 && s.weight[0] == 1.0);
         let (interior, exterior) = (RefractiveIndex::constant(1.5).unwrap(), RefractiveIndex::constant(1.0).unwrap());

@@ -3,6 +3,7 @@
 pub(crate) mod compare;
 pub(crate) mod explain;
 pub(crate) mod figures;
+pub(crate) mod import;
 pub(crate) mod quote;
 pub(crate) mod render;
 pub(crate) mod schema;

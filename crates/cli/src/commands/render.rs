@@ -23,7 +23,7 @@ use crate::progress::RenderBar;
 /// Renders a scene to EXR and PNG files.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The scene, as JSON (see `etalon schema`).
+    /// The scene, as JSON (see `etalon schema`), or a model: glTF 2.0 (.glb, .gltf), OBJ or PLY.
     scene: PathBuf,
     /// Picture to write: .exr keeps the linear picture and all that is known about it, .png is what a screen shows.
     /// Give it twice to write both.

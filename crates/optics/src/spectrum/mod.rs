@@ -1,11 +1,13 @@
 //! Symbolic spectra: nothing is sampled until a wavelength asks.
 
+mod basis;
 mod blackbody;
 mod illuminant;
 mod rgb;
 mod sigmoid;
 mod tabulated;
 
+pub use basis::RgbBasis;
 pub use blackbody::Blackbody;
 pub use illuminant::{Illuminant, ScaledIlluminant};
 pub use rgb::{RgbEmission, RgbReflectance};

@@ -10,6 +10,7 @@ use super::names::Names;
 use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra, accept, outside_message, plain};
 use super::spectrum::{SpectrumForm, Wavelength, check_increasing, check_same_length};
+use crate::files::Files;
 use crate::json::{
     Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, Rule, SchemaBuilder,
     SchemaValue, Span, Spanned, Whole, did_you_mean, listed,
@@ -165,6 +166,23 @@ crate::variants! {
         "thin-dielectric" => ThinDielectric(ThinDielectricMaterial),
         "blend" => Blend(BlendMaterial),
         "black" => Black(BlackMaterial),
+    }
+}
+
+impl MaterialForm {
+    /// Its place.
+    pub(crate) fn at(&self) -> Span {
+        match self {
+            Self::Lambert(m) => m.at,
+            Self::Mirror(m) => m.at,
+            Self::Conductor(m) => m.at,
+            Self::Dielectric(m) => m.at,
+            Self::OrenNayar(m) => m.at,
+            Self::Plastic(m) => m.at,
+            Self::ThinDielectric(m) => m.at,
+            Self::Blend(m) => m.at,
+            Self::Black(m) => m.at,
+        }
     }
 }
 
@@ -363,15 +381,16 @@ pub(crate) fn material<'f>(
     form: &'f MaterialForm,
     before: &Before<'_>,
     spectra: &mut Spectra<'f>,
+    files: &mut Files,
     reader: &mut Reader<'_>,
 ) -> Option<MaterialKind> {
     match form {
         MaterialForm::Lambert(lambert) => {
-            let reflectance = spectra.resolve(lambert.reflectance.as_ref()?, Role::Reflectance, reader)?;
+            let reflectance = spectra.resolve_texture(lambert.reflectance.as_ref()?, files, reader)?;
             Some(MaterialKind::Lambert { reflectance })
         }
         MaterialForm::Mirror(mirror) => {
-            let reflectance = spectra.resolve(mirror.reflectance.as_ref()?, Role::Reflectance, reader)?;
+            let reflectance = spectra.resolve_texture(mirror.reflectance.as_ref()?, files, reader)?;
             Some(MaterialKind::Mirror { reflectance })
         }
         MaterialForm::Conductor(conductor) => {
@@ -412,7 +431,7 @@ pub(crate) fn material<'f>(
         }
         MaterialForm::Blend(blend) => {
             let mut part = |part: &'f Option<Box<MaterialUse>>| match part.as_deref()? {
-                MaterialUse::Own(own) => material(own, before, spectra, reader).map(Box::new),
+                MaterialUse::Own(own) => material(own, before, spectra, files, reader).map(Box::new),
                 MaterialUse::Named(name) => before.find(name, reader).map(Box::new),
             };
             let (first, second) = (part(&blend.first), part(&blend.second));

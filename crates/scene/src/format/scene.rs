@@ -13,9 +13,9 @@ use super::spectra::{Role, Spectra};
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{
-    Code, Decode, Kind, List, Named, Node, Optional, Reader, Required, SchemaBuilder, SchemaValue, Spanned,
+    Code, Decode, Kind, List, Named, Node, Optional, Reader, Required, SchemaBuilder, SchemaValue, Span, Spanned,
 };
-use crate::model::{Emission, EmissionSides, LightKind, Material, Object, Scene};
+use crate::model::{Emission, EmissionSides, LightKind, Material, Object, Scene, Shape};
 
 /// The version of the format that this program reads.
 const VERSION: f64 = 1.0;
@@ -116,6 +116,16 @@ pub(crate) enum MaterialUse {
     Own(Box<MaterialForm>),
 }
 
+impl MaterialUse {
+    /// Its place.
+    fn at(&self) -> Span {
+        match self {
+            Self::Named(name) => name.at,
+            Self::Own(own) => own.at().head(),
+        }
+    }
+}
+
 impl Decode for MaterialUse {
     fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
         json!({ "anyOf": [{ "type": "string" }, MaterialForm::schema(schema)] })
@@ -153,7 +163,7 @@ pub(crate) fn scene(
     let mut made = Vec::with_capacity(named.len());
     for entry in named {
         let before = Before { names: &names, made: &made };
-        let kind = entry.value.as_ref().and_then(|form| material(form, &before, &mut spectra, reader));
+        let kind = entry.value.as_ref().and_then(|form| material(form, &before, &mut spectra, files, reader));
         made.push(kind.clone());
         materials.push(kind.map(|kind| Material { name: entry.name.clone(), kind }));
     }
@@ -246,10 +256,16 @@ fn object<'f>(
     let material = form.material.as_ref().and_then(|material_use| match material_use {
         MaterialUse::Named(name) => named.names.find(name, reader),
         MaterialUse::Own(own) => {
-            let kind = material(own, named, spectra, reader)?;
+            let kind = material(own, named, spectra, files, reader)?;
             Some(materials.push(Some(Material { name: format!("{place}.material"), kind })))
         }
     });
+    if let (Some(material), Some(shape)) = (material, &shape)
+        && let Some(at) = form.material.as_ref().map(MaterialUse::at)
+    {
+        // Indices count the right ones only as long as all are.
+        check_coordinates(materials.right.get(material).filter(|_| !materials.wrong), shape, at, reader);
+    }
     let emission = match &form.emission {
         Optional::Absent => Some(None),
         Optional::Invalid => None,
@@ -266,6 +282,23 @@ fn object<'f>(
         emission: emission?,
         opacity: form.opacity?.0,
     })
+}
+
+/// Reports an image over a shape that has no texture coordinates.
+fn check_coordinates(material: Option<&Material>, shape: &Shape, at: Span, reader: &mut Reader<'_>) {
+    let image = material.and_then(|material| material.kind.image());
+    let has_coordinates = match shape {
+        Shape::Mesh(mesh) => !mesh.uvs.is_empty(),
+        Shape::Parallelogram { .. } => true,
+        Shape::Sphere { .. } | Shape::Disk { .. } | Shape::Cylinder { .. } => false,
+    };
+    if let Some(image) = image
+        && !has_coordinates
+    {
+        let message = format!("the shape has no texture coordinates for the image \"{}\"", image.name);
+        let hint = "parallelograms have them, and meshes with uvs";
+        reader.error_hint(Code::NoTextureCoordinates, at, message, hint);
+    }
 }
 
 /// Odd scenes that can be rendered all the same.

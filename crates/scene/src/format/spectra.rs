@@ -7,12 +7,19 @@ use etalon_optics::{Illuminant, OpticsError, Spectrum};
 
 use super::names::Names;
 use super::spectrum::{
-    Density, OutsideTable, RgbSpectrum, SpectrumForm, SpectrumObject, TabulatedSpectrum, check_table, sound,
+    Density, ImageSpectrum, OutsideTable, RgbSpectrum, SpectrumForm, SpectrumObject, TabulatedSpectrum, check_table,
+    sound,
 };
+use crate::files::Files;
 use crate::json::{Code, List, Named, NamedEntry, Reader, Span, Spanned};
+use crate::model::SpectrumTexture;
+use crate::texture::ImageTexture;
 
 /// The largest emission: with the squares of distances, it stays within single precision (3·10³⁸).
 const BRIGHTEST: f64 = 1e30;
+
+/// The largest factor on texture coordinates, and the largest shift: of sixteen digits, eight are left.
+const FARTHEST_UV: f64 = 1e8;
 
 /// What a spectrum is used as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -82,6 +89,75 @@ impl<'f> Spectra<'f> {
         made
     }
 
+    /// The spectrum of a form that may vary over a surface, in a role; images may only be reflectances.
+    pub(crate) fn resolve_texture(
+        &mut self,
+        form: &'f SpectrumForm,
+        files: &mut Files,
+        reader: &mut Reader<'_>,
+    ) -> Option<SpectrumTexture> {
+        let (target, used) = match form {
+            SpectrumForm::Name(name) => {
+                let target = self.targets[self.names.find(name, reader)?]?;
+                (self.entries[target].value.as_deref()?, Use { role: Role::Reflectance, at: Some(name.at) })
+            }
+            form => (form, Use { role: Role::Reflectance, at: None }),
+        };
+        match target {
+            SpectrumForm::Object(SpectrumObject::Image(image)) => {
+                self.image(image, used, files, reader).map(SpectrumTexture::Image)
+            }
+            _ => self.resolve(form, Role::Reflectance, reader).map(SpectrumTexture::Uniform),
+        }
+    }
+
+    fn image(
+        &mut self,
+        form: &ImageSpectrum,
+        used: Use,
+        files: &mut Files,
+        reader: &mut Reader<'_>,
+    ) -> Option<ImageTexture> {
+        let file = form.file.as_ref()?;
+        let image = files.image(file, form.encoding?, reader);
+        for (key, pair) in [("uv_scale", form.uv_scale?), ("uv_offset", form.uv_offset?)] {
+            if pair.iter().any(|v| v.abs() > FARTHEST_UV) {
+                let message = format!("a {key} beyond {FARTHEST_UV:e} leaves no digits for the place in the image");
+                reader.error(Code::OutOfRange, form.at.head(), message);
+                return None;
+            }
+        }
+        let factor = form.factor.as_ref()?.map(|f| f.value.0);
+        if let Some(negative) = factor.iter().find(|f| **f < 0.0) {
+            reader.error(Code::OutOfRange, form.at.head(), format!("a factor of {negative} is below 0"));
+            return None;
+        }
+        let image = image?;
+        let impossible = |texel: [f64; 3]| (0..3).any(|c| !(0.0..=1.0).contains(&(texel[c] * factor[c])));
+        if let Some(i) = image.linear_texels().position(impossible) {
+            let (column, row) = (i % image.width as usize, i / image.width as usize);
+            let texel = image.texel(column, row);
+            let message = format!(
+                "{}: the texel in column {column}, row {row} is {texel:?}: with the factors {factor:?} it is no \
+                 reflectance, which lies from 0 to 1",
+                file.value
+            );
+            self.complain(Code::Reflectance, file.at, message, "", used, reader);
+            return None;
+        }
+        let wrap = form.wrap?;
+        let wrap_v = form.wrap_v.clone().checked()?.unwrap_or(wrap);
+        Some(ImageTexture {
+            image,
+            name: file.value.clone(),
+            wrap: [wrap, wrap_v],
+            filter: form.filter?,
+            uv_scale: form.uv_scale?,
+            uv_offset: form.uv_offset?,
+            factor,
+        })
+    }
+
     fn make(&mut self, form: &SpectrumForm, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
         let spectrum = match form {
             // `targets` has followed these.
@@ -92,6 +168,18 @@ impl<'f> Spectra<'f> {
             }
             SpectrumForm::Object(SpectrumObject::Tabulated(table)) => self.table(table, used, reader),
             SpectrumForm::Object(SpectrumObject::Rgb(colour)) => self.rgb(colour, used, reader),
+            SpectrumForm::Object(SpectrumObject::Image(image)) => {
+                let hint = "images are for what a material reflects";
+                self.complain(
+                    Code::KeyConflict,
+                    image.at.head(),
+                    "an image cannot stand here".to_owned(),
+                    hint,
+                    used,
+                    reader,
+                );
+                None
+            }
             SpectrumForm::Object(SpectrumObject::Blackbody(body)) => {
                 self.light_only("a black body", body.at, used, reader)?;
                 accept(Spectrum::blackbody(body.temperature_k?.0, body.scale?.0), body.at, reader)

@@ -5,6 +5,8 @@ use std::ops::Bound;
 use etalon_optics::Illuminant;
 use serde_json::json;
 
+use crate::texture::{Encoding, TextureFilter, Wrap};
+
 use crate::json::{
     Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, SchemaBuilder, SchemaValue,
     Span, Spanned,
@@ -111,6 +113,53 @@ crate::record! {
     }
 }
 
+crate::record! {
+    /// An image over the texture coordinates of a surface: for what a material reflects.
+    pub(crate) struct ImageSpectrum + comment {
+        /// A PNG, JPEG, EXR or HDR file, relative to this file's folder.
+        file: Required<Spanned<String>>,
+        /// How its numbers are to be read.
+        encoding: Required<Encoding> = r#""auto""#,
+        /// What it shows beyond its edges.
+        wrap: Required<Wrap> = r#""repeat""#,
+        /// What it shows beyond its lower and upper edge, if that is another thing.
+        wrap_v: Optional<Wrap>,
+        /// What it shows between the centres of its texels.
+        filter: Required<TextureFilter> = r#""bilinear""#,
+        /// Factors on the texture coordinates: 2 shows the image twice.
+        uv_scale: Required<[f64; 2]> = "[1, 1]",
+        /// Added to the texture coordinates after that.
+        uv_offset: Required<[f64; 2]> = "[0, 0]",
+        /// Factor on each channel.
+        factor: Required<[Spanned<Density>; 3]> = "[1, 1, 1]",
+    }
+}
+
+crate::keywords!(Encoding {
+    /// As the kind of file has it: "srgb" in PNG and JPEG, "linear" in EXR and HDR.
+    "auto" => Self::Auto,
+    /// By the curve of sRGB.
+    "srgb" => Self::Srgb,
+    /// In proportion.
+    "linear" => Self::Linear,
+});
+
+crate::keywords!(Wrap {
+    /// Itself again.
+    "repeat" => Self::Repeat,
+    /// Its mirror image.
+    "mirror" => Self::Mirror,
+    /// Its outermost texels.
+    "clamp" => Self::Clamp,
+});
+
+crate::keywords!(TextureFilter {
+    /// Linear interpolation between the four nearest texels.
+    "bilinear" => Self::Bilinear,
+    /// The nearest texel.
+    "nearest" => Self::Nearest,
+});
+
 crate::variants! {
     /// A spectrum that takes more than a number to say.
     pub(crate) enum SpectrumObject by "type" {
@@ -119,6 +168,7 @@ crate::variants! {
         "blackbody" => Blackbody(BlackbodySpectrum),
         "illuminant" => Illuminant(IlluminantSpectrum),
         "rgb" => Rgb(RgbSpectrum),
+        "image" => Image(ImageSpectrum),
     }
 }
 
@@ -173,6 +223,7 @@ impl SpectrumForm {
             Self::Object(SpectrumObject::Blackbody(s)) => s.at,
             Self::Object(SpectrumObject::Illuminant(s)) => s.at,
             Self::Object(SpectrumObject::Rgb(s)) => s.at,
+            Self::Object(SpectrumObject::Image(s)) => s.at,
         }
     }
 }

@@ -2,19 +2,19 @@
 
 use super::BsdfSample;
 use crate::mis::Density;
-use crate::spectral::PathSpectrum;
+use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Frame, Lanes, Real, Vec3};
 
 /// Ideal diffuse reflection.
 #[derive(Clone, Debug)]
 pub struct Lambert {
-    reflectance: PathSpectrum,
+    reflectance: PathTexture,
 }
 
 impl Lambert {
     /// A surface of this albedo, in [0, 1].
-    pub fn new(reflectance: PathSpectrum) -> Self {
+    pub fn new(reflectance: PathTexture) -> Self {
         Self { reflectance }
     }
 
@@ -22,6 +22,7 @@ impl Lambert {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<R>,
+        uv: [f64; 2],
         wo: Vec3<R>,
         wi: Vec3<R>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
@@ -30,13 +31,14 @@ impl Lambert {
             return (Lanes::ZERO, Lanes::ZERO);
         }
         let pdf = cos_i.abs() * R::FRAC_1_PI;
-        (self.reflectance.lanes::<R, N>(lambda_nm) * pdf, Lanes::splat(pdf))
+        (self.reflectance.lanes::<R, N>(lambda_nm, uv) * pdf, Lanes::splat(pdf))
     }
 
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<R>,
+        uv: [f64; 2],
         wo: Vec3<R>,
         u: [R; 2],
     ) -> Option<BsdfSample<R, N>> {
@@ -46,7 +48,7 @@ impl Lambert {
         let cos_i = n.dot(wi);
         (cos_i > R::ZERO).then(|| BsdfSample {
             wi,
-            weight: self.reflectance.lanes(lambda_nm),
+            weight: self.reflectance.lanes(lambda_nm, uv),
             density: Density::SolidAngle(cos_i * R::FRAC_1_PI),
             lane_density: Lanes::ONE,
             eta: R::ONE,

@@ -2,18 +2,18 @@
 
 use super::BsdfSample;
 use crate::mis::Density;
-use crate::spectral::PathSpectrum;
+use crate::texture::PathTexture;
 use etalon_optics::{Lanes, Real, Vec3};
 
 /// Ideal mirror.
 #[derive(Clone, Debug)]
 pub struct Mirror {
-    reflectance: PathSpectrum,
+    reflectance: PathTexture,
 }
 
 impl Mirror {
     /// A mirror of this reflectance, in [0, 1].
-    pub fn new(reflectance: PathSpectrum) -> Self {
+    pub fn new(reflectance: PathTexture) -> Self {
         Self { reflectance }
     }
 
@@ -21,12 +21,13 @@ impl Mirror {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<R>,
+        uv: [f64; 2],
         wo: Vec3<R>,
     ) -> Option<BsdfSample<R, N>> {
         Some(BsdfSample {
             // Kept at unit length, so that ten thousand reflections do not drift (hard case 33).
             wi: wo.reflected_about(n).renormalized(),
-            weight: self.reflectance.lanes(lambda_nm),
+            weight: self.reflectance.lanes(lambda_nm, uv),
             density: Density::Delta,
             lane_density: Lanes::ONE,
             eta: R::ONE,

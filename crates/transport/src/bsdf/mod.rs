@@ -35,6 +35,7 @@ use crate::compiled;
 use crate::mis::Density;
 use crate::polarisation::{self, Retarder};
 use crate::spectral::PathSpectrum;
+use crate::texture::PathTexture;
 use etalon_optics::{Lanes, Real, Vec3, fresnel};
 use etalon_scene::MaterialKind;
 
@@ -100,9 +101,9 @@ impl Bsdf {
     pub fn new(kind: &MaterialKind, range_nm: [f64; 2]) -> Self {
         match kind {
             MaterialKind::Lambert { reflectance } => {
-                Self::Lambert(Lambert::new(PathSpectrum::new(reflectance, range_nm)))
+                Self::Lambert(Lambert::new(PathTexture::new(reflectance, range_nm)))
             }
-            MaterialKind::Mirror { reflectance } => Self::Mirror(Mirror::new(PathSpectrum::new(reflectance, range_nm))),
+            MaterialKind::Mirror { reflectance } => Self::Mirror(Mirror::new(PathTexture::new(reflectance, range_nm))),
             MaterialKind::Conductor { index } => Self::Conductor(Conductor::new(index.clone())),
             MaterialKind::Dielectric { interior, exterior, .. } => {
                 Self::Dielectric(Dielectric::new(interior.clone(), exterior.clone()))
@@ -187,7 +188,7 @@ impl Bsdf {
         wi: Vec3<R>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         match self {
-            Self::Lambert(lambert) => lambert.eval(lambda_nm, n, wo, wi),
+            Self::Lambert(lambert) => lambert.eval(lambda_nm, n, at.uv, wo, wi),
             Self::RoughConductor(metal) => metal.eval(lambda_nm, n, wo, wi),
             Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, wo, wi),
             Self::OrenNayar(rough) => rough.eval(lambda_nm, n, wo, wi),
@@ -210,8 +211,8 @@ impl Bsdf {
         u: [R; 3],
     ) -> Option<BsdfSample<R, N>> {
         match self {
-            Self::Lambert(lambert) => lambert.sample(lambda_nm, n, wo, [u[1], u[2]]),
-            Self::Mirror(mirror) if compiled::SPECULAR_CHAINS => mirror.sample(lambda_nm, n, wo),
+            Self::Lambert(lambert) => lambert.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
+            Self::Mirror(mirror) if compiled::SPECULAR_CHAINS => mirror.sample(lambda_nm, n, at.uv, wo),
             Self::Conductor(conductor) if compiled::SPECULAR_CHAINS => conductor.sample(lambda_nm, n, wo, at.media()),
             Self::Dielectric(dielectric) if compiled::SPECULAR_CHAINS => {
                 dielectric.sample(lambda_nm, n, wo, u[0], at.media())

@@ -3,7 +3,9 @@
 use super::EffectName;
 use super::grey::{same_shape, steps};
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, fresnel};
-use etalon_scene::{Filter, Light, LightKind, LightSampling, Material, MaterialKind, Object, Projection, Scene};
+use etalon_scene::{
+    Filter, Light, LightKind, LightSampling, Material, MaterialKind, Object, Projection, Scene, Shape, SpectrumTexture,
+};
 
 /// What calls for an effect (`Ok`), or why nothing does (`Err`).
 pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
@@ -30,6 +32,14 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             None => nothing("no dielectric carries a priority"),
         },
         EffectName::Polarisation => polarisation(scene, false),
+        EffectName::Textures => match first_surface(scene, |material, _| image(&material.kind)) {
+            Some(found) => Ok(found),
+            None => nothing("no image on a surface"),
+        },
+        EffectName::ShadingNormals => match scene.placed_objects().find_map(smooth_mesh) {
+            Some(found) => Ok(found),
+            None => nothing("no mesh has normals of its own"),
+        },
         EffectName::WideFilter => match scene.film.filter {
             Filter::Box => nothing("a pixel is its own square"),
             Filter::Tent { radius_px } => Ok(format!("film: tent of radius {radius_px} px")),
@@ -76,7 +86,13 @@ fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
 fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
     match kind {
         MaterialKind::Lambert { reflectance } | MaterialKind::Mirror { reflectance } => {
-            (!reflectance.is_constant()).then(|| format!("reflectance {}", spread(range_nm, |nm| reflectance.eval(nm))))
+            let grey = reflectance.is_grey();
+            (!grey).then(|| match reflectance {
+                SpectrumTexture::Uniform(spectrum) => {
+                    format!("reflectance {}", spread(range_nm, |nm| spectrum.eval(nm)))
+                }
+                SpectrumTexture::Image(texture) => format!("colours of \"{}\"", texture.name),
+            })
         }
         MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
             index.is_dispersive().then(|| metal_range(index, range_nm))
@@ -92,6 +108,25 @@ fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
         MaterialKind::ThinDielectric { index } => index.is_dispersive().then(|| index_range(index, range_nm)),
         MaterialKind::Blend { first, second, .. } => colour(first, range_nm).or_else(|| colour(second, range_nm)),
         MaterialKind::Black => None,
+    }
+}
+
+/// The image on a material, if there is one.
+fn image(kind: &MaterialKind) -> Option<String> {
+    let texture = kind.image()?;
+    Some(format!("\"{}\", {} × {} texels", texture.name, texture.image.width, texture.image.height))
+}
+
+fn smooth_mesh(object: &Object) -> Option<String> {
+    match &object.shape {
+        Shape::Mesh(mesh) if !mesh.normals.is_empty() => {
+            Some(format!("\"{}\": {} vertices with normals", object.name, mesh.normals.len()))
+        }
+        Shape::Mesh(_)
+        | Shape::Sphere { .. }
+        | Shape::Parallelogram { .. }
+        | Shape::Disk { .. }
+        | Shape::Cylinder { .. } => None,
     }
 }
 
@@ -186,7 +221,8 @@ fn polarises(kind: &MaterialKind) -> Option<(f64, String)> {
 /// Whether a shadow ray from the surface could find light.
 fn is_diffuse(kind: &MaterialKind) -> bool {
     match kind {
-        MaterialKind::Lambert { reflectance } | MaterialKind::OrenNayar { reflectance, .. } => !reflectance.is_zero(),
+        MaterialKind::Lambert { reflectance } => !reflectance.is_zero(),
+        MaterialKind::OrenNayar { reflectance, .. } => !reflectance.is_zero(),
         MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Plastic { .. } => {
             true
         }

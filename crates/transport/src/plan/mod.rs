@@ -39,13 +39,17 @@ pub enum EffectName {
     NestedDielectrics,
     /// Light is polarised by what reflects and refracts it.
     Polarisation,
+    /// Images vary what surfaces reflect.
+    Textures,
+    /// Meshes are shaded by the normals of their vertices.
+    ShadingNormals,
     /// A pixel looks beyond its own square.
     WideFilter,
 }
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Lens,
@@ -55,6 +59,8 @@ impl EffectName {
         Self::SpecularChains,
         Self::NestedDielectrics,
         Self::Polarisation,
+        Self::Textures,
+        Self::ShadingNormals,
         Self::WideFilter,
     ];
 
@@ -70,6 +76,8 @@ impl EffectName {
             Self::SpecularChains => "specular-chains",
             Self::NestedDielectrics => "nested-dielectrics",
             Self::Polarisation => "polarisation",
+            Self::Textures => "textures",
+            Self::ShadingNormals => "shading-normals",
             Self::WideFilter => "wide-filter",
         }
     }
@@ -88,6 +96,8 @@ impl EffectName {
             Self::SpecularChains => "mirrors, metals and glass are black",
             Self::NestedDielectrics => "each solid is treated as if it stood in vacuum",
             Self::Polarisation => "light is taken for unpolarised at every surface",
+            Self::Textures => "each image is replaced by its mean colour",
+            Self::ShadingNormals => "meshes show their triangles",
             Self::WideFilter => "a pixel is its own square",
         }
     }
@@ -100,7 +110,7 @@ impl EffectName {
             }
             Self::NestedDielectrics | Self::Polarisation => true,
             // They are what the surfaces, or the film, are made of.
-            Self::SpecularChains | Self::WideFilter => false,
+            Self::SpecularChains | Self::Textures | Self::ShadingNormals | Self::WideFilter => false,
         }
     }
 }

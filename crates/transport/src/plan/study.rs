@@ -1,9 +1,14 @@
 //! Renders of what a scene does not call for, and without what it does: for study.
 
 use super::{EffectName, evidence};
+use crate::texture;
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
-use etalon_scene::{Filter, LightKind, LightSampling, MaterialKind, Projection, Scene};
+use etalon_scene::{
+    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Projection, Scene, Shape,
+    SpectrumTexture, Texels,
+};
+use std::sync::Arc;
 
 /// What to simulate otherwise than a scene calls for. Empty by default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -154,6 +159,25 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         }
         // It is not in the scene.
         EffectName::Polarisation => {}
+        EffectName::Textures => {
+            for material in &mut scene.materials {
+                material.kind.change_textures(&|reflectance| {
+                    if let Some(texture) = reflectance.image() {
+                        *reflectance = texture::mean(texture).into();
+                    }
+                });
+            }
+        }
+        EffectName::ShadingNormals => {
+            let grouped = scene.groups.iter_mut().flat_map(|group| &mut group.objects);
+            for object in scene.objects.iter_mut().chain(grouped) {
+                if let Shape::Mesh(mesh) = &mut object.shape
+                    && !mesh.normals.is_empty()
+                {
+                    *mesh = Arc::new(Mesh { normals: Vec::new(), ..Mesh::clone(mesh) });
+                }
+            }
+        }
         EffectName::WideFilter => scene.film.filter = Filter::Box,
     }
 }
@@ -161,9 +185,13 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
 /// Makes a material treat all wavelengths alike.
 fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
     match kind {
-        MaterialKind::Lambert { reflectance }
-        | MaterialKind::Mirror { reflectance }
-        | MaterialKind::OrenNayar { reflectance, .. } => *reflectance = grey(reflectance, range_nm),
+        MaterialKind::Lambert { reflectance } | MaterialKind::Mirror { reflectance } => {
+            *reflectance = match reflectance {
+                SpectrumTexture::Uniform(spectrum) => grey(spectrum, range_nm).into(),
+                SpectrumTexture::Image(texture) => SpectrumTexture::Image(grey_image(texture)),
+            };
+        }
+        MaterialKind::OrenNayar { reflectance, .. } => *reflectance = grey(reflectance, range_nm),
         MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
             *index = grey_metal(index, range_nm);
         }
@@ -242,6 +270,17 @@ fn grey(spectrum: &Spectrum, range_nm: [f64; 2]) -> Spectrum {
     };
     let mean = mean(&|nm| colour_matching(nm)[1]).or_else(|| mean(&|_| 1.0)).unwrap_or(0.0);
     Spectrum::Constant(mean)
+}
+
+/// An image of the luminance of each texel.
+fn grey_image(texture: &ImageTexture) -> ImageTexture {
+    let luminance = |texel: [f64; 3]| {
+        let [r, g, b] = [0, 1, 2].map(|c| texel[c] * texture.factor[c]);
+        [(0.2126 * r + 0.7152 * g + 0.0722 * b) as f32; 3]
+    };
+    let Image { width, height, .. } = *texture.image;
+    let texels = Texels::F32(texture.image.linear_texels().map(luminance).collect());
+    ImageTexture { image: Arc::new(Image { width, height, texels }), factor: [1.0; 3], ..texture.clone() }
 }
 
 fn grey_metal(index: &ComplexIndex, range_nm: [f64; 2]) -> ComplexIndex {

@@ -1,0 +1,386 @@
+//! glTF 2.0: nodes, meshes, cameras and lights.
+
+use std::collections::HashMap;
+
+use base64::Engine as _;
+use gltf::mesh::{Mode, Semantic};
+use gltf::{Gltf, Node, buffer};
+use serde_json::{Value, json};
+
+use super::accessor::numbers;
+use super::gltf_material::Materials;
+use super::{Builder, light};
+use crate::mesh::MAX_ELEMENTS;
+use crate::model::Mesh;
+use crate::vector::unit;
+
+/// Deepest nesting of nodes.
+const MAX_DEPTH: usize = 256;
+
+/// A 4 × 4 matrix by columns, as glTF has it.
+type Columns = [[f64; 4]; 4];
+
+pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
+    check_primitives(bytes)?;
+    let file = Gltf::from_slice(bytes).map_err(|error| error.to_string())?;
+    check_images(&file)?;
+    check_lights(&file)?;
+    let buffers = buffers(&file, builder)?;
+    for (what, count) in [("animations", file.animations().count()), ("skins", file.skins().count())] {
+        if count > 0 {
+            builder.leave_out(format!("$.{what}"), "they are not honoured: the model is as its nodes place it");
+        }
+    }
+    let mut walk = Walk {
+        builder,
+        buffers: &buffers,
+        materials: Materials::default(),
+        parts: HashMap::new(),
+        visited: Vec::new(),
+    };
+    walk.visited = vec![false; file.nodes().count()];
+    let scene = file.default_scene().or_else(|| file.scenes().next()).ok_or("it has no scene")?;
+    for other in file.scenes().filter(|other| other.index() != scene.index()) {
+        walk.builder.leave_out(format!("$.scenes[{}]", other.index()), "only one scene is imported");
+    }
+    const IDENTITY: Columns = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+    for node in scene.nodes() {
+        walk.node(&node, &IDENTITY, 0)?;
+    }
+    Ok(())
+}
+
+/// Refuses primitives that name accessors which are not there: the library's own check looks them up before it counts.
+fn check_primitives(bytes: &[u8]) -> Result<(), String> {
+    let glb;
+    let text = if bytes.starts_with(b"glTF") {
+        glb = gltf::Glb::from_slice(bytes).map_err(|error| error.to_string())?;
+        &*glb.json
+    } else {
+        bytes
+    };
+    let root: Value = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+    let list = |value: &'_ Value| value.as_array().cloned().unwrap_or_default();
+    let count = root["accessors"].as_array().map_or(0, Vec::len) as u64;
+    for (i, mesh) in root["meshes"].as_array().into_iter().flatten().enumerate() {
+        for (j, primitive) in mesh["primitives"].as_array().into_iter().flatten().enumerate() {
+            let mut named: Vec<Value> = vec![primitive["indices"].clone()];
+            for attributes in list(&primitive["targets"]).iter().chain([&primitive["attributes"]]) {
+                named.extend(attributes.as_object().into_iter().flat_map(|map| map.values().cloned()));
+            }
+            if let Some(missing) = named.iter().filter_map(Value::as_u64).find(|index| *index >= count) {
+                let place = format!("$.meshes[{i}].primitives[{j}]");
+                return Err(format!("{place}: it names accessor {missing}; there are {count}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses images that the library takes for granted: each is a file, or a part of a buffer of a stated type.
+fn check_images(file: &Gltf) -> Result<(), String> {
+    for (i, image) in file.as_json().images.iter().enumerate() {
+        let whole = if image.buffer_view.is_some() { image.mime_type.is_some() } else { image.uri.is_some() };
+        if !whole {
+            return Err(format!("$.images[{i}]: it has neither a uri nor a bufferView with a mimeType"));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses nodes that name a light of a list that is not there.
+fn check_lights(file: &Gltf) -> Result<(), String> {
+    let count = file.lights().map_or(0, Iterator::count);
+    for (i, node) in file.as_json().nodes.iter().enumerate() {
+        let lamp = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+        if lamp.is_some_and(|lamp| lamp.light.value() >= count) {
+            return Err(format!("$.nodes[{i}]: it names a light that is not there; there are {count}"));
+        }
+    }
+    Ok(())
+}
+
+/// The bytes of every buffer.
+fn buffers(file: &Gltf, builder: &Builder<'_>) -> Result<Vec<Vec<u8>>, String> {
+    file.buffers()
+        .map(|buffer| {
+            let place = format!("$.buffers[{}]", buffer.index());
+            let bytes = match buffer.source() {
+                buffer::Source::Bin => file.blob.clone().ok_or_else(|| format!("{place}: there is no binary part")),
+                buffer::Source::Uri(uri) => resource(uri, builder).map_err(|why| format!("{place}: {why}")),
+            }?;
+            match bytes.len() < buffer.length() {
+                true => Err(format!("{place}: it has {} bytes, and should have {}", bytes.len(), buffer.length())),
+                false => Ok(bytes),
+            }
+        })
+        .collect()
+}
+
+/// The bytes that a URI stands for: data in itself, or a file beside the model.
+pub(super) fn resource(uri: &str, builder: &Builder<'_>) -> Result<Vec<u8>, String> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        let (_, base64) = data.split_once(";base64,").ok_or("its data are not in base 64")?;
+        return base64::engine::general_purpose::STANDARD.decode(base64).map_err(|error| error.to_string());
+    }
+    if uri.contains("://") {
+        return Err(format!("\"{uri}\" is not a file"));
+    }
+    let name = percent_decoded(uri).ok_or_else(|| format!("\"{uri}\" is not a file name"))?;
+    (builder.near)(&name).map_err(|why| format!("\"{name}\" cannot be read: {why}"))
+}
+
+/// A URI's path with its %XX as bytes.
+fn percent_decoded(uri: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, tail @ ..] = rest {
+        if *first == b'%' {
+            let digits = std::str::from_utf8(tail.get(..2)?).ok()?;
+            bytes.push(u8::from_str_radix(digits, 16).ok()?);
+            rest = &tail[2..];
+        } else {
+            bytes.push(*first);
+            rest = tail;
+        }
+    }
+    String::from_utf8(bytes).ok()
+}
+
+/// A mesh that has been made: its file and what it holds.
+struct MadePart {
+    file: String,
+    mesh: Mesh,
+    material: Value,
+    emission: Option<Value>,
+}
+
+struct Walk<'w, 'b> {
+    builder: &'w mut Builder<'b>,
+    buffers: &'w [Vec<u8>],
+    materials: Materials,
+    /// Parts by mesh and primitive; `None` is one without triangles.
+    parts: HashMap<(usize, usize), Option<MadePart>>,
+    visited: Vec<bool>,
+}
+
+impl Walk<'_, '_> {
+    fn node(&mut self, node: &Node<'_>, parent: &Columns, depth: usize) -> Result<(), String> {
+        let place = format!("$.nodes[{}]", node.index());
+        if depth > MAX_DEPTH {
+            return Err(format!("{place}: nodes within nodes, more than {MAX_DEPTH}"));
+        }
+        if std::mem::replace(&mut self.visited[node.index()], true) {
+            return Err(format!("{place}: it is part of the scene twice"));
+        }
+        let local = node.transform().matrix().map(|column| column.map(f64::from));
+        let matrix = product(parent, &local);
+        if matrix.iter().flatten().any(|v| !v.is_finite()) {
+            return Err(format!("{place}: its transform is not finite"));
+        }
+        if let Some(camera) = node.camera() {
+            self.camera(&camera, &matrix);
+        }
+        if let Some(lamp) = node.light() {
+            self.light(&lamp, node, &matrix);
+        }
+        if node.weights().is_some() {
+            self.builder.leave_out(&place, "morph weights are not honoured");
+        }
+        if let Some(mesh) = node.mesh() {
+            for primitive in mesh.primitives() {
+                let name = match (node.name().or(mesh.name()), mesh.primitives().len()) {
+                    (Some(name), 1) => name.to_owned(),
+                    (Some(name), _) => format!("{name}, part {}", primitive.index()),
+                    (None, _) => format!("node {}, part {}", node.index(), primitive.index()),
+                };
+                self.place(&mesh, &primitive, &name, &matrix)?;
+            }
+        }
+        for child in node.children() {
+            self.node(&child, &matrix, depth + 1)?;
+        }
+        Ok(())
+    }
+
+    /// Adds a primitive where a node places it; its mesh is made once.
+    fn place(
+        &mut self,
+        mesh: &gltf::Mesh<'_>,
+        primitive: &gltf::Primitive<'_>,
+        name: &str,
+        matrix: &Columns,
+    ) -> Result<(), String> {
+        let key = (mesh.index(), primitive.index());
+        if !self.parts.contains_key(&key) {
+            let made = self.part(primitive, &format!("$.meshes[{}].primitives[{}]", key.0, key.1))?;
+            self.parts.insert(key, made);
+        }
+        let Some(Some(part)) = self.parts.get(&key) else { return Ok(()) };
+        let determinant = determinant(matrix);
+        if determinant == 0.0 || !determinant.is_finite() {
+            self.builder.leave_out(format!("node \"{name}\""), "it is flattened by its transform, and left out");
+            return Ok(());
+        }
+        let rows: Vec<[f64; 4]> = (0..3).map(|i| std::array::from_fn(|j| matrix[j][i])).collect();
+        let transform = json!([{ "matrix": rows }]);
+        self.builder.add_object(name, &part.file, &part.mesh, &part.material, part.emission.clone(), &transform);
+        Ok(())
+    }
+
+    fn part(&mut self, primitive: &gltf::Primitive<'_>, place: &str) -> Result<Option<MadePart>, String> {
+        let fail = |what: &str| format!("{place}: {what}");
+        let look = self.materials.of(&primitive.material(), self.buffers, self.builder)?;
+        for (semantic, _) in primitive.attributes() {
+            let used = match semantic {
+                Semantic::Positions | Semantic::Normals | Semantic::Tangents => true,
+                // Sets that no image uses would be listed for nothing.
+                Semantic::TexCoords(_) => true,
+                Semantic::Colors(_) | Semantic::Joints(_) | Semantic::Weights(_) => false,
+            };
+            if !used {
+                let key = semantic.to_string();
+                self.builder.leave_out(format!("{place}.attributes.{key}"), "it is not honoured");
+            }
+        }
+        if primitive.morph_targets().count() > 0 {
+            self.builder.leave_out(format!("{place}.targets"), "morph targets are not honoured");
+        }
+        let Some(positions) = primitive.get(&Semantic::Positions) else {
+            self.builder.leave_out(place, "it has no positions, and is left out");
+            return Ok(None);
+        };
+        let vertices = numbers::<3>(&positions, self.buffers)?;
+        if let Some(i) = vertices.iter().position(|v| v.iter().any(|c| !c.is_finite())) {
+            return Err(fail(&format!("vertex {i} lies at {:?}", vertices[i])));
+        }
+        let count = vertices.len();
+        let normals = match primitive.get(&Semantic::Normals) {
+            Some(accessor) => numbers::<3>(&accessor, self.buffers)?,
+            None => Vec::new(),
+        };
+        let uvs = match primitive.get(&Semantic::TexCoords(look.uv_set)) {
+            Some(accessor) => numbers::<2>(&accessor, self.buffers)?,
+            None => Vec::new(),
+        };
+        for (what, length) in [("normals", normals.len()), ("texture coordinates", uvs.len())] {
+            if length != 0 && length != count {
+                return Err(fail(&format!("{length} {what} for {count} vertices")));
+            }
+        }
+        if uvs.iter().flatten().chain(normals.iter().flatten()).any(|v| !v.is_finite()) {
+            return Err(fail("a normal or a texture coordinate is not finite"));
+        }
+        let indices: Vec<u32> = match primitive.indices() {
+            Some(accessor) => numbers::<1>(&accessor, self.buffers)?.iter().map(|[i]| *i as u32).collect(),
+            None => (0..count as u32).collect(),
+        };
+        if let Some(i) = indices.iter().position(|&i| i as usize >= count) {
+            return Err(fail(&format!("index {i} names vertex {}; there are {count}", indices[i])));
+        }
+        let triangles = triangles(primitive.mode(), &indices);
+        if triangles.is_empty() || triangles.len() > MAX_ELEMENTS {
+            self.builder.leave_out(place, "it has no triangles, and is left out");
+            return Ok(None);
+        }
+        let mesh = Mesh {
+            vertices,
+            triangles,
+            normals: normals.into_iter().map(|n| unit(n).map_or([0.0; 3], |n| n.map(|v| v as f32))).collect(),
+            // glTF counts v from the top of the image.
+            uvs: uvs.into_iter().map(|[u, v]| [u as f32, (1.0 - v) as f32]).collect(),
+        };
+        let mut material = look.material.clone();
+        if mesh.uvs.is_empty() && look.has_image {
+            self.builder.leave_out(place, "it has no texture coordinates for the image of its material, and is grey");
+            material = json!({ "type": "lambert", "reflectance": 0.8 });
+        }
+        let emission = look.emission.clone();
+        let file = self.builder.mesh_file(&mesh);
+        Ok(Some(MadePart { file, mesh, material, emission }))
+    }
+
+    /// The first camera is the scene's.
+    fn camera(&mut self, camera: &gltf::Camera<'_>, matrix: &Columns) {
+        let place = format!("$.cameras[{}]", camera.index());
+        if self.builder.camera.is_some() {
+            self.builder.leave_out(place, "only the first camera of the scene is used");
+            return;
+        }
+        let axis = |k: usize, sign: f64| unit([matrix[k][0], matrix[k][1], matrix[k][2]]).map(|v| v.map(|c| sign * c));
+        let (Some(direction), Some(up)) = (axis(2, -1.0), axis(1, 1.0)) else {
+            self.builder.leave_out(place, "its node flattens it");
+            return;
+        };
+        let position = [matrix[3][0], matrix[3][1], matrix[3][2]];
+        let mut value = json!({ "position_m": position, "direction": direction, "up": up });
+        let aspect = match camera.projection() {
+            gltf::camera::Projection::Perspective(lens) => {
+                value["type"] = json!("perspective");
+                value["vertical_fov_deg"] = json!(f64::from(lens.yfov()).to_degrees());
+                lens.aspect_ratio().map(f64::from)
+            }
+            gltf::camera::Projection::Orthographic(view) => {
+                value["type"] = json!("orthographic");
+                value["height_m"] = json!(2.0 * f64::from(view.ymag()));
+                Some(f64::from(view.xmag() / view.ymag()))
+            }
+        };
+        if let Some(aspect) = aspect.filter(|a| (0.01..=100.0).contains(a)) {
+            self.builder.film = json!({ "width": (720.0 * aspect).round().max(1.0) as u32, "height": 720 });
+        }
+        self.builder.camera = Some(value);
+    }
+
+    /// Candela and lux become the format's units as they are: a luminance of 1 cd/m² is a radiance of 1.
+    fn light(&mut self, lamp: &gltf::khr_lights_punctual::Light<'_>, node: &Node<'_>, matrix: &Columns) {
+        use gltf::khr_lights_punctual::Kind;
+        let place = format!("$.extensions.KHR_lights_punctual.lights[{}]", lamp.index());
+        let spectrum = light(lamp.color().map(|c| f64::from(c).max(0.0)), f64::from(lamp.intensity()).max(0.0));
+        let position = [matrix[3][0], matrix[3][1], matrix[3][2]];
+        let name = node.name().map_or_else(|| format!("light {}", lamp.index()), str::to_owned);
+        if lamp.range().is_some() {
+            self.builder.leave_out(&place, "its range is not honoured: light goes on for ever");
+        }
+        let value = match lamp.kind() {
+            Kind::Directional => {
+                let direction = unit([-matrix[2][0], -matrix[2][1], -matrix[2][2]]).unwrap_or([0.0, 0.0, -1.0]);
+                json!({ "name": name, "type": "directional", "direction": direction, "irradiance": spectrum })
+            }
+            kind => {
+                if let Kind::Spot { .. } = kind {
+                    self.builder.leave_out(&place, "its cone is not honoured: it shines in every direction");
+                }
+                json!({ "name": name, "type": "point", "position_m": position, "intensity": spectrum })
+            }
+        };
+        self.builder.lights.push(value);
+    }
+}
+
+fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::Triangles => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+        // Every other one is turned, so that all have the same side outward.
+        Mode::TriangleStrip => indices
+            .windows(3)
+            .enumerate()
+            .map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] })
+            .collect(),
+        Mode::TriangleFan => match indices {
+            [first, rest @ ..] => rest.windows(2).map(|t| [*first, t[0], t[1]]).collect(),
+            [] => Vec::new(),
+        },
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
+    }
+}
+
+/// a·b, both by columns.
+fn product(a: &Columns, b: &Columns) -> Columns {
+    std::array::from_fn(|j| std::array::from_fn(|i| (0..4).map(|k| a[k][i] * b[j][k]).sum()))
+}
+
+fn determinant(m: &Columns) -> f64 {
+    let column = |k: usize| [m[k][0], m[k][1], m[k][2]];
+    crate::vector::dot(column(0), crate::vector::cross(column(1), column(2)))
+}

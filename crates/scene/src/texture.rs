@@ -1,0 +1,374 @@
+//! Images that vary something over a surface.
+
+use std::io::Cursor;
+use std::sync::{Arc, LazyLock};
+
+use image::{DynamicImage, ImageReader, Limits};
+
+/// Largest side of an image, pixels.
+pub const MAX_IMAGE_SIDE: u32 = 65_536;
+/// Most memory that an image may take, bytes: 4 GiB, and for a small file no more than 2000 times its size and 64 MiB.
+pub const MAX_IMAGE_BYTES: u64 = 4 << 30;
+
+/// An image of three channels, rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Width in texels, at least 1.
+    pub width: u32,
+    /// Height in texels, at least 1.
+    pub height: u32,
+    /// The texels.
+    pub texels: Texels,
+}
+
+/// Texels, as they are stored.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Texels {
+    /// Eight bits a channel, encoded as sRGB.
+    Srgb8(Vec<[u8; 3]>),
+    /// Eight bits a channel, in proportion.
+    Linear8(Vec<[u8; 3]>),
+    /// Numbers.
+    F32(Vec<[f32; 3]>),
+}
+
+/// How numbers stand in an image file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Encoding {
+    /// As the kind of file has it: sRGB in PNG and JPEG, linear in EXR and HDR.
+    Auto,
+    /// By the curve of sRGB.
+    Srgb,
+    /// In proportion.
+    Linear,
+}
+
+/// What an image shows beyond its edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    /// Itself again.
+    Repeat,
+    /// Its mirror image.
+    Mirror,
+    /// Its outermost texels.
+    Clamp,
+}
+
+/// What an image shows between the centres of its texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TextureFilter {
+    /// Linear interpolation between the four nearest.
+    Bilinear,
+    /// The nearest.
+    Nearest,
+}
+
+/// An image laid over texture coordinates: (0, 0) is the lower left corner of the image, (1, 1) the upper right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageTexture {
+    /// The image.
+    pub image: Arc<Image>,
+    /// Its file, as the scene names it.
+    pub name: String,
+    /// Beyond its left and right, and its lower and upper edge.
+    pub wrap: [Wrap; 2],
+    /// Between texels.
+    pub filter: TextureFilter,
+    /// Factors on the texture coordinates: 2 shows the image twice.
+    pub uv_scale: [f64; 2],
+    /// Added to the texture coordinates after that.
+    pub uv_offset: [f64; 2],
+    /// Factor on each channel.
+    pub factor: [f64; 3],
+}
+
+/// sRGB (IEC 61966-2-1) as linear numbers, for each of the 256 values of a channel.
+static SRGB: LazyLock<[f64; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let v = i as f64 / 255.0;
+        if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    })
+});
+
+impl Image {
+    /// Decodes a PNG, JPEG, EXR or HDR file, told apart by its first bytes. What it says beyond three channels is left
+    /// out: the second value says what.
+    ///
+    /// # Errors
+    /// A sentence that says what is wrong: no such file, too large, damaged, or texels that are not finite.
+    pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<(Self, Option<String>), String> {
+        let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+        if reader.format().is_none() {
+            return Err("it is no PNG, JPEG, EXR or HDR file".to_owned());
+        }
+        let mut limits = Limits::default();
+        limits.max_image_width = Some(MAX_IMAGE_SIDE);
+        limits.max_image_height = Some(MAX_IMAGE_SIDE);
+        limits.max_alloc = Some(MAX_IMAGE_BYTES.min((64 << 20) + 2000 * bytes.len() as u64));
+        reader.limits(limits);
+        let decoded = reader.decode().map_err(|e| e.to_string())?;
+        let left_out = match &decoded {
+            d if !d.color().has_alpha() => None,
+            d if is_opaque(d) => None,
+            _ => Some("its alpha channel is not used".to_owned()),
+        };
+        Self::of(decoded, encoding).map(|image| (image, left_out))
+    }
+
+    fn of(decoded: DynamicImage, encoding: Encoding) -> Result<Self, String> {
+        let (width, height) = (decoded.width(), decoded.height());
+        if width == 0 || height == 0 {
+            return Err("it has no texels".to_owned());
+        }
+        let float = matches!(decoded, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+        let srgb = encoding == Encoding::Srgb || encoding == Encoding::Auto && !float;
+        let eight = matches!(
+            decoded,
+            DynamicImage::ImageLuma8(_)
+                | DynamicImage::ImageLumaA8(_)
+                | DynamicImage::ImageRgb8(_)
+                | DynamicImage::ImageRgba8(_)
+        );
+        let texels = if eight {
+            let texels = decoded.into_rgb8().pixels().map(|p| p.0).collect();
+            if srgb { Texels::Srgb8(texels) } else { Texels::Linear8(texels) }
+        } else {
+            let linear = |v: f32| match srgb {
+                false => v,
+                true if v <= 0.04045 => v / 12.92,
+                true => ((f64::from(v) + 0.055) / 1.055).powf(2.4) as f32,
+            };
+            Texels::F32(decoded.into_rgb32f().pixels().map(|p| p.0.map(linear)).collect())
+        };
+        if let Texels::F32(texels) = &texels
+            && let Some(i) = texels.iter().position(|t| t.iter().any(|v| !v.is_finite()))
+        {
+            return Err(format!(
+                "its texel in column {}, row {} is {:?}",
+                i % width as usize,
+                i / width as usize,
+                texels[i]
+            ));
+        }
+        Ok(Self { width, height, texels })
+    }
+
+    /// The texel in a column and a row, counted from 0 at the top left, in linear numbers.
+    #[inline]
+    pub fn texel(&self, column: usize, row: usize) -> [f64; 3] {
+        let i = row * self.width as usize + column;
+        match &self.texels {
+            Texels::Srgb8(texels) => texels[i].map(|v| SRGB[usize::from(v)]),
+            Texels::Linear8(texels) => texels[i].map(|v| f64::from(v) / 255.0),
+            Texels::F32(texels) => texels[i].map(f64::from),
+        }
+    }
+
+    /// All texels, row after row from the top, in linear numbers.
+    pub fn linear_texels(&self) -> impl Iterator<Item = [f64; 3]> {
+        let width = self.width as usize;
+        (0..width * self.height as usize).map(move |i| self.texel(i % width, i / width))
+    }
+
+    /// The mean of all texels.
+    pub fn mean(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        self.linear_texels().for_each(|texel| (0..3).for_each(|c| sum[c] += texel[c]));
+        sum.map(|v| v / (f64::from(self.width) * f64::from(self.height)))
+    }
+
+    /// Whether every texel has three equal channels.
+    pub fn is_grey(&self) -> bool {
+        self.linear_texels().all(|[r, g, b]| r == g && g == b)
+    }
+}
+
+fn is_opaque(image: &DynamicImage) -> bool {
+    match image {
+        DynamicImage::ImageLumaA8(i) => i.pixels().all(|p| p.0[1] == u8::MAX),
+        DynamicImage::ImageRgba8(i) => i.pixels().all(|p| p.0[3] == u8::MAX),
+        DynamicImage::ImageLumaA16(i) => i.pixels().all(|p| p.0[1] == u16::MAX),
+        DynamicImage::ImageRgba16(i) => i.pixels().all(|p| p.0[3] == u16::MAX),
+        DynamicImage::ImageRgba32F(i) => i.pixels().all(|p| p.0[3] == 1.0),
+        _ => false,
+    }
+}
+
+impl ImageTexture {
+    /// The colour at texture coordinates: what a filter of the image shows there, times the factor.
+    ///
+    /// Only correctly rounded operations: the same bits on every machine.
+    #[inline]
+    pub fn eval(&self, uv: [f64; 2]) -> [f64; 3] {
+        let size = [self.image.width as usize, self.image.height as usize];
+        let at = |k: usize| uv[k] * self.uv_scale[k] + self.uv_offset[k];
+        // Rows count from the top, v from below.
+        let [(x0, x1, x), (y0, y1, y)] =
+            [place(at(0), size[0], self.wrap[0], self.filter), place(1.0 - at(1), size[1], self.wrap[1], self.filter)];
+        let texel = |column, row| self.image.texel(column, row);
+        let colour = match self.filter {
+            TextureFilter::Nearest => texel(x0, y0),
+            TextureFilter::Bilinear => {
+                let [a, b, c, d] = [texel(x0, y0), texel(x1, y0), texel(x0, y1), texel(x1, y1)];
+                let mix = |k: usize| {
+                    let (upper, lower) = (a[k] + x * (b[k] - a[k]), c[k] + x * (d[k] - c[k]));
+                    upper + y * (lower - upper)
+                };
+                [mix(0), mix(1), mix(2)]
+            }
+        };
+        [0, 1, 2].map(|k| colour[k] * self.factor[k])
+    }
+}
+
+/// The two texels around a coordinate along one axis of `size` texels, and the share of the second.
+#[inline]
+fn place(at: f64, size: usize, wrap: Wrap, filter: TextureFilter) -> (usize, usize, f64) {
+    let within = match wrap {
+        Wrap::Repeat => at - at.floor(),
+        Wrap::Mirror => {
+            let t = 2.0 * (0.5 * at - (0.5 * at).floor());
+            if t > 1.0 { 2.0 - t } else { t }
+        }
+        Wrap::Clamp => at.clamp(0.0, 1.0),
+    };
+    if filter == TextureFilter::Nearest {
+        let i = ((within * size as f64) as usize).min(size - 1);
+        return (i, i, 0.0);
+    }
+    let x = within * size as f64 - 0.5;
+    let floor = x.floor();
+    let share = x - floor;
+    // From −1 to size − 1.
+    let first = floor as isize;
+    let last = size as isize - 1;
+    let wrapped = |i: isize| match wrap {
+        Wrap::Repeat if i < 0 => last as usize,
+        Wrap::Repeat if i > last => 0,
+        // Beyond the edge the mirror image, like the outermost texel, begins with the outermost texel.
+        _ => i.clamp(0, last) as usize,
+    };
+    (wrapped(first), wrapped(first + 1), share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two columns and two rows: red = column, green = 1 in the upper row.
+    fn square(wrap: Wrap, filter: TextureFilter) -> ImageTexture {
+        let texels = vec![[0.0, 1.0, 0.25], [1.0, 1.0, 0.25], [0.0, 0.0, 0.25], [1.0, 0.0, 0.25]];
+        let image = Arc::new(Image { width: 2, height: 2, texels: Texels::F32(texels) });
+        ImageTexture {
+            image,
+            name: String::new(),
+            wrap: [wrap; 2],
+            filter,
+            uv_scale: [1.0; 2],
+            uv_offset: [0.0; 2],
+            factor: [1.0; 3],
+        }
+    }
+
+    #[test]
+    fn bilinear_weights_are_exact() {
+        let t = square(Wrap::Clamp, TextureFilter::Bilinear);
+        // Centres of texels, the middle, and a place of weights 1/4 and 3/4 (exact in binary).
+        assert_eq!(t.eval([0.25, 0.75]), [0.0, 1.0, 0.25]);
+        assert_eq!(t.eval([0.75, 0.25]), [1.0, 0.0, 0.25]);
+        assert_eq!(t.eval([0.5, 0.5]), [0.5, 0.5, 0.25]);
+        assert_eq!(t.eval([0.375, 0.625]), [0.25, 0.75, 0.25]);
+        let nearest = square(Wrap::Clamp, TextureFilter::Nearest);
+        assert_eq!(nearest.eval([0.375, 0.625]), [0.0, 1.0, 0.25]);
+        assert_eq!(nearest.eval([0.625, 0.125]), [1.0, 0.0, 0.25]);
+    }
+
+    #[test]
+    fn edges_wrap_as_they_are_told_to() {
+        for (wrap, at, red) in [
+            (Wrap::Repeat, 0.0, 0.5),
+            (Wrap::Repeat, 0.125, 0.25),
+            (Wrap::Repeat, 1.25, 0.0),
+            (Wrap::Repeat, -0.25, 1.0),
+            (Wrap::Repeat, -1e9 + 0.75, 1.0),
+            (Wrap::Mirror, 0.0, 0.0),
+            (Wrap::Mirror, -0.25, 0.0),
+            (Wrap::Mirror, -0.75, 1.0),
+            (Wrap::Mirror, 1.25, 1.0),
+            (Wrap::Mirror, 2.25, 0.0),
+            (Wrap::Mirror, 1.0, 1.0),
+            (Wrap::Clamp, -7.0, 0.0),
+            (Wrap::Clamp, 0.1, 0.0),
+            (Wrap::Clamp, 7.0, 1.0),
+        ] {
+            let t = square(wrap, TextureFilter::Bilinear);
+            assert_eq!(t.eval([at, 0.5])[0], red, "{wrap:?} at {at}");
+            // The same along v, which counts from below: green is 1 − red turned about.
+            let green = t.eval([0.5, 1.0 - at])[1];
+            assert_eq!(green, 1.0 - red, "{wrap:?} at {at}");
+            let nearest = square(wrap, TextureFilter::Nearest).eval([at, 0.5])[0];
+            assert!(red == 0.5 || red == 0.25 || nearest == red, "{wrap:?} at {at}");
+        }
+    }
+
+    #[test]
+    fn coordinates_are_scaled_then_moved_and_colours_multiplied() {
+        let mut t = square(Wrap::Clamp, TextureFilter::Bilinear);
+        t.uv_scale = [2.0, 1.0];
+        t.uv_offset = [-0.5, 0.0];
+        t.factor = [3.0, 1.0, 2.0];
+        assert_eq!(t.eval([0.5, 0.5]), [1.5, 0.5, 0.5]);
+        assert_eq!(t.eval([0.625, 0.5]), [3.0, 0.5, 0.5]);
+    }
+
+    fn encoded(image: &DynamicImage, format: image::ImageFormat) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        image.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn files_mean_what_their_encoding_says() {
+        let grey = DynamicImage::ImageRgb8(image::RgbImage::from_pixel(3, 2, image::Rgb([188, 0, 255])));
+        let png = encoded(&grey, image::ImageFormat::Png);
+        let (srgb, left_out) = Image::decode(&png, Encoding::Auto).unwrap();
+        assert_eq!((srgb.width, srgb.height, left_out), (3, 2, None));
+        // 188/255 = 0.737254902; ((0.737254902 + 0.055)/1.055)^2.4 by hand.
+        assert!((srgb.texel(0, 0)[0] - 0.502_886_458_033).abs() < 1e-11, "{}", srgb.texel(0, 0)[0]);
+        assert_eq!(srgb.texel(2, 1)[1..], [0.0, 1.0]);
+        let (linear, _) = Image::decode(&png, Encoding::Linear).unwrap();
+        assert_eq!(linear.texel(1, 1), [188.0 / 255.0, 0.0, 1.0]);
+
+        let float = DynamicImage::ImageRgb32F(image::Rgb32FImage::from_pixel(2, 2, image::Rgb([0.5, 2.0, 0.125])));
+        for format in [image::ImageFormat::OpenExr, image::ImageFormat::Hdr] {
+            let (image, _) = Image::decode(&encoded(&float, format), Encoding::Auto).unwrap();
+            assert_eq!(image.texel(1, 0), [0.5, 2.0, 0.125], "{format:?}");
+        }
+        let jpeg = encoded(&grey, image::ImageFormat::Jpeg);
+        let (image, _) = Image::decode(&jpeg, Encoding::Linear).unwrap();
+        // A lossy file of one colour: chroma is rounded to whole levels.
+        assert!((image.texel(1, 1)[0] - 188.0 / 255.0).abs() < 0.02);
+        let rgba = DynamicImage::ImageRgba8(image::RgbaImage::from_pixel(1, 1, image::Rgba([1, 2, 3, 4])));
+        assert!(Image::decode(&encoded(&rgba, image::ImageFormat::Png), Encoding::Auto).unwrap().1.is_some());
+    }
+
+    #[test]
+    fn damaged_files_and_those_larger_than_they_look_are_refused() {
+        let image = DynamicImage::ImageRgb8(image::RgbImage::from_pixel(30, 20, image::Rgb([1, 2, 3])));
+        let png = encoded(&image, image::ImageFormat::Png);
+        for length in [0, 3, 20, png.len() / 2] {
+            assert!(Image::decode(&png[..length], Encoding::Auto).is_err(), "{length}");
+        }
+        assert!(Image::decode(b"not an image at all", Encoding::Auto).unwrap_err().contains("no PNG"));
+        // A header that promises 60,000 × 60,000 texels in a hundred bytes.
+        let mut huge = png.clone();
+        huge[16..24].copy_from_slice(&[0, 0, 0xea, 0x60, 0, 0, 0xea, 0x60]);
+        assert!(Image::decode(&huge, Encoding::Auto).is_err());
+        let nan = DynamicImage::ImageRgb32F(image::Rgb32FImage::from_pixel(2, 2, image::Rgb([0.5, f32::NAN, 0.1])));
+        assert!(
+            Image::decode(&encoded(&nan, image::ImageFormat::OpenExr), Encoding::Auto)
+                .unwrap_err()
+                .contains("column 0")
+        );
+    }
+}
