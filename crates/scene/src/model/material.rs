@@ -1,0 +1,181 @@
+//! Materials: what surfaces do to light.
+
+use crate::texture::ImageTexture;
+use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
+
+/// The least width α of a rough surface's facets. Below it directions in single precision no longer resolve the lobe.
+pub const LEAST_ALPHA: f64 = 1e-4;
+
+/// A named material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Its name in the file.
+    pub name: String,
+    /// What it is.
+    pub kind: MaterialKind,
+}
+
+/// What a surface does to light.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MaterialKind {
+    /// Ideal diffuse reflection on both sides.
+    Lambert {
+        /// Albedo, in [0, 1] at every wavelength.
+        reflectance: SpectrumTexture,
+    },
+    /// Ideal mirror on both sides.
+    Mirror {
+        /// Reflectance, in [0, 1] at every wavelength, at every angle.
+        reflectance: SpectrumTexture,
+    },
+    /// Smooth metal: Fresnel reflection from a complex index of refraction, seen from vacuum.
+    Conductor {
+        /// n + ik.
+        index: ComplexIndex,
+    },
+    /// Smooth interface between two transparent media.
+    Dielectric {
+        /// Medium on the side that the surface normal points away from.
+        interior: RefractiveIndex,
+        /// Medium on the side that the surface normal points into.
+        exterior: RefractiveIndex,
+        /// Given, the object is a closed solid of `interior` that is tracked among others: where several overlap, the
+        /// highest priority fills the place, of equal ones the later object. `exterior` is then vacuum and means nothing.
+        priority: Option<u32>,
+    },
+    /// Rough metal, seen from vacuum.
+    RoughConductor {
+        /// n + ik.
+        index: ComplexIndex,
+        /// Width of the GGX distribution of facets, in [[`LEAST_ALPHA`], 1].
+        alpha: f64,
+        /// Whether light that meets several facets is counted.
+        compensated: bool,
+    },
+    /// Rough interface between two transparent media.
+    RoughDielectric {
+        /// Medium on the side that the surface normal points away from.
+        interior: RefractiveIndex,
+        /// Medium on the side that the surface normal points into.
+        exterior: RefractiveIndex,
+        /// Width of the GGX distribution of facets, in [[`LEAST_ALPHA`], 1].
+        alpha: f64,
+        /// Whether light that meets several facets is counted.
+        compensated: bool,
+    },
+    /// Rough diffuse reflection on both sides (EON).
+    OrenNayar {
+        /// Albedo parameter, in [0, 1] at every wavelength.
+        reflectance: Spectrum,
+        /// Roughness, in [0, 1].
+        roughness: f64,
+    },
+    /// A diffuse ground under a clear coat, on both sides, seen from vacuum.
+    Plastic {
+        /// Albedo of the ground, in [0, 1] at every wavelength.
+        reflectance: Spectrum,
+        /// Index of the coat.
+        coat: RefractiveIndex,
+        /// Width of the coat's facets: 0 (smooth) or in [[`LEAST_ALPHA`], 1].
+        alpha: f64,
+    },
+    /// A pane without thickness.
+    ThinDielectric {
+        /// Index relative to what surrounds it.
+        index: RefractiveIndex,
+    },
+    /// Two materials side by side, finer than can be seen.
+    Blend {
+        /// The one.
+        first: Box<MaterialKind>,
+        /// The other.
+        second: Box<MaterialKind>,
+        /// The other's share of the surface, in [0, 1].
+        weight: f64,
+    },
+    /// Reflects nothing (an emitter that is only a light, an absorber).
+    Black,
+}
+
+impl MaterialKind {
+    /// The first image that varies it over a surface.
+    pub fn image(&self) -> Option<&ImageTexture> {
+        match self {
+            Self::Lambert { reflectance } | Self::Mirror { reflectance } => reflectance.image(),
+            Self::Blend { first, second, .. } => first.image().or_else(|| second.image()),
+            Self::Conductor { .. }
+            | Self::Dielectric { .. }
+            | Self::RoughConductor { .. }
+            | Self::RoughDielectric { .. }
+            | Self::OrenNayar { .. }
+            | Self::Plastic { .. }
+            | Self::ThinDielectric { .. }
+            | Self::Black => None,
+        }
+    }
+
+    /// Changes every reflectance that may vary over a surface.
+    pub fn change_textures(&mut self, change: &dyn Fn(&mut SpectrumTexture)) {
+        match self {
+            Self::Lambert { reflectance } | Self::Mirror { reflectance } => change(reflectance),
+            Self::Blend { first, second, .. } => {
+                first.change_textures(change);
+                second.change_textures(change);
+            }
+            Self::Conductor { .. }
+            | Self::Dielectric { .. }
+            | Self::RoughConductor { .. }
+            | Self::RoughDielectric { .. }
+            | Self::OrenNayar { .. }
+            | Self::Plastic { .. }
+            | Self::ThinDielectric { .. }
+            | Self::Black => {}
+        }
+    }
+}
+
+/// A spectrum that may vary over a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SpectrumTexture {
+    /// The same everywhere.
+    Uniform(Spectrum),
+    /// An image, whose colours are reflectances of a linear Rec. 709 colour under D65 in [0, 1]
+    /// ([`RgbBasis`](etalon_optics::spectrum::RgbBasis)).
+    Image(ImageTexture),
+}
+
+impl SpectrumTexture {
+    /// Whether it is known to be zero everywhere.
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Self::Uniform(spectrum) => spectrum.is_zero(),
+            Self::Image(texture) => texture.factor == [0.0; 3],
+        }
+    }
+
+    /// Whether it is the same at every wavelength, as far as is known.
+    pub fn is_grey(&self) -> bool {
+        match self {
+            Self::Uniform(spectrum) => spectrum.is_constant(),
+            Self::Image(texture) => {
+                texture.factor[0] == texture.factor[1]
+                    && texture.factor[1] == texture.factor[2]
+                    && texture.image.is_grey()
+            }
+        }
+    }
+
+    /// Its image, if it has one.
+    pub fn image(&self) -> Option<&ImageTexture> {
+        match self {
+            Self::Uniform(_) => None,
+            Self::Image(texture) => Some(texture),
+        }
+    }
+}
+
+impl From<Spectrum> for SpectrumTexture {
+    fn from(spectrum: Spectrum) -> Self {
+        Self::Uniform(spectrum)
+    }
+}
