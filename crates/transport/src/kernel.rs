@@ -121,7 +121,7 @@ impl<'a, R: Real> Tracer<'a, R> {
                 media: prepared.media.as_ref(),
                 light_sampling: integrator.light_sampling,
                 shadow_rays: prepared.shadow_rays(),
-                masks: prepared.surfaces.objects.iter().any(|object| object.opacity < 1.0),
+                masks: plan.runs(EffectName::Masks),
                 weigh_hits: prepared.lights.has_surfaces() || plan.runs(EffectName::Mis),
                 max_depth: integrator.max_depth.unwrap_or(MOST_VERTICES).min(MOST_VERTICES),
                 roulette: integrator.roulette,

@@ -17,7 +17,7 @@ fn scenes() -> Vec<(String, Scene)> {
         .map(|path| {
             let text = etalon_scene::json::load_text(&path).unwrap();
             let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-            let (mut scene, _) = etalon_scene::parse_with_size(&text, &name, Some([24, 18])).unwrap();
+            let mut scene = etalon_scene::parse_in(&text, &name, path.parent(), Some([24, 18])).unwrap().scene;
             scene.integrator.spp = 4;
             (name, scene)
         })

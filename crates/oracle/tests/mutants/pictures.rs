@@ -9,9 +9,11 @@ use etalon_oracle::{
 
 use crate::renderer::Tracer;
 
-/// Truths that a renderer without polarisation and without thermal spectra can be held to.
+/// Truths that a renderer without polarisation, without thermal spectra and with the media on both sides of each surface
+/// stated, instead of priorities, can be held to.
 fn readable() -> Vec<Truth> {
-    let applies = |truth: &Truth| truth.applies_to(&Claim::UNPOLARISED) && !truth.scene.contains("blackbody");
+    let claims: Vec<_> = Claim::UNPOLARISED.into_iter().filter(|claim| *claim != Claim::Priorities).collect();
+    let applies = |truth: &Truth| truth.applies_to(&claims) && !truth.scene.contains("blackbody");
     truths().into_iter().filter(applies).collect()
 }
 

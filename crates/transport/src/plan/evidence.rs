@@ -40,6 +40,17 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             Some(found) => Ok(found),
             None => nothing("no mesh has normals of its own"),
         },
+        EffectName::Masks => match scene.placed_objects().find(|object| object.opacity < 1.0) {
+            Some(object) => Ok(format!("\"{}\": opacity {}", object.name, object.opacity)),
+            None => nothing("every surface is opaque"),
+        },
+        EffectName::Instances => match scene.instances.first() {
+            Some(first) => {
+                let (name, count) = (&scene.groups[first.group].name, scene.instances.len());
+                Ok(format!("group \"{name}\" by \"{}\", the first of {count} in the scene", first.name))
+            }
+            None => nothing("every object stands where it is defined"),
+        },
         EffectName::WideFilter => match scene.film.filter {
             Filter::Box => nothing("a pixel is its own square"),
             Filter::Tent { radius_px } => Ok(format!("film: tent of radius {radius_px} px")),

@@ -43,13 +43,17 @@ pub enum EffectName {
     Textures,
     /// Meshes are shaded by the normals of their vertices.
     ShadingNormals,
+    /// Surfaces let a share of the paths pass.
+    Masks,
+    /// Groups of objects are placed where they are met, instead of being copied.
+    Instances,
     /// A pixel looks beyond its own square.
     WideFilter,
 }
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Lens,
@@ -61,6 +65,8 @@ impl EffectName {
         Self::Polarisation,
         Self::Textures,
         Self::ShadingNormals,
+        Self::Masks,
+        Self::Instances,
         Self::WideFilter,
     ];
 
@@ -78,6 +84,8 @@ impl EffectName {
             Self::Polarisation => "polarisation",
             Self::Textures => "textures",
             Self::ShadingNormals => "shading-normals",
+            Self::Masks => "masks",
+            Self::Instances => "instances",
             Self::WideFilter => "wide-filter",
         }
     }
@@ -98,6 +106,8 @@ impl EffectName {
             Self::Polarisation => "light is taken for unpolarised at every surface",
             Self::Textures => "each image is replaced by its mean colour",
             Self::ShadingNormals => "meshes show their triangles",
+            Self::Masks => "every surface is opaque",
+            Self::Instances => "what instances place is left out",
             Self::WideFilter => "a pixel is its own square",
         }
     }
@@ -110,7 +120,12 @@ impl EffectName {
             }
             Self::NestedDielectrics | Self::Polarisation => true,
             // They are what the surfaces, or the film, are made of.
-            Self::SpecularChains | Self::Textures | Self::ShadingNormals | Self::WideFilter => false,
+            Self::SpecularChains
+            | Self::Textures
+            | Self::ShadingNormals
+            | Self::Masks
+            | Self::Instances
+            | Self::WideFilter => false,
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::texture;
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_scene::{
-    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Projection, Scene, Shape,
+    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Object, Projection, Scene, Shape,
     SpectrumTexture, Texels,
 };
 use std::sync::Arc;
@@ -59,7 +59,7 @@ impl Study {
     }
 
     pub(super) fn check(&self, scene: &Scene) -> Result<(), StudyError> {
-        let unknown = |object: &etalon_scene::Object| match scene.materials[object.material].kind {
+        let unknown = |object: &Object| match scene.materials[object.material].kind {
             MaterialKind::RoughConductor { .. }
             | MaterialKind::RoughDielectric { .. }
             | MaterialKind::Plastic { .. }
@@ -169,8 +169,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             }
         }
         EffectName::ShadingNormals => {
-            let grouped = scene.groups.iter_mut().flat_map(|group| &mut group.objects);
-            for object in scene.objects.iter_mut().chain(grouped) {
+            for object in objects_mut(scene) {
                 if let Shape::Mesh(mesh) = &mut object.shape
                     && !mesh.normals.is_empty()
                 {
@@ -178,8 +177,16 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 }
             }
         }
+        EffectName::Masks => objects_mut(scene).for_each(|object| object.opacity = 1.0),
+        EffectName::Instances => scene.instances.clear(),
         EffectName::WideFilter => scene.film.filter = Filter::Box,
     }
+}
+
+/// Every object, where it is defined.
+fn objects_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Object> {
+    let grouped = scene.groups.iter_mut().flat_map(|group| &mut group.objects);
+    scene.objects.iter_mut().chain(grouped)
 }
 
 /// Makes a material treat all wavelengths alike.
