@@ -328,7 +328,7 @@ impl World<'_> {
             }
             share *= R::from_f64(1.0 - met.surface.opacity);
             if share == R::ZERO {
-                break;
+                return R::ZERO;
             }
             shadow_ray = match sample.target {
                 Target::Point(target) => met.point.spawn_to(target.cast(), sample.surface),
@@ -339,6 +339,7 @@ impl World<'_> {
                 inside = beyond.inside;
             }
         }
+        counters.cut_paths += 1;
         R::ZERO
     }
 }
