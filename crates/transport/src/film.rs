@@ -137,7 +137,8 @@ pub struct Counters {
     pub lane_weights: u64,
     /// Boundaries that contradicted what was known of the media around a path, such as a solid left that was not entered.
     pub lost_media: u64,
-    /// Paths cut at the internal limit on vertices rather than ended by the scene: each may lack light.
+    /// Paths, and shadow rays between masks, cut at the internal limit on vertices rather than ended by the scene: each may
+    /// lack light.
     pub cut_paths: u64,
     /// Samples that were not finite.
     pub nonfinite: u64,
