@@ -254,16 +254,14 @@ impl Film {
         self.pixels().map(error).collect()
     }
 
-    /// Mean Y over a rectangle: the mean radiance where the scene is the same at every wavelength.
+    /// Mean Y over the pixels of a rectangle, however many samples each has: the mean radiance where the scene is the same at
+    /// every wavelength. Not a number where a pixel has none.
     pub fn mean_y(&self, rect: PixelRect) -> f64 {
-        let (mut sum, mut count) = (0.0, 0_u64);
-        for (x, y) in rect.pixels() {
-            for part in self.pixel(x, y).sums() {
-                sum += part.xyz[1];
-                count += u64::from(part.count);
-            }
-        }
-        sum / count as f64
+        let mean = |pixel: Pixel<'_>| {
+            let sum: f64 = pixel.sums().iter().map(|part| part.xyz[1]).sum();
+            sum / f64::from(pixel.count())
+        };
+        rect.pixels().map(|(x, y)| mean(self.pixel(x, y))).sum::<f64>() / rect.area() as f64
     }
 }
 

@@ -2,8 +2,10 @@
 
 use crate::film::{Counters, Film, PixelRect};
 use crate::prepare::Prepared;
+use crate::shares::Shares;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Side of a tile, pixels.
@@ -14,10 +16,34 @@ const TILE: u32 = 16;
 pub struct Extent {
     /// Pixels.
     pub rect: PixelRect,
-    /// Numbers of the samples.
+    /// Numbers of the samples; with shares, how far the mean number of samples a pixel goes.
     pub samples: Range<u32>,
+    /// How the samples are spread over regions; `None` gives every pixel the same number.
+    pub shares: Option<Arc<Shares>>,
     /// Threads; `None` is one for each core.
     pub threads: Option<usize>,
+}
+
+impl Extent {
+    /// Tiles whose pixels take the same samples.
+    fn tiles(&self) -> Vec<PixelRect> {
+        let tiles = self.rect.tiles(TILE);
+        match &self.shares {
+            None => tiles,
+            Some(shares) => tiles.into_iter().flat_map(|tile| shares.parts(tile)).collect(),
+        }
+    }
+
+    /// The samples of the pixels of one of [`Extent::tiles`].
+    fn samples_of(&self, tile: PixelRect, replicates: u32) -> Range<u32> {
+        match &self.shares {
+            None => self.samples.clone(),
+            Some(shares) => {
+                let up_to = |mean| shares.samples(tile.x0, tile.y0, mean, replicates);
+                up_to(self.samples.start)..up_to(self.samples.end)
+            }
+        }
+    }
 }
 
 /// Whether to go on.
@@ -41,6 +67,7 @@ impl Prepared {
         Extent {
             rect: PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height },
             samples: 0..self.scene.integrator.spp,
+            shares: None,
             threads,
         }
     }
@@ -71,7 +98,8 @@ impl Prepared {
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(extent.threads.unwrap_or(0)).build()?;
         let render_tile = self.kernel().render;
-        let tiles = extent.rect.tiles(TILE);
+        let tiles = extent.tiles();
+        let replicates = self.scene.integrator.replicates;
         let stopped = AtomicBool::new(false);
         let before: &Film = film;
         let finished: Vec<_> = pool.install(|| {
@@ -82,7 +110,7 @@ impl Prepared {
                         return None;
                     }
                     let mut sums = before.sums_of(tile);
-                    let counters = render_tile(self, tile, extent.samples.clone(), &mut sums);
+                    let counters = render_tile(self, tile, extent.samples_of(tile, replicates), &mut sums);
                     if on_tile(&counters) == Control::Stop {
                         stopped.store(true, Ordering::Relaxed);
                     }

@@ -129,7 +129,7 @@ impl Prepared {
                 }
                 pass = pass.min(affordable);
             }
-            let extent = Extent { rect, samples: done..done + pass, threads };
+            let extent = Extent { rect, samples: done..done + pass, shares: None, threads };
             self.render_onto(&mut film, &extent, &|counters| {
                 watch.work(counters);
                 Control::Continue

@@ -120,7 +120,7 @@ fn the_first_limit_wins_and_the_film_is_that_of_as_many_samples() {
         paths.store(0, Ordering::Relaxed);
         let limits = Limits { samples, relative_rmse, seconds };
         let done = prepared.render_within(rect, &limits, Some(2), &clock, &Paths(&paths)).unwrap();
-        let extent = Extent { rect, samples: 0..done.samples, threads: Some(1) };
+        let extent = Extent { rect, samples: 0..done.samples, shares: None, threads: Some(1) };
         assert_eq!(done.film, prepared.render(&extent, &|_| Control::Continue).unwrap());
         assert!(done.film.pixels().all(|pixel| pixel.count() == done.samples));
         done
