@@ -55,6 +55,51 @@ impl XyzSum {
     }
 }
 
+/// All that a film keeps of a rectangle of pixels, row by row: exactly, so that a picture can be put down and taken up.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TileSums {
+    /// Pixel by pixel, in each replicate by replicate.
+    pub(crate) xyz: Vec<XyzSum>,
+}
+
+/// Bytes of one sum in a file: three numbers and a count.
+const XYZ_SUM_BYTES: usize = 28;
+
+impl TileSums {
+    /// The sums of the pixels with so many replicates each, row by row.
+    pub fn pixels(&self, replicates: u32) -> impl Iterator<Item = Pixel<'_>> {
+        self.xyz.chunks_exact(replicates as usize).map(Pixel)
+    }
+
+    /// The sums as bytes: little-endian, every bit kept.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(self.xyz.len() * XYZ_SUM_BYTES);
+        for sum in &self.xyz {
+            sum.xyz.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+            bytes.extend(sum.count.to_le_bytes());
+        }
+        bytes
+    }
+
+    /// The sums that [`TileSums::to_bytes`] wrote for so many pixels and replicates; `None` if the bytes are not as many as
+    /// that takes.
+    pub fn from_bytes(bytes: &[u8], pixels: u64, replicates: u32) -> Option<Self> {
+        let sums = usize::try_from(pixels * u64::from(replicates)).ok()?;
+        if bytes.len() != sums.checked_mul(XYZ_SUM_BYTES)? {
+            return None;
+        }
+        let number = |at: &[u8]| f64::from_le_bytes(at.try_into().expect("eight bytes"));
+        let xyz = bytes
+            .chunks_exact(XYZ_SUM_BYTES)
+            .map(|sum| XyzSum {
+                xyz: [number(&sum[..8]), number(&sum[8..16]), number(&sum[16..24])],
+                count: u32::from_le_bytes(sum[24..].try_into().expect("four bytes")),
+            })
+            .collect();
+        Some(Self { xyz })
+    }
+}
+
 /// One pixel: the sums of its independent replicates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel<'a>(&'a [XyzSum]);
@@ -221,17 +266,27 @@ impl Film {
         self.sums.chunks_exact(self.replicates as usize).map(Pixel)
     }
 
-    /// The sums of a rectangle's pixels, row by row.
-    pub(crate) fn sums_of(&self, rect: PixelRect) -> Vec<XyzSum> {
-        rect.pixels().flat_map(|(x, y)| self.pixel(x, y).sums()).copied().collect()
+    /// All that the film keeps of a rectangle's pixels.
+    pub(crate) fn tile(&self, rect: PixelRect) -> TileSums {
+        TileSums { xyz: rect.pixels().flat_map(|(x, y)| self.pixel(x, y).sums()).copied().collect() }
     }
 
-    pub(crate) fn put(&mut self, rect: PixelRect, sums: &[XyzSum]) {
+    pub(crate) fn put(&mut self, rect: PixelRect, tile: &TileSums) {
         let replicates = self.replicates as usize;
-        for ((x, y), sums) in rect.pixels().zip(sums.chunks_exact(replicates)) {
+        for ((x, y), sums) in rect.pixels().zip(tile.xyz.chunks_exact(replicates)) {
             let start = (y as usize * self.width as usize + x as usize) * replicates;
             self.sums[start..start + replicates].copy_from_slice(sums);
         }
+    }
+
+    /// Whether `tile` is what this film keeps of `rect`, by its size.
+    pub(crate) fn fits(&self, rect: PixelRect, tile: &TileSums) -> bool {
+        tile.xyz.len() as u64 == rect.area() * u64::from(self.replicates)
+    }
+
+    /// Bytes of a film in memory.
+    pub fn bytes(width: u32, height: u32, replicates: u32) -> u64 {
+        u64::from(width) * u64::from(height) * u64::from(replicates) * size_of::<XyzSum>() as u64
     }
 
     /// Mean CIE XYZ of each pixel: see [`Pixel::xyz`].

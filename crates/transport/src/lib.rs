@@ -14,6 +14,7 @@
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`], [`texture`] | what the estimates are made of |
 //! | `kernel`, `model`, [`mod@render`], [`film`] | the table of kernels, what their lanes stand for, tiles over all cores, sums |
+//! | [`canvas`] | a picture under way: divided, put down, taken up |
 //! | [`accuracy`], [`pilot`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
 //! | [`replay`] | one path, vertex by vertex |
 //!
@@ -23,6 +24,7 @@
 pub mod accuracy;
 pub mod bsdf;
 pub mod camera;
+pub mod canvas;
 mod compiled;
 mod coordinates;
 pub mod film;
@@ -52,10 +54,11 @@ pub mod warp;
 pub mod wavelength;
 
 pub use accuracy::ImageError;
-pub use film::{Counters, Film, NonFinite, Pixel, PixelRect};
+pub use canvas::{Canvas, Shard, Tile};
+pub use film::{Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
 pub use pilot::{Pilot, Price};
 pub use plan::{Effect, EffectName, Plan, Study, StudyError};
 pub use prepare::{PrepareError, Prepared, prepare, prepare_study};
 pub use render::{Control, Extent, ThreadError};
 pub use shares::Shares;
-pub use stop::{Finished, Foretold, Limits, Reached, Watch};
+pub use stop::{Ended, Finished, Foretold, Limits, Reached, Settled, Watch};

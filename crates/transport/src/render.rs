@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Side of a tile, pixels.
-const TILE: u32 = 16;
+pub(crate) const TILE: u32 = 16;
 
 /// A stage of a render: which pixels, which samples, on how many threads.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -109,8 +109,8 @@ impl Prepared {
                     if stopped.load(Ordering::Relaxed) {
                         return None;
                     }
-                    let mut sums = before.sums_of(tile);
-                    let counters = render_tile(self, tile, extent.samples_of(tile, replicates), &mut sums);
+                    let mut sums = before.tile(tile);
+                    let counters = render_tile(self, tile, extent.samples_of(tile, replicates), &mut sums.xyz);
                     if on_tile(&counters) == Control::Stop {
                         stopped.store(true, Ordering::Relaxed);
                     }

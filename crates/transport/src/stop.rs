@@ -3,10 +3,13 @@
 //! The number of samples for an error is chosen by a [`Pilot`] before the picture begins, so the picture's own values have
 //! no say in it. A deadline decides by how long passes take, which depends on the length of paths, not on what they bring.
 
-use crate::film::{Counters, Film, PixelRect};
+use crate::canvas::{Canvas, Shard};
+use crate::film::{Counters, Film, PixelRect, TileSums};
 use crate::pilot::{Pilot, Price, between};
 use crate::prepare::Prepared;
-use crate::render::{Control, Extent, ThreadError};
+use crate::render::{Control, ThreadError};
+use crate::shares::Shares;
+use std::sync::Arc;
 
 /// What a render may cost, or must reach. Without any limit it would not end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +31,8 @@ pub enum Reached {
     Error,
     /// The time.
     Time,
+    /// Whoever watched wanted no more.
+    Interrupted,
 }
 
 /// What was foretold before a render for the sake of its error.
@@ -44,7 +49,7 @@ pub struct Foretold {
 pub struct Finished {
     /// The film.
     pub film: Film,
-    /// Samples of each pixel.
+    /// Samples that every pixel has, at least; with shares, in the mean.
     pub samples: u32,
     /// Why no more.
     pub reached: Reached,
@@ -52,6 +57,39 @@ pub struct Finished {
     pub seconds: f64,
     /// What was foretold, if a relative error was asked for.
     pub foretold: Option<Foretold>,
+}
+
+/// How a render on a canvas ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ended {
+    /// Samples that every pixel has, at least; with shares, in the mean.
+    pub samples: u32,
+    /// Why no more.
+    pub reached: Reached,
+    /// Seconds from the start to the end, the pilot included.
+    pub seconds: f64,
+    /// What was foretold, if a relative error was asked for.
+    pub foretold: Option<Foretold>,
+}
+
+/// How many samples a picture takes, settled before it begins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    /// Samples a pixel; with shares, in the mean.
+    pub samples: u32,
+    /// How they are spread over regions; `None` gives every pixel the same number.
+    pub shares: Option<Arc<Shares>>,
+    /// What it is that these samples reach.
+    pub reached: Reached,
+    /// What was foretold, if a relative error was asked for.
+    pub foretold: Option<Foretold>,
+}
+
+impl Settled {
+    /// Samples of the pixels of one of a canvas's tiles where all pixels have `mean` in the mean.
+    fn samples_of(&self, tile: PixelRect, mean: u32, replicates: u32) -> u32 {
+        self.shares.as_ref().map_or(mean, |shares| shares.samples(tile.x0, tile.y0, mean, replicates))
+    }
 }
 
 /// How a render goes on, for whoever watches it.
@@ -64,9 +102,17 @@ pub trait Watch: Sync {
     fn planned(&self, samples: u32, foretold: Option<&Foretold>) {
         let _ = (samples, foretold);
     }
+    /// A piece of a tile is done, and these are its sums.
+    fn tile(&self, rect: PixelRect, sums: &TileSums) {
+        let _ = (rect, sums);
+    }
     /// A pass has ended: samples a pixel so far.
     fn pass(&self, film: &Film, samples: u32) {
         let _ = (film, samples);
+    }
+    /// Whether to go on; asked after each piece of work.
+    fn control(&self) -> Control {
+        Control::Continue
     }
 }
 
@@ -86,41 +132,71 @@ impl Prepared {
         clock: &(dyn Fn() -> f64 + Sync),
         watch: &dyn Watch,
     ) -> Result<Finished, ThreadError> {
-        let mut samples = limits.samples;
-        let mut reached = Reached::Samples;
-        let mut foretold = None;
-        if let Some(target) = limits.relative_rmse {
-            let mut pilot = Pilot::new(self, rect, threads)?;
-            let needed = pilot.samples_for(target, limits, clock, &|counters| watch.work(counters));
-            let price = pilot.price(target);
-            let point = pilot.points().last().expect("a pilot takes a step at least");
-            foretold = Some(Foretold {
-                price: match needed {
-                    // What was chosen, not what a law through the pilot's points says.
-                    Some(needed) => Price {
-                        samples: f64::from(needed),
-                        seconds: point.seconds / f64::from(point.samples) * f64::from(needed),
-                        ..price
-                    },
-                    None => price,
+        let settled = self.settle(rect, limits, threads, clock, watch)?;
+        let canvas = Canvas::new(self, rect, Shard::WHOLE, settled.shares.as_deref());
+        let Ended { samples, reached, seconds, foretold } =
+            self.render_canvas(&canvas, &settled, limits, threads, clock, watch)?;
+        Ok(Finished { film: canvas.into_film(), samples, reached, seconds, foretold })
+    }
+
+    /// Settles how many samples a picture takes: the most that are allowed, or those that a pilot says its error takes.
+    pub fn settle(
+        &self,
+        rect: PixelRect,
+        limits: &Limits,
+        threads: Option<usize>,
+        clock: &(dyn Fn() -> f64 + Sync),
+        watch: &dyn Watch,
+    ) -> Result<Settled, ThreadError> {
+        let settled = Settled { samples: limits.samples, shares: None, reached: Reached::Samples, foretold: None };
+        let Some(target) = limits.relative_rmse else { return Ok(settled) };
+        let mut pilot = Pilot::new(self, rect, threads)?;
+        let needed = pilot.samples_for(target, limits, clock, watch);
+        let price = pilot.price(target);
+        let point = pilot.points().last().expect("a pilot takes a step at least");
+        let foretold = Some(Foretold {
+            price: match needed {
+                // What was chosen, not what a law through the pilot's points says.
+                Some(needed) => Price {
+                    samples: f64::from(needed),
+                    seconds: point.seconds / f64::from(point.samples) * f64::from(needed),
+                    ..price
                 },
-                pilot_seconds: pilot.seconds(),
-            });
-            if let Some(needed) = needed.filter(|&needed| needed <= samples) {
-                (samples, reached) = (needed, Reached::Error);
+                None => price,
+            },
+            pilot_seconds: pilot.seconds(),
+        });
+        Ok(match needed {
+            Some(samples) if samples <= limits.samples => {
+                Settled { samples, shares: None, reached: Reached::Error, foretold }
             }
-        }
+            _ => Settled { foretold, ..settled },
+        })
+    }
+
+    /// Renders a canvas on until all its tiles have the samples that were settled, time is up or `watch` says stop.
+    pub fn render_canvas(
+        &self,
+        canvas: &Canvas,
+        settled: &Settled,
+        limits: &Limits,
+        threads: Option<usize>,
+        clock: &(dyn Fn() -> f64 + Sync),
+        watch: &dyn Watch,
+    ) -> Result<Ended, ThreadError> {
+        let &Settled { samples, mut reached, foretold, .. } = settled;
         watch.planned(samples, foretold.as_ref());
 
-        let mut film = self.film();
         let replicates = self.scene.integrator.replicates;
-        let (start, mut done) = (clock(), 0_u32);
-        while done < samples {
+        // What a tile has beyond the stage that all have reached is not rendered again.
+        let first = if settled.shares.is_some() { 0 } else { canvas.samples()[0] };
+        let (start, mut done) = (clock(), first);
+        while done < samples && watch.control() == Control::Continue {
             // As many again as there are: the rate is known by half of the work, the error after each pass.
             let mut pass = done.max(replicates).min(samples - done);
-            if let (Some(seconds), true) = (limits.seconds, done > 0) {
+            if let (Some(seconds), true) = (limits.seconds, done > first) {
                 let now = clock();
-                let affordable = USE_OF_TIME * (seconds - now) / ((now - start) / f64::from(done));
+                let affordable = USE_OF_TIME * (seconds - now) / ((now - start) / f64::from(done - first));
                 // Whole rounds of replicates, so that all weigh alike.
                 let affordable = affordable.max(0.0) as u32 / replicates * replicates;
                 if affordable == 0 {
@@ -129,15 +205,22 @@ impl Prepared {
                 }
                 pass = pass.min(affordable);
             }
-            let extent = Extent { rect, samples: done..done + pass, shares: None, threads };
-            self.render_onto(&mut film, &extent, &|counters| {
+            let target = |rect| settled.samples_of(rect, done + pass, replicates);
+            canvas.advance(self, &target, threads, &|counters, rect, sums| {
                 watch.work(counters);
-                Control::Continue
+                watch.tile(rect, sums);
+                watch.control()
             })?;
+            if !canvas.has_reached(&target) {
+                break;
+            }
             done += pass;
-            watch.pass(&film, done);
+            canvas.with_film(|film| watch.pass(film, done));
         }
-        Ok(Finished { film, samples: done, reached, seconds: clock(), foretold })
+        if done < samples && reached != Reached::Time {
+            reached = Reached::Interrupted;
+        }
+        Ok(Ended { samples: done, reached, seconds: clock(), foretold })
     }
 }
 
@@ -149,19 +232,22 @@ impl Pilot<'_> {
         target: f64,
         limits: &Limits,
         clock: &(dyn Fn() -> f64 + Sync),
-        on_work: &(dyn Fn(&Counters) + Sync),
+        watch: &dyn Watch,
     ) -> Option<u32> {
         let replicates = self.first_step();
         let mut next = replicates;
         loop {
-            self.advance(next, clock, on_work);
+            self.advance(next, clock, &|counters| watch.work(counters));
             let &point = self.points().last().expect("it has just advanced");
             if point.relative_rmse <= target {
                 // Whole rounds of replicates, so that all weigh alike.
                 let samples = between(self.points(), target).unwrap_or(f64::from(point.samples));
                 return Some((samples / f64::from(replicates)).ceil() as u32 * replicates);
             }
-            if point.samples >= limits.samples || limits.seconds.is_some_and(|s| clock() + point.seconds > s) {
+            if watch.control() == Control::Stop
+                || point.samples >= limits.samples
+                || limits.seconds.is_some_and(|s| clock() + point.seconds > s)
+            {
                 return None;
             }
             // No further than the law of the error says, nor twice as far, for that law is a guess.

@@ -25,7 +25,7 @@ pub(super) struct RenderJson<'a> {
     threads: usize,
     /// From the start of the pilot, or of the render without one.
     seconds: f64,
-    /// What ended the render: "samples", "error" or "time".
+    /// What ended the render: "samples", "error", "time" or "interrupted".
     reached: &'static str,
     /// What the pilot foretold for the error asked for.
     foretold: Option<ForetoldJson>,
@@ -121,6 +121,7 @@ fn word(reached: Reached) -> &'static str {
         Reached::Samples => "samples",
         Reached::Error => "error",
         Reached::Time => "time",
+        Reached::Interrupted => "interrupted",
     }
 }
 
@@ -143,6 +144,7 @@ fn describe_foretold(done: &Done, foretold: &Foretold) -> String {
         Reached::Error => format!("; it took {}, {:.2} times that", duration(took), took / foretold.price.seconds),
         Reached::Time => "; time was up before".to_owned(),
         Reached::Samples => "; so many samples were not wanted".to_owned(),
+        Reached::Interrupted => "; it was interrupted before".to_owned(),
     };
     text
 }
