@@ -5,9 +5,10 @@
 //! never rejects a box that holds a primitive which the `f64` test would accept.
 
 use crate::Aabb;
-use crate::query::{Query, larger, power_of_two};
+use crate::query::{AXES, Four, Query, larger, power_of_two, projection_axis};
 use etalon_optics::Vec3;
 use std::array::from_fn;
+use std::cmp::Ordering;
 
 /// A box in the accelerator's frame, rounded outward.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,7 +102,7 @@ impl Frame {
 
     /// A ray in this frame; `None` if it certainly misses the whole frame.
     #[inline(always)]
-    pub(crate) fn enter(&self, q: &Query) -> Option<FrameRay> {
+    pub(crate) fn enter<L: Lanes4>(&self, token: L::Token, q: &Query) -> Option<FrameRay<L>> {
         let mut o = frame_coordinates(q.origin, self);
         let mut reach = max_magnitude(o);
         let mut start = 0.0;
@@ -112,27 +113,113 @@ impl Frame {
         }
         let origin = o.map(|o| o as f32);
         let inexact = |k: usize| if slack > SLACK || f64::from(origin[k]) != o[k] { 1.0 } else { 0.0 };
-        let inexact = [inexact(0), inexact(1), inexact(2)];
         // Most directions need not be scaled: their reciprocals are.
         let usual = (USUAL_SCALE..=1.0 / USUAL_SCALE).contains(&q.scale);
         let (direction, unit) = if usual { (q.given, q.scale.recip() as f32) } else { (q.direction, 1.0) };
-        let direction = direction.to_array().map(|d| d as f32);
-        let [kx, ky, kz] = q.axes.map(|k| k.min(2));
-        let slope = 1.0 / direction[kz];
-        Some(FrameRay {
-            origin,
-            inexact,
-            direction,
+        Some(self.ray(RayParts {
+            origin: L::new(token, [origin[0], origin[1], origin[2], 0.0]),
+            inexact: L::new(token, [inexact(0), inexact(1), inexact(2), 0.0]),
+            direction: L::new(token, [direction.x as f32, direction.y as f32, direction.z as f32, 0.0]),
             unit,
-            slack: above(slack),
-            axes: [kx, ky, kz],
-            start_along: [origin[kx], origin[ky], origin[kz]],
-            shear: [direction[kx] * slope, direction[ky] * slope, slope * unit],
+            axis: q.projection.axis,
+            reach,
+            slack,
+            start,
+            t_max: q.t_max,
+            t_scale: q.scale,
+        }))
+    }
+
+    /// What [`Frame::enter`] gives for the [`Query`] of a ray, given by its origin and its direction in three lanes and its end
+    /// as a function of parameters along [`Query::direction`] for one along the direction; at less cost, but only for rays
+    /// that start near the frame and whose direction needs no scaling. `None` for any other.
+    #[inline(always)]
+    pub(crate) fn enter_near<F: Four>(
+        &self,
+        token: F::Token,
+        [origin, direction]: [F; 2],
+        t_max: impl FnOnce(f64) -> f64,
+    ) -> Option<FrameRay<F::Narrow>> {
+        let Vec3 { x, y, z } = self.centre;
+        let o = (origin - F::new(token, [x, y, z, 0.0])) * F::splat(token, self.scale);
+        let (reach, magnitudes) = (o.abs(), direction.abs());
+        let magnitude = magnitudes.largest();
+        // False if a component is NaN.
+        let near = reach.all_at_most(NEAR_REACH) && magnitudes.all_at_most(1.0 / USUAL_SCALE);
+        if !(near && magnitude >= USUAL_SCALE) {
+            return None;
+        }
+        // The power of two below, and its inverse: the exponent alone, and that turned about zero.
+        const EXPONENT: u64 = 0x7FF << 52;
+        let exponent = magnitude.to_bits() & EXPONENT;
+        let (unit, t_scale) = (f64::from_bits(exponent), f64::from_bits((2046 << 52) - exponent));
+        let t_max = t_max(unit);
+        // A NaN is none either.
+        if t_max.partial_cmp(&0.0) != Some(Ordering::Greater) {
+            return None;
+        }
+        let origin = o.narrowed();
+        let [ax, ay, az, _] = magnitudes.to_array();
+        Some(self.ray(RayParts {
+            origin,
+            inexact: o.differs(origin),
+            direction: direction.narrowed(),
+            unit: unit as f32,
+            axis: projection_axis([ax, ay, az]),
+            reach: reach.largest(),
+            slack: SLACK,
+            start: 0.0,
+            t_max,
+            t_scale,
+        }))
+    }
+
+    #[inline(always)]
+    fn ray<L: Lanes4>(&self, parts: RayParts<L>) -> FrameRay<L> {
+        let RayParts { origin, inexact, direction, unit, axis, reach, slack, start, t_max, t_scale } = parts;
+        // Unless it is exact the origin is displaced along the ray and against it by more than its error: an `f32` ε of it
+        // covers its rounding and that of the displaced one, half an ε each; another one, second orders.
+        let error = origin.abs().times(2.0 * f32::EPSILON).plus(above(slack));
+        let displaced = error.product(inexact).signed_as(direction);
+        let reciprocal = direction.abs().at_least(MIN_DIRECTION).signed_as(direction).reciprocal();
+        // Of the largest component, which is not clamped.
+        let slope = reciprocal.turned(axis).to_array()[2];
+        FrameRay {
+            boxes: BoxRay {
+                origin_near: origin.sum(displaced),
+                origin_far: origin.difference(displaced),
+                reciprocal_near: reciprocal.times(unit * NEAR_FACTOR),
+                reciprocal_far: reciprocal.times(unit * FAR_FACTOR),
+                negative: direction.negative(),
+            },
+            axis,
+            start_along: origin.turned(axis),
+            slopes: direction.turned(axis).times(slope),
+            per_depth: slope * unit,
             error: above(reach * PROJECTION_ERROR + 2.0 * slack),
             scale: self.scale,
             start,
-        })
+            t_max,
+            t_scale,
+        }
     }
+}
+
+/// What a [`FrameRay`] is made of: three lanes of the origin, rounded; 1 in those where that changed it, or where it is not known,
+/// else 0; the direction as it was given or [`Query::direction`], rounded; parameters along [`Query::direction`] for one along
+/// that; the axis of the projection; the largest magnitude of the origin and the bound on its error before it was rounded; and
+/// fields of the same names.
+struct RayParts<L> {
+    origin: L,
+    inexact: L,
+    direction: L,
+    unit: f32,
+    axis: usize,
+    reach: f64,
+    slack: f64,
+    start: f64,
+    t_max: f64,
+    t_scale: f64,
 }
 
 /// Bound on the error of the projected coordinates of a vertex, over the sum of the largest magnitudes of its own and of the
@@ -178,69 +265,46 @@ fn approach(o: [f64; 3], d: [f64; 3], slack: f64) -> Option<([f64; 3], f64, f64)
     Some(if known { (moved, slack, start) } else { ([0.0; 3], 16.0, 0.0) })
 }
 
-/// A ray in the accelerator's frame.
+/// A ray in the accelerator's frame; fourth lanes are not used.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FrameRay {
-    /// The origin, rounded.
-    origin: [f32; 3],
-    /// 1 where that changed it, or where it is not known, else 0.
-    inexact: [f32; 3],
-    /// The direction as it was given, or [`Query::direction`]; rounded.
-    direction: [f32; 3],
-    /// Parameters along [`Query::direction`] for one along `direction`.
-    unit: f32,
-    /// Bound on the error of the origin before it was rounded.
-    slack: f32,
-    /// The axes of the watertight projection, the direction's largest component last.
-    pub(crate) axes: [usize; 3],
-    /// The origin along `axes`.
-    pub(crate) start_along: [f32; 3],
-    /// The projection's slopes and 1/(the direction's largest component), rounded.
-    pub(crate) shear: [f32; 3],
+pub(crate) struct FrameRay<L> {
+    /// What the test of boxes needs.
+    pub(crate) boxes: BoxRay<L>,
+    /// [`Projection::axis`](crate::query::Projection::axis).
+    pub(crate) axis: usize,
+    /// The origin along the axes of the projection, the direction's largest component last.
+    pub(crate) start_along: L,
+    /// The projection's two slopes, rounded.
+    pub(crate) slopes: L,
+    /// 1/(the largest component of [`Query::direction`]), rounded.
+    pub(crate) per_depth: f32,
     /// The ray's part of the bound on the error of a vertex's projected coordinates.
     pub(crate) error: f32,
     scale: f64,
     start: f64,
+    /// [`Query::t_max`].
+    pub(crate) t_max: f64,
+    /// [`Query::scale`].
+    pub(crate) t_scale: f64,
 }
 
-/// What the test of boxes needs of a ray; the fourth lanes are not used.
+/// What the test of boxes needs of a ray.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BoxRay {
+pub(crate) struct BoxRay<L> {
     /// The origin displaced along the ray by more than its error: for the planes where the ray enters boxes.
-    pub(crate) origin_near: [f32; 4],
+    pub(crate) origin_near: L,
     /// The origin displaced against the ray by more than its error: for the planes where the ray leaves boxes.
-    pub(crate) origin_far: [f32; 4],
+    pub(crate) origin_far: L,
     /// 1/direction, finite, with the sign of the direction's sign bit, and a little smaller: a distance ahead comes out
     /// no larger than it is.
-    pub(crate) reciprocal_near: [f32; 4],
+    pub(crate) reciprocal_near: L,
     /// The same, a little larger: a distance ahead comes out no smaller than it is.
-    pub(crate) reciprocal_far: [f32; 4],
+    pub(crate) reciprocal_far: L,
     /// The direction's sign bits.
     pub(crate) negative: [usize; 3],
 }
 
-impl FrameRay {
-    /// What the test of boxes needs.
-    #[inline(always)]
-    pub(crate) fn for_boxes<L: Lanes4>(&self) -> BoxRay {
-        let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
-        let (o, d) = (L::new([ox, oy, oz, 0.0]), L::new([dx, dy, dz, 1.0]));
-        let [ix, iy, iz] = self.inexact;
-        // Unless it is exact the origin is displaced along the ray and against it by more than its error: an `f32` ε of it covers its rounding and
-        // that of the displaced one, half an ε each; another one, second orders.
-        let error = o.abs().times(2.0 * f32::EPSILON).plus(self.slack);
-        let displaced = error.product(L::new([ix, iy, iz, 0.0])).signed_as(d);
-        let reciprocal = d.abs().at_least(MIN_DIRECTION).signed_as(d).reciprocal();
-        let unit = self.unit;
-        BoxRay {
-            origin_near: o.sum(displaced).to_array(),
-            origin_far: o.difference(displaced).to_array(),
-            reciprocal_near: reciprocal.times(unit * NEAR_FACTOR).to_array(),
-            reciprocal_far: reciprocal.times(unit * FAR_FACTOR).to_array(),
-            negative: d.negative(),
-        }
-    }
-
+impl<L: Lanes4> FrameRay<L> {
     /// A distance in this frame that is not below the distance of any hit up to `t` of the [`Query`].
     #[inline]
     pub(crate) fn distance(&self, t: f64) -> f32 {
@@ -261,7 +325,9 @@ impl FrameRay {
 
 /// Four floats, whatever the instruction set.
 pub(crate) trait Lanes4: Copy {
-    fn new(v: [f32; 4]) -> Self;
+    /// The proof that the processor has the instructions.
+    type Token: Copy;
+    fn new(token: Self::Token, v: [f32; 4]) -> Self;
     fn to_array(self) -> [f32; 4];
     fn abs(self) -> Self;
     fn sum(self, o: Self) -> Self;
@@ -275,6 +341,8 @@ pub(crate) trait Lanes4: Copy {
     fn signed_as(self, o: Self) -> Self;
     /// The sign bits of the first three.
     fn negative(self) -> [usize; 3];
+    /// Those along [`AXES`] of an axis.
+    fn turned(self, axis: usize) -> Self;
 }
 
 /// [`Lanes4`] in plain Rust.
@@ -282,8 +350,10 @@ pub(crate) trait Lanes4: Copy {
 pub(crate) struct Plain([f32; 4]);
 
 impl Lanes4 for Plain {
+    type Token = ();
+
     #[inline(always)]
-    fn new(v: [f32; 4]) -> Self {
+    fn new((): (), v: [f32; 4]) -> Self {
         Self(v)
     }
 
@@ -340,6 +410,12 @@ impl Lanes4 for Plain {
     #[inline(always)]
     fn negative(self) -> [usize; 3] {
         from_fn(|i| usize::from(self.0[i].is_sign_negative()))
+    }
+
+    #[inline(always)]
+    fn turned(self, axis: usize) -> Self {
+        let [x, y, z] = AXES[axis % AXES.len()];
+        Self([self.0[x], self.0[y], self.0[z], self.0[3]])
     }
 }
 

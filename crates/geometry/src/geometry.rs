@@ -261,7 +261,7 @@ impl Geometry {
 
     /// The closest hit, by testing every primitive: the specification that the tree is held against.
     pub(crate) fn closest_flat(&self, query: &Query) -> Option<Found> {
-        let mut best = Best::new(query);
+        let mut best = Best::new(query.t_max);
         for i in 0..self.primitives.len() as u32 {
             best.test(&self.primitives, query, PrimitiveId(i));
         }
@@ -319,8 +319,8 @@ pub(crate) struct Best {
 }
 
 impl Best {
-    pub(crate) fn new(query: &Query) -> Self {
-        Self { hit: None, within: None, t_max: query.t_max }
+    pub(crate) fn new(t_max: f64) -> Self {
+        Self { hit: None, within: None, t_max }
     }
 
     /// The hit with its surface.

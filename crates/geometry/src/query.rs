@@ -1,6 +1,7 @@
 //! A ray prepared for the intersection tests, which are all computed in `f64`.
 
 use crate::double_double::product_difference;
+use crate::frame::{Lanes4, Plain};
 use crate::{PrimitiveId, Ray, SurfaceId};
 use etalon_optics::{Real, Vec3};
 use std::array::from_fn;
@@ -33,11 +34,17 @@ pub(crate) struct Query {
     /// The same wherever they are.
     pub(crate) leaves_placed: SurfaceId,
     pub(crate) aims_at_placed: SurfaceId,
-    /// The axes of the projection, the direction's largest component last.
-    pub(crate) axes: [usize; 3],
-    /// The projection's two slopes and 1/(the direction's largest component).
-    pub(crate) shear: [f64; 3],
-    /// The origin along `axes`.
+    pub(crate) projection: Projection,
+}
+
+/// The shear that maps a ray to the z axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Projection {
+    /// The axis along which the direction is largest, an index into [`AXES`].
+    pub(crate) axis: usize,
+    /// Two slopes and 1/(the direction's largest component).
+    shear: [f64; 3],
+    /// The origin along the axes.
     start: [f64; 3],
 }
 
@@ -61,11 +68,7 @@ impl Query {
         let scale = power_of_two(-exponent);
         let given = direction;
         let direction = given * scale;
-        // Without a branch: the axis of a ray is as good as random.
-        let kz = usize::from(a.y > larger(a.x, a.z)) + 2 * usize::from(a.z > a.x && a.z >= a.y);
-        let axes = AXES[kz];
-        let (d, o) = (direction.to_array(), origin.to_array());
-        let rz = 1.0 / d[axes[2]];
+        let axis = projection_axis(a.to_array());
         Some(Self {
             origin,
             direction,
@@ -76,13 +79,34 @@ impl Query {
             aims_at: ray.aims_at.own(),
             leaves_placed: ray.leaves,
             aims_at_placed: ray.aims_at,
-            axes,
-            shear: [d[axes[0]] * rz, d[axes[1]] * rz, rz],
-            start: axes.map(|k| o[k]),
+            projection: Projection::new(origin, direction, axis),
         })
     }
 
-    /// [`Query::project`] of three vertices at once: lanes of their coordinates in the order of `axes`, the fourth lane a
+    /// [`Projection::project`].
+    #[inline(always)]
+    pub(crate) fn project(&self, vertex: Vec3<f64>) -> Projected {
+        self.projection.project(vertex)
+    }
+}
+
+impl Projection {
+    /// The projection of a ray whose direction's largest component is in [1, 2), and along `axis`.
+    #[inline(always)]
+    pub(crate) fn new(origin: Vec3<f64>, direction: Vec3<f64>, axis: usize) -> Self {
+        let (d, o) = (direction.to_array(), origin.to_array());
+        let [kx, ky, kz] = AXES[axis % AXES.len()];
+        let rz = 1.0 / d[kz];
+        Self { axis, shear: [d[kx] * rz, d[ky] * rz, rz], start: [o[kx], o[ky], o[kz]] }
+    }
+
+    /// The axes of the projection, the direction's largest component last.
+    #[inline(always)]
+    pub(crate) fn axes(&self) -> [usize; 3] {
+        AXES[self.axis % AXES.len()]
+    }
+
+    /// [`Projection::project`] of three vertices at once: lanes of their coordinates in the order of the axes, the fourth lane a
     /// repetition. The second result holds their magnitudes.
     #[inline(always)]
     pub(crate) fn project_three<F: Four>(&self, token: F::Token, v: [F; 3]) -> ([F; 3], F) {
@@ -93,7 +117,7 @@ impl Query {
         ([x, y, z * all(self.shear[2])], magnitudes)
     }
 
-    /// [`Query::project`] of a vertex whose coordinates are already in the order of `axes`.
+    /// [`Projection::project`] of a vertex whose coordinates are already in the order of the axes.
     #[inline(always)]
     pub(crate) fn project_permuted(&self, v: [f64; 3]) -> Projected {
         let (x, y, z) = (v[0] - self.start[0], v[1] - self.start[1], v[2] - self.start[2]);
@@ -112,7 +136,7 @@ impl Query {
     #[inline(always)]
     pub(crate) fn project(&self, vertex: Vec3<f64>) -> Projected {
         let v = vertex.to_array();
-        let [kx, ky, kz] = self.axes;
+        let [kx, ky, kz] = self.axes();
         self.project_permuted([v[kx], v[ky], v[kz]])
     }
 }
@@ -127,10 +151,20 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
 pub(crate) trait Four: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// The proof that the processor has the instructions.
     type Token: Copy;
+    /// Four floats.
+    type Narrow: Lanes4<Token = Self::Token>;
     /// Four times the same.
     fn splat(token: Self::Token, v: f64) -> Self;
     /// Four numbers.
     fn new(token: Self::Token, v: [f64; 4]) -> Self;
+    /// Four floats, exactly.
+    fn widened(token: Self::Token, v: [f32; 4]) -> Self;
+    /// Rounded.
+    fn narrowed(self) -> Self::Narrow;
+    /// 1 where a float is not the number, else 0.
+    fn differs(self, o: Self::Narrow) -> Self::Narrow;
+    /// Whether no number is above a limit, or NaN.
+    fn all_at_most(self, limit: f64) -> bool;
     /// The numbers.
     fn to_array(self) -> [f64; 4];
     /// Magnitudes.
@@ -169,6 +203,7 @@ operator!(Mul, mul, *);
 
 impl Four for Plain4 {
     type Token = ();
+    type Narrow = Plain;
 
     #[inline(always)]
     fn splat((): (), v: f64) -> Self {
@@ -178,6 +213,27 @@ impl Four for Plain4 {
     #[inline(always)]
     fn new((): (), v: [f64; 4]) -> Self {
         Self(v)
+    }
+
+    #[inline(always)]
+    fn widened((): (), v: [f32; 4]) -> Self {
+        Self(v.map(f64::from))
+    }
+
+    #[inline(always)]
+    fn narrowed(self) -> Plain {
+        Plain::new((), self.0.map(|v| v as f32))
+    }
+
+    #[inline(always)]
+    fn differs(self, o: Plain) -> Plain {
+        let o = o.to_array();
+        Plain::new((), from_fn(|i| if f64::from(o[i]) == self.0[i] { 0.0 } else { 1.0 }))
+    }
+
+    #[inline(always)]
+    fn all_at_most(self, limit: f64) -> bool {
+        self.0.iter().all(|&v| v <= limit)
     }
 
     #[inline(always)]
@@ -205,10 +261,17 @@ impl Four for Plain4 {
 /// Origins within this (2²⁰⁰, in the 1-norm) keep every product of an intersection test finite.
 const MAX_ORIGIN: f64 = (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
 
-/// The axes of the projection along each axis.
-const AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
+/// The axis along which a direction of these magnitudes is largest, an index into [`AXES`].
+#[inline(always)]
+pub(crate) fn projection_axis([x, y, z]: [f64; 3]) -> usize {
+    // Without a branch: the axis of a ray is as good as random.
+    usize::from(y > larger(x, z)) + 2 * usize::from(z > x && z >= y)
+}
 
-/// A vertex in the sheared frame of a [`Query`].
+/// The axes of the projection along each axis, that one last.
+pub(crate) const AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
+
+/// A vertex in the frame of a [`Projection`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projected {
     pub(crate) x: f64,

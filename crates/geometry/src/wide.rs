@@ -3,7 +3,7 @@
 use crate::build::{BinaryTree, Node};
 use crate::frame::{Box32, Frame};
 use crate::pages::Pages;
-use crate::query::Query;
+use crate::query::Four;
 use crate::{Primitive, PrimitiveId};
 use bytemuck::{Pod, Zeroable};
 
@@ -52,7 +52,9 @@ pub(crate) struct Leaf8 {
     pub(crate) others: u8,
     /// The lanes of triangles whose vertices are exact: they need not be fetched to be tested in `f64`.
     pub(crate) exact: u8,
-    padding: [u8; 20],
+    /// 1. It keeps compilers from computing for each ray what only leaves of spheres ask for.
+    pub(crate) one: f32,
+    padding: [u8; 16],
 }
 
 /// The tree.
@@ -235,7 +237,8 @@ impl Filler<'_> {
             spheres: 0,
             others: 0,
             exact: 0,
-            padding: [0; 20],
+            one: 1.0,
+            padding: [0; 16],
         };
         for (lane, &id) in self.tree.order[first..first + node.count as usize].iter().enumerate() {
             leaf.ids[lane] = id;
@@ -282,19 +285,16 @@ impl Leaf8 {
         self.exact >> lane & 1 == 1
     }
 
-    /// The vertices in a lane if they are exact: what [`Triangle::lanes`] gives for it.
+    /// The vertices in a lane if they are exact, along `axes`: what [`Triangle::lanes`] gives for it.
     ///
     /// [`Triangle::lanes`]: crate::Triangle::lanes
     #[inline(always)]
-    pub(crate) fn lanes(&self, frame: &Frame, lane: usize, query: &Query) -> [[f64; 4]; 3] {
+    pub(crate) fn lanes<F: Four>(&self, token: F::Token, frame: &Frame, lane: usize, axes: [usize; 3]) -> [F; 3] {
         let lane = lane % LEAF_WIDTH;
         let [a, b, c] = &self.vertices;
-        let unscale = frame.unscale();
-        let row = |k: usize| {
-            let at = |v: &[[f32; LEAF_WIDTH]; 3]| f64::from(v[k][lane]) * unscale;
-            [at(a), at(b), at(c), at(c)]
-        };
-        let [kx, ky, kz] = query.axes;
+        let unscale = F::splat(token, frame.unscale());
+        let row = |k: usize| F::widened(token, [a[k][lane], b[k][lane], c[k][lane], c[k][lane]]) * unscale;
+        let [kx, ky, kz] = axes;
         [row(kx), row(ky), row(kz)]
     }
 }

@@ -1,7 +1,8 @@
 //! Rays a second, for closest hits and shadow rays, and the same rays through Embree 3.13 where it is installed.
 //!
 //! One thread; all engines take turns on the same rays, and each figure is made of the best of several turns. Run with
-//! `cargo bench -p etalon-geometry --bench traversal -- [NAME] [--turns N]`, where NAME selects scenes by substring.
+//! `cargo bench -p etalon-geometry --bench traversal -- [NAME] [--rays KIND] [--turns N] [--alone]`, where NAME and KIND
+//! select scenes and rays by substring; `--alone` leaves Embree out.
 #![allow(missing_docs, clippy::print_stdout)] // A bench prints.
 
 mod embree;
@@ -18,22 +19,26 @@ const SIDE: usize = 320;
 
 struct Options {
     filter: String,
+    rays: String,
     turns: usize,
+    alone: bool,
 }
 
 fn main() {
-    let mut options = Options { filter: String::new(), turns: 7 };
+    let mut options = Options { filter: String::new(), rays: String::new(), turns: 7, alone: false };
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--bench" => {}
             "--turns" => options.turns = arguments.next().and_then(|n| n.parse().ok()).expect("--turns takes a number"),
+            "--rays" => options.rays = arguments.next().expect("--rays takes a kind of rays"),
+            "--alone" => options.alone = true,
             name => options.filter = name.to_owned(),
         }
     }
     let threads = rayon::current_num_threads();
-    let embree = Embree::load(threads);
-    if embree.is_none() {
+    let embree = if options.alone { None } else { Embree::load(threads) };
+    if embree.is_none() && !options.alone {
         println!("libembree3.so.3 is not installed: no comparison");
     }
     println!("{threads} build threads; Mrays/s of one thread, and the ratio to Embree (above 1: faster than Embree)\n");
@@ -84,7 +89,7 @@ fn measure(
             })
             .into()
     });
-    for (kind, rays, shadow) in rays(&geometry) {
+    for (kind, rays, shadow) in rays(&geometry).into_iter().filter(|(kind, ..)| kind.contains(&options.rays)) {
         compare(name, kind, &geometry, &peers, &rays, shadow, options.turns);
     }
     println!("{build_text}\n");
@@ -95,6 +100,7 @@ const CHUNK: usize = 1024;
 
 /// Times the engines in turn on the same rays. Of each chunk of rays the shortest time of all turns counts, so that what
 /// else runs on the machine is seen no more than it must.
+#[inline(never)]
 fn compare(
     name: &str,
     kind: &str,

@@ -2,7 +2,7 @@
 
 use super::{ShapeError, check_points, planar};
 use crate::Aabb;
-use crate::query::{Four, Plain4, Query, RawHit, exact_edge, larger};
+use crate::query::{Four, Plain4, Projection, Query, RawHit, exact_edge, larger};
 use crate::ray::ExactPoint;
 use etalon_optics::Vec3;
 
@@ -64,29 +64,29 @@ impl Triangle {
     /// of the triangles around it.
     #[inline]
     pub(crate) fn intersect(&self, query: &Query, t_max: f64) -> Option<RawHit> {
-        Self::intersect_lanes::<Plain4>((), self.lanes(query), || self, query, t_max)
+        let lanes = self.lanes((), query.projection.axes());
+        Self::intersect_lanes::<Plain4>((), lanes, &query.projection, || (self, *query), t_max)
     }
 
-    /// Lanes of the vertices' coordinates in the order of a query's axes; the fourth lane repeats the third.
+    /// Lanes of the vertices' coordinates in the order of `axes`; the fourth lane repeats the third.
     #[inline(always)]
-    pub(crate) fn lanes(&self, query: &Query) -> [[f64; 4]; 3] {
+    pub(crate) fn lanes<F: Four>(&self, token: F::Token, [kx, ky, kz]: [usize; 3]) -> [F; 3] {
         let [a, b, c] = [self.a.to_array(), self.b.to_array(), self.c.to_array()];
-        let [kx, ky, kz] = query.axes;
-        let row = |k: usize| [a[k], b[k], c[k], c[k]];
+        let row = |k: usize| F::new(token, [a[k], b[k], c[k], c[k]]);
         [row(kx), row(ky), row(kz)]
     }
 
-    /// [`Triangle::intersect`] with the result of [`Triangle::lanes`], for the triangle itself where that does not suffice.
+    /// [`Triangle::intersect`] with the result of [`Triangle::lanes`], for the triangle and the query themselves where that does
+    /// not suffice.
     #[inline(always)]
     pub(crate) fn intersect_lanes<'a, F: Four>(
         token: F::Token,
-        lanes: [[f64; 4]; 3],
-        triangle: impl FnOnce() -> &'a Self,
-        query: &Query,
+        lanes: [F; 3],
+        projection: &Projection,
+        in_full: impl FnOnce() -> (&'a Self, Query),
         t_max: f64,
     ) -> Option<RawHit> {
-        let lanes = [F::new(token, lanes[0]), F::new(token, lanes[1]), F::new(token, lanes[2])];
-        let ([x, y, z], magnitudes) = query.project_three(token, lanes);
+        let ([x, y, z], magnitudes) = projection.project_three(token, lanes);
         // (c, a, b) × (b, c, a)
         let (px, py) = (x.turned(), y.turned());
         let (qx, qy) = (px.turned(), py.turned());
@@ -114,8 +114,8 @@ impl Triangle {
         let extent = x.abs().max(y.abs()).largest();
         let depth = larger(larger(za, zb), zc) + larger(larger(-za, -zb), -zc);
         if !planar::is_determined(magnitudes.largest(), extent, depth, t_det.abs(), det.abs()) {
-            let &Self { a, b, c } = triangle();
-            hit = planar::refine(query, a, b, c, Aabb::of_points([a, b, c]), hit, 1.0);
+            let (&Self { a, b, c }, query) = in_full();
+            hit = planar::refine(&query, a, b, c, Aabb::of_points([a, b, c]), hit, 1.0);
         }
         (0.0 < hit.t && hit.t < t_max).then_some(hit)
     }

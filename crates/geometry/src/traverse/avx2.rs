@@ -2,9 +2,9 @@
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::vector::Vector;
-use super::{Entered, Filters, Start, any_with, closest_with};
+use super::{Entered, Filters, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
-use crate::frame::{FrameRay, LEAST_DISTANCE, Lanes4};
+use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
 use crate::geometry::Found;
 use crate::query::Four;
 use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
@@ -41,6 +41,16 @@ fn closest<S: Start>(filters: Avx2, tree: &WideTree, primitives: &[Primitive], s
 #[target_feature(enable = "avx2,bmi1")]
 fn any<S: Start>(filters: Avx2, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
     any_with(filters, tree, primitives, start)
+}
+
+#[target_feature(enable = "avx2,bmi1")]
+fn closest_far<S: Start>(filters: Avx2, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+    closest_far_with(filters, tree, primitives, start)
+}
+
+#[target_feature(enable = "avx2,bmi1")]
+fn any_far<S: Start>(filters: Avx2, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+    any_far_with(filters, tree, primitives, start)
 }
 
 /// Eight floats. Its operations, and whatever else here uses vector instructions, are inlined by force into functions that
@@ -155,6 +165,7 @@ operator4!(Mul, mul, _mm256_mul_pd);
 
 impl Four for D4 {
     type Token = Avx2;
+    type Narrow = F4;
 
     #[inline(always)]
     fn splat(_: Avx2, v: f64) -> Self {
@@ -166,6 +177,33 @@ impl Four for D4 {
     fn new(_: Avx2, v: [f64; 4]) -> Self {
         // SAFETY: the token proves AVX2.
         Self(unsafe { _mm256_setr_pd(v[0], v[1], v[2], v[3]) })
+    }
+
+    #[inline(always)]
+    fn widened(token: Avx2, v: [f32; 4]) -> Self {
+        // SAFETY: the token proves AVX2.
+        Self(unsafe { _mm256_cvtps_pd(F4::new(token, v).0) })
+    }
+
+    #[inline(always)]
+    fn narrowed(self) -> F4 {
+        // SAFETY: as for the operators.
+        F4(unsafe { _mm256_cvtpd_ps(self.0) })
+    }
+
+    #[inline(always)]
+    fn differs(self, o: F4) -> F4 {
+        // SAFETY: as for the operators.
+        F4(unsafe {
+            let differs = _mm256_cmp_pd::<_CMP_NEQ_UQ>(_mm256_cvtps_pd(o.0), self.0);
+            _mm256_cvtpd_ps(_mm256_and_pd(differs, _mm256_set1_pd(1.0)))
+        })
+    }
+
+    #[inline(always)]
+    fn all_at_most(self, limit: f64) -> bool {
+        // SAFETY: as for the operators.
+        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, _mm256_set1_pd(limit))) == 0b1111 }
     }
 
     #[inline(always)]
@@ -195,14 +233,14 @@ impl Four for D4 {
     }
 }
 
-/// Four floats, by what every x86-64 processor has.
+/// Four floats, likewise.
 #[derive(Clone, Copy)]
-pub(super) struct F4(__m128);
+pub(super) struct F4(pub(super) __m128);
 
-/// An instruction that every x86-64 processor has.
+/// An instruction on an `F4`.
 macro_rules! sse {
     ($instruction:expr) => {{
-        // SAFETY: SSE is part of x86-64.
+        // SAFETY: SSE is part of x86-64; where an `F4` comes from AVX2 is proved.
         unsafe { $instruction }
     }};
 }
@@ -215,8 +253,10 @@ impl F4 {
 }
 
 impl Lanes4 for F4 {
+    type Token = Avx2;
+
     #[inline(always)]
-    fn new([a, b, c, d]: [f32; 4]) -> Self {
+    fn new(_: Avx2, [a, b, c, d]: [f32; 4]) -> Self {
         Self(sse!(_mm_setr_ps(a, b, c, d)))
     }
 
@@ -278,6 +318,14 @@ impl Lanes4 for F4 {
         let bits = sse!(_mm_movemask_ps(self.0)) as usize;
         [bits & 1, bits >> 1 & 1, bits >> 2 & 1]
     }
+
+    #[inline(always)]
+    fn turned(self, axis: usize) -> Self {
+        const ORDERS: [[i32; 4]; 4] = [[1, 2, 0, 3], [2, 0, 1, 3], [0, 1, 2, 3], [0, 1, 2, 3]];
+        let order = &ORDERS[axis % ORDERS.len()];
+        // SAFETY: as for the other operations; four integers are readable at the reference, aligned or not.
+        Self(unsafe { _mm_permutevar_ps(self.0, _mm_loadu_si128(order.as_ptr().cast())) })
+    }
 }
 
 /// A ray broadcast to all lanes.
@@ -297,9 +345,11 @@ impl Filters for Avx2 {
     type Four = D4;
 
     #[inline(always)]
-    fn ray(self, ray: &FrameRay) -> Ray8 {
-        let ray = ray.for_boxes::<F4>();
-        let all = |[x, y, z, _]: [f32; 4]| [F8::splat(self, x), F8::splat(self, y), F8::splat(self, z)];
+    fn ray(self, ray: &BoxRay<F4>) -> Ray8 {
+        let all = |v: F4| {
+            let [x, y, z, _] = v.to_array();
+            [F8::splat(self, x), F8::splat(self, y), F8::splat(self, z)]
+        };
         Ray8 {
             origin_near: all(ray.origin_near),
             origin_far: all(ray.origin_far),
@@ -337,6 +387,18 @@ impl Filters for Avx2 {
     #[inline(always)]
     fn prefetch<T>(self, item: &T) {
         prefetch(item);
+    }
+
+    #[inline(always)]
+    fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+        // SAFETY: `self` proves that the processor has AVX2.
+        unsafe { closest_far(self, tree, primitives, start) }
+    }
+
+    #[inline(always)]
+    fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+        // SAFETY: `self` proves that the processor has AVX2.
+        unsafe { any_far(self, tree, primitives, start) }
     }
 }
 

@@ -2,9 +2,9 @@
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::avx2::{Avx2, D4, F4, F8, prefetch};
-use super::{Entered, Filters, Start, any_with, closest_with};
+use super::{Entered, Filters, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
-use crate::frame::{FrameRay, LEAST_DISTANCE};
+use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
 use crate::geometry::Found;
 use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use std::arch::x86_64::*;
@@ -49,6 +49,16 @@ fn any<S: Start>(filters: Avx512, tree: &WideTree, primitives: &[Primitive], sta
     any_with(filters, tree, primitives, start)
 }
 
+#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
+fn closest_far<S: Start>(filters: Avx512, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+    closest_far_with(filters, tree, primitives, start)
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
+fn any_far<S: Start>(filters: Avx512, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+    any_far_with(filters, tree, primitives, start)
+}
+
 /// A ray broadcast to all lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Ray16 {
@@ -66,10 +76,12 @@ impl Filters for Avx512 {
     type Four = D4;
 
     #[inline(always)]
-    fn ray(self, ray: &FrameRay) -> Ray16 {
-        let ray = ray.for_boxes::<F4>();
-        // SAFETY: the token proves AVX-512.
-        let all = |[x, y, z, _]: [f32; 4]| unsafe { [_mm512_set1_ps(x), _mm512_set1_ps(y), _mm512_set1_ps(z)] };
+    fn ray(self, ray: &BoxRay<F4>) -> Ray16 {
+        let all = |v: F4| {
+            let [x, y, z, _] = v.to_array();
+            // SAFETY: the token proves AVX-512.
+            unsafe { [_mm512_set1_ps(x), _mm512_set1_ps(y), _mm512_set1_ps(z)] }
+        };
         Ray16 {
             origin_near: all(ray.origin_near),
             origin_far: all(ray.origin_far),
@@ -105,5 +117,17 @@ impl Filters for Avx512 {
     #[inline(always)]
     fn prefetch<T>(self, item: &T) {
         prefetch(item);
+    }
+
+    #[inline(always)]
+    fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+        // SAFETY: `self` proves that the processor has AVX-512.
+        unsafe { closest_far(self, tree, primitives, start) }
+    }
+
+    #[inline(always)]
+    fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+        // SAFETY: `self` proves that the processor has AVX-512.
+        unsafe { any_far(self, tree, primitives, start) }
     }
 }

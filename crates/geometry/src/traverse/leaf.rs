@@ -1,8 +1,9 @@
 //! The filters of leaves, once for all instruction sets.
 
 use super::vector::Vector;
-use super::{Candidates, Filters};
-use crate::frame::FrameRay;
+use super::{Candidates, Filters, Narrow};
+use crate::frame::{FrameRay, Lanes4};
+use crate::query::AXES;
 use crate::wide::{LEAF_WIDTH, Leaf8};
 
 /// The primitives of a leaf that the ray may hit in [0, `limit`], and the triangles and spheres that it certainly hits in
@@ -10,7 +11,7 @@ use crate::wide::{LEAF_WIDTH, Leaf8};
 #[inline(always)]
 pub(super) fn candidates<F: Filters>(
     filters: F,
-    ray: &FrameRay,
+    ray: &FrameRay<Narrow<F>>,
     leaf: &Leaf8,
     limit: f32,
     certain_limit: f32,
@@ -41,7 +42,13 @@ pub(super) fn candidates<F: Filters>(
 /// most three times that times their spread, over the determinant, and by less than 3δ for the rounding of distances, sum and
 /// quotient.
 #[inline(always)]
-fn triangles<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
+fn triangles<F: Filters>(
+    filters: F,
+    ray: &FrameRay<Narrow<F>>,
+    leaf: &Leaf8,
+    limit: f32,
+    certain_limit: f32,
+) -> Candidates {
     let all = |v| F::Vector::splat(filters.into(), v);
     let a = project(filters, ray, &leaf.vertices[0]);
     let b = project(filters, ray, &leaf.vertices[1]);
@@ -55,7 +62,7 @@ fn triangles<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32, c
         return Candidates::NONE;
     }
     let det = u + v + w;
-    let reciprocal = all(ray.shear[2]) / det;
+    let reciprocal = all(ray.per_depth) / det;
     let t = (u * a[2] + v * b[2] + w * c[2]) * reciprocal;
     let depth = a[2].max(b[2]).max(c[2]) - a[2].min(b[2]).min(c[2]) + all(2.0 * delta);
     let t_error = all(6.0 * error) * depth * reciprocal.abs() + all(3.0 * delta);
@@ -76,12 +83,13 @@ fn triangles<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32, c
 
 /// A vertex in the projection of the ray: z is not yet scaled.
 #[inline(always)]
-fn project<F: Filters>(filters: F, ray: &FrameRay, vertex: &[[f32; LEAF_WIDTH]; 3]) -> [F::Vector; 3] {
-    let [kx, ky, kz] = ray.axes;
+fn project<F: Filters>(filters: F, ray: &FrameRay<Narrow<F>>, vertex: &[[f32; LEAF_WIDTH]; 3]) -> [F::Vector; 3] {
+    let [kx, ky, kz] = AXES[ray.axis % AXES.len()];
+    let (start, slopes) = (ray.start_along.to_array(), ray.slopes.to_array());
     let all = |v| F::Vector::splat(filters.into(), v);
-    let from_origin = |row: usize, k: usize| F::Vector::load(filters.into(), &vertex[row]) - all(ray.start_along[k]);
+    let from_origin = |row: usize, k: usize| F::Vector::load(filters.into(), &vertex[row]) - all(start[k]);
     let (x, y, z) = (from_origin(kx, 0), from_origin(ky, 1), from_origin(kz, 2));
-    [x - all(ray.shear[0]) * z, y - all(ray.shear[1]) * z, z]
+    [x - all(slopes[0]) * z, y - all(slopes[1]) * z, z]
 }
 
 #[inline(always)]
@@ -98,12 +106,18 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
 /// √((r² − d²)/n) lies between those of a radius 6δ smaller and of one 6δ larger, and both ends of the chord err by at most
 /// 4δ, by 16 roundoffs of the half chord, and by 4 of the place itself, whose magnitude is below that of which δ is at least 12.
 #[inline(always)]
-fn spheres<F: Filters>(filters: F, ray: &FrameRay, leaf: &Leaf8, limit: f32, certain_limit: f32) -> Candidates {
+fn spheres<F: Filters>(
+    filters: F,
+    ray: &FrameRay<Narrow<F>>,
+    leaf: &Leaf8,
+    limit: f32,
+    certain_limit: f32,
+) -> Candidates {
     let all = |v| F::Vector::splat(filters.into(), v);
-    let [sx, sy, sz] = ray.shear;
+    let ([sx, sy, _, _], sz) = (ray.slopes.to_array(), ray.per_depth);
     let [x, y, z] = project(filters, ray, &leaf.vertices[0]);
     let radius = F::Vector::load(filters.into(), &leaf.vertices[1][0]);
-    let n = 1.0 + sx * sx + sy * sy;
+    let n = leaf.one + sx * sx + sy * sy;
     let along = x * all(sx) + y * all(sy);
     // n times the squares of the distance, of the radii and of the half chords.
     let squared = (x * x + y * y) * all(n) - along * along;

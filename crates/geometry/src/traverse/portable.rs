@@ -1,10 +1,12 @@
 //! The filters in plain Rust.
 
 use super::vector::Vector;
-use super::{Entered, Filters};
-use crate::frame::{BoxRay, FrameRay, LEAST_DISTANCE, Plain};
+use super::{Entered, Filters, Start, any_far_with, closest_far_with};
+use crate::Primitive;
+use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
+use crate::geometry::Found;
 use crate::query::Plain4;
-use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16};
+use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -86,26 +88,28 @@ impl Vector for Floats {
 }
 
 impl Filters for Portable {
-    type Ray = BoxRay;
+    type Ray = BoxRay<Plain>;
     type Vector = Floats;
     type Four = Plain4;
 
     #[inline(always)]
-    fn ray(self, ray: &FrameRay) -> BoxRay {
-        ray.for_boxes::<Plain>()
+    fn ray(self, ray: &BoxRay<Plain>) -> BoxRay<Plain> {
+        *ray
     }
 
     #[inline(always)]
-    fn enter(self, ray: &BoxRay, node: &Node16, limit: f32) -> Entered {
+    fn enter(self, ray: &BoxRay<Plain>, node: &Node16, limit: f32) -> Entered {
+        let [origin_near, origin_far] = [ray.origin_near, ray.origin_far].map(Plain::to_array);
+        let [reciprocal_near, reciprocal_far] = [ray.reciprocal_near, ray.reciprocal_far].map(Plain::to_array);
         let mut out = Entered { mask: 0, near: [LEAST_DISTANCE; NODE_WIDTH] };
         let mut far = [limit; NODE_WIDTH];
         for k in 0..3 {
             let entry = &node.planes[k][ray.negative[k]];
             let exit = &node.planes[k][1 - ray.negative[k]];
             for lane in 0..NODE_WIDTH {
-                let near = (entry[lane] - ray.origin_near[k]) * ray.reciprocal_near[k];
+                let near = (entry[lane] - origin_near[k]) * reciprocal_near[k];
                 out.near[lane] = if near > out.near[lane] { near } else { out.near[lane] };
-                let exit = (exit[lane] - ray.origin_far[k]) * ray.reciprocal_far[k];
+                let exit = (exit[lane] - origin_far[k]) * reciprocal_far[k];
                 far[lane] = if exit < far[lane] { exit } else { far[lane] };
             }
         }
@@ -117,4 +121,12 @@ impl Filters for Portable {
 
     #[inline(always)]
     fn prefetch<T>(self, _: &T) {}
+
+    fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+        closest_far_with(self, tree, primitives, start)
+    }
+
+    fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+        any_far_with(self, tree, primitives, start)
+    }
 }

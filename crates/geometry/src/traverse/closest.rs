@@ -1,0 +1,226 @@
+//! The closest hit.
+
+use super::leaf::candidates;
+use super::portable::Portable;
+use super::stack::{Room, Stack};
+use super::start::{Deferred, Start};
+use super::{Entered, Filters, Narrow, intersect_exact};
+use crate::Primitive;
+use crate::frame::FrameRay;
+use crate::geometry::{Best, Found};
+use crate::query::{Query, RawHit};
+use crate::wide::{LEAF, LEAF_WIDTH, WideTree};
+
+/// The closest hit, by a stack of children, nearest on top.
+#[inline(always)]
+pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
+    filters: F,
+    tree: &WideTree,
+    primitives: &[Primitive],
+    start: S,
+    frame_ray: &FrameRay<Narrow<F>>,
+) -> Option<Found> {
+    let ray = filters.ray(&frame_ray.boxes);
+    let mut query = Deferred::new(start);
+    let leaves_id = start.leaves();
+    let mut best = Best::new(frame_ray.t_max);
+    let mut limit = frame_ray.distance(frame_ray.t_max);
+    let certain_limit = frame_ray.distance_below(frame_ray.t_max);
+    let nothing = Waiting { leaf: 0, lane: 0, near: 0.0 };
+    let mut pending = Pending { list: [nothing; Pending::LIMIT], count: 0 };
+    let (nodes, leaves) = (tree.nodes(), tree.leaves());
+    let mut room = Room::<u64, N>::new();
+    let mut stack = Stack::new(&mut room);
+    let mut child = 0;
+    loop {
+        if child & LEAF == 0 {
+            let node = &nodes[child as usize];
+            let Entered { mut mask, near } = filters.enter(&ray, node, limit);
+            if mask != 0 {
+                let lane = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                if mask == 0 {
+                    child = node.children.0[lane];
+                    continue;
+                }
+                let first = entry(near[lane], node.children.0[lane]);
+                let lane = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                let second = entry(near[lane], node.children.0[lane]);
+                let mut nearest = first.min(second);
+                prefetch(filters, tree, first.max(second) as u32);
+                let base = stack.len();
+                stack.push(first.max(second));
+                while mask != 0 {
+                    let lane = mask.trailing_zeros() as usize;
+                    mask &= mask - 1;
+                    let new = entry(near[lane], node.children.0[lane]);
+                    prefetch(filters, tree, node.children.0[lane]);
+                    stack.insert(base, nearest.max(new));
+                    nearest = nearest.min(new);
+                }
+                child = nearest as u32;
+                continue;
+            }
+        } else {
+            let index = child & !LEAF;
+            let leaf = &leaves[index as usize];
+            let mut candidates = candidates(filters, frame_ray, leaf, limit, certain_limit);
+            while candidates.mask != 0 {
+                let lane = candidates.mask.trailing_zeros() as usize;
+                candidates.mask &= candidates.mask - 1;
+                let id = leaf.id(lane);
+                if candidates.near[lane % LEAF_WIDTH] > limit && candidates.unbounded >> lane & 1 == 0 {
+                    continue;
+                }
+                if id == leaves_id && candidates.left >> lane & 1 == 1 {
+                    continue;
+                }
+                if candidates.certain >> lane & 1 == 1 && id != leaves_id {
+                    // Its exact distance can wait until the end, when it has been fetched.
+                    if !leaf.is_exact(lane) {
+                        filters.prefetch(&primitives[id.0 as usize]);
+                    }
+                    if pending.count == Pending::LIMIT {
+                        pending.resolve(&mut best, tree, primitives, query.get(), limit);
+                    }
+                    if candidates.far[lane] < limit {
+                        limit = candidates.far[lane];
+                        // Most often what waited is now beyond the limit.
+                        if pending.count == 1 && pending.list[0].near > limit {
+                            pending.count = 0;
+                        }
+                    }
+                    pending.list[pending.count] =
+                        Waiting { leaf: index, lane: lane as u32, near: candidates.near[lane] };
+                    pending.count += 1;
+                } else if decide_now(&mut best, tree, index, lane as u32, primitives, &mut query) {
+                    limit = limit.min(frame_ray.distance(best.t_max));
+                }
+            }
+        }
+        loop {
+            let Some(next) = stack.pop() else {
+                if pending.count == 1 {
+                    let Waiting { leaf, lane, .. } = pending.list[0];
+                    decide_last(filters, &mut best, tree, (leaf, lane), primitives, &mut query, frame_ray);
+                } else if pending.count > 1 {
+                    pending.resolve(&mut best, tree, primitives, query.get(), limit);
+                }
+                return best
+                    .found()
+                    .map(|(hit, id)| (RawHit { t: start.distance(frame_ray.t_scale, hit.t), ..hit }, id));
+            };
+            if f32::from_bits((next >> 32) as u32) <= limit {
+                child = next as u32;
+                break;
+            }
+        }
+    }
+}
+
+/// A stack entry: the distance's bits above (those of non-negative numbers are ordered as they are), the child below.
+#[inline(always)]
+fn entry(near: f32, child: u32) -> u64 {
+    u64::from(near.to_bits()) << 32 | u64::from(child)
+}
+
+/// What is likely to be the closest hit, though its exact distance is not yet known.
+#[derive(Clone, Copy)]
+struct Waiting {
+    leaf: u32,
+    lane: u32,
+    /// Not above its distance.
+    near: f32,
+}
+
+/// Hits whose decision in `f64` can wait until the end, when most of them are beyond another and what they need has been
+/// fetched.
+struct Pending {
+    list: [Waiting; Self::LIMIT],
+    count: usize,
+}
+
+impl Pending {
+    /// Hits that `f32` cannot order are rare, more than two of them duplicates.
+    const LIMIT: usize = 4;
+
+    /// Decides those that are not beyond `limit`.
+    #[cold]
+    #[inline(never)]
+    fn resolve(&mut self, best: &mut Best, tree: &WideTree, primitives: &[Primitive], query: &Query, limit: f32) {
+        for waiting in &self.list[..self.count] {
+            if waiting.near <= limit {
+                decide(best, tree, waiting.leaf, waiting.lane, primitives, query);
+            }
+        }
+        self.count = 0;
+    }
+}
+
+/// Decides in `f64` whether a lane of a leaf holds the closest hit so far.
+#[inline]
+fn decide(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives: &[Primitive], query: &Query) -> bool {
+    let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
+    let id = leaf.id(lane);
+    if !leaf.is_exact(lane) {
+        return best.test(primitives, query, id);
+    }
+    let limit = best.limit(id);
+    let found = intersect_exact(Portable, tree, (leaf, lane), primitives, &query.projection, || *query, limit);
+    if let Some(hit) = found {
+        best.set(hit, id);
+    }
+    found.is_some()
+}
+
+/// [`decide`] for what is most often the only one to be decided: without a query, where its projection is enough.
+#[inline(always)]
+fn decide_last<F: Filters, S: Start>(
+    filters: F,
+    best: &mut Best,
+    tree: &WideTree,
+    (leaf, lane): (u32, u32),
+    primitives: &[Primitive],
+    query: &mut Deferred<S>,
+    ray: &FrameRay<Narrow<F>>,
+) {
+    let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
+    let id = leaf.id(lane);
+    if leaf.is_exact(lane) {
+        let projection = query.start.projection(ray.t_scale, ray.axis);
+        let limit = best.limit(id);
+        let full = || *query.get();
+        let found = intersect_exact(filters, tree, (leaf, lane), primitives, &projection, full, limit);
+        if let Some(hit) = found {
+            best.set(hit, id);
+        }
+    } else {
+        best.test(primitives, query.get(), id);
+    }
+}
+
+/// [`decide`] where it is not the rule.
+#[cold]
+#[inline(never)]
+fn decide_now<S: Start>(
+    best: &mut Best,
+    tree: &WideTree,
+    leaf: u32,
+    lane: u32,
+    primitives: &[Primitive],
+    query: &mut Deferred<S>,
+) -> bool {
+    decide(best, tree, leaf, lane, primitives, query.get())
+}
+
+/// Announces that a child that waits on the stack will be visited. Without it rays that share nothing are a tenth slower in
+/// trees that no cache holds.
+#[inline(always)]
+fn prefetch<F: Filters>(filters: F, tree: &WideTree, child: u32) {
+    if child & LEAF == 0 {
+        filters.prefetch(&tree.nodes()[child as usize]);
+    } else {
+        filters.prefetch(&tree.leaves()[(child & !LEAF) as usize]);
+    }
+}
