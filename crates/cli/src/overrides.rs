@@ -21,7 +21,7 @@ pub(crate) struct Overrides {
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
-    /// Scalar type that paths are computed in.
+    /// Scalar type of what each wavelength carries.
     #[arg(long, value_enum)]
     precision: Option<PrecisionArg>,
     /// Number sequence.

@@ -311,7 +311,7 @@ pub struct Integrator {
     pub light_sampling: LightSampling,
     /// Wavelengths rendered: the first and the last, nm.
     pub wavelength_range_nm: [f64; 2],
-    /// Scalar type of the kernel.
+    /// Scalar type of what each wavelength carries along a path.
     pub precision: Precision,
 }
 
@@ -338,7 +338,7 @@ pub enum LightSampling {
     Bsdf,
 }
 
-/// Scalar type of the kernel.
+/// Scalar type of what each wavelength carries along a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
     /// 32-bit floating point.

@@ -6,30 +6,30 @@
 use crate::compiled;
 use crate::warp::concentric_disk;
 use etalon_geometry::Ray;
-use etalon_optics::{Real, Vec3};
+use etalon_optics::Vec3;
 use etalon_scene as scene;
 use etalon_scene::Projection;
 
-/// A camera ready to make rays in scalar type `R`.
+/// A camera ready to make rays.
 #[derive(Clone, Debug)]
-pub struct Camera<R> {
-    position: Vec3<R>,
-    forward: Vec3<R>,
+pub struct Camera {
+    position: Vec3<f64>,
+    forward: Vec3<f64>,
     /// Half the width of the picture, at unit distance (perspective) or in the world (orthographic).
-    half_right: Vec3<R>,
+    half_right: Vec3<f64>,
     /// Half its height.
-    half_up: Vec3<R>,
-    kind: Kind<R>,
+    half_up: Vec3<f64>,
+    kind: Kind,
 }
 
 #[derive(Clone, Debug)]
-enum Kind<R> {
+enum Kind {
     Pinhole,
-    ThinLens { right: Vec3<R>, up: Vec3<R>, focus_distance: R },
+    ThinLens { right: Vec3<f64>, up: Vec3<f64>, focus_distance: f64 },
     Orthographic,
 }
 
-impl<R: Real> Camera<R> {
+impl Camera {
     /// Prepares a scene's camera for a film of `width` × `height` square pixels.
     ///
     /// `lens` gives a pinhole a lens of radius 0, which draws points on it and changes no ray.
@@ -41,9 +41,9 @@ impl<R: Real> Camera<R> {
         let (half_height, kind) = match &camera.projection {
             Projection::Perspective { vertical_fov_rad, lens: thin } => {
                 let of = |radius_m: f64, focus_distance_m: f64| Kind::ThinLens {
-                    right: (right * radius_m).cast(),
-                    up: (up * radius_m).cast(),
-                    focus_distance: R::from_f64(focus_distance_m),
+                    right: right * radius_m,
+                    up: up * radius_m,
+                    focus_distance: focus_distance_m,
                 };
                 let kind = match thin {
                     // A lens of radius 0 is a pinhole, bit for bit (hard case 35).
@@ -56,16 +56,16 @@ impl<R: Real> Camera<R> {
             Projection::Orthographic { height_m } => (0.5 * height_m, Kind::Orthographic),
         };
         Self {
-            position: Vec3::from_f64(camera.position_m),
-            forward: forward.cast(),
-            half_right: (right * (half_height * aspect)).cast(),
-            half_up: (up * half_height).cast(),
+            position: Vec3::from_array(camera.position_m),
+            forward,
+            half_right: right * (half_height * aspect),
+            half_up: up * half_height,
             kind,
         }
     }
 
     /// Along the picture's right; not of unit length.
-    pub(crate) fn right(&self) -> Vec3<R> {
+    pub(crate) fn right(&self) -> Vec3<f64> {
         self.half_right
     }
 
@@ -76,7 +76,7 @@ impl<R: Real> Camera<R> {
 
     /// The ray through `film`, in [−1, 1]² with x to the right and y up, and through the lens at `lens_u` in [0, 1)².
     /// Its direction is a unit vector.
-    pub fn ray(&self, film: [R; 2], lens_u: [R; 2]) -> Ray<R> {
+    pub fn ray(&self, film: [f64; 2], lens_u: [f64; 2]) -> Ray<f64> {
         let across = self.half_right * film[0] + self.half_up * film[1];
         match &self.kind {
             Kind::ThinLens { right, up, focus_distance } if compiled::LENS => {
@@ -103,7 +103,7 @@ mod tests {
         scene::Camera { position_m: [1.0, 2.0, 3.0], forward: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], projection }
     }
 
-    fn thin(radius_m: f64, focus_distance_m: f64) -> Camera<f64> {
+    fn thin(radius_m: f64, focus_distance_m: f64) -> Camera {
         let lens = Some(ThinLens { radius_m, focus_distance_m });
         Camera::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens }), 300, 200, false)
     }
@@ -127,9 +127,9 @@ mod tests {
         #[test]
         fn a_lens_of_radius_zero_is_the_pinhole_bit_for_bit(x in -1.0..1.0_f64, y in -1.0..1.0_f64, u in 0.0..1.0_f64) {
             let pinhole =
-                Camera::<f64>::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens: None }), 300, 200, false);
+                Camera::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens: None }), 300, 200, false);
             let forced =
-                Camera::<f64>::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens: None }), 300, 200, true);
+                Camera::new(&camera(Projection::Perspective { vertical_fov_rad: 0.8, lens: None }), 300, 200, true);
             prop_assert!(forced.has_lens() && !pinhole.has_lens());
             let a = pinhole.ray([x, y], [u, u]);
             for b in [thin(0.0, 5.0).ray([x, y], [u, u]), forced.ray([x, y], [u, u])] {
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn orthographic_rays_are_parallel_and_span_the_height() {
-        let c = Camera::<f64>::new(&camera(Projection::Orthographic { height_m: 4.0 }), 200, 100, false);
+        let c = Camera::new(&camera(Projection::Orthographic { height_m: 4.0 }), 200, 100, false);
         let (a, b) = (c.ray([-1.0, -1.0], [0.0; 2]), c.ray([1.0, 1.0], [0.0; 2]));
         assert_eq!(a.direction, b.direction);
         assert_eq!(b.origin - a.origin, Vec3::new(8.0, 4.0, 0.0));

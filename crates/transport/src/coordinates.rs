@@ -2,7 +2,7 @@
 
 use crate::bsdf::Shading;
 use etalon_geometry::PrimitiveId;
-use etalon_optics::{Real, Vec3};
+use etalon_optics::Vec3;
 use etalon_scene::Mesh;
 use std::sync::Arc;
 
@@ -38,17 +38,17 @@ impl Coordinates {
     /// The point of `primitive` whose own normal is `normal` and whose surface parameters are `uv`; `outward` takes a normal
     /// from the coordinates of the primitive to those of `normal`.
     #[inline]
-    pub(crate) fn at<R: Real>(
+    pub(crate) fn at(
         &self,
-        normal: Vec3<R>,
+        normal: Vec3<f64>,
         primitive: PrimitiveId,
-        uv: [R; 2],
+        uv: [f64; 2],
         outward: impl FnOnce(Vec3<f64>) -> Vec3<f64>,
-    ) -> Shading<'static, R> {
+    ) -> Shading<'static> {
         match self {
             Self::None => Shading::flat(normal),
             Self::Parallelogram { swapped } => {
-                let [a, b] = uv.map(Real::to_f64);
+                let [a, b] = uv;
                 Shading::flat(normal).with_uv(if *swapped { [b, a] } else { [a, b] })
             }
             Self::Mesh(mesh) => mesh.at(normal, primitive, uv, outward),
@@ -57,17 +57,17 @@ impl Coordinates {
 }
 
 impl MeshCoordinates {
-    fn at<R: Real>(
+    fn at(
         &self,
-        normal: Vec3<R>,
+        normal: Vec3<f64>,
         primitive: PrimitiveId,
-        uv: [R; 2],
+        uv: [f64; 2],
         outward: impl FnOnce(Vec3<f64>) -> Vec3<f64>,
-    ) -> Shading<'static, R> {
+    ) -> Shading<'static> {
         let index = primitive.0 - self.first;
         let triangle = self.kept.as_ref().map_or(index, |kept| kept[index as usize]);
         let corners = self.mesh.triangles[triangle as usize].map(|i| i as usize);
-        let [second, third] = uv.map(Real::to_f64);
+        let [second, third] = uv;
         let [second, third] = if self.swapped { [third, second] } else { [second, third] };
         let weights = [1.0 - second - third, second, third];
         let mut shading = Shading::flat(normal);
@@ -83,7 +83,7 @@ impl MeshCoordinates {
             let world = outward(Vec3::from_array(self.normal_to_world.map(|row| row.dot(local))));
             // Opposite normals may cancel: then the triangle's own stands for them.
             if world.length_squared() > 0.0 {
-                shading = shading.bent_to(world.normalized().cast());
+                shading = shading.bent_to(world.normalized());
             }
         }
         shading

@@ -1,4 +1,5 @@
-//! The kernels: the path loop instantiated for a scalar type and a model of wavelengths, and the table that names them.
+//! The kernels: the path loop instantiated for a scalar type of its lanes and a model of wavelengths, and the table that
+//! names them. Positions, directions and densities are `f64` in all of them.
 
 use crate::camera::Camera;
 use crate::compiled;
@@ -80,12 +81,12 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
     samples: Range<u32>,
     sums: &mut [XyzSum],
 ) -> Counters {
-    let tracer = Tracer::<R>::new(prepared);
+    let tracer = Tracer::new(prepared);
     let mut counters = Counters::default();
     let replicates = prepared.scene.integrator.replicates as usize;
     for ((x, y), sums) in tile.pixels().zip(sums.chunks_exact_mut(replicates)) {
         for sample in samples.clone() {
-            let (wavelengths, radiance, _) = tracer.sample::<M, P, N>(x, y, sample, &mut counters, &mut ());
+            let (wavelengths, radiance, _) = tracer.sample::<R, M, P, N>(x, y, sample, &mut counters, &mut ());
             let xyz = M::to_xyz(prepared, &wavelengths, radiance);
             counters.paths += 1;
             if xyz.iter().all(|v| v.is_finite()) {
@@ -98,14 +99,14 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
     counters
 }
 
-/// One scene in one scalar type.
-pub(crate) struct Tracer<'a, R> {
+/// One scene.
+pub(crate) struct Tracer<'a> {
     prepared: &'a Prepared,
-    camera: Camera<R>,
+    camera: Camera,
     world: World<'a>,
 }
 
-impl<'a, R: Real> Tracer<'a, R> {
+impl<'a> Tracer<'a> {
     pub(crate) fn new(prepared: &'a Prepared) -> Self {
         let integrator = &prepared.scene.integrator;
         let film = &prepared.scene.film;
@@ -130,7 +131,7 @@ impl<'a, R: Real> Tracer<'a, R> {
     }
 
     /// One camera path: a pure function of the scene, its seed, the pixel and the number of the sample.
-    pub(crate) fn sample<M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
+    pub(crate) fn sample<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
         &self,
         x: u32,
         y: u32,
@@ -143,15 +144,15 @@ impl<'a, R: Real> Tracer<'a, R> {
         let pixel = u64::from(y) << 32 | u64::from(x);
         let integrator = &scene.integrator;
         let sampler = Sampler::new(integrator.sampler, integrator.seed, pixel, sample, integrator.replicates);
-        let [film_x, film_y, lens_1, lens_2] = sampler.set::<R>(0);
+        let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
 
         let wavelengths = M::wavelengths(self.prepared, || {
-            let [wavelength, ..] = sampler.set::<R>(1);
+            let [wavelength, ..] = sampler.set(1);
             wavelength
         });
-        let column = f64::from(x) + 0.5 + self.prepared.filter.offset(film_x.to_f64());
-        let row = f64::from(y) + 0.5 + self.prepared.filter.offset(film_y.to_f64());
-        let film = [R::from_f64(2.0 * column / width - 1.0), R::from_f64(1.0 - 2.0 * row / height)];
+        let column = f64::from(x) + 0.5 + self.prepared.filter.offset(film_x);
+        let row = f64::from(y) + 0.5 + self.prepared.filter.offset(film_y);
+        let film = [2.0 * column / width - 1.0, 1.0 - 2.0 * row / height];
         counters.lens_draws += u64::from(compiled::LENS && self.camera.has_lens());
         let ray = self.camera.ray(film, [lens_1, lens_2]);
         let inside = match self.world.media {

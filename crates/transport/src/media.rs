@@ -11,7 +11,7 @@
 
 use crate::surface::{Surface, Surfaces};
 use etalon_geometry::{Geometry, Hit, Ray, SurfaceId, SurfacePoint};
-use etalon_optics::{Real, RefractiveIndex, Vec3};
+use etalon_optics::{RefractiveIndex, Vec3};
 use etalon_scene::{Mesh, Shape};
 use std::collections::HashMap;
 
@@ -72,9 +72,9 @@ pub(crate) struct Interface<'a> {
 }
 
 /// A surface that a path meets.
-pub(crate) struct Met<'a, R> {
-    pub hit: Hit<R>,
-    pub point: SurfacePoint<R>,
+pub(crate) struct Met<'a> {
+    pub hit: Hit<f64>,
+    pub point: SurfacePoint<f64>,
     pub surface: Surface<'a>,
     /// The media on both sides; `None` where the material itself says.
     pub interface: Option<Interface<'a>>,
@@ -113,14 +113,14 @@ impl Media {
     }
 
     /// What a path meets next, and `ray` and `inside` brought before it. Counts in `lost` what contradicts itself.
-    pub(crate) fn meet<'a, R: Real>(
+    pub(crate) fn meet<'a>(
         &'a self,
         geometry: &Geometry,
         surfaces: &'a Surfaces,
-        ray: &mut Ray<R>,
+        ray: &mut Ray<f64>,
         inside: &mut Inside,
         lost: &mut u64,
-    ) -> Option<Met<'a, R>> {
+    ) -> Option<Met<'a>> {
         loop {
             let hit = geometry.closest_hit(ray)?;
             let point = geometry.surface(ray, &hit);
@@ -153,11 +153,11 @@ impl Media {
     }
 
     /// Whether a shadow ray is stopped by anything but boundaries that change no medium.
-    pub(crate) fn occluded<R: Real>(
+    pub(crate) fn occluded(
         &self,
         geometry: &Geometry,
         surfaces: &Surfaces,
-        mut ray: Ray<R>,
+        mut ray: Ray<f64>,
         mut inside: Inside,
         lost: &mut u64,
     ) -> bool {
@@ -167,13 +167,7 @@ impl Media {
     }
 
     /// The solids that hold the origin of a ray: those whose first boundary along it is left, not entered.
-    pub(crate) fn around<R: Real>(
-        &self,
-        geometry: &Geometry,
-        surfaces: &Surfaces,
-        ray: &Ray<R>,
-        lost: &mut u64,
-    ) -> Inside {
+    pub(crate) fn around(&self, geometry: &Geometry, surfaces: &Surfaces, ray: &Ray<f64>, lost: &mut u64) -> Inside {
         let mut inside = Inside::NOTHING;
         let mut known = Inside::NOTHING;
         let mut ray = *ray;
@@ -183,7 +177,7 @@ impl Media {
             for (_, point) in primitives.iter().flatten() {
                 let place = place(surfaces, point);
                 if self.solid(place.0).is_some() && !known.iter().any(|other| other == place) {
-                    let leaves = point.normal.dot(ray.direction) > R::ZERO;
+                    let leaves = point.normal.dot(ray.direction) > 0.0;
                     let counted = known.cross(place, true) && (!leaves || inside.cross(place, true));
                     *lost += u64::from(!counted);
                 }
@@ -195,16 +189,16 @@ impl Media {
     }
 
     /// What lies at a boundary of a solid.
-    fn boundary<R: Real>(
+    fn boundary(
         &self,
         geometry: &Geometry,
         surfaces: &Surfaces,
-        (hit, point): (&Hit<R>, &SurfacePoint<R>),
-        direction: Vec3<R>,
+        (hit, point): (&Hit<f64>, &SurfacePoint<f64>),
+        direction: Vec3<f64>,
         inside: &Inside,
         lost: &mut u64,
-    ) -> Boundary<R> {
-        let enters = |point: &SurfacePoint<R>| point.normal.dot(direction) < R::ZERO;
+    ) -> Boundary {
+        let enters = |point: &SurfacePoint<f64>| point.normal.dot(direction) < 0.0;
         let mut beyond = Beyond { inside: *inside, leaves: point.surface };
         let mut crossed = [(place(surfaces, point), enters(point)); MOST_COINCIDENT];
         let mut count = 1;
@@ -237,24 +231,24 @@ impl Media {
     ///
     /// They are looked for on a short ray through the point. Each look leaves one primitive out by name, so three that
     /// coincide are found for certain, more (where a line is shared by four solids) perhaps not.
-    fn coincident<R: Real>(
+    fn coincident(
         &self,
         geometry: &Geometry,
         surfaces: &Surfaces,
-        (hit, point): (&Hit<R>, &SurfacePoint<R>),
-        direction: Vec3<R>,
-    ) -> [Option<(Hit<R>, SurfacePoint<R>)>; MOST_COINCIDENT] {
+        (hit, point): (&Hit<f64>, &SurfacePoint<f64>),
+        direction: Vec3<f64>,
+    ) -> [Option<(Hit<f64>, SurfacePoint<f64>)>; MOST_COINCIDENT] {
         let mut found = [None; MOST_COINCIDENT];
         found[0] = Some((*hit, *point));
         let cos = point.normal.dot(direction).abs();
-        if self.solid(place(surfaces, point).0).is_none() || cos == R::ZERO {
+        if self.solid(place(surfaces, point).0).is_none() || cos == 0.0 {
             return found;
         }
         // Each of two positions may be off by its bound; half as much again for the rounding of this ray.
-        let reach = R::from_f64(4.0) * point.position_error / cos;
+        let reach = 4.0 * point.position_error / cos;
         // Rounded away from the surface: where coordinates are exact, the bound is below their spacing.
         let origin = point.spawn(-direction).origin - direction * reach;
-        let t_max = R::TWO * (point.position - origin).dot(direction);
+        let t_max = 2.0 * (point.position - origin).dot(direction);
         let mut leaves = point.surface;
         for next in 1..MOST_COINCIDENT {
             let probe = Ray { origin, direction, t_max, leaves, aims_at: SurfaceId::NONE };
@@ -262,7 +256,7 @@ impl Media {
             let other = geometry.surface(&probe, &hit);
             let apart = (other.position - point.position).dot(point.normal).abs();
             let seen = found.iter().flatten().any(|(_, seen)| seen.surface == other.surface);
-            if seen || apart > R::TWO * (point.position_error + other.position_error) {
+            if seen || apart > 2.0 * (point.position_error + other.position_error) {
                 break;
             }
             leaves = other.surface;
@@ -273,7 +267,7 @@ impl Media {
 }
 
 /// The solid that a point bounds, if its object is one.
-fn place<R>(surfaces: &Surfaces, point: &SurfacePoint<R>) -> Place {
+fn place(surfaces: &Surfaces, point: &SurfacePoint<f64>) -> Place {
     (surfaces.of(point).object, point.surface.instance)
 }
 
@@ -307,9 +301,9 @@ pub(crate) fn open_edges(shape: &Shape) -> Option<String> {
 /// Surfaces that may be found at one place.
 const MOST_COINCIDENT: usize = 4;
 
-enum Boundary<R> {
+enum Boundary {
     /// An opaque surface coincides with it.
-    Opaque(Hit<R>, SurfacePoint<R>),
+    Opaque(Hit<f64>, SurfacePoint<f64>),
     /// Boundaries of solids alone, and what is behind them.
     Solid(Beyond),
 }

@@ -23,16 +23,16 @@ pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
 
     /// The path takes a step whose density in each lane, relative to the hero's, is `lane_density`. Returns the mean of
     /// those over the lanes, each weighed by its density of the path before the step.
-    fn follow(&mut self, lane_density: Lanes<R, N>) -> R;
+    fn follow(&mut self, lane_density: Lanes<R, N>) -> f64;
 
     /// The mean of the lanes' own densities of a step, each weighed by its density of the path so far.
-    fn mean_density(&self, density: Lanes<R, N>) -> R;
+    fn mean_density(&self, density: Lanes<R, N>) -> f64;
 
     /// The balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5): N / Σ densities.
     fn weight(&self) -> R;
 
     /// The wavelengths of a path; `u` gives the hero's number, if one is to be drawn.
-    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> R) -> Wavelengths<N>;
+    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N>;
 
     /// What the path's radiance adds to the film, CIE XYZ.
     fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3];
@@ -58,13 +58,13 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
     }
 
     #[inline(always)]
-    fn follow(&mut self, _: Lanes<R, 1>) -> R {
-        R::ONE
+    fn follow(&mut self, _: Lanes<R, 1>) -> f64 {
+        1.0
     }
 
     #[inline(always)]
-    fn mean_density(&self, density: Lanes<R, 1>) -> R {
-        density[0]
+    fn mean_density(&self, density: Lanes<R, 1>) -> f64 {
+        density[0].to_f64()
     }
 
     #[inline(always)]
@@ -72,7 +72,7 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
         R::ONE
     }
 
-    fn wavelengths(prepared: &Prepared, _: impl FnOnce() -> R) -> Wavelengths<1> {
+    fn wavelengths(prepared: &Prepared, _: impl FnOnce() -> f64) -> Wavelengths<1> {
         Wavelengths { lambda_nm: Lanes([prepared.one_lane.wavelength_nm]), pdf: Lanes([f64::INFINITY]) }
     }
 
@@ -89,13 +89,13 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
     }
 
     #[inline(always)]
-    fn follow(&mut self, _: Lanes<R, N>) -> R {
-        R::ONE
+    fn follow(&mut self, _: Lanes<R, N>) -> f64 {
+        1.0
     }
 
     #[inline(always)]
-    fn mean_density(&self, density: Lanes<R, N>) -> R {
-        density[0]
+    fn mean_density(&self, density: Lanes<R, N>) -> f64 {
+        density[0].to_f64()
     }
 
     #[inline(always)]
@@ -103,8 +103,8 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
         R::ONE
     }
 
-    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> R) -> Wavelengths<N> {
-        prepared.wavelengths.sample_lanes(u().to_f64())
+    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N> {
+        prepared.wavelengths.sample_lanes(u())
     }
 
     fn to_xyz(_: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
@@ -120,17 +120,17 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
     }
 
     #[inline(always)]
-    fn follow(&mut self, lane_density: Lanes<R, N>) -> R {
+    fn follow(&mut self, lane_density: Lanes<R, N>) -> f64 {
         let before = self.0.sum();
         self.0 *= lane_density;
-        self.0.sum() / before
+        (self.0.sum() / before).to_f64()
     }
 
     #[inline(always)]
-    fn mean_density(&self, density: Lanes<R, N>) -> R {
+    fn mean_density(&self, density: Lanes<R, N>) -> f64 {
         // In differences from the hero's, so that equal densities give exactly that.
         let difference = density - Lanes::splat(density[0]);
-        density[0] + (self.0 * difference).sum() / self.0.sum()
+        (density[0] + (self.0 * difference).sum() / self.0.sum()).to_f64()
     }
 
     #[inline(always)]
@@ -138,8 +138,8 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
         R::from_f64(N as f64) / self.0.sum()
     }
 
-    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> R) -> Wavelengths<N> {
-        prepared.wavelengths.sample_lanes(u().to_f64())
+    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N> {
+        prepared.wavelengths.sample_lanes(u())
     }
 
     fn to_xyz(_: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {

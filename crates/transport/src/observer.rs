@@ -22,7 +22,7 @@ pub enum End {
 /// A watcher of a path. Every method does nothing unless it is implemented.
 pub trait Observer<R: Real, const N: usize> {
     /// The path meets a surface: vertex number `vertex` (0 is the first), where, which object, and its throughput so far.
-    fn vertex(&mut self, _vertex: u32, _position: Vec3<R>, _object: u32, _beta: Lanes<R, N>) {}
+    fn vertex(&mut self, _vertex: u32, _position: Vec3<f64>, _object: u32, _beta: Lanes<R, N>) {}
     /// Light is added: at which vertex, how, and how much in each lane.
     fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<R, N>) {}
     /// The path ends.

@@ -67,11 +67,11 @@ pub(crate) enum ShadowRays {
 
 /// The last step of the walk, as far as MIS needs it.
 #[derive(Clone, Copy)]
-enum Step<R> {
+enum Step {
     /// From the camera or by a delta: no shadow ray could have found what it finds.
     Unshared,
     /// Drawn with this density, the mean over the lanes, from this point of this primitive, where a shadow ray was sent too.
-    Shared { from: Vec3<R>, leaves: SurfaceId, density: R },
+    Shared { from: Vec3<f64>, leaves: SurfaceId, density: f64 },
 }
 
 impl World<'_> {
@@ -79,7 +79,7 @@ impl World<'_> {
     #[allow(clippy::too_many_arguments, reason = "what a path starts with, draws from, and tells")]
     pub(crate) fn radiance<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
         &self,
-        mut ray: Ray<R>,
+        mut ray: Ray<f64>,
         mut inside: Inside,
         polarisation: &mut P,
         lambda_nm: &Lanes<f64, N>,
@@ -91,7 +91,7 @@ impl World<'_> {
         let mut beta = Lanes::<R, N>::ONE;
         let mut lanes = M::start();
         // ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
-        let mut eta_squared = R::ONE;
+        let mut eta_squared = 1.0;
         let mut step = Step::Unshared;
         // Surfaces passed as if they were not there, which are no vertices of the path.
         let mut passed = 0;
@@ -120,15 +120,15 @@ impl World<'_> {
                 let mis = if compiled::MIS && self.weigh_hits {
                     self.weight_of_hit(step, point.surface, surface.light, ray.direction)
                 } else {
-                    R::ONE
+                    1.0
                 };
-                let light = polarisation.receive(beta * emitter.lanes(lambda_nm) * (lane_weight * mis));
+                let light = polarisation.receive(beta * emitter.lanes(lambda_nm) * (lane_weight * R::from_f64(mis)));
                 observer.light(vertex, Found::Emitter, light);
                 radiance += light;
             }
             if self.masks && surface.opacity < 1.0 {
-                let [.., u_mask] = sampler.vertex_set::<R>(vertex, 1);
-                if u_mask.to_f64() >= surface.opacity && vertex + 1 < MOST_VERTICES {
+                let [.., u_mask] = sampler.vertex_set(vertex, 1);
+                if u_mask >= surface.opacity && vertex + 1 < MOST_VERTICES {
                     // The last step goes on, and with it what MIS knows of it: the shadow ray passed here too.
                     passed += 1;
                     ray = point.spawn(ray.direction);
@@ -182,7 +182,7 @@ impl World<'_> {
             ray = point.spawn(next.wi);
             if let Some(beyond) = beyond {
                 ray.leaves = beyond.leaves;
-                if point.normal.dot(next.wi) * point.normal.dot(wo) < R::ZERO {
+                if point.normal.dot(next.wi) * point.normal.dot(wo) < 0.0 {
                     inside = beyond.inside;
                 }
             }
@@ -192,19 +192,19 @@ impl World<'_> {
                 observer.end(End::NonFinite);
                 return beta;
             }
-            let throughput = beta.max_lane() * lanes.weight() * eta_squared;
-            if throughput < R::from_f64(THROUGHPUT_FLOOR) {
+            let throughput = (beta.max_lane() * lanes.weight()).to_f64() * eta_squared;
+            if throughput < THROUGHPUT_FLOOR {
                 observer.end(End::Vanished);
                 break;
             }
             if self.roulette && vertex + 1 >= ROULETTE_FROM_VERTEX {
                 // No cap below one: it would make the variance infinite between good mirrors (hard case 29).
-                let survival = throughput.min(R::ONE);
+                let survival = throughput.min(1.0);
                 if u_roulette >= survival {
                     observer.end(End::Roulette);
                     break;
                 }
-                beta /= survival;
+                beta /= R::from_f64(survival);
             }
         }
         radiance
@@ -212,7 +212,7 @@ impl World<'_> {
 
     /// What the walk meets next: the closest surface, or the closest that is one where media are nested.
     #[inline(always)]
-    fn meet<R: Real>(&self, ray: &mut Ray<R>, inside: &mut Inside, counters: &mut Counters) -> Option<Met<'_, R>> {
+    fn meet(&self, ray: &mut Ray<f64>, inside: &mut Inside, counters: &mut Counters) -> Option<Met<'_>> {
         match self.media {
             Some(media) if compiled::NESTED_DIELECTRICS => {
                 media.meet(self.geometry, self.surfaces, ray, inside, &mut counters.lost_media)
@@ -226,22 +226,20 @@ impl World<'_> {
     }
 
     /// The MIS weight of light that the walk ran into `on` a surface whose light, if any, is number `light`.
-    fn weight_of_hit<R: Real>(&self, step: Step<R>, on: SurfaceId, light: Option<u32>, wi: Vec3<R>) -> R {
+    fn weight_of_hit(&self, step: Step, on: SurfaceId, light: Option<u32>, wi: Vec3<f64>) -> f64 {
         match (step, light) {
-            (Step::Unshared, _) | (_, None) => R::ONE,
+            (Step::Unshared, _) | (_, None) => 1.0,
             // The far side of the sphere that it left: see `direct_light`.
-            (Step::Shared { leaves, .. }, _) if leaves == on => R::ONE,
+            (Step::Shared { leaves, .. }, _) if leaves == on => 1.0,
             (Step::Shared { from, density, .. }, Some(light)) => {
                 let light = light as usize;
-                let of_direction = self.lights.lights()[light].density(from.to_f64(), wi.to_f64());
+                let of_direction = self.lights.lights()[light].density(from, wi);
                 match self.light_sampling {
                     // No shadow ray could have found it.
-                    _ if of_direction == 0.0 => R::ONE,
-                    LightSampling::Light => R::ZERO,
-                    LightSampling::Bsdf => R::ONE,
-                    LightSampling::Mis => {
-                        power_heuristic(density, R::from_f64(self.lights.probability(light) * of_direction))
-                    }
+                    _ if of_direction == 0.0 => 1.0,
+                    LightSampling::Light => 0.0,
+                    LightSampling::Bsdf => 1.0,
+                    LightSampling::Mis => power_heuristic(density, self.lights.probability(light) * of_direction),
                 }
             }
         }
@@ -252,33 +250,32 @@ impl World<'_> {
     #[allow(clippy::too_many_arguments, reason = "the arguments of the rendering equation, and what counts them")]
     fn direct_light<R: Real, M: WavelengthModel<R, N>, const N: usize>(
         &self,
-        point: &SurfacePoint<R>,
-        scattering: &Scattering<'_, R>,
-        wo: Vec3<R>,
+        point: &SurfacePoint<f64>,
+        scattering: &Scattering<'_>,
+        wo: Vec3<f64>,
         (lambda_nm, lanes): (&Lanes<f64, N>, &M),
-        [u_light, u1, u2, _]: [R; 4],
+        [u_light, u1, u2, _]: [f64; 4],
         inside: &Inside,
         counters: &mut Counters,
     ) -> Option<(u32, Lanes<R, N>)> {
         if self.lights.is_empty() {
             return None;
         }
-        let index = self.lights.choose(u_light.to_f64());
+        let index = self.lights.choose(u_light);
         let light = &self.lights.lights()[index];
-        let sample = light.sample(point.position.to_f64(), [u1.to_f64(), u2.to_f64()])?;
+        let sample = light.sample(point.position, [u1, u2])?;
         if sample.surface == point.surface {
             // A surface is no target for its own points: rounding decides on which side of a sphere they lie, and the
             // BSDF's directions find the sphere's inside at least as well.
             return None;
         }
-        let wi = sample.wi.cast();
-        let (f_cos, densities) = scattering.eval(lambda_nm, wo, wi);
+        let (f_cos, densities) = scattering.eval(lambda_nm, wo, sample.wi);
         if f_cos.is_zero() {
             return None;
         }
         let shadow_ray = match sample.target {
-            Target::Point(target) => point.spawn_to(target.cast(), sample.surface),
-            Target::Infinity => point.spawn(wi),
+            Target::Point(target) => point.spawn_to(target, sample.surface),
+            Target::Infinity => point.spawn(sample.wi),
         };
         counters.shadow_rays += 1;
         let arriving = if self.masks {
@@ -290,48 +287,48 @@ impl World<'_> {
                 }
                 _ => self.geometry.occluded(&shadow_ray),
             };
-            if occluded { R::ZERO } else { R::ONE }
+            if occluded { 0.0 } else { 1.0 }
         };
-        if arriving == R::ZERO {
+        if arriving == 0.0 {
             return None;
         }
         let probability = self.lights.probability(index);
         let weight = match sample.density {
-            Density::Delta => R::from_f64(sample.scale / probability),
+            Density::Delta => sample.scale / probability,
             Density::SolidAngle(density) => {
                 let density = density * probability;
                 let mis = match self.light_sampling {
-                    LightSampling::Light => R::ONE,
-                    LightSampling::Bsdf => R::ZERO,
-                    LightSampling::Mis => power_heuristic(R::from_f64(density), lanes.mean_density(densities)),
+                    LightSampling::Light => 1.0,
+                    LightSampling::Bsdf => 0.0,
+                    LightSampling::Mis => power_heuristic(density, lanes.mean_density(densities)),
                 };
-                mis * R::from_f64(sample.scale / density)
+                mis * (sample.scale / density)
             }
         };
-        Some((index as u32, f_cos * light.spectrum().lanes(lambda_nm) * (weight * arriving)))
+        Some((index as u32, f_cos * light.spectrum().lanes(lambda_nm) * R::from_f64(weight * arriving)))
     }
 
     /// The share of light from a sampled light that reaches the start of the shadow ray: masks let their part through.
-    fn passing<R: Real>(
+    fn passing(
         &self,
-        mut shadow_ray: Ray<R>,
+        mut shadow_ray: Ray<f64>,
         mut inside: Inside,
         sample: &LightSample,
         counters: &mut Counters,
-    ) -> R {
-        let mut share = R::ONE;
+    ) -> f64 {
+        let mut share = 1.0;
         for _ in 0..MOST_VERTICES {
             let Some(met) = self.meet(&mut shadow_ray, &mut inside, counters) else { return share };
             let aims_at = shadow_ray.aims_at;
             if self.media.is_some() && met.point.surface == aims_at {
                 return share;
             }
-            share *= R::from_f64(1.0 - met.surface.opacity);
-            if share == R::ZERO {
-                return R::ZERO;
+            share *= 1.0 - met.surface.opacity;
+            if share == 0.0 {
+                return 0.0;
             }
             shadow_ray = match sample.target {
-                Target::Point(target) => met.point.spawn_to(target.cast(), sample.surface),
+                Target::Point(target) => met.point.spawn_to(target, sample.surface),
                 Target::Infinity => met.point.spawn(shadow_ray.direction),
             };
             if let Some(beyond) = met.beyond {
@@ -340,6 +337,6 @@ impl World<'_> {
             }
         }
         counters.cut_paths += 1;
-        R::ZERO
+        0.0
     }
 }

@@ -26,7 +26,7 @@ pub(crate) struct Retarder<R, const N: usize> {
 /// Whether and how a path carries polarisation.
 pub(crate) trait Polarisation<R: Real, const N: usize>: Copy {
     /// At the camera, whose picture's right is along `right`.
-    fn at_camera(direction: Vec3<R>, right: Vec3<R>) -> Self;
+    fn at_camera(direction: Vec3<f64>, right: Vec3<f64>) -> Self;
 
     /// Unpolarised light comes in at the path's end and would be worth `light` if nothing polarised. Returns what it is
     /// worth in S₀.
@@ -34,7 +34,7 @@ pub(crate) trait Polarisation<R: Real, const N: usize>: Copy {
 
     /// The path goes on from a surface that light leaves along `wo` and meets along −`wi`; `retarder` is what it does, `None`
     /// if it depolarises.
-    fn follow(&mut self, wo: Vec3<R>, wi: Vec3<R>, retarder: impl FnOnce() -> Option<Retarder<R, N>>);
+    fn follow(&mut self, wo: Vec3<f64>, wi: Vec3<f64>, retarder: impl FnOnce() -> Option<Retarder<R, N>>);
 
     /// S₁, S₂ and S₃ received so far, W·m⁻²·sr⁻¹·nm⁻¹; `None` if polarisation is not carried.
     fn received(&self) -> Option<[Lanes<R, N>; 3]>;
@@ -46,7 +46,7 @@ pub(crate) struct Averaged;
 
 impl<R: Real, const N: usize> Polarisation<R, N> for Averaged {
     #[inline(always)]
-    fn at_camera(_: Vec3<R>, _: Vec3<R>) -> Self {
+    fn at_camera(_: Vec3<f64>, _: Vec3<f64>) -> Self {
         Self
     }
 
@@ -56,7 +56,7 @@ impl<R: Real, const N: usize> Polarisation<R, N> for Averaged {
     }
 
     #[inline(always)]
-    fn follow(&mut self, _: Vec3<R>, _: Vec3<R>, _: impl FnOnce() -> Option<Retarder<R, N>>) {}
+    fn follow(&mut self, _: Vec3<f64>, _: Vec3<f64>, _: impl FnOnce() -> Option<Retarder<R, N>>) {}
 
     fn received(&self) -> Option<[Lanes<R, N>; 3]> {
         None
@@ -69,12 +69,12 @@ pub(crate) struct Mueller<R, const N: usize> {
     /// Columns of the product, each matrix over its first element; the rows are the camera's.
     columns: [[Lanes<R, N>; 4]; 4],
     /// The frame's x on the path's last ray.
-    x: Vec3<R>,
+    x: Vec3<f64>,
     received: [Lanes<R, N>; 3],
 }
 
 impl<R: Real, const N: usize> Polarisation<R, N> for Mueller<R, N> {
-    fn at_camera(direction: Vec3<R>, right: Vec3<R>) -> Self {
+    fn at_camera(direction: Vec3<f64>, right: Vec3<f64>) -> Self {
         let columns = std::array::from_fn(|j| std::array::from_fn(|i| if i == j { Lanes::ONE } else { Lanes::ZERO }));
         Self { columns, x: across(right, direction), received: [Lanes::ZERO; 3] }
     }
@@ -85,7 +85,7 @@ impl<R: Real, const N: usize> Polarisation<R, N> for Mueller<R, N> {
         light * s0
     }
 
-    fn follow(&mut self, wo: Vec3<R>, wi: Vec3<R>, retarder: impl FnOnce() -> Option<Retarder<R, N>>) {
+    fn follow(&mut self, wo: Vec3<f64>, wi: Vec3<f64>, retarder: impl FnOnce() -> Option<Retarder<R, N>>) {
         let Some(Retarder { a, c, d }) = retarder() else {
             (1..4).for_each(|j| self.columns[j] = [Lanes::ZERO; 4]);
             // Any x will do where nothing is polarised.
@@ -94,15 +94,15 @@ impl<R: Real, const N: usize> Polarisation<R, N> for Mueller<R, N> {
         };
         // At right angles to both; where they are parallel any vector across them is, the present x too.
         let normal = wo.cross(wi);
-        let s = if normal.length_squared() > R::ZERO { normal.normalized() } else { self.x };
+        let s = if normal.length_squared() > 0.0 { normal.normalized() } else { self.x };
         let (cos, sin) = (self.x.dot(s), self.x.dot(wo.cross(s)));
         let squared = cos * cos + sin * sin;
-        let (cos_2, sin_2) = ((cos * cos - sin * sin) / squared, R::TWO * cos * sin / squared);
+        let (cos_2, sin_2) = ((cos * cos - sin * sin) / squared, 2.0 * cos * sin / squared);
         let [n0, n1, n2, n3] = self.columns;
         let combine = |u: [Lanes<R, N>; 4], p: Lanes<R, N>, v: [Lanes<R, N>; 4], q: Lanes<R, N>| {
             std::array::from_fn::<_, 4, _>(|i| u[i] * p + v[i] * q)
         };
-        let (cos_2, sin_2) = (Lanes::splat(cos_2), Lanes::splat(sin_2));
+        let (cos_2, sin_2) = (Lanes::splat(R::from_f64(cos_2)), Lanes::splat(R::from_f64(sin_2)));
         let (m1, m2) = (combine(n1, cos_2, n2, Lanes::ZERO - sin_2), combine(n1, sin_2, n2, cos_2));
         self.columns = [
             combine(n0, Lanes::ONE, m1, a),
@@ -119,13 +119,13 @@ impl<R: Real, const N: usize> Polarisation<R, N> for Mueller<R, N> {
 }
 
 /// The unit vector at right angles to `direction` that is nearest to `v`; any, if `v` is along it.
-fn across<R: Real>(v: Vec3<R>, direction: Vec3<R>) -> Vec3<R> {
+fn across(v: Vec3<f64>, direction: Vec3<f64>) -> Vec3<f64> {
     let rest = v - direction * direction.dot(v);
     let length = rest.length_squared();
-    if length > R::UNIT_ROUNDOFF {
-        rest * (R::ONE / length.sqrt())
+    if length > f64::UNIT_ROUNDOFF {
+        rest * (1.0 / length.sqrt())
     } else {
-        etalon_optics::Frame::from_normal(direction).to_world(Vec3::new(R::ONE, R::ZERO, R::ZERO))
+        etalon_optics::Frame::from_normal(direction).to_world(Vec3::new(1.0, 0.0, 0.0))
     }
 }
 

@@ -72,9 +72,9 @@ pub(crate) fn replay<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, c
     sample: u32,
 ) -> Replay {
     let mut recorder = Recorder { prepared, events: Vec::new() };
-    let tracer = Tracer::<R>::new(prepared);
+    let tracer = Tracer::new(prepared);
     let (wavelengths, radiance, polarisation) =
-        tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut recorder);
+        tracer.sample::<R, M, P, N>(x, y, sample, &mut Counters::default(), &mut recorder);
     Replay {
         wavelengths_nm: wavelengths.lambda_nm.0.to_vec(),
         events: recorder.events,
@@ -94,11 +94,11 @@ fn widen<R: Real, const N: usize>(lanes: Lanes<R, N>) -> Vec<f64> {
 }
 
 impl<R: Real, const N: usize> Observer<R, N> for Recorder<'_> {
-    fn vertex(&mut self, vertex: u32, position: Vec3<R>, object: u32, beta: Lanes<R, N>) {
+    fn vertex(&mut self, vertex: u32, position: Vec3<f64>, object: u32, beta: Lanes<R, N>) {
         self.events.push(Event::Vertex {
             vertex,
             object: self.prepared.object(object).map_or_else(String::new, |object| object.name.clone()),
-            position_m: self.prepared.frame.to_world_m(position.to_f64()).to_array(),
+            position_m: self.prepared.frame.to_world_m(position).to_array(),
             beta: widen(beta),
         });
     }

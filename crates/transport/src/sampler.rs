@@ -6,7 +6,6 @@
 //! Sample k of a pixel is number k div R of replicate k mod R. The R replicates are independent, so that the scatter of
 //! their means is the error of the whole; and the first samples of a pixel are the same however many follow.
 
-use etalon_optics::Real;
 use etalon_scene::SamplerKind;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -41,7 +40,7 @@ impl Sampler {
     }
 
     /// The four numbers of set `set`, each in [0, 1).
-    pub fn set<R: Real>(&self, set: u32) -> [R; 4] {
+    pub fn set(&self, set: u32) -> [f64; 4] {
         match self.kind {
             SamplerKind::Sobol => {
                 // Fewer than 2⁶ replicates of fewer than 2¹⁶ point sets each.
@@ -49,8 +48,7 @@ impl Sampler {
                 // The high half of a 64-bit hash: sets and replicates are independent scrambles of the same points
                 // (padding; Burley 2020, *Practical Hash-based Owen Scrambling*, §5).
                 let scramble = mix(self.pixel_seed ^ (u64::from(set) << 32 | u64::from(points))) >> 32;
-                sobol_burley::sample_4d(self.index % SOBOL_POINTS, 0, scramble as u32)
-                    .map(|u| R::from_f64(f64::from(u)))
+                sobol_burley::sample_4d(self.index % SOBOL_POINTS, 0, scramble as u32).map(f64::from)
             }
             SamplerKind::Independent => {
                 let stream = mix(self.pixel_seed ^ (u64::from(set) << 32 | u64::from(self.sample)));
@@ -61,16 +59,14 @@ impl Sampler {
     }
 
     /// The sets of path vertex `vertex`, the first being number 0.
-    pub fn vertex_set<R: Real>(&self, vertex: u32, set: u32) -> [R; 4] {
+    pub fn vertex_set(&self, vertex: u32, set: u32) -> [f64; 4] {
         self.set(CAMERA_SETS + vertex * SETS_PER_VERTEX + set)
     }
 }
 
-/// Maps 64 random bits to [0, 1), cutting (not rounding) to the scalar's precision so that 1 never occurs.
-fn unit_interval<R: Real>(bits: u64) -> R {
-    // 24 bits are exact in both scalar types, 53 in `f64` only.
-    let bits = if R::UNIT_ROUNDOFF.to_f64() > 1e-10 { bits >> 40 << 29 } else { bits >> 11 };
-    R::from_f64(bits as f64 * (1.0 / (1_u64 << 53) as f64))
+/// Maps 64 random bits to [0, 1), cutting (not rounding) to 53 bits so that 1 never occurs.
+fn unit_interval(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
 }
 
 /// A bijective mixer of 64 bits: the finaliser of SplitMix64 (Steele, Lea & Flood 2014) after its increment.
@@ -90,15 +86,12 @@ mod tests {
         for kind in [SamplerKind::Sobol, SamplerKind::Independent] {
             for sample in (0..200_000).step_by(997) {
                 let sampler = Sampler::new(kind, 7, 12, sample, 4);
-                let a: [f32; 4] = sampler.set(3);
-                assert_eq!(a, sampler.set::<f32>(3));
-                assert!(a.iter().all(|u| (0.0..1.0).contains(u)));
-                let b: [f64; 4] = sampler.set(3);
-                // The narrower scalar sees the same number, cut to 24 bits.
-                assert!(a.iter().zip(b).all(|(&a, b)| f64::from(a) <= b && b - f64::from(a) < 6e-8));
+                let u = sampler.set(3);
+                assert_eq!(u, sampler.set(3));
+                assert!(u.iter().all(|u| (0.0..1.0).contains(u)));
             }
         }
-        assert!(unit_interval::<f32>(u64::MAX) < 1.0 && unit_interval::<f64>(u64::MAX) < 1.0);
+        assert!(unit_interval(u64::MAX) < 1.0);
     }
 
     /// Correlation of any two of (set, pixel, sample, seed) streams: |r|·√n is standard normal; 5 is passed with
@@ -107,7 +100,7 @@ mod tests {
     fn streams_are_uncorrelated() {
         let n = 16_384;
         let stream = |kind, seed, pixel, set, component: usize| -> Vec<f64> {
-            (0..n).map(|s| Sampler::new(kind, seed, pixel, s, 1).set::<f64>(set)[component] - 0.5).collect()
+            (0..n).map(|s| Sampler::new(kind, seed, pixel, s, 1).set(set)[component] - 0.5).collect()
         };
         for kind in [SamplerKind::Sobol, SamplerKind::Independent] {
             let base = stream(kind, 1, 5, 2, 0);
@@ -125,7 +118,7 @@ mod tests {
         // 256 points of a (0, 8, 2)-net in base 2 put one into each of 16 × 16 cells of the first two dimensions.
         let mut cells = [0; 256];
         for s in 0..256 {
-            let u: [f64; 4] = Sampler::new(SamplerKind::Sobol, 3, 9, s, 1).set(0);
+            let u = Sampler::new(SamplerKind::Sobol, 3, 9, s, 1).set(0);
             cells[(u[0] * 16.0) as usize * 16 + (u[1] * 16.0) as usize] += 1;
         }
         assert!(cells.iter().all(|&c| c == 1), "{cells:?}");

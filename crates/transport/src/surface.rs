@@ -51,7 +51,7 @@ pub(crate) struct Surface<'a> {
 
 impl Surfaces {
     #[inline]
-    pub(crate) fn of<R>(&self, point: &SurfacePoint<R>) -> Surface<'_> {
+    pub(crate) fn of(&self, point: &SurfacePoint<f64>) -> Surface<'_> {
         let object = self.object_of[point.label as usize][point.surface.primitive.0 as usize];
         let of_object = &self.objects[object as usize];
         let emission = of_object.emission.as_ref();
@@ -73,13 +73,13 @@ impl Surfaces {
 impl<'a> Surface<'a> {
     /// Scattering at a point of it; `interface` has the media on both sides where the place decides them.
     #[inline]
-    pub(crate) fn scattering<R: Real>(
+    pub(crate) fn scattering(
         &self,
         geometry: &Geometry,
-        point: &SurfacePoint<R>,
-        hit: &Hit<R>,
+        point: &SurfacePoint<f64>,
+        hit: &Hit<f64>,
         interface: Option<Interface<'a>>,
-    ) -> Scattering<'a, R> {
+    ) -> Scattering<'a> {
         let outward = |normal| geometry.placed_normal(hit.surface, normal);
         let at = self.coordinates.at(point.normal, hit.surface.primitive, hit.uv, outward);
         Scattering { bsdf: self.bsdf, at: at.between(interface) }
@@ -92,9 +92,9 @@ impl<'a> Surface<'a> {
 
     /// The radiance emitted along `wo` where the normal is `n`, if that side emits.
     #[inline]
-    pub(crate) fn emission_along<R: Real>(&self, n: Vec3<R>, wo: Vec3<R>) -> Option<&'a PathSpectrum> {
+    pub(crate) fn emission_along(&self, n: Vec3<f64>, wo: Vec3<f64>) -> Option<&'a PathSpectrum> {
         let emission = self.emission?;
-        let front = n.dot(wo) > R::ZERO;
+        let front = n.dot(wo) > 0.0;
         let emits = match emission.sides {
             EmissionSides::Front => front,
             EmissionSides::Back => !front,
@@ -105,40 +105,40 @@ impl<'a> Surface<'a> {
 }
 
 /// Scattering at one point.
-pub(crate) struct Scattering<'a, R> {
+pub(crate) struct Scattering<'a> {
     bsdf: &'a Bsdf,
-    at: Shading<'a, R>,
+    at: Shading<'a>,
 }
 
-impl<R: Real> Scattering<'_, R> {
+impl Scattering<'_> {
     /// See [`Bsdf::eval`].
     #[inline]
-    pub(crate) fn eval<const N: usize>(
+    pub(crate) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         self.bsdf.eval(lambda_nm, &self.at, wo, wi)
     }
 
     /// See [`Bsdf::retarder`].
-    pub(crate) fn retarder<const N: usize>(
+    pub(crate) fn retarder<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> Option<Retarder<R, N>> {
         self.bsdf.retarder(lambda_nm, &self.at, wo, wi)
     }
 
     /// See [`Bsdf::sample`].
     #[inline]
-    pub(crate) fn sample<const N: usize>(
+    pub(crate) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        wo: Vec3<R>,
-        u: [R; 3],
+        wo: Vec3<f64>,
+        u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
         self.bsdf.sample(lambda_nm, &self.at, wo, u)
     }

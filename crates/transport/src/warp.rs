@@ -4,44 +4,43 @@ use etalon_optics::{Real, Vec3};
 
 /// Uniform point of the unit disk, by the concentric map of Shirley & Chiu 1997 (area-preserving, low distortion).
 #[inline]
-pub fn concentric_disk<R: Real>(u: [R; 2]) -> [R; 2] {
-    let a = R::TWO * u[0] - R::ONE;
-    let b = R::TWO * u[1] - R::ONE;
-    if a == R::ZERO && b == R::ZERO {
-        return [R::ZERO, R::ZERO];
+pub fn concentric_disk(u: [f64; 2]) -> [f64; 2] {
+    let a = 2.0 * u[0] - 1.0;
+    let b = 2.0 * u[1] - 1.0;
+    if a == 0.0 && b == 0.0 {
+        return [0.0, 0.0];
     }
-    let eighth = R::from_f64(0.125);
+    let eighth = 0.125;
     // The angle in turns, within an eighth of an axis.
-    let (radius, turns) =
-        if a.abs() > b.abs() { (a, eighth * (b / a)) } else { (b, R::from_f64(0.25) - eighth * (a / b)) };
-    let (sin, cos) = R::sin_cos_turns(if turns < R::ZERO { turns + R::ONE } else { turns });
+    let (radius, turns) = if a.abs() > b.abs() { (a, eighth * (b / a)) } else { (b, 0.25 - eighth * (a / b)) };
+    let (sin, cos) = f64::sin_cos_turns(if turns < 0.0 { turns + 1.0 } else { turns });
     [radius * cos, radius * sin]
 }
 
 /// Direction about +z with density cos θ / π (Malley's method).
 #[inline]
-pub fn cosine_hemisphere<R: Real>(u: [R; 2]) -> Vec3<R> {
+pub fn cosine_hemisphere(u: [f64; 2]) -> Vec3<f64> {
     let [x, y] = concentric_disk(u);
-    Vec3::new(x, y, (R::ONE - x * x - y * y).sqrt_nonnegative())
+    Vec3::new(x, y, (1.0 - x * x - y * y).sqrt_nonnegative())
 }
 
 /// Uniform direction, density 1/4π.
 #[inline]
-pub fn uniform_sphere<R: Real>(u: [R; 2]) -> Vec3<R> {
-    let z = R::ONE - R::TWO * u[0];
+pub fn uniform_sphere(u: [f64; 2]) -> Vec3<f64> {
+    let z = 1.0 - 2.0 * u[0];
     // 1 − z² without cancellation.
-    let radius = R::TWO * (u[0] * (R::ONE - u[0])).sqrt_nonnegative();
-    let (sin, cos) = R::sin_cos_turns(u[1]);
+    let radius = 2.0 * (u[0] * (1.0 - u[0])).sqrt_nonnegative();
+    let (sin, cos) = f64::sin_cos_turns(u[1]);
     Vec3::new(radius * cos, radius * sin, z)
 }
 
 /// Direction uniform in the cone about +z whose half angle has 1 − cos = `one_minus_cos`.
 #[inline]
-pub fn uniform_cone<R: Real>(u: [R; 2], one_minus_cos: R) -> Vec3<R> {
+pub fn uniform_cone(u: [f64; 2], one_minus_cos: f64) -> Vec3<f64> {
     let a = u[0] * one_minus_cos;
-    let sin_theta = (a * (R::TWO - a)).sqrt_nonnegative();
-    let (sin, cos) = R::sin_cos_turns(u[1]);
-    Vec3::new(sin_theta * cos, sin_theta * sin, R::ONE - a)
+    let sin_theta = (a * (2.0 - a)).sqrt_nonnegative();
+    let (sin, cos) = f64::sin_cos_turns(u[1]);
+    Vec3::new(sin_theta * cos, sin_theta * sin, 1.0 - a)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use etalon_geometry::{Parallelogram, PrimitiveId};
 use etalon_optics::Vec3;
-use etalon_oracle::laws::{self, SINGLE};
+use etalon_oracle::laws;
 use etalon_oracle::quadrature;
 use etalon_scene::Precision;
 use etalon_transport::light::{Emitter, Light, ParallelogramLight};
@@ -47,8 +47,7 @@ fn a_square_light_fills_its_solid_angle_from_ten_thousand_sides_across_to_a_hund
 /// Hard case 32, in both scalars, from 1e-25 to 1e25 and beyond.
 #[test]
 fn the_weights_of_two_ways_of_sampling_add_up() {
-    laws::mis_weights_add_up(power_heuristic::<f64>, f64::EPSILON, 1).assert();
-    laws::mis_weights_add_up(|a, b| f64::from(power_heuristic(a as f32, b as f32)), SINGLE, 1).assert();
+    laws::mis_weights_add_up(power_heuristic, f64::EPSILON, 1).assert();
 }
 
 /// A room with glass, a mirror, a lens and lights of several kinds; `zero` is how it writes 0.

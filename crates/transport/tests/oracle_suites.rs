@@ -59,12 +59,10 @@ impl<R: Real> Scatters for Material<R> {
 
     fn sample(&self, wo: [f64; 3], u: [f64; 3], wavelength_nm: f64) -> Option<Scattered> {
         let lambda = Lanes([wavelength_nm]);
-        // Rounding up to 1 would leave the interval that a sampler promises.
-        let u = u.map(|u| R::from_f64(u).min(R::ONE_MINUS_EPSILON));
         let s = self.bsdf.sample::<R, 1>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), u)?;
         let wi = s.wi.to_f64().to_array();
         let density = match s.density {
-            mis::Density::SolidAngle(pdf) => Density::SolidAngle(pdf.to_f64()),
+            mis::Density::SolidAngle(pdf) => Density::SolidAngle(pdf),
             mis::Density::Delta => {
                 let nearest = self.deltas(wo, wavelength_nm).into_iter().min_by(|a, b| {
                     let off = |lobe: &DeltaLobe| (Vec3::from_array(lobe.wi) - Vec3::from_array(wi)).length();
@@ -264,7 +262,7 @@ fn functions<R: Real>() -> Vec<Verdict> {
         laws::fresnel_obeys_brewster(powers, epsilon, 1),
         laws::fresnel_reflects_totally(powers, epsilon, 1),
         laws::frame_is_orthonormal(frame, epsilon, 1),
-        laws::mis_weights_add_up(|a, b| mis::power_heuristic(R::from_f64(a), R::from_f64(b)).to_f64(), epsilon, 1),
+        laws::mis_weights_add_up(mis::power_heuristic, epsilon, 1),
     ]
 }
 

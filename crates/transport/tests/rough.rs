@@ -163,17 +163,15 @@ fn dispersive_rough_glass_loses_no_wavelength() {
 
 #[test]
 fn nothing_breaks_at_grazing_angles_and_near_deltas() {
-    fn check<R: Real>(bsdf: &Bsdf, wo: Vec3<R>, n: Vec3<R>, u: [f64; 3]) {
+    fn check<R: Real>(bsdf: &Bsdf, wo: Vec3<f64>, n: Vec3<f64>, u: [f64; 3]) {
         let lambda = Lanes([450.0, 550.0]);
-        if let Some(s) =
-            bsdf.sample::<R, 2>(&lambda, &Shading::flat(n), wo, u.map(|u| R::from_f64(u).min(R::ONE_MINUS_EPSILON)))
-        {
+        if let Some(s) = bsdf.sample::<R, 2>(&lambda, &Shading::flat(n), wo, u) {
             let Density::SolidAngle(density) = s.density else { panic!("a rough surface has no delta") };
-            assert!(density.is_finite() && density > R::ZERO);
+            assert!(density.is_finite() && density > 0.0);
             assert!(s.weight.is_finite() && s.lane_density.is_finite(), "{wo:?} {u:?}: {s:?}");
             // G₂/G₁ ≤ 1, radiance in glass up to n², and the hero's own weight is bounded by both lobes'.
             assert!(s.weight[0].to_f64() < 8.0, "{wo:?} {u:?}: {s:?}");
-            assert!((s.wi.length().to_f64() - 1.0).abs() < 1e-6);
+            assert!((s.wi.length() - 1.0).abs() < 1e-14);
         }
     }
     for alpha in [etalon_scene::LEAST_ALPHA, 0.01, 1.0] {
@@ -186,7 +184,7 @@ fn nothing_breaks_at_grazing_angles_and_near_deltas() {
                         let wo = direction(mu) * side;
                         check::<f64>(bsdf, wo, up(), u);
                         check::<f64>(bsdf, tilted.to_world(wo), tilted.n, u);
-                        check::<f32>(bsdf, wo.cast(), up().cast(), u);
+                        check::<f32>(bsdf, wo, up(), u);
                     }
                 }
             }

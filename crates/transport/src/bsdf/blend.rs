@@ -34,10 +34,10 @@ impl Blend {
     pub(super) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        at: &Shading<R>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        n: Vec3<f64>,
+        at: &Shading<'_>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         let mut sums = (Lanes::ZERO, Lanes::ZERO);
         for (part, share) in self.parts.iter().zip(self.shares()) {
@@ -51,18 +51,18 @@ impl Blend {
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        at: &Shading<R>,
-        wo: Vec3<R>,
-        u: [R; 3],
+        n: Vec3<f64>,
+        at: &Shading<'_>,
+        wo: Vec3<f64>,
+        u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
-        let u_part = u[0].to_f64();
+        let [u_part, u1, u2] = u;
         let (part, rest) = match u_part < self.weight {
             true => (1, u_part / self.weight),
             false => (0, (u_part - self.weight) / (1.0 - self.weight)),
         };
-        let rest = R::from_f64(rest).min(R::ONE_MINUS_EPSILON);
-        let next = self.parts[part].sample_around(lambda_nm, n, at, wo, [rest, u[1], u[2]])?;
+        let rest = rest.min(f64::ONE_MINUS_EPSILON);
+        let next = self.parts[part].sample_around(lambda_nm, n, at, wo, [rest, u1, u2])?;
         match next.density {
             // The part's share is in its value and in its probability.
             Density::Delta => Some(next),

@@ -28,21 +28,21 @@ impl Conductor {
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
         interface: Option<Interface<'_>>,
     ) -> Option<BsdfSample<R, N>> {
         // Rounding may carry the product of two unit vectors past 1.
-        let cos_o = n.dot(wo).abs().min(R::ONE);
+        let cos_o = n.dot(wo).abs().min(1.0);
         Some(BsdfSample {
             wi: wo.reflected_about(n).renormalized(),
             weight: Lanes::from_fn(|lane| {
                 let (n, k) = self.relative_index(lambda_nm[lane], interface);
-                fresnel::conductor(cos_o, R::from_f64(n), R::from_f64(k)).reflectance
+                R::from_f64(fresnel::conductor(cos_o, n, k).reflectance)
             }),
             density: Density::Delta,
             lane_density: Lanes::ONE,
-            eta: R::ONE,
+            eta: 1.0,
         })
     }
 }

@@ -26,26 +26,26 @@ impl Dielectric {
     }
 
     /// n_transmitted / n_incident for a path that arrives on the outside, or on the inside.
-    pub(super) fn eta<R: Real>(&self, lambda_nm: f64, from_outside: bool, interface: Option<Interface<'_>>) -> R {
+    pub(super) fn eta(&self, lambda_nm: f64, from_outside: bool, interface: Option<Interface<'_>>) -> f64 {
         if let Some(media) = interface {
-            return R::from_f64(media.transmitted.eval(lambda_nm) / media.incident.eval(lambda_nm));
+            return media.transmitted.eval(lambda_nm) / media.incident.eval(lambda_nm);
         }
         let (inside, outside) = (self.interior.eval(lambda_nm), self.exterior.eval(lambda_nm));
-        R::from_f64(if from_outside { inside / outside } else { outside / inside })
+        if from_outside { inside / outside } else { outside / inside }
     }
 
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        u: R,
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        u: f64,
         interface: Option<Interface<'_>>,
     ) -> Option<BsdfSample<R, N>> {
-        let from_outside = n.dot(wo) > R::ZERO;
+        let from_outside = n.dot(wo) > 0.0;
         let n = if from_outside { n } else { -n };
         // Rounding may carry the product of two unit vectors past 1.
-        let cos_o = n.dot(wo).min(R::ONE);
+        let cos_o = n.dot(wo).min(1.0);
         let dispersive = compiled::DISPERSION
             && match interface {
                 Some(media) => media.incident.is_dispersive() || media.transmitted.is_dispersive(),
@@ -53,17 +53,17 @@ impl Dielectric {
             };
         // Whether a wavelength is reflected for certain, or how likely and, if it is not, where it goes.
         let at = |lane: usize| {
-            let eta: R = self.eta(lambda_nm[lane], from_outside, interface);
+            let eta = self.eta(lambda_nm[lane], from_outside, interface);
             (eta, fresnel::dielectric(cos_o, eta))
         };
         let (eta, hero) = at(0);
-        let reflectance = hero.map_or(R::ONE, |f| f.reflectance);
+        let reflectance = hero.map_or(1.0, |f| f.reflectance);
 
         if u < reflectance {
             let lane_density = if dispersive {
                 Lanes::from_fn(|lane| match lane {
                     0 => R::ONE,
-                    _ => at(lane).1.map_or(R::ONE, |f| f.reflectance) / reflectance,
+                    _ => R::from_f64(at(lane).1.map_or(1.0, |f| f.reflectance) / reflectance),
                 })
             } else {
                 Lanes::ONE
@@ -73,7 +73,7 @@ impl Dielectric {
                 weight: lane_density,
                 density: Density::Delta,
                 lane_density,
-                eta: R::ONE,
+                eta: 1.0,
             });
         }
         let wi = snell::refract_with_cosines(wo, n, eta, cos_o, hero?.cos_t);
@@ -81,7 +81,7 @@ impl Dielectric {
         Some(BsdfSample {
             wi,
             // T/(1 − R) = 1 in exact arithmetic; radiance is compressed into the denser medium, or spread from it.
-            weight: lane_density / (eta * eta),
+            weight: lane_density / R::from_f64(eta * eta),
             density: Density::Delta,
             lane_density,
             eta,

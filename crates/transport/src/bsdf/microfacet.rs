@@ -194,20 +194,19 @@ pub(crate) struct Facing {
 
 impl Facing {
     /// The frame of normal `n`, turned toward `wo`; `None` for a `wo` exactly along the surface.
-    pub(crate) fn new<R: Real>(n: Vec3<R>, wo: Vec3<R>) -> Option<Self> {
-        let (n, wo) = (n.to_f64(), wo.to_f64());
+    pub(crate) fn new(n: Vec3<f64>, wo: Vec3<f64>) -> Option<Self> {
         let frame = Frame::from_normal(if n.dot(wo) < 0.0 { -n } else { n });
         let wo = frame.to_local(wo);
         (wo.z > 0.0).then_some(Self { frame, wo })
     }
 
     /// A direction of the world in the frame.
-    pub(crate) fn local<R: Real>(&self, w: Vec3<R>) -> Vec3<f64> {
-        self.frame.to_local(w.to_f64())
+    pub(crate) fn local(&self, w: Vec3<f64>) -> Vec3<f64> {
+        self.frame.to_local(w)
     }
 
-    /// A direction of the frame in the world, of unit length in its own scalar type.
-    pub(crate) fn world<R: Real>(&self, w: Vec3<f64>) -> Vec3<R> {
-        self.frame.to_world(w).cast::<R>().renormalized()
+    /// A direction of the frame in the world, brought back to unit length.
+    pub(crate) fn world(&self, w: Vec3<f64>) -> Vec3<f64> {
+        self.frame.to_world(w).renormalized()
     }
 }

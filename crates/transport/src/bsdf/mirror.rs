@@ -20,9 +20,9 @@ impl Mirror {
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
+        n: Vec3<f64>,
         uv: [f64; 2],
-        wo: Vec3<R>,
+        wo: Vec3<f64>,
     ) -> Option<BsdfSample<R, N>> {
         Some(BsdfSample {
             // Kept at unit length, so that ten thousand reflections do not drift (hard case 33).
@@ -30,7 +30,7 @@ impl Mirror {
             weight: self.reflectance.lanes(lambda_nm, uv),
             density: Density::Delta,
             lane_density: Lanes::ONE,
-            eta: R::ONE,
+            eta: 1.0,
         })
     }
 }

@@ -43,26 +43,26 @@ use etalon_scene::MaterialKind;
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample<R, const N: usize> {
     /// Toward the light; a unit vector.
-    pub wi: Vec3<R>,
+    pub wi: Vec3<f64>,
     /// f·|cos θ|/p in each lane, where p is the **hero's** density (or probability) of this direction.
     pub weight: Lanes<R, N>,
     /// Density of `wi` for the hero wavelength.
-    pub density: Density<R>,
+    pub density: Density,
     /// Each lane's own density of this direction relative to the hero's: 0 for a lane that cannot take it.
     pub lane_density: Lanes<R, N>,
     /// n_transmitted / n_incident if the path crossed an interface, else 1.
-    pub eta: R,
+    pub eta: f64,
 }
 
 impl<R: Real, const N: usize> BsdfSample<R, N> {
     /// The sample of a direction drawn with each lane's own `density` as if it were the hero, from what [`Bsdf::eval`] says
     /// of it; `None` where the hero's density is 0, which rounding may have made of the edge of a lobe.
-    fn scattered(wi: Vec3<R>, f_cos: Lanes<R, N>, density: Lanes<R, N>, eta: R) -> Option<Self> {
+    fn scattered(wi: Vec3<f64>, f_cos: Lanes<R, N>, density: Lanes<R, N>, eta: f64) -> Option<Self> {
         let hero = density[0];
         (hero > R::ZERO).then(|| Self {
             wi,
             weight: f_cos / hero,
-            density: Density::SolidAngle(hero),
+            density: Density::SolidAngle(hero.to_f64()),
             lane_density: density / hero,
             eta,
         })
@@ -152,9 +152,9 @@ impl Bsdf {
     pub fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        at: &Shading<R>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        at: &Shading<'_>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         match at.is_bent() {
             false => self.eval_around(lambda_nm, at.normal, at, wo, wi),
@@ -167,9 +167,9 @@ impl Bsdf {
     pub fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        at: &Shading<R>,
-        wo: Vec3<R>,
-        u: [R; 3],
+        at: &Shading<'_>,
+        wo: Vec3<f64>,
+        u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
         match at.is_bent() {
             false => self.sample_around(lambda_nm, at.normal, at, wo, u),
@@ -182,10 +182,10 @@ impl Bsdf {
     fn eval_around<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        at: &Shading<R>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        n: Vec3<f64>,
+        at: &Shading<'_>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         match self {
             Self::Lambert(lambert) => lambert.eval(lambda_nm, n, at.uv, wo, wi),
@@ -205,10 +205,10 @@ impl Bsdf {
     fn sample_around<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        at: &Shading<R>,
-        wo: Vec3<R>,
-        u: [R; 3],
+        n: Vec3<f64>,
+        at: &Shading<'_>,
+        wo: Vec3<f64>,
+        u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
         match self {
             Self::Lambert(lambert) => lambert.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
@@ -232,12 +232,12 @@ impl Bsdf {
     pub(crate) fn retarder<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        at: &Shading<R>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        at: &Shading<'_>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> Option<Retarder<R, N>> {
         let n = at.shading_normal();
-        let cos = n.dot(wo).abs().min(R::ONE).to_f64();
+        let cos = n.dot(wo).abs().min(1.0);
         let of = |matrix: &dyn Fn(f64) -> [f64; 3]| {
             let lanes = lambda_nm.0.map(matrix);
             let part = |i: usize| Lanes::from_fn(|lane| R::from_f64(lanes[lane][i]));
@@ -250,9 +250,9 @@ impl Bsdf {
                 polarisation::conductor_reflection(cos, n, k)
             }),
             Self::Dielectric(glass) => {
-                let reflects = at.normal.dot(wo) * at.normal.dot(wi) > R::ZERO;
+                let reflects = at.normal.dot(wo) * at.normal.dot(wi) > 0.0;
                 of(&|nm| {
-                    let eta: f64 = glass.eta(nm, n.dot(wo) > R::ZERO, at.media());
+                    let eta = glass.eta(nm, n.dot(wo) > 0.0, at.media());
                     match fresnel::refracted_cosine(cos, eta) {
                         Some(cos_t) if !reflects => polarisation::dielectric_transmission(cos, eta, cos_t),
                         _ => polarisation::dielectric_reflection(cos, eta),

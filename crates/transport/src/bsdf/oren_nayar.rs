@@ -33,9 +33,9 @@ impl OrenNayar {
     pub(super) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let (wo, wi) = (facing.wo, facing.local(wi));
@@ -60,13 +60,13 @@ impl OrenNayar {
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        u: [R; 2],
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        u: [f64; 2],
     ) -> Option<BsdfSample<R, N>> {
-        let wi = Facing::new(n, wo)?.world(cosine_hemisphere(u.map(R::to_f64)));
+        let wi = Facing::new(n, wo)?.world(cosine_hemisphere(u));
         let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
-        BsdfSample::scattered(wi, f_cos, density, R::ONE)
+        BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
 }
 

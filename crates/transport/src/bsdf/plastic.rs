@@ -88,9 +88,9 @@ impl Plastic {
     pub(super) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let (wo, wi) = (facing.wo, facing.local(wi));
@@ -120,12 +120,12 @@ impl Plastic {
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        u: [R; 3],
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
         let facing = Facing::new(n, wo)?;
-        let [u_lobe, u1, u2] = u.map(R::to_f64);
+        let [u_lobe, u1, u2] = u;
         let mu = facing.wo.z.min(1.0);
         let share = self.coat_share(facing.wo.z);
         let wi = match &self.rough {
@@ -138,11 +138,11 @@ impl Plastic {
                     weight: Lanes::from_fn(|lane| R::from_f64(reflected(lambda_nm[lane]) / share)),
                     density: Density::Delta,
                     lane_density: Lanes::ONE,
-                    eta: R::ONE,
+                    eta: 1.0,
                 });
             }
         };
         let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
-        BsdfSample::scattered(wi, f_cos, density, R::ONE)
+        BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
 }

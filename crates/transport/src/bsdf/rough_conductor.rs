@@ -53,9 +53,9 @@ impl RoughConductor {
     pub(super) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let (wo, wi) = (facing.wo, facing.local(wi));
@@ -81,12 +81,12 @@ impl RoughConductor {
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        u: [R; 3],
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
         let facing = Facing::new(n, wo)?;
-        let [u_lobe, u1, u2] = u.map(R::to_f64);
+        let [u_lobe, u1, u2] = u;
         let wi = match &self.compensation {
             Some(compensation) if u_lobe < compensation.loss.eval(facing.wo.z, 1.0) => {
                 compensation.loss.sample([u1, u2])
@@ -96,6 +96,6 @@ impl RoughConductor {
         let wi = facing.world(wi);
         // Of the direction as it came out, rounding included: below the surface the light is lost.
         let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
-        BsdfSample::scattered(wi, f_cos, density, R::ONE)
+        BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
 }

@@ -160,11 +160,11 @@ impl RoughDielectric {
     pub(super) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        wi: Vec3<R>,
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
-        let from_outside = n.dot(wo) > R::ZERO;
+        let from_outside = n.dot(wo) > 0.0;
         let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let wi = facing.local(wi);
         if wi.z == 0.0 {
@@ -182,19 +182,19 @@ impl RoughDielectric {
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        u: [R; 3],
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
-        let from_outside = n.dot(wo) > R::ZERO;
+        let from_outside = n.dot(wo) > 0.0;
         let facing = Facing::new(n, wo)?;
-        let [u_lobe, u1, u2] = u.map(R::to_f64);
+        let [u_lobe, u1, u2] = u;
         let hero = self.sides(lambda_nm[0], from_outside, facing.wo.z);
         let eta = hero.n[1] / hero.n[0];
         if eta == 1.0 {
             let lanes = if self.dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE };
             let (wi, density) = (-wo, Density::Delta);
-            return Some(BsdfSample { wi, weight: lanes, density, lane_density: lanes, eta: R::ONE });
+            return Some(BsdfSample { wi, weight: lanes, density, lane_density: lanes, eta: 1.0 });
         }
         let wi = if u_lobe < hero.loss_o {
             let crosses = u_lobe < hero.loss_o * hero.crossing;
@@ -223,13 +223,13 @@ impl RoughDielectric {
             }
         };
         let crossed = wi.z < 0.0;
-        let wi: Vec3<R> = facing.world(wi);
+        let wi = facing.world(wi);
         // Of the direction as it came out, rounding included.
         if (facing.local(wi).z < 0.0) != crossed {
             return None;
         }
         let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
-        BsdfSample::scattered(wi, f_cos, density, if crossed { R::from_f64(eta) } else { R::ONE })
+        BsdfSample::scattered(wi, f_cos, density, if crossed { eta } else { 1.0 })
     }
 }
 

@@ -25,20 +25,20 @@ use etalon_optics::{Lanes, Real, Vec3};
 
 /// A surface point as scattering sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Shading<'a, R> {
+pub struct Shading<'a> {
     /// Unit normal of the surface itself, on its own outward side.
-    pub normal: Vec3<R>,
+    pub normal: Vec3<f64>,
     /// Unit normal to scatter around, on the same side, where it is another one.
-    bent: Option<Vec3<R>>,
+    bent: Option<Vec3<f64>>,
     /// Texture coordinates; 0 on a surface without.
     pub uv: [f64; 2],
     /// The media on both sides, where the place decides them and not the material.
     media: Option<Interface<'a>>,
 }
 
-impl<'a, R: Real> Shading<'a, R> {
+impl<'a> Shading<'a> {
     /// Of a surface that is what it looks like, without texture coordinates.
-    pub fn flat(normal: Vec3<R>) -> Self {
+    pub fn flat(normal: Vec3<f64>) -> Self {
         Self { normal, bent: None, uv: [0.0; 2], media: None }
     }
 
@@ -61,15 +61,15 @@ impl<'a, R: Real> Shading<'a, R> {
 
     /// The same with a unit vector to scatter around; one on the other side of the surface is turned around.
     #[must_use]
-    pub fn bent_to(self, shading_normal: Vec3<R>) -> Self {
+    pub fn bent_to(self, shading_normal: Vec3<f64>) -> Self {
         let cos = shading_normal.dot(self.normal);
-        let turned = if cos < R::ZERO { -shading_normal } else { shading_normal };
+        let turned = if cos < 0.0 { -shading_normal } else { shading_normal };
         // Along the surface it has no sides.
-        Self { bent: (cos != R::ZERO && turned != self.normal).then_some(turned), ..self }
+        Self { bent: (cos != 0.0 && turned != self.normal).then_some(turned), ..self }
     }
 
     /// The unit normal to scatter around.
-    pub fn shading_normal(&self) -> Vec3<R> {
+    pub fn shading_normal(&self) -> Vec3<f64> {
         self.bent.unwrap_or(self.normal)
     }
 
@@ -78,20 +78,20 @@ impl<'a, R: Real> Shading<'a, R> {
     }
 
     /// The mirror image of a direction in the surface.
-    fn mirrored(&self, d: Vec3<R>) -> Vec3<R> {
-        (d - self.normal * (R::TWO * self.normal.dot(d))).renormalized()
+    fn mirrored(&self, d: Vec3<f64>) -> Vec3<f64> {
+        (d - self.normal * (2.0 * self.normal.dot(d))).renormalized()
     }
 
     /// The viewer on its own side of the shading normal's horizon (rule 3).
-    fn viewer(&self, wo: Vec3<R>) -> Vec3<R> {
+    fn viewer(&self, wo: Vec3<f64>) -> Vec3<f64> {
         let n = self.shading_normal();
         let cos = n.dot(wo);
-        if cos * self.normal.dot(wo) < R::ZERO { (wo - n * (R::TWO * cos)).renormalized() } else { wo }
+        if cos * self.normal.dot(wo) < 0.0 { (wo - n * (2.0 * cos)).renormalized() } else { wo }
     }
 
     /// Whether the BSDF may scatter to `d` in the name of a direction on the side of `wi` (rule 4).
-    fn belongs(&self, d: Vec3<R>, wi: Vec3<R>) -> bool {
-        self.shading_normal().dot(d) * self.normal.dot(wi) > R::ZERO
+    fn belongs(&self, d: Vec3<f64>, wi: Vec3<f64>) -> bool {
+        self.shading_normal().dot(d) * self.normal.dot(wi) > 0.0
     }
 }
 
@@ -99,9 +99,9 @@ impl<'a, R: Real> Shading<'a, R> {
 pub(super) fn eval<R: Real, const N: usize>(
     bsdf: &Bsdf,
     lambda_nm: &Lanes<f64, N>,
-    at: &Shading<R>,
-    wo: Vec3<R>,
-    wi: Vec3<R>,
+    at: &Shading<'_>,
+    wo: Vec3<f64>,
+    wi: Vec3<f64>,
 ) -> (Lanes<R, N>, Lanes<R, N>) {
     let (n, viewer) = (at.shading_normal(), at.viewer(wo));
     let mut sum = (Lanes::ZERO, Lanes::ZERO);
@@ -118,17 +118,17 @@ pub(super) fn eval<R: Real, const N: usize>(
 pub(super) fn sample<R: Real, const N: usize>(
     bsdf: &Bsdf,
     lambda_nm: &Lanes<f64, N>,
-    at: &Shading<R>,
-    wo: Vec3<R>,
-    u: [R; 3],
+    at: &Shading<'_>,
+    wo: Vec3<f64>,
+    u: [f64; 3],
 ) -> Option<BsdfSample<R, N>> {
     let (n, viewer) = (at.shading_normal(), at.viewer(wo));
     let mut next = bsdf.sample_around(lambda_nm, n, at, viewer, u)?;
     // The side that the BSDF meant is the one that the triangle gives it.
-    if at.normal.dot(next.wi) * n.dot(next.wi) < R::ZERO {
+    if at.normal.dot(next.wi) * n.dot(next.wi) < 0.0 {
         next.wi = at.mirrored(next.wi);
     }
-    if at.normal.dot(next.wi) == R::ZERO {
+    if at.normal.dot(next.wi) == 0.0 {
         return None;
     }
     if let Density::SolidAngle(_) = next.density {

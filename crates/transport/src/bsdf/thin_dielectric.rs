@@ -24,30 +24,30 @@ impl ThinDielectric {
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        n: Vec3<R>,
-        wo: Vec3<R>,
-        u: R,
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        u: f64,
     ) -> Option<BsdfSample<R, N>> {
         // Rounding may carry the product of two unit vectors past 1.
-        let cos = n.dot(wo).abs().min(R::ONE);
-        let reflects = u < pane(cos, R::from_f64(self.reference))[0];
+        let cos = n.dot(wo).abs().min(1.0);
+        let reflects = u < pane(cos, self.reference)[0];
         let side = usize::from(!reflects);
-        let share = |index: f64| pane(cos, R::from_f64(index))[side];
+        let share = |index: f64| pane(cos, index)[side];
         let probability = share(self.reference);
         Some(BsdfSample {
             wi: if reflects { wo.reflected_about(n).renormalized() } else { -wo },
-            weight: Lanes::from_fn(|lane| share(self.index.eval(lambda_nm[lane])) / probability),
+            weight: Lanes::from_fn(|lane| R::from_f64(share(self.index.eval(lambda_nm[lane])) / probability)),
             density: Density::Delta,
             lane_density: Lanes::ONE,
-            eta: R::ONE,
+            eta: 1.0,
         })
     }
 }
 
 /// Shares of light that a pane reflects and transmits: 2R/(1 + R) and T/(1 + R).
-fn pane<R: Real>(cos: R, index: R) -> [R; 2] {
+fn pane(cos: f64, index: f64) -> [f64; 2] {
     // From a pane that is thinner optically than what surrounds it, total reflection returns all.
-    let Some(f) = fresnel::dielectric(cos, index) else { return [R::ONE, R::ZERO] };
-    let both = R::ONE + f.reflectance;
-    [R::TWO * f.reflectance / both, f.transmittance / both]
+    let Some(f) = fresnel::dielectric(cos, index) else { return [1.0, 0.0] };
+    let both = 1.0 + f.reflectance;
+    [2.0 * f.reflectance / both, f.transmittance / both]
 }

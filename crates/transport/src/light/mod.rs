@@ -46,7 +46,7 @@ pub struct LightSample {
     /// Unit vector toward the light.
     pub wi: Vec3<f64>,
     /// Density of `wi` in sr⁻¹, or a delta.
-    pub density: Density<f64>,
+    pub density: Density,
     /// Where the shadow ray ends.
     pub target: Target,
     /// The light's own surface, which does not shadow itself.

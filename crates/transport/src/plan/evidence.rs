@@ -60,7 +60,7 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
 }
 
 /// The first object whose material has something to say, which it says. Materials that no object is made of are silent.
-fn first_surface(scene: &Scene, says: impl Fn(&Material, [f64; 2]) -> Option<String>) -> Option<String> {
+pub(super) fn first_surface(scene: &Scene, says: impl Fn(&Material, [f64; 2]) -> Option<String>) -> Option<String> {
     scene.placed_objects().find_map(|object| {
         let material = &scene.materials[object.material];
         says(material, scene.integrator.wavelength_range_nm)

@@ -3,6 +3,7 @@
 //! Effects are derived, never declared: each material, light, camera and film says in an exhaustive `match` what it calls
 //! for ([`evidence`](self)), and what nothing calls for is not done. A [`Study`] may have it otherwise.
 
+mod directions;
 mod evidence;
 mod grey;
 mod study;
@@ -189,6 +190,15 @@ pub enum LaneModel {
     Hero,
 }
 
+/// The scalar type of all that is geometry, the same in every kernel.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Directions {
+    /// `f64`.
+    pub precision: &'static str,
+    /// The object and the number that need it, or that nothing does.
+    pub because: String,
+}
+
 /// What will be simulated, why, and with what.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plan {
@@ -196,8 +206,10 @@ pub struct Plan {
     pub kernel: &'static str,
     /// What its lanes stand for.
     pub lane_model: LaneModel,
-    /// Scalar type.
+    /// Scalar type of what each wavelength carries.
     pub precision: &'static str,
+    /// Scalar type of positions, directions and their densities.
+    pub directions: Directions,
     /// Lanes that a path carries.
     pub lanes: usize,
     /// Range of the wavelengths, nm.
@@ -264,6 +276,10 @@ impl Plan {
                 _ if runs(EffectName::Polarisation) => "f64",
                 Precision::F32 => "f32",
                 Precision::F64 => "f64",
+            },
+            directions: Directions {
+                precision: "f64",
+                because: directions::evidence(scene).unwrap_or_else(|otherwise| otherwise),
             },
             lanes: match lane_model {
                 LaneModel::One => 1,
