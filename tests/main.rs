@@ -8,5 +8,6 @@ mod refusals;
 mod renders;
 mod scenes;
 mod support;
+mod surviving;
 mod usage;
 mod verify;

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use etalon_transport::PixelRect;
+use etalon_transport::{PixelRect, Shard};
 
 /// Largest side of a picture, pixels.
 const LARGEST_SIDE: u32 = 65_536;
@@ -58,6 +58,23 @@ impl FromStr for PixelAt {
     fn from_str(text: &str) -> Result<Self, String> {
         let [x, y] = numbers(text).ok_or("a pixel is X,Y, counted from 0 at the top left, such as 12,40")?;
         Ok(Self { x, y })
+    }
+}
+
+/// `K/N`, K counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ShardArg(pub(crate) Shard);
+
+impl FromStr for ShardArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.trim().parse::<u32>().ok();
+        let numbers = text.split_once('/').and_then(|(k, n)| Some((number(k)?, number(n)?)));
+        match numbers {
+            Some((k, of)) if 1 <= k && k <= of => Ok(Self(Shard { index: k - 1, of })),
+            _ => Err("a share is K/N with K from 1 to N, such as 3/16".to_owned()),
+        }
     }
 }
 
@@ -137,6 +154,15 @@ mod tests {
         }
         for text in ["", "s", "0s", "1d", "-3s", "1m!", "5é"] {
             assert!(seconds(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn shares_count_from_one() {
+        assert_eq!("3/16".parse(), Ok(ShardArg(Shard { index: 2, of: 16 })));
+        assert_eq!("1/1".parse(), Ok(ShardArg(Shard::WHOLE)));
+        for text in ["", "1", "0/4", "5/4", "1/0", "-1/4", "a/b", "1/2/3"] {
+            assert!(text.parse::<ShardArg>().is_err(), "{text}");
         }
     }
 

@@ -11,6 +11,8 @@ pub(crate) type Outcome = Result<(), Failure>;
 /// Whose mistake it was; this decides the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Blame {
+    /// Nobody's: a signal ended the work, and what there was is kept. Exit status 128 and the signal's number.
+    Signal(u8),
     /// The machine's, or ours: files that cannot be written, a result that is wrong. Exit status 1.
     Run,
     /// The input's: arguments that make no sense, a scene with errors. Exit status 2.
@@ -63,9 +65,19 @@ impl Failure {
         Self { problems: vec![(Blame::Input, report.into())] }
     }
 
+    /// An end by a signal.
+    pub(crate) fn signal(number: u8, report: impl Into<Report>) -> Self {
+        Self { problems: vec![(Blame::Signal(number), report.into())] }
+    }
+
     /// Another problem found in the same run.
     pub(crate) fn add(&mut self, other: Self) {
         self.problems.extend(other.problems);
+    }
+
+    /// Whether there was no problem.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.problems.is_empty()
     }
 
     /// Success if there was no problem.
@@ -78,11 +90,12 @@ impl Failure {
         self.problems.iter().map(|(_, report)| problem_json(report)).collect()
     }
 
-    /// Prints the problems on standard error and gives the exit status: 2 if any of them is the input's.
+    /// Prints the problems on standard error and gives the exit status: 2 if any of them is the input's, 1 if the machine's.
     pub(crate) fn report(self) -> ExitCode {
         crate::print::warnings(self.problems.iter().map(|(_, report)| report));
         match self.problems.iter().map(|(blame, _)| *blame).max() {
             None => ExitCode::SUCCESS,
+            Some(Blame::Signal(number)) => ExitCode::from(128 | number),
             Some(Blame::Run) => ExitCode::from(1),
             Some(Blame::Input) => ExitCode::from(2),
         }

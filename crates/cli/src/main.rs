@@ -1,18 +1,22 @@
 //! The program `etalon`.
 //!
-//! Exit status: 0 done, 1 failed, 2 bad usage or a bad scene.
+//! Exit status: 0 done, 1 failed, 2 bad usage or a bad scene, 130 ended by SIGINT and 143 by SIGTERM.
 
 mod args;
 mod commands;
+mod deliver;
 mod failure;
+mod interrupt;
 mod load;
 mod machine;
+mod machine_limits;
 mod output;
 mod overrides;
 mod print;
 mod progress;
 mod replay_text;
 mod scene_report;
+mod state;
 
 use std::process::ExitCode;
 
@@ -32,6 +36,8 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Render(commands::render::Args),
+    Merge(commands::merge::Args),
+    Farm(commands::farm::Args),
     Quote(commands::quote::Args),
     Compare(commands::compare::Args),
     Study(commands::study::Args),
@@ -48,6 +54,8 @@ fn main() -> ExitCode {
     print::set_up_reports();
     let outcome: Outcome = match cli.command {
         Command::Render(args) => commands::render::run(args),
+        Command::Merge(args) => commands::merge::run(args),
+        Command::Farm(args) => commands::farm::run(args),
         Command::Quote(args) => commands::quote::run(args),
         Command::Compare(args) => commands::compare::run(args),
         Command::Study(args) => commands::study::run(args),

@@ -16,6 +16,8 @@ pub(crate) enum Format {
     Exr,
     /// What a screen shows, in 8 bits.
     Png,
+    /// Every sum with every bit, for `etalon merge`.
+    Part,
 }
 
 /// A file to be written.
@@ -40,6 +42,19 @@ pub(crate) struct Written {
     pub clipping: Option<Clipping>,
 }
 
+impl Written {
+    /// A file that holds everything.
+    pub(crate) fn whole(output: &Output) -> Self {
+        let path = output.path.display().to_string();
+        Self { path, format: output.format, clipped_pixels: None, clipping: None }
+    }
+
+    /// Whether it is this output.
+    pub(crate) fn is(&self, output: &Output) -> bool {
+        self.path == output.path.display().to_string()
+    }
+}
+
 /// Understands the names of the outputs, and finds out whether they can be written, before anything is computed.
 /// Everything that is wrong with any of them goes into `failure`.
 pub(crate) fn plan(paths: &[PathBuf], failure: &mut Failure) -> Vec<Output> {
@@ -49,10 +64,11 @@ pub(crate) fn plan(paths: &[PathBuf], failure: &mut Failure) -> Vec<Output> {
         let format = match extension.as_deref() {
             Some("exr") => Format::Exr,
             Some("png") => Format::Png,
+            Some("part") => Format::Part,
             _ => {
                 failure.add(Failure::input(miette!(
                     code = "output-format",
-                    help = "name it .exr for the linear picture with all its data, or .png for 8-bit sRGB",
+                    help = "name it .exr for the linear picture with all its data, .png for 8-bit sRGB, .part for `etalon merge`",
                     "`{}` is not a kind of picture that can be written",
                     path.display()
                 )));
@@ -88,6 +104,7 @@ pub(crate) fn write(
     let clipping = match output.format {
         Format::Exr => write_exr(path, picture, attributes).map(|()| None),
         Format::Png => png(path, picture, exposure_ev, software, comment).map(Some),
+        Format::Part => unreachable!("parts are written from the canvas"),
     }
     .map_err(|error| Failure::run(Report::from_err(error)))?;
     Ok(Written {

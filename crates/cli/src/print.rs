@@ -21,6 +21,12 @@ pub(crate) fn line(text: &str) {
     }
 }
 
+/// Prints a line on standard error.
+pub(crate) fn note(text: &str) {
+    // Where standard error has gone there is nobody left to tell.
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
+}
+
 /// Prints warnings and errors on standard error.
 pub(crate) fn warnings<'a>(warnings: impl IntoIterator<Item = &'a Report>) {
     for warning in warnings {

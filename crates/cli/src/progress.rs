@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use etalon_transport::{Counters, Film, Foretold, PixelRect, Watch};
@@ -53,6 +54,9 @@ pub(crate) struct RenderBar {
     bar: ProgressBar,
     rect: PixelRect,
     target: Option<f64>,
+    /// Pixels that are rendered here, and samples of them that there were before.
+    pixels: AtomicU64,
+    before: AtomicU64,
 }
 
 impl RenderBar {
@@ -63,12 +67,33 @@ impl RenderBar {
         if target.is_some() {
             bar.set_message("pilot");
         }
-        Self { bar, rect, target }
+        Self { bar, rect, target, pixels: AtomicU64::new(rect.area()), before: AtomicU64::new(0) }
+    }
+
+    /// The picture is a share of so many pixels, or goes on from so many samples of them.
+    pub(crate) fn is_part(&self, pixels: u64, before: u64) {
+        self.pixels.store(pixels, Ordering::Relaxed);
+        self.before.store(before, Ordering::Relaxed);
     }
 
     /// Takes the bar off the screen.
     pub(crate) fn clear(&self) {
         self.bar.finish_and_clear();
+    }
+
+    /// What share of the picture is done, once it has begun.
+    pub(crate) fn share(&self) -> Option<f64> {
+        let length = self.bar.length().filter(|&length| length > 0)?;
+        Some((self.bar.position() as f64 / length as f64).min(1.0))
+    }
+
+    /// Says something above the bar, on standard error even where there is no bar.
+    pub(crate) fn say(&self, text: &str) {
+        if self.bar.is_hidden() {
+            crate::print::note(text);
+        } else {
+            self.bar.println(text);
+        }
     }
 }
 
@@ -78,8 +103,8 @@ impl Watch for RenderBar {
     }
 
     fn planned(&self, samples: u32, _: Option<&Foretold>) {
-        self.bar.set_length(self.rect.area() * u64::from(samples));
-        self.bar.set_position(0);
+        self.bar.set_length(self.pixels.load(Ordering::Relaxed) * u64::from(samples));
+        self.bar.set_position(self.before.load(Ordering::Relaxed));
         // The pilot's pace is not the picture's.
         self.bar.reset_eta();
         self.bar.set_message("");

@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use crate::PictureError;
 
@@ -35,7 +36,8 @@ pub fn write_atomically(
 }
 
 /// Finds out whether [`write_atomically`] could write this file, and leaves nothing behind: for use before the work.
-/// A file that exists and may not be written is left alone and is an error, although a rename could replace it.
+/// A file that exists and may not be written is left alone and is an error, although a rename could replace it. Temporary files
+/// that a killed program has left in the folder are taken away.
 ///
 /// # Errors
 /// Those that writing would give.
@@ -46,9 +48,34 @@ pub fn check_writable(path: &Path) -> Result<(), PictureError> {
         fs::OpenOptions::new().write(true).open(&file).map_err(failed)?;
     }
     if !stream {
-        temporary_in(&folder).and_then(tempfile::NamedTempFile::close).map_err(failed)?;
+        remove_leftovers(&folder);
+        let mut probe = temporary_in(&folder).map_err(failed)?;
+        // A full disk still makes files; it is their content that it has no room for.
+        let content = probe.write_all(&[0; 4096]).and_then(|()| probe.as_file().sync_all());
+        probe.close().and(content).map_err(failed)?;
     }
     Ok(())
+}
+
+/// Temporary files begin and end so.
+const TEMPORARY: [&str; 2] = [".etalon-", ".tmp"];
+/// Younger files may be about to be locked.
+const SURELY_LOCKED_AFTER: Duration = Duration::from_secs(1);
+
+/// Takes away temporary files that nobody writes any more. Whoever writes one holds a lock on it, which ends with the process;
+/// where locks or removal do not work, files stay.
+fn remove_leftovers(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let named = name.to_str().is_some_and(|name| name.starts_with(TEMPORARY[0]) && name.ends_with(TEMPORARY[1]));
+        let age = || entry.metadata().ok()?.modified().ok()?.elapsed().ok();
+        if named && age().is_some_and(|age| age > SURELY_LOCKED_AFTER) {
+            let abandoned = fs::File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok());
+            if abandoned {
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
 }
 
 /// Where a write really goes.
@@ -96,11 +123,14 @@ fn target(path: &Path) -> Result<Target, PictureError> {
 
 fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".etalon-").suffix(".tmp");
+    builder.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]);
     // Temporary files are private by default; a picture gets what the user's umask gives to any new file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
+    let file = builder.tempfile_in(folder)?;
+    // Tells others that this file is in use; on a file system without locks they leave it alone anyway.
+    let _ = file.as_file().try_lock();
+    Ok(file)
 }
 
 /// Makes the rename itself last through a power cut.
@@ -179,6 +209,24 @@ mod tests {
         check_writable(&path).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(entries(folder.path()), ["out"]);
+    }
+
+    #[test]
+    fn what_a_killed_program_left_is_taken_away_and_what_is_in_use_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let old = std::time::SystemTime::now() - Duration::from_secs(60);
+        let [left, young, other] =
+            [".etalon-aaaaaa.tmp", ".etalon-bbbbbb.tmp", ".etalon-notes"].map(|name| folder.path().join(name));
+        for path in [&left, &young, &other] {
+            fs::write(path, "half of a picture").unwrap();
+        }
+        for path in [&left, &other] {
+            fs::File::options().write(true).open(path).unwrap().set_modified(old).unwrap();
+        }
+        let used = temporary_in(folder.path()).unwrap();
+        used.as_file().set_modified(old).unwrap();
+        check_writable(&folder.path().join("out")).unwrap();
+        assert!(!left.exists() && young.exists() && other.exists() && used.path().exists());
     }
 
     #[test]

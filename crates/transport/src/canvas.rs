@@ -9,6 +9,7 @@ use crate::render::{Control, TILE, ThreadError};
 use crate::sampler::mix;
 use crate::shares::Shares;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -16,7 +17,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 const PATHS_OF_PIECE: u64 = 1 << 15;
 
 /// A share of a picture's tiles: number `index` of `of`, counted from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     /// Which, below `of`.
     pub index: u32,
@@ -30,7 +31,7 @@ impl Shard {
 }
 
 /// How far a tile is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tile {
     /// Its pixels.
     pub rect: PixelRect,
@@ -65,14 +66,19 @@ pub fn tiles_of(rect: PixelRect, shard: Shard) -> Vec<PixelRect> {
 }
 
 impl Canvas {
-    /// Nothing of a share of `rect` yet; where the samples are spread by `shares`, in tiles whose pixels take the same.
-    pub fn new(prepared: &Prepared, rect: PixelRect, shard: Shard, shares: Option<&Shares>) -> Self {
+    /// The same of a film that has nothing yet, for tiles that were rendered elsewhere.
+    pub fn of_share(film: Film, rect: PixelRect, shard: Shard, shares: Option<&Shares>) -> Self {
         let tiles = tiles_of(rect, shard)
             .into_iter()
             .flat_map(|tile| shares.map_or_else(|| vec![tile], |shares| shares.parts(tile)))
             .map(|rect| Tile { rect, samples: 0, counters: Counters::default() })
             .collect();
-        Self { rect, state: Mutex::new(State { film: prepared.film(), tiles }) }
+        Self { rect, state: Mutex::new(State { film, tiles }) }
+    }
+
+    /// Nothing of a share of `rect` yet; where the samples are spread by `shares`, in tiles whose pixels take the same.
+    pub fn new(prepared: &Prepared, rect: PixelRect, shard: Shard, shares: Option<&Shares>) -> Self {
+        Self::of_share(prepared.film(), rect, shard, shares)
     }
 
     /// The pixels that the whole picture has.

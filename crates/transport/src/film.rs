@@ -1,9 +1,10 @@
 //! Where samples are summed: in `f64`, in the order of their numbers, nothing clamped.
 
 use etalon_optics::colour;
+use serde::{Deserialize, Serialize};
 
 /// A rectangle of pixels, `x0 ≤ x < x1` and `y0 ≤ y < y1`, y counted from the top.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PixelRect {
     /// First column.
     pub x0: u32,
@@ -152,7 +153,7 @@ impl<'a> Pixel<'a> {
 }
 
 /// A sample that was not a finite number: excluded from the sums, and reported so that it can be replayed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct NonFinite {
     /// Row from the top.
     pub y: u32,
@@ -166,7 +167,7 @@ pub struct NonFinite {
 pub const NONFINITE_LOCATED: usize = 16;
 
 /// What a render counted.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
     /// Camera paths.
     pub paths: u64,

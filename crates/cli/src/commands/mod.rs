@@ -2,8 +2,10 @@
 
 pub(crate) mod compare;
 pub(crate) mod explain;
+pub(crate) mod farm;
 pub(crate) mod figures;
 pub(crate) mod import;
+pub(crate) mod merge;
 pub(crate) mod quote;
 pub(crate) mod render;
 pub(crate) mod schema;

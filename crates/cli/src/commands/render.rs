@@ -1,32 +1,41 @@
 //! `etalon render`: a scene in, a picture out.
 
 mod report;
+mod resume;
+mod room;
+mod run;
 mod warnings;
+mod watcher;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
-use etalon_picture::{Attribute, ERROR_PREFIX, ErrorInfo, Picture, RenderInfo, Window};
-use etalon_transport::{Film, Finished, ImageError, Limits, PixelRect, Prepared, prepare_study};
+use etalon_transport::canvas::tiles_of;
+use etalon_transport::{Canvas, Ended, ImageError, Limits, PixelRect, Prepared, Shard, prepare_study};
 use miette::{Report, miette};
 use serde::Serialize;
 
-use crate::args::{Crop, PixelAt};
+use crate::args::{Crop, PixelAt, ShardArg};
+use crate::deliver::Delivery;
 use crate::failure::{Failure, Outcome, ProblemJson};
+use crate::interrupt::Interrupt;
 use crate::load::{LoadedScene, load};
-use crate::machine::{Clock, ClockKind};
-use crate::output::{self, Output, Written};
+use crate::machine::ClockKind;
+use crate::output::{self, Output};
 use crate::overrides::Overrides;
 use crate::print;
 use crate::progress::RenderBar;
+use crate::state::{self, Header, Kept, Subject};
+use run::Run;
+use watcher::{ProgressKind, Watcher};
 
 /// Renders a scene to EXR and PNG files.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The scene, as JSON (see `etalon schema`), or a model: glTF 2.0 (.glb, .gltf), OBJ or PLY.
     scene: PathBuf,
-    /// Picture to write: .exr keeps the linear picture and all that is known about it, .png is what a screen shows.
-    /// Give it twice to write both.
+    /// Picture to write: .exr keeps the linear picture and all that is known about it, .png is what a screen shows, .part
+    /// the sums themselves. Give it twice to write both.
     #[arg(short, long, alias = "outfile", value_name = "FILE", required_unless_present = "pixel")]
     output: Vec<PathBuf>,
     #[command(flatten)]
@@ -52,12 +61,24 @@ pub(crate) struct Args {
     /// left. The EXR remembers where they belong.
     #[arg(long, value_name = "X0,X1,Y0,Y1")]
     crop: Option<Crop>,
+    /// Keep what is rendered in a file beside the first output, OUTPUT.checkpoint, each time so much time has passed.
+    #[arg(long, value_name = "TIME", value_parser = crate::args::seconds)]
+    checkpoint: Option<f64>,
+    /// Go on from OUTPUT.checkpoint, if there is one; the picture is the same, byte for byte.
+    #[arg(long)]
+    resume: bool,
+    /// Render one share of the picture's tiles only, the K-th of N: an output that ends in .part is for `etalon merge`.
+    #[arg(long, value_name = "K/N", conflicts_with = "time")]
+    shard: Option<ShardArg>,
     /// Trace one path of this pixel again and print it vertex by vertex, instead of rendering.
-    #[arg(long, value_name = "X,Y", requires = "sample", conflicts_with_all = ["output", "crop", "error", "time"])]
+    #[arg(long, value_name = "X,Y", requires = "sample", conflicts_with_all = ["output", "crop", "error", "time", "checkpoint", "resume", "shard"])]
     pixel: Option<PixelAt>,
     /// Which of the pixel's paths.
     #[arg(long, value_name = "K")]
     sample: Option<u32>,
+    /// How progress is shown: as a bar on a terminal, or as lines on standard output that a farm reads.
+    #[arg(long, value_enum, default_value_t = ProgressKind::Bar, conflicts_with_all = ["json", "quiet"])]
+    progress: ProgressKind,
     /// Print one JSON object on standard output, about the render or about what is wrong, and no progress.
     #[arg(long)]
     json: bool,
@@ -111,6 +132,9 @@ struct Job {
     warnings: Vec<Report>,
     rect: PixelRect,
     threads: usize,
+    subject: Subject,
+    /// A checkpoint to go on from.
+    resumed: Option<Kept>,
 }
 
 /// Does all that can fail before the work, and collects all that is wrong.
@@ -125,6 +149,7 @@ fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
         }
     };
     args.overrides.apply(&mut loaded.scene);
+    room::check_memory(&loaded.scene, &mut failure);
     let film = &loaded.scene.film;
     let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let rect = args.crop.map_or(whole, |crop| crop.0);
@@ -154,7 +179,7 @@ fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
             return Err(failure);
         }
     };
-    failure.into_outcome()?;
+    std::mem::take(&mut failure).into_outcome()?;
     let mut warnings = std::mem::take(&mut loaded.warnings);
     warnings.extend(
         prepared
@@ -177,37 +202,153 @@ fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
         ));
     }
     let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
-    Ok(Job { loaded, prepared, prepare_seconds: start.elapsed().as_secs_f64(), warnings, rect, threads })
+    let subject = Subject::new(&prepared, &loaded.sha256, rect);
+    let prepare_seconds = start.elapsed().as_secs_f64();
+    let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
+    check_shard(args, rect, shard, outputs, &mut failure);
+    room::check_disks(args.checkpoint.is_some(), &subject, outputs, &mut failure, &mut warnings);
+    let resumed = if args.resume { resume::find(args, &subject, shard, &mut failure) } else { None };
+    failure.into_outcome()?;
+    if args.resume && resumed.is_none() {
+        warnings.push(miette!(
+            severity = miette::Severity::Warning,
+            code = "nothing-to-resume",
+            "there is no checkpoint, so the render starts from the beginning"
+        ));
+    }
+    Ok(Job { loaded, prepared, prepare_seconds, warnings, rect, threads, subject, resumed })
+}
+
+/// A share must have tiles, and something must come of it.
+fn check_shard(args: &Args, rect: PixelRect, shard: Shard, outputs: &[Output], failure: &mut Failure) {
+    let tiles = tiles_of(rect, Shard::WHOLE).len();
+    if shard.of as usize > tiles {
+        failure.add(Failure::input(miette!(
+            code = "shard-empty",
+            "the picture has {tiles} tiles of 16 × 16 pixels and cannot be divided into {} shares",
+            shard.of
+        )));
+    }
+    if args.shard.is_some()
+        && !outputs.is_empty()
+        && !outputs.iter().any(|output| output.format == output::Format::Part)
+    {
+        failure.add(Failure::input(miette!(
+            code = "shard-without-part",
+            help = "add -o NAME.part; an EXR or a PNG beside it shows the share's tiles",
+            "a share of a picture is merged from its .part file, and none is written"
+        )));
+    }
 }
 
 fn render(args: &Args) -> Result<(), Stop> {
     let mut outputs = Vec::new();
     let mut job = set_up(args, &mut outputs).map_err(Stop::Refused)?;
     print::warnings(&job.warnings);
+    let interrupt = Interrupt::listen()
+        .map_err(|error| Stop::Refused(Failure::run(Report::from_err(error).wrap_err("cannot listen to signals"))))?;
 
     let limits = limits(args, &job);
     let bar = RenderBar::new(job.rect, limits.seconds, limits.relative_rmse, args.quiet || args.json);
-    let clock = Clock::start(args.clock, job.threads);
-    let done = job.prepared.render_within(job.rect, &limits, Some(job.threads), &|| clock.seconds(), &bar);
+    let openjd = args.progress == ProgressKind::Openjd;
+    let watch = Watcher::new(&bar, &interrupt, openjd);
+    let run = match job.resumed.take() {
+        Some(kept) => Run::taken_up(args, &job, kept, limits),
+        None => Run::new(args, &job, limits, &watch),
+    };
+    let done = run.and_then(|run| run.to_its_end(args, &job, &watch));
     bar.clear();
-    let done = done.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
+    let mut done = done.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
 
-    let done = Done { error: done.film.error(job.rect), finished: done };
-    let noticed = warnings::of(args, &done.finished.film.counters);
+    let noticed = done.canvas.with_film(|film| warnings::of(args, &film.counters));
     print::warnings(&noticed);
     job.warnings.extend(noticed);
-    let (written, failure) = write(args, &job, &done, &outputs);
+    done.error = done.canvas.with_film(|film| film.error(job.rect));
+    let delivery = Delivery {
+        header: &done.header,
+        canvas: &done.canvas,
+        samples: done.ended.samples,
+        error: done.error,
+        exposure_ev: args.exposure,
+    };
+    let begun = done.canvas.samples()[1] > 0;
+    let (written, mut failure) = if begun { delivery.write(&outputs) } else { Default::default() };
+    let kept = keep(args, &done, &failure, begun);
+    if let Some(signal) = interrupt.signal().filter(|_| !done.header.complete) {
+        failure.add(interrupted(signal, &done, &written, kept.as_ref()));
+    } else if let Some(kept) = kept {
+        failure.add(match kept {
+            Ok(path) => Failure::run(miette!(
+                code = "kept",
+                help = "with --resume, the same command writes the pictures without rendering again",
+                "what was rendered is kept in `{}`",
+                path.display()
+            )),
+            Err(failure) => failure,
+        });
+    }
     if args.json {
         print::json(&report::json(args, &job, &done, &written, &failure));
-    } else if !args.quiet {
+    } else if !args.quiet && begun {
         print::line(&report::summary(&job, &done, &written));
     }
     failure.into_outcome().map_err(Stop::Reported)
 }
 
+/// Keeps what was rendered where the outputs do not: after a signal, and after an output that could not be written. Takes the
+/// checkpoint away where they do.
+fn keep(args: &Args, done: &Done, failure: &Failure, begun: bool) -> Option<Result<PathBuf, Failure>> {
+    let beside = state::checkpoint_path(args.output.first()?);
+    if done.header.complete && failure.is_empty() {
+        // It may never have been written.
+        let _ = std::fs::remove_file(&beside);
+        return None;
+    }
+    if !begun {
+        return None;
+    }
+    let Err(error) = state::write(&beside, &done.header, &done.canvas) else { return Some(Ok(beside)) };
+    // The disk of the outputs may be full; another may not be.
+    let name = format!("etalon-{}.checkpoint", std::process::id());
+    let elsewhere = std::env::temp_dir().join(name);
+    Some(match state::write(&elsewhere, &done.header, &done.canvas) {
+        Ok(()) => Ok(elsewhere),
+        Err(_) => Err(Failure::run(Report::from_err(error).wrap_err("what was rendered is lost"))),
+    })
+}
+
+/// What is said of a render that a signal has ended.
+fn interrupted(
+    signal: u8,
+    done: &Done,
+    written: &[output::Written],
+    kept: Option<&Result<PathBuf, Failure>>,
+) -> Failure {
+    let [fewest, most] = done.canvas.samples();
+    let mut text = match most {
+        0 => "interrupted before the first tile was done".to_owned(),
+        _ if fewest == most => format!("interrupted at {fewest} samples a pixel"),
+        _ => format!("interrupted at {fewest} to {most} samples a pixel"),
+    };
+    if !written.is_empty() {
+        text += &format!("; the picture has what there is: {}", {
+            let names: Vec<_> = written.iter().map(|written| format!("`{}`", written.path)).collect();
+            names.join(", ")
+        });
+    }
+    let help = match kept {
+        Some(Ok(path)) => format!("the same command with --resume goes on from `{}`", path.display()),
+        Some(Err(_)) => "the sums could not be kept, so it cannot be resumed".to_owned(),
+        None => "nothing is kept".to_owned(),
+    };
+    Failure::signal(signal, miette!(code = "interrupted", help = help, "{text}"))
+}
+
 /// A render that is done, and how wrong it is.
 struct Done {
-    finished: Finished,
+    ended: Ended,
+    canvas: Canvas,
+    header: Header,
     error: Option<ImageError>,
 }
 
@@ -220,84 +361,6 @@ fn limits(args: &Args, job: &Job) -> Limits {
         None => job.loaded.scene.integrator.spp,
     };
     Limits { samples, relative_rmse: args.error, seconds: args.time }
-}
-
-/// Writes every output, also after one of them has failed.
-fn write(args: &Args, job: &Job, done: &Done, outputs: &[Output]) -> (Vec<Written>, Failure) {
-    let Finished { film, samples, seconds, .. } = &done.finished;
-    let (mut written, mut failure) = (Vec::new(), Failure::default());
-    let integrator = &job.loaded.scene.integrator;
-    let software = concat!("etalon ", env!("CARGO_PKG_VERSION"));
-    let info = RenderInfo {
-        software: software.to_owned(),
-        render_time_s: *seconds,
-        samples_per_pixel: *samples,
-        seed: integrator.seed,
-        scene_sha256: job.loaded.sha256.clone(),
-        plan_json: serde_json::to_string(job.prepared.plan()).expect("a plan is plain data"),
-    };
-    let approximation = job.prepared.plan().approximations.join("; without ");
-    let mut comment = format!(
-        "{} samples a pixel, seed {}, exposure {:+} EV, scene {}",
-        samples, integrator.seed, args.exposure, job.loaded.sha256
-    );
-    if !approximation.is_empty() {
-        comment += &format!(", approximation without {approximation}");
-    }
-    let picture = info.attributes().and_then(|mut attributes| {
-        if !approximation.is_empty() {
-            let text = Attribute::Text(format!("without {approximation}"));
-            attributes.insert("approximation".to_owned(), text);
-        }
-        Ok((picture(film, job.rect)?, attributes))
-    });
-    match picture {
-        Err(error) => failure.add(Failure::run(Report::from_err(error))),
-        Ok((picture, mut attributes)) => {
-            attributes
-                .extend(done.error.as_ref().map(|error| error_info(film, error).attributes()).unwrap_or_default());
-            for output in outputs {
-                match output::write(output, &picture, &attributes, args.exposure, software, &comment) {
-                    Ok(done) => written.push(done),
-                    Err(error) => failure.add(error),
-                }
-            }
-        }
-    }
-    (written, failure)
-}
-
-/// What the file says about the error of its picture.
-fn error_info(film: &Film, error: &ImageError) -> ErrorInfo {
-    let tile = error.noisiest.rect;
-    ErrorInfo {
-        replicates: film.replicates(),
-        relative_rmse: error.relative_rmse,
-        interval: error.interval,
-        tail_index: error.tail_index,
-        noisiest_tile: [tile.x0, tile.x1, tile.y0, tile.y1],
-    }
-}
-
-/// The rendered part of the film as linear Rec. 709, and the standard error of each channel where it is known.
-fn picture(film: &Film, rect: PixelRect) -> Result<Picture<f32>, etalon_picture::PictureError> {
-    let cut = |whole: Vec<[f32; 3]>| -> Vec<[f32; 3]> {
-        rect.pixels().map(|(x, y)| whole[y as usize * film.width() as usize + x as usize]).collect()
-    };
-    let window = Window {
-        origin_px: [rect.x0 as i32, rect.y0 as i32],
-        frame_px: [film.width() as usize, film.height() as usize],
-    };
-    let (width, height) = ((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize);
-    let mut picture = Picture::from_rgb(width, height, &cut(film.linear_rec709()))?.in_frame(window)?;
-    let errors = cut(film.linear_rec709_error());
-    // Where nothing at all is known there is nothing to say.
-    if errors.iter().any(|error| error[0].is_finite()) {
-        for (index, name) in ["R", "G", "B"].into_iter().enumerate() {
-            picture.insert(&format!("{ERROR_PREFIX}{name}"), errors.iter().map(|error| error[index]).collect())?;
-        }
-    }
-    Ok(picture)
 }
 
 /// One path again, vertex by vertex.

@@ -1,6 +1,6 @@
 //! What is said about a render that is done.
 
-use etalon_transport::{Film, Finished, Foretold, ImageError, Plan, Reached};
+use etalon_transport::{Counters, Foretold, ImageError, Plan, Reached};
 use serde::Serialize;
 
 use super::{Args, Done, Job};
@@ -78,13 +78,13 @@ struct NoisiestJson {
     share: f64,
 }
 
-fn error_json(film: &Film, error: &ImageError) -> ErrorJson {
+fn error_json(replicates: u32, error: &ImageError) -> ErrorJson {
     let tile = error.noisiest.rect;
     ErrorJson {
         relative_rmse: error.relative_rmse,
         interval_95: error.interval,
         mean_y: error.mean_y,
-        replicates: film.replicates(),
+        replicates,
         tail_index: error.tail_index,
         heavy_tailed: error.is_heavy_tailed(),
         pixel_tail_index: error.pixel_tail_index,
@@ -127,12 +127,12 @@ fn word(reached: Reached) -> &'static str {
 
 /// Seconds that went into a pilot.
 fn pilot_seconds(done: &Done) -> f64 {
-    done.finished.foretold.map_or(0.0, |foretold| foretold.pilot_seconds)
+    done.ended.foretold.map_or(0.0, |foretold| foretold.pilot_seconds)
 }
 
 /// What was foretold beside what came.
 fn describe_foretold(done: &Done, foretold: &Foretold) -> String {
-    let took = done.finished.seconds - foretold.pilot_seconds;
+    let took = done.ended.seconds - foretold.pilot_seconds;
     let mut text = format!(
         "the pilot ({}) foretold {} for {}, with {} samples",
         duration(foretold.pilot_seconds),
@@ -140,7 +140,7 @@ fn describe_foretold(done: &Done, foretold: &Foretold) -> String {
         percent(foretold.price.relative_rmse),
         two_digits(foretold.price.samples),
     );
-    text += &match done.finished.reached {
+    text += &match done.ended.reached {
         Reached::Error => format!("; it took {}, {:.2} times that", duration(took), took / foretold.price.seconds),
         Reached::Time => "; time was up before".to_owned(),
         Reached::Samples => "; so many samples were not wanted".to_owned(),
@@ -184,22 +184,23 @@ pub(super) fn json<'a>(
     written: &'a [Written],
     failure: &Failure,
 ) -> RenderJson<'a> {
-    let Finished { film, samples, seconds, .. } = &done.finished;
-    let counters = &film.counters;
+    let (samples, seconds) = (done.ended.samples, done.ended.seconds);
+    let counters: &Counters = &done.canvas.with_film(|film| film.counters.clone());
+    let subject = &job.subject;
     RenderJson {
         scene: args.scene.display().to_string(),
         scene_sha256: &job.loaded.sha256,
         output: written.first().map(|written| written.path.as_str()),
         outputs: written,
-        width: film.width(),
-        height: film.height(),
+        width: subject.size[0],
+        height: subject.size[1],
         crop: [job.rect.x0, job.rect.x1, job.rect.y0, job.rect.y1],
-        spp: *samples,
+        spp: samples,
         seed: job.loaded.scene.integrator.seed,
         threads: job.threads,
-        seconds: *seconds,
-        reached: word(done.finished.reached),
-        foretold: done.finished.foretold.as_ref().map(foretold_json),
+        seconds,
+        reached: word(done.ended.reached),
+        foretold: done.ended.foretold.as_ref().map(foretold_json),
         prepare_seconds: job.prepare_seconds,
         paths: counters.paths,
         paths_per_second: counters.paths as f64 / (seconds - pilot_seconds(done)),
@@ -212,7 +213,7 @@ pub(super) fn json<'a>(
         cut_paths: counters.cut_paths,
         nonfinite: counters.nonfinite,
         nonfinite_at: counters.nonfinite_at.iter().map(|at| [at.x, at.y, at.sample]).collect(),
-        error: done.error.as_ref().map(|error| error_json(film, error)),
+        error: done.error.as_ref().map(|error| error_json(subject.replicates, error)),
         warnings: job.warnings.iter().map(problem_json).collect(),
         errors: failure.to_json(),
         plan: job.prepared.plan(),
@@ -221,21 +222,22 @@ pub(super) fn json<'a>(
 
 /// The report for people.
 pub(super) fn summary(job: &Job, done: &Done, written: &[Written]) -> String {
-    let Finished { film, samples, seconds, .. } = &done.finished;
+    let (samples, seconds) = (done.ended.samples, done.ended.seconds);
+    let counters = done.canvas.with_film(|film| film.counters.clone());
     let mut text = format!(
         "{} × {} pixels, {} samples each, in {seconds:.1} s ({} paths/s on {} threads), {} not finite",
         job.rect.x1 - job.rect.x0,
         job.rect.y1 - job.rect.y0,
         samples,
-        si(film.counters.paths as f64 / (seconds - pilot_seconds(done))),
+        si(counters.paths as f64 / (seconds - pilot_seconds(done))),
         job.threads,
-        film.counters.nonfinite,
+        counters.nonfinite,
     );
     if let Some(error) = &done.error {
         text.push_str("\n  ");
         text.push_str(&describe_error(error));
     }
-    if let Some(foretold) = &done.finished.foretold {
+    if let Some(foretold) = &done.ended.foretold {
         text.push_str("\n  ");
         text.push_str(&describe_foretold(done, foretold));
     }

@@ -1,0 +1,80 @@
+//! The script for Slurm: it submits itself, once as an array of renders and once as the merge that waits for them.
+
+use std::path::Path;
+
+use super::{CHECKPOINT, Job};
+
+/// The script.
+pub(super) fn script(job: &Job) -> String {
+    let Job { name, shards, flags, .. } = job;
+    let (program, scene, picture) = (quoted(&job.program), quoted(&job.scene), quoted(&job.picture));
+    let comment_name: String =
+        name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
+    let cpus = job.threads.map_or_else(String::new, |threads| format!("#SBATCH --cpus-per-task={threads}\n"));
+    let threads = job.threads.map_or_else(
+        || "${SLURM_CPUS_PER_TASK:+--threads \"$SLURM_CPUS_PER_TASK\"}".to_owned(),
+        |threads| format!("--threads {threads}"),
+    );
+    format!(
+        r#"#!/bin/sh
+# Renders a scene in {shards} shares and merges them. Run it where jobs are submitted, with any options for sbatch:
+#   sh THIS [--partition=...] [--time=...]
+# A task that is stopped, or moved to another machine, goes on from its checkpoint. A share that failed is rendered again by
+#   sbatch --array=K THIS
+# and the picture merged by
+#   sbatch THIS merge
+#SBATCH --job-name={comment_name}
+#SBATCH --requeue
+#SBATCH --open-mode=append
+#SBATCH --signal=TERM@120
+{cpus}set -eu
+
+etalon=${{ETALON:-{program}}}
+scene={scene}
+picture={picture}
+shares={shards}
+
+part() {{ printf '%s.%s-of-%s.part' "$picture" "$1" "$shares"; }}
+
+if [ -n "${{SLURM_ARRAY_TASK_ID:-}}" ]; then
+    # The render takes the shell's place, so that signals reach it.
+    exec "$etalon" render "$scene" --shard "$SLURM_ARRAY_TASK_ID/$shares" -o "$(part "$SLURM_ARRAY_TASK_ID")" \
+        --checkpoint {CHECKPOINT} --resume {threads}{flags}
+elif [ "${{1:-}}" = merge ]; then
+    set --
+    share=1
+    while [ "$share" -le "$shares" ]; do
+        set -- "$@" "$(part "$share")"
+        share=$((share + 1))
+    done
+    exec "$etalon" merge "$@" -o "$picture"
+else
+    array=$(sbatch --parsable --array=1-"$shares" --output="$picture.%a-of-$shares.log" "$@" "$0")
+    merge=$(sbatch --parsable --dependency=afterok:"${{array%%;*}}" --kill-on-invalid-dep=yes --output="$picture.merge.log" \
+        "$@" "$0" merge)
+    echo "array ${{array%%;*}} renders, job ${{merge%%;*}} merges into $picture"
+fi
+"#
+    )
+}
+
+/// A path as one word of a shell.
+fn quoted(path: &Path) -> String {
+    format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_stay_one_word_whatever_they_hold() {
+        for path in ["/a b/c.json", "/it's/$(x)`y`\"z\"\\.json"] {
+            let echoed = std::process::Command::new("sh")
+                .args(["-c", &format!("printf %s {}", quoted(Path::new(path)))])
+                .output()
+                .expect("a shell");
+            assert_eq!(String::from_utf8(echoed.stdout).unwrap(), path);
+        }
+    }
+}

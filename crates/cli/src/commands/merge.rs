@@ -1,0 +1,170 @@
+//! `etalon merge`: the parts of a picture that several machines have rendered, into one.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use etalon_transport::{Canvas, Shard};
+use miette::{Report, miette};
+use serde::Serialize;
+
+use crate::deliver::Delivery;
+use crate::failure::{Failure, Outcome, ProblemJson};
+use crate::output::{self, Written};
+use crate::print;
+use crate::progress::percent;
+use crate::state::{self, Header, Kept};
+
+/// Puts the parts of a picture together that `etalon render --shard` has written: byte for byte the whole picture.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The parts, in any order.
+    #[arg(required = true, value_name = "PART")]
+    parts: Vec<PathBuf>,
+    /// Picture to write, as for `etalon render`: .exr, .png or .part. Give it twice to write both.
+    #[arg(short, long, alias = "outfile", value_name = "FILE", required = true)]
+    output: Vec<PathBuf>,
+    /// Exposure of PNG files, in stops: each doubles the light.
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::args::finite)]
+    exposure: f64,
+    /// Print one JSON object on standard output.
+    #[arg(long)]
+    json: bool,
+    /// Print nothing but warnings and errors.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Serialize)]
+struct MergeJson {
+    parts: usize,
+    outputs: Vec<Written>,
+    samples: u32,
+    /// Seconds that all parts took together.
+    seconds: f64,
+    relative_rmse: Option<f64>,
+    errors: Vec<ProblemJson>,
+}
+
+pub(crate) fn run(args: Args) -> Outcome {
+    let mut failure = Failure::default();
+    let outputs = output::plan(&args.output, &mut failure);
+    let parts = read(&args.parts, &mut failure);
+    if let Some(parts) = &parts {
+        check(parts, &mut failure);
+    }
+    let Some(parts) = parts.filter(|_| failure.is_empty()) else {
+        if args.json {
+            let (parts, errors) = (args.parts.len(), failure.to_json());
+            print::json(&MergeJson { parts, outputs: vec![], samples: 0, seconds: 0.0, relative_rmse: None, errors });
+        }
+        return failure.into_outcome();
+    };
+
+    let (header, canvas) = put_together(parts)?;
+    let error = canvas.with_film(|film| film.error(header.subject.crop));
+    let samples = header.samples;
+    let delivery = Delivery { header: &header, canvas: &canvas, samples, error, exposure_ev: args.exposure };
+    let (written, failure) = delivery.write(&outputs);
+    let relative_rmse = error.map(|error| error.relative_rmse);
+    if args.json {
+        let (parts, errors) = (args.parts.len(), failure.to_json());
+        print::json(&MergeJson { parts, outputs: written, samples, seconds: header.seconds, relative_rmse, errors });
+    } else if !args.quiet {
+        let mut text = format!("{} parts merged, {samples} samples a pixel", args.parts.len());
+        if let Some(error) = relative_rmse {
+            text += &format!(", relative error {}", percent(error));
+        }
+        written.iter().for_each(|written| text += &format!("\n  {}", written.path));
+        print::line(&text);
+    }
+    failure.into_outcome()
+}
+
+/// Reads all parts; what is wrong with each goes into `failure`.
+fn read(paths: &[PathBuf], failure: &mut Failure) -> Option<Vec<(PathBuf, Kept)>> {
+    let mut parts = Vec::new();
+    for path in paths {
+        match state::read(path) {
+            Ok(kept) => parts.push((path.clone(), kept)),
+            Err(error) => failure.add(Failure::input(Report::from_err(error))),
+        }
+    }
+    failure.is_empty().then_some(parts)
+}
+
+/// Whether these are all parts of one picture, each once.
+fn check(parts: &[(PathBuf, Kept)], failure: &mut Failure) {
+    let mut refuse = |code: &str, text: String| failure.add(Failure::input(miette!(code = code.to_owned(), "{text}")));
+    let (first_path, Kept { header: first, .. }) = &parts[0];
+    let mut seen: BTreeMap<u32, &PathBuf> = BTreeMap::new();
+    for (path, Kept { header, .. }) in parts {
+        let name = path.display();
+        let foreign = if let Some(difference) = header.subject.difference(&first.subject) {
+            Some(difference)
+        } else if header.shard.of != first.shard.of {
+            Some(format!("it is one of {} shares, not of {}", header.shard.of, first.shard.of))
+        } else if header.samples != first.samples {
+            Some(format!("it has {} samples a pixel, not {}", header.samples, first.samples))
+        } else if header.shares != first.shares {
+            Some("its samples are spread otherwise over the picture".to_owned())
+        } else {
+            None
+        };
+        if let Some(difference) = foreign {
+            let text = format!("`{name}` is no part of the same picture as `{}`: {difference}", first_path.display());
+            refuse("foreign-part", text);
+            continue;
+        }
+        if !header.complete {
+            refuse("unfinished-part", format!("`{name}` is a checkpoint: its share of the picture is not finished"));
+        }
+        if let Some(other) = seen.insert(header.shard.index, path) {
+            let share = format!("{}/{}", header.shard.index + 1, header.shard.of);
+            refuse("duplicate-part", format!("`{}` and `{name}` are both share {share}", other.display()));
+        }
+    }
+    let missing: Vec<String> = (0..first.shard.of)
+        .filter(|index| !seen.contains_key(index))
+        .map(|index| format!("{}/{}", index + 1, first.shard.of))
+        .collect();
+    if !missing.is_empty() && failure.is_empty() {
+        let shares = if missing.len() == 1 { "share" } else { "shares" };
+        let text = format!(
+            "{shares} {} of the picture {} missing",
+            missing.join(", "),
+            if missing.len() == 1 { "is" } else { "are" }
+        );
+        failure.add(Failure::input(miette!(code = "missing-part", help = "render with --shard K/N", "{text}")));
+    }
+}
+
+/// All tiles on one canvas.
+fn put_together(parts: Vec<(PathBuf, Kept)>) -> Result<(Header, Canvas), Failure> {
+    let damaged = |path: &PathBuf, why: &str| {
+        Failure::input(miette!(code = "damaged-part", "`{}` is damaged: {why}", path.display()))
+    };
+    let (first_path, first) = &parts[0];
+    let seconds = parts.iter().map(|(_, part)| part.header.seconds).sum();
+    let header = Header { shard: Shard::WHOLE, seconds, ..first.header.clone() };
+    let shares = match &header.shares {
+        Some(weights) => Some(
+            state::shares(header.subject.crop, weights)
+                .ok_or_else(|| damaged(first_path, "its samples are spread over another picture"))?,
+        ),
+        None => None,
+    };
+    let canvas = Canvas::of_share(header.subject.film(), header.subject.crop, Shard::WHOLE, shares.as_ref());
+    let mut tiles = 0;
+    for (path, part) in &parts {
+        for (tile, sums) in &part.tiles {
+            if !canvas.take_up(tile, sums) {
+                return Err(damaged(path, "it has a tile that is not one of the picture's, or that another part has"));
+            }
+            tiles += 1;
+        }
+    }
+    if tiles != canvas.tiles() {
+        return Err(damaged(first_path, "tiles are missing from it or from another part"));
+    }
+    Ok((header, canvas))
+}

@@ -1,0 +1,73 @@
+//! Whether the picture fits into memory, and its files on their disks: asked before the work.
+
+use etalon_scene::Scene;
+use etalon_transport::Film;
+use miette::{Report, Severity, miette};
+
+use crate::failure::Failure;
+use crate::machine_limits::{bytes, memory_available, room_for};
+use crate::output::{Format, Output};
+use crate::state::Subject;
+
+/// Bytes a pixel that writing a picture takes beside the film: seven channels, and their encoded form.
+const OF_PICTURE: u64 = 2 * 7 * 4;
+
+/// Refuses a picture that cannot be held.
+pub(super) fn check_memory(scene: &Scene, failure: &mut Failure) {
+    let (width, height) = (scene.film.width, scene.film.height);
+    let film = Film::bytes(width, height, scene.integrator.replicates);
+    let needed = film + OF_PICTURE * u64::from(width) * u64::from(height);
+    if let Some(available) = memory_available().filter(|&available| needed > available) {
+        failure.add(Failure::input(miette!(
+            code = "too-large",
+            help = "make it smaller, or render it by pieces with --crop",
+            "a picture of {width} × {height} pixels with {} replicates takes {} of memory, and {} are left",
+            scene.integrator.replicates,
+            bytes(needed),
+            bytes(available)
+        )));
+    }
+}
+
+/// Refuses files whose size is known and for which there is no room; warns of those that are compressed and may not fit.
+pub(super) fn check_disks(
+    checkpoint: bool,
+    subject: &Subject,
+    outputs: &[Output],
+    failure: &mut Failure,
+    warnings: &mut Vec<Report>,
+) {
+    let pixels = subject.crop.area();
+    let sums = pixels * u64::from(subject.replicates) * 28;
+    for (number, output) in outputs.iter().enumerate() {
+        let Some(room) = room_for(&output.path) else { continue };
+        // While a checkpoint is written, the last one is still there.
+        let certain =
+            if output.format == Format::Part { sums } else { 0 } + if checkpoint && number == 0 { 2 * sums } else { 0 };
+        let perhaps = match output.format {
+            Format::Part => 0,
+            Format::Exr => pixels * 7 * 4,
+            Format::Png => pixels * 3,
+        };
+        let folder = output.path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.map_or_else(|| ".".to_owned(), |folder| folder.display().to_string());
+        if certain > room {
+            failure.add(Failure::run(miette!(
+                code = "disk-full",
+                "`{}` and its checkpoints take {}, and `{folder}` has room for {}",
+                output.path.display(),
+                bytes(certain),
+                bytes(room)
+            )));
+        } else if certain + perhaps > room {
+            warnings.push(miette!(
+                severity = Severity::Warning,
+                code = "disk-nearly-full",
+                "`{}` may take up to {} before it is compressed, and `{folder}` has room for {}",
+                output.path.display(),
+                bytes(certain + perhaps),
+                bytes(room)
+            ));
+        }
+    }
+}

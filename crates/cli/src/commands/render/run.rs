@@ -1,0 +1,104 @@
+//! A render from its beginning, or from where it was kept, to its end.
+
+use std::sync::Arc;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+use etalon_transport::shares::Shares;
+use etalon_transport::stop::Settled;
+use etalon_transport::{Canvas, Limits, Reached, Shard, ThreadError};
+use miette::{Report, miette};
+
+use super::watcher::Watcher;
+use super::{Args, Done, Job};
+use crate::machine::Clock;
+use crate::print;
+use crate::state::{self, Header, Kept, Limited};
+
+/// A render that is ready to go on.
+pub(super) struct Run {
+    canvas: Canvas,
+    settled: Settled,
+    limits: Limits,
+    clock: Clock,
+    /// Seconds spent before the clock was started.
+    before_s: f64,
+    shard: Shard,
+}
+
+impl Run {
+    /// Settles how many samples are to be taken, and begins.
+    pub(super) fn new(args: &Args, job: &Job, limits: Limits, watch: &Watcher<'_>) -> Result<Self, ThreadError> {
+        let clock = Clock::start(args.clock, job.threads);
+        let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
+        let settled = job.prepared.settle(job.rect, &limits, Some(job.threads), &|| clock.seconds(), watch)?;
+        let canvas = Canvas::new(&job.prepared, job.rect, shard, settled.shares.as_deref());
+        Ok(Self { canvas, settled, limits, clock, before_s: 0.0, shard })
+    }
+
+    /// Goes on from what was kept.
+    pub(super) fn taken_up(args: &Args, job: &Job, kept: Kept, limits: Limits) -> Result<Self, ThreadError> {
+        let clock = Clock::start(args.clock, job.threads);
+        let Header { shard, samples, shares, reaches, seconds, .. } = kept.header;
+        let shares = shares.map(|weights| Arc::new(Shares::new(job.rect, weights)));
+        let canvas = Canvas::new(&job.prepared, job.rect, shard, shares.as_deref());
+        for (tile, sums) in &kept.tiles {
+            assert!(canvas.take_up(tile, sums), "the checkpoint was found to fit");
+        }
+        let reached = if reaches == "error" { Reached::Error } else { Reached::Samples };
+        let settled = Settled { samples, shares, reached, foretold: None };
+        Ok(Self { canvas, settled, limits, clock, before_s: seconds, shard })
+    }
+
+    fn seconds(&self) -> f64 {
+        self.before_s + self.clock.seconds()
+    }
+
+    fn header(&self, job: &Job, complete: bool) -> Header {
+        let Limits { samples, relative_rmse, seconds } = self.limits;
+        Header {
+            subject: job.subject.clone(),
+            shard: self.shard,
+            limits: Limited { samples, error: relative_rmse, time_s: seconds },
+            samples: self.settled.samples,
+            shares: self.settled.shares.as_ref().map(|shares| shares.weights().to_vec()),
+            reaches: if self.settled.reached == Reached::Error { "error" } else { "samples" }.to_owned(),
+            seconds: self.seconds(),
+            complete,
+        }
+    }
+
+    /// Renders to the end, keeping what there is from time to time if that is wanted.
+    pub(super) fn to_its_end(self, args: &Args, job: &Job, watch: &Watcher<'_>) -> Result<Done, ThreadError> {
+        watch.is_part(self.canvas.area(), self.canvas.with_film(|film| film.counters.paths));
+        let path = args.output.first().map(|output| state::checkpoint_path(output));
+        let ended = std::thread::scope(|scope| {
+            let (ended, end) = mpsc::channel::<()>();
+            if let (Some(every), Some(path)) = (args.checkpoint, &path) {
+                let run = &self;
+                scope.spawn(move || {
+                    let mut said = false;
+                    // The channel closes when the render has ended.
+                    while end.recv_timeout(Duration::from_secs_f64(every)) == Err(RecvTimeoutError::Timeout) {
+                        if let Err(error) = state::write(path, &run.header(job, false), &run.canvas) {
+                            if !said {
+                                print::warnings(&[Report::from_err(error).wrap_err(miette!(
+                                    severity = miette::Severity::Warning,
+                                    "the checkpoint could not be written; the render goes on and tries again"
+                                ))]);
+                            }
+                            said = true;
+                        }
+                    }
+                });
+            }
+            let clock = || self.seconds();
+            let done =
+                job.prepared.render_canvas(&self.canvas, &self.settled, &self.limits, Some(job.threads), &clock, watch);
+            drop(ended);
+            done
+        })?;
+        let header = self.header(job, ended.reached != Reached::Interrupted);
+        Ok(Done { ended, canvas: self.canvas, header, error: None })
+    }
+}

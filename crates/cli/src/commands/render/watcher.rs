@@ -1,0 +1,76 @@
+//! Who watches a render: the bar, and the signals that may end it.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use etalon_transport::{Control, Counters, Film, Foretold, PixelRect, TileSums, Watch};
+
+use crate::interrupt::Interrupt;
+use crate::progress::RenderBar;
+
+/// How progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum ProgressKind {
+    /// A bar, on a terminal only.
+    Bar,
+    /// Lines `openjd_progress: 12.5` on standard output, as Open Job Description reads them.
+    Openjd,
+}
+
+/// All watchers of a render.
+pub(super) struct Watcher<'a> {
+    bar: &'a RenderBar,
+    interrupt: &'a Interrupt,
+    said: AtomicBool,
+    /// Per mille that were last told to a farm.
+    told: Option<AtomicU64>,
+}
+
+impl<'a> Watcher<'a> {
+    pub(super) fn new(bar: &'a RenderBar, interrupt: &'a Interrupt, openjd: bool) -> Self {
+        Self { bar, interrupt, said: AtomicBool::new(false), told: openjd.then(AtomicU64::default) }
+    }
+
+    /// See [`RenderBar::is_part`].
+    pub(super) fn is_part(&self, pixels: u64, before: u64) {
+        self.bar.is_part(pixels, before);
+    }
+
+    fn tell(&self) {
+        if let (Some(told), Some(share)) = (&self.told, self.bar.share()) {
+            let permille = (1000.0 * share) as u64;
+            if told.fetch_max(permille, Ordering::Relaxed) < permille {
+                crate::print::line(&format!("openjd_progress: {:.1}", 0.1 * permille as f64));
+            }
+        }
+    }
+}
+
+impl Watch for Watcher<'_> {
+    fn work(&self, counters: &Counters) {
+        self.bar.work(counters);
+        self.tell();
+    }
+
+    fn planned(&self, samples: u32, foretold: Option<&Foretold>) {
+        self.bar.planned(samples, foretold);
+    }
+
+    fn tile(&self, rect: PixelRect, sums: &TileSums) {
+        self.bar.tile(rect, sums);
+    }
+
+    fn pass(&self, film: &Film, samples: u32) {
+        self.bar.pass(film, samples);
+    }
+
+    fn control(&self) -> Control {
+        if self.interrupt.signal().is_none() {
+            return Control::Continue;
+        }
+        if !self.said.swap(true, Ordering::Relaxed) {
+            self.bar
+                .say("stopping: tiles under way are finished (the same signal again ends at once, and keeps nothing)");
+        }
+        Control::Stop
+    }
+}

@@ -1,0 +1,34 @@
+//! Pictures under way in files: checkpoints, and the parts of a picture that several machines share.
+//!
+//! ```text
+//! magic  8 bytes   "ETALON\0\1", the last byte is the version
+//! header u32 n, n bytes of JSON: see `Header`
+//! tiles  each: u32 n (> 0), n bytes of JSON (its pixels, its samples, what was counted), u32 m, m bytes of sums
+//! end    u32 0, SHA-256 of all bytes before
+//! ```
+//!
+//! Numbers are little-endian. The sums are those of `etalon_transport::TileSums`, with every bit.
+
+mod file;
+mod subject;
+
+pub(crate) use file::{Header, Kept, Limited, StateError, read, write};
+pub(crate) use subject::Subject;
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use etalon_transport::{PixelRect, Shares};
+
+/// The shares that a file states, if they are shares of this rectangle.
+pub(crate) fn shares(rect: PixelRect, weights: &[u32]) -> Option<Shares> {
+    let fit = weights.len() == Shares::regions(rect).len() && weights.iter().all(|&weight| weight > 0);
+    fit.then(|| Shares::new(rect, weights.to_vec()))
+}
+
+/// The checkpoint of a render whose first output is this file: beside it, with `.checkpoint` after its name.
+pub(crate) fn checkpoint_path(output: &Path) -> PathBuf {
+    let mut name: OsString = output.as_os_str().to_owned();
+    name.push(".checkpoint");
+    PathBuf::from(name)
+}

@@ -1,0 +1,116 @@
+//! What a picture is of: all that decides its pixels, and what its file says about it.
+
+use etalon_transport::{Film, PixelRect, Prepared};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// All that decides a pixel's samples, so that two pictures of one subject are two parts of the same picture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Subject {
+    /// Program and version: another version may trace other paths.
+    pub software: String,
+    /// SHA-256 of the scene and of all files that it refers to.
+    pub scene_sha256: String,
+    /// Width and height of the frame, pixels.
+    pub size: [u32; 2],
+    /// The pixels that are rendered.
+    pub crop: PixelRect,
+    /// Seed of every random number.
+    pub seed: u64,
+    /// Independent replicates of each pixel.
+    pub replicates: u32,
+    /// The plan: effects, kernel, sampler, depth.
+    pub plan: Value,
+}
+
+/// Program and version.
+const SOFTWARE: &str = concat!("etalon ", env!("CARGO_PKG_VERSION"));
+
+impl Subject {
+    /// Of a scene that is ready to be rendered.
+    pub(crate) fn new(prepared: &Prepared, scene_sha256: &str, crop: PixelRect) -> Self {
+        let scene = prepared.scene();
+        Self {
+            software: SOFTWARE.to_owned(),
+            scene_sha256: scene_sha256.to_owned(),
+            size: [scene.film.width, scene.film.height],
+            crop,
+            seed: scene.integrator.seed,
+            replicates: scene.integrator.replicates,
+            plan: serde_json::to_value(prepared.plan()).expect("a plan is plain data"),
+        }
+    }
+
+    /// A black film of this picture.
+    pub(crate) fn film(&self) -> Film {
+        Film::new(self.size[0], self.size[1], self.replicates)
+    }
+
+    /// What the picture lacks that the scene calls for.
+    pub(crate) fn approximations(&self) -> Vec<String> {
+        let list = self.plan["approximations"].as_array();
+        list.into_iter().flatten().filter_map(|lost| lost.as_str().map(str::to_owned)).collect()
+    }
+
+    /// The first thing in which another subject differs, as "its seed is 3, not 4"; `None` if in nothing.
+    pub(crate) fn difference(&self, other: &Self) -> Option<String> {
+        let parts = |subject: &Self| {
+            let Value::Object(mut map) = serde_json::to_value(subject).expect("plain data") else {
+                unreachable!("a struct is an object")
+            };
+            let plan = map.remove("plan").unwrap_or_default();
+            let plan = plan.as_object().cloned().unwrap_or_default();
+            map.into_iter()
+                .chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value)))
+                .collect::<std::collections::BTreeMap<_, _>>()
+        };
+        let (own, others) = (parts(self), parts(other));
+        let name = |key: &str| match key {
+            "software" => "the program that rendered it".to_owned(),
+            "scene_sha256" => "the SHA-256 of its scene".to_owned(),
+            "size" => "its size".to_owned(),
+            "crop" => "its crop".to_owned(),
+            "seed" => "its seed".to_owned(),
+            "replicates" => "its number of replicates".to_owned(),
+            other => format!("its {}", other.trim_start_matches("plan.")),
+        };
+        own.iter()
+            .map(|(key, value)| (key, value, others.get(key).unwrap_or(&Value::Null)))
+            .find(|(_, a, b)| a != b)
+            .map(|(key, own, other)| match key.as_str() {
+                "plan.effects" => "its effects are others (see `etalon explain`)".to_owned(),
+                _ => format!("{} is {own}, not {other}", name(key)),
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_difference_is_named() {
+        let subject = Subject {
+            software: SOFTWARE.to_owned(),
+            scene_sha256: "ab".to_owned(),
+            size: [4, 3],
+            crop: PixelRect { x0: 0, y0: 0, x1: 4, y1: 3 },
+            seed: 3,
+            replicates: 4,
+            plan: serde_json::json!({"sampler": "sobol", "approximations": ["lens: everything is in focus"]}),
+        };
+        assert_eq!(subject.difference(&subject.clone()), None);
+        assert_eq!(subject.approximations(), ["lens: everything is in focus"]);
+        let with = |change: &dyn Fn(&mut Subject)| {
+            let mut other = subject.clone();
+            change(&mut other);
+            subject.difference(&other).unwrap()
+        };
+        assert_eq!(with(&|s| s.seed = 4), "its seed is 3, not 4");
+        assert_eq!(with(&|s| s.scene_sha256 = "cd".to_owned()), "the SHA-256 of its scene is \"ab\", not \"cd\"");
+        assert_eq!(
+            with(&|s| s.plan["sampler"] = "independent".into()),
+            "its sampler is \"sobol\", not \"independent\""
+        );
+    }
+}

@@ -1,0 +1,208 @@
+//! Renders that are killed, interrupted, divided among machines, or find no room: the picture is the same in the end, or what there
+//! is of it is kept.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command};
+use std::time::{Duration, Instant};
+
+use crate::support::{command, entries, etalon_line, pixel_bits, scene, words};
+
+/// Two to four seconds on one core.
+const SHORT: &str = "--size 96x72 --spp 200 --seed 5";
+/// Minutes.
+const LONG: &str = "--spp 1000000 --size 256x256 --threads 2";
+
+/// A picture's channels and what its file says, without how long it took.
+#[track_caller]
+fn picture(path: &Path) -> (Vec<(String, Vec<u32>)>, etalon_picture::Attributes) {
+    let (bits, file) = pixel_bits(path);
+    let mut attributes = file.attributes;
+    attributes.remove("renderTimeSeconds").expect("a render says how long it took");
+    (bits, attributes)
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+}
+
+/// Waits until a file is there.
+#[track_caller]
+fn wait_for(path: &Path, child: &mut Child) {
+    let start = Instant::now();
+    while !path.exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended without {}", path.display());
+        assert!(start.elapsed() < Duration::from_secs(60), "no {} in a minute", path.display());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn a_render_killed_at_ten_moments_and_resumed_has_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (unbroken, broken) = (folder.path().join("unbroken.exr"), folder.path().join("broken.exr"));
+    let checkpoint = folder.path().join("broken.exr.checkpoint");
+    let cornell = scene("cornell.json");
+    etalon_line(&format!("render {{}} -o {{}} {SHORT} --quiet"), [&cornell, &unbroken]).expect(0);
+
+    let line = format!("render {{}} -o {{}} {SHORT} --checkpoint 0.02s --resume --quiet");
+    let (mut kills, mut number) = (0, 0x2545_f491_u32);
+    while kills < 10 {
+        let mut child = command(words(&line, [&cornell, &broken])).spawn().unwrap();
+        // Moments from a fixed sequence (xorshift32), in the midst of rendering, writing and starting.
+        number ^= number << 13;
+        number ^= number >> 17;
+        number ^= number << 5;
+        std::thread::sleep(Duration::from_millis(u64::from(30 + number % 200)));
+        if child.try_wait().unwrap().is_some() {
+            break;
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        kills += 1;
+        assert!(!broken.exists(), "a picture that is not done");
+    }
+    assert!(kills == 10, "the render ended after {kills} kills: too short for this machine");
+    assert!(checkpoint.exists(), "ten runs without a checkpoint");
+    let ran = etalon_line(&line, [&cornell, &broken]).expect(0);
+    assert!(!ran.stderr.contains("no checkpoint"), "{}", ran.stderr);
+    assert_eq!(picture(&broken), picture(&unbroken));
+    assert!(!checkpoint.exists(), "a checkpoint of what is done");
+}
+
+#[test]
+fn a_signal_ends_a_render_with_what_there_is_and_it_can_be_resumed() {
+    for (name, status) in [("INT", 130), ("TERM", 143)] {
+        let folder = tempfile::tempdir().unwrap();
+        let (exr, checkpoint) = (folder.path().join("x.exr"), folder.path().join("x.exr.checkpoint"));
+        let line = format!("render {{}} -o {{}} {LONG} --json --checkpoint 0.05s");
+        let mut child = command(words(&line, [&scene("cornell.json"), &exr])).spawn().unwrap();
+        wait_for(&checkpoint, &mut child);
+        std::thread::sleep(Duration::from_millis(300));
+        signal(&child, name);
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(status), "{said}");
+        assert!(said.contains("interrupted at") && said.contains("--resume") && said.contains("x.exr"), "{said}");
+        assert_eq!(entries(folder.path()), ["x.exr", "x.exr.checkpoint"]);
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["reached"], "interrupted");
+        assert_eq!(report["errors"][0]["code"], "interrupted");
+        let (_, file) = pixel_bits(&exr);
+        assert!(matches!(&file.attributes["unfinished"], etalon_picture::Attribute::Text(t) if t.contains("1000000")));
+
+        // Other pictures are refused, and why.
+        for (change, why) in [
+            ("--seed 6", "seed"),
+            ("--max-depth 3", "max_depth"),
+            ("--size 255x256", "size"),
+            ("--spp 9", "--spp"),
+            ("--error 1%", "--error"),
+            ("--shard 1/2 -o y.part", "share"),
+        ] {
+            let line = format!("render {{}} -o {{}} {change} --threads 2 --resume --quiet");
+            let line = if change.contains("spp") { line } else { line + " --spp 1000000" };
+            let line = if change.contains("size") { line } else { line + " --size 256x256" };
+            let ran = etalon_line(&line, [&scene("cornell.json"), &exr]).expect(2);
+            assert!(ran.stderr.contains("cannot be resumed") && ran.stderr.contains(why), "{change}: {}", ran.stderr);
+        }
+        // A damaged checkpoint is no checkpoint.
+        let mut bytes = fs::read(&checkpoint).unwrap();
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        fs::write(&checkpoint, &bytes).unwrap();
+        etalon_line(&format!("{line} --resume"), [&scene("cornell.json"), &exr]).expect(1).says(["damaged"]);
+        fs::write(&checkpoint, &bytes[..middle]).unwrap();
+        etalon_line(&format!("{line} --resume"), [&scene("cornell.json"), &exr]).expect(1).says(["ends early"]);
+    }
+}
+
+#[test]
+fn parts_merge_to_the_bytes_of_the_whole_and_wrong_ones_are_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let (dispersive, size) = (scene("cornell-glass.json"), "--size 80x60 --spp 8 --quiet");
+    let whole = folder.path().join("whole.exr");
+    let whole_part = folder.path().join("whole.part");
+    etalon_line(&format!("render {{}} -o {{}} -o {{}} {size}"), [&dispersive, &whole, &whole_part]).expect(0);
+    let expected = picture(&whole);
+    let part = |k: u32, n: u32| folder.path().join(format!("{k}-of-{n}.part"));
+    for n in [1, 3, 16] {
+        for k in 1..=n {
+            let line = format!("render {{}} -o {{}} {size} --threads {} --shard {k}/{n}", 1 + k % 3);
+            etalon_line(&line, [&dispersive, &part(k, n)]).expect(0);
+        }
+        let mut arguments = vec!["merge".to_owned(), "--quiet".to_owned(), "-o".to_owned()];
+        let merged = folder.path().join(format!("merged-{n}.exr"));
+        arguments.push(merged.display().to_string());
+        // In any order.
+        arguments.extend((1..=n).rev().map(|k| part(k, n).display().to_string()));
+        crate::support::etalon(&arguments).expect(0);
+        assert_eq!(picture(&merged), expected, "{n} parts");
+    }
+    let merged = folder.path().join("again.exr");
+    etalon_line("merge {} -o {} --quiet", [&whole_part, &merged]).expect(0);
+    assert_eq!(picture(&merged), expected);
+
+    let foreign = folder.path().join("foreign.part");
+    etalon_line(&format!("render {{}} -o {{}} {size} --shard 2/3 --seed 9"), [&dispersive, &foreign]).expect(0);
+    let none = folder.path().join("none.exr");
+    let refused = |parts: [&Path; 3], said: &[&str]| {
+        let ran = etalon_line("merge {} {} {} -o {}", [parts[0], parts[1], parts[2], &none]).expect(2);
+        assert!(said.iter().all(|part| ran.stderr.contains(part)), "{said:?}: {}", ran.stderr);
+        assert!(!none.exists());
+    };
+    let [a, b, c] = [1, 2, 3].map(|k| part(k, 3));
+    refused([&a, &b, &b], &["2-of-3.part", "both share 2/3"]);
+    refused([&a, &foreign, &c], &["foreign.part", "its seed is 9"]);
+    refused([&a, &b, &part(5, 16)], &["5-of-16.part", "one of 16 shares"]);
+    refused([&a, &b, &whole], &["whole.exr", "neither a checkpoint nor a part"]);
+    etalon_line("merge {} {} -o {}", [&a, &c, &none]).expect(2).says(["share 2/3", "missing"]);
+}
+
+#[test]
+fn a_share_is_useful_by_itself_and_says_that_it_is_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let (part, exr) = (folder.path().join("x.part"), folder.path().join("x.exr"));
+    let cornell = scene("cornell.json");
+    let line = "render {} -o {} -o {} --size 64x48 --spp 4 --quiet --shard 2/3";
+    etalon_line(line, [&cornell, &part, &exr]).expect(0);
+    let (bits, file) = pixel_bits(&exr);
+    let samples = &bits.iter().find(|(name, _)| name == "samples").expect("pixels differ in it").1;
+    // Twelve tiles of 16 × 16 pixels, of which a third.
+    assert_eq!(samples.iter().filter(|&&count| f32::from_bits(count) == 4.0).count(), 4 * 256);
+    assert!(matches!(&file.attributes["unfinished"], etalon_picture::Attribute::Text(t) if t.contains("2 of 3")));
+
+    etalon_line("render {} -o {} --size 64x48 --spp 4 --shard 2/3", [&cornell, &exr]).expect(2).says([".part"]);
+    etalon_line("render {} -o {} --size 64x48 --spp 4 --shard 1/13", [&cornell, &part]).expect(2).says(["12 tiles"]);
+    etalon_line("render {} -o {} --shard 1/3 --time 1s", [&cornell, &part]).expect(2).says(["--shard", "--time"]);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_does_not_lose_what_was_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    let (full, cornell) = (folder.path().join("full.exr"), scene("cornell.json"));
+    // A device on which every write finds no room; that it will is not known before.
+    std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+    let line = "render {} -o {} --size 32x24 --spp 4 --quiet";
+    let ran = etalon_line(line, [&cornell, &full]).expect(1);
+    assert!(ran.stderr.contains("No space left") && ran.stderr.contains("full.exr.checkpoint"), "{}", ran.stderr);
+    // With room, the picture is written without rendering again.
+    fs::remove_file(&full).unwrap();
+    let report = etalon_line(&line.replace("--quiet", "--json --resume"), [&cornell, &full]).expect(0).json();
+    assert_eq!(report["spp"], 4);
+    assert_eq!(entries(folder.path()), ["full.exr"]);
+    let other = folder.path().join("other.exr");
+    etalon_line(line, [&cornell, &other]).expect(0);
+    assert_eq!(picture(&full), picture(&other));
+}
+
+#[test]
+fn a_picture_that_memory_cannot_hold_is_refused_before_it_is_rendered() {
+    let start = Instant::now();
+    let line = "render {} -o {} --size 65536x65536 --replicates 64 --spp 1";
+    let ran = etalon_line(line, [&scene("cornell.json"), Path::new("x.exr")]).expect(2);
+    assert!(ran.stderr.contains("of memory") && ran.stderr.contains("65536"), "{}", ran.stderr);
+    assert!(start.elapsed() < Duration::from_secs(20));
+}
