@@ -3,6 +3,7 @@
 use etalon_transport::{Film, PixelRect, Prepared};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// All that decides a pixel's samples, so that two pictures of one subject are two parts of the same picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,16 +56,15 @@ impl Subject {
     /// The first thing in which another subject differs, as "its seed is 3, not 4"; `None` if in nothing.
     pub(crate) fn difference(&self, other: &Self) -> Option<String> {
         let parts = |subject: &Self| {
-            let Value::Object(mut map) = serde_json::to_value(subject).expect("plain data") else {
-                unreachable!("a struct is an object")
-            };
-            let plan = map.remove("plan").unwrap_or_default();
-            let plan = plan.as_object().cloned().unwrap_or_default();
-            map.into_iter()
-                .chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value)))
-                .collect::<std::collections::BTreeMap<_, _>>()
+            let mut value = serde_json::to_value(subject).expect("plain data");
+            let plan = value["plan"].take().as_object().cloned().unwrap_or_default();
+            // A picture of another size has another crop too, and another seed is no surprise where the scene is another.
+            let first = ["software", "scene_sha256", "size", "crop", "seed", "replicates"];
+            let first: Vec<_> = first.iter().map(|&key| (key.to_owned(), value[key].take())).collect();
+            first.into_iter().chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value))).collect()
         };
-        let (own, others) = (parts(self), parts(other));
+        let (own, others): (Vec<(String, Value)>, BTreeMap<String, Value>) =
+            (parts(self), parts(other).into_iter().collect());
         let name = |key: &str| match key {
             "software" => "the program that rendered it".to_owned(),
             "scene_sha256" => "the SHA-256 of its scene".to_owned(),
