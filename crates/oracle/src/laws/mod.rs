@@ -11,6 +11,7 @@ mod intersection;
 mod light;
 mod microfacet;
 mod numerics;
+mod polarisation;
 mod refraction;
 mod sampling;
 mod scattering;
@@ -29,6 +30,9 @@ pub use light::{
 };
 pub use microfacet::{Masking, SingleScattering, ggx_albedo};
 pub use numerics::{film_mean_is_exact, frame_is_orthonormal, mis_weights_add_up, wavelengths_follow_density};
+pub use polarisation::{
+    Polarises, Turn, TurnedBy, mueller_is_physical, mueller_is_reciprocal, stokes_along, stokes_along_paths_is_exact,
+};
 pub use refraction::{Crossing, mirror_reflection, snell, snell_sweep, total_internal_reflection};
 pub use sampling::{energy_is_not_created, furnace_agrees, pdf_integrates_to_one, samples_follow_pdf};
 pub use scattering::{etendue_is_conserved, f_and_pdf_are_proper, is_reciprocal, sample_is_consistent};

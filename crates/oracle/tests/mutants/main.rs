@@ -6,6 +6,7 @@
 mod bsdf;
 mod light;
 mod pictures;
+mod polarisation;
 mod renderer;
 mod shapes;
 mod surface;
