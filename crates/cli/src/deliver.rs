@@ -40,7 +40,7 @@ impl Delivery<'_> {
         if pictures.is_empty() {
             return (written, failure);
         }
-        match self.canvas.with_film(|film| Ok::<_, PictureError>((self.picture(film)?, self.attributes(film)?))) {
+        match self.canvas.with_film(|film| self.contents(film)) {
             Err(error) => failure.add(Failure::run(Report::from_err(error))),
             Ok((picture, attributes)) => {
                 let (software, comment) = (&self.header.subject.software, self.comment());
@@ -56,6 +56,12 @@ impl Delivery<'_> {
         let place = |written: &Written| outputs.iter().position(|output| written.is(output));
         written.sort_by_key(place);
         (written, failure)
+    }
+
+    fn contents(&self, film: &Film) -> Result<(Picture<f32>, Attributes), PictureError> {
+        let (mut picture, mut attributes) = (self.picture(film)?, self.attributes(film)?);
+        crate::stokes::add(&mut picture, &mut attributes, film, self.header.subject.crop)?;
+        Ok((picture, attributes))
     }
 
     fn attributes(&self, film: &Film) -> Result<Attributes, PictureError> {

@@ -17,6 +17,7 @@ mod progress;
 mod replay_text;
 mod scene_report;
 mod state;
+mod stokes;
 
 use std::process::ExitCode;
 

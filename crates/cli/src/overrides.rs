@@ -71,6 +71,11 @@ enum LightSamplingArg {
 }
 
 impl Overrides {
+    /// Whether polarisation is asked for.
+    pub(crate) fn polarised(&self) -> bool {
+        self.polarised
+    }
+
     /// Samples a pixel, if given.
     pub(crate) fn spp(&self) -> Option<u32> {
         self.spp

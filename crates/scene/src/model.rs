@@ -5,7 +5,7 @@
 
 mod material;
 
-pub use material::{LEAST_ALPHA, Material, MaterialKind, SpectrumTexture};
+pub use material::{LEAST_ALPHA, Material, MaterialKind, PolarisingSheet, SpectrumTexture};
 
 use std::sync::Arc;
 
@@ -97,6 +97,8 @@ pub struct Film {
     pub height: u32,
     /// Pixel filter, sampled by importance so that every sample belongs to one pixel.
     pub filter: Filter,
+    /// Whether S₁, S₂ and S₃ are recorded beside the radiance.
+    pub stokes: bool,
 }
 
 /// Pixel filter.

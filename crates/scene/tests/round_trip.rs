@@ -28,7 +28,7 @@ fn camera_film_and_integrator() {
     assert_eq!(lens, &Some(ThinLens { radius_m: 0.0125, focus_distance_m: 2.0 }));
     assert_eq!(scene.camera.position_m, [1.0, 2.0, 3.0]);
     assert_eq!((scene.camera.forward, scene.camera.up), ([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
-    assert_eq!(scene.film, Film { width: 320, height: 200, filter: Filter::Gaussian { sigma_px: 0.75 } });
+    assert_eq!(scene.film, Film { width: 320, height: 200, filter: Filter::Gaussian { sigma_px: 0.75 }, stokes: true });
     assert_eq!(
         scene.integrator,
         Integrator {
@@ -94,6 +94,8 @@ fn materials_and_spectra() {
             "clay",
             "toy",
             "pane",
+            "film",
+            "quarter",
             "dusty",
             "objects[3].material"
         ]
@@ -145,6 +147,10 @@ fn materials_and_spectra() {
     let toy = MaterialKind::Plastic { reflectance, coat, alpha: 0.1 };
     assert_eq!(kind(&scene, "toy"), &toy);
     assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7") });
+    let sheet = PolarisingSheet::Polariser { transmittance: Spectrum::Constant(0.75), extinction: 0.125 };
+    assert_eq!(kind(&scene, "film"), &MaterialKind::PolarisingSheet { axis: [0.0, 1.0, 0.0], sheet });
+    let sheet = PolarisingSheet::Retarder { retardance_rad: std::f64::consts::FRAC_PI_2, at_nm: Some(550.0) };
+    assert_eq!(kind(&scene, "quarter"), &MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet });
     let dusty = MaterialKind::Blend { first: Box::new(toy), second: Box::new(MaterialKind::Black), weight: 0.125 };
     assert_eq!(kind(&scene, "dusty"), &dusty);
     assert_eq!((scene.objects[0].opacity, scene.objects[1].opacity), (0.75, 1.0));

@@ -249,7 +249,7 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
             // Everything that is known over the range is a number there.
             let [first, last] = scene.integrator.wavelength_range_nm;
             for material in &scene.materials {
-                use etalon_scene::{MaterialKind as M, SpectrumTexture};
+                use etalon_scene::{MaterialKind as M, PolarisingSheet, SpectrumTexture};
                 for nm in [first, 0.5 * (first + last), last] {
                     let good = match &material.kind {
                         M::Lambert { reflectance } | M::Mirror { reflectance } => {
@@ -267,6 +267,17 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                             (0.0..=1.0).contains(&reflectance.eval(nm))
                         }
                         M::ThinDielectric { index } => index.eval(nm) > 0.0,
+                        M::PolarisingSheet { axis, sheet } => {
+                            let good = match sheet {
+                                PolarisingSheet::Polariser { transmittance, extinction } => {
+                                    (0.0..=1.0).contains(&transmittance.eval(nm)) && (0.0..=1.0).contains(extinction)
+                                }
+                                PolarisingSheet::Retarder { retardance_rad, at_nm } => {
+                                    retardance_rad.is_finite() && at_nm.is_none_or(|nm| nm >= 1.0)
+                                }
+                            };
+                            good && (axis.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-12
+                        }
                         M::Blend { weight, .. } => (0.0..=1.0).contains(weight),
                         M::Black => true,
                     };

@@ -275,7 +275,10 @@ mod tests {
         for (index, (x, y_px)) in rect.pixels().enumerate() {
             let sums: Vec<XyzSum> =
                 (0..replicates).map(|_| XyzSum { xyz: [0.0, y(index as u32), 0.0], count: 1 }).collect();
-            film.put(PixelRect { x0: x, y0: y_px, x1: x + 1, y1: y_px + 1 }, &TileSums { xyz: sums });
+            film.put(
+                PixelRect { x0: x, y0: y_px, x1: x + 1, y1: y_px + 1 },
+                &TileSums { xyz: sums, ..Default::default() },
+            );
         }
         film
     }
@@ -289,7 +292,7 @@ mod tests {
         let sums = [[1.0, 2.0], [2.0, 3.0], [3.0, 7.0]].map(|[x, y]| XyzSum { xyz: [2.0 * x, 2.0 * y, 0.0], count: 2 });
         let film = {
             let mut film = Film::new(1, 1, 3);
-            film.put(PixelRect { x0: 0, y0: 0, x1: 1, y1: 1 }, &TileSums { xyz: sums.to_vec() });
+            film.put(PixelRect { x0: 0, y0: 0, x1: 1, y1: 1 }, &TileSums { xyz: sums.to_vec(), ..Default::default() });
             film
         };
         let pixel = film.pixel(0, 0);

@@ -2,6 +2,7 @@
 
 use etalon_optics::colour;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// A rectangle of pixels, `x0 ≤ x < x1` and `y0 ≤ y < y1`, y counted from the top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -56,15 +57,22 @@ impl XyzSum {
     }
 }
 
+/// What one replicate of one pixel has gathered of S₁, S₂ and S₃: the sums of the CIE XYZ of each.
+pub type StokesSum = [[f64; 3]; 3];
+
 /// All that a film keeps of a rectangle of pixels, row by row: exactly, so that a picture can be put down and taken up.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TileSums {
     /// Pixel by pixel, in each replicate by replicate.
     pub(crate) xyz: Vec<XyzSum>,
+    /// The same of the other Stokes parameters; empty if they are not recorded.
+    pub(crate) stokes: Vec<StokesSum>,
 }
 
 /// Bytes of one sum in a file: three numbers and a count.
 const XYZ_SUM_BYTES: usize = 28;
+/// Bytes of the sums of the other Stokes parameters: nine numbers.
+const STOKES_SUM_BYTES: usize = 72;
 
 impl TileSums {
     /// The sums of the pixels with so many replicates each, row by row.
@@ -79,6 +87,7 @@ impl TileSums {
             sum.xyz.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
             bytes.extend(sum.count.to_le_bytes());
         }
+        self.stokes.iter().flatten().flatten().for_each(|v| bytes.extend(v.to_le_bytes()));
         bytes
     }
 
@@ -86,9 +95,12 @@ impl TileSums {
     /// that takes.
     pub fn from_bytes(bytes: &[u8], pixels: u64, replicates: u32) -> Option<Self> {
         let sums = usize::try_from(pixels * u64::from(replicates)).ok()?;
-        if bytes.len() != sums.checked_mul(XYZ_SUM_BYTES)? {
+        let (xyz_bytes, with_stokes) =
+            (sums.checked_mul(XYZ_SUM_BYTES)?, sums.checked_mul(XYZ_SUM_BYTES + STOKES_SUM_BYTES)?);
+        if bytes.len() != xyz_bytes && bytes.len() != with_stokes {
             return None;
         }
+        let (bytes, stokes) = bytes.split_at(xyz_bytes);
         let number = |at: &[u8]| f64::from_le_bytes(at.try_into().expect("eight bytes"));
         let xyz = bytes
             .chunks_exact(XYZ_SUM_BYTES)
@@ -97,7 +109,11 @@ impl TileSums {
                 count: u32::from_le_bytes(sum[24..].try_into().expect("four bytes")),
             })
             .collect();
-        Some(Self { xyz })
+        let stokes = stokes
+            .chunks_exact(STOKES_SUM_BYTES)
+            .map(|sum| [0, 1, 2].map(|s| [0, 1, 2].map(|c| number(&sum[24 * s + 8 * c..24 * s + 8 * c + 8]))))
+            .collect();
+        Some(Self { xyz, stokes })
     }
 }
 
@@ -222,7 +238,7 @@ impl Counters {
     }
 }
 
-/// An image in the making: for each pixel the sums of R independent replicates, 32·R bytes.
+/// An image in the making: for each pixel the sums of R independent replicates, 32·R bytes, and 72·R more with Stokes parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     width: u32,
@@ -230,6 +246,8 @@ pub struct Film {
     replicates: u32,
     /// Pixel by pixel, in each replicate by replicate.
     sums: Vec<XyzSum>,
+    /// The same of the other Stokes parameters; empty if they are not recorded.
+    stokes: Vec<StokesSum>,
     /// What was counted on the way.
     pub counters: Counters,
 }
@@ -238,7 +256,19 @@ impl Film {
     /// A black film.
     pub fn new(width: u32, height: u32, replicates: u32) -> Self {
         let sums = vec![XyzSum::default(); width as usize * height as usize * replicates as usize];
-        Self { width, height, replicates, sums, counters: Counters::default() }
+        Self { width, height, replicates, sums, stokes: Vec::new(), counters: Counters::default() }
+    }
+
+    /// The same black film, which also records S₁, S₂ and S₃.
+    #[must_use]
+    pub fn recording_stokes(mut self) -> Self {
+        self.stokes = vec![StokesSum::default(); self.sums.len()];
+        self
+    }
+
+    /// Whether S₁, S₂ and S₃ are recorded.
+    pub fn records_stokes(&self) -> bool {
+        !self.stokes.is_empty()
     }
 
     /// Width in pixels.
@@ -256,10 +286,35 @@ impl Film {
         self.replicates
     }
 
+    /// Where the replicates of a pixel are.
+    fn replicates_of(&self, x: u32, y: u32) -> Range<usize> {
+        let start = (y as usize * self.width as usize + x as usize) * self.replicates as usize;
+        start..start + self.replicates as usize
+    }
+
     /// The pixel in column `x` and row `y`.
     pub fn pixel(&self, x: u32, y: u32) -> Pixel<'_> {
-        let start = (y as usize * self.width as usize + x as usize) * self.replicates as usize;
-        Pixel(&self.sums[start..start + self.replicates as usize])
+        Pixel(&self.sums[self.replicates_of(x, y)])
+    }
+
+    /// S₁, S₂ and S₃ of the pixel in column `x` and row `y`, each with its standard error, in linear Rec. 709; an error is infinite
+    /// where fewer than two replicates hold samples. `None` if they are not recorded.
+    pub fn stokes_rec709(&self, x: u32, y: u32) -> Option<[[[f32; 3]; 2]; 3]> {
+        let range = self.replicates_of(x, y);
+        let stokes = self.stokes.get(range.clone())?;
+        let of = |parameter: usize| {
+            // As if it were the radiance of a pixel.
+            let sums: Vec<XyzSum> = stokes
+                .iter()
+                .zip(&self.sums[range.clone()])
+                .map(|(sum, of)| XyzSum { xyz: sum[parameter], count: of.count })
+                .collect();
+            let pixel = Pixel(&sums);
+            let value = colour::rec709_from_xyz(pixel.xyz()).map(|v| v as f32);
+            let error = pixel.variance(colour::rec709_from_xyz);
+            [value, error.map_or([f32::INFINITY; 3], |(variance, _)| variance.map(|v| v.sqrt() as f32))]
+        };
+        Some([of(0), of(1), of(2)])
     }
 
     /// All pixels, row by row from the top.
@@ -269,25 +324,40 @@ impl Film {
 
     /// All that the film keeps of a rectangle's pixels.
     pub(crate) fn tile(&self, rect: PixelRect) -> TileSums {
-        TileSums { xyz: rect.pixels().flat_map(|(x, y)| self.pixel(x, y).sums()).copied().collect() }
+        let xyz = rect.pixels().flat_map(|(x, y)| self.pixel(x, y).sums()).copied().collect();
+        let stokes = match self.records_stokes() {
+            true => rect.pixels().flat_map(|(x, y)| &self.stokes[self.replicates_of(x, y)]).copied().collect(),
+            false => Vec::new(),
+        };
+        TileSums { xyz, stokes }
     }
 
     pub(crate) fn put(&mut self, rect: PixelRect, tile: &TileSums) {
         let replicates = self.replicates as usize;
         for ((x, y), sums) in rect.pixels().zip(tile.xyz.chunks_exact(replicates)) {
-            let start = (y as usize * self.width as usize + x as usize) * replicates;
-            self.sums[start..start + replicates].copy_from_slice(sums);
+            let range = self.replicates_of(x, y);
+            self.sums[range].copy_from_slice(sums);
+        }
+        for ((x, y), sums) in rect.pixels().zip(tile.stokes.chunks_exact(replicates)) {
+            let range = self.replicates_of(x, y);
+            self.stokes[range].copy_from_slice(sums);
         }
     }
 
     /// Whether `tile` is what this film keeps of `rect`, by its size.
     pub(crate) fn fits(&self, rect: PixelRect, tile: &TileSums) -> bool {
-        tile.xyz.len() as u64 == rect.area() * u64::from(self.replicates)
+        let sums = rect.area() * u64::from(self.replicates);
+        tile.xyz.len() as u64 == sums && tile.stokes.len() as u64 == if self.records_stokes() { sums } else { 0 }
     }
 
-    /// Bytes of a film in memory.
+    /// Bytes of a film in memory, without Stokes parameters.
     pub fn bytes(width: u32, height: u32, replicates: u32) -> u64 {
         u64::from(width) * u64::from(height) * u64::from(replicates) * size_of::<XyzSum>() as u64
+    }
+
+    /// Bytes that Stokes parameters add to them.
+    pub fn stokes_bytes(width: u32, height: u32, replicates: u32) -> u64 {
+        u64::from(width) * u64::from(height) * u64::from(replicates) * size_of::<StokesSum>() as u64
     }
 
     /// Mean CIE XYZ of each pixel: see [`Pixel::xyz`].

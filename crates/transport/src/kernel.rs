@@ -3,13 +3,13 @@
 
 use crate::camera::Camera;
 use crate::compiled;
-use crate::film::{Counters, NonFinite, PixelRect, XyzSum};
+use crate::film::{Counters, NonFinite, PixelRect, StokesSum, XyzSum};
 use crate::media::Inside;
 use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
 use crate::plan::{EffectName, LaneModel};
-use crate::polarisation::{Averaged, Mueller, Polarisation};
+use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::prepare::Prepared;
 use crate::replay::{Replay, replay};
 use crate::sampler::Sampler;
@@ -21,8 +21,9 @@ use std::ops::Range;
 /// Wavelengths that a path carries where they differ.
 pub(crate) const LANES: usize = 4;
 
-/// Adds samples to one tile: to the sums of its pixels, row by row, in each replicate by replicate.
-pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, &mut [XyzSum]) -> Counters;
+/// Adds samples to one tile: to the sums of its pixels, row by row, in each replicate by replicate; to those of the other Stokes
+/// parameters, if there are any.
+pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, &mut [XyzSum], &mut [StokesSum]) -> Counters;
 
 /// The path loop for one scalar type and one model of wavelengths.
 pub(crate) struct Kernel {
@@ -47,7 +48,7 @@ static KERNELS: [Kernel; 7] = [
     entry::<f64, Hero<f64, LANES>, Averaged, LANES>(Precision::F64, LaneModel::Hero, "hero-4-f64"),
     Kernel {
         polarised: true,
-        ..entry::<f64, Hero<f64, LANES>, Mueller<f64, LANES>, LANES>(
+        ..entry::<f64, Hero<f64, LANES>, Followed<LANES>, LANES>(
             Precision::F64,
             LaneModel::Hero,
             "polarised-hero-4-f64",
@@ -80,17 +81,24 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
     tile: PixelRect,
     samples: Range<u32>,
     sums: &mut [XyzSum],
+    stokes_sums: &mut [StokesSum],
 ) -> Counters {
     let tracer = Tracer::new(prepared);
     let mut counters = Counters::default();
     let replicates = prepared.scene.integrator.replicates as usize;
-    for ((x, y), sums) in tile.pixels().zip(sums.chunks_exact_mut(replicates)) {
+    for (at, (x, y)) in tile.pixels().enumerate() {
         for sample in samples.clone() {
-            let (wavelengths, radiance, _) = tracer.sample::<R, M, P, N>(x, y, sample, &mut counters, &mut ());
+            let (wavelengths, radiance, polarisation) =
+                tracer.sample::<R, M, P, N>(x, y, sample, &mut counters, &mut ());
             let xyz = M::to_xyz(prepared, &wavelengths, radiance);
+            let stokes = polarisation.received().map(|s| s.map(|s| M::to_xyz(prepared, &wavelengths, s)));
             counters.paths += 1;
-            if xyz.iter().all(|v| v.is_finite()) {
-                sums[sample as usize % replicates].add(xyz);
+            let replicate = at * replicates + sample as usize % replicates;
+            if xyz.iter().chain(stokes.iter().flatten().flatten()).all(|v| v.is_finite()) {
+                sums[replicate].add(xyz);
+                if let (Some(stokes), Some(sum)) = (stokes, stokes_sums.get_mut(replicate)) {
+                    (0..3).for_each(|s| (0..3).for_each(|c| sum[s][c] += stokes[s][c]));
+                }
             } else {
                 counters.record_nonfinite(NonFinite { y, x, sample });
             }

@@ -9,7 +9,7 @@
 //! | [`prepare`](mod@prepare) | shapes in world space, lights, the accelerator |
 //! | [`plan`] | which effects the scene calls for, and why |
 //! | [`frame`] | centring and scaling |
-//! | `path`, `media`, `polarisation` | the path loop; which medium it is in; the Stokes vector that it carries |
+//! | `path`, `media`, [`polarisation`] | the path loop; which medium it is in; the Stokes vector that it carries |
 //! | `coordinates` | shading normals and texture coordinates |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`], [`texture`] | what the estimates are made of |
@@ -39,7 +39,7 @@ pub mod observer;
 mod path;
 pub mod pilot;
 pub mod plan;
-mod polarisation;
+pub mod polarisation;
 pub mod prepare;
 pub mod render;
 pub mod replay;

@@ -14,6 +14,7 @@
 //! must not depend on which lane is the hero, or the two no longer add up to one for the lanes together. So what meets a
 //! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
+use crate::bsdf::Lobe;
 use crate::compiled;
 use crate::film::Counters;
 use crate::light::{LightSample, LightTable, Target};
@@ -72,6 +73,16 @@ enum Step {
     Unshared,
     /// Drawn with this density, the mean over the lanes, from this point of this primitive, where a shadow ray was sent too.
     Shared { from: Vec3<f64>, leaves: SurfaceId, density: f64 },
+}
+
+/// What one shadow ray found.
+struct Direct<R, const N: usize> {
+    /// Number of the light.
+    light: u32,
+    /// Direction toward it.
+    wi: Vec3<f64>,
+    /// Radiance that it adds along the path, for light that is unpolarised.
+    radiance: Lanes<R, N>,
 }
 
 impl World<'_> {
@@ -154,10 +165,11 @@ impl World<'_> {
             };
             if shared {
                 let u = sampler.vertex_set(vertex, 1);
-                if let Some((index, direct)) =
+                if let Some(Direct { light: index, wi, radiance: direct }) =
                     self.direct_light(&point, &scattering, wo, (lambda_nm, &lanes), u, &inside, counters)
                 {
-                    let light = polarisation.receive(beta * direct * lane_weight);
+                    let mueller = || scattering.mueller(lambda_nm, wo, wi, Lobe::SolidAngle);
+                    let light = polarisation.receive_scattered(wo, wi, mueller, beta * direct * lane_weight);
                     observer.light(vertex, Found::ShadowRay { light: index }, light);
                     radiance += light;
                 }
@@ -169,7 +181,11 @@ impl World<'_> {
                 break;
             };
             beta *= next.weight;
-            polarisation.follow(wo, next.wi, || scattering.retarder(lambda_nm, wo, next.wi));
+            let lobe = match next.density {
+                Density::Delta => Lobe::Delta(u_lobe),
+                Density::SolidAngle(_) => Lobe::SolidAngle,
+            };
+            polarisation.follow(wo, next.wi, || scattering.mueller(lambda_nm, wo, next.wi, lobe));
             let mean_of_hero = lanes.follow(next.lane_density);
             eta_squared *= next.eta * next.eta;
             step = match next.density {
@@ -245,8 +261,7 @@ impl World<'_> {
         }
     }
 
-    /// One shadow ray: ∫ f Le |cos θ| dω over the lights, estimated by one direction toward one of them, with that
-    /// light's number.
+    /// One shadow ray: ∫ f Le |cos θ| dω over the lights, estimated by one direction toward one of them.
     #[allow(clippy::too_many_arguments, reason = "the arguments of the rendering equation, and what counts them")]
     fn direct_light<R: Real, M: WavelengthModel<R, N>, const N: usize>(
         &self,
@@ -257,7 +272,7 @@ impl World<'_> {
         [u_light, u1, u2, _]: [f64; 4],
         inside: &Inside,
         counters: &mut Counters,
-    ) -> Option<(u32, Lanes<R, N>)> {
+    ) -> Option<Direct<R, N>> {
         if self.lights.is_empty() {
             return None;
         }
@@ -305,7 +320,8 @@ impl World<'_> {
                 mis * (sample.scale / density)
             }
         };
-        Some((index as u32, f_cos * light.spectrum().lanes(lambda_nm) * R::from_f64(weight * arriving)))
+        let radiance = f_cos * light.spectrum().lanes(lambda_nm) * R::from_f64(weight * arriving);
+        Some(Direct { light: index as u32, wi: sample.wi, radiance })
     }
 
     /// The share of light from a sampled light that reaches the start of the shadow ray: masks let their part through.

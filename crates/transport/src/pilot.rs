@@ -183,7 +183,7 @@ impl<'a> Pilot<'a> {
                     for (copy, sums) in sums.chunks_exact_mut(replicates as usize).enumerate() {
                         let start = beyond + copy as u32 * copy_length;
                         let range = start + samples.start..start + samples.end;
-                        counters.merge(&kernel(prepared, pixel, range, sums));
+                        counters.merge(&kernel(prepared, pixel, range, sums, &mut []));
                     }
                     on_work(&counters);
                     counters.paths

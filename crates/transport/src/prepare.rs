@@ -2,7 +2,7 @@
 
 use crate::bsdf::Bsdf;
 use crate::filter::FilterSampler;
-use crate::frame::SceneFrame;
+use crate::frame::{Affine, SceneFrame};
 use crate::kernel::{Kernel, kernel};
 use crate::light::{DirectionalLight, Light, LightTable, PointLight, SpotLight};
 use crate::media::{Media, Solid, open_edges};
@@ -121,8 +121,12 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         .filter_map(|(index, light)| light.emitter().map(|emitter| (emitter.surface, index as u32)))
         .collect();
     light_of.sort_unstable();
+    let mut bsdfs: Vec<Bsdf> = scene.materials.iter().map(|material| Bsdf::new(&material.kind, range_nm)).collect();
+    if plan.runs(EffectName::Polarisation) {
+        bsdfs.iter_mut().for_each(Bsdf::prepare_polarisation);
+    }
     let surfaces = Surfaces {
-        bsdfs: scene.materials.iter().map(|material| Bsdf::new(&material.kind, range_nm)).collect(),
+        bsdfs,
         objects: shapes::objects(scene)
             .zip(coordinates)
             .map(|(o, coordinates)| ObjectSurface {
@@ -130,6 +134,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
                 emission: o.emission.as_ref().map(|e| Emission { radiance: spectrum(&e.radiance), sides: e.sides }),
                 opacity: o.opacity,
                 coordinates,
+                axis: axis(o, &scene.materials[o.material].kind),
             })
             .collect(),
         object_of,
@@ -151,6 +156,13 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         warnings,
         scene: simulated,
     })
+}
+
+/// The axis of an object that is a polarising sheet, in the coordinates of its group.
+fn axis(object: &Object, kind: &MaterialKind) -> Option<Vec3<f64>> {
+    let MaterialKind::PolarisingSheet { axis, .. } = kind else { return None };
+    let rows = Affine::new(&object.transform).normal_matrix();
+    Some(Vec3::from_array(rows.map(|row| row.dot(Vec3::from_array(*axis)))))
 }
 
 /// The solids that carry priorities.
@@ -183,6 +195,11 @@ impl Prepared {
     /// The kernel that the plan chose.
     pub(crate) fn kernel(&self) -> &'static Kernel {
         kernel(self.scene.integrator.precision, self.plan.lane_model, self.plan.runs(EffectName::Polarisation))
+    }
+
+    /// Whether films hold S₁, S₂ and S₃: where they are asked for, and polarisation is carried.
+    pub fn records_stokes(&self) -> bool {
+        self.plan.stokes
     }
 
     /// From which surfaces shadow rays are sent.

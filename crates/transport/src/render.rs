@@ -74,7 +74,8 @@ impl Prepared {
 
     /// A black film for this scene.
     pub fn film(&self) -> Film {
-        Film::new(self.scene.film.width, self.scene.film.height, self.scene.integrator.replicates)
+        let film = Film::new(self.scene.film.width, self.scene.film.height, self.scene.integrator.replicates);
+        if self.records_stokes() { film.recording_stokes() } else { film }
     }
 
     /// Renders `extent` onto a new film. `on_tile` hears what a finished tile took.
@@ -110,7 +111,8 @@ impl Prepared {
                         return None;
                     }
                     let mut sums = before.tile(tile);
-                    let counters = render_tile(self, tile, extent.samples_of(tile, replicates), &mut sums.xyz);
+                    let counters =
+                        render_tile(self, tile, extent.samples_of(tile, replicates), &mut sums.xyz, &mut sums.stokes);
                     if on_tile(&counters) == Control::Stop {
                         stopped.store(true, Ordering::Relaxed);
                     }

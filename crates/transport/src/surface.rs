@@ -1,9 +1,9 @@
 //! What a primitive is made of: scattering, emission and the light it belongs to.
 
-use crate::bsdf::{Bsdf, BsdfSample, Shading};
+use crate::bsdf::{Bsdf, BsdfSample, Lobe, Shading};
 use crate::coordinates::Coordinates;
 use crate::media::Interface;
-use crate::polarisation::Retarder;
+use crate::polarisation::mueller::Mueller;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Real, Vec3};
@@ -17,6 +17,9 @@ pub(crate) struct ObjectSurface {
     /// Share of light that meets the surface at all; the rest passes.
     pub opacity: f64,
     pub coordinates: Coordinates,
+    /// The axis of a polarising sheet, in the coordinates of the object's group. What absorbs lies across it along the sheet, so
+    /// that a transform takes it to its place as it does a normal.
+    pub axis: Option<Vec3<f64>>,
 }
 
 /// What a surface emits.
@@ -47,6 +50,7 @@ pub(crate) struct Surface<'a> {
     pub opacity: f64,
     emission: Option<&'a Emission>,
     coordinates: &'a Coordinates,
+    axis: Option<Vec3<f64>>,
 }
 
 impl Surfaces {
@@ -66,6 +70,7 @@ impl Surfaces {
             opacity: of_object.opacity,
             emission,
             coordinates: &of_object.coordinates,
+            axis: of_object.axis,
         }
     }
 }
@@ -82,6 +87,7 @@ impl<'a> Surface<'a> {
     ) -> Scattering<'a> {
         let outward = |normal| geometry.placed_normal(hit.surface, normal);
         let at = self.coordinates.at(point.normal, hit.surface.primitive, hit.uv, outward);
+        let at = self.axis.map_or(at, |axis| at.with_axis(outward(axis).normalized()));
         Scattering { bsdf: self.bsdf, at: at.between(interface) }
     }
 
@@ -122,14 +128,15 @@ impl Scattering<'_> {
         self.bsdf.eval(lambda_nm, &self.at, wo, wi)
     }
 
-    /// See [`Bsdf::retarder`].
-    pub(crate) fn retarder<R: Real, const N: usize>(
+    /// See [`Bsdf::mueller`].
+    pub(crate) fn mueller<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> Option<Retarder<R, N>> {
-        self.bsdf.retarder(lambda_nm, &self.at, wo, wi)
+        lobe: Lobe,
+    ) -> Option<Mueller<N>> {
+        self.bsdf.mueller(lambda_nm, &self.at, wo, wi, lobe)
     }
 
     /// See [`Bsdf::sample`].

@@ -8,7 +8,7 @@ use etalon_oracle::statistics::Welford;
 use etalon_oracle::subjects::{DeltaLobe, Density, Emits, Emitted, Scattered, Scatters};
 use etalon_oracle::truths::{lambert_polygon, sphere_irradiance};
 use etalon_oracle::{Verdict, emits_suite, scatters_suite, suite};
-use etalon_scene::{MaterialKind, SpectrumTexture};
+use etalon_scene::{MaterialKind, PolarisingSheet, SpectrumTexture};
 use etalon_transport::bsdf::{Bsdf, Shading};
 use etalon_transport::light::{
     CylinderLight, DiskLight, Emitter, Light, ParallelogramLight, SphereLight, Target, TriangleLight,
@@ -84,6 +84,15 @@ impl<R: Real> Scatters for Material<R> {
             | MaterialKind::RoughDielectric { .. }
             | MaterialKind::OrenNayar { .. }
             | MaterialKind::Black => Vec::new(),
+            MaterialKind::PolarisingSheet { sheet, .. } => {
+                let weight = match sheet {
+                    PolarisingSheet::Polariser { transmittance, extinction } => {
+                        0.5 * transmittance.eval(wavelength_nm) * (1.0 + extinction)
+                    }
+                    PolarisingSheet::Retarder { .. } => 1.0,
+                };
+                vec![DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight, probability: 1.0 }]
+            }
             MaterialKind::Plastic { alpha, .. } if *alpha > 0.0 => Vec::new(),
             MaterialKind::Plastic { reflectance, coat, .. } => {
                 let (n, rho) = (coat.eval(wavelength_nm), reflectance.eval(wavelength_nm));
@@ -94,8 +103,10 @@ impl<R: Real> Scatters for Material<R> {
                 vec![DeltaLobe { wi: mirrored, weight, probability }]
             }
             MaterialKind::ThinDielectric { index } => {
-                let face = laws::fresnel_exact(cos, index.eval(wavelength_nm)).reflectance();
-                let (weight, through) = (2.0 * face / (1.0 + face), (1.0 - face) / (1.0 + face));
+                // s and p each go their way between the faces.
+                let face = laws::fresnel_exact(cos, index.eval(wavelength_nm));
+                let weight = face.r_s / (1.0 + face.r_s) + face.r_p / (1.0 + face.r_p);
+                let through = 0.5 * (face.t_s / (1.0 + face.r_s) + face.t_p / (1.0 + face.r_p));
                 vec![
                     DeltaLobe { wi: mirrored, weight, probability: weight },
                     DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight: through, probability: through },
@@ -229,6 +240,14 @@ scatters_suite!(oren_nayar_f32, oren_nayar::<f32>(0.5, 0.4));
 scatters_suite!(white_oren_nayar_f64, oren_nayar::<f64>(1.0, 1.0));
 scatters_suite!(pane_f32, pane::<f32>());
 scatters_suite!(pane_f64, pane::<f64>());
+/// A tinted polariser that is not quite one.
+fn polariser() -> Material<f64> {
+    let transmittance = Spectrum::rgb_reflectance([0.8, 0.7, 0.9]).unwrap();
+    let sheet = PolarisingSheet::Polariser { transmittance, extinction: 0.1 };
+    Material::new(MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet })
+}
+
+scatters_suite!(polariser_f64, polariser());
 scatters_suite!(mirror_and_clay, mixture());
 
 /// Every law for a material in both scalars.

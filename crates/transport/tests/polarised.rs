@@ -5,7 +5,7 @@ use etalon_oracle::truths::{Claim, truths};
 use etalon_scene::Scene;
 use etalon_transport::plan::EffectName;
 use etalon_transport::{Control, Prepared, Study, prepare_study};
-use serde_json::json;
+use serde_json::{Value, json};
 
 fn parse(json: &str) -> Scene {
     etalon_scene::parse(json, "test").unwrap_or_else(|e| panic!("{e:?}")).0
@@ -160,4 +160,137 @@ fn a_scene_that_polarises_nothing_is_the_same_to_the_bit() {
         prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap()
     };
     assert!(film(true).pixels().eq(film(false).pixels()));
+}
+
+/// An eye that looks along −z through sheets, the first next to it, at a lamp of radiance 1.
+fn through(sheets: &[Value], film: &Value) -> Scene {
+    let lamp = json!({
+        "shape": {"type": "disk", "center_m": [0, 0, -9], "normal": [0, 0, 1], "radius_m": 5},
+        "material": {"type": "black"}, "emission": {"radiance": 1}
+    });
+    let objects: Vec<Value> = sheets
+        .iter()
+        .enumerate()
+        .map(|(i, sheet)| {
+            json!({
+                "shape": {"type": "disk", "center_m": [0, 0, -1.0 - i as f64], "normal": [0, 0, 1], "radius_m": 3},
+                "material": sheet
+            })
+        })
+        .chain([lamp])
+        .collect();
+    parse(
+        &json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 0], "look_at_m": [0, 0, -1], "height_m": 1},
+            "film": film,
+            "objects": objects,
+            "integrator": {"spp": 16, "roulette": false}
+        })
+        .to_string(),
+    )
+}
+
+fn polariser(degrees: f64) -> Value {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    json!({"type": "polariser", "axis": [cos, sin, 0]})
+}
+
+fn retarder(degrees: f64, retardance_deg: f64) -> Value {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    json!({"type": "retarder", "axis": [cos, sin, 0], "retardance_deg": retardance_deg})
+}
+
+/// S₀ … S₃ of one path, at its first wavelength: nothing in these scenes is left to chance but the wavelengths.
+fn stokes(scene: &Scene) -> [f64; 4] {
+    let path = prepare_study(scene, &Study::default()).unwrap().replay(3, 2, 5);
+    let [s1, s2, s3] = path.stokes.expect("sheets call for polarisation");
+    [path.radiance[0], s1[0], s2[0], s3[0]]
+}
+
+#[test]
+fn sheets_call_for_polarisation_and_obey_malus() {
+    let film = json!({"width": 8, "height": 8});
+    let close = |read: [f64; 4], truth: [f64; 4], what: &str| {
+        (0..4).for_each(|i| assert!((read[i] - truth[i]).abs() < 1e-12, "{what}: {read:?} is not {truth:?}"));
+    };
+    for degrees in [0.0, 25.0, 45.0, 90.0_f64] {
+        let (sin_2, cos_2) = (2.0 * degrees.to_radians()).sin_cos();
+        let malus = 0.5 * degrees.to_radians().cos().powi(2);
+        let read = stokes(&through(&[polariser(degrees), polariser(0.0)], &film));
+        close(read, [malus, malus * cos_2, malus * sin_2, 0.0], "two polarisers");
+        let read = stokes(&through(&[polariser(90.0), polariser(degrees), polariser(0.0)], &film));
+        close(read, [sin_2 * sin_2 / 8.0, -sin_2 * sin_2 / 8.0, 0.0, 0.0], "three polarisers");
+        // The fast axis along the picture's right: light along +45° becomes left-handed, and a half-wave plate mirrors it.
+        let read = stokes(&through(&[retarder(0.0, 90.0), polariser(45.0)], &film));
+        close(read, [0.5, 0.0, 0.0, -0.5], "a quarter of a wave");
+        let read = stokes(&through(&[retarder(degrees, 180.0), polariser(0.0)], &film));
+        let (sin_4, cos_4) = (4.0 * degrees.to_radians()).sin_cos();
+        close(read, [0.5, 0.5 * cos_4, 0.5 * sin_4, 0.0], "half a wave");
+    }
+    // What is not an ideal polariser: T = .8 along the axis and .2 of that across it.
+    let leaky = json!({"type": "polariser", "axis": [1, 0, 0], "transmittance": 0.8, "extinction": 0.2});
+    close(stokes(&through(&[leaky], &film)), [0.48, 0.32, 0.0, 0.0], "a leaky polariser");
+    // Taken for unpolarised, crossed polarisers are grey filters one behind the other.
+    let crossed = through(&[polariser(0.0), polariser(90.0)], &film);
+    let without = Study { without: vec![EffectName::Polarisation], ..Study::default() };
+    let averaged = prepare_study(&crossed, &without).unwrap();
+    assert!((averaged.replay(3, 2, 5).radiance[0] - 0.25).abs() < 1e-12 && !averaged.plan().approximations.is_empty());
+}
+
+/// A film that records Stokes parameters holds what the paths of its pixels do, and no bit of its S₀ is another.
+#[test]
+fn films_hold_the_stokes_parameters_of_their_paths() {
+    let sheets = [retarder(20.0, 70.0), polariser(60.0)];
+    let [plain, stokes] =
+        [false, true].map(|stokes| through(&sheets, &json!({"width": 4, "height": 4, "stokes": stokes})));
+    let render = |scene: &Scene| {
+        let prepared = prepare_study(scene, &Study::default()).unwrap();
+        (prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap(), prepared)
+    };
+    let ((plain, _), (film, prepared)) = (render(&plain), render(&stokes));
+    assert!(plain.pixels().eq(film.pixels()) && !plain.records_stokes() && plain.stokes_rec709(0, 0).is_none());
+    let [[s1, _], [s2, error], [s3, _]] = film.stokes_rec709(1, 2).unwrap();
+    // The share that each parameter is of the radiance is the same at every wavelength.
+    let path = prepared.replay(1, 2, 0);
+    let share = path.stokes.unwrap().map(|s| s[0] / path.radiance[0]);
+    let rgb = etalon_optics::colour::rec709_from_xyz(film.pixel(1, 2).xyz());
+    for c in 0..3 {
+        for (read, share) in [(s1[c], share[0]), (s2[c], share[1]), (s3[c], share[2])] {
+            assert!((f64::from(read) - share * rgb[c]).abs() < 1e-6, "{read} is not {share} of {}", rgb[c]);
+        }
+        assert!(error[c].is_finite());
+    }
+}
+
+/// A sheet's axis turns with its object, and with the instance that places it.
+#[test]
+fn the_axis_of_a_sheet_goes_where_its_object_goes() {
+    let turned = |object: Value, instance: Value| {
+        let mut scene: Value = serde_json::from_str(
+            &json!({
+                "etalon": 1,
+                "camera": {"type": "orthographic", "position_m": [0, 0, 5], "look_at_m": [0, 0, 0], "height_m": 1},
+                "film": {"width": 8, "height": 8},
+                "groups": {"sheet": {"objects": [{
+                    "shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 0, 1], "radius_m": 3},
+                    "material": {"type": "polariser", "axis": [1, 0, 0]}
+                }]}},
+                "instances": [{"group": "sheet"}],
+                "lights": [{"type": "environment", "radiance": 1}],
+                "integrator": {"roulette": false}
+            })
+            .to_string(),
+        )
+        .unwrap();
+        scene["groups"]["sheet"]["objects"][0]["transform"] = object;
+        scene["instances"][0]["transform"] = instance;
+        stokes(&parse(&scene.to_string()))
+    };
+    let by = |degrees: f64| json!([{"rotate": {"axis": [0, 0, 1], "angle_deg": degrees}}]);
+    for (object, instance) in [(0.0, 0.0), (30.0, 0.0), (0.0, 30.0), (20.0, 50.0)] {
+        let [s0, s1, s2, _] = turned(by(object), by(instance));
+        let (sin, cos) = (2.0 * (object + instance).to_radians()).sin_cos();
+        assert!((s0 - 0.5).abs() < 1e-12 && (s1 - 0.5 * cos).abs() < 1e-12 && (s2 - 0.5 * sin).abs() < 1e-12);
+    }
 }

@@ -149,7 +149,7 @@ fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
         }
     };
     args.overrides.apply(&mut loaded.scene);
-    room::check_memory(&loaded.scene, &mut failure);
+    room::check_memory(&loaded.scene, loaded.scene.film.stokes || args.overrides.polarised(), &mut failure);
     let film = &loaded.scene.film;
     let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let rect = args.crop.map_or(whole, |crop| crop.0);

@@ -44,7 +44,13 @@ impl Subject {
 
     /// A black film of this picture.
     pub(crate) fn film(&self) -> Film {
-        Film::new(self.size[0], self.size[1], self.replicates)
+        let film = Film::new(self.size[0], self.size[1], self.replicates);
+        if self.records_stokes() { film.recording_stokes() } else { film }
+    }
+
+    /// Whether its film holds S₁, S₂ and S₃.
+    pub(crate) fn records_stokes(&self) -> bool {
+        self.plan["stokes"] == true
     }
 
     /// What the picture lacks that the scene calls for.

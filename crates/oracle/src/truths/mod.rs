@@ -17,6 +17,7 @@ mod illumination;
 mod irradiance;
 mod judge;
 mod lamps;
+mod polarised;
 mod prisms;
 mod scene;
 mod solids;
@@ -237,6 +238,7 @@ pub fn truths() -> Vec<Truth> {
         lamps::truths(),
         view_factors::truths(),
         glass::truths(),
+        polarised::truths(),
         solids::truths(),
         water::truths(),
         prisms::truths(),

@@ -91,6 +91,8 @@ crate::record! {
         height: Required<Spanned<Whole<1, MAX_SIDE>>>,
         /// Pixel filter.
         filter: Required<FilterForm> = r#"{ "type": "box" }"#,
+        /// Whether the picture also holds S1, S2 and S3 of the light; it then calls for polarisation.
+        stokes: Required<bool> = "false",
     }
 }
 
@@ -140,7 +142,7 @@ pub(crate) fn film(form: &FilmForm, size: Option<[u32; 2]>, reader: &mut Reader<
     }
     // Both are at most MAX_SIDE.
     let [width, height] = size.unwrap_or([width as u32, height.value.0 as u32]);
-    Some(Film { width, height, filter: filter? })
+    Some(Film { width, height, filter: filter?, stokes: form.stokes? })
 }
 
 /// Below this sine of the angle between `up` and the view, the roll of the picture hangs on digits that nobody meant.

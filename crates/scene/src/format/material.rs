@@ -11,8 +11,10 @@ use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
-use crate::json::{Code, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole};
-use crate::model::{LEAST_ALPHA, MaterialKind};
+use crate::json::{
+    Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole,
+};
+use crate::model::{LEAST_ALPHA, MaterialKind, PolarisingSheet};
 use index::{IndexForm, Metal, complex_index, index};
 
 crate::record! {
@@ -129,6 +131,32 @@ crate::record! {
 }
 
 crate::record! {
+    /// An ideal linear polariser without thickness: light passes straight on, all of it that swings along the axis. It calls for
+    /// polarisation.
+    pub(crate) struct PolariserMaterial + comment {
+        /// Along which light may swing, in the object's own coordinates; only its direction along the surface counts.
+        axis: Required<Direction>,
+        /// Share that passes of light that swings along the axis, from 0 to 1.
+        transmittance: Required<SpectrumForm> = "1",
+        /// What passes of light that swings across the axis, over that share, from 0 (ideal) to 1.
+        extinction: Required<Share> = "0",
+    }
+}
+
+crate::record! {
+    /// A wave plate without thickness: light passes straight on, and what swings across the fast axis is delayed. It calls for
+    /// polarisation.
+    pub(crate) struct RetarderMaterial + comment {
+        /// The fast axis, in the object's own coordinates; only its direction along the surface counts.
+        axis: Required<Direction>,
+        /// The delay: 90 is a quarter of a wave, 180 half of one.
+        retardance_deg: Required<f64>,
+        /// The wavelength at which this is the delay, nm; at others it is in inverse proportion. Left out: at all.
+        at_nm: Optional<Wavelength>,
+    }
+}
+
+crate::record! {
     /// Two materials side by side, finer than can be seen.
     pub(crate) struct BlendMaterial + comment {
         /// The one: the name of one of "materials" that stands before this one, or a material of its own.
@@ -155,6 +183,8 @@ crate::variants! {
         "oren-nayar" => OrenNayar(OrenNayarMaterial),
         "plastic" => Plastic(PlasticMaterial),
         "thin-dielectric" => ThinDielectric(ThinDielectricMaterial),
+        "polariser" => Polariser(PolariserMaterial),
+        "retarder" => Retarder(RetarderMaterial),
         "blend" => Blend(BlendMaterial),
         "black" => Black(BlackMaterial),
     }
@@ -171,6 +201,8 @@ impl MaterialForm {
             Self::OrenNayar(m) => m.at,
             Self::Plastic(m) => m.at,
             Self::ThinDielectric(m) => m.at,
+            Self::Polariser(m) => m.at,
+            Self::Retarder(m) => m.at,
             Self::Blend(m) => m.at,
             Self::Black(m) => m.at,
         }
@@ -265,6 +297,17 @@ pub(crate) fn material<'f>(
             let index = pane.index.as_ref().and_then(|form| index(form, spectra.range_nm, reader))?;
             Some(MaterialKind::ThinDielectric { index })
         }
+        MaterialForm::Polariser(polariser) => {
+            let transmittance = spectra.resolve(polariser.transmittance.as_ref()?, Role::Reflectance, reader);
+            let sheet =
+                PolarisingSheet::Polariser { transmittance: transmittance?, extinction: polariser.extinction?.0 };
+            Some(MaterialKind::PolarisingSheet { axis: polariser.axis?.0, sheet })
+        }
+        MaterialForm::Retarder(retarder) => {
+            let at_nm = retarder.at_nm.clone().checked()?.map(|at| at.0);
+            let sheet = PolarisingSheet::Retarder { retardance_rad: retarder.retardance_deg?.to_radians(), at_nm };
+            Some(MaterialKind::PolarisingSheet { axis: retarder.axis?.0, sheet })
+        }
         MaterialForm::Blend(blend) => {
             let mut part = |part: &'f Option<Box<MaterialUse>>| match part.as_deref()? {
                 MaterialUse::Own(own) => material(own, before, spectra, files, reader).map(Box::new),
@@ -278,6 +321,12 @@ pub(crate) fn material<'f>(
             {
                 let message = "a part of a blend bounds no solid: its dielectric cannot have a priority";
                 reader.error_hint(Code::KeyConflict, blend.at.head(), message, "say its exterior instead");
+                return None;
+            }
+            if [&first, &second].iter().any(|part| matches!(***part, MaterialKind::PolarisingSheet { .. })) {
+                let message = "a part of a blend has no axis of its own: it cannot be a polariser or a retarder";
+                let hint = "give the sheet an object of its own, perhaps with an \"opacity\"";
+                reader.error_hint(Code::KeyConflict, blend.at.head(), message, hint);
                 return None;
             }
             let kind = MaterialKind::Blend { first, second, weight: blend.weight?.0 };

@@ -84,6 +84,13 @@ pub enum MaterialKind {
         /// Index relative to what surrounds it.
         index: RefractiveIndex,
     },
+    /// A sheet without thickness that passes light straight on, what swings along its axis in another way than the rest.
+    PolarisingSheet {
+        /// The axis, a unit vector in the object's own coordinates; its part along the surface counts.
+        axis: [f64; 3],
+        /// What it does.
+        sheet: PolarisingSheet,
+    },
     /// Two materials side by side, finer than can be seen.
     Blend {
         /// The one.
@@ -95,6 +102,25 @@ pub enum MaterialKind {
     },
     /// Reflects nothing (an emitter that is only a light, an absorber).
     Black,
+}
+
+/// What a sheet does to light that swings along its axis and across it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PolarisingSheet {
+    /// Lets the former pass.
+    Polariser {
+        /// Share that passes of light that swings along the axis, in [0, 1] at every wavelength.
+        transmittance: Spectrum,
+        /// What passes of light that swings across the axis, over that share, in [0, 1].
+        extinction: f64,
+    },
+    /// Delays the latter.
+    Retarder {
+        /// By this angle, rad.
+        retardance_rad: f64,
+        /// At this wavelength only, nm, at others in inverse proportion, as a plate of fixed thickness does; `None` is at all.
+        at_nm: Option<f64>,
+    },
 }
 
 impl MaterialKind {
@@ -110,6 +136,7 @@ impl MaterialKind {
             | Self::OrenNayar { .. }
             | Self::Plastic { .. }
             | Self::ThinDielectric { .. }
+            | Self::PolarisingSheet { .. }
             | Self::Black => None,
         }
     }
@@ -129,6 +156,7 @@ impl MaterialKind {
             | Self::OrenNayar { .. }
             | Self::Plastic { .. }
             | Self::ThinDielectric { .. }
+            | Self::PolarisingSheet { .. }
             | Self::Black => {}
         }
     }

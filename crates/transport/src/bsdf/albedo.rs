@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::f64::consts::FRAC_1_PI;
 
 /// Nodes in µ, at (i/(NODES−1))²: dense towards grazing, where the loss changes fastest.
-const NODES: usize = 65;
+pub(super) const NODES: usize = 65;
 /// Nodes in the relative index where it depends on wavelength.
 const INDICES: usize = 2;
 
@@ -40,7 +40,7 @@ pub(crate) struct Between {
     share: f64,
 }
 
-fn node(i: usize) -> f64 {
+pub(super) fn node(i: usize) -> f64 {
     let x = i as f64 / (NODES - 1) as f64;
     x * x
 }

@@ -1,7 +1,8 @@
 //! Two materials side by side, finer than can be seen: f = (1 − w)·f₁ + w·f₂.
 
-use super::{Bsdf, BsdfSample, Shading};
+use super::{Bsdf, BsdfSample, Lobe, Shading};
 use crate::mis::Density;
+use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{Lanes, Real, Vec3};
 
 /// A mixture of two materials.
@@ -31,6 +32,44 @@ impl Blend {
         [1.0 - self.weight, self.weight]
     }
 
+    /// The part that a number in [0, 1) chooses, and what is left of the number for the choices within it.
+    fn choose(&self, u: f64) -> (usize, f64) {
+        let (part, rest) = match u < self.weight {
+            true => (1, u / self.weight),
+            false => (0, (u - self.weight) / (1.0 - self.weight)),
+        };
+        (part, rest.min(f64::ONE_MINUS_EPSILON))
+    }
+
+    /// What it does to polarised light, in the frames of `x`: a delta is one part's own, else both parts count, each by what it
+    /// scatters.
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<f64>,
+        at: &Shading<'_>,
+        (wo, wi, x): (Vec3<f64>, Vec3<f64>, Vec3<f64>),
+        lobe: Lobe,
+    ) -> Option<[Matrix; N]> {
+        if let Lobe::Delta(u) = lobe {
+            let (part, rest) = self.choose(u);
+            return self.parts[part].mueller_around(lambda_nm, n, at, (wo, wi, x), Lobe::Delta(rest));
+        }
+        let [first, second] = [0, 1].map(|i| {
+            let (f_cos, _) = self.parts[i].eval_around::<f64, N>(lambda_nm, n, at, wo, wi);
+            let matrices = self.parts[i].mueller_around(lambda_nm, n, at, (wo, wi, x), lobe);
+            (f_cos * self.shares()[i], matrices.unwrap_or([mueller::DEPOLARISER; N]))
+        });
+        Some(std::array::from_fn(|lane| {
+            mueller::mixed([&first, &second].map(|(f_cos, matrices)| (f_cos[lane], matrices[lane])))
+        }))
+    }
+
+    /// See [`Bsdf::prepare_polarisation`].
+    pub(super) fn prepare_polarisation(&mut self) {
+        self.parts.iter_mut().for_each(Bsdf::prepare_polarisation);
+    }
+
     pub(super) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
@@ -57,11 +96,7 @@ impl Blend {
         u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
         let [u_part, u1, u2] = u;
-        let (part, rest) = match u_part < self.weight {
-            true => (1, u_part / self.weight),
-            false => (0, (u_part - self.weight) / (1.0 - self.weight)),
-        };
-        let rest = rest.min(f64::ONE_MINUS_EPSILON);
+        let (part, rest) = self.choose(u_part);
         let next = self.parts[part].sample_around(lambda_nm, n, at, wo, [rest, u1, u2])?;
         match next.density {
             // The part's share is in its value and in its probability.

@@ -4,6 +4,7 @@
 use super::BsdfSample;
 use crate::media::Interface;
 use crate::mis::Density;
+use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{ComplexIndex, Lanes, Real, Vec3, fresnel};
 
 /// Smooth metal.
@@ -19,10 +20,16 @@ impl Conductor {
     }
 
     /// n and k relative to the medium in front of the metal.
-    pub(super) fn relative_index(&self, wavelength_nm: f64, interface: Option<Interface<'_>>) -> (f64, f64) {
+    fn relative_index(&self, wavelength_nm: f64, interface: Option<Interface<'_>>) -> (f64, f64) {
         let (n, k) = self.index.eval(wavelength_nm);
         let around = interface.map_or(1.0, |media| media.incident.eval(wavelength_nm));
         (n / around, k / around)
+    }
+
+    /// What reflection at the cosine `cos` does to polarised light.
+    pub(super) fn mueller(&self, wavelength_nm: f64, cos: f64, interface: Option<Interface<'_>>) -> Matrix {
+        let (n, k) = self.relative_index(wavelength_nm, interface);
+        mueller::conductor_reflection(cos, n, k)
     }
 
     pub(super) fn sample<R: Real, const N: usize>(

@@ -8,6 +8,7 @@ use super::BsdfSample;
 use crate::compiled;
 use crate::media::Interface;
 use crate::mis::Density;
+use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel, snell};
 
 /// Smooth interface of two transparent media.
@@ -26,12 +27,27 @@ impl Dielectric {
     }
 
     /// n_transmitted / n_incident for a path that arrives on the outside, or on the inside.
-    pub(super) fn eta(&self, lambda_nm: f64, from_outside: bool, interface: Option<Interface<'_>>) -> f64 {
+    fn eta(&self, lambda_nm: f64, from_outside: bool, interface: Option<Interface<'_>>) -> f64 {
         if let Some(media) = interface {
             return media.transmitted.eval(lambda_nm) / media.incident.eval(lambda_nm);
         }
         let (inside, outside) = (self.interior.eval(lambda_nm), self.exterior.eval(lambda_nm));
         if from_outside { inside / outside } else { outside / inside }
+    }
+
+    /// What the interface does to polarised light that it turns at the cosine `cos`: seen from outside or not, reflected or not.
+    pub(super) fn mueller(
+        &self,
+        wavelength_nm: f64,
+        cos: f64,
+        (from_outside, reflects): (bool, bool),
+        interface: Option<Interface<'_>>,
+    ) -> Matrix {
+        let eta = self.eta(wavelength_nm, from_outside, interface);
+        match fresnel::refracted_cosine(cos, eta) {
+            Some(cos_t) if !reflects => mueller::dielectric_transmission(cos, eta, cos_t),
+            _ => mueller::dielectric_reflection(cos, eta),
+        }
     }
 
     pub(super) fn sample<R: Real, const N: usize>(

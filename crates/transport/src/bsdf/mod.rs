@@ -12,8 +12,10 @@ mod dielectric;
 mod lambert;
 mod microfacet;
 mod mirror;
+mod mueller;
 mod oren_nayar;
 mod plastic;
+mod polarising_sheet;
 mod rough_conductor;
 mod rough_dielectric;
 mod shading;
@@ -24,8 +26,10 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
+pub use mueller::Lobe;
 pub use oren_nayar::OrenNayar;
 pub use plastic::Plastic;
+pub use polarising_sheet::PolarisingSheet;
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
@@ -33,10 +37,9 @@ pub use thin_dielectric::ThinDielectric;
 
 use crate::compiled;
 use crate::mis::Density;
-use crate::polarisation::{self, Retarder};
 use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
-use etalon_optics::{Lanes, Real, Vec3, fresnel};
+use etalon_optics::{Lanes, Real, Vec3};
 use etalon_scene::MaterialKind;
 
 /// A direction drawn from a BSDF.
@@ -90,6 +93,8 @@ pub enum Bsdf {
     Plastic(Plastic),
     /// A thin pane.
     ThinDielectric(ThinDielectric),
+    /// A polariser or a retarder.
+    PolarisingSheet(PolarisingSheet),
     /// A mixture of two.
     Blend(Blend),
     /// No scattering at all.
@@ -125,6 +130,7 @@ impl Bsdf {
             MaterialKind::ThinDielectric { index } => {
                 Self::ThinDielectric(ThinDielectric::new(index.clone(), range_nm))
             }
+            MaterialKind::PolarisingSheet { sheet, .. } => Self::PolarisingSheet(PolarisingSheet::new(sheet, range_nm)),
             MaterialKind::Blend { first, second, weight } => {
                 Self::Blend(Blend::new(Self::new(first, range_nm), Self::new(second, range_nm), *weight))
             }
@@ -142,7 +148,12 @@ impl Bsdf {
             | Self::OrenNayar(_)
             | Self::Plastic(_) => true,
             Self::Blend(blend) => blend.has_solid_angle_part(),
-            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Black => false,
+            Self::Mirror(_)
+            | Self::Conductor(_)
+            | Self::Dielectric(_)
+            | Self::ThinDielectric(_)
+            | Self::PolarisingSheet(_)
+            | Self::Black => false,
         }
     }
 
@@ -194,9 +205,12 @@ impl Bsdf {
             Self::OrenNayar(rough) => rough.eval(lambda_nm, n, wo, wi),
             Self::Plastic(plastic) => plastic.eval(lambda_nm, n, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
-            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Black => {
-                (Lanes::ZERO, Lanes::ZERO)
-            }
+            Self::Mirror(_)
+            | Self::Conductor(_)
+            | Self::Dielectric(_)
+            | Self::ThinDielectric(_)
+            | Self::PolarisingSheet(_)
+            | Self::Black => (Lanes::ZERO, Lanes::ZERO),
         }
     }
 
@@ -222,50 +236,10 @@ impl Bsdf {
             Self::OrenNayar(rough) => rough.sample(lambda_nm, n, wo, [u[1], u[2]]),
             Self::Plastic(plastic) => plastic.sample(lambda_nm, n, wo, u),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, n, wo, u[0]),
+            Self::PolarisingSheet(sheet) if compiled::SPECULAR_CHAINS => sheet.sample(lambda_nm, wo),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
             // Left out of this build.
-            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Black => None,
-        }
-    }
-
-    /// What it does to the polarisation of light that comes along −`wi` and leaves along `wo`; `None` depolarises.
-    pub(crate) fn retarder<R: Real, const N: usize>(
-        &self,
-        lambda_nm: &Lanes<f64, N>,
-        at: &Shading<'_>,
-        wo: Vec3<f64>,
-        wi: Vec3<f64>,
-    ) -> Option<Retarder<R, N>> {
-        let n = at.shading_normal();
-        let cos = n.dot(wo).abs().min(1.0);
-        let of = |matrix: &dyn Fn(f64) -> [f64; 3]| {
-            let lanes = lambda_nm.0.map(matrix);
-            let part = |i: usize| Lanes::from_fn(|lane| R::from_f64(lanes[lane][i]));
-            Some(Retarder { a: part(0), c: part(1), d: part(2) })
-        };
-        match self {
-            Self::Mirror(_) => of(&|_| [0.0, -1.0, 0.0]),
-            Self::Conductor(metal) => of(&|nm| {
-                let (n, k) = metal.relative_index(nm, at.media());
-                polarisation::conductor_reflection(cos, n, k)
-            }),
-            Self::Dielectric(glass) => {
-                let reflects = at.normal.dot(wo) * at.normal.dot(wi) > 0.0;
-                of(&|nm| {
-                    let eta = glass.eta(nm, n.dot(wo) > 0.0, at.media());
-                    match fresnel::refracted_cosine(cos, eta) {
-                        Some(cos_t) if !reflects => polarisation::dielectric_transmission(cos, eta, cos_t),
-                        _ => polarisation::dielectric_reflection(cos, eta),
-                    }
-                })
-            }
-            Self::Lambert(_) | Self::OrenNayar(_) | Self::Black => None,
-            // A study of polarisation refuses scenes with these.
-            Self::RoughConductor(_)
-            | Self::RoughDielectric(_)
-            | Self::Plastic(_)
-            | Self::ThinDielectric(_)
-            | Self::Blend(_) => None,
+            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::PolarisingSheet(_) | Self::Black => None,
         }
     }
 
@@ -278,7 +252,7 @@ impl Bsdf {
             Self::Blend(blend) => blend.takes_medium(),
             // Their tables, and the coat, are made for vacuum; a pane's index is relative.
             Self::RoughConductor(_) | Self::Plastic(_) | Self::ThinDielectric(_) => false,
-            Self::Lambert(_) | Self::Mirror(_) | Self::OrenNayar(_) | Self::Black => false,
+            Self::Lambert(_) | Self::Mirror(_) | Self::OrenNayar(_) | Self::PolarisingSheet(_) | Self::Black => false,
         }
     }
 }

@@ -8,9 +8,11 @@
 
 use super::BsdfSample;
 use super::albedo::LossTable;
-use super::microfacet::{Facing, Ggx, mean_over_facets};
+use super::microfacet::{Facet, Facing, Ggx, mean_over_facets};
+use super::mueller::{Lobe, PolarisedLoss};
 use super::rough_dielectric::mean_transmittance;
 use crate::mis::Density;
+use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel};
@@ -34,6 +36,10 @@ struct Rough {
     ggx: Ggx,
     /// T(µ).
     transmittance: LossTable,
+    /// The least and the largest index.
+    eta: [f64; 2],
+    /// What the coat lets in of polarised light, where that is carried.
+    polarised: Option<PolarisedLoss>,
 }
 
 impl Plastic {
@@ -48,7 +54,7 @@ impl Plastic {
             let transmittance = LossTable::new(eta, 1e-3, |mu, eta| {
                 1.0 - mean_over_facets(&ggx, mu, |facet| reflected(facet.cos, eta) * facet.mirrored)
             });
-            Box::new(Rough { ggx, transmittance })
+            Box::new(Rough { ggx, transmittance, eta, polarised: None })
         });
         let mean_transmittance = PathSpectrum::tabulate(range_nm, |nm| match &rough {
             Some(rough) => rough.transmittance.average(coat.eval(nm)),
@@ -74,6 +80,55 @@ impl Plastic {
         match &self.rough {
             Some(rough) => rough.transmittance.eval(mu, index),
             None => fresnel::dielectric(mu.min(1.0), index).map_or(0.0, |f| f.transmittance),
+        }
+    }
+
+    /// By how much the coat prefers light that swings across the plane of incidence on its way in or out: (T_s − T_p)/(T_s + T_p).
+    fn diattenuation(&self, mu: f64, index: f64) -> f64 {
+        match &self.rough {
+            Some(rough) => rough.polarised.as_ref().map_or(0.0, |polarised| polarised.eval(mu, index)),
+            None => fresnel::dielectric(mu.min(1.0), index)
+                .map_or(0.0, |f| mueller::dielectric_transmission(mu.min(1.0), index, f.cos_t)[0][1]),
+        }
+    }
+
+    /// What it does to polarised light, in the frames of `x`: the coat reflects as a dielectric, and what the ground has
+    /// depolarised leaves by the coat, and has come in by it.
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<f64>,
+        (wo, wi, x): (Vec3<f64>, Vec3<f64>, Vec3<f64>),
+        lobe: Lobe,
+    ) -> Option<[Matrix; N]> {
+        let facing = Facing::new(n, wo)?;
+        let (local_o, local_i) = (facing.wo, facing.local(wi));
+        if lobe != Lobe::SolidAngle {
+            return Some(lambda_nm.0.map(|nm| mueller::dielectric_reflection(local_o.z.min(1.0), self.coat.eval(nm))));
+        }
+        let facets = self.rough.as_ref().map(|rough| rough.ggx.reflection(local_o, local_i));
+        Some(lambda_nm.0.map(|nm| {
+            let index = self.coat.eval(nm);
+            let coat = facets.as_ref().map_or((0.0, mueller::IDENTITY), |facets| {
+                let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
+                (reflectance * facets.term, mueller::dielectric_reflection(facets.cos, index))
+            });
+            let [(t_o, a_o), (t_i, a_i)] =
+                [local_o.z, local_i.z].map(|mu| (self.transmittance(mu, index), self.diattenuation(mu, index)));
+            let ground = t_o * t_i * self.ground(nm) * FRAC_1_PI;
+            mueller::mixed([coat, (ground, super::mueller::forgotten(n, (wo, wi, x), a_o, a_i))])
+        }))
+    }
+
+    /// Makes the table that [`Plastic::mueller`] needs: what the facets of a rough coat do not reflect of each state they let in.
+    pub(super) fn prepare_polarisation(&mut self) {
+        if let Some(rough) = &mut self.rough {
+            let passed = |facet: &Facet, eta: f64| {
+                let Some(f) = fresnel::dielectric(facet.cos, eta) else { return [1.0 - facet.mirrored, 0.0] };
+                let difference = 0.5 * (f.r_s * f.r_s - f.r_p * f.r_p);
+                [1.0 - f.reflectance * facet.mirrored, -difference * facet.mirrored]
+            };
+            rough.polarised = Some(PolarisedLoss::new(rough.eta, &rough.ggx, passed));
         }
     }
 

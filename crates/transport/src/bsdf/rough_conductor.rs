@@ -7,6 +7,7 @@
 use super::BsdfSample;
 use super::albedo::LossTable;
 use super::microfacet::{Facing, Ggx, gauss_rule, mean_over_facets};
+use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
 use etalon_optics::{ComplexIndex, Lanes, Real, Vec3, fresnel};
 use std::f64::consts::FRAC_1_PI;
@@ -76,6 +77,29 @@ impl RoughConductor {
         let diffuse = self.compensation.as_ref().map_or(0.0, |c| c.loss.density(wi.z));
         let density = (1.0 - loss) * single.density + loss * diffuse;
         (f_cos, Lanes::splat(R::from_f64(density)))
+    }
+
+    /// What it does to polarised light: its facets reflect as smooth metal does, light that meets several forgets.
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
+    ) -> Option<[Matrix; N]> {
+        let facing = Facing::new(n, wo)?;
+        let (wo, wi) = (facing.wo, facing.local(wi));
+        let single = self.ggx.reflection(wo, wi);
+        let several = self.loss(wo.z) * self.loss(wi.z);
+        Some(lambda_nm.0.map(|nm| {
+            let (eta, k) = self.index.eval(nm);
+            let facet = fresnel::conductor(single.cos, eta, k).reflectance * single.term;
+            let forgotten = self.compensation.as_ref().map_or(0.0, |c| several * c.factor.eval(nm));
+            mueller::mixed([
+                (facet, mueller::conductor_reflection(single.cos, eta, k)),
+                (forgotten, mueller::DEPOLARISER),
+            ])
+        }))
     }
 
     pub(super) fn sample<R: Real, const N: usize>(

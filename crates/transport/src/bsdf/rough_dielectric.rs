@@ -16,8 +16,10 @@
 
 use super::BsdfSample;
 use super::albedo::LossTable;
-use super::microfacet::{Facing, Ggx, gauss_rule, mean_over_facets};
+use super::microfacet::{Facet, Facing, Ggx, gauss_rule, mean_over_facets};
+use super::mueller::PolarisedLoss;
 use crate::mis::Density;
+use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
 use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel, snell};
 use std::f64::consts::FRAC_1_PI;
@@ -39,6 +41,21 @@ struct Compensation {
     inside: LossTable,
     /// Mean of Fresnel's T over diffuse light from outside, at each wavelength.
     transmittance: PathSpectrum,
+    /// The least and the largest η.
+    eta: [f64; 2],
+    /// What losses do to polarised light, from outside and from inside, where that is carried.
+    polarised: Option<Box<[PolarisedLoss; 2]>>,
+}
+
+/// What [`RoughDielectric::between`] finds.
+struct Between {
+    /// What one facet scatters, sr⁻¹, and the cosine at which light meets it, from above where it refracts.
+    facet: Option<(f64, f64)>,
+    /// What light that meets several adds, sr⁻¹.
+    several: f64,
+    density: f64,
+    /// n of the side of `wi`, refracted, over that of `wo`: as Fresnel's equations take it.
+    eta: f64,
 }
 
 /// The interface at one wavelength, seen from the side of `wo`: index 0 is that side, 1 the other.
@@ -90,6 +107,8 @@ impl RoughDielectric {
                 outside: LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, eta)),
                 inside: LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, 1.0 / eta)),
                 transmittance: PathSpectrum::tabulate(range_nm, |nm| mean_transmittance(ratio(nm))),
+                eta,
+                polarised: None,
             })
         });
         Self { interior, exterior, ggx, dispersive, compensation }
@@ -112,49 +131,107 @@ impl RoughDielectric {
         Sides { n, tables: Some((eta, [near, far])), loss_o: near.eval(mu, eta), mean_loss, crossing }
     }
 
-    /// f·|cos θ_i| and the density of `wi` at one wavelength.
-    fn at(&self, wavelength_nm: f64, from_outside: bool, wo: Vec3<f64>, wi: Vec3<f64>) -> (f64, f64) {
+    /// What one wavelength does between two directions; `None` where there is nothing, and `sample` passes straight through.
+    fn between(&self, wavelength_nm: f64, from_outside: bool, wo: Vec3<f64>, wi: Vec3<f64>) -> Option<Between> {
         let sides = self.sides(wavelength_nm, from_outside, wo.z);
         let eta = sides.n[1] / sides.n[0];
         if eta == 1.0 {
-            // Nothing there: `sample` passes straight through.
-            return (0.0, 0.0);
+            return None;
         }
         let mu = wi.z.abs();
-        if wi.z > 0.0 {
+        let (mut facet, mut density) = (None, 0.0);
+        let (side, share, per) = if wi.z > 0.0 {
             let facets = self.ggx.reflection(wo, wi);
             let reflectance = fresnel::dielectric(facets.cos, eta).map_or(1.0, |f| f.reflectance);
-            let (mut f, mut density) = (reflectance * facets.term, reflectance * facets.density);
-            if sides.loss_o > 0.0 {
-                let kept = 1.0 - sides.crossing;
-                let loss_i = sides.loss_i(0, mu);
-                f += kept * sides.loss_o * loss_i * FRAC_1_PI / sides.mean_loss[0];
-                density = (1.0 - sides.loss_o) * density + sides.loss_o * kept * sides.diffuse(0, mu);
-            }
-            return (f * mu, density);
-        }
-        // In an order that does not depend on which of the two is `wo`, so that the BSDF is reciprocal to the last bits.
-        let facets = if from_outside {
-            self.ggx.refraction(wo, sides.n[0], wi, sides.n[1])
+            facet = Some((reflectance * facets.term, facets.cos));
+            density = reflectance * facets.density;
+            (0, 1.0 - sides.crossing, 1.0)
         } else {
-            self.ggx.refraction(-wi, sides.n[1], -wo, sides.n[0])
-        };
-        let (mut f, mut density) = (0.0, 0.0);
-        if let Some(facets) = facets {
-            let (eta_above, g_o) =
-                if from_outside { (eta, facets.g_above) } else { (sides.n[0] / sides.n[1], facets.g_below) };
-            let transmittance = fresnel::dielectric(facets.cos_above, eta_above).map_or(0.0, |f| f.transmittance);
-            f = transmittance * facets.common * facets.g_above * facets.g_below * (sides.n[0] * sides.n[0]);
-            density = transmittance * facets.common * g_o * (sides.n[1] * sides.n[1]);
-        }
-        if sides.loss_o > 0.0 {
-            let loss_i = sides.loss_i(1, mu);
-            if sides.mean_loss[1] > 0.0 {
-                f += sides.crossing * sides.loss_o * loss_i * FRAC_1_PI / (sides.mean_loss[1] * eta * eta);
+            // In an order that does not depend on which of the two is `wo`, so that the BSDF is reciprocal to the last bits.
+            let facets = if from_outside {
+                self.ggx.refraction(wo, sides.n[0], wi, sides.n[1])
+            } else {
+                self.ggx.refraction(-wi, sides.n[1], -wo, sides.n[0])
+            };
+            if let Some(facets) = facets {
+                let (eta_above, g_o) =
+                    if from_outside { (eta, facets.g_above) } else { (sides.n[0] / sides.n[1], facets.g_below) };
+                let transmittance = fresnel::dielectric(facets.cos_above, eta_above).map_or(0.0, |f| f.transmittance);
+                let f = transmittance * facets.common * facets.g_above * facets.g_below * (sides.n[0] * sides.n[0]);
+                facet = Some((f, facets.cos_above));
+                density = transmittance * facets.common * g_o * (sides.n[1] * sides.n[1]);
             }
-            density = (1.0 - sides.loss_o) * density + sides.loss_o * sides.crossing * sides.diffuse(1, mu);
+            (1, sides.crossing, eta * eta)
+        };
+        let mut several = 0.0;
+        if sides.loss_o > 0.0 {
+            let loss_i = sides.loss_i(side, mu);
+            if sides.mean_loss[side] > 0.0 {
+                several = share * sides.loss_o * loss_i * FRAC_1_PI / (sides.mean_loss[side] * per);
+            }
+            density = (1.0 - sides.loss_o) * density + sides.loss_o * share * sides.diffuse(side, mu);
         }
-        (f * mu, density)
+        Some(Between { facet, several, density, eta })
+    }
+
+    /// f·|cos θ_i| and the density of `wi` at one wavelength.
+    fn at(&self, wavelength_nm: f64, from_outside: bool, wo: Vec3<f64>, wi: Vec3<f64>) -> (f64, f64) {
+        let Some(Between { facet, several, density, .. }) = self.between(wavelength_nm, from_outside, wo, wi) else {
+            return (0.0, 0.0);
+        };
+        ((facet.map_or(0.0, |(f, _)| f) + several) * wi.z.abs(), density)
+    }
+
+    /// What it does to polarised light, in the frames of `x`: its facets do as a smooth interface, light that meets several
+    /// forgets all but the way in and out.
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        n: Vec3<f64>,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
+        x: Vec3<f64>,
+    ) -> Option<[Matrix; N]> {
+        let from_outside = n.dot(wo) > 0.0;
+        let facing = Facing::new(n, wo)?;
+        let (local_o, local_i) = (facing.wo, facing.local(wi));
+        Some(lambda_nm.0.map(|nm| {
+            let Some(Between { facet, several, eta, .. }) = self.between(nm, from_outside, local_o, local_i) else {
+                return mueller::IDENTITY;
+            };
+            let (single, cos) = facet.unwrap_or((0.0, 1.0));
+            let matrix = if local_i.z > 0.0 {
+                mueller::dielectric_reflection(cos, eta)
+            } else {
+                // The facet's cosine is that above.
+                let eta = if from_outside { eta } else { 1.0 / eta };
+                let cos_t = fresnel::refracted_cosine(cos, eta).unwrap_or(0.0);
+                mueller::dielectric_transmission(cos, eta, cos_t)
+            };
+            let forgotten = match self.compensation.as_ref().and_then(|c| c.polarised.as_deref()) {
+                Some([outside, inside]) => {
+                    let (near, far) = if from_outside { (outside, inside) } else { (inside, outside) };
+                    let side_i = if local_i.z > 0.0 { near } else { far };
+                    // The tables are over interior/exterior.
+                    let eta = if from_outside { eta } else { 1.0 / eta };
+                    let (a_o, a_i) = (near.eval(local_o.z, eta), side_i.eval(local_i.z.abs(), eta));
+                    super::mueller::forgotten(n, (wo, wi, x), a_o, a_i)
+                }
+                None => mueller::DEPOLARISER,
+            };
+            mueller::mixed([(single, matrix), (several, forgotten)])
+        }))
+    }
+
+    /// Makes the tables that [`RoughDielectric::mueller`] needs.
+    pub(super) fn prepare_polarisation(&mut self) {
+        if let Some(compensation) = &mut self.compensation {
+            let eta = compensation.eta;
+            compensation.polarised = Some(Box::new([
+                PolarisedLoss::new(eta, &self.ggx, |facet, eta| polarised_loss(&self.ggx, facet, eta)),
+                PolarisedLoss::new(eta, &self.ggx, |facet, eta| polarised_loss(&self.ggx, facet, 1.0 / eta)),
+            ]));
+        }
     }
 
     pub(super) fn eval<R: Real, const N: usize>(
@@ -240,10 +317,24 @@ fn loss(ggx: &Ggx, mu: f64, eta: f64) -> f64 {
     }
     mean_over_facets(ggx, mu, |facet| {
         let Some(f) = fresnel::dielectric(facet.cos, eta) else { return 1.0 - facet.mirrored };
-        let wi = snell::refract_with_cosines(facet.wo, facet.h, eta, facet.cos, f.cos_t);
-        let passed = if wi.z < 0.0 { -2.0 * wi.z / (-wi.z + ggx.stretch(wi)) } else { 0.0 };
-        f.reflectance * (1.0 - facet.mirrored) + f.transmittance * (1.0 - passed)
+        f.reflectance * (1.0 - facet.mirrored) + f.transmittance * (1.0 - passed(ggx, facet, eta, f.cos_t))
     })
+}
+
+/// Share of the light refracted by a facet that no other one stops.
+fn passed(ggx: &Ggx, facet: &Facet, eta: f64, cos_t: f64) -> f64 {
+    let wi = snell::refract_with_cosines(facet.wo, facet.h, eta, facet.cos, cos_t);
+    if wi.z < 0.0 { -2.0 * wi.z / (-wi.z + ggx.stretch(wi)) } else { 0.0 }
+}
+
+/// What a facet loses of unpolarised light, and of S₁ in its own frame: T_s − T_p = R_p − R_s.
+fn polarised_loss(ggx: &Ggx, facet: &Facet, eta: f64) -> [f64; 2] {
+    let Some(f) = fresnel::dielectric(facet.cos, eta).filter(|_| eta != 1.0) else {
+        return [1.0 - facet.mirrored, 0.0];
+    };
+    let passed = passed(ggx, facet, eta, f.cos_t);
+    let lost = f.reflectance * (1.0 - facet.mirrored) + f.transmittance * (1.0 - passed);
+    [lost, 0.5 * (f.r_s * f.r_s - f.r_p * f.r_p) * (passed - facet.mirrored)]
 }
 
 /// Mean of Fresnel's T over diffuse light that arrives at an interface of relative index `eta`.

@@ -32,6 +32,8 @@ pub struct Shading<'a> {
     bent: Option<Vec3<f64>>,
     /// Texture coordinates; 0 on a surface without.
     pub uv: [f64; 2],
+    /// The axis of a polarising sheet; 0 on other surfaces.
+    pub axis: Vec3<f64>,
     /// The media on both sides, where the place decides them and not the material.
     media: Option<Interface<'a>>,
 }
@@ -39,13 +41,19 @@ pub struct Shading<'a> {
 impl<'a> Shading<'a> {
     /// Of a surface that is what it looks like, without texture coordinates.
     pub fn flat(normal: Vec3<f64>) -> Self {
-        Self { normal, bent: None, uv: [0.0; 2], media: None }
+        Self { normal, bent: None, uv: [0.0; 2], axis: Vec3::new(0.0, 0.0, 0.0), media: None }
     }
 
     /// The same with texture coordinates.
     #[must_use]
     pub fn with_uv(self, uv: [f64; 2]) -> Self {
         Self { uv, ..self }
+    }
+
+    /// The same with the axis of a polarising sheet.
+    #[must_use]
+    pub fn with_axis(self, axis: Vec3<f64>) -> Self {
+        Self { axis, ..self }
     }
 
     /// The same between two media.
@@ -112,6 +120,11 @@ pub(super) fn eval<R: Real, const N: usize>(
         }
     }
     sum
+}
+
+/// The directions as the BSDF takes them, of two around a bent normal: of those that `wi` may stand for the first.
+pub(super) fn as_scattered(at: &Shading<'_>, wo: Vec3<f64>, wi: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>) {
+    (at.viewer(wo), if at.belongs(wi, wi) { wi } else { at.mirrored(wi) })
 }
 
 /// [`Bsdf::sample`] around a bent normal.

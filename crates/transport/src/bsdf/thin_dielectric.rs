@@ -1,10 +1,11 @@
 //! A pane too thin to see its thickness, on both sides the same medium: light passes straight on or is mirrored, after any
-//! number of internal reflections. With R of one face, R + T²R + T²R³ + … = 2R/(1 + R) is reflected and the rest transmitted,
-//! added without interference.
+//! number of internal reflections, added without interference ([`mueller::pane`]). Between its two faces s and p go their own
+//! ways: a pane is one surface, which treats the light that it is given as unpolarised, but not what is within it.
 
 use super::BsdfSample;
 use crate::mis::Density;
-use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel};
+use crate::polarisation::mueller::{self, Matrix};
+use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3};
 
 /// A thin pane.
 #[derive(Clone, Debug)]
@@ -21,6 +22,12 @@ impl ThinDielectric {
         Self { index, reference }
     }
 
+    /// What the pane does to polarised light that meets it at the cosine `cos`.
+    pub(super) fn mueller(&self, wavelength_nm: f64, cos: f64, reflects: bool) -> Matrix {
+        let pane = mueller::pane(cos, self.index.eval(wavelength_nm));
+        if reflects { pane.reflection } else { pane.transmission }
+    }
+
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
@@ -30,9 +37,11 @@ impl ThinDielectric {
     ) -> Option<BsdfSample<R, N>> {
         // Rounding may carry the product of two unit vectors past 1.
         let cos = n.dot(wo).abs().min(1.0);
-        let reflects = u < pane(cos, self.reference)[0];
-        let side = usize::from(!reflects);
-        let share = |index: f64| pane(cos, index)[side];
+        let reflects = u < mueller::pane(cos, self.reference).reflectance;
+        let share = |index: f64| {
+            let pane = mueller::pane(cos, index);
+            if reflects { pane.reflectance } else { pane.transmittance }
+        };
         let probability = share(self.reference);
         Some(BsdfSample {
             wi: if reflects { wo.reflected_about(n).renormalized() } else { -wo },
@@ -42,12 +51,4 @@ impl ThinDielectric {
             eta: 1.0,
         })
     }
-}
-
-/// Shares of light that a pane reflects and transmits: 2R/(1 + R) and T/(1 + R).
-fn pane(cos: f64, index: f64) -> [f64; 2] {
-    // From a pane that is thinner optically than what surrounds it, total reflection returns all.
-    let Some(f) = fresnel::dielectric(cos, index) else { return [1.0, 0.0] };
-    let both = 1.0 + f.reflectance;
-    [2.0 * f.reflectance / both, f.transmittance / both]
 }

@@ -32,6 +32,7 @@ fn refraction(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<f64> {
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Plastic { .. }
         | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::PolarisingSheet { .. }
         | MaterialKind::Lambert { .. }
         | MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }

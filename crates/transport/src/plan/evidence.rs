@@ -4,7 +4,8 @@ use super::EffectName;
 use super::grey::{same_shape, steps};
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, fresnel};
 use etalon_scene::{
-    Filter, Light, LightKind, LightSampling, Material, MaterialKind, Object, Projection, Scene, Shape, SpectrumTexture,
+    Filter, Light, LightKind, LightSampling, Material, MaterialKind, Object, PolarisingSheet, Projection, Scene, Shape,
+    SpectrumTexture,
 };
 
 /// What calls for an effect (`Ok`), or why nothing does (`Err`).
@@ -86,6 +87,7 @@ fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Plastic { .. }
         | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::PolarisingSheet { .. }
         | MaterialKind::Black => None,
         MaterialKind::Blend { first, second, .. } => {
             dispersion(first, range_nm).or_else(|| dispersion(second, range_nm))
@@ -117,6 +119,13 @@ fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
             false => Some(format!("reflectance {}", spread(range_nm, |nm| reflectance.eval(nm)))),
         },
         MaterialKind::ThinDielectric { index } => index.is_dispersive().then(|| index_range(index, range_nm)),
+        MaterialKind::PolarisingSheet { sheet, .. } => match sheet {
+            PolarisingSheet::Polariser { transmittance, .. } => (!transmittance.is_constant())
+                .then(|| format!("transmittance {}", spread(range_nm, |nm| transmittance.eval(nm)))),
+            PolarisingSheet::Retarder { retardance_rad, at_nm } => at_nm.map(|at_nm| {
+                format!("retardance in degrees {}", spread(range_nm, |nm| retardance_rad.to_degrees() * at_nm / nm))
+            }),
+        },
         MaterialKind::Blend { first, second, .. } => colour(first, range_nm).or_else(|| colour(second, range_nm)),
         MaterialKind::Black => None,
     }
@@ -147,6 +156,7 @@ fn specular(kind: &MaterialKind) -> Option<String> {
         MaterialKind::Conductor { .. } => Some("smooth metal".to_owned()),
         MaterialKind::Dielectric { .. } => Some("a smooth interface of two media".to_owned()),
         MaterialKind::ThinDielectric { .. } => Some("a thin pane".to_owned()),
+        MaterialKind::PolarisingSheet { sheet, .. } => Some(sheet_name(sheet).to_owned()),
         MaterialKind::Blend { first, second, .. } => specular(first).or_else(|| specular(second)),
         MaterialKind::Lambert { .. }
         | MaterialKind::RoughConductor { .. }
@@ -166,6 +176,7 @@ fn nested(kind: &MaterialKind) -> Option<String> {
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Plastic { .. }
         | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::PolarisingSheet { .. }
         | MaterialKind::Blend { .. }
         | MaterialKind::Lambert { .. }
         | MaterialKind::Mirror { .. }
@@ -177,16 +188,28 @@ fn nested(kind: &MaterialKind) -> Option<String> {
 /// Why polarisation is not carried where it could make no difference.
 pub(super) const UNPOLARISED: &str = "no surface polarises light";
 
-/// Whether polarisation is carried: only where it is asked for. Where it could matter, how much it could.
+/// Whether polarisation is carried. Where it is not but could matter, how much it could.
 pub(super) fn polarisation(scene: &Scene, asked_for: bool) -> Result<String, String> {
     if asked_for {
         return Ok("asked for by --polarised".to_owned());
+    }
+    let sheet = first_surface(scene, |material, _| match &material.kind {
+        MaterialKind::PolarisingSheet { sheet, .. } => Some(sheet_name(sheet).to_owned()),
+        _ => None,
+    });
+    if let Some(found) = sheet {
+        return Ok(found);
+    }
+    if scene.film.stokes {
+        return Ok("film: stokes".to_owned());
     }
     let worst = scene
         .placed_objects()
         .filter_map(|object| {
             let material = &scene.materials[object.material];
-            polarises(&material.kind).map(|(share, how)| (share, format!("{}: {how}", surface(object, material))))
+            let range_nm = scene.integrator.wavelength_range_nm;
+            let (share, how) = polarises(&material.kind, range_nm)?;
+            Some((share, format!("{}: {how}", surface(object, material))))
         })
         // The first of the worst.
         .reduce(|worst, other| if other.0 > worst.0 { other } else { worst });
@@ -196,37 +219,71 @@ pub(super) fn polarisation(scene: &Scene, asked_for: bool) -> Result<String, Str
     }
 }
 
-/// By which share averaging s and p at a surface can be off after two of them, (R_s − R_p)²/(R_s + R_p)² at its largest, and
-/// that in words.
-fn polarises(kind: &MaterialKind) -> Option<(f64, String)> {
+fn sheet_name(sheet: &PolarisingSheet) -> &'static str {
+    match sheet {
+        PolarisingSheet::Polariser { .. } => "a polariser",
+        PolarisingSheet::Retarder { .. } => "a retarder",
+    }
+}
+
+/// By which share averaging s and p at a surface can be off after two of them, and that in words: two surfaces of diattenuation
+/// a = (A_s − A_p)/(A_s + A_p) each hand on 1 + a² of what the averages do where their planes of incidence are parallel, and 1 − a²
+/// where they are crossed.
+fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
     match kind {
-        // At Brewster's angle.
-        MaterialKind::Dielectric { .. } => {
-            let how = "up to a factor of 2 after two reflections, by 3.6 % behind a plate of index 1.5 at 75°";
-            Some((1.0, how.to_owned()))
+        MaterialKind::Dielectric { interior, exterior, .. }
+        | MaterialKind::RoughDielectric { interior, exterior, .. } => {
+            let [interior, exterior] = [interior, exterior].map(|index| index.eval(middle(range_nm)));
+            glass(interior / exterior)
         }
-        MaterialKind::Conductor { index } => {
-            let nm = 555.0_f64.clamp(index.range_nm()[0], index.range_nm()[1]);
-            let (n, k) = index.eval(nm);
-            let most = (1..1000)
-                .map(|i| {
-                    let f = fresnel::conductor(f64::from(i) / 1000.0, n, k);
-                    ((f.reflectance_s - f.reflectance_p) / (f.reflectance_s + f.reflectance_p)).abs()
-                })
-                .fold(0.0, f64::max);
+        MaterialKind::Plastic { coat, .. } => glass(coat.eval(middle(range_nm))),
+        MaterialKind::ThinDielectric { index } => glass(index.eval(middle(range_nm))),
+        MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
+            let (n, k) = index.eval(middle(range_nm));
+            let at = |cos: f64| {
+                let f = fresnel::conductor(cos, n, k);
+                ((f.reflectance_s - f.reflectance_p) / (f.reflectance_s + f.reflectance_p)).abs()
+            };
+            let (most, cos) = (1..1000)
+                .map(|i| f64::from(i) / 1000.0)
+                .map(|cos| (at(cos), cos))
+                .fold((0.0, 0.0), |most, other| if other.0 > most.0 { other } else { most });
             let share = most * most;
-            Some((share, format!("up to {:.2} % after two reflections", 100.0 * share)))
+            let degrees = cos.acos().to_degrees();
+            Some((share, format!("up to {:.2} % after two reflections, at {degrees:.0}°", 100.0 * share)))
         }
-        MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Plastic { .. } => {
-            Some((1.0, "its polarisation is not simulated".to_owned()))
+        MaterialKind::Blend { first, second, .. } => {
+            let worst = [first, second].into_iter().filter_map(|part| polarises(part, range_nm));
+            worst.reduce(|worst, other| if other.0 > worst.0 { other } else { worst })
         }
-        MaterialKind::ThinDielectric { .. } => Some((1.0, "its polarisation is not simulated".to_owned())),
-        MaterialKind::Blend { first, second, .. } => polarises(first).or_else(|| polarises(second)),
+        // A mirror treats s and p alike; sheets call for polarisation themselves.
         MaterialKind::Lambert { .. }
         | MaterialKind::Mirror { .. }
+        | MaterialKind::PolarisingSheet { .. }
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Black => None,
     }
+}
+
+/// [`polarises`] of an interface of relative index `n`: reflection at Brewster's angle leaves s alone; and what a plate passes on
+/// at 75°, followed for s and p each, against the averages at each face.
+fn glass(n: f64) -> Option<(f64, String)> {
+    if n == 1.0 {
+        return None;
+    }
+    let brewster = n.atan().to_degrees();
+    let plate = |reflectance: f64| (1.0 - reflectance) / (1.0 + reflectance);
+    let behind = fresnel::dielectric(75_f64.to_radians().cos(), n).map(|f| {
+        let polarised = 0.5 * (plate(f.r_s * f.r_s) + plate(f.r_p * f.r_p));
+        format!(", {:.1} % behind a plate at 75°", 100.0 * (polarised / plate(f.reflectance) - 1.0))
+    });
+    let behind = behind.unwrap_or_default();
+    Some((1.0, format!("up to a factor of 2 after two reflections at {brewster:.1}°{behind} (n {n:.3})")))
+}
+
+/// The helium line d, at which catalogues state indices, or the wavelength of the range nearest to it.
+pub(super) fn middle([first, last]: [f64; 2]) -> f64 {
+    587.5618_f64.clamp(first, last)
 }
 
 /// Whether a shadow ray from the surface could find light.
@@ -242,6 +299,7 @@ fn is_diffuse(kind: &MaterialKind) -> bool {
         | MaterialKind::Conductor { .. }
         | MaterialKind::Dielectric { .. }
         | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::PolarisingSheet { .. }
         | MaterialKind::Black => false,
     }
 }

@@ -222,6 +222,8 @@ pub struct Plan {
     pub max_depth: Option<u32>,
     /// Whether Russian roulette ends paths.
     pub roulette: bool,
+    /// Whether the film holds S₁, S₂ and S₃.
+    pub stokes: bool,
     /// Each effect, on or off, with what called for it.
     pub effects: Vec<Effect>,
     /// What a study left out although the scene calls for it, with what the picture lacks: it is an approximation.
@@ -297,6 +299,7 @@ impl Plan {
             },
             max_depth: i.max_depth,
             roulette: i.roulette,
+            stokes: runs(EffectName::Polarisation) && (study.polarised || scene.film.stokes),
             effects,
             approximations,
         })

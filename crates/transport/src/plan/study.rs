@@ -1,12 +1,13 @@
 //! Renders of what a scene does not call for, and without what it does: for study.
 
-use super::{EffectName, evidence};
+use super::EffectName;
+use super::evidence::{self, middle};
 use crate::texture;
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_scene::{
-    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Object, Projection, Scene, Shape,
-    SpectrumTexture, Texels,
+    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Object, PolarisingSheet, Projection,
+    Scene, Shape, SpectrumTexture, Texels,
 };
 use std::sync::Arc;
 
@@ -59,23 +60,6 @@ impl Study {
     }
 
     pub(super) fn check(&self, scene: &Scene) -> Result<(), StudyError> {
-        let unknown = |object: &Object| match scene.materials[object.material].kind {
-            MaterialKind::RoughConductor { .. }
-            | MaterialKind::RoughDielectric { .. }
-            | MaterialKind::Plastic { .. }
-            | MaterialKind::ThinDielectric { .. }
-            | MaterialKind::Blend { .. } => true,
-            MaterialKind::Lambert { .. }
-            | MaterialKind::Mirror { .. }
-            | MaterialKind::Conductor { .. }
-            | MaterialKind::Dielectric { .. }
-            | MaterialKind::OrenNayar { .. }
-            | MaterialKind::Black => false,
-        };
-        if let Some(object) = scene.placed_objects().find(|object| self.polarised && unknown(object)) {
-            let because = format!("what the material of \"{}\" does to polarisation is not known", object.name);
-            return Err(StudyError::Contradicted { effect: EffectName::Polarisation, because });
-        }
         for &effect in &self.force {
             if self.leaves_out(effect) {
                 return Err(StudyError::Both(effect));
@@ -157,8 +141,8 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 }
             }
         }
-        // It is not in the scene.
-        EffectName::Polarisation => {}
+        // Sheets do to unpolarised light what they do, and no more.
+        EffectName::Polarisation => scene.film.stokes = false,
         EffectName::Textures => {
             for material in &mut scene.materials {
                 material.kind.change_textures(&|reflectance| {
@@ -207,6 +191,14 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
             *coat = index_at_middle(coat, range_nm);
         }
         MaterialKind::ThinDielectric { index } => *index = index_at_middle(index, range_nm),
+        MaterialKind::PolarisingSheet { sheet, .. } => match sheet {
+            PolarisingSheet::Polariser { transmittance, .. } => *transmittance = grey(transmittance, range_nm),
+            PolarisingSheet::Retarder { retardance_rad, at_nm } => {
+                if let Some(at_nm) = at_nm.take() {
+                    *retardance_rad *= at_nm / middle(range_nm);
+                }
+            }
+        },
         MaterialKind::Blend { first, second, .. } => {
             turn_grey(first, range_nm);
             turn_grey(second, range_nm);
@@ -235,6 +227,7 @@ fn fix_indices(kind: &mut MaterialKind, range_nm: [f64; 2]) {
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Plastic { .. }
         | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::PolarisingSheet { .. }
         | MaterialKind::Black => {}
     }
 }
@@ -245,7 +238,8 @@ fn blacken(kind: &mut MaterialKind) {
         MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
         | MaterialKind::Dielectric { .. }
-        | MaterialKind::ThinDielectric { .. } => *kind = MaterialKind::Black,
+        | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::PolarisingSheet { .. } => *kind = MaterialKind::Black,
         MaterialKind::Blend { first, second, .. } => {
             blacken(first);
             blacken(second);
@@ -261,11 +255,6 @@ fn blacken(kind: &mut MaterialKind) {
 
 fn index_at_middle(index: &RefractiveIndex, range_nm: [f64; 2]) -> RefractiveIndex {
     RefractiveIndex::constant(index.eval(middle(range_nm))).expect("an index of refraction is positive")
-}
-
-/// The helium line d, at which catalogues state indices, or the wavelength of the range nearest to it.
-fn middle([first, last]: [f64; 2]) -> f64 {
-    587.5618_f64.clamp(first, last)
 }
 
 /// The mean over the range, weighted by ȳ (plainly, where the eye sees nothing).

@@ -12,11 +12,12 @@ use crate::state::Subject;
 /// Bytes a pixel that writing a picture takes beside the film: seven channels, and their encoded form.
 const OF_PICTURE: u64 = 2 * 7 * 4;
 
-/// Refuses a picture that cannot be held.
-pub(super) fn check_memory(scene: &Scene, failure: &mut Failure) {
+/// Refuses a picture that cannot be held, with or without Stokes parameters.
+pub(super) fn check_memory(scene: &Scene, stokes: bool, failure: &mut Failure) {
     let (width, height) = (scene.film.width, scene.film.height);
     let film = Film::bytes(width, height, scene.integrator.replicates);
-    let needed = film + OF_PICTURE * u64::from(width) * u64::from(height);
+    let stokes = if stokes { Film::stokes_bytes(width, height, scene.integrator.replicates) } else { 0 };
+    let needed = film + stokes + OF_PICTURE * u64::from(width) * u64::from(height);
     if let Some(available) = memory_available().filter(|&available| needed > available) {
         failure.add(Failure::input(miette!(
             code = "too-large",
@@ -38,7 +39,7 @@ pub(super) fn check_disks(
     warnings: &mut Vec<Report>,
 ) {
     let pixels = subject.crop.area();
-    let sums = pixels * u64::from(subject.replicates) * 28;
+    let sums = pixels * u64::from(subject.replicates) * if subject.records_stokes() { 28 + 72 } else { 28 };
     for (number, output) in outputs.iter().enumerate() {
         let Some(room) = room_for(&output.path) else { continue };
         // While a checkpoint is written, the last one is still there.

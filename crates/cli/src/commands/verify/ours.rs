@@ -6,7 +6,7 @@ use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::{Reading, Renders};
 use etalon_oracle::truths::{Claim, Truth, judge};
 use etalon_scene::{Precision, Scene};
-use etalon_transport::{Control, Extent, prepare};
+use etalon_transport::{Control, Extent, Study, prepare_study};
 
 use super::report::{Report, Row};
 use super::{Args, PrecisionArg};
@@ -31,6 +31,8 @@ struct Etalon {
     /// In parts of the samples that the scene suggests, [`FIRST`] of them.
     effort: u64,
     precision: Precision,
+    /// Whether light is followed with its polarisation.
+    polarised: bool,
     threads: Option<usize>,
 }
 
@@ -51,7 +53,8 @@ impl Etalon {
 
     /// Mean Y of the whole film, and its non-finite samples.
     fn mean_y(&self, scene: &Scene) -> Result<(f64, u64), String> {
-        let prepared = prepare(scene).map_err(|error| error.to_string())?;
+        let study = Study { polarised: self.polarised, ..Study::default() };
+        let prepared = prepare_study(scene, &study).map_err(|error| error.to_string())?;
         let extent = Extent { threads: self.threads, ..prepared.whole(None) };
         let film = prepared.render(&extent, &|_| Control::Continue).map_err(|error| error.to_string())?;
         if film.counters.cut_paths > 0 {
@@ -79,8 +82,9 @@ impl Renders for Etalon {
 }
 
 pub(super) fn run(args: &Args, chosen: Vec<Truth>) -> Outcome {
-    // What we claim is plain radiance, polarisations averaged at every interface.
-    let chosen: Vec<Truth> = chosen.into_iter().filter(|truth| truth.applies_to(&Claim::UNPOLARISED)).collect();
+    // Plain radiance with polarisations averaged at every interface, or with polarisation, each where a truth wants it.
+    let claims = [&Claim::UNPOLARISED[..], &[Claim::CarriesPolarisation]].concat();
+    let chosen: Vec<Truth> = chosen.into_iter().filter(|truth| truth.applies_to(&claims)).collect();
     let budget = Budget::for_tests(chosen.len());
     let mut report = Report::new(!args.json).with_seed(args.seed);
     for truth in &chosen {
@@ -101,6 +105,7 @@ fn judged(args: &Args, truth: &Truth, significance: f64) -> Row {
             PrecisionArg::F32 => Precision::F32,
             PrecisionArg::F64 => Precision::F64,
         },
+        polarised: truth.claims.contains(&Claim::CarriesPolarisation),
         threads: args.threads.map(|threads| threads as usize),
     };
     let mut tries = 1;
