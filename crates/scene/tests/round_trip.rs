@@ -123,6 +123,7 @@ fn materials_and_spectra() {
             exterior: RefractiveIndex::Constant(1.33),
             alpha: 1.0,
             compensated: true,
+            priority: None,
         }
     );
     let terms = vec![SellmeierTerm { b: 1.039_612_12, c_um2: 0.006_000_698_67 }];

@@ -13,7 +13,7 @@ use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, ObjectSurface, Surfaces};
 use crate::wavelength::WavelengthDistribution;
 use etalon_geometry::{Geometry, GeometryError, ShapeError, SurfaceId};
-use etalon_optics::{Spectrum, Vec3};
+use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
 use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, Scene};
 
 /// A scene that is ready to be rendered.
@@ -122,6 +122,19 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         .collect();
     light_of.sort_unstable();
     let mut bsdfs: Vec<Bsdf> = scene.materials.iter().map(|material| Bsdf::new(&material.kind, range_nm)).collect();
+    if plan.runs(EffectName::NestedDielectrics) {
+        let mut media: Vec<RefractiveIndex> = Vec::new();
+        for (index, _) in scene.materials.iter().filter_map(|material| material.kind.solid()) {
+            if !media.contains(index) {
+                media.push(index.clone());
+            }
+        }
+        for (bsdf, material) in bsdfs.iter_mut().zip(&scene.materials) {
+            if let (Bsdf::RoughDielectric(glass), Some(_)) = (bsdf, material.kind.solid()) {
+                glass.prepare_media(&media, range_nm);
+            }
+        }
+    }
     if plan.runs(EffectName::Polarisation) {
         bsdfs.iter_mut().for_each(Bsdf::prepare_polarisation);
     }
@@ -168,13 +181,9 @@ fn axis(object: &Object, kind: &MaterialKind) -> Option<Vec3<f64>> {
 /// The solids that carry priorities.
 fn media(scene: &Scene) -> Result<Media, PrepareError> {
     let solid = |object: &Object| {
-        let MaterialKind::Dielectric { interior, priority: Some(priority), .. } =
-            &scene.materials[object.material].kind
-        else {
-            return Ok(None);
-        };
+        let Some((index, priority)) = scene.materials[object.material].kind.solid() else { return Ok(None) };
         match open_edges(&object.shape) {
-            None => Ok(Some(Solid { priority: *priority, index: interior.clone() })),
+            None => Ok(Some(Solid { priority, index: index.clone() })),
             Some(why) => Err(PrepareError::OpenSolid { object: object.name.clone(), why }),
         }
     };

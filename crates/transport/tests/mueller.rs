@@ -28,7 +28,7 @@ fn metal(n: f64, k: f64) -> ComplexIndex {
 
 fn rough_glass(alpha: f64, compensated: bool) -> MaterialKind {
     let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
-    MaterialKind::RoughDielectric { interior, exterior, alpha, compensated }
+    MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority: None }
 }
 
 fn rough_metal(n: f64, k: f64, alpha: f64) -> MaterialKind {

@@ -202,7 +202,7 @@ fn lossless_metal(alpha: f64) -> Material<f64> {
 fn rough_glass<R: Real>(interior: &str, exterior: &str, alpha: f64, compensated: bool) -> Material<R> {
     let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
     let (interior, exterior) = (index(interior), index(exterior));
-    Material::new(MaterialKind::RoughDielectric { interior, exterior, alpha, compensated })
+    Material::new(MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority: None })
 }
 
 scatters_suite!(lambert_f32, lambert::<f32>());

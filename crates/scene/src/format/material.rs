@@ -89,10 +89,10 @@ crate::record! {
         alpha: Required<Spanned<Alpha>> = "0",
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
         multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
-        /// For a smooth, closed solid that touches, overlaps or holds other solids: where several overlap, the one of the highest
+        /// For a closed solid that touches, overlaps or holds other solids: where several overlap, the one of the highest
         /// priority fills the place; of equal priorities, the object that comes later. It replaces `exterior`.
         priority: Optional<Whole<0, { u32::MAX as u64 }>>,
-    } with [Rule::NotBoth("exterior", "priority"), Rule::NotBoth("alpha", "priority")]
+    } with [Rule::NotBoth("exterior", "priority")]
 }
 
 crate::number! {
@@ -279,7 +279,7 @@ pub(crate) fn material<'f>(
             let (interior, exterior) = (interior?, exterior?);
             Some(match alpha? {
                 0.0 => MaterialKind::Dielectric { interior, exterior, priority },
-                alpha => MaterialKind::RoughDielectric { interior, exterior, alpha, compensated },
+                alpha => MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority },
             })
         }
         MaterialForm::OrenNayar(rough) => {
@@ -315,10 +315,7 @@ pub(crate) fn material<'f>(
             };
             let (first, second) = (part(&blend.first), part(&blend.second));
             let (first, second) = (first?, second?);
-            if [&first, &second]
-                .iter()
-                .any(|part| matches!(***part, MaterialKind::Dielectric { priority: Some(_), .. }))
-            {
+            if [&first, &second].iter().any(|part| part.solid().is_some()) {
                 let message = "a part of a blend bounds no solid: its dielectric cannot have a priority";
                 reader.error_hint(Code::KeyConflict, blend.at.head(), message, "say its exterior instead");
                 return None;

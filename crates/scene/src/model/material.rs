@@ -62,6 +62,8 @@ pub enum MaterialKind {
         alpha: f64,
         /// Whether light that meets several facets is counted.
         compensated: bool,
+        /// As of a smooth one.
+        priority: Option<u32>,
     },
     /// Rough diffuse reflection on both sides (EON).
     OrenNayar {
@@ -124,6 +126,15 @@ pub enum PolarisingSheet {
 }
 
 impl MaterialKind {
+    /// The medium and the priority of the closed solid that it bounds, if it bounds one.
+    pub fn solid(&self) -> Option<(&RefractiveIndex, u32)> {
+        match self {
+            Self::Dielectric { interior, priority: Some(priority), .. }
+            | Self::RoughDielectric { interior, priority: Some(priority), .. } => Some((interior, *priority)),
+            _ => None,
+        }
+    }
+
     /// The first image that varies it over a surface.
     pub fn image(&self) -> Option<&ImageTexture> {
         match self {

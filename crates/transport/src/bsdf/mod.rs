@@ -116,7 +116,7 @@ impl Bsdf {
             MaterialKind::RoughConductor { index, alpha, compensated } => {
                 Self::RoughConductor(RoughConductor::new(index.clone(), *alpha, *compensated, range_nm))
             }
-            MaterialKind::RoughDielectric { interior, exterior, alpha, compensated } => {
+            MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, .. } => {
                 let (interior, exterior) = (interior.clone(), exterior.clone());
                 Self::RoughDielectric(RoughDielectric::new(interior, exterior, *alpha, *compensated, range_nm))
             }
@@ -201,7 +201,7 @@ impl Bsdf {
         match self {
             Self::Lambert(lambert) => lambert.eval(lambda_nm, n, at.uv, wo, wi),
             Self::RoughConductor(metal) => metal.eval(lambda_nm, n, wo, wi),
-            Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, wo, wi),
+            Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, at.media(), wo, wi),
             Self::OrenNayar(rough) => rough.eval(lambda_nm, n, wo, wi),
             Self::Plastic(plastic) => plastic.eval(lambda_nm, n, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
@@ -232,7 +232,7 @@ impl Bsdf {
                 dielectric.sample(lambda_nm, n, wo, u[0], at.media())
             }
             Self::RoughConductor(metal) => metal.sample(lambda_nm, n, wo, u),
-            Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, wo, u),
+            Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at.media(), wo, u),
             Self::OrenNayar(rough) => rough.sample(lambda_nm, n, wo, [u[1], u[2]]),
             Self::Plastic(plastic) => plastic.sample(lambda_nm, n, wo, u),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, n, wo, u[0]),

@@ -84,7 +84,7 @@ impl Bsdf {
             Self::PolarisingSheet(sheet) => Some(lambda_nm.0.map(|nm| sheet.mueller(nm))),
             Self::RoughConductor(metal) => metal.mueller(lambda_nm, n, wo, wi),
             Self::RoughDielectric(_) if lobe != Lobe::SolidAngle => Some([IDENTITY; N]),
-            Self::RoughDielectric(glass) => glass.mueller(lambda_nm, n, wo, wi, x),
+            Self::RoughDielectric(glass) => glass.mueller(lambda_nm, n, at.media(), (wo, wi, x)),
             Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, (wo, wi, x), lobe),
             Self::Blend(blend) => blend.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Lambert(_) | Self::OrenNayar(_) | Self::Black => None,

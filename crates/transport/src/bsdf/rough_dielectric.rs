@@ -18,6 +18,7 @@ use super::BsdfSample;
 use super::albedo::LossTable;
 use super::microfacet::{Facet, Facing, Ggx, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
+use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
@@ -27,9 +28,19 @@ use std::f64::consts::FRAC_1_PI;
 /// Rough interface of two transparent media.
 #[derive(Clone, Debug)]
 pub struct RoughDielectric {
+    ggx: Ggx,
+    compensated: bool,
+    /// What the interface is by itself.
+    own: Boundary,
+    /// What it is between the same interior and other media, if it bounds a solid among others.
+    others: Vec<Boundary>,
+}
+
+/// The interface between two media.
+#[derive(Clone, Debug)]
+struct Boundary {
     interior: RefractiveIndex,
     exterior: RefractiveIndex,
-    ggx: Ggx,
     dispersive: bool,
     compensation: Option<Box<Compensation>>,
 }
@@ -84,17 +95,14 @@ impl Sides<'_> {
     }
 }
 
-impl RoughDielectric {
-    /// An interface with `interior` behind the outward normal and `exterior` before it, whose facets have the width `alpha`,
-    /// with or without the light that meets several facets.
-    pub fn new(
+impl Boundary {
+    fn new(
         interior: RefractiveIndex,
         exterior: RefractiveIndex,
-        alpha: f64,
+        ggx: Ggx,
         compensated: bool,
         range_nm: [f64; 2],
     ) -> Self {
-        let ggx = Ggx::new(alpha);
         let dispersive = interior.is_dispersive() || exterior.is_dispersive();
         let compensation = compensated.then(|| {
             let ratio = |nm: f64| interior.eval(nm) / exterior.eval(nm);
@@ -111,7 +119,7 @@ impl RoughDielectric {
                 polarised: None,
             })
         });
-        Self { interior, exterior, ggx, dispersive, compensation }
+        Self { interior, exterior, dispersive, compensation }
     }
 
     fn sides(&self, wavelength_nm: f64, from_outside: bool, mu: f64) -> Sides<'_> {
@@ -131,9 +139,66 @@ impl RoughDielectric {
         Sides { n, tables: Some((eta, [near, far])), loss_o: near.eval(mu, eta), mean_loss, crossing }
     }
 
+    fn prepare_polarisation(&mut self, ggx: &Ggx) {
+        if let Some(compensation) = &mut self.compensation {
+            let eta = compensation.eta;
+            compensation.polarised = Some(Box::new([
+                PolarisedLoss::new(eta, ggx, |facet, eta| polarised_loss(ggx, facet, eta)),
+                PolarisedLoss::new(eta, ggx, |facet, eta| polarised_loss(ggx, facet, 1.0 / eta)),
+            ]));
+        }
+    }
+}
+
+impl RoughDielectric {
+    /// An interface with `interior` behind the outward normal and `exterior` before it, whose facets have the width `alpha`,
+    /// with or without the light that meets several facets.
+    pub fn new(
+        interior: RefractiveIndex,
+        exterior: RefractiveIndex,
+        alpha: f64,
+        compensated: bool,
+        range_nm: [f64; 2],
+    ) -> Self {
+        let ggx = Ggx::new(alpha);
+        let own = Boundary::new(interior, exterior, ggx, compensated, range_nm);
+        Self { ggx, compensated, own, others: Vec::new() }
+    }
+
+    /// Makes it the boundary of a solid that may border on any of `media`.
+    pub(crate) fn prepare_media(&mut self, media: &[RefractiveIndex], range_nm: [f64; 2]) {
+        let interior = &self.own.interior;
+        let others = media.iter().filter(|medium| *medium != interior && **medium != self.own.exterior);
+        let boundary = |medium: &RefractiveIndex| {
+            Boundary::new(interior.clone(), medium.clone(), self.ggx, self.compensated, range_nm)
+        };
+        self.others = others.map(boundary).collect();
+    }
+
+    /// What it is at a place, and whether the side of `wo`, on that of the normal or not, is the exterior; `None` where the same
+    /// medium is on both sides.
+    fn boundary(&self, interface: Option<Interface<'_>>, above: bool) -> Option<(&Boundary, bool)> {
+        let Some(Interface { incident, transmitted }) = interface else { return Some((&self.own, above)) };
+        let interior = &self.own.interior;
+        let (other, from_outside) = if transmitted == interior { (incident, true) } else { (transmitted, false) };
+        if other == interior {
+            return None;
+        }
+        if *other == self.own.exterior {
+            return Some((&self.own, from_outside));
+        }
+        self.others.iter().find(|boundary| boundary.exterior == *other).map(|boundary| (boundary, from_outside))
+    }
+
     /// What one wavelength does between two directions; `None` where there is nothing, and `sample` passes straight through.
-    fn between(&self, wavelength_nm: f64, from_outside: bool, wo: Vec3<f64>, wi: Vec3<f64>) -> Option<Between> {
-        let sides = self.sides(wavelength_nm, from_outside, wo.z);
+    fn between(
+        &self,
+        (boundary, from_outside): (&Boundary, bool),
+        wavelength_nm: f64,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
+    ) -> Option<Between> {
+        let sides = boundary.sides(wavelength_nm, from_outside, wo.z);
         let eta = sides.n[1] / sides.n[0];
         if eta == 1.0 {
             return None;
@@ -175,8 +240,8 @@ impl RoughDielectric {
     }
 
     /// f·|cos θ_i| and the density of `wi` at one wavelength.
-    fn at(&self, wavelength_nm: f64, from_outside: bool, wo: Vec3<f64>, wi: Vec3<f64>) -> (f64, f64) {
-        let Some(Between { facet, several, density, .. }) = self.between(wavelength_nm, from_outside, wo, wi) else {
+    fn at(&self, boundary: (&Boundary, bool), wavelength_nm: f64, wo: Vec3<f64>, wi: Vec3<f64>) -> (f64, f64) {
+        let Some(Between { facet, several, density, .. }) = self.between(boundary, wavelength_nm, wo, wi) else {
             return (0.0, 0.0);
         };
         ((facet.map_or(0.0, |(f, _)| f) + several) * wi.z.abs(), density)
@@ -188,15 +253,18 @@ impl RoughDielectric {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        wo: Vec3<f64>,
-        wi: Vec3<f64>,
-        x: Vec3<f64>,
+        interface: Option<Interface<'_>>,
+        (wo, wi, x): (Vec3<f64>, Vec3<f64>, Vec3<f64>),
     ) -> Option<[Matrix; N]> {
-        let from_outside = n.dot(wo) > 0.0;
+        let Some((boundary, from_outside)) = self.boundary(interface, n.dot(wo) > 0.0) else {
+            return Some([mueller::IDENTITY; N]);
+        };
         let facing = Facing::new(n, wo)?;
         let (local_o, local_i) = (facing.wo, facing.local(wi));
         Some(lambda_nm.0.map(|nm| {
-            let Some(Between { facet, several, eta, .. }) = self.between(nm, from_outside, local_o, local_i) else {
+            let Some(Between { facet, several, eta, .. }) =
+                self.between((boundary, from_outside), nm, local_o, local_i)
+            else {
                 return mueller::IDENTITY;
             };
             let (single, cos) = facet.unwrap_or((0.0, 1.0));
@@ -208,7 +276,7 @@ impl RoughDielectric {
                 let cos_t = fresnel::refracted_cosine(cos, eta).unwrap_or(0.0);
                 mueller::dielectric_transmission(cos, eta, cos_t)
             };
-            let forgotten = match self.compensation.as_ref().and_then(|c| c.polarised.as_deref()) {
+            let forgotten = match boundary.compensation.as_ref().and_then(|c| c.polarised.as_deref()) {
                 Some([outside, inside]) => {
                     let (near, far) = if from_outside { (outside, inside) } else { (inside, outside) };
                     let side_i = if local_i.z > 0.0 { near } else { far };
@@ -225,30 +293,27 @@ impl RoughDielectric {
 
     /// Makes the tables that [`RoughDielectric::mueller`] needs.
     pub(super) fn prepare_polarisation(&mut self) {
-        if let Some(compensation) = &mut self.compensation {
-            let eta = compensation.eta;
-            compensation.polarised = Some(Box::new([
-                PolarisedLoss::new(eta, &self.ggx, |facet, eta| polarised_loss(&self.ggx, facet, eta)),
-                PolarisedLoss::new(eta, &self.ggx, |facet, eta| polarised_loss(&self.ggx, facet, 1.0 / eta)),
-            ]));
-        }
+        let ggx = self.ggx;
+        self.own.prepare_polarisation(&ggx);
+        self.others.iter_mut().for_each(|boundary| boundary.prepare_polarisation(&ggx));
     }
 
     pub(super) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        interface: Option<Interface<'_>>,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
-        let from_outside = n.dot(wo) > 0.0;
+        let Some(boundary) = self.boundary(interface, n.dot(wo) > 0.0) else { return (Lanes::ZERO, Lanes::ZERO) };
         let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let wi = facing.local(wi);
         if wi.z == 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
         }
-        let at = |lane: usize| self.at(lambda_nm[lane], from_outside, facing.wo, wi);
-        if !self.dispersive {
+        let at = |lane: usize| self.at(boundary, lambda_nm[lane], facing.wo, wi);
+        if !boundary.0.dispersive {
             let (f_cos, density) = at(0);
             return (Lanes::splat(R::from_f64(f_cos)), Lanes::splat(R::from_f64(density)));
         }
@@ -260,18 +325,22 @@ impl RoughDielectric {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        interface: Option<Interface<'_>>,
         wo: Vec3<f64>,
         u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
-        let from_outside = n.dot(wo) > 0.0;
+        let straight_on = |lanes: Lanes<R, N>| {
+            Some(BsdfSample { wi: -wo, weight: lanes, density: Density::Delta, lane_density: lanes, eta: 1.0 })
+        };
+        let Some((boundary, from_outside)) = self.boundary(interface, n.dot(wo) > 0.0) else {
+            return straight_on(Lanes::ONE);
+        };
         let facing = Facing::new(n, wo)?;
         let [u_lobe, u1, u2] = u;
-        let hero = self.sides(lambda_nm[0], from_outside, facing.wo.z);
+        let hero = boundary.sides(lambda_nm[0], from_outside, facing.wo.z);
         let eta = hero.n[1] / hero.n[0];
         if eta == 1.0 {
-            let lanes = if self.dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE };
-            let (wi, density) = (-wo, Density::Delta);
-            return Some(BsdfSample { wi, weight: lanes, density, lane_density: lanes, eta: 1.0 });
+            return straight_on(if boundary.dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE });
         }
         let wi = if u_lobe < hero.loss_o {
             let crosses = u_lobe < hero.loss_o * hero.crossing;
@@ -305,7 +374,7 @@ impl RoughDielectric {
         if (facing.local(wi).z < 0.0) != crossed {
             return None;
         }
-        let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
+        let (f_cos, density) = self.eval(lambda_nm, n, interface, wo, wi);
         BsdfSample::scattered(wi, f_cos, density, if crossed { eta } else { 1.0 })
     }
 }

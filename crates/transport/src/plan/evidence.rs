@@ -169,10 +169,11 @@ fn specular(kind: &MaterialKind) -> Option<String> {
 
 fn nested(kind: &MaterialKind) -> Option<String> {
     match kind {
-        MaterialKind::Dielectric { priority, .. } => priority.map(|priority| format!("priority {priority}")),
+        MaterialKind::Dielectric { priority, .. } | MaterialKind::RoughDielectric { priority, .. } => {
+            priority.map(|priority| format!("priority {priority}"))
+        }
         // The reader refuses priorities in the parts of a blend.
         MaterialKind::RoughConductor { .. }
-        | MaterialKind::RoughDielectric { .. }
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Plastic { .. }
         | MaterialKind::ThinDielectric { .. }
@@ -239,18 +240,17 @@ fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
         MaterialKind::Plastic { coat, .. } => glass(coat.eval(middle(range_nm))),
         MaterialKind::ThinDielectric { index } => glass(index.eval(middle(range_nm))),
         MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
-            let (n, k) = index.eval(middle(range_nm));
-            let at = |cos: f64| {
+            let diattenuation = |nm: f64, cos: f64| {
+                let (n, k) = index.eval(nm);
                 let f = fresnel::conductor(cos, n, k);
                 ((f.reflectance_s - f.reflectance_p) / (f.reflectance_s + f.reflectance_p)).abs()
             };
-            let (most, cos) = (1..1000)
-                .map(|i| f64::from(i) / 1000.0)
-                .map(|cos| (at(cos), cos))
-                .fold((0.0, 0.0), |most, other| if other.0 > most.0 { other } else { most });
-            let share = most * most;
-            let degrees = cos.acos().to_degrees();
-            Some((share, format!("up to {:.2} % after two reflections, at {degrees:.0}°", 100.0 * share)))
+            let everywhere = steps(range_nm).flat_map(|nm| (1..100).map(move |i| (nm, f64::from(i) / 100.0)));
+            let (most, nm, cos) = everywhere
+                .map(|(nm, cos)| (diattenuation(nm, cos), nm, cos))
+                .fold((0.0, 0.0, 1.0), |most, other| if other.0 > most.0 { other } else { most });
+            let (share, degrees) = (most * most, cos.acos().to_degrees());
+            Some((share, format!("up to {:.2} % after two reflections, at {degrees:.0}° and {nm} nm", 100.0 * share)))
         }
         MaterialKind::Blend { first, second, .. } => {
             let worst = [first, second].into_iter().filter_map(|part| polarises(part, range_nm));
