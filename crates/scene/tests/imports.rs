@@ -112,24 +112,24 @@ fn imported(model: &Value) -> Result<Imported, String> {
 fn a_glb_file_becomes_a_scene_whose_nodes_are_where_they_were_placed() {
     let imported = imported(&model()).unwrap();
     let scene = scene(&imported);
-    // Two nodes of three primitives with triangles.
-    assert_eq!(scene.objects.len(), 6);
-    assert_eq!(scene.objects[0].name, "card, part 0");
+    // Two nodes of three primitives with triangles: each a group, placed twice.
+    assert!(scene.objects.is_empty());
+    assert_eq!((scene.groups.len(), scene.instances.len()), (3, 6));
     // By hand: scaled by (2, 3, 4), turned a quarter about z, moved 10 along x: (1, 1, 1) goes to (−3 + 10, 2, 4).
-    let t = &scene.objects[0].transform;
+    let t = &scene.instances[0].transform;
     let at: Vec<f64> = (0..3).map(|i| t.linear[i].iter().sum::<f64>() + t.translation_m[i]).collect();
     for (found, expected) in at.iter().zip([7.0, 2.0, 4.0]) {
         assert!((found - expected).abs() < 1e-6, "{at:?}");
     }
-    let Shape::Mesh(mesh) = &scene.objects[0].shape else { panic!("a mesh") };
+    let part = |i: usize| &scene.groups[scene.instances[i].group].objects[0];
+    let Shape::Mesh(mesh) = &part(0).shape else { panic!("a mesh") };
     assert_eq!((mesh.vertices.len(), mesh.triangles.as_slice()), (4, [[0, 1, 2], [0, 2, 3]].as_slice()));
     assert_eq!((mesh.normals[0], mesh.uvs[2]), ([0.0, 0.0, 1.0], [1.0, 1.0]));
     // A strip, every other triangle of which is turned.
-    let Shape::Mesh(strip) = &scene.objects[2].shape else { panic!("a mesh") };
+    let Shape::Mesh(strip) = &part(2).shape else { panic!("a mesh") };
     assert_eq!(strip.triangles, [[0, 1, 2], [2, 1, 3]]);
-    // The second node shares the first's meshes.
-    let Shape::Mesh(again) = &scene.objects[3].shape else { panic!("a mesh") };
-    assert!(std::sync::Arc::ptr_eq(mesh, again));
+    // The second node places the same.
+    assert_eq!(scene.instances[0].group, scene.instances[3].group);
     assert_eq!(imported.files.len(), 4);
     assert!(imported.files.iter().all(|file| file.name.starts_with("m-files/")));
     assert_eq!(imported.added, Vec::<String>::new());
@@ -138,7 +138,8 @@ fn a_glb_file_becomes_a_scene_whose_nodes_are_where_they_were_placed() {
 #[test]
 fn glb_materials_lights_and_cameras_arrive() {
     let scene = scene(&imported(&model()).unwrap());
-    let kind = |i: usize| &scene.materials[scene.objects[i].material].kind;
+    let part = |i: usize| &scene.groups[scene.instances[i].group].objects[0];
+    let kind = |i: usize| &scene.materials[part(i).material].kind;
     let MaterialKind::Lambert { reflectance: SpectrumTexture::Image(image) } = kind(0) else { panic!("an image") };
     assert_eq!((image.wrap, image.filter), ([Wrap::Clamp, Wrap::Mirror], TextureFilter::Nearest));
     assert_eq!((image.factor, image.uv_scale), ([0.5, 1.0, 0.25], [2.0, 4.0]));
@@ -155,7 +156,7 @@ fn glb_materials_lights_and_cameras_arrive() {
     assert!((alpha - 0.01).abs() < 1e-7, "{alpha}");
     let (n, k) = index.eval(550.0);
     assert!((((n - 1.0) / (n + 1.0)).powi(2) - 0.1).abs() < 1e-6 && k == 0.0, "{n} {k}");
-    let emission = scene.objects[2].emission.as_ref().expect("a lamp");
+    let emission = part(2).emission.as_ref().expect("a lamp");
     let expected = etalon_optics::Spectrum::rgb_emission([7.0, 3.5, 0.0], etalon_optics::Illuminant::D65).unwrap();
     assert_eq!(emission.radiance, expected);
 
@@ -164,7 +165,9 @@ fn glb_materials_lights_and_cameras_arrive() {
     // The sun's node turns −z by −90° about x: it shines straight down.
     let LightKind::Directional { direction, .. } = &sun.kind else { panic!("a sun") };
     assert!((direction[1] + 1.0).abs() < 1e-6, "{direction:?}");
-    assert!(matches!(spot.kind, LightKind::Point { .. }));
+    let LightKind::Spot { axis, half_angles_rad: [inner, outer], .. } = spot.kind else { panic!("a spot") };
+    assert_eq!((axis, inner), ([0.0, 0.0, -1.0], 0.0));
+    assert!((outer - 0.5).abs() < 1e-7, "{outer}");
     let Projection::Perspective { vertical_fov_rad, .. } = scene.camera.projection else { panic!("perspective") };
     assert!((vertical_fov_rad - 0.7).abs() < 1e-6);
     assert_eq!((scene.camera.position_m, scene.camera.forward), ([0.0, 1.0, 9.0], [0.0, 0.0, -1.0]));

@@ -10,13 +10,13 @@ use crate::failure::{Failure, Outcome};
 use crate::load::{import_model, refused_scene};
 use crate::print;
 
-/// Turns a model (glTF 2.0, OBJ with MTL, PLY) into a scene to edit.
+/// Turns a model (glTF 2.0, OBJ with MTL, PLY) or a scene of Mitsuba 3 or pbrt-v4 into a scene to edit.
 ///
 /// Meshes are written as PLY files and images copied into a folder beside the scene, named after it. What the model says
 /// and the scene cannot is listed, each thing with its place.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The model: .glb, .gltf, .obj or .ply.
+    /// The model: .glb, .gltf, .obj, .ply, .xml (Mitsuba) or .pbrt.
     model: PathBuf,
     /// The scene to write.
     #[arg(short, long, value_name = "SCENE.json")]

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::accessor::numbers;
 use super::gltf_material::Materials;
+use super::matrix::Rows;
 use super::{Builder, light};
 use crate::mesh::MAX_ELEMENTS;
 use crate::model::Mesh;
@@ -37,13 +38,18 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         materials: Materials::default(),
         parts: HashMap::new(),
         visited: Vec::new(),
+        uses: Vec::new(),
     };
     walk.visited = vec![false; file.nodes().count()];
+    walk.uses = vec![0; file.meshes().count()];
     let scene = file.default_scene().or_else(|| file.scenes().next()).ok_or("it has no scene")?;
     for other in file.scenes().filter(|other| other.index() != scene.index()) {
         walk.builder.leave_out(format!("$.scenes[{}]", other.index()), "only one scene is imported");
     }
     const IDENTITY: Columns = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+    for mesh in file.nodes().filter_map(|node| node.mesh()) {
+        walk.uses[mesh.index()] += 1;
+    }
     for node in scene.nodes() {
         walk.node(&node, &IDENTITY, 0)?;
     }
@@ -162,6 +168,8 @@ struct Walk<'w, 'b> {
     /// Parts by mesh and primitive; `None` is one without triangles.
     parts: HashMap<(usize, usize), Option<MadePart>>,
     visited: Vec<bool>,
+    /// How often each mesh is placed: one that is placed again and again is a group with instances.
+    uses: Vec<u32>,
 }
 
 impl Walk<'_, '_> {
@@ -222,9 +230,20 @@ impl Walk<'_, '_> {
             self.builder.leave_out(format!("node \"{name}\""), "it is flattened by its transform, and left out");
             return Ok(());
         }
-        let rows: Vec<[f64; 4]> = (0..3).map(|i| std::array::from_fn(|j| matrix[j][i])).collect();
-        let transform = json!([{ "matrix": rows }]);
-        self.builder.add_object(name, &part.file, &part.mesh, &part.material, part.emission.clone(), &transform);
+        let rows: Rows = std::array::from_fn(|i| std::array::from_fn(|j| matrix[j][i]));
+        if self.uses[key.0] < 2 {
+            let transform = json!([{ "matrix": rows }]);
+            self.builder.add_object(name, &part.file, &part.mesh, &part.material, part.emission.clone(), &transform);
+            return Ok(());
+        }
+        let group = format!("mesh {}, part {}", key.0, key.1);
+        if !self.builder.groups.contains_key(&group) {
+            let outside = self.builder.begin_group();
+            let emission = part.emission.clone();
+            self.builder.add_object(&group, &part.file, &part.mesh, &part.material, emission, &Value::Null);
+            self.builder.end_group(&group, outside);
+        }
+        self.builder.place_group(name, &group, &rows, &format!("node \"{name}\""));
         Ok(())
     }
 
@@ -344,18 +363,26 @@ impl Walk<'_, '_> {
         }
         let value = match lamp.kind() {
             Kind::Directional => {
-                let direction = unit([-matrix[2][0], -matrix[2][1], -matrix[2][2]]).unwrap_or([0.0, 0.0, -1.0]);
-                json!({ "name": name, "type": "directional", "direction": direction, "irradiance": spectrum })
+                json!({ "name": name, "type": "directional", "direction": forward(matrix), "irradiance": spectrum })
             }
-            kind => {
-                if let Kind::Spot { .. } = kind {
-                    self.builder.leave_out(&place, "its cone is not honoured: it shines in every direction");
-                }
-                json!({ "name": name, "type": "point", "position_m": position, "intensity": spectrum })
+            Kind::Point => json!({ "name": name, "type": "point", "position_m": position, "intensity": spectrum }),
+            Kind::Spot { inner_cone_angle, outer_cone_angle } => {
+                self.builder.leave_out(&place, "between its two angles it falls by another curve");
+                let outer = f64::from(outer_cone_angle).to_degrees().clamp(1e-3, 180.0);
+                let inner = f64::from(inner_cone_angle).to_degrees().clamp(0.0, outer);
+                json!({
+                    "name": name, "type": "spot", "position_m": position, "direction": forward(matrix),
+                    "intensity": spectrum, "half_angle_deg": outer, "inner_half_angle_deg": inner,
+                })
             }
         };
         self.builder.lights.push(value);
     }
+}
+
+/// Where a camera or a lamp of a node points.
+fn forward(matrix: &Columns) -> [f64; 3] {
+    unit([-matrix[2][0], -matrix[2][1], -matrix[2][2]]).unwrap_or([0.0, 0.0, -1.0])
 }
 
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {

@@ -1,0 +1,333 @@
+//! A scene that is being made of a model.
+
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+
+use super::matrix::{Rows, determinant, is_similarity, point, steps};
+use super::{Imported, ImportedFile, LeftOut, extension};
+use crate::mesh::write_ply;
+use crate::model::Mesh;
+use crate::texture::{Encoding, Image};
+use crate::vector::{dot, length, sub};
+
+/// A scene that is being made.
+pub(super) struct Builder<'a> {
+    pub(super) near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>,
+    pub(super) prefix: String,
+    pub(super) materials: Map<String, Value>,
+    pub(super) objects: Vec<Value>,
+    pub(super) lights: Vec<Value>,
+    pub(super) groups: Map<String, Value>,
+    pub(super) instances: Vec<Value>,
+    /// The box around each group, in its own coordinates.
+    pub(super) group_bounds: HashMap<String, Bounds>,
+    pub(super) camera: Option<Value>,
+    pub(super) film: Value,
+    pub(super) integrator: Map<String, Value>,
+    pub(super) files: Vec<ImportedFile>,
+    /// Names of files by what they were made from.
+    pub(super) known: HashMap<String, Option<String>>,
+    pub(super) left_out: Vec<LeftOut>,
+    pub(super) added: Vec<String>,
+    pub(super) said: HashSet<(String, String)>,
+    pub(super) emits: bool,
+    /// Of everything, in the world, or in the group that is being made.
+    pub(super) bounds: Bounds,
+}
+
+/// The two corners of a box around things, if there are any.
+pub(super) type Bounds = Option<[[f64; 3]; 2]>;
+
+/// An object that is to be placed.
+pub(super) struct Placed {
+    pub(super) name: String,
+    /// A shape of the format.
+    pub(super) shape: Value,
+    /// Two corners of a box around it, before its transform.
+    pub(super) reach: [[f64; 3]; 2],
+    pub(super) material: Value,
+    pub(super) emission: Option<Value>,
+    pub(super) opacity: f64,
+    pub(super) rows: Rows,
+    /// Whether its normals point the other way.
+    pub(super) flipped: bool,
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>) -> Self {
+        Self {
+            near,
+            prefix: String::new(),
+            materials: Map::new(),
+            objects: Vec::new(),
+            lights: Vec::new(),
+            groups: Map::new(),
+            instances: Vec::new(),
+            group_bounds: HashMap::new(),
+            camera: None,
+            film: json!({ "width": 1280, "height": 720 }),
+            integrator: Map::new(),
+            files: Vec::new(),
+            known: HashMap::new(),
+            left_out: Vec::new(),
+            added: Vec::new(),
+            said: HashSet::new(),
+            emits: false,
+            bounds: None,
+        }
+    }
+
+    pub(super) fn leave_out(&mut self, place: impl Into<String>, what: impl Into<String>) {
+        let (place, what) = (place.into(), what.into());
+        if self.said.insert((place.clone(), what.clone())) {
+            self.left_out.push(LeftOut { place, what });
+        }
+    }
+
+    /// Adds a file, and gives the name that the scene has for it.
+    pub(super) fn add_file(&mut self, kind: &str, extension: &str, bytes: Vec<u8>) -> String {
+        let name = format!("{}{kind}-{}.{extension}", self.prefix, self.files.len());
+        self.files.push(ImportedFile { name: name.clone(), bytes });
+        name
+    }
+
+    /// Adds a mesh as a file; `None`, and a note, if it has no triangles.
+    pub(super) fn mesh_file(&mut self, mesh: &Mesh) -> String {
+        let mut bytes = Vec::with_capacity(40 * mesh.vertices.len() + 13 * mesh.triangles.len());
+        // Writing to memory cannot fail.
+        let _ = write_ply(mesh, &mut bytes);
+        self.add_file("mesh", "ply", bytes)
+    }
+
+    /// Adds an object made of a mesh.
+    pub(super) fn add_mesh(
+        &mut self,
+        name: &str,
+        mesh: Mesh,
+        material: &Value,
+        emission: Option<Value>,
+        transform: Value,
+    ) -> Result<(), String> {
+        let file = self.mesh_file(&mesh);
+        self.add_object(name, &file, &mesh, material, emission, &transform);
+        Ok(())
+    }
+
+    /// Adds an object whose mesh is a file that has been added. `transform` is a list of the format, or null.
+    pub(super) fn add_object(
+        &mut self,
+        name: &str,
+        file: &str,
+        mesh: &Mesh,
+        material: &Value,
+        emission: Option<Value>,
+        transform: &Value,
+    ) {
+        let mut object = json!({ "name": name, "shape": { "type": "mesh", "file": file }, "material": material });
+        if let Some(emission) = emission {
+            object["emission"] = emission;
+            self.emits = true;
+        }
+        let rows = transform[0]["matrix"].as_array().map(|rows| {
+            rows.iter().map(|row| std::array::from_fn(|i| row[i].as_f64().unwrap_or(0.0))).collect::<Vec<[f64; 4]>>()
+        });
+        if !transform.is_null() {
+            object["transform"] = transform.clone();
+        }
+        for v in &mesh.vertices {
+            let p: [f64; 3] = match &rows {
+                Some(rows) => std::array::from_fn(|i| dot([rows[i][0], rows[i][1], rows[i][2]], *v) + rows[i][3]),
+                None => *v,
+            };
+            let [low, high] = self.bounds.get_or_insert([p, p]);
+            for k in 0..3 {
+                low[k] = low[k].min(p[k]);
+                high[k] = high[k].max(p[k]);
+            }
+        }
+        self.objects.push(object);
+    }
+
+    /// Adds an object. One whose transform flattens it is left out; a round one that is stretched becomes an instance, which
+    /// may be, unless it emits.
+    pub(super) fn place(&mut self, placed: &Placed, place: &str) {
+        let determinant = determinant(&placed.rows);
+        if determinant == 0.0 || !determinant.is_finite() {
+            self.leave_out(place, "it is flattened by its transform, and left out");
+            return;
+        }
+        let mut material = placed.material.clone();
+        let mut emission = placed.emission.clone();
+        if placed.flipped {
+            // Which side is which matters to a dielectric and to what shines on one side.
+            let own = material.as_str().and_then(|name| self.materials.get(name)).cloned().unwrap_or(material.clone());
+            if own["type"] == "dielectric" {
+                material = own.clone();
+                material["interior"] = own.get("exterior").cloned().unwrap_or(json!(1));
+                material["exterior"] = own["interior"].clone();
+            }
+            if let Some(emission) = &mut emission {
+                emission["sides"] = json!(if emission["sides"] == "back" { "front" } else { "back" });
+            }
+        }
+        let mut object = json!({ "name": placed.name, "shape": placed.shape, "material": material });
+        if placed.opacity < 1.0 {
+            object["opacity"] = json!(placed.opacity);
+        }
+        let round = matches!(placed.shape["type"].as_str(), Some("sphere" | "disk" | "cylinder"));
+        let stretched = round && !is_similarity(&placed.rows);
+        if stretched && emission.is_some() {
+            self.leave_out(place, "its light is left out: what emits may not be stretched");
+        } else if let Some(emission) = emission {
+            object["emission"] = emission;
+            self.emits = true;
+        }
+        if stretched {
+            let group = self.group_name(&placed.name);
+            self.groups.insert(group.clone(), json!({ "objects": [object] }));
+            self.instances.push(json!({ "name": placed.name, "group": group, "transform": steps(&placed.rows) }));
+        } else {
+            let transform = steps(&placed.rows);
+            if !transform.is_null() {
+                object["transform"] = transform;
+            }
+            self.objects.push(object);
+        }
+        self.enclose(placed.reach, &placed.rows);
+    }
+
+    /// Widens the bounds by a box that is moved.
+    pub(super) fn enclose(&mut self, [low, high]: [[f64; 3]; 2], rows: &Rows) {
+        for corner in 0..8 {
+            let p = point(rows, std::array::from_fn(|k| if corner >> k & 1 == 0 { low[k] } else { high[k] }));
+            let [low, high] = self.bounds.get_or_insert([p, p]);
+            for k in 0..3 {
+                low[k] = low[k].min(p[k]);
+                high[k] = high[k].max(p[k]);
+            }
+        }
+    }
+
+    pub(super) fn group_name(&self, wanted: &str) -> String {
+        let mut name = wanted.to_owned();
+        let mut number = 2;
+        while self.groups.contains_key(&name) {
+            name = format!("{wanted} {number}");
+            number += 1;
+        }
+        name
+    }
+
+    /// From here on objects belong to a group. Gives what is outside of it.
+    pub(super) fn begin_group(&mut self) -> (Vec<Value>, Vec<Value>, Bounds) {
+        (std::mem::take(&mut self.objects), std::mem::take(&mut self.instances), self.bounds.take())
+    }
+
+    pub(super) fn end_group(&mut self, name: &str, (objects, instances, bounds): (Vec<Value>, Vec<Value>, Bounds)) {
+        let mut group = json!({ "objects": std::mem::replace(&mut self.objects, objects) });
+        let within = std::mem::replace(&mut self.instances, instances);
+        if !within.is_empty() {
+            group["instances"] = json!(within);
+        }
+        self.groups.insert(name.to_owned(), group);
+        self.group_bounds.insert(name.to_owned(), std::mem::replace(&mut self.bounds, bounds));
+    }
+
+    /// Places a group.
+    pub(super) fn place_group(&mut self, name: &str, group: &str, rows: &Rows, place: &str) {
+        let determinant = determinant(rows);
+        let Some(Some(bounds)) = self.group_bounds.get(group).copied() else {
+            self.leave_out(place, format!("the group \"{group}\" is empty or not there: its instance is left out"));
+            return;
+        };
+        if determinant == 0.0 || !determinant.is_finite() {
+            self.leave_out(place, "it is flattened by its transform, and left out");
+            return;
+        }
+        let mut instance = json!({ "name": name, "group": group });
+        let transform = steps(rows);
+        if !transform.is_null() {
+            instance["transform"] = transform;
+        }
+        self.instances.push(instance);
+        self.enclose(bounds, rows);
+    }
+
+    /// Adds the file of an image, once, and gives its name in the scene and the mean of its texels.
+    pub(super) fn image_file(
+        &mut self,
+        name: &str,
+        bytes: Vec<u8>,
+        encoding: Encoding,
+        place: &str,
+    ) -> Result<(String, [f64; 3]), String> {
+        let (image, left_out) = Image::decode(&bytes, encoding)?;
+        if let Some(what) = left_out {
+            self.leave_out(place, what);
+        }
+        if let Some(Some(file)) = self.known.get(name) {
+            return Ok((file.clone(), image.mean()));
+        }
+        let file = self.add_file("image", &extension(Path::new(name)), bytes);
+        self.known.insert(name.to_owned(), Some(file.clone()));
+        Ok((file, image.mean()))
+    }
+
+    /// A name for a material that none has yet.
+    pub(super) fn material_name(&self, wanted: &str) -> String {
+        let base = if wanted.is_empty() { "material" } else { wanted };
+        let mut name = base.to_owned();
+        let mut number = 2;
+        while self.materials.contains_key(&name) {
+            name = format!("{base} {number}");
+            number += 1;
+        }
+        name
+    }
+
+    /// The scene, with a camera and a light if the model has none.
+    pub(super) fn finish(mut self, source: &str) -> Result<Imported, String> {
+        let Some([low, high]) = self.bounds else { return Err("there is nothing in it to see".to_owned()) };
+        let mut added = std::mem::take(&mut self.added);
+        let camera = self.camera.take().unwrap_or_else(|| {
+            let center: [f64; 3] = std::array::from_fn(|k| 0.5 * low[k] + 0.5 * high[k]);
+            // So far that the ball around the bounds fits into the height of the picture.
+            let radius = (0.5 * length(sub(high, low))).max(f64::MIN_POSITIVE);
+            let fov_deg = 35.0_f64;
+            let distance = 1.02 * radius / (0.5 * fov_deg).to_radians().sin();
+            let from = [0.45, 0.3, 1.0];
+            let position: [f64; 3] = std::array::from_fn(|k| center[k] + distance * from[k] / length(from));
+            added.push(format!("the model has no camera: one is added that looks at all of it, from {distance:.3} m"));
+            json!({
+                "type": "perspective", "position_m": position, "look_at_m": center, "vertical_fov_deg": fov_deg
+            })
+        });
+        if self.lights.is_empty() && !self.emits {
+            added.push("the model has no light: an even white sky is added".to_owned());
+            self.lights.push(json!({
+                "name": "sky", "type": "environment",
+                "radiance": { "type": "illuminant", "name": "D65", "scale": 1 }
+            }));
+        }
+        let comment: Vec<String> = std::iter::once(format!("Imported from {source}."))
+            .chain(added.iter().cloned())
+            .chain(self.left_out.iter().map(|l| format!("not honoured: {}: {}", l.place, l.what)))
+            .collect();
+        let mut scene = json!({
+            "etalon": 1, "comment": comment, "camera": camera, "film": self.film, "materials": self.materials,
+            "objects": self.objects, "lights": self.lights,
+        });
+        for (key, part) in [("groups", &self.groups), ("integrator", &self.integrator)] {
+            if !part.is_empty() {
+                scene[key] = json!(part);
+            }
+        }
+        if !self.instances.is_empty() {
+            scene["instances"] = json!(self.instances);
+        }
+        let text = format!("{scene:#}\n");
+        Ok(Imported { text, files: self.files, left_out: self.left_out, added })
+    }
+}

@@ -1,0 +1,71 @@
+//! Lights of pbrt.
+
+use serde_json::{Value, json};
+
+use super::Reading;
+use super::parameters::Parameters;
+use crate::import::matrix::{direction, point};
+use crate::vector::sub;
+
+impl Reading<'_, '_> {
+    pub(super) fn light(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
+        let scale = list.number("scale")?.unwrap_or(1.0).max(0.0);
+        let rows = self.to_world();
+        let from = list.triple("from")?.unwrap_or([0.0; 3]);
+        let to = list.triple("to")?.unwrap_or([0.0, 0.0, 1.0]);
+        let along = direction(&rows, sub(to, from));
+        let mut value = match kind {
+            "distant" => {
+                let irradiance = self.emitted(list, "L", scale)?;
+                json!({ "type": "directional", "direction": along, "irradiance": irradiance })
+            }
+            "point" => {
+                let intensity = self.emitted(list, "I", scale)?;
+                json!({ "type": "point", "position_m": point(&rows, from), "intensity": intensity })
+            }
+            "spot" => {
+                let intensity = self.emitted(list, "I", scale)?;
+                let outer = list.number("coneangle")?.unwrap_or(30.0);
+                let inner = outer - list.number("conedeltaangle")?.unwrap_or(5.0);
+                json!({
+                    "type": "spot", "position_m": point(&rows, from), "direction": along, "intensity": intensity,
+                    "half_angle_deg": outer, "inner_half_angle_deg": inner.clamp(0.0, outer),
+                })
+            }
+            "infinite" => {
+                if list.get("filename").is_some() {
+                    self.builder.leave_out(place, "the image of the sky is not read: the sky is left out");
+                    list.mark_all();
+                    return Ok(());
+                }
+                json!({ "type": "environment", "radiance": self.emitted(list, "L", scale)? })
+            }
+            other => {
+                self.builder.leave_out(place, format!("the light \"{other}\" is not known, and is left out"));
+                return Ok(());
+            }
+        };
+        value["name"] = json!(format!("light, {place}"));
+        self.builder.lights.push(value);
+        list.list_unused(self.builder);
+        Ok(())
+    }
+
+    /// What the shapes from here on emit.
+    pub(super) fn area_light(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Option<Value>, String> {
+        if kind != "diffuse" {
+            self.builder.leave_out(place, format!("the light \"{kind}\" is not known, and is left out"));
+            return Ok(None);
+        }
+        if list.get("filename").is_some() {
+            self.builder.leave_out(place, "an image that shines is not read: the light is left out");
+            list.mark_all();
+            return Ok(None);
+        }
+        let scale = list.number("scale")?.unwrap_or(1.0).max(0.0);
+        let radiance = self.emitted(list, "L", scale)?;
+        let sides = if list.flag("twosided").unwrap_or(false) { "both" } else { "front" };
+        list.list_unused(self.builder);
+        Ok(Some(json!({ "radiance": radiance, "sides": sides })))
+    }
+}

@@ -1,0 +1,167 @@
+//! Materials of pbrt.
+
+use serde_json::{Value, json};
+
+use super::parameters::Parameters;
+use super::{Look, Reading};
+use crate::import::table::{Table, metal};
+use crate::model::LEAST_ALPHA;
+
+impl Reading<'_, '_> {
+    pub(super) fn material(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Look, String> {
+        let mut opacity = 1.0;
+        let value = match kind {
+            "diffuse" => {
+                let reflectance = self.reflectance(list, "reflectance", true)?.unwrap_or(json!(0.5));
+                json!({ "type": "lambert", "reflectance": reflectance })
+            }
+            "coateddiffuse" => {
+                let reflectance = self.reflectance(list, "reflectance", false)?.unwrap_or(json!(0.5));
+                let coat = self.index(list, 1.5)?;
+                // What the coat adds to its thickness of 0 is nothing without absorption, which is listed if there is some.
+                for harmless in ["thickness", "maxdepth", "nsamples"] {
+                    list.get(harmless);
+                }
+                json!({ "type": "plastic", "reflectance": reflectance, "coat": coat, "alpha": self.alpha(list, place)? })
+            }
+            "conductor" | "coatedconductor" => {
+                if kind == "coatedconductor" {
+                    self.builder.leave_out(place, "the coat is left out: it is taken for bare metal");
+                }
+                self.conductor(list, place)?
+            }
+            "dielectric" => json!({
+                "type": "dielectric", "interior": self.index(list, 1.5)?, "alpha": self.alpha(list, place)?,
+                "multiple_scattering": "lost",
+            }),
+            "thindielectric" => json!({ "type": "thin-dielectric", "index": self.index(list, 1.5)? }),
+            "mix" => {
+                let names: Vec<String> = list.get("materials").map_or(&[][..], |p| p.strings()).to_vec();
+                let [first, second] = &names[..] else {
+                    return Err(format!("{place}: a mix has two materials, not {}", names.len()));
+                };
+                let known = |name: &String| {
+                    let look = self.materials.get(name).cloned();
+                    let look = look.ok_or_else(|| format!("{place}: there is no material \"{name}\""))?;
+                    // In full, since a blend may only name what stands before it.
+                    let value = match look.value.as_str().and_then(|name| self.builder.materials.get(name)) {
+                        Some(value) => value.clone(),
+                        None => look.value,
+                    };
+                    Ok::<Value, String>(value)
+                };
+                let (first, second) = (known(first)?, known(second)?);
+                let amount = self.reflectance(list, "amount", false)?.unwrap_or(json!(0.5));
+                let weight = amount.as_f64().unwrap_or_else(|| {
+                    self.builder.leave_out(place, "an amount that is no number is taken for one half");
+                    0.5
+                });
+                json!({ "type": "blend", "first": first, "second": second, "weight": weight })
+            }
+            "interface" | "" => {
+                opacity = 0.0;
+                json!({ "type": "black" })
+            }
+            other => {
+                self.builder.leave_out(place, format!("the material \"{other}\" is not known: grey is taken for it"));
+                list.mark_all();
+                json!({ "type": "lambert", "reflectance": 0.5 })
+            }
+        };
+        list.get("type");
+        list.list_unused(self.builder);
+        Ok(Look { value, opacity })
+    }
+
+    fn conductor(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
+        let alpha = self.alpha(list, place)?;
+        let prefix = if list.0.iter().any(|p| p.name.starts_with("conductor.")) { "conductor." } else { "" };
+        let named = |what: &str| list.string(&format!("{prefix}{what}")).map(str::to_owned);
+        let eta = named("eta");
+        named("k");
+        let mut value = if let Some(reflectance) = self.reflectance(list, &format!("{prefix}reflectance"), false)? {
+            // In pbrt an index chosen so that this is reflected head-on; here a mirror of the same colour at every angle.
+            if alpha == 0.0 {
+                return Ok(json!({ "type": "mirror", "reflectance": reflectance }));
+            }
+            self.builder.leave_out(place, "a rough metal by its reflectance is not known: aluminium is taken for it");
+            json!({ "type": "conductor", "metal": "Al" })
+        } else if let Some((eta, k)) = self.own_indices(list, prefix)? {
+            metal(&eta, &k)
+        } else {
+            let name = match eta.as_deref() {
+                None | Some("metal-Cu-eta") => "Cu",
+                Some("metal-Ag-eta") => "Ag",
+                Some("metal-Al-eta") => "Al",
+                Some("metal-Au-eta") => "Au",
+                Some(other) => {
+                    self.builder
+                        .leave_out(place, format!("the metal \"{other}\" is not known: aluminium is taken for it"));
+                    "Al"
+                }
+            };
+            json!({ "type": "conductor", "metal": name })
+        };
+        value["alpha"] = json!(alpha);
+        value["outside_fit"] = json!("clamp");
+        value["multiple_scattering"] = json!("lost");
+        Ok(value)
+    }
+
+    /// Both tables of a metal that is not named.
+    fn own_indices(&mut self, list: &Parameters, prefix: &str) -> Result<Option<(Table, Table)>, String> {
+        let mut tables = Vec::new();
+        for what in ["eta", "k"] {
+            if let Some(parameter) = list.get(&format!("{prefix}{what}"))
+                && let Some(table) = self.table(parameter)?
+            {
+                tables.push(table);
+            }
+        }
+        Ok(match (tables.pop(), tables.pop()) {
+            (Some(k), Some(eta)) => Some((eta, k)),
+            _ => None,
+        })
+    }
+
+    /// An index of refraction: a number, or a glass by its name.
+    fn index(&mut self, list: &Parameters, default: f64) -> Result<Value, String> {
+        let Some(parameter) = list.get("eta").or_else(|| list.get("interface.eta")) else { return Ok(json!(default)) };
+        let place = parameter.place.clone();
+        match (parameter.numbers(), parameter.strings()) {
+            ([index], _) if *index > 0.0 => Ok(json!(index)),
+            (_, [name]) => Ok(match name.as_str() {
+                "glass-BK7" => json!({ "type": "glass", "name": "N-BK7", "outside_fit": "clamp" }),
+                "glass-SF11" => json!({ "type": "glass", "name": "N-SF11", "outside_fit": "clamp" }),
+                other => {
+                    self.builder.leave_out(&place, format!("the glass \"{other}\" is not known: 1.5 is taken for it"));
+                    json!(1.5)
+                }
+            }),
+            _ => Err(format!("{place}: it is no index of refraction")),
+        }
+    }
+
+    fn alpha(&mut self, list: &Parameters, place: &str) -> Result<f64, String> {
+        let mut number = |name: &str| -> Result<Option<f64>, String> {
+            let Some(parameter) = list.get(name) else { return Ok(None) };
+            if parameter.kind == "texture" {
+                let value = self.reflectance(list, name, false)?;
+                return Ok(value.and_then(|v| v.as_f64().or_else(|| v["rgb"][1].as_f64())));
+            }
+            list.number(name)
+        };
+        let prefixed = list.0.iter().any(|p| p.name.starts_with("interface."));
+        let prefix = if prefixed { "interface." } else { "" };
+        let both = number(&format!("{prefix}roughness"))?;
+        let (u, v) = (number(&format!("{prefix}uroughness"))?, number(&format!("{prefix}vroughness"))?);
+        let (u, v) = (u.or(both).unwrap_or(0.0), v.or(both).unwrap_or(0.0));
+        if u != v {
+            self.builder.leave_out(place, "roughnesses along u and v differ: their geometric mean is taken for both");
+        }
+        let roughness = (u * v).max(0.0).sqrt();
+        // Unless told otherwise pbrt takes the square of alpha.
+        let alpha = if list.flag("remaproughness").unwrap_or(true) { roughness.sqrt() } else { roughness };
+        Ok(if alpha < LEAST_ALPHA { 0.0 } else { alpha.min(1.0) })
+    }
+}

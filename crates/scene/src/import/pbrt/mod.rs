@@ -1,0 +1,315 @@
+//! pbrt-v4 scenes: their common shapes, materials, spectra, lights and cameras.
+//!
+//! What a directive says and no part of this module has asked for is listed with its line.
+
+mod camera;
+mod light;
+mod material;
+mod parameters;
+mod shape;
+mod spectrum;
+mod tokens;
+
+use std::collections::HashMap;
+
+use serde_json::Value;
+
+use super::matrix::{IDENTITY, Rows, inverse, looking, product, rotation, scaling, translation};
+use super::{Bounds, Builder};
+use parameters::Parameters;
+use tokens::{Token, Word, tokens};
+
+/// Deepest nesting of files that include files, and of attributes.
+const MAX_DEPTH: usize = 64;
+/// Most files that are included, each counted as often as it is.
+const MAX_INCLUDES: usize = 1000;
+
+pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
+    let mut reading = Reading {
+        builder,
+        state: State::default(),
+        saved: Vec::new(),
+        world: IDENTITY,
+        in_world: false,
+        systems: HashMap::new(),
+        materials: HashMap::new(),
+        textures: HashMap::new(),
+        object: None,
+        includes: 0,
+        shapes: 0,
+    };
+    // Where the file says nothing.
+    reading.builder.film = serde_json::json!({ "width": 1280, "height": 720, "filter": { "type": "gaussian" } });
+    reading.builder.integrator.insert("max_depth".to_owned(), serde_json::json!(6));
+    reading.file(bytes, "", 0)?;
+    if let Some((name, ..)) = reading.object {
+        return Err(format!("the object \"{name}\" is not ended"));
+    }
+    Ok(())
+}
+
+/// What attributes save and restore.
+#[derive(Clone, Debug)]
+struct State {
+    /// From the coordinates in force to the world.
+    transform: Rows,
+    /// A material of the format, or the name of one, and how opaque it is.
+    material: Look,
+    /// What the shapes from here on emit.
+    emission: Option<Value>,
+    reversed: bool,
+}
+
+/// What a surface is made of.
+#[derive(Clone, Debug)]
+struct Look {
+    value: Value,
+    opacity: f64,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        let material = Look { value: serde_json::json!({ "type": "lambert", "reflectance": 0.5 }), opacity: 1.0 };
+        Self { transform: IDENTITY, material, emission: None, reversed: false }
+    }
+}
+
+struct Reading<'r, 'b> {
+    builder: &'r mut Builder<'b>,
+    state: State,
+    saved: Vec<State>,
+    /// pbrt's axes are left-handed: unless the camera's transform mirrors, the world is mirrored here.
+    world: Rows,
+    in_world: bool,
+    systems: HashMap<String, Rows>,
+    materials: HashMap<String, Look>,
+    textures: HashMap<String, Value>,
+    /// The object that is being defined, and what is outside of it.
+    object: Option<(String, (Vec<Value>, Vec<Value>, Bounds))>,
+    includes: usize,
+    shapes: usize,
+}
+
+impl Reading<'_, '_> {
+    fn file(&mut self, bytes: &[u8], of: &str, depth: usize) -> Result<(), String> {
+        if depth > MAX_DEPTH {
+            return Err(format!("{of}files that include files, more than {MAX_DEPTH}"));
+        }
+        let text = std::str::from_utf8(bytes).map_err(|_| format!("{of}it is not UTF-8"))?;
+        let tokens = tokens(text).map_err(|why| format!("{of}{why}"))?;
+        let mut at = 0;
+        while let Some(token) = tokens.get(at) {
+            let place = format!("{of}line {}", token.line);
+            let Word::Name(directive) = &token.word else {
+                return Err(format!("{place}: a directive should stand here"));
+            };
+            at += 1;
+            let mut arguments = Arguments { tokens: &tokens, at: &mut at, of, place: &place };
+            if matches!(directive.as_str(), "Include" | "Import") {
+                let name = arguments.quoted()?;
+                self.includes += 1;
+                if self.includes > MAX_INCLUDES {
+                    return Err(format!("{place}: more than {MAX_INCLUDES} files are included"));
+                }
+                let bytes = self.near(&name, &place)?;
+                self.file(&bytes, &format!("{name}, "), depth + 1)?;
+            } else {
+                self.directive(directive, &mut arguments)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn directive(&mut self, directive: &str, arguments: &mut Arguments<'_>) -> Result<(), String> {
+        let place = arguments.place.to_owned();
+        match directive {
+            "Identity" => self.state.transform = IDENTITY,
+            "Translate" => self.apply(&translation(arguments.numbers()?)),
+            "Scale" => self.apply(&scaling(arguments.numbers()?)),
+            "Rotate" => {
+                let [angle_deg, x, y, z] = arguments.numbers()?;
+                let turn = rotation([x, y, z], angle_deg);
+                self.apply(&turn.ok_or_else(|| format!("{place}: its axis has no direction"))?);
+            }
+            "LookAt" => {
+                let [a, b, c, d, e, f, g, h, i] = arguments.numbers()?;
+                let placed = looking([a, b, c], [d, e, f], [g, h, i]).and_then(|placed| inverse(&placed));
+                self.apply(&placed.ok_or_else(|| format!("{place}: it looks nowhere, or along its up"))?);
+            }
+            "Transform" => self.state.transform = arguments.matrix()?,
+            "ConcatTransform" => {
+                let matrix = arguments.matrix()?;
+                self.apply(&matrix);
+            }
+            "CoordinateSystem" => {
+                self.systems.insert(arguments.quoted()?, self.state.transform);
+            }
+            "CoordSysTransform" => {
+                let name = arguments.quoted()?;
+                let known = self.systems.get(&name);
+                self.state.transform =
+                    *known.ok_or_else(|| format!("{place}: there is no coordinate system \"{name}\""))?;
+            }
+            "AttributeBegin" | "TransformBegin" => {
+                if self.saved.len() > 1 << 16 {
+                    return Err(format!("{place}: attributes within attributes, more than 65536"));
+                }
+                self.saved.push(self.state.clone());
+            }
+            "AttributeEnd" | "TransformEnd" => {
+                let saved = self.saved.pop().ok_or_else(|| format!("{place}: nothing was begun that could end"))?;
+                if directive == "TransformEnd" {
+                    self.state.transform = saved.transform;
+                } else {
+                    self.state = saved;
+                }
+            }
+            "ReverseOrientation" => self.state.reversed = !self.state.reversed,
+            "WorldBegin" => {
+                self.state.transform = IDENTITY;
+                self.systems.insert("world".to_owned(), IDENTITY);
+                self.in_world = true;
+            }
+            "Camera" => self.camera(&arguments.quoted()?, &arguments.parameters()?, &place)?,
+            "Film" => self.film(&arguments.quoted()?, &arguments.parameters()?)?,
+            "Sampler" => self.sampler(&arguments.quoted()?, &arguments.parameters()?)?,
+            "Integrator" => self.integrator(&arguments.quoted()?, &arguments.parameters()?, &place)?,
+            "PixelFilter" => self.filter(&arguments.quoted()?, &arguments.parameters()?, &place)?,
+            "Material" => {
+                let (kind, list) = (arguments.quoted()?, arguments.parameters()?);
+                self.state.material = self.material(&kind, &list, &place)?;
+            }
+            "MakeNamedMaterial" => {
+                let (name, list) = (arguments.quoted()?, arguments.parameters()?);
+                let kind = list.string("type").unwrap_or("diffuse").to_owned();
+                let mut look = self.material(&kind, &list, &place)?;
+                let known = self.builder.material_name(&name);
+                self.builder.materials.insert(known.clone(), look.value);
+                look.value = Value::String(known);
+                self.materials.insert(name, look);
+            }
+            "NamedMaterial" => {
+                let name = arguments.quoted()?;
+                let known = self.materials.get(&name);
+                self.state.material =
+                    known.cloned().ok_or_else(|| format!("{place}: there is no material \"{name}\""))?;
+            }
+            "Texture" => {
+                let (name, kind, class) = (arguments.quoted()?, arguments.quoted()?, arguments.quoted()?);
+                let list = arguments.parameters()?;
+                self.texture(name, &kind, &class, &list, &place)?;
+            }
+            "LightSource" => self.light(&arguments.quoted()?, &arguments.parameters()?, &place)?,
+            "AreaLightSource" => {
+                let (kind, list) = (arguments.quoted()?, arguments.parameters()?);
+                self.state.emission = self.area_light(&kind, &list, &place)?;
+            }
+            "Shape" => self.shape(&arguments.quoted()?, &arguments.parameters()?, &place)?,
+            "ObjectBegin" => {
+                let name = arguments.quoted()?;
+                if self.object.is_some() {
+                    return Err(format!("{place}: an object within an object"));
+                }
+                self.saved.push(self.state.clone());
+                self.object = Some((name, self.builder.begin_group()));
+            }
+            "ObjectEnd" => {
+                let (name, outside) = self.object.take().ok_or_else(|| format!("{place}: no object was begun"))?;
+                self.builder.end_group(&name, outside);
+                self.state = self.saved.pop().unwrap_or_default();
+            }
+            "ObjectInstance" => {
+                let name = arguments.quoted()?;
+                let rows = self.to_world();
+                self.builder.place_group(&format!("{name}, {place}"), &name, &rows, &place);
+            }
+            other => {
+                self.builder.leave_out(&place, format!("{other} is not honoured"));
+                arguments.skip();
+            }
+        }
+        Ok(())
+    }
+
+    fn apply(&mut self, step: &Rows) {
+        self.state.transform = product(&self.state.transform, step);
+    }
+
+    /// From the coordinates in force to those of the scene, or of the object that is being defined.
+    fn to_world(&self) -> Rows {
+        if self.object.is_some() { self.state.transform } else { product(&self.world, &self.state.transform) }
+    }
+
+    /// The bytes of a file that the scene names.
+    fn near(&self, name: &str, place: &str) -> Result<Vec<u8>, String> {
+        let name = name.replace('\\', "/");
+        (self.builder.near)(&name).map_err(|why| format!("{place}: \"{name}\" cannot be read: {why}"))
+    }
+}
+
+/// What follows a directive.
+struct Arguments<'a> {
+    tokens: &'a [Token],
+    at: &'a mut usize,
+    of: &'a str,
+    place: &'a str,
+}
+
+impl Arguments<'_> {
+    fn quoted(&mut self) -> Result<String, String> {
+        match self.tokens.get(*self.at) {
+            Some(Token { word: Word::Quoted(text), .. }) => {
+                *self.at += 1;
+                Ok(text.clone())
+            }
+            _ => Err(format!("{}: a word in quotes should follow", self.place)),
+        }
+    }
+
+    /// Numbers, in brackets or not.
+    fn numbers<const N: usize>(&mut self) -> Result<[f64; N], String> {
+        let fail = || format!("{}: {N} numbers should follow", self.place);
+        let brackets = matches!(self.tokens.get(*self.at), Some(Token { word: Word::Open, .. }));
+        *self.at += usize::from(brackets);
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            match self.tokens.get(*self.at) {
+                Some(Token { word: Word::Number(value), .. }) => *number = *value,
+                _ => return Err(fail()),
+            }
+            *self.at += 1;
+        }
+        if brackets {
+            match self.tokens.get(*self.at) {
+                Some(Token { word: Word::Close, .. }) => *self.at += 1,
+                _ => return Err(fail()),
+            }
+        }
+        Ok(numbers)
+    }
+
+    /// A matrix, which is listed by columns.
+    fn matrix(&mut self) -> Result<Rows, String> {
+        let m: [f64; 16] = self.numbers()?;
+        if [m[3], m[7], m[11]] != [0.0; 3] || m[15] == 0.0 {
+            return Err(format!("{}: the matrix is not affine", self.place));
+        }
+        Ok(std::array::from_fn(|i| std::array::from_fn(|j| m[4 * j + i] / m[15])))
+    }
+
+    fn parameters(&mut self) -> Result<Parameters, String> {
+        let (list, taken) = Parameters::read(&self.tokens[*self.at..], self.of)?;
+        *self.at += taken;
+        Ok(list)
+    }
+
+    /// On to the next directive.
+    fn skip(&mut self) {
+        while let Some(token) = self.tokens.get(*self.at) {
+            if matches!(&token.word, Word::Name(word) if word != "true" && word != "false") {
+                break;
+            }
+            *self.at += 1;
+        }
+    }
+}
