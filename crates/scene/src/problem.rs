@@ -147,6 +147,8 @@ codes! {
     LeftOut = "left-out",
     /// Triangles without area were left out (a warning).
     DegenerateTriangles = "degenerate-triangles",
+    /// Triangles that repeat others were left out (a warning).
+    RepeatedTriangles = "repeated-triangles",
     /// Nothing in the scene emits light (a warning).
     NoLight = "no-light",
     /// The scene has no objects (a warning).

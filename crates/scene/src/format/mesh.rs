@@ -1,5 +1,6 @@
 //! Meshes, listed in the scene or in a file of their own.
 
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -76,6 +77,7 @@ fn from_file(
         None => return refuse("it has no triangles".to_owned(), reader),
     };
     keep_those_with_area(&mut mesh, object, file.at, reader)?;
+    keep_one_of_each(&mut mesh, object, file.at, reader);
     shade(&mut mesh, shading);
     Some(mesh)
 }
@@ -131,6 +133,7 @@ fn listed(form: &MeshShape, shading: Shading, object: &str, reader: &mut Reader<
     let triangles: Option<Vec<[u32; 3]>> = triangles.0.iter().map(|t| t.as_ref().map(|t| t.value)).collect();
     let mut mesh = Mesh { vertices: vertices.clone().complete()?, triangles: triangles?, normals: normals?, uvs: uvs? };
     keep_those_with_area(&mut mesh, object, form.at.head(), reader)?;
+    keep_one_of_each(&mut mesh, object, form.at.head(), reader);
     shade(&mut mesh, shading);
     Some(Arc::new(mesh))
 }
@@ -175,6 +178,51 @@ fn keep_those_with_area(mesh: &mut Mesh, object: &str, at: Span, reader: &mut Re
         reader.warning(Code::DegenerateTriangles, at, message, None);
     }
     Some(())
+}
+
+/// Leaves out triangles that have the corners of an earlier one in the same turn, with a warning: light would be emitted there
+/// twice, and met once. The same corners turned the other way are another side, and stay.
+fn keep_one_of_each(mesh: &mut Mesh, object: &str, at: Span, reader: &mut Reader<'_>) {
+    let all = mesh.triangles.len();
+    let repeated = repeated(mesh);
+    if repeated.is_empty() {
+        return;
+    }
+    let mut number = 0;
+    mesh.triangles.retain(|_| {
+        number += 1;
+        repeated.binary_search(&(number - 1)).is_err()
+    });
+    let message =
+        format!("{} of the {all} triangles of {object} repeat others and were dropped at load", repeated.len());
+    reader.warning(Code::RepeatedTriangles, at, message, None);
+}
+
+/// The triangles that have the corners of an earlier one in the same turn, vertices at the same place counting as one.
+fn repeated(mesh: &Mesh) -> Vec<usize> {
+    let corners = |number: usize| {
+        let places = mesh.triangles[number].map(|i| mesh.vertices[i as usize].map(|x| (x + 0.0).to_bits()));
+        let first = (0..3).min_by_key(|&k| places[k]).unwrap_or(0);
+        [0, 1, 2].map(|k| places[(first + k) % 3])
+    };
+    // Sorted hashes take a quarter of the memory of a set of corners.
+    let hash = |number: usize| (BuildHasherDefault::<DefaultHasher>::default().hash_one(corners(number)), number);
+    let mut hashes: Vec<(u64, usize)> = (0..mesh.triangles.len()).map(hash).collect();
+    hashes.sort_unstable();
+    let mut repeated = Vec::new();
+    for alike in hashes.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
+        let mut kept: Vec<[[u64; 3]; 3]> = Vec::new();
+        for &(_, number) in alike {
+            let corners = corners(number);
+            if kept.contains(&corners) {
+                repeated.push(number);
+            } else {
+                kept.push(corners);
+            }
+        }
+    }
+    repeated.sort_unstable();
+    repeated
 }
 
 fn shade(mesh: &mut Mesh, shading: Shading) {

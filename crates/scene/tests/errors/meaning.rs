@@ -200,6 +200,20 @@ fn meshes() {
         .text(),
     );
     assert_eq!(problem.message, "2 of the 3 triangles of objects[0] have no area and were dropped at load");
+    // The same corners begun at another one, or at other vertices of the same place, are the same triangle; turned the other
+    // way they are its other side.
+    let again = "[[0,1,2],[1,2,0],[0,2,1],[0,1,3],[0,4,2]]";
+    let problem = one(
+        Severity::Warning,
+        Code::RepeatedTriangles,
+        "$.objects[0].shape",
+        &objects(
+            &mesh("[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[1,-0.0,0]]", again)
+                .replace("{\"type\": \"mesh\"", "«{»\"type\": \"mesh\""),
+        )
+        .text(),
+    );
+    assert_eq!(problem.message, "2 of the 5 triangles of objects[0] repeat others and were dropped at load");
     // An error in one triangle hides none in another.
     let found = problems(&objects(&mesh(square, "[[0,1,9],[0,\"1\",2],[8,1,2]]")).text());
     let codes: Vec<Code> = found.iter().map(|p| p.code).collect();
