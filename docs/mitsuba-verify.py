@@ -137,6 +137,9 @@ class Translator:
             normal = unit(np.array(s["normal"], float))
             across = unit(np.cross(normal, [1.0, 0, 0] if abs(normal[0]) < 0.7 else [0, 1.0, 0]))
             return self.flat("disk", s["center_m"], s["radius_m"] * across, s["radius_m"] * np.cross(normal, across), flip)
+        if kind == "cylinder":
+            # Mitsuba's is a tube; its ends would be two more shapes.
+            raise Unsupported("a cylinder with its ends")
         if kind == "parallelogram":
             u, v = np.array(s["u_m"], float), np.array(s["v_m"], float)
             if abs(u @ v) > 1e-12 * np.linalg.norm(u) * np.linalg.norm(v):

@@ -42,6 +42,21 @@ pub fn rectangle_corner_factor(a: f64, b: f64) -> f64 {
     (a / ra * (b / ra).atan() + b / rb * (a / rb).atan()) / (2.0 * PI)
 }
 
+/// Configuration factor of an element to a cylinder of radius 1 and length l whose axis is at right angles to the element's normal,
+/// at the height h > 1, and which has one end above the element, for L = l and H = h, X = (1 + H)² + L², Y = (1 − H)² + L²:
+/// F = atan(L/√(H² − 1))/(πH) + (L/π)·((X − 2H)/(H√(XY))·atan √(X(H − 1)/(Y(H + 1))) − atan √((H − 1)/(H + 1))/H).
+///
+/// Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-30; 1/(2H) for a cylinder without end.
+#[must_use]
+pub fn cylinder_factor(length: f64, height: f64) -> f64 {
+    let (l, h) = (length, height);
+    let (x, y) = ((1.0 + h).powi(2) + l * l, (1.0 - h).powi(2) + l * l);
+    let ratio = (h - 1.0) / (h + 1.0);
+    let side = (l / ((h - 1.0) * (h + 1.0)).sqrt()).atan() / (PI * h);
+    let ends = (x - 2.0 * h) / (h * (x * y).sqrt()) * (x / y * ratio).sqrt().atan() - ratio.sqrt().atan() / h;
+    side + l / PI * ends
+}
+
 /// Lambert's formula (1760): irradiance at the origin, on a plane with the given unit normal, from a polygon of radiance 1
 /// whose corners run counter-clockwise seen from the origin; the polygon is cut at the horizon first.
 ///
@@ -133,6 +148,18 @@ pub(super) fn disk_by_quadrature(center: Vec3, disk_normal: Vec3, radius: f64, a
     crate::quadrature::rectangle(integrand, [0.0, radius], [0.0, 2.0 * PI], 1e-11, 2_000_000).value
 }
 
+/// Irradiance below the middle of a cylinder of radius 1, radiance 1 and length 2l at the height h, over the side that is seen.
+pub(super) fn cylinder_by_quadrature(half_length: f64, height: f64) -> f64 {
+    let integrand = |phi: f64, y: f64| {
+        let (x, z) = (phi.sin(), height - phi.cos());
+        let d2 = x * x + y * y + z * z;
+        // Cosines at the element and at the cylinder, each times the distance.
+        z * (height * phi.cos() - 1.0) / (d2 * d2)
+    };
+    let rim = (1.0 / height).acos();
+    crate::quadrature::rectangle(integrand, [-rim, rim], [-half_length, half_length], 1e-11, 2_000_000).value
+}
+
 /// Irradiance by quadrature over the cone that a sphere of radiance 1 fills.
 pub(super) fn sphere_by_quadrature(radius: f64, distance: f64, tilt_rad: f64) -> f64 {
     let s = radius / distance;
@@ -163,6 +190,10 @@ mod tests {
         let corner =
             parallelogram_by_quadrature([0.0, 0.0, 1.0], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0]);
         close(PI * rectangle_corner_factor(2.0, 3.0), corner, 1e-9);
+        for (length, height) in [(2.0, 3.0), (0.1, 1.2), (30.0, 2.0)] {
+            close(2.0 * PI * cylinder_factor(length, height), cylinder_by_quadrature(length, height), 1e-8);
+        }
+        close(cylinder_factor(1e9, 3.0), 1.0 / 6.0, 1e-8);
         let corners = [[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [0.0, 0.0, 2.0]];
         let up = [0.0, 0.0, 1.0];
         close(lambert_polygon(&corners, up), triangle_by_quadrature(corners[0], corners[1], corners[2], up), 1e-9);

@@ -21,6 +21,7 @@ mod polarised;
 mod prisms;
 mod scene;
 mod solids;
+mod tubes;
 mod view_factors;
 mod water;
 
@@ -30,7 +31,7 @@ use serde_json::{Value, json};
 
 pub use exchange::{ExchangeFile, exchange_files};
 pub use irradiance::{
-    disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
+    cylinder_factor, disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
     walsh_reflectance,
 };
 pub use judge::judge;
@@ -237,6 +238,7 @@ pub fn truths() -> Vec<Truth> {
         illumination::truths(),
         lamps::truths(),
         view_factors::truths(),
+        tubes::truths(),
         glass::truths(),
         polarised::truths(),
         solids::truths(),

@@ -252,6 +252,11 @@ pub(super) fn disk(center: Vec3, normal: Vec3, radius_m: f64) -> Value {
     json!({ "type": "disk", "center_m": center, "normal": normal, "radius_m": radius_m })
 }
 
+/// A round rod or room, closed by disks at its ends; the front is outside.
+pub(super) fn cylinder(start: Vec3, end: Vec3, radius_m: f64) -> Value {
+    json!({ "type": "cylinder", "start_m": start, "end_m": end, "radius_m": radius_m, "capped": true })
+}
+
 /// The front is along u × v.
 pub(super) fn parallelogram(origin: Vec3, u: Vec3, v: Vec3) -> Value {
     json!({ "type": "parallelogram", "origin_m": origin, "u_m": u, "v_m": v })

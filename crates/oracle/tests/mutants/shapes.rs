@@ -5,10 +5,28 @@ use std::f64::consts::PI;
 use crate::vector::{Vec3, cross, dot, frame, minus, plus, times, unit};
 
 pub(crate) enum Shape {
-    Sphere { center: Vec3, radius: f64 },
-    Disk { center: Vec3, normal: Vec3, radius: f64 },
-    Quad { origin: Vec3, u: Vec3, v: Vec3 },
+    Sphere {
+        center: Vec3,
+        radius: f64,
+    },
+    Disk {
+        center: Vec3,
+        normal: Vec3,
+        radius: f64,
+    },
+    Quad {
+        origin: Vec3,
+        u: Vec3,
+        v: Vec3,
+    },
     Triangle([Vec3; 3]),
+    /// The side of a cylinder.
+    Tube {
+        start: Vec3,
+        axis: Vec3,
+        length: f64,
+        radius: f64,
+    },
 }
 
 impl Shape {
@@ -27,6 +45,22 @@ impl Shape {
                 let t = if leaving { Some(2.0 * b) } else { [near, far].into_iter().find(|t| *t > 0.0) };
                 let t = t.filter(|t| *t > 0.0)?;
                 Some((t, times(1.0 / radius, minus(plus(origin, t, d), *center))))
+            }
+            Self::Tube { start, axis, length, radius } => {
+                let to = minus(origin, *start);
+                let across = |v: Vec3| plus(v, -dot(v, *axis), *axis);
+                let (o, e) = (across(to), across(d));
+                let (a, b, c) = (dot(e, e), dot(o, e), dot(o, o) - radius * radius);
+                let square = b * b - a * c;
+                if a == 0.0 || square < 0.0 {
+                    return None;
+                }
+                let roots = [(-b - square.sqrt()) / a, (-b + square.sqrt()) / a];
+                // From the tube itself one of the two is the point left.
+                let roots = if leaving { [f64::NAN, -2.0 * b / a] } else { roots };
+                let within = |t: &f64| *t > 0.0 && (0.0..=*length).contains(&dot(plus(to, *t, d), *axis));
+                let t = roots.into_iter().find(within)?;
+                Some((t, times(1.0 / radius, across(plus(to, t, d)))))
             }
             _ if leaving => None,
             Self::Disk { center, normal, radius } => {
@@ -73,6 +107,12 @@ impl Shape {
                 let (x, y) = frame(*normal);
                 let (r, phi) = (radius * u[0].sqrt(), 2.0 * PI * u[1]);
                 (plus(plus(*center, r * phi.cos(), x), r * phi.sin(), y), *normal, PI * radius * radius)
+            }
+            Self::Tube { start, axis, length, radius } => {
+                let (x, y) = frame(*axis);
+                let phi = 2.0 * PI * u[0];
+                let normal = plus(times(phi.cos(), x), phi.sin(), y);
+                (plus(plus(*start, u[1] * length, *axis), *radius, normal), normal, 2.0 * PI * radius * length)
             }
             Self::Quad { origin, u: a, v: b } => {
                 let normal = cross(*a, *b);

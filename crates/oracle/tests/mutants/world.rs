@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::{
     shapes::Shape,
-    vector::{Vec3, plus, unit},
+    vector::{Vec3, dot, minus, plus, times, unit},
 };
 
 pub(crate) enum Material {
@@ -148,6 +148,16 @@ impl World {
                 normal: unit(vec3(&shape["normal"])),
                 radius: number(&shape["radius_m"]),
             }),
+            Some("cylinder") => {
+                let (start, end, radius) = (vec3(&shape["start_m"]), vec3(&shape["end_m"]), number(&shape["radius_m"]));
+                let along = minus(end, start);
+                let axis = unit(along);
+                shapes.push(Shape::Tube { start, axis, length: dot(along, along).sqrt(), radius });
+                if shape["capped"] == true && self.fault != "tubes without their ends" {
+                    shapes.push(Shape::Disk { center: start, normal: times(-1.0, axis), radius });
+                    shapes.push(Shape::Disk { center: end, normal: axis, radius });
+                }
+            }
             Some("parallelogram") => shapes.push(Shape::Quad {
                 origin: vec3(&shape["origin_m"]),
                 u: vec3(&shape["u_m"]),
