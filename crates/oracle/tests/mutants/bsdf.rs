@@ -209,13 +209,13 @@ fn broken(verdicts: &[Verdict]) -> Vec<&Verdict> {
     verdicts.iter().filter(|verdict| !verdict.pass).collect()
 }
 
-fn accepted(subject: &dyn Scatters, seed: u64) {
+pub(crate) fn accepted(subject: &dyn Scatters, seed: u64) {
     for verdict in suite::scatters(subject, seed) {
         verdict.assert();
     }
 }
 
-fn rejected(subject: &dyn Scatters, fault: &str) {
+pub(crate) fn rejected(subject: &dyn Scatters, fault: &str) {
     let verdicts = suite::scatters(subject, 1);
     assert!(!broken(&verdicts).is_empty(), "the mutant \"{fault}\" survived");
 }
