@@ -1,23 +1,24 @@
-//! Scenes and rays that are hard to intersect. Nothing here knows [`Geometry`](crate::Geometry).
+//! Scenes and rays that are hard to intersect: the oracle's, as primitives, and what only our own types can express. Nothing
+//! here knows [`Geometry`](crate::Geometry).
 
 use crate::{Cylinder, Disk, Instance, Parallelogram, Placement, Primitive, Sphere, Triangle};
 use etalon_optics::Vec3;
-use rand_xoshiro::Xoshiro256PlusPlus;
-use rand_xoshiro::rand_core::{Rng as _, SeedableRng};
+use etalon_oracle::Uniform;
+use etalon_oracle::generators::{self, Shape};
 
 pub(crate) type V = Vec3<f64>;
 
 /// Random numbers of a fixed seed.
-pub(crate) struct Random(Xoshiro256PlusPlus);
+pub(crate) struct Random(Uniform);
 
 impl Random {
     pub(crate) fn new(seed: u64) -> Self {
-        Self(Xoshiro256PlusPlus::seed_from_u64(seed))
+        Self(Uniform::new(seed))
     }
 
     /// Uniform in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (0.5 / (1_u64 << 52) as f64)
+        (self.0.bits() >> 11) as f64 * (0.5 / (1_u64 << 52) as f64)
     }
 
     /// Uniform in [−1, 1).
@@ -44,8 +45,8 @@ impl Random {
     pub(crate) fn any_number(&mut self) -> f64 {
         match self.below(8) {
             0 => [0.0, -0.0, 1.0, -1.0, f64::NAN, f64::INFINITY, f64::MIN_POSITIVE, f64::MAX][self.below(8)],
-            1 => f64::from_bits(self.0.next_u64()),
-            2 => f64::from(f32::from_bits(self.0.next_u32())),
+            1 => f64::from_bits(self.0.bits()),
+            2 => f64::from(f32::from_bits((self.0.bits() >> 32) as u32)),
             // Within the range of coordinates.
             3 => self.signed() * 2.0_f64.powi(self.below(240) as i32 - 120),
             _ => self.signed() * 2.0_f64.powi(self.below(8) as i32),
@@ -171,34 +172,37 @@ pub(crate) fn turned(p: V) -> V {
     v(p.x, c * p.y - s * p.z, s * p.y + c * p.z)
 }
 
+/// The primitive, if it has an area.
+pub(crate) fn primitive(shape: &Shape) -> Option<Primitive> {
+    let v = Vec3::from_array;
+    match *shape {
+        Shape::Triangle { corners_m: [a, b, c] } => Triangle::new(v(a), v(b), v(c)).ok().map(Primitive::from),
+        Shape::Sphere { center_m, radius_m } => Sphere::new(v(center_m), radius_m).ok().map(Primitive::from),
+        Shape::Disk { center_m, normal, radius_m } => {
+            Disk::new(v(center_m), v(normal), radius_m).ok().map(Primitive::from)
+        }
+        Shape::Parallelogram { corner_m, edges_m: [a, b] } => {
+            Parallelogram::new(v(corner_m), v(a), v(b)).ok().map(Primitive::from)
+        }
+        Shape::Cylinder { ends_m: [a, b], radius_m, capped } => {
+            Cylinder::new(v(a), v(b), radius_m, capped).ok().map(Primitive::from)
+        }
+    }
+}
+
 /// `count` primitives of all kinds, their sizes spread over the decades `sizes`, in [−1, 1]³.
 pub(crate) fn soup(random: &mut Random, count: usize, sizes: std::ops::Range<f64>) -> Vec<Primitive> {
+    let [least, most] = [sizes.start, sizes.end].map(|decade| 10.0_f64.powf(decade));
+    enough(count, || generators::soup(&mut random.0, count, least, most))
+}
+
+/// The first `count` shapes that have an area.
+fn enough(count: usize, mut more: impl FnMut() -> Vec<Shape>) -> Vec<Primitive> {
     let mut out = Vec::with_capacity(count);
     while out.len() < count {
-        let p = random.in_cube();
-        let size = random.log_uniform(sizes.start, sizes.end);
-        let primitive = match random.below(6) {
-            0 => Sphere::new(p, size).ok().map(Primitive::from),
-            1 => Disk::new(p, random.direction(), size).ok().map(Primitive::from),
-            2 => {
-                let edges = [random.in_cube() * size, random.in_cube() * size];
-                Parallelogram::new(p, edges[0], edges[1]).ok().map(Primitive::from)
-            }
-            3 => {
-                let capped = random.below(2) == 0;
-                let end = p + random.direction() * (size * random.log_uniform(-2.0, 1.0));
-                Cylinder::new(p, end, size, capped).ok().map(Primitive::from)
-            }
-            4 => Triangle::new(p, p + random.in_cube() * size, p + random.in_cube() * size).ok().map(Primitive::from),
-            _ => {
-                // A needle.
-                let along = random.direction() * size;
-                let across = random.in_cube() * (size * random.log_uniform(-6.0, 0.0));
-                Triangle::new(p, p + along, p + along * random.unit() + across).ok().map(Primitive::from)
-            }
-        };
-        out.extend(primitive);
+        out.extend(more().iter().filter_map(primitive));
     }
+    out.truncate(count);
     out
 }
 
@@ -243,36 +247,13 @@ pub(crate) fn representable(primitives: &[Primitive]) -> Vec<Primitive> {
 }
 
 /// Triangles whose sizes and distances from a corner halve at every step: a tree as deep as they are many.
-pub(crate) fn converging(count: i32) -> Vec<Primitive> {
-    (0..count)
-        .map(|i| {
-            let s = 0.5_f64.powi(i);
-            let p = v(-1.0, -1.0, -1.0) + v(s, s, s);
-            let (a, b) = (v(0.2 * s, 0.0, 0.1 * s), v(0.0, 0.2 * s, -0.1 * s));
-            Triangle::new(p, p + a, p + b).map(Primitive::from)
-        })
-        .filter_map(Result::ok)
-        .collect()
+pub(crate) fn converging(count: u32) -> Vec<Primitive> {
+    generators::converging(count).iter().filter_map(primitive).collect()
 }
 
-/// Axis-aligned rectangles and boxes of them on a coarse grid: planes shared by many boxes of a tree.
+/// Axis-aligned rectangles and halves of them on a coarse grid: planes shared by many boxes of a tree.
 pub(crate) fn blocks(random: &mut Random, count: usize) -> Vec<Primitive> {
-    let mut out = Vec::with_capacity(count);
-    while out.len() < count {
-        let mut cell = || (random.below(9) as f64 - 4.0) * 0.25;
-        let corner = v(cell(), cell(), cell());
-        let (k, a, b) = (random.below(3), random.below(4), random.below(4));
-        let mut edges = [[0.0; 3]; 2];
-        edges[0][(k + 1) % 3] = (a + 1) as f64 * 0.25;
-        edges[1][(k + 2) % 3] = (b + 1) as f64 * 0.25;
-        let (a, b) = (Vec3::from_f64(edges[0]), Vec3::from_f64(edges[1]));
-        if random.below(2) == 0 {
-            out.extend(Parallelogram::new(corner, a, b).ok().map(Primitive::from));
-        } else {
-            out.extend(Triangle::new(corner, corner + a, corner + b).ok().map(Primitive::from));
-        }
-    }
-    out
+    enough(count, || generators::blocks(&mut random.0, count))
 }
 
 /// A ray's origin and direction.
@@ -280,28 +261,9 @@ pub(crate) type Line = (V, V);
 
 /// A ray of one of several adversarial kinds, aimed at what is in [−1, 1]³ or at one of the points `at`.
 pub(crate) fn line(random: &mut Random, at: &[V]) -> Line {
-    let aim = if !at.is_empty() && random.below(2) == 0 { at[random.below(at.len())] } else { random.in_cube() };
-    let origin = match random.below(4) {
-        0 => random.in_cube(),
-        1 => random.in_cube() * random.log_uniform(0.0, 6.0),
-        2 => aim + random.in_cube() * random.log_uniform(-12.0, 0.0),
-        _ if !at.is_empty() => at[random.below(at.len())],
-        _ => random.in_cube() * 2.0,
-    };
-    let mut direction = (aim - origin) * random.log_uniform(-3.0, 3.0);
-    if random.below(3) == 0 {
-        // In a slab plane, with zeros of both signs or nearly.
-        let tiny = [0.0, -0.0, 1e-30, -1e-30, 1e-17, -1e-12][random.below(6)];
-        match random.below(6) {
-            0 => direction.x = tiny,
-            1 => direction.y = tiny,
-            2 => direction.z = tiny,
-            3 => (direction.x, direction.y) = (tiny, -tiny),
-            4 => (direction.y, direction.z) = (tiny, tiny),
-            _ => (direction.z, direction.x) = (-tiny, tiny),
-        }
-    }
-    (origin, direction)
+    let at: Vec<[f64; 3]> = at.iter().map(|p| p.to_array()).collect();
+    let line = generators::line(&mut random.0, &at, 1.0, [0.0; 3]);
+    (Vec3::from_array(line.origin_m), Vec3::from_array(line.direction))
 }
 
 /// Characteristic points of primitives: corners, centres, poles.

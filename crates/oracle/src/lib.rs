@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod double_double;
+pub mod generators;
 pub mod laws;
 pub mod quadrature;
 mod random;

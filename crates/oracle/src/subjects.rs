@@ -1,6 +1,6 @@
 //! What a renderer can hand to the oracle: traits over plain numbers.
 
-use crate::{quadrature::Cone, statistics::Estimate, truths::Truth};
+use crate::{generators::Shape, quadrature::Cone, statistics::Estimate, truths::Truth};
 
 /// How likely a sampled direction was.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,6 +139,29 @@ pub struct Hit {
 pub trait Intersects {
     /// The nearest hit with t in (0, t_max).
     fn intersect(&self, origin_m: [f64; 3], direction: [f64; 3], t_max: f64) -> Option<Hit>;
+
+    /// Whether there is any hit with t in (0, t_max); a subject with a query of its own for shadow rays asks that.
+    fn occluded(&self, origin_m: [f64; 3], direction: [f64; 3], t_max: f64) -> bool {
+        self.intersect(origin_m, direction, t_max).is_some()
+    }
+}
+
+/// What makes something that rays can hit of shapes: a renderer's shapes with its tree.
+pub trait Builds {
+    /// Makes one thing of several shapes. A shape without an area, or too small for the subject's arithmetic, may be left
+    /// out, if it is left out alone as well.
+    fn build(&self, shapes: &[Shape]) -> Box<dyn Intersects>;
+
+    /// Whether the subject knows such shapes.
+    fn takes(&self, shape: &Shape) -> bool {
+        let _ = shape;
+        true
+    }
+
+    /// Machine epsilon of the arithmetic: rays and shapes are rounded to what it can represent.
+    fn epsilon(&self) -> f64 {
+        f64::EPSILON
+    }
 }
 
 /// What a renderer measured on a truth's scene.

@@ -1,9 +1,10 @@
 //! Whole suites for a subject, and the macros that turn them into tests.
 
 use crate::{
-    Verdict, laws,
+    Verdict, generators,
+    laws::{self, Aim, ClosedMesh},
     statistics::Budget,
-    subjects::{Emits, Scatters},
+    subjects::{Builds, Emits, Scatters},
 };
 
 /// Every law of a BSDF. The statistical ones share one budget, so that a right subject fails anything at all with
@@ -28,6 +29,38 @@ pub fn scatters(subject: &dyn Scatters, seed: u64) -> Vec<Verdict> {
 pub fn emits(subject: &dyn Emits, from_m: &[[f64; 3]], pdf_tolerance: f64, seed: u64) -> Vec<Verdict> {
     let budget = Budget::for_tests(4 * from_m.len());
     from_m.iter().flat_map(|point| laws::light_laws(subject, *point, pdf_tolerance, budget, seed)).collect()
+}
+
+/// Every law of shapes and the tree over them, with `rays` rays for each scene and mesh. Right or wrong: no statistics.
+#[must_use]
+pub fn intersects(subject: &dyn Builds, rays: usize, seed: u64) -> Vec<Verdict> {
+    let scenes = generators::scenes(subject.epsilon(), seed);
+    let mut verdicts: Vec<Verdict> =
+        scenes.iter().map(|scene| laws::neighbours_change_no_hit(subject, scene, rays, seed)).collect();
+    verdicts.extend(closed_meshes(subject.epsilon()).map(|mesh| laws::built_mesh_is_tight(subject, &mesh, rays, seed)));
+    verdicts.push(laws::needles_are_hit_where_they_are(subject, rays, seed));
+    verdicts.push(laws::near_surfaces_are_hit(subject, rays, seed));
+    verdicts.push(zeros_and_scales(subject, seed));
+    verdicts
+}
+
+/// The closed meshes of [`intersects`], where they stand and moved as far as their vertices stay apart.
+pub fn closed_meshes(epsilon: f64) -> impl Iterator<Item = ClosedMesh> {
+    let far = if epsilon > 1e-10 { 1e2 } else { 1e6 };
+    [ClosedMesh::cube(), ClosedMesh::sphere(16, 16), ClosedMesh::needles(30, 1e3)].into_iter().flat_map(move |mesh| {
+        [0.0, 1e-2 * far, far].map(|by: f64| mesh.clone().moved([by, -0.3 * by, 0.6 * by], epsilon))
+    })
+}
+
+/// Signed zeros and powers of two, on a cube and a ball of triangles.
+fn zeros_and_scales(subject: &dyn Builds, seed: u64) -> Verdict {
+    let cube = subject.build(&laws::triangles(&ClosedMesh::cube(), 1.0));
+    let zeros = laws::signed_zeros_are_equal(cube.as_ref(), &[[0.0; 3], [0.5, -0.25, 0.125]], 5.0);
+    let ball = ClosedMesh::sphere(16, 16);
+    let aims: Vec<Aim> = ball.aims(300, subject.epsilon(), seed).collect();
+    let build = |factor: f64| subject.build(&laws::triangles(&ball, factor));
+    let scales = laws::powers_of_two_are_exact(build, &aims, &[-30, -20, -3, 7, 20, 30]);
+    Verdict::worst_of("signed zeros are equal, and powers of two exact", [zeros, scales])
 }
 
 /// Makes a module of tests, one a law, that hold a BSDF to everything the oracle knows.
@@ -131,6 +164,26 @@ macro_rules! emits_suite {
                         verdict.assert();
                     }
                 }
+            }
+        }
+    };
+}
+
+/// Makes a module of one test that holds shapes and the tree over them, as a [`Builds`], to everything the oracle knows.
+#[macro_export]
+macro_rules! intersects_suite {
+    ($name:ident, $subject:expr) => {
+        $crate::intersects_suite!($name, $subject, rays: 20_000, seed: 1);
+    };
+    ($name:ident, $subject:expr, rays: $rays:expr, seed: $seed:expr) => {
+        #[cfg(test)]
+        mod $name {
+            #[allow(unused_imports, reason = "the subject's expression may or may not need what surrounds it")]
+            use super::*;
+
+            #[test]
+            fn every_law_of_intersection_holds() {
+                $crate::suite::intersects(&$subject, $rays, $seed).iter().for_each($crate::Verdict::assert);
             }
         }
     };

@@ -2,6 +2,7 @@
 
 mod cylinders;
 mod instances;
+mod oracle;
 mod spawn;
 mod spheres;
 mod tree;

@@ -15,6 +15,7 @@ mod polarisation;
 mod refraction;
 mod sampling;
 mod scattering;
+mod trees;
 
 pub use fresnel::{
     FresnelPowers, fresnel_conserves_energy, fresnel_exact, fresnel_is_accurate, fresnel_obeys_brewster,
@@ -36,6 +37,9 @@ pub use polarisation::{
 pub use refraction::{Crossing, mirror_reflection, snell, snell_sweep, total_internal_reflection};
 pub use sampling::{energy_is_not_created, furnace_agrees, pdf_integrates_to_one, samples_follow_pdf};
 pub use scattering::{etendue_is_conserved, f_and_pdf_are_proper, is_reciprocal, sample_is_consistent};
+pub use trees::{
+    built_mesh_is_tight, near_surfaces_are_hit, needles_are_hit_where_they_are, neighbours_change_no_hit, triangles,
+};
 
 /// Machine epsilon of an f32 subject, as an `f64`.
 pub const SINGLE: f64 = f32::EPSILON as f64;

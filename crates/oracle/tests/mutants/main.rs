@@ -4,11 +4,13 @@
 //! line wrong, selected by name.
 
 mod bsdf;
+mod layers;
 mod light;
 mod pictures;
 mod polarisation;
 mod renderer;
 mod shapes;
 mod surface;
+mod trees;
 mod vector;
 mod world;

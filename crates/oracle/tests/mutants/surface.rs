@@ -121,40 +121,48 @@ impl Triangles {
 
 impl Intersects for Triangles {
     fn intersect(&self, origin: Vec3, direction: Vec3, t_max: f64) -> Option<Hit> {
-        let kz = (0..3).max_by(|a, b| direction[*a].abs().total_cmp(&direction[*b].abs()))?;
-        let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
-        let (kx, ky) = if direction[kz] < 0.0 { (ky, kx) } else { (kx, ky) };
-        let shear = [direction[kx] / direction[kz], direction[ky] / direction[kz], 1.0 / direction[kz]];
-        let mut nearest: Option<Hit> = None;
-        for corners in &self.corners {
-            let local = corners.map(|corner| {
-                let p = minus(corner, origin);
-                [p[kx] - shear[0] * p[kz], p[ky] - shear[1] * p[kz], shear[2] * p[kz]]
-            });
-            let edge = |a: Vec3, b: Vec3| a[0] * b[1] - a[1] * b[0];
-            let (u, v, w) = (edge(local[2], local[1]), edge(local[0], local[2]), edge(local[1], local[0]));
-            let outside = match self.fault {
-                "edges excluded" => !(u > 0.0 && v > 0.0 && w > 0.0 || u < 0.0 && v < 0.0 && w < 0.0),
-                "back faces culled" => u < 0.0 || v < 0.0 || w < 0.0,
-                _ => (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0),
-            };
-            let determinant = u + v + w;
-            if outside || determinant == 0.0 {
-                continue;
-            }
-            let t = (u * local[0][2] + v * local[1][2] + w * local[2][2]) / determinant;
-            let least = if self.fault == "an absolute epsilon" { 1e-4 } else { 0.0 };
-            if t > least && t < nearest.map_or(t_max, |hit| hit.t) {
-                let normal = unit(cross(minus(corners[1], corners[0]), minus(corners[2], corners[0])));
-                nearest = Some(Hit { t, normal });
-            }
-        }
-        nearest
+        self.corners.iter().fold(None, |nearest: Option<Hit>, corners| {
+            let limit = nearest.map_or(t_max, |hit| hit.t);
+            meet_triangle(self.fault, corners, origin, direction, limit).or(nearest)
+        })
     }
 }
 
+/// Where a ray meets a triangle before `t_max`, with one of several faults.
+pub(crate) fn meet_triangle(
+    fault: &str,
+    corners: &[Vec3; 3],
+    origin: Vec3,
+    direction: Vec3,
+    t_max: f64,
+) -> Option<Hit> {
+    let kz = (0..3).max_by(|a, b| direction[*a].abs().total_cmp(&direction[*b].abs()))?;
+    let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
+    let (kx, ky) = if direction[kz] < 0.0 { (ky, kx) } else { (kx, ky) };
+    let shear = [direction[kx] / direction[kz], direction[ky] / direction[kz], 1.0 / direction[kz]];
+    let local = corners.map(|corner| {
+        let p = minus(corner, origin);
+        [p[kx] - shear[0] * p[kz], p[ky] - shear[1] * p[kz], shear[2] * p[kz]]
+    });
+    let edge = |a: Vec3, b: Vec3| a[0] * b[1] - a[1] * b[0];
+    let (u, v, w) = (edge(local[2], local[1]), edge(local[0], local[2]), edge(local[1], local[0]));
+    let outside = match fault {
+        "edges excluded" => !(u > 0.0 && v > 0.0 && w > 0.0 || u < 0.0 && v < 0.0 && w < 0.0),
+        "back faces culled" => u < 0.0 || v < 0.0 || w < 0.0,
+        _ => (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0),
+    };
+    let determinant = u + v + w;
+    if outside || determinant == 0.0 {
+        return None;
+    }
+    let t = (u * local[0][2] + v * local[1][2] + w * local[2][2]) / determinant;
+    let least = if fault == "an absolute epsilon" { 1e-4 } else { 0.0 };
+    let normal = unit(cross(minus(corners[1], corners[0]), minus(corners[2], corners[0])));
+    (t > least && t < t_max).then_some(Hit { t, normal })
+}
+
 /// Triangles by Möller & Trumbore in single precision with its customary epsilon.
-struct Leaky(Vec<[[f32; 3]; 3]>);
+pub(crate) struct Leaky(pub(crate) Vec<[[f32; 3]; 3]>);
 
 impl Intersects for Leaky {
     fn intersect(&self, origin: Vec3, direction: Vec3, _: f64) -> Option<Hit> {
