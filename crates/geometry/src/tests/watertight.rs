@@ -114,7 +114,9 @@ fn hits_on_needles_are_right_in_distance_and_normal() {
             assert!(ratio > 1e9, "missed a needle of {ratio}");
             continue;
         };
-        assert!((hit.t - 1.0).abs() < 1e-12 / origin.z.abs(), "t = {} at {ratio}", hit.t);
+        // A needle's weights lose its ratio, until `planar::is_determined` has them computed again: at 2⁻³⁰ of t.
+        let bound = (256.0 * f64::EPSILON * ratio).min(0.5_f64.powi(30));
+        assert!((hit.t - 1.0).abs() < bound / origin.z.abs(), "t = {} at {ratio}", hit.t);
         let p = geometry.surface(&ray, &hit);
         assert!(p.position.z.abs() <= p.position_error, "{p:?}");
     }

@@ -134,9 +134,10 @@ struct RoughGlass {
 const INSIDE: f64 = 1.5;
 const ALPHA: f64 = 0.4;
 
-/// A pair of directions on an interface: their facet, the indices and Fresnel's R.
+/// A pair of directions on an interface: their facet, (n_o wo·h + n_i wi·h)², the indices and Fresnel's R.
 struct Facet {
     h: Vec3,
+    square: f64,
     n_o: f64,
     n_i: f64,
     crosses: bool,
@@ -152,16 +153,21 @@ impl RoughGlass {
             "half vector without the indices" => plus(wo, 1.0, wi),
             _ => plus(times(n_o, wo), n_i, wi),
         };
-        let length = dot(sum, sum).sqrt();
-        if wo[2] == 0.0 || wi[2] == 0.0 || length == 0.0 {
+        let square = dot(sum, sum);
+        if wo[2] == 0.0 || wi[2] == 0.0 || square == 0.0 {
             return None;
         }
         // On the side of `wo`.
-        let h = times(1.0 / length, sum);
+        let h = times(1.0 / square.sqrt(), sum);
         let h = if h[2] * wo[2] < 0.0 { below(h) } else { h };
         let seen = dot(wo, h) > 0.0 && (dot(wi, h) > 0.0) != crosses;
-        let cosine = if self.fault == "Fresnel by the mean normal" { wo[2].abs() } else { dot(wo, h) };
-        seen.then(|| Facet { h, n_o, n_i, crosses, r: reflectance(cosine, far / n_o) })
+        let r = match self.fault {
+            "Fresnel by the mean normal" => reflectance(wo[2].abs(), far / n_o),
+            // From above, where no critical angle magnifies roundings.
+            _ if crosses => reflectance(dot(if wo[2] > 0.0 { wo } else { wi }, h).abs(), INSIDE),
+            _ => reflectance(dot(wo, h), far / n_o),
+        };
+        seen.then_some(Facet { h, square, n_o, n_i, crosses, r })
     }
 
     fn d(h: Vec3) -> f64 {
@@ -177,7 +183,7 @@ impl RoughGlass {
 
 impl Scatters for RoughGlass {
     fn f(&self, wo: Vec3, wi: Vec3, _: f64) -> f64 {
-        let Some(Facet { h, n_o, n_i, crosses, r }) = self.facet(wo, wi) else { return 0.0 };
+        let Some(Facet { h, square, n_o, n_i, crosses, r }) = self.facet(wo, wi) else { return 0.0 };
         let common = Self::d(h) * Self::g1(wo) * Self::g1(wi) / (wo[2] * wi[2]).abs();
         if !crosses {
             return r * common / 4.0;
@@ -188,11 +194,11 @@ impl Scatters for RoughGlass {
             "n squared the wrong way" => n_i * n_i,
             _ => n_o * n_o,
         };
-        (1.0 - r) * common * n2 * (o * i).abs() / (n_o * o + n_i * i).powi(2)
+        (1.0 - r) * common * n2 * (o * i).abs() / square
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3, _: f64) -> f64 {
-        let Some(Facet { h, n_o, n_i, crosses, r }) = self.facet(wo, wi) else { return 0.0 };
+        let Some(Facet { h, square, n_i, crosses, r, .. }) = self.facet(wo, wi) else { return 0.0 };
         let (o, i) = (dot(wo, h), dot(wi, h));
         let facets = Self::d(h) * h[2].abs();
         if !crosses {
@@ -200,7 +206,7 @@ impl Scatters for RoughGlass {
         } else if self.fault == "the Jacobian of reflection" {
             (1.0 - r) * facets / (4.0 * o)
         } else {
-            (1.0 - r) * facets * n_i * n_i * i.abs() / (n_o * o + n_i * i).powi(2)
+            (1.0 - r) * facets * n_i * n_i * i.abs() / square
         }
     }
 

@@ -2,6 +2,7 @@
 
 use etalon_oracle::{
     Verdict,
+    double_double::DoubleDouble,
     laws::{self, Aim, ClosedMesh},
     subjects::{Hit, Intersects},
 };
@@ -144,7 +145,14 @@ pub(crate) fn meet_triangle(
         let p = minus(corner, origin);
         [p[kx] - shear[0] * p[kz], p[ky] - shear[1] * p[kz], shear[2] * p[kz]]
     });
-    let edge = |a: Vec3, b: Vec3| a[0] * b[1] - a[1] * b[0];
+    // Where the products round to the same, exactly: a tiny triangle beside the ray would else seem to be met.
+    let edge = |a: Vec3, b: Vec3| match a[0] * b[1] - a[1] * b[0] {
+        0.0 => {
+            let wide = DoubleDouble::from;
+            (wide(a[0]) * wide(b[1]) - wide(a[1]) * wide(b[0])).to_f64()
+        }
+        area => area,
+    };
     let (u, v, w) = (edge(local[2], local[1]), edge(local[0], local[2]), edge(local[1], local[0]));
     let outside = match fault {
         "edges excluded" => !(u > 0.0 && v > 0.0 && w > 0.0 || u < 0.0 && v < 0.0 && w < 0.0),
