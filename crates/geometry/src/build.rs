@@ -174,9 +174,12 @@ struct Split {
 enum Position {
     /// Twice-centres below this bin go left.
     Bin(BinMap, usize),
-    /// This many of the primitives sorted along the axis go left.
-    Rank(usize),
+    /// This many of the primitives, in this order, go left.
+    Rank(usize, Order),
 }
+
+/// The places of up to [`SWEEP_LIMIT`] primitives, in some order.
+type Order = [u8; SWEEP_LIMIT];
 
 /// Maps twice-centres to bins.
 #[derive(Clone, Copy)]
@@ -263,8 +266,13 @@ impl Builder {
                 }
                 return (i, [left, right]);
             }
-            Some(Split { axis, position: Position::Rank(rank), .. }) => {
-                items.sort_unstable_by_key(|item| item.key(axis));
+            Some(Split { position: Position::Rank(rank, order), .. }) => {
+                let mut sorted = [items[0]; SWEEP_LIMIT];
+                let sorted = &mut sorted[..items.len()];
+                for (item, &place) in sorted.iter_mut().zip(&order) {
+                    *item = items[usize::from(place)];
+                }
+                items.copy_from_slice(sorted);
                 rank
             }
             None => {
@@ -318,34 +326,40 @@ impl Builder {
     }
 
     fn sweep(&self, items: &[Item], extent: &Extent) -> Option<Split> {
-        let mut best: Option<Split> = None;
-        let mut keys = [(0_u64, 0_u8); SWEEP_LIMIT];
+        let mut best: Option<(f32, usize, usize)> = None;
+        let mut keys = [0_u64; SWEEP_LIMIT];
         let keys = &mut keys[..items.len()];
+        let mut orders = [[0; SWEEP_LIMIT]; 3];
         let mut right = [0.0_f32; SWEEP_LIMIT];
         for k in 0..3 {
             if extent.centres.lower(k) >= extent.centres.upper(k) {
                 continue;
             }
+            // Equal centres keep their places, which do not depend on the number of threads.
             for (place, (key, item)) in keys.iter_mut().zip(items).enumerate() {
-                let (centre, id) = item.key(k);
-                *key = (u64::from(centre) << 32 | u64::from(id), place as u8);
+                *key = u64::from(item.key(k).0) << 32 | place as u64;
             }
             keys.sort_unstable();
+            let order = &mut orders[k][..keys.len()];
+            for (place, key) in order.iter_mut().zip(&*keys) {
+                *place = *key as u8;
+            }
+            let at = |rank: usize| items[usize::from(order[rank])].0;
             let mut sum = Span::EMPTY;
-            for rank in (1..keys.len()).rev() {
-                sum = sum.union(items[usize::from(keys[rank].1)].0);
+            for rank in (1..order.len()).rev() {
+                sum = sum.union(at(rank));
                 right[rank] = sum.half_area();
             }
             let mut sum = Span::EMPTY;
-            for rank in 1..keys.len() {
-                sum = sum.union(items[usize::from(keys[rank - 1].1)].0);
-                let cost = sum.half_area() * self.costs.leaf(rank) + right[rank] * self.costs.leaf(keys.len() - rank);
-                if best.as_ref().is_none_or(|b| cost < b.cost) {
-                    best = Some(Split { cost, axis: k, position: Position::Rank(rank) });
+            for rank in 1..order.len() {
+                sum = sum.union(at(rank - 1));
+                let cost = sum.half_area() * self.costs.leaf(rank) + right[rank] * self.costs.leaf(order.len() - rank);
+                if best.is_none_or(|(least, ..)| cost < least) {
+                    best = Some((cost, k, rank));
                 }
             }
         }
-        best
+        best.map(|(cost, axis, rank)| Split { cost, axis, position: Position::Rank(rank, orders[axis]) })
     }
 }
 

@@ -301,11 +301,11 @@ impl Geometry {
     }
 }
 
-/// What the tree's builder weighs: a leaf tests eight triangles or spheres at once, but other primitives one by one.
+/// What the tree's builder weighs: a leaf tests eight flat shapes or spheres at once, but cylinders and instances one by one.
 fn costs(primitives: &[Primitive]) -> Costs {
     // What is within an instance costs far more than a node.
     let leaf_limit = if primitives.iter().any(|p| matches!(p, Primitive::Instance(_))) { 1 } else { 8 };
-    let filtered = |p: &&Primitive| matches!(p, Primitive::Triangle(_) | Primitive::Sphere(_));
+    let filtered = |p: &&Primitive| !matches!(p, Primitive::Cylinder(_) | Primitive::Instance(_));
     let most = primitives.iter().filter(filtered).count() > primitives.len() / 2;
     Costs { block: if most { 8 } else { 1 }, leaf_limit, node: 0.35 }
 }

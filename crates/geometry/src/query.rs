@@ -82,12 +82,6 @@ impl Query {
             projection: Projection::new(origin, direction, axis),
         })
     }
-
-    /// [`Projection::project`].
-    #[inline(always)]
-    pub(crate) fn project(&self, vertex: Vec3<f64>) -> Projected {
-        self.projection.project(vertex)
-    }
 }
 
 impl Projection {
@@ -106,38 +100,17 @@ impl Projection {
         AXES[self.axis % AXES.len()]
     }
 
-    /// [`Projection::project`] of three vertices at once: lanes of their coordinates in the order of the axes, the fourth lane a
-    /// repetition. The second result holds their magnitudes.
+    /// Up to four vertices, lanes of their coordinates along the axes, relative to the origin and sheared so that the ray runs
+    /// along z and z counts ray parameters; and the magnitudes to which the rounding errors of their x and y are relative.
+    ///
+    /// The result depends on nothing but the ray and the vertex: shapes that share a vertex agree on it to the bit.
     #[inline(always)]
-    pub(crate) fn project_three<F: Four>(&self, token: F::Token, v: [F; 3]) -> ([F; 3], F) {
+    pub(crate) fn project<F: Four>(&self, token: F::Token, v: [F; 3]) -> ([F; 3], F) {
         let all = |v| F::splat(token, v);
         let (x, y, z) = (v[0] - all(self.start[0]), v[1] - all(self.start[1]), v[2] - all(self.start[2]));
         let magnitudes = x.abs().max(y.abs()).max(z.abs());
         let (x, y) = (x - all(self.shear[0]) * z, y - all(self.shear[1]) * z);
         ([x, y, z * all(self.shear[2])], magnitudes)
-    }
-
-    /// [`Projection::project`] of a vertex whose coordinates are already in the order of the axes.
-    #[inline(always)]
-    pub(crate) fn project_permuted(&self, v: [f64; 3]) -> Projected {
-        let (x, y, z) = (v[0] - self.start[0], v[1] - self.start[1], v[2] - self.start[2]);
-        Projected {
-            x: x - self.shear[0] * z,
-            y: y - self.shear[1] * z,
-            z: z * self.shear[2],
-            magnitude: larger(larger(x.abs(), y.abs()), z.abs()),
-        }
-    }
-
-    /// A vertex relative to the origin, sheared so that the ray runs along z and z counts ray parameters; and the
-    /// magnitude to which the rounding errors of its x and y are relative.
-    ///
-    /// The result depends on nothing but the ray and the vertex: triangles that share a vertex agree on it to the bit.
-    #[inline(always)]
-    pub(crate) fn project(&self, vertex: Vec3<f64>) -> Projected {
-        let v = vertex.to_array();
-        let [kx, ky, kz] = self.axes();
-        self.project_permuted([v[kx], v[ky], v[kz]])
     }
 }
 
@@ -173,6 +146,8 @@ pub(crate) trait Four: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Outp
     fn max(self, o: Self) -> Self;
     /// The third, the first and the second number, and any fourth.
     fn turned(self) -> Self;
+    /// The second, the third, the fourth and the first number.
+    fn next(self) -> Self;
 
     /// The largest of four numbers, none of them NaN.
     #[inline(always)]
@@ -256,6 +231,12 @@ impl Four for Plain4 {
         let [a, b, c, _] = self.0;
         Self([c, a, b, b])
     }
+
+    #[inline(always)]
+    fn next(self) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([b, c, d, a])
+    }
 }
 
 /// Origins within this (2²⁰⁰, in the 1-norm) keep every product of an intersection test finite.
@@ -271,31 +252,13 @@ pub(crate) fn projection_axis([x, y, z]: [f64; 3]) -> usize {
 /// The axes of the projection along each axis, that one last.
 pub(crate) const AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
 
-/// A vertex in the frame of a [`Projection`].
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Projected {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) z: f64,
-    pub(crate) magnitude: f64,
-}
-
-impl Projected {
-    /// Twice the signed area of the triangle that the ray and the edge from `self` to `o` span in projection.
-    ///
-    /// Both products are rounded before the difference. Rounding is monotonic, so the sign is never wrong, only zero
-    /// where the exact value may not be; and swapping the ends swaps the sign exactly. Both are needed for
-    /// watertightness, and a fused multiply-add would break them (Woop, Benthin & Wald, *Watertight Ray/Triangle
-    /// Intersection*, JCGT 2(1), 2013). A zero is computed again, exactly: the edge of a triangle that is tiny beside its
-    /// distance from the ray would otherwise seem to pass through the ray.
-    #[inline(always)]
-    pub(crate) fn edge(self, o: Self) -> f64 {
-        let area = self.x * o.y - self.y * o.x;
-        if area == 0.0 { exact_edge([self.x, self.y], [o.x, o.y]) } else { area }
-    }
-}
-
-/// The edge function (see [`Projected::edge`]) of two projected points where it rounds to zero.
+/// The edge function of two projected points where it rounds to zero: twice the signed area of the triangle that the ray and the
+/// edge span in projection, x₁·y₂ − y₁·x₂.
+///
+/// Both products are rounded before the difference. Rounding is monotonic, so the sign is never wrong, only zero where the exact
+/// value may not be; and swapping the ends swaps the sign exactly. Both are needed for watertightness, and a fused multiply-add
+/// would break them (Woop, Benthin & Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013). A zero is computed again,
+/// exactly: the edge of a triangle that is tiny beside its distance from the ray would otherwise seem to pass through the ray.
 #[cold]
 #[inline(never)]
 pub(crate) fn exact_edge(p: [f64; 2], o: [f64; 2]) -> f64 {

@@ -111,6 +111,7 @@ pub struct SurfacePoint<R> {
 
 impl<R: Real> SurfacePoint<R> {
     /// Rounds a surface point computed in `f64` to `R`. What the rounding adds to its error is measured, not estimated.
+    #[inline]
     pub(crate) fn rounded(point: &ExactPoint, surface: SurfaceId, label: u32) -> Self {
         let ExactPoint { position, error, normal, curvature } = *point;
         let rounded: Vec3<R> = position.cast();

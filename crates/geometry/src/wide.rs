@@ -6,11 +6,14 @@ use crate::pages::Pages;
 use crate::query::Four;
 use crate::{Primitive, PrimitiveId};
 use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
 
 /// Children of a node. A ray waits for each node's answer before it knows where to go next: sixteen at once shorten the way.
 pub(crate) const NODE_WIDTH: usize = 16;
 /// Primitives of a leaf.
 pub(crate) const LEAF_WIDTH: usize = 8;
+/// Above this many binary nodes the two halves of a tree are taken in parallel.
+const PARALLEL_LIMIT: usize = 16_384;
 /// Marks a child that is a leaf.
 pub(crate) const LEAF: u32 = 1 << 31;
 
@@ -33,9 +36,9 @@ pub(crate) struct Children(pub(crate) [u32; NODE_WIDTH]);
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub(crate) struct Leaf8 {
-    /// The vertices of triangles in the accelerator's frame, rounded: x, y, z of a, then of b, then of c. The rows of the
-    /// first vertex hold a sphere's centre, the first row of the second its radius. NaN in all other lanes, which no filter
-    /// for triangles or spheres keeps.
+    /// The vertices of triangles in the accelerator's frame, rounded: x, y, z of a, then of b, then of c; of a parallelogram
+    /// a corner and its neighbours; those of a square around a disk. The rows of the first vertex hold a sphere's centre, the first row of the second its radius. NaN in all other lanes, which no
+    /// filter for flat shapes or spheres keeps.
     pub(crate) vertices: [[[f32; LEAF_WIDTH]; 3]; 3],
     /// Ids; `u32::MAX` for an empty lane.
     pub(crate) ids: [u32; LEAF_WIDTH],
@@ -43,18 +46,20 @@ pub(crate) struct Leaf8 {
     pub(crate) extent: f32,
     /// Its part of the bound on the error of projected coordinates.
     pub(crate) error: f32,
-    /// The lanes of triangles, one bit each.
-    pub(crate) triangles: u8,
+    /// The lanes of flat shapes, one bit each.
+    pub(crate) flats: u8,
+    /// Those among them that are parallelograms, or disks.
+    pub(crate) quads: u8,
+    /// Those among these that are disks.
+    pub(crate) disks: u8,
     /// The lanes of spheres.
     pub(crate) spheres: u8,
-    /// The lanes of primitives that are neither triangles nor spheres. They have no filter: they are tested in `f64`
+    /// The lanes of cylinders and instances. They have no filter: they are tested in `f64`
     /// whenever a ray enters the leaf.
     pub(crate) others: u8,
     /// The lanes of triangles whose vertices are exact: they need not be fetched to be tested in `f64`.
     pub(crate) exact: u8,
-    /// 1. It keeps compilers from computing for each ray what only leaves of spheres ask for.
-    pub(crate) one: f32,
-    padding: [u8; 16],
+    padding: [u8; 18],
 }
 
 /// The tree.
@@ -65,6 +70,8 @@ pub(crate) struct WideTree {
     leaves: Pages<Leaf8>,
     /// Levels of nodes.
     pub(crate) depth: usize,
+    /// Whether there are spheres.
+    pub(crate) spheres: bool,
 }
 
 impl WideTree {
@@ -73,11 +80,26 @@ impl WideTree {
         let mut size = Size::default();
         let choices = Choices::new(tree);
         size.count(&choices, 0, 1);
-        let mut wide =
-            Self { frame, nodes: Pages::new(size.nodes), leaves: Pages::new(size.leaves), depth: size.depth };
-        let (nodes, leaves) = (wide.nodes.as_mut_slice(), wide.leaves.as_mut_slice());
-        Filler { frame: &frame, choices: &choices, tree, primitives, nodes, leaves, node_count: 0, leaf_count: 0 }
-            .node(0);
+        let mut wide = Self {
+            frame,
+            nodes: Pages::new(size.nodes),
+            leaves: Pages::new(size.leaves),
+            depth: size.depth,
+            spheres: false,
+        };
+        let mut filler = Filler {
+            choices: &choices,
+            tree,
+            nodes: wide.nodes.as_mut_slice(),
+            node_count: 0,
+            leaves: Vec::with_capacity(size.leaves),
+        };
+        filler.node(0);
+        let roots = filler.leaves;
+        wide.leaves.as_mut_slice().par_iter_mut().zip(roots).with_min_len(256).for_each(|(leaf, root)| {
+            *leaf = Leaf8::new(&frame, tree, root, primitives);
+        });
+        wide.spheres = wide.leaves().iter().any(|leaf| leaf.spheres != 0);
         wide
     }
 
@@ -111,19 +133,24 @@ struct Choices<'a> {
 
 impl<'a> Choices<'a> {
     fn new(tree: &'a BinaryTree) -> Self {
-        let mut choices = Self { tree, splits: vec![0; tree.nodes.len()] };
-        choices.costs(0);
-        choices
+        let mut splits = vec![0; tree.nodes.len()];
+        Self::costs(tree, 0, &mut splits);
+        Self { tree, splits }
     }
 
     /// The least area of the nodes below a binary node if it becomes up to 1, 2, … 16 children. Itself counts if it stays
-    /// one and is no leaf.
-    fn costs(&mut self, node: u32) -> [f32; NODE_WIDTH] {
-        let Node { bounds, first, count } = self.tree.nodes[node as usize];
+    /// one and is no leaf. `below` are the splits of the node and of all below it.
+    fn costs(tree: &BinaryTree, node: u32, below: &mut [u64]) -> [f32; NODE_WIDTH] {
+        let Node { bounds, first, count } = tree.nodes[node as usize];
         if count > 0 {
             return [0.0; NODE_WIDTH];
         }
-        let (left, right) = (self.costs(node + 1), self.costs(first));
+        let (own, below) = below.split_first_mut().expect("a node's own split");
+        let parallel = below.len() > PARALLEL_LIMIT;
+        let (below_left, below_right) = below.split_at_mut((first - node - 1) as usize);
+        let mut left = || Self::costs(tree, node + 1, below_left);
+        let mut right = || Self::costs(tree, first, below_right);
+        let (left, right) = if parallel { rayon::join(left, right) } else { (left(), right()) };
         let mut costs = [0.0; NODE_WIDTH];
         let mut splits = [0_u64; NODE_WIDTH];
         for i in 2..=NODE_WIDTH {
@@ -138,7 +165,7 @@ impl<'a> Choices<'a> {
                 (costs[i - 1], splits[i - 1]) = (costs[0], 0);
             }
         }
-        self.splits[node as usize] = splits.iter().rev().fold(0, |bits, &k| bits << 4 | k);
+        *own = splits.iter().rev().fold(0, |bits, &k| bits << 4 | k);
         costs[NODE_WIDTH - 1] = costs[NODE_WIDTH - 1].min(costs[0]);
         costs
     }
@@ -189,16 +216,14 @@ impl Size {
     }
 }
 
-/// Fills a tree.
+/// Fills the nodes of a tree.
 struct Filler<'a> {
-    frame: &'a Frame,
     choices: &'a Choices<'a>,
     tree: &'a BinaryTree,
-    primitives: &'a [Primitive],
     nodes: &'a mut [Node16],
-    leaves: &'a mut [Leaf8],
     node_count: usize,
-    leaf_count: usize,
+    /// The binary nodes that become leaves, in turn.
+    leaves: Vec<u32>,
 }
 
 impl Filler<'_> {
@@ -218,45 +243,66 @@ impl Filler<'_> {
                 node.planes[k][0][lane] = min[k];
                 node.planes[k][1][lane] = max[k];
             }
-            node.children.0[lane] = if child_node.count > 0 { self.leaf(child) } else { self.node(child) };
+            node.children.0[lane] = if child_node.count > 0 {
+                self.leaves.push(child);
+                (self.leaves.len() - 1) as u32 | LEAF
+            } else {
+                self.node(child)
+            };
         }
         self.nodes[index] = node;
         index as u32
     }
+}
 
-    fn leaf(&mut self, node: u32) -> u32 {
-        let node = &self.tree.nodes[node as usize];
+impl Leaf8 {
+    /// The leaf that stands for a leaf of a binary tree.
+    fn new(frame: &Frame, tree: &BinaryTree, root: u32, primitives: &[Primitive]) -> Self {
+        let node = &tree.nodes[root as usize];
         let first = node.first as usize;
         let extent = |k: usize| node.bounds.max[k] - node.bounds.min[k];
-        let mut leaf = Leaf8 {
+        let mut leaf = Self {
             vertices: [[[f32::NAN; LEAF_WIDTH]; 3]; 3],
             ids: [u32::MAX; LEAF_WIDTH],
             extent: extent(0).max(extent(1)).max(extent(2)),
             error: 0.0,
-            triangles: 0,
+            flats: 0,
+            quads: 0,
+            disks: 0,
             spheres: 0,
             others: 0,
             exact: 0,
-            one: 1.0,
-            padding: [0; 16],
+            padding: [0; 18],
         };
-        for (lane, &id) in self.tree.order[first..first + node.count as usize].iter().enumerate() {
+        for (lane, &id) in tree.order[first..first + node.count as usize].iter().enumerate() {
             leaf.ids[lane] = id;
             let mut put = |i: usize, vertex| {
-                for (c, row) in self.frame.point(vertex).into_iter().zip(&mut leaf.vertices[i]) {
+                for (c, row) in frame.point(vertex).into_iter().zip(&mut leaf.vertices[i]) {
                     row[lane] = c;
                 }
             };
-            match &self.primitives[id as usize] {
+            match &primitives[id as usize] {
                 Primitive::Triangle(t) => {
                     t.vertices().into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
-                    leaf.triangles |= 1 << lane;
-                    let exact = t.vertices().into_iter().all(|v| self.frame.is_exact(v));
+                    leaf.flats |= 1 << lane;
+                    let exact = t.vertices().into_iter().all(|v| frame.is_exact(v));
                     leaf.exact |= u8::from(exact) << lane;
+                }
+                Primitive::Parallelogram(p) => {
+                    let [corner, a, _, b] = p.corners();
+                    [corner, a, b].into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
+                    leaf.flats |= 1 << lane;
+                    leaf.quads |= 1 << lane;
+                }
+                Primitive::Disk(d) => {
+                    d.square().into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
+                    leaf.flats |= 1 << lane;
+                    leaf.quads |= 1 << lane;
+                    leaf.disks |= 1 << lane;
                 }
                 Primitive::Sphere(s) => {
                     put(0, s.centre());
-                    leaf.vertices[1][0][lane] = self.frame.length(s.radius());
+                    leaf.vertices[1][0][lane] = frame.length(s.radius());
                     leaf.spheres |= 1 << lane;
                 }
                 _ => leaf.others |= 1 << lane,
@@ -265,14 +311,18 @@ impl Filler<'_> {
         // NaN is never the larger.
         let magnitude = leaf.vertices.iter().flatten().flatten().fold(0.0, |m, c| c.abs().max(m));
         leaf.error = Frame::projection_error(magnitude);
-        let index = self.leaf_count;
-        self.leaf_count += 1;
-        self.leaves[index] = leaf;
-        index as u32 | LEAF
+        if leaf.disks != 0 {
+            // Their squares reach out of the box.
+            for k in 0..3 {
+                let corners = || leaf.vertices.iter().flat_map(|v| v[k]);
+                let (lower, upper) =
+                    (corners().fold(node.bounds.min[k], f32::min), corners().fold(node.bounds.max[k], f32::max));
+                leaf.extent = leaf.extent.max(upper - lower);
+            }
+        }
+        leaf
     }
-}
 
-impl Leaf8 {
     /// The primitive in a lane.
     #[inline(always)]
     pub(crate) fn id(&self, lane: usize) -> PrimitiveId {

@@ -4,7 +4,7 @@ use super::{ShapeError, check_points, check_radius, planar};
 use crate::Aabb;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
-use etalon_optics::{Real, Vec3};
+use etalon_optics::{Frame, Real, Vec3};
 
 /// A flat disk, seen by rays from both sides; its outward side is the one to which the normal points.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +61,15 @@ impl Disk {
             min: Vec3::new(lower.x.next_down(), lower.y.next_down(), lower.z.next_down()),
             max: Vec3::new(upper.x.next_up(), upper.y.next_up(), upper.z.next_up()),
         }
+    }
+
+    /// Three corners of a square around the disk: one, and its neighbours.
+    pub(crate) fn square(&self) -> [Vec3<f64>; 3] {
+        let frame = Frame::from_normal(self.normal);
+        // The frame's vectors err by a few roundoffs.
+        let r = self.radius * (1.0 + 64.0 * f64::UNIT_ROUNDOFF);
+        let (s, t) = (frame.s * r, frame.t * r);
+        [self.centre - s - t, self.centre + s - t, self.centre - s + t]
     }
 
     #[inline]

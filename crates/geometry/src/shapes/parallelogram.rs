@@ -2,7 +2,7 @@
 
 use super::{ShapeError, check_points, planar};
 use crate::Aabb;
-use crate::query::{Projected, Query, RawHit};
+use crate::query::{Four, Plain4, Projection, Query, RawHit, exact_edge, larger};
 use crate::ray::ExactPoint;
 use etalon_optics::Vec3;
 
@@ -78,30 +78,52 @@ impl Parallelogram {
     /// neighbours.
     #[inline]
     pub(crate) fn intersect(&self, query: &Query, t_max: f64) -> Option<RawHit> {
-        let [c0, c1, c2, c3] = self.corners();
-        // Written out: `map` over an array is not inlined, and this is the hot path of every flat wall.
-        let p = [query.project(c0), query.project(c1), query.project(c2), query.project(c3)];
-        let e = [p[0].edge(p[1]), p[1].edge(p[2]), p[2].edge(p[3]), p[3].edge(p[0])];
-        if e.iter().any(|&e| e < 0.0) && e.iter().any(|&e| e > 0.0) {
+        self.intersect_lanes::<Plain4>((), &query.projection, || *query, t_max)
+    }
+
+    /// [`Parallelogram::intersect`] by the projection of a query, which is asked for where that does not suffice.
+    #[inline(always)]
+    pub(crate) fn intersect_lanes<F: Four>(
+        &self,
+        token: F::Token,
+        projection: &Projection,
+        query: impl FnOnce() -> Query,
+        t_max: f64,
+    ) -> Option<RawHit> {
+        let [c0, c1, c2, c3] = self.corners().map(Vec3::to_array);
+        let row = |k: usize| F::new(token, [c0[k], c1[k], c2[k], c3[k]]);
+        let [kx, ky, kz] = projection.axes();
+        let ([x, y, z], magnitudes) = projection.project(token, [row(kx), row(ky), row(kz)]);
+        let mut e = (x * y.next() - y * x.next()).to_array();
+        if e.contains(&0.0) {
+            let (x, y) = (x.to_array(), y.to_array());
+            for i in 0..4 {
+                if e[i] == 0.0 {
+                    e[i] = exact_edge([x[i], y[i]], [x[(i + 1) % 4], y[(i + 1) % 4]]);
+                }
+            }
+        }
+        let [e0, e1, e2, e3] = e;
+        let some_below = e0 < 0.0 || e1 < 0.0 || e2 < 0.0 || e3 < 0.0;
+        let some_above = e0 > 0.0 || e1 > 0.0 || e2 > 0.0 || e3 > 0.0;
+        if some_below && some_above {
             return None;
         }
-        let det = 0.5 * ((e[0] + e[2]) + (e[1] + e[3]));
+        let det = 0.5 * ((e0 + e2) + (e1 + e3));
         if det == 0.0 || det.is_nan() {
             return None;
         }
         // o = p₀ + u·(p₁ − p₀) + v·(p₃ − p₀), solved by Cramer's rule.
         // The edges have decided that the point is inside; against their mean a parameter may err by a few roundoffs.
-        let (u, v) = ((e[3] / det).clamp(0.0, 1.0), (e[0] / det).clamp(0.0, 1.0));
-        let t = p[0].z + (u * (p[1].z - p[0].z) + v * (p[3].z - p[0].z));
+        let (u, v) = ((e3 / det).clamp(0.0, 1.0), (e0 / det).clamp(0.0, 1.0));
+        let [z0, z1, z2, z3] = z.to_array();
+        let t = z0 + (u * (z1 - z0) + v * (z3 - z0));
         let mut hit = RawHit { t, uv: [u, v] };
-        let largest = |v: [f64; 4]| v[0].max(v[1]).max(v[2].max(v[3]));
-        let magnitude = largest([p[0].magnitude, p[1].magnitude, p[2].magnitude, p[3].magnitude]);
-        let extent = |q: &Projected| q.x.abs().max(q.y.abs());
-        let extent = largest([extent(&p[0]), extent(&p[1]), extent(&p[2]), extent(&p[3])]);
-        let depth = largest([p[0].z, p[1].z, p[2].z, p[3].z]) + largest([-p[0].z, -p[1].z, -p[2].z, -p[3].z]);
-        if !planar::is_determined(magnitude, extent, depth, (t * det).abs(), det.abs()) {
+        let extent = x.abs().max(y.abs()).largest();
+        let depth = larger(larger(z0, z1), larger(z2, z3)) + larger(larger(-z0, -z1), larger(-z2, -z3));
+        if !planar::is_determined(magnitudes.largest(), extent, depth, (t * det).abs(), det.abs()) {
             let (a, b) = (self.corner + self.a, self.corner + self.b);
-            hit = planar::refine(query, self.corner, a, b, self.bounds(), hit, 2.0);
+            hit = planar::refine(&query(), self.corner, a, b, self.bounds(), hit, 2.0);
         }
         (0.0 < hit.t && hit.t < t_max).then_some(hit)
     }

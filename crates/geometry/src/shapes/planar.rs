@@ -8,6 +8,7 @@ use etalon_optics::{Real, Vec3};
 
 /// The cross product of two edges that leave `origin`, right to a few unit roundoffs in direction; zero if what is left
 /// of it is below the resolution of double-double arithmetic.
+#[inline]
 pub(super) fn edge_cross(origin: Vec3<f64>, a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {
     let (ea, eb) = (a - origin, b - origin);
     let n = ea.cross(eb);
@@ -17,6 +18,13 @@ pub(super) fn edge_cross(origin: Vec3<f64>, a: Vec3<f64>, b: Vec3<f64>) -> Vec3<
     if n.abs().max_component() > magnitude * (8.0 * 1_048_576.0 * f64::UNIT_ROUNDOFF) {
         return n;
     }
+    precise_edge_cross(origin, a, b, magnitude)
+}
+
+/// [`edge_cross`] where it takes twice the precision.
+#[cold]
+#[inline(never)]
+fn precise_edge_cross(origin: Vec3<f64>, a: Vec3<f64>, b: Vec3<f64>, magnitude: f64) -> Vec3<f64> {
     let n = round(cross(difference(a, origin), difference(b, origin)));
     if n.abs().max_component() > magnitude * RESOLUTION { n } else { Vec3::ZERO }
 }
@@ -25,6 +33,7 @@ pub(super) fn edge_cross(origin: Vec3<f64>, a: Vec3<f64>, b: Vec3<f64>) -> Vec3<
 const RESOLUTION: f64 = f64::UNIT_ROUNDOFF * f64::UNIT_ROUNDOFF * 1024.0;
 
 /// The unit vector of a vector of any magnitude.
+#[inline]
 pub(super) fn unit(v: Vec3<f64>) -> Vec3<f64> {
     (v / v.abs().max_component()).normalized()
 }

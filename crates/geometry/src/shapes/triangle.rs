@@ -38,6 +38,7 @@ impl Triangle {
     }
 
     /// Unit normal on the outward side.
+    #[inline]
     pub fn normal(&self) -> Vec3<f64> {
         planar::unit(self.cross())
     }
@@ -48,14 +49,17 @@ impl Triangle {
     }
 
     /// The smallest box around the triangle.
+    #[inline]
     pub fn bounds(&self) -> Aabb {
         Aabb::of_points([self.a, self.b, self.c])
     }
 
+    #[inline]
     fn cross(&self) -> Vec3<f64> {
         planar::edge_cross(self.a, self.b, self.c)
     }
 
+    #[inline]
     fn size(&self) -> f64 {
         self.bounds().extent().max_component()
     }
@@ -86,7 +90,7 @@ impl Triangle {
         in_full: impl FnOnce() -> (&'a Self, Query),
         t_max: f64,
     ) -> Option<RawHit> {
-        let ([x, y, z], magnitudes) = projection.project_three(token, lanes);
+        let ([x, y, z], magnitudes) = projection.project(token, lanes);
         // (c, a, b) × (b, c, a)
         let (px, py) = (x.turned(), y.turned());
         let (qx, qy) = (px.turned(), py.turned());

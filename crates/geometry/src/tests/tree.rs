@@ -98,6 +98,27 @@ fn tree_equals_brute_force_on_spheres_of_all_scales() {
 }
 
 #[test]
+fn tree_equals_brute_force_on_parallelograms_and_disks_of_all_scales() {
+    for seed in 0..2 {
+        let mut random = Random::new(60 + seed);
+        let edge = |random: &mut Random| random.direction() * random.log_uniform(-5.0, 0.3);
+        let shapes: Vec<Primitive> = (0..300)
+            .filter_map(|i| match i % 3 {
+                0 => {
+                    Disk::new(random.in_cube(), random.direction(), random.log_uniform(-5.0, 0.0)).ok().map(Into::into)
+                }
+                _ => {
+                    let (a, b) = (edge(&mut random), edge(&mut random));
+                    Parallelogram::new(random.in_cube(), a, b).ok().map(Into::into)
+                }
+            })
+            .collect();
+        let hits = check(shapes, 15_000, 160 + seed, |l| l);
+        assert!(hits > 0.3, "only {hits} of the rays hit anything");
+    }
+}
+
+#[test]
 fn a_ray_misses_a_tiny_triangle_beside_it() {
     // The edges' products round to the same value, which must not pass for an edge through the ray.
     let mut random = Random::new(8);

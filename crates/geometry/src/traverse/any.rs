@@ -1,6 +1,6 @@
 //! Whether anything is hit at all.
 
-use super::leaf::candidates;
+use super::leaf::{Chords, candidates};
 use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
@@ -21,6 +21,7 @@ pub(super) fn any_on<F: Filters, S: Start, const N: usize>(
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> bool {
     let ray = filters.ray(&frame_ray.boxes);
+    let chords = Chords::new(frame_ray, tree.spheres);
     let mut query = Deferred::new(start);
     let (leaves_id, aims_at) = (start.leaves(), start.aims_at());
     let limit = frame_ray.distance(frame_ray.t_max);
@@ -51,7 +52,7 @@ pub(super) fn any_on<F: Filters, S: Start, const N: usize>(
                 break;
             }
             let leaf = &leaves[(child & !LEAF) as usize];
-            let mut candidates = candidates(filters, frame_ray, leaf, limit, certain_limit);
+            let mut candidates = candidates(filters, frame_ray, &chords, leaf, limit, certain_limit);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;

@@ -119,6 +119,16 @@ impl Vector for F8 {
     }
 
     #[inline(always)]
+    fn only(self, lanes: u8) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe {
+            let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let chosen = _mm256_and_si256(_mm256_set1_epi32(i32::from(lanes)), bits);
+            _mm256_and_ps(self.0, _mm256_castsi256_ps(_mm256_cmpeq_epi32(chosen, bits)))
+        })
+    }
+
+    #[inline(always)]
     fn abs(self) -> Self {
         // SAFETY: as for the operators.
         Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
@@ -230,6 +240,12 @@ impl Four for D4 {
     fn turned(self) -> Self {
         // SAFETY: as for the operators.
         Self(unsafe { _mm256_permute4x64_pd::<0b01_01_00_10>(self.0) })
+    }
+
+    #[inline(always)]
+    fn next(self) -> Self {
+        // SAFETY: as for the operators.
+        Self(unsafe { _mm256_permute4x64_pd::<0b00_11_10_01>(self.0) })
     }
 }
 

@@ -1,15 +1,15 @@
 //! The closest hit.
 
-use super::leaf::candidates;
+use super::leaf::{Chords, candidates};
 use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
 use super::{Entered, Filters, Narrow, intersect_exact};
-use crate::Primitive;
 use crate::frame::FrameRay;
 use crate::geometry::{Best, Found};
 use crate::query::{Query, RawHit};
 use crate::wide::{LEAF, LEAF_WIDTH, WideTree};
+use crate::{Primitive, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.
 #[inline(always)]
@@ -21,6 +21,7 @@ pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> Option<Found> {
     let ray = filters.ray(&frame_ray.boxes);
+    let chords = Chords::new(frame_ray, tree.spheres);
     let mut query = Deferred::new(start);
     let leaves_id = start.leaves();
     let mut best = Best::new(frame_ray.t_max);
@@ -65,7 +66,7 @@ pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
         } else {
             let index = child & !LEAF;
             let leaf = &leaves[index as usize];
-            let mut candidates = candidates(filters, frame_ray, leaf, limit, certain_limit);
+            let mut candidates = candidates(filters, frame_ray, &chords, leaf, limit, certain_limit);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
@@ -187,16 +188,25 @@ fn decide_last<F: Filters, S: Start>(
 ) {
     let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
-    if leaf.is_exact(lane) {
-        let projection = query.start.projection(ray.t_scale, ray.axis);
-        let limit = best.limit(id);
-        let full = || *query.get();
-        let found = intersect_exact(filters, tree, (leaf, lane), primitives, &projection, full, limit);
-        if let Some(hit) = found {
-            best.set(hit, id);
-        }
+    let projection = query.start.projection(ray.t_scale, ray.axis);
+    let (limit, token) = (best.limit(id), filters.into());
+    let found = if leaf.is_exact(lane) {
+        intersect_exact(filters, tree, (leaf, lane), primitives, &projection, || *query.get(), limit)
     } else {
-        best.test(primitives, query.get(), id);
+        // Whose like is certain before leaves no primitive that it hits.
+        match &primitives[id.0 as usize] {
+            Primitive::Triangle(shape) => {
+                let lanes = shape.lanes::<F::Four>(token, projection.axes());
+                Triangle::intersect_lanes::<F::Four>(token, lanes, &projection, || (shape, *query.get()), limit)
+            }
+            Primitive::Parallelogram(shape) => {
+                shape.intersect_lanes::<F::Four>(token, &projection, || *query.get(), limit)
+            }
+            shape => shape.intersect(query.get(), limit, false),
+        }
+    };
+    if let Some(hit) = found {
+        best.set(hit, id);
     }
 }
 

@@ -6,25 +6,26 @@ use crate::frame::{FrameRay, Lanes4};
 use crate::query::AXES;
 use crate::wide::{LEAF_WIDTH, Leaf8};
 
-/// The primitives of a leaf that the ray may hit in [0, `limit`], and the triangles and spheres that it certainly hits in
+/// The primitives of a leaf that the ray may hit in [0, `limit`], and the flat shapes and spheres that it certainly hits in
 /// (0, `certain_limit`). The primitive that the ray leaves may be among them.
 #[inline(always)]
 pub(super) fn candidates<F: Filters>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
+    chords: &Chords,
     leaf: &Leaf8,
     limit: f32,
     certain_limit: f32,
 ) -> Candidates {
     let others = u32::from(leaf.others);
-    let mut found = if leaf.triangles != 0 {
-        triangles(filters, ray, leaf, limit, certain_limit)
+    let mut found = if leaf.flats != 0 {
+        flats(filters, ray, leaf, limit, certain_limit)
     } else {
-        spheres(filters, ray, leaf, limit, certain_limit)
+        spheres(filters, ray, chords, leaf, limit, certain_limit)
     };
-    if leaf.triangles != 0 && leaf.spheres != 0 {
+    if leaf.flats != 0 && leaf.spheres != 0 {
         // Mixed leaves are rare: of their spheres no distance is known.
-        let balls = spheres(filters, ray, leaf, limit, certain_limit);
+        let balls = spheres(filters, ray, chords, leaf, limit, certain_limit);
         let met = balls.mask & u32::from(leaf.spheres);
         found.mask |= met;
         found.unbounded |= met;
@@ -32,17 +33,21 @@ pub(super) fn candidates<F: Filters>(
     }
     found.mask |= others;
     found.unbounded |= others;
-    found.left |= u32::from(leaf.triangles);
+    found.left |= u32::from(leaf.flats);
     found
 }
 
-/// [`candidates`] among the triangles: Woop's projection in `f32` with error bounds.
+/// [`candidates`] among the flat shapes: Woop's projection in `f32` with error bounds.
+///
+/// A point of the plane is within a triangle of edge functions u, v, w if none has another sign than the rest; within the
+/// parallelogram of the same three corners if v and w have, and their differences from u + v + w: u + w and u + v, the lesser of
+/// which is u + min(v, w). They err by twice as much, and the fourth corner may be twice as deep as the others.
 ///
 /// An edge function errs by [`leaf_error`]. The distance, a mean of the vertices' weighted by the edge functions, errs by at
 /// most three times that times their spread, over the determinant, and by less than 3δ for the rounding of distances, sum and
 /// quotient.
 #[inline(always)]
-fn triangles<F: Filters>(
+fn flats<F: Filters>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
     leaf: &Leaf8,
@@ -55,8 +60,15 @@ fn triangles<F: Filters>(
     let c = project(filters, ray, &leaf.vertices[2]);
     let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
     let delta = ray.error + leaf.error;
-    let error = leaf_error(delta, leaf.extent);
-    let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+    let mut error = leaf_error(delta, leaf.extent);
+    let (mut least, mut most) = (v.min(w), v.max(w));
+    if leaf.quads == 0 {
+        (least, most) = (least.min(u), most.max(u));
+    } else {
+        error *= 2.0;
+        least = least.min(u + least.only(leaf.quads));
+        most = most.max(u + most.only(leaf.quads));
+    }
     let met = all(-error).at_most(least) | most.at_most(all(error));
     if met == 0 {
         return Candidates::NONE;
@@ -74,7 +86,7 @@ fn triangles<F: Filters>(
     Candidates {
         mask: met,
         unbounded: met & !determined,
-        certain: met & determined & inside & ahead,
+        certain: met & determined & inside & ahead & !u32::from(leaf.disks),
         left: 0,
         near: near.to_array(),
         far: far.to_array(),
@@ -97,6 +109,25 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
     p[0] * q[1] - p[1] * q[0]
 }
 
+/// What spheres ask of a ray: n = 1 + s² of its slopes s, and 1/(the largest component of the direction) over it.
+pub(super) struct Chords {
+    n: f32,
+    per_n: f32,
+}
+
+impl Chords {
+    /// For a tree without spheres nothing is computed.
+    #[inline(always)]
+    pub(super) fn new<L: Lanes4>(ray: &FrameRay<L>, spheres: bool) -> Self {
+        if !spheres {
+            return Self { n: 1.0, per_n: 0.0 };
+        }
+        let [sx, sy, _, _] = ray.slopes.to_array();
+        let n = 1.0 + sx * sx + sy * sy;
+        Self { n, per_n: ray.per_depth / n }
+    }
+}
+
 /// [`candidates`] among the spheres.
 ///
 /// With δ the bound on the error of a projected coordinate, the slopes s of the projection and n = 1 + s² ∈ [1, 3],
@@ -109,6 +140,7 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
 fn spheres<F: Filters>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
+    &Chords { n, per_n }: &Chords,
     leaf: &Leaf8,
     limit: f32,
     certain_limit: f32,
@@ -117,7 +149,6 @@ fn spheres<F: Filters>(
     let ([sx, sy, _, _], sz) = (ray.slopes.to_array(), ray.per_depth);
     let [x, y, z] = project(filters, ray, &leaf.vertices[0]);
     let radius = F::Vector::load(filters.into(), &leaf.vertices[1][0]);
-    let n = leaf.one + sx * sx + sy * sy;
     let along = x * all(sx) + y * all(sy);
     // n times the squares of the distance, of the radii and of the half chords.
     let squared = (x * x + y * y) * all(n) - along * along;
@@ -129,7 +160,6 @@ fn spheres<F: Filters>(
     if met == 0 {
         return Candidates::NONE;
     }
-    let per_n = sz / n;
     let middle = z * all(sz) + along * all(per_n);
     // Lanes of NaN are none of `met`, or not certain.
     let longer = longest.sqrt() * all(per_n.abs() * (1.0 + 32.0 * f32::EPSILON));
@@ -146,7 +176,7 @@ fn spheres<F: Filters>(
     Candidates { mask: met, unbounded: 0, certain, left, near: near.to_array(), far: far.to_array() }
 }
 
-/// Bound on the error of the edge functions of a leaf's triangles in the projection of a ray that meets the leaf's box.
+/// Bound on the error of the edge functions of a leaf's flat shapes in the projection of a ray that meets the leaf's box.
 ///
 /// `error` is the bound δ on the error of a projected coordinate. With e the largest of them, an edge function
 /// (cx·by − cy·bx) errs by at most 4δe + 2δ² for its factors and 4ue² for its rounding; e is below twice the reach of the

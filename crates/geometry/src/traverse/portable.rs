@@ -67,6 +67,11 @@ impl Vector for Floats {
     }
 
     #[inline(always)]
+    fn only(self, lanes: u8) -> Self {
+        Self(from_fn(|i| if lanes >> i & 1 == 1 { self.0[i] } else { 0.0 }))
+    }
+
+    #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(f32::abs))
     }

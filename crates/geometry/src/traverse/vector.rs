@@ -19,6 +19,8 @@ pub(super) trait Vector:
     fn min(self, o: Self) -> Self;
     /// The larger of each pair; the second if one is NaN.
     fn max(self, o: Self) -> Self;
+    /// Zero in all lanes but these, one bit each.
+    fn only(self, lanes: u8) -> Self;
     /// Magnitudes.
     fn abs(self) -> Self;
     /// Square roots.
