@@ -3,6 +3,7 @@
 //! Only what the bench needs is bound; the layouts are those of Embree 3.13's public headers.
 #![allow(unsafe_code)] // A foreign library has no other door.
 
+use crate::scenes::Mesh;
 use libloading::{Library, Symbol};
 use std::ffi::{c_char, c_void};
 use std::rc::Rc;
@@ -67,12 +68,16 @@ pub(crate) enum Content<'a> {
     Triangles(&'a [[f32; 3]], &'a [[u32; 3]]),
     /// Centres and radii.
     Spheres(&'a [[f32; 4]]),
+    /// Triangles placed by affine maps (rows of three numbers and a translation), among triangles that are not.
+    Instances { placed: &'a Mesh, placements: &'a [[f32; 12]], others: &'a Mesh },
 }
 
 /// A committed scene.
 pub(crate) struct Scene {
     embree: Rc<Embree>,
     scene: *mut c_void,
+    /// What is placed in it.
+    placed: Option<Box<Scene>>,
     intersect: unsafe extern "C" fn(*mut c_void, *mut Context, *mut RayHit),
     occluded: unsafe extern "C" fn(*mut c_void, *mut Context, *mut Ray),
 }
@@ -115,14 +120,32 @@ impl Embree {
                 let target = set_buffer(geometry, kind, 0, format, stride, bytes.len() / stride);
                 std::ptr::copy_nonoverlapping(bytes.as_ptr(), target.cast(), bytes.len());
             };
+            let triangles = |vertices: &[[f32; 3]], faces: &[[u32; 3]]| {
+                let geometry = new_geometry(self.device, 0);
+                fill(geometry, 1, 0x9003, bytemuck::cast_slice(vertices), 12);
+                fill(geometry, 0, 0x5003, bytemuck::cast_slice(faces), 12);
+                commit_geometry(geometry);
+                attach(scene, geometry);
+                release(geometry);
+            };
+            let mut inner = None;
             match content {
-                Content::Triangles(vertices, faces) => {
-                    let geometry = new_geometry(self.device, 0);
-                    fill(geometry, 1, 0x9003, bytemuck::cast_slice(vertices), 12);
-                    fill(geometry, 0, 0x5003, bytemuck::cast_slice(faces), 12);
-                    commit_geometry(geometry);
-                    attach(scene, geometry);
-                    release(geometry);
+                Content::Triangles(vertices, faces) => triangles(vertices, faces),
+                Content::Instances { placed, placements, others } => {
+                    triangles(&others.vertices, &others.faces);
+                    let place: Symbol<'_, unsafe extern "C" fn(P, P)> = self.symbol("rtcSetGeometryInstancedScene");
+                    type SetTransform = unsafe extern "C" fn(P, u32, u32, *const f32);
+                    let set_transform: Symbol<'_, SetTransform> = self.symbol("rtcSetGeometryTransform");
+                    let placed = self.scene(&Content::Triangles(&placed.vertices, &placed.faces), flags);
+                    for placement in *placements {
+                        let geometry = new_geometry(self.device, 121);
+                        place(geometry, placed.scene);
+                        set_transform(geometry, 0, 0x9134, placement.as_ptr());
+                        commit_geometry(geometry);
+                        attach(scene, geometry);
+                        release(geometry);
+                    }
+                    inner = Some(Box::new(placed));
                 }
                 Content::Spheres(spheres) => {
                     let geometry = new_geometry(self.device, 50);
@@ -136,6 +159,7 @@ impl Embree {
             Scene {
                 embree: Rc::clone(self),
                 scene,
+                placed: inner,
                 intersect: *self.symbol("rtcIntersect1"),
                 occluded: *self.symbol("rtcOccluded1"),
             }
@@ -157,13 +181,13 @@ impl Ray {
 }
 
 impl Scene {
-    /// The distance of the closest hit, infinite for none.
-    pub(crate) fn closest(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> f32 {
+    /// The closest hit's distance, infinite for none, and its primitive.
+    pub(crate) fn closest(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> (f32, u32) {
         let hit = Hit { normal: [0.0; 3], uv: [0.0; 2], primitive: INVALID, geometry: INVALID, instance: [INVALID] };
         let mut ray = RayHit { ray: Ray::new(origin, direction, t_max), hit };
         // SAFETY: the scene is committed and alive; the ray and the context are laid out as the header says.
         unsafe { (self.intersect)(self.scene, &mut Context::new(), &mut ray) };
-        if ray.hit.geometry == INVALID { f32::INFINITY } else { ray.ray.t_far }
+        (if ray.hit.geometry == INVALID { f32::INFINITY } else { ray.ray.t_far }, ray.hit.primitive)
     }
 
     /// Whether anything is hit.
@@ -182,6 +206,8 @@ impl Drop for Scene {
             let release: Symbol<'_, unsafe extern "C" fn(*mut c_void)> = self.embree.symbol("rtcReleaseScene");
             release(self.scene);
         }
+        // Held by the scene until now.
+        drop(self.placed.take());
     }
 }
 

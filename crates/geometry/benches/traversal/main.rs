@@ -11,7 +11,7 @@ mod scenes;
 use embree::{Content, Embree, ROBUST, Scene};
 use etalon_geometry::{Geometry, Hit, Primitive, Ray, SurfacePoint};
 use etalon_optics::{Frame, Vec3};
-use scenes::{Mesh, Random, balls, spheres};
+use scenes::{Mesh, Random, balls, instances, placements, spheres};
 use std::time::Instant;
 
 /// Pixels a side of the camera.
@@ -64,6 +64,12 @@ fn main() {
         let balls = balls(10_000);
         let content = Content::Spheres(&balls);
         measure("spheres-10k", spheres(&balls), embree.as_ref().map(|e| (e, content)), &options);
+    }
+    if "instances-10k".contains(&options.filter) {
+        let (placed, placements, others) = (Mesh::ball(2_500), placements(10_000), Mesh::room());
+        let content = Content::Instances { placed: &placed, placements: &placements, others: &others };
+        let primitives = instances(&placed, &placements, &others);
+        measure("instances-10k", primitives, embree.as_ref().map(|e| (e, content)), &options);
     }
 }
 
@@ -125,7 +131,11 @@ fn compare(
                         let peer = &peers[engine - 1];
                         let hit = |r: &&Ray<f32>| {
                             let (o, d) = (r.origin.to_array(), r.direction.to_array());
-                            if shadow { peer.occluded(o, d, r.t_max) } else { peer.closest(o, d, r.t_max).is_finite() }
+                            if shadow {
+                                peer.occluded(o, d, r.t_max)
+                            } else {
+                                peer.closest(o, d, r.t_max).0.is_finite()
+                            }
                         };
                         chunk.iter().filter(hit).count()
                     }
@@ -140,6 +150,23 @@ fn compare(
         line += &format!(" {:>9.2} {:>8.2}", rate(engine), rate(0) / rate(engine));
     }
     println!("{line}   hits {hits:?} of {}", rays.len());
+    for (peer, mode) in peers.iter().zip(["default", "robust"]) {
+        // What it finds where we find nothing: as a rule what the ray leaves, of which it does not know.
+        let (mut more, mut left) = (0, 0);
+        for r in rays {
+            let (t, primitive) = peer.closest(r.origin.to_array(), r.direction.to_array(), r.t_max);
+            let ours = if shadow { geometry.occluded(r) } else { geometry.closest_hit(r).is_some() };
+            if t.is_finite() && !ours {
+                more += 1;
+                left += usize::from(primitive == r.leaves.primitive.0);
+            }
+        }
+        if more > 0 {
+            println!(
+                "{name:<16} {kind:<10} Embree {mode}: {more} hits where we have none, {left} of them of the primitive left"
+            );
+        }
+    }
 }
 
 /// Primary rays, shadow rays from what they hit, and the rays of the first and the third diffuse bounce.

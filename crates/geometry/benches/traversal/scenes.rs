@@ -1,7 +1,8 @@
 //! The scenes: closed ones, so that every bounce has a next.
 
-use etalon_geometry::{Primitive, Sphere, Triangle};
+use etalon_geometry::{Geometry, Instance, Placement, Primitive, Sphere, Triangle};
 use etalon_optics::Vec3;
+use std::sync::Arc;
 
 /// Numbers from a fixed seed (SplitMix64).
 pub(crate) struct Random(pub(crate) u64);
@@ -82,9 +83,14 @@ impl Mesh {
 
     /// A displaced ball in a plain room: about `triangles` small triangles of even size.
     pub(crate) fn displaced(triangles: usize) -> Self {
-        let mut mesh = Self::default();
+        let mut mesh = Self::ball(triangles);
+        mesh.add_box([-3.0, -3.0, -2.0], [3.0, 3.0, 3.0], 8);
+        mesh
+    }
+
+    fn add_ball(&mut self, triangles: usize) {
         let n = (triangles as f64 / 4.0).sqrt() as u32;
-        mesh.add_grid(n, 2 * n, |s, t| {
+        self.add_grid(n, 2 * n, |s, t| {
             use std::f64::consts::{PI, TAU};
             let (theta, phi) = (PI * s, TAU * t);
             let d = [theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()];
@@ -92,7 +98,19 @@ impl Mesh {
             let r = 1.0 + 0.25 * wave(5.0) + 0.06 * wave(23.0) + 0.015 * wave(97.0);
             d.map(|c| c * r)
         });
+    }
+
+    /// The room that the ball is in.
+    pub(crate) fn room() -> Self {
+        let mut mesh = Self::default();
         mesh.add_box([-3.0, -3.0, -2.0], [3.0, 3.0, 3.0], 8);
+        mesh
+    }
+
+    /// A displaced ball alone.
+    pub(crate) fn ball(triangles: usize) -> Self {
+        let mut mesh = Self::default();
+        mesh.add_ball(triangles);
         mesh
     }
 
@@ -161,4 +179,32 @@ pub(crate) fn spheres(balls: &[[f32; 4]]) -> Vec<Primitive> {
             Sphere::new(Vec3::new(x, y, z), r).expect("a ball").into()
         })
         .collect()
+}
+
+/// Places in the room: turned, scaled, and some mirrored. Rows of a linear map and a translation.
+pub(crate) fn placements(count: usize) -> Vec<[f32; 12]> {
+    let mut random = Random(14);
+    (0..count)
+        .map(|i| {
+            let frame = etalon_optics::Frame::from_normal(random.direction());
+            let size = 0.02 + 0.06 * random.unit();
+            let mirror = if i % 4 == 0 { -1.0 } else { 1.0 };
+            let axes = [frame.s * (size * mirror), frame.t * size, frame.n * size].map(Vec3::to_array);
+            let centre = [2.7 * random.signed(), 2.7 * random.signed(), 0.5 + 2.2 * random.signed()];
+            std::array::from_fn(|j| if j % 4 == 3 { centre[j / 4] as f32 } else { axes[j % 4][j / 4] as f32 })
+        })
+        .collect()
+}
+
+/// The same as primitives, and the room.
+pub(crate) fn instances(placed: &Mesh, placements: &[[f32; 12]], others: &Mesh) -> Vec<Primitive> {
+    let geometry = Arc::new(Geometry::build(placed.primitives()).expect("a ball"));
+    let mut out = others.primitives();
+    out.extend(placements.iter().map(|p| {
+        let p = p.map(f64::from);
+        let linear = [0, 4, 8].map(|row| [p[row], p[row + 1], p[row + 2]]);
+        let placement = Placement::new(linear, [p[3], p[7], p[11]]).expect("a map that can be inverted");
+        Primitive::from(Instance::new(Arc::clone(&geometry), placement).expect("a placed ball"))
+    }));
+    out
 }
