@@ -5,7 +5,6 @@
 import json
 import os
 import pathlib
-import resource
 import subprocess
 import sys
 import tempfile
@@ -74,6 +73,24 @@ def read_exr(path):
     return np.stack([np.asarray(channels[c].pixels, np.float32) for c in "RGB"], -1)
 
 
+def run(command):
+    """Standard output of a program, which must succeed, and its peak memory in MiB."""
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    peak = 0
+    # What wait4 tells includes the memory of this process, from between fork and exec.
+    while True:
+        try:
+            with open("/proc/%d/status" % process.pid) as f:
+                peak = max([peak] + [int(line.split()[1]) for line in f if line.startswith("VmHWM")])
+            out, err = process.communicate(timeout=0.01)
+            break
+        except subprocess.TimeoutExpired:
+            continue
+    if process.returncode != 0:
+        raise RuntimeError(err or out)
+    return out, peak / 1024.0
+
+
 class Peer:
     def __init__(self, variant, threads, opts):
         t = time.perf_counter()
@@ -105,11 +122,9 @@ class Peer:
             if option in self.opts:
                 command += ["--" + option, self.opts[option]]
         t = time.perf_counter()
-        done = subprocess.run(command, capture_output=True, text=True)
+        out_text, self.peak = run(command)
         wall = time.perf_counter() - t
-        if done.returncode != 0:
-            raise RuntimeError(done.stderr or done.stdout)
-        self.last = json.loads(done.stdout)
+        self.last = json.loads(out_text)
         if self.last["nonfinite"]:
             raise RuntimeError("samples that are not finite: %s" % self.last["nonfinite_at"])
         return read_exr(out), spp, wall, self.last["seconds"] * self.threads
@@ -119,7 +134,7 @@ class Peer:
                 "rays_per_path": (self.last["rays"] + self.last["shadow_rays"]) / self.last["paths"]}
 
     def peak_mib(self):
-        return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
+        return self.peak
 
     def close(self):
         self.folder.cleanup()

@@ -19,7 +19,7 @@ use etalon_scene::Precision;
 use std::ops::Range;
 
 /// Wavelengths that a path carries where they differ.
-pub(crate) const LANES: usize = 4;
+pub(crate) const LANES: usize = 8;
 
 /// Adds samples to one tile: to the sums of its pixels, row by row, in each replicate by replicate; to those of the other Stokes
 /// parameters, if there are any.
@@ -42,16 +42,16 @@ pub(crate) struct Kernel {
 static KERNELS: [Kernel; 7] = [
     entry::<f32, OneLane, Averaged, 1>(Precision::F32, LaneModel::One, "one-lane-f32"),
     entry::<f64, OneLane, Averaged, 1>(Precision::F64, LaneModel::One, "one-lane-f64"),
-    entry::<f32, Shared, Averaged, LANES>(Precision::F32, LaneModel::Shared, "shared-4-f32"),
-    entry::<f64, Shared, Averaged, LANES>(Precision::F64, LaneModel::Shared, "shared-4-f64"),
-    entry::<f32, Hero<f32, LANES>, Averaged, LANES>(Precision::F32, LaneModel::Hero, "hero-4-f32"),
-    entry::<f64, Hero<f64, LANES>, Averaged, LANES>(Precision::F64, LaneModel::Hero, "hero-4-f64"),
+    entry::<f32, Shared, Averaged, LANES>(Precision::F32, LaneModel::Shared, "shared-8-f32"),
+    entry::<f64, Shared, Averaged, LANES>(Precision::F64, LaneModel::Shared, "shared-8-f64"),
+    entry::<f32, Hero<f32, LANES>, Averaged, LANES>(Precision::F32, LaneModel::Hero, "hero-8-f32"),
+    entry::<f64, Hero<f64, LANES>, Averaged, LANES>(Precision::F64, LaneModel::Hero, "hero-8-f64"),
     Kernel {
         polarised: true,
         ..entry::<f64, Hero<f64, LANES>, Followed<LANES>, LANES>(
             Precision::F64,
             LaneModel::Hero,
-            "polarised-hero-4-f64",
+            "polarised-hero-8-f64",
         )
     },
 ];

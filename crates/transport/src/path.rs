@@ -36,6 +36,9 @@ const THROUGHPUT_FLOOR: f64 = 1e-30;
 pub(crate) const MOST_VERTICES: u32 = 1 << 16;
 /// Vertices before Russian roulette begins.
 const ROULETTE_FROM_VERTEX: u32 = 2;
+/// The throughput that a path keeps which roulette lets live. Less is more vertices with less noise; of 1, 1/2, 1/3, 1/4 and 1/8
+/// this takes the least time to a given error in rooms of white walls and under the sky (docs/performance.md).
+const ROULETTE_THROUGHPUT: f64 = 0.4;
 
 /// All that a path meets.
 pub(crate) struct World<'a> {
@@ -215,7 +218,7 @@ impl World<'_> {
             }
             if self.roulette && vertex + 1 >= ROULETTE_FROM_VERTEX {
                 // No cap below one: it would make the variance infinite between good mirrors (hard case 29).
-                let survival = throughput.min(1.0);
+                let survival = (throughput / ROULETTE_THROUGHPUT).min(1.0);
                 if u_roulette >= survival {
                     observer.end(End::Roulette);
                     break;

@@ -9,6 +9,8 @@
 use etalon_scene::SamplerKind;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use sobol_burley::parts::{hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
+use std::sync::LazyLock;
 
 /// Sets drawn by the camera: (film x, film y, lens 1, lens 2), (wavelength, time, –, –).
 pub const CAMERA_SETS: u32 = 2;
@@ -29,6 +31,7 @@ pub struct Sampler {
     index: u32,
     /// Number of the replicate.
     replicate: u32,
+    sobol: &'static SobolTable,
 }
 
 impl Sampler {
@@ -36,7 +39,8 @@ impl Sampler {
     /// `replicates` independent sequences.
     pub fn new(kind: SamplerKind, seed: u64, pixel: u64, sample: u32, replicates: u32) -> Self {
         let pixel_seed = mix(mix(seed) ^ pixel);
-        Self { kind, pixel_seed, sample, index: sample / replicates, replicate: sample % replicates }
+        let (index, replicate) = (sample / replicates, sample % replicates);
+        Self { kind, pixel_seed, sample, index, replicate, sobol: &SOBOL }
     }
 
     /// The four numbers of set `set`, each in [0, 1).
@@ -48,7 +52,7 @@ impl Sampler {
                 // The high half of a 64-bit hash: sets and replicates are independent scrambles of the same points
                 // (padding; Burley 2020, *Practical Hash-based Owen Scrambling*, §5).
                 let scramble = mix(self.pixel_seed ^ (u64::from(set) << 32 | u64::from(points))) >> 32;
-                sobol_burley::sample_4d(self.index % SOBOL_POINTS, 0, scramble as u32).map(f64::from)
+                sobol_4d(self.sobol, self.index % SOBOL_POINTS, scramble as u32).map(f64::from)
             }
             SamplerKind::Independent => {
                 let stream = mix(self.pixel_seed ^ (u64::from(set) << 32 | u64::from(self.sample)));
@@ -58,10 +62,33 @@ impl Sampler {
         }
     }
 
-    /// The sets of path vertex `vertex`, the first being number 0.
+    /// The sets of path vertex `vertex`, the first being number 0: (choice, point 1, point 2, decision).
     pub fn vertex_set(&self, vertex: u32, set: u32) -> [f64; 4] {
-        self.set(CAMERA_SETS + vertex * SETS_PER_VERTEX + set)
+        // The first two dimensions of the sequence are the best stratified together, so they are for the point.
+        let [point_1, point_2, choice, decision] = self.set(CAMERA_SETS + vertex * SETS_PER_VERTEX + set);
+        [choice, point_1, point_2, decision]
     }
+}
+
+/// The first four dimensions of the Sobol sequence, bits reversed, of all numbers with nothing but a high or a low byte: the
+/// sequence is linear in the bits of the index, so the point of any number is two of these combined.
+#[derive(Debug)]
+struct SobolTable([[[u32; 4]; 256]; 2]);
+
+static SOBOL: LazyLock<SobolTable> = LazyLock::new(|| {
+    let point = |reversed_index: u32| sobol_int4_rev(reversed_index, 0).into();
+    SobolTable([24, 16].map(|shift| std::array::from_fn(|byte| point((byte as u32) << shift))))
+});
+
+/// [`sobol_burley::sample_4d`] of the first four dimensions, bit for bit, in half the instructions.
+#[inline]
+fn sobol_4d(SobolTable([high, low]): &SobolTable, index: u32, seed: u32) -> [f32; 4] {
+    let index = owen_scramble_rev(index.reverse_bits(), hash(seed ^ 0x79c6_8e4a));
+    let (high, low) = (high[(index >> 24) as usize], low[(index >> 16 & 0xff) as usize]);
+    let point: [u32; 4] = std::array::from_fn(|dimension| high[dimension] ^ low[dimension]);
+    let seed = seed.wrapping_mul(0x9c8f_2d3b);
+    let scramble = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|of_dimension| seed ^ of_dimension);
+    owen_scramble_int4_rev(point.into(), hash_int4(scramble.into())).reverse_bits().to_f32_norm()
 }
 
 /// Maps 64 random bits to [0, 1), cutting (not rounding) to 53 bits so that 1 never occurs.
@@ -114,13 +141,30 @@ mod tests {
     }
 
     #[test]
-    fn sobol_points_are_stratified_in_each_set() {
-        // 256 points of a (0, 8, 2)-net in base 2 put one into each of 16 × 16 cells of the first two dimensions.
-        let mut cells = [0; 256];
-        for s in 0..256 {
-            let u = Sampler::new(SamplerKind::Sobol, 3, 9, s, 1).set(0);
-            cells[(u[0] * 16.0) as usize * 16 + (u[1] * 16.0) as usize] += 1;
+    fn tabulated_points_are_those_of_the_library_bit_for_bit() {
+        for index in (0..SOBOL_POINTS).step_by(7).chain([SOBOL_POINTS - 1]) {
+            let seed = mix(u64::from(index)) as u32;
+            assert_eq!(sobol_4d(&SOBOL, index, seed), sobol_burley::sample_4d(index, 0, seed), "{index}, {seed}");
         }
-        assert!(cells.iter().all(|&c| c == 1), "{cells:?}");
+    }
+
+    #[test]
+    fn sobol_points_are_stratified_on_the_film_and_where_a_vertex_draws_a_direction() {
+        // 256 points of a (0, 8, 2)-net in base 2 put one into each of 16 × 16 cells of the first two dimensions.
+        let sampler = |s| Sampler::new(SamplerKind::Sobol, 3, 9, s, 1);
+        let film = |s| -> [f64; 4] { sampler(s).set(0) };
+        let vertex = |s| -> [f64; 4] { sampler(s).vertex_set(1, 0) };
+        let stratified = |pair: &dyn Fn(u32) -> [f64; 2]| {
+            let mut cells = [0; 256];
+            for s in 0..256 {
+                let [x, y] = pair(s);
+                cells[(x * 16.0) as usize * 16 + (y * 16.0) as usize] += 1;
+            }
+            cells.iter().all(|&c| c == 1)
+        };
+        assert!(stratified(&|s| [film(s)[0], film(s)[1]]));
+        assert!(stratified(&|s| [vertex(s)[1], vertex(s)[2]]));
+        // What the test would say of numbers that are not.
+        assert!(!stratified(&|s| [film(s)[0], vertex(s)[1]]));
     }
 }

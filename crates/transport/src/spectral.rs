@@ -15,8 +15,17 @@ pub enum PathSpectrum {
     Grid {
         /// Wavelength of the first value, nm.
         first_nm: f64,
-        /// The values; one more than there are steps.
-        values: Vec<f64>,
+        /// The value at each nanometre, and how much larger the next is.
+        steps: Vec<[f64; 2]>,
+    },
+    /// The same, and zero outside these wavelengths: a table that ends with a jump.
+    Band {
+        /// Wavelength of the first value, nm.
+        first_nm: f64,
+        /// The value at each nanometre, and how much larger the next is.
+        steps: Vec<[f64; 2]>,
+        /// The first and the last wavelength at which it is not zero, nm.
+        band_nm: [f64; 2],
     },
     /// A spectrum that may have detail between the nanometres and needs no mathematics library, evaluated as it is.
     Symbolic(Spectrum),
@@ -28,13 +37,21 @@ impl PathSpectrum {
         if spectrum.is_constant() {
             return Self::Constant(spectrum.eval(range_nm[0]));
         }
-        if !is_grid_exact(spectrum) {
-            return Self::Symbolic(spectrum.clone());
+        let (first_nm, last_nm) = (range_nm[0].floor(), range_nm[1].floor() + 1.0);
+        let count = (last_nm - first_nm) as usize;
+        let at = |i: usize| first_nm + i as f64;
+        match detail(spectrum) {
+            Detail::OnGrid => {
+                let values: Vec<f64> = (0..=count).map(|i| spectrum.eval(at(i))).collect();
+                Self::Grid { first_nm, steps: steps(&values) }
+            }
+            Detail::OnGridWithin([from, to]) => {
+                // Held beyond the band, so that no interpolation within it sees the zero outside.
+                let values: Vec<f64> = (0..=count).map(|i| spectrum.eval(at(i).clamp(from, to))).collect();
+                Self::Band { first_nm, steps: steps(&values), band_nm: [from, to] }
+            }
+            Detail::Between => Self::Symbolic(spectrum.clone()),
         }
-        let (first, last) = (range_nm[0].floor(), range_nm[1].floor() + 1.0);
-        let steps = (last - first) as usize;
-        let values = (0..=steps).map(|i| spectrum.eval(first + i as f64)).collect();
-        Self::Grid { first_nm: first, values }
     }
 
     /// Tabulates a smooth function of the wavelength (nm) at each nanometre of `range_nm`.
@@ -46,7 +63,7 @@ impl PathSpectrum {
         if values.iter().all(|v| *v == values[0]) {
             return Self::Constant(values[0]);
         }
-        Self::Grid { first_nm: first, values }
+        Self::Grid { first_nm: first, steps: steps(&values) }
     }
 
     /// Value at a wavelength within the range, nm.
@@ -54,10 +71,10 @@ impl PathSpectrum {
     pub fn eval(&self, wavelength_nm: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
-            Self::Grid { first_nm, values } => {
-                let x = wavelength_nm - first_nm;
-                let i = x as usize;
-                values[i] + (x - i as f64) * (values[i + 1] - values[i])
+            Self::Grid { first_nm, steps } => interpolate(*first_nm, steps, wavelength_nm),
+            Self::Band { first_nm, steps, band_nm: [from, to] } => {
+                let inside = (*from..=*to).contains(&wavelength_nm);
+                if inside { interpolate(*first_nm, steps, wavelength_nm) } else { 0.0 }
             }
             Self::Symbolic(spectrum) => spectrum.eval(wavelength_nm),
         }
@@ -68,25 +85,58 @@ impl PathSpectrum {
     pub fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<R, N> {
         match self {
             Self::Constant(value) => Lanes::splat(R::from_f64(*value)),
-            Self::Grid { .. } | Self::Symbolic(_) => Lanes::from_fn(|lane| R::from_f64(self.eval(lambda_nm[lane]))),
+            Self::Grid { first_nm, steps } => {
+                Lanes::from_fn(|lane| R::from_f64(interpolate(*first_nm, steps, lambda_nm[lane])))
+            }
+            Self::Band { .. } | Self::Symbolic(_) => Lanes::from_fn(|lane| R::from_f64(self.eval(lambda_nm[lane]))),
         }
     }
 }
 
-/// Whether a grid of whole nanometres shows all that a spectrum has to show.
-fn is_grid_exact(spectrum: &Spectrum) -> bool {
+/// Each value but the last, and how much larger the next is.
+fn steps(values: &[f64]) -> Vec<[f64; 2]> {
+    values.windows(2).map(|pair| [pair[0], pair[1] - pair[0]]).collect()
+}
+
+/// The value between two of those at each nanometre from `first_nm`.
+#[inline(always)]
+fn interpolate(first_nm: f64, steps: &[[f64; 2]], wavelength_nm: f64) -> f64 {
+    let x = wavelength_nm - first_nm;
+    // A narrow integer: its conversions are single instructions.
+    let i = x as u32;
+    let [value, step] = steps[i as usize];
+    value + (x - f64::from(i)) * step
+}
+
+/// Where a spectrum has to be looked at.
+enum Detail {
+    /// A grid of whole nanometres shows all that there is to show.
+    OnGrid,
+    /// The same between two of these; outside it is zero.
+    OnGridWithin([f64; 2]),
+    /// There may be more between them.
+    Between,
+}
+
+fn detail(spectrum: &Spectrum) -> Detail {
     match spectrum {
         Spectrum::Tabulated(table) => {
             let whole = |nm: &f64| nm.fract() == 0.0;
             let values = table.values();
             // A table that is zero outside jumps at its ends, unless it ends at zero.
             let jumps = table.outside() == Outside::Zero && (values[0] > 0.0 || values[values.len() - 1] > 0.0);
-            table.wavelengths_nm().iter().all(whole) && !jumps
+            match table.wavelengths_nm().iter().all(whole) {
+                true if jumps => Detail::OnGridWithin(table.range_nm()),
+                true => Detail::OnGrid,
+                false => Detail::Between,
+            }
         }
-        Spectrum::Scaled { spectrum, .. } => is_grid_exact(spectrum),
+        Spectrum::Scaled { spectrum, .. } => detail(spectrum),
         // As steep as its colour is saturated.
-        Spectrum::RgbReflectance(_) => false,
-        Spectrum::Constant(_) | Spectrum::Blackbody(_) | Spectrum::Illuminant(_) | Spectrum::RgbEmission(_) => true,
+        Spectrum::RgbReflectance(_) => Detail::Between,
+        Spectrum::Constant(_) | Spectrum::Blackbody(_) | Spectrum::Illuminant(_) | Spectrum::RgbEmission(_) => {
+            Detail::OnGrid
+        }
     }
 }
 
@@ -104,6 +154,7 @@ mod tests {
             Spectrum::rgb_reflectance([0.8, 0.1, 0.2]).unwrap(),
             Spectrum::tabulated(vec![400.0, 500.5, 600.0], vec![0.1, 0.9, 0.2], Outside::Hold).unwrap(),
             Spectrum::tabulated(vec![400.0, 500.0, 700.0], vec![0.0, 8.0, 18.4], Outside::Zero).unwrap(),
+            Spectrum::tabulated(vec![500.0, 501.0, 600.0], vec![3.0, 8.0, 2.0], Outside::Zero).unwrap(),
         ];
         for spectrum in spectra {
             let prepared = PathSpectrum::new(&spectrum, [360.0, 830.0]);

@@ -16,20 +16,31 @@ pub struct Wavelengths<const N: usize> {
     pub pdf: Lanes<f64, N>,
 }
 
-/// A density over wavelengths: proportional to x̄ + ȳ + z̄ with a floor, constant within each nanometre.
+/// A density over wavelengths: x̄ + ȳ + z̄ blurred, with a floor, constant within each nanometre.
 ///
 /// It is normalised over the range that is sampled, nothing else (hard case 34).
+///
+/// The lanes of a path are equidistant in the cumulative distribution: together they are a quadrature rule, whose error is how
+/// rough S·x̄/density is along that distribution. A density as bumpy as x̄ + ȳ + z̄ itself is nearer to what is integrated, and yet
+/// the worse choice: hence the blur.
 #[derive(Clone, Debug)]
 pub struct WavelengthDistribution {
     /// Cell borders, nm.
     borders_nm: Vec<f64>,
     /// Cumulative probability at each border, from 0 to 1.
     cdf: Vec<f64>,
+    /// The cell at each multiple of 1/[`GUIDES`] of probability: where the search for a cell begins.
+    guides: Vec<u32>,
 }
 
 /// Share of the largest colour-matching sum below which no wavelength's density falls: the ends of the range matter
 /// little to the eye but must stay reachable with a bounded weight.
 const FLOOR: f64 = 0.02;
+/// Standard deviation of the blur, nm. Of 10 to 40 nm, and of several other shapes, this leaves eight lanes the least colour
+/// noise over daylight, lamps, black bodies and what paints reflect of them: a tenth of that without blur.
+const BLUR_NM: i32 = 40;
+/// About twice as many as there are nanometres in the visible range, so that most searches end where they begin.
+const GUIDES: usize = 1024;
 
 impl WavelengthDistribution {
     /// The distribution over `range_nm`, which must be finite, ordered and not empty.
@@ -38,7 +49,12 @@ impl WavelengthDistribution {
         let mut borders_nm = vec![first];
         borders_nm.extend((1..).map(|i| first.floor() + f64::from(i)).take_while(|&nm| nm < last));
         borders_nm.push(last);
-        let sensitivity = |nm: f64| colour_matching(nm).iter().sum::<f64>();
+        let blur: Vec<(f64, f64)> = (-4 * BLUR_NM..=4 * BLUR_NM)
+            .map(|d| (f64::from(d), (-0.5 * f64::from(d * d) / f64::from(BLUR_NM * BLUR_NM)).exp()))
+            .collect();
+        let sensitivity = |nm: f64| -> f64 {
+            blur.iter().map(|(d, weight)| weight * colour_matching(nm + d).iter().sum::<f64>()).sum()
+        };
         let density: Vec<f64> = borders_nm.windows(2).map(|w| sensitivity(0.5 * (w[0] + w[1]))).collect();
         let floor = FLOOR * density.iter().fold(0.0, |a, &b| f64::max(a, b));
         // A range without any visible wavelength is sampled uniformly.
@@ -50,7 +66,9 @@ impl WavelengthDistribution {
             cdf.push(sum);
         }
         cdf.iter_mut().for_each(|c| *c /= sum);
-        Self { borders_nm, cdf }
+        let cell_at = |guide: usize| cdf.partition_point(|&c| c <= guide as f64 / GUIDES as f64) - 1;
+        let guides = (0..GUIDES).map(|guide| cell_at(guide) as u32).collect();
+        Self { borders_nm, cdf, guides }
     }
 
     /// The first and the last wavelength, nm.
@@ -60,7 +78,10 @@ impl WavelengthDistribution {
 
     /// The wavelength at cumulative probability `u` in [0, 1), and its density in nm⁻¹.
     pub fn sample(&self, u: f64) -> (f64, f64) {
-        let cell = self.cdf.partition_point(|&c| c <= u) - 1;
+        let mut cell = self.guides[(u * GUIDES as f64) as usize] as usize;
+        while self.cdf[cell + 1] <= u {
+            cell += 1;
+        }
         let (c0, c1) = (self.cdf[cell], self.cdf[cell + 1]);
         let (nm0, nm1) = (self.borders_nm[cell], self.borders_nm[cell + 1]);
         let t = (u - c0) / (c1 - c0);
@@ -85,8 +106,9 @@ impl<const N: usize> Wavelengths<N> {
     /// spectrum 1 over the whole visible range has Y = 1: Σ_lanes L·(x̄, ȳ, z̄)/pdf / N / ∫ȳ.
     pub fn to_xyz<R: Real>(&self, radiance: Lanes<R, N>) -> [f64; 3] {
         let mut xyz = [0.0; 3];
+        let scale = N as f64 * cie_y_integral_nm();
         for lane in 0..N {
-            let weight = radiance[lane].to_f64() / (self.pdf[lane] * N as f64 * cie_y_integral_nm());
+            let weight = radiance[lane].to_f64() / (self.pdf[lane] * scale);
             for (sum, bar) in xyz.iter_mut().zip(colour_matching(self.lambda_nm[lane])) {
                 *sum += weight * bar;
             }
