@@ -7,7 +7,7 @@
 
 Counts what callgrind collects between entering and leaving the kernel, on one thread: sampling alone, nothing of loading. The
 same program on the same kind of processor repeats a count exactly, whatever else the machine does; another compiler does not,
-so the record names it. Needs cargo, valgrind, and numpy for the meshes.
+so the record names it. Needs valgrind, numpy for the meshes, and target/release/etalon or the variable ETALON.
 """
 import argparse
 import json
@@ -28,9 +28,10 @@ def out(command):
     return subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
 
 
-def count(pilot, scene, size, spp):
+def count(program, scene, size, spp):
     command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no",
-               "--toggle-collect=*render_tile*", pilot, str(scene), size, str(spp)]
+               "--toggle-collect=*render_tile*", program, "render", scene, "--size", size, "--spp", str(spp), "--threads", "1",
+               "--quiet", "--output", os.path.join(os.path.dirname(scene), "out.exr")]
     collected = re.search(r"Collected : (\d+)", out(command).stderr)
     width, height = map(int, size.split("x"))
     return int(collected.group(1)) / (width * height * spp)
@@ -40,15 +41,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", type=lambda text: text.split(","), default=list(SIZES), help="of " + ", ".join(SIZES))
     parser.add_argument("--record", action="store_true", help="write the counts to " + str(RECORD.relative_to(ROOT)))
-    parser.add_argument("--pilot", help="the built example, instead of building it")
     args = parser.parse_args()
     unknown = [name for name in args.scenes if name not in SIZES]
     if unknown:
         parser.error("unknown: %s; there are %s" % (", ".join(unknown), ", ".join(SIZES)))
-    pilot = args.pilot
-    if not pilot:
-        out(["cargo", "build", "--quiet", "--release", "-p", "etalon-transport", "--example", "pilot"])
-        pilot = str(ROOT / "target/release/examples/pilot")
+    program = os.environ.get("ETALON") or str(ROOT / "target/release/etalon")
     record = json.loads(RECORD.read_text()) if RECORD.exists() else {"scenes": {}}
     compiler = out(["rustc", "--version"]).stdout.strip()
     processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "?")
@@ -60,7 +57,7 @@ def main():
         subprocess.run([sys.executable, str(ROOT / "bench/race/peer_etalon.py"), folder], check=True)
         for name in args.scenes:
             size, spp = SIZES[name]
-            now = count(pilot, os.path.join(folder, name + ".json"), size, spp)
+            now = count(program, os.path.join(folder, name + ".json"), size, spp)
             before = record["scenes"].get(name)
             print("%-8s %12s %12.0f %8s" % (name, "%.0f" % before if before else "", now, "%.4f" % (now / before) if before else ""), flush=True)
             if args.record:

@@ -96,7 +96,7 @@ fn at_brewsters_angle_reflected_light_is_fully_polarised_in_s1() {
             }
         }
     }
-    assert!(lit > 100 && sum > 0.0, "{lit} of 4096 lanes have light");
+    assert!(lit > 100 && sum > 0.0, "{lit} of 8192 lanes have light");
 }
 
 /// Two surfaces of glass under Brewster's angle, one after the other, and a lamp where the light that both reflect comes from.
