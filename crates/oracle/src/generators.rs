@@ -141,7 +141,7 @@ impl Scene {
         }
     }
 
-    /// Rays, as many as are asked for, each a [`line`] at the scene's features.
+    /// Rays, as many as are asked for, each a [`line()`] at the scene's features.
     pub fn lines(&self, seed: u64) -> impl Iterator<Item = Line> {
         let features: Vec<[f64; 3]> = self.shapes.iter().flat_map(Shape::features).collect();
         let (factor, by_m, epsilon) = (self.factor, self.by_m, self.epsilon);
