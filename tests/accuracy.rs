@@ -41,7 +41,7 @@ fn a_render_knows_its_error_and_writes_it_down() {
 #[test]
 fn a_render_that_ends_by_error_has_the_pixels_of_that_number_of_samples() {
     let folder = tempfile::tempdir().unwrap();
-    let (stopped, report) = render(folder.path(), "a.exr", "--size 48x48 --error 20%");
+    let (stopped, report) = render(folder.path(), "a.exr", "--size 48x48 --error 20% --adaptive never");
     assert_eq!(report["reached"], "error");
     let spp = report["spp"].as_u64().unwrap();
     let error = report["error"]["relative_rmse"].as_f64().unwrap();
@@ -57,6 +57,26 @@ fn a_render_that_ends_by_error_has_the_pixels_of_that_number_of_samples() {
     assert!(report["seconds"].as_f64().unwrap() < 1.5);
     let ran = etalon_line("render {} -o {} --error 5", [&scene("cornell.json"), &folder.path().join("d.exr")]);
     ran.expect(2).says(["--error", "1%"]);
+}
+
+#[test]
+fn an_adaptive_render_takes_the_mean_number_of_samples_and_says_where_they_went() {
+    let folder = tempfile::tempdir().unwrap();
+    let (one, report) = render(folder.path(), "a.exr", "--size 48x48 --spp 64 --adaptive always --threads 1");
+    let [least, most]: [u64; 2] = serde_json::from_value(report["adaptive"]["samples"].clone()).unwrap();
+    // The lamp's edges are a small part of the box and most of its error; a quarter of the samples is spread evenly.
+    assert!(report["adaptive"]["foretold_gain"].as_f64().unwrap() > 1.5 && least >= 16 && least < 40 && most > 128);
+    let paths = report["paths"].as_f64().unwrap() / (48.0 * 48.0);
+    assert!((64.0..68.0).contains(&paths), "{paths}");
+    let (three, _) = render(folder.path(), "b.exr", "--size 48x48 --spp 64 --adaptive always --threads 3");
+    assert!(pixel_bits(&one).0 == pixel_bits(&three).0);
+    let (_, report) = render(folder.path(), "c.exr", "--size 48x48 --spp 64");
+    assert_eq!(report["adaptive"], Value::Null);
+    // Samples are worth the same all over an integrating sphere.
+    let output = folder.path().join("d.exr");
+    let line = "render {} -o {} --size 32x32 --error 10% --json";
+    let report = etalon_line(line, [&scene("integrating-sphere.json"), &output]).expect(0).json();
+    assert_eq!((report["reached"].clone(), report["adaptive"]["used"].clone()), ("error".into(), false.into()));
 }
 
 #[test]
@@ -141,6 +161,73 @@ fn a_hundred_pairs_of_seeds_are_called_the_same() {
         alarms += u32::from(etalon_line("compare {} {}", [&a, &b]).status == 1);
     }
     assert!(alarms <= 2, "{alarms} of 100");
+}
+
+/// Luminance of each pixel.
+fn luminance(path: &Path) -> Vec<f64> {
+    let picture = read_exr(path).unwrap().picture;
+    let [r, g, b] = ["R", "G", "B"].map(|name| picture.channel(name).unwrap().to_vec());
+    let y = |i: usize| 0.2126 * f64::from(r[i]) + 0.7152 * f64::from(g[i]) + 0.0722 * f64::from(b[i]);
+    (0..r.len()).map(y).collect()
+}
+
+/// Against references of 16 times the samples, whose own error is taken off: a picture whose error is asked to be 2 % must
+/// have 1.7 to 2.3 %. And each is done in the time that was quoted with another seed, within a factor of 1.25, nine times of
+/// ten; 1 % too, where that is affordable.
+#[test]
+#[ignore = "takes minutes: the tables of docs/accuracy.md on errors and prices"]
+fn six_scenes_end_at_the_error_and_in_the_time_that_were_foretold() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut outside, mut tried, mut dear) = (Vec::new(), 0, Vec::new());
+    for name in ["metals", "integrating-sphere", "cornell", "cornell-glass", "rough", "assignment"] {
+        let file = scene(&format!("{name}.json"));
+        let run = |output: &str, settings: &str| {
+            let output = folder.path().join(output);
+            let line = format!("render {{}} -o {{}} --size 32x32 --clock cpu --json {settings}");
+            let report = etalon_line(&line, [&file, &output]).expect(0).json();
+            (luminance(&output), report)
+        };
+        let number = |value: &Value| value.as_f64().unwrap();
+        let quote = "quote {} --size 32x32 --clock cpu --pilot 3s --seed 3 --error 2%,1% --json";
+        let quote = etalon_line(quote, [&file]).expect(0).json();
+        let (picture, report) = run("a.exr", "--error 2% --seed 1");
+        let (spp, used) = (report["spp"].as_u64().unwrap(), &report["adaptive"]["used"]);
+        let adaptive = if *used == true { "always" } else { "never" };
+        let (reference, of_reference) = run("b.exr", &format!("--spp {} --adaptive {adaptive} --seed 2", 16 * spp));
+        let mean = reference.iter().sum::<f64>() / reference.len() as f64;
+        let squares: f64 = picture.iter().zip(&reference).map(|(a, b)| (a - b) * (a - b)).sum();
+        let own = number(&of_reference["error"]["relative_rmse"]);
+        let measured = (squares / reference.len() as f64 / (mean * mean) - own * own).sqrt();
+        if !(0.017..=0.023).contains(&measured) {
+            outside.push(format!("{name}: {measured}"));
+        }
+        let (_, finer) = run("c.exr", "--error 1% --seed 1");
+        let mut ratios = Vec::new();
+        for (price, report) in quote["prices"].as_array().unwrap().iter().zip([&report, &finer]) {
+            let before =
+                number(&report["foretold"]["pilot_seconds"]) + number(&report["adaptive"]["exploration_seconds"]);
+            let ratio = (number(&report["seconds"]) - before) / number(&price["seconds"]);
+            tried += 1;
+            if !(1.0 / 1.25..=1.25).contains(&ratio) {
+                dear.push(format!("{name}: {ratio}"));
+            }
+            ratios.push(ratio);
+        }
+        // The tables are what this test is for.
+        #[allow(clippy::print_stdout)]
+        {
+            println!(
+                "| {name} | {adaptive} | {spp} | {:.2} % | {:.2} % | {:.2} % | {:.2} | {:.2} |",
+                100.0 * number(&report["error"]["relative_rmse"]),
+                100.0 * measured,
+                100.0 * own,
+                ratios[0],
+                ratios[1]
+            );
+        }
+    }
+    assert!(outside.is_empty(), "{outside:?}");
+    assert!(10 * dear.len() <= tried, "{} of {tried}: {dear:?}", dear.len());
 }
 
 fn small_study(folder: &Path) -> String {

@@ -54,8 +54,7 @@ pub(crate) struct RenderBar {
     bar: ProgressBar,
     rect: PixelRect,
     target: Option<f64>,
-    /// Pixels that are rendered here, and samples of them that there were before.
-    pixels: AtomicU64,
+    /// Camera paths that there were before.
     before: AtomicU64,
 }
 
@@ -67,13 +66,12 @@ impl RenderBar {
         if target.is_some() {
             bar.set_message("pilot");
         }
-        Self { bar, rect, target, pixels: AtomicU64::new(rect.area()), before: AtomicU64::new(0) }
+        Self { bar, rect, target, before: AtomicU64::new(0) }
     }
 
-    /// The picture is a share of so many pixels, or goes on from so many samples of them.
-    pub(crate) fn is_part(&self, pixels: u64, before: u64) {
-        self.pixels.store(pixels, Ordering::Relaxed);
-        self.before.store(before, Ordering::Relaxed);
+    /// The picture goes on from so many camera paths.
+    pub(crate) fn goes_on_from(&self, paths: u64) {
+        self.before.store(paths, Ordering::Relaxed);
     }
 
     /// Takes the bar off the screen.
@@ -102,8 +100,8 @@ impl Watch for RenderBar {
         self.bar.inc(counters.paths);
     }
 
-    fn planned(&self, samples: u32, _: Option<&Foretold>) {
-        self.bar.set_length(self.pixels.load(Ordering::Relaxed) * u64::from(samples));
+    fn planned(&self, paths: u64, _: Option<&Foretold>) {
+        self.bar.set_length(paths);
         self.bar.set_position(self.before.load(Ordering::Relaxed));
         // The pilot's pace is not the picture's.
         self.bar.reset_eta();
@@ -244,7 +242,7 @@ mod tests {
         let bar = RenderBar::new(rect, Some(1.0), Some(0.01), true);
         assert_eq!(bar.bar.message(), "pilot");
         bar.work(&Counters { paths: 9, ..Counters::default() });
-        bar.planned(8, None);
+        bar.planned(32, None);
         bar.work(&Counters { paths: 4, ..Counters::default() });
         assert!(bar.bar.is_hidden());
         assert_eq!((bar.bar.position(), bar.bar.length()), (4, Some(32)));

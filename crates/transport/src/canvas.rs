@@ -96,6 +96,11 @@ impl Canvas {
         self.state().tiles.iter().map(|tile| tile.rect.area()).sum()
     }
 
+    /// Camera paths of all tiles where each pixel takes as many samples as `samples` says for its tile.
+    pub fn paths(&self, samples: &dyn Fn(PixelRect) -> u32) -> u64 {
+        self.state().tiles.iter().map(|tile| tile.rect.area() * u64::from(samples(tile.rect))).sum()
+    }
+
     /// How far tile number `number` is, and its sums, at one moment.
     pub fn tile(&self, number: usize) -> (Tile, TileSums) {
         let state = self.state();

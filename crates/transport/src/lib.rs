@@ -15,13 +15,15 @@
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`], [`texture`] | what the estimates are made of |
 //! | `kernel`, `model`, [`mod@render`], [`film`] | the table of kernels, what their lanes stand for, tiles over all cores, sums |
 //! | [`canvas`] | a picture under way: divided, put down, taken up |
-//! | [`accuracy`], [`pilot`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
+//! | [`accuracy`], [`pilot`], [`price`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
+//! | [`adaptive`], [`shares`] | where samples are worth most, and how they are spread |
 //! | [`replay`] | one path, vertex by vertex |
 //!
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
 //! into stages can change a film.
 
 pub mod accuracy;
+pub mod adaptive;
 pub mod bsdf;
 pub mod camera;
 pub mod canvas;
@@ -41,6 +43,8 @@ pub mod pilot;
 pub mod plan;
 pub mod polarisation;
 pub mod prepare;
+pub mod price;
+mod probe;
 pub mod render;
 pub mod replay;
 pub mod sampler;
@@ -54,11 +58,13 @@ pub mod warp;
 pub mod wavelength;
 
 pub use accuracy::ImageError;
+pub use adaptive::{Adaptivity, Exploration};
 pub use canvas::{Canvas, Shard, Tile};
 pub use film::{Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
-pub use pilot::{Pilot, Price};
+pub use pilot::Pilot;
 pub use plan::{Effect, EffectName, Plan, Study, StudyError};
 pub use prepare::{PrepareError, Prepared, prepare, prepare_study};
+pub use price::Price;
 pub use render::{Control, Extent, ThreadError};
 pub use shares::Shares;
-pub use stop::{Ended, Finished, Foretold, Limits, Reached, Settled, Watch};
+pub use stop::{Ended, Explored, Finished, Foretold, Limits, Reached, Settled, Watch};

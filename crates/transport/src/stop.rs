@@ -3,23 +3,27 @@
 //! The number of samples for an error is chosen by a [`Pilot`] before the picture begins, so the picture's own values have
 //! no say in it. A deadline decides by how long passes take, which depends on the length of paths, not on what they bring.
 
+use crate::adaptive::{Adaptivity, Exploration, Goal, WORTHWHILE, explore};
 use crate::canvas::{Canvas, Shard};
 use crate::film::{Counters, Film, PixelRect, TileSums};
-use crate::pilot::{Pilot, Price, between};
+use crate::pilot::Pilot;
 use crate::prepare::Prepared;
-use crate::render::{Control, ThreadError};
+use crate::price::{Price, between};
+use crate::render::{Control, Extent, ThreadError};
 use crate::shares::Shares;
 use std::sync::Arc;
 
 /// What a render may cost, or must reach. Without any limit it would not end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Most samples a pixel.
+    /// Most samples a pixel, in the mean.
     pub samples: u32,
     /// The relative error at which it is good enough: see [`crate::accuracy`].
     pub relative_rmse: Option<f64>,
     /// Seconds from the start of the render, the pilot included.
     pub seconds: Option<f64>,
+    /// Whether regions take different numbers of samples.
+    pub adaptivity: Adaptivity,
 }
 
 /// Which limit ended a render.
@@ -44,6 +48,17 @@ pub struct Foretold {
     pub pilot_seconds: f64,
 }
 
+/// How it was decided where the samples go.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explored {
+    /// What the exploration found.
+    pub exploration: Exploration,
+    /// Whether the picture's samples are spread accordingly.
+    pub used: bool,
+    /// Seconds that the exploration took.
+    pub seconds: f64,
+}
+
 /// A render that has ended.
 #[derive(Clone, Debug)]
 pub struct Finished {
@@ -51,12 +66,23 @@ pub struct Finished {
     pub film: Film,
     /// Samples that every pixel has, at least; with shares, in the mean.
     pub samples: u32,
+    /// How they are spread over regions; `None` gives every pixel the same number.
+    pub shares: Option<Arc<Shares>>,
     /// Why no more.
     pub reached: Reached,
     /// Seconds from the start to the end, the pilot included.
     pub seconds: f64,
     /// What was foretold, if a relative error was asked for.
     pub foretold: Option<Foretold>,
+    /// The exploration, if there was one.
+    pub explored: Option<Explored>,
+}
+
+impl Finished {
+    /// The film's extent: with it, [`Prepared::render`] gives the same film again.
+    pub fn extent(&self, rect: PixelRect, threads: Option<usize>) -> Extent {
+        Extent { rect, samples: 0..self.samples, shares: self.shares.clone(), threads }
+    }
 }
 
 /// How a render on a canvas ended.
@@ -83,6 +109,8 @@ pub struct Settled {
     pub reached: Reached,
     /// What was foretold, if a relative error was asked for.
     pub foretold: Option<Foretold>,
+    /// The exploration that the shares are from, or that found none worth while.
+    pub explored: Option<Explored>,
 }
 
 impl Settled {
@@ -94,19 +122,19 @@ impl Settled {
 
 /// How a render goes on, for whoever watches it.
 pub trait Watch: Sync {
-    /// Work was done: camera paths and rays, of the pilot or of the picture.
+    /// Work was done: camera paths and rays, of an exploration, the pilot or the picture.
     fn work(&self, counters: &Counters) {
         let _ = counters;
     }
-    /// The picture begins; it will take so many samples a pixel, or fewer if time is up.
-    fn planned(&self, samples: u32, foretold: Option<&Foretold>) {
-        let _ = (samples, foretold);
+    /// The picture begins; it will take so many camera paths, or fewer if time is up.
+    fn planned(&self, paths: u64, foretold: Option<&Foretold>) {
+        let _ = (paths, foretold);
     }
     /// A piece of a tile is done, and these are its sums.
     fn tile(&self, rect: PixelRect, sums: &TileSums) {
         let _ = (rect, sums);
     }
-    /// A pass has ended: samples a pixel so far.
+    /// A pass has ended: samples a pixel so far, in the mean.
     fn pass(&self, film: &Film, samples: u32) {
         let _ = (film, samples);
     }
@@ -117,6 +145,9 @@ pub trait Watch: Sync {
 }
 
 impl Watch for () {}
+
+/// Part of the time that an exploration may take.
+const EXPLORING: f64 = 1.0 / 16.0;
 
 /// Part of the remaining time that passes are planned for: what is left pays for passes that take longer than the last.
 const USE_OF_TIME: f64 = 0.98;
@@ -136,10 +167,12 @@ impl Prepared {
         let canvas = Canvas::new(self, rect, Shard::WHOLE, settled.shares.as_deref());
         let Ended { samples, reached, seconds, foretold } =
             self.render_canvas(&canvas, &settled, limits, threads, clock, watch)?;
-        Ok(Finished { film: canvas.into_film(), samples, reached, seconds, foretold })
+        let Settled { shares, explored, .. } = settled;
+        Ok(Finished { film: canvas.into_film(), samples, shares, reached, seconds, foretold, explored })
     }
 
-    /// Settles how many samples a picture takes: the most that are allowed, or those that a pilot says its error takes.
+    /// Settles how many samples a picture takes, and where: the most that are allowed, or those that a pilot says its error
+    /// takes, spread as an exploration says.
     pub fn settle(
         &self,
         rect: PixelRect,
@@ -148,10 +181,16 @@ impl Prepared {
         clock: &(dyn Fn() -> f64 + Sync),
         watch: &dyn Watch,
     ) -> Result<Settled, ThreadError> {
-        let settled = Settled { samples: limits.samples, shares: None, reached: Reached::Samples, foretold: None };
+        let explored = self.explored(rect, limits, threads, clock, watch)?;
+        let shares = explored.as_ref().filter(|explored| explored.used).map(|e| Arc::clone(&e.exploration.shares));
+        let most = match &shares {
+            None => limits.samples,
+            Some(shares) => limits.samples.min(shares.largest_mean(i32::MAX as u32, self.scene.integrator.replicates)),
+        };
+        let settled = Settled { samples: most, shares, reached: Reached::Samples, foretold: None, explored };
         let Some(target) = limits.relative_rmse else { return Ok(settled) };
-        let mut pilot = Pilot::new(self, rect, threads)?;
-        let needed = pilot.samples_for(target, limits, clock, watch);
+        let mut pilot = Pilot::new(self, rect, settled.shares.clone(), threads)?;
+        let needed = pilot.samples_for(target, most, limits, clock, watch);
         let price = pilot.price(target);
         let point = pilot.points().last().expect("a pilot takes a step at least");
         let foretold = Some(Foretold {
@@ -167,11 +206,32 @@ impl Prepared {
             pilot_seconds: pilot.seconds(),
         });
         Ok(match needed {
-            Some(samples) if samples <= limits.samples => {
-                Settled { samples, shares: None, reached: Reached::Error, foretold }
-            }
+            Some(samples) if samples <= most => Settled { samples, reached: Reached::Error, foretold, ..settled },
             _ => Settled { foretold, ..settled },
         })
+    }
+
+    /// Explores where samples are worth most, where that is wanted.
+    fn explored(
+        &self,
+        rect: PixelRect,
+        limits: &Limits,
+        threads: Option<usize>,
+        clock: &(dyn Fn() -> f64 + Sync),
+        watch: &dyn Watch,
+    ) -> Result<Option<Explored>, ThreadError> {
+        match limits.adaptivity {
+            Adaptivity::Never => return Ok(None),
+            Adaptivity::Auto if limits.relative_rmse.is_none() => return Ok(None),
+            Adaptivity::Auto | Adaptivity::Always => {}
+        }
+        let start = clock();
+        let goal = Goal { samples: limits.samples, relative_rmse: limits.relative_rmse };
+        let late = || limits.seconds.is_some_and(|seconds| clock() - start > EXPLORING * seconds);
+        let enough = || watch.control() == Control::Stop || late();
+        let exploration = explore(self, rect, &goal, threads, &enough, &|counters| watch.work(counters))?;
+        let used = limits.adaptivity == Adaptivity::Always || exploration.gain >= WORTHWHILE;
+        Ok(Some(Explored { exploration, used, seconds: clock() - start }))
     }
 
     /// Renders a canvas on until all its tiles have the samples that were settled, time is up or `watch` says stop.
@@ -185,9 +245,9 @@ impl Prepared {
         watch: &dyn Watch,
     ) -> Result<Ended, ThreadError> {
         let &Settled { samples, mut reached, foretold, .. } = settled;
-        watch.planned(samples, foretold.as_ref());
-
         let replicates = self.scene.integrator.replicates;
+        watch.planned(canvas.paths(&|tile| settled.samples_of(tile, samples, replicates)), foretold.as_ref());
+
         // What a tile has beyond the stage that all have reached is not rendered again.
         let first = if settled.shares.is_some() { 0 } else { canvas.samples()[0] };
         let (start, mut done) = (clock(), first);
@@ -226,10 +286,11 @@ impl Prepared {
 
 impl Pilot<'_> {
     /// Goes on until the error is `target` and returns the number of samples a pixel for it; `None` as soon as that is
-    /// certain to exceed the other limits.
+    /// certain to exceed `most` samples or the other limits.
     fn samples_for(
         &mut self,
         target: f64,
+        most: u32,
         limits: &Limits,
         clock: &(dyn Fn() -> f64 + Sync),
         watch: &dyn Watch,
@@ -245,7 +306,7 @@ impl Pilot<'_> {
                 return Some((samples / f64::from(replicates)).ceil() as u32 * replicates);
             }
             if watch.control() == Control::Stop
-                || point.samples >= limits.samples
+                || point.samples >= most
                 || limits.seconds.is_some_and(|s| clock() + point.seconds > s)
             {
                 return None;
@@ -255,7 +316,7 @@ impl Pilot<'_> {
             let rounds = point.samples / replicates;
             let rounds =
                 (foretold.ceil().min(f64::from(u32::MAX)) as u32).clamp(rounds + rounds.div_ceil(16), 2 * rounds);
-            next = rounds.saturating_mul(replicates).min(i32::MAX as u32);
+            next = rounds.saturating_mul(replicates).min(most.max(replicates));
         }
     }
 }

@@ -2,8 +2,11 @@
 
 use etalon_oracle::statistics::{Welford, resolvable_bias};
 use etalon_scene::Scene;
-use etalon_transport::{Control, Counters, Extent, Film, Limits, Pilot, Prepared, Reached, Watch, prepare};
+use etalon_transport::{
+    Adaptivity, Control, Counters, Extent, Film, Limits, Pilot, PixelRect, Prepared, Reached, Shares, Watch, prepare,
+};
 use serde_json::json;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Height of the lamp over its radius: the share of a diffuse floor's sky that it fills right below it is 1/25.
@@ -12,11 +15,16 @@ const SHARE: f64 = 0.04;
 /// A floor right below a ball that shines, found by chance: each pixel's sample is 0 or 1, and the mean is [`SHARE`] since
 /// E = πL·sin²α below a sphere of half angle α that is above the horizon, and the floor gives back E/π.
 fn lottery(seed: u64) -> Prepared {
+    lottery_of(seed, 8)
+}
+
+/// The same, of so many columns; each eight of them are a region of their own.
+fn lottery_of(seed: u64, width: u32) -> Prepared {
     let (scene, _) = etalon_scene::parse(
         &json!({
             "etalon": 1,
             "camera": {"type": "perspective", "position_m": [3, 3, 0], "look_at_m": [0, 0, 0], "vertical_fov_deg": 0.01},
-            "film": {"width": 8, "height": 8},
+            "film": {"width": width, "height": 8},
             "materials": {"white": {"type": "lambert", "reflectance": 1}, "black": {"type": "black"}},
             "objects": [
                 {"material": "white", "shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 1, 0], "radius_m": 1}},
@@ -52,7 +60,7 @@ fn bias(name: &str, picture: impl Fn(u64) -> f64) -> f64 {
 fn a_picture_whose_samples_a_pilot_chose_is_not_biased() {
     let z = bias("pilot", |seed| {
         let prepared = lottery(seed);
-        let limits = Limits { samples: 4096, relative_rmse: Some(1.0), seconds: None };
+        let limits = Limits { samples: 4096, relative_rmse: Some(1.0), seconds: None, adaptivity: Adaptivity::Never };
         let done = prepared.render_within(prepared.whole(None).rect, &limits, Some(1), &|| 0.0, &()).unwrap();
         assert_eq!(done.reached, Reached::Error);
         mean_y(&prepared, &done.film)
@@ -79,6 +87,46 @@ fn a_picture_that_ends_when_it_looks_good_itself_would_be_seen_to_be_biased() {
     assert!(z.abs() > 5.0, "z {z}: it is right by accident, or the test is blind");
 }
 
+/// Shares of two regions that an exploration draws differently in every picture, since chance alone decides where it finds
+/// light. Pictures of about 60 hits each, as above.
+#[test]
+fn a_picture_whose_shares_an_exploration_chose_is_not_biased() {
+    let uneven = AtomicU64::new(0);
+    let z = bias("exploration", |seed| {
+        let prepared = lottery_of(seed, 16);
+        let limits = Limits { samples: 12, relative_rmse: None, seconds: None, adaptivity: Adaptivity::Always };
+        let rect = prepared.whole(None).rect;
+        let done = prepared.render_within(rect, &limits, Some(1), &|| 0.0, &()).unwrap();
+        let [least, most] = done.explored.unwrap().exploration.shares.least_and_most(done.samples, 4);
+        uneven.fetch_add(u64::from(most > least), Ordering::Relaxed);
+        mean_y(&prepared, &done.film)
+    });
+    assert!(uneven.into_inner() > 2500, "shares hardly differ: the test is blind");
+    assert!(z.abs() < 5.0, "z {z}");
+}
+
+/// The mutant: the first samples decide where more are taken, and are kept.
+#[test]
+fn a_picture_whose_shares_follow_its_own_samples_would_be_seen_to_be_biased() {
+    let z = bias("own shares", |seed| {
+        let prepared = lottery_of(seed, 16);
+        let whole = prepared.whole(Some(1));
+        let first = Extent { samples: 0..4, ..whole.clone() };
+        let mut film = prepared.render(&first, &|_| Control::Continue).unwrap();
+        let regions = Shares::regions(whole.rect);
+        let noise = regions.iter().map(|&region| film.error(region).map_or(0.0, |e| e.relative_rmse * e.mean_y));
+        let noise: Vec<f64> = noise.collect();
+        for (index, rect) in regions.into_iter().enumerate() {
+            let samples = 4..if noise[index] > noise[1 - index] { 20 } else { 8 };
+            prepared
+                .render_onto(&mut film, &Extent { rect, samples, ..whole.clone() }, &|_| Control::Continue)
+                .unwrap();
+        }
+        mean_y(&prepared, &film)
+    });
+    assert!(z.abs() > 5.0, "z {z}: it is right by accident, or the test is blind");
+}
+
 /// A clock on which each path takes a second, and each that finds light ten: as bad as it can be.
 struct CostlyLight(AtomicU64);
 
@@ -94,7 +142,12 @@ fn a_deadline_does_not_bias_even_where_light_is_what_takes_time() {
     let z = bias("deadline", |seed| {
         let prepared = lottery(seed);
         let watch = CostlyLight(AtomicU64::new(0));
-        let limits = Limits { samples: 4096, relative_rmse: None, seconds: Some(64.0 * 24.0 * 1.36) };
+        let limits = Limits {
+            samples: 4096,
+            relative_rmse: None,
+            seconds: Some(64.0 * 24.0 * 1.36),
+            adaptivity: Adaptivity::Never,
+        };
         let clock = || watch.0.load(Ordering::Relaxed) as f64;
         let done = prepared.render_within(prepared.whole(None).rect, &limits, Some(1), &clock, &watch).unwrap();
         assert_eq!(done.reached, Reached::Time);
@@ -118,7 +171,7 @@ fn the_first_limit_wins_and_the_film_is_that_of_as_many_samples() {
     let clock = || 1e-3 * paths.load(Ordering::Relaxed) as f64;
     let render = |samples, relative_rmse, seconds| {
         paths.store(0, Ordering::Relaxed);
-        let limits = Limits { samples, relative_rmse, seconds };
+        let limits = Limits { samples, relative_rmse, seconds, adaptivity: Adaptivity::Never };
         let done = prepared.render_within(rect, &limits, Some(2), &clock, &Paths(&paths)).unwrap();
         let extent = Extent { rect, samples: 0..done.samples, shares: None, threads: Some(1) };
         assert_eq!(done.film, prepared.render(&extent, &|_| Control::Continue).unwrap());
@@ -144,6 +197,39 @@ fn the_first_limit_wins_and_the_film_is_that_of_as_many_samples() {
 }
 
 #[test]
+fn uneven_shares_leave_the_same_bytes_for_any_threads_stages_and_crops() {
+    let mut scene = lottery_of(3, 40).scene().clone();
+    scene.integrator.sampler = etalon_scene::SamplerKind::Sobol;
+    let prepared = prepare(&scene).unwrap();
+    let rect = PixelRect { x0: 3, y0: 1, x1: 37, y1: 8 };
+    let shares: Vec<u32> = (0..Shares::regions(rect).len() as u32).map(|region| 16 + 37 * region).collect();
+    let shares = Some(Arc::new(Shares::new(rect, shares)));
+    let extent = Extent { rect, samples: 0..24, shares: shares.clone(), threads: Some(1) };
+    let film = prepared.render(&extent, &|_| Control::Continue).unwrap();
+    for (x, y) in rect.pixels() {
+        assert_eq!(film.pixel(x, y).count(), shares.as_ref().unwrap().samples(x, y, 24, 4));
+    }
+    assert_eq!(film.pixels().map(|pixel| u64::from(pixel.count())).sum::<u64>(), film.counters.paths);
+    assert_eq!(prepared.render(&Extent { threads: Some(3), ..extent.clone() }, &|_| Control::Continue).unwrap(), film);
+    let mut staged = prepared.film();
+    for samples in [0..4, 4..5, 5..24] {
+        prepared.render_onto(&mut staged, &Extent { samples, ..extent.clone() }, &|_| Control::Continue).unwrap();
+    }
+    assert_eq!(staged, film);
+    let mut parts = prepared.film();
+    for (x0, x1) in [(3, 10), (10, 11), (11, 37)] {
+        let rect = PixelRect { x0, x1, ..rect };
+        prepared.render_onto(&mut parts, &Extent { rect, ..extent.clone() }, &|_| Control::Continue).unwrap();
+    }
+    assert_eq!(parts, film);
+    // A pixel's samples are the first of those that it always has.
+    let uniform = prepared.render(&Extent { shares: None, ..extent }, &|_| Control::Continue).unwrap();
+    let same = |(x, y): &(u32, u32)| film.pixel(*x, *y).count() == 24;
+    let compared: Vec<_> = rect.pixels().filter(same).collect();
+    assert!(compared.iter().all(|&(x, y)| film.pixel(x, y) == uniform.pixel(x, y)));
+}
+
+#[test]
 fn a_pilot_sees_the_error_that_the_picture_has_whatever_the_number_of_replicates() {
     for replicates in [1, 2, 3, 4, 8] {
         let mut seen = Welford::new();
@@ -151,7 +237,7 @@ fn a_pilot_sees_the_error_that_the_picture_has_whatever_the_number_of_replicates
             let mut scene = lottery(seed).scene().clone();
             scene.integrator.replicates = replicates;
             let prepared = prepare(&scene).unwrap();
-            let mut pilot = Pilot::new(&prepared, prepared.whole(None).rect, Some(2)).unwrap();
+            let mut pilot = Pilot::new(&prepared, prepared.whole(None).rect, None, Some(2)).unwrap();
             pilot.advance(24, &|| 0.0, &|_| ());
             pilot.advance(96, &|| 0.0, &|_| ());
             seen.push(pilot.points()[1].relative_rmse);

@@ -3,11 +3,13 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use etalon_transport::adaptive::{Goal, WORTHWHILE, explore};
 use etalon_transport::{Pilot, PixelRect, Price, prepare_study};
 use miette::Report;
 use serde::Serialize;
 
 use crate::args::percentage;
+use crate::commands::render::Adaptive;
 use crate::failure::{Failure, Outcome};
 use crate::load::load;
 use crate::machine::{Clock, ClockKind, Machine};
@@ -29,6 +31,9 @@ pub(crate) struct Args {
     /// Longest time that the pilot may take.
     #[arg(long, value_name = "TIME", value_parser = crate::args::seconds, default_value = "10s")]
     pilot: f64,
+    /// Whether regions with more error are to take more samples, as `etalon render --adaptive` decides it.
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Adaptive::Auto)]
+    adaptive: Adaptive,
     /// Threads; all cores if not given.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
@@ -40,6 +45,9 @@ pub(crate) struct Args {
     json: bool,
 }
 
+/// Part of the pilot's time that the exploration may take before it takes no further step.
+const EXPLORING: f64 = 0.125;
+
 #[derive(Serialize)]
 struct QuoteJson {
     scene: String,
@@ -48,6 +56,8 @@ struct QuoteJson {
     height: u32,
     machine: Machine,
     pilot: PilotJson,
+    /// The exploration of where the error is; `null` if it was not wanted.
+    adaptive: Option<AdaptiveJson>,
     /// Seconds before the first sample.
     prepare_seconds: f64,
     prices: Vec<PriceJson>,
@@ -58,6 +68,15 @@ struct PilotJson {
     seconds: f64,
     /// The error of the whole picture as the pilot saw it grow smaller.
     points: Vec<PointJson>,
+}
+
+#[derive(Serialize)]
+struct AdaptiveJson {
+    /// Factor of time that uneven shares are foretold to win.
+    foretold_gain: f64,
+    /// Whether the prices are for such shares.
+    used: bool,
+    seconds: f64,
 }
 
 #[derive(Serialize)]
@@ -91,9 +110,20 @@ pub(crate) fn run(args: Args) -> Outcome {
     let film = &loaded.scene.film;
     let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let started = |error| Failure::run(Report::from_err(error));
-    let mut pilot = Pilot::new(&prepared, whole, Some(threads)).map_err(started)?;
-    let mut next = pilot.first_step();
     let finest = args.errors.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut shares = None;
+    let mut adaptive = None;
+    if args.adaptive != Adaptive::Never {
+        let goal = Goal { samples: i32::MAX as u32, relative_rmse: Some(finest) };
+        let start = clock.seconds();
+        let enough = || clock.seconds() - start > EXPLORING * args.pilot;
+        let found = explore(&prepared, whole, &goal, Some(threads), &enough, &|_| ()).map_err(started)?;
+        let used = args.adaptive == Adaptive::Always || found.gain >= WORTHWHILE;
+        adaptive = Some(AdaptiveJson { foretold_gain: found.gain, used, seconds: clock.seconds() - start });
+        shares = used.then_some(found.shares);
+    }
+    let mut pilot = Pilot::new(&prepared, whole, shares, Some(threads)).map_err(started)?;
+    let mut next = pilot.first_step();
     loop {
         pilot.advance(next, &|| clock.seconds(), &|_| ());
         let reached = pilot.points().last().is_some_and(|point| point.relative_rmse <= finest);
@@ -122,6 +152,7 @@ pub(crate) fn run(args: Args) -> Outcome {
                 })
                 .collect(),
         },
+        adaptive,
         prepare_seconds,
         prices: args.errors.iter().map(|&error| price_json(&pilot.price(error))).collect(),
     };
@@ -180,5 +211,12 @@ fn describe(quote: &QuoteJson) -> String {
         duration(quote.pilot.seconds),
         duration(quote.prepare_seconds),
     );
+    if let Some(adaptive) = quote.adaptive.as_ref().filter(|adaptive| adaptive.used) {
+        let _ = write!(
+            text,
+            " Regions with\nmore error take more samples, foretold to take {:.1} times less time than all pixels alike would.",
+            adaptive.foretold_gain
+        );
+    }
     text
 }

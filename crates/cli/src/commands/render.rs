@@ -11,7 +11,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use etalon_transport::canvas::tiles_of;
-use etalon_transport::{Canvas, Ended, ImageError, Limits, PixelRect, Prepared, Shard, prepare_study};
+use etalon_transport::{
+    Adaptivity, Canvas, Ended, Explored, ImageError, Limits, PixelRect, Prepared, Shard, prepare_study,
+};
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -47,6 +49,10 @@ pub(crate) struct Args {
     /// End when this time is up, such as 90s or 1h30m; the scene's own number of samples does not count then.
     #[arg(long, value_name = "TIME", value_parser = crate::args::seconds)]
     time: Option<f64>,
+    /// Whether regions with more error take more samples. An exploration, none of whose samples are kept, decides it before the
+    /// picture begins; the mean number of samples a pixel is that of --spp all the same.
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Adaptive::Auto)]
+    adaptive: Adaptive,
     /// Which clock counts for --time and for reports: that on the wall, or the processor's over the number of threads, which
     /// other programs do not slow down.
     #[arg(long, value_enum, default_value_t = ClockKind::Wall)]
@@ -85,6 +91,27 @@ pub(crate) struct Args {
     /// Print nothing but warnings and errors.
     #[arg(short, long)]
     quiet: bool,
+}
+
+/// When samples are spread by an exploration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Adaptive {
+    /// With --error, where the exploration foretells that the error is reached sooner.
+    Auto,
+    /// In any case.
+    Always,
+    /// Every pixel takes the same number of samples.
+    Never,
+}
+
+impl From<Adaptive> for Adaptivity {
+    fn from(adaptive: Adaptive) -> Self {
+        match adaptive {
+            Adaptive::Auto => Self::Auto,
+            Adaptive::Always => Self::Always,
+            Adaptive::Never => Self::Never,
+        }
+    }
 }
 
 /// What `--json` prints when there is no render to speak of.
@@ -350,6 +377,8 @@ struct Done {
     canvas: Canvas,
     header: Header,
     error: Option<ImageError>,
+    /// How it was decided where the samples go; not known of a render that was taken up.
+    explored: Option<Explored>,
 }
 
 /// What ends the render. The scene's own number of samples counts where the command line says nothing.
@@ -360,7 +389,7 @@ fn limits(args: &Args, job: &Job) -> Limits {
         None if otherwise => i32::MAX as u32,
         None => job.loaded.scene.integrator.spp,
     };
-    Limits { samples, relative_rmse: args.error, seconds: args.time }
+    Limits { samples, relative_rmse: args.error, seconds: args.time, adaptivity: args.adaptive.into() }
 }
 
 /// One path again, vertex by vertex.

@@ -1,6 +1,6 @@
 //! What is said about a render that is done.
 
-use etalon_transport::{Counters, Foretold, ImageError, Plan, Reached};
+use etalon_transport::{Counters, Explored, Foretold, ImageError, Plan, Reached};
 use serde::Serialize;
 
 use super::{Args, Done, Job};
@@ -20,15 +20,18 @@ pub(super) struct RenderJson<'a> {
     height: u32,
     /// Columns x0 to x1, rows y0 to y1.
     crop: [u32; 4],
+    /// Samples a pixel; their mean, where regions take different numbers.
     spp: u32,
     seed: u64,
     threads: usize,
-    /// From the start of the pilot, or of the render without one.
+    /// From the start of the exploration, the pilot, or the render without them.
     seconds: f64,
     /// What ended the render: "samples", "error", "time" or "interrupted".
     reached: &'static str,
     /// What the pilot foretold for the error asked for.
     foretold: Option<ForetoldJson>,
+    /// How it was decided where the samples go; `null` where that was not asked.
+    adaptive: Option<AdaptiveJson>,
     prepare_seconds: f64,
     paths: u64,
     paths_per_second: f64,
@@ -116,6 +119,54 @@ fn foretold_json(foretold: &Foretold) -> ForetoldJson {
     }
 }
 
+/// What an exploration found, and whether it was followed.
+#[derive(Serialize)]
+pub(super) struct AdaptiveJson {
+    /// Factor of time that uneven shares were foretold to win.
+    foretold_gain: f64,
+    used: bool,
+    /// Fewest and most samples of a pixel.
+    samples: [u32; 2],
+    exploration_paths: u64,
+    exploration_seconds: f64,
+}
+
+fn adaptive_json(done: &Done, explored: &Explored) -> AdaptiveJson {
+    AdaptiveJson {
+        foretold_gain: explored.exploration.gain,
+        used: explored.used,
+        samples: least_and_most(done, explored),
+        exploration_paths: explored.exploration.paths,
+        exploration_seconds: explored.seconds,
+    }
+}
+
+fn least_and_most(done: &Done, explored: &Explored) -> [u32; 2] {
+    if explored.used {
+        let replicates = done.canvas.with_film(|film| film.replicates());
+        explored.exploration.shares.least_and_most(done.ended.samples, replicates)
+    } else {
+        [done.ended.samples; 2]
+    }
+}
+
+/// What was explored, in words.
+fn describe_explored(done: &Done, explored: &Explored) -> String {
+    let gain = explored.exploration.gain;
+    if explored.used {
+        let [least, most] = least_and_most(done, explored);
+        format!(
+            "{least} to {most} samples a pixel, by where the error is: an exploration ({}) foretold {gain:.1} times less time",
+            duration(explored.seconds),
+        )
+    } else {
+        format!(
+            "all pixels alike: an exploration ({}) foretold no gain worth it ({gain:.2})",
+            duration(explored.seconds)
+        )
+    }
+}
+
 fn word(reached: Reached) -> &'static str {
     match reached {
         Reached::Samples => "samples",
@@ -125,14 +176,15 @@ fn word(reached: Reached) -> &'static str {
     }
 }
 
-/// Seconds that went into a pilot.
+/// Seconds that went into an exploration and a pilot.
 fn pilot_seconds(done: &Done) -> f64 {
-    done.ended.foretold.map_or(0.0, |foretold| foretold.pilot_seconds)
+    let foretold = done.ended.foretold.map_or(0.0, |foretold| foretold.pilot_seconds);
+    foretold + done.explored.as_ref().map_or(0.0, |explored| explored.seconds)
 }
 
 /// What was foretold beside what came.
 fn describe_foretold(done: &Done, foretold: &Foretold) -> String {
-    let took = done.ended.seconds - foretold.pilot_seconds;
+    let took = done.ended.seconds - pilot_seconds(done);
     let mut text = format!(
         "the pilot ({}) foretold {} for {}, with {} samples",
         duration(foretold.pilot_seconds),
@@ -201,6 +253,7 @@ pub(super) fn json<'a>(
         seconds,
         reached: word(done.ended.reached),
         foretold: done.ended.foretold.as_ref().map(foretold_json),
+        adaptive: done.explored.as_ref().map(|explored| adaptive_json(done, explored)),
         prepare_seconds: job.prepare_seconds,
         paths: counters.paths,
         paths_per_second: counters.paths as f64 / (seconds - pilot_seconds(done)),
@@ -224,8 +277,10 @@ pub(super) fn json<'a>(
 pub(super) fn summary(job: &Job, done: &Done, written: &[Written]) -> String {
     let (samples, seconds) = (done.ended.samples, done.ended.seconds);
     let counters = done.canvas.with_film(|film| film.counters.clone());
+    let uneven = done.explored.as_ref().is_some_and(|explored| explored.used);
+    let each = if uneven { "in the mean" } else { "each" };
     let mut text = format!(
-        "{} × {} pixels, {} samples each, in {seconds:.1} s ({} paths/s on {} threads), {} not finite",
+        "{} × {} pixels, {} samples {each}, in {seconds:.1} s ({} paths/s on {} threads), {} not finite",
         job.rect.x1 - job.rect.x0,
         job.rect.y1 - job.rect.y0,
         samples,
@@ -236,6 +291,10 @@ pub(super) fn summary(job: &Job, done: &Done, written: &[Written]) -> String {
     if let Some(error) = &done.error {
         text.push_str("\n  ");
         text.push_str(&describe_error(error));
+    }
+    if let Some(explored) = &done.explored {
+        text.push_str("\n  ");
+        text.push_str(&describe_explored(done, explored));
     }
     if let Some(foretold) = &done.ended.foretold {
         text.push_str("\n  ");

@@ -46,7 +46,7 @@ impl Run {
             assert!(canvas.take_up(tile, sums), "the checkpoint was found to fit");
         }
         let reached = if reaches == "error" { Reached::Error } else { Reached::Samples };
-        let settled = Settled { samples, shares, reached, foretold: None };
+        let settled = Settled { samples, shares, reached, foretold: None, explored: None };
         Ok(Self { canvas, settled, limits, clock, before_s: seconds, shard })
     }
 
@@ -55,7 +55,7 @@ impl Run {
     }
 
     fn header(&self, job: &Job, complete: bool) -> Header {
-        let Limits { samples, relative_rmse, seconds } = self.limits;
+        let Limits { samples, relative_rmse, seconds, .. } = self.limits;
         Header {
             subject: job.subject.clone(),
             shard: self.shard,
@@ -70,7 +70,7 @@ impl Run {
 
     /// Renders to the end, keeping what there is from time to time if that is wanted.
     pub(super) fn to_its_end(self, args: &Args, job: &Job, watch: &Watcher<'_>) -> Result<Done, ThreadError> {
-        watch.is_part(self.canvas.area(), self.canvas.with_film(|film| film.counters.paths));
+        watch.goes_on_from(self.canvas.with_film(|film| film.counters.paths));
         let path = args.output.first().map(|output| state::checkpoint_path(output));
         let ended = std::thread::scope(|scope| {
             let (ended, end) = mpsc::channel::<()>();
@@ -99,6 +99,6 @@ impl Run {
             done
         })?;
         let header = self.header(job, ended.reached != Reached::Interrupted);
-        Ok(Done { ended, canvas: self.canvas, header, error: None })
+        Ok(Done { ended, canvas: self.canvas, header, error: None, explored: self.settled.explored })
     }
 }

@@ -30,9 +30,9 @@ impl<'a> Watcher<'a> {
         Self { bar, interrupt, said: AtomicBool::new(false), told: openjd.then(AtomicU64::default) }
     }
 
-    /// See [`RenderBar::is_part`].
-    pub(super) fn is_part(&self, pixels: u64, before: u64) {
-        self.bar.is_part(pixels, before);
+    /// See [`RenderBar::goes_on_from`].
+    pub(super) fn goes_on_from(&self, paths: u64) {
+        self.bar.goes_on_from(paths);
     }
 
     fn tell(&self) {
@@ -51,8 +51,8 @@ impl Watch for Watcher<'_> {
         self.tell();
     }
 
-    fn planned(&self, samples: u32, foretold: Option<&Foretold>) {
-        self.bar.planned(samples, foretold);
+    fn planned(&self, paths: u64, foretold: Option<&Foretold>) {
+        self.bar.planned(paths, foretold);
     }
 
     fn tile(&self, rect: PixelRect, sums: &TileSums) {

@@ -1,0 +1,270 @@
+//! Adaptive sampling: more samples where the error is, decided before the first sample that is kept.
+//!
+//! An exploration traces pixels all over the picture with random numbers that no picture uses, and learns the variance V and
+//! the cost c of a sample in each region. Where the variance of n samples falls as n^−s, the error of the picture is smallest for
+//! its cost if every region takes samples in proportion to (V/c)^(1/(1 + s)): √(V/c) for independent numbers (Neyman 1934), less
+//! uneven for points that do better. The shares are independent of every value in the picture, so the picture is as unbiased as
+//! one with a number given for each pixel.
+//!
+//! A part [`EVEN`] of the samples is spread evenly all the same: what an exploration has not met, such as a caustic, is still
+//! sampled, and still shows in the error.
+
+use crate::accuracy::ErrorSum;
+use crate::film::{Counters, PixelRect};
+use crate::prepare::Prepared;
+use crate::probe::{Probe, Purpose};
+use crate::render::ThreadError;
+use crate::shares::{REGION_SIDE, Shares};
+use etalon_scene::SamplerKind;
+use std::sync::Arc;
+
+/// The part of the samples that is spread evenly.
+pub const EVEN: f64 = 0.25;
+/// The part of the picture's paths that an exploration takes; one path for each pixel, if that is more.
+const EFFORT: f64 = 1.0 / 16.0;
+/// The foretold gain from which shares are used where they need not be: it pays for the exploration and for what the law
+/// behind it leaves out.
+pub const WORTHWHILE: f64 = 1.2;
+/// Pixels that an exploration holds at most, unless a quarter of the picture is more: its sums take as much as the film's.
+const MOST_PIXELS: u64 = 1 << 20;
+/// The weight of an even region: weights are whole numbers.
+const UNIT: f64 = 64.0;
+/// How the variance is taken to fall with the number of samples n: as n^−s. Owen-Sobol points reach 1 where they do no better
+/// than independent numbers, 1.5 at edges and 3 where everything is smooth.
+fn power(sampler: SamplerKind) -> f64 {
+    match sampler {
+        SamplerKind::Independent => 1.0,
+        SamplerKind::Sobol => 1.4,
+    }
+}
+
+/// Columns and rows of the pixels of each 2 × 2, in the order in which they are taken.
+const LAYERS: [(u32, u32); 4] = [(0, 0), (1, 1), (1, 0), (0, 1)];
+
+/// Whether regions take different numbers of samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Adaptivity {
+    /// Where the picture is to reach an error, and an exploration foretells that it is reached sooner.
+    #[default]
+    Auto,
+    /// As an exploration says, whatever it gains.
+    Always,
+    /// Every pixel takes the same number.
+    Never,
+}
+
+/// How far a picture is to go, for which an exploration is only a part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// Samples a pixel at most.
+    pub samples: u32,
+    /// Relative error of the picture: see [`crate::accuracy`].
+    pub relative_rmse: Option<f64>,
+}
+
+/// What an exploration found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exploration {
+    /// Samples for each region.
+    pub shares: Arc<Shares>,
+    /// Time to an error with the same number of samples for all pixels, over that with these shares. Foretold for shares of
+    /// half of the pixels by the other half, so that chance does not flatter it.
+    pub gain: f64,
+    /// Camera paths traced for it.
+    pub paths: u64,
+}
+
+/// Explores the pixels of `rect` on so many threads (all cores if `None`). It ends early when `enough` says so.
+pub fn explore(
+    prepared: &Prepared,
+    rect: PixelRect,
+    goal: &Goal,
+    threads: Option<usize>,
+    enough: &dyn Fn() -> bool,
+    on_work: &(dyn Fn(&Counters) + Sync),
+) -> Result<Exploration, ThreadError> {
+    let mut probe = Probe::new(prepared, Purpose::Exploration, threads)?;
+    let most_layers = (1..LAYERS.len()).find(|&layers| layers as u64 * rect.area() / 4 >= MOST_PIXELS);
+    let most_layers = most_layers.unwrap_or(LAYERS.len());
+    let (mut layers, mut samples) = (0, probe.replicates());
+    add_layers(&mut probe, rect, &mut layers, 1);
+    probe.trace(0, |_, _| 0..samples, on_work);
+    let mut deepen = true;
+    loop {
+        let found = found(&probe, rect);
+        // The next step takes as much again as all of them did.
+        if 2.0 * probe.paths() as f64 > EFFORT * foretold_paths(&probe, rect, goal, samples, found.gain) || enough() {
+            return Ok(found);
+        }
+        // Pixels and samples by turns.
+        if deepen || layers >= most_layers {
+            probe.trace(0, |_, _| samples..2 * samples, on_work);
+            samples *= 2;
+        } else {
+            let first = probe.len();
+            let as_many = layers.min(most_layers - layers);
+            add_layers(&mut probe, rect, &mut layers, as_many);
+            probe.trace(first, |_, _| 0..samples, on_work);
+        }
+        deepen = !deepen;
+    }
+}
+
+fn add_layers(probe: &mut Probe<'_>, rect: PixelRect, layers: &mut usize, more: usize) {
+    for (column, row) in &LAYERS[*layers..*layers + more] {
+        let of_layer = |&(x, y): &(u32, u32)| (x - rect.x0) % 2 == *column && (y - rect.y0) % 2 == *row;
+        probe.add(rect.pixels().filter(of_layer));
+    }
+    *layers += more;
+}
+
+/// Camera paths that the picture will take.
+fn foretold_paths(probe: &Probe<'_>, rect: PixelRect, goal: &Goal, samples: u32, gain: f64) -> f64 {
+    let power = power(probe.sampler());
+    let by_error = goal.relative_rmse.and_then(|target| {
+        let mut error = ErrorSum::default();
+        probe.seen().for_each(|seen| error.push(seen.pixel));
+        let ratio = error.relative_rmse()? * f64::from(probe.copies()).sqrt() / target;
+        ratio.is_finite().then(|| f64::from(samples) * ratio.powf(2.0 / power) / gain.max(1.0))
+    });
+    by_error.unwrap_or(f64::INFINITY).min(f64::from(goal.samples)) * rect.area() as f64
+}
+
+/// Variance and cost of the pixels of a region that were seen.
+#[derive(Clone, Copy, Debug, Default)]
+struct Region {
+    pixels: f64,
+    variance: f64,
+    /// Rays, the camera's counted twice: a path costs something beside them.
+    rays: f64,
+    paths: f64,
+}
+
+impl Region {
+    fn add(&mut self, other: &Self) {
+        self.pixels += other.pixels;
+        self.variance += other.variance;
+        self.rays += other.rays;
+        self.paths += other.paths;
+    }
+
+    /// Mean cost of a path, in rays.
+    fn cost(&self) -> f64 {
+        if self.paths > 0.0 { (self.rays + self.paths) / self.paths } else { 1.0 }
+    }
+}
+
+fn found(probe: &Probe<'_>, rect: PixelRect) -> Exploration {
+    let regions = Shares::regions(rect);
+    let columns = (rect.x1 - rect.x0).div_ceil(REGION_SIDE);
+    let mut halves = [vec![Region::default(); regions.len()], vec![Region::default(); regions.len()]];
+    for seen in probe.seen() {
+        let (x, y) = (seen.at.0 - rect.x0, seen.at.1 - rect.y0);
+        let region = (y / REGION_SIDE * columns + x / REGION_SIDE) as usize;
+        let variance = seen.pixel.variance(|xyz| [xyz[1]]).map_or(0.0, |([variance], _)| variance);
+        // Blocks of 2 × 2 by turns, so that both halves have pixels of every layer.
+        halves[(x / 2 + y / 2) as usize % 2][region].add(&Region {
+            pixels: 1.0,
+            variance,
+            rays: seen.rays as f64,
+            paths: seen.paths as f64,
+        });
+    }
+    let [even, odd] = &halves;
+    let power = power(probe.sampler());
+    let foretold = |of: &[Region], by: &[Region]| gain(of, &weights(by, columns, power), power);
+    let gain = (foretold(even, odd) * foretold(odd, even)).sqrt();
+    let mut all = even.clone();
+    all.iter_mut().zip(odd).for_each(|(all, odd)| all.add(odd));
+    Exploration { shares: Arc::new(Shares::new(rect, weights(&all, columns, power))), gain, paths: probe.paths() }
+}
+
+/// The weights of the regions: (V/c)^(1/(1 + power)), and [`EVEN`] for all.
+fn weights(regions: &[Region], columns: u32, power: f64) -> Vec<u32> {
+    let mean = |region: &Region| if region.pixels > 0.0 { region.variance / region.pixels } else { 0.0 };
+    let columns = columns as usize;
+    let rows = regions.len() / columns.max(1);
+    let smooth = |index: usize| {
+        // Half of it is that of the neighbours, itself included: a small region's own is known to a fifth or so, and what is
+        // next to noise, such as an edge, is likely to have some.
+        let (column, row) = (index % columns, index / columns);
+        let mut around = Region::default();
+        for y in row.saturating_sub(1)..(row + 2).min(rows) {
+            for x in column.saturating_sub(1)..(column + 2).min(columns) {
+                around.add(&regions[y * columns + x]);
+            }
+        }
+        0.5 * (mean(&regions[index]) + mean(&around))
+    };
+    let best: Vec<f64> =
+        (0..regions.len()).map(|i| (smooth(i) / regions[i].cost()).powf(1.0 / (1.0 + power))).collect();
+    let pixels: f64 = regions.iter().map(|region| region.pixels).sum();
+    let level = best.iter().zip(regions).map(|(best, region)| best * region.pixels).sum::<f64>() / pixels;
+    let weight = |best: f64| if level > 0.0 { EVEN + (1.0 - EVEN) * best / level } else { 1.0 };
+    best.into_iter().map(|best| (UNIT * weight(best)).round() as u32).collect()
+}
+
+/// Time to an error with evenly spread samples over that with `weights`.
+fn gain(regions: &[Region], weights: &[u32], power: f64) -> f64 {
+    let sum = |of: &dyn Fn(&Region, f64) -> f64| {
+        regions.iter().zip(weights).map(|(region, &weight)| of(region, f64::from(weight))).sum::<f64>()
+    };
+    let cost = |region: &Region| region.cost() * region.pixels;
+    // The weight of all regions for the same cost.
+    let level = sum(&|region, weight| cost(region) * weight) / sum(&|region, _| cost(region));
+    let (even, shared) =
+        (sum(&|region, _| region.variance), sum(&|region, weight| region.variance * (level / weight).powf(power)));
+    if shared > 0.0 { (even / shared).powf(1.0 / power) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn region(variance: f64, cost: f64) -> Region {
+        Region { pixels: 64.0, variance: 64.0 * variance, rays: 10.0 * (cost - 1.0), paths: 10.0 }
+    }
+
+    #[test]
+    fn alike_regions_share_alike_and_gain_nothing() {
+        let regions = vec![region(0.3, 4.0); 12];
+        let weights = weights(&regions, 4, 1.0);
+        assert_eq!(weights, [64; 12]);
+        assert!((gain(&regions, &weights, 1.0) - 1.0).abs() < 1e-12);
+        // Nothing is known where nothing varies.
+        assert_eq!(super::weights(&[region(0.0, 1.0); 4], 2, 1.0), [64; 4]);
+    }
+
+    /// Regions of variances 1 and 16 and costs 1 and 4: √(V/c) is 1 and 2.
+    #[test]
+    fn regions_share_by_the_root_of_variance_over_cost_and_a_part_evenly() {
+        let mut regions = vec![region(1.0, 1.0); 64];
+        regions[32..].fill(region(16.0, 4.0));
+        let weights = weights(&regions, 1, 1.0);
+        let level = 1.5;
+        for (index, share) in [(5, 1.0), (58, 2.0)] {
+            let expected = 64.0 * (EVEN + (1.0 - EVEN) * share / level);
+            assert!((f64::from(weights[index]) - expected).abs() < 1.0, "{weights:?}");
+        }
+        // The best is (ΣV·Σc)/(Σ√(Vc))², 17·5/9² = 1.049; the even part costs some of it.
+        let gain = gain(&regions, &weights, 1.0);
+        assert!((1.03..=1.05).contains(&gain), "{gain}");
+    }
+
+    /// With V = 1 and 32 at 64 samples and s = 1.5, weights of 1 and 32^0.4 = 4: moving samples either way is worse.
+    #[test]
+    fn shares_are_the_best_for_the_law_of_the_variance() {
+        let error = |first: f64| first.powf(-1.5) + 32.0 * (2.0 - first).powf(-1.5);
+        let best = 2.0 / 5.0;
+        assert!(error(best) < error(1.01 * best) && error(best) < error(0.99 * best));
+        let mut regions = vec![region(1.0, 1.0); 64];
+        regions[32..].fill(region(32.0, 1.0));
+        let weights = weights(&regions, 1, 1.5);
+        let expected = |share: f64| 64.0 * (EVEN + (1.0 - EVEN) * share / 2.5);
+        assert!((f64::from(weights[5]) - expected(1.0)).abs() <= 1.0, "{weights:?}");
+        assert!((f64::from(weights[58]) - expected(4.0)).abs() <= 1.5, "{weights:?}");
+        let ideal = (error(1.0) / error(best)).powf(1.0 / 1.5);
+        let gain = gain(&regions, &weights, 1.5);
+        assert!(gain < ideal && gain > 0.9 * ideal, "{gain} of {ideal}");
+    }
+}

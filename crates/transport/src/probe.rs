@@ -1,0 +1,140 @@
+//! Pixels traced with random numbers that no picture uses: what explorations and pilots are made of.
+
+use crate::film::{Counters, Pixel, PixelRect, XyzSum};
+use crate::prepare::Prepared;
+use crate::render::ThreadError;
+use crate::sampler::SOBOL_POINTS;
+use etalon_scene::SamplerKind;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Fewest replicates that an error is estimated from.
+const FEWEST_REPLICATES: u32 = 4;
+
+/// What the samples of a probe are for: each has random numbers of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// To tell the error of the picture.
+    Pilot,
+    /// To tell where the error is.
+    Exploration,
+}
+
+/// The number of purposes.
+const PURPOSES: u32 = 2;
+
+/// Some pixels of a picture, and what was gathered in them.
+pub(crate) struct Probe<'a> {
+    prepared: &'a Prepared,
+    pool: rayon::ThreadPool,
+    purpose: Purpose,
+    pixels: Vec<(u32, u32)>,
+    /// Pixel by pixel, copy by copy, replicate by replicate.
+    sums: Vec<XyzSum>,
+    /// Pixel by pixel: camera paths, and rays of all kinds, which tell what a path costs without a clock.
+    paths: Vec<u64>,
+    rays: Vec<u64>,
+}
+
+/// A pixel of a probe.
+pub(crate) struct Seen<'a> {
+    /// Column and row.
+    pub at: (u32, u32),
+    /// The sums of all copies, as so many replicates.
+    pub pixel: Pixel<'a>,
+    /// Camera paths, and rays of all kinds.
+    pub paths: u64,
+    /// See `paths`.
+    pub rays: u64,
+}
+
+impl<'a> Probe<'a> {
+    /// A probe of no pixels yet, on so many threads (all cores if `None`).
+    pub(crate) fn new(prepared: &'a Prepared, purpose: Purpose, threads: Option<usize>) -> Result<Self, ThreadError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
+        Ok(Self { prepared, pool, purpose, pixels: Vec::new(), sums: Vec::new(), paths: Vec::new(), rays: Vec::new() })
+    }
+
+    /// Takes in pixels that have no samples yet.
+    pub(crate) fn add(&mut self, pixels: impl IntoIterator<Item = (u32, u32)>) {
+        self.pixels.extend(pixels);
+        self.sums.resize(self.pixels.len() * self.stride(), XyzSum::default());
+        self.paths.resize(self.pixels.len(), 0);
+        self.rays.resize(self.pixels.len(), 0);
+    }
+
+    /// Number of pixels.
+    pub(crate) fn len(&self) -> usize {
+        self.pixels.len()
+    }
+
+    /// Replicates of the picture.
+    pub(crate) fn replicates(&self) -> u32 {
+        self.prepared.scene.integrator.replicates
+    }
+
+    /// Number sequence of the picture.
+    pub(crate) fn sampler(&self) -> SamplerKind {
+        self.prepared.scene.integrator.sampler
+    }
+
+    /// Independent copies of the picture's estimate, so that there are replicates enough.
+    pub(crate) fn copies(&self) -> u32 {
+        FEWEST_REPLICATES.div_ceil(self.replicates())
+    }
+
+    fn stride(&self) -> usize {
+        (self.copies() * self.replicates()) as usize
+    }
+
+    /// What was gathered, pixel by pixel.
+    pub(crate) fn seen(&self) -> impl Iterator<Item = Seen<'_>> {
+        let sums = self.sums.chunks_exact(self.stride()).map(Pixel::new);
+        let work = self.paths.iter().zip(&self.rays);
+        self.pixels.iter().zip(sums).zip(work).map(|((&at, pixel), (&paths, &rays))| Seen { at, pixel, paths, rays })
+    }
+
+    /// Camera paths traced.
+    pub(crate) fn paths(&self) -> u64 {
+        self.paths.iter().sum()
+    }
+
+    /// Traces the samples `samples(x, y)` of the pixels from number `first` on, in every copy.
+    pub(crate) fn trace(
+        &mut self,
+        first: usize,
+        samples: impl Fn(u32, u32) -> Range<u32> + Sync,
+        on_work: &(dyn Fn(&Counters) + Sync),
+    ) {
+        let (replicates, copies, stride) = (self.replicates(), self.copies(), self.stride());
+        let prepared = self.prepared;
+        let kernel = prepared.kernel().render;
+        // A whole number of point sets beyond every number of samples that a picture can have.
+        let set = replicates * SOBOL_POINTS;
+        let beyond = (i32::MAX as u32).div_ceil(set) * set;
+        // Far enough apart for 2¹⁶ samples and more of each replicate.
+        let length = set * (u32::MAX.saturating_sub(beyond) / set / (PURPOSES * copies));
+        let own = self.purpose as u32 * copies;
+        let Self { pool, pixels, sums, paths, rays, .. } = self;
+        pool.install(|| {
+            pixels[first..]
+                .par_iter()
+                .zip(sums[first * stride..].par_chunks_exact_mut(stride))
+                .zip(paths[first..].par_iter_mut().zip(&mut rays[first..]))
+                .with_min_len(16)
+                .for_each(|((&(x, y), sums), (paths, rays))| {
+                    let pixel = PixelRect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+                    let samples = samples(x, y);
+                    let mut counters = Counters::default();
+                    for (copy, sums) in sums.chunks_exact_mut(replicates as usize).enumerate() {
+                        let start = beyond + (own + copy as u32) * length;
+                        let range = start + samples.start..start + samples.end;
+                        counters.merge(&kernel(prepared, pixel, range, sums, &mut []));
+                    }
+                    on_work(&counters);
+                    *paths += counters.paths;
+                    *rays += counters.rays + counters.shadow_rays;
+                });
+        });
+    }
+}
