@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use etalon_scene::{LightSampling, MOST_REPLICATES, Precision, SamplerKind, Scene};
-use etalon_transport::{EffectName, Study};
+use etalon_transport::{Carried, EffectName, Study};
 
 use crate::args::Size;
 
@@ -42,6 +42,9 @@ pub(crate) struct Overrides {
     /// For study: leave an effect out that the scene calls for. The picture is then an approximation, and says so.
     #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
     without: Vec<EffectName>,
+    /// For study: what paths carry instead of the wavelengths that the scene calls for.
+    #[arg(long, value_enum, value_name = "WHAT")]
+    carry: Option<CarryArg>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -68,6 +71,26 @@ enum LightSamplingArg {
     Light,
     /// BSDF sampling.
     Bsdf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum CarryArg {
+    /// A single wavelength.
+    OneWavelength,
+    /// Eight wavelengths.
+    EightWavelengths,
+    /// Red, green and blue: every light and surface is replaced by its colour. The picture is then an approximation.
+    ThreeChannels,
+}
+
+impl From<CarryArg> for Carried {
+    fn from(carry: CarryArg) -> Self {
+        match carry {
+            CarryArg::OneWavelength => Self::OneWavelength,
+            CarryArg::EightWavelengths => Self::EightWavelengths,
+            CarryArg::ThreeChannels => Self::ThreeChannels,
+        }
+    }
 }
 
 impl Overrides {
@@ -119,7 +142,12 @@ impl Overrides {
 
     /// What to simulate otherwise than the scene calls for.
     pub(crate) fn study(&self) -> Study {
-        Study { force: self.force.clone(), without: self.without.clone(), polarised: self.polarised }
+        Study {
+            force: self.force.clone(),
+            without: self.without.clone(),
+            polarised: self.polarised,
+            carried: self.carry.map(Carried::from),
+        }
     }
 
     /// The film's width and height in pixels, which the reader of the scene must know: a camera's angle may follow them.
@@ -147,6 +175,7 @@ impl Overrides {
             ("max-depth", self.max_depth.map(|depth| depth.to_string())),
             ("force", names(&self.force)),
             ("without", names(&self.without)),
+            ("carry", self.carry.and_then(word)),
         ]
         .into_iter()
         .filter_map(|(name, value)| value.map(|value| format!(" --{name} {value}")))

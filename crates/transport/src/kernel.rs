@@ -5,10 +5,10 @@ use crate::camera::Camera;
 use crate::compiled;
 use crate::film::{Counters, NonFinite, PixelRect, StokesSum, XyzSum};
 use crate::media::Inside;
-use crate::model::{Hero, OneLane, Shared, WavelengthModel};
+use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
-use crate::plan::{EffectName, LaneModel};
+use crate::plan::{Carried, EffectName, LaneModel};
 use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::prepare::Prepared;
 use crate::replay::{Replay, replay};
@@ -29,6 +29,8 @@ pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, &mut [XyzSum],
 pub(crate) struct Kernel {
     pub precision: Precision,
     pub lanes: LaneModel,
+    /// Lanes of a path.
+    pub lane_count: usize,
     /// Whether it carries Stokes vectors.
     pub polarised: bool,
     /// Its name: the model, the number of lanes, the scalar.
@@ -56,13 +58,29 @@ static KERNELS: [Kernel; 7] = [
     },
 ];
 
+/// What no plan chooses, for comparison.
+static STUDY_KERNELS: [(Carried, Kernel); 3] = [
+    (Carried::OneWavelength, entry::<f64, Hero<f64, 1>, Averaged, 1>(Precision::F64, LaneModel::Hero, "hero-1-f64")),
+    (Carried::EightWavelengths, entry::<f64, Hero<f64, 8>, Averaged, 8>(Precision::F64, LaneModel::Hero, "hero-8-f64")),
+    (
+        Carried::ThreeChannels,
+        entry::<f64, ThreeChannels, Averaged, 3>(Precision::F64, LaneModel::ThreeChannels, "three-channels-f64"),
+    ),
+];
+
+/// The kernel whose paths carry what a study wants.
+pub(crate) fn study_kernel(carried: Carried) -> &'static Kernel {
+    let (_, kernel) = STUDY_KERNELS.iter().find(|(name, _)| *name == carried).expect("the table has every one");
+    kernel
+}
+
 const fn entry<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
     precision: Precision,
     lanes: LaneModel,
     name: &'static str,
 ) -> Kernel {
     let (render, replay) = (render_tile::<R, M, P, N>, replay::<R, M, P, N>);
-    Kernel { precision, lanes, polarised: false, name, render, replay }
+    Kernel { precision, lanes, lane_count: N, polarised: false, name, render, replay }
 }
 
 /// The kernel of a scalar type and a model of wavelengths; the one for polarised light covers them all.

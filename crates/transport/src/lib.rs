@@ -62,7 +62,7 @@ pub use adaptive::{Adaptivity, Exploration};
 pub use canvas::{Canvas, Shard, Tile};
 pub use film::{Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
 pub use pilot::Pilot;
-pub use plan::{Effect, EffectName, Plan, Study, StudyError};
+pub use plan::{Carried, Effect, EffectName, Plan, Study, StudyError};
 pub use prepare::{PrepareError, Prepared, prepare, prepare_study};
 pub use price::Price;
 pub use render::{Control, Extent, ThreadError};

@@ -4,13 +4,16 @@
 //! |---|---|---|
 //! | [`OneLane`] | 1 | every surface is grey and all light has one spectrum: radiance is a number times that spectrum |
 //! | [`Shared`] | N | lanes differ in what they carry, never in where they go |
+//! | [`ThreeChannels`] | 3 | never, but for study: red, green and blue |
 //! | [`Hero`] | N | dispersion may send the lanes apart: each lane's own density of the path is carried along |
 //!
 //! Where both cover a scene, [`Shared`] and [`Hero`] give the same bits: without dispersion every relative density is
 //! exactly 1, and so is the weight N/Σ that comes of it.
 
+use crate::plan::CHANNELS_NM;
 use crate::prepare::Prepared;
 use crate::wavelength::Wavelengths;
+use etalon_optics::colour::rec709_to_xyz;
 use etalon_optics::{Lanes, Real};
 
 /// How the lanes of one path relate to each other and to the film.
@@ -45,6 +48,10 @@ pub(crate) struct OneLane;
 /// Lanes that always go the same way.
 #[derive(Clone, Copy)]
 pub(crate) struct Shared;
+
+/// Blue, green and red, each at the wavelength at which a scene without spectra shows it.
+#[derive(Clone, Copy)]
+pub(crate) struct ThreeChannels;
 
 /// Lanes that dispersion may part from the hero's path: their densities relative to it.
 #[derive(Clone, Copy)]
@@ -144,5 +151,36 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
 
     fn to_xyz(_: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
         wavelengths.to_xyz(radiance)
+    }
+}
+
+impl<R: Real> WavelengthModel<R, 3> for ThreeChannels {
+    const CARRIES_WEIGHTS: bool = false;
+
+    fn start() -> Self {
+        Self
+    }
+
+    #[inline(always)]
+    fn follow(&mut self, _: Lanes<R, 3>) -> f64 {
+        1.0
+    }
+
+    #[inline(always)]
+    fn mean_density(&self, density: Lanes<R, 3>) -> f64 {
+        density[0].to_f64()
+    }
+
+    #[inline(always)]
+    fn weight(&self) -> R {
+        R::ONE
+    }
+
+    fn wavelengths(_: &Prepared, _: impl FnOnce() -> f64) -> Wavelengths<3> {
+        Wavelengths { lambda_nm: Lanes(CHANNELS_NM), pdf: Lanes([f64::INFINITY; 3]) }
+    }
+
+    fn to_xyz(_: &Prepared, _: &Wavelengths<3>, radiance: Lanes<R, 3>) -> [f64; 3] {
+        rec709_to_xyz([2, 1, 0].map(|lane: usize| radiance[lane].to_f64()))
     }
 }

@@ -3,11 +3,11 @@
 use crate::bsdf::Bsdf;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
-use crate::kernel::{Kernel, kernel};
+use crate::kernel::{Kernel, kernel, study_kernel};
 use crate::light::{DirectionalLight, Light, LightTable, PointLight, SpotLight};
 use crate::media::{Media, Solid, open_edges};
 use crate::path::ShadowRays;
-use crate::plan::{EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
+use crate::plan::{Carried, EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
 use crate::shapes::{self, SceneShapes};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, ObjectSurface, Surfaces};
@@ -31,6 +31,8 @@ pub struct Prepared {
     pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
     plan: Plan,
+    /// What paths carry for the sake of a study.
+    carried: Option<Carried>,
     warnings: Vec<String>,
 }
 
@@ -166,6 +168,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         one_lane: OneLaneFilm::new(scene),
         filter: FilterSampler::new(&scene.film.filter),
         plan,
+        carried: study.carried,
         warnings,
         scene: simulated,
     })
@@ -203,7 +206,12 @@ impl Prepared {
 
     /// The kernel that the plan chose.
     pub(crate) fn kernel(&self) -> &'static Kernel {
-        kernel(self.scene.integrator.precision, self.plan.lane_model, self.plan.runs(EffectName::Polarisation))
+        match self.carried {
+            None => {
+                kernel(self.scene.integrator.precision, self.plan.lane_model, self.plan.runs(EffectName::Polarisation))
+            }
+            Some(carried) => study_kernel(carried),
+        }
     }
 
     /// Whether films hold S₁, S₂ and S₃: where they are asked for, and polarisation is carried.

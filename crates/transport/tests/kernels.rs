@@ -4,7 +4,7 @@
 use etalon_oracle::statistics::Welford;
 use etalon_scene::{Precision, Scene};
 use etalon_transport::plan::LaneModel;
-use etalon_transport::{Control, EffectName, Film, Prepared, Study, prepare_study};
+use etalon_transport::{Carried, Control, EffectName, Film, Prepared, Study, prepare_study};
 use std::path::Path;
 
 /// The ready-made scenes at a size and number of samples that a test can afford.
@@ -141,6 +141,53 @@ fn one_lane_and_four_agree_in_the_mean_and_one_lane_has_no_noise_of_colour() {
         tried += 1;
     }
     assert!(tried >= 2);
+}
+
+fn carrying(scene: &Scene, carried: Carried) -> Prepared {
+    prepare_study(scene, &Study { carried: Some(carried), ..Study::default() }).unwrap()
+}
+
+#[test]
+fn one_wavelength_and_eight_agree_with_four_in_the_mean() {
+    // Walls of three colours; glass that disperses.
+    for (name, scene) in scenes().into_iter().filter(|(name, _)| name.starts_with("cornell")) {
+        let seeded = |seed| {
+            let mut scene = scene.clone();
+            scene.integrator.seed = seed;
+            scene
+        };
+        for carried in [Carried::OneWavelength, Carried::EightWavelengths] {
+            let other = |seed| carrying(&seeded(seed), carried);
+            assert_same_mean(&name, &other, &|seed| prepared(&seeded(seed), &[]), 0.05);
+        }
+    }
+}
+
+/// A plane under a sky, both coloured: channels multiply one by one, (0.5·0.2, 0.9·0.7, 0.3·0.8). Spectra of the same colours
+/// show another product, which is what such renderers get wrong.
+#[test]
+fn three_channels_multiply_one_by_one_and_wavelengths_do_not() {
+    let scene = serde_json::json!({
+        "etalon": 1,
+        "camera": {"type": "perspective", "position_m": [0, 2, 0.1], "look_at_m": [0, 0, 0], "vertical_fov_deg": 20},
+        "film": {"width": 4, "height": 4},
+        "materials": {"paint": {"type": "lambert", "reflectance": {"type": "rgb", "rgb": [0.2, 0.7, 0.8]}}},
+        "objects": [{"material": "paint", "shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 1, 0], "radius_m": 50}}],
+        "lights": [{"type": "environment", "radiance": {"type": "rgb", "rgb": [0.5, 0.9, 0.3]}}],
+        "integrator": {"spp": 256}
+    });
+    let (scene, _) = etalon_scene::parse(&scene.to_string(), "paint").unwrap();
+    let shown = |prepared: Prepared| render(&prepared).linear_rec709()[5].map(f64::from);
+    let rgb = shown(carrying(&scene, Carried::ThreeChannels));
+    for (channel, expected) in rgb.into_iter().zip([0.1, 0.63, 0.24]) {
+        // The colours go through spectra and back: matching functions at 1 nm, matrices with some digits.
+        assert!((channel - expected).abs() < 1e-3, "{rgb:?}");
+    }
+    let spectral = shown(prepared(&scene, &[]));
+    assert!((spectral[0] - 0.1).abs() > 0.01, "{spectral:?}: these spectra multiply as colours do");
+    let mut narrow = scene;
+    narrow.integrator.wavelength_range_nm = [500.0, 600.0];
+    assert!(prepare_study(&narrow, &Study { carried: Some(Carried::ThreeChannels), ..Study::default() }).is_err());
 }
 
 #[test]

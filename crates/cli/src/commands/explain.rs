@@ -101,6 +101,7 @@ fn how(plan: &Plan) -> Vec<(&'static str, String)> {
         LaneModel::One => "1: radiance is a number times the one spectrum of all light".to_owned(),
         LaneModel::Shared => format!("{} wavelengths that always go the same way", plan.lanes),
         LaneModel::Hero => format!("{} wavelengths that dispersion may part from the hero", plan.lanes),
+        LaneModel::ThreeChannels => format!("{}: red, green and blue", plan.lanes),
     };
     let [first, last] = plan.wavelength_range_nm;
     let depth = plan.max_depth.map_or("no limit".to_owned(), |depth| format!("at most {depth} path edges"));

@@ -158,7 +158,9 @@ fn of_file(path: &Path, width: u32) -> Result<Subject, Failure> {
 
 /// A scene whose mean luminance is known, at its own size.
 fn of_truth(name: &str) -> Result<Subject, Failure> {
-    let truth = truths().into_iter().find(|truth| truth.name == name && truth.applies_to(&Claim::UNPOLARISED));
+    // Those for polarised light too: the study says what averaging s and p gets wrong there.
+    let claims: Vec<Claim> = Claim::UNPOLARISED.into_iter().chain([Claim::CarriesPolarisation]).collect();
+    let truth = truths().into_iter().find(|truth| truth.name == name && truth.applies_to(&claims));
     let truth = truth.filter(|truth| truth.band_nm.is_none()).ok_or_else(|| {
         Failure::input(miette!(code = "unknown-truth", "there is no truth `{name}` that is a mean luminance"))
     })?;

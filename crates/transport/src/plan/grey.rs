@@ -57,7 +57,7 @@ pub(super) fn same_shape(a: &Spectrum, b: &Spectrum, range_nm: [f64; 2]) -> bool
 /// ∫ S·(x̄, ȳ, z̄) dλ over the range, divided by ∫ȳ: exact where the spectrum is linear between its rows and whole
 /// nanometres, since the product is then quadratic and Simpson's rule has no error; elsewhere better than 1e-9, since no
 /// spectrum curves within a nanometre.
-fn xyz_over(spectrum: &Spectrum, range_nm: [f64; 2]) -> [f64; 3] {
+pub(super) fn xyz_over(spectrum: &Spectrum, range_nm: [f64; 2]) -> [f64; 3] {
     let mut borders: Vec<f64> = steps(range_nm).chain(nodes(spectrum, range_nm)).collect();
     borders.sort_by(f64::total_cmp);
     let mut xyz = [0.0; 3];

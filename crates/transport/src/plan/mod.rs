@@ -7,13 +7,15 @@ mod directions;
 mod evidence;
 mod grey;
 mod study;
+mod three_channels;
 
-pub use study::{Study, StudyError};
+pub use study::{Carried, Study, StudyError};
 
 pub(crate) use grey::OneLaneFilm;
 pub(crate) use study::simulated;
+pub(crate) use three_channels::CHANNELS_NM;
 
-use crate::kernel::kernel;
+use crate::kernel::{Kernel, kernel, study_kernel};
 use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -188,6 +190,8 @@ pub enum LaneModel {
     Shared,
     /// Wavelengths that dispersion may part from the hero's path.
     Hero,
+    /// No wavelengths: red, green and blue, for study.
+    ThreeChannels,
 }
 
 /// The scalar type of all that is geometry, the same in every kernel.
@@ -271,11 +275,22 @@ impl Plan {
             LaneModel::One
         };
         let i = &scene.integrator;
+        let kernel = match study.carried {
+            Some(_) if runs(EffectName::Polarisation) => {
+                let because = "its kernel carries four wavelengths".to_owned();
+                return Err(StudyError::Contradicted { effect: EffectName::Polarisation, because });
+            }
+            None => kernel(i.precision, lane_model, runs(EffectName::Polarisation)),
+            Some(carried) => study_kernel(carried),
+        };
+        if kernel.lanes == LaneModel::ThreeChannels {
+            approximations.push("spectra: light and surfaces have three channels instead".to_owned());
+        }
+        let &Kernel { name, lanes, precision, lane_count, .. } = kernel;
         Ok(Self {
-            kernel: kernel(i.precision, lane_model, runs(EffectName::Polarisation)).name,
-            lane_model,
-            precision: match i.precision {
-                _ if runs(EffectName::Polarisation) => "f64",
+            kernel: name,
+            lane_model: lanes,
+            precision: match precision {
                 Precision::F32 => "f32",
                 Precision::F64 => "f64",
             },
@@ -283,10 +298,7 @@ impl Plan {
                 precision: "f64",
                 because: directions::evidence(scene).unwrap_or_else(|otherwise| otherwise),
             },
-            lanes: match lane_model {
-                LaneModel::One => 1,
-                LaneModel::Shared | LaneModel::Hero => crate::kernel::LANES,
-            },
+            lanes: lane_count,
             wavelength_range_nm: i.wavelength_range_nm,
             sampler: match i.sampler {
                 SamplerKind::Sobol => "sobol",

@@ -1,7 +1,7 @@
 //! Renders of what a scene does not call for, and without what it does: for study.
 
-use super::EffectName;
 use super::evidence::{self, middle};
+use super::{EffectName, three_channels};
 use crate::texture;
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
@@ -21,6 +21,21 @@ pub struct Study {
     pub without: Vec<EffectName>,
     /// Whether light is to be followed with its polarisation.
     pub polarised: bool,
+    /// What paths carry instead of the wavelengths that the plan would give them.
+    pub carried: Option<Carried>,
+}
+
+/// What a path may carry for comparison with the wavelengths that a plan gives it. Double precision only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carried {
+    /// A single wavelength.
+    OneWavelength,
+    /// Eight wavelengths.
+    EightWavelengths,
+    /// Red, green and blue, as renderers without spectra do: every light and every reflectance is replaced by its colour
+    /// (linear Rec. 709, cut to the gamut; reflectances under D65), every index of refraction by that of one wavelength. The
+    /// picture is then an approximation.
+    ThreeChannels,
 }
 
 /// Why a study makes no sense.
@@ -60,6 +75,9 @@ impl Study {
     }
 
     pub(super) fn check(&self, scene: &Scene) -> Result<(), StudyError> {
+        if self.carried == Some(Carried::ThreeChannels) {
+            three_channels::check(scene)?;
+        }
         for &effect in &self.force {
             if self.leaves_out(effect) {
                 return Err(StudyError::Both(effect));
@@ -92,6 +110,9 @@ pub(crate) fn simulated(scene: &Scene, study: &Study) -> Scene {
     for &effect in &study.without {
         leave_out(effect, &mut scene);
     }
+    if study.carried == Some(Carried::ThreeChannels) {
+        three_channels::replace(&mut scene);
+    }
     scene
 }
 
@@ -101,18 +122,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::Wavelengths => {
             scene.materials.iter_mut().for_each(|material| turn_grey(&mut material.kind, range_nm));
             leave_out(EffectName::Dispersion, scene);
-            let grouped = scene.groups.iter_mut().flat_map(|group| &mut group.objects);
-            for emission in scene.objects.iter_mut().chain(grouped).filter_map(|object| object.emission.as_mut()) {
-                emission.radiance = grey(&emission.radiance, range_nm);
-            }
-            for light in &mut scene.lights {
-                match &mut light.kind {
-                    LightKind::Point { intensity: spectrum, .. }
-                    | LightKind::Spot { intensity: spectrum, .. }
-                    | LightKind::Directional { irradiance: spectrum, .. }
-                    | LightKind::Environment { radiance: spectrum } => *spectrum = grey(spectrum, range_nm),
-                }
-            }
+            lights_mut(scene).for_each(|spectrum| *spectrum = grey(spectrum, range_nm));
         }
         EffectName::Dispersion => {
             scene.materials.iter_mut().for_each(|material| fix_indices(&mut material.kind, range_nm));
@@ -175,6 +185,19 @@ fn objects_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Object> {
     scene.objects.iter_mut().chain(grouped)
 }
 
+/// The spectrum of every lamp and light.
+pub(super) fn lights_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Spectrum> {
+    let grouped = scene.groups.iter_mut().flat_map(|group| &mut group.objects);
+    let lamps = scene.objects.iter_mut().chain(grouped).filter_map(|object| object.emission.as_mut());
+    let lights = scene.lights.iter_mut().map(|light| match &mut light.kind {
+        LightKind::Point { intensity: spectrum, .. }
+        | LightKind::Spot { intensity: spectrum, .. }
+        | LightKind::Directional { irradiance: spectrum, .. }
+        | LightKind::Environment { radiance: spectrum } => spectrum,
+    });
+    lamps.map(|emission| &mut emission.radiance).chain(lights)
+}
+
 /// Makes a material treat all wavelengths alike.
 fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
     match kind {
@@ -210,7 +233,7 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
 }
 
 /// Makes every wavelength that a material refracts take the way of one.
-fn fix_indices(kind: &mut MaterialKind, range_nm: [f64; 2]) {
+pub(super) fn fix_indices(kind: &mut MaterialKind, range_nm: [f64; 2]) {
     match kind {
         MaterialKind::Dielectric { interior, exterior, .. }
         | MaterialKind::RoughDielectric { interior, exterior, .. } => {
@@ -255,7 +278,7 @@ fn blacken(kind: &mut MaterialKind) {
     }
 }
 
-fn index_at_middle(index: &RefractiveIndex, range_nm: [f64; 2]) -> RefractiveIndex {
+pub(super) fn index_at_middle(index: &RefractiveIndex, range_nm: [f64; 2]) -> RefractiveIndex {
     RefractiveIndex::constant(index.eval(middle(range_nm))).expect("an index of refraction is positive")
 }
 

@@ -1,7 +1,8 @@
 //! What a study compares: a table of choices, each a change of a scene's integrator or of its effects.
 
 use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
-use etalon_transport::{EffectName, Plan, Study};
+use etalon_transport::plan::LaneModel;
+use etalon_transport::{Carried, EffectName, Plan, Study};
 
 /// A choice, applied to a scene.
 pub(super) struct Choice {
@@ -39,6 +40,20 @@ pub(super) fn of(scene: &Scene, plan: &Plan) -> Vec<Choice> {
     add("error bars", "one replicate: no error bars", plain(), &|scene| scene.integrator.replicates = 1);
     for (name, precision) in [("f32", Precision::F32), ("f64", Precision::F64)] {
         add("scalar", name, plain(), &|scene| scene.integrator.precision = precision);
+    }
+    // A scene of one spectrum carries a number; its four wavelengths are among the effects.
+    if plan.lane_model != LaneModel::One {
+        for (name, carried) in [
+            ("one wavelength", Carried::OneWavelength),
+            ("eight wavelengths", Carried::EightWavelengths),
+            ("three channels (RGB)", Carried::ThreeChannels),
+        ] {
+            let study = Study { carried: Some(carried), ..Study::default() };
+            // Where the scene allows it.
+            if Plan::new(scene, &study).is_ok() {
+                add("wavelengths", name, study, &|_| ());
+            }
+        }
     }
     let runs_mis = plan.runs(EffectName::Mis);
     for (name, kind) in [

@@ -24,8 +24,9 @@ pub(super) struct Plot {
 }
 
 /// Groups that share a plot of error against time.
-const PLOTS: [(&str, &str, &[&str]); 4] = [
+const PLOTS: [(&str, &str, &[&str]); 5] = [
     ("numbers", "numbers and scalars", &["sampler", "error bars", "scalar"]),
+    ("wavelengths", "wavelengths of a path", &["wavelengths"]),
     ("light", "finding light", &["direct light"]),
     ("depth", "path depth and roulette", &["path depth", "roulette"]),
     ("effects", "effects on and off", &["effects"]),
@@ -74,11 +75,14 @@ fn curves(title: &str, baseline: &Row, rows: &[&Row]) -> Drawn<String> {
             .margin(8)
             .x_label_area_size(42)
             .y_label_area_size(66)
-            .build_cartesian_2d((x0..x1).log_scale(), (y0..y1 * room).log_scale())?;
+            .build_cartesian_2d(
+                (x0..x1).log_scale().with_key_points(ticks(x0, x1)),
+                (y0..y1 * room).log_scale().with_key_points(ticks(y0, y1)),
+            )?;
         chart
             .configure_mesh()
-            .x_labels(5)
-            .y_labels(6)
+            .x_labels(12)
+            .y_labels(12)
             .x_desc("seconds")
             .y_desc("relative error")
             .label_style(("sans-serif", 13))
@@ -86,7 +90,7 @@ fn curves(title: &str, baseline: &Row, rows: &[&Row]) -> Drawn<String> {
             .light_line_style(BLACK.mix(0.06))
             .bold_line_style(BLACK.mix(0.16))
             .x_label_formatter(&|x| plain(*x))
-            .y_label_formatter(&|y| if *y > 1.001 * y1 { String::new() } else { format!("{} %", plain(100.0 * y)) })
+            .y_label_formatter(&|y| format!("{} %", plain(100.0 * y)))
             .draw()?;
         for (index, row) in all.iter().enumerate() {
             let colour = COLOURS[index % COLOURS.len()];
@@ -140,8 +144,31 @@ fn price(row: &Row) -> (String, f64) {
     (row.choice.clone(), 100.0 * (row.relative_cost - 1.0))
 }
 
+/// Where a logarithmic axis has ticks: at 1, 2 and 5 times powers of ten, or at these alone where there would be too many.
+fn ticks(low: f64, high: f64) -> Vec<f64> {
+    let decades = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let steps: &[f64] = if high / low > 1e4 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    decades
+        .flat_map(|decade| steps.iter().map(move |step| step * 10.0_f64.powi(decade)))
+        .filter(|tick| (low..=high).contains(tick))
+        .collect()
+}
+
 /// A tick of a logarithmic axis.
 fn plain(value: f64) -> String {
     let digits = (-value.log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{value:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_has_round_ticks_within_its_range() {
+        let shown = |low, high| ticks(low, high).into_iter().map(plain).collect::<Vec<_>>();
+        assert_eq!(shown(0.03, 0.7), ["0.05", "0.1", "0.2", "0.5"]);
+        assert_eq!(shown(0.9, 30.0), ["1", "2", "5", "10", "20"]);
+        assert_eq!(shown(1e-3, 99.0), ["0.001", "0.01", "0.1", "1", "10"]);
+    }
 }

@@ -1,0 +1,71 @@
+//! A scene as a renderer without spectra has it: every spectrum replaced by a colour.
+//!
+//! The colours become spectra again, such that each of three wavelengths shows one channel; the kernel looks nowhere else.
+
+use super::study::{StudyError, fix_indices, index_at_middle, lights_mut};
+use super::{EffectName, evidence, grey};
+use etalon_optics::colour::{rec709_from_xyz, xyz_of_reflectance};
+use etalon_optics::spectrum::Outside;
+use etalon_optics::{Illuminant, Spectrum};
+use etalon_scene::{MaterialKind, Scene, SpectrumTexture};
+
+/// Wavelengths that stand for blue, green and red, nm; of metals, whose indices stay what they are, they are chosen.
+pub(crate) const CHANNELS_NM: [f64; 3] = [450.0, 545.0, 610.0];
+
+/// Whether a scene has colours that three channels can stand for.
+pub(super) fn check(scene: &Scene) -> Result<(), StudyError> {
+    let refused =
+        |because: &str| Err(StudyError::Contradicted { effect: EffectName::Wavelengths, because: because.to_owned() });
+    let [first, last] = scene.integrator.wavelength_range_nm;
+    if first > CHANNELS_NM[0] || last < CHANNELS_NM[2] {
+        return refused("three channels need the whole visible range");
+    }
+    if evidence::of(EffectName::Textures, scene).is_ok() {
+        return refused("images become spectra, which three channels do not have");
+    }
+    Ok(())
+}
+
+/// Replaces every spectrum.
+pub(super) fn replace(scene: &mut Scene) {
+    let range_nm = scene.integrator.wavelength_range_nm;
+    lights_mut(scene).for_each(|spectrum| *spectrum = channels(grey::xyz_over(spectrum, range_nm), f64::INFINITY));
+    scene.materials.iter_mut().for_each(|material| {
+        fix_indices(&mut material.kind, range_nm);
+        colour(&mut material.kind, range_nm);
+    });
+}
+
+fn colour(kind: &mut MaterialKind, range_nm: [f64; 2]) {
+    let shown = |spectrum: &Spectrum| channels(xyz_of_reflectance(|nm| spectrum.eval(nm), Illuminant::D65), 1.0);
+    match kind {
+        MaterialKind::Lambert { reflectance } | MaterialKind::Mirror { reflectance } => {
+            if let SpectrumTexture::Uniform(spectrum) = reflectance {
+                *spectrum = shown(spectrum);
+            }
+        }
+        MaterialKind::OrenNayar { reflectance, .. } => *reflectance = shown(reflectance),
+        MaterialKind::Plastic { reflectance, coat, .. } => {
+            *reflectance = shown(reflectance);
+            *coat = index_at_middle(coat, range_nm);
+        }
+        MaterialKind::ThinDielectric { index } => *index = index_at_middle(index, range_nm),
+        MaterialKind::Blend { first, second, .. } => {
+            colour(first, range_nm);
+            colour(second, range_nm);
+        }
+        MaterialKind::Conductor { .. }
+        | MaterialKind::RoughConductor { .. }
+        | MaterialKind::Dielectric { .. }
+        | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::PolarisingSheet { .. }
+        | MaterialKind::Black => {}
+    }
+}
+
+/// A spectrum that shows each channel of a colour, cut to 0 and `most`, at its wavelength.
+fn channels(xyz: [f64; 3], most: f64) -> Spectrum {
+    let [red, green, blue] = rec709_from_xyz(xyz).map(|v| v.clamp(0.0, most));
+    Spectrum::tabulated(CHANNELS_NM.to_vec(), vec![blue, green, red], Outside::Hold)
+        .expect("channels are cut to what is valid")
+}
