@@ -14,6 +14,8 @@ pub(super) struct Choice {
     pub scene: Scene,
     /// Effects forced or left out.
     pub study: Study,
+    /// Whether samples are spread as an exploration says, instead of evenly.
+    pub adaptive: bool,
 }
 
 /// The choice that the others are held against: the scene as it is.
@@ -29,7 +31,7 @@ pub(super) fn of(scene: &Scene, plan: &Plan) -> Vec<Choice> {
         let mut changed = scene.clone();
         change(&mut changed);
         if name == BASELINE || changed != *scene || study != Study::default() {
-            choices.push(Choice { name: name.to_owned(), group, scene: changed, study });
+            choices.push(Choice { name: name.to_owned(), group, scene: changed, study, adaptive: false });
         }
     };
     let plain = Study::default;
@@ -96,5 +98,13 @@ pub(super) fn of(scene: &Scene, plan: &Plan) -> Vec<Choice> {
             }
         }
     }
+    let adaptive = Choice {
+        name: "adaptive".to_owned(),
+        group: "where samples go",
+        scene: scene.clone(),
+        study: Study::default(),
+        adaptive: true,
+    };
+    choices.insert(1, adaptive);
     choices
 }

@@ -1,7 +1,10 @@
 //! Measures choices side by side.
 
+use std::sync::Arc;
+
 use etalon_scene::Scene;
-use etalon_transport::{Control, Counters, Extent, Film, Prepared, prepare_study};
+use etalon_transport::adaptive::{Goal, explore};
+use etalon_transport::{Control, Counters, Extent, Film, Prepared, Shares, prepare_study};
 use serde::Serialize;
 
 use super::choices::{self, BASELINE, Choice};
@@ -82,6 +85,8 @@ struct Runner {
     choice: Choice,
     prepared: Prepared,
     film: Film,
+    /// How samples are spread, once an exploration has said it.
+    shares: Option<Arc<Shares>>,
     samples: u32,
     seconds: f64,
     points: Vec<Point>,
@@ -100,11 +105,20 @@ impl Runner {
         scene.integrator.seed = seed;
         let prepared = prepare_study(&scene, &choice.study).map_err(|error| error.to_string())?;
         let film = prepared.film();
-        Ok(Self { choice, prepared, film, samples: 0, seconds: 0.0, points: Vec::new() })
+        Ok(Self { choice, prepared, film, shares: None, samples: 0, seconds: 0.0, points: Vec::new() })
     }
 
     fn advance(&mut self, samples: u32, threads: usize) -> Result<(), String> {
-        let extent = Extent { samples: self.samples..samples, ..self.prepared.whole(Some(threads)) };
+        let whole = self.prepared.whole(Some(threads));
+        if self.choice.adaptive && self.shares.is_none() {
+            // Its time counts: it is what uneven shares cost.
+            let goal = Goal { samples: EXPLORED_FOR, relative_rmse: None };
+            let (found, seconds) =
+                timed(threads, || explore(&self.prepared, whole.rect, &goal, Some(threads), &|| false, &|_| ()));
+            self.shares = Some(found.map_err(|error| error.to_string())?.shares);
+            self.seconds += seconds;
+        }
+        let extent = Extent { samples: self.samples..samples, shares: self.shares.clone(), ..whole };
         let (done, seconds) =
             timed(threads, || self.prepared.render_onto(&mut self.film, &extent, &|_: &Counters| Control::Continue));
         done.map_err(|error| error.to_string())?;
@@ -117,6 +131,9 @@ impl Runner {
         self.film.error(self.prepared.whole(None).rect).map(|error| error.relative_rmse)
     }
 }
+
+/// Samples a pixel of which an adaptive picture's exploration is a part: what a study reaches.
+const EXPLORED_FOR: u32 = 128;
 
 /// First number of samples a pixel, and the factor to the next: a replicate of four has whole powers of two.
 const FIRST: u32 = 4;
