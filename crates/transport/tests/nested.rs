@@ -29,7 +29,7 @@ fn nested_truths() -> Vec<Truth> {
 /// traps light for ever, must reject it.
 #[test]
 fn solids_that_know_nothing_of_each_other_are_rejected_and_ours_lose_no_medium() {
-    let study = Study { force: Vec::new(), without: vec![EffectName::NestedDielectrics], polarised: false };
+    let study = Study { without: vec![EffectName::NestedDielectrics], ..Study::default() };
     let mut rejected = 0;
     for truth in nested_truths() {
         for precision in [Precision::F32, Precision::F64] {
