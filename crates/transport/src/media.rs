@@ -104,7 +104,12 @@ impl Media {
 
     /// The solid whose medium fills a point.
     fn filling(&self, inside: &Inside) -> Option<Place> {
-        inside.iter().max_by_key(|&place| (self.solid(place.0).map(|solid| solid.priority), place))
+        inside.iter().max_by_key(|&place| self.rank(place))
+    }
+
+    /// Which of two solids at one place fills it: the greater.
+    fn rank(&self, place: Place) -> (Option<u32>, Place) {
+        (self.solid(place.0).map(|solid| solid.priority), place)
     }
 
     /// The medium that fills a place.
@@ -131,7 +136,7 @@ impl Media {
                 return Some(Met { hit, point, surface, interface, beyond: None });
             }
             let boundary = self.boundary(geometry, surfaces, (&hit, &point), ray.direction, inside, lost);
-            let (beyond, crossed) = match boundary {
+            let beyond = match boundary {
                 Boundary::Opaque(hit, point) => {
                     let around = self.medium(inside);
                     let surface = surfaces.of(&point);
@@ -139,21 +144,18 @@ impl Media {
                         surface.takes_medium().then_some(Interface { incident: around, transmitted: around });
                     return Some(Met { hit, point, surface, interface, beyond: None });
                 }
-                Boundary::Solid(beyond, crossed) => (beyond, crossed),
+                Boundary::Solid(beyond) => beyond,
             };
-            let parted = [self.filling(inside), self.filling(&beyond.inside)];
-            if parted[0] != parted[1] {
+            let (before, behind) = (self.filling(inside), self.filling(&beyond.inside));
+            if before != behind {
                 // Where boundaries coincide, the solid of the highest priority that has its medium on either side decides what
-                // its surface does.
-                let place_of = |point: &SurfacePoint<f64>| place(surfaces, point);
-                let of_parted = crossed.iter().flatten().filter(|point| parted.contains(&Some(place_of(point))));
-                let deciding = of_parted.max_by_key(|point| {
-                    let place = place_of(point);
-                    (self.solid(place.0).map(|solid| solid.priority), place)
-                });
+                // its surface does: of the one before if it is left here, and of the one behind if it is entered.
+                let left = before.filter(|&place| !beyond.inside.iter().any(|other| other == place));
+                let entered = behind.filter(|&place| !inside.iter().any(|other| other == place));
+                let deciding = left.into_iter().chain(entered).max_by_key(|&place| self.rank(place));
                 let mut surface = surface;
-                if let Some(point) = deciding {
-                    surface.bsdf = surfaces.of(point).bsdf;
+                if let Some((object, _)) = deciding {
+                    surface.bsdf = surfaces.bsdf_of(object);
                 }
                 let interface = Interface { incident: self.medium(inside), transmitted: self.medium(&beyond.inside) };
                 return Some(Met { hit, point, surface, interface: Some(interface), beyond: Some(beyond) });
@@ -216,10 +218,6 @@ impl Media {
         let mut crossed = [(place(surfaces, point), enters(point)); MOST_COINCIDENT];
         let mut count = 1;
         let points = self.coincident(geometry, surfaces, (hit, point), direction);
-        let mut at = [None; MOST_COINCIDENT];
-        for (slot, found) in at.iter_mut().zip(&points) {
-            *slot = found.map(|(_, point)| point);
-        }
         for (hit, other) in points[1..].iter().flatten() {
             let place = place(surfaces, other);
             if self.solid(place.0).is_none() {
@@ -241,7 +239,7 @@ impl Media {
                 }
             }
         }
-        Boundary::Solid(beyond, at)
+        Boundary::Solid(beyond)
     }
 
     /// The points of all surfaces that coincide with `point` up to the errors of their positions, itself first.
@@ -321,6 +319,6 @@ const MOST_COINCIDENT: usize = 4;
 enum Boundary {
     /// An opaque surface coincides with it.
     Opaque(Hit<f64>, SurfacePoint<f64>),
-    /// Boundaries of solids alone, what is behind them, and their points.
-    Solid(Beyond, [Option<SurfacePoint<f64>>; MOST_COINCIDENT]),
+    /// Boundaries of solids alone, and what is behind them.
+    Solid(Beyond),
 }

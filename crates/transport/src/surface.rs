@@ -75,6 +75,13 @@ impl Surfaces {
     }
 }
 
+impl Surfaces {
+    /// What the surface of an object does to light.
+    pub(crate) fn bsdf_of(&self, object: u32) -> &Bsdf {
+        &self.bsdfs[self.objects[object as usize].material]
+    }
+}
+
 impl<'a> Surface<'a> {
     /// Scattering at a point of it; `interface` has the media on both sides where the place decides them.
     #[inline]

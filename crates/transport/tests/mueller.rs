@@ -163,7 +163,8 @@ fn paths_whose_matrices_are_wrong_are_noticed() {
         )
     };
     assert!(wrong(|_| ()).pass);
-    let mutants: [(&str, fn(&mut Matrix)); 4] = [
+    type Change = fn(&mut Matrix);
+    let mutants: [(&str, Change); 4] = [
         ("the other hand", |m| (m[2][3], m[3][2]) = (-m[2][3], -m[3][2])),
         ("s and p swapped", |m| (m[0][1], m[1][0]) = (-m[0][1], -m[1][0])),
         ("no phase", |m| (m[2][3], m[3][2]) = (0.0, 0.0)),

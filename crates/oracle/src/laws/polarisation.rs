@@ -315,8 +315,7 @@ pub fn mueller_is_reciprocal(surface: &dyn Polarises, transmits: bool, wavelengt
         let mut error = 0.0_f64;
         for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
             let difference = (reversed[i][j] - sign[i] * sign[j] * m[j][i]).abs();
-            // Also if it is NaN.
-            if !(difference <= error) {
+            if difference > error || difference.is_nan() {
                 error = difference;
             }
         }
