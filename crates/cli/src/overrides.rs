@@ -77,8 +77,8 @@ enum LightSamplingArg {
 enum CarryArg {
     /// A single wavelength.
     OneWavelength,
-    /// Eight wavelengths.
-    EightWavelengths,
+    /// Four wavelengths.
+    FourWavelengths,
     /// Red, green and blue: every light and surface is replaced by its colour. The picture is then an approximation.
     ThreeChannels,
 }
@@ -87,7 +87,7 @@ impl From<CarryArg> for Carried {
     fn from(carry: CarryArg) -> Self {
         match carry {
             CarryArg::OneWavelength => Self::OneWavelength,
-            CarryArg::EightWavelengths => Self::EightWavelengths,
+            CarryArg::FourWavelengths => Self::FourWavelengths,
             CarryArg::ThreeChannels => Self::ThreeChannels,
         }
     }

@@ -61,7 +61,7 @@ static KERNELS: [Kernel; 7] = [
 /// What no plan chooses, for comparison.
 static STUDY_KERNELS: [(Carried, Kernel); 3] = [
     (Carried::OneWavelength, entry::<f64, Hero<f64, 1>, Averaged, 1>(Precision::F64, LaneModel::Hero, "hero-1-f64")),
-    (Carried::EightWavelengths, entry::<f64, Hero<f64, 8>, Averaged, 8>(Precision::F64, LaneModel::Hero, "hero-8-f64")),
+    (Carried::FourWavelengths, entry::<f64, Hero<f64, 4>, Averaged, 4>(Precision::F64, LaneModel::Hero, "hero-4-f64")),
     (
         Carried::ThreeChannels,
         entry::<f64, ThreeChannels, Averaged, 3>(Precision::F64, LaneModel::ThreeChannels, "three-channels-f64"),

@@ -277,7 +277,7 @@ impl Plan {
         let i = &scene.integrator;
         let kernel = match study.carried {
             Some(_) if runs(EffectName::Polarisation) => {
-                let because = "its kernel carries four wavelengths".to_owned();
+                let because = "only its own kernel carries it".to_owned();
                 return Err(StudyError::Contradicted { effect: EffectName::Polarisation, because });
             }
             None => kernel(i.precision, lane_model, runs(EffectName::Polarisation)),

@@ -30,8 +30,8 @@ pub struct Study {
 pub enum Carried {
     /// A single wavelength.
     OneWavelength,
-    /// Eight wavelengths.
-    EightWavelengths,
+    /// Four wavelengths.
+    FourWavelengths,
     /// Red, green and blue, as renderers without spectra do: every light and every reflectance is replaced by its colour
     /// (linear Rec. 709, cut to the gamut; reflectances under D65), every index of refraction by that of one wavelength. The
     /// picture is then an approximation.

@@ -43,11 +43,11 @@ pub(super) fn of(scene: &Scene, plan: &Plan) -> Vec<Choice> {
     for (name, precision) in [("f32", Precision::F32), ("f64", Precision::F64)] {
         add("scalar", name, plain(), &|scene| scene.integrator.precision = precision);
     }
-    // A scene of one spectrum carries a number; its four wavelengths are among the effects.
+    // A scene of one spectrum carries a number; its wavelengths are among the effects.
     if plan.lane_model != LaneModel::One {
         for (name, carried) in [
             ("one wavelength", Carried::OneWavelength),
-            ("eight wavelengths", Carried::EightWavelengths),
+            ("four wavelengths", Carried::FourWavelengths),
             ("three channels (RGB)", Carried::ThreeChannels),
         ] {
             let study = Study { carried: Some(carried), ..Study::default() };
