@@ -2,7 +2,10 @@
 
 mod accuracy;
 mod assignment;
+mod channels;
+mod display;
 mod explain;
+mod farm;
 mod outputs;
 mod refusals;
 mod renders;

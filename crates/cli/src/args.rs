@@ -78,6 +78,20 @@ impl FromStr for ShardArg {
     }
 }
 
+/// `FIRST:LAST:STEP` in nanometres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BandsArg(pub(crate) [f64; 3]);
+
+impl FromStr for BandsArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<f64>, _> = text.split(':').map(|number| number.trim().parse()).collect();
+        let numbers = numbers.ok().and_then(|numbers| numbers.try_into().ok());
+        numbers.map(Self).ok_or_else(|| "bands are FIRST:LAST:STEP, the centres of the first and the last and the step, in nm, such as 400:700:10".to_owned())
+    }
+}
+
 /// A number that is not infinite and not NaN.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

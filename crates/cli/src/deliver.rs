@@ -1,12 +1,14 @@
 //! A film as files: the same for a picture that was rendered here and for one that was merged from parts.
 
+use etalon_optics::colour;
 use etalon_picture::{Attribute, Attributes, ERROR_PREFIX, ErrorInfo, Picture, PictureError, RenderInfo, Window};
-use etalon_transport::{Canvas, Film, ImageError};
+use etalon_transport::{Band, Canvas, Features, Film, ImageError, Pixel, PixelRect};
 use miette::Report;
 
+use crate::channels::{Aov, Channels};
 use crate::failure::Failure;
 use crate::output::{self, Format, Output, Written};
-use crate::state::{self, Header};
+use crate::state::{self, Header, KeptBands};
 
 /// What is to be written.
 pub(crate) struct Delivery<'a> {
@@ -14,6 +16,8 @@ pub(crate) struct Delivery<'a> {
     pub header: &'a Header,
     /// Its tiles and its film.
     pub canvas: &'a Canvas,
+    /// What the pixels of each tile meet first, where a channel wants it.
+    pub features: &'a [Vec<Features>],
     /// Samples a pixel, as the file says.
     pub samples: u32,
     /// Its error, where something is known of it.
@@ -32,7 +36,7 @@ impl Delivery<'_> {
             if !self.header.complete {
                 continue;
             }
-            match state::write(&part.path, self.header, self.canvas) {
+            match state::write(&part.path, self.header, self.canvas, self.features) {
                 Ok(()) => written.push(Written::whole(part)),
                 Err(error) => failure.add(Failure::run(Report::from_err(error))),
             }
@@ -40,12 +44,18 @@ impl Delivery<'_> {
         if pictures.is_empty() {
             return (written, failure);
         }
-        match self.canvas.with_film(|film| self.contents(film)) {
+        let tiles: Vec<PixelRect> = (0..self.features.len()).map(|number| self.canvas.tile(number).0.rect).collect();
+        let made = self.canvas.with_film(|film| {
+            let (picture, attributes) = self.contents(film, &tiles)?;
+            Ok::<_, PictureError>((picture, self.colour(film)?, attributes))
+        });
+        match made {
             Err(error) => failure.add(Failure::run(Report::from_err(error))),
-            Ok((picture, attributes)) => {
+            Ok((picture, colour, attributes)) => {
                 let (software, comment) = (&self.header.subject.software, self.comment());
                 for output in pictures {
-                    match output::write(output, &picture, &attributes, self.exposure_ev, software, &comment) {
+                    let picture = if output.format == Format::Png { &colour } else { &picture };
+                    match output::write(output, picture, &attributes, self.exposure_ev, software, &comment) {
                         Ok(done) => written.push(done),
                         Err(error) => failure.add(error),
                     }
@@ -58,8 +68,8 @@ impl Delivery<'_> {
         (written, failure)
     }
 
-    fn contents(&self, film: &Film) -> Result<(Picture<f32>, Attributes), PictureError> {
-        let (mut picture, mut attributes) = (self.picture(film)?, self.attributes(film)?);
+    fn contents(&self, film: &Film, tiles: &[PixelRect]) -> Result<(Picture<f32>, Attributes), PictureError> {
+        let (mut picture, mut attributes) = (self.picture(film, tiles)?, self.attributes(film)?);
         crate::stokes::add(&mut picture, &mut attributes, film, self.header.subject.crop)?;
         Ok((picture, attributes))
     }
@@ -75,6 +85,23 @@ impl Delivery<'_> {
             plan_json: subject.plan.to_string(),
         }
         .attributes()?;
+        if subject.bands.is_some() {
+            let text = |text: &str| Attribute::Text(text.to_owned());
+            attributes.extend([
+                ("spectralLayoutVersion".to_owned(), text("1.0")),
+                // The only unit that the layout knows; each channel is a mean over its band, per nanometre.
+                ("emissiveUnits".to_owned(), text("W.m^-2.sr^-1")),
+                ("emissiveDensity".to_owned(), text("nm^-1")),
+                ("EV".to_owned(), Attribute::Float(0.0)),
+            ]);
+        }
+        let [to_camera, to_ndc] = subject.matrices;
+        attributes.insert("worldToCamera".to_owned(), Attribute::Matrix4(to_camera));
+        attributes.insert("worldToNDC".to_owned(), Attribute::Matrix4(to_ndc));
+        if let Some(names) = &self.header.object_names {
+            let names = serde_json::to_string(names).expect("names are text");
+            attributes.insert("objectNames".to_owned(), Attribute::Text(names));
+        }
         let approximations = subject.approximations();
         if !approximations.is_empty() {
             let text = Attribute::Text(format!("without {}", approximations.join("; without ")));
@@ -115,32 +142,140 @@ impl Delivery<'_> {
         comment
     }
 
-    /// The rendered part of the film as linear Rec. 709, the standard error of each channel where it is known, and the number of
-    /// samples where pixels differ in it.
-    fn picture(&self, film: &Film) -> Result<Picture<f32>, PictureError> {
+    /// An empty picture of the rendered part of the frame.
+    fn frame(&self, film: &Film) -> Result<Picture<f32>, PictureError> {
         let rect = self.header.subject.crop;
-        let cut = |whole: Vec<[f32; 3]>| -> Vec<[f32; 3]> {
-            rect.pixels().map(|(x, y)| whole[y as usize * film.width() as usize + x as usize]).collect()
-        };
         let window = Window {
             origin_px: [rect.x0 as i32, rect.y0 as i32],
             frame_px: [film.width() as usize, film.height() as usize],
         };
-        let (width, height) = ((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize);
-        let mut picture = Picture::from_rgb(width, height, &cut(film.linear_rec709()))?.in_frame(window)?;
-        let errors = cut(film.linear_rec709_error());
+        Picture::new((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize)?.in_frame(window)
+    }
+
+    /// The colour alone, as a screen shows it.
+    fn colour(&self, film: &Film) -> Result<Picture<f32>, PictureError> {
+        let mut picture = self.frame(film)?;
+        let pixels = self.of_pixels(film, |pixel| pixel.linear_rec709());
+        insert_three(&mut picture, ["R", "G", "B"], &pixels)?;
+        Ok(picture)
+    }
+
+    fn of_pixels<T>(&self, film: &Film, of: impl Fn(Pixel<'_>) -> T) -> Vec<T> {
+        self.header.subject.crop.pixels().map(|(x, y)| of(film.pixel(x, y))).collect()
+    }
+
+    /// Every channel that is wanted; `tiles` are those of the features.
+    fn picture(&self, film: &Film, tiles: &[PixelRect]) -> Result<Picture<f32>, PictureError> {
+        let (rect, channels) = (self.header.subject.crop, &self.header.channels);
+        let mut picture = if channels.has(Aov::Color) { self.colour(film)? } else { self.frame(film)? };
+        let variances = self.of_pixels(film, |pixel| match pixel.variance(colour::rec709_from_xyz) {
+            Some((variance, _)) => variance,
+            None => [f64::INFINITY; 3],
+        });
         // Where nothing at all is known there is nothing to say.
-        if errors.iter().any(|error| error[0].is_finite()) {
-            for (index, name) in ["R", "G", "B"].into_iter().enumerate() {
-                picture.insert(&format!("{ERROR_PREFIX}{name}"), errors.iter().map(|error| error[index]).collect())?;
+        if variances.iter().any(|variance| variance[0].is_finite()) {
+            for (aov, prefix, of) in SPREADS {
+                if channels.has(aov) {
+                    let values: Vec<[f32; 3]> = variances.iter().map(|v| v.map(|v| of(v) as f32)).collect();
+                    let names = ["R", "G", "B"].map(|name| format!("{prefix}{name}"));
+                    insert_three(&mut picture, names.each_ref().map(String::as_str), &values)?;
+                }
             }
         }
-        let counts: Vec<f32> = rect.pixels().map(|(x, y)| film.pixel(x, y).count() as f32).collect();
-        if counts.iter().any(|&count| count != counts[0]) {
+        if let Some(bands) = self.header.subject.bands.as_ref().filter(|_| channels.has(Aov::Bands)) {
+            insert_bands(&mut picture, bands, film, rect, channels)?;
+        }
+        let counts = self.of_pixels(film, |pixel| pixel.count() as f32);
+        if channels.has(Aov::Samples) || !channels_only_features(channels) && counts.iter().any(|&c| c != counts[0]) {
             picture.insert(SAMPLES, counts)?;
+        }
+        if !self.features.is_empty() {
+            self.insert_features(&mut picture, tiles)?;
         }
         Ok(picture)
     }
+
+    /// What the pixels meet first.
+    fn insert_features(&self, picture: &mut Picture<f32>, tiles: &[PixelRect]) -> Result<(), PictureError> {
+        let (rect, channels) = (self.header.subject.crop, &self.header.channels);
+        // Pixels of tiles that are not here meet nothing.
+        let mut all = vec![Features::default(); rect.area() as usize];
+        for (tile, features) in tiles.iter().zip(self.features) {
+            for ((x, y), features) in tile.pixels().zip(features) {
+                all[(y - rect.y0) as usize * (rect.x1 - rect.x0) as usize + (x - rect.x0) as usize] = *features;
+            }
+        }
+        let three = |of: fn(&Features) -> [f32; 3]| -> Vec<[f32; 3]> { all.iter().map(of).collect() };
+        let one = |of: fn(&Features) -> f32| -> Vec<f32> { all.iter().map(of).collect() };
+        if channels.has(Aov::Albedo) {
+            insert_three(picture, ["Albedo.R", "Albedo.G", "Albedo.B"], &three(|f| f.albedo))?;
+        }
+        if channels.has(Aov::Normal) {
+            insert_three(picture, ["N.X", "N.Y", "N.Z"], &three(|f| f.normal))?;
+        }
+        if channels.has(Aov::Position) {
+            insert_three(picture, ["P.X", "P.Y", "P.Z"], &three(|f| f.position_m))?;
+        }
+        if channels.has(Aov::Depth) {
+            picture.insert("Z", one(|f| f.depth_m))?;
+        }
+        if channels.has(Aov::Uv) {
+            picture.insert("u", one(|f| f.uv[0]))?;
+            picture.insert("v", one(|f| f.uv[1]))?;
+        }
+        if channels.has(Aov::Object) {
+            picture.insert("ObjectId", one(|f| f.object))?;
+        }
+        Ok(())
+    }
+}
+
+/// How a variance is told.
+const SPREADS: [(Aov, &str, fn(f64) -> f64); 2] =
+    [(Aov::Error, ERROR_PREFIX, f64::sqrt), (Aov::Variance, "Variance.", |variance| variance)];
+
+/// Whether nothing of the picture itself is wanted.
+fn channels_only_features(channels: &Channels) -> bool {
+    ![Aov::Color, Aov::Error, Aov::Variance, Aov::Bands].into_iter().any(|aov| channels.has(aov))
+}
+
+fn insert_three(picture: &mut Picture<f32>, names: [&str; 3], pixels: &[[f32; 3]]) -> Result<(), PictureError> {
+    for (index, name) in names.into_iter().enumerate() {
+        picture.insert(name, pixels.iter().map(|pixel| pixel[index]).collect())?;
+    }
+    Ok(())
+}
+
+/// The bands as spectral channels (Fichet, Pacanowski & Wilkie 2021, *An OpenEXR Layout for Spectral Images*): `S0.550,000000nm`
+/// is the mean radiance over the band with this centre, `Error.` and `samples.` before it its standard error and its number of
+/// wavelengths.
+fn insert_bands(
+    picture: &mut Picture<f32>,
+    bands: &KeptBands,
+    film: &Film,
+    rect: PixelRect,
+    channels: &Channels,
+) -> Result<(), PictureError> {
+    for index in 0..bands.count {
+        let name = spectral_channel(bands.centre_nm(index));
+        let of = |value: fn(Band) -> f64| -> Vec<f32> {
+            rect.pixels().map(|(x, y)| value(bands.of_pixel(film, x, y, index)) as f32).collect()
+        };
+        picture.insert(&name, of(|band| band.radiance))?;
+        if channels.has(Aov::Error) {
+            picture.insert(&format!("{ERROR_PREFIX}{name}"), of(|band| band.error))?;
+        }
+        if channels.has(Aov::Variance) {
+            picture.insert(&format!("Variance.{name}"), of(|band| band.error * band.error))?;
+        }
+        picture.insert(&format!("{SAMPLES}.{name}"), of(|band| f64::from(band.count)))?;
+    }
+    Ok(())
+}
+
+/// The name of the channel of a band: its centre with a decimal comma, in nm.
+fn spectral_channel(centre_nm: f64) -> String {
+    format!("S0.{}nm", format!("{centre_nm:.6}").replace('.', ","))
 }
 
 /// The channel of the number of finite samples of each pixel.
@@ -155,5 +290,16 @@ fn error_info(film: &Film, error: &ImageError) -> ErrorInfo {
         interval: error.interval,
         tail_index: error.tail_index,
         noisiest_tile: [tile.x0, tile.x1, tile.y0, tile.y1],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spectral_channels_are_named_with_a_comma() {
+        assert_eq!(spectral_channel(550.0), "S0.550,000000nm");
+        assert_eq!(spectral_channel(400.25), "S0.400,250000nm");
     }
 }

@@ -3,13 +3,16 @@
 //! Exit status: 0 done, 1 failed, 2 bad usage or a bad scene, 130 ended by SIGINT and 143 by SIGTERM.
 
 mod args;
+mod channels;
 mod commands;
 mod deliver;
+mod display;
 mod failure;
 mod interrupt;
 mod load;
 mod machine;
 mod machine_limits;
+mod matrices;
 mod output;
 mod overrides;
 mod print;

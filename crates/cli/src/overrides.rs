@@ -1,10 +1,12 @@
 //! Settings of a scene that the command line may override.
 
 use clap::ValueEnum;
-use etalon_scene::{LightSampling, MOST_REPLICATES, Precision, SamplerKind, Scene};
+use etalon_scene::{Bands, LightSampling, MOST_REPLICATES, Precision, SamplerKind, Scene};
 use etalon_transport::{Carried, EffectName, Study};
+use miette::miette;
 
-use crate::args::Size;
+use crate::args::{BandsArg, Size};
+use crate::failure::Failure;
 
 /// What the command line may decide instead of the scene.
 #[derive(clap::Args)]
@@ -33,6 +35,10 @@ pub(crate) struct Overrides {
     /// Most path edges from the camera to a light; 1 shows emitters only, 2 adds one bounce.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_depth: Option<u32>,
+    /// Keep bands of wavelengths beside the colour: centres of the first and the last and the step, nm. Each is as wide as the
+    /// step. The EXR has them as channels S0.400,000000nm and so on.
+    #[arg(long, value_name = "FIRST:LAST:STEP")]
+    bands: Option<BandsArg>,
     /// Follow light with its polarisation, instead of averaging s and p at every surface.
     #[arg(long)]
     polarised: bool,
@@ -104,8 +110,8 @@ impl Overrides {
         self.spp
     }
 
-    /// Puts them into a scene.
-    pub(crate) fn apply(&self, scene: &mut Scene) {
+    /// Puts them into a scene, or says why that cannot be.
+    pub(crate) fn apply(&self, scene: &mut Scene) -> Result<(), Failure> {
         let integrator = &mut scene.integrator;
         if let Some(spp) = self.spp {
             integrator.spp = spp;
@@ -138,6 +144,11 @@ impl Overrides {
         if self.max_depth.is_some() {
             integrator.max_depth = self.max_depth;
         }
+        if let Some(BandsArg(numbers)) = self.bands {
+            let bands = Bands::new(numbers, integrator.wavelength_range_nm);
+            scene.film.bands = Some(bands.map_err(|error| Failure::input(miette!(code = "bands", "{error}")))?);
+        }
+        Ok(())
     }
 
     /// What to simulate otherwise than the scene calls for.
@@ -173,6 +184,7 @@ impl Overrides {
             ("sampler", self.sampler.and_then(word)),
             ("light-sampling", self.light_sampling.and_then(word)),
             ("max-depth", self.max_depth.map(|depth| depth.to_string())),
+            ("bands", self.bands.map(|BandsArg([first, last, step])| format!("{first}:{last}:{step}"))),
             ("force", names(&self.force)),
             ("without", names(&self.without)),
             ("carry", self.carry.and_then(word)),

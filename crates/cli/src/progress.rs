@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::io::IsTerminal;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
@@ -14,7 +15,7 @@ pub(crate) struct SampleBar(ProgressBar);
 impl SampleBar {
     /// A bar over `samples` samples, hidden if `hidden` or if standard error is not a terminal.
     pub(crate) fn new(samples: u64, hidden: bool) -> Self {
-        Self(bar(Some(samples), None, hidden))
+        Self(bar(Some(samples), style(None, None), hidden))
     }
 
     /// Counts samples that are done.
@@ -30,18 +31,18 @@ impl SampleBar {
 
 /// A line that says what is being done.
 pub(crate) fn spinner(hidden: bool) -> ProgressBar {
-    let line = bar(None, None, hidden);
+    let line = bar(None, style(None, None), hidden);
     line.set_style(ProgressStyle::with_template("{spinner} {elapsed}  {msg}").expect("the template is well formed"));
     line
 }
 
-fn bar(samples: Option<u64>, seconds: Option<f64>, hidden: bool) -> ProgressBar {
+fn bar(samples: Option<u64>, style: ProgressStyle, hidden: bool) -> ProgressBar {
     let target = if hidden || !std::io::stderr().is_terminal() {
         ProgressDrawTarget::hidden()
     } else {
         ProgressDrawTarget::stderr()
     };
-    let bar = ProgressBar::with_draw_target(samples, target).with_style(style(seconds));
+    let bar = ProgressBar::with_draw_target(samples, target).with_style(style);
     if !bar.is_hidden() {
         // A tile can take seconds; the clock must not stand still meanwhile.
         bar.enable_steady_tick(Duration::from_millis(200));
@@ -54,6 +55,7 @@ pub(crate) struct RenderBar {
     bar: ProgressBar,
     rect: PixelRect,
     target: Option<f64>,
+    traced: Arc<Traced>,
     /// Camera paths that there were before.
     before: AtomicU64,
 }
@@ -62,11 +64,12 @@ impl RenderBar {
     /// A bar for the pixels of `rect`, hidden if `hidden` or if standard error is not a terminal. `seconds` is when the
     /// render is to end, `target` its relative error.
     pub(crate) fn new(rect: PixelRect, seconds: Option<f64>, target: Option<f64>, hidden: bool) -> Self {
-        let bar = bar(None, seconds, hidden);
+        let traced = Arc::new(Traced::default());
+        let bar = bar(None, style(seconds, Some(Arc::clone(&traced))), hidden);
         if target.is_some() {
             bar.set_message("pilot");
         }
-        Self { bar, rect, target, before: AtomicU64::new(0) }
+        Self { bar, rect, target, traced, before: AtomicU64::new(0) }
     }
 
     /// The picture goes on from so many camera paths.
@@ -97,6 +100,8 @@ impl RenderBar {
 
 impl Watch for RenderBar {
     fn work(&self, counters: &Counters) {
+        self.traced.paths.fetch_add(counters.paths, Ordering::Relaxed);
+        self.traced.rays.fetch_add(counters.rays + counters.shadow_rays, Ordering::Relaxed);
         self.bar.inc(counters.paths);
     }
 
@@ -120,10 +125,27 @@ impl Watch for RenderBar {
     }
 }
 
-fn style(seconds: Option<f64>) -> ProgressStyle {
-    let rate = |state: &ProgressState, out: &mut dyn Write| {
+/// What was traced so far, for the bar.
+#[derive(Default)]
+struct Traced {
+    paths: AtomicU64,
+    rays: AtomicU64,
+}
+
+impl Traced {
+    fn rays_of_path(&self) -> f64 {
+        let load = |count: &AtomicU64| count.load(Ordering::Relaxed) as f64;
+        load(&self.rays) / load(&self.paths).max(1.0)
+    }
+}
+
+fn style(seconds: Option<f64>, traced: Option<Arc<Traced>>) -> ProgressStyle {
+    let rate = move |state: &ProgressState, out: &mut dyn Write| {
         // Writing to the bar's own buffer cannot fail.
-        let _ = write!(out, "{} samples/s", si(state.per_sec()));
+        let _ = match &traced {
+            Some(traced) => write!(out, "{} rays/s", si(state.per_sec() * traced.rays_of_path())),
+            None => write!(out, "{} samples/s", si(state.per_sec())),
+        };
     };
     let left = move |state: &ProgressState, out: &mut dyn Write| {
         let by_samples = state.len().map(|_| state.eta().as_secs_f64());
@@ -251,6 +273,6 @@ mod tests {
 
     #[test]
     fn the_template_is_well_formed() {
-        let _ = style(None);
+        let _ = (style(None, None), style(Some(1.0), Some(Arc::default())));
     }
 }

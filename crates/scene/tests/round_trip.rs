@@ -28,7 +28,8 @@ fn camera_film_and_integrator() {
     assert_eq!(lens, &Some(ThinLens { radius_m: 0.0125, focus_distance_m: 2.0 }));
     assert_eq!(scene.camera.position_m, [1.0, 2.0, 3.0]);
     assert_eq!((scene.camera.forward, scene.camera.up), ([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
-    assert_eq!(scene.film, Film { width: 320, height: 200, filter: Filter::Gaussian { sigma_px: 0.75 }, stokes: true });
+    let filter = Filter::Gaussian { sigma_px: 0.75 };
+    assert_eq!(scene.film, Film { width: 320, height: 200, filter, stokes: true, bands: None });
     assert_eq!(
         scene.integrator,
         Integrator {

@@ -168,8 +168,7 @@ impl Canvas {
                 let piece = (PATHS_OF_PIECE / tile.rect.area()).max(1) as u32;
                 while tile.samples < samples && !stopped.load(Ordering::Relaxed) {
                     let until = tile.samples.saturating_add(piece).min(samples);
-                    let counters =
-                        render_tile(prepared, tile.rect, tile.samples..until, &mut sums.xyz, &mut sums.stokes);
+                    let counters = render_tile(prepared, tile.rect, tile.samples..until, sums.borrow());
                     tile.samples = until;
                     tile.counters.merge(&counters);
                     {

@@ -59,6 +59,32 @@ impl XyzSum {
 
 /// What one replicate of one pixel has gathered of S₁, S₂ and S₃: the sums of the CIE XYZ of each.
 pub type StokesSum = [[f64; 3]; 3];
+/// What one replicate of one pixel has gathered in one band of wavelengths.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BandSum {
+    /// Sum of the radiance at the wavelengths that fell into the band, W·m⁻²·sr⁻¹·nm⁻¹.
+    pub radiance: f64,
+    /// How many they were.
+    pub count: u32,
+}
+
+impl BandSum {
+    pub(crate) fn add(&mut self, radiance: f64) {
+        self.radiance += radiance;
+        self.count += 1;
+    }
+}
+
+/// What a pixel knows of one band.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Band {
+    /// Mean radiance over the band, W·m⁻²·sr⁻¹·nm⁻¹; zero where no wavelength fell into it.
+    pub radiance: f64,
+    /// Standard error of that; infinite where fewer than two replicates know anything.
+    pub error: f64,
+    /// Wavelengths that fell into it.
+    pub count: u32,
+}
 
 /// All that a film keeps of a rectangle of pixels, row by row: exactly, so that a picture can be put down and taken up.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -67,14 +93,33 @@ pub struct TileSums {
     pub(crate) xyz: Vec<XyzSum>,
     /// The same of the other Stokes parameters; empty if they are not recorded.
     pub(crate) stokes: Vec<StokesSum>,
+    /// Pixel by pixel, in each replicate by replicate, in each band by band.
+    pub(crate) bands: Vec<BandSum>,
+}
+
+/// The sums of a rectangle that a kernel adds to: those that are not kept are empty.
+pub(crate) struct Sums<'a> {
+    /// See [`TileSums`].
+    pub xyz: &'a mut [XyzSum],
+    /// The other Stokes parameters.
+    pub stokes: &'a mut [StokesSum],
+    /// Bands.
+    pub bands: &'a mut [BandSum],
 }
 
 /// Bytes of one sum in a file: three numbers and a count.
 const XYZ_SUM_BYTES: usize = 28;
 /// Bytes of the sums of the other Stokes parameters: nine numbers.
 const STOKES_SUM_BYTES: usize = 72;
+/// A number and a count.
+const BAND_SUM_BYTES: usize = 12;
 
 impl TileSums {
+    /// To be added to.
+    pub(crate) fn borrow(&mut self) -> Sums<'_> {
+        Sums { xyz: &mut self.xyz, stokes: &mut self.stokes, bands: &mut self.bands }
+    }
+
     /// The sums of the pixels with so many replicates each, row by row.
     pub fn pixels(&self, replicates: u32) -> impl Iterator<Item = Pixel<'_>> {
         self.xyz.chunks_exact(replicates as usize).map(Pixel)
@@ -82,19 +127,25 @@ impl TileSums {
 
     /// The sums as bytes: little-endian, every bit kept.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = Vec::with_capacity(self.xyz.len() * XYZ_SUM_BYTES);
+        let mut bytes = Vec::with_capacity(self.xyz.len() * XYZ_SUM_BYTES + self.bands.len() * BAND_SUM_BYTES);
         for sum in &self.xyz {
             sum.xyz.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
             bytes.extend(sum.count.to_le_bytes());
         }
         self.stokes.iter().flatten().flatten().for_each(|v| bytes.extend(v.to_le_bytes()));
+        for sum in &self.bands {
+            bytes.extend(sum.radiance.to_le_bytes());
+            bytes.extend(sum.count.to_le_bytes());
+        }
         bytes
     }
 
-    /// The sums that [`TileSums::to_bytes`] wrote for so many pixels and replicates; `None` if the bytes are not as many as
-    /// that takes.
-    pub fn from_bytes(bytes: &[u8], pixels: u64, replicates: u32) -> Option<Self> {
+    /// The sums that [`TileSums::to_bytes`] wrote for so many pixels, replicates and bands; `None` if the bytes are not as many
+    /// as that takes.
+    pub fn from_bytes(bytes: &[u8], pixels: u64, replicates: u32, bands: u32) -> Option<Self> {
         let sums = usize::try_from(pixels * u64::from(replicates)).ok()?;
+        let of_bands = sums.checked_mul(bands as usize)?.checked_mul(BAND_SUM_BYTES)?;
+        let (bytes, of_bands) = bytes.split_at_checked(bytes.len().checked_sub(of_bands)?)?;
         let (xyz_bytes, with_stokes) =
             (sums.checked_mul(XYZ_SUM_BYTES)?, sums.checked_mul(XYZ_SUM_BYTES + STOKES_SUM_BYTES)?);
         if bytes.len() != xyz_bytes && bytes.len() != with_stokes {
@@ -102,18 +153,23 @@ impl TileSums {
         }
         let (bytes, stokes) = bytes.split_at(xyz_bytes);
         let number = |at: &[u8]| f64::from_le_bytes(at.try_into().expect("eight bytes"));
+        let count = |at: &[u8]| u32::from_le_bytes(at.try_into().expect("four bytes"));
+        let bands = of_bands
+            .chunks_exact(BAND_SUM_BYTES)
+            .map(|sum| BandSum { radiance: number(&sum[..8]), count: count(&sum[8..]) })
+            .collect();
         let xyz = bytes
             .chunks_exact(XYZ_SUM_BYTES)
             .map(|sum| XyzSum {
                 xyz: [number(&sum[..8]), number(&sum[8..16]), number(&sum[16..24])],
-                count: u32::from_le_bytes(sum[24..].try_into().expect("four bytes")),
+                count: count(&sum[24..]),
             })
             .collect();
         let stokes = stokes
             .chunks_exact(STOKES_SUM_BYTES)
             .map(|sum| [0, 1, 2].map(|s| [0, 1, 2].map(|c| number(&sum[24 * s + 8 * c..24 * s + 8 * c + 8]))))
             .collect();
-        Some(Self { xyz, stokes })
+        Some(Self { xyz, stokes, bands })
     }
 }
 
@@ -144,6 +200,11 @@ impl<'a> Pixel<'a> {
         } else {
             [0, 1, 2].map(|c| self.0.iter().map(|sum| sum.xyz[c]).sum::<f64>() / count)
         }
+    }
+
+    /// Mean as linear Rec. 709.
+    pub fn linear_rec709(&self) -> [f32; 3] {
+        colour::rec709_from_xyz(self.xyz()).map(|v| v as f32)
     }
 
     /// Variance of the mean of `of`, a linear function of XYZ, and its degrees of freedom; `None` with fewer than two
@@ -238,16 +299,20 @@ impl Counters {
     }
 }
 
-/// An image in the making: for each pixel the sums of R independent replicates, 32·R bytes, and 72·R more with Stokes parameters.
+/// An image in the making: for each pixel the sums of R independent replicates, 32·R bytes, 72·R more
+/// with Stokes parameters and 16·R·B more with B bands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     width: u32,
     height: u32,
     replicates: u32,
+    bands: u32,
     /// Pixel by pixel, in each replicate by replicate.
     sums: Vec<XyzSum>,
     /// The same of the other Stokes parameters; empty if they are not recorded.
     stokes: Vec<StokesSum>,
+    /// The same, in each band by band.
+    band_sums: Vec<BandSum>,
     /// What was counted on the way.
     pub counters: Counters,
 }
@@ -255,8 +320,7 @@ pub struct Film {
 impl Film {
     /// A black film.
     pub fn new(width: u32, height: u32, replicates: u32) -> Self {
-        let sums = vec![XyzSum::default(); width as usize * height as usize * replicates as usize];
-        Self { width, height, replicates, sums, stokes: Vec::new(), counters: Counters::default() }
+        Self::with_bands(width, height, replicates, 0)
     }
 
     /// The same black film, which also records S₁, S₂ and S₃.
@@ -269,6 +333,50 @@ impl Film {
     /// Whether S₁, S₂ and S₃ are recorded.
     pub fn records_stokes(&self) -> bool {
         !self.stokes.is_empty()
+    }
+
+    /// A black film that keeps so many sums for bands beside those for colour.
+    pub fn with_bands(width: u32, height: u32, replicates: u32, bands: u32) -> Self {
+        let number = width as usize * height as usize * replicates as usize;
+        Self {
+            width,
+            height,
+            replicates,
+            bands,
+            sums: vec![XyzSum::default(); number],
+            stokes: Vec::new(),
+            band_sums: vec![BandSum::default(); number * bands as usize],
+            counters: Counters::default(),
+        }
+    }
+
+    /// Sums for bands that each replicate of a pixel has.
+    pub fn bands(&self) -> u32 {
+        self.bands
+    }
+
+    /// What the pixel in column `x` and row `y` knows of band `band`.
+    pub fn band(&self, x: u32, y: u32, band: u32) -> Band {
+        let (replicates, bands) = (self.replicates as usize, self.bands as usize);
+        let start = (y as usize * self.width as usize + x as usize) * replicates * bands + band as usize;
+        let sums = || self.band_sums[start..].iter().step_by(bands).take(replicates);
+        let count: u32 = sums().map(|sum| sum.count).sum();
+        if count == 0 {
+            return Band { error: f64::INFINITY, ..Band::default() };
+        }
+        let mean = sums().map(|sum| sum.radiance).sum::<f64>() / f64::from(count);
+        // As in `Pixel::variance`.
+        let (mut scatter, mut held) = (0.0, 0_u32);
+        for sum in sums().filter(|sum| sum.count > 0) {
+            let difference = sum.radiance / f64::from(sum.count) - mean;
+            scatter += f64::from(sum.count) * difference * difference;
+            held += 1;
+        }
+        let error = match held {
+            1 => f64::INFINITY,
+            _ => (scatter / (f64::from(held - 1) * f64::from(count))).sqrt(),
+        };
+        Band { radiance: mean, error, count }
     }
 
     /// Width in pixels.
@@ -324,12 +432,20 @@ impl Film {
 
     /// All that the film keeps of a rectangle's pixels.
     pub(crate) fn tile(&self, rect: PixelRect) -> TileSums {
-        let xyz = rect.pixels().flat_map(|(x, y)| self.pixel(x, y).sums()).copied().collect();
+        let stride = (self.replicates * self.bands) as usize;
+        let of_bands = |(x, y)| {
+            let start = (y as usize * self.width as usize + x as usize) * stride;
+            &self.band_sums[start..start + stride]
+        };
         let stokes = match self.records_stokes() {
             true => rect.pixels().flat_map(|(x, y)| &self.stokes[self.replicates_of(x, y)]).copied().collect(),
             false => Vec::new(),
         };
-        TileSums { xyz, stokes }
+        TileSums {
+            xyz: rect.pixels().flat_map(|(x, y)| self.pixel(x, y).sums()).copied().collect(),
+            stokes,
+            bands: if stride == 0 { Vec::new() } else { rect.pixels().flat_map(of_bands).copied().collect() },
+        }
     }
 
     pub(crate) fn put(&mut self, rect: PixelRect, tile: &TileSums) {
@@ -342,17 +458,25 @@ impl Film {
             let range = self.replicates_of(x, y);
             self.stokes[range].copy_from_slice(sums);
         }
+        let stride = replicates * self.bands as usize;
+        for ((x, y), sums) in rect.pixels().zip(tile.bands.chunks_exact(stride.max(1))) {
+            let start = (y as usize * self.width as usize + x as usize) * stride;
+            self.band_sums[start..start + stride].copy_from_slice(sums);
+        }
     }
 
     /// Whether `tile` is what this film keeps of `rect`, by its size.
     pub(crate) fn fits(&self, rect: PixelRect, tile: &TileSums) -> bool {
         let sums = rect.area() * u64::from(self.replicates);
-        tile.xyz.len() as u64 == sums && tile.stokes.len() as u64 == if self.records_stokes() { sums } else { 0 }
+        let stokes = if self.records_stokes() { sums } else { 0 };
+        let [xyz_held, stokes_held, bands_held] = [tile.xyz.len(), tile.stokes.len(), tile.bands.len()];
+        xyz_held as u64 == sums && stokes_held as u64 == stokes && bands_held as u64 == sums * u64::from(self.bands)
     }
 
     /// Bytes of a film in memory, without Stokes parameters.
-    pub fn bytes(width: u32, height: u32, replicates: u32) -> u64 {
-        u64::from(width) * u64::from(height) * u64::from(replicates) * size_of::<XyzSum>() as u64
+    pub fn bytes(width: u32, height: u32, replicates: u32, bands: u32) -> u64 {
+        let sums = u64::from(width) * u64::from(height) * u64::from(replicates);
+        sums * (size_of::<XyzSum>() as u64 + u64::from(bands) * size_of::<BandSum>() as u64)
     }
 
     /// Bytes that Stokes parameters add to them.
@@ -367,7 +491,7 @@ impl Film {
 
     /// Linear Rec. 709 of each pixel, row by row from the top.
     pub fn linear_rec709(&self) -> Vec<[f32; 3]> {
-        self.xyz().map(|xyz| colour::rec709_from_xyz(xyz).map(|v| v as f32)).collect()
+        self.pixels().map(|pixel| pixel.linear_rec709()).collect()
     }
 
     /// Standard error of linear Rec. 709 of each pixel, row by row from the top: infinite where fewer than two replicates

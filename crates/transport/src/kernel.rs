@@ -3,8 +3,8 @@
 
 use crate::camera::Camera;
 use crate::compiled;
-use crate::film::{Counters, NonFinite, PixelRect, StokesSum, XyzSum};
-use crate::media::Inside;
+use crate::film::{Counters, NonFinite, PixelRect, Sums};
+use crate::media::{Inside, Met};
 use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
@@ -13,17 +13,18 @@ use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::prepare::Prepared;
 use crate::replay::{Replay, replay};
 use crate::sampler::Sampler;
+use crate::surface::Scattering;
 use crate::wavelength::Wavelengths;
-use etalon_optics::{Lanes, Real};
+use etalon_geometry::Ray;
+use etalon_optics::{Lanes, Real, Vec3};
 use etalon_scene::Precision;
 use std::ops::Range;
 
 /// Wavelengths that a path carries where they differ.
 pub(crate) const LANES: usize = 8;
 
-/// Adds samples to one tile: to the sums of its pixels, row by row, in each replicate by replicate; to those of the other Stokes
-/// parameters, if there are any.
-pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, &mut [XyzSum], &mut [StokesSum]) -> Counters;
+/// Adds samples to one tile: to the sums of its pixels, row by row, in each replicate by replicate.
+pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, Sums<'_>) -> Counters;
 
 /// The path loop for one scalar type and one model of wavelengths.
 pub(crate) struct Kernel {
@@ -98,9 +99,10 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
     prepared: &Prepared,
     tile: PixelRect,
     samples: Range<u32>,
-    sums: &mut [XyzSum],
-    stokes_sums: &mut [StokesSum],
+    sums: Sums<'_>,
 ) -> Counters {
+    let bands = prepared.scene.film.bands.as_ref().filter(|_| !sums.bands.is_empty());
+    let per_replicate = sums.bands.len() / sums.xyz.len();
     let tracer = Tracer::new(prepared);
     let mut counters = Counters::default();
     let replicates = prepared.scene.integrator.replicates as usize;
@@ -113,9 +115,13 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
             counters.paths += 1;
             let replicate = at * replicates + sample as usize % replicates;
             if xyz.iter().chain(stokes.iter().flatten().flatten()).all(|v| v.is_finite()) {
-                sums[replicate].add(xyz);
-                if let (Some(stokes), Some(sum)) = (stokes, stokes_sums.get_mut(replicate)) {
+                sums.xyz[replicate].add(xyz);
+                if let (Some(stokes), Some(sum)) = (stokes, sums.stokes.get_mut(replicate)) {
                     (0..3).for_each(|s| (0..3).for_each(|c| sum[s][c] += stokes[s][c]));
+                }
+                if let Some(bands) = bands {
+                    let sums = &mut sums.bands[replicate * per_replicate..][..per_replicate];
+                    M::to_bands(bands, &wavelengths, radiance, sums);
                 }
             } else {
                 counters.record_nonfinite(NonFinite { y, x, sample });
@@ -123,6 +129,21 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
         }
     }
     counters
+}
+
+/// What a camera ray meets first.
+pub(crate) struct FirstSurface<'a> {
+    /// Number of the object.
+    pub object: u32,
+    /// In the frame.
+    pub position: Vec3<f64>,
+    /// Toward the camera.
+    pub wo: Vec3<f64>,
+    /// Cosine between that and the surface's own normal: negative from behind.
+    pub geometric_cos: f64,
+    pub scattering: Scattering<'a>,
+    /// The numbers by which the path draws its next direction.
+    pub u: [f64; 3],
 }
 
 /// One scene.
@@ -156,26 +177,17 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// One camera path: a pure function of the scene, its seed, the pixel and the number of the sample.
-    pub(crate) fn sample<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
-        &self,
-        x: u32,
-        y: u32,
-        sample: u32,
-        counters: &mut Counters,
-        observer: &mut impl Observer<R, N>,
-    ) -> (Wavelengths<N>, Lanes<R, N>, P) {
-        let scene = &self.prepared.scene;
-        let (width, height) = (f64::from(scene.film.width), f64::from(scene.film.height));
+    fn sampler(&self, x: u32, y: u32, sample: u32) -> Sampler {
+        let integrator = &self.prepared.scene.integrator;
         let pixel = u64::from(y) << 32 | u64::from(x);
-        let integrator = &scene.integrator;
-        let sampler = Sampler::new(integrator.sampler, integrator.seed, pixel, sample, integrator.replicates);
-        let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
+        Sampler::new(integrator.sampler, integrator.seed, pixel, sample, integrator.replicates)
+    }
 
-        let wavelengths = M::wavelengths(self.prepared, || {
-            let [wavelength, ..] = sampler.set(1);
-            wavelength
-        });
+    /// The ray of a sample, and the media that it begins in.
+    fn camera_ray(&self, x: u32, y: u32, sampler: &Sampler, counters: &mut Counters) -> (Ray<f64>, Inside) {
+        let film = &self.prepared.scene.film;
+        let (width, height) = (f64::from(film.width), f64::from(film.height));
+        let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
         let column = f64::from(x) + 0.5 + self.prepared.filter.offset(film_x);
         let row = f64::from(y) + 0.5 + self.prepared.filter.offset(film_y);
         let film = [2.0 * column / width - 1.0, 1.0 - 2.0 * row / height];
@@ -187,6 +199,60 @@ impl<'a> Tracer<'a> {
             }
             _ => Inside::NOTHING,
         };
+        (ray, inside)
+    }
+
+    /// The first surface that the path of a sample meets, masks passed as the path passes them.
+    pub(crate) fn first_surface(
+        &self,
+        x: u32,
+        y: u32,
+        sample: u32,
+        counters: &mut Counters,
+    ) -> Option<FirstSurface<'_>> {
+        let sampler = self.sampler(x, y, sample);
+        let (mut ray, mut inside) = self.camera_ray(x, y, &sampler, counters);
+        for vertex in 0..MOST_VERTICES {
+            let Met { hit, point, surface, interface, beyond } = self.world.meet(&mut ray, &mut inside, counters)?;
+            let [.., u_mask] = sampler.vertex_set(vertex, 1);
+            if self.world.masks && surface.opacity < 1.0 && u_mask >= surface.opacity {
+                ray = point.spawn(ray.direction);
+                if let Some(beyond) = beyond {
+                    ray.leaves = beyond.leaves;
+                    inside = beyond.inside;
+                }
+                continue;
+            }
+            let [u_lobe, u1, u2, _] = sampler.vertex_set(vertex, 0);
+            let wo = -ray.direction;
+            return Some(FirstSurface {
+                object: surface.object,
+                position: point.position,
+                wo,
+                geometric_cos: point.normal.dot(wo),
+                scattering: surface.scattering(self.world.geometry, &point, &hit, interface),
+                u: [u_lobe, u1, u2],
+            });
+        }
+        None
+    }
+
+    /// One camera path: a pure function of the scene, its seed, the pixel and the number of the sample.
+    pub(crate) fn sample<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
+        &self,
+        x: u32,
+        y: u32,
+        sample: u32,
+        counters: &mut Counters,
+        observer: &mut impl Observer<R, N>,
+    ) -> (Wavelengths<N>, Lanes<R, N>, P) {
+        let sampler = self.sampler(x, y, sample);
+
+        let wavelengths = M::wavelengths(self.prepared, || {
+            let [wavelength, ..] = sampler.set(1);
+            wavelength
+        });
+        let (ray, inside) = self.camera_ray(x, y, &sampler, counters);
         let mut polarisation = P::at_camera(ray.direction, self.camera.right());
         let radiance = self.world.radiance::<R, M, P, N>(
             ray,

@@ -14,6 +14,7 @@
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`], [`texture`] | what the estimates are made of |
 //! | `kernel`, `model`, [`mod@render`], [`film`] | the table of kernels, what their lanes stand for, tiles over all cores, sums |
+//! | [`features`] | what camera rays meet first |
 //! | [`canvas`] | a picture under way: divided, put down, taken up |
 //! | [`accuracy`], [`pilot`], [`price`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
 //! | [`adaptive`], [`shares`] | where samples are worth most, and how they are spread |
@@ -29,6 +30,7 @@ pub mod camera;
 pub mod canvas;
 mod compiled;
 mod coordinates;
+pub mod features;
 pub mod film;
 pub mod filter;
 pub mod frame;
@@ -60,7 +62,8 @@ pub mod wavelength;
 pub use accuracy::ImageError;
 pub use adaptive::{Adaptivity, Exploration};
 pub use canvas::{Canvas, Shard, Tile};
-pub use film::{Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
+pub use features::Features;
+pub use film::{Band, Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
 pub use pilot::Pilot;
 pub use plan::{Carried, Effect, EffectName, Plan, Study, StudyError};
 pub use prepare::{PrepareError, Prepared, prepare, prepare_study};

@@ -10,11 +10,13 @@
 //! Where both cover a scene, [`Shared`] and [`Hero`] give the same bits: without dispersion every relative density is
 //! exactly 1, and so is the weight N/Σ that comes of it.
 
+use crate::film::BandSum;
 use crate::plan::CHANNELS_NM;
 use crate::prepare::Prepared;
 use crate::wavelength::Wavelengths;
 use etalon_optics::colour::rec709_to_xyz;
 use etalon_optics::{Lanes, Real};
+use etalon_scene::Bands;
 
 /// How the lanes of one path relate to each other and to the film.
 pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
@@ -39,6 +41,15 @@ pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
 
     /// What the path's radiance adds to the film, CIE XYZ.
     fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3];
+
+    /// Adds the path's radiance to the sums of the bands that its wavelengths fall into.
+    fn to_bands(bands: &Bands, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>, sums: &mut [BandSum]) {
+        for lane in 0..N {
+            if let Some(band) = bands.at(wavelengths.lambda_nm[lane]) {
+                sums[band as usize].add(radiance[lane].to_f64());
+            }
+        }
+    }
 }
 
 /// One lane at a fixed wavelength that stands for all of them.
@@ -85,6 +96,11 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
 
     fn to_xyz(prepared: &Prepared, _: &Wavelengths<1>, radiance: Lanes<R, 1>) -> [f64; 3] {
         prepared.one_lane.xyz_of_unit.map(|v| v * radiance[0].to_f64())
+    }
+
+    /// One sum stands for all bands: each is it times a known number.
+    fn to_bands(_: &Bands, _: &Wavelengths<1>, radiance: Lanes<R, 1>, sums: &mut [BandSum]) {
+        sums[0].add(radiance[0].to_f64());
     }
 }
 

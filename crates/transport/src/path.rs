@@ -231,7 +231,7 @@ impl World<'_> {
 
     /// What the walk meets next: the closest surface, or the closest that is one where media are nested.
     #[inline(always)]
-    fn meet(&self, ray: &mut Ray<f64>, inside: &mut Inside, counters: &mut Counters) -> Option<Met<'_>> {
+    pub(crate) fn meet(&self, ray: &mut Ray<f64>, inside: &mut Inside, counters: &mut Counters) -> Option<Met<'_>> {
         match self.media {
             Some(media) if compiled::NESTED_DIELECTRICS => {
                 media.meet(self.geometry, self.surfaces, ray, inside, &mut counters.lost_media)

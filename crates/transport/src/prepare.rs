@@ -164,7 +164,10 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         surfaces,
         lights,
         environments,
-        wavelengths: WavelengthDistribution::new(range_nm),
+        wavelengths: match &scene.film.bands {
+            Some(bands) => WavelengthDistribution::for_bands(range_nm, bands),
+            None => WavelengthDistribution::new(range_nm),
+        },
         one_lane: OneLaneFilm::new(scene),
         filter: FilterSampler::new(&scene.film.filter),
         plan,

@@ -1,6 +1,6 @@
 //! Pixels traced with random numbers that no picture uses: what explorations and pilots are made of.
 
-use crate::film::{Counters, Pixel, PixelRect, XyzSum};
+use crate::film::{Counters, Pixel, PixelRect, Sums, XyzSum};
 use crate::prepare::Prepared;
 use crate::render::ThreadError;
 use crate::sampler::SOBOL_POINTS;
@@ -129,7 +129,12 @@ impl<'a> Probe<'a> {
                     for (copy, sums) in sums.chunks_exact_mut(replicates as usize).enumerate() {
                         let start = beyond + (own + copy as u32) * length;
                         let range = start + samples.start..start + samples.end;
-                        counters.merge(&kernel(prepared, pixel, range, sums, &mut []));
+                        counters.merge(&kernel(
+                            prepared,
+                            pixel,
+                            range,
+                            Sums { xyz: sums, stokes: &mut [], bands: &mut [] },
+                        ));
                     }
                     on_work(&counters);
                     *paths += counters.paths;

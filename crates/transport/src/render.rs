@@ -1,6 +1,7 @@
 //! Rendering: tiles over all cores, the same bytes whatever their number.
 
 use crate::film::{Counters, Film, PixelRect};
+use crate::plan::LaneModel;
 use crate::prepare::Prepared;
 use crate::shares::Shares;
 use rayon::prelude::*;
@@ -74,8 +75,29 @@ impl Prepared {
 
     /// A black film for this scene.
     pub fn film(&self) -> Film {
-        let film = Film::new(self.scene.film.width, self.scene.film.height, self.scene.integrator.replicates);
+        let film = &self.scene.film;
+        let film = Film::with_bands(film.width, film.height, self.scene.integrator.replicates, self.band_sums());
         if self.records_stokes() { film.recording_stokes() } else { film }
+    }
+
+    /// Sums that a film keeps for its bands: one for each, or one for all where one lane stands for all wavelengths.
+    pub fn band_sums(&self) -> u32 {
+        match (&self.scene.film.bands, self.plan().lane_model) {
+            // Channels have no wavelengths.
+            (None, _) | (_, LaneModel::ThreeChannels) => 0,
+            (Some(_), LaneModel::One) => 1,
+            (Some(bands), LaneModel::Shared | LaneModel::Hero) => bands.count,
+        }
+    }
+
+    /// Where one sum stands for all bands: what it is to be multiplied by for each.
+    pub fn band_factors(&self) -> Option<Vec<f64>> {
+        let bands = self.scene.film.bands.as_ref().filter(|_| self.plan().lane_model == LaneModel::One)?;
+        Some(
+            (0..bands.count)
+                .map(|band| self.one_lane.mean_of_unit([bands.edge_nm(band), bands.edge_nm(band + 1)]))
+                .collect(),
+        )
     }
 
     /// Renders `extent` onto a new film. `on_tile` hears what a finished tile took.
@@ -111,8 +133,7 @@ impl Prepared {
                         return None;
                     }
                     let mut sums = before.tile(tile);
-                    let counters =
-                        render_tile(self, tile, extent.samples_of(tile, replicates), &mut sums.xyz, &mut sums.stokes);
+                    let counters = render_tile(self, tile, extent.samples_of(tile, replicates), sums.borrow());
                     if on_tile(&counters) == Control::Stop {
                         stopped.store(true, Ordering::Relaxed);
                     }

@@ -135,6 +135,16 @@ impl Scattering<'_> {
         self.bsdf.eval(lambda_nm, &self.at, wo, wi)
     }
 
+    /// The unit normal to scatter around, on the surface's own outward side.
+    pub(crate) fn shading_normal(&self) -> Vec3<f64> {
+        self.at.shading_normal()
+    }
+
+    /// Texture coordinates.
+    pub(crate) fn uv(&self) -> [f64; 2] {
+        self.at.uv
+    }
+
     /// See [`Bsdf::mueller`].
     pub(crate) fn mueller<const N: usize>(
         &self,

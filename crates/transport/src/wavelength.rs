@@ -6,6 +6,7 @@
 
 use etalon_optics::colour::{cie_y_integral_nm, colour_matching};
 use etalon_optics::{Lanes, Real};
+use etalon_scene::Bands;
 
 /// The wavelengths of one path.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +43,41 @@ const BLUR_NM: i32 = 40;
 /// About twice as many as there are nanometres in the visible range, so that most searches end where they begin.
 const GUIDES: usize = 1024;
 
+/// Share of the samples that bands of a film get evenly: every band then has at least half as many as an even spread would
+/// give it, and the variance of the colour at most doubles.
+const EVEN_SHARE: f64 = 0.5;
+
 impl WavelengthDistribution {
+    /// The distribution for a film that keeps bands: within each band the density is constant, so that the mean over the
+    /// wavelengths that fall into a band is the mean over the band; half of the samples in the bands are spread evenly.
+    pub fn for_bands(range_nm: [f64; 2], bands: &Bands) -> Self {
+        let plain = Self::new(range_nm);
+        let edges: Vec<f64> = (0..=bands.count).map(|index| bands.edge_nm(index)).collect();
+        let (begin, end) = (edges[0], edges[edges.len() - 1]);
+        let outside = |nm: &&f64| **nm < begin || **nm > end;
+        let mut borders_nm: Vec<f64> = plain.borders_nm.iter().filter(outside).copied().chain(edges).collect();
+        borders_nm.sort_by(f64::total_cmp);
+        let of_bands = plain.cumulative(end) - plain.cumulative(begin);
+        let mut cdf = vec![0.0];
+        let mut sum = 0.0;
+        for w in borders_nm.windows(2) {
+            let seen = plain.cumulative(w[1]) - plain.cumulative(w[0]);
+            let even = of_bands / f64::from(bands.count);
+            let in_band = w[0] >= begin && w[1] <= end;
+            sum += if in_band { EVEN_SHARE * even + (1.0 - EVEN_SHARE) * seen } else { seen };
+            cdf.push(sum);
+        }
+        cdf.iter_mut().for_each(|c| *c /= sum);
+        Self::of_cells(borders_nm, cdf)
+    }
+
+    /// Probability of the wavelengths up to `nm`.
+    fn cumulative(&self, nm: f64) -> f64 {
+        let cell = self.borders_nm.partition_point(|&border| border <= nm).clamp(1, self.borders_nm.len() - 1) - 1;
+        let (nm0, nm1) = (self.borders_nm[cell], self.borders_nm[cell + 1]);
+        self.cdf[cell] + (self.cdf[cell + 1] - self.cdf[cell]) * ((nm - nm0) / (nm1 - nm0))
+    }
+
     /// The distribution over `range_nm`, which must be finite, ordered and not empty.
     pub fn new(range_nm: [f64; 2]) -> Self {
         Self::blurred(range_nm, BLUR_NM)
@@ -70,6 +105,10 @@ impl WavelengthDistribution {
             cdf.push(sum);
         }
         cdf.iter_mut().for_each(|c| *c /= sum);
+        Self::of_cells(borders_nm, cdf)
+    }
+
+    fn of_cells(borders_nm: Vec<f64>, cdf: Vec<f64>) -> Self {
         let cell_at = |guide: usize| cdf.partition_point(|&c| c <= guide as f64 / GUIDES as f64) - 1;
         let guides = (0..GUIDES).map(|guide| cell_at(guide) as u32).collect();
         Self { borders_nm, cdf, guides }
@@ -187,6 +226,39 @@ mod tests {
         for spectrum in [&daylight as &dyn Fn(f64) -> f64, &rising] {
             let (smooth, near) = (variance(&smooth, spectrum), variance(&near, spectrum));
             assert!(smooth < 0.005 && near > 0.01, "{smooth} and {near}");
+        }
+    }
+
+    #[test]
+    fn every_band_has_an_even_density_and_its_share_of_the_samples() {
+        let range = [360.0, 830.0];
+        for [first, last, step] in
+            [[400.0, 700.0, 10.0], [365.0, 825.0, 10.0], [550.25, 551.25, 0.5], [500.0, 500.0, 60.0]]
+        {
+            let bands = Bands::new([first, last, step], range).unwrap();
+            let d = WavelengthDistribution::for_bands(range, &bands);
+            assert_eq!(d.range_nm(), range);
+            let n = 100_000;
+            let mut counts = vec![0_u32; bands.count as usize];
+            let mut densities = vec![None; bands.count as usize];
+            let mut length = 0.0;
+            for i in 0..n {
+                let (nm, pdf) = d.sample((f64::from(i) + 0.5) / f64::from(n));
+                length += 1.0 / pdf / f64::from(n);
+                let band = ((nm - bands.edge_nm(0)) / bands.step_nm).floor();
+                if (0.0..f64::from(bands.count)).contains(&band) {
+                    let band = band as usize;
+                    counts[band] += 1;
+                    // The same bits, but for a wavelength that was rounded onto the edge.
+                    let known: f64 = *densities[band].get_or_insert(pdf);
+                    assert!((pdf / known - 1.0).abs() < 1e-12, "{nm} nm: {pdf} is not {known}");
+                }
+            }
+            assert!((length / (range[1] - range[0]) - 1.0).abs() < 1e-3, "{length}");
+            let total: u32 = counts.iter().sum();
+            let fewest = f64::from(*counts.iter().min().unwrap());
+            // One stratum at each end.
+            assert!(fewest + 2.0 >= 0.5 * f64::from(total) / f64::from(bands.count), "{counts:?}");
         }
     }
 

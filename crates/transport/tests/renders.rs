@@ -140,7 +140,8 @@ fn by_stages(prepared: &Prepared, shard: Shard, stages: &[u32]) -> Canvas {
         for number in 0..canvas.tiles() {
             let (tile, sums) = canvas.tile(number);
             let replicates = prepared.scene().integrator.replicates;
-            let sums = TileSums::from_bytes(&sums.to_bytes(), tile.rect.area(), replicates).unwrap();
+            let sums =
+                TileSums::from_bytes(&sums.to_bytes(), tile.rect.area(), replicates, prepared.band_sums()).unwrap();
             assert!(next.take_up(&tile, &sums));
             assert!(!next.take_up(&tile, &sums), "a tile was taken up twice");
         }

@@ -52,7 +52,7 @@ struct Cost {
 
 pub(crate) fn run(args: Args) -> Outcome {
     let mut loaded = load(&args.scene, args.overrides.film_size())?;
-    args.overrides.apply(&mut loaded.scene);
+    args.overrides.apply(&mut loaded.scene)?;
     print::warnings(&loaded.warnings);
     let study = args.overrides.study();
     let prepared = prepared(&loaded.scene, &study)?;

@@ -69,7 +69,8 @@ const CHECKPOINT: &str = "60s";
 
 pub(crate) fn run(args: Args) -> Outcome {
     // A scene with mistakes is found here, not on a hundred machines.
-    let loaded = load(&args.scene, args.overrides.film_size())?;
+    let mut loaded = load(&args.scene, args.overrides.film_size())?;
+    args.overrides.apply(&mut loaded.scene)?;
     print::warnings(&loaded.warnings);
     let stem = args.scene.file_stem().map_or_else(|| "picture".into(), |stem| stem.to_string_lossy().into_owned());
     let absolute = |path: &Path| std::path::absolute(path).map_err(|error| Failure::run(Report::from_err(error)));

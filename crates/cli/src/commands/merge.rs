@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use etalon_transport::{Canvas, Shard};
+use etalon_transport::{Canvas, Features, Shard};
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -60,10 +60,11 @@ pub(crate) fn run(args: Args) -> Outcome {
         return failure.into_outcome();
     };
 
-    let (header, canvas) = put_together(parts)?;
+    let (header, canvas, features) = put_together(parts)?;
     let error = canvas.with_film(|film| film.error(header.subject.crop));
     let samples = header.samples;
-    let delivery = Delivery { header: &header, canvas: &canvas, samples, error, exposure_ev: args.exposure };
+    let delivery =
+        Delivery { header: &header, canvas: &canvas, features: &features, samples, error, exposure_ev: args.exposure };
     let (written, failure) = delivery.write(&outputs);
     let relative_rmse = error.map(|error| error.relative_rmse);
     if args.json {
@@ -107,6 +108,8 @@ fn check(parts: &[(PathBuf, Kept)], failure: &mut Failure) {
             Some(format!("it has {} samples a pixel, not {}", header.samples, first.samples))
         } else if header.shares != first.shares {
             Some("its samples are spread otherwise over the picture".to_owned())
+        } else if header.channels != first.channels {
+            Some("it was to have other channels (--aov)".to_owned())
         } else {
             None
         };
@@ -138,8 +141,8 @@ fn check(parts: &[(PathBuf, Kept)], failure: &mut Failure) {
     }
 }
 
-/// All tiles on one canvas.
-fn put_together(parts: Vec<(PathBuf, Kept)>) -> Result<(Header, Canvas), Failure> {
+/// All tiles on one canvas, and what the pixels of each meet first.
+fn put_together(parts: Vec<(PathBuf, Kept)>) -> Result<(Header, Canvas, Vec<Vec<Features>>), Failure> {
     let damaged = |path: &PathBuf, why: &str| {
         Failure::input(miette!(code = "damaged-part", "`{}` is damaged: {why}", path.display()))
     };
@@ -154,9 +157,13 @@ fn put_together(parts: Vec<(PathBuf, Kept)>) -> Result<(Header, Canvas), Failure
         None => None,
     };
     let canvas = Canvas::of_share(header.subject.film(), header.subject.crop, Shard::WHOLE, shares.as_ref());
-    let mut tiles = 0;
+    let (mut tiles, mut found) = (0, BTreeMap::new());
     for (path, part) in &parts {
-        for (tile, sums) in &part.tiles {
+        for (tile, sums, of_tile) in &part.tiles {
+            if header.channels.has_features() && of_tile.is_empty() {
+                return Err(damaged(path, "it lacks what its channels need"));
+            }
+            found.insert((tile.rect.y0, tile.rect.x0), of_tile);
             if !canvas.take_up(tile, sums) {
                 return Err(damaged(path, "it has a tile that is not one of the picture's, or that another part has"));
             }
@@ -166,5 +173,11 @@ fn put_together(parts: Vec<(PathBuf, Kept)>) -> Result<(Header, Canvas), Failure
     if tiles != canvas.tiles() {
         return Err(damaged(first_path, "tiles are missing from it or from another part"));
     }
-    Ok((header, canvas))
+    let features = if header.channels.has_features() {
+        let rects = (0..canvas.tiles()).map(|number| canvas.tile(number).0.rect);
+        rects.map(|rect| found[&(rect.y0, rect.x0)].clone()).collect()
+    } else {
+        Vec::new()
+    };
+    Ok((header, canvas, features))
 }

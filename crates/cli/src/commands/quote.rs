@@ -99,7 +99,7 @@ struct PriceJson {
 
 pub(crate) fn run(args: Args) -> Outcome {
     let mut loaded = load(&args.scene, args.overrides.film_size())?;
-    args.overrides.apply(&mut loaded.scene);
+    args.overrides.apply(&mut loaded.scene)?;
     print::warnings(&loaded.warnings);
     let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
     let clock = Clock::start(args.clock, threads);

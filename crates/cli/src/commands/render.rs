@@ -7,18 +7,20 @@ mod run;
 mod warnings;
 mod watcher;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use etalon_transport::canvas::tiles_of;
 use etalon_transport::{
-    Adaptivity, Canvas, Ended, Explored, ImageError, Limits, PixelRect, Prepared, Shard, prepare_study,
+    Adaptivity, Canvas, Ended, Explored, Features, ImageError, Limits, PixelRect, Prepared, Shard, prepare_study,
 };
 use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::args::{Crop, PixelAt, ShardArg};
+use crate::channels::{Aov, Channels};
 use crate::deliver::Delivery;
+use crate::display::{self, Display};
 use crate::failure::{Failure, Outcome, ProblemJson};
 use crate::interrupt::Interrupt;
 use crate::load::{LoadedScene, load};
@@ -63,6 +65,12 @@ pub(crate) struct Args {
     /// Exposure of PNG files, in stops: each doubles the light. EXR files stay as they are.
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::args::finite)]
     exposure: f64,
+    /// Channels that the EXR has beside the picture: of the first surface that is met, or of the samples.
+    #[arg(long, value_enum, value_name = "CHANNELS", value_delimiter = ',')]
+    aov: Vec<Aov>,
+    /// Write no channels but those of --aov to the EXR.
+    #[arg(long, requires = "aov")]
+    only: bool,
     /// Render only these pixels: columns from X0 up to but not including X1, rows from Y0 to Y1, counted from the top
     /// left. The EXR remembers where they belong.
     #[arg(long, value_name = "X0,X1,Y0,Y1")]
@@ -82,6 +90,9 @@ pub(crate) struct Args {
     /// Which of the pixel's paths.
     #[arg(long, value_name = "K")]
     sample: Option<u32>,
+    /// Show the picture in tev while it is rendered; 127.0.0.1:14158 if no HOST:PORT is given.
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true, default_missing_value = display::DEFAULT)]
+    display_server: Option<String>,
     /// How progress is shown: as a bar on a terminal, or as lines on standard output that a farm reads.
     #[arg(long, value_enum, default_value_t = ProgressKind::Bar, conflicts_with_all = ["json", "quiet"])]
     progress: ProgressKind,
@@ -175,7 +186,10 @@ fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
             return Err(failure);
         }
     };
-    args.overrides.apply(&mut loaded.scene);
+    if let Err(wrong) = args.overrides.apply(&mut loaded.scene) {
+        failure.add(wrong);
+        return Err(failure);
+    }
     room::check_memory(&loaded.scene, loaded.scene.film.stokes || args.overrides.polarised(), &mut failure);
     let film = &loaded.scene.film;
     let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
@@ -233,7 +247,8 @@ fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
     let prepare_seconds = start.elapsed().as_secs_f64();
     let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
     check_shard(args, rect, shard, outputs, &mut failure);
-    room::check_disks(args.checkpoint.is_some(), &subject, outputs, &mut failure, &mut warnings);
+    let channels = Channels::new(&args.aov, args.only);
+    room::check_disks(args.checkpoint.is_some(), &subject, &channels, outputs, &mut failure, &mut warnings);
     let resumed = if args.resume { resume::find(args, &subject, shard, &mut failure) } else { None };
     failure.into_outcome()?;
     if args.resume && resumed.is_none() {
@@ -278,7 +293,11 @@ fn render(args: &Args) -> Result<(), Stop> {
     let limits = limits(args, &job);
     let bar = RenderBar::new(job.rect, limits.seconds, limits.relative_rmse, args.quiet || args.json);
     let openjd = args.progress == ProgressKind::Openjd;
-    let watch = Watcher::new(&bar, &interrupt, openjd);
+    let display = args.display_server.as_ref().and_then(|address| {
+        let name = args.output.first().map_or_else(|| "etalon".to_owned(), |output| output.display().to_string());
+        Display::open(address, &name, job.subject.size, job.subject.replicates)
+    });
+    let watch = Watcher::new(&bar, &interrupt, display.as_ref(), openjd);
     let run = match job.resumed.take() {
         Some(kept) => Run::taken_up(args, &job, kept, limits),
         None => Run::new(args, &job, limits, &watch),
@@ -286,6 +305,9 @@ fn render(args: &Args) -> Result<(), Stop> {
     let done = run.and_then(|run| run.to_its_end(args, &job, &watch));
     bar.clear();
     let mut done = done.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
+    if let Some(display) = display {
+        done.canvas.with_film(|film| display.finish(film, job.rect));
+    }
 
     let noticed = done.canvas.with_film(|film| warnings::of(args, &film.counters));
     print::warnings(&noticed);
@@ -294,6 +316,7 @@ fn render(args: &Args) -> Result<(), Stop> {
     let delivery = Delivery {
         header: &done.header,
         canvas: &done.canvas,
+        features: &done.features,
         samples: done.ended.samples,
         error: done.error,
         exposure_ev: args.exposure,
@@ -302,12 +325,15 @@ fn render(args: &Args) -> Result<(), Stop> {
     let (written, mut failure) = if begun { delivery.write(&outputs) } else { Default::default() };
     let kept = keep(args, &done, &failure, begun);
     if let Some(signal) = interrupt.signal().filter(|_| !done.header.complete) {
-        failure.add(interrupted(signal, &done, &written, kept.as_ref()));
+        failure.add(interrupted(args, signal, &done, &written, kept.as_ref()));
     } else if let Some(kept) = kept {
         failure.add(match kept {
             Ok(path) => Failure::run(miette!(
                 code = "kept",
-                help = "with --resume, the same command writes the pictures without rendering again",
+                help = format!(
+                    "{}with --resume, the same command writes the pictures without rendering again",
+                    moved(args, &path)
+                ),
                 "what was rendered is kept in `{}`",
                 path.display()
             )),
@@ -334,18 +360,27 @@ fn keep(args: &Args, done: &Done, failure: &Failure, begun: bool) -> Option<Resu
     if !begun {
         return None;
     }
-    let Err(error) = state::write(&beside, &done.header, &done.canvas) else { return Some(Ok(beside)) };
+    let Err(error) = state::write(&beside, &done.header, &done.canvas, &[]) else { return Some(Ok(beside)) };
     // The disk of the outputs may be full; another may not be.
     let name = format!("etalon-{}.checkpoint", std::process::id());
     let elsewhere = std::env::temp_dir().join(name);
-    Some(match state::write(&elsewhere, &done.header, &done.canvas) {
+    Some(match state::write(&elsewhere, &done.header, &done.canvas, &[]) {
         Ok(()) => Ok(elsewhere),
         Err(_) => Err(Failure::run(Report::from_err(error).wrap_err("what was rendered is lost"))),
     })
 }
 
+/// What must be done with a checkpoint before it is found.
+fn moved(args: &Args, kept: &Path) -> String {
+    match args.output.first().map(|output| state::checkpoint_path(output)) {
+        Some(beside) if beside != kept => format!("move it to `{}`: ", beside.display()),
+        _ => String::new(),
+    }
+}
+
 /// What is said of a render that a signal has ended.
 fn interrupted(
+    args: &Args,
     signal: u8,
     done: &Done,
     written: &[output::Written],
@@ -364,7 +399,9 @@ fn interrupted(
         });
     }
     let help = match kept {
-        Some(Ok(path)) => format!("the same command with --resume goes on from `{}`", path.display()),
+        Some(Ok(path)) => {
+            format!("{}the same command with --resume goes on from `{}`", moved(args, path), path.display())
+        }
         Some(Err(_)) => "the sums could not be kept, so it cannot be resumed".to_owned(),
         None => "nothing is kept".to_owned(),
     };
@@ -376,6 +413,8 @@ struct Done {
     ended: Ended,
     canvas: Canvas,
     header: Header,
+    /// Of each tile, where a channel wants them.
+    features: Vec<Vec<Features>>,
     error: Option<ImageError>,
     /// How it was decided where the samples go; not known of a render that was taken up.
     explored: Option<Explored>,

@@ -5,11 +5,12 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use etalon_picture::{PictureError, write_atomically};
-use etalon_transport::{Canvas, Shard, Tile, TileSums};
+use etalon_transport::{Canvas, Features, Shard, Tile, TileSums};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::Subject;
+use crate::channels::Channels;
 
 const MAGIC: [u8; 8] = *b"ETALON\0\x01";
 /// A header is a page of JSON and, with shares, a number for each region; a file that claims more is damaged.
@@ -32,6 +33,10 @@ pub(crate) struct Header {
     pub shares: Option<Vec<u32>>,
     /// What these samples are to reach: "samples" or "error".
     pub reaches: String,
+    /// Which channels the picture is to have.
+    pub channels: Channels,
+    /// Names of the objects, where a channel tells them apart.
+    pub object_names: Option<Vec<String>>,
     /// Seconds spent so far.
     pub seconds: f64,
     /// Whether every tile has the samples that were settled, or time was up.
@@ -53,8 +58,8 @@ pub(crate) struct Limited {
 pub(crate) struct Kept {
     /// What it says.
     pub header: Header,
-    /// Its tiles.
-    pub tiles: Vec<(Tile, TileSums)>,
+    /// Its tiles, and what their pixels meet first, if it is there.
+    pub tiles: Vec<(Tile, TileSums, Vec<Features>)>,
 }
 
 /// Why a file of a picture under way cannot be used.
@@ -84,8 +89,14 @@ pub(crate) enum StateError {
     },
 }
 
-/// Writes what a canvas holds now, tile by tile, while others may work on it.
-pub(crate) fn write(path: &Path, header: &Header, canvas: &Canvas) -> Result<(), PictureError> {
+/// Writes what a canvas holds now, tile by tile, while others may work on it; `features` has what the pixels of each tile meet
+/// first, or nothing.
+pub(crate) fn write(
+    path: &Path,
+    header: &Header,
+    canvas: &Canvas,
+    features: &[Vec<Features>],
+) -> Result<(), PictureError> {
     write_atomically(path, |out| {
         let mut out = Hashing { out, hash: Sha256::new() };
         out.write_all(&MAGIC)?;
@@ -95,6 +106,8 @@ pub(crate) fn write(path: &Path, header: &Header, canvas: &Canvas) -> Result<(),
             if tile.samples > 0 {
                 out.block(&serde_json::to_vec(&tile)?)?;
                 out.block(&sums.to_bytes())?;
+                let of_tile = features.get(number).into_iter().flatten().flat_map(Features::to_array);
+                out.block(&of_tile.flat_map(f32::to_le_bytes).collect::<Vec<u8>>())?;
             }
         }
         out.write_all(&0_u32.to_le_bytes())?;
@@ -123,8 +136,22 @@ pub(crate) fn read(path: &Path) -> Result<Kept, StateError> {
             && rect.y0 >= frame.y0
             && rect.x1 <= frame.x1
             && rect.y1 <= frame.y1;
-        let sums = inside.then(|| TileSums::from_bytes(&bytes, rect.area(), header.subject.replicates)).flatten();
-        tiles.push((tile, sums.ok_or_else(|| input.damaged("a tile does not fit into the picture"))?));
+        let sums = inside
+            .then(|| TileSums::from_bytes(&bytes, rect.area(), header.subject.replicates, header.subject.band_sums()))
+            .flatten();
+        let sums = sums.ok_or_else(|| input.damaged("a tile does not fit into the picture"))?;
+        let bytes = input.block(u32::MAX)?;
+        let numbers: Vec<f32> =
+            bytes.chunks_exact(4).map(|four| f32::from_le_bytes(four.try_into().expect("four bytes"))).collect();
+        let features: Vec<Features> = numbers
+            .chunks_exact(Features::NUMBERS)
+            .map(|pixel| Features::from_array(pixel.try_into().expect("so many numbers")))
+            .collect();
+        let expected = if features.is_empty() { 0 } else { rect.area() as usize * Features::NUMBERS * 4 };
+        if bytes.len() != expected {
+            return Err(input.damaged("a tile's features do not fit into the picture"));
+        }
+        tiles.push((tile, sums, features));
     }
     let Input { input: mut rest, hash, .. } = input;
     let mut stated = [0; 32];

@@ -13,7 +13,7 @@ mod file;
 mod subject;
 
 pub(crate) use file::{Header, Kept, Limited, StateError, read, write};
-pub(crate) use subject::Subject;
+pub(crate) use subject::{KeptBands, Subject};
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,9 @@
 //! What a picture is of: all that decides its pixels, and what its file says about it.
 
-use etalon_transport::{Film, PixelRect, Prepared};
+use etalon_transport::{Band, Film, PixelRect, Prepared};
 use serde::{Deserialize, Serialize};
+
+use crate::matrices;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -20,8 +22,49 @@ pub(crate) struct Subject {
     pub seed: u64,
     /// Independent replicates of each pixel.
     pub replicates: u32,
+    /// `worldToCamera` and `worldToNDC`: see [`crate::matrices`].
+    pub matrices: [[f32; 16]; 2],
+    /// Bands of wavelengths that the film keeps.
+    pub bands: Option<KeptBands>,
     /// The plan: effects, kernel, sampler, depth.
     pub plan: Value,
+}
+
+/// Bands of wavelengths, and how the film keeps them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct KeptBands {
+    /// Centre of the first, nm, and the step from one to the next.
+    pub first_nm: f64,
+    /// From centre to centre, nm.
+    pub step_nm: f64,
+    /// How many.
+    pub count: u32,
+    /// Where one sum stands for all bands: the bits of the 64-bit floats by which it is multiplied for each.
+    pub factors: Option<Vec<u64>>,
+}
+
+impl KeptBands {
+    /// Sums that the film has for them.
+    fn sums(&self) -> u32 {
+        if self.factors.is_some() { 1 } else { self.count }
+    }
+
+    /// Centre of band `index`, nm.
+    pub(crate) fn centre_nm(&self, index: u32) -> f64 {
+        self.first_nm + f64::from(index) * self.step_nm
+    }
+
+    /// What a pixel knows of band `index`.
+    pub(crate) fn of_pixel(&self, film: &Film, x: u32, y: u32, index: u32) -> Band {
+        let Some(factors) = &self.factors else { return film.band(x, y, index) };
+        let (one, factor) = (film.band(x, y, 0), f64::from_bits(factors[index as usize]));
+        Band {
+            radiance: factor * one.radiance,
+            // Where nothing is known of the sum, nothing is known of a multiple that is zero either.
+            error: if one.error.is_finite() { factor * one.error } else { one.error },
+            count: one.count,
+        }
+    }
 }
 
 /// Program and version.
@@ -38,19 +81,31 @@ impl Subject {
             crop,
             seed: scene.integrator.seed,
             replicates: scene.integrator.replicates,
+            matrices: matrices::of_camera(&scene.camera, scene.film.width, scene.film.height),
+            bands: scene.film.bands.filter(|_| prepared.band_sums() > 0).map(|bands| KeptBands {
+                first_nm: bands.first_nm,
+                step_nm: bands.step_nm,
+                count: bands.count,
+                factors: prepared.band_factors().map(|factors| factors.iter().map(|factor| factor.to_bits()).collect()),
+            }),
             plan: serde_json::to_value(prepared.plan()).expect("a plan is plain data"),
         }
     }
 
     /// A black film of this picture.
     pub(crate) fn film(&self) -> Film {
-        let film = Film::new(self.size[0], self.size[1], self.replicates);
+        let film = Film::with_bands(self.size[0], self.size[1], self.replicates, self.band_sums());
         if self.records_stokes() { film.recording_stokes() } else { film }
     }
 
     /// Whether its film holds S₁, S₂ and S₃.
     pub(crate) fn records_stokes(&self) -> bool {
         self.plan["stokes"] == true
+    }
+
+    /// Sums for bands that each replicate of a pixel has.
+    pub(crate) fn band_sums(&self) -> u32 {
+        self.bands.as_ref().map_or(0, KeptBands::sums)
     }
 
     /// What the picture lacks that the scene calls for.
@@ -65,7 +120,7 @@ impl Subject {
             let mut value = serde_json::to_value(subject).expect("plain data");
             let plan = value["plan"].take().as_object().cloned().unwrap_or_default();
             // A picture of another size has another crop too, and another seed is no surprise where the scene is another.
-            let first = ["software", "scene_sha256", "size", "crop", "seed", "replicates"];
+            let first = ["software", "scene_sha256", "size", "crop", "seed", "replicates", "bands"];
             let first: Vec<_> = first.iter().map(|&key| (key.to_owned(), value[key].take())).collect();
             first.into_iter().chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value))).collect()
         };
@@ -78,6 +133,7 @@ impl Subject {
             "crop" => "its crop".to_owned(),
             "seed" => "its seed".to_owned(),
             "replicates" => "its number of replicates".to_owned(),
+            "bands" => "its bands".to_owned(),
             other => format!("its {}", other.trim_start_matches("plan.")),
         };
         own.iter()
@@ -103,6 +159,8 @@ mod tests {
             crop: PixelRect { x0: 0, y0: 0, x1: 4, y1: 3 },
             seed: 3,
             replicates: 4,
+            matrices: [[0.0; 16]; 2],
+            bands: None,
             plan: serde_json::json!({"sampler": "sobol", "approximations": ["lens: everything is in focus"]}),
         };
         assert_eq!(subject.difference(&subject.clone()), None);

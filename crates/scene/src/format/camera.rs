@@ -1,7 +1,8 @@
 //! Cameras and film.
 
+use super::spectrum::Wavelength;
 use crate::json::{Code, Direction, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
-use crate::model::{Camera, Film, Filter, Projection, ThinLens};
+use crate::model::{Bands, Camera, Film, Filter, Projection, ThinLens};
 use crate::vector::{cross, dot, length, scale, sub, unit};
 
 crate::number! {
@@ -93,6 +94,9 @@ crate::record! {
         filter: Required<FilterForm> = r#"{ "type": "box" }"#,
         /// Whether the picture also holds S1, S2 and S3 of the light; it then calls for polarisation.
         stokes: Required<bool> = "false",
+        /// Bands of wavelengths that the film keeps apart beside its colour: the centre of the first, that of the last, and the
+        /// step between them, nm. Each band is as wide as the step.
+        bands_nm: Optional<Spanned<[Wavelength; 3]>>,
     }
 }
 
@@ -127,7 +131,12 @@ crate::variants! {
 }
 
 /// The film of a form, perhaps with another width and height.
-pub(crate) fn film(form: &FilmForm, size: Option<[u32; 2]>, reader: &mut Reader<'_>) -> Option<Film> {
+pub(crate) fn film(
+    form: &FilmForm,
+    size: Option<[u32; 2]>,
+    range_nm: Option<[f64; 2]>,
+    reader: &mut Reader<'_>,
+) -> Option<Film> {
     let filter = match form.filter.as_ref() {
         None => None,
         Some(FilterForm::Box(_)) => Some(Filter::Box),
@@ -142,7 +151,17 @@ pub(crate) fn film(form: &FilmForm, size: Option<[u32; 2]>, reader: &mut Reader<
     }
     // Both are at most MAX_SIDE.
     let [width, height] = size.unwrap_or([width as u32, height.value.0 as u32]);
-    Some(Film { width, height, filter: filter?, stokes: form.stokes? })
+    let bands = match form.bands_nm.given() {
+        None => None,
+        Some(bands) => match Bands::new(bands.value.map(|w| w.0), range_nm?) {
+            Ok(bands) => Some(bands),
+            Err(error) => {
+                reader.error(Code::OutOfRange, bands.at, error.to_string());
+                return None;
+            }
+        },
+    };
+    Some(Film { width, height, filter: filter?, stokes: form.stokes?, bands })
 }
 
 /// Below this sine of the angle between `up` and the view, the roll of the picture hangs on digits that nobody meant.

@@ -57,6 +57,13 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             Filter::Tent { radius_px } => Ok(format!("film: tent of radius {radius_px} px")),
             Filter::Gaussian { sigma_px } => Ok(format!("film: Gaussian of σ {sigma_px} px")),
         },
+        EffectName::Bands => match &scene.film.bands {
+            None => nothing("the film keeps the colour only"),
+            Some(bands) => {
+                let [first, last] = [bands.edge_nm(0), bands.edge_nm(bands.count)];
+                Ok(format!("film: {} bands of {} nm over {first}–{last} nm", bands.count, bands.step_nm))
+            }
+        },
     }
 }
 

@@ -9,12 +9,15 @@ use etalon_optics::colour::{cie_y_integral_nm, colour_matching};
 use etalon_scene::Scene;
 
 /// What the one lane means for the film.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct OneLaneFilm {
     /// The wavelength at which paths are traced, nm: where the light is strongest.
     pub wavelength_nm: f64,
     /// CIE XYZ of the spectrum of all light, over its value at that wavelength.
     pub xyz_of_unit: [f64; 3],
+    /// The spectrum of all light, and its value at that wavelength.
+    shape: Spectrum,
+    value: f64,
 }
 
 impl OneLaneFilm {
@@ -33,7 +36,16 @@ impl OneLaneFilm {
         }
         let (wavelength_nm, value) = strongest;
         let unit = if value > 0.0 { xyz_over(shape, range_nm).map(|v| v / value) } else { [0.0; 3] };
-        Self { wavelength_nm, xyz_of_unit: unit }
+        Self { wavelength_nm, xyz_of_unit: unit, shape: shape.clone(), value }
+    }
+
+    /// Mean over a range of wavelengths, nm, of the spectrum of all light over its value at the lane's wavelength. Exact where
+    /// the spectrum is linear between its rows and whole nanometres; see [`xyz_over`].
+    pub(crate) fn mean_of_unit(&self, range_nm: [f64; 2]) -> f64 {
+        if self.value == 0.0 {
+            return 0.0;
+        }
+        integral(&self.shape, range_nm, 1.0, |_| [1.0])[0] / (range_nm[1] - range_nm[0]) / self.value
     }
 }
 
@@ -58,19 +70,29 @@ pub(super) fn same_shape(a: &Spectrum, b: &Spectrum, range_nm: [f64; 2]) -> bool
 /// nanometres, since the product is then quadratic and Simpson's rule has no error; elsewhere better than 1e-9, since no
 /// spectrum curves within a nanometre.
 pub(super) fn xyz_over(spectrum: &Spectrum, range_nm: [f64; 2]) -> [f64; 3] {
+    integral(spectrum, range_nm, cie_y_integral_nm(), colour_matching)
+}
+
+/// ∫ S·w dλ over a range, divided by `unit`, by Simpson's rule between all kinks.
+fn integral<const N: usize>(
+    spectrum: &Spectrum,
+    range_nm: [f64; 2],
+    unit: f64,
+    weights: impl Fn(f64) -> [f64; N],
+) -> [f64; N] {
     let mut borders: Vec<f64> = steps(range_nm).chain(nodes(spectrum, range_nm)).collect();
     borders.sort_by(f64::total_cmp);
-    let mut xyz = [0.0; 3];
+    let mut sum = [0.0; N];
     for w in borders.windows(2) {
         // A table that is zero outside jumps at its ends; the borders themselves belong to the inside.
         let inward = 1e-9 * (w[1] - w[0]);
         for (nm, weight) in [(w[0] + inward, 1.0), (0.5 * (w[0] + w[1]), 4.0), (w[1] - inward, 1.0)] {
-            let value = weight / 6.0 * (w[1] - w[0]) * spectrum.eval(nm) / cie_y_integral_nm();
-            let matching = colour_matching(nm);
-            (0..3).for_each(|c| xyz[c] += value * matching[c]);
+            let value = weight / 6.0 * (w[1] - w[0]) * spectrum.eval(nm) / unit;
+            let weights = weights(nm);
+            (0..N).for_each(|c| sum[c] += value * weights[c]);
         }
     }
-    xyz
+    sum
 }
 
 /// The ends of a range and the whole nanometres between them.

@@ -52,11 +52,13 @@ pub enum EffectName {
     Instances,
     /// A pixel looks beyond its own square.
     WideFilter,
+    /// The film keeps bands of wavelengths apart.
+    Bands,
 }
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Lens,
@@ -71,6 +73,7 @@ impl EffectName {
         Self::Masks,
         Self::Instances,
         Self::WideFilter,
+        Self::Bands,
     ];
 
     /// The name on the command line and in files.
@@ -90,6 +93,7 @@ impl EffectName {
             Self::Masks => "masks",
             Self::Instances => "instances",
             Self::WideFilter => "wide-filter",
+            Self::Bands => "bands",
         }
     }
 
@@ -112,6 +116,7 @@ impl EffectName {
             Self::Masks => "every surface is opaque",
             Self::Instances => "what instances place is left out",
             Self::WideFilter => "a pixel is its own square",
+            Self::Bands => "the film keeps the colour only",
         }
     }
 
@@ -128,7 +133,8 @@ impl EffectName {
             | Self::ShadingNormals
             | Self::Masks
             | Self::Instances
-            | Self::WideFilter => false,
+            | Self::WideFilter
+            | Self::Bands => false,
         }
     }
 }

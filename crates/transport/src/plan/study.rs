@@ -176,6 +176,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::Masks => objects_mut(scene).for_each(|object| object.opacity = 1.0),
         EffectName::Instances => scene.instances.clear(),
         EffectName::WideFilter => scene.film.filter = Filter::Box,
+        EffectName::Bands => scene.film.bands = None,
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) fn script(job: &Job) -> String {
 #SBATCH --job-name={comment_name}
 #SBATCH --requeue
 #SBATCH --open-mode=append
-#SBATCH --signal=TERM@120
+#SBATCH --signal=B:TERM@120
 {cpus}set -eu
 
 etalon=${{ETALON:-{program}}}

@@ -68,5 +68,5 @@ fn fits(kept: &Kept) -> bool {
         None => None,
     };
     let canvas = Canvas::of_share(header.subject.film(), header.subject.crop, header.shard, shares.as_ref());
-    kept.tiles.iter().all(|(tile, sums)| canvas.take_up(tile, sums))
+    kept.tiles.iter().all(|(tile, sums, _)| canvas.take_up(tile, sums))
 }

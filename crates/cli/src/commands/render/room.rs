@@ -4,6 +4,7 @@ use etalon_scene::Scene;
 use etalon_transport::Film;
 use miette::{Report, Severity, miette};
 
+use crate::channels::Channels;
 use crate::failure::Failure;
 use crate::machine_limits::{bytes, memory_available, room_for};
 use crate::output::{Format, Output};
@@ -12,16 +13,22 @@ use crate::state::Subject;
 /// Bytes a pixel that writing a picture takes beside the film: seven channels, and their encoded form.
 const OF_PICTURE: u64 = 2 * 7 * 4;
 
+/// The same for a band: three channels.
+const OF_BAND: u64 = 2 * 3 * 4;
+
 /// Refuses a picture that cannot be held, with or without Stokes parameters.
 pub(super) fn check_memory(scene: &Scene, stokes: bool, failure: &mut Failure) {
     let (width, height) = (scene.film.width, scene.film.height);
-    let film = Film::bytes(width, height, scene.integrator.replicates);
+    // Where one lane stands for all wavelengths it is less; that is known after the scene is prepared.
+    let bands = scene.film.bands.map_or(0, |bands| bands.count);
+    let film = Film::bytes(width, height, scene.integrator.replicates, bands);
     let stokes = if stokes { Film::stokes_bytes(width, height, scene.integrator.replicates) } else { 0 };
-    let needed = film + stokes + OF_PICTURE * u64::from(width) * u64::from(height);
+    let picture = (OF_PICTURE + u64::from(bands) * OF_BAND) * u64::from(width) * u64::from(height);
+    let needed = film + stokes + picture;
     if let Some(available) = memory_available().filter(|&available| needed > available) {
         failure.add(Failure::input(miette!(
             code = "too-large",
-            help = "make it smaller, or render it by pieces with --crop",
+            help = "make it smaller, or keep fewer bands or replicates",
             "a picture of {width} × {height} pixels with {} replicates takes {} of memory, and {} are left",
             scene.integrator.replicates,
             bytes(needed),
@@ -34,12 +41,16 @@ pub(super) fn check_memory(scene: &Scene, stokes: bool, failure: &mut Failure) {
 pub(super) fn check_disks(
     checkpoint: bool,
     subject: &Subject,
+    channels: &Channels,
     outputs: &[Output],
     failure: &mut Failure,
     warnings: &mut Vec<Report>,
 ) {
     let pixels = subject.crop.area();
-    let sums = pixels * u64::from(subject.replicates) * if subject.records_stokes() { 28 + 72 } else { 28 };
+    let stokes = if subject.records_stokes() { 72 } else { 0 };
+    let sums = pixels * u64::from(subject.replicates) * (28 + stokes + 12 * u64::from(subject.band_sums()));
+    let bands = subject.bands.as_ref().map_or(0, |bands| u64::from(bands.count));
+    let channels = channels.count(bands);
     for (number, output) in outputs.iter().enumerate() {
         let Some(room) = room_for(&output.path) else { continue };
         // While a checkpoint is written, the last one is still there.
@@ -47,7 +58,7 @@ pub(super) fn check_disks(
             if output.format == Format::Part { sums } else { 0 } + if checkpoint && number == 0 { 2 * sums } else { 0 };
         let perhaps = match output.format {
             Format::Part => 0,
-            Format::Exr => pixels * 7 * 4,
+            Format::Exr => pixels * channels * 4,
             Format::Png => pixels * 3,
         };
         let folder = output.path.parent().filter(|folder| !folder.as_os_str().is_empty());

@@ -11,6 +11,7 @@ use miette::{Report, miette};
 
 use super::watcher::Watcher;
 use super::{Args, Done, Job};
+use crate::channels::{Aov, Channels};
 use crate::machine::Clock;
 use crate::print;
 use crate::state::{self, Header, Kept, Limited};
@@ -42,7 +43,7 @@ impl Run {
         let Header { shard, samples, shares, reaches, seconds, .. } = kept.header;
         let shares = shares.map(|weights| Arc::new(Shares::new(job.rect, weights)));
         let canvas = Canvas::new(&job.prepared, job.rect, shard, shares.as_deref());
-        for (tile, sums) in &kept.tiles {
+        for (tile, sums, _) in &kept.tiles {
             assert!(canvas.take_up(tile, sums), "the checkpoint was found to fit");
         }
         let reached = if reaches == "error" { Reached::Error } else { Reached::Samples };
@@ -54,7 +55,8 @@ impl Run {
         self.before_s + self.clock.seconds()
     }
 
-    fn header(&self, job: &Job, complete: bool) -> Header {
+    fn header(&self, args: &Args, job: &Job, complete: bool) -> Header {
+        let channels = Channels::new(&args.aov, args.only);
         let Limits { samples, relative_rmse, seconds, .. } = self.limits;
         Header {
             subject: job.subject.clone(),
@@ -63,6 +65,8 @@ impl Run {
             samples: self.settled.samples,
             shares: self.settled.shares.as_ref().map(|shares| shares.weights().to_vec()),
             reaches: if self.settled.reached == Reached::Error { "error" } else { "samples" }.to_owned(),
+            object_names: channels.has(Aov::Object).then(|| job.prepared.object_names()),
+            channels,
             seconds: self.seconds(),
             complete,
         }
@@ -80,7 +84,7 @@ impl Run {
                     let mut said = false;
                     // The channel closes when the render has ended.
                     while end.recv_timeout(Duration::from_secs_f64(every)) == Err(RecvTimeoutError::Timeout) {
-                        if let Err(error) = state::write(path, &run.header(job, false), &run.canvas) {
+                        if let Err(error) = state::write(path, &run.header(args, job, false), &run.canvas, &[]) {
                             if !said {
                                 print::warnings(&[Report::from_err(error).wrap_err(miette!(
                                     severity = miette::Severity::Warning,
@@ -98,7 +102,18 @@ impl Run {
             drop(ended);
             done
         })?;
-        let header = self.header(job, ended.reached != Reached::Interrupted);
-        Ok(Done { ended, canvas: self.canvas, header, error: None, explored: self.settled.explored })
+        let complete = ended.reached != Reached::Interrupted;
+        let mut header = self.header(args, job, complete);
+        if complete {
+            // When time was up it is fewer than were settled.
+            header.samples = ended.samples;
+        }
+        let features = if header.channels.has_features() {
+            let tiles: Vec<_> = (0..self.canvas.tiles()).map(|number| self.canvas.tile(number).0.rect).collect();
+            job.prepared.features(&tiles, ended.samples, Some(job.threads))?
+        } else {
+            Vec::new()
+        };
+        Ok(Done { ended, canvas: self.canvas, header, features, error: None, explored: self.settled.explored })
     }
 }

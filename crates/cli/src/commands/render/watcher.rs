@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use etalon_transport::{Control, Counters, Film, Foretold, PixelRect, TileSums, Watch};
 
+use crate::display::Display;
 use crate::interrupt::Interrupt;
 use crate::progress::RenderBar;
 
@@ -20,14 +21,20 @@ pub(super) enum ProgressKind {
 pub(super) struct Watcher<'a> {
     bar: &'a RenderBar,
     interrupt: &'a Interrupt,
+    display: Option<&'a Display>,
     said: AtomicBool,
     /// Per mille that were last told to a farm.
     told: Option<AtomicU64>,
 }
 
 impl<'a> Watcher<'a> {
-    pub(super) fn new(bar: &'a RenderBar, interrupt: &'a Interrupt, openjd: bool) -> Self {
-        Self { bar, interrupt, said: AtomicBool::new(false), told: openjd.then(AtomicU64::default) }
+    pub(super) fn new(
+        bar: &'a RenderBar,
+        interrupt: &'a Interrupt,
+        display: Option<&'a Display>,
+        openjd: bool,
+    ) -> Self {
+        Self { bar, interrupt, display, said: AtomicBool::new(false), told: openjd.then(AtomicU64::default) }
     }
 
     /// See [`RenderBar::goes_on_from`].
@@ -56,11 +63,16 @@ impl Watch for Watcher<'_> {
     }
 
     fn tile(&self, rect: PixelRect, sums: &TileSums) {
-        self.bar.tile(rect, sums);
+        if let Some(display) = self.display {
+            display.tile(rect, sums);
+        }
     }
 
     fn pass(&self, film: &Film, samples: u32) {
         self.bar.pass(film, samples);
+        if let Some(display) = self.display {
+            display.catch_up(film, PixelRect { x0: 0, y0: 0, x1: film.width(), y1: film.height() });
+        }
     }
 
     fn control(&self) -> Control {

@@ -1,0 +1,91 @@
+//! What an EXR shows beside the picture, or instead of it.
+
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+
+/// A group of channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Aov {
+    /// `R`, `G`, `B`.
+    Color,
+    /// `Error.`: the standard error of each colour and band.
+    Error,
+    /// `Variance.`: its square.
+    Variance,
+    /// `samples`: finite samples of each pixel.
+    Samples,
+    /// `S0.…nm`: the bands that the film keeps.
+    Bands,
+    /// `Albedo.R/G/B`: the share of light that the first surface scatters.
+    Albedo,
+    /// `N.X/Y/Z`: its shading normal in the world, toward the camera.
+    Normal,
+    /// `P.X/Y/Z`: its position in the world, m.
+    Position,
+    /// `Z`: its distance along the camera's viewing direction, m.
+    Depth,
+    /// `u`, `v`: its texture coordinates.
+    Uv,
+    /// `ObjectId`: which object it is; the attribute `objectNames` has the names.
+    Object,
+}
+
+/// Which groups a file has.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Channels {
+    /// What was asked for.
+    also: Vec<Aov>,
+    /// Whether nothing else is wanted.
+    only: bool,
+}
+
+impl Channels {
+    /// These, beside what every picture has or, with `only`, alone.
+    pub(crate) fn new(also: &[Aov], only: bool) -> Self {
+        Self { also: also.to_vec(), only }
+    }
+
+    /// Whether a group is wanted.
+    pub(crate) fn has(&self, aov: Aov) -> bool {
+        let of_every_picture = matches!(aov, Aov::Color | Aov::Error | Aov::Bands);
+        self.also.contains(&aov) || !self.only && of_every_picture
+    }
+
+    /// Whether any of them is of the first surface.
+    pub(crate) fn has_features(&self) -> bool {
+        [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Uv, Aov::Object].into_iter().any(|aov| self.has(aov))
+    }
+
+    /// How many there are, of a film with so many bands.
+    pub(crate) fn count(&self, bands: u64) -> u64 {
+        let colours = 3 * u64::from(self.has(Aov::Color)) + if self.has(Aov::Bands) { 2 * bands } else { 0 };
+        let shown = 3 + if self.has(Aov::Bands) { bands } else { 0 };
+        let errors = shown * (u64::from(self.has(Aov::Error)) + u64::from(self.has(Aov::Variance)));
+        let of_features = |aov, count| count * u64::from(self.has(aov));
+        colours
+            + errors
+            + 1
+            + of_features(Aov::Albedo, 3)
+            + of_features(Aov::Normal, 3)
+            + of_features(Aov::Position, 3)
+            + of_features(Aov::Depth, 1)
+            + of_features(Aov::Uv, 2)
+            + of_features(Aov::Object, 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_asked_for_comes_beside_the_picture_or_alone() {
+        let plain = Channels::default();
+        assert!(plain.has(Aov::Color) && plain.has(Aov::Error) && plain.has(Aov::Bands) && !plain.has_features());
+        let beside = Channels::new(&[Aov::Depth], false);
+        assert!(beside.has(Aov::Color) && beside.has(Aov::Depth) && !beside.has(Aov::Normal) && beside.has_features());
+        let alone = Channels::new(&[Aov::Depth, Aov::Variance], true);
+        assert!(!alone.has(Aov::Color) && !alone.has(Aov::Error) && alone.has(Aov::Depth) && alone.has(Aov::Variance));
+    }
+}
