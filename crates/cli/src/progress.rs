@@ -151,11 +151,11 @@ fn style(seconds: Option<f64>, traced: Option<Arc<Traced>>) -> ProgressStyle {
         let by_samples = state.len().map(|_| state.eta().as_secs_f64());
         let by_time = seconds.map(|seconds| (seconds - state.elapsed().as_secs_f64()).max(0.0));
         let _ = match by_samples.into_iter().chain(by_time).reduce(f64::min) {
-            Some(left) => write!(out, "{} to go", duration(left)),
+            Some(left) => write!(out, ", {} to go", duration(left)),
             None => Ok(()),
         };
     };
-    ProgressStyle::with_template("{wide_bar:.green/dim} {percent:>3} %  {msg}  {rate:>16}  {elapsed} gone, {left}")
+    ProgressStyle::with_template("{wide_bar:.green/dim} {percent:>3} %  {msg}  {rate:>16}  {elapsed} gone{left}")
         .expect("the template is well formed")
         .with_key("rate", rate)
         .with_key("left", left)

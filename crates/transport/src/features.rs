@@ -72,11 +72,13 @@ impl Observer {
             for i in 0..FINE {
                 let u = (share * FINE + i) as f64 + 0.5;
                 let (nm, pdf) = distribution.sample(u / (WAVELENGTHS * FINE) as f64);
-                let power = d65.eval(nm) / pdf;
-                weight += power;
-                mean_nm += power * nm;
                 let matching = colour_matching(nm);
+                let power = d65.eval(nm) / pdf;
                 (0..3).for_each(|c| observer.xyz[share][c] += power * matching[c]);
+                // Where the eye sees it, or anywhere if it sees nothing.
+                let seen = power * matching.iter().sum::<f64>() + f64::MIN_POSITIVE;
+                weight += seen;
+                mean_nm += seen * nm;
             }
             observer.lambda_nm[share] = mean_nm / weight;
             (0..3).for_each(|c| white[c] += observer.xyz[share][c]);
