@@ -143,6 +143,9 @@ fn scene(name: &str) -> Scene {
     scenes(f64::EPSILON, 1).into_iter().find(|scene| scene.name.starts_with(name)).unwrap()
 }
 
+/// A law with its scene.
+type Law<'a> = &'a dyn Fn(&Trees) -> Verdict;
+
 #[test]
 fn each_wrong_tree_is_rejected_by_the_generator_that_is_there_for_it() {
     let of_scene = |name: &'static str| {
@@ -151,7 +154,7 @@ fn each_wrong_tree_is_rejected_by_the_generator_that_is_there_for_it() {
     let tight = |subject: &Trees| laws::built_mesh_is_tight(subject, &ClosedMesh::sphere(16, 16), RAYS, 1);
     let needles = |subject: &Trees| laws::needles_are_hit_where_they_are(subject, RAYS, 1);
     let near = |subject: &Trees| laws::near_surfaces_are_hit(subject, RAYS, 1);
-    let cases: [(&'static str, &dyn Fn(&Trees) -> Verdict); 12] = [
+    let cases: [(&'static str, Law<'_>); 12] = [
         ("edges excluded", &tight),
         ("back faces culled", &tight),
         ("Möller and Trumbore in single precision", &tight),
