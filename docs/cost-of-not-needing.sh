@@ -33,5 +33,6 @@ mis integrating-sphere.json
 environment cornell.json
 specular-chains cornell.json
 nested-dielectrics cornell-glass.json
+absorption cornell-glass.json
 wide-filter furnace.json
 LIST

@@ -92,6 +92,8 @@ class Translator:
         kind = m["type"]
         if "priority" in m:
             raise Unsupported("solids that share a place")
+        if "absorption_per_m" in m:
+            raise Unsupported("absorption")
         if kind == "dielectric":
             return {"type": "dielectric", "int_ior": self.index(m["interior"]), "ext_ior": self.index(m.get("exterior", 1.0))}
         if kind in ("black", "lambert"):

@@ -195,6 +195,28 @@ impl Geometry {
         instance.placement().normal(instance.geometry().placed_normal(inner, normal))
     }
 
+    /// A vector along a surface, carried as [`Geometry::placed_normal`] carries normals: as the points of the surface move.
+    #[inline]
+    pub fn placed_vector(&self, surface: SurfaceId, vector: Vec3<f64>) -> Vec3<f64> {
+        if surface.instance == 0 {
+            return vector;
+        }
+        let Some((_, instance)) = self.instance_of(surface) else { return vector };
+        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+        instance.placement().vector(instance.geometry().placed_vector(inner, vector))
+    }
+
+    /// A point of this geometry in the coordinates of the geometry that holds the surface's primitive.
+    #[inline]
+    pub fn local_point(&self, surface: SurfaceId, point: Vec3<f64>) -> Vec3<f64> {
+        if surface.instance == 0 {
+            return point;
+        }
+        let Some((_, instance)) = self.instance_of(surface) else { return point };
+        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+        instance.geometry().local_point(inner, instance.placement().local_point(point))
+    }
+
     /// The closest hit along a ray.
     ///
     /// A ray of which no point is defined (NaN, zero direction) hits nothing, nor does one that starts beyond 2²⁰⁰ m or

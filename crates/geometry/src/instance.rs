@@ -66,6 +66,16 @@ impl Placement {
         product(&self.linear, p) + self.translation
     }
 
+    /// L·v.
+    pub(crate) fn vector(&self, v: Vec3<f64>) -> Vec3<f64> {
+        product(&self.linear, v)
+    }
+
+    /// L⁻¹·(p − T).
+    pub(crate) fn local_point(&self, p: Vec3<f64>) -> Vec3<f64> {
+        product(&self.inverse, p - self.translation)
+    }
+
     /// L⁻ᵀ·n to any scale: right for any map, and a mirror leaves the outward side outward.
     pub(crate) fn normal(&self, n: Vec3<f64>) -> Vec3<f64> {
         let normal = transposed_product(&self.inverse, n);

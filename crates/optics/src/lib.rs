@@ -5,9 +5,11 @@
 //! | [`real`] | [`Real`]: the scalar a kernel computes in, `f32` or `f64` |
 //! | [`vec3`] | [`Vec3`]: a vector over any [`Real`], and orthonormal frames |
 //! | [`lanes`] | [`Lanes`]: one value for each wavelength a path carries |
+//! | [`angle`] | the angle of a vector |
 //! | [`spectrum`] | [`Spectrum`]: symbolic spectra, RGB colours made into spectra, CIE illuminants |
 //! | [`colour`] | the CIE 1931 2° observer, XYZ, linear Rec. 709, the sRGB transfer function |
 //! | [`index`] | [`RefractiveIndex`] of glasses and [`ComplexIndex`] of metals, with the range each is known for |
+//! | [`exponential`] | e⁻ˣ |
 //! | [`fresnel`] | how much is reflected and transmitted, in forms that do not cancel |
 //! | [`snell`] | where refracted light goes |
 //! | [`error`] | [`OpticsError`]: what can be wrong with the numbers above |
@@ -17,8 +19,10 @@
 //! of spectra need an exponential, [`spectrum::Blackbody`] and illuminant A, and so does sRGB: whoever renders tabulates
 //! those before the paths start.
 
+pub mod angle;
 pub mod colour;
 pub mod error;
+pub mod exponential;
 pub mod fresnel;
 pub mod index;
 pub mod lanes;
@@ -28,7 +32,9 @@ pub mod spectrum;
 mod table;
 pub mod vec3;
 
+pub use angle::atan2_turns;
 pub use error::OpticsError;
+pub use exponential::exp_neg;
 pub use index::{ComplexIndex, OutsideFit, RefractiveIndex};
 pub use lanes::Lanes;
 pub use real::Real;

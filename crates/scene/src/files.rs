@@ -13,7 +13,7 @@ use crate::format::Shading;
 use crate::import::ImportedFile;
 use crate::json::{Code, Reader, Spanned};
 use crate::model::Mesh;
-use crate::texture::{Encoding, Image};
+use crate::texture::{Channel, Encoding, Image};
 
 /// The largest file that a scene may refer to, bytes: 4 GiB.
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
@@ -43,6 +43,9 @@ pub(crate) struct Files {
     given: HashMap<String, Vec<u8>>,
     meshes: HashMap<MeshKey, Option<Arc<Mesh>>>,
     images: HashMap<(String, Encoding), Option<Arc<Image>>>,
+    data: HashMap<(String, Channel), Option<Arc<Image>>>,
+    /// What of images is not used as colours.
+    left_out: Vec<(Spanned<String>, String)>,
     used: Vec<FileUse>,
 }
 
@@ -53,6 +56,8 @@ impl Files {
             given: HashMap::new(),
             meshes: HashMap::new(),
             images: HashMap::new(),
+            data: HashMap::new(),
+            left_out: Vec::new(),
             used: Vec::new(),
         }
     }
@@ -70,9 +75,8 @@ impl Files {
 
     /// The bytes of a file; why there are none is reported at the name.
     pub(crate) fn bytes(&mut self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Vec<u8>> {
-        // Each is asked for once: meshes and images are remembered.
         if let Some(bytes) = self.given.get_mut(&name.value).map(std::mem::take) {
-            self.used.push(FileUse { name: name.value.clone(), sha256: sha256(&bytes) });
+            self.note(name, &bytes);
             return Some(bytes);
         }
         let Some(folder) = &self.folder else {
@@ -83,9 +87,7 @@ impl Files {
         let path = folder.join(&name.value);
         match read(&path) {
             Ok(bytes) => {
-                if !self.used.iter().any(|file| file.name == name.value) {
-                    self.used.push(FileUse { name: name.value.clone(), sha256: sha256(&bytes) });
-                }
+                self.note(name, &bytes);
                 Some(bytes)
             }
             Err(why) => {
@@ -94,6 +96,52 @@ impl Files {
                 None
             }
         }
+    }
+
+    fn note(&mut self, name: &Spanned<String>, bytes: &[u8]) {
+        if !self.used.iter().any(|file| file.name == name.value) {
+            self.used.push(FileUse { name: name.value.clone(), sha256: sha256(bytes) });
+        }
+    }
+
+    /// Keeps the bytes of a file in memory that may be asked for once more: an image can be colours and data.
+    fn put_back(&mut self, name: &str, bytes: Vec<u8>) {
+        if let Some(given) = self.given.get_mut(name) {
+            *given = bytes;
+        }
+    }
+
+    /// Warns of what images hold and nothing uses, once everything has been read.
+    pub(crate) fn warn_of_what_is_left_out(&mut self, reader: &mut Reader<'_>) {
+        for (name, what) in self.left_out.drain(..) {
+            let used = |channel| self.data.contains_key(&(name.value.clone(), channel));
+            if !used(Channel::Alpha) && !used(Channel::Auto) {
+                reader.warning(Code::LeftOut, name.at, format!("{}: {what}", name.value), None);
+            }
+        }
+    }
+
+    /// The data in an image file; why there are none is reported at the name.
+    pub(crate) fn data(
+        &mut self,
+        name: &Spanned<String>,
+        channel: Channel,
+        reader: &mut Reader<'_>,
+    ) -> Option<Arc<Image>> {
+        let key = (name.value.clone(), channel);
+        if let Some(known) = self.data.get(&key) {
+            return known.clone();
+        }
+        let made = self.bytes(name, reader).and_then(|bytes| {
+            let decoded = Image::decode_data(&bytes, channel);
+            self.put_back(&name.value, bytes);
+            decoded
+                .map_err(|why| reader.error(Code::ImageFile, name.at, format!("{}: {why}", name.value)))
+                .ok()
+                .map(Arc::new)
+        });
+        self.data.insert(key, made.clone());
+        made
     }
 
     /// The mesh of a key, made by `make` if it has not been asked for before.
@@ -117,16 +165,20 @@ impl Files {
         if let Some(known) = self.images.get(&key) {
             return known.clone();
         }
-        let made = self.bytes(name, reader).and_then(|bytes| match Image::decode(&bytes, encoding) {
-            Ok((image, left_out)) => {
-                if let Some(what) = left_out {
-                    reader.warning(Code::LeftOut, name.at, format!("{}: {what}", name.value), None);
+        let made = self.bytes(name, reader).and_then(|bytes| {
+            let decoded = Image::decode(&bytes, encoding);
+            self.put_back(&name.value, bytes);
+            match decoded {
+                Ok((image, left_out)) => {
+                    if let Some(what) = left_out {
+                        self.left_out.push((name.clone(), what));
+                    }
+                    Some(Arc::new(image))
                 }
-                Some(Arc::new(image))
-            }
-            Err(why) => {
-                reader.error(Code::ImageFile, name.at, format!("{}: {why}", name.value));
-                None
+                Err(why) => {
+                    reader.error(Code::ImageFile, name.at, format!("{}: {why}", name.value));
+                    None
+                }
             }
         });
         self.images.insert(key, made.clone());

@@ -34,7 +34,9 @@ use std::path::Path;
 pub use files::{FileUse, MAX_FILE_BYTES};
 pub use model::*;
 pub use problem::{Code, LoadError, Problem, Related, SceneErrors, Severity, Span};
-pub use texture::{Encoding, Image, ImageTexture, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, Texels, TextureFilter, Wrap};
+pub use texture::{
+    Channel, Encoding, Image, ImageTexture, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, Texels, TextureFilter, Wrap,
+};
 
 /// The JSON Schema (2020-12) of scene files.
 ///

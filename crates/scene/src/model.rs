@@ -3,8 +3,12 @@
 //! Lengths are metres, angles radians, wavelengths nanometres. World space is right-handed. Whoever holds a [`Scene`]
 //! may rely on everything that `docs/scene-format.md` lists as an error being absent from it.
 
+mod detail;
+mod environment;
 mod material;
 
+pub use detail::{OpacityImage, Relief};
+pub use environment::EnvironmentImage;
 pub use material::{LEAST_ALPHA, Material, MaterialKind, PolarisingSheet, SpectrumTexture};
 
 use std::sync::Arc;
@@ -216,6 +220,10 @@ pub struct Object {
     pub emission: Option<Emission>,
     /// Share of light that meets the surface at all, in [0, 1]; the rest passes as if it were not there.
     pub opacity: f64,
+    /// An image of that share, by which `opacity` is multiplied.
+    pub opacity_image: Option<OpacityImage>,
+    /// An image of other normals to scatter around.
+    pub relief: Option<Relief>,
 }
 
 /// Objects that are placed together, in the group's own coordinates.
@@ -375,6 +383,8 @@ pub enum LightKind {
         /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹.
         radiance: Spectrum,
     },
+    /// Radiance from infinity that an image says for each direction.
+    ImageEnvironment(EnvironmentImage),
 }
 
 /// How to integrate.

@@ -43,6 +43,25 @@ pub enum Encoding {
     Linear,
 }
 
+/// Which of an image's channels are data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// Alpha, where the image has it, else its luminance.
+    Auto,
+    /// Alpha; 1 in an image without.
+    Alpha,
+    /// Red.
+    Red,
+    /// Green.
+    Green,
+    /// Blue.
+    Blue,
+    /// 0.2126 R + 0.7152 G + 0.0722 B of the numbers as they are written.
+    Luminance,
+    /// Red, green and blue, each as it is.
+    All,
+}
+
 /// What an image shows beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Wrap {
@@ -97,6 +116,45 @@ impl Image {
     /// # Errors
     /// A sentence that says what is wrong: no such file, too large, damaged, or texels that are not finite.
     pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<(Self, Option<String>), String> {
+        let decoded = Self::read(bytes)?;
+        let left_out = match &decoded {
+            d if !d.color().has_alpha() => None,
+            d if is_opaque(d) => None,
+            _ => Some("its alpha channel is not used".to_owned()),
+        };
+        Self::of(decoded, encoding).map(|image| (image, left_out))
+    }
+
+    /// Decodes one channel of such a file, or three, as linear numbers; one stands in all three of the image.
+    ///
+    /// # Errors
+    /// As [`Image::decode`].
+    pub fn decode_data(bytes: &[u8], channel: Channel) -> Result<Self, String> {
+        let decoded = Self::read(bytes)?;
+        let channel = match channel {
+            Channel::Auto if decoded.color().has_alpha() => Channel::Alpha,
+            Channel::Auto => Channel::Luminance,
+            other => other,
+        };
+        if channel == Channel::All {
+            return Self::of(decoded, Encoding::Linear);
+        }
+        let pick = |[r, g, b, a]: [f32; 4]| match channel {
+            Channel::Alpha => a,
+            Channel::Red => r,
+            Channel::Green => g,
+            Channel::Blue => b,
+            Channel::Luminance => 0.2126 * r + 0.7152 * g + 0.0722 * b,
+            Channel::Auto | Channel::All => unreachable!("decided above"),
+        };
+        let picked = decoded.into_rgba32f();
+        let (width, height) = picked.dimensions();
+        let texels = picked.pixels().map(|p| image::Rgb([pick(p.0); 3])).flat_map(|p| p.0).collect();
+        let picked = image::Rgb32FImage::from_raw(width, height, texels).ok_or("it has no texels")?;
+        Self::of(DynamicImage::ImageRgb32F(picked), Encoding::Linear)
+    }
+
+    fn read(bytes: &[u8]) -> Result<DynamicImage, String> {
         let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
         if reader.format().is_none() {
             return Err("it is no PNG, JPEG, EXR or HDR file".to_owned());
@@ -106,13 +164,7 @@ impl Image {
         limits.max_image_height = Some(MAX_IMAGE_SIDE);
         limits.max_alloc = Some(MAX_IMAGE_BYTES.min((64 << 20) + 2000 * bytes.len() as u64));
         reader.limits(limits);
-        let decoded = reader.decode().map_err(|e| e.to_string())?;
-        let left_out = match &decoded {
-            d if !d.color().has_alpha() => None,
-            d if is_opaque(d) => None,
-            _ => Some("its alpha channel is not used".to_owned()),
-        };
-        Self::of(decoded, encoding).map(|image| (image, left_out))
+        reader.decode().map_err(|e| e.to_string())
     }
 
     fn of(decoded: DynamicImage, encoding: Encoding) -> Result<Self, String> {

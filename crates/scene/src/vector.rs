@@ -2,6 +2,10 @@
 
 pub(crate) type Vector = [f64; 3];
 
+pub(crate) fn add(a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
 pub(crate) fn sub(a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|i| a[i] - b[i])
 }

@@ -178,15 +178,12 @@ fn glb_materials_lights_and_cameras_arrive() {
 fn what_is_not_honoured_is_listed_with_its_path() {
     let mut model = model();
     model["animations"] = json!([{ "channels": [], "samplers": [] }]);
-    model["materials"][0]["alphaMode"] = json!("BLEND");
     model["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] = json!([1, 0, 0, 1]);
     model["materials"][2]["extensions"]["KHR_materials_clearcoat"] = json!({});
     let imported = imported(&model).unwrap();
     let places: Vec<&str> = imported.left_out.iter().map(|l| l.place.as_str()).collect();
     for expected in [
         "$.animations",
-        "$.materials[0].alphaMode",
-        "$.materials[0].normalTexture",
         "$.materials[1].pbrMetallicRoughness",
         "$.materials[2].extensions.KHR_materials_clearcoat",
         "$.extensions.KHR_lights_punctual.lights[2]",
@@ -195,7 +192,37 @@ fn what_is_not_honoured_is_listed_with_its_path() {
         assert!(places.contains(&expected), "{expected} is not among {places:#?}");
     }
     // The scene to edit says so too.
-    assert!(imported.text.contains("not honoured: $.materials[0].alphaMode"));
+    assert!(imported.text.contains("not honoured: $.materials[2].extensions.KHR_materials_clearcoat"));
+}
+
+#[test]
+fn opacity_normals_and_absorption_arrive() {
+    let with = |mode: &str, factor: f64| {
+        let mut model = model();
+        model["materials"][0]["alphaMode"] = json!(mode);
+        model["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = json!([1, 1, 1, factor]);
+        model["materials"][0]["normalTexture"]["scale"] = json!(0.5);
+        model["materials"][1]["extensions"]["KHR_materials_volume"] =
+            json!({ "thicknessFactor": 1, "attenuationDistance": 0.5, "attenuationColor": [0.25, 0.25, 0.25] });
+        scene(&imported(&model).unwrap())
+    };
+    let textured = |scene: &Scene| {
+        scene.objects.iter().find(|o| scene.materials[o.material].kind.image().is_some()).expect("an image").clone()
+    };
+    let blend = with("BLEND", 0.5);
+    let object = textured(&blend);
+    // The image has no alpha: all of it is there.
+    let image = object.opacity_image.expect("an image of opacity");
+    assert_eq!((object.opacity, image.cutoff, image.eval([0.3, 0.7])), (0.5, None, 1.0));
+    assert!(matches!(object.relief, Some(etalon_scene::Relief::Normals { strength: 0.5, .. })), "{:?}", object.relief);
+    let object = textured(&with("MASK", 0.8));
+    // A cutoff of ½ of what the factor has made of alpha.
+    assert_eq!((object.opacity, object.opacity_image.and_then(|image| image.cutoff)), (1.0, Some(0.625)));
+    let object = textured(&with("OPAQUE", 0.5));
+    assert!(object.opacity == 1.0 && object.opacity_image.is_none());
+    let glass = blend.materials.iter().find(|m| m.absorption.is_some()).expect("glass that absorbs");
+    let per_m = glass.absorption.as_ref().map(|absorption| absorption.eval(550.0)).unwrap();
+    assert!((per_m - 4.0_f64.ln() / 0.5).abs() < 1e-12, "{per_m}");
 }
 
 #[test]

@@ -155,6 +155,11 @@ fn materials_and_spectra() {
     assert_eq!(kind(&scene, "quarter"), &MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet });
     let dusty = MaterialKind::Blend { first: Box::new(toy), second: Box::new(MaterialKind::Black), weight: 0.125 };
     assert_eq!(kind(&scene, "dusty"), &dusty);
+    let absorption = |name: &str| scene.materials.iter().find(|m| m.name == name).and_then(|m| m.absorption.clone());
+    assert_eq!(absorption("solid"), Some(Spectrum::Constant(0.5)));
+    // −ln ¼ over 2 m.
+    assert_eq!(absorption("own glass"), Some(Spectrum::Constant(4.0_f64.ln() / 2.0)));
+    assert_eq!(absorption("dispersive"), None);
     assert_eq!((scene.objects[0].opacity, scene.objects[1].opacity), (0.75, 1.0));
     assert_eq!(kind(&scene, "objects[3].material"), &reflects(Spectrum::Constant(1.0)));
 }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Parts, RIGHT};
-use etalon_scene::{Code, Loaded, MaterialKind, SceneErrors, SpectrumTexture, Texels, TextureFilter, Wrap};
+use etalon_scene::{Code, Loaded, MaterialKind, Relief, SceneErrors, SpectrumTexture, Texels, TextureFilter, Wrap};
 use std::path::Path;
 
 fn scene_with(reflectance: &str, shape: &str, spectra: &str) -> Result<Loaded, SceneErrors> {
@@ -43,9 +43,9 @@ fn an_image_may_have_a_name_among_the_spectra() {
 
 #[test]
 fn what_is_wrong_with_an_image_is_said_where_it_is_named() {
-    let ball = r#"{"type": "sphere", "radius_m": 1}"#;
+    let bare = r#"{"type": "box", "min_m": [0, 0, 0], "max_m": [1, 1, 1]}"#;
     for (reflectance, shape, code) in [
-        (IMAGE, ball, Code::NoTextureCoordinates),
+        (IMAGE, bare, Code::NoTextureCoordinates),
         (r#"{"type": "image", "file": "files/no.png"}"#, SQUARE, Code::File),
         (r#"{"type": "image", "file": "files/tetrahedron.ply"}"#, SQUARE, Code::ImageFile),
         (r#"{"type": "image", "file": "files/chequers.png", "factor": [2, 1, 1]}"#, SQUARE, Code::Reflectance),
@@ -59,4 +59,48 @@ fn what_is_wrong_with_an_image_is_said_where_it_is_named() {
     let lights = format!(r#"[{{"type": "environment", "radiance": {IMAGE}}}]"#);
     let errors = etalon_scene::parse(&Parts { lights: &lights, ..RIGHT }.text(), "test.json").unwrap_err();
     assert_eq!((errors.problems[0].code, errors.problems[0].line), (Code::KeyConflict, 8));
+}
+
+#[test]
+fn images_of_opacity_normals_and_heights_arrive() {
+    let with = |keys: &str| {
+        let objects = format!(r#"[{{"shape": {SQUARE}, "material": {{"type": "black"}}, {keys}}}]"#);
+        let text = Parts { objects: &objects, ..RIGHT }.text();
+        etalon_scene::parse_in(&text, "test.json", Some(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests"))), None)
+    };
+    let one = |keys: &str| with(keys).unwrap_or_else(|errors| panic!("{errors}")).scene.objects.remove(0);
+    let masked = one(
+        r#""opacity": 0.5, "opacity_image": {"file": "files/chequers.png", "channel": "blue", "cutoff": 0.25, "uv_scale": [2, 3]}"#,
+    );
+    let image = masked.opacity_image.expect("an image");
+    assert_eq!((masked.opacity, image.cutoff, image.texture.uv_scale), (0.5, Some(0.25), [2.0, 3.0]));
+    // Chequers of (230, 230, 230) and (40, 40, 60), as numbers and not as sRGB.
+    assert!((image.texture.image.texel(1, 0)[0] - 60.0 / 255.0).abs() < 1e-6);
+    assert_eq!(image.eval([0.1, 0.1]), 1.0);
+    let Some(Relief::Normals { texture, strength }) =
+        one(r#""normal_map": {"file": "files/chequers.png", "strength": 2}"#).relief
+    else {
+        panic!("a normal map")
+    };
+    assert_eq!(
+        (strength, texture.image.texels.clone()),
+        (2.0, Texels::Linear8(vec![[230; 3], [40, 40, 60], [40, 40, 60], [230; 3]]))
+    );
+    let Some(Relief::Heights { height_m, .. }) =
+        one(r#""bump_map": {"file": "files/chequers.png", "height_m": -0.1}"#).relief
+    else {
+        panic!("a bump map")
+    };
+    assert_eq!(height_m, -0.1);
+    for (keys, code) in [
+        (r#""opacity_image": {"file": "files/no.png"}"#, Code::File),
+        (r#""bump_map": {"file": "files/chequers.png"}"#, Code::MissingKey),
+        (
+            r#""bump_map": {"file": "files/chequers.png", "height_m": 1}, "normal_map": {"file": "files/chequers.png"}"#,
+            Code::KeyConflict,
+        ),
+    ] {
+        let errors = with(keys).expect_err(keys);
+        assert_eq!(errors.problems[0].code, code, "{errors}");
+    }
 }

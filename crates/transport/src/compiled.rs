@@ -10,4 +10,5 @@ pub(crate) const MIS: bool = !cfg!(feature = "without-mis");
 pub(crate) const ENVIRONMENT: bool = !cfg!(feature = "without-environment");
 pub(crate) const SPECULAR_CHAINS: bool = !cfg!(feature = "without-specular-chains");
 pub(crate) const NESTED_DIELECTRICS: bool = !cfg!(feature = "without-nested-dielectrics");
+pub(crate) const ABSORPTION: bool = !cfg!(feature = "without-absorption");
 pub(crate) const WIDE_FILTER: bool = !cfg!(feature = "without-wide-filter");

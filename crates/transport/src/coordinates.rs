@@ -1,7 +1,9 @@
 //! What a surface carries besides its shape: normals to shade by and texture coordinates.
 
 use crate::bsdf::Shading;
-use etalon_geometry::PrimitiveId;
+use crate::frame::SceneFrame;
+use crate::round::RoundCoordinates;
+use etalon_geometry::{Geometry, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
 use etalon_scene::Mesh;
 use std::sync::Arc;
@@ -15,9 +17,24 @@ pub(crate) enum Coordinates {
     Parallelogram {
         /// Whether a mirroring transform has swapped its edges.
         swapped: bool,
+        /// Its edges as the object states them, before any swap.
+        edges: [Vec3<f64>; 2],
     },
+    /// A sphere, disk or cylinder.
+    Round(RoundCoordinates),
     /// A mesh whose vertices carry them.
     Mesh(MeshCoordinates),
+}
+
+/// A hit, as far as coordinates need it.
+pub(crate) struct At<'a> {
+    pub geometry: &'a Geometry,
+    pub surface: SurfaceId,
+    /// The primitive's own parameters.
+    pub uv: [f64; 2],
+    /// Where it is, and its own outward normal.
+    pub position: Vec3<f64>,
+    pub normal: Vec3<f64>,
 }
 
 /// What the vertices of a mesh carry.
@@ -30,62 +47,124 @@ pub(crate) struct MeshCoordinates {
     pub kept: Option<Vec<u32>>,
     /// Rows of the inverse transpose of the object's transform, to any scale.
     pub normal_to_world: [Vec3<f64>; 3],
+    /// Rows of the linear part of the object's transform.
+    pub linear: [Vec3<f64>; 3],
     /// Whether the transform mirrors: then the second and third corner of each primitive are swapped.
     pub swapped: bool,
 }
 
 impl Coordinates {
-    /// The point of `primitive` whose own normal is `normal` and whose surface parameters are `uv`; `outward` takes a normal
-    /// from the coordinates of the primitive to those of `normal`.
-    #[inline]
-    pub(crate) fn at(
-        &self,
-        normal: Vec3<f64>,
-        primitive: PrimitiveId,
-        uv: [f64; 2],
-        outward: impl FnOnce(Vec3<f64>) -> Vec3<f64>,
-    ) -> Shading<'static> {
+    /// The same in a frame with this many units in a metre, centred on a point of the world.
+    pub(crate) fn framed(self, frame: &SceneFrame) -> Self {
         match self {
-            Self::None => Shading::flat(normal),
-            Self::Parallelogram { swapped } => {
-                let [a, b] = uv;
-                Shading::flat(normal).with_uv(if *swapped { [b, a] } else { [a, b] })
+            Self::None => Self::None,
+            Self::Parallelogram { swapped, edges } => {
+                Self::Parallelogram { swapped, edges: edges.map(|edge| edge * frame.per_m()) }
             }
-            Self::Mesh(mesh) => mesh.at(normal, primitive, uv, outward),
+            Self::Round(round) => Self::Round(round.framed(frame)),
+            Self::Mesh(mesh) => {
+                Self::Mesh(MeshCoordinates { linear: mesh.linear.map(|row| row * frame.per_m()), ..mesh })
+            }
         }
+    }
+
+    /// Texture coordinates; 0 on a surface without.
+    #[inline]
+    pub(crate) fn uv(&self, at: &At<'_>) -> [f64; 2] {
+        match self {
+            Self::None => [0.0; 2],
+            Self::Parallelogram { swapped, .. } => {
+                let [a, b] = at.uv;
+                if *swapped { [b, a] } else { [a, b] }
+            }
+            Self::Round(round) => round.uv(at.geometry.local_point(at.surface, at.position)),
+            Self::Mesh(mesh) => mesh.uv(at.surface.primitive, at.uv),
+        }
+    }
+
+    /// The point as scattering sees it.
+    #[inline]
+    pub(crate) fn at(&self, at: &At<'_>) -> Shading<'static> {
+        let flat = Shading::flat(at.normal);
+        match self {
+            Self::None => flat,
+            Self::Parallelogram { .. } => flat.with_uv(self.uv(at)),
+            Self::Round(_) => flat.with_uv(self.uv(at)),
+            Self::Mesh(mesh) => {
+                let normal = mesh.normal(at.surface.primitive, at.uv);
+                let flat = if mesh.mesh.uvs.is_empty() { flat } else { flat.with_uv(self.uv(at)) };
+                match normal.map(|normal| at.geometry.placed_normal(at.surface, normal)) {
+                    // Opposite normals may cancel: then the triangle's own stands for them.
+                    Some(normal) if normal.length_squared() > 0.0 => flat.bent_to(normal.normalized()),
+                    _ => flat,
+                }
+            }
+        }
+    }
+
+    /// How the point moves with u and with v, in units of the frame; `None` where it does not with both.
+    pub(crate) fn tangents(&self, at: &At<'_>) -> Option<[Vec3<f64>; 2]> {
+        let local = match self {
+            Self::None => None,
+            Self::Parallelogram { edges, .. } => Some(*edges),
+            Self::Round(round) => round.tangents(at.geometry.local_point(at.surface, at.position)),
+            Self::Mesh(mesh) => mesh.tangents(at.surface.primitive),
+        };
+        local.map(|vectors| vectors.map(|v| at.geometry.placed_vector(at.surface, v)))
     }
 }
 
 impl MeshCoordinates {
-    fn at(
-        &self,
-        normal: Vec3<f64>,
-        primitive: PrimitiveId,
-        uv: [f64; 2],
-        outward: impl FnOnce(Vec3<f64>) -> Vec3<f64>,
-    ) -> Shading<'static> {
+    /// The corners of a primitive, and the weights of a point of it.
+    #[inline]
+    fn corners(&self, primitive: PrimitiveId) -> [usize; 3] {
         let index = primitive.0 - self.first;
         let triangle = self.kept.as_ref().map_or(index, |kept| kept[index as usize]);
-        let corners = self.mesh.triangles[triangle as usize].map(|i| i as usize);
-        let [second, third] = uv;
+        self.mesh.triangles[triangle as usize].map(|i| i as usize)
+    }
+
+    #[inline]
+    fn weights(&self, [second, third]: [f64; 2]) -> [f64; 3] {
         let [second, third] = if self.swapped { [third, second] } else { [second, third] };
-        let weights = [1.0 - second - third, second, third];
-        let mut shading = Shading::flat(normal);
-        if !self.mesh.uvs.is_empty() {
-            let [a, b, c] = corners.map(|i| self.mesh.uvs[i]);
-            let mean =
-                |k: usize| weights[0] * f64::from(a[k]) + weights[1] * f64::from(b[k]) + weights[2] * f64::from(c[k]);
-            shading = shading.with_uv([mean(0), mean(1)]);
+        [1.0 - second - third, second, third]
+    }
+
+    fn uv(&self, primitive: PrimitiveId, uv: [f64; 2]) -> [f64; 2] {
+        if self.mesh.uvs.is_empty() {
+            return [0.0; 2];
         }
-        if !self.mesh.normals.is_empty() {
-            let [a, b, c] = corners.map(|i| Vec3::from_array(self.mesh.normals[i].map(f64::from)));
-            let local = a * weights[0] + b * weights[1] + c * weights[2];
-            let world = outward(Vec3::from_array(self.normal_to_world.map(|row| row.dot(local))));
-            // Opposite normals may cancel: then the triangle's own stands for them.
-            if world.length_squared() > 0.0 {
-                shading = shading.bent_to(world.normalized());
-            }
+        let weights = self.weights(uv);
+        let [a, b, c] = self.corners(primitive).map(|i| self.mesh.uvs[i]);
+        let mean =
+            |k: usize| weights[0] * f64::from(a[k]) + weights[1] * f64::from(b[k]) + weights[2] * f64::from(c[k]);
+        [mean(0), mean(1)]
+    }
+
+    /// The interpolated normal of any length, in the coordinates of the geometry.
+    fn normal(&self, primitive: PrimitiveId, uv: [f64; 2]) -> Option<Vec3<f64>> {
+        if self.mesh.normals.is_empty() {
+            return None;
         }
-        shading
+        let weights = self.weights(uv);
+        let [a, b, c] = self.corners(primitive).map(|i| Vec3::from_array(self.mesh.normals[i].map(f64::from)));
+        let local = a * weights[0] + b * weights[1] + c * weights[2];
+        Some(Vec3::from_array(self.normal_to_world.map(|row| row.dot(local))))
+    }
+
+    /// The same all over a triangle: (e₁, e₂) = (∂p/∂u, ∂p/∂v)·(Δuv₁, Δuv₂), solved for the derivatives.
+    fn tangents(&self, primitive: PrimitiveId) -> Option<[Vec3<f64>; 2]> {
+        if self.mesh.uvs.is_empty() {
+            return None;
+        }
+        let corners = self.corners(primitive);
+        let [a, b, c] = corners.map(|i| Vec3::from_array(self.mesh.vertices[i]));
+        let [s, t, r] = corners.map(|i| self.mesh.uvs[i].map(f64::from));
+        let placed = |edge: Vec3<f64>| Vec3::from_array(self.linear.map(|row| row.dot(edge)));
+        let (first, second) = (placed(b - a), placed(c - a));
+        let ([du1, dv1], [du2, dv2]) = ([t[0] - s[0], t[1] - s[1]], [r[0] - s[0], r[1] - s[1]]);
+        let determinant = du1 * dv2 - du2 * dv1;
+        let along = [(first * dv2 - second * dv1) / determinant, (second * du1 - first * du2) / determinant];
+        // Where all corners have the same coordinates, or those on a line, there is no direction.
+        along.iter().all(|v| v.length_squared().is_finite() && v.length_squared() > 0.0).then_some(along)
     }
 }

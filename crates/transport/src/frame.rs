@@ -134,6 +134,12 @@ impl Affine {
         self.mirrors
     }
 
+    /// Rows of the linear part.
+    pub(crate) fn linear(&self) -> [Vec3<f64>; 3] {
+        let m = self.matrix.matrix3.transpose();
+        [m.x_axis, m.y_axis, m.z_axis].map(|row| Vec3::from_array(row.into()))
+    }
+
     /// Rows of the inverse transpose of the linear part, times its determinant: positive multiples of world normals, or
     /// negative ones if the transform mirrors.
     pub(crate) fn normal_matrix(&self) -> [Vec3<f64>; 3] {

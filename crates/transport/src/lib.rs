@@ -23,6 +23,7 @@
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
 //! into stages can change a film.
 
+mod absorption;
 pub mod accuracy;
 pub mod adaptive;
 pub mod bsdf;
@@ -47,8 +48,10 @@ pub mod polarisation;
 pub mod prepare;
 pub mod price;
 mod probe;
+mod relief;
 pub mod render;
 pub mod replay;
+mod round;
 pub mod sampler;
 mod shapes;
 pub mod shares;

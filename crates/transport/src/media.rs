@@ -9,6 +9,7 @@
 //! Boundaries of two solids may coincide, as where glass holds water. They are found together, as one interface between the
 //! medium before both and the medium behind both; an opaque surface that coincides with a boundary lies before it.
 
+use crate::spectral::PathSpectrum;
 use crate::surface::{Surface, Surfaces};
 use etalon_geometry::{Geometry, Hit, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{RefractiveIndex, Vec3};
@@ -25,6 +26,8 @@ const DEPTH: usize = 16;
 pub(crate) struct Solid {
     pub priority: u32,
     pub index: RefractiveIndex,
+    /// Absorption coefficient, m⁻¹, if it absorbs.
+    pub absorption: Option<PathSpectrum>,
 }
 
 /// A solid where it is placed: its object's number, and the instance (0 if it is in none).
@@ -115,6 +118,11 @@ impl Media {
     /// The medium that fills a place.
     fn medium(&self, inside: &Inside) -> &RefractiveIndex {
         self.filling(inside).and_then(|place| self.solid(place.0)).map_or(&VACUUM, |solid| &solid.index)
+    }
+
+    /// The absorption coefficient of the medium that fills a place, m⁻¹, if it absorbs.
+    pub(crate) fn absorption(&self, inside: &Inside) -> Option<&PathSpectrum> {
+        self.filling(inside).and_then(|place| self.solid(place.0))?.absorption.as_ref()
     }
 
     /// What a path meets next, and `ray` and `inside` brought before it. Counts in `lost` what contradicts itself.

@@ -14,17 +14,17 @@
 //! must not depend on which lane is the hero, or the two no longer add up to one for the lanes together. So what meets a
 //! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
+use crate::absorption::{Absorption, Body};
 use crate::bsdf::Lobe;
 use crate::compiled;
 use crate::film::Counters;
-use crate::light::{LightSample, LightTable, Target};
+use crate::light::{Environment, LightSample, LightTable, Target};
 use crate::media::{Inside, Media, Met};
 use crate::mis::{Density, power_heuristic};
 use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
-use crate::spectral::PathSpectrum;
 use crate::surface::{Scattering, Surfaces};
 use etalon_geometry::{Geometry, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Real, Vec3};
@@ -45,9 +45,11 @@ pub(crate) struct World<'a> {
     pub geometry: &'a Geometry,
     pub surfaces: &'a Surfaces,
     pub lights: &'a LightTable,
-    pub environments: &'a [PathSpectrum],
+    pub environments: &'a [Environment],
     /// The media, if the scene's solids are nested.
     pub media: Option<&'a Media>,
+    /// Absorption in media, if there is any.
+    pub absorption: Option<Absorption>,
     pub light_sampling: LightSampling,
     pub shadow_rays: ShadowRays,
     /// Whether some surface lets a part of the light pass as if it were not there.
@@ -67,6 +69,15 @@ pub(crate) enum ShadowRays {
     WhereUseful,
     /// From every surface, although some can make nothing of it: for the study of what that costs.
     Everywhere,
+}
+
+/// What surrounds a point of a surface.
+struct Around<'a> {
+    inside: &'a Inside,
+    /// On the side of the viewer.
+    body: Body<'a>,
+    /// On the other side.
+    beyond: Body<'a>,
 }
 
 /// The last step of the walk, as far as MIS needs it.
@@ -107,6 +118,10 @@ impl World<'_> {
         // ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
         let mut eta_squared = 1.0;
         let mut step = Step::Unshared;
+        let mut body = match self.absorption {
+            Some(_) => Body::around(self.geometry, self.surfaces, &ray),
+            None => Body::default(),
+        };
         // Surfaces passed as if they were not there, which are no vertices of the path.
         let mut passed = 0;
 
@@ -114,13 +129,22 @@ impl World<'_> {
             let lane_weight = lanes.weight();
             counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
             counters.rays += 1;
+            let start = ray.origin;
             let Some(Met { hit, point, surface, interface, beyond }) = self.meet(&mut ray, &mut inside, counters)
             else {
+                if let Some(absorption) = &self.absorption {
+                    beta *= absorption.transmittance(body, self.media, &inside, lambda_nm, f64::INFINITY);
+                }
                 let environments = if compiled::ENVIRONMENT { self.environments } else { &[] };
                 for sky in environments {
-                    // Never a target of shadow rays: the BSDF's own directions are its best samples.
                     counters.environment_lookups += 1;
-                    let light = polarisation.receive(beta * sky.lanes(lambda_nm) * lane_weight);
+                    let mis = if compiled::MIS && self.weigh_hits {
+                        self.weight_of_hit(step, SurfaceId::NONE, sky.light, ray.direction)
+                    } else {
+                        1.0
+                    };
+                    let radiance_of_sky = sky.radiance.lanes(lambda_nm, ray.direction);
+                    let light = polarisation.receive(beta * radiance_of_sky * (lane_weight * R::from_f64(mis)));
                     observer.light(vertex, Found::Environment, light);
                     radiance += light;
                 }
@@ -128,6 +152,12 @@ impl World<'_> {
                 break;
             };
             let wo = -ray.direction;
+            let from_front = point.normal.dot(wo) > 0.0;
+            if let Some(absorption) = &self.absorption {
+                body = body.before(&surface, from_front);
+                let length = (point.position - start).length();
+                beta *= absorption.transmittance(body, self.media, &inside, lambda_nm, length);
+            }
             observer.vertex(vertex, point.position, surface.object, beta);
 
             if let Some(emitter) = surface.emission_along(point.normal, wo) {
@@ -140,9 +170,10 @@ impl World<'_> {
                 observer.light(vertex, Found::Emitter, light);
                 radiance += light;
             }
-            if self.masks && surface.opacity < 1.0 {
+            let opacity = if self.masks { surface.opacity(self.geometry, &point, &hit) } else { 1.0 };
+            if opacity < 1.0 {
                 let [.., u_mask] = sampler.vertex_set(vertex, 1);
-                if u_mask >= surface.opacity && vertex + 1 < MOST_VERTICES {
+                if u_mask >= opacity && vertex + 1 < MOST_VERTICES {
                     // The last step goes on, and with it what MIS knows of it: the shadow ray passed here too.
                     passed += 1;
                     ray = point.spawn(ray.direction);
@@ -168,8 +199,9 @@ impl World<'_> {
             };
             if shared {
                 let u = sampler.vertex_set(vertex, 1);
+                let around = Around { inside: &inside, body, beyond: body.beyond(&surface, from_front) };
                 if let Some(Direct { light: index, wi, radiance: direct }) =
-                    self.direct_light(&point, &scattering, wo, (lambda_nm, &lanes), u, &inside, counters)
+                    self.direct_light(&point, &scattering, wo, (lambda_nm, &lanes), u, &around, counters)
                 {
                     let mueller = || scattering.mueller(lambda_nm, wo, wi, Lobe::SolidAngle);
                     let light = polarisation.receive_scattered(wo, wi, mueller, beta * direct * lane_weight);
@@ -199,9 +231,13 @@ impl World<'_> {
                 Density::SolidAngle(_) | Density::Delta => Step::Unshared,
             };
             ray = point.spawn(next.wi);
+            let goes_through = point.normal.dot(next.wi) * point.normal.dot(wo) < 0.0;
+            if goes_through {
+                body = body.beyond(&surface, from_front);
+            }
             if let Some(beyond) = beyond {
                 ray.leaves = beyond.leaves;
-                if point.normal.dot(next.wi) * point.normal.dot(wo) < 0.0 {
+                if goes_through {
                     inside = beyond.inside;
                 }
             }
@@ -273,7 +309,7 @@ impl World<'_> {
         wo: Vec3<f64>,
         (lambda_nm, lanes): (&Lanes<f64, N>, &M),
         [u_light, u1, u2, _]: [f64; 4],
-        inside: &Inside,
+        around: &Around<'_>,
         counters: &mut Counters,
     ) -> Option<Direct<R, N>> {
         if self.lights.is_empty() {
@@ -296,12 +332,19 @@ impl World<'_> {
             Target::Infinity => point.spawn(sample.wi),
         };
         counters.shadow_rays += 1;
+        let goes_through = point.normal.dot(sample.wi) * point.normal.dot(wo) < 0.0;
+        let body = if goes_through { around.beyond } else { around.body };
+        let mut transmittance = Lanes::ONE;
         let arriving = if self.masks {
-            self.passing(shadow_ray, *inside, &sample, counters)
+            self.passing(shadow_ray, (*around.inside, body), &sample, lambda_nm, &mut transmittance, counters)
         } else {
+            if let Some(absorption) = &self.absorption {
+                let length = sample.target.distance(point.position);
+                transmittance = absorption.transmittance(body, self.media, around.inside, lambda_nm, length);
+            }
             let occluded = match self.media {
                 Some(media) if compiled::NESTED_DIELECTRICS => {
-                    media.occluded(self.geometry, self.surfaces, shadow_ray, *inside, &mut counters.lost_media)
+                    media.occluded(self.geometry, self.surfaces, shadow_ray, *around.inside, &mut counters.lost_media)
                 }
                 _ => self.geometry.occluded(&shadow_ray),
             };
@@ -323,26 +366,39 @@ impl World<'_> {
                 mis * (sample.scale / density)
             }
         };
-        let radiance = f_cos * light.spectrum().lanes(lambda_nm) * R::from_f64(weight * arriving);
-        Some(Direct { light: index as u32, wi: sample.wi, radiance })
+        let direct = f_cos * light.lanes(lambda_nm, sample.wi) * R::from_f64(weight * arriving);
+        Some(Direct { light: index as u32, wi: sample.wi, radiance: direct * transmittance })
     }
 
-    /// The share of light from a sampled light that reaches the start of the shadow ray: masks let their part through.
-    fn passing(
+    /// The share of light from a sampled light that reaches the start of the shadow ray: masks let their part through, and
+    /// media what they do not absorb.
+    fn passing<R: Real, const N: usize>(
         &self,
         mut shadow_ray: Ray<f64>,
-        mut inside: Inside,
+        (mut inside, body): (Inside, Body<'_>),
         sample: &LightSample,
+        lambda_nm: &Lanes<f64, N>,
+        transmittance: &mut Lanes<R, N>,
         counters: &mut Counters,
     ) -> f64 {
         let mut share = 1.0;
+        let mut absorb = |inside: &Inside, length: f64| {
+            if let Some(absorption) = &self.absorption {
+                *transmittance *= absorption.transmittance(body, self.media, inside, lambda_nm, length);
+            }
+        };
         for _ in 0..MOST_VERTICES {
-            let Some(met) = self.meet(&mut shadow_ray, &mut inside, counters) else { return share };
+            let start = shadow_ray.origin;
+            let Some(met) = self.meet(&mut shadow_ray, &mut inside, counters) else {
+                absorb(&inside, sample.target.distance(start));
+                return share;
+            };
+            absorb(&inside, (met.point.position - start).length());
             let aims_at = shadow_ray.aims_at;
             if self.media.is_some() && met.point.surface == aims_at {
                 return share;
             }
-            share *= 1.0 - met.surface.opacity;
+            share *= 1.0 - met.surface.opacity(self.geometry, &met.point, &met.hit);
             if share == 0.0 {
                 return 0.0;
             }

@@ -1,20 +1,24 @@
 //! From a scene to what the kernels trace. After this nothing fails.
 
+use crate::absorption::{Absorption, Interior};
 use crate::bsdf::Bsdf;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
 use crate::kernel::{Kernel, kernel, study_kernel};
-use crate::light::{DirectionalLight, Light, LightTable, PointLight, SpotLight};
+use crate::light::{
+    DirectionalLight, Environment, EnvironmentLight, EnvironmentRadiance, Light, LightTable, PointLight, SpotLight,
+};
 use crate::media::{Media, Solid, open_edges};
 use crate::path::ShadowRays;
 use crate::plan::{Carried, EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
 use crate::shapes::{self, SceneShapes};
 use crate::spectral::PathSpectrum;
-use crate::surface::{Emission, ObjectSurface, Surfaces};
+use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
 use crate::wavelength::WavelengthDistribution;
 use etalon_geometry::{Geometry, GeometryError, ShapeError, SurfaceId};
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
 use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, Scene};
+use std::sync::Arc;
 
 /// A scene that is ready to be rendered.
 pub struct Prepared {
@@ -25,7 +29,7 @@ pub struct Prepared {
     pub(crate) geometry: Geometry,
     pub(crate) surfaces: Surfaces,
     pub(crate) lights: LightTable,
-    pub(crate) environments: Vec<PathSpectrum>,
+    pub(crate) environments: Vec<Environment>,
     pub(crate) media: Option<Media>,
     pub(crate) wavelengths: WavelengthDistribution,
     pub(crate) one_lane: OneLaneFilm,
@@ -109,13 +113,31 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
                 emitters.push(Light::Directional(DirectionalLight { toward, irradiance: spectrum(irradiance) }));
             }
             LightKind::Environment { radiance } if radiance.is_zero() => {}
-            LightKind::Environment { radiance } => environments.push(spectrum(radiance)),
+            LightKind::Environment { radiance } => environments.push(Environment::from(spectrum(radiance))),
+            LightKind::ImageEnvironment(image) if image.is_zero() => {}
+            LightKind::ImageEnvironment(image) => {
+                let light = Arc::new(EnvironmentLight::new(image, range_nm));
+                if scene.integrator.light_sampling != LightSampling::Bsdf {
+                    emitters.push(Light::Environment(Arc::clone(&light)));
+                }
+                environments.push(Environment { radiance: EnvironmentRadiance::Image(light), light: None });
+            }
         }
     }
     if plan.forces(EffectName::Environment) {
-        environments.push(PathSpectrum::Constant(0.0));
+        environments.push(PathSpectrum::Constant(0.0).into());
     }
     let lights = LightTable::new(emitters, radius, range_nm);
+    let mut skies = environments.iter_mut().filter(|sky| matches!(sky.radiance, EnvironmentRadiance::Image(_)));
+    for (index, light) in lights.lights().iter().enumerate() {
+        if let Light::Environment(light) = light {
+            let same = |sky: &&mut Environment| matches!(&sky.radiance, EnvironmentRadiance::Image(image) if Arc::ptr_eq(image, light));
+            // Both lists have them in the order of the scene.
+            if let Some(sky) = skies.find(same) {
+                sky.light = Some(index as u32);
+            }
+        }
+    }
     let mut light_of: Vec<(SurfaceId, u32)> = lights
         .lights()
         .iter()
@@ -142,12 +164,26 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
     }
     let surfaces = Surfaces {
         bsdfs,
+        interiors: scene
+            .materials
+            .iter()
+            .map(|material| match material.kind {
+                MaterialKind::Dielectric { priority: None, .. }
+                | MaterialKind::RoughDielectric { priority: None, .. } => {
+                    let absorption = material.absorption.as_ref().filter(|absorption| !absorption.is_zero());
+                    Some(Interior { absorption: absorption.map(spectrum) })
+                }
+                _ => None,
+            })
+            .collect(),
         objects: shapes::objects(scene)
             .zip(coordinates)
             .map(|(o, coordinates)| ObjectSurface {
                 material: o.material,
                 emission: o.emission.as_ref().map(|e| Emission { radiance: spectrum(&e.radiance), sides: e.sides }),
                 opacity: o.opacity,
+                opacity_image: o.opacity_image.clone(),
+                relief: o.relief.clone().map(|image| Relief { image, per_m: frame.per_m() }),
                 coordinates,
                 axis: axis(o, &scene.materials[o.material].kind),
             })
@@ -186,10 +222,16 @@ fn axis(object: &Object, kind: &MaterialKind) -> Option<Vec3<f64>> {
 
 /// The solids that carry priorities.
 fn media(scene: &Scene) -> Result<Media, PrepareError> {
+    let range_nm = scene.integrator.wavelength_range_nm;
     let solid = |object: &Object| {
         let Some((index, priority)) = scene.materials[object.material].kind.solid() else { return Ok(None) };
         match open_edges(&object.shape) {
-            None => Ok(Some(Solid { priority, index: index.clone() })),
+            None => {
+                let absorption = &scene.materials[object.material].absorption;
+                let absorption = absorption.as_ref().filter(|spectrum| !spectrum.is_zero());
+                let absorption = absorption.map(|spectrum| PathSpectrum::new(spectrum, range_nm));
+                Ok(Some(Solid { priority, index: index.clone(), absorption }))
+            }
             Some(why) => Err(PrepareError::OpenSolid { object: object.name.clone(), why }),
         }
     };
@@ -220,6 +262,11 @@ impl Prepared {
     /// Whether films hold S₁, S₂ and S₃: where they are asked for, and polarisation is carried.
     pub fn records_stokes(&self) -> bool {
         self.plan.stokes
+    }
+
+    /// Absorption along paths, if it is simulated.
+    pub(crate) fn absorption(&self) -> Option<Absorption> {
+        self.plan.runs(EffectName::Absorption).then(|| Absorption { unit_m: 1.0 / self.frame.per_m() })
     }
 
     /// From which surfaces shadow rays are sent.

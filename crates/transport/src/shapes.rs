@@ -4,6 +4,7 @@ use crate::coordinates::{Coordinates, MeshCoordinates};
 use crate::frame::{Affine, SceneFrame};
 use crate::light::{CylinderLight, DiskLight, Emitter, Light, ParallelogramLight, SphereLight, TriangleLight};
 use crate::prepare::PrepareError;
+use crate::round::RoundCoordinates;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{
     Aabb, Cylinder, Disk, Geometry, Instance, Parallelogram, Placement, Primitive, PrimitiveId, ShapeError, Sphere,
@@ -60,6 +61,7 @@ pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, Pr
     coordinates.append(&mut grouped_coordinates);
     let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
     let frame = bounds.map_or(SceneFrame::WORLD, SceneFrame::around);
+    coordinates[..scene.objects.len()].iter_mut().for_each(|one| *one = one.clone().framed(&frame));
     let framed: Result<Vec<Primitive>, PrepareError> = primitives
         .into_iter()
         .enumerate()
@@ -139,18 +141,22 @@ impl Collected {
         let mut coordinates = Coordinates::None;
         match &object.shape {
             Shape::Sphere { center, radius_m } => {
+                coordinates = Coordinates::Round(RoundCoordinates::sphere(*center, *radius_m, &to_world));
                 self.add(index, Sphere::new(to_world.point(*center), radius_m * to_world.uniform_scale())?);
             }
             Shape::Parallelogram { origin, u, v } => {
-                let (u, v) = to_world.oriented(to_world.vector(*u), to_world.vector(*v));
-                coordinates = Coordinates::Parallelogram { swapped: to_world.mirrors() };
+                let edges = [*u, *v].map(|edge| to_world.vector(edge));
+                let (u, v) = to_world.oriented(edges[0], edges[1]);
+                coordinates = Coordinates::Parallelogram { swapped: to_world.mirrors(), edges };
                 self.add(index, Parallelogram::new(to_world.point(*origin), u, v)?);
             }
             Shape::Disk { center, normal, radius_m } => {
+                coordinates = Coordinates::Round(RoundCoordinates::disk(*center, *normal, *radius_m, &to_world));
                 let normal = to_world.vector(*normal).normalized();
                 self.add(index, Disk::new(to_world.point(*center), normal, radius_m * to_world.uniform_scale())?);
             }
             Shape::Cylinder { start, end, radius_m, capped } => {
+                coordinates = Coordinates::Round(RoundCoordinates::cylinder(*start, *end, *radius_m, &to_world));
                 let (start, end) = (to_world.point(*start), to_world.point(*end));
                 self.add(index, Cylinder::new(start, end, radius_m * to_world.uniform_scale(), *capped)?);
             }
@@ -175,6 +181,7 @@ impl Collected {
                             (0..mesh.triangles.len() as u32).filter(|i| dropped.binary_search(i).is_err()).collect()
                         }),
                         normal_to_world: to_world.normal_matrix(),
+                        linear: to_world.linear(),
                         swapped: to_world.mirrors(),
                     });
                 }

@@ -1,13 +1,15 @@
 //! What a primitive is made of: scattering, emission and the light it belongs to.
 
+use crate::absorption::Interior;
 use crate::bsdf::{Bsdf, BsdfSample, Lobe, Shading};
-use crate::coordinates::Coordinates;
+use crate::coordinates::{At, Coordinates};
 use crate::media::Interface;
 use crate::polarisation::mueller::Mueller;
+use crate::relief;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Real, Vec3};
-use etalon_scene::EmissionSides;
+use etalon_scene::{EmissionSides, OpacityImage};
 
 /// What belongs to one object.
 #[derive(Clone, Debug)]
@@ -16,10 +18,22 @@ pub(crate) struct ObjectSurface {
     pub emission: Option<Emission>,
     /// Share of light that meets the surface at all; the rest passes.
     pub opacity: f64,
+    /// An image of that share.
+    pub opacity_image: Option<OpacityImage>,
+    /// An image of other normals to scatter around.
+    pub relief: Option<Relief>,
     pub coordinates: Coordinates,
     /// The axis of a polarising sheet, in the coordinates of the object's group. What absorbs lies across it along the sheet, so
     /// that a transform takes it to its place as it does a normal.
     pub axis: Option<Vec3<f64>>,
+}
+
+/// An image of normals or heights.
+#[derive(Clone, Debug)]
+pub(crate) struct Relief {
+    pub image: etalon_scene::Relief,
+    /// Units of the frame in a metre.
+    pub per_m: f64,
 }
 
 /// What a surface emits.
@@ -34,6 +48,8 @@ pub(crate) struct Emission {
 pub(crate) struct Surfaces {
     /// Scattering of each material.
     pub bsdfs: Vec<Bsdf>,
+    /// What each material holds, where it states both its sides itself.
+    pub interiors: Vec<Option<Interior>>,
     pub objects: Vec<ObjectSurface>,
     /// Object of each primitive, for each geometry by its label.
     pub object_of: Vec<Vec<u32>>,
@@ -46,8 +62,11 @@ pub(crate) struct Surface<'a> {
     pub object: u32,
     pub bsdf: &'a Bsdf,
     pub light: Option<u32>,
-    /// Share of light that meets the surface at all; the rest passes.
-    pub opacity: f64,
+    opacity: f64,
+    opacity_image: Option<&'a OpacityImage>,
+    relief: Option<&'a Relief>,
+    /// What it holds, where it states both its sides itself.
+    pub interior: Option<&'a Interior>,
     emission: Option<&'a Emission>,
     coordinates: &'a Coordinates,
     axis: Option<Vec3<f64>>,
@@ -68,6 +87,9 @@ impl Surfaces {
             bsdf: &self.bsdfs[of_object.material],
             light,
             opacity: of_object.opacity,
+            opacity_image: of_object.opacity_image.as_ref(),
+            relief: of_object.relief.as_ref(),
+            interior: self.interiors[of_object.material].as_ref(),
             emission,
             coordinates: &of_object.coordinates,
             axis: of_object.axis,
@@ -82,7 +104,20 @@ impl Surfaces {
     }
 }
 
+fn at<'a>(geometry: &'a Geometry, point: &SurfacePoint<f64>, hit: &Hit<f64>) -> At<'a> {
+    At { geometry, surface: hit.surface, uv: hit.uv, position: point.position, normal: point.normal }
+}
+
 impl<'a> Surface<'a> {
+    /// Share of light that meets the surface at all; the rest passes.
+    #[inline]
+    pub(crate) fn opacity(&self, geometry: &Geometry, point: &SurfacePoint<f64>, hit: &Hit<f64>) -> f64 {
+        match self.opacity_image {
+            None => self.opacity,
+            Some(image) => self.opacity * image.eval(self.coordinates.uv(&at(geometry, point, hit))),
+        }
+    }
+
     /// Scattering at a point of it; `interface` has the media on both sides where the place decides them.
     #[inline]
     pub(crate) fn scattering(
@@ -92,10 +127,17 @@ impl<'a> Surface<'a> {
         hit: &Hit<f64>,
         interface: Option<Interface<'a>>,
     ) -> Scattering<'a> {
-        let outward = |normal| geometry.placed_normal(hit.surface, normal);
-        let at = self.coordinates.at(point.normal, hit.surface.primitive, hit.uv, outward);
-        let at = self.axis.map_or(at, |axis| at.with_axis(outward(axis).normalized()));
-        Scattering { bsdf: self.bsdf, at: at.between(interface) }
+        let place = at(geometry, point, hit);
+        let mut shading = self.coordinates.at(&place);
+        if let Some(relief) = self.relief
+            && let Some(tangents) = self.coordinates.tangents(&place)
+        {
+            shading = relief::bend(&relief.image, shading, tangents, relief.per_m);
+        }
+        if let Some(axis) = self.axis {
+            shading = shading.with_axis(geometry.placed_normal(hit.surface, axis).normalized());
+        }
+        Scattering { bsdf: self.bsdf, at: shading.between(interface) }
     }
 
     /// Whether what the surface does depends on the medium that it stands in.

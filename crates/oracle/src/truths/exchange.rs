@@ -81,6 +81,7 @@ impl Claim {
             Self::NestedMedia => "nested-media",
             Self::PhotometricSensor => "photometric-sensor",
             Self::Priorities => "priorities",
+            Self::Absorption => "absorption",
         }
     }
 }

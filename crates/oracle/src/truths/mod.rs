@@ -8,6 +8,7 @@
 //! sensor reads it whose answer to a constant spectrum of radiance 1 is 1: CIE Y, if normalised that way. Irradiance E is read
 //! off a small Lambert plate of albedo ρ, which shows ρE/π.
 
+mod absorption;
 mod cameras;
 mod enclosures;
 mod exchange;
@@ -58,11 +59,13 @@ pub enum Claim {
     PhotometricSensor,
     /// Knows which of several solids fills a place that they share: the one of the highest priority, of equal ones the later.
     Priorities,
+    /// Media absorb what goes through them.
+    Absorption,
 }
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 8] = [
+    pub const UNPOLARISED: [Self; 9] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -71,6 +74,7 @@ impl Claim {
         Self::NestedMedia,
         Self::PhotometricSensor,
         Self::Priorities,
+        Self::Absorption,
     ];
 }
 
@@ -242,6 +246,7 @@ pub fn truths() -> Vec<Truth> {
         glass::truths(),
         polarised::truths(),
         solids::truths(),
+        absorption::truths(),
         water::truths(),
         prisms::truths(),
         cameras::truths(),

@@ -2,10 +2,13 @@
 
 use std::ops::Bound;
 
-use super::spectra::{Role, Spectra};
+use super::spectra::{BRIGHTEST, Role, Spectra};
 use super::spectrum::SpectrumForm;
-use crate::json::{Code, Direction, Optional, Reader, Required, Spanned};
-use crate::model::{Light, LightKind};
+use crate::files::Files;
+use crate::json::{Code, Direction, NonNegative, Optional, Reader, Required, Rule, Spanned};
+use crate::model::{EnvironmentImage, Light, LightKind};
+use crate::texture::Encoding;
+use crate::vector::{add, cross, dot, length, scale, sub, unit};
 
 crate::record! {
     /// The same intensity in every direction, from a point.
@@ -60,12 +63,32 @@ crate::record! {
 }
 
 crate::record! {
-    /// The same radiance from every direction, from infinitely far.
+    /// Radiance from infinitely far: the same from every direction, or as an image says.
     pub(crate) struct EnvironmentLight + comment {
         /// Its name, for messages.
         name: Optional<String>,
-        /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹.
-        radiance: Required<SpectrumForm>,
+        /// Radiance from every direction, W·m⁻²·sr⁻¹·nm⁻¹. Either this or `image`.
+        radiance: Optional<SpectrumForm>,
+        /// An image of all directions. Either this or `radiance`.
+        image: Optional<EnvironmentImageForm>,
+    } with [Rule::OneOf(&["radiance", "image"])]
+}
+
+crate::record! {
+    /// An image of all directions: longitude along its rows, latitude along its columns.
+    pub(crate) struct EnvironmentImageForm + comment {
+        /// An EXR, HDR, PNG or JPEG file, relative to this file's folder.
+        file: Required<Spanned<String>>,
+        /// How its numbers are to be read.
+        encoding: Required<Encoding> = r#""auto""#,
+        /// Factor on the radiance; of 1, white (1, 1, 1) has the luminance of the constant spectrum 1.
+        scale: Required<NonNegative> = "1",
+        /// The direction of the image's upper edge.
+        up: Required<Spanned<Direction>> = "[0, 1, 0]",
+        /// The direction in the middle of the image; only its part across `up` counts.
+        forward: Required<Spanned<Direction>> = "[0, 0, -1]",
+        /// Turns the whole about `up`, counter-clockwise when `up` points at the viewer, degrees.
+        rotation_deg: Required<f64> = "0",
     }
 }
 
@@ -84,6 +107,7 @@ pub(crate) fn light<'f>(
     form: &'f LightForm,
     index: usize,
     spectra: &mut Spectra<'f>,
+    files: &mut Files,
     reader: &mut Reader<'_>,
 ) -> Option<Light> {
     let (name, kind) = match form {
@@ -111,11 +135,66 @@ pub(crate) fn light<'f>(
             let irradiance = spectra.resolve(light.irradiance.as_ref()?, Role::Emission, reader)?;
             (&light.name, LightKind::Directional { direction: light.direction?.0, irradiance })
         }
-        LightForm::Environment(light) => (
-            &light.name,
-            LightKind::Environment { radiance: spectra.resolve(light.radiance.as_ref()?, Role::Emission, reader)? },
-        ),
+        LightForm::Environment(light) => {
+            let kind = match (&light.radiance, &light.image) {
+                (Optional::Given(radiance), Optional::Absent) => {
+                    LightKind::Environment { radiance: spectra.resolve(radiance, Role::Emission, reader)? }
+                }
+                (Optional::Absent, Optional::Given(image)) => {
+                    LightKind::ImageEnvironment(environment_image(image, spectra, files, reader)?)
+                }
+                _ => return None,
+            };
+            (&light.name, kind)
+        }
     };
     let name = name.clone().checked()?.unwrap_or_else(|| format!("lights[{index}]"));
     Some(Light { name, kind })
+}
+
+/// Below this sine of the angle between `up` and `forward`, the turn of an image hangs on digits that nobody meant.
+const PARALLEL: f64 = 1e-6;
+
+fn environment_image(
+    form: &EnvironmentImageForm,
+    spectra: &mut Spectra<'_>,
+    files: &mut Files,
+    reader: &mut Reader<'_>,
+) -> Option<EnvironmentImage> {
+    let file = form.file.as_ref()?;
+    let image = form.encoding.and_then(|encoding| files.image(file, encoding, reader));
+    let axes = form.up.zip(form.forward).and_then(|(up, forward)| {
+        let (up, toward) = (up.value.0, forward.value.0);
+        let across = sub(toward, scale(up, dot(toward, up)));
+        if length(across) < PARALLEL {
+            let hint = "give a \"forward\" across \"up\"";
+            reader.error_hint(Code::DegenerateView, forward.at, "\"forward\" is along \"up\"", hint);
+            return None;
+        }
+        // Once more, since rounding left a little along `up`.
+        let across = unit(across)?;
+        let forward = unit(sub(across, scale(up, dot(across, up))))?;
+        let right = cross(forward, up);
+        let (sin, cos) = form.rotation_deg?.to_radians().sin_cos();
+        let turned = |along: f64, across: f64| add(scale(forward, along), scale(right, across));
+        Some((turned(cos, -sin), turned(sin, cos), up))
+    });
+    let white = spectra.daylight(form.scale?.0, form.at, reader);
+    let image = image?;
+    let texel_at = |i: usize| (i % image.width as usize, i / image.width as usize);
+    if let Some(i) = image.linear_texels().position(|texel| texel.iter().any(|v| *v < 0.0)) {
+        let (column, row) = texel_at(i);
+        let message = format!("{}: the texel in column {column}, row {row} is below 0", file.value);
+        reader.error(Code::NegativeEmission, file.at, message);
+        return None;
+    }
+    let ((forward, right, up), white) = (axes?, white?);
+    let brightest = white.max_over(spectra.range_nm?);
+    if let Some(i) = image.linear_texels().position(|t| t.iter().any(|v| v * brightest > BRIGHTEST)) {
+        let (column, row) = texel_at(i);
+        let message = format!("{}: the texel in column {column}, row {row} is more than {BRIGHTEST:e}", file.value);
+        reader.error_hint(Code::OutOfRange, file.at, message, "single precision could not carry it");
+        return None;
+    }
+    Some(EnvironmentImage { image, name: file.value.clone(), forward, right, up, white })
 }

@@ -2,7 +2,7 @@
 
 mod index;
 
-use etalon_optics::OutsideFit;
+use etalon_optics::{OutsideFit, Spectrum};
 
 use std::ops::Bound;
 
@@ -14,7 +14,7 @@ use crate::files::Files;
 use crate::json::{
     Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole,
 };
-use crate::model::{LEAST_ALPHA, MaterialKind, PolarisingSheet};
+use crate::model::{LEAST_ALPHA, Material, MaterialKind, PolarisingSheet};
 use index::{IndexForm, Metal, complex_index, index};
 
 crate::record! {
@@ -92,7 +92,18 @@ crate::record! {
         /// For a closed solid that touches, overlaps or holds other solids: where several overlap, the one of the highest
         /// priority fills the place; of equal priorities, the object that comes later. It replaces `exterior`.
         priority: Optional<Whole<0, { u32::MAX as u64 }>>,
-    } with [Rule::NotBoth("exterior", "priority")]
+        /// Absorption coefficient σ of the interior, 1/m: over d metres e^(−σd) of the light is left.
+        absorption_per_m: Optional<SpectrumForm>,
+        /// Instead: the share of light that `transmittance_depth_m` of the interior let through, above 0 to 1.
+        transmittance: Optional<SpectrumForm>,
+        /// The depth at which `transmittance` holds, m.
+        transmittance_depth_m: Optional<Positive>,
+    } with [
+        Rule::NotBoth("exterior", "priority"),
+        Rule::NotBoth("absorption_per_m", "transmittance"),
+        Rule::Needs("transmittance", &["transmittance_depth_m"]),
+        Rule::Needs("transmittance_depth_m", &["transmittance"]),
+    ]
 }
 
 crate::number! {
@@ -226,11 +237,33 @@ pub(crate) struct Before<'m> {
     /// All of the file's names.
     pub(crate) names: &'m Names<'m>,
     /// The materials read so far, by their place in the file; `None` is wrong, which has been reported.
-    pub(crate) made: &'m [Option<MaterialKind>],
+    pub(crate) made: &'m [Option<Made>],
+}
+
+/// What a form says.
+#[derive(Clone, Debug)]
+pub(crate) struct Made {
+    /// What the surface does.
+    pub(crate) kind: MaterialKind,
+    /// Absorption coefficient of its interior, m⁻¹.
+    pub(crate) absorption: Option<Spectrum>,
+}
+
+impl Made {
+    /// With this name.
+    pub(crate) fn named(self, name: String) -> Material {
+        Material { name, kind: self.kind, absorption: self.absorption }
+    }
+}
+
+impl From<MaterialKind> for Made {
+    fn from(kind: MaterialKind) -> Self {
+        Self { kind, absorption: None }
+    }
 }
 
 impl Before<'_> {
-    fn find(&self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<MaterialKind> {
+    fn find(&self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Made> {
         let place = self.names.find(name, reader)?;
         match self.made.get(place) {
             Some(made) => made.clone(),
@@ -251,8 +284,8 @@ pub(crate) fn material<'f>(
     spectra: &mut Spectra<'f>,
     files: &mut Files,
     reader: &mut Reader<'_>,
-) -> Option<MaterialKind> {
-    match form {
+) -> Option<Made> {
+    let kind = match form {
         MaterialForm::Lambert(lambert) => {
             let reflectance = spectra.resolve_texture(lambert.reflectance.as_ref()?, files, reader)?;
             Some(MaterialKind::Lambert { reflectance })
@@ -276,11 +309,13 @@ pub(crate) fn material<'f>(
             let alpha = width(dielectric.alpha.as_ref(), reader);
             let compensated = dielectric.multiple_scattering? == MultipleScattering::Compensated;
             let priority = dielectric.priority.clone().checked()?.map(|priority| priority.0 as u32);
+            let absorption = absorption(dielectric, spectra, reader);
             let (interior, exterior) = (interior?, exterior?);
-            Some(match alpha? {
+            let kind = match alpha? {
                 0.0 => MaterialKind::Dielectric { interior, exterior, priority },
                 alpha => MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority },
-            })
+            };
+            return Some(Made { kind, absorption: absorption? });
         }
         MaterialForm::OrenNayar(rough) => {
             let reflectance = spectra.resolve(rough.reflectance.as_ref()?, Role::Reflectance, reader)?;
@@ -310,11 +345,17 @@ pub(crate) fn material<'f>(
         }
         MaterialForm::Blend(blend) => {
             let mut part = |part: &'f Option<Box<MaterialUse>>| match part.as_deref()? {
-                MaterialUse::Own(own) => material(own, before, spectra, files, reader).map(Box::new),
-                MaterialUse::Named(name) => before.find(name, reader).map(Box::new),
+                MaterialUse::Own(own) => material(own, before, spectra, files, reader),
+                MaterialUse::Named(name) => before.find(name, reader),
             };
             let (first, second) = (part(&blend.first), part(&blend.second));
             let (first, second) = (first?, second?);
+            if first.absorption.is_some() || second.absorption.is_some() {
+                let message = "a part of a blend bounds no medium: its dielectric cannot absorb";
+                reader.error_hint(Code::KeyConflict, blend.at.head(), message, "let the dielectric stand alone");
+                return None;
+            }
+            let [first, second] = [first.kind, second.kind].map(Box::new);
             if [&first, &second].iter().any(|part| part.solid().is_some()) {
                 let message = "a part of a blend bounds no solid: its dielectric cannot have a priority";
                 reader.error_hint(Code::KeyConflict, blend.at.head(), message, "say its exterior instead");
@@ -336,6 +377,26 @@ pub(crate) fn material<'f>(
             Some(kind)
         }
         MaterialForm::Black(_) => Some(MaterialKind::Black),
+    };
+    kind.map(Made::from)
+}
+
+/// The absorption of a dielectric's interior; `Some(None)` if it has none.
+fn absorption<'f>(
+    form: &'f DielectricMaterial,
+    spectra: &mut Spectra<'f>,
+    reader: &mut Reader<'_>,
+) -> Option<Option<Spectrum>> {
+    match (&form.absorption_per_m, &form.transmittance) {
+        (Optional::Absent, Optional::Absent) => Some(None),
+        (Optional::Given(coefficient), _) => spectra.resolve(coefficient, Role::Absorption, reader).map(Some),
+        (_, Optional::Given(share)) => {
+            let depth_m = form.transmittance_depth_m.given()?.0;
+            let at = share.at().head();
+            let share = spectra.resolve(share, Role::Reflectance, reader)?;
+            spectra.absorption_of(&share, depth_m, at, reader).map(Some)
+        }
+        _ => None,
     }
 }
 

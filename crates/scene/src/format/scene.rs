@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use super::camera::{CameraForm, FilmForm, camera, film};
+use super::detail::{BumpMapForm, NormalMapForm, OpacityImageForm, bump_map, normal_map, opacity_image};
 use super::geometry::{ShapeForm, Step, check_extent, check_similarity, shape, transform};
 use super::group::{GroupForm, InstanceForm, groups};
 use super::integrator::{IntegratorForm, integrator, wavelength_range_nm};
@@ -13,9 +14,10 @@ use super::spectra::{Role, Spectra};
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{
-    Code, Decode, Kind, List, Named, Node, Optional, Reader, Required, SchemaBuilder, SchemaValue, Span, Spanned,
+    Code, Decode, Kind, List, Named, Node, Optional, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span, Spanned,
 };
 use crate::model::{Emission, EmissionSides, LightKind, Material, Object, Scene, Shape};
+use crate::texture::ImageTexture;
 
 /// The version of the format that this program reads.
 const VERSION: f64 = 1.0;
@@ -83,9 +85,15 @@ crate::record! {
         emission: Optional<EmissionForm>,
         /// Share of light that meets the surface at all, from 0 to 1; the rest passes as if it were not there.
         opacity: Required<Share> = "1",
+        /// An image of that share over the texture coordinates; `opacity` is a factor on it.
+        opacity_image: Optional<OpacityImageForm>,
+        /// An image of normals to scatter around.
+        normal_map: Optional<NormalMapForm>,
+        /// An image of heights, instead of one of normals.
+        bump_map: Optional<BumpMapForm>,
         /// From its own coordinates to the world: steps, the first of which is applied first.
         transform: Required<Spanned<List<Box<Step>>>> = "[]",
-    }
+    } with [Rule::NotBoth("normal_map", "bump_map")]
 }
 
 crate::record! {
@@ -163,9 +171,9 @@ pub(crate) fn scene(
     let mut made = Vec::with_capacity(named.len());
     for entry in named {
         let before = Before { names: &names, made: &made };
-        let kind = entry.value.as_ref().and_then(|form| material(form, &before, &mut spectra, files, reader));
-        made.push(kind.clone());
-        materials.push(kind.map(|kind| Material { name: entry.name.clone(), kind }));
+        let one = entry.value.as_ref().and_then(|form| material(form, &before, &mut spectra, files, reader));
+        made.push(one.clone());
+        materials.push(one.map(|one| one.named(entry.name.clone())));
     }
     let named = Before { names: &names, made: &made };
     let mut objects = All::default();
@@ -183,8 +191,10 @@ pub(crate) fn scene(
     );
     let mut lights = All::default();
     for (i, form) in form.lights.iter().flat_map(|lights| lights.0.iter().enumerate()) {
-        lights.push(form.as_ref().and_then(|form| light(form, i, &mut spectra, reader)));
+        lights.push(form.as_ref().and_then(|form| light(form, i, &mut spectra, files, reader)));
     }
+
+    files.warn_of_what_is_left_out(reader);
 
     // Whatever is wrong has been reported by now; a wrong list has not become an empty one.
     let _ = (form.spectra.as_ref()?, form.materials.as_ref()?, form.objects.as_ref()?, form.lights.as_ref()?);
@@ -256,15 +266,34 @@ fn object<'f>(
     let material = form.material.as_ref().and_then(|material_use| match material_use {
         MaterialUse::Named(name) => named.names.find(name, reader),
         MaterialUse::Own(own) => {
-            let kind = material(own, named, spectra, files, reader)?;
-            Some(materials.push(Some(Material { name: format!("{place}.material"), kind })))
+            let made = material(own, named, spectra, files, reader)?;
+            Some(materials.push(Some(made.named(format!("{place}.material")))))
         }
     });
     if let (Some(material), Some(shape)) = (material, &shape)
         && let Some(at) = form.material.as_ref().map(MaterialUse::at)
     {
         // Indices count the right ones only as long as all are.
-        check_coordinates(materials.right.get(material).filter(|_| !materials.wrong), shape, at, reader);
+        let material = materials.right.get(material).filter(|_| !materials.wrong);
+        check_coordinates(material.and_then(|material| material.kind.image()), shape, at, reader);
+    }
+    let opacity_image = match &form.opacity_image {
+        Optional::Absent => Some(None),
+        Optional::Given(image) => opacity_image(image, files, reader).map(Some),
+        Optional::Invalid => None,
+    };
+    let relief = match (&form.normal_map, &form.bump_map) {
+        (Optional::Absent, Optional::Absent) => Some(None),
+        (Optional::Given(map), Optional::Absent) => normal_map(map, files, reader).map(Some),
+        (Optional::Absent, Optional::Given(map)) => bump_map(map, files, reader).map(Some),
+        _ => None,
+    };
+    if let Some(shape) = &shape {
+        let of_opacity = opacity_image.iter().flatten().map(|image| &image.texture);
+        let of_relief = relief.iter().flatten().map(|relief| relief.texture());
+        for texture in of_opacity.chain(of_relief) {
+            check_coordinates(Some(texture), shape, form.at.head(), reader);
+        }
     }
     let emission = match &form.emission {
         Optional::Absent => Some(None),
@@ -281,22 +310,22 @@ fn object<'f>(
         material: material?,
         emission: emission?,
         opacity: form.opacity?.0,
+        opacity_image: opacity_image?,
+        relief: relief?,
     })
 }
 
 /// Reports an image over a shape that has no texture coordinates.
-fn check_coordinates(material: Option<&Material>, shape: &Shape, at: Span, reader: &mut Reader<'_>) {
-    let image = material.and_then(|material| material.kind.image());
+fn check_coordinates(image: Option<&ImageTexture>, shape: &Shape, at: Span, reader: &mut Reader<'_>) {
     let has_coordinates = match shape {
         Shape::Mesh(mesh) => !mesh.uvs.is_empty(),
-        Shape::Parallelogram { .. } => true,
-        Shape::Sphere { .. } | Shape::Disk { .. } | Shape::Cylinder { .. } => false,
+        Shape::Parallelogram { .. } | Shape::Sphere { .. } | Shape::Disk { .. } | Shape::Cylinder { .. } => true,
     };
     if let Some(image) = image
         && !has_coordinates
     {
         let message = format!("the shape has no texture coordinates for the image \"{}\"", image.name);
-        let hint = "parallelograms have them, and meshes with uvs";
+        let hint = "a mesh has them by its \"uvs\", or by its file";
         reader.error_hint(Code::NoTextureCoordinates, at, message, hint);
     }
 }
@@ -312,6 +341,7 @@ fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {
         | LightKind::Spot { intensity: spectrum, .. }
         | LightKind::Directional { irradiance: spectrum, .. }
         | LightKind::Environment { radiance: spectrum } => !spectrum.is_zero(),
+        LightKind::ImageEnvironment(image) => !image.is_zero(),
     });
     let glowing = scene.placed_objects().filter_map(|o| o.emission.as_ref()).any(|e| !e.radiance.is_zero());
     if !lit && !glowing {

@@ -16,10 +16,10 @@ use crate::model::SpectrumTexture;
 use crate::texture::ImageTexture;
 
 /// The largest emission: with the squares of distances, it stays within single precision (3·10³⁸).
-const BRIGHTEST: f64 = 1e30;
+pub(crate) const BRIGHTEST: f64 = 1e30;
 
 /// The largest factor on texture coordinates, and the largest shift: of sixteen digits, eight are left.
-const FARTHEST_UV: f64 = 1e8;
+pub(crate) const FARTHEST_UV: f64 = 1e8;
 
 /// What a spectrum is used as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -28,6 +28,8 @@ pub(crate) enum Role {
     Reflectance,
     /// A density of light, 0 or above.
     Emission,
+    /// A coefficient of absorption, 0 or above.
+    Absorption,
 }
 
 /// How a spectrum is used.
@@ -207,6 +209,47 @@ impl<'f> Spectra<'f> {
         Some(spectrum)
     }
 
+    /// The coefficient σ = −ln T/d, 1/m, of a medium that lets the share T through over `depth_m`.
+    ///
+    /// Rows at each nanometre of the rendered range and at those of a table: between them σ is linear, not T.
+    pub(crate) fn absorption_of(
+        &mut self,
+        share: &Spectrum,
+        depth_m: f64,
+        at: Span,
+        reader: &mut Reader<'_>,
+    ) -> Option<Spectrum> {
+        let [first, last] = self.range_nm?;
+        let coefficient = |nm: f64| {
+            let share = share.eval(nm);
+            // Not −0 where nothing is absorbed.
+            if share < 1.0 { -share.ln() / depth_m } else { 0.0 }
+        };
+        let wavelengths_nm: Vec<f64> = if share.is_constant() {
+            vec![first]
+        } else {
+            let inner = (1..).map(|i| first.floor() + f64::from(i)).take_while(|nm| *nm < last);
+            std::iter::once(first).chain(inner).chain(std::iter::once(last)).collect()
+        };
+        let values: Vec<f64> = wavelengths_nm.iter().map(|nm| coefficient(*nm)).collect();
+        if let Some(i) = values.iter().position(|v| !v.is_finite()) {
+            let message = format!("nothing comes through at {} nm: no absorption is that strong", wavelengths_nm[i]);
+            reader.error_hint(Code::OutOfRange, at, message, "a transmittance lies above 0");
+            return None;
+        }
+        match values.as_slice() {
+            [one] => Some(Spectrum::Constant(*one)),
+            _ => accept(Spectrum::tabulated(wavelengths_nm, values, Outside::Hold), at, reader),
+        }
+    }
+
+    /// Daylight of this scale, for what is written at `at`.
+    pub(crate) fn daylight(&mut self, scale: f64, at: Span, reader: &mut Reader<'_>) -> Option<Spectrum> {
+        let used = Use { role: Role::Emission, at: None };
+        self.covered(illuminant_range_nm(Illuminant::D65), at, "daylight", "", used, reader);
+        accept(Spectrum::illuminant(Illuminant::D65, scale), at, reader)
+    }
+
     /// Reports what is wrong with a spectrum as it is used: where it is written, and once.
     fn complain(&mut self, code: Code, at: Span, message: String, hint: &str, used: Use, reader: &mut Reader<'_>) {
         if self.said.insert((at, code)) {
@@ -224,6 +267,9 @@ impl<'f> Spectra<'f> {
                 (Code::Reflectance, format!("{value} is no reflectance: those lie from 0 to 1"))
             }
             Role::Emission if value < 0.0 => (Code::NegativeEmission, format!("an emission of {value} is below 0")),
+            Role::Absorption if value < 0.0 => {
+                (Code::OutOfRange, format!("an absorption of {value} is below 0: light would grow on its way"))
+            }
             _ => return true,
         };
         self.complain(code, at, message, "", used, reader);
@@ -237,6 +283,12 @@ impl<'f> Spectra<'f> {
     fn light_only(&mut self, what: &str, at: Span, used: Use, reader: &mut Reader<'_>) -> Option<()> {
         if used.role == Role::Emission {
             return Some(());
+        }
+        if used.role == Role::Absorption {
+            let hint = "an absorption is a number or a table; of a colour give the \"transmittance\"";
+            let message = format!("{what} is no absorption");
+            self.complain(Code::KeyConflict, at.head(), message, hint, used, reader);
+            return None;
         }
         let message = format!("{what} is a light, not a reflectance");
         let hint = "a reflectance is a number, a table or an rgb colour";
@@ -270,6 +322,9 @@ impl<'f> Spectra<'f> {
     }
 
     fn rgb(&mut self, colour: &RgbSpectrum, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
+        if used.role == Role::Absorption {
+            self.light_only("a colour", colour.at, used, reader)?;
+        }
         if used.role == Role::Reflectance {
             let stray = [
                 ("white", colour.white.given().map(|white| white.at)),

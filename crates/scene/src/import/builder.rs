@@ -111,7 +111,7 @@ impl<'a> Builder<'a> {
         transform: Value,
     ) -> Result<(), String> {
         let file = self.mesh_file(&mesh);
-        self.add_object(name, &file, &mesh, material, emission, &transform);
+        self.add_object(name, &file, &mesh, material, (emission, &Map::new()), &transform);
         Ok(())
     }
 
@@ -122,10 +122,13 @@ impl<'a> Builder<'a> {
         file: &str,
         mesh: &Mesh,
         material: &Value,
-        emission: Option<Value>,
+        (emission, detail): (Option<Value>, &Map<String, Value>),
         transform: &Value,
     ) {
         let mut object = json!({ "name": name, "shape": { "type": "mesh", "file": file }, "material": material });
+        for (key, value) in detail {
+            object[key] = value.clone();
+        }
         if let Some(emission) = emission {
             object["emission"] = emission;
             self.emits = true;

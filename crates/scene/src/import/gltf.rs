@@ -159,6 +159,8 @@ struct MadePart {
     mesh: Mesh,
     material: Value,
     emission: Option<Value>,
+    /// Keys of the objects: opacity, normals.
+    detail: serde_json::Map<String, Value>,
 }
 
 struct Walk<'w, 'b> {
@@ -233,14 +235,21 @@ impl Walk<'_, '_> {
         let rows: Rows = std::array::from_fn(|i| std::array::from_fn(|j| matrix[j][i]));
         if self.uses[key.0] < 2 {
             let transform = json!([{ "matrix": rows }]);
-            self.builder.add_object(name, &part.file, &part.mesh, &part.material, part.emission.clone(), &transform);
+            self.builder.add_object(
+                name,
+                &part.file,
+                &part.mesh,
+                &part.material,
+                (part.emission.clone(), &part.detail),
+                &transform,
+            );
             return Ok(());
         }
         let group = format!("mesh {}, part {}", key.0, key.1);
         if !self.builder.groups.contains_key(&group) {
             let outside = self.builder.begin_group();
-            let emission = part.emission.clone();
-            self.builder.add_object(&group, &part.file, &part.mesh, &part.material, emission, &Value::Null);
+            let more = (part.emission.clone(), &part.detail);
+            self.builder.add_object(&group, &part.file, &part.mesh, &part.material, more, &Value::Null);
             self.builder.end_group(&group, outside);
         }
         self.builder.place_group(name, &group, &rows, &format!("node \"{name}\""));
@@ -310,13 +319,15 @@ impl Walk<'_, '_> {
             uvs: uvs.into_iter().map(|[u, v]| [u as f32, (1.0 - v) as f32]).collect(),
         };
         let mut material = look.material.clone();
+        let mut detail = look.detail.clone();
         if mesh.uvs.is_empty() && look.has_image {
-            self.builder.leave_out(place, "it has no texture coordinates for the image of its material, and is grey");
+            self.builder.leave_out(place, "it has no texture coordinates for the images of its material, and is grey");
             material = json!({ "type": "lambert", "reflectance": 0.8 });
+            detail.clear();
         }
         let emission = look.emission.clone();
         let file = self.builder.mesh_file(&mesh);
-        Ok(Some(MadePart { file, mesh, material, emission }))
+        Ok(Some(MadePart { file, mesh, material, emission, detail }))
     }
 
     /// The first camera is the scene's.

@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use gltf::image::Source;
+use gltf::material::AlphaMode;
 use gltf::texture::WrappingMode;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::accessor::bytes_of;
 use super::gltf::resource;
@@ -15,6 +16,8 @@ use etalon_optics::spectrum::RgbBasis;
 
 /// The brightest metal: an index of refraction alone never reflects all.
 const BRIGHTEST: f64 = 0.999;
+/// The least share of light that a medium of an imported model lets through.
+const LEAST_TRANSMITTANCE: f64 = 1e-4;
 /// Wavelengths of the hydrogen lines F and C and the helium line d, µm, at which dispersion is stated.
 const LINES_UM: [f64; 3] = [0.4861327, 0.6562725, 0.5875618];
 
@@ -24,6 +27,8 @@ pub(super) struct Look {
     /// Its name among the scene's materials.
     pub material: Value,
     pub emission: Option<Value>,
+    /// Keys of the objects made of it: opacity, normals.
+    pub detail: Map<String, Value>,
     /// Which texture coordinates its image uses.
     pub uv_set: u32,
     pub has_image: bool,
@@ -34,6 +39,8 @@ pub(super) struct Look {
 pub(super) struct Materials {
     known: HashMap<Option<usize>, Look>,
     images: HashMap<usize, Option<(String, [f64; 3])>>,
+    /// Whether the material at hand makes use of alpha.
+    alpha_counts: bool,
 }
 
 impl Materials {
@@ -47,12 +54,16 @@ impl Materials {
             return Ok(look.clone());
         }
         let place = material.index().map_or("the default material".to_owned(), |i| format!("$.materials[{i}]"));
-        let (value, uv_set) = self.value(material, &place, buffers, builder);
-        let has_image = value["reflectance"]["type"] == "image";
+        self.alpha_counts = material.alpha_mode() != AlphaMode::Opaque;
+        let (value, mut uv_set) = self.value(material, &place, buffers, builder);
+        let detail = self.detail(material, &place, &mut uv_set, buffers, builder);
+        let has_image = value["reflectance"]["type"] == "image"
+            || ["opacity_image", "normal_map"].iter().any(|key| detail.contains_key(*key));
+        let uv_set = uv_set.unwrap_or(0);
         let name = builder.material_name(material.name().unwrap_or_default());
         builder.materials.insert(name.clone(), value);
         let emission = self.emission(material, &place, buffers, builder);
-        let look = Look { material: json!(name), emission, uv_set, has_image };
+        let look = Look { material: json!(name), emission, detail, uv_set, has_image };
         self.known.insert(material.index(), look.clone());
         Ok(look)
     }
@@ -63,7 +74,7 @@ impl Materials {
         place: &str,
         buffers: &[Vec<u8>],
         builder: &mut Builder<'_>,
-    ) -> (Value, u32) {
+    ) -> (Value, Option<u32>) {
         let surface = material.pbr_metallic_roughness();
         list_unhonoured(material, place, builder);
         let [r, g, b, _] = surface.base_color_factor().map(decimal);
@@ -87,7 +98,17 @@ impl Materials {
                 builder.leave_out(format!("{place}.pbrMetallicRoughness"), "clear glass has no base colour");
             }
             let interior = index(material, place, builder);
-            return (json!({ "type": "dielectric", "interior": interior, "alpha": alpha(roughness) }), 0);
+            let mut glass = json!({ "type": "dielectric", "interior": interior, "alpha": alpha(roughness) });
+            if let Some(volume) = material.volume()
+                && volume.attenuation_distance().is_finite()
+                && volume.attenuation_distance() > 0.0
+            {
+                // A channel of 0 would need an endless coefficient.
+                let colour = volume.attenuation_color().map(|v| decimal(v).clamp(LEAST_TRANSMITTANCE, 1.0));
+                glass["transmittance"] = reflectance(colour);
+                glass["transmittance_depth_m"] = json!(decimal(volume.attenuation_distance()));
+            }
+            return (glass, None);
         }
         let at = format!("{place}.pbrMetallicRoughness");
         if metallic >= 0.5 {
@@ -100,7 +121,7 @@ impl Materials {
                 let mean = self.source(&info.texture(), &at, buffers, builder).map_or([1.0; 3], |(_, mean)| mean);
                 colour = std::array::from_fn(|c| base[c] * mean[c]);
             }
-            return (metal(colour, alpha(roughness)), 0);
+            return (metal(colour, alpha(roughness)), None);
         }
         builder.leave_out(&at, "it is taken for diffuse, without the reflection at its surface");
         let texture = surface.base_color_texture();
@@ -110,10 +131,78 @@ impl Materials {
                 if base != [1.0; 3] {
                     image["factor"] = json!(base);
                 }
-                (json!({ "type": "lambert", "reflectance": image }), set)
+                (json!({ "type": "lambert", "reflectance": image }), Some(set))
             }
-            None => (json!({ "type": "lambert", "reflectance": reflectance(base) }), 0),
+            None => (json!({ "type": "lambert", "reflectance": reflectance(base) }), None),
         }
+    }
+
+    /// Opacity and normals, which are the objects' in the format. All images of a material share one set of texture
+    /// coordinates, `uv_set`, that of the first.
+    fn detail(
+        &mut self,
+        material: &gltf::Material<'_>,
+        place: &str,
+        uv_set: &mut Option<u32>,
+        buffers: &[Vec<u8>],
+        builder: &mut Builder<'_>,
+    ) -> Map<String, Value> {
+        let mut detail = Map::new();
+        let mut fits = |set: u32, at: &str, builder: &mut Builder<'_>| {
+            let fits = *uv_set.get_or_insert(set) == set;
+            if !fits {
+                builder
+                    .leave_out(at, "it uses another set of texture coordinates than the first image, and is left out");
+            }
+            fits
+        };
+        let surface = material.pbr_metallic_roughness();
+        let [.., factor] = surface.base_color_factor().map(decimal);
+        let cutoff = (material.alpha_mode() == AlphaMode::Mask)
+            .then(|| material.alpha_cutoff().map_or(0.5, decimal).clamp(0.0, 1.0));
+        if material.alpha_mode() != AlphaMode::Opaque {
+            let at = format!("{place}.pbrMetallicRoughness.baseColorTexture");
+            let image = surface
+                .base_color_texture()
+                .and_then(|info| self.image(&info, &at, buffers, builder))
+                .filter(|(_, set)| fits(*set, &at, builder));
+            match (image, cutoff) {
+                (Some((image, _)), cutoff) => {
+                    let mut opacity = data_image(image);
+                    opacity["channel"] = json!("alpha");
+                    if let Some(cutoff) = cutoff {
+                        // The factor counts before the cutoff.
+                        opacity["cutoff"] = json!((cutoff / factor.max(f64::MIN_POSITIVE)).min(1.0));
+                        if cutoff > factor {
+                            detail.insert("opacity".to_owned(), json!(0));
+                        }
+                    } else if factor < 1.0 {
+                        detail.insert("opacity".to_owned(), json!(factor.clamp(0.0, 1.0)));
+                    }
+                    detail.insert("opacity_image".to_owned(), opacity);
+                }
+                (None, Some(cutoff)) if factor < cutoff => {
+                    detail.insert("opacity".to_owned(), json!(0));
+                }
+                (None, None) if factor < 1.0 => {
+                    detail.insert("opacity".to_owned(), json!(factor.clamp(0.0, 1.0)));
+                }
+                (None, _) => {}
+            }
+        }
+        if let Some(map) = material.normal_texture() {
+            let at = format!("{place}.normalTexture");
+            let image = self
+                .laid(&map.texture(), map.tex_coord(), None, &at, buffers, builder)
+                .filter(|(_, set)| fits(*set, &at, builder));
+            if let Some((image, _)) = image {
+                let mut normals = data_image(image);
+                normals.as_object_mut().map(|keys| keys.remove("filter"));
+                normals["strength"] = json!(decimal(map.scale()).max(0.0));
+                detail.insert("normal_map".to_owned(), normals);
+            }
+        }
+        detail
     }
 
     /// The image of the format that a texture becomes, and its set of texture coordinates.
@@ -124,8 +213,19 @@ impl Materials {
         buffers: &[Vec<u8>],
         builder: &mut Builder<'_>,
     ) -> Option<(Value, u32)> {
-        let texture = info.texture();
-        let (file, _) = self.source(&texture, place, buffers, builder)?;
+        self.laid(&info.texture(), info.tex_coord(), info.texture_transform(), place, buffers, builder)
+    }
+
+    fn laid(
+        &mut self,
+        texture: &gltf::Texture<'_>,
+        mut set: u32,
+        transform: Option<gltf::texture::TextureTransform<'_>>,
+        place: &str,
+        buffers: &[Vec<u8>],
+        builder: &mut Builder<'_>,
+    ) -> Option<(Value, u32)> {
+        let (file, _) = self.source(texture, place, buffers, builder)?;
         let word = |mode: WrappingMode| match mode {
             WrappingMode::ClampToEdge => "clamp",
             WrappingMode::MirroredRepeat => "mirror",
@@ -139,8 +239,7 @@ impl Materials {
         if sampler.mag_filter() == Some(gltf::texture::MagFilter::Nearest) {
             image["filter"] = json!("nearest");
         }
-        let mut set = info.tex_coord();
-        if let Some(transform) = info.texture_transform() {
+        if let Some(transform) = transform {
             let at = format!("{place}.extensions.KHR_texture_transform");
             set = transform.tex_coord().unwrap_or(set);
             if transform.rotation() != 0.0 {
@@ -191,7 +290,7 @@ impl Materials {
         let added = match bytes.and_then(|bytes| Image::decode(&bytes, Encoding::Srgb).map(|decoded| (bytes, decoded)))
         {
             Ok((bytes, (decoded, left_out))) => {
-                if let Some(what) = left_out {
+                if let Some(what) = left_out.filter(|_| !self.alpha_counts) {
                     builder.leave_out(&place, what);
                 }
                 let extension = if bytes.starts_with(b"\x89PNG") { "png" } else { "jpg" };
@@ -230,6 +329,16 @@ impl Materials {
         let sides = if material.double_sided() { "both" } else { "front" };
         Some(json!({ "radiance": light(rgb, strength), "sides": sides }))
     }
+}
+
+/// The same image as data: without what is said of colours.
+fn data_image(mut image: Value) -> Value {
+    if let Some(keys) = image.as_object_mut() {
+        for key in ["type", "encoding", "factor"] {
+            keys.remove(key);
+        }
+    }
+    image
 }
 
 /// The mean of a texture's texels as numbers; `None` if it cannot be read, which is said where it is drawn.
@@ -292,13 +401,12 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
         }
     };
     let no = "it is not honoured";
-    list(material.normal_texture().is_some(), "normalTexture", no);
     list(material.occlusion_texture().is_some(), "occlusionTexture", "it is not needed: shadows are traced");
-    list(material.alpha_mode() != gltf::material::AlphaMode::Opaque, "alphaMode", "it is taken for opaque");
     list(material.unlit(), "extensions.KHR_materials_unlit", "it is lit like any other");
     list(material.specular().is_some(), "extensions.KHR_materials_specular", no);
+    let opaque = material.transmission().is_none_or(|transmission| transmission.transmission_factor() < 0.5);
     let coloured = material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite());
-    list(coloured, "extensions.KHR_materials_volume", "nothing is absorbed inside");
+    list(coloured && opaque, "extensions.KHR_materials_volume", "it is not transmitting: nothing is absorbed inside");
     const KNOWN: [&str; 1] = ["KHR_materials_dispersion"];
     for key in material.extensions().into_iter().flat_map(|map| map.keys()) {
         list(!KNOWN.contains(&key.as_str()), &format!("extensions.{key}"), no);

@@ -13,6 +13,8 @@ pub struct Material {
     pub name: String,
     /// What it is.
     pub kind: MaterialKind,
+    /// Absorption coefficient, m⁻¹, of the medium that the surface normal points away from, if it absorbs.
+    pub absorption: Option<Spectrum>,
 }
 
 /// What a surface does to light.

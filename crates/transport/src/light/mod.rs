@@ -7,6 +7,7 @@
 mod cylinder;
 mod directional;
 mod disk;
+mod environment;
 mod parallelogram;
 mod planar;
 mod point;
@@ -18,6 +19,7 @@ mod triangle;
 pub use cylinder::CylinderLight;
 pub use directional::DirectionalLight;
 pub use disk::DiskLight;
+pub use environment::EnvironmentLight;
 pub use parallelogram::ParallelogramLight;
 pub use point::PointLight;
 pub use sphere::SphereLight;
@@ -28,7 +30,7 @@ pub use triangle::TriangleLight;
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::SurfaceId;
-use etalon_optics::Vec3;
+use etalon_optics::{Lanes, Real, Vec3};
 use std::sync::Arc;
 
 /// Where a shadow ray ends.
@@ -38,6 +40,16 @@ pub enum Target {
     Point(Vec3<f64>),
     /// Nowhere: the light is infinitely far away.
     Infinity,
+}
+
+impl Target {
+    /// How far it is from a point.
+    pub fn distance(&self, from: Vec3<f64>) -> f64 {
+        match self {
+            Self::Point(point) => (*point - from).length(),
+            Self::Infinity => f64::INFINITY,
+        }
+    }
 }
 
 /// A direction toward a light.
@@ -74,6 +86,8 @@ pub enum Light {
     Spot(SpotLight),
     /// Parallel light.
     Directional(DirectionalLight),
+    /// An image of everything around.
+    Environment(Arc<EnvironmentLight>),
 }
 
 impl Light {
@@ -88,6 +102,7 @@ impl Light {
             Self::Point(light) => light.sample(from),
             Self::Spot(light) => light.sample(from),
             Self::Directional(light) => Some(light.sample()),
+            Self::Environment(light) => light.sample(u),
         }
     }
 
@@ -99,11 +114,21 @@ impl Light {
             Self::Disk(light) => light.density(from, wi),
             Self::Triangle(light) => light.density(from, wi),
             Self::Cylinder(light) => light.density(from, wi),
+            Self::Environment(light) => light.density(wi),
             Self::Point(_) | Self::Spot(_) | Self::Directional(_) => 0.0,
         }
     }
 
-    /// The spectrum that [`LightSample::scale`] multiplies.
+    /// What [`LightSample::scale`] multiplies of a sample in the direction `wi`, in each lane.
+    #[inline]
+    pub fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<R, N> {
+        match self {
+            Self::Environment(light) => light.lanes(lambda_nm, wi),
+            _ => self.spectrum().lanes(lambda_nm),
+        }
+    }
+
+    /// The spectrum that [`LightSample::scale`] multiplies; of an image, that of its white.
     pub fn spectrum(&self) -> &PathSpectrum {
         match self {
             Self::Sphere(light) => &light.emitter.radiance,
@@ -114,6 +139,7 @@ impl Light {
             Self::Point(light) => &light.intensity,
             Self::Spot(light) => &light.point.intensity,
             Self::Directional(light) => &light.irradiance,
+            Self::Environment(light) => light.white(),
         }
     }
 
@@ -125,8 +151,13 @@ impl Light {
             Self::Disk(light) => Some(&light.emitter),
             Self::Triangle(light) => Some(&light.emitter),
             Self::Cylinder(light) => Some(&light.emitter),
-            Self::Point(_) | Self::Spot(_) | Self::Directional(_) => None,
+            Self::Point(_) | Self::Spot(_) | Self::Directional(_) | Self::Environment(_) => None,
         }
+    }
+
+    /// Whether a path may run into it.
+    pub fn can_be_met(&self) -> bool {
+        self.emitter().is_some() || matches!(self, Self::Environment(_))
     }
 
     /// What the spectrum is to be multiplied by for the light's power in a scene of this radius.
@@ -141,7 +172,43 @@ impl Light {
             Self::Point(light) => 4.0 * PI * light.per_m * light.per_m,
             Self::Spot(light) => light.power_factor(),
             Self::Directional(_) => PI * scene_radius * scene_radius,
+            Self::Environment(light) => light.total() * PI * scene_radius * scene_radius,
         }
+    }
+}
+
+/// Light from infinity, as a path that leaves the scene finds it.
+#[derive(Clone, Debug)]
+pub(crate) struct Environment {
+    pub radiance: EnvironmentRadiance,
+    /// Its number among the lights that shadow rays aim at. A constant one is no target: the BSDF's own directions are its
+    /// best samples.
+    pub light: Option<u32>,
+}
+
+/// Radiance from infinity.
+#[derive(Clone, Debug)]
+pub(crate) enum EnvironmentRadiance {
+    /// The same from every direction.
+    Uniform(PathSpectrum),
+    /// As an image says.
+    Image(Arc<EnvironmentLight>),
+}
+
+impl EnvironmentRadiance {
+    /// From the direction `wi`, in each lane.
+    #[inline]
+    pub(crate) fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<R, N> {
+        match self {
+            Self::Uniform(spectrum) => spectrum.lanes(lambda_nm),
+            Self::Image(light) => light.lanes(lambda_nm, wi),
+        }
+    }
+}
+
+impl From<PathSpectrum> for Environment {
+    fn from(spectrum: PathSpectrum) -> Self {
+        Self { radiance: EnvironmentRadiance::Uniform(spectrum), light: None }
     }
 }
 

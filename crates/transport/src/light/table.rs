@@ -54,8 +54,8 @@ impl LightTable {
     }
 
     /// Whether the walk itself may run into a light that is aimed at.
-    pub fn has_surfaces(&self) -> bool {
-        self.lights.iter().any(|light| light.emitter().is_some())
+    pub fn can_be_met(&self) -> bool {
+        self.lights.iter().any(Light::can_be_met)
     }
 
     /// The lights, in the order of their indices.

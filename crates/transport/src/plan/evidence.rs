@@ -4,8 +4,8 @@ use super::EffectName;
 use super::grey::{same_shape, steps};
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, fresnel};
 use etalon_scene::{
-    Filter, Light, LightKind, LightSampling, Material, MaterialKind, Object, PolarisingSheet, Projection, Scene, Shape,
-    SpectrumTexture,
+    Filter, ImageTexture, Light, LightKind, LightSampling, Material, MaterialKind, Object, PolarisingSheet, Projection,
+    Scene, Shape, SpectrumTexture,
 };
 
 /// What calls for an effect (`Ok`), or why nothing does (`Err`).
@@ -21,6 +21,10 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         EffectName::ShadowRays => shadow_rays(scene),
         EffectName::Mis => mis(scene),
         EffectName::Environment => match scene.lights.iter().find(|light| is_environment(&light.kind)) {
+            Some(Light { name, kind: LightKind::ImageEnvironment(sky) }) => {
+                let (width, height) = (sky.image.width, sky.image.height);
+                Ok(format!("light \"{name}\": \"{}\", {width} × {height} texels", sky.name))
+            }
             Some(light) => Ok(format!("light \"{}\"", light.name)),
             None => nothing("no light at infinity"),
         },
@@ -32,17 +36,21 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             Some(found) => Ok(found),
             None => nothing("no dielectric carries a priority"),
         },
+        EffectName::Absorption => match first_surface(scene, absorption) {
+            Some(found) => Ok(found),
+            None => nothing("no medium absorbs"),
+        },
         EffectName::Polarisation => polarisation(scene, false),
-        EffectName::Textures => match first_surface(scene, |material, _| image(&material.kind)) {
+        EffectName::Textures => match first_surface(scene, |material, _| material.kind.image().map(size)) {
             Some(found) => Ok(found),
             None => nothing("no image on a surface"),
         },
-        EffectName::ShadingNormals => match scene.placed_objects().find_map(smooth_mesh) {
+        EffectName::ShadingNormals => match scene.placed_objects().find_map(bent) {
             Some(found) => Ok(found),
-            None => nothing("no mesh has normals of its own"),
+            None => nothing("no mesh has normals of its own, and no image bends any"),
         },
-        EffectName::Masks => match scene.placed_objects().find(|object| object.opacity < 1.0) {
-            Some(object) => Ok(format!("\"{}\": opacity {}", object.name, object.opacity)),
+        EffectName::Masks => match scene.placed_objects().find_map(mask) {
+            Some(found) => Ok(found),
             None => nothing("every surface is opaque"),
         },
         EffectName::Instances => match scene.instances.first() {
@@ -138,10 +146,24 @@ fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
     }
 }
 
-/// The image on a material, if there is one.
-fn image(kind: &MaterialKind) -> Option<String> {
-    let texture = kind.image()?;
-    Some(format!("\"{}\", {} × {} texels", texture.name, texture.image.width, texture.image.height))
+/// What lets a part of the light pass an object, if something does.
+fn mask(object: &Object) -> Option<String> {
+    match &object.opacity_image {
+        Some(image) => Some(format!("\"{}\": opacity {}", object.name, size(&image.texture))),
+        None => (object.opacity < 1.0).then(|| format!("\"{}\": opacity {}", object.name, object.opacity)),
+    }
+}
+
+fn size(texture: &ImageTexture) -> String {
+    format!("\"{}\", {} × {} texels", texture.name, texture.image.width, texture.image.height)
+}
+
+/// What bends the normals of an object, if something does.
+fn bent(object: &Object) -> Option<String> {
+    match &object.relief {
+        Some(relief) => Some(format!("\"{}\": {}", object.name, size(relief.texture()))),
+        None => smooth_mesh(object),
+    }
 }
 
 fn smooth_mesh(object: &Object) -> Option<String> {
@@ -172,6 +194,12 @@ fn specular(kind: &MaterialKind) -> Option<String> {
         | MaterialKind::Plastic { .. }
         | MaterialKind::Black => None,
     }
+}
+
+/// What the medium within a surface absorbs, if it does.
+fn absorption(material: &Material, range_nm: [f64; 2]) -> Option<String> {
+    let absorption = material.absorption.as_ref().filter(|absorption| !absorption.is_zero())?;
+    Some(format!("σ {}", spread(range_nm, |nm| absorption.eval(nm)).replace(" over", " m⁻¹ over")))
 }
 
 fn nested(kind: &MaterialKind) -> Option<String> {
@@ -314,6 +342,7 @@ fn is_diffuse(kind: &MaterialKind) -> bool {
 fn is_environment(kind: &LightKind) -> bool {
     match kind {
         LightKind::Environment { radiance } => !radiance.is_zero(),
+        LightKind::ImageEnvironment(image) => !image.is_zero(),
         LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Directional { .. } => false,
     }
 }
@@ -324,8 +353,13 @@ fn is_target(kind: &LightKind) -> bool {
         LightKind::Point { intensity: spectrum, .. }
         | LightKind::Spot { intensity: spectrum, .. }
         | LightKind::Directional { irradiance: spectrum, .. } => !spectrum.is_zero(),
-        LightKind::Environment { .. } => false,
+        LightKind::Environment { .. } | LightKind::ImageEnvironment(_) => false,
     }
+}
+
+/// An image of everything around, which shadow rays aim at and paths run into.
+fn sky(scene: &Scene) -> Option<&Light> {
+    scene.lights.iter().find(|light| matches!(&light.kind, LightKind::ImageEnvironment(image) if !image.is_zero()))
 }
 
 /// The spectrum of a light.
@@ -334,6 +368,7 @@ pub(super) fn spectrum(light: &Light) -> &Spectrum {
         LightKind::Point { intensity, .. } | LightKind::Spot { intensity, .. } => intensity,
         LightKind::Directional { irradiance, .. } => irradiance,
         LightKind::Environment { radiance } => radiance,
+        LightKind::ImageEnvironment(image) => &image.white,
     }
 }
 
@@ -366,23 +401,29 @@ fn shadow_rays(scene: &Scene) -> Result<String, String> {
     if let Some(light) = scene.lights.iter().find(|light| is_target(&light.kind)) {
         return Ok(format!("light \"{}\" on {diffuse}", light.name));
     }
-    match (emitter(scene), scene.integrator.light_sampling) {
+    match (lamp(scene), scene.integrator.light_sampling) {
         (None, _) => Err("no lamp that a shadow ray could aim at".to_owned()),
         (Some(_), LightSampling::Bsdf) => Err("integrator.light_sampling is \"bsdf\"".to_owned()),
-        (Some(lamp), LightSampling::Mis | LightSampling::Light) => {
-            Ok(format!("emission of \"{}\" on {diffuse}", lamp.name))
-        }
+        (Some(lamp), LightSampling::Mis | LightSampling::Light) => Ok(format!("{lamp} on {diffuse}")),
+    }
+}
+
+/// Light that both shadow rays and paths may find.
+fn lamp(scene: &Scene) -> Option<String> {
+    match emitter(scene) {
+        Some(object) => Some(format!("emission of \"{}\"", object.name)),
+        None => sky(scene).map(|light| format!("light \"{}\"", light.name)),
     }
 }
 
 fn mis(scene: &Scene) -> Result<String, String> {
-    match (scene.integrator.light_sampling, emitter(scene), diffuse_surface(scene)) {
+    match (scene.integrator.light_sampling, lamp(scene), diffuse_surface(scene)) {
         (LightSampling::Light, ..) => Err("integrator.light_sampling is \"light\"".to_owned()),
         (LightSampling::Bsdf, ..) => Err("integrator.light_sampling is \"bsdf\"".to_owned()),
-        (LightSampling::Mis, None, _) => Err("no lamp with a surface, which paths could run into".to_owned()),
+        (LightSampling::Mis, None, _) => Err("no lamp that paths could run into".to_owned()),
         (LightSampling::Mis, _, None) => Err("no diffuse surface, where shadow rays and paths compete".to_owned()),
         (LightSampling::Mis, Some(lamp), Some(diffuse)) => {
-            Ok(format!("emission of \"{}\" is found from {diffuse} by shadow rays and by paths", lamp.name))
+            Ok(format!("{lamp} is found from {diffuse} by shadow rays and by paths"))
         }
     }
 }
@@ -391,6 +432,19 @@ fn mis(scene: &Scene) -> Result<String, String> {
 fn wavelengths(scene: &Scene) -> Result<String, String> {
     if let Some(found) = first_surface(scene, |material, range| colour(&material.kind, range)) {
         return Ok(found);
+    }
+    let coloured = |material: &Material| material.absorption.as_ref().is_some_and(|a| !a.is_constant());
+    if let Some(found) =
+        first_surface(scene, |material, range| coloured(material).then(|| absorption(material, range)).flatten())
+    {
+        return Ok(found);
+    }
+    for light in &scene.lights {
+        if let LightKind::ImageEnvironment(sky) = &light.kind
+            && !sky.image.is_grey()
+        {
+            return Ok(format!("light \"{}\": colours of \"{}\"", light.name, sky.name));
+        }
     }
     let range_nm = scene.integrator.wavelength_range_nm;
     let lamps = sources(scene);

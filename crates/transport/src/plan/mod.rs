@@ -40,6 +40,8 @@ pub enum EffectName {
     SpecularChains,
     /// Solids of different media touch, overlap or hold each other.
     NestedDielectrics,
+    /// Media absorb light on its way.
+    Absorption,
     /// Light is polarised by what reflects and refracts it.
     Polarisation,
     /// Images vary what surfaces reflect.
@@ -67,6 +69,7 @@ impl EffectName {
         Self::Environment,
         Self::SpecularChains,
         Self::NestedDielectrics,
+        Self::Absorption,
         Self::Polarisation,
         Self::Textures,
         Self::ShadingNormals,
@@ -87,6 +90,7 @@ impl EffectName {
             Self::Environment => "environment",
             Self::SpecularChains => "specular-chains",
             Self::NestedDielectrics => "nested-dielectrics",
+            Self::Absorption => "absorption",
             Self::Polarisation => "polarisation",
             Self::Textures => "textures",
             Self::ShadingNormals => "shading-normals",
@@ -110,6 +114,7 @@ impl EffectName {
             Self::Environment => "light from infinity is left out",
             Self::SpecularChains => "mirrors, metals and glass are black",
             Self::NestedDielectrics => "each solid is treated as if it stood in vacuum",
+            Self::Absorption => "glass is clear, however thick",
             Self::Polarisation => "light is taken for unpolarised at every surface",
             Self::Textures => "each image is replaced by its mean colour",
             Self::ShadingNormals => "meshes show their triangles",
@@ -126,7 +131,7 @@ impl EffectName {
             Self::Wavelengths | Self::Dispersion | Self::Lens | Self::ShadowRays | Self::Mis | Self::Environment => {
                 true
             }
-            Self::NestedDielectrics | Self::Polarisation => true,
+            Self::NestedDielectrics | Self::Absorption | Self::Polarisation => true,
             // They are what the surfaces, or the film, are made of.
             Self::SpecularChains
             | Self::Textures

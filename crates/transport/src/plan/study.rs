@@ -120,9 +120,19 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
     let range_nm = scene.integrator.wavelength_range_nm;
     match effect {
         EffectName::Wavelengths => {
-            scene.materials.iter_mut().for_each(|material| turn_grey(&mut material.kind, range_nm));
+            for material in &mut scene.materials {
+                turn_grey(&mut material.kind, range_nm);
+                if let Some(absorption) = &mut material.absorption {
+                    *absorption = grey(absorption, range_nm);
+                }
+            }
             leave_out(EffectName::Dispersion, scene);
             lights_mut(scene).for_each(|spectrum| *spectrum = grey(spectrum, range_nm));
+            for light in &mut scene.lights {
+                if let LightKind::ImageEnvironment(image) = &mut light.kind {
+                    image.image = Arc::new(luminances(&image.image, [1.0; 3]));
+                }
+            }
         }
         EffectName::Dispersion => {
             scene.materials.iter_mut().for_each(|material| fix_indices(&mut material.kind, range_nm));
@@ -134,13 +144,13 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::ShadowRays => {
             scene.lights.retain(|light| match light.kind {
                 LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Directional { .. } => false,
-                LightKind::Environment { .. } => true,
+                LightKind::Environment { .. } | LightKind::ImageEnvironment(_) => true,
             });
         }
         // The integrator's setting, which `Study::light_sampling` has changed.
         EffectName::Mis => {}
         EffectName::Environment => scene.lights.retain(|light| match light.kind {
-            LightKind::Environment { .. } => false,
+            LightKind::Environment { .. } | LightKind::ImageEnvironment(_) => false,
             LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Directional { .. } => true,
         }),
         EffectName::SpecularChains => scene.materials.iter_mut().for_each(|material| blacken(&mut material.kind)),
@@ -153,6 +163,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 }
             }
         }
+        EffectName::Absorption => scene.materials.iter_mut().for_each(|material| material.absorption = None),
         // Sheets do to unpolarised light what they do, and no more.
         EffectName::Polarisation => scene.film.stokes = false,
         EffectName::Textures => {
@@ -166,6 +177,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         }
         EffectName::ShadingNormals => {
             for object in objects_mut(scene) {
+                object.relief = None;
                 if let Shape::Mesh(mesh) = &mut object.shape
                     && !mesh.normals.is_empty()
                 {
@@ -173,7 +185,11 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 }
             }
         }
-        EffectName::Masks => objects_mut(scene).for_each(|object| object.opacity = 1.0),
+        EffectName::Masks => {
+            for object in objects_mut(scene) {
+                (object.opacity, object.opacity_image) = (1.0, None);
+            }
+        }
         EffectName::Instances => scene.instances.clear(),
         EffectName::WideFilter => scene.film.filter = Filter::Box,
         EffectName::Bands => scene.film.bands = None,
@@ -195,6 +211,7 @@ pub(super) fn lights_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Spectru
         | LightKind::Spot { intensity: spectrum, .. }
         | LightKind::Directional { irradiance: spectrum, .. }
         | LightKind::Environment { radiance: spectrum } => spectrum,
+        LightKind::ImageEnvironment(image) => &mut image.white,
     });
     lamps.map(|emission| &mut emission.radiance).chain(lights)
 }
@@ -296,13 +313,18 @@ fn grey(spectrum: &Spectrum, range_nm: [f64; 2]) -> Spectrum {
 
 /// An image of the luminance of each texel.
 fn grey_image(texture: &ImageTexture) -> ImageTexture {
+    let image = Arc::new(luminances(&texture.image, texture.factor));
+    ImageTexture { image, factor: [1.0; 3], ..texture.clone() }
+}
+
+/// The luminance of each texel, times a factor on each channel.
+fn luminances(image: &Image, factor: [f64; 3]) -> Image {
     let luminance = |texel: [f64; 3]| {
-        let [r, g, b] = [0, 1, 2].map(|c| texel[c] * texture.factor[c]);
+        let [r, g, b] = [0, 1, 2].map(|c| texel[c] * factor[c]);
         [(0.2126 * r + 0.7152 * g + 0.0722 * b) as f32; 3]
     };
-    let Image { width, height, .. } = *texture.image;
-    let texels = Texels::F32(texture.image.linear_texels().map(luminance).collect());
-    ImageTexture { image: Arc::new(Image { width, height, texels }), factor: [1.0; 3], ..texture.clone() }
+    let Image { width, height, .. } = *image;
+    Image { width, height, texels: Texels::F32(image.linear_texels().map(luminance).collect()) }
 }
 
 fn grey_metal(index: &ComplexIndex, range_nm: [f64; 2]) -> ComplexIndex {

@@ -1,0 +1,52 @@
+//! Images that give a surface detail without geometry.
+
+use crate::texture::ImageTexture;
+
+/// An image of how much of the light meets a surface at all.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpacityImage {
+    /// Shares from 0 to 1, the same in each channel.
+    pub texture: ImageTexture,
+    /// Given, what is below it is not there and the rest is all there.
+    pub cutoff: Option<f64>,
+}
+
+impl OpacityImage {
+    /// The share at texture coordinates.
+    #[inline]
+    pub fn eval(&self, uv: [f64; 2]) -> f64 {
+        let [share, ..] = self.texture.eval(uv);
+        match self.cutoff {
+            Some(cutoff) => f64::from(u8::from(share >= cutoff)),
+            None => share,
+        }
+    }
+}
+
+/// An image by which a surface scatters around other normals than its own.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Relief {
+    /// A normal map: channels c are the vector 2c − 1 in the frame of the directions in which u and v grow, and the normal.
+    Normals {
+        /// The image.
+        texture: ImageTexture,
+        /// Factor on the two components along the surface.
+        strength: f64,
+    },
+    /// A bump map: heights over the surface.
+    Heights {
+        /// The image; its first channel counts.
+        texture: ImageTexture,
+        /// Height of a channel of 1 over one of 0, m; below 0 the image is one of depths.
+        height_m: f64,
+    },
+}
+
+impl Relief {
+    /// Its image.
+    pub fn texture(&self) -> &ImageTexture {
+        match self {
+            Self::Normals { texture, .. } | Self::Heights { texture, .. } => texture,
+        }
+    }
+}
