@@ -60,7 +60,7 @@ pub enum EffectName {
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Lens,
