@@ -216,7 +216,7 @@ impl<'a> Tracer<'a> {
         for vertex in 0..MOST_VERTICES {
             let Met { hit, point, surface, interface, beyond } = self.world.meet(&mut ray, &mut inside, counters)?;
             let [.., u_mask] = sampler.vertex_set(vertex, 1);
-            if self.world.masks && surface.opacity < 1.0 && u_mask >= surface.opacity {
+            if self.world.masks && u_mask >= surface.opacity(&self.prepared.geometry, &point, &hit) {
                 ray = point.spawn(ray.direction);
                 if let Some(beyond) = beyond {
                     ray.leaves = beyond.leaves;
