@@ -52,7 +52,7 @@ fn an_export_holds_every_truth_and_our_own_renders_of_it_pass_as_pictures() {
     std::fs::create_dir(&pictures).unwrap();
     // One scene of one wavelength, which a film of CIE Y reads relative to white, and one of all.
     for name in ["plate-at-0-degrees", "prism-bk7-at-656.2725-nanometres", "prism-bk7-at-656.2725-nanometres.white"] {
-        for seed in 1..=16 {
+        for seed in 1..=32 {
             let (scene, picture) =
                 (truths.join(format!("scenes/{name}.json")), pictures.join(format!("{name}.{seed}.exr")));
             etalon_line(&format!("render {{}} -o {{}} --quiet --spp 64 --seed {seed}"), [&scene, &picture]).expect(0);
@@ -66,19 +66,19 @@ fn an_export_holds_every_truth_and_our_own_renders_of_it_pass_as_pictures() {
     let mean = folder.path().join("mean");
     std::fs::create_dir(&mean).unwrap();
     let (mut sum, mut squares) = (vec![[0.0_f64; 3]; 1024], vec![[0.0_f64; 3]; 1024]);
-    for seed in 1..=16 {
+    for seed in 1..=32 {
         let file = read_exr(&pictures.join(format!("plate-at-0-degrees.{seed}.exr"))).unwrap().picture;
         for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
             for (pixel, sample) in file.channel(name).unwrap().iter().enumerate() {
-                sum[pixel][c] += f64::from(*sample) / 16.0;
-                squares[pixel][c] += f64::from(*sample).powi(2) / 16.0;
+                sum[pixel][c] += f64::from(*sample) / 32.0;
+                squares[pixel][c] += f64::from(*sample).powi(2) / 32.0;
             }
         }
     }
     let mut picture = Picture::new(32, 32).unwrap();
     for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
         picture.insert(name, sum.iter().map(|pixel| pixel[c] as f32).collect()).unwrap();
-        let variance = (0..1024).map(|p| ((squares[p][c] - sum[p][c].powi(2)) / 15.0).max(0.0) as f32).collect();
+        let variance = (0..1024).map(|p| ((squares[p][c] - sum[p][c].powi(2)) / 31.0).max(0.0) as f32).collect();
         picture.insert(&format!("Variance.{name}"), variance).unwrap();
     }
     write_exr(&mean.join("plate-at-0-degrees.exr"), &picture, &Attributes::new()).unwrap();
@@ -89,7 +89,8 @@ fn an_export_holds_every_truth_and_our_own_renders_of_it_pass_as_pictures() {
         assert!((a / b - 1.0).abs() < relative, "{key}: {a} {b}");
     };
     close("measured", 1e-6);
-    // Sixteen values know an error to 18 %; the three colours of a grey scene go together, as a picture is taken to be.
+    // Thirty-two values know an error to 13 %, and are a factor of 1.8 too small in one of 10⁵ sets of seeds; the three colours
+    // of a grey scene go together, as a picture is taken to be.
     close("standard_error", 0.8);
 }
 

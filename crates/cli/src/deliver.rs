@@ -230,9 +230,10 @@ impl Delivery<'_> {
     }
 }
 
-/// How a variance is told.
-const SPREADS: [(Aov, &str, fn(f64) -> f64); 2] =
-    [(Aov::Error, ERROR_PREFIX, f64::sqrt), (Aov::Variance, "Variance.", |variance| variance)];
+/// How a variance is told: of which wish, under which prefix, as which function of it.
+type Spread = (Aov, &'static str, fn(f64) -> f64);
+
+const SPREADS: [Spread; 2] = [(Aov::Error, ERROR_PREFIX, f64::sqrt), (Aov::Variance, "Variance.", |variance| variance)];
 
 /// Whether nothing of the picture itself is wanted.
 fn channels_only_features(channels: &Channels) -> bool {

@@ -302,7 +302,7 @@ fn render(args: &Args) -> Result<(), Stop> {
         Some(kept) => Run::taken_up(args, &job, kept, limits),
         None => Run::new(args, &job, limits, &watch),
     };
-    let done = run.and_then(|run| run.to_its_end(args, &job, &watch));
+    let done = run.and_then(|run| run.finish(args, &job, &watch));
     bar.clear();
     let mut done = done.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
     if let Some(display) = display {

@@ -37,8 +37,11 @@ pub(super) struct Builder<'a> {
     pub(super) bounds: Bounds,
 }
 
+/// The objects, instances and bounds of what is outside of a group that is being made.
+pub(super) type Outside = (Vec<Value>, Vec<Value>, Bounds);
+
 /// The two corners of a box around things, if there are any.
-pub(super) type Bounds = Option<[[f64; 3]; 2]>;
+type Bounds = Option<[[f64; 3]; 2]>;
 
 /// An object that is to be placed.
 pub(super) struct Placed {
@@ -224,11 +227,11 @@ impl<'a> Builder<'a> {
     }
 
     /// From here on objects belong to a group. Gives what is outside of it.
-    pub(super) fn begin_group(&mut self) -> (Vec<Value>, Vec<Value>, Bounds) {
+    pub(super) fn begin_group(&mut self) -> Outside {
         (std::mem::take(&mut self.objects), std::mem::take(&mut self.instances), self.bounds.take())
     }
 
-    pub(super) fn end_group(&mut self, name: &str, (objects, instances, bounds): (Vec<Value>, Vec<Value>, Bounds)) {
+    pub(super) fn end_group(&mut self, name: &str, (objects, instances, bounds): Outside) {
         let mut group = json!({ "objects": std::mem::replace(&mut self.objects, objects) });
         let within = std::mem::replace(&mut self.instances, instances);
         if !within.is_empty() {

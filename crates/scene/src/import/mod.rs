@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use crate::mesh::read_ply;
-use builder::{Bounds, Builder, Placed};
+use builder::{Builder, Outside, Placed};
 
 /// Largest file that is imported, bytes.
 pub const MAX_IMPORT_BYTES: u64 = crate::files::MAX_FILE_BYTES;

@@ -100,6 +100,7 @@ macro_rules! variants {
         $(#[doc = $doc])+
         #[derive(Clone, Debug)]
         #[allow(dead_code, reason = "a kind without fields is all said by its word")]
+        #[allow(clippy::large_enum_variant, reason = "forms live while a file is read, a few at a time")]
         $vis enum $name {
             $(#[doc = concat!("`", $word, "`")] $variant($record),)+
         }

@@ -73,7 +73,7 @@ impl Run {
     }
 
     /// Renders to the end, keeping what there is from time to time if that is wanted.
-    pub(super) fn to_its_end(self, args: &Args, job: &Job, watch: &Watcher<'_>) -> Result<Done, ThreadError> {
+    pub(super) fn finish(self, args: &Args, job: &Job, watch: &Watcher<'_>) -> Result<Done, ThreadError> {
         watch.goes_on_from(self.canvas.with_film(|film| film.counters.paths));
         let path = args.output.first().map(|output| state::checkpoint_path(output));
         let ended = std::thread::scope(|scope| {
@@ -104,6 +104,8 @@ impl Run {
         })?;
         let complete = ended.reached != Reached::Interrupted;
         let mut header = self.header(args, job, complete);
+        // What the report says, to the digit.
+        header.seconds = ended.seconds;
         if complete {
             // When time was up it is fewer than were settled.
             header.samples = ended.samples;

@@ -48,7 +48,7 @@ impl Walk<'_, '_, '_> {
             return Ok(());
         }
         let aspect = self.film(element)?;
-        let to_world = self.to_world(element)?;
+        let to_world = self.placement(element)?;
         let (Some(forward), Some(up)) = (unit(column(&to_world, 2)), unit(column(&to_world, 1))) else {
             return Err(format!("{place}: its transform flattens it"));
         };
@@ -139,7 +139,7 @@ impl Walk<'_, '_, '_> {
     }
 
     /// The `to_world` of an element.
-    pub(super) fn to_world(&mut self, element: &Element) -> Result<Rows, String> {
+    pub(super) fn placement(&mut self, element: &Element) -> Result<Rows, String> {
         match element.property("to_world") {
             None => Ok(IDENTITY),
             Some(transform) if transform.tag == "transform" => super::transform::read(transform),

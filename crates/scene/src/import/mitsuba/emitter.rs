@@ -21,13 +21,13 @@ impl Walk<'_, '_, '_> {
                 let intensity = self.colour(element, "intensity", Of::Emission)?.unwrap_or_else(one);
                 let position = match element.triple("position")? {
                     Some(position) => position,
-                    None => column(&self.to_world(element)?, 3),
+                    None => column(&self.placement(element)?, 3),
                 };
                 json!({ "type": "point", "position_m": position, "intensity": intensity })
             }
             "spot" => {
                 let intensity = self.colour(element, "intensity", Of::Emission)?.unwrap_or_else(one);
-                let to_world = self.to_world(element)?;
+                let to_world = self.placement(element)?;
                 let cutoff = element.number("cutoff_angle")?.unwrap_or(20.0);
                 let inner = element.number("beam_width")?.unwrap_or(0.75 * cutoff);
                 if inner < cutoff {
@@ -42,7 +42,7 @@ impl Walk<'_, '_, '_> {
                 let irradiance = self.colour(element, "irradiance", Of::Emission)?.unwrap_or_else(one);
                 let direction = match element.triple("direction")? {
                     Some(direction) => direction,
-                    None => column(&self.to_world(element)?, 2),
+                    None => column(&self.placement(element)?, 2),
                 };
                 json!({ "type": "directional", "direction": direction, "irradiance": irradiance })
             }

@@ -54,7 +54,7 @@ impl<'a> Walk<'a, '_, '_> {
             return Ok(());
         }
         if element.plugin() == "instance" {
-            let rows = self.to_world(element)?;
+            let rows = self.placement(element)?;
             let groups = element.nested("shape", self.ids)?;
             let Some(group) = groups.first().and_then(|group| group.attribute("id")) else {
                 return Err(format!("{place}: it refers to no shapegroup"));
@@ -63,7 +63,7 @@ impl<'a> Walk<'a, '_, '_> {
             element.list_unused(self.builder);
             return Ok(());
         }
-        let rows = self.to_world(element)?;
+        let rows = self.placement(element)?;
         let look = match element.nested("bsdf", self.ids)?.first() {
             Some(bsdf) => self.known_look(bsdf)?,
             None => Look { material: grey(), opacity: 1.0 },

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use serde_json::Value;
 
 use super::matrix::{IDENTITY, Rows, inverse, looking, product, rotation, scaling, translation};
-use super::{Bounds, Builder};
+use super::{Builder, Outside};
 use parameters::Parameters;
 use tokens::{Token, Word, tokens};
 
@@ -85,7 +85,7 @@ struct Reading<'r, 'b> {
     materials: HashMap<String, Look>,
     textures: HashMap<String, Value>,
     /// The object that is being defined, and what is outside of it.
-    object: Option<(String, (Vec<Value>, Vec<Value>, Bounds))>,
+    object: Option<(String, Outside)>,
     includes: usize,
     shapes: usize,
 }
