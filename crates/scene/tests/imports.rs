@@ -207,7 +207,8 @@ fn opacity_normals_and_absorption_arrive() {
         scene(&imported(&model).unwrap())
     };
     let textured = |scene: &Scene| {
-        scene.objects.iter().find(|o| scene.materials[o.material].kind.image().is_some()).expect("an image").clone()
+        let mut objects = scene.groups.iter().flat_map(|group| &group.objects).chain(&scene.objects);
+        objects.find(|o| scene.materials[o.material].kind.image().is_some()).expect("an image").clone()
     };
     let blend = with("BLEND", 0.5);
     let object = textured(&blend);

@@ -29,7 +29,9 @@ fn camera_film_and_integrator() {
     assert_eq!(scene.camera.position_m, [1.0, 2.0, 3.0]);
     assert_eq!((scene.camera.forward, scene.camera.up), ([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
     let filter = Filter::Gaussian { sigma_px: 0.75 };
-    assert_eq!(scene.film, Film { width: 320, height: 200, filter, stokes: true, bands: None });
+    let bands = etalon_scene::Bands::new([400.0, 700.0, 10.0], [380.0, 780.0]).ok();
+    assert!(bands.is_some());
+    assert_eq!(scene.film, Film { width: 320, height: 200, filter, stokes: true, bands });
     assert_eq!(
         scene.integrator,
         Integrator {
@@ -183,7 +185,7 @@ fn objects_and_lights() {
     let normals = vec![[corner; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let uvs = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5]];
     assert_eq!(pyramid.shape, Shape::Mesh(Arc::new(Mesh { vertices, triangles, normals, uvs })));
-    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 16));
+    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 18));
     // By hand: (x, y, z) → (2x, −2y, 6z) → a quarter turn: (2y, 2x, 6z) → moved → x and y swapped, moved.
     let linear = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]];
     assert_eq!(pyramid.transform, Transform { linear, translation_m: [25.0, 16.0, 37.0] });

@@ -208,6 +208,8 @@ fn shadows_have_the_shape_of_the_opacity_image() {
         mask.transform.translation_m = [0.0, 0.0, 1.0];
         mask.opacity_image = Some(stripes());
         floor.objects.push(mask);
+        // Not what the mask's lower side throws back.
+        floor.integrator.max_depth = Some(2);
         for (i, y) in ys(&floor).iter().enumerate() {
             let want = if i % 4 < 2 { 0.5 / PI * 2.0 } else { 0.0 };
             assert!((y - want).abs() < 1e-7, "{i}: {y} is not {want}");

@@ -114,7 +114,7 @@ impl EnvironmentLight {
         })
     }
 
-    /// The density in sr⁻¹ with which [`EnvironmentLight::sample`] draws the direction `wi`.
+    /// The density in sr⁻¹ with which `sample` draws the direction `wi`.
     pub fn density(&self, wi: Vec3<f64>) -> f64 {
         let place = self.place(wi);
         let [luminance] = self.mix(&place, place.down_by_cosine, |texel| [luminance(texel)]);
