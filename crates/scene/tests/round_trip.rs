@@ -29,7 +29,7 @@ fn camera_film_and_integrator() {
     assert_eq!(scene.camera.position_m, [1.0, 2.0, 3.0]);
     assert_eq!((scene.camera.forward, scene.camera.up), ([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
     let filter = Filter::Gaussian { sigma_px: 0.75 };
-    let bands = etalon_scene::Bands::new([400.0, 700.0, 10.0], [380.0, 780.0]).ok();
+    let bands = Bands::new([400.0, 700.0, 10.0], [380.0, 780.0]).ok();
     assert!(bands.is_some());
     assert_eq!(scene.film, Film { width: 320, height: 200, filter, stokes: true, bands });
     assert_eq!(
