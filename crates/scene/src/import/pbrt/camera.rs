@@ -59,7 +59,7 @@ impl Reading<'_, '_> {
     }
 
     /// The film comes before the camera in files that people write; the camera's angle is along its shorter side.
-    pub(super) fn film(&mut self, kind: &str, list: &Parameters) -> Result<(), String> {
+    pub(super) fn film(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
         let size = |name: &str, default: f64| Ok::<f64, String>(list.number(name)?.unwrap_or(default).max(1.0).round());
         let (width, height) = (size("xresolution", 1280.0)?, size("yresolution", 720.0)?);
         self.builder.film["width"] = json!(width as u64);
@@ -84,8 +84,7 @@ impl Reading<'_, '_> {
         }
         if list.number("iso")?.unwrap_or(100.0) != 100.0 || list.number("exposuretime")?.unwrap_or(1.0) != 1.0 {
             let factor = list.number("iso")?.unwrap_or(100.0) / 100.0 * list.number("exposuretime")?.unwrap_or(1.0);
-            self.builder
-                .leave_out("Film", format!("its exposure is not honoured: a factor of {factor} on the picture"));
+            self.builder.leave_out(place, format!("its exposure is not honoured: a factor of {factor} on the picture"));
         }
         list.list_unused(self.builder);
         Ok(())

@@ -171,7 +171,7 @@ impl Reading<'_, '_> {
                 self.in_world = true;
             }
             "Camera" => self.camera(&arguments.quoted()?, &arguments.parameters()?, &place)?,
-            "Film" => self.film(&arguments.quoted()?, &arguments.parameters()?)?,
+            "Film" => self.film(&arguments.quoted()?, &arguments.parameters()?, &place)?,
             "Sampler" => self.sampler(&arguments.quoted()?, &arguments.parameters()?)?,
             "Integrator" => self.integrator(&arguments.quoted()?, &arguments.parameters()?, &place)?,
             "PixelFilter" => self.filter(&arguments.quoted()?, &arguments.parameters()?, &place)?,

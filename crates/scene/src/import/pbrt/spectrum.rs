@@ -30,7 +30,12 @@ impl Reading<'_, '_> {
                 }
                 reflectance(rgb)
             }
-            ("float", [value]) => json!(value.clamp(0.0, 1.0)),
+            ("float", [value]) => {
+                if !(0.0..=1.0).contains(value) {
+                    self.builder.leave_out(&place, format!("{value} is no reflectance, and is brought into 0 to 1"));
+                }
+                json!(value.clamp(0.0, 1.0))
+            }
             ("spectrum", _) => match self.table(parameter)? {
                 Some(mut table) => {
                     if table.0.iter().any(|(_, v)| !(0.0..=1.0).contains(v)) {
@@ -67,7 +72,12 @@ impl Reading<'_, '_> {
         };
         let place = parameter.place.clone();
         match (parameter.kind.as_str(), parameter.numbers()) {
-            ("rgb" | "color", [r, g, b]) => Ok(light([*r, *g, *b].map(|v| v.max(0.0)), scale)),
+            ("rgb" | "color", [r, g, b]) => {
+                if r.min(*g).min(*b) < 0.0 {
+                    self.builder.leave_out(&place, "negative light is taken for none");
+                }
+                Ok(light([*r, *g, *b].map(|v| v.max(0.0)), scale))
+            }
             ("blackbody", [kelvin, ..]) => {
                 let body = Blackbody::new(*kelvin, 1.0).map_err(|error| format!("{place}: {error}"))?;
                 let luminance = luminance_of(|nm| body.eval(nm));
