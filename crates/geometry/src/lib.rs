@@ -16,6 +16,7 @@
 //! | `pages` | arrays in large pages |
 //! | `traverse` | its traversal, for each instruction set |
 //! | `geometry` | [`Geometry`]: the queries |
+//! | `lanes` | [`Rays`]: eight rays at once |
 //! | `instance` | [`Instance`]: a geometry within another, placed by an affine map |
 
 mod aabb;
@@ -24,6 +25,7 @@ mod double_double;
 mod frame;
 mod geometry;
 mod instance;
+mod lanes;
 mod pages;
 mod query;
 mod ray;
@@ -34,6 +36,7 @@ mod wide;
 pub use aabb::Aabb;
 pub use geometry::{Geometry, GeometryError, MAX_NESTING};
 pub use instance::{Instance, Placement};
+pub use lanes::{Hits, LANES, Rays, SurfacePoints};
 pub use ray::{Hit, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 pub use shapes::{Cylinder, Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, Primitive, ShapeError, Sphere, Triangle};
 
