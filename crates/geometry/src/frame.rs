@@ -69,9 +69,27 @@ impl Frame {
         Box32 { min: from_fn(|k| round_down(lower[k] - BOX_MARGIN)), max: from_fn(|k| round_up(upper[k] + BOX_MARGIN)) }
     }
 
+    /// A point in this frame.
+    #[inline(always)]
+    pub(crate) fn place(&self, p: Vec3<f64>) -> Vec3<f64> {
+        (p - self.centre) * self.scale
+    }
+
+    /// What is at the origin of this frame, m.
+    #[inline(always)]
+    pub(crate) fn centre(&self) -> Vec3<f64> {
+        self.centre
+    }
+
+    /// A metre in units of this frame.
+    #[inline(always)]
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
     /// A point in this frame, rounded.
     pub(crate) fn point(&self, p: Vec3<f64>) -> [f32; 3] {
-        ((p - self.centre) * self.scale).to_array().map(|c| c as f32)
+        self.place(p).to_array().map(|c| c as f32)
     }
 
     /// Whether the coordinates of a point in this frame are exact in `f32`.
@@ -240,7 +258,7 @@ const USUAL_SCALE: f64 = 1.0 / 256.0;
 
 #[inline(always)]
 fn frame_coordinates(p: Vec3<f64>, frame: &Frame) -> [f64; 3] {
-    ((p - frame.centre) * frame.scale).to_array()
+    frame.place(p).to_array()
 }
 
 #[inline(always)]
@@ -452,14 +470,14 @@ pub(crate) fn round_up(v: f64) -> f32 {
 
 /// An `f32` not above `v` by at most two roundoffs, without a branch: a ray's rounding is as good as random.
 #[inline(always)]
-fn below(v: f64) -> f32 {
+pub(crate) fn below(v: f64) -> f32 {
     let r = v as f32;
     r - (r.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }
 
 /// An `f32` not below `v` by at most two roundoffs, without a branch.
 #[inline(always)]
-fn above(v: f64) -> f32 {
+pub(crate) fn above(v: f64) -> f32 {
     let r = v as f32;
     r + (r.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }

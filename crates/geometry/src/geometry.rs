@@ -4,14 +4,14 @@ use crate::build::{Costs, Item, build};
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
-use crate::traverse;
+use crate::traverse::{self, FLAT_LIMIT, Flat, Level};
 use crate::wide::WideTree;
 use crate::{Aabb, Hit, Instance, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Real, Vec3};
 use rayon::prelude::*;
 
-/// Up to this many primitives are tested one by one, without a tree.
-const FLAT_LIMIT: usize = 8;
+/// Up to this many primitives, instances among them, are tested one by one, without a tree.
+const TREELESS_LIMIT: usize = 8;
 /// Most instances within each other: a ray descends through them by recursion.
 pub const MAX_NESTING: u32 = 32;
 
@@ -41,6 +41,9 @@ pub struct Geometry {
     primitives: Vec<Primitive>,
     bounds: Option<Aabb>,
     tree: Option<WideTree>,
+    /// Instead of a tree, for few primitives.
+    flat: Option<Flat>,
+    level: Level,
     /// Which primitives are instances.
     instances: Vec<u32>,
     /// Numbers that instances take, 1 for the geometry itself among them.
@@ -56,7 +59,12 @@ impl Geometry {
     /// # Errors
     /// If there are more than 2²⁹ primitives, more than 2³¹ instances, or more than [`MAX_NESTING`] of them within each
     /// other.
-    pub fn build(mut primitives: Vec<Primitive>) -> Result<Self, GeometryError> {
+    pub fn build(primitives: Vec<Primitive>) -> Result<Self, GeometryError> {
+        Self::build_with(primitives, FLAT_LIMIT)
+    }
+
+    /// [`Geometry::build`] with a tree above another number of primitives.
+    pub(crate) fn build_with(mut primitives: Vec<Primitive>, flat_limit: usize) -> Result<Self, GeometryError> {
         if primitives.len() > 1 << 29 {
             return Err(GeometryError::TooMany(primitives.len()));
         }
@@ -77,14 +85,17 @@ impl Geometry {
             return Err(GeometryError::TooDeep(nesting));
         }
         let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
-        let tree = bounds.filter(|_| primitives.len() > FLAT_LIMIT).map(|bounds| {
+        let is_flat = instances.is_empty() && primitives.len() <= flat_limit;
+        let flat = bounds.filter(|_| is_flat).map(|bounds| Flat::new(&primitives, bounds));
+        let tree = bounds.filter(|_| !is_flat && primitives.len() > TREELESS_LIMIT).map(|bounds| {
             let frame = Frame::around(bounds);
             let item = |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32);
             let items = primitives.par_iter().enumerate().map(item).collect();
             let binary = build(items, costs(&primitives));
             WideTree::collapse(frame, &binary, &primitives)
         });
-        Ok(Self { primitives, bounds, tree, instances, instance_count, nesting, label: 0 })
+        let level = Level::detect();
+        Ok(Self { primitives, bounds, tree, flat, level, instances, instance_count, nesting, label: 0 })
     }
 
     /// The same geometry with a number of the caller's, by which points on its surfaces tell that they are its.
@@ -129,7 +140,8 @@ impl Geometry {
     }
 
     fn memory_beside(&self, seen: &mut Vec<*const Self>) -> usize {
-        let tree = self.tree.as_ref().map_or(0, WideTree::memory_bytes);
+        let tree =
+            self.tree.as_ref().map_or(0, WideTree::memory_bytes) + self.flat.as_ref().map_or(0, Flat::memory_bytes);
         let own = size_of::<Self>() + self.primitives.capacity() * size_of::<Primitive>() + tree;
         let places = self.instances.len() * (size_of::<Instance>() + size_of::<u32>());
         let mut shared = 0;
@@ -226,7 +238,7 @@ impl Geometry {
             Some(tree) => traverse::closest(tree, &self.primitives, ray),
             None => {
                 let query = Query::new(ray)?;
-                self.closest_flat(&query).map(|(hit, surface)| (RawHit { t: hit.t * query.scale, ..hit }, surface))
+                self.closest(&query).map(|(hit, surface)| (RawHit { t: hit.t * query.scale, ..hit }, surface))
             }
         };
         let (hit, surface) = found?;
@@ -238,7 +250,7 @@ impl Geometry {
     pub fn occluded<R: Real>(&self, ray: &Ray<R>) -> bool {
         match &self.tree {
             Some(tree) => traverse::any(tree, &self.primitives, ray),
-            None => Query::new(ray).is_some_and(|query| self.any_flat(&query)),
+            None => Query::new(ray).is_some_and(|query| self.any(&query)),
         }
     }
 
@@ -252,7 +264,11 @@ impl Geometry {
         let primitive = self.primitives.get(hit.surface.primitive.0 as usize).filter(|_| hit.surface.instance == 0);
         if let Some(primitive) = primitive.filter(|p| !(refine && p.is_curved())) {
             let p = ray.origin.to_f64() + ray.direction.to_f64() * hit.t.to_f64();
-            return SurfacePoint::rounded(&primitive.surface(p), hit.surface, self.label);
+            let point = match &self.flat {
+                Some(flat) => flat.surface(&self.primitives, hit.surface.primitive, p),
+                None => primitive.surface(p),
+            };
+            return SurfacePoint::rounded(&point, hit.surface, self.label);
         }
         let found = Query::new(ray)
             .and_then(|query| self.exact_point(&query, hit.t.to_f64() / query.scale, refine, hit.surface));
@@ -296,18 +312,31 @@ impl Geometry {
     }
 
     pub(crate) fn closest(&self, query: &Query) -> Option<Found> {
-        match &self.tree {
-            Some(tree) => traverse::closest(tree, &self.primitives, query),
-            None => self.closest_flat(query),
+        match (&self.tree, &self.flat) {
+            (Some(tree), _) => traverse::closest(tree, &self.primitives, query),
+            (_, Some(flat)) => flat.closest(self.level, &self.primitives, query),
+            _ => self.closest_flat(query),
         }
     }
 
     /// Whether anything but the surface aimed at is hit.
     pub(crate) fn any(&self, query: &Query) -> bool {
-        match &self.tree {
-            Some(tree) => traverse::any(tree, &self.primitives, query),
-            None => self.any_flat(query),
+        match (&self.tree, &self.flat) {
+            (Some(tree), _) => traverse::any(tree, &self.primitives, query),
+            (_, Some(flat)) => flat.any(self.level, &self.primitives, query),
+            _ => self.any_flat(query),
         }
+    }
+
+    /// What serves few primitives, and the instruction set that does.
+    pub(crate) fn flat(&self) -> Option<(&Flat, Level)> {
+        self.flat.as_ref().map(|flat| (flat, self.level))
+    }
+
+    /// Wrong on purpose, for tests: see [`Flat::forget_rounding`].
+    #[cfg(test)]
+    pub(crate) fn forget_rounding(&mut self) {
+        self.flat.iter_mut().for_each(Flat::forget_rounding);
     }
 
     /// The tree, for tests of its traversals.
@@ -317,7 +346,6 @@ impl Geometry {
     }
 
     /// The primitives, in the order of their ids.
-    #[cfg(test)]
     pub(crate) fn primitives(&self) -> &[Primitive] {
         &self.primitives
     }

@@ -240,7 +240,7 @@ impl Four for Plain4 {
 }
 
 /// Origins within this (2²⁰⁰, in the 1-norm) keep every product of an intersection test finite.
-const MAX_ORIGIN: f64 = (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
+pub(crate) const MAX_ORIGIN: f64 = (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
 
 /// The axis along which a direction of these magnitudes is largest, an index into [`AXES`].
 #[inline(always)]

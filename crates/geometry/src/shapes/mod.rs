@@ -3,7 +3,7 @@
 mod cylinder;
 mod disk;
 mod parallelogram;
-mod planar;
+pub(crate) mod planar;
 mod sphere;
 mod triangle;
 
@@ -121,6 +121,16 @@ impl Primitive {
     /// A box that contains the shape.
     pub fn bounds(&self) -> Aabb {
         each!(self, s => s.bounds())
+    }
+
+    /// A point, the unit normal and the size of a flat shape.
+    pub(crate) fn plane(&self) -> Option<(Vec3<f64>, Vec3<f64>, f64)> {
+        match self {
+            Self::Triangle(s) => Some(s.plane()),
+            Self::Parallelogram(s) => Some(s.plane()),
+            Self::Disk(s) => Some((s.centre(), s.normal(), s.radius())),
+            Self::Sphere(_) | Self::Cylinder(_) | Self::Instance(_) => None,
+        }
     }
 
     /// Whether its normal depends on the place.

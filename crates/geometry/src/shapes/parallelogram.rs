@@ -132,4 +132,9 @@ impl Parallelogram {
     pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {
         planar::surface(p, self.corner, self.normal, self.extent)
     }
+
+    /// See [`Primitive::plane`](super::Primitive::plane).
+    pub(crate) fn plane(&self) -> (Vec3<f64>, Vec3<f64>, f64) {
+        (self.corner, self.normal, self.extent)
+    }
 }

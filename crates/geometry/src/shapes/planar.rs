@@ -103,7 +103,7 @@ fn clamp_to_box(query: &Query, bounds: Aabb, t: f64) -> f64 {
 /// Σ Uᵢzᵢ / ΣUᵢ is a mean of the zᵢ, so that it errs by up to 3·32uMe·(zmax − zmin)/det, and a parameter by up to
 /// 32uMe/det.
 #[inline]
-pub(super) fn is_determined(magnitude: f64, extent: f64, depth: f64, t_det: f64, det: f64) -> bool {
+pub(crate) fn is_determined(magnitude: f64, extent: f64, depth: f64, t_det: f64, det: f64) -> bool {
     const T: f64 = 96.0 * f64::UNIT_ROUNDOFF * (1_u64 << 30) as f64;
     const W: f64 = 32.0 * f64::UNIT_ROUNDOFF * (1_u64 << 24) as f64;
     let error = magnitude * extent;
@@ -114,7 +114,7 @@ pub(super) fn is_determined(magnitude: f64, extent: f64, depth: f64, t_det: f64,
 ///
 /// `point` is any point of the plane, `size` the shape's extent.
 #[inline]
-pub(super) fn surface(p: Vec3<f64>, point: Vec3<f64>, normal: Vec3<f64>, size: f64) -> ExactPoint {
+pub(crate) fn surface(p: Vec3<f64>, point: Vec3<f64>, normal: Vec3<f64>, size: f64) -> ExactPoint {
     let away = p - point;
     let position = p - normal * away.dot(normal);
     // The offset from `point` errs by u of itself, its component along the normal by a few u of its length, and

@@ -126,6 +126,13 @@ impl Triangle {
 
     #[inline]
     pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {
-        planar::surface(p, self.a, self.normal(), self.size())
+        let (point, normal, size) = self.plane();
+        planar::surface(p, point, normal, size)
+    }
+
+    /// See [`Primitive::plane`](super::Primitive::plane).
+    #[inline]
+    pub(crate) fn plane(&self) -> (Vec3<f64>, Vec3<f64>, f64) {
+        (self.a, self.normal(), self.size())
     }
 }

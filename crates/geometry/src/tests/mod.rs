@@ -1,6 +1,7 @@
 //! Tests of the whole: the tree against brute force, watertightness, spheres, slabs, and rays that leave surfaces.
 
 mod cylinders;
+mod flat;
 mod instances;
 mod oracle;
 mod spawn;

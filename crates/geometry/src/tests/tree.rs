@@ -1,7 +1,7 @@
 //! The tree finds what brute force finds.
 
 use crate::test_support::*;
-use crate::traverse;
+use crate::traverse::{self, Level};
 use crate::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, SurfaceId, Triangle};
 use etalon_optics::{Real, Vec3};
 
@@ -32,6 +32,12 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
             assert_eq!(traverse::closest_deep(tree, primitives, &query), flat, "{ray:?}");
             assert_eq!(traverse::any_deep(tree, primitives, &query), occluded, "{ray:?}");
         }
+        if let Some((few, _)) = geometry.flat() {
+            for level in Level::all() {
+                assert_eq!(few.closest(level, geometry.primitives(), &query), flat, "{level:?} {ray:?}");
+                assert_eq!(few.any(level, geometry.primitives(), &query), occluded, "{level:?} {ray:?}");
+            }
+        }
         if let Some((_, closest)) = flat {
             // What a shadow ray aims at does not hide it.
             let aimed = Ray { aims_at: closest, ..ray };
@@ -45,9 +51,13 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
 
 /// Holds the tree of some primitives against brute force on `rays` adversarial rays; returns the fraction of hits.
 pub(super) fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
+    check_geometry(&Geometry::build_with(primitives, 0).unwrap(), rays, seed, place)
+}
+
+/// The same of what serves a geometry.
+pub(super) fn check_geometry(geometry: &Geometry, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
     let mut random = Random::new(seed);
-    let features = features(&primitives);
-    let geometry = Geometry::build(primitives).unwrap();
+    let features = features(geometry.primitives());
     let mut hits = 0;
     for _ in 0..rays {
         let line = place(line(&mut random, &features));
@@ -56,7 +66,7 @@ pub(super) fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: i
             0 => PrimitiveId(random.below(geometry.len()) as u32),
             _ => PrimitiveId::NONE,
         };
-        hits += agrees(&geometry, line, t_max, leaves);
+        hits += agrees(geometry, line, t_max, leaves);
     }
     hits as f64 / (2 * rays) as f64
 }

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::vector::Vector;
-use super::{Entered, Filters, Start, any_far_with, any_with, closest_far_with, closest_with};
+use super::{Entered, Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
 use crate::geometry::Found;
@@ -11,8 +11,8 @@ use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX2: [`Avx2::detect`] alone makes one.
-#[derive(Clone, Copy)]
-pub(super) struct Avx2(());
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx2(());
 
 impl Avx2 {
     #[inline(always)]
@@ -31,6 +31,17 @@ impl Avx2 {
         // SAFETY: `self` proves that the processor has AVX2.
         unsafe { any(self, tree, primitives, start) }
     }
+
+    #[inline(always)]
+    pub(super) fn run<J: Job>(self, job: J) -> J::Output {
+        // SAFETY: `self` proves that the processor has AVX2.
+        unsafe { run(self, job) }
+    }
+}
+
+#[target_feature(enable = "avx2,bmi1")]
+fn run<J: Job>(filters: Avx2, job: J) -> J::Output {
+    job.run(filters)
 }
 
 #[target_feature(enable = "avx2,bmi1")]
@@ -56,7 +67,7 @@ fn any_far<S: Start>(filters: Avx2, tree: &WideTree, primitives: &[Primitive], s
 /// Eight floats. Its operations, and whatever else here uses vector instructions, are inlined by force into functions that
 /// are compiled for AVX2. They exist for a token alone, which [`Filters`] hands on.
 #[derive(Clone, Copy)]
-pub(super) struct F8(__m256);
+pub(super) struct F8(pub(super) __m256);
 
 macro_rules! operator {
     ($trait:ident, $f:ident, $instruction:ident) => {
@@ -358,6 +369,7 @@ pub(super) struct Ray8 {
 impl Filters for Avx2 {
     type Ray = Ray8;
     type Vector = F8;
+    type Wide = F8;
     type Four = D4;
 
     #[inline(always)]

@@ -2,16 +2,17 @@
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::avx2::{Avx2, D4, F4, F8, prefetch};
-use super::{Entered, Filters, Start, any_far_with, any_with, closest_far_with, closest_with};
+use super::wide512::F16;
+use super::{Entered, Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
 use crate::geometry::Found;
 use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use std::arch::x86_64::*;
 
-/// Proof that the processor has AVX-512 (F and VL), and AVX2: [`Avx512::detect`] alone makes one.
-#[derive(Clone, Copy)]
-pub(super) struct Avx512(Avx2);
+/// Proof that the processor has AVX-512 (F, VL and DQ), and AVX2: [`Avx512::detect`] alone makes one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx512(Avx2);
 
 impl From<Avx512> for Avx2 {
     fn from(token: Avx512) -> Self {
@@ -22,7 +23,9 @@ impl From<Avx512> for Avx2 {
 impl Avx512 {
     #[inline(always)]
     pub(super) fn detect() -> Option<Self> {
-        let present = std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512vl");
+        let present = std::arch::is_x86_feature_detected!("avx512f")
+            && std::arch::is_x86_feature_detected!("avx512vl")
+            && std::arch::is_x86_feature_detected!("avx512dq");
         Avx2::detect().filter(|_| present).map(Self)
     }
 
@@ -37,6 +40,17 @@ impl Avx512 {
         // SAFETY: `self` proves that the processor has AVX-512.
         unsafe { any(self, tree, primitives, start) }
     }
+
+    #[inline(always)]
+    pub(super) fn run<J: Job>(self, job: J) -> J::Output {
+        // SAFETY: `self` proves that the processor has AVX-512.
+        unsafe { run(self, job) }
+    }
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,bmi1")]
+fn run<J: Job>(filters: Avx512, job: J) -> J::Output {
+    job.run(filters)
 }
 
 #[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
@@ -73,6 +87,7 @@ pub(super) struct Ray16 {
 impl Filters for Avx512 {
     type Ray = Ray16;
     type Vector = F8;
+    type Wide = F16;
     type Four = D4;
 
     #[inline(always)]

@@ -9,11 +9,16 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod closest;
+mod flat;
 mod leaf;
 mod portable;
 mod stack;
 mod start;
 mod vector;
+#[cfg(target_arch = "x86_64")]
+mod wide256;
+#[cfg(target_arch = "x86_64")]
+mod wide512;
 
 use crate::build::MAX_DEPTH;
 use crate::frame::BoxRay;
@@ -24,6 +29,8 @@ use crate::{Primitive, Triangle};
 use any::any_on;
 pub(crate) use any::occludes;
 use closest::closest_on;
+use flat::Wide;
+pub(crate) use flat::{FLAT_LIMIT, Flat};
 use start::Start;
 use vector::Vector;
 
@@ -63,11 +70,15 @@ impl Candidates {
 type Narrow<F> = <<F as Filters>::Four as Four>::Narrow;
 
 /// The filters of an instruction set.
-trait Filters: Copy + Into<<Self::Vector as Vector>::Token> + Into<<Self::Four as Four>::Token> {
+trait Filters:
+    Copy + Into<<Self::Vector as Vector>::Token> + Into<<Self::Four as Four>::Token> + Into<<Self::Wide as Wide>::Token>
+{
     /// The ray as the filter of nodes wants it.
     type Ray: Copy;
     /// Eight floats.
     type Vector: Vector;
+    /// Eight floats, or sixteen.
+    type Wide: Wide;
     /// Four numbers.
     type Four: Four;
     /// Prepares a ray.
@@ -80,6 +91,59 @@ trait Filters: Copy + Into<<Self::Vector as Vector>::Token> + Into<<Self::Four a
     fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found>;
     /// [`any_far_with`], likewise.
     fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool;
+}
+
+/// Work that is compiled for each instruction set. Its function is inlined into one that is.
+trait Job {
+    /// What comes of it.
+    type Output;
+    /// The work.
+    fn run<F: Filters>(self, filters: F) -> Self::Output;
+}
+
+/// An instruction set that the processor has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Level {
+    #[cfg(target_arch = "x86_64")]
+    Avx512(avx512::Avx512),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(avx2::Avx2),
+    Portable,
+}
+
+impl Level {
+    /// The best one.
+    pub(crate) fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(filters) = avx512::Avx512::detect() {
+            return Self::Avx512(filters);
+        } else if let Some(filters) = avx2::Avx2::detect() {
+            return Self::Avx2(filters);
+        }
+        Self::Portable
+    }
+
+    /// All.
+    #[cfg(test)]
+    pub(crate) fn all() -> Vec<Self> {
+        let mut all = vec![Self::Portable];
+        #[cfg(target_arch = "x86_64")]
+        all.extend(avx2::Avx2::detect().map(Self::Avx2));
+        #[cfg(target_arch = "x86_64")]
+        all.extend(avx512::Avx512::detect().map(Self::Avx512));
+        all
+    }
+
+    #[inline(always)]
+    fn run<J: Job>(self, job: J) -> J::Output {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(filters) => filters.run(job),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(filters) => filters.run(job),
+            Self::Portable => job.run(portable::Portable),
+        }
+    }
 }
 
 /// The closest hit, its distance in the units of the start.

@@ -1,12 +1,13 @@
 //! The filters in plain Rust.
 
+use super::flat::{BLOCK, Wide};
 use super::vector::Vector;
 use super::{Entered, Filters, Start, any_far_with, closest_far_with};
-use crate::Primitive;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
 use crate::geometry::Found;
 use crate::query::Plain4;
 use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
+use crate::{LANES, Primitive};
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -92,9 +93,91 @@ impl Vector for Floats {
     }
 }
 
+impl Wide for Floats {
+    type Token = Portable;
+    type Mask = u32;
+    const WIDTH: usize = LEAF_WIDTH;
+
+    #[inline(always)]
+    fn splat(_: Portable, v: f32) -> Self {
+        Self([v; LEAF_WIDTH])
+    }
+
+    #[inline(always)]
+    fn load(_: Portable, row: &[f32; BLOCK], at: usize) -> Self {
+        Self(from_fn(|i| row[(at + i) % BLOCK]))
+    }
+
+    #[inline(always)]
+    fn shared(_: Portable, row: &[f32; BLOCK], at: usize) -> Self {
+        Self([row[at % BLOCK]; LEAF_WIDTH])
+    }
+
+    #[inline(always)]
+    fn rays(_: Portable, v: &[f32; LANES]) -> Self {
+        Self(*v)
+    }
+
+    #[inline(always)]
+    fn store(self, row: &mut [f32; BLOCK]) {
+        row[..LEAF_WIDTH].copy_from_slice(&self.0);
+    }
+
+    #[inline(always)]
+    fn min(self, o: Self) -> Self {
+        Vector::min(self, o)
+    }
+
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        Vector::max(self, o)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Vector::abs(self)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Vector::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn flipped(self, sign: Self) -> Self {
+        Self(from_fn(|i| if sign.0[i].is_sign_negative() { -self.0[i] } else { self.0[i] }))
+    }
+
+    #[inline(always)]
+    fn below(self, o: Self) -> u32 {
+        Vector::below(self, o)
+    }
+
+    #[inline(always)]
+    fn at_most(self, o: Self) -> u32 {
+        Vector::at_most(self, o)
+    }
+
+    #[inline(always)]
+    fn equals(self, o: Self) -> u32 {
+        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(self.0[i] == o.0[i]) << i)
+    }
+
+    #[inline(always)]
+    fn or_else(self, mask: u32, other: Self) -> Self {
+        Self(from_fn(|i| if mask >> i & 1 == 1 { self.0[i] } else { other.0[i] }))
+    }
+
+    #[inline(always)]
+    fn bits(mask: u32) -> u32 {
+        mask & ((1 << LEAF_WIDTH) - 1)
+    }
+}
+
 impl Filters for Portable {
     type Ray = BoxRay<Plain>;
     type Vector = Floats;
+    type Wide = Floats;
     type Four = Plain4;
 
     #[inline(always)]

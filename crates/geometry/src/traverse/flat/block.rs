@@ -1,0 +1,127 @@
+//! The primitives of a flat geometry, as the filters want them.
+
+use crate::double_double::{cross, difference, round};
+use crate::frame::Frame;
+use crate::query::power_of_two;
+use crate::{Primitive, PrimitiveId};
+use etalon_optics::Vec3;
+
+/// Primitives of a block.
+pub(in crate::traverse) const BLOCK: usize = 16;
+/// What stands for no primitive where ids are numbers.
+pub(super) const NO_ID: f32 = -1.0;
+
+/// One number for each primitive.
+type Row = [f32; BLOCK];
+
+/// Sixteen triangles, parallelograms or squares around disks, in the accelerator's frame, rounded. NaN in empty lanes, which no
+/// filter keeps.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Flats {
+    /// A corner.
+    pub(super) corner: [Row; 3],
+    /// The edge a from it to the next corner, scaled by a power of two so that the larger edge's largest component is in [1, 2).
+    pub(super) a: [Row; 3],
+    /// The edge to the one before, negated, at the same scale.
+    pub(super) minus_b: [Row; 3],
+    /// Their product b × a, at that scale once.
+    pub(super) normal: [Row; 3],
+    /// 48 roundoffs of its largest component: see `filter`. Infinite if the filter can know no distance.
+    pub(super) t_error: Row,
+    /// 1 for triangles, else 0.
+    pub(super) triangle: Row,
+    /// Ids, as numbers.
+    pub(super) id: Row,
+}
+
+/// Sixteen spheres, likewise.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Spheres {
+    pub(super) centre: [Row; 3],
+    pub(super) radius: Row,
+    pub(super) id: Row,
+}
+
+const EMPTY: Row = [f32::NAN; BLOCK];
+
+impl Flats {
+    pub(super) const EMPTY: Self = Self {
+        corner: [EMPTY; 3],
+        a: [EMPTY; 3],
+        minus_b: [EMPTY; 3],
+        normal: [EMPTY; 3],
+        t_error: EMPTY,
+        triangle: EMPTY,
+        id: EMPTY,
+    };
+
+    /// Puts a shape into a lane, given by three corners, the first between its neighbours.
+    pub(super) fn set(
+        &mut self,
+        lane: usize,
+        frame: &Frame,
+        id: PrimitiveId,
+        [corner, a, b]: [Vec3<f64>; 3],
+        kind: Kind,
+    ) {
+        // Differences of two numbers are right to a roundoff of themselves.
+        let (ea, eb) = ((a - corner) / frame.unscale(), (b - corner) / frame.unscale());
+        let magnitude = ea.abs().max(eb.abs()).max_component();
+        let exponent = ((magnitude.to_bits() >> 52) as i64 - 1023).clamp(-900, 900);
+        let scale = power_of_two(-exponent);
+        // In double-double arithmetic: the normal of a sliver cancels.
+        let n = round(cross(difference(b, corner), difference(a, corner)));
+        let normal = n / frame.unscale() / frame.unscale() * scale;
+        put(&mut self.corner, lane, frame.point(corner).map(f64::from));
+        put(&mut self.a, lane, (ea * scale).to_array());
+        put(&mut self.minus_b, lane, (eb * -scale).to_array());
+        put(&mut self.normal, lane, normal.to_array());
+        let size = normal.abs().max_component();
+        // Below this, products with it could underflow. A disk is only part of its square.
+        let known = size > 1e-30 && !matches!(kind, Kind::Disk);
+        self.t_error[lane] = if known { (size * (48.0 * 0.5)) as f32 * f32::EPSILON } else { f32::INFINITY };
+        self.triangle[lane] = if matches!(kind, Kind::Triangle) { 1.0 } else { 0.0 };
+        self.id[lane] = id.0 as f32;
+    }
+}
+
+impl Spheres {
+    pub(super) const EMPTY: Self = Self { centre: [EMPTY; 3], radius: EMPTY, id: EMPTY };
+
+    pub(super) fn set(&mut self, lane: usize, frame: &Frame, id: PrimitiveId, sphere: &crate::Sphere) {
+        put(&mut self.centre, lane, frame.point(sphere.centre()).map(f64::from));
+        self.radius[lane] = frame.length(sphere.radius());
+        self.id[lane] = id.0 as f32;
+    }
+}
+
+fn put(rows: &mut [Row; 3], lane: usize, v: [f64; 3]) {
+    for (row, c) in rows.iter_mut().zip(v) {
+        row[lane] = c as f32;
+    }
+}
+
+/// How the filters see a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Triangle,
+    Parallelogram,
+    Disk,
+    Sphere,
+    /// Without a filter.
+    Other,
+}
+
+impl Kind {
+    pub(super) fn of(primitive: &Primitive) -> Self {
+        match primitive {
+            Primitive::Triangle(_) => Self::Triangle,
+            Primitive::Parallelogram(_) => Self::Parallelogram,
+            Primitive::Disk(_) => Self::Disk,
+            Primitive::Sphere(_) => Self::Sphere,
+            Primitive::Cylinder(_) | Primitive::Instance(_) => Self::Other,
+        }
+    }
+}

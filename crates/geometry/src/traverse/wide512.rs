@@ -1,0 +1,153 @@
+//! Sixteen floats of AVX-512 as the filters of flat geometries want them.
+#![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
+
+use super::avx512::Avx512;
+use super::flat::{BLOCK, Wide};
+use crate::LANES;
+use std::arch::x86_64::*;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
+
+/// Sixteen floats. They exist for a token alone.
+#[derive(Clone, Copy)]
+pub(super) struct F16(__m512);
+
+/// Sixteen truths, a bit each.
+#[derive(Clone, Copy)]
+pub(super) struct M16(__mmask16);
+
+/// An instruction on an [`F16`].
+macro_rules! avx512 {
+    ($instruction:expr) => {{
+        // SAFETY: an instruction of AVX-512 (F, DQ), whose presence is proved where an `F16` comes from; what it reads or writes is
+        // within the array named, whose length its type tells.
+        unsafe { $instruction }
+    }};
+}
+
+macro_rules! operator {
+    ($trait:ident, $f:ident, $instruction:ident) => {
+        impl $trait for F16 {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, o: Self) -> Self {
+                Self(avx512!($instruction(self.0, o.0)))
+            }
+        }
+    };
+}
+operator!(Add, add, _mm512_add_ps);
+operator!(Sub, sub, _mm512_sub_ps);
+operator!(Mul, mul, _mm512_mul_ps);
+operator!(Div, div, _mm512_div_ps);
+
+impl BitAnd for M16 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, o: Self) -> Self {
+        Self(self.0 & o.0)
+    }
+}
+
+impl BitOr for M16 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, o: Self) -> Self {
+        Self(self.0 | o.0)
+    }
+}
+
+impl Not for M16 {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(!self.0)
+    }
+}
+
+impl Wide for F16 {
+    type Token = Avx512;
+    type Mask = M16;
+    const WIDTH: usize = 16;
+
+    #[inline(always)]
+    fn splat(_: Avx512, v: f32) -> Self {
+        Self(avx512!(_mm512_set1_ps(v)))
+    }
+
+    #[inline(always)]
+    fn load(_: Avx512, row: &[f32; BLOCK], _: usize) -> Self {
+        Self(avx512!(_mm512_loadu_ps(row.as_ptr())))
+    }
+
+    #[inline(always)]
+    fn shared(_: Avx512, row: &[f32; BLOCK], at: usize) -> Self {
+        let (pairs, _) = row.as_chunks::<2>();
+        let [a, b] = pairs[at / 2 % LANES];
+        let both = f64::from_bits(u64::from(b.to_bits()) << 32 | u64::from(a.to_bits()));
+        Self(avx512!(_mm512_castpd_ps(_mm512_set1_pd(both))))
+    }
+
+    #[inline(always)]
+    fn rays(_: Avx512, v: &[f32; LANES]) -> Self {
+        Self(avx512!({
+            let eight = _mm256_loadu_ps(v.as_ptr());
+            let twice = _mm512_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
+            _mm512_permutexvar_ps(twice, _mm512_castps256_ps512(eight))
+        }))
+    }
+
+    #[inline(always)]
+    fn store(self, row: &mut [f32; BLOCK]) {
+        avx512!(_mm512_storeu_ps(row.as_mut_ptr(), self.0));
+    }
+
+    #[inline(always)]
+    fn min(self, o: Self) -> Self {
+        Self(avx512!(_mm512_min_ps(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        Self(avx512!(_mm512_max_ps(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(avx512!(_mm512_abs_ps(self.0)))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(avx512!(_mm512_sqrt_ps(self.0)))
+    }
+
+    #[inline(always)]
+    fn flipped(self, sign: Self) -> Self {
+        Self(avx512!(_mm512_xor_ps(self.0, _mm512_and_ps(sign.0, _mm512_set1_ps(-0.0)))))
+    }
+
+    #[inline(always)]
+    fn below(self, o: Self) -> M16 {
+        M16(avx512!(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn at_most(self, o: Self) -> M16 {
+        M16(avx512!(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn equals(self, o: Self) -> M16 {
+        M16(avx512!(_mm512_cmp_ps_mask::<_CMP_EQ_OQ>(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn or_else(self, mask: M16, other: Self) -> Self {
+        Self(avx512!(_mm512_mask_blend_ps(mask.0, other.0, self.0)))
+    }
+
+    #[inline(always)]
+    fn bits(mask: M16) -> u32 {
+        u32::from(mask.0)
+    }
+}
