@@ -9,7 +9,7 @@ mod embree;
 mod scenes;
 
 use embree::{Content, Embree, ROBUST, Scene};
-use etalon_geometry::{Geometry, Hit, Primitive, Ray, SurfacePoint};
+use etalon_geometry::{Geometry, Hit, LANES, Primitive, Ray, Rays, SurfacePoint};
 use etalon_optics::{Frame, Vec3};
 use scenes::{Mesh, Random, balls, instances, placements, spheres};
 use std::time::Instant;
@@ -60,6 +60,18 @@ fn main() {
             }
         }
     }
+    if "cornell-32".contains(&options.filter) {
+        let mesh = Mesh::cornell();
+        let content = Content::Triangles(&mesh.vertices, &mesh.faces);
+        measure("cornell-32", mesh.primitives(), embree.as_ref().map(|e| (e, content)), &options);
+    }
+    if "glass-12".contains(&options.filter) {
+        // Ten triangles of the same room, and two balls in it.
+        let mut primitives = Mesh::cornell().primitives();
+        primitives.truncate(10);
+        primitives.extend(spheres(&[[-0.6, 0.9, -1.7, 1.0], [0.7, -1.0, -1.7, 1.0]]));
+        measure("glass-12", primitives, None, &options);
+    }
     if "spheres-10k".contains(&options.filter) {
         let balls = balls(10_000);
         let content = Content::Spheres(&balls);
@@ -97,6 +109,9 @@ fn measure(
     });
     for (kind, rays, shadow) in rays(&geometry).into_iter().filter(|(kind, ..)| kind.contains(&options.rays)) {
         compare(name, kind, &geometry, &peers, &rays, shadow, options.turns);
+        if count <= 128 {
+            eights(name, kind, &geometry, &rays, shadow, options.turns);
+        }
     }
     println!("{build_text}\n");
 }
@@ -167,6 +182,55 @@ fn compare(
             );
         }
     }
+}
+
+/// Times the same rays, in `f64`, alone and eight at once, and the surfaces that they hit.
+#[inline(never)]
+fn eights(name: &str, kind: &str, geometry: &Geometry, rays: &[Ray<f32>], shadow: bool, turns: usize) {
+    let alone: Vec<Ray<f64>> = rays
+        .iter()
+        .map(|r| Ray {
+            origin: r.origin.to_f64(),
+            direction: r.direction.to_f64(),
+            t_max: f64::from(r.t_max),
+            leaves: r.leaves,
+            aims_at: r.aims_at,
+        })
+        .collect();
+    let (eights, _) = alone.as_chunks::<LANES>();
+    let eights: Vec<Rays> = eights
+        .iter()
+        .map(|eight| {
+            let mut rays = Rays::NONE;
+            eight.iter().enumerate().for_each(|(lane, ray)| rays.set(lane, ray));
+            rays
+        })
+        .collect();
+    let mut best = [f64::INFINITY; 4];
+    let mut sum = 0.0;
+    for _ in 0..turns {
+        let mut time = |i: usize, run: &mut dyn FnMut() -> f64| {
+            let start = Instant::now();
+            sum += run();
+            best[i] = best[i].min(start.elapsed().as_secs_f64());
+        };
+        if shadow {
+            time(0, &mut || alone.iter().filter(|r| geometry.occluded(r)).count() as f64);
+            time(1, &mut || eights.iter().map(|r| f64::from(geometry.any_hits(r, 0xFF).count_ones())).sum());
+        } else {
+            time(0, &mut || alone.iter().filter_map(|r| geometry.closest_hit(r)).map(|h| h.t).sum());
+            time(1, &mut || eights.iter().map(|r| geometry.closest_hits(r, 0xFF).t[0]).sum());
+            let hits: Vec<_> = alone.iter().filter_map(|r| Some((r, geometry.closest_hit(r)?))).collect();
+            time(2, &mut || hits.iter().map(|(r, h)| geometry.surface(r, h).position_error).sum());
+            let hits: Vec<_> = eights.iter().map(|r| (r, geometry.closest_hits(r, 0xFF))).collect();
+            time(3, &mut || hits.iter().map(|(r, h)| geometry.surfaces(r, h, h.mask).position_error[0]).sum());
+        }
+    }
+    let ns = best.map(|s| s * 1e9 / rays.len() as f64);
+    println!(
+        "{name:<16} {kind:<10} f64: {:.1} ns alone, {:.1} eight at once; surface {:.1} and {:.1} ns   ({sum:.1})",
+        ns[0], ns[1], ns[2], ns[3]
+    );
 }
 
 /// Primary rays, shadow rays from what they hit, and the rays of the first and the third diffuse bounce.

@@ -63,8 +63,7 @@ impl Prepared {
             let sums = [o[0].abs() + o[1].abs() + o[2].abs(), a[0] + a[1] + a[2]];
             let usable = (sums[0] < MAX_ORIGIN)
                 & (sums[1] < f64::INFINITY)
-                & (exponent <= 900)
-                & (exponent >= -900)
+                & (-900..=900).contains(&exponent)
                 & (rays.t_max[l] > 0.0);
             let exponent = if usable { exponent } else { 0 };
             let scale = power_of_two(-exponent);

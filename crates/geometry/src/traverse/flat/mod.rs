@@ -81,7 +81,7 @@ impl Flat {
                 }
                 Primitive::Disk(d) => d.square(),
                 Primitive::Sphere(s) => {
-                    if flat.sphere_count % BLOCK == 0 {
+                    if flat.sphere_count.is_multiple_of(BLOCK) {
                         flat.spheres.push(Spheres::EMPTY);
                     }
                     flat.spheres[flat.sphere_count / BLOCK].set(flat.sphere_count % BLOCK, &frame, id, s);
@@ -93,7 +93,7 @@ impl Flat {
                     continue;
                 }
             };
-            if flat.flat_count % BLOCK == 0 {
+            if flat.flat_count.is_multiple_of(BLOCK) {
                 flat.flats.push(Flats::EMPTY);
             }
             flat.flats[flat.flat_count / BLOCK].set(flat.flat_count % BLOCK, &frame, id, corners, kind);
