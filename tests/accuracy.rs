@@ -171,59 +171,93 @@ fn luminance(path: &Path) -> Vec<f64> {
     (0..r.len()).map(y).collect()
 }
 
-/// Against references of 16 times the samples, whose own error is taken off: a picture whose error is asked to be 2 % must
-/// have 1.7 to 2.3 %. And each is done in the time that was quoted with another seed, within a factor of 1.25, nine times of
-/// ten; 1 % too, where that is affordable.
+/// Scenes on which errors and prices are tried, and the side of their pictures: where all pixels are alike, fewer tell as much.
+const SIX: [(&str, u32); 6] = [
+    ("cornell", 48),
+    ("metals", 32),
+    ("cornell-glass", 48),
+    ("thin-lens", 48),
+    ("assignment", 48),
+    ("integrating-sphere", 32),
+];
+
+/// Relative root mean square difference of two pictures of luminance, in units of a level.
+fn relative_rms(a: &[f64], b: &[f64], level: f64) -> f64 {
+    let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+    (squares / a.len() as f64).sqrt() / level
+}
+
+/// A picture that is ten times as precise as one with an error of 2 %: the mean of two that share no random number, each a single
+/// sequence of points, with more and more samples until their difference says that the error of their mean is at most 0.2 %.
+/// Returns the mean's level and its own relative error too.
+fn reference(render: &dyn Fn(u64, u64) -> Vec<f64>, spp: u64) -> (Vec<f64>, f64, f64) {
+    let mut samples = 8 * spp;
+    loop {
+        let [a, b] = [101, 102].map(|seed| render(seed, samples));
+        let mean: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 0.5 * (a + b)).collect();
+        let level = mean.iter().sum::<f64>() / mean.len() as f64;
+        // Var((a + b)/2) = Var(a − b)/4.
+        let own = 0.5 * relative_rms(&a, &b, level);
+        if own <= 0.002 {
+            return (mean, level, own);
+        }
+        // On from there by the slope of most scenes; a steeper one ends sooner, a flatter one takes another round.
+        samples = (samples as f64 * (own / 0.0019).powf(1.0 / 0.6).clamp(1.3, 8.0)) as u64;
+    }
+}
+
+/// Pictures of other seeds than the quote's, to 2 % twice and to 1 % once. Their distance to a reference, whose own squared error
+/// is taken off, must be 1.7 to 2.3 % where 2 % were asked for; and they must take what was quoted, within a factor of 1.25, nine
+/// times of ten. Times are of the processor, so that other programs do not count.
 #[test]
-#[ignore = "takes minutes: the tables of docs/accuracy.md on errors and prices"]
+#[ignore = "takes some ten minutes of two processors: the table of docs/accuracy.md on errors and prices"]
 fn six_scenes_end_at_the_error_and_in_the_time_that_were_foretold() {
     let folder = tempfile::tempdir().unwrap();
     let (mut outside, mut tried, mut dear) = (Vec::new(), 0, Vec::new());
-    for name in ["metals", "integrating-sphere", "cornell", "cornell-glass", "rough", "assignment"] {
+    for (name, side) in SIX {
         let file = scene(&format!("{name}.json"));
-        let run = |output: &str, settings: &str| {
-            let output = folder.path().join(output);
-            let line = format!("render {{}} -o {{}} --size 32x32 --clock cpu --json {settings}");
+        let run = |settings: &str| {
+            let output = folder.path().join("a.exr");
+            let line = format!("render {{}} -o {{}} --size {side}x{side} --clock cpu --json {settings}");
             let report = etalon_line(&line, [&file, &output]).expect(0).json();
             (luminance(&output), report)
         };
         let number = |value: &Value| value.as_f64().unwrap();
-        let quote = "quote {} --size 32x32 --clock cpu --pilot 3s --seed 3 --error 2%,1% --json";
-        let quote = etalon_line(quote, [&file]).expect(0).json();
-        let (picture, report) = run("a.exr", "--error 2% --seed 1");
-        let (spp, used) = (report["spp"].as_u64().unwrap(), &report["adaptive"]["used"]);
-        let adaptive = if *used == true { "always" } else { "never" };
-        let (reference, of_reference) = run("b.exr", &format!("--spp {} --adaptive {adaptive} --seed 2", 16 * spp));
-        let mean = reference.iter().sum::<f64>() / reference.len() as f64;
-        let squares: f64 = picture.iter().zip(&reference).map(|(a, b)| (a - b) * (a - b)).sum();
-        let own = number(&of_reference["error"]["relative_rmse"]);
-        let measured = (squares / reference.len() as f64 / (mean * mean) - own * own).sqrt();
-        if !(0.017..=0.023).contains(&measured) {
-            outside.push(format!("{name}: {measured}"));
-        }
-        let (_, finer) = run("c.exr", "--error 1% --seed 1");
-        let mut ratios = Vec::new();
-        for (price, report) in quote["prices"].as_array().unwrap().iter().zip([&report, &finer]) {
+        let quote = format!("quote {{}} --size {side}x{side} --clock cpu --pilot 3s --seed 3 --error 2%,1% --json");
+        let quote = etalon_line(&quote, [&file]).expect(0).json();
+        let pictures = [("2%", 0, 1), ("2%", 0, 2), ("1%", 1, 1)].map(|(error, price, seed)| {
+            let (picture, report) = run(&format!("--error {error} --seed {seed}"));
+            (error, seed, picture, report, number(&quote["prices"][price]["seconds"]))
+        });
+        let of = |report: &Value| report["spp"].as_u64().unwrap();
+        let adaptive = if pictures[0].3["adaptive"]["used"] == true { "always" } else { "never" };
+        let many = |seed, spp| run(&format!("--replicates 1 --spp {spp} --adaptive {adaptive} --seed {seed}")).0;
+        let (reference, level, own) = reference(&many, of(&pictures[0].3));
+        for (error, seed, picture, report, quoted) in &pictures {
+            let distance = relative_rms(picture, &reference, level);
+            let measured = (distance * distance - own * own).sqrt();
+            if *error == "2%" && !(0.017..=0.023).contains(&measured) {
+                outside.push(format!("{name}: {measured}"));
+            }
             let before =
                 number(&report["foretold"]["pilot_seconds"]) + number(&report["adaptive"]["exploration_seconds"]);
-            let ratio = (number(&report["seconds"]) - before) / number(&price["seconds"]);
+            let ratio = (number(&report["seconds"]) - before) / quoted;
             tried += 1;
             if !(1.0 / 1.25..=1.25).contains(&ratio) {
                 dear.push(format!("{name}: {ratio}"));
             }
-            ratios.push(ratio);
-        }
-        // The tables are what this test is for.
-        #[allow(clippy::print_stdout)]
-        {
-            println!(
-                "| {name} | {adaptive} | {spp} | {:.2} % | {:.2} % | {:.2} % | {:.2} | {:.2} |",
-                100.0 * number(&report["error"]["relative_rmse"]),
-                100.0 * measured,
-                100.0 * own,
-                ratios[0],
-                ratios[1]
-            );
+            // The table is what this test is for.
+            #[allow(clippy::print_stdout)]
+            {
+                println!(
+                    "| {name} | {error} | {seed} | {adaptive} | {} | {:.2} % | {:.2} % | {:.2} % | {:.2} s | {ratio:.2} |",
+                    of(report),
+                    100.0 * number(&report["error"]["relative_rmse"]),
+                    100.0 * measured,
+                    100.0 * own,
+                    quoted,
+                );
+            }
         }
     }
     assert!(outside.is_empty(), "{outside:?}");

@@ -99,6 +99,7 @@ fn a_signal_ends_a_render_with_what_there_is_and_it_can_be_resumed() {
             ("--size 255x256", "size"),
             ("--spp 9", "--spp"),
             ("--error 1%", "--error"),
+            ("--adaptive always", "--adaptive"),
             ("--shard 1/2 -o y.part", "share"),
         ] {
             let line = format!("render {{}} -o {{}} {change} --threads 2 --resume --quiet");

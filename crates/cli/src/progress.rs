@@ -150,14 +150,25 @@ fn style(seconds: Option<f64>, traced: Option<Arc<Traced>>) -> ProgressStyle {
     let left = move |state: &ProgressState, out: &mut dyn Write| {
         let by_samples = state.len().map(|_| state.eta().as_secs_f64());
         let by_time = seconds.map(|seconds| (seconds - state.elapsed().as_secs_f64()).max(0.0));
-        let _ = match by_samples.into_iter().chain(by_time).reduce(f64::min) {
-            Some(left) => write!(out, ", {} to go", duration(left)),
-            None => Ok(()),
+        let _ = match (by_samples, by_time) {
+            (Some(left), Some(most)) => write!(out, ", {} to go", duration(left.min(most))),
+            (Some(left), None) => write!(out, ", {} to go", duration(left)),
+            // It is not known yet how many samples there will be.
+            (None, Some(most)) => write!(out, ", at most {} to go", duration(most)),
+            (None, None) => Ok(()),
         };
     };
-    ProgressStyle::with_template("{wide_bar:.green/dim} {percent:>3} %  {msg}  {rate:>16}  {elapsed} gone{left}")
+    let gone = |state: &ProgressState, out: &mut dyn Write| {
+        let seconds = state.elapsed().as_secs_f64();
+        let _ = match seconds {
+            s if s < 59.5 => write!(out, "{s:.0} s"),
+            s => write!(out, "{}", duration(s)),
+        };
+    };
+    ProgressStyle::with_template("{wide_bar:.green/dim} {percent:>3} %  {msg}  {rate:>16}  {gone} gone{left}")
         .expect("the template is well formed")
         .with_key("rate", rate)
+        .with_key("gone", gone)
         .with_key("left", left)
         .progress_chars("━╸─")
 }

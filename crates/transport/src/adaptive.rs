@@ -20,8 +20,9 @@ use std::sync::Arc;
 
 /// The part of the samples that is spread evenly.
 pub const EVEN: f64 = 0.25;
-/// The part of the picture's paths that an exploration takes; one path for each pixel, if that is more.
-const EFFORT: f64 = 1.0 / 16.0;
+/// The part of the picture's paths that an exploration takes at most; one round of replicates for a quarter of the pixels, if
+/// that is more.
+pub const EFFORT: f64 = 1.0 / 16.0;
 /// The foretold gain from which shares are used where they need not be: it pays for the exploration and for what the law
 /// behind it leaves out.
 pub const WORTHWHILE: f64 = 1.2;

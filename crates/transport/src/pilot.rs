@@ -90,6 +90,12 @@ impl<'a> Pilot<'a> {
         self.seconds
     }
 
+    /// Pixels that it traces, as a part of the picture's: so much of the picture's time a pilot takes that goes on to the
+    /// picture's own number of samples.
+    pub fn share_of_pixels(&self) -> f64 {
+        self.probe.len() as f64 * f64::from(self.probe.copies()) / self.rect.area() as f64
+    }
+
     /// Fewest samples a pixel that give every replicate one.
     pub fn first_step(&self) -> u32 {
         self.probe.replicates()

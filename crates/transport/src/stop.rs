@@ -149,6 +149,11 @@ impl Watch for () {}
 /// Part of the time that an exploration may take.
 const EXPLORING: f64 = 1.0 / 16.0;
 
+/// Passes that a picture takes at least, so that whoever watches sees the error fall.
+const PASSES: u32 = 16;
+/// Samples a pixel that are one pass all the same: to begin a piece of a tile costs something.
+const WORTH_A_PASS: u32 = 16;
+
 /// Part of the remaining time that passes are planned for: what is left pays for passes that take longer than the last.
 const USE_OF_TIME: f64 = 0.98;
 
@@ -252,8 +257,9 @@ impl Prepared {
         let first = if settled.shares.is_some() { 0 } else { canvas.samples()[0] };
         let (start, mut done) = (clock(), first);
         while done < samples && watch.control() == Control::Continue {
-            // As many again as there are: the rate is known by half of the work, the error after each pass.
+            // As many again as there are, until that is a part of the whole: the error is known after each pass.
             let mut pass = done.max(replicates).min(samples - done);
+            let mut end = samples;
             if let (Some(seconds), true) = (limits.seconds, done > first) {
                 let now = clock();
                 let affordable = USE_OF_TIME * (seconds - now) / ((now - start) / f64::from(done - first));
@@ -264,7 +270,9 @@ impl Prepared {
                     break;
                 }
                 pass = pass.min(affordable);
+                end = end.min(done.saturating_add(affordable));
             }
+            pass = pass.min((end / PASSES).max(WORTH_A_PASS).next_multiple_of(replicates));
             let target = |rect| settled.samples_of(rect, done + pass, replicates);
             canvas.advance(self, &target, threads, &|counters, rect, sums| {
                 watch.work(counters);

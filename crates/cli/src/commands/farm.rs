@@ -38,7 +38,9 @@ pub(crate) struct Args {
     /// Threads of each task; all cores of its machine if not given.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
-    /// End when the relative error is this small: see `etalon render`. Every share takes the same pilot to find out.
+    /// End when the relative error is this small: see `etalon render`. Every share explores and pilots the
+    /// whole picture to find out, which costs each of them a tenth of the picture or so: from about ten shares on, `etalon quote`
+    /// and --spp cost less.
     #[arg(long, value_name = "PERCENT", value_parser = crate::args::percentage)]
     error: Option<f64>,
     #[command(flatten)]

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use etalon_transport::adaptive::{Goal, WORTHWHILE, explore};
+use etalon_transport::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
 use etalon_transport::{Pilot, PixelRect, Price, prepare_study};
 use miette::Report;
 use serde::Serialize;
@@ -60,6 +60,8 @@ struct QuoteJson {
     adaptive: Option<AdaptiveJson>,
     /// Seconds before the first sample.
     prepare_seconds: f64,
+    /// What `etalon render --error` takes beside the seconds of a price, in units of these: its own exploration and pilot.
+    settling_share: f64,
     prices: Vec<PriceJson>,
 }
 
@@ -152,6 +154,7 @@ pub(crate) fn run(args: Args) -> Outcome {
                 })
                 .collect(),
         },
+        settling_share: pilot.share_of_pixels() + if adaptive.is_some() { EFFORT } else { 0.0 },
         adaptive,
         prepare_seconds,
         prices: args.errors.iter().map(|&error| price_json(&pilot.price(error))).collect(),
@@ -207,9 +210,11 @@ fn describe(quote: &QuoteJson) -> String {
     let _ = write!(
         text,
         "\nThe error is the root mean square over all pixels of the standard error of luminance, in units of the picture's\n\
-         mean luminance; samples are of each pixel. The pilot took {}, preparing the scene {}.",
+         mean luminance; samples are of each pixel. The pilot took {}, preparing the scene {}.\n\
+         `etalon render --error` finds the number of samples itself, for about {} of these times more.",
         duration(quote.pilot.seconds),
         duration(quote.prepare_seconds),
+        percent(quote.settling_share),
     );
     if let Some(adaptive) = quote.adaptive.as_ref().filter(|adaptive| adaptive.used) {
         let _ = write!(

@@ -15,7 +15,7 @@ use etalon_transport::{
     Adaptivity, Canvas, Ended, Explored, Features, ImageError, Limits, PixelRect, Prepared, Shard, prepare_study,
 };
 use miette::{Report, miette};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::args::{Crop, PixelAt, ShardArg};
 use crate::channels::{Aov, Channels};
@@ -105,7 +105,8 @@ pub(crate) struct Args {
 }
 
 /// When samples are spread by an exploration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(crate) enum Adaptive {
     /// With --error, where the exploration foretells that the error is reached sooner.
     Auto,
@@ -113,6 +114,22 @@ pub(crate) enum Adaptive {
     Always,
     /// Every pixel takes the same number of samples.
     Never,
+}
+
+impl Adaptive {
+    /// What it comes to where a relative error is asked for, or none: "auto" without one is "never".
+    fn effective(self, error: Option<f64>) -> Self {
+        if self == Self::Auto && error.is_none() { Self::Never } else { self }
+    }
+
+    /// The word of the command line.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Always => "always",
+            Self::Never => "never",
+        }
+    }
 }
 
 impl From<Adaptive> for Adaptivity {

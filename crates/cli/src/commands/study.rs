@@ -33,7 +33,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..=4096))]
     width: u32,
     /// Longest rendering of each choice.
-    #[arg(long, value_name = "TIME", value_parser = crate::args::seconds, default_value = "8s")]
+    #[arg(long, value_name = "TIME", value_parser = crate::args::seconds, default_value = "4s")]
     seconds: f64,
     /// Longest rendering of the reference, times that of a choice.
     #[arg(long, value_name = "FACTOR", default_value_t = 5.0, value_parser = crate::args::finite)]
@@ -103,9 +103,14 @@ pub(crate) fn run(args: Args) -> Outcome {
     write(&args.output, &report)?;
     if !args.quiet {
         print::line(&report::heading(&report));
-        for (scene, gain, sobol, independent) in report::samplers(&report) {
+        let samplers = report::samplers(&report);
+        if !samplers.is_empty() {
+            print::line(&format!("  {}", report::verdict(&samplers)));
+        }
+        for scene in &samplers {
+            let [scene, gain, sobol, independent] = scene.cells();
             print::line(&format!(
-                "  {scene}: independent numbers take {gain:.2} times as long as Owen-Sobol (slopes {independent:.2} and {sobol:.2})"
+                "  {scene}: independent numbers take {gain} times as long as Owen-Sobol (slopes {independent} and {sobol})"
             ));
         }
         print::line(&format!("  {}", args.output.join("study.html").display()));

@@ -11,8 +11,9 @@ use sha2::{Digest, Sha256};
 
 use super::Subject;
 use crate::channels::Channels;
+use crate::commands::render::Adaptive;
 
-const MAGIC: [u8; 8] = *b"ETALON\0\x01";
+const MAGIC: [u8; 8] = *b"ETALON\0\x02";
 /// A header is a page of JSON and, with shares, a number for each region; a file that claims more is damaged.
 const LARGEST_HEADER: u32 = 1 << 28;
 /// The most a tile's own JSON can have: sixteen places of samples that were not finite, and a dozen numbers.
@@ -52,6 +53,8 @@ pub(crate) struct Limited {
     pub error: Option<f64>,
     /// Seconds.
     pub time_s: Option<f64>,
+    /// Whether regions take different numbers of samples.
+    pub adaptive: Adaptive,
 }
 
 /// A file that was read.

@@ -50,11 +50,17 @@ fn other_end(args: &Args, kept: &Kept) -> Option<String> {
         let word = |value: Option<f64>| value.map_or_else(|| "not given".to_owned(), |value| value.to_string());
         (kept != now).then(|| format!("{name} was {}, and now is {}", word(kept), word(now)))
     };
-    let spp = args.overrides.spp();
-    differs("--error", limits.error, args.error).or_else(|| differs("--time", limits.time_s, args.time)).or_else(|| {
-        let given = spp.filter(|&spp| spp != limits.samples);
-        given.map(|spp| format!("--spp was {}, and now is {spp}", limits.samples))
-    })
+    let (adaptive, spp) = (args.adaptive.effective(args.error), args.overrides.spp());
+    differs("--error", limits.error, args.error)
+        .or_else(|| differs("--time", limits.time_s, args.time))
+        .or_else(|| {
+            let (kept, now) = (limits.adaptive.word(), adaptive.word());
+            (kept != now).then(|| format!("--adaptive was {kept}, and now is {now}"))
+        })
+        .or_else(|| {
+            let given = spp.filter(|&spp| spp != limits.samples);
+            given.map(|spp| format!("--spp was {}, and now is {spp}", limits.samples))
+        })
 }
 
 /// Whether every tile is one of the picture's.

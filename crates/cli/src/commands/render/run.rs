@@ -61,7 +61,12 @@ impl Run {
         Header {
             subject: job.subject.clone(),
             shard: self.shard,
-            limits: Limited { samples, error: relative_rmse, time_s: seconds },
+            limits: Limited {
+                samples,
+                error: relative_rmse,
+                time_s: seconds,
+                adaptive: args.adaptive.effective(args.error),
+            },
             samples: self.settled.samples,
             shares: self.settled.shares.as_ref().map(|shares| shares.weights().to_vec()),
             reaches: if self.settled.reached == Reached::Error { "error" } else { "samples" }.to_owned(),

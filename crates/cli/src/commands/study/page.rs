@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::StudyReport;
 use super::plots::Plot;
-use super::report::{LEGEND, about, cells, columns, heading, samplers};
+use super::report::{LEGEND, about, cells, columns, heading, samplers, verdict};
 
 const STYLE: &str = "\
 body{font:15px/1.45 system-ui,sans-serif;margin:2em auto;max-width:1300px;padding:0 1em;color:#222}\
@@ -32,13 +32,12 @@ pub(super) fn html(report: &StudyReport, plots: &[Vec<Plot>]) -> String {
     text.push_str("</nav>\n");
     let verdicts = samplers(report);
     if !verdicts.is_empty() {
-        text.push_str("<h2>Owen-Sobol against independent numbers</h2>\n<table><tr><th>scene</th><th>time to the same error, independent over Sobol</th><th>slope of Sobol</th><th>slope of independent</th></tr>\n");
-        for (scene, gain, sobol, independent) in verdicts {
-            let scene = escaped(&scene);
-            let _ = writeln!(
-                text,
-                "<tr><td>{scene}</td><td>{gain:.2}</td><td>{sobol:.2}</td><td>{independent:.2}</td></tr>"
-            );
+        let _ =
+            write!(text, "<h2>Owen-Sobol against independent numbers</h2>\n<p>{}</p>\n", escaped(&verdict(&verdicts)));
+        text.push_str("<table><tr><th>scene</th><th>time to the same error, independent over Sobol</th><th>slope of Sobol</th><th>slope of independent</th></tr>\n");
+        for scene in &verdicts {
+            let cells = scene.cells().map(|cell| format!("<td>{}</td>", escaped(&cell)));
+            let _ = writeln!(text, "<tr>{}</tr>", cells.concat());
         }
         text.push_str("</table>\n");
     }

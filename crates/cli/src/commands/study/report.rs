@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::StudyReport;
-use super::measure::{Row, SceneStudy};
+use super::measure::{Point, Row, SceneStudy};
 use crate::progress::{duration, percent, two_digits};
 
 /// The columns of the table of a scene.
@@ -80,8 +80,25 @@ pub(super) fn heading(report: &StudyReport) -> String {
     )
 }
 
-/// The verdict on the samplers: time to the same error, independent numbers over Owen-Sobol.
-pub(super) fn samplers(report: &StudyReport) -> Vec<(String, f64, f64, f64)> {
+/// What one scene says about the samplers.
+pub(super) struct Verdict {
+    pub scene: String,
+    /// Time to the same error, independent numbers over Owen-Sobol; `None` where there is no error.
+    pub gain: Option<f64>,
+    pub sobol_slope: Option<f64>,
+    pub independent_slope: Option<f64>,
+}
+
+impl Verdict {
+    /// The cells of a table.
+    pub(super) fn cells(&self) -> [String; 4] {
+        let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"));
+        [self.scene.clone(), number(self.gain), number(self.sobol_slope), number(self.independent_slope)]
+    }
+}
+
+/// The verdict on the samplers.
+pub(super) fn samplers(report: &StudyReport) -> Vec<Verdict> {
     report
         .scenes
         .iter()
@@ -94,10 +111,56 @@ pub(super) fn samplers(report: &StudyReport) -> Vec<(String, f64, f64, f64)> {
             if std::ptr::eq(independent, sobol) {
                 return None;
             }
-            let gain = sobol.efficiency? / independent.efficiency?;
-            Some((study.scene.clone(), gain, sobol.slope?, independent.slope?))
+            Some(Verdict {
+                scene: study.scene.clone(),
+                gain: time_ratio(&independent.points, &sobol.points),
+                sobol_slope: sobol.slope,
+                independent_slope: independent.slope,
+            })
         })
         .collect()
+}
+
+/// What a default sampler may lose on a scene.
+const TOLERATED: f64 = 0.95;
+
+/// All scenes together in a sentence.
+pub(super) fn verdict(samplers: &[Verdict]) -> String {
+    let known: Vec<(&str, f64)> = samplers.iter().filter_map(|one| Some((one.scene.as_str(), one.gain?))).collect();
+    let sooner = known.iter().filter(|(_, gain)| *gain > 1.0).count();
+    let worse: Vec<String> = known
+        .iter()
+        .filter(|(_, gain)| *gain < TOLERATED)
+        .map(|(scene, gain)| format!("{scene} ({gain:.2})"))
+        .collect();
+    let lost = if worse.is_empty() { "none".to_owned() } else { worse.join(", ") };
+    format!(
+        "Owen-Sobol reaches the same error sooner on {sooner} of {} scenes; scenes on which it loses more than 5 %: {lost}.",
+        known.len()
+    )
+}
+
+/// Time of `a` over that of `b` to the smallest error that both have reached.
+fn time_ratio(a: &[Point], b: &[Point]) -> Option<f64> {
+    let smallest = |points: &[Point]| points.iter().filter_map(error_of).fold(f64::INFINITY, f64::min);
+    let error = smallest(a).max(smallest(b));
+    Some(time_to(a, error)? / time_to(b, error)?)
+}
+
+fn error_of(point: &Point) -> Option<f64> {
+    point.error.or(point.scatter).filter(|&error| error > 0.0)
+}
+
+/// When the error passed `error`, as a power of time between the two points about it.
+fn time_to(points: &[Point], error: f64) -> Option<f64> {
+    let points: Vec<(f64, f64)> = points.iter().filter_map(|point| Some((point.seconds, error_of(point)?))).collect();
+    let after = points.iter().position(|point| point.1 <= error)?;
+    let Some(before) = after.checked_sub(1) else {
+        // It may have been reached before: the time is an upper bound.
+        return Some(points[after].0);
+    };
+    let ((t0, e0), (t1, e1)) = (points[before], points[after]);
+    Some(t0 * ((e0 / error).ln() / (e0 / e1).ln() * (t1 / t0).ln()).exp())
 }
 
 /// The whole study as Markdown; plots are files beside it.
@@ -105,14 +168,14 @@ pub(super) fn markdown(report: &StudyReport, plots: &[(String, Vec<String>)]) ->
     let mut text = format!("# What accuracy costs in time\n\n{}\n\n{LEGEND}\n", heading(report));
     let samplers = samplers(report);
     if !samplers.is_empty() {
-        text.push_str("\n## Owen-Sobol against independent numbers\n\n");
+        let _ = write!(text, "\n## Owen-Sobol against independent numbers\n\n{}\n\n", verdict(&samplers));
         text.push_str(
             "| scene | time to the same error, independent over Sobol | slope of Sobol | slope of independent |\n",
         );
         text.push_str("|---|---:|---:|---:|\n");
-        for (scene, gain, sobol, independent) in samplers {
+        for scene in &samplers {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "| {scene} | {gain:.2} | {sobol:.2} | {independent:.2} |");
+            let _ = writeln!(text, "| {} |", scene.cells().join(" | "));
         }
     }
     for study in &report.scenes {
@@ -130,4 +193,39 @@ pub(super) fn markdown(report: &StudyReport, plots: &[(String, Vec<String>)]) ->
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(constant: f64, slope: f64) -> Vec<Point> {
+        [4_u32, 16, 64]
+            .map(|samples| Point {
+                samples,
+                seconds: 0.1 * f64::from(samples),
+                error: Some(constant * f64::from(samples).powf(-slope)),
+                scatter: None,
+            })
+            .to_vec()
+    }
+
+    /// 1/√n meets n^−1 at the smallest error of the slower, 1/8, after 64 samples: the other takes 8.
+    #[test]
+    fn the_time_to_an_error_is_read_between_the_points() {
+        let ratio = time_ratio(&points(1.0, 0.5), &points(1.0, 1.0)).unwrap();
+        assert!((ratio - 8.0).abs() < 1e-9, "{ratio}");
+        let ratio = time_ratio(&points(1.0, 0.5), &points(1.1, 0.5)).unwrap();
+        assert!((ratio - 1.0 / 1.21).abs() < 1e-9, "{ratio}");
+        assert_eq!(time_ratio(&points(0.0, 0.5), &points(0.0, 0.5)), None);
+    }
+
+    #[test]
+    fn a_sampler_that_loses_is_named() {
+        let one =
+            |scene: &str, gain| Verdict { scene: scene.to_owned(), gain, sobol_slope: None, independent_slope: None };
+        let said = verdict(&[one("box", Some(2.0)), one("fog", Some(0.96)), one("glass", Some(0.9)), one("sky", None)]);
+        assert!(said.contains("1 of 3") && said.ends_with("5 %: glass (0.90)."), "{said}");
+        assert_eq!(one("sky", None).cells(), ["sky", "–", "–", "–"]);
+    }
 }
