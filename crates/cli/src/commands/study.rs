@@ -33,7 +33,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..=4096))]
     width: u32,
     /// Longest rendering of each choice.
-    #[arg(long, value_name = "TIME", value_parser = crate::args::seconds, default_value = "4s")]
+    #[arg(long, value_name = "TIME", value_parser = crate::args::seconds, default_value = "2s")]
     seconds: f64,
     /// Longest rendering of the reference, times that of a choice.
     #[arg(long, value_name = "FACTOR", default_value_t = 5.0, value_parser = crate::args::finite)]
