@@ -471,13 +471,23 @@ pub(crate) fn round_up(v: f64) -> f32 {
 /// An `f32` not above `v` by at most two roundoffs, without a branch: a ray's rounding is as good as random.
 #[inline(always)]
 pub(crate) fn below(v: f64) -> f32 {
-    let r = v as f32;
-    r - (r.abs() * f32::EPSILON + f32::MIN_POSITIVE)
+    lowered(v as f32)
 }
 
 /// An `f32` not below `v` by at most two roundoffs, without a branch.
 #[inline(always)]
 pub(crate) fn above(v: f64) -> f32 {
-    let r = v as f32;
+    raised(v as f32)
+}
+
+/// [`below`] of what was rounded to `r`.
+#[inline(always)]
+pub(crate) fn lowered(r: f32) -> f32 {
+    r - (r.abs() * f32::EPSILON + f32::MIN_POSITIVE)
+}
+
+/// [`above`] of what was rounded to `r`.
+#[inline(always)]
+pub(crate) fn raised(r: f32) -> f32 {
     r + (r.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }

@@ -206,18 +206,22 @@ fn eights(name: &str, kind: &str, geometry: &Geometry, rays: &[Ray<f32>], shadow
             rays
         })
         .collect();
-    let mut best = [f64::INFINITY; 4];
+    const CHUNKS: usize = CHUNK / LANES;
+    let (alone, eights) = (&alone[..eights.len() * LANES], &eights[..]);
+    let mut best = [(); 4].map(|()| vec![f64::INFINITY; alone.len().div_ceil(CHUNK)]);
     let mut sum = 0.0;
     for _ in 0..turns {
-        let mut time = |i: usize, run: &mut dyn FnMut() -> f64| {
-            let start = Instant::now();
-            sum += run();
-            best[i] = best[i].min(start.elapsed().as_secs_f64());
-        };
-        if shadow {
-            time(0, &mut || alone.iter().filter(|r| geometry.occluded(r)).count() as f64);
-            time(1, &mut || eights.iter().map(|r| f64::from(geometry.any_hits(r, 0xFF).count_ones())).sum());
-        } else {
+        for (chunk, (alone, eights)) in alone.chunks(CHUNK).zip(eights.chunks(CHUNKS)).enumerate() {
+            let mut time = |i: usize, run: &mut dyn FnMut() -> f64| {
+                let start = Instant::now();
+                sum += run();
+                best[i][chunk] = best[i][chunk].min(start.elapsed().as_secs_f64());
+            };
+            if shadow {
+                time(0, &mut || alone.iter().filter(|r| geometry.occluded(r)).count() as f64);
+                time(1, &mut || eights.iter().map(|r| f64::from(geometry.any_hits(r, 0xFF).count_ones())).sum());
+                continue;
+            }
             time(0, &mut || alone.iter().filter_map(|r| geometry.closest_hit(r)).map(|h| h.t).sum());
             time(1, &mut || eights.iter().map(|r| geometry.closest_hits(r, 0xFF).t[0]).sum());
             let hits: Vec<_> = alone.iter().filter_map(|r| Some((r, geometry.closest_hit(r)?))).collect();
@@ -226,7 +230,7 @@ fn eights(name: &str, kind: &str, geometry: &Geometry, rays: &[Ray<f32>], shadow
             time(3, &mut || hits.iter().map(|(r, h)| geometry.surfaces(r, h, h.mask).position_error[0]).sum());
         }
     }
-    let ns = best.map(|s| s * 1e9 / rays.len() as f64);
+    let ns = best.map(|s| s.iter().sum::<f64>() * 1e9 / alone.len() as f64);
     println!(
         "{name:<16} {kind:<10} f64: {:.1} ns alone, {:.1} eight at once; surface {:.1} and {:.1} ns   ({sum:.1})",
         ns[0], ns[1], ns[2], ns[3]

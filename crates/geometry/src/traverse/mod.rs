@@ -264,6 +264,27 @@ pub(crate) fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query)
         .is_some_and(|ray| any_on::<_, _, { LEVELS[1] }>(portable::Portable, tree, primitives, query, &ray))
 }
 
+/// [`Primitive::intersect`] in the vectors of an instruction set.
+#[inline(always)]
+fn intersect_shape<F: Filters>(
+    filters: F,
+    shape: &Primitive,
+    query: &Query,
+    t_max: f64,
+    leaves: bool,
+) -> Option<RawHit> {
+    match shape {
+        Primitive::Triangle(s) if !leaves => {
+            let lanes = s.lanes::<F::Four>(filters.into(), query.projection.axes());
+            Triangle::intersect_lanes::<F::Four>(filters.into(), lanes, &query.projection, || (s, *query), t_max)
+        }
+        Primitive::Parallelogram(s) if !leaves => {
+            s.intersect_lanes::<F::Four>(filters.into(), &query.projection, || *query, t_max)
+        }
+        shape => shape.intersect(query, t_max, leaves),
+    }
+}
+
 /// The intersection with a triangle whose vertices are exact in its leaf. The triangle lies elsewhere and is not touched, as
 /// a rule, nor the query.
 #[inline(always)]

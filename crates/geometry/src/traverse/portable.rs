@@ -144,6 +144,11 @@ impl Wide for Floats {
     }
 
     #[inline(always)]
+    fn least(self) -> f32 {
+        self.0.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a })
+    }
+
+    #[inline(always)]
     fn flipped(self, sign: Self) -> Self {
         Self(from_fn(|i| if sign.0[i].is_sign_negative() { -self.0[i] } else { self.0[i] }))
     }

@@ -97,6 +97,15 @@ impl Wide for F8 {
     }
 
     #[inline(always)]
+    fn least(self) -> f32 {
+        avx!({
+            let four = _mm_min_ps(_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0));
+            let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+            _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
+        })
+    }
+
+    #[inline(always)]
     fn flipped(self, sign: Self) -> Self {
         Self(avx!(_mm256_xor_ps(self.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0)))))
     }

@@ -122,6 +122,11 @@ impl Wide for F16 {
     }
 
     #[inline(always)]
+    fn least(self) -> f32 {
+        avx512!(_mm512_reduce_min_ps(self.0))
+    }
+
+    #[inline(always)]
     fn flipped(self, sign: Self) -> Self {
         Self(avx512!(_mm512_xor_ps(self.0, _mm512_and_ps(sign.0, _mm512_set1_ps(-0.0)))))
     }

@@ -1,11 +1,12 @@
 //! Eight rays against each primitive in turn.
 
-use super::exact::{Corners, Decided, Eights, axes};
+use super::eight::{Eight, Which, bits, both};
+use super::exact::{Corners, Decided, Eights};
 use super::filter::*;
-use super::{BLOCK, FLAT_LIMIT, Flat, MOST_REACH, NO_ID, Wide, limits};
-use crate::frame::above;
+use super::{BLOCK, FLAT_LIMIT, FURTHEST, Flat, MOST_REACH, NO_ID, SLACK, Wide};
+use crate::frame::{lowered, raised};
 use crate::lanes::lanes_of;
-use crate::query::{MAX_ORIGIN, Query, larger, power_of_two, projection_axis};
+use crate::query::{MAX_ORIGIN, Query, power_of_two};
 use crate::traverse::{Filters, Job};
 use crate::{Hits, LANES, Primitive, PrimitiveId, Rays, SurfaceId};
 use std::array::from_fn;
@@ -26,16 +27,15 @@ pub(super) struct Any<'a> {
     pub(super) active: u8,
 }
 
-type Eight = [f64; LANES];
-
 /// Eight rays with their directions scaled by powers of two, as [`Query`] does it.
 struct Prepared {
     direction: [Eight; 3],
     /// Powers of two.
     scale: Eight,
     t_max: Eight,
-    axis: [usize; LANES],
-    /// Rows of what [`Beam`] holds.
+    /// Where x, and where else y, is the largest component of the direction.
+    along: [Which; 2],
+    /// Rows of what a [`Beam`] holds.
     beams: [[f32; LANES]; size_of::<Beam>() / 4],
     /// The lanes whose rays the filters can do with.
     usable: u8,
@@ -44,61 +44,65 @@ struct Prepared {
 impl Prepared {
     #[inline(always)]
     fn new(flat: &Flat, rays: &Rays, active: u8) -> Self {
-        let mut out = Self {
-            direction: [[0.0; LANES]; 3],
-            scale: [0.0; LANES],
-            t_max: [0.0; LANES],
-            axis: [0; LANES],
-            beams: [[0.0; LANES]; size_of::<Beam>() / 4],
-            usable: 0,
+        const EXPONENT: u64 = 0x7FF << 52;
+        let given = rays.direction.map(Eight);
+        let a = given.map(Eight::abs);
+        let magnitude = Eight::largest(given);
+        // The power of two below, and its inverse, as in `Query`.
+        let unit = Eight(magnitude.0.map(|m| f64::from_bits(m.to_bits() & EXPONENT)));
+        let scale = Eight(unit.0.map(|u| f64::from_bits((2046_u64 << 52).wrapping_sub(u.to_bits()))));
+        let o = rays.origin.map(Eight);
+        let [reach, sum] = [o.map(Eight::abs), a].map(|[x, y, z]| x + y + z);
+        let t = Eight(rays.t_max);
+        let usable = both(
+            both(reach.below(Eight::splat(MAX_ORIGIN)), sum.below(Eight::splat(f64::INFINITY))),
+            both(
+                both(
+                    Eight::splat(power_of_two(-900)).at_most(magnitude),
+                    magnitude.below(Eight::splat(power_of_two(901))),
+                ),
+                Eight::splat(0.0).below(t),
+            ),
+        );
+        let direction = given.map(|d| d * scale);
+        let (centre, per_m) = (flat.frame.centre().to_array(), Eight::splat(flat.frame.scale()));
+        let place: [Eight; 3] = from_fn(|k| (o[k] - Eight::splat(centre[k])) * per_m);
+        let own = Eight::largest(place);
+        let near = both(usable, own.at_most(Eight::splat(MOST_REACH)));
+        let t_max = t * unit;
+        let ends = limits(t_max, flat.frame.scale());
+        let id = |ids: &[SurfaceId; LANES]| -> [f32; LANES] {
+            let own: [u32; LANES] =
+                from_fn(|l| if ids[l].instance == 0 { ids[l].primitive.0 } else { PrimitiveId::NONE.0 });
+            from_fn(|l| if own[l] < FLAT_LIMIT as u32 { own[l] as i32 as f32 } else { NO_ID })
         };
-        let centre = flat.frame.centre().to_array();
-        let per_unit = flat.frame.scale();
-        for l in 0..LANES {
-            let d = [rays.direction[0][l], rays.direction[1][l], rays.direction[2][l]];
-            let o = [rays.origin[0][l], rays.origin[1][l], rays.origin[2][l]];
-            let a = d.map(f64::abs);
-            let magnitude = larger(larger(a[0], a[1]), a[2]);
-            let exponent = (magnitude.to_bits() >> 52) as i64 - 1023;
-            let sums = [o[0].abs() + o[1].abs() + o[2].abs(), a[0] + a[1] + a[2]];
-            let usable = (sums[0] < MAX_ORIGIN)
-                & (sums[1] < f64::INFINITY)
-                & (-900..=900).contains(&exponent)
-                & (rays.t_max[l] > 0.0);
-            let exponent = if usable { exponent } else { 0 };
-            let scale = power_of_two(-exponent);
-            let direction = d.map(|c| c * scale);
-            let place: [f64; 3] = from_fn(|k| (o[k] - centre[k]) * per_unit);
-            let own = larger(larger(place[0].abs(), place[1].abs()), place[2].abs());
-            let near = usable & (own <= MOST_REACH);
-            let t_max = rays.t_max[l] * power_of_two(exponent);
-            let [limit, certain_limit] = limits(t_max, &flat.frame);
-            let id = |s: SurfaceId| {
-                if (s.instance == 0) & (s.primitive.0 < FLAT_LIMIT as u32) {
-                    s.primitive.0 as i32 as f32
-                } else {
-                    NO_ID
-                }
-            };
-            for k in 0..3 {
-                out.direction[k][l] = direction[k];
-                out.beams[ORIGIN + k][l] = place[k] as f32;
-                out.beams[DIRECTION + k][l] = direction[k] as f32;
-            }
-            out.scale[l] = scale;
-            out.t_max[l] = t_max;
-            out.axis[l] = projection_axis(a);
-            out.beams[REACH][l] = above(own + flat.reach);
-            // Those that are not wanted end before they begin.
-            let wanted = near & (active >> l & 1 == 1);
-            out.beams[LIMIT][l] = if wanted { limit } else { -1.0 };
-            out.beams[CERTAIN_LIMIT][l] = certain_limit;
-            out.beams[LEAVES][l] = id(rays.leaves[l]);
-            out.beams[AIMS_AT][l] = id(rays.aims_at[l]);
-            out.usable |= u8::from(near) << l;
+        let reach = (own + Eight::splat(flat.reach)).narrowed();
+        let mut beams = [[0.0; LANES]; size_of::<Beam>() / 4];
+        for k in 0..3 {
+            beams[ORIGIN + k] = place[k].narrowed();
+            beams[DIRECTION + k] = direction[k].narrowed();
         }
-        out
+        beams[REACH] = reach.map(raised);
+        // Those that are not wanted end before they begin.
+        beams[LIMIT] = from_fn(|l| if near[l] & (active >> l & 1 == 1) { ends[0][l] } else { -1.0 });
+        beams[CERTAIN_LIMIT] = ends[1];
+        beams[LEAVES] = id(&rays.leaves);
+        beams[AIMS_AT] = id(&rays.aims_at);
+        // As `projection_axis` has it.
+        let [x, y, z] = a;
+        let (along_y, along_z) = (x.max(z).below(y), both(x.below(z), y.at_most(z)));
+        let along = [from_fn(|l| !along_y[l] & !along_z[l]), along_y];
+        Self { direction, scale, t_max, along, beams, usable: bits(near) }
     }
+}
+
+/// [`super::limits`] of eight.
+#[inline(always)]
+fn limits(t: Eight, per_m: f64) -> [[f32; LANES]; 2] {
+    let t = t * Eight::splat(per_m);
+    let most = Eight::splat(FURTHEST);
+    let t = t.or_else(t.below(most), most);
+    [(t * Eight::splat(1.0 + SLACK)).narrowed().map(raised), (t * Eight::splat(1.0 - SLACK)).narrowed().map(lowered)]
 }
 
 /// Calls a function with what is known of the eight rays and each share of primitives, and their ids.
@@ -198,13 +202,11 @@ impl Job for Closest<'_> {
             return (hits, undecided);
         }
         let Decided { hit, t, uv } = corners.triangles(&prepared.exact(rays), &ids);
-        for l in 0..LANES {
-            hits.t[l] = t[l] * prepared.scale[l];
-            hits.surface[l] = PrimitiveId(ids[l] as u32).into();
-            hits.mask |= u8::from(hit[l] & (hits.t[l] < f64::INFINITY)) << l;
-        }
-        hits.uv = uv;
-        hits.mask &= found;
+        let t = t * prepared.scale;
+        hits.t = t.0;
+        hits.uv = uv.map(|w| w.0);
+        hits.surface = ids.map(|id| PrimitiveId(id as u32).into());
+        hits.mask = bits(both(hit, t.below(Eight::splat(f64::INFINITY)))) & found;
         for l in lanes_of(found & !hits.mask) {
             let ray = rays.get(l);
             let query = Query::new(&ray).expect("it was prepared");
@@ -225,13 +227,15 @@ impl Prepared {
     /// For the exact test.
     #[inline(always)]
     fn exact(&self, rays: &Rays) -> Eights {
-        let axes = axes(&self.axis);
-        let along = |v: &[Eight; 3], k: usize| -> Eight { from_fn(|l| v[axes[k][l] % 3][l]) };
-        let start = from_fn(|k| along(&rays.origin, k));
-        let [dx, dy, dz] = from_fn(|k| along(&self.direction, k));
-        let rz: Eight = from_fn(|l| 1.0 / dz[l]);
-        let shear = [from_fn(|l| dx[l] * rz[l]), from_fn(|l| dy[l] * rz[l]), rz];
-        Eights { axes, start, shear, t_max: self.t_max }
+        let [along_x, along_y] = self.along;
+        let turned = |[x, y, z]: [Eight; 3]| -> [Eight; 3] {
+            let choose = |a: Eight, b: Eight, c: Eight| a.or_else(along_x, b.or_else(along_y, c));
+            [choose(y, z, x), choose(z, x, y), choose(x, y, z)]
+        };
+        let [dx, dy, dz] = turned(self.direction);
+        let rz = Eight::splat(1.0) / dz;
+        let axis = from_fn(|l| if along_x[l] { 0 } else { 2 - usize::from(along_y[l]) });
+        Eights { axis, start: turned(rays.origin.map(Eight)), shear: [dx * rz, dy * rz, rz], t_max: self.t_max }
     }
 }
 

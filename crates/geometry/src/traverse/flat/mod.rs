@@ -5,6 +5,7 @@
 //! for one ray and for eight.
 
 mod block;
+mod eight;
 mod exact;
 mod filter;
 mod lanes;
@@ -187,12 +188,15 @@ impl Flat {
     }
 }
 
+/// Accepted distances err by up to 2⁻³⁰ of themselves.
+const SLACK: f64 = 1.0 / (1_u64 << 29) as f64;
+/// Beyond this nothing is in the frame.
+const FURTHEST: f64 = 1e30;
+
 /// A distance in the frame not below that of any hit up to `t` along a [`Query`], and one not above that of any beyond.
 #[inline(always)]
 fn limits(t: f64, frame: &Frame) -> [f32; 2] {
-    // Accepted distances err by up to 2⁻³⁰ of themselves. Beyond 1e30 nothing is in the frame.
-    const SLACK: f64 = 1.0 / (1_u64 << 29) as f64;
     let t = t * frame.scale();
-    let t = if t < 1e30 { t } else { 1e30 };
+    let t = if t < FURTHEST { t } else { FURTHEST };
     [above(t * (1.0 + SLACK)), below(t * (1.0 - SLACK))]
 }

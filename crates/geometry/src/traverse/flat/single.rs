@@ -1,10 +1,10 @@
 //! One ray against all primitives, as many at once as a vector holds.
 
 use super::filter::*;
-use super::{BLOCK, FLAT_LIMIT, Flat, Wide};
+use super::{BLOCK, Flat, NO_ID, Wide};
 use crate::geometry::{Best, Found};
 use crate::query::Query;
-use crate::traverse::{Filters, Job, occludes};
+use crate::traverse::{Filters, Job, intersect_shape, occludes};
 use crate::{Primitive, PrimitiveId};
 
 /// The closest hit.
@@ -21,25 +21,15 @@ pub(super) struct Any<'a> {
     pub(super) query: &'a Query,
 }
 
-/// One ray in all lanes.
+/// Calls a function with what is known of each vector of primitives, and their ids, until it wants no more.
 #[inline(always)]
-fn beams<V: Wide>(token: V::Token, beam: &Beam) -> Beams<V> {
-    Beams::new(token, |at| V::splat(token, beam[at]))
-}
-
-/// Calls a function with what is known of each vector of primitives, their ids and the lanes that they are.
-#[inline(always)]
-fn each<'a, V: Wide>(
-    flat: &'a Flat,
-    token: V::Token,
-    beams: &Beams<V>,
-    mut f: impl FnMut(Known<V>, &'a [f32; BLOCK], usize) -> bool,
-) {
+fn each<V: Wide>(flat: &Flat, token: V::Token, beams: &Beams<V>, mut f: impl FnMut(Known<V>, V) -> bool) {
     let mut left = flat.flat_count;
     for block in &flat.flats {
         let mut at = 0;
         while at < BLOCK.min(left) {
-            if f(flats(beams, &FlatsIn::new(block, |row| V::load(token, row, at))), &block.id, at) {
+            let shape = FlatsIn::new(block, |row| V::load(token, row, at));
+            if f(flats(beams, &shape), shape.id) {
                 return;
             }
             at += V::WIDTH;
@@ -54,7 +44,8 @@ fn each<'a, V: Wide>(
     for block in &flat.spheres {
         let mut at = 0;
         while at < BLOCK.min(left) {
-            if f(spheres(beams, &chords, &SpheresIn::new(block, |row| V::load(token, row, at))), &block.id, at) {
+            let shape = SpheresIn::new(block, |row| V::load(token, row, at));
+            if f(spheres(beams, &chords, &shape), shape.id) {
                 return;
             }
             at += V::WIDTH;
@@ -63,8 +54,23 @@ fn each<'a, V: Wide>(
     }
 }
 
-/// Vectors that a flat geometry fills at most: one for each eight, and one more for each kind.
-const MOST: usize = FLAT_LIMIT / 8 + 2;
+/// Calls a function with the ids of a mask's lanes, until it wants no more.
+#[inline(always)]
+fn each_id<V: Wide>(ids: V, mut mask: u32, mut f: impl FnMut(PrimitiveId) -> bool) -> bool {
+    if mask == 0 {
+        return false;
+    }
+    let mut row = [0.0; BLOCK];
+    ids.store(&mut row);
+    while mask != 0 {
+        let lane = mask.trailing_zeros() as usize % BLOCK;
+        mask &= mask - 1;
+        if f(PrimitiveId(row[lane] as i32 as u32)) {
+            return true;
+        }
+    }
+    false
+}
 
 impl Job for Closest<'_> {
     type Output = Option<Found>;
@@ -74,45 +80,59 @@ impl Job for Closest<'_> {
         let Self { flat, primitives, query } = self;
         let mut best = Best::new(query.t_max);
         let Some(beam) = flat.beam(query) else {
-            for i in 0..primitives.len() as u32 {
-                best.test(primitives, query, PrimitiveId(i));
-            }
-            return best.found();
+            return alone(primitives, query, best);
         };
         let token = filters.into();
-        let beams = beams::<F::Wide>(token, &beam);
-        let nothing = F::Wide::splat(token, f32::INFINITY);
-        let mut limit = nothing;
-        let mut near = [[0.0; BLOCK]; MOST];
-        let mut met = [0_u32; MOST];
-        let mut ids: [&[f32]; MOST] = [&[]; MOST];
-        let mut count = 0;
-        each(flat, token, &beams, |known, id, at| {
-            limit = known.far.or_else(known.certain, nothing).min(limit);
-            known.near.store(&mut near[count]);
-            met[count] = F::Wide::bits(known.met);
-            ids[count] = &id[at..];
-            count += 1;
+        let all = |v| F::Wide::splat(token, v);
+        let beams = Beams::new(token, |at| all(beam[at]));
+        let nothing = all(f32::INFINITY);
+        // Of the nearest that is certain in each lane: its ends and which it is; and the nearest that any other may be.
+        let (mut far, mut near, mut id, mut other) = (all(f32::MAX), nothing, all(NO_ID), nothing);
+        each(flat, token, &beams, |known, of| {
+            let nearer = known.certain & known.far.below(far);
+            other = near.or_else(nearer, known.near.or_else(known.met, nothing)).min(other);
+            far = known.far.or_else(nearer, far);
+            near = known.near.or_else(nearer, near);
+            id = of.or_else(nearer, id);
             false
         });
-        let mut least = [0.0; BLOCK];
-        limit.store(&mut least);
-        let limit = least[..F::Wide::WIDTH].iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
-        for group in 0..count {
-            let mut mask = met[group];
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize % BLOCK;
-                mask &= mask - 1;
-                if near[group][lane] <= limit {
-                    best.test(primitives, query, PrimitiveId(ids[group][lane] as u32));
+        let limit = all(far.least());
+        let open = F::Wide::bits(other.at_most(limit));
+        let candidates = F::Wide::bits(near.at_most(limit));
+        if open == 0 && candidates & candidates.wrapping_sub(1) == 0 {
+            each_id(id, candidates, |id| {
+                let hit =
+                    intersect_shape(filters, &primitives[id.0 as usize], query, best.limit(id), query.leaves == id);
+                if let Some(hit) = hit {
+                    best.set(hit, id);
                 }
-            }
+                true
+            });
+        } else {
+            // `f32` does not tell. What it leaves open is decided in turn.
+            each(flat, token, &beams, |known, ids| {
+                let open = known.met & known.near.at_most(limit);
+                each_id(ids, F::Wide::bits(open), |id| {
+                    best.test(primitives, query, id);
+                    false
+                })
+            });
         }
         for &id in &flat.others {
             best.test(primitives, query, id);
         }
         best.found()
     }
+}
+
+/// Every primitive alone.
+#[cold]
+#[inline(never)]
+fn alone(primitives: &[Primitive], query: &Query, mut best: Best) -> Option<Found> {
+    for i in 0..primitives.len() as u32 {
+        best.test(primitives, query, PrimitiveId(i));
+    }
+    best.found()
 }
 
 impl Job for Any<'_> {
@@ -125,24 +145,13 @@ impl Job for Any<'_> {
             return (0..primitives.len() as u32).any(|i| occludes(primitives, query, PrimitiveId(i)));
         };
         let token = filters.into();
-        let beams = beams::<F::Wide>(token, &beam);
+        let beams = Beams::new(token, |at| F::Wide::splat(token, beam[at]));
         let mut hit = false;
-        each(flat, token, &beams, |known, id, at| {
-            let aims_at = F::Wide::load(token, id, at).equals(beams.aims_at);
-            if F::Wide::bits(known.certain & !aims_at) != 0 {
-                hit = true;
-                return true;
-            }
-            let mut mask = F::Wide::bits(known.met & !aims_at);
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                if occludes(primitives, query, PrimitiveId(id[(at + lane) % BLOCK] as u32)) {
-                    hit = true;
-                    return true;
-                }
-            }
-            false
+        each(flat, token, &beams, |known, ids| {
+            let counts = !ids.equals(beams.aims_at);
+            hit = F::Wide::bits(known.certain & counts) != 0
+                || each_id(ids, F::Wide::bits(known.met & counts), |id| occludes(primitives, query, id));
+            hit
         });
         hit || flat.others.iter().any(|&id| occludes(primitives, query, id))
     }

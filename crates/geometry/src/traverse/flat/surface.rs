@@ -1,16 +1,14 @@
 //! The surfaces of few primitives at eight hits: the operations of each shape's own, in their order, on what they share.
 
 use super::FLAT_LIMIT;
+use super::eight::Eight;
 use crate::lanes::lanes_of;
-use crate::query::larger;
 use crate::ray::ExactPoint;
 use crate::shapes::planar;
 use crate::traverse::{Filters, Job};
 use crate::{Hits, LANES, Primitive, PrimitiveId, Rays, SurfacePoint, SurfacePoints};
 use etalon_optics::{Real, Vec3};
 use std::array::from_fn;
-
-type Eight = [f64; LANES];
 
 /// What the surface of a flat shape is made of: see [`planar::surface`].
 #[derive(Clone, Copy, Debug)]
@@ -78,26 +76,24 @@ impl Job for Surfaces<'_> {
         let ids: [usize; LANES] = from_fn(|l| hits.surface[l].primitive.0 as usize % FLAT_LIMIT);
         let planes: &[Plane; FLAT_LIMIT] = table.planes.as_slice().try_into().expect("a plane for each id");
         let mut out = SurfacePoints { surface: hits.surface, label: [label; LANES], ..SurfacePoints::NONE };
-        let flat: Eight = from_fn(|l| planes[ids[l]].flat);
-        let size: Eight = from_fn(|l| planes[ids[l]].size);
-        let point: [Eight; 3] = from_fn(|k| from_fn(|l| planes[ids[l]].point[k]));
-        out.normal = from_fn(|k| from_fn(|l| planes[ids[l]].normal[k]));
-        for l in 0..LANES {
-            let p: [f64; 3] = from_fn(|k| rays.origin[k][l] + rays.direction[k][l] * hits.t[l]);
-            let n: [f64; 3] = from_fn(|k| out.normal[k][l]);
-            let away: [f64; 3] = from_fn(|k| p[k] - point[k][l]);
-            let height = away[0] * n[0] + away[1] * n[1] + away[2] * n[2];
-            let position: [f64; 3] = from_fn(|k| p[k] - n[k] * height);
-            let reach = larger(larger(larger(away[0].abs(), away[1].abs()), away[2].abs()), size[l]);
-            let error: [f64; 3] = from_fn(|k| (p[k].abs() + position[k].abs() + 16.0 * reach) * f64::UNIT_ROUNDOFF);
-            let distance = n[0].abs() * error[0] + n[1].abs() * error[1] + n[2].abs() * error[2];
-            let distance = distance * (1.0 + 8.0 * f64::UNIT_ROUNDOFF);
-            // The next number up, of one that is not negative.
-            out.position_error[l] = f64::from_bits(distance.to_bits() + 1);
-            for k in 0..3 {
-                out.position[k][l] = position[k];
-            }
-        }
+        let of = |f: fn(&Plane) -> f64| Eight(from_fn(|l| f(&planes[ids[l]])));
+        let flat = of(|p| p.flat).0;
+        let n = [of(|p| p.normal[0]), of(|p| p.normal[1]), of(|p| p.normal[2])];
+        let point = [of(|p| p.point[0]), of(|p| p.point[1]), of(|p| p.point[2])];
+        let t = Eight(hits.t);
+        let p: [Eight; 3] = from_fn(|k| Eight(rays.origin[k]) + Eight(rays.direction[k]) * t);
+        let away: [Eight; 3] = from_fn(|k| p[k] - point[k]);
+        let height = away[0] * n[0] + away[1] * n[1] + away[2] * n[2];
+        let position: [Eight; 3] = from_fn(|k| p[k] - n[k] * height);
+        let reach = Eight::largest(away).max(of(|p| p.size));
+        let u = Eight::splat(f64::UNIT_ROUNDOFF);
+        let error: [Eight; 3] = from_fn(|k| (p[k].abs() + position[k].abs() + Eight::splat(16.0) * reach) * u);
+        let distance = n[0].abs() * error[0] + n[1].abs() * error[1] + n[2].abs() * error[2];
+        let distance = distance * Eight::splat(1.0 + 8.0 * f64::UNIT_ROUNDOFF);
+        // The next number up, of one that is not negative.
+        out.position_error = distance.0.map(|d| f64::from_bits(d.to_bits() + 1));
+        out.position = position.map(|x| x.0);
+        out.normal = n.map(|x| x.0);
         let all_flat = flat.iter().fold(1.0, |a, &b| a * b) == 1.0;
         if !all_flat {
             for l in lanes_of(active) {

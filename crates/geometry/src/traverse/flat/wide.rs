@@ -35,6 +35,8 @@ pub(in crate::traverse) trait Wide:
     fn abs(self) -> Self;
     /// Square roots.
     fn sqrt(self) -> Self;
+    /// The smallest, none of them NaN.
+    fn least(self) -> f32;
     /// Negated where another number's sign bit is set.
     fn flipped(self, sign: Self) -> Self;
     /// Where this is below; nowhere that one is NaN.
