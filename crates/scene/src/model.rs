@@ -9,7 +9,7 @@ mod material;
 
 pub use detail::{OpacityImage, Relief};
 pub use environment::EnvironmentImage;
-pub use material::{LEAST_ALPHA, Material, MaterialKind, PolarisingSheet, SpectrumTexture};
+pub use material::{LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture};
 
 use std::sync::Arc;
 

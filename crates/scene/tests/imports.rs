@@ -2,7 +2,8 @@
 
 use etalon_scene::import::{Imported, import_bytes};
 use etalon_scene::{
-    Light, LightKind, MaterialKind, Projection, Scene, Shape, SpectrumTexture, TextureFilter, Wrap, parse_imported,
+    Encoding, Image, Light, LightKind, MaterialKind, Metal, NumberTexture, Projection, Scene, Shape, SpectrumTexture,
+    TextureFilter, Wrap, parse_imported,
 };
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -108,6 +109,46 @@ fn imported(model: &Value) -> Result<Imported, String> {
     import_bytes("glb", &glb(model), &nothing, "m-files/", "model.glb")
 }
 
+/// Every width of facets in a material of varied roughness, with the roughness at which it stands alone.
+fn widths(kind: &MaterialKind) -> Vec<(f64, f64)> {
+    let MaterialKind::Blend { parts, by: NumberTexture::Image(_) } = kind else { panic!("{kind:?}") };
+    let alpha = |kind: &MaterialKind| match kind {
+        MaterialKind::Plastic { alpha, .. } | MaterialKind::RoughConductor { alpha, .. } => *alpha,
+        MaterialKind::Conductor { .. } => 0.0,
+        other => panic!("{other:?}"),
+    };
+    parts.iter().map(|(place, part)| (*place, alpha(part))).collect()
+}
+
+#[test]
+fn metalness_and_roughness_come_from_their_image() {
+    let mut model = model();
+    let surface = &mut model["materials"][0]["pbrMetallicRoughness"];
+    surface["metallicRoughnessTexture"] = json!({ "index": 0 });
+    surface["metallicFactor"] = json!(0.75);
+    surface["roughnessFactor"] = json!(0.5);
+    let scene = scene(&imported(&model).unwrap());
+    let object = &scene.groups[scene.instances[0].group].objects[0];
+    let MaterialKind::Blend { parts, by: NumberTexture::Image(metalness) } = &scene.materials[object.material].kind
+    else {
+        panic!("plastic and metal")
+    };
+    let image = Image::decode(PNG, Encoding::Linear).unwrap().0;
+    let texels: Vec<_> = image.linear_texels().collect();
+    let [(0.0, plastic), (1.0, metal)] = &parts[..] else { panic!("{parts:?}") };
+    assert_eq!(metalness.factor, [0.75; 3]);
+    // Blue is metalness and green roughness, whatever red says.
+    for (found, texel) in metalness.image.linear_texels().zip(&texels) {
+        assert!((found[0] - texel[2]).abs() < 1e-6, "{found:?} {texel:?}");
+    }
+    for kind in [plastic, metal] {
+        let widths = widths(kind);
+        assert!(widths.iter().all(|(place, alpha)| (place * place - alpha).abs() < 1e-15), "{widths:?}");
+        let [least, most] = texels.iter().fold([1.0_f64, 0.0], |[l, m], t| [l.min(0.5 * t[1]), m.max(0.5 * t[1])]);
+        assert!(widths[0].0 <= least && widths[widths.len() - 1].0 >= most);
+    }
+}
+
 #[test]
 fn a_glb_file_becomes_a_scene_whose_nodes_are_where_they_were_placed() {
     let imported = imported(&model()).unwrap();
@@ -140,7 +181,10 @@ fn glb_materials_lights_and_cameras_arrive() {
     let scene = scene(&imported(&model()).unwrap());
     let part = |i: usize| &scene.groups[scene.instances[i].group].objects[0];
     let kind = |i: usize| &scene.materials[part(i).material].kind;
-    let MaterialKind::Lambert { reflectance: SpectrumTexture::Image(image) } = kind(0) else { panic!("an image") };
+    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), coat, alpha: 1.0 } = kind(0) else {
+        panic!("an image")
+    };
+    assert_eq!(coat.eval(550.0), 1.5);
     assert_eq!((image.wrap, image.filter), ([Wrap::Clamp, Wrap::Mirror], TextureFilter::Nearest));
     assert_eq!((image.factor, image.uv_scale), ([0.5, 1.0, 0.25], [2.0, 4.0]));
     // v = 0.25 here is 0.75 from the top: 4·0.75 + 0.5 = 3.5 from the top, so −2.5 here.
@@ -152,10 +196,11 @@ fn glb_materials_lights_and_cameras_arrive() {
     assert!((n(587.5618) - 1.6).abs() < 1e-12);
     assert!(((n(587.5618) - 1.0) / (n(486.1327) - n(656.2725)) - 40.0).abs() < 1e-9);
     // Metal of roughness 0.1, so α = 0.01, that reflects a tenth of white head-on.
-    let MaterialKind::RoughConductor { index, alpha, .. } = kind(2) else { panic!("metal") };
+    let MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), alpha, .. } = kind(2) else {
+        panic!("metal")
+    };
     assert!((alpha - 0.01).abs() < 1e-7, "{alpha}");
-    let (n, k) = index.eval(550.0);
-    assert!((((n - 1.0) / (n + 1.0)).powi(2) - 0.1).abs() < 1e-6 && k == 0.0, "{n} {k}");
+    assert_eq!(reflectance, &etalon_optics::Spectrum::Constant(0.1).into());
     let emission = part(2).emission.as_ref().expect("a lamp");
     let expected = etalon_optics::Spectrum::rgb_emission([7.0, 3.5, 0.0], etalon_optics::Illuminant::D65).unwrap();
     assert_eq!(emission.radiance, expected);

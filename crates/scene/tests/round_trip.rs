@@ -111,9 +111,12 @@ fn materials_and_spectra() {
     assert_eq!(kind(&scene, "mirror"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9).into() });
     assert_eq!(kind(&scene, "perfect"), &MaterialKind::Mirror { reflectance: Spectrum::Constant(1.0).into() });
     let gold = ComplexIndex::named("Au").expect("gold").with_outside(OutsideFit::Clamp);
-    assert_eq!(kind(&scene, "gold"), &MaterialKind::RoughConductor { index: gold, alpha: 0.25, compensated: false });
+    assert_eq!(
+        kind(&scene, "gold"),
+        &MaterialKind::RoughConductor { metal: Metal::Index(gold), alpha: 0.25, compensated: false }
+    );
     let own = ComplexIndex::tabulated(vec![300.0, 900.0], vec![0.2, 0.3], vec![3.0, 4.0]).expect("right");
-    assert_eq!(kind(&scene, "own metal"), &MaterialKind::Conductor { index: own });
+    assert_eq!(kind(&scene, "own metal"), &MaterialKind::Conductor { metal: Metal::Index(own) });
     let glass = |name| RefractiveIndex::named(name).expect("a glass");
     assert_eq!(
         kind(&scene, "glass"),
@@ -145,9 +148,9 @@ fn materials_and_spectra() {
         &MaterialKind::Dielectric { interior: glass("water"), exterior: RefractiveIndex::VACUUM, priority: Some(7) }
     );
     assert_eq!(kind(&scene, "black"), &MaterialKind::Black);
-    let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5), roughness: 0.4 };
+    let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
     assert_eq!(kind(&scene, "clay"), &clay);
-    let (reflectance, coat) = (Spectrum::Constant(0.25), RefractiveIndex::Constant(1.5));
+    let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
     let toy = MaterialKind::Plastic { reflectance, coat, alpha: 0.1 };
     assert_eq!(kind(&scene, "toy"), &toy);
     assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7") });
@@ -155,7 +158,7 @@ fn materials_and_spectra() {
     assert_eq!(kind(&scene, "film"), &MaterialKind::PolarisingSheet { axis: [0.0, 1.0, 0.0], sheet });
     let sheet = PolarisingSheet::Retarder { retardance_rad: std::f64::consts::FRAC_PI_2, at_nm: Some(550.0) };
     assert_eq!(kind(&scene, "quarter"), &MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet });
-    let dusty = MaterialKind::Blend { first: Box::new(toy), second: Box::new(MaterialKind::Black), weight: 0.125 };
+    let dusty = MaterialKind::blend(toy, MaterialKind::Black, 0.125);
     assert_eq!(kind(&scene, "dusty"), &dusty);
     let absorption = |name: &str| scene.materials.iter().find(|m| m.name == name).and_then(|m| m.absorption.clone());
     assert_eq!(absorption("solid"), Some(Spectrum::Constant(0.5)));

@@ -129,7 +129,8 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
     // them.
     let exclusive = ["height_m", "horizontal_fov_deg", "radius_px", "sensor_width_m", "vertical_fov_deg"];
     let of_files = ["encoding", "factor", "file", "uv_offset", "uv_scale", "wrap", "wrap_v"];
-    let of_detail = ["bump_map", "channel", "cutoff", "normal_map", "opacity_image", "strength"];
+    let of_detail =
+        ["bump_map", "channel", "cutoff", "normal_map", "opacity_image", "roughness_image", "strength", "weight_image"];
     let of_skies = ["forward", "image", "rotation_deg"];
     let mut expected = [exclusive.as_slice(), &of_files, &of_detail, &of_skies].concat();
     expected.sort_unstable();
@@ -252,22 +253,23 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
             // Everything that is known over the range is a number there.
             let [first, last] = scene.integrator.wavelength_range_nm;
             for material in &scene.materials {
-                use etalon_scene::{MaterialKind as M, PolarisingSheet, SpectrumTexture};
+                use etalon_scene::{MaterialKind as M, Metal, PolarisingSheet, SpectrumTexture};
                 for nm in [first, 0.5 * (first + last), last] {
                     let good = match &material.kind {
-                        M::Lambert { reflectance } | M::Mirror { reflectance } => {
-                            match reflectance {
-                                SpectrumTexture::Uniform(spectrum) => (0.0..=1.0).contains(&spectrum.eval(nm)),
-                                // This scene names no files.
-                                SpectrumTexture::Image(_) => false,
-                            }
-                        }
-                        M::Conductor { index } | M::RoughConductor { index, .. } => index.eval(nm).0 > 0.0,
+                        M::Lambert { reflectance }
+                        | M::Mirror { reflectance }
+                        | M::OrenNayar { reflectance, .. }
+                        | M::Plastic { reflectance, .. }
+                        | M::Conductor { metal: Metal::Reflectance(reflectance) }
+                        | M::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => match reflectance {
+                            SpectrumTexture::Uniform(spectrum) => (0.0..=1.0).contains(&spectrum.eval(nm)),
+                            // This scene names no files.
+                            SpectrumTexture::Image(_) => false,
+                        },
+                        M::Conductor { metal: Metal::Index(index) }
+                        | M::RoughConductor { metal: Metal::Index(index), .. } => index.eval(nm).0 > 0.0,
                         M::Dielectric { interior, exterior, .. } | M::RoughDielectric { interior, exterior, .. } => {
                             interior.eval(nm) > 0.0 && exterior.eval(nm) > 0.0
-                        }
-                        M::OrenNayar { reflectance, .. } | M::Plastic { reflectance, .. } => {
-                            (0.0..=1.0).contains(&reflectance.eval(nm))
                         }
                         M::ThinDielectric { index } => index.eval(nm) > 0.0,
                         M::PolarisingSheet { axis, sheet } => {
@@ -281,7 +283,11 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                             };
                             good && (axis.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-12
                         }
-                        M::Blend { weight, .. } => (0.0..=1.0).contains(weight),
+                        M::Blend { parts, by } => {
+                            parts.len() >= 2
+                                && parts.is_sorted_by(|a, b| a.0 < b.0)
+                                && (0.0..=1.0).contains(&by.eval([0.3, 0.7]))
+                        }
                         M::Black => true,
                     };
                     prop_assert!(good, "{material:?} at {nm}");

@@ -3,7 +3,9 @@
 mod common;
 
 use common::{Parts, RIGHT};
-use etalon_scene::{Code, Loaded, MaterialKind, Relief, SceneErrors, SpectrumTexture, Texels, TextureFilter, Wrap};
+use etalon_scene::{
+    Code, Loaded, MaterialKind, Metal, NumberTexture, Relief, SceneErrors, SpectrumTexture, Texels, TextureFilter, Wrap,
+};
 use std::path::Path;
 
 fn scene_with(reflectance: &str, shape: &str, spectra: &str) -> Result<Loaded, SceneErrors> {
@@ -101,6 +103,73 @@ fn images_of_opacity_normals_and_heights_arrive() {
         ),
     ] {
         let errors = with(keys).expect_err(keys);
+        assert_eq!(errors.problems[0].code, code, "{errors}");
+    }
+}
+
+fn material(material: &str, shape: &str) -> Result<MaterialKind, SceneErrors> {
+    let objects = format!(r#"[{{"shape": {shape}, "material": {material}}}]"#);
+    let text = Parts { objects: &objects, ..RIGHT }.text();
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests"));
+    let scene = etalon_scene::parse_in(&text, "test.json", Some(folder), None)?.scene;
+    Ok(scene.materials[scene.objects[0].material].kind.clone())
+}
+
+#[test]
+fn numbers_and_colours_of_materials_come_from_images() {
+    let right = |text: &str| material(text, SQUARE).unwrap_or_else(|errors| panic!("{errors}"));
+    let kind = right(
+        r#"{"type": "blend", "first": {"type": "black"}, "second": {"type": "oren-nayar", "roughness": 0.5,
+            "reflectance": {"type": "image", "file": "files/chequers.png"}},
+            "weight_image": {"file": "files/chequers.png", "channel": "blue", "factor": 0.5, "wrap_v": "clamp"}}"#,
+    );
+    let MaterialKind::Blend { parts, by: NumberTexture::Image(share) } = &kind else { panic!("{kind:?}") };
+    assert_eq!((share.factor, share.wrap), ([0.5; 3], [Wrap::Repeat, Wrap::Clamp]));
+    // (40, 40, 60) in the upper right, as numbers.
+    assert!((share.eval([0.75, 0.75])[0] - 0.5 * 60.0 / 255.0).abs() < 1e-7);
+    assert_eq!(parts.iter().map(|(place, _)| *place).collect::<Vec<_>>(), [0.0, 1.0]);
+    assert!(kind.image().is_some());
+
+    // Roughnesses from 40/255 to 230/255: all widths between, and one on either side.
+    let kind = right(
+        r#"{"type": "conductor", "reflectance": {"type": "image", "file": "files/chequers.png"},
+            "roughness_image": {"file": "files/chequers.png", "channel": "red"}}"#,
+    );
+    let MaterialKind::Blend { parts, by: NumberTexture::Image(_) } = &kind else { panic!("{kind:?}") };
+    let (first, last) = (parts[0].0, parts[parts.len() - 1].0);
+    assert!(first <= 40.0 / 255.0 && 40.0 / 255.0 < 1.051 * first);
+    assert!(last >= 230.0 / 255.0 && 230.0 / 255.0 > last / 1.051);
+    for (roughness, part) in parts {
+        let MaterialKind::RoughConductor { metal: Metal::Reflectance(SpectrumTexture::Image(_)), alpha, .. } = part
+        else {
+            panic!("{part:?}")
+        };
+        assert_eq!(*alpha, roughness * roughness);
+    }
+    // Of one roughness everywhere.
+    let kind = right(r#"{"type": "conductor", "reflectance": 0.5, "alpha": 0.25}"#);
+    assert!(matches!(kind, MaterialKind::RoughConductor { metal: Metal::Reflectance(_), alpha: 0.25, .. }));
+}
+
+#[test]
+fn what_is_wrong_with_an_image_of_numbers_is_said() {
+    let bare = r#"{"type": "box", "min_m": [0, 0, 0], "max_m": [1, 1, 1]}"#;
+    let rough = r#"{"type": "plastic", "reflectance": 0.5, "roughness_image": {"file": "files/chequers.png"}}"#;
+    assert!(material(rough, SQUARE).is_ok());
+    let blend = |keys: &str| {
+        format!(r#"{{"type": "blend", "first": {{"type": "black"}}, "second": {{"type": "black"}}{keys}}}"#)
+    };
+    for (text, shape, code) in [
+        (rough.to_owned(), bare, Code::NoTextureCoordinates),
+        (rough.replace("chequers", "no"), SQUARE, Code::File),
+        (rough.replace(".png\"", ".png\", \"factor\": 2"), SQUARE, Code::OutOfRange),
+        (rough.replace("0.5,", "0.5, \"alpha\": 0.1,"), SQUARE, Code::KeyConflict),
+        (blend(""), SQUARE, Code::MissingKey),
+        (blend(r#", "weight": 0.5, "weight_image": {"file": "files/chequers.png"}"#), SQUARE, Code::KeyConflict),
+        (r#"{"type": "conductor", "reflectance": 1.5}"#.to_owned(), SQUARE, Code::Reflectance),
+        (r#"{"type": "conductor", "reflectance": 0.5, "metal": "Au"}"#.to_owned(), SQUARE, Code::KeyConflict),
+    ] {
+        let errors = material(&text, shape).expect_err(&text);
         assert_eq!(errors.problems[0].code, code, "{errors}");
     }
 }

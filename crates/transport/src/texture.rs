@@ -16,6 +16,8 @@ pub enum PathTexture {
         texture: ImageTexture,
         /// What its channels are at each wavelength.
         basis: RgbBasis,
+        /// The mean of its texels.
+        mean: [f64; 3],
     },
 }
 
@@ -24,7 +26,19 @@ impl PathTexture {
     pub fn new(texture: &SpectrumTexture, range_nm: [f64; 2]) -> Self {
         match texture {
             SpectrumTexture::Uniform(spectrum) => Self::Uniform(PathSpectrum::new(spectrum, range_nm)),
-            SpectrumTexture::Image(texture) => Self::Image { texture: texture.clone(), basis: RgbBasis::get() },
+            SpectrumTexture::Image(texture) => {
+                let texels = texture.image.mean();
+                let mean = [0, 1, 2].map(|c| texels[c] * texture.factor[c]);
+                Self::Image { texture: texture.clone(), basis: RgbBasis::get(), mean }
+            }
+        }
+    }
+
+    /// The value at a wavelength, nm, of an image that of its mean colour.
+    pub(crate) fn mean(&self, wavelength_nm: f64) -> f64 {
+        match self {
+            Self::Uniform(spectrum) => spectrum.eval(wavelength_nm),
+            Self::Image { basis, mean, .. } => basis.reflectance(*mean, wavelength_nm),
         }
     }
 
@@ -33,7 +47,7 @@ impl PathTexture {
     pub fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> Lanes<R, N> {
         match self {
             Self::Uniform(spectrum) => spectrum.lanes(lambda_nm),
-            Self::Image { texture, basis } => {
+            Self::Image { texture, basis, .. } => {
                 let rgb = texture.eval(uv);
                 Lanes::from_fn(|lane| R::from_f64(basis.reflectance(rgb, lambda_nm[lane])))
             }
@@ -47,9 +61,17 @@ impl From<PathSpectrum> for PathTexture {
     }
 }
 
-/// What stands for a texture in a picture without textures: its mean.
-pub(crate) fn mean(texture: &ImageTexture) -> Spectrum {
+/// What stands for an image in a picture without textures: its mean.
+pub(crate) fn mean_colour(texture: &ImageTexture) -> Spectrum {
     let mean = texture.image.mean();
     let rgb = [0, 1, 2].map(|c| (mean[c] * texture.factor[c]).clamp(0.0, 1.0));
     Spectrum::rgb_reflectance(rgb).expect("a mean of reflectances is one")
+}
+
+/// The value of a reflectance at a wavelength, nm; of an image that of its mean colour.
+pub(crate) fn mean(reflectance: &SpectrumTexture, wavelength_nm: f64) -> f64 {
+    match reflectance {
+        SpectrumTexture::Uniform(spectrum) => spectrum.eval(wavelength_nm),
+        SpectrumTexture::Image(texture) => mean_colour(texture).eval(wavelength_nm),
+    }
 }

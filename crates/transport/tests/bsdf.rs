@@ -2,7 +2,7 @@
 
 use etalon_optics::{ComplexIndex, Frame, Lanes, Real, RefractiveIndex, Spectrum, Vec3};
 use etalon_oracle::laws;
-use etalon_scene::MaterialKind;
+use etalon_scene::{MaterialKind, Metal};
 use etalon_transport::bsdf::{Bsdf, BsdfSample, Shading};
 use etalon_transport::mis::Density;
 use etalon_transport::warp::uniform_sphere;
@@ -58,7 +58,8 @@ fn a_refraction_that_bends_the_wrong_way_is_rejected() {
 
 #[test]
 fn mirrors_metals_and_glass_obey_the_law_of_reflection() {
-    let metal = Bsdf::new(&MaterialKind::Conductor { index: ComplexIndex::named("Au").unwrap() }, RANGE_NM);
+    let metal =
+        Bsdf::new(&MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named("Au").unwrap()) }, RANGE_NM);
     for bsdf in [mirror(), metal, glass(RefractiveIndex::constant(1.5).unwrap())] {
         let reflect = |direction: [f64; 3], normal: [f64; 3]| {
             let wo = -Vec3::<f64>::from_f64(direction);

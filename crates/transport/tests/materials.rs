@@ -1,16 +1,19 @@
 //! Coated and rough diffuse surfaces, panes, masks and spots against closed forms.
 
-use etalon_optics::{Lanes, RefractiveIndex, Spectrum, Vec3};
+use etalon_optics::{ComplexIndex, Lanes, RefractiveIndex, Spectrum, Vec3};
 use etalon_oracle::laws::fresnel_exact;
 use etalon_oracle::statistics::Welford;
 use etalon_oracle::truths::walsh_reflectance;
-use etalon_scene::MaterialKind;
+use etalon_scene::{
+    Image, ImageTexture, MaterialKind, Metal, NumberTexture, SpectrumTexture, Texels, TextureFilter, Wrap,
+};
 use etalon_transport::bsdf::{Bsdf, Shading};
 use etalon_transport::light::{Light, PointLight, SpotLight};
 use etalon_transport::spectral::PathSpectrum;
 use etalon_transport::{Control, prepare};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
 
@@ -38,7 +41,7 @@ fn albedo(bsdf: &Bsdf, mu: f64) -> f64 {
 fn smooth_plastic_has_the_albedo_of_its_closed_form() {
     let n = 1.5;
     for rho in [0.2, 0.8, 1.0] {
-        let (reflectance, coat) = (Spectrum::Constant(rho), RefractiveIndex::Constant(n));
+        let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(n));
         let bsdf = Bsdf::new(&MaterialKind::Plastic { reflectance, coat, alpha: 0.0 }, RANGE_NM);
         for mu in [1.0, 0.5, 0.1] {
             let passed = fresnel_exact(mu, n).transmittance();
@@ -62,7 +65,7 @@ fn smooth_plastic_has_the_albedo_of_its_closed_form() {
 fn rough_diffuse_reflection_has_the_mean_albedo_of_its_closed_form() {
     for roughness in [0.0, 0.5, 1.0] {
         let rho = 1e-6;
-        let kind = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho), roughness };
+        let kind = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho).into(), roughness };
         let bsdf = Bsdf::new(&kind, RANGE_NM);
         let n = 24;
         let mean: f64 =
@@ -190,5 +193,70 @@ fn every_strategy_finds_the_same_light_through_rough_flint() {
         let (a, b) = (other.mean(), reference.mean());
         assert!(error < 0.015 * b, "{sampling}: the test sees too little, {error} of {b}");
         assert!(((a - b) / error).abs() < 6.0, "{sampling}: {a} is not {b} ± {error}");
+    }
+}
+
+/// An image of one texel.
+fn texel(value: f32) -> ImageTexture {
+    ImageTexture {
+        image: Arc::new(Image { width: 1, height: 1, texels: Texels::F32(vec![[value; 3]]) }),
+        name: String::new(),
+        wrap: [Wrap::Repeat; 2],
+        filter: TextureFilter::Bilinear,
+        uv_scale: [1.0; 2],
+        uv_offset: [0.0; 2],
+        factor: [1.0; 3],
+    }
+}
+
+/// What an image says of a material is what the material is where the image says it, to the bit where no neighbour has a share.
+#[test]
+fn a_material_by_images_is_the_material_that_they_say() {
+    let rough = |alpha| MaterialKind::Plastic {
+        reflectance: Spectrum::Constant(0.5).into(),
+        coat: RefractiveIndex::Constant(1.5),
+        alpha,
+    };
+    let places = [0.25, 0.5, 1.0];
+    let varied = |roughness: f32| MaterialKind::Blend {
+        parts: places.map(|r| (r, rough(r * r))).to_vec(),
+        by: NumberTexture::Image(texel(roughness)),
+    };
+    let directions = [(direction(0.9, 0.0), direction(0.8, 0.4)), (direction(0.3, 0.0), direction(0.5, 0.7))];
+    let at = Shading::flat(Vec3::new(0.0, 0.0, 1.0));
+    let eval = |kind: &MaterialKind, (wo, wi): (Vec3<f64>, Vec3<f64>)| {
+        Bsdf::new(kind, RANGE_NM).eval::<f64, 1>(&Lanes([550.0]), &at, wo, wi)
+    };
+    for pair in directions {
+        let own = places.map(|r| eval(&rough(r * r), pair));
+        for (roughness, expected) in [(0.25, own[0]), (0.5, own[1]), (1.0, own[2]), (0.125, own[0])] {
+            assert_eq!(eval(&varied(roughness), pair), expected, "{roughness}");
+        }
+        // A quarter of the way from the second to the third.
+        let (f, density) = eval(&varied(0.625), pair);
+        for (between, [from, to]) in [(f, [own[1].0, own[2].0]), (density, [own[1].1, own[2].1])] {
+            let expected = 0.75 * from[0] + 0.25 * to[0];
+            assert!((between[0] - expected).abs() < 1e-15, "{between:?} {expected}");
+        }
+        // Grounds and metals by images of one colour.
+        let painted = |reflectance: SpectrumTexture| MaterialKind::Plastic {
+            reflectance,
+            coat: RefractiveIndex::Constant(1.5),
+            alpha: 0.0,
+        };
+        let image = || SpectrumTexture::Image(texel(0.5));
+        let uniform = || SpectrumTexture::from(Spectrum::Constant(0.5));
+        let (a, b) = (eval(&painted(image()), pair), eval(&painted(uniform()), pair));
+        assert!((a.0[0] - b.0[0]).abs() < 1e-12 * b.0[0], "{a:?} {b:?}");
+        let metal = |r| MaterialKind::RoughConductor { metal: Metal::Reflectance(r), alpha: 0.3, compensated: true };
+        let root = 0.5_f64.sqrt();
+        let n = (1.0 + root) / (1.0 - root);
+        let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![n; 2], vec![0.0; 2]).unwrap();
+        let exact = MaterialKind::RoughConductor { metal: Metal::Index(index), alpha: 0.3, compensated: true };
+        let (a, b, c) = (eval(&metal(image()), pair), eval(&metal(uniform()), pair), eval(&exact, pair));
+        // What light that meets several facets adds is tabulated in steps of 1/256 of √R.
+        for found in [a, b] {
+            assert!((found.0[0] - c.0[0]).abs() < 1e-5 * c.0[0], "{found:?} {c:?}");
+        }
     }
 }

@@ -3,7 +3,7 @@
 use etalon_optics::{ComplexIndex, Lanes, RefractiveIndex, Spectrum, Vec3};
 use etalon_oracle::Verdict;
 use etalon_oracle::laws::{self, Polarises, Turn, TurnedBy};
-use etalon_scene::{MaterialKind, PolarisingSheet};
+use etalon_scene::{MaterialKind, Metal, PolarisingSheet};
 use etalon_transport::bsdf::{Bsdf, BsdfSample, Lobe, Shading};
 use etalon_transport::mis::Density;
 use etalon_transport::polarisation::mueller::{DEPOLARISER, Matrix, Mueller};
@@ -22,8 +22,8 @@ fn glass(interior: f64, exterior: f64) -> MaterialKind {
     MaterialKind::Dielectric { interior, exterior, priority: None }
 }
 
-fn metal(n: f64, k: f64) -> ComplexIndex {
-    ComplexIndex::tabulated(vec![300.0, 900.0], vec![n; 2], vec![k; 2]).unwrap()
+fn metal(n: f64, k: f64) -> Metal {
+    Metal::Index(ComplexIndex::tabulated(vec![300.0, 900.0], vec![n; 2], vec![k; 2]).unwrap())
 }
 
 fn rough_glass(alpha: f64, compensated: bool) -> MaterialKind {
@@ -32,11 +32,11 @@ fn rough_glass(alpha: f64, compensated: bool) -> MaterialKind {
 }
 
 fn rough_metal(n: f64, k: f64, alpha: f64) -> MaterialKind {
-    MaterialKind::RoughConductor { index: metal(n, k), alpha, compensated: true }
+    MaterialKind::RoughConductor { metal: metal(n, k), alpha, compensated: true }
 }
 
 fn plastic(rho: f64, alpha: f64) -> MaterialKind {
-    MaterialKind::Plastic { reflectance: Spectrum::Constant(rho), coat: RefractiveIndex::Constant(1.5), alpha }
+    MaterialKind::Plastic { reflectance: Spectrum::Constant(rho).into(), coat: RefractiveIndex::Constant(1.5), alpha }
 }
 
 fn pane() -> MaterialKind {
@@ -73,9 +73,7 @@ impl Polarises for Scattering {
 }
 
 fn blend() -> MaterialKind {
-    let parts = [rough_metal(0.2, 3.0, 0.3), plastic(0.6, 0.2)].map(Box::new);
-    let [first, second] = parts;
-    MaterialKind::Blend { first, second, weight: 0.4 }
+    MaterialKind::blend(rough_metal(0.2, 3.0, 0.3), plastic(0.6, 0.2), 0.4)
 }
 
 #[test]
@@ -108,7 +106,7 @@ fn stokes_of_bsdfs(turns: &[Turn], right: [f64; 3]) -> [f64; 4] {
         let (wo, wi, normal) = (turn.wo, turn.wi, turn.normal).map_all(Vec3::from_array);
         let (kind, normal) = match turn.by {
             TurnedBy::Reflection { n, k: 0.0 } => (glass(n, 1.0), normal),
-            TurnedBy::Reflection { n, k } => (MaterialKind::Conductor { index: metal(n, k) }, normal),
+            TurnedBy::Reflection { n, k } => (MaterialKind::Conductor { metal: metal(n, k) }, normal),
             // The outward side is the light's.
             TurnedBy::Refraction { n } => (glass(n, 1.0), normal),
         };
@@ -146,7 +144,7 @@ fn paths_whose_matrices_are_wrong_are_noticed() {
                 for turn in turns {
                     let (wo, wi, normal) = (turn.wo, turn.wi, turn.normal).map_all(Vec3::from_array);
                     let kind = match turn.by {
-                        TurnedBy::Reflection { n, k } if k > 0.0 => MaterialKind::Conductor { index: metal(n, k) },
+                        TurnedBy::Reflection { n, k } if k > 0.0 => MaterialKind::Conductor { metal: metal(n, k) },
                         TurnedBy::Reflection { n, .. } | TurnedBy::Refraction { n } => glass(n, 1.0),
                     };
                     let at = Shading::flat(normal);
@@ -235,7 +233,7 @@ fn rough_surfaces_join_smooth_ones() {
     let (smooth_plastic, rough_plastic) = (plastic(0.0, 0.0), plastic(0.0, alpha));
     for (smooth, rough) in [
         (glass(1.5, 1.0), rough_glass(alpha, true)),
-        (MaterialKind::Conductor { index: metal(0.2, 3.0) }, rough_metal(0.2, 3.0, alpha)),
+        (MaterialKind::Conductor { metal: metal(0.2, 3.0) }, rough_metal(0.2, 3.0, alpha)),
         (smooth_plastic, rough_plastic),
     ] {
         let (smooth, rough) = (bsdf(&smooth), bsdf(&rough));

@@ -8,7 +8,10 @@ use etalon_oracle::statistics::Welford;
 use etalon_oracle::subjects::{DeltaLobe, Density, Emits, Emitted, Scattered, Scatters};
 use etalon_oracle::truths::{lambert_polygon, sphere_irradiance};
 use etalon_oracle::{Verdict, emits_suite, scatters_suite, suite};
-use etalon_scene::{MaterialKind, PolarisingSheet, SpectrumTexture};
+use etalon_scene::{
+    Image, ImageTexture, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture, Texels, TextureFilter,
+    Wrap,
+};
 use etalon_transport::bsdf::{Bsdf, Shading};
 use etalon_transport::light::{
     CylinderLight, DiskLight, Emitter, Light, ParallelogramLight, SphereLight, Target, TriangleLight,
@@ -16,6 +19,7 @@ use etalon_transport::light::{
 use etalon_transport::mis;
 use etalon_transport::spectral::PathSpectrum;
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
@@ -95,7 +99,7 @@ impl<R: Real> Scatters for Material<R> {
             }
             MaterialKind::Plastic { alpha, .. } if *alpha > 0.0 => Vec::new(),
             MaterialKind::Plastic { reflectance, coat, .. } => {
-                let (n, rho) = (coat.eval(wavelength_nm), reflectance.eval(wavelength_nm));
+                let (n, rho) = (coat.eval(wavelength_nm), uniform(reflectance).eval(wavelength_nm));
                 let weight = laws::fresnel_exact(cos, n).reflectance();
                 let passed = 1.0 - etalon_oracle::truths::walsh_reflectance(n);
                 let ground = passed * rho / (n * n * (1.0 - rho * (1.0 - passed / (n * n))));
@@ -112,23 +116,39 @@ impl<R: Real> Scatters for Material<R> {
                     DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight: through, probability: through },
                 ]
             }
-            MaterialKind::Blend { first, second, weight } => {
-                let part = |kind: &MaterialKind, share: f64| {
-                    let lobes = Self::new(kind.clone()).deltas(wo, wavelength_nm);
-                    let scaled = |l: DeltaLobe| DeltaLobe {
+            MaterialKind::Blend { parts, by } => {
+                let number = by.eval([0.0; 2]);
+                let part = |i: usize| {
+                    // A hat: 1 at its own place, 0 at its neighbours', 1 beyond the first and the last.
+                    let place = |i: usize| parts[i].0;
+                    let share = if number < place(i) {
+                        if i == 0 { 1.0 } else { 1.0 - (place(i) - number) / (place(i) - place(i - 1)) }
+                    } else if i + 1 == parts.len() {
+                        1.0
+                    } else {
+                        1.0 - (number - place(i)) / (place(i + 1) - place(i))
+                    };
+                    let lobes = Self::new(parts[i].1.clone()).deltas(wo, wavelength_nm);
+                    let scaled = move |l: DeltaLobe| DeltaLobe {
                         wi: l.wi,
                         weight: l.weight * share,
                         probability: l.probability * share,
                     };
-                    lobes.into_iter().map(scaled).collect::<Vec<_>>()
+                    lobes.into_iter().filter(|_| share > 0.0).map(scaled).collect::<Vec<_>>()
                 };
-                [part(first, 1.0 - weight), part(second, *weight)].concat()
+                (0..parts.len()).flat_map(part).collect()
             }
             MaterialKind::Mirror { reflectance } => {
                 vec![DeltaLobe { wi: mirrored, weight: uniform(reflectance).eval(wavelength_nm), probability: 1.0 }]
             }
-            MaterialKind::Conductor { index } => {
-                let (n, k) = index.eval(wavelength_nm);
+            MaterialKind::Conductor { metal } => {
+                let (n, k) = match metal {
+                    Metal::Index(index) => index.eval(wavelength_nm),
+                    Metal::Reflectance(reflectance) => {
+                        let root = uniform(reflectance).eval(wavelength_nm).sqrt();
+                        ((1.0 + root) / (1.0 - root), 0.0)
+                    }
+                };
                 let weight = fresnel::conductor(cos, n, k).reflectance;
                 vec![DeltaLobe { wi: mirrored, weight, probability: 1.0 }]
             }
@@ -180,7 +200,7 @@ fn lambert<R: Real>() -> Material<R> {
 }
 
 fn metal<R: Real>(name: &str) -> Material<R> {
-    Material::new(MaterialKind::Conductor { index: ComplexIndex::named(name).unwrap() })
+    Material::new(MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named(name).unwrap()) })
 }
 
 fn glass<R: Real>(interior: &str, exterior: &str) -> Material<R> {
@@ -189,14 +209,14 @@ fn glass<R: Real>(interior: &str, exterior: &str) -> Material<R> {
 }
 
 fn rough_metal<R: Real>(name: &str, alpha: f64, compensated: bool) -> Material<R> {
-    let index = ComplexIndex::named(name).unwrap();
-    Material::new(MaterialKind::RoughConductor { index, alpha, compensated })
+    let metal = Metal::Index(ComplexIndex::named(name).unwrap());
+    Material::new(MaterialKind::RoughConductor { metal, alpha, compensated })
 }
 
 /// Reflects everything: n → 0 with k > 0.
 fn lossless_metal(alpha: f64) -> Material<f64> {
     let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
-    Material::new(MaterialKind::RoughConductor { index, alpha, compensated: true })
+    Material::new(MaterialKind::RoughConductor { metal: Metal::Index(index), alpha, compensated: true })
 }
 
 fn rough_glass<R: Real>(interior: &str, exterior: &str, alpha: f64, compensated: bool) -> Material<R> {
@@ -215,12 +235,12 @@ scatters_suite!(rough_glass_f32, rough_glass::<f32>("N-BK7", "vacuum", 0.4, true
 scatters_suite!(very_rough_diamond_in_water, rough_glass::<f64>("diamond", "water", 1.0, true));
 
 fn plastic<R: Real>(rho: f64, alpha: f64) -> Material<R> {
-    let (reflectance, coat) = (Spectrum::Constant(rho), RefractiveIndex::Constant(1.5));
+    let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(1.5));
     Material::new(MaterialKind::Plastic { reflectance, coat, alpha })
 }
 
 fn oren_nayar<R: Real>(rho: f64, roughness: f64) -> Material<R> {
-    Material::new(MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho), roughness })
+    Material::new(MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho).into(), roughness })
 }
 
 fn pane<R: Real>() -> Material<R> {
@@ -228,10 +248,47 @@ fn pane<R: Real>() -> Material<R> {
 }
 
 fn mixture() -> Material<f64> {
-    let first = Box::new(MaterialKind::Mirror { reflectance: Spectrum::Constant(0.8).into() });
-    let second = Box::new(MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.6), roughness: 0.5 });
-    Material::new(MaterialKind::Blend { first, second, weight: 0.3 })
+    let first = MaterialKind::Mirror { reflectance: Spectrum::Constant(0.8).into() };
+    let second = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.6).into(), roughness: 0.5 };
+    Material::new(MaterialKind::blend(first, second, 0.3))
 }
+
+/// An image of one texel.
+fn texel(rgb: [f32; 3]) -> ImageTexture {
+    ImageTexture {
+        image: Arc::new(Image { width: 1, height: 1, texels: Texels::F32(vec![rgb]) }),
+        name: String::new(),
+        wrap: [Wrap::Repeat; 2],
+        filter: TextureFilter::Bilinear,
+        uv_scale: [1.0; 2],
+        uv_offset: [0.0; 2],
+        factor: [1.0; 3],
+    }
+}
+
+/// Smooth below a roughness of 0.2, rougher from there on; at 0.35 now.
+fn metal_of_varied_roughness() -> Material<f64> {
+    let metal = Metal::Reflectance(Spectrum::rgb_reflectance([0.9, 0.6, 0.3]).unwrap().into());
+    let rough = |alpha| MaterialKind::RoughConductor { metal: metal.clone(), alpha, compensated: true };
+    let parts = vec![(0.2, MaterialKind::Conductor { metal: metal.clone() }), (0.4, rough(0.16)), (0.9, rough(0.81))];
+    Material::new(MaterialKind::Blend { parts, by: NumberTexture::Image(texel([0.35; 3])) })
+}
+
+/// A ground and a coat by images.
+fn painted_plastic() -> Material<f64> {
+    let reflectance = SpectrumTexture::Image(texel([0.9, 0.2, 0.4]));
+    Material::new(MaterialKind::Plastic { reflectance, coat: RefractiveIndex::Constant(1.5), alpha: 0.3 })
+}
+
+/// Metal that reflects all that a metal of a given reflectance can.
+fn white_metal(alpha: f64) -> Material<f64> {
+    let metal = Metal::Reflectance(Spectrum::Constant(1.0).into());
+    Material::new(MaterialKind::RoughConductor { metal, alpha, compensated: true })
+}
+
+scatters_suite!(varied_metal_f64, metal_of_varied_roughness());
+scatters_suite!(painted_plastic_f64, painted_plastic());
+scatters_suite!(white_metal_f64, white_metal(0.7));
 
 scatters_suite!(smooth_plastic_f32, plastic::<f32>(0.7, 0.0));
 scatters_suite!(white_smooth_plastic_f64, plastic::<f64>(1.0, 0.0));
@@ -301,7 +358,9 @@ fn more_than_two_hundred_instances_of_laws_hold() {
         MaterialKind::Lambert { reflectance: Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap().into() },
         MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9).into() },
     ];
-    kinds.extend(["Al", "Cu"].map(|name| MaterialKind::Conductor { index: ComplexIndex::named(name).unwrap() }));
+    kinds.extend(
+        ["Al", "Cu"].map(|name| MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named(name).unwrap()) }),
+    );
     kinds.extend(["N-BK7", "N-SF11", "fused-silica", "diamond", "water"].map(|name| dielectric(name, "vacuum")));
     kinds.extend([dielectric("vacuum", "water"), dielectric("diamond", "N-BK7")]);
     let from = [[0.0; 3], [1.0, 2.0, 0.0], [-2.0, 0.5, -1.0]];

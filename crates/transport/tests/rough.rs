@@ -2,7 +2,7 @@
 
 use etalon_optics::{ComplexIndex, Frame, Lanes, Real, RefractiveIndex, Vec3};
 use etalon_oracle::laws::{Masking, fresnel_exact, ggx_albedo};
-use etalon_scene::MaterialKind;
+use etalon_scene::{MaterialKind, Metal};
 use etalon_transport::bsdf::{Bsdf, BsdfSample, Shading};
 use etalon_transport::mis::Density;
 
@@ -11,7 +11,7 @@ const RANGE_NM: [f64; 2] = [380.0, 780.0];
 /// Reflects everything: n → 0 with k > 0.
 fn mirrors(alpha: f64, compensated: bool) -> Bsdf {
     let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
-    Bsdf::new(&MaterialKind::RoughConductor { index, alpha, compensated }, RANGE_NM)
+    Bsdf::new(&MaterialKind::RoughConductor { metal: Metal::Index(index), alpha, compensated }, RANGE_NM)
 }
 
 fn glass(interior: RefractiveIndex, alpha: f64, compensated: bool) -> Bsdf {

@@ -1,4 +1,4 @@
-//! Images that give an object's surface detail: opacity, normals, heights.
+//! Images that give a surface detail: opacity, normals, heights, numbers of its material.
 
 use super::material::Share;
 use super::spectra::FARTHEST_UV;
@@ -16,6 +16,28 @@ crate::record! {
         channel: Required<Channel> = r#""auto""#,
         /// Given, what is below this share is not there, and the rest is all there.
         cutoff: Optional<Share>,
+        /// What it shows beyond its edges.
+        wrap: Required<Wrap> = r#""repeat""#,
+        /// What it shows beyond its lower and upper edge, if that is another thing.
+        wrap_v: Optional<Wrap>,
+        /// What it shows between the centres of its texels.
+        filter: Required<TextureFilter> = r#""bilinear""#,
+        /// Factors on the texture coordinates: 2 shows the image twice.
+        uv_scale: Required<[f64; 2]> = "[1, 1]",
+        /// Added to the texture coordinates after that.
+        uv_offset: Required<[f64; 2]> = "[0, 0]",
+    }
+}
+
+crate::record! {
+    /// An image of a number of a material, from 0 to 1, over the texture coordinates of the surface.
+    pub(crate) struct NumberImageForm + comment {
+        /// A PNG, JPEG, EXR or HDR file, relative to this file's folder; its numbers are linear.
+        file: Required<Spanned<String>>,
+        /// Which of its channels says the number.
+        channel: Required<Channel> = r#""auto""#,
+        /// Factor on what it says.
+        factor: Required<NonNegative> = "1",
         /// What it shows beyond its edges.
         wrap: Required<Wrap> = r#""repeat""#,
         /// What it shows beyond its lower and upper edge, if that is another thing.
@@ -139,6 +161,30 @@ pub(super) fn opacity_image(
     }
     let cutoff = form.cutoff.clone().checked()?.map(|share| share.0);
     Some(OpacityImage { texture, cutoff })
+}
+
+/// The image of a number from 0 to 1 of a form.
+pub(super) fn number_image(form: &NumberImageForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<ImageTexture> {
+    let file = form.file.as_ref()?;
+    let laid = Laid {
+        at: form.at,
+        file,
+        channel: form.channel?,
+        wrap: form.wrap?,
+        wrap_v: form.wrap_v.clone(),
+        filter: form.filter?,
+        uv_scale: form.uv_scale?,
+        uv_offset: form.uv_offset?,
+    };
+    let factor = form.factor?.0;
+    let texture = ImageTexture { factor: [factor; 3], ..laid.texture(files, reader)? };
+    let outside = |[number, ..]: &[f64; 3]| !(0.0..=1.0).contains(&(number * factor));
+    if let Some([number, ..]) = texture.image.linear_texels().find(outside) {
+        let message = format!("{}: a texel of {number}, times {factor}, does not lie from 0 to 1", file.value);
+        reader.error(Code::OutOfRange, file.at, message);
+        return None;
+    }
+    Some(texture)
 }
 
 /// The normal map of a form.

@@ -1,11 +1,13 @@
 //! Materials.
 
 mod index;
+mod roughness;
 
 use etalon_optics::{OutsideFit, Spectrum};
 
 use std::ops::Bound;
 
+use super::detail::{NumberImageForm, number_image};
 use super::names::Names;
 use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra};
@@ -14,8 +16,9 @@ use crate::files::Files;
 use crate::json::{
     Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole,
 };
-use crate::model::{LEAST_ALPHA, Material, MaterialKind, PolarisingSheet};
-use index::{IndexForm, Metal, complex_index, index};
+use crate::model::{Material, MaterialKind, Metal, NumberTexture, PolarisingSheet};
+use index::{IndexForm, NamedMetal, complex_index, index};
+use roughness::roughness;
 
 crate::record! {
     /// Ideal diffuse reflection, on both sides.
@@ -34,25 +37,30 @@ crate::record! {
 }
 
 crate::record! {
-    /// Metal: Fresnel reflection from a complex index of refraction n + ik, seen from vacuum. Either the name of a metal, or
-    /// own values.
+    /// Metal: Fresnel reflection from a complex index of refraction n + ik, seen from vacuum. The name of a metal, own values of
+    /// n and k, or what it reflects head-on.
     pub(crate) struct ConductorMaterial + comment {
         /// A metal with built-in n and k: "Ag", "Au", "Cu" or "Al".
-        metal: Optional<Spanned<Metal>>,
+        metal: Optional<Spanned<NamedMetal>>,
         /// Wavelengths of own values, nm, increasing; at least two.
         wavelengths_nm: Optional<List<Spanned<Wavelength>>>,
         /// Real part n at each wavelength.
         n: Optional<List<Spanned<Positive>>>,
         /// Imaginary part k (extinction coefficient) at each wavelength.
         k: Optional<List<Spanned<NonNegative>>>,
+        /// Share of light R reflected head-on, from 0 to 1 (0.999 at most is), perhaps an image: n = (1 + √R)/(1 − √R), k = 0.
+        reflectance: Optional<SpectrumForm>,
         /// What holds at wavelengths for which there are no values.
         outside_fit: Required<OutsideFit> = r#""error""#,
         /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
+        /// Instead: an image of the roughness, whose square is α.
+        roughness_image: Optional<NumberImageForm>,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
         multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
     } with [
-        Rule::OneOf(&["metal", "wavelengths_nm"]),
+        Rule::OneOf(&["metal", "wavelengths_nm", "reflectance"]),
+        Rule::NotBoth("alpha", "roughness_image"),
         Rule::Needs("wavelengths_nm", &["n", "k"]),
         Rule::Needs("n", &["wavelengths_nm"]),
         Rule::Needs("k", &["wavelengths_nm"]),
@@ -130,7 +138,11 @@ crate::record! {
         coat: Required<IndexForm> = "1.5",
         /// Roughness of the coat: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
-    }
+        /// Instead: an image of the coat's roughness, whose square is α.
+        roughness_image: Optional<NumberImageForm>,
+    } with [
+        Rule::NotBoth("alpha", "roughness_image"),
+    ]
 }
 
 crate::record! {
@@ -175,8 +187,12 @@ crate::record! {
         /// The other.
         second: Required<Box<MaterialUse>>,
         /// The other's share of the surface, from 0 to 1.
-        weight: Required<Share>,
-    }
+        weight: Optional<Share>,
+        /// Instead: an image of that share.
+        weight_image: Optional<NumberImageForm>,
+    } with [
+        Rule::OneOf(&["weight", "weight_image"]),
+    ]
 }
 
 crate::record! {
@@ -220,13 +236,14 @@ impl MaterialForm {
     }
 }
 
-/// The most materials that a blend may come down to: names can double them line by line.
-const MOST_PARTS: usize = 64;
+/// The most materials that a blend may come down to: names can double them line by line, and an image of roughness makes up to
+/// [`roughness::MOST_WIDTHS`].
+const MOST_PARTS: usize = 8 * roughness::MOST_WIDTHS;
 
 /// Materials that are no blends in a material.
 fn parts(kind: &MaterialKind) -> usize {
     match kind {
-        MaterialKind::Blend { first, second, .. } => parts(first) + parts(second),
+        MaterialKind::Blend { parts: several, .. } => several.iter().map(|(_, part)| parts(part)).sum(),
         _ => 1,
     }
 }
@@ -295,18 +312,24 @@ pub(crate) fn material<'f>(
             Some(MaterialKind::Mirror { reflectance })
         }
         MaterialForm::Conductor(conductor) => {
-            let index = complex_index(conductor, spectra.range_nm, reader);
-            let alpha = width(conductor.alpha.as_ref(), reader);
+            let metal = match &conductor.reflectance {
+                Optional::Given(reflectance) => {
+                    spectra.resolve_texture(reflectance, files, reader).map(Metal::Reflectance)
+                }
+                _ => complex_index(conductor, spectra.range_nm, reader).map(Metal::Index),
+            };
+            let roughness = roughness(conductor.alpha.as_ref(), &conductor.roughness_image, files, reader);
             let compensated = conductor.multiple_scattering? == MultipleScattering::Compensated;
-            Some(match (index?, alpha?) {
-                (index, 0.0) => MaterialKind::Conductor { index },
-                (index, alpha) => MaterialKind::RoughConductor { index, alpha, compensated },
-            })
+            let metal = metal?;
+            Some(roughness?.material(|alpha| match alpha {
+                0.0 => MaterialKind::Conductor { metal: metal.clone() },
+                alpha => MaterialKind::RoughConductor { metal: metal.clone(), alpha, compensated },
+            }))
         }
         MaterialForm::Dielectric(dielectric) => {
             let interior = dielectric.interior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let exterior = dielectric.exterior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
-            let alpha = width(dielectric.alpha.as_ref(), reader);
+            let alpha = roughness::width(dielectric.alpha.as_ref(), reader);
             let compensated = dielectric.multiple_scattering? == MultipleScattering::Compensated;
             let priority = dielectric.priority.clone().checked()?.map(|priority| priority.0 as u32);
             let absorption = absorption(dielectric, spectra, reader);
@@ -318,15 +341,20 @@ pub(crate) fn material<'f>(
             return Some(Made { kind, absorption: absorption? });
         }
         MaterialForm::OrenNayar(rough) => {
-            let reflectance = spectra.resolve(rough.reflectance.as_ref()?, Role::Reflectance, reader)?;
+            let reflectance = spectra.resolve_texture(rough.reflectance.as_ref()?, files, reader)?;
             Some(MaterialKind::OrenNayar { reflectance, roughness: rough.roughness?.0 })
         }
         MaterialForm::Plastic(plastic) => {
             let reflectance =
-                plastic.reflectance.as_ref().and_then(|form| spectra.resolve(form, Role::Reflectance, reader));
+                plastic.reflectance.as_ref().and_then(|form| spectra.resolve_texture(form, files, reader));
             let coat = plastic.coat.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
-            let alpha = width(plastic.alpha.as_ref(), reader);
-            Some(MaterialKind::Plastic { reflectance: reflectance?, coat: coat?, alpha: alpha? })
+            let roughness = roughness(plastic.alpha.as_ref(), &plastic.roughness_image, files, reader);
+            let (reflectance, coat) = (reflectance?, coat?);
+            Some(roughness?.material(|alpha| MaterialKind::Plastic {
+                reflectance: reflectance.clone(),
+                coat: coat.clone(),
+                alpha,
+            }))
         }
         MaterialForm::ThinDielectric(pane) => {
             let index = pane.index.as_ref().and_then(|form| index(form, spectra.range_nm, reader))?;
@@ -349,25 +377,30 @@ pub(crate) fn material<'f>(
                 MaterialUse::Named(name) => before.find(name, reader),
             };
             let (first, second) = (part(&blend.first), part(&blend.second));
-            let (first, second) = (first?, second?);
+            let by = match (&blend.weight, &blend.weight_image) {
+                (Optional::Given(weight), _) => Some(NumberTexture::Uniform(weight.0)),
+                (_, Optional::Given(image)) => number_image(image, files, reader).map(NumberTexture::Image),
+                _ => None,
+            };
+            let (first, second, by) = (first?, second?, by?);
             if first.absorption.is_some() || second.absorption.is_some() {
                 let message = "a part of a blend bounds no medium: its dielectric cannot absorb";
                 reader.error_hint(Code::KeyConflict, blend.at.head(), message, "let the dielectric stand alone");
                 return None;
             }
-            let [first, second] = [first.kind, second.kind].map(Box::new);
+            let (first, second) = (first.kind, second.kind);
             if [&first, &second].iter().any(|part| part.solid().is_some()) {
                 let message = "a part of a blend bounds no solid: its dielectric cannot have a priority";
                 reader.error_hint(Code::KeyConflict, blend.at.head(), message, "say its exterior instead");
                 return None;
             }
-            if [&first, &second].iter().any(|part| matches!(***part, MaterialKind::PolarisingSheet { .. })) {
+            if [&first, &second].iter().any(|part| matches!(part, MaterialKind::PolarisingSheet { .. })) {
                 let message = "a part of a blend has no axis of its own: it cannot be a polariser or a retarder";
                 let hint = "give the sheet an object of its own, perhaps with an \"opacity\"";
                 reader.error_hint(Code::KeyConflict, blend.at.head(), message, hint);
                 return None;
             }
-            let kind = MaterialKind::Blend { first, second, weight: blend.weight?.0 };
+            let kind = MaterialKind::blend(first, second, by);
             let count = parts(&kind);
             if count > MOST_PARTS {
                 let message = format!("a blend of {count} materials, blends in blends counted");
@@ -398,15 +431,4 @@ fn absorption<'f>(
         }
         _ => None,
     }
-}
-
-/// A width of facets that can be rendered.
-fn width(alpha: Option<&Spanned<Alpha>>, reader: &mut Reader<'_>) -> Option<f64> {
-    let (alpha, at) = alpha.map(|alpha| (alpha.value.0, alpha.at))?;
-    if alpha > 0.0 && alpha < LEAST_ALPHA {
-        let message = format!("a width of {alpha} is narrower than {LEAST_ALPHA}, the least that is rendered");
-        reader.error_hint(Code::OutOfRange, at, message, "0 is smooth");
-        return None;
-    }
-    Some(alpha)
 }

@@ -12,10 +12,7 @@ use super::gltf::resource;
 use super::{Builder, light, reflectance};
 use crate::model::LEAST_ALPHA;
 use crate::texture::{Encoding, Image};
-use etalon_optics::spectrum::RgbBasis;
 
-/// The brightest metal: an index of refraction alone never reflects all.
-const BRIGHTEST: f64 = 0.999;
 /// The least share of light that a medium of an imported model lets through.
 const LEAST_TRANSMITTANCE: f64 = 1e-4;
 /// Wavelengths of the hydrogen lines F and C and the helium line d, µm, at which dispersion is stated.
@@ -57,8 +54,7 @@ impl Materials {
         self.alpha_counts = material.alpha_mode() != AlphaMode::Opaque;
         let (value, mut uv_set) = self.value(material, &place, buffers, builder);
         let detail = self.detail(material, &place, &mut uv_set, buffers, builder);
-        let has_image = value["reflectance"]["type"] == "image"
-            || ["opacity_image", "normal_map"].iter().any(|key| detail.contains_key(*key));
+        let has_image = uv_set.is_some();
         let uv_set = uv_set.unwrap_or(0);
         let name = builder.material_name(material.name().unwrap_or_default());
         builder.materials.insert(name.clone(), value);
@@ -79,14 +75,7 @@ impl Materials {
         list_unhonoured(material, place, builder);
         let [r, g, b, _] = surface.base_color_factor().map(decimal);
         let base = [r, g, b].map(|v| v.clamp(0.0, 1.0));
-        let (mut metallic, mut roughness) = (surface.metallic_factor(), surface.roughness_factor());
-        if let Some(info) = surface.metallic_roughness_texture() {
-            let at = format!("{place}.pbrMetallicRoughness.metallicRoughnessTexture");
-            builder.leave_out(at, "every place has the mean of the image");
-            if let Some([_, green, blue]) = linear_mean(&info.texture(), buffers, builder) {
-                (roughness, metallic) = (roughness * green as f32, metallic * blue as f32);
-            }
-        }
+        let (metallic, mut roughness) = (surface.metallic_factor(), surface.roughness_factor());
         if let Some(transmission) = material.transmission()
             && transmission.transmission_factor() >= 0.5
         {
@@ -96,6 +85,13 @@ impl Materials {
             }
             if base != [1.0; 3] || surface.base_color_texture().is_some() {
                 builder.leave_out(format!("{place}.pbrMetallicRoughness"), "clear glass has no base colour");
+            }
+            if let Some(info) = surface.metallic_roughness_texture() {
+                let at = format!("{place}.pbrMetallicRoughness.metallicRoughnessTexture");
+                builder.leave_out(at, "glass has the mean of the image everywhere");
+                if let Some(image) = linear(&info.texture(), buffers, builder) {
+                    roughness *= image.mean()[1] as f32;
+                }
             }
             let interior = index(material, place, builder);
             let mut glass = json!({ "type": "dielectric", "interior": interior, "alpha": alpha(roughness) });
@@ -111,30 +107,57 @@ impl Materials {
             return (glass, None);
         }
         let at = format!("{place}.pbrMetallicRoughness");
-        if metallic >= 0.5 {
-            if metallic < 1.0 {
-                builder.leave_out(&at, format!("metal by a share of {metallic} is taken for metal"));
-            }
-            let mut colour = base;
-            if let Some(info) = surface.base_color_texture() {
-                builder.leave_out(format!("{at}.baseColorTexture"), "metal has the mean of the image everywhere");
-                let mean = self.source(&info.texture(), &at, buffers, builder).map_or([1.0; 3], |(_, mean)| mean);
-                colour = std::array::from_fn(|c| base[c] * mean[c]);
-            }
-            return (metal(colour, alpha(roughness)), None);
-        }
-        builder.leave_out(&at, "it is taken for diffuse, without the reflection at its surface");
         let texture = surface.base_color_texture();
         let image = texture.and_then(|info| self.image(&info, &format!("{at}.baseColorTexture"), buffers, builder));
-        match image {
+        let (colour, mut uv_set) = match image {
             Some((mut image, set)) => {
                 if base != [1.0; 3] {
                     image["factor"] = json!(base);
                 }
-                (json!({ "type": "lambert", "reflectance": image }), Some(set))
+                (image, Some(set))
             }
-            None => (json!({ "type": "lambert", "reflectance": reflectance(base) }), None),
+            None => (reflectance(base), None),
+        };
+        let numbers = surface.metallic_roughness_texture().and_then(|info| {
+            let at = format!("{at}.metallicRoughnessTexture");
+            let (image, set) = self.image(&info, &at, buffers, builder)?;
+            let texels = linear(&info.texture(), buffers, builder)?;
+            if *uv_set.get_or_insert(set) != set {
+                builder.leave_out(
+                    at,
+                    "it uses another set of texture coordinates than the colour, and counts by its mean",
+                );
+                return Some((None, texels));
+            }
+            Some((Some(data_image(image)), texels))
+        });
+        let part = |kind: &str, roughness: &Number| {
+            let mut part = json!({ "type": kind, "reflectance": colour });
+            match roughness {
+                Number::Value(roughness) => part["alpha"] = json!(alpha(*roughness as f32)),
+                Number::Image(image) => part["roughness_image"] = image.clone(),
+            }
+            part
+        };
+        let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
+        let mut ground = part("plastic", &roughness);
+        ground["coat"] = index(material, place, builder);
+        if material.specular().is_some_and(|specular| specular.specular_factor() == 0.0) || ground["coat"] == json!(1.0)
+        {
+            ground = json!({ "type": "lambert", "reflectance": colour });
         }
+        let value = match Number::new(decimal(metallic), "blue", numbers.as_ref()) {
+            Number::Value(0.0) => ground,
+            Number::Value(1.0) => part("conductor", &roughness),
+            Number::Value(share) => {
+                json!({ "type": "blend", "first": ground, "second": part("conductor", &roughness), "weight": share })
+            }
+            Number::Image(image) => {
+                let second = part("conductor", &roughness);
+                json!({ "type": "blend", "first": ground, "second": second, "weight_image": image })
+            }
+        };
+        (value, uv_set)
     }
 
     /// Opacity and normals, which are the objects' in the format. All images of a material share one set of texture
@@ -341,13 +364,43 @@ fn data_image(mut image: Value) -> Value {
     image
 }
 
-/// The mean of a texture's texels as numbers; `None` if it cannot be read, which is said where it is drawn.
-fn linear_mean(texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], builder: &Builder<'_>) -> Option<[f64; 3]> {
+/// A number of a material.
+enum Number {
+    Value(f64),
+    Image(Value),
+}
+
+impl Number {
+    /// A factor on a channel of an image, if there is one: an image, where the channel varies and can be laid.
+    fn new(factor: f64, channel: &str, numbers: Option<&(Option<Value>, Image)>) -> Self {
+        let factor = factor.clamp(0.0, 1.0);
+        let Some((laid, image)) = numbers else { return Self::Value(factor) };
+        let c = if channel == "green" { 1 } else { 2 };
+        let [least, most] = image
+            .linear_texels()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], texel| [least.min(texel[c]), most.max(texel[c])]);
+        match laid {
+            _ if least == most => Self::Value(factor * least.clamp(0.0, 1.0)),
+            None => Self::Value(factor * image.mean()[c].clamp(0.0, 1.0)),
+            Some(laid) => {
+                let mut laid = laid.clone();
+                laid["channel"] = json!(channel);
+                if factor != 1.0 {
+                    laid["factor"] = json!(factor);
+                }
+                Self::Image(laid)
+            }
+        }
+    }
+}
+
+/// A texture's texels as numbers; `None` if it cannot be read, which is said where it is drawn.
+fn linear(texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], builder: &Builder<'_>) -> Option<Image> {
     let bytes = match texture.source()?.source() {
         Source::View { view, .. } => bytes_of(&view, buffers)?.to_vec(),
         Source::Uri { uri, .. } => resource(uri, builder).ok()?,
     };
-    Image::decode(&bytes, Encoding::Linear).ok().map(|(image, _)| image.mean())
+    Image::decode(&bytes, Encoding::Linear).ok().map(|(image, _)| image)
 }
 
 /// A number as the file writes it, which single precision has rounded.
@@ -360,21 +413,6 @@ fn decimal(value: f32) -> f64 {
 fn alpha(roughness: f32) -> f64 {
     let alpha = decimal(roughness).clamp(0.0, 1.0).powi(2);
     if alpha < LEAST_ALPHA { 0.0 } else { alpha }
-}
-
-/// Metal that reflects a colour head-on: the index n = (1 + √R)/(1 − √R) at each wavelength, without absorption, does.
-fn metal(rgb: [f64; 3], alpha: f64) -> Value {
-    let wavelengths: Vec<u32> = (360..=830).step_by(10).collect();
-    let basis = RgbBasis::get();
-    let index = |nm: &u32| {
-        let root = basis.reflectance(rgb, f64::from(*nm)).clamp(0.0, BRIGHTEST).sqrt();
-        (1.0 + root) / (1.0 - root)
-    };
-    let n: Vec<f64> = wavelengths.iter().map(index).collect();
-    let k = vec![0.0; n.len()];
-    json!({
-        "type": "conductor", "wavelengths_nm": wavelengths, "n": n, "k": k, "alpha": alpha, "outside_fit": "clamp"
-    })
 }
 
 /// The index of refraction: a number, or Cauchy's formula where the dispersion is stated.
@@ -403,7 +441,13 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
     let no = "it is not honoured";
     list(material.occlusion_texture().is_some(), "occlusionTexture", "it is not needed: shadows are traced");
     list(material.unlit(), "extensions.KHR_materials_unlit", "it is lit like any other");
-    list(material.specular().is_some(), "extensions.KHR_materials_specular", no);
+    let specular = material.specular().is_some_and(|specular| {
+        ![0.0, 1.0].contains(&specular.specular_factor())
+            || specular.specular_texture().is_some()
+            || specular.specular_color_factor() != [1.0; 3]
+            || specular.specular_color_texture().is_some()
+    });
+    list(specular, "extensions.KHR_materials_specular", "only a factor of 0 or 1 is honoured");
     let opaque = material.transmission().is_none_or(|transmission| transmission.transmission_factor() < 0.5);
     let coloured = material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite());
     list(coloured && opaque, "extensions.KHR_materials_volume", "it is not transmitting: nothing is absorbed inside");

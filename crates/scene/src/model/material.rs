@@ -30,10 +30,10 @@ pub enum MaterialKind {
         /// Reflectance, in [0, 1] at every wavelength, at every angle.
         reflectance: SpectrumTexture,
     },
-    /// Smooth metal: Fresnel reflection from a complex index of refraction, seen from vacuum.
+    /// Smooth metal: Fresnel reflection, seen from vacuum.
     Conductor {
-        /// n + ik.
-        index: ComplexIndex,
+        /// Its index.
+        metal: Metal,
     },
     /// Smooth interface between two transparent media.
     Dielectric {
@@ -47,8 +47,8 @@ pub enum MaterialKind {
     },
     /// Rough metal, seen from vacuum.
     RoughConductor {
-        /// n + ik.
-        index: ComplexIndex,
+        /// Its index.
+        metal: Metal,
         /// Width of the GGX distribution of facets, in [[`LEAST_ALPHA`], 1].
         alpha: f64,
         /// Whether light that meets several facets is counted.
@@ -70,14 +70,14 @@ pub enum MaterialKind {
     /// Rough diffuse reflection on both sides (EON).
     OrenNayar {
         /// Albedo parameter, in [0, 1] at every wavelength.
-        reflectance: Spectrum,
+        reflectance: SpectrumTexture,
         /// Roughness, in [0, 1].
         roughness: f64,
     },
     /// A diffuse ground under a clear coat, on both sides, seen from vacuum.
     Plastic {
         /// Albedo of the ground, in [0, 1] at every wavelength.
-        reflectance: Spectrum,
+        reflectance: SpectrumTexture,
         /// Index of the coat.
         coat: RefractiveIndex,
         /// Width of the coat's facets: 0 (smooth) or in [[`LEAST_ALPHA`], 1].
@@ -95,17 +95,37 @@ pub enum MaterialKind {
         /// What it does.
         sheet: PolarisingSheet,
     },
-    /// Two materials side by side, finer than can be seen.
+    /// Materials side by side, finer than can be seen: everywhere the two between whose places a number lies, in linear
+    /// proportion; the first below its place, the last above.
     Blend {
-        /// The one.
-        first: Box<MaterialKind>,
-        /// The other.
-        second: Box<MaterialKind>,
-        /// The other's share of the surface, in [0, 1].
-        weight: f64,
+        /// At least two, each with the number at which it stands alone, increasing.
+        parts: Vec<(f64, MaterialKind)>,
+        /// The number.
+        by: NumberTexture,
     },
     /// Reflects nothing (an emitter that is only a light, an absorber).
     Black,
+}
+
+/// What a metal reflects.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Metal {
+    /// n + ik.
+    Index(ComplexIndex),
+    /// What it reflects head-on, R: it has the index n = (1 + √R)/(1 − √R) that does, without absorption.
+    Reflectance(SpectrumTexture),
+}
+
+impl Metal {
+    /// The most that a metal of a given reflectance returns head-on: an index of refraction alone never reflects all.
+    pub const MOST_REFLECTANCE: f64 = 0.999;
+
+    /// The index that reflects a share in [0, 1] of light head-on, at most [`Metal::MOST_REFLECTANCE`].
+    #[inline]
+    pub fn index_of(reflectance: f64) -> f64 {
+        let root = reflectance.clamp(0.0, Self::MOST_REFLECTANCE).sqrt();
+        (1.0 + root) / (1.0 - root)
+    }
 }
 
 /// What a sheet does to light that swings along its axis and across it.
@@ -137,41 +157,102 @@ impl MaterialKind {
         }
     }
 
-    /// The first image that varies it over a surface.
-    pub fn image(&self) -> Option<&ImageTexture> {
+    /// Two materials side by side, the second with the share `weight` of the surface.
+    pub fn blend(first: Self, second: Self, weight: impl Into<NumberTexture>) -> Self {
+        Self::Blend { parts: vec![(0.0, first), (1.0, second)], by: weight.into() }
+    }
+
+    /// The spectrum that may vary over a surface, if it has one.
+    fn texture(&self) -> Option<&SpectrumTexture> {
         match self {
-            Self::Lambert { reflectance } | Self::Mirror { reflectance } => reflectance.image(),
-            Self::Blend { first, second, .. } => first.image().or_else(|| second.image()),
-            Self::Conductor { .. }
+            Self::Lambert { reflectance }
+            | Self::Mirror { reflectance }
+            | Self::OrenNayar { reflectance, .. }
+            | Self::Plastic { reflectance, .. }
+            | Self::Conductor { metal: Metal::Reflectance(reflectance) }
+            | Self::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => Some(reflectance),
+            Self::Conductor { metal: Metal::Index(_) }
+            | Self::RoughConductor { metal: Metal::Index(_), .. }
             | Self::Dielectric { .. }
-            | Self::RoughConductor { .. }
             | Self::RoughDielectric { .. }
-            | Self::OrenNayar { .. }
-            | Self::Plastic { .. }
             | Self::ThinDielectric { .. }
             | Self::PolarisingSheet { .. }
+            | Self::Blend { .. }
             | Self::Black => None,
         }
     }
 
-    /// Changes every reflectance that may vary over a surface.
-    pub fn change_textures(&mut self, change: &dyn Fn(&mut SpectrumTexture)) {
+    /// The first image that varies it over a surface.
+    pub fn image(&self) -> Option<&ImageTexture> {
         match self {
-            Self::Lambert { reflectance } | Self::Mirror { reflectance } => change(reflectance),
-            Self::Blend { first, second, .. } => {
-                first.change_textures(change);
-                second.change_textures(change);
+            Self::Blend { parts, by } => parts.iter().find_map(|(_, part)| part.image()).or_else(|| by.image()),
+            kind => kind.texture()?.image(),
+        }
+    }
+
+    /// Replaces every image that varies something over a surface by one value, for spectra that of `mean` and for numbers the
+    /// mean of their texels.
+    pub fn flatten(&mut self, mean: &dyn Fn(&ImageTexture) -> Spectrum) {
+        match self {
+            Self::Lambert { reflectance }
+            | Self::Mirror { reflectance }
+            | Self::OrenNayar { reflectance, .. }
+            | Self::Plastic { reflectance, .. }
+            | Self::Conductor { metal: Metal::Reflectance(reflectance) }
+            | Self::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
+                if let Some(image) = reflectance.image() {
+                    *reflectance = mean(image).into();
+                }
             }
-            Self::Conductor { .. }
+            Self::Blend { parts, by } => {
+                parts.iter_mut().for_each(|(_, part)| part.flatten(mean));
+                if let NumberTexture::Image(image) = by {
+                    let [number, ..] = image.image.mean();
+                    *by = NumberTexture::Uniform(number * image.factor[0]);
+                }
+            }
+            Self::Conductor { metal: Metal::Index(_) }
+            | Self::RoughConductor { metal: Metal::Index(_), .. }
             | Self::Dielectric { .. }
-            | Self::RoughConductor { .. }
             | Self::RoughDielectric { .. }
-            | Self::OrenNayar { .. }
-            | Self::Plastic { .. }
             | Self::ThinDielectric { .. }
             | Self::PolarisingSheet { .. }
             | Self::Black => {}
         }
+    }
+}
+
+/// A number that may vary over a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NumberTexture {
+    /// The same everywhere.
+    Uniform(f64),
+    /// An image; its first channel counts.
+    Image(ImageTexture),
+}
+
+impl NumberTexture {
+    /// The number at texture coordinates.
+    #[inline]
+    pub fn eval(&self, uv: [f64; 2]) -> f64 {
+        match self {
+            Self::Uniform(number) => *number,
+            Self::Image(texture) => texture.eval(uv)[0],
+        }
+    }
+
+    /// Its image, if it has one.
+    pub fn image(&self) -> Option<&ImageTexture> {
+        match self {
+            Self::Uniform(_) => None,
+            Self::Image(texture) => Some(texture),
+        }
+    }
+}
+
+impl From<f64> for NumberTexture {
+    fn from(number: f64) -> Self {
+        Self::Uniform(number)
     }
 }
 

@@ -8,7 +8,9 @@
 
 use etalon_optics::{Real, Vec3};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::f64::consts::FRAC_1_PI;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// Nodes in µ, at (i/(NODES−1))²: dense towards grazing, where the loss changes fastest.
 pub(super) const NODES: usize = 65;
@@ -24,6 +26,30 @@ pub(crate) struct LossTable {
     rows: Vec<Row>,
     /// Cumulative share, up to each node, of loss·µ dµ, the mean over the rows: directions are drawn by it.
     cdf: [f64; NODES],
+}
+
+/// What a table of facets of a width α is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Tabulated {
+    /// What facets that reflect everything lose.
+    Mirrors,
+    /// What facets of a coat let in.
+    Coat,
+}
+
+/// A table that is a function of a width and a range of indices alone, made once: images of roughness ask for many, and the
+/// materials of a scene for the same ones.
+pub(crate) fn shared(of: Tabulated, alpha: f64, eta: [f64; 2], make: impl FnOnce() -> LossTable) -> Arc<LossTable> {
+    type Known = HashMap<(Tabulated, u64, [u64; 2]), Arc<LossTable>>;
+    static KNOWN: LazyLock<Mutex<Known>> = LazyLock::new(Mutex::default);
+    let key = (of, alpha.to_bits(), eta.map(f64::to_bits));
+    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(table) = known().get(&key) {
+        return Arc::clone(table);
+    }
+    // Not under the lock: making it hands work to threads that may ask for another.
+    let table = Arc::new(make());
+    Arc::clone(known().entry(key).or_insert(table))
 }
 
 #[derive(Clone, Debug)]

@@ -1,44 +1,60 @@
-//! Two materials side by side, finer than can be seen: f = (1 − w)·f₁ + w·f₂.
+//! Materials side by side, finer than can be seen: f = (1 − w)·f₁ + w·f₂ of the two between whose places a number lies.
 
 use super::{Bsdf, BsdfSample, Lobe, Shading};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{Lanes, Real, Vec3};
+use etalon_scene::NumberTexture;
 
-/// A mixture of two materials.
+/// A mixture of materials.
 #[derive(Clone, Debug)]
 pub struct Blend {
-    parts: Box<[Bsdf; 2]>,
-    weight: f64,
+    /// The numbers at which the parts stand alone, increasing.
+    places: Vec<f64>,
+    parts: Vec<Bsdf>,
+    by: NumberTexture,
+}
+
+/// Two neighbours among the parts, each with its share of the surface.
+#[derive(Clone, Copy)]
+struct Shares([(usize, f64); 2]);
+
+impl Shares {
+    /// The part that a number in [0, 1) chooses, and what is left of the number for the choices within it.
+    fn choose(self, u: f64) -> (usize, f64) {
+        let Self([(first, _), (second, share)]) = self;
+        let (part, rest) = match u < share {
+            true => (second, u / share),
+            false => (first, (u - share) / (1.0 - share)),
+        };
+        (part, rest.min(f64::ONE_MINUS_EPSILON))
+    }
 }
 
 impl Blend {
-    /// `first` and, with the share `weight` in [0, 1] of the surface, `second`.
-    pub fn new(first: Bsdf, second: Bsdf, weight: f64) -> Self {
-        Self { parts: Box::new([first, second]), weight }
+    /// Materials, at least two, each with the number at which it stands alone, increasing, mixed everywhere as `by` says.
+    pub fn new(parts: impl IntoIterator<Item = (f64, Bsdf)>, by: NumberTexture) -> Self {
+        let (places, parts) = parts.into_iter().unzip();
+        Self { places, parts, by }
     }
 
-    /// Whether either part scatters what arrives from a given direction.
+    /// What stands at texture coordinates.
+    fn shares(&self, uv: [f64; 2]) -> Shares {
+        let number = self.by.eval(uv);
+        let second = self.places.partition_point(|place| *place <= number).clamp(1, self.places.len() - 1);
+        let [from, to] = [self.places[second - 1], self.places[second]];
+        let share = ((number - from) / (to - from)).clamp(0.0, 1.0);
+        Shares([(second - 1, 1.0 - share), (second, share)])
+    }
+
+    /// Whether any part scatters what arrives from a given direction.
     pub(super) fn has_solid_angle_part(&self) -> bool {
         self.parts.iter().any(Bsdf::has_solid_angle_part)
     }
 
-    /// Whether what either part does depends on the medium that it stands in.
+    /// Whether what any part does depends on the medium that it stands in.
     pub(super) fn takes_medium(&self) -> bool {
         self.parts.iter().any(Bsdf::takes_medium)
-    }
-
-    fn shares(&self) -> [f64; 2] {
-        [1.0 - self.weight, self.weight]
-    }
-
-    /// The part that a number in [0, 1) chooses, and what is left of the number for the choices within it.
-    fn choose(&self, u: f64) -> (usize, f64) {
-        let (part, rest) = match u < self.weight {
-            true => (1, u / self.weight),
-            false => (0, (u - self.weight) / (1.0 - self.weight)),
-        };
-        (part, rest.min(f64::ONE_MINUS_EPSILON))
     }
 
     /// What it does to polarised light, in the frames of `x`: a delta is one part's own, else both parts count, each by what it
@@ -51,14 +67,15 @@ impl Blend {
         (wo, wi, x): (Vec3<f64>, Vec3<f64>, Vec3<f64>),
         lobe: Lobe,
     ) -> Option<[Matrix; N]> {
+        let shares = self.shares(at.uv);
         if let Lobe::Delta(u) = lobe {
-            let (part, rest) = self.choose(u);
+            let (part, rest) = shares.choose(u);
             return self.parts[part].mueller_around(lambda_nm, n, at, (wo, wi, x), Lobe::Delta(rest));
         }
-        let [first, second] = [0, 1].map(|i| {
+        let [first, second] = shares.0.map(|(i, share)| {
             let (f_cos, _) = self.parts[i].eval_around::<f64, N>(lambda_nm, n, at, wo, wi);
             let matrices = self.parts[i].mueller_around(lambda_nm, n, at, (wo, wi, x), lobe);
-            (f_cos * self.shares()[i], matrices.unwrap_or([mueller::DEPOLARISER; N]))
+            (f_cos * share, matrices.unwrap_or([mueller::DEPOLARISER; N]))
         });
         Some(std::array::from_fn(|lane| {
             mueller::mixed([&first, &second].map(|(f_cos, matrices)| (f_cos[lane], matrices[lane])))
@@ -79,8 +96,8 @@ impl Blend {
         wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         let mut sums = (Lanes::ZERO, Lanes::ZERO);
-        for (part, share) in self.parts.iter().zip(self.shares()) {
-            let (f_cos, density) = part.eval_around(lambda_nm, n, at, wo, wi);
+        for (part, share) in self.shares(at.uv).0 {
+            let (f_cos, density) = self.parts[part].eval_around(lambda_nm, n, at, wo, wi);
             let share = R::from_f64(share);
             sums = (sums.0 + f_cos * share, sums.1 + density * share);
         }
@@ -96,7 +113,7 @@ impl Blend {
         u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
         let [u_part, u1, u2] = u;
-        let (part, rest) = self.choose(u_part);
+        let (part, rest) = self.shares(at.uv).choose(u_part);
         let next = self.parts[part].sample_around(lambda_nm, n, at, wo, [rest, u1, u2])?;
         match next.density {
             // The part's share is in its value and in its probability.

@@ -2,49 +2,67 @@
 //! media are not tracked), s and p averaged.
 
 use super::BsdfSample;
+use super::metal::PathMetal;
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
-use etalon_optics::{ComplexIndex, Lanes, Real, Vec3, fresnel};
+use etalon_optics::{Lanes, Real, Vec3, fresnel};
 
 /// Smooth metal.
 #[derive(Clone, Debug)]
 pub struct Conductor {
-    index: ComplexIndex,
+    metal: PathMetal,
 }
 
 impl Conductor {
-    /// A metal of this refractive index.
-    pub fn new(index: ComplexIndex) -> Self {
-        Self { index }
+    /// A smooth surface of this metal.
+    pub fn new(metal: PathMetal) -> Self {
+        Self { metal }
     }
 
-    /// n and k relative to the medium in front of the metal.
-    fn relative_index(&self, wavelength_nm: f64, interface: Option<Interface<'_>>) -> (f64, f64) {
-        let (n, k) = self.index.eval(wavelength_nm);
-        let around = interface.map_or(1.0, |media| media.incident.eval(wavelength_nm));
-        (n / around, k / around)
+    /// n and k in every lane, relative to the medium in front of the metal.
+    fn relative_index<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        uv: [f64; 2],
+        interface: Option<Interface<'_>>,
+    ) -> [(f64, f64); N] {
+        let mut index = self.metal.lanes(lambda_nm, uv);
+        if let Some(media) = interface {
+            for ((n, k), nm) in index.iter_mut().zip(lambda_nm.0) {
+                let around = media.incident.eval(nm);
+                (*n, *k) = (*n / around, *k / around);
+            }
+        }
+        index
     }
 
     /// What reflection at the cosine `cos` does to polarised light.
-    pub(super) fn mueller(&self, wavelength_nm: f64, cos: f64, interface: Option<Interface<'_>>) -> Matrix {
-        let (n, k) = self.relative_index(wavelength_nm, interface);
-        mueller::conductor_reflection(cos, n, k)
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        uv: [f64; 2],
+        cos: f64,
+        interface: Option<Interface<'_>>,
+    ) -> [Matrix; N] {
+        self.relative_index(lambda_nm, uv, interface).map(|(n, k)| mueller::conductor_reflection(cos, n, k))
     }
 
     pub(super) fn sample<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         interface: Option<Interface<'_>>,
     ) -> Option<BsdfSample<R, N>> {
         // Rounding may carry the product of two unit vectors past 1.
         let cos_o = n.dot(wo).abs().min(1.0);
+        let index = self.relative_index(lambda_nm, uv, interface);
         Some(BsdfSample {
             wi: wo.reflected_about(n).renormalized(),
             weight: Lanes::from_fn(|lane| {
-                let (n, k) = self.relative_index(lambda_nm[lane], interface);
+                let (n, k) = index[lane];
                 R::from_f64(fresnel::conductor(cos_o, n, k).reflectance)
             }),
             density: Density::Delta,

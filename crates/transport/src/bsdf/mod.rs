@@ -10,6 +10,7 @@ mod blend;
 mod conductor;
 mod dielectric;
 mod lambert;
+mod metal;
 mod microfacet;
 mod mirror;
 mod mueller;
@@ -25,6 +26,7 @@ pub use blend::Blend;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use lambert::Lambert;
+pub use metal::PathMetal;
 pub use mirror::Mirror;
 pub use mueller::Lobe;
 pub use oren_nayar::OrenNayar;
@@ -37,7 +39,6 @@ pub use thin_dielectric::ThinDielectric;
 
 use crate::compiled;
 use crate::mis::Density;
-use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
 use etalon_optics::{Lanes, Real, Vec3};
 use etalon_scene::MaterialKind;
@@ -95,7 +96,7 @@ pub enum Bsdf {
     ThinDielectric(ThinDielectric),
     /// A polariser or a retarder.
     PolarisingSheet(PolarisingSheet),
-    /// A mixture of two.
+    /// A mixture of others.
     Blend(Blend),
     /// No scattering at all.
     Black,
@@ -109,30 +110,32 @@ impl Bsdf {
                 Self::Lambert(Lambert::new(PathTexture::new(reflectance, range_nm)))
             }
             MaterialKind::Mirror { reflectance } => Self::Mirror(Mirror::new(PathTexture::new(reflectance, range_nm))),
-            MaterialKind::Conductor { index } => Self::Conductor(Conductor::new(index.clone())),
+            MaterialKind::Conductor { metal } => Self::Conductor(Conductor::new(PathMetal::new(metal, range_nm))),
             MaterialKind::Dielectric { interior, exterior, .. } => {
                 Self::Dielectric(Dielectric::new(interior.clone(), exterior.clone()))
             }
-            MaterialKind::RoughConductor { index, alpha, compensated } => {
-                Self::RoughConductor(RoughConductor::new(index.clone(), *alpha, *compensated, range_nm))
+            MaterialKind::RoughConductor { metal, alpha, compensated } => {
+                let metal = PathMetal::new(metal, range_nm);
+                Self::RoughConductor(RoughConductor::new(metal, *alpha, *compensated, range_nm))
             }
             MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, .. } => {
                 let (interior, exterior) = (interior.clone(), exterior.clone());
                 Self::RoughDielectric(RoughDielectric::new(interior, exterior, *alpha, *compensated, range_nm))
             }
             MaterialKind::OrenNayar { reflectance, roughness } => {
-                Self::OrenNayar(OrenNayar::new(PathSpectrum::new(reflectance, range_nm), *roughness))
+                Self::OrenNayar(OrenNayar::new(PathTexture::new(reflectance, range_nm), *roughness))
             }
             MaterialKind::Plastic { reflectance, coat, alpha } => {
-                let reflectance = PathSpectrum::new(reflectance, range_nm);
+                let reflectance = PathTexture::new(reflectance, range_nm);
                 Self::Plastic(Plastic::new(reflectance, coat.clone(), *alpha, range_nm))
             }
             MaterialKind::ThinDielectric { index } => {
                 Self::ThinDielectric(ThinDielectric::new(index.clone(), range_nm))
             }
             MaterialKind::PolarisingSheet { sheet, .. } => Self::PolarisingSheet(PolarisingSheet::new(sheet, range_nm)),
-            MaterialKind::Blend { first, second, weight } => {
-                Self::Blend(Blend::new(Self::new(first, range_nm), Self::new(second, range_nm), *weight))
+            MaterialKind::Blend { parts, by } => {
+                let parts = parts.iter().map(|(place, part)| (*place, Self::new(part, range_nm)));
+                Self::Blend(Blend::new(parts, by.clone()))
             }
             MaterialKind::Black => Self::Black,
         }
@@ -200,10 +203,10 @@ impl Bsdf {
     ) -> (Lanes<R, N>, Lanes<R, N>) {
         match self {
             Self::Lambert(lambert) => lambert.eval(lambda_nm, n, at.uv, wo, wi),
-            Self::RoughConductor(metal) => metal.eval(lambda_nm, n, wo, wi),
+            Self::RoughConductor(metal) => metal.eval(lambda_nm, n, at.uv, wo, wi),
             Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, at.media(), wo, wi),
-            Self::OrenNayar(rough) => rough.eval(lambda_nm, n, wo, wi),
-            Self::Plastic(plastic) => plastic.eval(lambda_nm, n, wo, wi),
+            Self::OrenNayar(rough) => rough.eval(lambda_nm, n, at.uv, wo, wi),
+            Self::Plastic(plastic) => plastic.eval(lambda_nm, n, at.uv, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
             Self::Mirror(_)
             | Self::Conductor(_)
@@ -227,14 +230,16 @@ impl Bsdf {
         match self {
             Self::Lambert(lambert) => lambert.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
             Self::Mirror(mirror) if compiled::SPECULAR_CHAINS => mirror.sample(lambda_nm, n, at.uv, wo),
-            Self::Conductor(conductor) if compiled::SPECULAR_CHAINS => conductor.sample(lambda_nm, n, wo, at.media()),
+            Self::Conductor(conductor) if compiled::SPECULAR_CHAINS => {
+                conductor.sample(lambda_nm, n, at.uv, wo, at.media())
+            }
             Self::Dielectric(dielectric) if compiled::SPECULAR_CHAINS => {
                 dielectric.sample(lambda_nm, n, wo, u[0], at.media())
             }
-            Self::RoughConductor(metal) => metal.sample(lambda_nm, n, wo, u),
+            Self::RoughConductor(metal) => metal.sample(lambda_nm, n, at.uv, wo, u),
             Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at.media(), wo, u),
-            Self::OrenNayar(rough) => rough.sample(lambda_nm, n, wo, [u[1], u[2]]),
-            Self::Plastic(plastic) => plastic.sample(lambda_nm, n, wo, u),
+            Self::OrenNayar(rough) => rough.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
+            Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at.uv, wo, u),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, n, wo, u[0]),
             Self::PolarisingSheet(sheet) if compiled::SPECULAR_CHAINS => sheet.sample(lambda_nm, wo),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),

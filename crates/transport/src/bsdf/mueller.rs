@@ -72,7 +72,7 @@ impl Bsdf {
         let cos = n.dot(wo).abs().min(1.0);
         match self {
             Self::Mirror(_) => Some([mueller::MIRROR; N]),
-            Self::Conductor(metal) => Some(lambda_nm.0.map(|nm| metal.mueller(nm, cos, at.media()))),
+            Self::Conductor(metal) => Some(metal.mueller(lambda_nm, at.uv, cos, at.media())),
             Self::Dielectric(glass) => {
                 let side = (n.dot(wo) > 0.0, n.dot(wo) * n.dot(wi) > 0.0);
                 Some(lambda_nm.0.map(|nm| glass.mueller(nm, cos, side, at.media())))
@@ -82,10 +82,10 @@ impl Bsdf {
                 Some(lambda_nm.0.map(|nm| pane.mueller(nm, cos, reflects)))
             }
             Self::PolarisingSheet(sheet) => Some(lambda_nm.0.map(|nm| sheet.mueller(nm))),
-            Self::RoughConductor(metal) => metal.mueller(lambda_nm, n, wo, wi),
+            Self::RoughConductor(metal) => metal.mueller(lambda_nm, n, at.uv, wo, wi),
             Self::RoughDielectric(_) if lobe != Lobe::SolidAngle => Some([IDENTITY; N]),
             Self::RoughDielectric(glass) => glass.mueller(lambda_nm, n, at.media(), (wo, wi, x)),
-            Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, (wo, wi, x), lobe),
+            Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, at.uv, (wo, wi, x), lobe),
             Self::Blend(blend) => blend.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Lambert(_) | Self::OrenNayar(_) | Self::Black => None,
         }

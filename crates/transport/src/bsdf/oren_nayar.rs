@@ -8,7 +8,7 @@
 use super::BsdfSample;
 use super::albedo::LossTable;
 use super::microfacet::Facing;
-use crate::spectral::PathSpectrum;
+use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Lanes, Real, Vec3};
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -16,7 +16,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 /// Rough diffuse reflection.
 #[derive(Clone, Debug)]
 pub struct OrenNayar {
-    reflectance: PathSpectrum,
+    reflectance: PathTexture,
     roughness: f64,
     scale: f64,
     loss: Box<LossTable>,
@@ -24,7 +24,7 @@ pub struct OrenNayar {
 
 impl OrenNayar {
     /// A surface of this albedo parameter, and of a roughness in [0, 1].
-    pub fn new(reflectance: PathSpectrum, roughness: f64) -> Self {
+    pub fn new(reflectance: PathTexture, roughness: f64) -> Self {
         let scale = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * roughness);
         let loss = Box::new(LossTable::new([1.0, 1.0], 1e-5, |mu, _| 1.0 - albedo(roughness, scale, mu)));
         Self { reflectance, roughness, scale, loss }
@@ -34,6 +34,7 @@ impl OrenNayar {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
@@ -49,8 +50,9 @@ impl OrenNayar {
         let several =
             if mean_loss > 0.0 { self.loss.eval(wo.z, 1.0) * self.loss.eval(wi.z, 1.0) / mean_loss } else { 0.0 };
         let pdf = wi.z * FRAC_1_PI;
+        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, uv);
         let f_cos = Lanes::from_fn(|lane| {
-            let rho = self.reflectance.eval(lambda_nm[lane]);
+            let rho = reflectance[lane];
             let again = rho * rho * (1.0 - mean_loss) / (1.0 - rho * mean_loss);
             R::from_f64((rho * single + again * several) * pdf)
         });
@@ -61,11 +63,12 @@ impl OrenNayar {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         u: [f64; 2],
     ) -> Option<BsdfSample<R, N>> {
         let wi = Facing::new(n, wo)?.world(cosine_hemisphere(u));
-        let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
+        let (f_cos, density) = self.eval(lambda_nm, n, uv, wo, wi);
         BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
 }

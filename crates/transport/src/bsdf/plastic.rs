@@ -7,27 +7,30 @@
 //! rough one 1 − R of its facets, tabulated. Facets of the coat that hide each other pass their light to the ground.
 
 use super::BsdfSample;
-use super::albedo::LossTable;
+use super::albedo::{self, LossTable, Tabulated};
 use super::microfacet::{Facet, Facing, Ggx, mean_over_facets};
 use super::mueller::{Lobe, PolarisedLoss};
 use super::rough_dielectric::mean_transmittance;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
+use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel};
 use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
 
 /// A coated diffuse surface.
 #[derive(Clone, Debug)]
 pub struct Plastic {
-    reflectance: PathSpectrum,
+    reflectance: PathTexture,
     coat: RefractiveIndex,
     /// T_avg of the coat from outside.
     mean_transmittance: PathSpectrum,
     rough: Option<Box<Rough>>,
     /// Index of the coat by which the lobe is chosen, and the ground's share in it: every wavelength chooses alike.
     reference: f64,
+    /// (at the mean of an image).
     ground: f64,
 }
 
@@ -35,7 +38,7 @@ pub struct Plastic {
 struct Rough {
     ggx: Ggx,
     /// T(µ).
-    transmittance: LossTable,
+    transmittance: Arc<LossTable>,
     /// The least and the largest index.
     eta: [f64; 2],
     /// What the coat lets in of polarised light, where that is carried.
@@ -44,15 +47,17 @@ struct Rough {
 
 impl Plastic {
     /// A ground of albedo `reflectance` under a coat of index `coat`, smooth if `alpha` is 0.
-    pub fn new(reflectance: PathSpectrum, coat: RefractiveIndex, alpha: f64, range_nm: [f64; 2]) -> Self {
+    pub fn new(reflectance: PathTexture, coat: RefractiveIndex, alpha: f64, range_nm: [f64; 2]) -> Self {
         let [first, last] = range_nm;
         let steps = || (0..=64).map(move |i| first + (last - first) * f64::from(i) / 64.0);
         let rough = (alpha > 0.0).then(|| {
             let ggx = Ggx::new(alpha);
             let eta = steps().map(|nm| coat.eval(nm)).fold([f64::MAX, 0.0_f64], |e, n| [e[0].min(n), e[1].max(n)]);
             let reflected = |facet: f64, eta: f64| fresnel::dielectric(facet, eta).map_or(1.0, |f| f.reflectance);
-            let transmittance = LossTable::new(eta, 1e-3, |mu, eta| {
-                1.0 - mean_over_facets(&ggx, mu, |facet| reflected(facet.cos, eta) * facet.mirrored)
+            let transmittance = albedo::shared(Tabulated::Coat, alpha, eta, || {
+                LossTable::new(eta, 1e-3, |mu, eta| {
+                    1.0 - mean_over_facets(&ggx, mu, |facet| reflected(facet.cos, eta) * facet.mirrored)
+                })
             });
             Box::new(Rough { ggx, transmittance, eta, polarised: None })
         });
@@ -63,15 +68,17 @@ impl Plastic {
         let middle = 0.5 * (first + last);
         let mut plastic =
             Self { reference: coat.eval(middle), ground: 0.0, reflectance, coat, mean_transmittance, rough };
-        plastic.ground = steps().map(|nm| plastic.ground(nm) * plastic.mean_transmittance.eval(nm)).sum::<f64>() / 65.0;
+        let ground = |nm: f64| {
+            let rho = plastic.reflectance.mean(nm);
+            plastic.ground(nm, plastic.coat.eval(nm), rho) * plastic.mean_transmittance.eval(nm)
+        };
+        plastic.ground = steps().map(ground).sum::<f64>() / 65.0;
         plastic
     }
 
-    /// ρ/(n²(1 − ρ r_i)).
-    fn ground(&self, wavelength_nm: f64) -> f64 {
-        let n = self.coat.eval(wavelength_nm);
+    /// ρ/(n²(1 − ρ r_i)) of a coat of index `n`.
+    fn ground(&self, wavelength_nm: f64, n: f64, rho: f64) -> f64 {
         let inward = self.mean_transmittance.eval(wavelength_nm) / (n * n);
-        let rho = self.reflectance.eval(wavelength_nm);
         rho / (n * n * (1.0 - rho * (1.0 - inward)))
     }
 
@@ -98,6 +105,7 @@ impl Plastic {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        uv: [f64; 2],
         (wo, wi, x): (Vec3<f64>, Vec3<f64>, Vec3<f64>),
         lobe: Lobe,
     ) -> Option<[Matrix; N]> {
@@ -107,7 +115,9 @@ impl Plastic {
             return Some(lambda_nm.0.map(|nm| mueller::dielectric_reflection(local_o.z.min(1.0), self.coat.eval(nm))));
         }
         let facets = self.rough.as_ref().map(|rough| rough.ggx.reflection(local_o, local_i));
-        Some(lambda_nm.0.map(|nm| {
+        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, uv);
+        Some(std::array::from_fn(|lane| {
+            let nm = lambda_nm[lane];
             let index = self.coat.eval(nm);
             let coat = facets.as_ref().map_or((0.0, mueller::IDENTITY), |facets| {
                 let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
@@ -115,7 +125,7 @@ impl Plastic {
             });
             let [(t_o, a_o), (t_i, a_i)] =
                 [local_o.z, local_i.z].map(|mu| (self.transmittance(mu, index), self.diattenuation(mu, index)));
-            let ground = t_o * t_i * self.ground(nm) * FRAC_1_PI;
+            let ground = t_o * t_i * self.ground(nm, index, reflectance[lane]) * FRAC_1_PI;
             mueller::mixed([coat, (ground, super::mueller::forgotten(n, (wo, wi, x), a_o, a_i))])
         }))
     }
@@ -144,6 +154,7 @@ impl Plastic {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
@@ -155,10 +166,12 @@ impl Plastic {
         let share = self.coat_share(wo.z);
         let facets = self.rough.as_ref().map(|rough| rough.ggx.reflection(wo, wi));
         let diffuse = wi.z * FRAC_1_PI;
+        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, uv);
         let f_cos = Lanes::from_fn(|lane| {
             let nm = lambda_nm[lane];
             let index = self.coat.eval(nm);
-            let mut f = self.transmittance(wo.z, index) * self.transmittance(wi.z, index) * self.ground(nm) * diffuse;
+            let ground = self.ground(nm, index, reflectance[lane]);
+            let mut f = self.transmittance(wo.z, index) * self.transmittance(wi.z, index) * ground * diffuse;
             if let Some(facets) = &facets {
                 let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
                 f += reflectance * facets.term * wi.z;
@@ -176,6 +189,7 @@ impl Plastic {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
@@ -197,7 +211,7 @@ impl Plastic {
                 });
             }
         };
-        let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
+        let (f_cos, density) = self.eval(lambda_nm, n, uv, wo, wi);
         BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
 }

@@ -5,38 +5,40 @@
 //! which cannot escape. E is the albedo of the same facets if they reflected everything.
 
 use super::BsdfSample;
-use super::albedo::LossTable;
+use super::albedo::{self, LossTable, Tabulated};
+use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Facing, Ggx, gauss_rule, mean_over_facets};
 use crate::polarisation::mueller::{self, Matrix};
-use crate::spectral::PathSpectrum;
-use etalon_optics::{ComplexIndex, Lanes, Real, Vec3, fresnel};
+use etalon_optics::{Lanes, Real, Vec3, fresnel};
 use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
 
 /// Rough metal.
 #[derive(Clone, Debug)]
 pub struct RoughConductor {
-    index: ComplexIndex,
+    metal: PathMetal,
     ggx: Ggx,
     compensation: Option<Box<Compensation>>,
 }
 
 #[derive(Clone, Debug)]
 struct Compensation {
-    loss: LossTable,
+    loss: Arc<LossTable>,
     /// F_ms/(π(1 − E_avg)).
-    factor: PathSpectrum,
+    factor: OfMetal,
 }
 
 impl RoughConductor {
-    /// A metal of this index whose facets have the width `alpha`, with or without the light that meets several facets.
-    pub fn new(index: ComplexIndex, alpha: f64, compensated: bool, range_nm: [f64; 2]) -> Self {
+    /// A metal whose facets have the width `alpha`, with or without the light that meets several facets.
+    pub fn new(metal: PathMetal, alpha: f64, compensated: bool, range_nm: [f64; 2]) -> Self {
         let ggx = Ggx::new(alpha);
         let compensation = compensated.then(|| {
-            let loss = LossTable::new([1.0, 1.0], 1e-3, |mu, _| mean_over_facets(&ggx, mu, |f| 1.0 - f.mirrored));
+            let loss = albedo::shared(Tabulated::Mirrors, alpha, [1.0, 1.0], || {
+                LossTable::new([1.0, 1.0], 1e-3, |mu, _| mean_over_facets(&ggx, mu, |f| 1.0 - f.mirrored))
+            });
             let missing = loss.average(1.0);
             let rule = gauss_rule(24);
-            let factor = PathSpectrum::tabulate(range_nm, |nm| {
-                let (n, k) = index.eval(nm);
+            let factor = OfMetal::new(&metal, range_nm, |n, k| {
                 let mean: f64 =
                     rule.iter().map(|(mu, w)| 2.0 * w * mu * fresnel::conductor(*mu, n, k).reflectance).sum();
                 let several = mean * mean * (1.0 - missing) / (1.0 - mean * missing);
@@ -44,7 +46,7 @@ impl RoughConductor {
             });
             Box::new(Compensation { loss, factor })
         });
-        Self { index, ggx, compensation }
+        Self { metal, ggx, compensation }
     }
 
     fn loss(&self, mu: f64) -> f64 {
@@ -55,6 +57,7 @@ impl RoughConductor {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
@@ -66,11 +69,12 @@ impl RoughConductor {
         let single = self.ggx.reflection(wo, wi);
         let loss = self.loss(wo.z);
         let several = loss * self.loss(wi.z);
+        let index = self.metal.lanes(lambda_nm, uv);
         let f_cos = Lanes::from_fn(|lane| {
-            let (eta, k) = self.index.eval(lambda_nm[lane]);
+            let (eta, k) = index[lane];
             let mut f = fresnel::conductor(single.cos, eta, k).reflectance * single.term;
             if let Some(compensation) = &self.compensation {
-                f += several * compensation.factor.eval(lambda_nm[lane]);
+                f += several * compensation.factor.eval(lambda_nm[lane], eta);
             }
             R::from_f64(f * wi.z)
         });
@@ -84,6 +88,7 @@ impl RoughConductor {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> Option<[Matrix; N]> {
@@ -91,10 +96,11 @@ impl RoughConductor {
         let (wo, wi) = (facing.wo, facing.local(wi));
         let single = self.ggx.reflection(wo, wi);
         let several = self.loss(wo.z) * self.loss(wi.z);
-        Some(lambda_nm.0.map(|nm| {
-            let (eta, k) = self.index.eval(nm);
+        let index = self.metal.lanes(lambda_nm, uv);
+        Some(std::array::from_fn(|lane| {
+            let (eta, k) = index[lane];
             let facet = fresnel::conductor(single.cos, eta, k).reflectance * single.term;
-            let forgotten = self.compensation.as_ref().map_or(0.0, |c| several * c.factor.eval(nm));
+            let forgotten = self.compensation.as_ref().map_or(0.0, |c| several * c.factor.eval(lambda_nm[lane], eta));
             mueller::mixed([
                 (facet, mueller::conductor_reflection(single.cos, eta, k)),
                 (forgotten, mueller::DEPOLARISER),
@@ -106,6 +112,7 @@ impl RoughConductor {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         u: [f64; 3],
     ) -> Option<BsdfSample<R, N>> {
@@ -119,7 +126,7 @@ impl RoughConductor {
         };
         let wi = facing.world(wi);
         // Of the direction as it came out, rounding included: below the surface the light is lost.
-        let (f_cos, density) = self.eval(lambda_nm, n, wo, wi);
+        let (f_cos, density) = self.eval(lambda_nm, n, uv, wo, wi);
         BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
 }

@@ -23,8 +23,8 @@ fn refraction(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<f64> {
             let largest = steps(range_nm).map(ratio).map(|eta| eta.max(1.0 / eta)).fold(1.0, f64::max);
             (largest > 1.0).then_some(largest)
         }
-        MaterialKind::Blend { first, second, .. } => {
-            refraction(first, range_nm).into_iter().chain(refraction(second, range_nm)).reduce(f64::max)
+        MaterialKind::Blend { parts, .. } => {
+            parts.iter().filter_map(|(_, part)| refraction(part, range_nm)).reduce(f64::max)
         }
         // What a facet, a mirror or a pane does to a direction does not magnify its errors.
         MaterialKind::RoughDielectric { .. }

@@ -2,10 +2,11 @@
 
 use super::EffectName;
 use super::grey::{same_shape, steps};
+use crate::texture;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, fresnel};
 use etalon_scene::{
-    Filter, ImageTexture, Light, LightKind, LightSampling, Material, MaterialKind, Object, PolarisingSheet, Projection,
-    Scene, Shape, SpectrumTexture,
+    Filter, ImageTexture, Light, LightKind, LightSampling, Material, MaterialKind, Metal, Object, PolarisingSheet,
+    Projection, Scene, Shape, SpectrumTexture,
 };
 
 /// What calls for an effect (`Ok`), or why nothing does (`Err`).
@@ -104,35 +105,27 @@ fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
         | MaterialKind::ThinDielectric { .. }
         | MaterialKind::PolarisingSheet { .. }
         | MaterialKind::Black => None,
-        MaterialKind::Blend { first, second, .. } => {
-            dispersion(first, range_nm).or_else(|| dispersion(second, range_nm))
-        }
+        MaterialKind::Blend { parts, .. } => parts.iter().find_map(|(_, part)| dispersion(part, range_nm)),
     }
 }
 
 /// How the light that a material hands on depends on the wavelength, if it does.
 fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
     match kind {
-        MaterialKind::Lambert { reflectance } | MaterialKind::Mirror { reflectance } => {
-            let grey = reflectance.is_grey();
-            (!grey).then(|| match reflectance {
-                SpectrumTexture::Uniform(spectrum) => {
-                    format!("reflectance {}", spread(range_nm, |nm| spectrum.eval(nm)))
-                }
-                SpectrumTexture::Image(texture) => format!("colours of \"{}\"", texture.name),
-            })
+        MaterialKind::Lambert { reflectance }
+        | MaterialKind::Mirror { reflectance }
+        | MaterialKind::OrenNayar { reflectance, .. }
+        | MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
+        | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
+            colour_of_texture(reflectance, range_nm)
         }
-        MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
+        MaterialKind::Conductor { metal: Metal::Index(index) }
+        | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => {
             index.is_dispersive().then(|| metal_range(index, range_nm))
         }
         MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } => dispersion(kind, range_nm),
-        MaterialKind::OrenNayar { reflectance, .. } => {
-            (!reflectance.is_constant()).then(|| format!("reflectance {}", spread(range_nm, |nm| reflectance.eval(nm))))
-        }
-        MaterialKind::Plastic { reflectance, coat, .. } => match reflectance.is_constant() {
-            true => coat.is_dispersive().then(|| index_range(coat, range_nm)),
-            false => Some(format!("reflectance {}", spread(range_nm, |nm| reflectance.eval(nm)))),
-        },
+        MaterialKind::Plastic { reflectance, coat, .. } => colour_of_texture(reflectance, range_nm)
+            .or_else(|| coat.is_dispersive().then(|| index_range(coat, range_nm))),
         MaterialKind::ThinDielectric { index } => index.is_dispersive().then(|| index_range(index, range_nm)),
         MaterialKind::PolarisingSheet { sheet, .. } => match sheet {
             PolarisingSheet::Polariser { transmittance, .. } => (!transmittance.is_constant())
@@ -141,9 +134,17 @@ fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
                 format!("retardance in degrees {}", spread(range_nm, |nm| retardance_rad.to_degrees() * at_nm / nm))
             }),
         },
-        MaterialKind::Blend { first, second, .. } => colour(first, range_nm).or_else(|| colour(second, range_nm)),
+        MaterialKind::Blend { parts, .. } => parts.iter().find_map(|(_, part)| colour(part, range_nm)),
         MaterialKind::Black => None,
     }
+}
+
+/// How a reflectance depends on the wavelength, if it does.
+fn colour_of_texture(reflectance: &SpectrumTexture, range_nm: [f64; 2]) -> Option<String> {
+    (!reflectance.is_grey()).then(|| match reflectance {
+        SpectrumTexture::Uniform(spectrum) => format!("reflectance {}", spread(range_nm, |nm| spectrum.eval(nm))),
+        SpectrumTexture::Image(texture) => format!("colours of \"{}\"", texture.name),
+    })
 }
 
 /// What lets a part of the light pass an object, if something does.
@@ -186,7 +187,7 @@ fn specular(kind: &MaterialKind) -> Option<String> {
         MaterialKind::Dielectric { .. } => Some("a smooth interface of two media".to_owned()),
         MaterialKind::ThinDielectric { .. } => Some("a thin pane".to_owned()),
         MaterialKind::PolarisingSheet { sheet, .. } => Some(sheet_name(sheet).to_owned()),
-        MaterialKind::Blend { first, second, .. } => specular(first).or_else(|| specular(second)),
+        MaterialKind::Blend { parts, .. } => parts.iter().find_map(|(_, part)| specular(part)),
         MaterialKind::Lambert { .. }
         | MaterialKind::RoughConductor { .. }
         | MaterialKind::RoughDielectric { .. }
@@ -274,7 +275,12 @@ fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
         }
         MaterialKind::Plastic { coat, .. } => glass(coat.eval(middle(range_nm))),
         MaterialKind::ThinDielectric { index } => glass(index.eval(middle(range_nm))),
-        MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
+        MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
+        | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
+            glass(Metal::index_of(texture::mean(reflectance, middle(range_nm))))
+        }
+        MaterialKind::Conductor { metal: Metal::Index(index) }
+        | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => {
             let diattenuation = |nm: f64, cos: f64| {
                 let (n, k) = index.eval(nm);
                 let f = fresnel::conductor(cos, n, k);
@@ -287,8 +293,8 @@ fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
             let (share, degrees) = (most * most, cos.acos().to_degrees());
             Some((share, format!("up to {:.2} % after two reflections, at {degrees:.0}° and {nm} nm", 100.0 * share)))
         }
-        MaterialKind::Blend { first, second, .. } => {
-            let worst = [first, second].into_iter().filter_map(|part| polarises(part, range_nm));
+        MaterialKind::Blend { parts, .. } => {
+            let worst = parts.iter().filter_map(|(_, part)| polarises(part, range_nm));
             worst.reduce(|worst, other| if other.0 > worst.0 { other } else { worst })
         }
         // A mirror treats s and p alike; sheets call for polarisation themselves.
@@ -329,7 +335,7 @@ fn is_diffuse(kind: &MaterialKind) -> bool {
         MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Plastic { .. } => {
             true
         }
-        MaterialKind::Blend { first, second, .. } => is_diffuse(first) || is_diffuse(second),
+        MaterialKind::Blend { parts, .. } => parts.iter().any(|(_, part)| is_diffuse(part)),
         MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
         | MaterialKind::Dielectric { .. }

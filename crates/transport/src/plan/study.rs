@@ -6,8 +6,8 @@ use crate::texture;
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_scene::{
-    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Object, PolarisingSheet, Projection,
-    Scene, Shape, SpectrumTexture, Texels,
+    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Metal, Object, PolarisingSheet,
+    Projection, Scene, Shape, SpectrumTexture, Texels,
 };
 use std::sync::Arc;
 
@@ -167,13 +167,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         // Sheets do to unpolarised light what they do, and no more.
         EffectName::Polarisation => scene.film.stokes = false,
         EffectName::Textures => {
-            for material in &mut scene.materials {
-                material.kind.change_textures(&|reflectance| {
-                    if let Some(texture) = reflectance.image() {
-                        *reflectance = texture::mean(texture).into();
-                    }
-                });
-            }
+            scene.materials.iter_mut().for_each(|material| material.kind.flatten(&texture::mean_colour));
         }
         EffectName::ShadingNormals => {
             for object in objects_mut(scene) {
@@ -219,18 +213,17 @@ pub(super) fn lights_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Spectru
 /// Makes a material treat all wavelengths alike.
 fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
     match kind {
-        MaterialKind::Lambert { reflectance } | MaterialKind::Mirror { reflectance } => {
-            *reflectance = match reflectance {
-                SpectrumTexture::Uniform(spectrum) => grey(spectrum, range_nm).into(),
-                SpectrumTexture::Image(texture) => SpectrumTexture::Image(grey_image(texture)),
-            };
+        MaterialKind::Lambert { reflectance }
+        | MaterialKind::Mirror { reflectance }
+        | MaterialKind::OrenNayar { reflectance, .. }
+        | MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
+        | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
+            *reflectance = grey_texture(reflectance, range_nm);
         }
-        MaterialKind::OrenNayar { reflectance, .. } => *reflectance = grey(reflectance, range_nm),
-        MaterialKind::Conductor { index } | MaterialKind::RoughConductor { index, .. } => {
-            *index = grey_metal(index, range_nm);
-        }
+        MaterialKind::Conductor { metal: Metal::Index(index) }
+        | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => *index = grey_metal(index, range_nm),
         MaterialKind::Plastic { reflectance, coat, .. } => {
-            *reflectance = grey(reflectance, range_nm);
+            *reflectance = grey_texture(reflectance, range_nm);
             *coat = index_at_middle(coat, range_nm);
         }
         MaterialKind::ThinDielectric { index } => *index = index_at_middle(index, range_nm),
@@ -242,10 +235,7 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
                 }
             }
         },
-        MaterialKind::Blend { first, second, .. } => {
-            turn_grey(first, range_nm);
-            turn_grey(second, range_nm);
-        }
+        MaterialKind::Blend { parts, .. } => parts.iter_mut().for_each(|(_, part)| turn_grey(part, range_nm)),
         MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Black => {}
     }
 }
@@ -259,10 +249,7 @@ pub(super) fn fix_indices(kind: &mut MaterialKind, range_nm: [f64; 2]) {
                 *index = index_at_middle(index, range_nm);
             }
         }
-        MaterialKind::Blend { first, second, .. } => {
-            fix_indices(first, range_nm);
-            fix_indices(second, range_nm);
-        }
+        MaterialKind::Blend { parts, .. } => parts.iter_mut().for_each(|(_, part)| fix_indices(part, range_nm)),
         MaterialKind::Lambert { .. }
         | MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
@@ -283,10 +270,7 @@ fn blacken(kind: &mut MaterialKind) {
         | MaterialKind::Dielectric { .. }
         | MaterialKind::ThinDielectric { .. }
         | MaterialKind::PolarisingSheet { .. } => *kind = MaterialKind::Black,
-        MaterialKind::Blend { first, second, .. } => {
-            blacken(first);
-            blacken(second);
-        }
+        MaterialKind::Blend { parts, .. } => parts.iter_mut().for_each(|(_, part)| blacken(part)),
         MaterialKind::Lambert { .. }
         | MaterialKind::RoughConductor { .. }
         | MaterialKind::RoughDielectric { .. }
@@ -309,6 +293,13 @@ fn grey(spectrum: &Spectrum, range_nm: [f64; 2]) -> Spectrum {
     };
     let mean = mean(&|nm| colour_matching(nm)[1]).or_else(|| mean(&|_| 1.0)).unwrap_or(0.0);
     Spectrum::Constant(mean)
+}
+
+fn grey_texture(reflectance: &SpectrumTexture, range_nm: [f64; 2]) -> SpectrumTexture {
+    match reflectance {
+        SpectrumTexture::Uniform(spectrum) => grey(spectrum, range_nm).into(),
+        SpectrumTexture::Image(texture) => SpectrumTexture::Image(grey_image(texture)),
+    }
 }
 
 /// An image of the luminance of each texel.

@@ -79,13 +79,13 @@ crate::variants! {
 
 /// A built-in metal.
 #[derive(Clone, Debug)]
-pub(crate) struct Metal(ComplexIndex);
+pub(crate) struct NamedMetal(ComplexIndex);
 
 /// A built-in transparent medium.
 #[derive(Clone, Debug)]
 pub(crate) struct Glass(RefractiveIndex);
 
-impl Decode for Metal {
+impl Decode for NamedMetal {
     fn schema(_: &mut SchemaBuilder) -> SchemaValue {
         json!({ "enum": ComplexIndex::names().collect::<Vec<_>>() })
     }

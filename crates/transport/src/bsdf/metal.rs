@@ -1,0 +1,86 @@
+//! The index of a metal, prepared for paths.
+
+use crate::spectral::PathSpectrum;
+use crate::texture::PathTexture;
+use etalon_optics::{ComplexIndex, Lanes};
+use etalon_scene::Metal;
+
+/// n + ik of a metal relative to vacuum, perhaps another one at each place.
+#[derive(Clone, Debug)]
+pub enum PathMetal {
+    /// The same everywhere.
+    Index(ComplexIndex),
+    /// That which reflects such a share of light head-on, without absorption ([`Metal::index_of`]).
+    Reflectance(PathTexture),
+}
+
+impl PathMetal {
+    /// Prepares a metal for wavelengths within `range_nm`.
+    pub fn new(metal: &Metal, range_nm: [f64; 2]) -> Self {
+        match metal {
+            Metal::Index(index) => Self::Index(index.clone()),
+            Metal::Reflectance(reflectance) => Self::Reflectance(PathTexture::new(reflectance, range_nm)),
+        }
+    }
+
+    /// n and k in every lane at texture coordinates.
+    #[inline]
+    pub(super) fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> [(f64, f64); N] {
+        match self {
+            Self::Index(index) => lambda_nm.0.map(|nm| index.eval(nm)),
+            Self::Reflectance(reflectance) => {
+                reflectance.lanes::<f64, N>(lambda_nm, uv).0.map(|r| (Metal::index_of(r), 0.0))
+            }
+        }
+    }
+}
+
+impl From<ComplexIndex> for PathMetal {
+    fn from(index: ComplexIndex) -> Self {
+        Self::Index(index)
+    }
+}
+
+/// A smooth function of a metal's index, tabulated as the metal is.
+#[derive(Clone, Debug)]
+pub(super) enum OfMetal {
+    /// At each wavelength.
+    Spectrum(PathSpectrum),
+    /// Values at equal steps of √R from 0 to 1, and how much larger the next is.
+    Root(Vec<[f64; 2]>),
+}
+
+/// Steps of √R.
+const STEPS: usize = 256;
+
+impl OfMetal {
+    pub(super) fn new(metal: &PathMetal, range_nm: [f64; 2], function: impl Fn(f64, f64) -> f64) -> Self {
+        match metal {
+            PathMetal::Index(index) => Self::Spectrum(PathSpectrum::tabulate(range_nm, |nm| {
+                let (n, k) = index.eval(nm);
+                function(n, k)
+            })),
+            PathMetal::Reflectance(_) => {
+                let at = |i: usize| {
+                    let root = i as f64 / STEPS as f64;
+                    function(Metal::index_of(root * root), 0.0)
+                };
+                Self::Root((0..STEPS).map(|i| [at(i), at(i + 1) - at(i)]).collect())
+            }
+        }
+    }
+
+    /// The value for a metal of index `n` at a wavelength, nm.
+    #[inline]
+    pub(super) fn eval(&self, wavelength_nm: f64, n: f64) -> f64 {
+        match self {
+            Self::Spectrum(spectrum) => spectrum.eval(wavelength_nm),
+            Self::Root(steps) => {
+                let x = (n - 1.0) / (n + 1.0) * STEPS as f64;
+                let i = (x as usize).min(STEPS - 1);
+                let [value, step] = steps[i];
+                value + (x - i as f64) * step
+            }
+        }
+    }
+}
