@@ -103,12 +103,15 @@ fn clamp_to_box(query: &Query, bounds: Aabb, t: f64) -> f64 {
 /// Σ Uᵢzᵢ / ΣUᵢ is a mean of the zᵢ, so that it errs by up to 3·32uMe·(zmax − zmin)/det, and a parameter by up to
 /// 32uMe/det.
 #[inline]
-pub(crate) fn is_determined(magnitude: f64, extent: f64, depth: f64, t_det: f64, det: f64) -> bool {
-    const T: f64 = 96.0 * f64::UNIT_ROUNDOFF * (1_u64 << 30) as f64;
-    const W: f64 = 32.0 * f64::UNIT_ROUNDOFF * (1_u64 << 24) as f64;
+pub(super) fn is_determined(magnitude: f64, extent: f64, depth: f64, t_det: f64, det: f64) -> bool {
     let error = magnitude * extent;
-    error * depth * T <= t_det && error * W <= det
+    error * depth * T_DETERMINED <= t_det && error * W_DETERMINED <= det
 }
+
+/// See [`is_determined`].
+pub(crate) const T_DETERMINED: f64 = 96.0 * f64::UNIT_ROUNDOFF * (1_u64 << 30) as f64;
+/// See [`is_determined`].
+pub(crate) const W_DETERMINED: f64 = 32.0 * f64::UNIT_ROUNDOFF * (1_u64 << 24) as f64;
 
 /// The surface of a flat shape at the point of its plane nearest to `p`.
 ///

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::vector::Vector;
+use super::wide256::D8;
 use super::{Entered, Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
@@ -370,6 +371,7 @@ impl Filters for Avx2 {
     type Ray = Ray8;
     type Vector = F8;
     type Wide = F8;
+    type Eight = D8;
     type Four = D4;
 
     #[inline(always)]

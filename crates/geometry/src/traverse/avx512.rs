@@ -2,7 +2,7 @@
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::avx2::{Avx2, D4, F4, F8, prefetch};
-use super::wide512::F16;
+use super::wide512::{D8, F16};
 use super::{Entered, Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
@@ -88,6 +88,7 @@ impl Filters for Avx512 {
     type Ray = Ray16;
     type Vector = F8;
     type Wide = F16;
+    type Eight = D8;
     type Four = D4;
 
     #[inline(always)]

@@ -29,7 +29,7 @@ use crate::{Primitive, Triangle};
 use any::any_on;
 pub(crate) use any::occludes;
 use closest::closest_on;
-use flat::Wide;
+use flat::{Eight, Wide};
 pub(crate) use flat::{FLAT_LIMIT, Flat};
 use start::Start;
 use vector::Vector;
@@ -71,7 +71,11 @@ type Narrow<F> = <<F as Filters>::Four as Four>::Narrow;
 
 /// The filters of an instruction set.
 trait Filters:
-    Copy + Into<<Self::Vector as Vector>::Token> + Into<<Self::Four as Four>::Token> + Into<<Self::Wide as Wide>::Token>
+    Copy
+    + Into<<Self::Vector as Vector>::Token>
+    + Into<<Self::Four as Four>::Token>
+    + Into<<Self::Wide as Wide>::Token>
+    + Into<<Self::Eight as Eight>::Token>
 {
     /// The ray as the filter of nodes wants it.
     type Ray: Copy;
@@ -79,6 +83,8 @@ trait Filters:
     type Vector: Vector;
     /// Eight floats, or sixteen.
     type Wide: Wide;
+    /// Eight numbers.
+    type Eight: Eight;
     /// Four numbers.
     type Four: Four;
     /// Prepares a ray.

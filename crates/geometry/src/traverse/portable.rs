@@ -1,6 +1,6 @@
 //! The filters in plain Rust.
 
-use super::flat::{BLOCK, Wide};
+use super::flat::{BLOCK, PlainEight, Wide};
 use super::vector::Vector;
 use super::{Entered, Filters, Start, any_far_with, closest_far_with};
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
@@ -134,11 +134,6 @@ impl Wide for Floats {
     }
 
     #[inline(always)]
-    fn abs(self) -> Self {
-        Vector::abs(self)
-    }
-
-    #[inline(always)]
     fn sqrt(self) -> Self {
         Vector::sqrt(self)
     }
@@ -169,6 +164,16 @@ impl Wide for Floats {
     }
 
     #[inline(always)]
+    fn differs(self, o: Self) -> u32 {
+        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(self.0[i] != o.0[i]) << i)
+    }
+
+    #[inline(always)]
+    fn shares(self) -> [[f32; LANES]; 2] {
+        [self.0; 2]
+    }
+
+    #[inline(always)]
     fn or_else(self, mask: u32, other: Self) -> Self {
         Self(from_fn(|i| if mask >> i & 1 == 1 { self.0[i] } else { other.0[i] }))
     }
@@ -183,6 +188,7 @@ impl Filters for Portable {
     type Ray = BoxRay<Plain>;
     type Vector = Floats;
     type Wide = Floats;
+    type Eight = PlainEight;
     type Four = Plain4;
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::avx2::{Avx2, F8};
-use super::flat::{BLOCK, Wide};
+use super::flat::{BLOCK, EXPONENT, Eight, TURN, Wide};
 use super::vector::Vector;
 use crate::LANES;
 use std::arch::x86_64::*;
@@ -87,11 +87,6 @@ impl Wide for F8 {
     }
 
     #[inline(always)]
-    fn abs(self) -> Self {
-        Vector::abs(self)
-    }
-
-    #[inline(always)]
     fn sqrt(self) -> Self {
         Vector::sqrt(self)
     }
@@ -126,6 +121,16 @@ impl Wide for F8 {
     }
 
     #[inline(always)]
+    fn differs(self, o: Self) -> M8 {
+        M8(avx!(_mm256_cmp_ps::<_CMP_NEQ_OQ>(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn shares(self) -> [[f32; LANES]; 2] {
+        [self.to_array(); 2]
+    }
+
+    #[inline(always)]
     fn or_else(self, mask: M8, other: Self) -> Self {
         Self(avx!(_mm256_blendv_ps(other.0, self.0, mask.0)))
     }
@@ -133,5 +138,133 @@ impl Wide for F8 {
     #[inline(always)]
     fn bits(mask: M8) -> u32 {
         avx!(_mm256_movemask_ps(mask.0)) as u32
+    }
+}
+
+/// Eight numbers in two halves.
+#[derive(Clone, Copy)]
+pub(super) struct D8([__m256d; 2]);
+
+macro_rules! operator8 {
+    ($trait:ident, $f:ident, $instruction:ident) => {
+        impl std::ops::$trait for D8 {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, o: Self) -> Self {
+                Self(avx!([$instruction(self.0[0], o.0[0]), $instruction(self.0[1], o.0[1])]))
+            }
+        }
+    };
+}
+operator8!(Add, add, _mm256_add_pd);
+operator8!(Sub, sub, _mm256_sub_pd);
+operator8!(Mul, mul, _mm256_mul_pd);
+operator8!(Div, div, _mm256_div_pd);
+// Truths are numbers whose bits are all set, or none.
+operator8!(BitAnd, bitand, _mm256_and_pd);
+operator8!(BitOr, bitor, _mm256_or_pd);
+
+/// An instruction on both halves.
+macro_rules! halves {
+    ($v:expr, $half:ident => $instruction:expr) => {{
+        let [$half, second] = $v.0;
+        let first = avx!($instruction);
+        let $half = second;
+        D8([first, avx!($instruction)])
+    }};
+    ($v:expr, $o:expr, $half:ident, $other:ident => $instruction:expr) => {{
+        let ([$half, second], [$other, second_other]) = ($v.0, $o.0);
+        let first = avx!($instruction);
+        let ($half, $other) = (second, second_other);
+        D8([first, avx!($instruction)])
+    }};
+}
+
+impl Eight for D8 {
+    type Token = Avx2;
+    type Mask = Self;
+
+    #[inline(always)]
+    fn splat(_: Avx2, v: f64) -> Self {
+        Self([avx!(_mm256_set1_pd(v)); 2])
+    }
+
+    #[inline(always)]
+    fn new(_: Avx2, v: &[f64; LANES]) -> Self {
+        let (halves, _) = v.as_chunks::<4>();
+        Self(avx!([_mm256_loadu_pd(halves[0].as_ptr()), _mm256_loadu_pd(halves[1].as_ptr())]))
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        let mut out = [0.0; LANES];
+        let (halves, _) = out.as_chunks_mut::<4>();
+        for (half, v) in halves.iter_mut().zip(self.0) {
+            avx!(_mm256_storeu_pd(half.as_mut_ptr(), v));
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn narrowed(self) -> [f32; LANES] {
+        let mut out = [0.0; LANES];
+        let (halves, _) = out.as_chunks_mut::<4>();
+        for (half, v) in halves.iter_mut().zip(self.0) {
+            avx!(_mm_storeu_ps(half.as_mut_ptr(), _mm256_cvtpd_ps(v)));
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn gathered<const N: usize>(token: Avx2, table: &[f64; N], at: &[u32; LANES]) -> Self {
+        Self::new(token, &at.map(|i| table[i as usize % N]))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        halves!(self, v => _mm256_andnot_pd(_mm256_set1_pd(-0.0), v))
+    }
+
+    #[inline(always)]
+    fn negated(self) -> Self {
+        halves!(self, v => _mm256_xor_pd(_mm256_set1_pd(-0.0), v))
+    }
+
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        halves!(self, o, v, w => _mm256_max_pd(v, w))
+    }
+
+    #[inline(always)]
+    fn below(self, o: Self) -> Self {
+        halves!(self, o, v, w => _mm256_cmp_pd::<_CMP_LT_OQ>(v, w))
+    }
+
+    #[inline(always)]
+    fn at_most(self, o: Self) -> Self {
+        halves!(self, o, v, w => _mm256_cmp_pd::<_CMP_LE_OQ>(v, w))
+    }
+
+    #[inline(always)]
+    fn or_else(self, mask: Self, o: Self) -> Self {
+        let blend = |i: usize| avx!(_mm256_blendv_pd(o.0[i], self.0[i], mask.0[i]));
+        Self([blend(0), blend(1)])
+    }
+
+    #[inline(always)]
+    fn exponents(self) -> Self {
+        halves!(self, v => _mm256_and_pd(v, _mm256_castsi256_pd(_mm256_set1_epi64x(EXPONENT as i64))))
+    }
+
+    #[inline(always)]
+    fn inverse_powers(self) -> Self {
+        halves!(self, v => {
+            _mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(TURN as i64), _mm256_castpd_si256(v)))
+        })
+    }
+
+    #[inline(always)]
+    fn bits(mask: Self) -> u8 {
+        avx!(_mm256_movemask_pd(mask.0[0]) | _mm256_movemask_pd(mask.0[1]) << 4) as u8
     }
 }

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::avx512::Avx512;
-use super::flat::{BLOCK, Wide};
+use super::flat::{BLOCK, EXPONENT, Eight, TURN, Wide};
 use crate::LANES;
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
@@ -112,11 +112,6 @@ impl Wide for F16 {
     }
 
     #[inline(always)]
-    fn abs(self) -> Self {
-        Self(avx512!(_mm512_abs_ps(self.0)))
-    }
-
-    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(avx512!(_mm512_sqrt_ps(self.0)))
     }
@@ -147,6 +142,36 @@ impl Wide for F16 {
     }
 
     #[inline(always)]
+    fn differs(self, o: Self) -> M16 {
+        M16(avx512!(_mm512_cmp_ps_mask::<_CMP_NEQ_OQ>(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn below_where(self, mask: M16, o: Self) -> M16 {
+        M16(avx512!(_mm512_mask_cmp_ps_mask::<_CMP_LT_OQ>(mask.0, self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn at_most_where(self, mask: M16, o: Self) -> M16 {
+        M16(avx512!(_mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(mask.0, self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn min_where(self, mask: M16, o: Self) -> Self {
+        Self(avx512!(_mm512_mask_min_ps(self.0, mask.0, self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn shares(self) -> [[f32; LANES]; 2] {
+        let mut out = [[0.0; LANES]; 2];
+        avx512!({
+            let turn = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 1, 3, 5, 7, 9, 11, 13, 15);
+            _mm512_storeu_ps(out.as_mut_ptr().cast(), _mm512_permutexvar_ps(turn, self.0));
+        });
+        out
+    }
+
+    #[inline(always)]
     fn or_else(self, mask: M16, other: Self) -> Self {
         Self(avx512!(_mm512_mask_blend_ps(mask.0, other.0, self.0)))
     }
@@ -154,5 +179,142 @@ impl Wide for F16 {
     #[inline(always)]
     fn bits(mask: M16) -> u32 {
         u32::from(mask.0)
+    }
+}
+
+/// Eight numbers. They exist for a token alone.
+#[derive(Clone, Copy)]
+pub(super) struct D8(__m512d);
+
+/// Eight truths, a bit each.
+#[derive(Clone, Copy)]
+pub(super) struct Q8(__mmask8);
+
+macro_rules! operator8 {
+    ($trait:ident, $f:ident, $instruction:ident) => {
+        impl $trait for D8 {
+            type Output = Self;
+            #[inline(always)]
+            fn $f(self, o: Self) -> Self {
+                Self(avx512!($instruction(self.0, o.0)))
+            }
+        }
+    };
+}
+operator8!(Add, add, _mm512_add_pd);
+operator8!(Sub, sub, _mm512_sub_pd);
+operator8!(Mul, mul, _mm512_mul_pd);
+operator8!(Div, div, _mm512_div_pd);
+
+impl BitAnd for Q8 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, o: Self) -> Self {
+        Self(self.0 & o.0)
+    }
+}
+
+impl BitOr for Q8 {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, o: Self) -> Self {
+        Self(self.0 | o.0)
+    }
+}
+
+impl D8 {
+    #[inline(always)]
+    fn bits_of(self) -> __m512i {
+        avx512!(_mm512_castpd_si512(self.0))
+    }
+
+    #[inline(always)]
+    fn of_bits(bits: __m512i) -> Self {
+        Self(avx512!(_mm512_castsi512_pd(bits)))
+    }
+}
+
+impl Eight for D8 {
+    type Token = Avx512;
+    type Mask = Q8;
+
+    #[inline(always)]
+    fn splat(_: Avx512, v: f64) -> Self {
+        Self(avx512!(_mm512_set1_pd(v)))
+    }
+
+    #[inline(always)]
+    fn new(_: Avx512, v: &[f64; LANES]) -> Self {
+        Self(avx512!(_mm512_loadu_pd(v.as_ptr())))
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        let mut out = [0.0; LANES];
+        avx512!(_mm512_storeu_pd(out.as_mut_ptr(), self.0));
+        out
+    }
+
+    #[inline(always)]
+    fn narrowed(self) -> [f32; LANES] {
+        let mut out = [0.0; LANES];
+        avx512!(_mm256_storeu_ps(out.as_mut_ptr(), _mm512_cvtpd_ps(self.0)));
+        out
+    }
+
+    #[inline(always)]
+    fn gathered<const N: usize>(_: Avx512, table: &[f64; N], at: &[u32; LANES]) -> Self {
+        const { assert!(N.is_power_of_two() && N <= 1 << 20) };
+        let within = at.map(|i| i % N as u32);
+        // All indices are within the table.
+        Self(avx512!({
+            let index = _mm256_loadu_si256(within.as_ptr().cast());
+            _mm512_i32gather_pd::<8>(index, table.as_ptr())
+        }))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(avx512!(_mm512_abs_pd(self.0)))
+    }
+
+    #[inline(always)]
+    fn negated(self) -> Self {
+        Self(avx512!(_mm512_xor_pd(self.0, _mm512_set1_pd(-0.0))))
+    }
+
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        Self(avx512!(_mm512_max_pd(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn below(self, o: Self) -> Q8 {
+        Q8(avx512!(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn at_most(self, o: Self) -> Q8 {
+        Q8(avx512!(_mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, o.0)))
+    }
+
+    #[inline(always)]
+    fn or_else(self, mask: Q8, o: Self) -> Self {
+        Self(avx512!(_mm512_mask_blend_pd(mask.0, o.0, self.0)))
+    }
+
+    #[inline(always)]
+    fn exponents(self) -> Self {
+        Self::of_bits(avx512!(_mm512_and_si512(self.bits_of(), _mm512_set1_epi64(EXPONENT as i64))))
+    }
+
+    #[inline(always)]
+    fn inverse_powers(self) -> Self {
+        Self::of_bits(avx512!(_mm512_sub_epi64(_mm512_set1_epi64(TURN as i64), self.bits_of())))
+    }
+
+    #[inline(always)]
+    fn bits(mask: Q8) -> u8 {
+        mask.0
     }
 }

@@ -1,21 +1,64 @@
-//! Eight numbers, one for each of eight rays, in plain Rust: the compiler makes vectors of them in functions that are compiled for
-//! such.
+//! Eight numbers, one for each of eight rays, whatever the instruction set.
 
 use crate::LANES;
 use std::array::from_fn;
-use std::ops::{Add, Div, Mul, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
 /// Eight numbers.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(super) struct Eight(pub(super) [f64; LANES]);
+pub(in crate::traverse) trait Eight:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// The proof that the processor has the instructions.
+    type Token: Copy;
+    /// Eight truths.
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 
-/// Eight truths.
-pub(super) type Which = [bool; LANES];
+    fn splat(token: Self::Token, v: f64) -> Self;
+    fn new(token: Self::Token, v: &[f64; LANES]) -> Self;
+    fn to_array(self) -> [f64; LANES];
+    fn narrowed(self) -> [f32; LANES];
+    /// The numbers at eight places of a table, whose length is a power of two that bounds them.
+    fn gathered<const N: usize>(token: Self::Token, table: &[f64; N], at: &[u32; LANES]) -> Self;
+    fn abs(self) -> Self;
+    fn negated(self) -> Self;
+    /// The larger of each pair; the second if one is NaN.
+    fn max(self, o: Self) -> Self;
+    fn below(self, o: Self) -> Self::Mask;
+    fn at_most(self, o: Self) -> Self::Mask;
+    /// This where a mask is set, else another.
+    fn or_else(self, mask: Self::Mask, o: Self) -> Self;
+    /// The bits below in the exponents alone: the powers of two not above positive numbers.
+    fn exponents(self) -> Self;
+    /// One over each, of powers of two.
+    fn inverse_powers(self) -> Self;
+    /// One bit for each truth.
+    fn bits(mask: Self::Mask) -> u8;
+
+    /// The largest magnitude of three.
+    #[inline(always)]
+    fn largest([x, y, z]: [Self; 3]) -> Self {
+        x.abs().max(y.abs()).max(z.abs())
+    }
+
+    /// Three rows.
+    #[inline(always)]
+    fn rows(token: Self::Token, v: &[[f64; LANES]; 3]) -> [Self; 3] {
+        [Self::new(token, &v[0]), Self::new(token, &v[1]), Self::new(token, &v[2])]
+    }
+}
+
+/// Exponents' bits.
+pub(in crate::traverse) const EXPONENT: u64 = 0x7FF << 52;
+/// The sum of the bits of a power of two and of its inverse.
+pub(in crate::traverse) const TURN: u64 = 2046 << 52;
+
+/// [`Eight`] in plain Rust.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::traverse) struct PlainEight([f64; LANES]);
 
 macro_rules! operator {
     ($trait:ident, $f:ident, $operator:tt) => {
-        impl $trait for Eight {
+        impl $trait for PlainEight {
             type Output = Self;
             #[inline(always)]
             fn $f(self, o: Self) -> Self {
@@ -29,63 +72,77 @@ operator!(Sub, sub, -);
 operator!(Mul, mul, *);
 operator!(Div, div, /);
 
-impl Eight {
+impl Eight for PlainEight {
+    type Token = ();
+    type Mask = u8;
+
     #[inline(always)]
-    pub(super) fn splat(v: f64) -> Self {
+    fn splat((): (), v: f64) -> Self {
         Self([v; LANES])
     }
 
     #[inline(always)]
-    pub(super) fn abs(self) -> Self {
+    fn new((): (), v: &[f64; LANES]) -> Self {
+        Self(*v)
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn narrowed(self) -> [f32; LANES] {
+        self.0.map(|v| v as f32)
+    }
+
+    #[inline(always)]
+    fn gathered<const N: usize>((): (), table: &[f64; N], at: &[u32; LANES]) -> Self {
+        Self(at.map(|i| table[i as usize % N]))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
         Self(self.0.map(f64::abs))
     }
 
-    /// The larger of each pair; the second if one is NaN.
     #[inline(always)]
-    pub(super) fn max(self, o: Self) -> Self {
-        Self(from_fn(|i| if self.0[i] > o.0[i] { self.0[i] } else { o.0[i] }))
-    }
-
-    #[inline(always)]
-    pub(super) fn negated(self) -> Self {
+    fn negated(self) -> Self {
         Self(self.0.map(|v| -v))
     }
 
     #[inline(always)]
-    pub(super) fn below(self, o: Self) -> Which {
-        from_fn(|i| self.0[i] < o.0[i])
+    fn max(self, o: Self) -> Self {
+        Self(from_fn(|i| if self.0[i] > o.0[i] { self.0[i] } else { o.0[i] }))
     }
 
     #[inline(always)]
-    pub(super) fn at_most(self, o: Self) -> Which {
-        from_fn(|i| self.0[i] <= o.0[i])
-    }
-
-    /// This where a truth is, else another.
-    #[inline(always)]
-    pub(super) fn or_else(self, which: Which, o: Self) -> Self {
-        Self(from_fn(|i| if which[i] { self.0[i] } else { o.0[i] }))
-    }
-
-    /// The largest magnitude of three.
-    #[inline(always)]
-    pub(super) fn largest([x, y, z]: [Self; 3]) -> Self {
-        x.abs().max(y.abs()).max(z.abs())
+    fn below(self, o: Self) -> u8 {
+        (0..LANES).fold(0, |mask, i| mask | u8::from(self.0[i] < o.0[i]) << i)
     }
 
     #[inline(always)]
-    pub(super) fn narrowed(self) -> [f32; LANES] {
-        self.0.map(|v| v as f32)
+    fn at_most(self, o: Self) -> u8 {
+        (0..LANES).fold(0, |mask, i| mask | u8::from(self.0[i] <= o.0[i]) << i)
     }
-}
 
-#[inline(always)]
-pub(super) fn both(a: Which, b: Which) -> Which {
-    from_fn(|i| a[i] & b[i])
-}
+    #[inline(always)]
+    fn or_else(self, mask: u8, o: Self) -> Self {
+        Self(from_fn(|i| if mask >> i & 1 == 1 { self.0[i] } else { o.0[i] }))
+    }
 
-/// One bit for each.
-#[inline(always)]
-pub(super) fn bits(which: Which) -> u8 {
-    (0..LANES).fold(0, |mask, i| mask | u8::from(which[i]) << i)
+    #[inline(always)]
+    fn exponents(self) -> Self {
+        Self(self.0.map(|v| f64::from_bits(v.to_bits() & EXPONENT)))
+    }
+
+    #[inline(always)]
+    fn inverse_powers(self) -> Self {
+        Self(self.0.map(|v| f64::from_bits(TURN.wrapping_sub(v.to_bits()))))
+    }
+
+    #[inline(always)]
+    fn bits(mask: u8) -> u8 {
+        mask
+    }
 }

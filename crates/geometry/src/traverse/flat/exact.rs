@@ -2,46 +2,47 @@
 //! order.
 
 use super::FLAT_LIMIT;
-use super::eight::{Eight, Which, both};
-use crate::query::AXES;
-use crate::shapes::planar::is_determined;
+use super::eight::Eight;
+use crate::shapes::planar::{T_DETERMINED, W_DETERMINED};
 use crate::{LANES, Primitive};
 use std::array::from_fn;
 
 /// The corners of triangles, one row of coordinates for each.
 #[derive(Debug)]
-pub(super) struct Corners(Vec<[[f64; 4]; 4]>);
+pub(super) struct Corners(Vec<f64>);
 
 /// Eight rays as [`Query`](crate::query::Query) prepares them.
-pub(super) struct Eights {
-    /// An index into [`AXES`].
-    pub(super) axis: [usize; LANES],
-    /// Along the axes.
-    pub(super) start: [Eight; 3],
-    pub(super) shear: [Eight; 3],
-    pub(super) t_max: Eight,
+pub(super) struct Eights<E> {
+    /// The axis along which each direction is largest.
+    pub(super) axis: [u32; LANES],
+    /// Along the axes of the projection.
+    pub(super) start: [E; 3],
+    pub(super) shear: [E; 3],
+    pub(super) t_max: E,
 }
 
 /// What the test finds: whether it is certain, and a hit.
-pub(super) struct Decided {
-    pub(super) hit: Which,
-    pub(super) t: Eight,
-    pub(super) uv: [Eight; 2],
+pub(super) struct Decided<E: Eight> {
+    pub(super) hit: E::Mask,
+    pub(super) t: E,
+    pub(super) uv: [E; 2],
 }
+
+/// Numbers of a triangle: four for each corner.
+const ROW: usize = 16;
 
 impl Corners {
     pub(super) fn new(primitives: &[Primitive]) -> Self {
-        let corners = |p: &Primitive| match p {
-            Primitive::Triangle(t) => {
-                let [a, b, c] = t.vertices().map(|v| [v.x, v.y, v.z, 0.0]);
-                [a, b, c, [0.0; 4]]
+        // NaN hits nothing here.
+        let mut table = vec![f64::NAN; ROW * FLAT_LIMIT];
+        for (row, primitive) in table.chunks_mut(ROW).zip(primitives) {
+            if let Primitive::Triangle(t) = primitive {
+                for (corner, vertex) in row.chunks_mut(4).zip(t.vertices()) {
+                    corner[..3].copy_from_slice(&vertex.to_array());
+                }
             }
-            // NaN hits nothing here.
-            _ => [[f64::NAN; 4]; 4],
-        };
-        let mut rows: Vec<_> = primitives.iter().map(corners).collect();
-        rows.resize(FLAT_LIMIT, [[f64::NAN; 4]; 4]);
-        Self(rows)
+        }
+        Self(table)
     }
 
     pub(super) fn memory_bytes(&self) -> usize {
@@ -50,35 +51,35 @@ impl Corners {
 
     /// Tests the triangle of each ray.
     #[inline(always)]
-    pub(super) fn triangles(&self, rays: &Eights, ids: &[usize; LANES]) -> Decided {
-        let table: &[[[f64; 4]; 4]; FLAT_LIMIT] = self.0.as_slice().try_into().expect("a row for each id");
-        let corner = |i: usize| {
-            let along = |k: usize| {
-                Eight(from_fn(|l| table[ids[l] % FLAT_LIMIT][i][AXES[rays.axis[l] % AXES.len()][k] % 4]))
-                    - rays.start[k]
+    pub(super) fn triangles<E: Eight>(&self, token: E::Token, rays: &Eights<E>, ids: &[u32; LANES]) -> Decided<E> {
+        let table: &[f64; ROW * FLAT_LIMIT] = self.0.as_slice().try_into().expect("a row for each id");
+        let kz = rays.axis;
+        let kx = kz.map(|k| if k == 2 { 0 } else { k + 1 });
+        let ky = kz.map(|k| if k == 0 { 2 } else { k - 1 });
+        let corners: [([E; 3], E); 3] = [0, 4, 8].map(|corner| {
+            let along = |k: &[u32; LANES]| -> E {
+                E::gathered(token, table, &from_fn(|l| ids[l] * ROW as u32 + corner + k[l]))
             };
-            let r = [along(0), along(1), along(2)];
-            let projected = [r[0] - rays.shear[0] * r[2], r[1] - rays.shear[1] * r[2], r[2] * rays.shear[2]];
-            (projected, Eight::largest(r))
-        };
-        let ([ax, ay, za], ma) = corner(0);
-        let ([bx, by, zb], mb) = corner(1);
-        let ([cx, cy, zc], mc) = corner(2);
+            let (x, y, z) = (along(&kx) - rays.start[0], along(&ky) - rays.start[1], along(&kz) - rays.start[2]);
+            ([x - rays.shear[0] * z, y - rays.shear[1] * z, z * rays.shear[2]], E::largest([x, y, z]))
+        });
+        let [([ax, ay, za], ma), ([bx, by, zb], mb), ([cx, cy, zc], mc)] = corners;
         let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
         let det = (u + v) + w;
         let t_det = (u * za + v * zb) + w * zc;
         let t = t_det / det;
-        let extent = Eight::largest([ax, bx, cx]).max(Eight::largest([ay, by, cy]));
+        let extent = E::largest([ax, bx, cx]).max(E::largest([ay, by, cy]));
         let depth = za.max(zb).max(zc) + za.negated().max(zb.negated()).max(zc.negated());
         let magnitude = ma.max(mb).max(mc);
-        let zero = Eight::splat(0.0);
+        let zero = E::splat(token, 0.0);
         // Edges through the ray, as far as rounding tells, are for the test of one.
-        let above = both(both(zero.below(u), zero.below(v)), zero.below(w));
-        let below = both(both(u.below(zero), v.below(zero)), w.below(zero));
-        let inside: Which = from_fn(|l| above[l] | below[l]);
-        let determined =
-            from_fn(|l| is_determined(magnitude.0[l], extent.0[l], depth.0[l], t_det.0[l].abs(), det.0[l].abs()));
-        let in_range = both(zero.below(t), t.below(rays.t_max));
-        Decided { hit: both(both(inside, determined), in_range), t, uv: [v / det, w / det] }
+        let above = zero.below(u) & zero.below(v) & zero.below(w);
+        let below = u.below(zero) & v.below(zero) & w.below(zero);
+        // `planar::is_determined`.
+        let error = magnitude * extent;
+        let determined = (error * depth * E::splat(token, T_DETERMINED)).at_most(t_det.abs())
+            & (error * E::splat(token, W_DETERMINED)).at_most(det.abs());
+        let in_range = zero.below(t) & t.below(rays.t_max);
+        Decided { hit: (above | below) & determined & in_range, t, uv: [v / det, w / det] }
     }
 }

@@ -51,21 +51,20 @@ pub(super) struct Beams<V> {
 }
 
 impl<V: Wide> Beams<V> {
-    /// From what gives a vector for a place in a [`Beam`].
+    /// From a vector for each place in a [`Beam`].
     #[inline(always)]
-    pub(super) fn new(token: V::Token, of: impl Fn(usize) -> V) -> Self {
-        let three = |at: usize| [of(at), of(at + 1), of(at + 2)];
-        let reach = of(REACH);
+    pub(super) fn new(of: [V; size_of::<Beam>() / 4], token: V::Token) -> Self {
+        let reach = of[REACH];
         Self {
-            origin: three(ORIGIN),
-            direction: three(DIRECTION),
+            origin: [of[ORIGIN], of[ORIGIN + 1], of[ORIGIN + 2]],
+            direction: [of[DIRECTION], of[DIRECTION + 1], of[DIRECTION + 2]],
             reach,
             edge_error: reach * V::splat(token, 768.0 * U),
             t_error: reach * V::splat(token, 4.0 * U),
-            limit: of(LIMIT),
-            certain_limit: of(CERTAIN_LIMIT),
-            leaves: of(LEAVES),
-            aims_at: of(AIMS_AT),
+            limit: of[LIMIT],
+            certain_limit: of[CERTAIN_LIMIT],
+            leaves: of[LEAVES],
+            aims_at: of[AIMS_AT],
             zero: V::splat(token, 0.0),
             one: V::splat(token, 1.0),
         }
@@ -182,26 +181,22 @@ pub(super) fn flats<V: Wide>(beams: &Beams<V>, shape: &FlatsIn<V>) -> Known<V> {
     let along_a = dot(q, shape.minus_b).flipped(det);
     let along_b = dot(q, shape.a).flipped(det);
     let depth = dot(shape.normal, r).flipped(det);
-    let det = det.abs();
+    let det = det.flipped(det);
     let (less, more) = (along_a.min(along_b), along_a.max(along_b));
     // Of a triangle their sum is at most the whole, of a parallelogram the larger.
     let least = less.min(det - (more + less * shape.triangle));
     let error = beams.edge_error;
-    let within = (beams.zero - error).at_most(least) & !shape.id.equals(beams.leaves);
-    let inside = error.below(least) & within;
+    let zero = beams.zero;
+    let within = zero.at_most_where(shape.id.differs(beams.leaves), least + error);
     let known = shape.t_error.below(det);
     let inverse = beams.one / det;
     let t = depth * inverse;
-    let t_error = shape.t_error * beams.reach * inverse + beams.t_error;
+    let t_error = shape.t_error * inverse * beams.reach + beams.t_error;
     let (near, far) = (t - t_error, t + t_error);
-    let in_reach = beams.zero.at_most(far) & near.at_most(beams.limit);
-    let ahead = beams.zero.below(near) & far.below(beams.certain_limit);
-    Known {
-        met: within & (in_reach | !known),
-        certain: inside & known & ahead,
-        near: near.or_else(known, beams.zero),
-        far,
-    }
+    let in_reach = near.at_most_where(zero.at_most_where(within, far), beams.limit);
+    let inside = error.below_where(known & within, least);
+    let certain = far.below_where(zero.below_where(inside, near), beams.certain_limit);
+    Known { met: in_reach | (within & !known), certain, near: near.or_else(known, zero), far }
 }
 
 /// Spheres.

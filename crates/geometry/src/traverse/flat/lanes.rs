@@ -1,6 +1,6 @@
 //! Eight rays against each primitive in turn.
 
-use super::eight::{Eight, Which, bits, both};
+use super::eight::Eight;
 use super::exact::{Corners, Decided, Eights};
 use super::filter::*;
 use super::{BLOCK, FLAT_LIMIT, FURTHEST, Flat, MOST_REACH, NO_ID, SLACK, Wide};
@@ -28,81 +28,93 @@ pub(super) struct Any<'a> {
 }
 
 /// Eight rays with their directions scaled by powers of two, as [`Query`] does it.
-struct Prepared {
-    direction: [Eight; 3],
+struct Prepared<E: Eight> {
+    origin: [E; 3],
+    direction: [E; 3],
     /// Powers of two.
-    scale: Eight,
-    t_max: Eight,
+    scale: E,
+    t_max: E,
     /// Where x, and where else y, is the largest component of the direction.
-    along: [Which; 2],
+    along: [E::Mask; 2],
     /// Rows of what a [`Beam`] holds.
     beams: [[f32; LANES]; size_of::<Beam>() / 4],
     /// The lanes whose rays the filters can do with.
     usable: u8,
 }
 
-impl Prepared {
+impl<E: Eight> Prepared<E> {
     #[inline(always)]
-    fn new(flat: &Flat, rays: &Rays, active: u8) -> Self {
-        const EXPONENT: u64 = 0x7FF << 52;
-        let given = rays.direction.map(Eight);
-        let a = given.map(Eight::abs);
-        let magnitude = Eight::largest(given);
+    fn new(token: E::Token, flat: &Flat, rays: &Rays, active: u8) -> Self {
+        let all = |v| E::splat(token, v);
+        let (origin, given) = (E::rows(token, &rays.origin), E::rows(token, &rays.direction));
+        let t = E::new(token, &rays.t_max);
+        let magnitude = E::largest(given);
         // The power of two below, and its inverse, as in `Query`.
-        let unit = Eight(magnitude.0.map(|m| f64::from_bits(m.to_bits() & EXPONENT)));
-        let scale = Eight(unit.0.map(|u| f64::from_bits((2046_u64 << 52).wrapping_sub(u.to_bits()))));
-        let o = rays.origin.map(Eight);
-        let [reach, sum] = [o.map(Eight::abs), a].map(|[x, y, z]| x + y + z);
-        let t = Eight(rays.t_max);
-        let usable = both(
-            both(reach.below(Eight::splat(MAX_ORIGIN)), sum.below(Eight::splat(f64::INFINITY))),
-            both(
-                both(
-                    Eight::splat(power_of_two(-900)).at_most(magnitude),
-                    magnitude.below(Eight::splat(power_of_two(901))),
-                ),
-                Eight::splat(0.0).below(t),
-            ),
-        );
+        let unit = magnitude.exponents();
+        let scale = unit.inverse_powers();
+        let sum = |[x, y, z]: [E; 3]| x.abs() + y.abs() + z.abs();
+        let usable = sum(origin).below(all(MAX_ORIGIN))
+            & sum(given).below(all(f64::INFINITY))
+            & all(power_of_two(-900)).at_most(magnitude)
+            & magnitude.below(all(power_of_two(901)))
+            & all(0.0).below(t);
         let direction = given.map(|d| d * scale);
-        let (centre, per_m) = (flat.frame.centre().to_array(), Eight::splat(flat.frame.scale()));
-        let place: [Eight; 3] = from_fn(|k| (o[k] - Eight::splat(centre[k])) * per_m);
-        let own = Eight::largest(place);
-        let near = both(usable, own.at_most(Eight::splat(MOST_REACH)));
+        let (centre, per_m) = (flat.frame.centre().to_array(), all(flat.frame.scale()));
+        let place = [0, 1, 2].map(|k| (origin[k] - all(centre[k])) * per_m);
+        let own = E::largest(place);
+        let usable = E::bits(usable & own.at_most(all(MOST_REACH)));
         let t_max = t * unit;
-        let ends = limits(t_max, flat.frame.scale());
-        let id = |ids: &[SurfaceId; LANES]| -> [f32; LANES] {
-            let own: [u32; LANES] =
-                from_fn(|l| if ids[l].instance == 0 { ids[l].primitive.0 } else { PrimitiveId::NONE.0 });
-            from_fn(|l| if own[l] < FLAT_LIMIT as u32 { own[l] as i32 as f32 } else { NO_ID })
-        };
-        let reach = (own + Eight::splat(flat.reach)).narrowed();
+        let ends = limits(token, t_max * per_m);
         let mut beams = [[0.0; LANES]; size_of::<Beam>() / 4];
         for k in 0..3 {
             beams[ORIGIN + k] = place[k].narrowed();
             beams[DIRECTION + k] = direction[k].narrowed();
         }
-        beams[REACH] = reach.map(raised);
+        beams[REACH] = (own + all(flat.reach)).narrowed().map(raised);
         // Those that are not wanted end before they begin.
-        beams[LIMIT] = from_fn(|l| if near[l] & (active >> l & 1 == 1) { ends[0][l] } else { -1.0 });
+        let wanted = active & usable;
+        beams[LIMIT] = from_fn(|l| if wanted >> l & 1 == 1 { ends[0][l] } else { -1.0 });
         beams[CERTAIN_LIMIT] = ends[1];
-        beams[LEAVES] = id(&rays.leaves);
-        beams[AIMS_AT] = id(&rays.aims_at);
+        beams[LEAVES] = rays.leaves.map(id_of);
+        beams[AIMS_AT] = rays.aims_at.map(id_of);
         // As `projection_axis` has it.
-        let [x, y, z] = a;
-        let (along_y, along_z) = (x.max(z).below(y), both(x.below(z), y.at_most(z)));
-        let along = [from_fn(|l| !along_y[l] & !along_z[l]), along_y];
-        Self { direction, scale, t_max, along, beams, usable: bits(near) }
+        let [x, y, z] = given.map(E::abs);
+        let (along_y, reaches_z) = (x.max(z).below(y), x.below(z) & y.at_most(z));
+        // Where both, y comes first; where neither, x.
+        let one = all(1.0);
+        let none = all(0.0).or_else(along_y | reaches_z, one);
+        Self { origin, direction, scale, t_max, along: [one.at_most(none), along_y], beams, usable }
     }
+
+    /// For the exact test.
+    #[inline(always)]
+    fn exact(&self, token: E::Token) -> Eights<E> {
+        let [along_x, along_y] = self.along;
+        let turned = |[x, y, z]: [E; 3]| -> [E; 3] {
+            let choose = |a: E, b: E, c: E| a.or_else(along_x, b.or_else(along_y, c));
+            [choose(y, z, x), choose(z, x, y), choose(x, y, z)]
+        };
+        let [dx, dy, dz] = turned(self.direction);
+        let rz = E::splat(token, 1.0) / dz;
+        let (x, y) = (E::bits(along_x), E::bits(along_y));
+        let axis = from_fn(|l| if x >> l & 1 == 1 { 0 } else { 2 - u32::from(y >> l & 1) });
+        Eights { axis, start: turned(self.origin), shear: [dx * rz, dy * rz, rz], t_max: self.t_max }
+    }
+}
+
+/// The id of a surface as a number, if it is one of a flat geometry's.
+#[inline(always)]
+fn id_of(SurfaceId { instance, primitive }: SurfaceId) -> f32 {
+    let id = if instance == 0 { primitive.0 } else { PrimitiveId::NONE.0 };
+    if id < FLAT_LIMIT as u32 { id as i32 as f32 } else { NO_ID }
 }
 
 /// [`super::limits`] of eight.
 #[inline(always)]
-fn limits(t: Eight, per_m: f64) -> [[f32; LANES]; 2] {
-    let t = t * Eight::splat(per_m);
-    let most = Eight::splat(FURTHEST);
-    let t = t.or_else(t.below(most), most);
-    [(t * Eight::splat(1.0 + SLACK)).narrowed().map(raised), (t * Eight::splat(1.0 - SLACK)).narrowed().map(lowered)]
+fn limits<E: Eight>(token: E::Token, t: E) -> [[f32; LANES]; 2] {
+    let all = |v| E::splat(token, v);
+    let t = t.or_else(t.below(all(FURTHEST)), all(FURTHEST));
+    [(t * all(1.0 + SLACK)).narrowed().map(raised), (t * all(1.0 - SLACK)).narrowed().map(lowered)]
 }
 
 /// Calls a function with what is known of the eight rays and each share of primitives, and their ids.
@@ -152,10 +164,10 @@ impl Job for Closest<'_> {
     #[inline(always)]
     fn run<F: Filters>(self, filters: F) -> (Hits, u8) {
         let Self { flat, corners, primitives, rays, active } = self;
-        let prepared = Prepared::new(flat, rays, active);
         let token = filters.into();
+        let prepared = Prepared::<F::Eight>::new(filters.into(), flat, rays, active);
         let all = |v| F::Wide::splat(token, v);
-        let beams = Beams::new(token, |at| F::Wide::rays(token, &prepared.beams[at]));
+        let beams = Beams::new(from_fn(|at| F::Wide::rays(token, &prepared.beams[at])), token);
         let nothing = all(f32::INFINITY);
         // Of the nearest that is certain: its ends and which it is; and the nearest that any other may be.
         let (mut far, mut near, mut id, mut other) = (all(f32::MAX), nothing, all(NO_ID), nothing);
@@ -164,54 +176,46 @@ impl Job for Closest<'_> {
             token,
             &beams,
             |known, of| {
-                let nearer = known.certain & known.far.below(far);
-                other = near.or_else(nearer, known.near.or_else(known.met, nothing)).min(other);
+                let nearer = known.far.below_where(known.certain, far);
+                other = other.min_where(known.met, near.or_else(nearer, known.near));
                 far = known.far.or_else(nearer, far);
                 near = known.near.or_else(nearer, near);
                 id = of.or_else(nearer, id);
             },
             || false,
         );
-        let store = |v: F::Wide| {
-            let mut row = [0.0; BLOCK];
-            v.store(&mut row);
-            row
-        };
-        let (far, near, id, other) = (store(far), store(near), store(id), store(other));
-        let mut ids = [0; LANES];
-        let (mut found, mut undecided) = (0_u8, 0_u8);
-        for l in 0..LANES {
-            let (mut best, mut next) = (l * F::Wide::SHARE, f32::INFINITY);
-            next = if other[best] < next { other[best] } else { next };
-            for p in 1..F::Wide::SHARE {
-                let lane = l * F::Wide::SHARE + p;
-                let (winner, loser) = if far[lane] < far[best] { (lane, best) } else { (best, lane) };
-                next = if near[loser] < next { near[loser] } else { next };
-                next = if other[lane] < next { other[lane] } else { next };
-                best = winner;
-            }
-            ids[l] = id[best] as i32 as usize % FLAT_LIMIT;
-            found |= u8::from(id[best] >= 0.0) << l;
-            undecided |= u8::from(next <= far[best]) << l;
-        }
+        let ([far, far2], [near, near2], [id, id2], [other, other2]) =
+            (far.shares(), near.shares(), id.shares(), other.shares());
+        let two = F::Wide::SHARE == 2;
+        let least = |a: f32, b: f32| if a < b { a } else { b };
+        let second: [bool; LANES] = from_fn(|l| two & (far2[l] < far[l]));
+        let end: [f32; LANES] = from_fn(|l| least(far[l], far2[l]));
+        let loser: [f32; LANES] =
+            from_fn(|l| if two { if second[l] { near[l] } else { near2[l] } } else { f32::INFINITY });
+        let next: [f32; LANES] = from_fn(|l| least(loser[l], least(other[l], other2[l])));
+        let id: [f32; LANES] = from_fn(|l| if second[l] { id2[l] } else { id[l] });
+        let ids: [u32; LANES] = from_fn(|l| id[l] as i32 as u32 % FLAT_LIMIT as u32);
+        let open = (0..LANES).fold(0_u8, |mask, l| mask | u8::from(next[l] <= end[l]) << l);
+        let found = (0..LANES).fold(0_u8, |mask, l| mask | u8::from(id[l] >= 0.0) << l);
         let wanted = active & prepared.usable;
-        undecided = undecided & wanted | active & !prepared.usable;
-        found &= wanted & !undecided;
+        let mut undecided = open & wanted | active & !prepared.usable;
+        let found = found & wanted & !undecided;
         let mut hits = Hits::NONE;
         if found == 0 {
             return (hits, undecided);
         }
-        let Decided { hit, t, uv } = corners.triangles(&prepared.exact(rays), &ids);
+        let Decided { hit, t, uv } = corners.triangles(filters.into(), &prepared.exact(filters.into()), &ids);
         let t = t * prepared.scale;
-        hits.t = t.0;
-        hits.uv = uv.map(|w| w.0);
-        hits.surface = ids.map(|id| PrimitiveId(id as u32).into());
-        hits.mask = bits(both(hit, t.below(Eight::splat(f64::INFINITY)))) & found;
+        let finite = t.below(F::Eight::splat(filters.into(), f64::INFINITY));
+        hits.t = t.to_array();
+        hits.uv = uv.map(F::Eight::to_array);
+        hits.surface = ids.map(|id| PrimitiveId(id).into());
+        hits.mask = F::Eight::bits(hit & finite) & found;
         for l in lanes_of(found & !hits.mask) {
             let ray = rays.get(l);
             let query = Query::new(&ray).expect("it was prepared");
-            let id = PrimitiveId(ids[l] as u32);
-            match primitives[ids[l]].intersect(&query, query.t_max, query.leaves == id) {
+            let id = PrimitiveId(ids[l]);
+            match primitives[ids[l] as usize].intersect(&query, query.t_max, query.leaves == id) {
                 Some(hit) if hit.t * query.scale < f64::INFINITY => {
                     let hit = crate::Hit { t: hit.t * query.scale, surface: id.into(), uv: hit.uv };
                     hits.set(l, Some(&hit));
@@ -223,31 +227,15 @@ impl Job for Closest<'_> {
     }
 }
 
-impl Prepared {
-    /// For the exact test.
-    #[inline(always)]
-    fn exact(&self, rays: &Rays) -> Eights {
-        let [along_x, along_y] = self.along;
-        let turned = |[x, y, z]: [Eight; 3]| -> [Eight; 3] {
-            let choose = |a: Eight, b: Eight, c: Eight| a.or_else(along_x, b.or_else(along_y, c));
-            [choose(y, z, x), choose(z, x, y), choose(x, y, z)]
-        };
-        let [dx, dy, dz] = turned(self.direction);
-        let rz = Eight::splat(1.0) / dz;
-        let axis = from_fn(|l| if along_x[l] { 0 } else { 2 - usize::from(along_y[l]) });
-        Eights { axis, start: turned(rays.origin.map(Eight)), shear: [dx * rz, dy * rz, rz], t_max: self.t_max }
-    }
-}
-
 impl Job for Any<'_> {
     type Output = (u8, u8);
 
     #[inline(always)]
     fn run<F: Filters>(self, filters: F) -> (u8, u8) {
         let Self { flat, rays, active } = self;
-        let prepared = Prepared::new(flat, rays, active);
+        let prepared = Prepared::<F::Eight>::new(filters.into(), flat, rays, active);
         let token = filters.into();
-        let beams = Beams::new(token, |at| F::Wide::rays(token, &prepared.beams[at]));
+        let beams = Beams::new(from_fn(|at| F::Wide::rays(token, &prepared.beams[at])), token);
         let (certain, met) = (std::cell::Cell::new(0_u32), std::cell::Cell::new(0_u32));
         let rays_of = |bits: u32| {
             (0..F::Wide::SHARE).fold(0_u8, |mask, p| {

@@ -21,6 +21,7 @@ use crate::ray::ExactPoint;
 use crate::{Aabb, Hits, Primitive, PrimitiveId, Rays, SurfacePoints};
 pub(super) use block::BLOCK;
 use block::{Flats, Kind, NO_ID, Spheres};
+pub(in crate::traverse) use eight::{EXPONENT, Eight, PlainEight, TURN};
 use etalon_optics::Vec3;
 use exact::Corners;
 use filter::Beam;

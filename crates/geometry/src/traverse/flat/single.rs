@@ -84,13 +84,13 @@ impl Job for Closest<'_> {
         };
         let token = filters.into();
         let all = |v| F::Wide::splat(token, v);
-        let beams = Beams::new(token, |at| all(beam[at]));
+        let beams = Beams::new(beam.map(all), token);
         let nothing = all(f32::INFINITY);
         // Of the nearest that is certain in each lane: its ends and which it is; and the nearest that any other may be.
         let (mut far, mut near, mut id, mut other) = (all(f32::MAX), nothing, all(NO_ID), nothing);
         each(flat, token, &beams, |known, of| {
-            let nearer = known.certain & known.far.below(far);
-            other = near.or_else(nearer, known.near.or_else(known.met, nothing)).min(other);
+            let nearer = known.far.below_where(known.certain, far);
+            other = other.min_where(known.met, near.or_else(nearer, known.near));
             far = known.far.or_else(nearer, far);
             near = known.near.or_else(nearer, near);
             id = of.or_else(nearer, id);
@@ -145,7 +145,7 @@ impl Job for Any<'_> {
             return (0..primitives.len() as u32).any(|i| occludes(primitives, query, PrimitiveId(i)));
         };
         let token = filters.into();
-        let beams = Beams::new(token, |at| F::Wide::splat(token, beam[at]));
+        let beams = Beams::new(beam.map(|v| F::Wide::splat(token, v)), token);
         let mut hit = false;
         each(flat, token, &beams, |known, ids| {
             let counts = !ids.equals(beams.aims_at);

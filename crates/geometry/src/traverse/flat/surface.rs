@@ -8,50 +8,38 @@ use crate::shapes::planar;
 use crate::traverse::{Filters, Job};
 use crate::{Hits, LANES, Primitive, PrimitiveId, Rays, SurfacePoint, SurfacePoints};
 use etalon_optics::{Real, Vec3};
-use std::array::from_fn;
 
-/// What the surface of a flat shape is made of: see [`planar::surface`].
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-struct Plane {
-    normal: [f64; 3],
-    point: [f64; 3],
-    size: f64,
-    /// 1 for a plane, 0 for what is none.
-    flat: f64,
-}
+/// Numbers of a plane: see [`planar::surface`]. Its normal, a point, its size, and 1, or 0 for what is no plane.
+const ROW: usize = 8;
+const POINT: u32 = 3;
+const SIZE: u32 = 6;
+const IS_PLANE: u32 = 7;
 
 /// The planes of primitives.
 #[derive(Debug)]
-pub(crate) struct SurfaceTable {
-    planes: Vec<Plane>,
-}
+pub(super) struct SurfaceTable(Vec<f64>);
 
 impl SurfaceTable {
     pub(super) fn new(primitives: &[Primitive]) -> Self {
-        let none = Plane { normal: [0.0; 3], point: [0.0; 3], size: 0.0, flat: 0.0 };
-        let plane = |p: &Primitive| match p.plane() {
-            Some((point, normal, size)) => {
-                Plane { normal: normal.to_array(), point: point.to_array(), size, flat: 1.0 }
+        let mut table = vec![0.0; ROW * FLAT_LIMIT];
+        for (row, primitive) in table.chunks_mut(ROW).zip(primitives) {
+            if let Some((point, normal, size)) = primitive.plane() {
+                row.copy_from_slice(&[normal.x, normal.y, normal.z, point.x, point.y, point.z, size, 1.0]);
             }
-            None => none,
-        };
-        let mut planes: Vec<_> = primitives.iter().map(plane).collect();
-        planes.resize(FLAT_LIMIT, none);
-        Self { planes }
+        }
+        Self(table)
     }
 
     pub(super) fn memory_bytes(&self) -> usize {
-        size_of_val(self.planes.as_slice())
+        size_of_val(self.0.as_slice())
     }
 
     /// The surface of a primitive near a point.
     #[inline]
     pub(super) fn at(&self, primitives: &[Primitive], id: PrimitiveId, p: Vec3<f64>) -> ExactPoint {
-        match self.planes[id.0 as usize] {
-            Plane { normal, point, size, flat } if flat > 0.0 => {
-                planar::surface(p, Vec3::from_array(point), Vec3::from_array(normal), size)
-            }
+        let (rows, _) = self.0.as_chunks::<ROW>();
+        match rows[id.0 as usize] {
+            [nx, ny, nz, x, y, z, size, 1.0] => planar::surface(p, Vec3::new(x, y, z), Vec3::new(nx, ny, nz), size),
             _ => primitives[id.0 as usize].surface(p),
         }
     }
@@ -71,38 +59,39 @@ impl Job for Surfaces<'_> {
     type Output = SurfacePoints;
 
     #[inline(always)]
-    fn run<F: Filters>(self, _: F) -> SurfacePoints {
+    fn run<F: Filters>(self, filters: F) -> SurfacePoints {
         let Self { table, primitives, rays, hits, active, label } = self;
-        let ids: [usize; LANES] = from_fn(|l| hits.surface[l].primitive.0 as usize % FLAT_LIMIT);
-        let planes: &[Plane; FLAT_LIMIT] = table.planes.as_slice().try_into().expect("a plane for each id");
-        let mut out = SurfacePoints { surface: hits.surface, label: [label; LANES], ..SurfacePoints::NONE };
-        let of = |f: fn(&Plane) -> f64| Eight(from_fn(|l| f(&planes[ids[l]])));
-        let flat = of(|p| p.flat).0;
-        let n = [of(|p| p.normal[0]), of(|p| p.normal[1]), of(|p| p.normal[2])];
-        let point = [of(|p| p.point[0]), of(|p| p.point[1]), of(|p| p.point[2])];
-        let t = Eight(hits.t);
-        let p: [Eight; 3] = from_fn(|k| Eight(rays.origin[k]) + Eight(rays.direction[k]) * t);
-        let away: [Eight; 3] = from_fn(|k| p[k] - point[k]);
+        let token = filters.into();
+        let all = |v| F::Eight::splat(token, v);
+        let ids = hits.surface.map(|s| s.primitive.0 % FLAT_LIMIT as u32);
+        let planes: &[f64; ROW * FLAT_LIMIT] = table.0.as_slice().try_into().expect("a plane for each id");
+        let of = |k: u32| F::Eight::gathered(token, planes, &ids.map(|id| id * ROW as u32 + k));
+        let three = |k: u32| [of(k), of(k + 1), of(k + 2)];
+        let (n, point) = (three(0), three(POINT));
+        let (origin, direction) = (F::Eight::rows(token, &rays.origin), F::Eight::rows(token, &rays.direction));
+        let t = F::Eight::new(token, &hits.t);
+        let p = [0, 1, 2].map(|k| origin[k] + direction[k] * t);
+        let away = [0, 1, 2].map(|k| p[k] - point[k]);
         let height = away[0] * n[0] + away[1] * n[1] + away[2] * n[2];
-        let position: [Eight; 3] = from_fn(|k| p[k] - n[k] * height);
-        let reach = Eight::largest(away).max(of(|p| p.size));
-        let u = Eight::splat(f64::UNIT_ROUNDOFF);
-        let error: [Eight; 3] = from_fn(|k| (p[k].abs() + position[k].abs() + Eight::splat(16.0) * reach) * u);
+        let position = [0, 1, 2].map(|k| p[k] - n[k] * height);
+        let reach = F::Eight::largest(away).max(of(SIZE)) * all(16.0);
+        let u = all(f64::UNIT_ROUNDOFF);
+        let error = [0, 1, 2].map(|k| (p[k].abs() + position[k].abs() + reach) * u);
         let distance = n[0].abs() * error[0] + n[1].abs() * error[1] + n[2].abs() * error[2];
-        let distance = distance * Eight::splat(1.0 + 8.0 * f64::UNIT_ROUNDOFF);
-        // The next number up, of one that is not negative.
-        out.position_error = distance.0.map(|d| f64::from_bits(d.to_bits() + 1));
-        out.position = position.map(|x| x.0);
-        out.normal = n.map(|x| x.0);
-        let all_flat = flat.iter().fold(1.0, |a, &b| a * b) == 1.0;
-        if !all_flat {
-            for l in lanes_of(active) {
-                if flat[l] == 0.0 {
-                    let ray = rays.get(l);
-                    let point = primitives[ids[l]].surface(ray.origin + ray.direction * hits.t[l]);
-                    out.set(l, &SurfacePoint::rounded(&point, hits.surface[l], label));
-                }
-            }
+        let distance = distance * all(1.0 + 8.0 * f64::UNIT_ROUNDOFF);
+        let mut out = SurfacePoints {
+            position: position.map(F::Eight::to_array),
+            // The next number up, of one that is not negative.
+            position_error: distance.to_array().map(|d| f64::from_bits(d.to_bits().wrapping_add(1))),
+            normal: n.map(F::Eight::to_array),
+            surface: hits.surface,
+            label: [label; LANES],
+        };
+        let is_plane = F::Eight::bits(all(0.0).below(of(IS_PLANE)));
+        for l in lanes_of(active & !is_plane) {
+            let ray = rays.get(l);
+            let point = primitives[ids[l] as usize].surface(ray.origin + ray.direction * hits.t[l]);
+            out.set(l, &SurfacePoint::rounded(&point, hits.surface[l], label));
         }
         out
     }

@@ -31,8 +31,6 @@ pub(in crate::traverse) trait Wide:
     fn min(self, o: Self) -> Self;
     /// The larger of each pair; the second if one is NaN.
     fn max(self, o: Self) -> Self;
-    /// Magnitudes.
-    fn abs(self) -> Self;
     /// Square roots.
     fn sqrt(self) -> Self;
     /// The smallest, none of them NaN.
@@ -45,8 +43,30 @@ pub(in crate::traverse) trait Wide:
     fn at_most(self, o: Self) -> Self::Mask;
     /// Where both are equal.
     fn equals(self, o: Self) -> Self::Mask;
+    /// Where both differ, and neither is NaN.
+    fn differs(self, o: Self) -> Self::Mask;
+    /// The numbers that belong to eight rays, first and second, where the share is two; where it is one, twice the same.
+    fn shares(self) -> [[f32; LANES]; 2];
     /// This where a mask is set, else another.
     fn or_else(self, mask: Self::Mask, other: Self) -> Self;
     /// One bit for each number.
     fn bits(mask: Self::Mask) -> u32;
+
+    /// [`Wide::below`] where a mask is set.
+    #[inline(always)]
+    fn below_where(self, mask: Self::Mask, o: Self) -> Self::Mask {
+        mask & self.below(o)
+    }
+
+    /// [`Wide::at_most`] where a mask is set.
+    #[inline(always)]
+    fn at_most_where(self, mask: Self::Mask, o: Self) -> Self::Mask {
+        mask & self.at_most(o)
+    }
+
+    /// [`Wide::min`] where a mask is set, else this.
+    #[inline(always)]
+    fn min_where(self, mask: Self::Mask, o: Self) -> Self {
+        self.min(o).or_else(mask, self)
+    }
 }
