@@ -110,10 +110,10 @@ class Translator:
         bsdf = self.bsdf(thing["material"])
         emission = thing.get("emission")
         if emission is None:
-            return [self.shape(thing["shape"], False) | {"bsdf": bsdf}]
+            return [shape | {"bsdf": bsdf} for shape in self.shapes(thing["shape"], False)]
         lit = {"bsdf": bsdf, "emitter": {"type": "area", "radiance": self.number(emission["radiance"])}}
         if emission["sides"] != "both":
-            return [self.shape(thing["shape"], emission["sides"] == "back") | lit]
+            return [shape | lit for shape in self.shapes(thing["shape"], emission["sides"] == "back")]
         # Mitsuba's lights shine on one side: two sheets, each moved towards its own side by a hair.
         return [self.shape(self.moved(thing["shape"], sign), sign < 0) | lit for sign in (1.0, -1.0)]
 
@@ -130,6 +130,18 @@ class Translator:
         hair = 1e-5 * np.linalg.norm(u) + 1e-6 * np.abs(points).max()
         return (np.array(points) + sign * hair * unit(np.cross(u, v))).tolist()
 
+    def shapes(self, s, flip):
+        """A shape, or the parts that Mitsuba makes it of: its cylinder is a tube without ends."""
+        if s["type"] != "cylinder":
+            return [self.shape(s, flip)]
+        start, end = np.array(s["start_m"], float), np.array(s["end_m"], float)
+        parts = [{"type": "cylinder", "p0": start.tolist(), "p1": end.tolist(), "radius": s["radius_m"], "flip_normals": flip}]
+        if s.get("capped"):
+            ends = [(start, start - end), (end, end - start)]
+            disks = [{"type": "disk", "center_m": c.tolist(), "normal": n.tolist(), "radius_m": s["radius_m"]} for c, n in ends]
+            parts += [self.shape(disk, flip) for disk in disks]
+        return parts
+
     def shape(self, s, flip):
         """Outward side as in the neutral form; `flip` turns it round."""
         kind, T = s["type"], self.T
@@ -139,9 +151,6 @@ class Translator:
             normal = unit(np.array(s["normal"], float))
             across = unit(np.cross(normal, [1.0, 0, 0] if abs(normal[0]) < 0.7 else [0, 1.0, 0]))
             return self.flat("disk", s["center_m"], s["radius_m"] * across, s["radius_m"] * np.cross(normal, across), flip)
-        if kind == "cylinder":
-            # Mitsuba's is a tube; its ends would be two more shapes.
-            raise Unsupported("a cylinder with its ends")
         if kind == "parallelogram":
             u, v = np.array(s["u_m"], float), np.array(s["v_m"], float)
             if abs(u @ v) > 1e-12 * np.linalg.norm(u) * np.linalg.norm(v):

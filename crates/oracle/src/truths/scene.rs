@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::Claim;
-use crate::vector::{Vec3, cross, length, normalize, sub};
+use crate::vector::{Vec3, add, cross, length, normalize, sub};
 
 /// A scene in the making.
 #[derive(Clone, Debug)]
@@ -277,9 +277,18 @@ pub(super) fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Value {
     json!({ "type": "mesh", "vertices_m": vertices, "triangles": triangles })
 }
 
+/// A closed prism over a polygon given counter-clockwise as seen from where `along` points to.
+pub(super) fn extruded(corners: &[Vec3], along: Vec3) -> Value {
+    let far = corners.iter().map(|&corner| add(corner, along));
+    let vertices: Vec<Vec3> = corners.iter().copied().chain(far).collect();
+    let n = u32::try_from(corners.len()).expect("a few corners");
+    let fan = (1..n - 1).flat_map(|i| [[0, i + 1, i], [n, n + i, n + i + 1]]);
+    let sides = (0..n).map(|i| (i, (i + 1) % n)).flat_map(|(i, j)| [[i, j, n + j], [i, n + j, n + i]]);
+    let triangles: Vec<[u32; 3]> = fan.chain(sides).collect();
+    mesh(&vertices, &triangles)
+}
+
 /// A closed prism along z over a triangle given counter-clockwise in the xy plane.
 pub(super) fn triangular_prism(corners: [[f64; 2]; 3], z: [f64; 2]) -> Value {
-    let vertices: Vec<Vec3> = z.iter().flat_map(|z| corners.map(|[x, y]| [x, y, *z])).collect();
-    let triangles = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]];
-    mesh(&vertices, &triangles)
+    extruded(&corners.map(|[x, y]| [x, y, z[0]]), [0.0, 0.0, z[1] - z[0]])
 }

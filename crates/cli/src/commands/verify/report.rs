@@ -85,8 +85,8 @@ impl Report {
     pub(super) fn new(table: bool) -> Self {
         if table {
             print::line(&format!(
-                "{:<44} {:>14} {:>14} {:>9} {:>6} {:>9}",
-                "truth", "value", "measured", "± error", "z", "sees"
+                "{:<44} {:>14} {:>14} {:>9} {:>6} {:>9} {:>6}",
+                "truth", "value", "measured", "± error", "z", "sees", "s"
             ));
         }
         Self {
@@ -115,13 +115,14 @@ impl Report {
     pub(super) fn push(&mut self, row: Row) {
         if self.table {
             print::line(&format!(
-                "{:<44} {:>14.10} {:>14.10} {:>9.1e} {:>6.2} {:>9.1e}{}",
+                "{:<44} {:>14.10} {:>14.10} {:>9.1e} {:>6.2} {:>9.1e} {:>6}{}",
                 row.name,
                 row.truth,
                 row.measured,
                 row.standard_error,
                 row.z,
                 row.resolvable_bias,
+                row.seconds.map(|seconds| format!("{seconds:.1}")).unwrap_or_default(),
                 if row.pass { String::new() } else { format!("  FAILED: {}", row.evidence) }
             ));
         }
@@ -136,6 +137,15 @@ impl Report {
         self.missing.get_or_insert_default().push(truth.name.clone());
     }
 
+    /// The truths that took most of the time, with their seconds; `None` of pictures that were rendered elsewhere.
+    fn slowest(&self) -> Option<String> {
+        let mut timed: Vec<(&str, f64)> =
+            self.truths.iter().filter_map(|row| Some((row.name.as_str(), row.seconds?))).collect();
+        timed.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let named: Vec<String> = timed.iter().take(5).map(|(name, seconds)| format!("{name} {seconds:.1} s")).collect();
+        (!named.is_empty()).then(|| named.join(", "))
+    }
+
     /// Prints what is left to say; a failure if any truth does not hold.
     pub(super) fn finish(mut self) -> Outcome {
         self.seconds = self.start.elapsed().as_secs_f64();
@@ -148,6 +158,9 @@ impl Report {
                 "{} passed, {} failed{missing}, in {:.1} s; a right renderer fails any of them with probability {:.0e}",
                 self.passed, self.failed, self.seconds, SUITE_SIGNIFICANCE
             ));
+            if let Some(slowest) = self.slowest() {
+                print::line(&format!("slowest: {slowest}"));
+            }
         } else {
             print::json(&self);
         }
