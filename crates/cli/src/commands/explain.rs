@@ -99,8 +99,10 @@ fn line(effect: &Effect, costs: &[Cost]) -> String {
 fn how(plan: &Plan) -> Vec<(&'static str, String)> {
     let lanes = match plan.lane_model {
         LaneModel::One => "1: radiance is a number times the one spectrum of all light".to_owned(),
-        LaneModel::Shared => format!("{} wavelengths that always go the same way", plan.lanes),
-        LaneModel::Hero => format!("{} wavelengths that dispersion may part from the hero", plan.lanes),
+        LaneModel::Hero if plan.runs(EffectName::Dispersion) => {
+            format!("{} wavelengths that dispersion may part from the hero", plan.lanes)
+        }
+        LaneModel::Shared | LaneModel::Hero => format!("{} wavelengths that always go the same way", plan.lanes),
         LaneModel::ThreeChannels => format!("{}: red, green and blue", plan.lanes),
     };
     let [first, last] = plan.wavelength_range_nm;

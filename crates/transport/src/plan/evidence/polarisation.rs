@@ -1,0 +1,107 @@
+//! Whether light is polarised, and by how much it matters that it is not.
+
+use super::{first_surface, materials::sheet_name, middle, surface};
+use crate::plan::grey::steps;
+use crate::texture;
+use etalon_optics::{colour::colour_matching, fresnel};
+use etalon_scene::{MaterialKind, Metal, PolarisingSheet, Scene};
+
+/// Why polarisation is not carried where it could make no difference.
+pub(in crate::plan) const UNPOLARISED: &str = "no surface polarises light";
+
+/// Whether polarisation is carried. Where it is not but could matter, how much it could.
+pub(in crate::plan) fn polarisation(scene: &Scene, asked_for: bool) -> Result<String, String> {
+    if asked_for {
+        return Ok("asked for by --polarised".to_owned());
+    }
+    let sheet = first_surface(scene, |material, _| match &material.kind {
+        MaterialKind::PolarisingSheet { sheet, .. } => Some(sheet_name(sheet).to_owned()),
+        _ => None,
+    });
+    if let Some(found) = sheet {
+        return Ok(found);
+    }
+    if scene.film.stokes {
+        return Ok("film: stokes".to_owned());
+    }
+    let worst = scene
+        .placed_objects()
+        .filter_map(|object| {
+            let material = &scene.materials[object.material];
+            let range_nm = scene.integrator.wavelength_range_nm;
+            let (share, how) = polarises(&material.kind, range_nm)?;
+            Some((share, format!("{}: {how}", surface(object, material))))
+        })
+        // The first of the worst.
+        .reduce(|worst, other| if other.0 > worst.0 { other } else { worst });
+    match worst {
+        None => Err(UNPOLARISED.to_owned()),
+        Some((_, found)) => Err(format!("not asked for (--polarised); the picture averages s and p at {found}")),
+    }
+}
+
+/// By which share averaging s and p at a surface can be off after two of them, and that in words: two surfaces of diattenuation
+/// a = (A_s − A_p)/(A_s + A_p) each hand on 1 + a² of what the averages do where their planes of incidence are parallel, and 1 − a²
+/// where they are crossed.
+fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
+    match kind {
+        MaterialKind::Dielectric { interior, exterior, .. }
+        | MaterialKind::RoughDielectric { interior, exterior, .. } => {
+            let [interior, exterior] = [interior, exterior].map(|index| index.eval(middle(range_nm)));
+            glass(interior / exterior)
+        }
+        MaterialKind::Plastic { coat, .. } => glass(coat.eval(middle(range_nm))),
+        MaterialKind::ThinDielectric { index } => glass(index.eval(middle(range_nm))),
+        MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
+        | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
+            glass(Metal::index_of(texture::mean(reflectance, middle(range_nm))))
+        }
+        MaterialKind::Conductor { metal: Metal::Index(index) }
+        | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => {
+            let diattenuation = |nm: f64, cos: f64| {
+                let (n, k) = index.eval(nm);
+                let f = fresnel::conductor(cos, n, k);
+                ((f.reflectance_s - f.reflectance_p) / (f.reflectance_s + f.reflectance_p)).abs()
+            };
+            let everywhere =
+                seen(range_nm).into_iter().flat_map(|nm| (1..100).map(move |i| (nm, f64::from(i) / 100.0)));
+            let (most, nm, cos) = everywhere
+                .map(|(nm, cos)| (diattenuation(nm, cos), nm, cos))
+                .fold((0.0, 0.0, 1.0), |most, other| if other.0 > most.0 { other } else { most });
+            let (share, degrees) = (most * most, cos.acos().to_degrees());
+            Some((share, format!("up to {:.2} % after two reflections, at {degrees:.0}° and {nm} nm", 100.0 * share)))
+        }
+        MaterialKind::Blend { parts, .. } => {
+            let worst = parts.iter().filter_map(|(_, part)| polarises(part, range_nm));
+            worst.reduce(|worst, other| if other.0 > worst.0 { other } else { worst })
+        }
+        // A mirror treats s and p alike; sheets call for polarisation themselves.
+        MaterialKind::Lambert { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::PolarisingSheet { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Black => None,
+    }
+}
+
+/// The wavelengths of a range that count for what the eye sees, at least a hundredth of the most; all, if none does.
+fn seen(range_nm: [f64; 2]) -> Vec<f64> {
+    let seen: Vec<f64> = steps(range_nm).filter(|&nm| colour_matching(nm)[1] >= 0.01).collect();
+    if seen.is_empty() { steps(range_nm).collect() } else { seen }
+}
+
+/// [`polarises`] of an interface of relative index `n`: reflection at Brewster's angle leaves s alone; and what a plate passes on
+/// at 75°, followed for s and p each, against the averages at each face.
+fn glass(n: f64) -> Option<(f64, String)> {
+    if n == 1.0 {
+        return None;
+    }
+    let brewster = n.atan().to_degrees();
+    let plate = |reflectance: f64| (1.0 - reflectance) / (1.0 + reflectance);
+    let behind = fresnel::dielectric(75_f64.to_radians().cos(), n).map(|f| {
+        let polarised = 0.5 * (plate(f.r_s * f.r_s) + plate(f.r_p * f.r_p));
+        format!(", {:.1} % behind a plate at 75°", 100.0 * (polarised / plate(f.reflectance) - 1.0))
+    });
+    let behind = behind.unwrap_or_default();
+    Some((1.0, format!("up to a factor of 2 after two reflections at {brewster:.1}°{behind} (n {n:.3})")))
+}
