@@ -34,5 +34,10 @@ environment cornell.json
 specular-chains cornell.json
 nested-dielectrics cornell-glass.json
 absorption cornell-glass.json
+polarisation cornell-glass.json
+textures cornell.json
+shading-normals cornell.json
+masks cornell.json
+bands cornell.json
 wide-filter furnace.json
 LIST

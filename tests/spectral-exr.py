@@ -49,3 +49,23 @@ for scene, grey in [("prism.json", False), ("furnace.json", True)]:
                 truth = (band.sum() - (band[0] + band[-1]) / 2) / (len(band) - 1)
                 assert np.allclose(values[..., index], truth, rtol=1e-4), (wavelength, truth, values[0, 0, index])
         print(f"{scene}: {len(wavelengths)} bands, mean radiance {values.mean():.6g}")
+
+# Polarising film: the same bands of each Stokes parameter, and none more polarised than it is bright.
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "x.exr")
+    options = "--size 48x27 --spp 64 --bands 400:700:20 --quiet".split()
+    subprocess.run([etalon, "render", here / "scenes/polarisers.json", "-o", path, *options], check=True)
+    components, specification = colour.read_spectral_image_Fichet2021(path, additional_data=True)
+    assert sorted(components) == ["S0", "S1", "S2", "S3"], list(components)
+    assert specification.is_emissive and specification.is_polarised, specification
+    assert {a.name: a.value for a in specification.attributes}["polarisationHandedness"] == "right"
+    s0, *others = (components[name][1] for name in ["S0", "S1", "S2", "S3"])
+    assert all(values.shape == (27, 48, 16) for values in [s0, *others])
+    with OpenEXR.File(path, separate_channels=True) as file:
+        for parameter, values in enumerate([s0, *others]):
+            for index, wavelength in enumerate(range(400, 701, 20)):
+                ours = file.channels()[f"S{parameter}.{wavelength},000000nm"].pixels
+                assert np.array_equal(ours, values[..., index].astype(np.float32)), (parameter, wavelength)
+    polarised = np.sqrt(sum(values**2 for values in others))
+    assert (polarised <= s0 * (1 + 1e-5)).all() and polarised.max() > 0.4, polarised.max()
+    print(f"polarisers.json: S0 {s0.mean():.6g}, polarised {polarised.mean():.6g}")

@@ -15,7 +15,7 @@ pub(crate) enum Aov {
     Variance,
     /// `samples`: finite samples of each pixel.
     Samples,
-    /// `S0.…nm`: the bands that the film keeps.
+    /// `S0.…nm`: the bands that the film keeps; with Stokes parameters also `S1.…nm` to `S3.…nm`.
     Bands,
     /// `Albedo.R/G/B`: the share of light that the first surface scatters.
     Albedo,
@@ -57,14 +57,18 @@ impl Channels {
         [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Uv, Aov::Object].into_iter().any(|aov| self.has(aov))
     }
 
-    /// How many there are, of a film with so many bands.
-    pub(crate) fn count(&self, bands: u64) -> u64 {
-        let colours = 3 * u64::from(self.has(Aov::Color)) + if self.has(Aov::Bands) { 2 * bands } else { 0 };
-        let shown = 3 + if self.has(Aov::Bands) { bands } else { 0 };
+    /// How many there are, of a film with so many bands and so many Stokes parameters.
+    pub(crate) fn count(&self, bands: u64, parameters: u64) -> u64 {
+        let of_bands = if self.has(Aov::Bands) { bands } else { 0 };
+        let colours = 3 * u64::from(self.has(Aov::Color)) + (1 + parameters) * of_bands;
+        let shown = 3 + parameters * of_bands;
         let errors = shown * (u64::from(self.has(Aov::Error)) + u64::from(self.has(Aov::Variance)));
+        // The colours of S₁, S₂ and S₃, and their errors.
+        let stokes = 2 * 3 * (parameters - 1);
         let of_features = |aov, count| count * u64::from(self.has(aov));
         colours
             + errors
+            + stokes
             + 1
             + of_features(Aov::Albedo, 3)
             + of_features(Aov::Normal, 3)

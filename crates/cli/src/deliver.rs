@@ -183,7 +183,9 @@ impl Delivery<'_> {
             }
         }
         if let Some(bands) = self.header.subject.bands.as_ref().filter(|_| channels.has(Aov::Bands)) {
-            insert_bands(&mut picture, bands, film, rect, channels)?;
+            for parameter in 0..self.header.subject.stokes_parameters() {
+                insert_bands(&mut picture, (bands, parameter), film, rect, channels)?;
+            }
         }
         let counts = self.of_pixels(film, |pixel| pixel.count() as f32);
         if channels.has(Aov::Samples) || !channels_only_features(channels) && counts.iter().any(|&c| c != counts[0]) {
@@ -249,18 +251,18 @@ fn insert_three(picture: &mut Picture<f32>, names: [&str; 3], pixels: &[[f32; 3]
 
 /// The bands as spectral channels (Fichet, Pacanowski & Wilkie 2021, *An OpenEXR Layout for Spectral Images*): `S0.550,000000nm`
 /// is the mean radiance over the band with this centre, `Error.` and `samples.` before it its standard error and its number of
-/// wavelengths.
+/// wavelengths. `S1.550,000000nm` and so on are the other Stokes parameters, of the same wavelengths.
 fn insert_bands(
     picture: &mut Picture<f32>,
-    bands: &KeptBands,
+    (bands, parameter): (&KeptBands, u32),
     film: &Film,
     rect: PixelRect,
     channels: &Channels,
 ) -> Result<(), PictureError> {
     for index in 0..bands.count {
-        let name = spectral_channel(bands.centre_nm(index));
+        let name = spectral_channel(parameter, bands.centre_nm(index));
         let of = |value: fn(Band) -> f64| -> Vec<f32> {
-            rect.pixels().map(|(x, y)| value(bands.of_pixel(film, x, y, index)) as f32).collect()
+            rect.pixels().map(|(x, y)| value(bands.of_pixel(film, x, y, parameter, index)) as f32).collect()
         };
         picture.insert(&name, of(|band| band.radiance))?;
         if channels.has(Aov::Error) {
@@ -269,14 +271,16 @@ fn insert_bands(
         if channels.has(Aov::Variance) {
             picture.insert(&format!("Variance.{name}"), of(|band| band.error * band.error))?;
         }
-        picture.insert(&format!("{SAMPLES}.{name}"), of(|band| f64::from(band.count)))?;
+        if parameter == 0 {
+            picture.insert(&format!("{SAMPLES}.{name}"), of(|band| f64::from(band.count)))?;
+        }
     }
     Ok(())
 }
 
-/// The name of the channel of a band: its centre with a decimal comma, in nm.
-fn spectral_channel(centre_nm: f64) -> String {
-    format!("S0.{}nm", format!("{centre_nm:.6}").replace('.', ","))
+/// The name of the channel of a Stokes parameter in a band: its centre with a decimal comma, in nm.
+fn spectral_channel(parameter: u32, centre_nm: f64) -> String {
+    format!("S{parameter}.{}nm", format!("{centre_nm:.6}").replace('.', ","))
 }
 
 /// The channel of the number of finite samples of each pixel.
@@ -300,7 +304,7 @@ mod tests {
 
     #[test]
     fn spectral_channels_are_named_with_a_comma() {
-        assert_eq!(spectral_channel(550.0), "S0.550,000000nm");
-        assert_eq!(spectral_channel(400.25), "S0.400,250000nm");
+        assert_eq!(spectral_channel(0, 550.0), "S0.550,000000nm");
+        assert_eq!(spectral_channel(3, 400.25), "S3.400,250000nm");
     }
 }

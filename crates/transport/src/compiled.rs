@@ -11,4 +11,8 @@ pub(crate) const ENVIRONMENT: bool = !cfg!(feature = "without-environment");
 pub(crate) const SPECULAR_CHAINS: bool = !cfg!(feature = "without-specular-chains");
 pub(crate) const NESTED_DIELECTRICS: bool = !cfg!(feature = "without-nested-dielectrics");
 pub(crate) const ABSORPTION: bool = !cfg!(feature = "without-absorption");
+pub(crate) const TEXTURES: bool = !cfg!(feature = "without-textures");
+pub(crate) const SHADING_NORMALS: bool = !cfg!(feature = "without-shading-normals");
+pub(crate) const MASKS: bool = !cfg!(feature = "without-masks");
+pub(crate) const BANDS: bool = !cfg!(feature = "without-bands");
 pub(crate) const WIDE_FILTER: bool = !cfg!(feature = "without-wide-filter");

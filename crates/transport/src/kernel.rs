@@ -42,13 +42,14 @@ pub(crate) struct Kernel {
 }
 
 /// The whole table. What is no type parameter is decided by the plan, at run time: a branch costs nothing, work does.
-static KERNELS: [Kernel; 7] = [
+static KERNELS: &[Kernel] = &[
     entry::<f32, OneLane, Averaged, 1>(Precision::F32, LaneModel::One, "one-lane-f32"),
     entry::<f64, OneLane, Averaged, 1>(Precision::F64, LaneModel::One, "one-lane-f64"),
     entry::<f32, Shared, Averaged, LANES>(Precision::F32, LaneModel::Shared, "shared-8-f32"),
     entry::<f64, Shared, Averaged, LANES>(Precision::F64, LaneModel::Shared, "shared-8-f64"),
     entry::<f32, Hero<f32, LANES>, Averaged, LANES>(Precision::F32, LaneModel::Hero, "hero-8-f32"),
     entry::<f64, Hero<f64, LANES>, Averaged, LANES>(Precision::F64, LaneModel::Hero, "hero-8-f64"),
+    #[cfg(not(feature = "without-polarisation"))]
     Kernel {
         polarised: true,
         ..entry::<f64, Hero<f64, LANES>, Followed<LANES>, LANES>(
@@ -101,8 +102,9 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
     samples: Range<u32>,
     sums: Sums<'_>,
 ) -> Counters {
-    let bands = prepared.scene.film.bands.as_ref().filter(|_| !sums.bands.is_empty());
+    let bands = prepared.scene.film.bands.as_ref().filter(|_| compiled::BANDS && !sums.bands.is_empty());
     let per_replicate = sums.bands.len() / sums.xyz.len();
+    let per_parameter = per_replicate / prepared.band_parameters() as usize;
     let tracer = Tracer::new(prepared);
     let mut counters = Counters::default();
     let replicates = prepared.scene.integrator.replicates as usize;
@@ -111,7 +113,8 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
             let (wavelengths, radiance, polarisation) =
                 tracer.sample::<R, M, P, N>(x, y, sample, &mut counters, &mut ());
             let xyz = M::to_xyz(prepared, &wavelengths, radiance);
-            let stokes = polarisation.received().map(|s| s.map(|s| M::to_xyz(prepared, &wavelengths, s)));
+            let received = polarisation.received();
+            let stokes = received.map(|s| s.map(|s| M::to_xyz(prepared, &wavelengths, s)));
             counters.paths += 1;
             let replicate = at * replicates + sample as usize % replicates;
             if xyz.iter().chain(stokes.iter().flatten().flatten()).all(|v| v.is_finite()) {
@@ -121,7 +124,10 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
                 }
                 if let Some(bands) = bands {
                     let sums = &mut sums.bands[replicate * per_replicate..][..per_replicate];
-                    M::to_bands(bands, &wavelengths, radiance, sums);
+                    let parameters = std::iter::once(radiance).chain(received.into_iter().flatten());
+                    for (sums, parameter) in sums.chunks_exact_mut(per_parameter).zip(parameters) {
+                        M::to_bands(bands, &wavelengths, parameter, sums);
+                    }
                 }
             } else {
                 counters.record_nonfinite(NonFinite { y, x, sample });

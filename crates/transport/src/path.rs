@@ -170,7 +170,8 @@ impl World<'_> {
                 observer.light(vertex, Found::Emitter, light);
                 radiance += light;
             }
-            let opacity = if self.masks { surface.opacity(self.geometry, &point, &hit) } else { 1.0 };
+            let opacity =
+                if compiled::MASKS && self.masks { surface.opacity(self.geometry, &point, &hit) } else { 1.0 };
             if opacity < 1.0 {
                 let [.., u_mask] = sampler.vertex_set(vertex, 1);
                 if u_mask >= opacity && vertex + 1 < MOST_VERTICES {
@@ -335,7 +336,7 @@ impl World<'_> {
         let goes_through = point.normal.dot(sample.wi) * point.normal.dot(wo) < 0.0;
         let body = if goes_through { around.beyond } else { around.body };
         let mut transmittance = Lanes::ONE;
-        let arriving = if self.masks {
+        let arriving = if compiled::MASKS && self.masks {
             self.passing(shadow_ray, (*around.inside, body), &sample, lambda_nm, &mut transmittance, counters)
         } else {
             if let Some(absorption) = &self.absorption {

@@ -80,14 +80,20 @@ impl Prepared {
         if self.records_stokes() { film.recording_stokes() } else { film }
     }
 
-    /// Sums that a film keeps for its bands: one for each, or one for all where one lane stands for all wavelengths.
+    /// Sums that a film keeps for its bands: one for each, or one for all where one lane stands for all wavelengths; where the film
+    /// holds Stokes parameters, those of S₀ band by band, then those of S₁, S₂ and S₃.
     pub fn band_sums(&self) -> u32 {
         match (&self.scene.film.bands, self.plan().lane_model) {
             // Channels have no wavelengths.
             (None, _) | (_, LaneModel::ThreeChannels) => 0,
             (Some(_), LaneModel::One) => 1,
-            (Some(bands), LaneModel::Shared | LaneModel::Hero) => bands.count,
+            (Some(bands), LaneModel::Shared | LaneModel::Hero) => bands.count * self.band_parameters(),
         }
+    }
+
+    /// Stokes parameters that each band has: four, or S₀ alone.
+    pub(crate) fn band_parameters(&self) -> u32 {
+        if self.records_stokes() { 4 } else { 1 }
     }
 
     /// Where one sum stands for all bands: what it is to be multiplied by for each.

@@ -2,6 +2,7 @@
 
 use crate::absorption::Interior;
 use crate::bsdf::{Bsdf, BsdfSample, Lobe, Shading};
+use crate::compiled;
 use crate::coordinates::{At, Coordinates};
 use crate::media::Interface;
 use crate::polarisation::mueller::Mueller;
@@ -129,7 +130,8 @@ impl<'a> Surface<'a> {
     ) -> Scattering<'a> {
         let place = at(geometry, point, hit);
         let mut shading = self.coordinates.at(&place);
-        if let Some(relief) = self.relief
+        if compiled::SHADING_NORMALS
+            && let Some(relief) = self.relief
             && let Some(tangents) = self.coordinates.tangents(&place)
         {
             shading = relief::bend(&relief.image, shading, tangents, relief.per_m);

@@ -1,5 +1,6 @@
 //! Spectra that vary over a surface, as paths meet them.
 
+use crate::compiled;
 use crate::spectral::PathSpectrum;
 use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{Lanes, Real, Spectrum};
@@ -47,6 +48,7 @@ impl PathTexture {
     pub fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> Lanes<R, N> {
         match self {
             Self::Uniform(spectrum) => spectrum.lanes(lambda_nm),
+            Self::Image { .. } if !compiled::TEXTURES => Lanes::ZERO,
             Self::Image { texture, basis, .. } => {
                 let rgb = texture.eval(uv);
                 Lanes::from_fn(|lane| R::from_f64(basis.reflectance(rgb, lambda_nm[lane])))

@@ -44,9 +44,10 @@ pub(crate) struct KeptBands {
 }
 
 impl KeptBands {
-    /// Sums that the film has for them.
-    fn sums(&self) -> u32 {
-        if self.factors.is_some() { 1 } else { self.count }
+    /// Sums that the film has for so many Stokes parameters of them.
+    fn sums(&self, parameters: u32) -> u32 {
+        // One sum stands for all where nothing is polarised.
+        if self.factors.is_some() { 1 } else { self.count * parameters }
     }
 
     /// Centre of band `index`, nm.
@@ -54,9 +55,9 @@ impl KeptBands {
         self.first_nm + f64::from(index) * self.step_nm
     }
 
-    /// What a pixel knows of band `index`.
-    pub(crate) fn of_pixel(&self, film: &Film, x: u32, y: u32, index: u32) -> Band {
-        let Some(factors) = &self.factors else { return film.band(x, y, index) };
+    /// What a pixel knows of Stokes parameter number `parameter` in band `index`.
+    pub(crate) fn of_pixel(&self, film: &Film, x: u32, y: u32, parameter: u32, index: u32) -> Band {
+        let Some(factors) = &self.factors else { return film.band(x, y, parameter * self.count + index) };
         let (one, factor) = (film.band(x, y, 0), f64::from_bits(factors[index as usize]));
         Band {
             radiance: factor * one.radiance,
@@ -103,9 +104,14 @@ impl Subject {
         self.plan["stokes"] == true
     }
 
+    /// Stokes parameters that the film holds: S₀, or all four.
+    pub(crate) fn stokes_parameters(&self) -> u32 {
+        if self.records_stokes() { 4 } else { 1 }
+    }
+
     /// Sums for bands that each replicate of a pixel has.
     pub(crate) fn band_sums(&self) -> u32 {
-        self.bands.as_ref().map_or(0, KeptBands::sums)
+        self.bands.as_ref().map_or(0, |bands| bands.sums(self.stokes_parameters()))
     }
 
     /// What the picture lacks that the scene calls for.

@@ -19,6 +19,7 @@
 //! Algorithms*): paths from the camera are estimated rightly, paths from lights would need a correction.
 
 use super::{Bsdf, BsdfSample};
+use crate::compiled;
 use crate::media::Interface;
 use crate::mis::Density;
 use etalon_optics::{Lanes, Real, Vec3};
@@ -78,11 +79,11 @@ impl<'a> Shading<'a> {
 
     /// The unit normal to scatter around.
     pub fn shading_normal(&self) -> Vec3<f64> {
-        self.bent.unwrap_or(self.normal)
+        self.bent.filter(|_| compiled::SHADING_NORMALS).unwrap_or(self.normal)
     }
 
     pub(super) fn is_bent(&self) -> bool {
-        self.bent.is_some()
+        compiled::SHADING_NORMALS && self.bent.is_some()
     }
 
     /// The mirror image of a direction in the surface.

@@ -35,7 +35,8 @@ impl Film {
         self.bands
     }
 
-    /// What the pixel in column `x` and row `y` knows of band `band`.
+    /// What the pixel in column `x` and row `y` knows of band `band`; after the bands of S₀ come those of S₁, S₂ and S₃, if there are
+    /// any.
     pub fn band(&self, x: u32, y: u32, band: u32) -> Band {
         let (replicates, bands) = (self.replicates as usize, self.bands as usize);
         let start = (y as usize * self.width as usize + x as usize) * replicates * bands + band as usize;

@@ -20,7 +20,7 @@ const OF_BAND: u64 = 2 * 3 * 4;
 pub(super) fn check_memory(scene: &Scene, stokes: bool, failure: &mut Failure) {
     let (width, height) = (scene.film.width, scene.film.height);
     // Where one lane stands for all wavelengths it is less; that is known after the scene is prepared.
-    let bands = scene.film.bands.map_or(0, |bands| bands.count);
+    let bands = scene.film.bands.map_or(0, |bands| bands.count * if stokes { 4 } else { 1 });
     let film = Film::bytes(width, height, scene.integrator.replicates, bands);
     let stokes = if stokes { Film::stokes_bytes(width, height, scene.integrator.replicates) } else { 0 };
     let picture = (OF_PICTURE + u64::from(bands) * OF_BAND) * u64::from(width) * u64::from(height);
@@ -50,7 +50,7 @@ pub(super) fn check_disks(
     let stokes = if subject.records_stokes() { 72 } else { 0 };
     let sums = pixels * u64::from(subject.replicates) * (28 + stokes + 12 * u64::from(subject.band_sums()));
     let bands = subject.bands.as_ref().map_or(0, |bands| u64::from(bands.count));
-    let channels = channels.count(bands);
+    let channels = channels.count(bands, u64::from(subject.stokes_parameters()));
     for (number, output) in outputs.iter().enumerate() {
         let Some(room) = room_for(&output.path) else { continue };
         // While a checkpoint is written, the last one is still there.
