@@ -139,3 +139,46 @@ impl<R, const N: usize> IndexMut<usize> for Lanes<R, N> {
         &mut self.0[lane]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lanes(values: [f64; 3]) -> Lanes<f64, 3> {
+        Lanes(values)
+    }
+
+    #[test]
+    fn operators_take_lane_by_lane_and_leave_nothing_out() {
+        let (a, b) = (lanes([2.0, 3.0, 5.0]), lanes([4.0, 8.0, 16.0]));
+        assert_eq!(a + b, lanes([6.0, 11.0, 21.0]));
+        assert_eq!(a - b, lanes([-2.0, -5.0, -11.0]));
+        assert_eq!(a * b, lanes([8.0, 24.0, 80.0]));
+        assert_eq!(a / b, lanes([0.5, 0.375, 0.3125]));
+        assert_eq!((a + 1.0, a - 1.0), (lanes([3.0, 4.0, 6.0]), lanes([1.0, 2.0, 4.0])));
+        assert_eq!((a * 2.0, a / 2.0), (lanes([4.0, 6.0, 10.0]), lanes([1.0, 1.5, 2.5])));
+        let (mut sum, mut product, mut scaled, mut divided) = (a, a, a, a);
+        sum += b;
+        product *= b;
+        scaled *= 4.0;
+        divided /= 4.0;
+        assert_eq!((sum, product, scaled, divided), (a + b, a * b, a * 4.0, a / 4.0));
+    }
+
+    #[test]
+    fn what_is_said_of_all_lanes_takes_each_into_account() {
+        let a = lanes([2.0, -3.0, 7.0]);
+        assert_eq!((a.sum(), a.mean(), a.max_lane()), (6.0, 2.0, 7.0));
+        assert_eq!(a.hero_only(), lanes([2.0, 0.0, 0.0]));
+        for lane in 0..3 {
+            let (mut dark, mut finite) = (lanes([0.0; 3]), lanes([1.0; 3]));
+            assert!(dark.is_zero() && finite.is_finite());
+            dark[lane] = -1.0;
+            assert!(!dark.is_zero());
+            for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                finite[lane] = wrong;
+                assert!(!finite.is_finite(), "{finite:?}");
+            }
+        }
+    }
+}

@@ -277,4 +277,35 @@ mod tests {
             check_frame(Vec3::new(0.0_f32, -0.0, z as f32));
         }
     }
+    #[test]
+    fn vectors_add_reflect_and_tell_what_they_are() {
+        let (a, b) = (Vec3::new(1.0, -2.0, 4.0), Vec3::new(0.5, 8.0, -1.0));
+        let (mut sum, mut difference) = (a, a);
+        sum += b;
+        difference -= b;
+        assert_eq!((sum, difference), (Vec3::new(1.5, 6.0, 3.0), Vec3::new(0.5, -10.0, 5.0)));
+        assert_eq!((sum, difference), (a + b, a - b));
+        assert_eq!((a.max_component(), b.max_component(), (-a).max_component()), (4.0, 8.0, 2.0));
+        assert_eq!(a.reflected_about(Vec3::new(0.0, 0.0, 1.0)), Vec3::new(-1.0, 2.0, 4.0));
+        let slanting = Vec3::new(0.6, 0.0, 0.8);
+        let mirrored = a.reflected_about(slanting);
+        // The same along the normal, opposite across it.
+        assert!((mirrored.dot(slanting) - a.dot(slanting)).abs() < 1e-14);
+        assert!((mirrored + a - slanting * (2.0 * a.dot(slanting))).length() < 1e-14);
+        for axis in 0..3 {
+            let mut values = [1.0, 2.0, 3.0];
+            assert!(Vec3::from_array(values).is_finite());
+            values[axis] = f64::NAN;
+            assert!(!Vec3::from_array(values).is_finite());
+        }
+    }
+
+    /// One step of Newton's method for 1/√x: an error of δ becomes 3δ²/2.
+    #[test]
+    fn renormalising_squares_the_error_of_a_length() {
+        for error in [1e-3, -1e-3, 1e-5] {
+            let length = (Vec3::new(0.6, 0.0, -0.8) * (1.0 + error)).renormalized().length();
+            assert!((length - (1.0 - 1.5 * error * error)).abs() < 2e-9, "{error}: {length}");
+        }
+    }
 }

@@ -112,6 +112,26 @@ fn cauchys_formula_is_evaluated_in_micrometres() {
 }
 
 #[test]
+fn an_index_disperses_if_any_part_of_it_varies() {
+    let cauchy = |a, b, c| RefractiveIndex::cauchy(a, b, c, None).unwrap().is_dispersive();
+    assert!(!cauchy(1.5, 0.0, 0.0) && cauchy(1.5, 0.01, 0.0) && cauchy(1.5, 0.0, 1e-4));
+    let term = |b, c_um2| RefractiveIndex::sellmeier(vec![SellmeierTerm { b, c_um2 }], None).unwrap().is_dispersive();
+    assert!(!term(1.25, 0.0) && !term(0.0, 0.01) && term(1.25, 0.01));
+    let metal = |n: [f64; 2], k: [f64; 2]| {
+        ComplexIndex::tabulated(vec![400.0, 700.0], n.to_vec(), k.to_vec()).unwrap().is_dispersive()
+    };
+    assert!(!metal([0.2; 2], [3.0; 2]) && metal([0.2, 0.3], [3.0; 2]) && metal([0.2; 2], [3.0, 3.1]));
+}
+
+#[test]
+fn a_range_may_be_one_wavelength_and_an_index_of_zero_is_none() {
+    let glass = RefractiveIndex::named("N-BK7").unwrap();
+    assert!(glass.check_range([550.0, 550.0]).is_ok() && glass.check_range([551.0, 550.0]).is_err());
+    let nothing = RefractiveIndex::cauchy(0.0, 0.0, 0.0, None);
+    assert!(nothing.is_err() || nothing.unwrap().check_range([400.0, 700.0]).is_err());
+}
+
+#[test]
 fn metal_tables_meet_their_rows_and_are_linear_between() {
     // Rows of Johnson & Christy at 2.26, 2.13 eV and of Rakić.
     for (name, nm, n, k) in [

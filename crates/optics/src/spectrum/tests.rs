@@ -247,3 +247,11 @@ proptest! {
         prop_assert!(v >= low * (1.0 - f64::EPSILON) && v <= high * (1.0 + f64::EPSILON));
     }
 }
+
+#[test]
+fn emitters_say_what_they_were_made_of() {
+    let hot = Blackbody::new(5000.0, 0.5).unwrap();
+    assert_eq!((hot.temperature_k(), hot.scale()), (5000.0, 0.5));
+    let lamp = ScaledIlluminant::new(Illuminant::D65, 2.5).unwrap();
+    assert_eq!((lamp.illuminant(), lamp.scale()), (Illuminant::D65, 2.5));
+}

@@ -2,10 +2,7 @@
 
 use std::f64::consts::PI;
 
-use etalon_oracle::{
-    laws::fresnel_exact,
-    subjects::{Density, Scattered, Scatters},
-};
+use etalon_oracle::subjects::{Density, Scattered, Scatters};
 
 use crate::bsdf::{accepted, rejected};
 use crate::vector::{Vec3, dot, plus, times, unit};
@@ -43,25 +40,36 @@ impl RoughGlass {
         }
     }
 
-    /// What a facet reflects, and where it refracts to.
-    fn facet(&self, wo: Vec3, h: Vec3) -> (f64, Option<Vec3>) {
-        let eta = if (wo[2] > 0.0) != (self.fault == "eta upside down") { self.n } else { 1.0 / self.n };
-        let cos = dot(wo, h).min(1.0);
+    /// n_transmitted/n_incident for what is seen from `wo`.
+    fn eta(&self, wo: Vec3) -> f64 {
+        if (wo[2] > 0.0) != (self.fault == "eta upside down") { self.n } else { 1.0 / self.n }
+    }
+
+    /// What a facet reflects of light that meets it at this cosine.
+    fn reflectance(&self, wo: Vec3, cos: f64) -> f64 {
+        let cos = if self.fault == "Fresnel at the surface's normal" { wo[2].abs() } else { cos };
+        if self.fault == "Schlick" {
+            let r0 = ((self.n - 1.0) / (self.n + 1.0)).powi(2);
+            return r0 + (1.0 - r0) * (1.0 - cos).powi(5);
+        }
+        let eta = self.eta(wo);
         let cos2_t = 1.0 - (1.0 - cos * cos) / (eta * eta);
         if cos2_t <= 0.0 {
-            return (1.0, None);
+            return 1.0;
         }
-        let cos_f = if self.fault == "Fresnel at the surface's normal" { wo[2].abs() } else { cos };
-        let total = eta < 1.0 && 1.0 - cos_f * cos_f >= eta * eta;
-        let reflectance = match self.fault {
-            "Schlick" => {
-                let r0 = ((self.n - 1.0) / (self.n + 1.0)).powi(2);
-                r0 + (1.0 - r0) * (1.0 - cos).powi(5)
-            }
-            _ if total => 1.0,
-            _ => fresnel_exact(cos_f, eta).reflectance(),
-        };
-        (reflectance, Some(unit(plus(times(cos / eta - cos2_t.sqrt(), h), -1.0 / eta, wo))))
+        let cos_t = cos2_t.sqrt();
+        let (s, p) = ((cos - eta * cos_t) / (cos + eta * cos_t), (eta * cos - cos_t) / (eta * cos + cos_t));
+        0.5 * (s * s + p * p)
+    }
+
+    /// The share of light that a facet hands on from `wi` to `wo`. What it transmits is found from above, where no rounding turns it
+    /// into a total reflection.
+    fn share(&self, wo: Vec3, wi: Vec3, h: Vec3) -> f64 {
+        if wo[2] * wi[2] > 0.0 {
+            return self.reflectance(wo, dot(wo, h));
+        }
+        let above = if wo[2] > 0.0 { wo } else { wi };
+        1.0 - self.reflectance(above, dot(above, h).abs())
     }
 
     /// The facet that turns `wo` into `wi`, on the side of `wo`.
@@ -90,9 +98,8 @@ impl RoughGlass {
 impl Scatters for RoughGlass {
     fn f(&self, wo: Vec3, wi: Vec3, _: f64) -> f64 {
         let Some(h) = self.half(wo, wi) else { return 0.0 };
-        let (reflectance, _) = self.facet(wo, h);
-        let share = if wo[2] * wi[2] > 0.0 { reflectance } else { 1.0 - reflectance };
-        let power = share * self.d(h) * self.g(wo, wi) * dot(wo, h) * self.jacobian(wo, wi, h) / (wo[2] * wi[2]).abs();
+        let power = self.share(wo, wi, h) * self.d(h) * self.g(wo, wi) * dot(wo, h) * self.jacobian(wo, wi, h)
+            / (wo[2] * wi[2]).abs();
         let ratio = match self.fault {
             "no n squared" => 1.0,
             "n squared the wrong way" => self.side(wi) / self.side(wo),
@@ -103,12 +110,7 @@ impl Scatters for RoughGlass {
 
     fn pdf(&self, wo: Vec3, wi: Vec3, _: f64) -> f64 {
         let Some(h) = self.half(wo, wi) else { return 0.0 };
-        let (reflectance, _) = self.facet(wo, h);
-        let share = match self.fault {
-            "density without the choice" => 1.0,
-            _ if wo[2] * wi[2] > 0.0 => reflectance,
-            _ => 1.0 - reflectance,
-        };
+        let share = if self.fault == "density without the choice" { 1.0 } else { self.share(wo, wi, h) };
         share * self.d(h) * h[2].abs() * self.jacobian(wo, wi, h)
     }
 
@@ -120,9 +122,14 @@ impl Scatters for RoughGlass {
         if dot(wo, h) <= 0.0 {
             return None;
         }
-        let (reflectance, refracted) = self.facet(wo, h);
-        let reflects = u[2] < reflectance;
-        let wi = if reflects { plus(times(2.0 * dot(wo, h), h), -1.0, wo) } else { refracted? };
+        let (cos, eta) = (dot(wo, h).min(1.0), self.eta(wo));
+        let reflects = u[2] < self.reflectance(wo, cos);
+        let wi = if reflects {
+            plus(times(2.0 * cos, h), -1.0, wo)
+        } else {
+            let cos_t = (1.0 - (1.0 - cos * cos) / (eta * eta)).max(0.0).sqrt();
+            unit(plus(times(cos / eta - cos_t, h), -1.0 / eta, wo))
+        };
         if reflects != (wo[2] * wi[2] > 0.0) {
             return None;
         }

@@ -4,7 +4,7 @@ use super::{first_surface, materials::sheet_name, middle, surface};
 use crate::plan::grey::steps;
 use crate::texture;
 use etalon_optics::{colour::colour_matching, fresnel};
-use etalon_scene::{MaterialKind, Metal, PolarisingSheet, Scene};
+use etalon_scene::{MaterialKind, Metal, Scene};
 
 /// Why polarisation is not carried where it could make no difference.
 pub(in crate::plan) const UNPOLARISED: &str = "no surface polarises light";
