@@ -113,6 +113,11 @@ impl Frame {
         self.unscale
     }
 
+    /// A box of this frame where it is, to rounding.
+    pub(crate) fn unscaled_box(&self, b: Box32) -> Aabb {
+        Aabb { min: self.unscaled(b.min) + self.centre, max: self.unscaled(b.max) + self.centre }
+    }
+
     /// The point of which [`Frame::point`] gave the coordinates, if they are exact.
     fn unscaled(&self, p: [f32; 3]) -> Vec3<f64> {
         Vec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])) * self.unscale

@@ -9,9 +9,12 @@ use crate::wide::WideTree;
 use crate::{Aabb, Hit, Instance, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Real, Vec3};
 use rayon::prelude::*;
+use std::sync::OnceLock;
 
 /// Up to this many primitives, instances among them, are tested one by one, without a tree.
 const TREELESS_LIMIT: usize = 8;
+/// Most boxes of an outline.
+const OUTLINE_LIMIT: usize = 96;
 /// Most instances within each other: a ray descends through them by recursion.
 pub const MAX_NESTING: u32 = 32;
 
@@ -50,6 +53,8 @@ pub struct Geometry {
     instance_count: u64,
     /// Instances within each other.
     nesting: u32,
+    /// See [`Geometry::outline`].
+    outline: OnceLock<Vec<Aabb>>,
     label: u32,
 }
 
@@ -95,7 +100,18 @@ impl Geometry {
             WideTree::collapse(frame, &binary, &primitives)
         });
         let level = Level::detect();
-        Ok(Self { primitives, bounds, tree, flat, level, instances, instance_count, nesting, label: 0 })
+        Ok(Self {
+            primitives,
+            bounds,
+            tree,
+            flat,
+            level,
+            instances,
+            instance_count,
+            nesting,
+            outline: OnceLock::new(),
+            label: 0,
+        })
     }
 
     /// The same geometry with a number of the caller's, by which points on its surfaces tell that they are its.
@@ -131,6 +147,16 @@ impl Geometry {
     /// A box around all primitives; `None` if there are none.
     pub fn bounds(&self) -> Option<Aabb> {
         self.bounds
+    }
+
+    /// Some boxes that together hold all primitives: fewer than a hundred, but closer to their shape than one. An instance's box
+    /// is made of them, lest it be as large as that of a turned box.
+    pub(crate) fn outline(&self) -> &[Aabb] {
+        self.outline.get_or_init(|| match &self.tree {
+            Some(tree) => tree.outline(OUTLINE_LIMIT),
+            None if self.primitives.len() <= OUTLINE_LIMIT => self.primitives.iter().map(Primitive::bounds).collect(),
+            None => self.bounds.into_iter().collect(),
+        })
     }
 
     /// Memory held, bytes: the primitives, the accelerator and every shared geometry, each once.

@@ -88,15 +88,19 @@ impl Placement {
         product(&forward, product(&magnitudes(&self.inverse), v))
     }
 
-    /// A box around the image of a box, wide enough for the rounding of points and of rays that start near it.
-    fn bounds(&self, inner: Aabb) -> Aabb {
+    /// A box around the image of some boxes within one, wide enough for the rounding of points and of rays that start near it.
+    fn bounds(&self, inner: Aabb, outline: &[Aabb]) -> Aabb {
         let forward = magnitudes(&self.linear);
-        let centre = inner.centre();
-        let half = (inner.max - centre).max(centre - inner.min);
-        let (middle, reach) = (self.point(centre), product(&forward, half));
-        let far = product(&forward, centre.abs() + half);
+        let image = |b: &Aabb| {
+            let centre = b.centre();
+            let half = (b.max - centre).max(centre - b.min);
+            let (middle, reach) = (self.point(centre), product(&forward, half));
+            Aabb { min: middle - reach, max: middle + reach }
+        };
+        let image = outline.iter().map(image).fold(Aabb::EMPTY, Aabb::union);
+        let far = product(&forward, inner.min.abs().max(inner.max.abs()));
         let margin = (self.spread(far) + far + self.translation.abs()) * (32.0 * f64::UNIT_ROUNDOFF);
-        Aabb { min: middle - reach - margin, max: middle + reach + margin }
+        Aabb { min: image.min - margin, max: image.max + margin }
     }
 
     /// A point of a placed surface where it is placed.
@@ -158,7 +162,7 @@ impl Instance {
     /// # Errors
     /// If the geometry is empty, or would reach beyond [`MAX_COORDINATE`].
     pub fn new(geometry: Arc<Geometry>, placement: Placement) -> Result<Self, ShapeError> {
-        let bounds = placement.bounds(geometry.bounds().ok_or(ShapeError::Empty)?);
+        let bounds = placement.bounds(geometry.bounds().ok_or(ShapeError::Empty)?, geometry.outline());
         let largest = bounds.min.abs().max(bounds.max.abs()).max_component();
         if largest.is_nan() || largest > MAX_COORDINATE {
             return Err(ShapeError::OutOfRange);

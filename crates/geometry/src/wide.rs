@@ -4,7 +4,7 @@ use crate::build::{BinaryTree, Node};
 use crate::frame::{Box32, Frame};
 use crate::pages::Pages;
 use crate::query::Four;
-use crate::{Primitive, PrimitiveId};
+use crate::{Aabb, Primitive, PrimitiveId};
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
@@ -16,6 +16,9 @@ pub(crate) const LEAF_WIDTH: usize = 8;
 const PARALLEL_LIMIT: usize = 16_384;
 /// Marks a child that is a leaf.
 pub(crate) const LEAF: u32 = 1 << 31;
+/// Marks, together with [`LEAF`], a leaf that holds but an instance: the rest is its id. What a leaf tells of others would say
+/// nothing of it.
+pub(crate) const LONE: u32 = 1 << 30;
 
 /// A node: the boxes of up to sixteen children.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -78,7 +81,7 @@ impl WideTree {
     /// Collapses a binary tree.
     pub(crate) fn collapse(frame: Frame, tree: &BinaryTree, primitives: &[Primitive]) -> Self {
         let mut size = Size::default();
-        let choices = Choices::new(tree);
+        let choices = Choices::new(tree, primitives);
         size.count(&choices, 0, 1);
         let mut wide = Self {
             frame,
@@ -115,6 +118,27 @@ impl WideTree {
         self.leaves.as_slice()
     }
 
+    /// Up to `limit` boxes that hold all primitives, as small as the upper nodes of the tree are.
+    pub(crate) fn outline(&self, limit: usize) -> Vec<Aabb> {
+        let children = |node: u32| {
+            let Node16 { planes, children } = &self.nodes()[node as usize];
+            let of = move |lane: usize| {
+                let corner = |side: usize| [0, 1, 2].map(|k| planes[k][side][lane]);
+                (Box32 { min: corner(0), max: corner(1) }, children.0[lane])
+            };
+            (0..NODE_WIDTH).map(of).filter(|(bounds, _)| bounds.min[0] <= bounds.max[0])
+        };
+        let mut boxes: Vec<(Box32, u32)> = children(0).collect();
+        while boxes.len() + NODE_WIDTH <= limit {
+            let inner = boxes.iter().enumerate().filter(|(_, (_, child))| child & LEAF == 0);
+            let largest = inner.max_by(|(_, (a, _)), (_, (b, _))| a.half_area().total_cmp(&b.half_area()));
+            let Some((place, &(_, node))) = largest else { break };
+            boxes.swap_remove(place);
+            boxes.extend(children(node));
+        }
+        boxes.into_iter().map(|(bounds, _)| self.frame.unscaled_box(bounds)).collect()
+    }
+
     /// Memory held beside the struct itself, bytes.
     pub(crate) fn memory_bytes(&self) -> usize {
         size_of_val(self.nodes()) + size_of_val(self.leaves())
@@ -126,16 +150,24 @@ impl WideTree {
 /// Wide BVHs*, HPG 2017, §3.1).
 struct Choices<'a> {
     tree: &'a BinaryTree,
+    primitives: &'a [Primitive],
     /// For each inner binary node and each number i of children that it may become, 2 to 16, in four bits: how many of them
     /// its left child becomes, zero if it stays one.
     splits: Vec<u64>,
 }
 
 impl<'a> Choices<'a> {
-    fn new(tree: &'a BinaryTree) -> Self {
+    fn new(tree: &'a BinaryTree, primitives: &'a [Primitive]) -> Self {
         let mut splits = vec![0; tree.nodes.len()];
         Self::costs(tree, 0, &mut splits);
-        Self { tree, splits }
+        Self { tree, primitives, splits }
+    }
+
+    /// The instance that a leaf is, if it is but one.
+    fn lone(&self, leaf: u32) -> Option<u32> {
+        let Node { first, count, .. } = self.tree.nodes[leaf as usize];
+        let id = self.tree.order[first as usize];
+        (count == 1 && matches!(self.primitives[id as usize], Primitive::Instance(_))).then_some(id)
     }
 
     /// The least area of the nodes below a binary node if it becomes up to 1, 2, … 16 children. Itself counts if it stays
@@ -208,7 +240,7 @@ impl Size {
         let (children, count) = choices.children(root);
         for &child in &children[..count] {
             if choices.tree.nodes[child as usize].count > 0 {
-                self.leaves += 1;
+                self.leaves += usize::from(choices.lone(child).is_none());
             } else {
                 self.count(choices, child, depth + 1);
             }
@@ -244,6 +276,10 @@ impl Filler<'_> {
                 node.planes[k][1][lane] = max[k];
             }
             node.children.0[lane] = if child_node.count > 0 {
+                if let Some(id) = self.choices.lone(child) {
+                    node.children.0[lane] = id | LEAF | LONE;
+                    continue;
+                }
                 self.leaves.push(child);
                 (self.leaves.len() - 1) as u32 | LEAF
             } else {

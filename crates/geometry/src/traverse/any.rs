@@ -7,7 +7,7 @@ use super::start::{Deferred, Start};
 use super::{Filters, Narrow, intersect_exact};
 use crate::frame::FrameRay;
 use crate::query::Query;
-use crate::wide::{LEAF, Leaf8, WideTree};
+use crate::wide::{LEAF, LONE, Leaf8, WideTree};
 use crate::{Primitive, PrimitiveId};
 
 /// Whether anything is hit, in the order of the tree. A level of the stack is one entry, the children yet to be visited:
@@ -50,6 +50,12 @@ pub(super) fn any_on<F: Filters, S: Start, const N: usize>(
                 }
                 index = child;
                 break;
+            }
+            if child & LONE != 0 {
+                if occludes(primitives, query.get(), PrimitiveId(child & !(LEAF | LONE))) {
+                    return true;
+                }
+                continue;
             }
             let leaf = &leaves[(child & !LEAF) as usize];
             let mut candidates = candidates(filters, frame_ray, &chords, leaf, limit, certain_limit);

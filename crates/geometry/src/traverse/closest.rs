@@ -8,8 +8,8 @@ use super::{Entered, Filters, Narrow, intersect_exact};
 use crate::frame::FrameRay;
 use crate::geometry::{Best, Found};
 use crate::query::{Query, RawHit};
-use crate::wide::{LEAF, LEAF_WIDTH, WideTree};
-use crate::{Primitive, Triangle};
+use crate::wide::{LEAF, LEAF_WIDTH, LONE, WideTree};
+use crate::{Primitive, PrimitiveId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.
 #[inline(always)]
@@ -62,6 +62,11 @@ pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
                 }
                 child = nearest as u32;
                 continue;
+            }
+        } else if child & LONE != 0 {
+            let id = PrimitiveId(child & !(LEAF | LONE));
+            if decide_instance(&mut best, primitives, &mut query, id) {
+                limit = limit.min(frame_ray.distance(best.t_max));
             }
         } else {
             let index = child & !LEAF;
@@ -224,13 +229,24 @@ fn decide_now<S: Start>(
     decide(best, tree, leaf, lane, primitives, query.get())
 }
 
+/// Takes the ray into an instance.
+#[inline(never)]
+fn decide_instance<S: Start>(
+    best: &mut Best,
+    primitives: &[Primitive],
+    query: &mut Deferred<S>,
+    id: PrimitiveId,
+) -> bool {
+    best.test(primitives, query.get(), id)
+}
+
 /// Announces that a child that waits on the stack will be visited. Without it rays that share nothing are a tenth slower in
 /// trees that no cache holds.
 #[inline(always)]
 fn prefetch<F: Filters>(filters: F, tree: &WideTree, child: u32) {
     if child & LEAF == 0 {
         filters.prefetch(&tree.nodes()[child as usize]);
-    } else {
+    } else if child & LONE == 0 {
         filters.prefetch(&tree.leaves()[(child & !LEAF) as usize]);
     }
 }
