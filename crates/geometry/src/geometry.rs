@@ -261,7 +261,7 @@ impl Geometry {
     /// whose direction is outside 2^±900; nor is there a hit whose parameter `R` cannot represent.
     pub fn closest_hit<R: Real>(&self, ray: &Ray<R>) -> Option<Hit<R>> {
         let found = match &self.tree {
-            Some(tree) => traverse::closest(tree, &self.primitives, ray),
+            Some(tree) => traverse::closest(self.level, tree, &self.primitives, ray),
             None => {
                 let query = Query::new(ray)?;
                 self.closest(&query).map(|(hit, surface)| (RawHit { t: hit.t * query.scale, ..hit }, surface))
@@ -275,7 +275,7 @@ impl Geometry {
     /// Whether anything but the surface aimed at lies on a ray before `t_max`.
     pub fn occluded<R: Real>(&self, ray: &Ray<R>) -> bool {
         match &self.tree {
-            Some(tree) => traverse::any(tree, &self.primitives, ray),
+            Some(tree) => traverse::any(self.level, tree, &self.primitives, ray),
             None => Query::new(ray).is_some_and(|query| self.any(&query)),
         }
     }
@@ -339,7 +339,7 @@ impl Geometry {
 
     pub(crate) fn closest(&self, query: &Query) -> Option<Found> {
         match (&self.tree, &self.flat) {
-            (Some(tree), _) => traverse::closest(tree, &self.primitives, query),
+            (Some(tree), _) => traverse::closest(self.level, tree, &self.primitives, query),
             (_, Some(flat)) => flat.closest(self.level, &self.primitives, query),
             _ => self.closest_flat(query),
         }
@@ -348,7 +348,7 @@ impl Geometry {
     /// Whether anything but the surface aimed at is hit.
     pub(crate) fn any(&self, query: &Query) -> bool {
         match (&self.tree, &self.flat) {
-            (Some(tree), _) => traverse::any(tree, &self.primitives, query),
+            (Some(tree), _) => traverse::any(self.level, tree, &self.primitives, query),
             (_, Some(flat)) => flat.any(self.level, &self.primitives, query),
             _ => self.any_flat(query),
         }

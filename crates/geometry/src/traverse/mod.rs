@@ -156,26 +156,26 @@ impl Level {
 ///
 /// The query is made within, where its numbers can stay in registers.
 #[inline]
-pub(crate) fn closest<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(filters) = avx512::Avx512::detect() {
-        return filters.closest(tree, primitives, start);
-    } else if let Some(filters) = avx2::Avx2::detect() {
-        return filters.closest(tree, primitives, start);
+pub(crate) fn closest<S: Start>(level: Level, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(filters) => filters.closest(tree, primitives, start),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(filters) => filters.closest(tree, primitives, start),
+        Level::Portable => closest_portable(tree, primitives, start),
     }
-    closest_portable(tree, primitives, start)
 }
 
 /// Whether anything but the primitive aimed at is hit.
 #[inline]
-pub(crate) fn any<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(filters) = avx512::Avx512::detect() {
-        return filters.any(tree, primitives, start);
-    } else if let Some(filters) = avx2::Avx2::detect() {
-        return filters.any(tree, primitives, start);
+pub(crate) fn any<S: Start>(level: Level, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(filters) => filters.any(tree, primitives, start),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(filters) => filters.any(tree, primitives, start),
+        Level::Portable => any_portable(tree, primitives, start),
     }
-    any_portable(tree, primitives, start)
 }
 
 /// [`closest`] on any machine.
