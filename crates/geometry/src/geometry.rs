@@ -68,8 +68,12 @@ impl Geometry {
         Self::build_with(primitives, FLAT_LIMIT)
     }
 
-    /// [`Geometry::build`] with a tree above another number of primitives.
-    pub(crate) fn build_with(mut primitives: Vec<Primitive>, flat_limit: usize) -> Result<Self, GeometryError> {
+    /// [`Geometry::build`] with a tree above another number of primitives: for tests, which want trees of few.
+    ///
+    /// # Errors
+    /// As [`Geometry::build`].
+    #[doc(hidden)]
+    pub fn build_with(mut primitives: Vec<Primitive>, flat_limit: usize) -> Result<Self, GeometryError> {
         if primitives.len() > 1 << 29 {
             return Err(GeometryError::TooMany(primitives.len()));
         }
@@ -278,6 +282,15 @@ impl Geometry {
             Some(tree) => traverse::any(self.level, tree, &self.primitives, ray),
             None => Query::new(ray).is_some_and(|query| self.any(&query)),
         }
+    }
+
+    /// [`Geometry::closest_hit`] and [`Geometry::occluded`] by testing every primitive (what instances place is not taken
+    /// apart): for tests.
+    #[doc(hidden)]
+    pub fn one_by_one(&self, ray: &Ray<f64>) -> (Option<Hit<f64>>, bool) {
+        let Some(query) = Query::new(ray) else { return (None, false) };
+        let hit = self.closest_flat(&query).map(|(RawHit { t, uv }, surface)| Hit { t: t * query.scale, surface, uv });
+        (hit.filter(|hit| hit.t < f64::INFINITY), self.any_flat(&query))
     }
 
     /// The surface at a hit, as [`Geometry::closest_hit`] returned it for `ray`.

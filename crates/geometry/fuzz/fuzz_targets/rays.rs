@@ -1,9 +1,10 @@
-//! Arbitrary shapes, instances and rays: nothing panics, the tree answers what its primitives answer one by one, and what
-//! it answers makes sense.
+//! Arbitrary shapes, instances and rays: nothing panics; the tree, and what serves few primitives, one ray or eight at once,
+//! answer what the primitives answer one by one; and what they answer makes sense.
 #![no_main]
 
 use etalon_geometry::{
-    Cylinder, Disk, Geometry, Instance, Parallelogram, Placement, Primitive, PrimitiveId, Ray, Sphere, SurfaceId, Triangle,
+    Cylinder, Disk, Geometry, Instance, LANES, Parallelogram, Placement, Primitive, PrimitiveId, Ray, Rays, Sphere,
+    SurfaceId, Triangle,
 };
 use etalon_optics::{Real, Vec3};
 use libfuzzer_sys::fuzz_target;
@@ -62,7 +63,22 @@ impl Bytes<'_> {
     }
 }
 
-fn check<R: Real>(geometry: &Geometry, alone: &[Geometry], bytes: &mut Bytes<'_>) {
+/// Eight rays at once against each alone, to the bit.
+fn check_eight(geometry: &Geometry, rays: &Rays, active: u8) {
+    let (hits, any) = (geometry.closest_hits(rays, active), geometry.any_hits(rays, active));
+    let points = geometry.surfaces(rays, &hits, hits.mask);
+    for lane in 0..LANES {
+        let (ray, wanted) = (rays.get(lane), active >> lane & 1 == 1);
+        let hit = geometry.closest_hit(&ray).filter(|_| wanted);
+        assert_eq!(hits.get(lane), hit, "{ray:?}");
+        assert_eq!(any >> lane & 1 == 1, wanted && geometry.occluded(&ray), "{ray:?}");
+        if let Some(hit) = hit {
+            assert_eq!(format!("{:?}", points.get(lane)), format!("{:?}", geometry.surface(&ray, &hit)), "{ray:?}");
+        }
+    }
+}
+
+fn check<R: Real>(geometry: &Geometry, alone: &[Geometry], bytes: &mut Bytes<'_>) -> Ray<f64> {
     let ids = alone.len() as u32;
     let id = |b: u8| if b < 128 { PrimitiveId::NONE } else { PrimitiveId(u32::from(b) % ids.max(1)) };
     let (leaves, aims_at) = (id(bytes.byte()), id(bytes.byte()));
@@ -73,6 +89,14 @@ fn check<R: Real>(geometry: &Geometry, alone: &[Geometry], bytes: &mut Bytes<'_>
         leaves: leaves.into(),
         aims_at: aims_at.into(),
     };
+    let wide = Ray {
+        origin: ray.origin.to_f64(),
+        direction: ray.direction.to_f64(),
+        t_max: ray.t_max.to_f64(),
+        leaves: ray.leaves,
+        aims_at: ray.aims_at,
+    };
+    assert_eq!((geometry.closest_hit(&wide), geometry.occluded(&wide)), geometry.one_by_one(&wide), "{wide:?}");
     let mine = |id: PrimitiveId, i: usize| if id.0 == i as u32 { PrimitiveId(0).into() } else { SurfaceId::NONE };
     let one = |i: usize| Ray { leaves: mine(leaves, i), aims_at: mine(aims_at, i), ..ray };
     // The lowest of the nearest.
@@ -95,7 +119,7 @@ fn check<R: Real>(geometry: &Geometry, alone: &[Geometry], bytes: &mut Bytes<'_>
     }
     let occluded = alone.iter().enumerate().any(|(i, geometry)| geometry.occluded(&one(i)));
     assert_eq!(geometry.occluded(&ray), occluded, "{ray:?}");
-    let Some(hit) = hit else { return };
+    let Some(hit) = hit else { return wide };
     assert!(hit.t >= R::ZERO && hit.t <= ray.t_max, "{hit:?}");
     assert!(hit.uv.iter().all(|w| (R::ZERO..=R::ONE).contains(w)), "{hit:?}");
     let point = geometry.surface(&ray, &hit);
@@ -105,6 +129,7 @@ fn check<R: Real>(geometry: &Geometry, alone: &[Geometry], bytes: &mut Bytes<'_>
         geometry.surface(&next, &hit);
     }
     geometry.occluded(&point.spawn_to(ray.origin, SurfaceId::NONE));
+    wide
 }
 
 fuzz_target!(|data: &[u8]| {
@@ -119,12 +144,15 @@ fuzz_target!(|data: &[u8]| {
         }
     }
     let alone: Vec<Geometry> = shapes.iter().map(|s| Geometry::build(vec![s.clone()]).expect("one")).collect();
-    let geometry = Geometry::build(shapes).expect("few");
-    for _ in 0..16 {
-        check::<f64>(&geometry, &alone, &mut bytes);
+    let flat_limit = if bytes.byte() % 2 == 0 { 0 } else { 128 };
+    let geometry = Geometry::build_with(shapes, flat_limit).expect("few");
+    let mut rays = Rays::NONE;
+    for i in 0..16 {
+        rays.set(i % LANES, &check::<f64>(&geometry, &alone, &mut bytes));
         check::<f32>(&geometry, &alone, &mut bytes);
         if bytes.0.is_empty() {
             break;
         }
     }
+    check_eight(&geometry, &rays, bytes.byte().wrapping_sub(1));
 });
