@@ -1,5 +1,6 @@
 //! The door: a set of primitives that answers ray queries.
 
+use crate::best::{Best, Found};
 use crate::build::{Costs, Item, build};
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
@@ -17,9 +18,6 @@ const TREELESS_LIMIT: usize = 8;
 const OUTLINE_LIMIT: usize = 96;
 /// Most instances within each other: a ray descends through them by recursion.
 pub const MAX_NESTING: u32 = 32;
-
-/// A hit and its surface.
-pub(crate) type Found = (RawHit, SurfaceId);
 
 /// Why primitives cannot be built into a [`Geometry`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -397,74 +395,4 @@ fn costs(primitives: &[Primitive]) -> Costs {
     let filtered = |p: &&Primitive| !matches!(p, Primitive::Cylinder(_) | Primitive::Instance(_));
     let most = primitives.iter().filter(filtered).count() > primitives.len() / 2;
     Costs { block: if most { 8 } else { 1 }, leaf_limit, node: 0.35 }
-}
-
-/// The closest hit so far.
-pub(crate) struct Best {
-    hit: Option<(RawHit, PrimitiveId)>,
-    /// The surface of the hit, if it is within an instance.
-    within: Option<SurfaceId>,
-    pub(crate) t_max: f64,
-}
-
-impl Best {
-    pub(crate) fn new(t_max: f64) -> Self {
-        Self { hit: None, within: None, t_max }
-    }
-
-    /// The hit with its surface.
-    #[inline(always)]
-    pub(crate) fn found(&self) -> Option<Found> {
-        self.hit.map(|(hit, id)| (hit, self.within.unwrap_or(SurfaceId::from(id))))
-    }
-
-    /// Tests a primitive and tells whether its hit is the best so far.
-    #[inline]
-    pub(crate) fn test(&mut self, primitives: &[Primitive], query: &Query, id: PrimitiveId) -> bool {
-        match &primitives[id.0 as usize] {
-            // Left as a whole.
-            Primitive::Instance(_) if query.leaves == id => false,
-            Primitive::Instance(instance) => {
-                let mut surface = None;
-                let found = self.take(id, |t_max| {
-                    let (hit, within) = instance.closest(query, t_max)?;
-                    surface = Some(within);
-                    Some(hit)
-                });
-                if found {
-                    self.within = surface;
-                }
-                found
-            }
-            shape => self.take(id, |t_max| shape.intersect(query, t_max, query.leaves == id)),
-        }
-    }
-
-    /// Takes what a test with a limit finds for a primitive, if it is the best so far.
-    #[inline(always)]
-    pub(crate) fn take(&mut self, id: PrimitiveId, intersect: impl FnOnce(f64) -> Option<RawHit>) -> bool {
-        let found = intersect(self.limit(id));
-        if let Some(hit) = found {
-            self.set(hit, id);
-        }
-        found.is_some()
-    }
-
-    /// The end, exclusive, up to which a hit of a primitive is the best so far.
-    #[inline(always)]
-    pub(crate) fn limit(&self, id: PrimitiveId) -> f64 {
-        // An equal distance counts for a lower id, whatever the order of the tests.
-        match self.hit {
-            Some((hit, best)) if id < best => hit.t.next_up(),
-            _ => self.t_max,
-        }
-    }
-
-    /// Takes a hit that is the best so far.
-    #[inline(always)]
-    pub(crate) fn set(&mut self, hit: RawHit, id: PrimitiveId) {
-        self.hit = Some((hit, id));
-        self.within = None;
-        self.t_max = hit.t;
-    }
 }

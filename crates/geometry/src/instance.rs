@@ -4,8 +4,8 @@
 //! parameter is then the same on both sides. What the map and its inverse round is part of the error bound of every
 //! point that comes back, so that a ray leaves an instanced surface as safely as any other.
 
+use crate::best::Found;
 use crate::double_double::{cross, dot, widen};
-use crate::geometry::Found;
 use crate::query::Query;
 use crate::ray::ExactPoint;
 use crate::{Aabb, Geometry, MAX_COORDINATE, Ray, ShapeError, SurfaceId};

@@ -14,12 +14,14 @@
 //! | `build` | the builder of a binary tree |
 //! | `wide` | the tree of sixteen children a node that it becomes |
 //! | `pages` | arrays in large pages |
-//! | `traverse` | its traversal, for each instruction set |
+//! | `traverse` | its traversal, for each instruction set; `traverse::flat`: few primitives, without a tree |
 //! | `geometry` | [`Geometry`]: the queries |
+//! | `best` | the closest hit so far |
 //! | `lanes` | [`Rays`]: eight rays at once |
 //! | `instance` | [`Instance`]: a geometry within another, placed by an affine map |
 
 mod aabb;
+mod best;
 mod build;
 mod double_double;
 mod frame;

@@ -5,8 +5,8 @@ use super::avx2::{Avx2, D4, F4, F8, prefetch};
 use super::wide512::{D8, F16};
 use super::{Entered, Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
+use crate::best::Found;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
-use crate::geometry::Found;
 use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use std::arch::x86_64::*;
 

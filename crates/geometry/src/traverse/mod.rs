@@ -20,9 +20,9 @@ mod wide256;
 #[cfg(target_arch = "x86_64")]
 mod wide512;
 
+use crate::best::Found;
 use crate::build::MAX_DEPTH;
 use crate::frame::BoxRay;
-use crate::geometry::Found;
 use crate::query::{Four, Projection, Query, RawHit};
 use crate::wide::{LEAF_WIDTH, Leaf8, NODE_WIDTH, Node16, WideTree};
 use crate::{Primitive, Triangle};

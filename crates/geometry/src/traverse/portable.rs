@@ -3,8 +3,8 @@
 use super::flat::{BLOCK, PlainEight, Wide};
 use super::vector::Vector;
 use super::{Entered, Filters, Start, any_far_with, closest_far_with};
+use crate::best::Found;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
-use crate::geometry::Found;
 use crate::query::Plain4;
 use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
 use crate::{LANES, Primitive};

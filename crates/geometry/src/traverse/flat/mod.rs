@@ -14,8 +14,8 @@ mod surface;
 mod wide;
 
 use super::Level;
+use crate::best::Found;
 use crate::frame::{Frame, above, below};
-use crate::geometry::Found;
 use crate::query::Query;
 use crate::ray::ExactPoint;
 use crate::{Aabb, Hits, Primitive, PrimitiveId, Rays, SurfacePoints};

@@ -2,7 +2,7 @@
 
 use super::filter::*;
 use super::{BLOCK, Flat, NO_ID, Wide};
-use crate::geometry::{Best, Found};
+use crate::best::{Best, Found};
 use crate::query::Query;
 use crate::traverse::{Filters, Job, intersect_shape, occludes};
 use crate::{Primitive, PrimitiveId};
