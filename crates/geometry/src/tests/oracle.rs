@@ -1,6 +1,7 @@
 //! Our shapes and tree, held to the oracle's laws of intersection with its generators.
 
 use crate::test_support::primitive;
+use crate::traverse::FLAT_LIMIT;
 use crate::{Geometry, Ray};
 use etalon_optics::{Real, Vec3};
 use etalon_oracle::generators::{Shape, scenes};
@@ -10,8 +11,18 @@ use etalon_oracle::{Verdict, intersects_suite, suite};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
-/// Our geometry, for rays of scalar type `R`.
-struct Ours<R>(PhantomData<R>);
+/// Our geometry, for rays of scalar type `R`; with a tree above so many primitives.
+struct Ours<R> {
+    flat_limit: usize,
+    scalar: PhantomData<R>,
+}
+
+impl<R> Ours<R> {
+    /// As everyone has it.
+    const BUILT: Self = Self { flat_limit: FLAT_LIMIT, scalar: PhantomData };
+    /// Trees even of few primitives.
+    const TREES: Self = Self { flat_limit: 0, scalar: PhantomData };
+}
 
 struct Built<R> {
     geometry: Geometry,
@@ -20,7 +31,8 @@ struct Built<R> {
 
 impl<R: Real> Builds for Ours<R> {
     fn build(&self, shapes: &[Shape]) -> Box<dyn Intersects> {
-        let geometry = Geometry::build(shapes.iter().filter_map(primitive).collect()).expect("few enough shapes");
+        let primitives = shapes.iter().filter_map(primitive).collect();
+        let geometry = Geometry::build_with(primitives, self.flat_limit).expect("few enough shapes");
         Box::new(Built { geometry, scalar: PhantomData::<R> })
     }
 
@@ -48,20 +60,28 @@ impl<R: Real> Intersects for Built<R> {
     }
 }
 
-intersects_suite!(rays_in_f64, Ours::<f64>(PhantomData), rays: 4_000, seed: 1);
-intersects_suite!(rays_in_f32, Ours::<f32>(PhantomData), rays: 4_000, seed: 2);
+intersects_suite!(rays_in_f64, Ours::<f64>::BUILT, rays: 4_000, seed: 1);
+intersects_suite!(rays_in_f32, Ours::<f32>::BUILT, rays: 4_000, seed: 2);
+intersects_suite!(trees_in_f64, Ours::<f64>::TREES, rays: 2_000, seed: 3);
+intersects_suite!(trees_in_f32, Ours::<f32>::TREES, rays: 2_000, seed: 4);
 
 /// `cargo test --release -p etalon-geometry -- --ignored million`
 #[test]
-#[ignore = "a minute and a half of two cores; run by hand when the tree or a shape changes"]
+#[ignore = "two minutes and a half of two cores; run by hand when the tree or a shape changes"]
 #[allow(clippy::print_stdout, reason = "what was tried is for whoever asks for it")]
-fn a_million_rays_a_generator_meet_in_the_tree_what_they_meet_alone() {
-    let subject = Ours::<f64>(PhantomData);
-    scenes(f64::EPSILON, 7).par_iter().for_each(|scene| {
-        let verdict = laws::neighbours_change_no_hit(&subject, scene, 1_000_000, 7);
-        println!("{verdict}");
-        verdict.assert();
-    });
+fn a_million_rays_a_generator_meet_in_company_what_they_meet_alone() {
+    let few = [Ours::<f64>::BUILT, Ours::<f64>::TREES];
+    scenes(f64::EPSILON, 7).par_iter().flat_map(|scene| few.par_iter().map(move |ours| (scene, ours))).for_each(
+        |(scene, ours)| {
+            if ours.flat_limit > 0 && scene.shapes.len() > FLAT_LIMIT {
+                // The same tree as the other's.
+                return;
+            }
+            let verdict = laws::neighbours_change_no_hit(ours, scene, 1_000_000, 7);
+            println!("{verdict}");
+            verdict.assert();
+        },
+    );
 }
 
 /// `cargo test --release -p etalon-geometry -- --ignored escape`
@@ -69,7 +89,7 @@ fn a_million_rays_a_generator_meet_in_the_tree_what_they_meet_alone() {
 #[ignore = "some seconds of two cores; run by hand when the tree or the triangle changes"]
 #[allow(clippy::print_stdout, reason = "what was tried is for whoever asks for it")]
 fn of_ten_million_rays_none_escapes_from_a_closed_mesh() {
-    let subject = Ours::<f64>(PhantomData);
+    let subject = Ours::<f64>::BUILT;
     let meshes: Vec<_> = suite::closed_meshes(f64::EPSILON).collect();
     let each = 10_000_000_usize.div_ceil(meshes.len());
     let verdicts: Vec<Verdict> =

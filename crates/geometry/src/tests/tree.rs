@@ -300,7 +300,7 @@ fn rays_of_which_no_point_is_defined_hit_nothing() {
 fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
     let mut random = Random::new(40);
     let (mut shapes, mut hits) = (0, 0);
-    for _ in 0..3_000 {
+    for round in 0..3_000 {
         let primitives: Vec<Primitive> = (0..60)
             .filter_map(|_| {
                 let [a, b, c] = [0, 1, 2].map(|_| random.any_vector());
@@ -314,7 +314,8 @@ fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
             .collect();
         shapes += primitives.len();
         let features = features(&primitives);
-        let geometry = Geometry::build(primitives).unwrap();
+        // In turn with a tree and without.
+        let geometry = Geometry::build_with(primitives, [0, 128][round % 2]).unwrap();
         for _ in 0..30 {
             let mut point = || match random.below(2) {
                 0 if !features.is_empty() => features[random.below(features.len())],
