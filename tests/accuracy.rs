@@ -149,18 +149,25 @@ fn two_seeds_of_a_scene_are_the_same_and_a_planted_bias_is_found() {
     assert!(json["note"].as_str().unwrap().contains("Error.R") && json["rmse"].as_f64().unwrap() > 0.0);
 }
 
-/// 100 pairs at a significance of one in a thousand: more than two false alarms happen once in 6000 times.
+/// 100 pairs. At a significance of one in a thousand more than two false alarms happen once in 6000 times; at one in twenty, where
+/// five are to be expected, more than 14 happen once in 7000 times.
 #[test]
-#[ignore = "takes minutes: 200 renders"]
+#[ignore = "takes a minute: 200 renders"]
 fn a_hundred_pairs_of_seeds_are_called_the_same() {
     let folder = tempfile::tempdir().unwrap();
-    let mut alarms = 0;
+    let (mut alarms, mut twentieth) = (0, 0);
     for seed in 0..100 {
-        let one = |name, seed| render(folder.path(), name, &format!("--size 64x64 --spp 64 --seed {seed}")).0;
+        let one = |name, seed| render(folder.path(), name, &format!("--size 48x48 --spp 32 --seed {seed}")).0;
         let (a, b) = (one("a.exr", 2 * seed), one("b.exr", 2 * seed + 1));
         alarms += u32::from(etalon_line("compare {} {}", [&a, &b]).status == 1);
+        twentieth += u32::from(etalon_line("compare {} {} --significance 0.05", [&a, &b]).status == 1);
     }
-    assert!(alarms <= 2, "{alarms} of 100");
+    // docs/accuracy.md has the numbers.
+    #[allow(clippy::print_stdout)]
+    {
+        println!("{alarms} of 100 are called different at 0.001, {twentieth} at 0.05");
+    }
+    assert!(alarms <= 2 && twentieth <= 14, "{alarms} and {twentieth} of 100");
 }
 
 /// Luminance of each pixel.
@@ -173,12 +180,12 @@ fn luminance(path: &Path) -> Vec<f64> {
 
 /// Scenes on which errors and prices are tried, and the side of their pictures: where all pixels are alike, fewer tell as much.
 const SIX: [(&str, u32); 6] = [
-    ("cornell", 48),
-    ("metals", 32),
     ("cornell-glass", 48),
     ("thin-lens", 48),
     ("assignment", 48),
     ("integrating-sphere", 32),
+    ("cornell", 48),
+    ("metals", 32),
 ];
 
 /// Relative root mean square difference of two pictures of luminance, in units of a level.
@@ -187,28 +194,47 @@ fn relative_rms(a: &[f64], b: &[f64], level: f64) -> f64 {
     (squares / a.len() as f64).sqrt() / level
 }
 
-/// A picture that is ten times as precise as one with an error of 2 %: the mean of two that share no random number, each a single
-/// sequence of points, with more and more samples until their difference says that the error of their mean is at most 0.2 %.
-/// Returns the mean's level and its own relative error too.
-fn reference(render: &dyn Fn(u64, u64) -> Vec<f64>, spp: u64) -> (Vec<f64>, f64, f64) {
-    let mut samples = 8 * spp;
-    loop {
-        let [a, b] = [101, 102].map(|seed| render(seed, samples));
-        let mean: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 0.5 * (a + b)).collect();
-        let level = mean.iter().sum::<f64>() / mean.len() as f64;
-        // Var((a + b)/2) = Var(a − b)/4.
-        let own = 0.5 * relative_rms(&a, &b, level);
-        if own <= 0.002 {
-            return (mean, level, own);
+/// What pictures are held against: two pictures a and b that share no random number with each other nor with any picture.
+struct Reference {
+    halves: [Vec<f64>; 2],
+    level: f64,
+    /// Relative error of the mean of the two, by their difference: Var((a + b)/2) = Var(a − b)/4.
+    own: f64,
+}
+
+/// The largest own error of a reference: a fifth of 2 %. It biases nothing (see [`Reference::error_of`]), and adds to the scatter of
+/// an error that n pixels carry alike 2·(1/5)/√n of its square: 4 % of the error with 25 such pixels, where chance alone is 14 %.
+const OWN: f64 = 0.004;
+
+impl Reference {
+    /// Takes more and more samples, each half a single sequence of points, until the mean is precise enough.
+    fn new(render: &dyn Fn(u64, u64) -> Vec<f64>, spp: u64) -> Self {
+        let mut samples = 4 * spp;
+        loop {
+            let halves = [101, 102].map(|seed| render(seed, samples));
+            let level = 0.5 * halves.iter().flatten().sum::<f64>() / halves[0].len() as f64;
+            let own = 0.5 * relative_rms(&halves[0], &halves[1], level);
+            if own <= OWN {
+                return Self { halves, level, own };
+            }
+            // On from there by the slope of most scenes; a steeper one ends sooner, a flatter one takes another round.
+            samples = (samples as f64 * (1.05 * own / OWN).powf(1.0 / 0.6).clamp(1.3, 8.0)) as u64;
         }
-        // On from there by the slope of most scenes; a steeper one ends sooner, a flatter one takes another round.
-        samples = (samples as f64 * (own / 0.0019).powf(1.0 / 0.6).clamp(1.3, 8.0)) as u64;
+    }
+
+    /// The relative error of a picture p: the root of the mean of (p − a)(p − b), whose expectation is that of (p − truth)², since
+    /// p, a and b are independent and have the same mean. It equals the squared distance to the mean of a and b less that mean's
+    /// own squared error.
+    fn error_of(&self, picture: &[f64]) -> f64 {
+        let [a, b] = &self.halves;
+        let products: f64 = picture.iter().zip(a).zip(b).map(|((p, a), b)| (p - a) * (p - b)).sum();
+        (products / picture.len() as f64).sqrt() / self.level
     }
 }
 
-/// Pictures of other seeds than the quote's, to 2 % twice and to 1 % once. Their distance to a reference, whose own squared error
-/// is taken off, must be 1.7 to 2.3 % where 2 % were asked for; and they must take what was quoted, within a factor of 1.25, nine
-/// times of ten. Times are of the processor, so that other programs do not count.
+/// Pictures of other seeds than the quote's, to 2 % twice and to 1 % once. Their error against a reference must be 1.7 to 2.3 % where
+/// 2 % were asked for; and they must take what was quoted, within a factor of 1.25, nine times of ten. Times are of the processor,
+/// so that other programs do not count.
 #[test]
 #[ignore = "takes some ten minutes of two processors: the table of docs/accuracy.md on errors and prices"]
 fn six_scenes_end_at_the_error_and_in_the_time_that_were_foretold() {
@@ -232,10 +258,9 @@ fn six_scenes_end_at_the_error_and_in_the_time_that_were_foretold() {
         let of = |report: &Value| report["spp"].as_u64().unwrap();
         let adaptive = if pictures[0].3["adaptive"]["used"] == true { "always" } else { "never" };
         let many = |seed, spp| run(&format!("--replicates 1 --spp {spp} --adaptive {adaptive} --seed {seed}")).0;
-        let (reference, level, own) = reference(&many, of(&pictures[0].3));
+        let reference = Reference::new(&many, of(&pictures[0].3));
         for (error, seed, picture, report, quoted) in &pictures {
-            let distance = relative_rms(picture, &reference, level);
-            let measured = (distance * distance - own * own).sqrt();
+            let measured = reference.error_of(picture);
             if *error == "2%" && !(0.017..=0.023).contains(&measured) {
                 outside.push(format!("{name}: {measured}"));
             }
@@ -254,7 +279,7 @@ fn six_scenes_end_at_the_error_and_in_the_time_that_were_foretold() {
                     of(report),
                     100.0 * number(&report["error"]["relative_rmse"]),
                     100.0 * measured,
-                    100.0 * own,
+                    100.0 * reference.own,
                     quoted,
                 );
             }
