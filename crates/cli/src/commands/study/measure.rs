@@ -42,6 +42,8 @@ pub(super) struct Reference {
     pub mean_y: f64,
     /// Its own relative error.
     pub relative_rmse: f64,
+    /// Whether rare bright paths carry its error, so that neither it nor the errors held against it are known well.
+    pub heavy_tailed: bool,
 }
 
 /// A choice at its largest number of samples.
@@ -176,6 +178,7 @@ pub(super) fn study(
     let truth_picture: Vec<f64> = reference.film.xyz().map(|xyz| xyz[1]).collect();
     let mean_y = truth_picture.iter().sum::<f64>() / truth_picture.len() as f64;
     let own = reference.scatter().unwrap_or(0.0);
+    let heavy_tailed = reference.film.error(reference.prepared.whole(None).rect).is_some_and(|e| e.is_heavy_tailed());
 
     // All choices at one number of samples, then all at the next: what disturbs the machine disturbs all alike.
     let mut next = FIRST;
@@ -205,7 +208,13 @@ pub(super) fn study(
         width: scene.film.width,
         height: scene.film.height,
         truth,
-        reference: Reference { samples: reference.samples, seconds: reference.seconds, mean_y, relative_rmse: own },
+        reference: Reference {
+            samples: reference.samples,
+            seconds: reference.seconds,
+            mean_y,
+            relative_rmse: own,
+            heavy_tailed,
+        },
         rows,
     })
 }
@@ -247,13 +256,21 @@ fn row(runner: &Runner, baseline: f64, truth: Option<f64>, reference_y: f64, own
     }
 }
 
+/// The points whose error no later one exceeds. Where rare bright paths carry the error, a few samples have met none of them and
+/// look better than many.
+pub(super) fn believable(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let exceeded = |index: usize| points[index + 1..].iter().any(|later| later.1 > points[index].1);
+    (0..points.len()).filter(|&index| !exceeded(index)).map(|index| points[index]).collect()
+}
+
 /// Least squares through the logarithms.
 fn slope(points: &[Point]) -> Option<f64> {
-    let logs: Vec<(f64, f64)> = points
+    let seen: Vec<(f64, f64)> = points
         .iter()
-        .filter_map(|point| Some((f64::from(point.samples).ln(), point.scatter.or(point.error)?.ln())))
-        .filter(|(_, error)| error.is_finite())
+        .filter_map(|point| Some((f64::from(point.samples), point.scatter.or(point.error)?)))
+        .filter(|(_, error)| *error > 0.0 && error.is_finite())
         .collect();
+    let logs: Vec<(f64, f64)> = believable(&seen).into_iter().map(|(n, error)| (n.ln(), error.ln())).collect();
     if logs.len() < 2 {
         return None;
     }
@@ -279,5 +296,8 @@ mod tests {
         let slope_of = slope(&[4, 16, 64].map(point)).unwrap();
         assert!((slope_of - 0.75).abs() < 1e-12);
         assert_eq!(slope(&[point(4)]), None);
+        // Four samples that have not met what sixteen have.
+        let lucky = Point { scatter: Some(0.001), ..point(4) };
+        assert!((slope(&[lucky, point(16), point(64)]).unwrap() - 0.75).abs() < 1e-12);
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::StudyReport;
-use super::measure::{Point, Row, SceneStudy};
+use super::measure::{Point, Row, SceneStudy, believable};
 use crate::progress::{duration, percent, two_digits};
 
 /// The columns of the table of a scene.
@@ -57,8 +57,12 @@ pub(super) fn columns() -> [&'static str; 11] {
 pub(super) fn about(study: &SceneStudy) -> String {
     let reference = &study.reference;
     let truth = study.truth.map_or_else(String::new, |truth| format!(" The mean luminance is known to be {truth}."));
+    let tails = match reference.heavy_tailed {
+        true => " Rare bright paths carry the error: errors, efficiencies and slopes of this scene are known poorly.",
+        false => "",
+    };
     format!(
-        "{} × {} pixels. Reference: {} samples a pixel, error {}, mean luminance {:.5}.{truth}",
+        "{} × {} pixels. Reference: {} samples a pixel, error {}, mean luminance {:.5}.{truth}{tails}",
         study.width,
         study.height,
         reference.samples,
@@ -85,6 +89,8 @@ pub(super) struct Verdict {
     pub scene: String,
     /// Time to the same error, independent numbers over Owen-Sobol; `None` where there is no error.
     pub gain: Option<f64>,
+    /// Whether rare bright paths make that poorly known.
+    pub heavy_tailed: bool,
     pub sobol_slope: Option<f64>,
     pub independent_slope: Option<f64>,
 }
@@ -93,7 +99,8 @@ impl Verdict {
     /// The cells of a table.
     pub(super) fn cells(&self) -> [String; 4] {
         let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"));
-        [self.scene.clone(), number(self.gain), number(self.sobol_slope), number(self.independent_slope)]
+        let scene = if self.heavy_tailed { format!("{} (rare paths)", self.scene) } else { self.scene.clone() };
+        [scene, number(self.gain), number(self.sobol_slope), number(self.independent_slope)]
     }
 }
 
@@ -114,6 +121,7 @@ pub(super) fn samplers(report: &StudyReport) -> Vec<Verdict> {
             Some(Verdict {
                 scene: study.scene.clone(),
                 gain: time_ratio(&independent.points, &sobol.points),
+                heavy_tailed: study.reference.heavy_tailed,
                 sobol_slope: sobol.slope,
                 independent_slope: independent.slope,
             })
@@ -142,18 +150,21 @@ pub(super) fn verdict(samplers: &[Verdict]) -> String {
 
 /// Time of `a` over that of `b` to the smallest error that both have reached.
 fn time_ratio(a: &[Point], b: &[Point]) -> Option<f64> {
-    let smallest = |points: &[Point]| points.iter().filter_map(error_of).fold(f64::INFINITY, f64::min);
-    let error = smallest(a).max(smallest(b));
-    Some(time_to(a, error)? / time_to(b, error)?)
+    let [a, b] = [a, b].map(|points| {
+        let seen: Vec<(f64, f64)> = points
+            .iter()
+            .filter_map(|point| Some((point.seconds, point.error.or(point.scatter)?)))
+            .filter(|(_, error)| *error > 0.0)
+            .collect();
+        believable(&seen)
+    });
+    let smallest = |points: &[(f64, f64)]| points.last().map(|point| point.1);
+    let error = smallest(&a)?.max(smallest(&b)?);
+    Some(time_to(&a, error)? / time_to(&b, error)?)
 }
 
-fn error_of(point: &Point) -> Option<f64> {
-    point.error.or(point.scatter).filter(|&error| error > 0.0)
-}
-
-/// When the error passed `error`, as a power of time between the two points about it.
-fn time_to(points: &[Point], error: f64) -> Option<f64> {
-    let points: Vec<(f64, f64)> = points.iter().filter_map(|point| Some((point.seconds, error_of(point)?))).collect();
+/// When the error, which falls from point to point, passed `error`: as a power of time between the two points about it.
+fn time_to(points: &[(f64, f64)], error: f64) -> Option<f64> {
     let after = points.iter().position(|point| point.1 <= error)?;
     let Some(before) = after.checked_sub(1) else {
         // It may have been reached before: the time is an upper bound.
