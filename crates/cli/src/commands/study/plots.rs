@@ -36,7 +36,9 @@ const PLOTS: [(&str, &str, &[&str]); 5] = [
 pub(super) fn of(study: &SceneStudy) -> Result<Vec<Plot>, String> {
     let mut plots = Vec::new();
     for (name, title, groups) in PLOTS {
-        let rows: Vec<&Row> = study.rows.iter().filter(|row| groups.contains(&row.group)).collect();
+        // An effect that is forced changes no bit of the picture: what it costs stands among the bars.
+        let shown = |row: &&Row| groups.contains(&row.group) && !row.choice.ends_with(" forced");
+        let rows: Vec<&Row> = study.rows.iter().filter(shown).collect();
         if !rows.is_empty() {
             let title = format!("{}: {title}", study.scene);
             let svg = curves(&title, &study.rows[0], &rows).map_err(|error| error.to_string())?;

@@ -141,9 +141,14 @@ pub(super) fn verdict(samplers: &[Verdict]) -> String {
         .filter(|(_, gain)| *gain < TOLERATED)
         .map(|(scene, gain)| format!("{scene} ({gain:.2})"))
         .collect();
+    let poorly: Vec<&str> = samplers.iter().filter(|one| one.heavy_tailed).map(|one| one.scene.as_str()).collect();
+    let poorly = match poorly.as_slice() {
+        [] => String::new(),
+        names => format!(" Where rare bright paths carry the error this is known poorly: {}.", names.join(", ")),
+    };
     let lost = if worse.is_empty() { "none".to_owned() } else { worse.join(", ") };
     format!(
-        "Owen-Sobol reaches the same error sooner on {sooner} of {} scenes; scenes on which it loses more than 5 %: {lost}.",
+        "Owen-Sobol reaches the same error sooner on {sooner} of {} scenes; scenes on which it loses more than 5 %: {lost}.{poorly}",
         known.len()
     )
 }
@@ -233,10 +238,18 @@ mod tests {
 
     #[test]
     fn a_sampler_that_loses_is_named() {
-        let one =
-            |scene: &str, gain| Verdict { scene: scene.to_owned(), gain, sobol_slope: None, independent_slope: None };
+        let one = |scene: &str, gain| Verdict {
+            scene: scene.to_owned(),
+            gain,
+            heavy_tailed: scene == "glass",
+            sobol_slope: None,
+            independent_slope: None,
+        };
         let said = verdict(&[one("box", Some(2.0)), one("fog", Some(0.96)), one("glass", Some(0.9)), one("sky", None)]);
-        assert!(said.contains("1 of 3") && said.ends_with("5 %: glass (0.90)."), "{said}");
+        assert!(
+            said.contains("1 of 3") && said.contains("5 %: glass (0.90).") && said.ends_with("poorly: glass."),
+            "{said}"
+        );
         assert_eq!(one("sky", None).cells(), ["sky", "–", "–", "–"]);
     }
 }
