@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use etalon_scene::{Bands, LightSampling, MOST_REPLICATES, Precision, SamplerKind, Scene};
-use etalon_transport::{Carried, EffectName, Study};
+use etalon_transport::{Carried, EffectName, PathLoop, Study};
 use miette::miette;
 
 use crate::args::{BandsArg, Size};
@@ -51,6 +51,26 @@ pub(crate) struct Overrides {
     /// For study: what paths carry instead of the wavelengths that the scene calls for.
     #[arg(long, value_enum, value_name = "WHAT")]
     carry: Option<CarryArg>,
+    /// For study: trace one path at a time, or many at once where that is possible. Both give the same picture, bit for bit.
+    #[arg(long = "loop", value_enum, value_name = "WHICH")]
+    path_loop: Option<PathLoopArg>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum PathLoopArg {
+    /// One path at a time.
+    Plain,
+    /// Many paths at once.
+    Lanes,
+}
+
+impl From<PathLoopArg> for PathLoop {
+    fn from(arg: PathLoopArg) -> Self {
+        match arg {
+            PathLoopArg::Plain => Self::Plain,
+            PathLoopArg::Lanes => Self::Lanes,
+        }
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -158,6 +178,7 @@ impl Overrides {
             without: self.without.clone(),
             polarised: self.polarised,
             carried: self.carry.map(Carried::from),
+            path_loop: self.path_loop.map(PathLoop::from),
         }
     }
 

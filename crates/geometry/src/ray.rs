@@ -111,7 +111,7 @@ pub struct SurfacePoint<R> {
 
 impl<R: Real> SurfacePoint<R> {
     /// Rounds a surface point computed in `f64` to `R`. What the rounding adds to its error is measured, not estimated.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn rounded(point: &ExactPoint, surface: SurfaceId, label: u32) -> Self {
         let ExactPoint { position, error, normal, curvature } = *point;
         let rounded: Vec3<R> = position.cast();
@@ -128,6 +128,7 @@ impl<R: Real> SurfacePoint<R> {
 
     /// The point moved off the surface to the side of `direction`, by the error bound and rounded away from the surface
     /// (Pharr, Jakob & Humphreys, *Physically Based Rendering*, 4th ed., §6.8.6).
+    #[inline(always)]
     fn moved_off(&self, direction: Vec3<R>) -> Vec3<R> {
         let side = R::ONE.copysign(direction.dot(self.normal));
         let step = self.normal * (self.position_error * side);
@@ -143,7 +144,7 @@ impl<R: Real> SurfacePoint<R> {
     ///
     /// It starts off the surface, on the side to which `direction` points, by no more than the error of the position
     /// requires, and knows the primitive that it leaves: no scene epsilon is involved.
-    #[inline]
+    #[inline(always)]
     pub fn spawn(&self, direction: Vec3<R>) -> Ray<R> {
         Ray {
             origin: self.moved_off(direction),
@@ -160,7 +161,7 @@ impl<R: Real> SurfacePoint<R> {
     /// Its direction is `target` − origin, not normalised, and it ends just below t = 1: short of the target by the
     /// rounding errors of the two end points and of the direction, so that a neighbour of the primitive aimed at does
     /// not hide it.
-    #[inline]
+    #[inline(always)]
     pub fn spawn_to(&self, target: Vec3<R>, aims_at: SurfaceId) -> Ray<R> {
         let origin = self.moved_off(target - self.position);
         let direction = target - origin;

@@ -22,14 +22,19 @@ impl<R: Real, const N: usize> Lanes<R, N> {
 
     /// The value of `f` at each lane's index.
     #[inline(always)]
-    pub fn from_fn(f: impl FnMut(usize) -> R) -> Self {
-        Self(std::array::from_fn(f))
+    pub fn from_fn(mut f: impl FnMut(usize) -> R) -> Self {
+        // A loop, of which compilers make vector instructions more surely than of the library's function of this name.
+        let mut lanes = Self::ZERO;
+        for lane in 0..N {
+            lanes.0[lane] = f(lane);
+        }
+        lanes
     }
 
     /// `f` of each lane.
     #[inline(always)]
-    pub fn map(self, f: impl FnMut(R) -> R) -> Self {
-        Self(self.0.map(f))
+    pub fn map(self, mut f: impl FnMut(R) -> R) -> Self {
+        Self::from_fn(|lane| f(self.0[lane]))
     }
 
     /// `f` of each pair of lanes.
@@ -57,19 +62,32 @@ impl<R: Real, const N: usize> Lanes<R, N> {
     /// The largest lane.
     #[inline(always)]
     pub fn max_lane(self) -> R {
-        self.0.iter().copied().fold(self.0[0], R::max)
+        let mut largest = self.0[0];
+        for lane in 1..N {
+            largest = largest.max(self.0[lane]);
+        }
+        largest
     }
 
     /// Whether every lane is exactly zero.
     #[inline(always)]
     pub fn is_zero(self) -> bool {
-        self.0.iter().all(|&v| v == R::ZERO)
+        // Without a way out before the end, so that it is done at once.
+        let mut zero = true;
+        for lane in 0..N {
+            zero &= self.0[lane] == R::ZERO;
+        }
+        zero
     }
 
     /// Whether every lane is neither infinite nor NaN.
     #[inline(always)]
     pub fn is_finite(self) -> bool {
-        self.0.iter().all(|v| v.is_finite())
+        let mut finite = true;
+        for lane in 0..N {
+            finite &= self.0[lane].is_finite();
+        }
+        finite
     }
 
     /// Keeps lane 0 (the hero) and sets the others to zero.

@@ -85,6 +85,7 @@ pub trait Real:
     ///
     /// The turn is reduced exactly to an eighth, where Taylor series to x¹⁷ are used; the error is below 4 unit
     /// roundoffs of a value of magnitude 1.
+    #[inline(always)]
     fn sin_cos_turns(u: Self) -> (Self, Self) {
         // Rounding to the nearest quarter by truncation: a floor would be a library call on the baseline processor.
         let quarters = (u * Self::from_f64(4.0) + Self::HALF).to_f64() as u32;
@@ -96,12 +97,11 @@ pub trait Real:
             |coefficients: [f64; 8]| coefficients.iter().fold(Self::ZERO, |sum, &c| sum * x2 + Self::from_f64(c)) * x2;
         let sine = x + x * series(SINE);
         let cosine = Self::ONE + series(COSINE);
-        match quarters % 4 {
-            0 => (sine, cosine),
-            1 => (cosine, -sine),
-            2 => (-sine, -cosine),
-            _ => (-cosine, sine),
-        }
+        // By quarters (s, c), (c, −s), (−s, −c), (−c, s): choices without branches, so that a loop over arguments is vectorised.
+        let (s, c) = if quarters & 1 == 0 { (sine, cosine) } else { (cosine, sine) };
+        let s = if quarters & 2 == 0 { s } else { -s };
+        let c = if (quarters + 1) & 2 == 0 { c } else { -c };
+        (s, c)
     }
 }
 

@@ -212,7 +212,7 @@ pub struct Frame<R> {
 impl<R: Real> Frame<R> {
     /// A frame about the unit vector `n`, continuous except at the sign change of n.z (Duff et al. 2017, *Building an
     /// Orthonormal Basis, Revisited*, JCGT 6(1), listing 3).
-    #[inline]
+    #[inline(always)]
     pub fn from_normal(n: Vec3<R>) -> Self {
         let sign = R::ONE.copysign(n.z);
         let a = -R::ONE / (sign + n.z);

@@ -77,19 +77,72 @@ impl Camera {
     /// The ray through `film`, in [−1, 1]² with x to the right and y up, and through the lens at `lens_u` in [0, 1)².
     /// Its direction is a unit vector.
     pub fn ray(&self, film: [f64; 2], lens_u: [f64; 2]) -> Ray<f64> {
-        let across = self.half_right * film[0] + self.half_up * film[1];
         match &self.kind {
             Kind::ThinLens { right, up, focus_distance } if compiled::LENS => {
-                let [x, y] = concentric_disk(lens_u);
-                let lens = *right * x + *up * y;
-                // From the lens point to the point in focus, relative to the lens's centre: the scene's origin and the
-                // eye's position do not enter, so a distant focus loses no bits.
-                let focus = (self.forward + across) * *focus_distance;
-                Ray::free(self.position + lens, (focus - lens).normalized())
+                self.through_lens(film, lens_u, (*right, *up, *focus_distance))
             }
-            Kind::Pinhole | Kind::ThinLens { .. } => Ray::free(self.position, (self.forward + across).normalized()),
-            Kind::Orthographic => Ray::free(self.position + across, self.forward),
+            Kind::Pinhole | Kind::ThinLens { .. } => self.through_pinhole(film),
+            Kind::Orthographic => self.parallel(film),
         }
+    }
+
+    /// [`Camera::ray`] for many points; `put` is given each ray with its number. Loops without branches, for vectorisation.
+    #[inline(always)]
+    pub(crate) fn rays<const W: usize>(
+        &self,
+        film: [&[f64; W]; 2],
+        lens_u: [&[f64; W]; 2],
+        mut put: impl FnMut(usize, Ray<f64>),
+    ) {
+        let at = |rows: [&[f64; W]; 2], i: usize| [rows[0][i], rows[1][i]];
+        match &self.kind {
+            Kind::ThinLens { right, up, focus_distance } if compiled::LENS => {
+                let lens = (*right, *up, *focus_distance);
+                for i in 0..W {
+                    put(i, self.through_lens(at(film, i), at(lens_u, i), lens));
+                }
+            }
+            Kind::Pinhole | Kind::ThinLens { .. } => {
+                for i in 0..W {
+                    put(i, self.through_pinhole(at(film, i)));
+                }
+            }
+            Kind::Orthographic => {
+                for i in 0..W {
+                    put(i, self.parallel(at(film, i)));
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn across(&self, film: [f64; 2]) -> Vec3<f64> {
+        self.half_right * film[0] + self.half_up * film[1]
+    }
+
+    #[inline(always)]
+    fn through_lens(
+        &self,
+        film: [f64; 2],
+        lens_u: [f64; 2],
+        (right, up, focus_distance): (Vec3<f64>, Vec3<f64>, f64),
+    ) -> Ray<f64> {
+        let [x, y] = concentric_disk(lens_u);
+        let lens = right * x + up * y;
+        // From the lens point to the point in focus, relative to the lens's centre: the scene's origin and the
+        // eye's position do not enter, so a distant focus loses no bits.
+        let focus = (self.forward + self.across(film)) * focus_distance;
+        Ray::free(self.position + lens, (focus - lens).normalized())
+    }
+
+    #[inline(always)]
+    fn through_pinhole(&self, film: [f64; 2]) -> Ray<f64> {
+        Ray::free(self.position, (self.forward + self.across(film)).normalized())
+    }
+
+    #[inline(always)]
+    fn parallel(&self, film: [f64; 2]) -> Ray<f64> {
+        Ray::free(self.position + self.across(film), self.forward)
     }
 }
 

@@ -156,7 +156,7 @@ impl Canvas {
         on_piece: &(dyn Fn(&Counters, PixelRect, &TileSums) -> Control + Sync),
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
-        let render_tile = prepared.kernel().render;
+        let render_tile = prepared.render_tile();
         let stopped = AtomicBool::new(false);
         pool.install(|| {
             (0..self.tiles()).into_par_iter().for_each(|number| {

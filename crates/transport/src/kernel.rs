@@ -3,6 +3,7 @@
 
 use crate::camera::Camera;
 use crate::compiled;
+use crate::engine::render_tile_lanes;
 use crate::film::{Counters, NonFinite, PixelRect, Sums};
 use crate::media::{Inside, Met};
 use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
@@ -37,6 +38,8 @@ pub(crate) struct Kernel {
     /// Its name: the model, the number of lanes, the scalar.
     pub name: &'static str,
     pub render: RenderTile,
+    /// The same, bit for bit, by many paths at once, where there is that.
+    pub render_lanes: Option<RenderTile>,
     /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
 }
@@ -44,11 +47,11 @@ pub(crate) struct Kernel {
 /// The whole table. What is no type parameter is decided by the plan, at run time: a branch costs nothing, work does.
 static KERNELS: &[Kernel] = &[
     entry::<f32, OneLane, Averaged, 1>(Precision::F32, LaneModel::One, "one-lane-f32"),
-    entry::<f64, OneLane, Averaged, 1>(Precision::F64, LaneModel::One, "one-lane-f64"),
+    with_lanes::<OneLane, 1>(LaneModel::One, "one-lane-f64"),
     entry::<f32, Shared, Averaged, LANES>(Precision::F32, LaneModel::Shared, "shared-8-f32"),
-    entry::<f64, Shared, Averaged, LANES>(Precision::F64, LaneModel::Shared, "shared-8-f64"),
+    with_lanes::<Shared, LANES>(LaneModel::Shared, "shared-8-f64"),
     entry::<f32, Hero<f32, LANES>, Averaged, LANES>(Precision::F32, LaneModel::Hero, "hero-8-f32"),
-    entry::<f64, Hero<f64, LANES>, Averaged, LANES>(Precision::F64, LaneModel::Hero, "hero-8-f64"),
+    with_lanes::<Hero<f64, LANES>, LANES>(LaneModel::Hero, "hero-8-f64"),
     #[cfg(not(feature = "without-polarisation"))]
     Kernel {
         polarised: true,
@@ -82,7 +85,15 @@ const fn entry<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
     name: &'static str,
 ) -> Kernel {
     let (render, replay) = (render_tile::<R, M, P, N>, replay::<R, M, P, N>);
-    Kernel { precision, lanes, lane_count: N, polarised: false, name, render, replay }
+    Kernel { precision, lanes, lane_count: N, polarised: false, name, render, render_lanes: None, replay }
+}
+
+/// One that can also follow many paths at once.
+const fn with_lanes<M: WavelengthModel<f64, N>, const N: usize>(lanes: LaneModel, name: &'static str) -> Kernel {
+    Kernel {
+        render_lanes: Some(render_tile_lanes::<M, N>),
+        ..entry::<f64, M, Averaged, N>(Precision::F64, lanes, name)
+    }
 }
 
 /// The kernel of a scalar type and a model of wavelengths; the one for polarised light covers them all.
@@ -154,9 +165,9 @@ pub(crate) struct FirstSurface<'a> {
 
 /// One scene.
 pub(crate) struct Tracer<'a> {
-    prepared: &'a Prepared,
-    camera: Camera,
-    world: World<'a>,
+    pub(crate) prepared: &'a Prepared,
+    pub(crate) camera: Camera,
+    pub(crate) world: World<'a>,
 }
 
 impl<'a> Tracer<'a> {
@@ -184,20 +195,26 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    fn sampler(&self, x: u32, y: u32, sample: u32) -> Sampler {
+    pub(crate) fn sampler(&self, x: u32, y: u32, sample: u32) -> Sampler {
         let integrator = &self.prepared.scene.integrator;
         let pixel = u64::from(y) << 32 | u64::from(x);
         Sampler::new(integrator.sampler, integrator.seed, pixel, sample, integrator.replicates)
     }
 
-    /// The ray of a sample, and the media that it begins in.
-    fn camera_ray(&self, x: u32, y: u32, sampler: &Sampler, counters: &mut Counters) -> (Ray<f64>, Inside) {
+    /// The point of the film, in [−1, 1]², that two numbers draw for a pixel.
+    #[inline]
+    pub(crate) fn film_point(&self, x: u32, y: u32, u: [f64; 2]) -> [f64; 2] {
         let film = &self.prepared.scene.film;
         let (width, height) = (f64::from(film.width), f64::from(film.height));
+        let column = f64::from(x) + 0.5 + self.prepared.filter.offset(u[0]);
+        let row = f64::from(y) + 0.5 + self.prepared.filter.offset(u[1]);
+        [2.0 * column / width - 1.0, 1.0 - 2.0 * row / height]
+    }
+
+    /// The ray of a sample, and the media that it begins in.
+    fn camera_ray(&self, x: u32, y: u32, sampler: &Sampler, counters: &mut Counters) -> (Ray<f64>, Inside) {
         let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
-        let column = f64::from(x) + 0.5 + self.prepared.filter.offset(film_x);
-        let row = f64::from(y) + 0.5 + self.prepared.filter.offset(film_y);
-        let film = [2.0 * column / width - 1.0, 1.0 - 2.0 * row / height];
+        let film = self.film_point(x, y, [film_x, film_y]);
         counters.lens_draws += u64::from(compiled::LENS && self.camera.has_lens());
         let ray = self.camera.ray(film, [lens_1, lens_2]);
         let inside = match self.world.media {

@@ -71,6 +71,7 @@ pub(crate) struct Hero<R, const N: usize>(Lanes<R, N>);
 impl<R: Real> WavelengthModel<R, 1> for OneLane {
     const CARRIES_WEIGHTS: bool = false;
 
+    #[inline(always)]
     fn start() -> Self {
         Self
     }
@@ -90,10 +91,12 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
         R::ONE
     }
 
+    #[inline(always)]
     fn wavelengths(prepared: &Prepared, _: impl FnOnce() -> f64) -> Wavelengths<1> {
         Wavelengths { lambda_nm: Lanes([prepared.one_lane.wavelength_nm]), pdf: Lanes([f64::INFINITY]) }
     }
 
+    #[inline(always)]
     fn to_xyz(prepared: &Prepared, _: &Wavelengths<1>, radiance: Lanes<R, 1>) -> [f64; 3] {
         prepared.one_lane.xyz_of_unit.map(|v| v * radiance[0].to_f64())
     }
@@ -107,6 +110,7 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
 impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
     const CARRIES_WEIGHTS: bool = false;
 
+    #[inline(always)]
     fn start() -> Self {
         Self
     }
@@ -126,10 +130,12 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
         R::ONE
     }
 
+    #[inline(always)]
     fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N> {
         prepared.wavelengths.sample_lanes(u())
     }
 
+    #[inline(always)]
     fn to_xyz(_: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
         wavelengths.to_xyz(radiance)
     }
@@ -138,6 +144,7 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
 impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
     const CARRIES_WEIGHTS: bool = true;
 
+    #[inline(always)]
     fn start() -> Self {
         Self(Lanes::ONE)
     }
@@ -161,10 +168,12 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
         R::from_f64(N as f64) / self.0.sum()
     }
 
+    #[inline(always)]
     fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N> {
         prepared.wavelengths.sample_lanes(u())
     }
 
+    #[inline(always)]
     fn to_xyz(_: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
         wavelengths.to_xyz(radiance)
     }
@@ -173,6 +182,7 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
 impl<R: Real> WavelengthModel<R, 3> for ThreeChannels {
     const CARRIES_WEIGHTS: bool = false;
 
+    #[inline(always)]
     fn start() -> Self {
         Self
     }

@@ -31,14 +31,14 @@ use etalon_optics::{Lanes, Real, Vec3};
 use etalon_scene::LightSampling;
 
 /// Below this throughput a path is ended even without roulette: no film value could change (hard case 30).
-const THROUGHPUT_FLOOR: f64 = 1e-30;
+pub(crate) const THROUGHPUT_FLOOR: f64 = 1e-30;
 /// Vertices after which any path is cut, so that a room without absorption ends; such paths are counted and reported.
 pub(crate) const MOST_VERTICES: u32 = 1 << 16;
 /// Vertices before Russian roulette begins.
-const ROULETTE_FROM_VERTEX: u32 = 2;
+pub(crate) const ROULETTE_FROM_VERTEX: u32 = 2;
 /// The throughput that a path keeps which roulette lets live. Less is more vertices with less noise; of 1, 1/2, 1/3, 1/4 and 1/8
 /// this takes the least time to a given error in rooms of white walls and under the sky (docs/performance.md).
-const ROULETTE_THROUGHPUT: f64 = 0.4;
+pub(crate) const ROULETTE_THROUGHPUT: f64 = 0.4;
 
 /// All that a path meets.
 pub(crate) struct World<'a> {
@@ -82,7 +82,7 @@ struct Around<'a> {
 
 /// The last step of the walk, as far as MIS needs it.
 #[derive(Clone, Copy)]
-enum Step {
+pub(crate) enum Step {
     /// From the camera or by a delta: no shadow ray could have found what it finds.
     Unshared,
     /// Drawn with this density, the mean over the lanes, from this point of this primitive, where a shadow ray was sent too.
@@ -282,7 +282,7 @@ impl World<'_> {
     }
 
     /// The MIS weight of light that the walk ran into `on` a surface whose light, if any, is number `light`.
-    fn weight_of_hit(&self, step: Step, on: SurfaceId, light: Option<u32>, wi: Vec3<f64>) -> f64 {
+    pub(crate) fn weight_of_hit(&self, step: Step, on: SurfaceId, light: Option<u32>, wi: Vec3<f64>) -> f64 {
         match (step, light) {
             (Step::Unshared, _) | (_, None) => 1.0,
             // The far side of the sphere that it left: see `direct_light`.

@@ -2,15 +2,16 @@
 
 use crate::absorption::{Absorption, Interior};
 use crate::bsdf::Bsdf;
+use crate::engine::Tables;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
-use crate::kernel::{Kernel, kernel, study_kernel};
+use crate::kernel::{Kernel, RenderTile, kernel, study_kernel};
 use crate::light::{
     DirectionalLight, Environment, EnvironmentLight, EnvironmentRadiance, Light, LightTable, PointLight, SpotLight,
 };
 use crate::media::{Media, Solid, open_edges};
 use crate::path::ShadowRays;
-use crate::plan::{Carried, EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
+use crate::plan::{Carried, EffectName, OneLaneFilm, PathLoop, Plan, Study, StudyError, simulated};
 use crate::shapes::{self, SceneShapes};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
@@ -34,6 +35,7 @@ pub struct Prepared {
     pub(crate) wavelengths: WavelengthDistribution,
     pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
+    pub(crate) tables: Tables,
     plan: Plan,
     /// What paths carry for the sake of a study.
     carried: Option<Carried>,
@@ -191,6 +193,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         object_of,
         light_of,
     };
+    let tables = Tables::new(&surfaces, &lights, &environments);
     let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene)).transpose()?;
     Ok(Prepared {
         frame,
@@ -206,6 +209,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         },
         one_lane: OneLaneFilm::new(scene),
         filter: FilterSampler::new(&scene.film.filter),
+        tables,
         plan,
         carried: study.carried,
         warnings,
@@ -256,6 +260,15 @@ impl Prepared {
                 kernel(self.scene.integrator.precision, self.plan.lane_model, self.plan.runs(EffectName::Polarisation))
             }
             Some(carried) => study_kernel(carried),
+        }
+    }
+
+    /// The loop that the plan chose, of that kernel.
+    pub(crate) fn render_tile(&self) -> RenderTile {
+        let kernel = self.kernel();
+        match self.plan.path_loop.name {
+            PathLoop::Plain => kernel.render,
+            PathLoop::Lanes => kernel.render_lanes.expect("the plan knows which kernels have it"),
         }
     }
 

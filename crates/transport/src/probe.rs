@@ -108,7 +108,7 @@ impl<'a> Probe<'a> {
     ) {
         let (replicates, copies, stride) = (self.replicates(), self.copies(), self.stride());
         let prepared = self.prepared;
-        let kernel = prepared.kernel().render;
+        let kernel = prepared.render_tile();
         // A whole number of point sets beyond every number of samples that a picture can have.
         let set = replicates * SOBOL_POINTS;
         let beyond = (i32::MAX as u32).div_ceil(set) * set;

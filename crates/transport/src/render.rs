@@ -126,7 +126,7 @@ impl Prepared {
         on_tile: &(dyn Fn(&Counters) -> Control + Sync),
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(extent.threads.unwrap_or(0)).build()?;
-        let render_tile = self.kernel().render;
+        let render_tile = self.render_tile();
         let tiles = extent.tiles();
         let replicates = self.scene.integrator.replicates;
         let stopped = AtomicBool::new(false);

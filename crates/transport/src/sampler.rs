@@ -9,7 +9,9 @@
 use etalon_scene::SamplerKind;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
-use sobol_burley::parts::{hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
+use sobol_burley::parts::{
+    hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev, u32_to_f32_norm,
+};
 use std::sync::LazyLock;
 
 /// Sets drawn by the camera: (film x, film y, lens 1, lens 2), (wavelength, time, –, –).
@@ -43,16 +45,18 @@ impl Sampler {
         Self { kind, pixel_seed, sample, index, replicate, sobol: &SOBOL }
     }
 
+    /// The number of the Sobol point set: fewer than 2⁶ replicates of fewer than 2¹⁶ point sets each.
+    #[inline(always)]
+    fn points(&self) -> u32 {
+        ((self.index / SOBOL_POINTS) << 6) | self.replicate
+    }
+
     /// The four numbers of set `set`, each in [0, 1).
     pub fn set(&self, set: u32) -> [f64; 4] {
         match self.kind {
             SamplerKind::Sobol => {
-                // Fewer than 2⁶ replicates of fewer than 2¹⁶ point sets each.
-                let points = ((self.index / SOBOL_POINTS) << 6) | self.replicate;
-                // The high half of a 64-bit hash: sets and replicates are independent scrambles of the same points
-                // (padding; Burley 2020, *Practical Hash-based Owen Scrambling*, §5).
-                let scramble = mix(self.pixel_seed ^ (u64::from(set) << 32 | u64::from(points))) >> 32;
-                sobol_4d(self.sobol, self.index % SOBOL_POINTS, scramble as u32).map(f64::from)
+                let scramble = scramble(self.pixel_seed, set, self.points());
+                sobol_4d(self.sobol, self.index % SOBOL_POINTS, scramble).map(f64::from)
             }
             SamplerKind::Independent => {
                 let stream = mix(self.pixel_seed ^ (u64::from(set) << 32 | u64::from(self.sample)));
@@ -70,6 +74,84 @@ impl Sampler {
     }
 }
 
+/// The scramble of a set: the high half of a 64-bit hash. Sets and replicates are independent scrambles of the same points
+/// (padding; Burley 2020, *Practical Hash-based Owen Scrambling*, §5).
+#[inline(always)]
+fn scramble(pixel_seed: u64, set: u32, points: u32) -> u32 {
+    (mix(pixel_seed ^ (u64::from(set) << 32 | u64::from(points))) >> 32) as u32
+}
+
+/// What the numbers of `W` samples depend on, beside the set.
+#[derive(Clone, Debug)]
+pub(crate) struct Samplers<const W: usize> {
+    kind: SamplerKind,
+    samplers: [Sampler; W],
+    pixel_seed: [u64; W],
+    points: [u32; W],
+    index: [u32; W],
+}
+
+impl<const W: usize> Samplers<W> {
+    /// All the same.
+    pub(crate) fn new(sampler: Sampler) -> Self {
+        let mut samplers =
+            Self { kind: sampler.kind, samplers: [sampler; W], pixel_seed: [0; W], points: [0; W], index: [0; W] };
+        (0..W).for_each(|lane| samplers.put(lane, sampler));
+        samplers
+    }
+
+    /// Lane number `lane` becomes that of another sample, of the same kind of sampler.
+    #[inline]
+    pub(crate) fn put(&mut self, lane: usize, sampler: Sampler) {
+        self.samplers[lane] = sampler;
+        self.pixel_seed[lane] = sampler.pixel_seed;
+        self.points[lane] = sampler.points();
+        self.index[lane] = sampler.index % SOBOL_POINTS;
+    }
+
+    /// One of them.
+    #[inline]
+    pub(crate) fn lane(&self, lane: usize) -> Sampler {
+        self.samplers[lane]
+    }
+
+    /// [`Sampler::set`] of each, lane `i` of set `sets[i]`: the same bits.
+    #[inline(always)]
+    pub(crate) fn sets(&self, sets: &[u32; W], numbers: &mut [[f64; W]; 4]) {
+        match self.kind {
+            SamplerKind::Sobol => self.sobol(sets, numbers),
+            SamplerKind::Independent => {
+                for lane in 0..W {
+                    let set = self.samplers[lane].set(sets[lane]);
+                    (0..4).for_each(|dimension| numbers[dimension][lane] = set[dimension]);
+                }
+            }
+        }
+    }
+
+    /// One loop for each step, so that each is vectorised.
+    #[inline(always)]
+    fn sobol(&self, sets: &[u32; W], numbers: &mut [[f64; W]; 4]) {
+        let SobolTable([high, low]) = self.samplers[0].sobol;
+        let (mut seeds, mut indices) = ([0; W], [0; W]);
+        for lane in 0..W {
+            seeds[lane] = scramble(self.pixel_seed[lane], sets[lane], self.points[lane]);
+        }
+        for lane in 0..W {
+            indices[lane] = scrambled_index(self.index[lane], seeds[lane]);
+            seeds[lane] = seeds[lane].wrapping_mul(SEED_FACTOR);
+        }
+        for dimension in 0..4 {
+            for lane in 0..W {
+                let index = indices[lane];
+                let point = high[(index >> 24) as usize][dimension] ^ low[(index >> 16 & 0xff) as usize][dimension];
+                let scrambled = owen_scramble_rev(point, hash(seeds[lane] ^ OF_DIMENSION[dimension]));
+                numbers[dimension][lane] = f64::from(u32_to_f32_norm(scrambled.reverse_bits()));
+            }
+        }
+    }
+}
+
 /// The first four dimensions of the Sobol sequence, bits reversed, of all numbers with nothing but a high or a low byte: the
 /// sequence is linear in the bits of the index, so the point of any number is two of these combined.
 #[derive(Debug)]
@@ -80,14 +162,25 @@ static SOBOL: LazyLock<SobolTable> = LazyLock::new(|| {
     SobolTable([24, 16].map(|shift| std::array::from_fn(|byte| point((byte as u32) << shift))))
 });
 
+/// What the library makes the scrambles of the four dimensions of.
+const OF_DIMENSION: [u32; 4] = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8];
+/// The same, of all of them.
+const SEED_FACTOR: u32 = 0x9c8f_2d3b;
+
+/// The index of a point as the library shuffles it, bits reversed.
+#[inline(always)]
+fn scrambled_index(index: u32, seed: u32) -> u32 {
+    owen_scramble_rev(index.reverse_bits(), hash(seed ^ 0x79c6_8e4a))
+}
+
 /// [`sobol_burley::sample_4d`] of the first four dimensions, bit for bit, in half the instructions.
 #[inline]
 fn sobol_4d(SobolTable([high, low]): &SobolTable, index: u32, seed: u32) -> [f32; 4] {
-    let index = owen_scramble_rev(index.reverse_bits(), hash(seed ^ 0x79c6_8e4a));
+    let index = scrambled_index(index, seed);
     let (high, low) = (high[(index >> 24) as usize], low[(index >> 16 & 0xff) as usize]);
     let point: [u32; 4] = std::array::from_fn(|dimension| high[dimension] ^ low[dimension]);
-    let seed = seed.wrapping_mul(0x9c8f_2d3b);
-    let scramble = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|of_dimension| seed ^ of_dimension);
+    let seed = seed.wrapping_mul(SEED_FACTOR);
+    let scramble = OF_DIMENSION.map(|of_dimension| seed ^ of_dimension);
     owen_scramble_int4_rev(point.into(), hash_int4(scramble.into())).reverse_bits().to_f32_norm()
 }
 
@@ -97,6 +190,7 @@ fn unit_interval(bits: u64) -> f64 {
 }
 
 /// A bijective mixer of 64 bits: the finaliser of SplitMix64 (Steele, Lea & Flood 2014) after its increment.
+#[inline(always)]
 pub(crate) fn mix(value: u64) -> u64 {
     let mut z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

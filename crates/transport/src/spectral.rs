@@ -66,6 +66,19 @@ impl PathSpectrum {
         Self::Grid { first_nm: first, steps: steps(&values) }
     }
 
+    /// Whether it is known to be the same spectrum as another, bit for bit.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Constant(a), Self::Constant(b)) => a.to_bits() == b.to_bits(),
+            (Self::Grid { first_nm: a, steps: s }, Self::Grid { first_nm: b, steps: t }) => a == b && s == t,
+            (Self::Band { first_nm: a, steps: s, band_nm: c }, Self::Band { first_nm: b, steps: t, band_nm: d }) => {
+                (a, c) == (b, d) && s == t
+            }
+            (Self::Symbolic(a), Self::Symbolic(b)) => a == b,
+            _ => false,
+        }
+    }
+
     /// Value at a wavelength within the range, nm.
     #[inline]
     pub fn eval(&self, wavelength_nm: f64) -> f64 {
@@ -80,6 +93,38 @@ impl PathSpectrum {
         }
     }
 
+    /// The wavelength of the first value of a table at each nanometre.
+    pub(crate) fn first_nm(&self) -> Option<f64> {
+        match self {
+            Self::Grid { first_nm, .. } => Some(*first_nm),
+            Self::Constant(_) | Self::Band { .. } | Self::Symbolic(_) => None,
+        }
+    }
+
+    /// Values in every lane; `places` are those of the wavelengths in tables that begin at `from_nm`.
+    #[inline(always)]
+    pub(crate) fn lanes_at<const N: usize>(
+        &self,
+        from_nm: f64,
+        places: &Places<N>,
+        lambda_nm: &Lanes<f64, N>,
+    ) -> Lanes<f64, N> {
+        match self {
+            Self::Grid { first_nm, steps } if *first_nm == from_nm => {
+                let (mut value, mut step) = ([0.0; N], [0.0; N]);
+                for lane in 0..N {
+                    [value[lane], step[lane]] = steps[places.index[lane] as usize];
+                }
+                for lane in 0..N {
+                    value[lane] += places.fraction[lane] * step[lane];
+                }
+                Lanes(value)
+            }
+            Self::Constant(value) => Lanes::splat(*value),
+            _ => self.lanes(lambda_nm),
+        }
+    }
+
     /// Values in every lane.
     #[inline]
     pub fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<R, N> {
@@ -90,6 +135,31 @@ impl PathSpectrum {
             }
             Self::Band { .. } | Self::Symbolic(_) => Lanes::from_fn(|lane| R::from_f64(self.eval(lambda_nm[lane]))),
         }
+    }
+}
+
+/// Where wavelengths are in a table at each nanometre: after which value, and how far, nm.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Places<const N: usize> {
+    index: [u32; N],
+    fraction: [f64; N],
+}
+
+impl<const N: usize> Places<N> {
+    /// Nowhere.
+    pub(crate) const NONE: Self = Self { index: [0; N], fraction: [0.0; N] };
+
+    /// In tables from `first_nm`.
+    #[inline(always)]
+    pub(crate) fn new(first_nm: f64, lambda_nm: &Lanes<f64, N>) -> Self {
+        let mut places = Self::NONE;
+        for lane in 0..N {
+            let x = lambda_nm[lane] - first_nm;
+            let index = x as u32;
+            places.index[lane] = index;
+            places.fraction[lane] = x - f64::from(index);
+        }
+        places
     }
 }
 

@@ -3,22 +3,23 @@
 use etalon_optics::{Real, Vec3};
 
 /// Uniform point of the unit disk, by the concentric map of Shirley & Chiu 1997 (area-preserving, low distortion).
-#[inline]
+#[inline(always)]
 pub fn concentric_disk(u: [f64; 2]) -> [f64; 2] {
     let a = 2.0 * u[0] - 1.0;
     let b = 2.0 * u[1] - 1.0;
-    if a == 0.0 && b == 0.0 {
-        return [0.0, 0.0];
-    }
-    let eighth = 0.125;
-    // The angle in turns, within an eighth of an axis.
-    let (radius, turns) = if a.abs() > b.abs() { (a, eighth * (b / a)) } else { (b, 0.25 - eighth * (a / b)) };
-    let (sin, cos) = f64::sin_cos_turns(if turns < 0.0 { turns + 1.0 } else { turns });
-    [radius * cos, radius * sin]
+    // Choices without branches, so that a loop over points is vectorised.
+    let wide = a.abs() > b.abs();
+    let (radius, other) = if wide { (a, b) } else { (b, a) };
+    // The angle in turns, within an eighth of an axis; NaN in the middle.
+    let eighth = 0.125 * (other / radius);
+    let turns = if wide { eighth } else { 0.25 - eighth };
+    let turns = if turns < 0.0 { turns + 1.0 } else { turns };
+    let (sin, cos) = f64::sin_cos_turns(turns);
+    if radius == 0.0 { [0.0, 0.0] } else { [radius * cos, radius * sin] }
 }
 
 /// Direction about +z with density cos θ / π (Malley's method).
-#[inline]
+#[inline(always)]
 pub fn cosine_hemisphere(u: [f64; 2]) -> Vec3<f64> {
     let [x, y] = concentric_disk(u);
     Vec3::new(x, y, (1.0 - x * x - y * y).sqrt_nonnegative())

@@ -4,7 +4,7 @@
 //! hero, the other lanes are its rotations by 1/N **in the cumulative distribution**, so that each lane alone has the
 //! density of the distribution and the lanes together are stratified.
 
-use etalon_optics::colour::{cie_y_integral_nm, colour_matching};
+use etalon_optics::colour::{cie_y_integral_nm, colour_matching, colour_matching_lanes};
 use etalon_optics::{Lanes, Real};
 use etalon_scene::Bands;
 
@@ -32,6 +32,30 @@ pub struct WavelengthDistribution {
     cdf: Vec<f64>,
     /// The cell at each multiple of 1/[`GUIDES`] of probability: where the search for a cell begins.
     guides: Vec<u32>,
+    cells: Vec<Cell>,
+}
+
+/// What a number that falls into a cell becomes.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    /// Cumulative probability where it ends.
+    end: f64,
+    /// Cumulative probability where it begins, and its own.
+    begin: f64,
+    probability: f64,
+    /// Where it begins and how wide it is, nm.
+    first_nm: f64,
+    width_nm: f64,
+    /// Density, nm⁻¹.
+    pdf: f64,
+}
+
+impl Cell {
+    /// The wavelength at cumulative probability `u`, nm.
+    #[inline(always)]
+    fn wavelength_nm(&self, u: f64) -> f64 {
+        self.first_nm + (u - self.begin) / self.probability * self.width_nm
+    }
 }
 
 /// Share of the largest colour-matching sum below which no wavelength's density falls: the ends of the range matter
@@ -111,7 +135,12 @@ impl WavelengthDistribution {
     fn of_cells(borders_nm: Vec<f64>, cdf: Vec<f64>) -> Self {
         let cell_at = |guide: usize| cdf.partition_point(|&c| c <= guide as f64 / GUIDES as f64) - 1;
         let guides = (0..GUIDES).map(|guide| cell_at(guide) as u32).collect();
-        Self { borders_nm, cdf, guides }
+        let cell = |(c, nm): (&[f64], &[f64])| {
+            let (probability, width_nm) = (c[1] - c[0], nm[1] - nm[0]);
+            Cell { end: c[1], begin: c[0], probability, first_nm: nm[0], width_nm, pdf: probability / width_nm }
+        };
+        let cells = cdf.windows(2).zip(borders_nm.windows(2)).map(cell).collect();
+        Self { borders_nm, cdf, guides, cells }
     }
 
     /// The first and the last wavelength, nm.
@@ -119,26 +148,32 @@ impl WavelengthDistribution {
         [self.borders_nm[0], self.borders_nm[self.borders_nm.len() - 1]]
     }
 
-    /// The wavelength at cumulative probability `u` in [0, 1), and its density in nm⁻¹.
-    pub fn sample(&self, u: f64) -> (f64, f64) {
-        let mut cell = self.guides[(u * GUIDES as f64) as usize] as usize;
-        while self.cdf[cell + 1] <= u {
+    /// The cell that `u` in [0, 1) falls into.
+    #[inline(always)]
+    fn cell(&self, u: f64) -> &Cell {
+        let mut cell = self.guides[(u * GUIDES as f64) as u32 as usize] as usize;
+        while self.cells[cell].end <= u {
             cell += 1;
         }
-        let (c0, c1) = (self.cdf[cell], self.cdf[cell + 1]);
-        let (nm0, nm1) = (self.borders_nm[cell], self.borders_nm[cell + 1]);
-        let t = (u - c0) / (c1 - c0);
-        (nm0 + t * (nm1 - nm0), (c1 - c0) / (nm1 - nm0))
+        &self.cells[cell]
+    }
+
+    /// The wavelength at cumulative probability `u` in [0, 1), and its density in nm⁻¹.
+    pub fn sample(&self, u: f64) -> (f64, f64) {
+        let cell = self.cell(u);
+        (cell.wavelength_nm(u), cell.pdf)
     }
 
     /// The wavelengths of a path whose hero is drawn by `u` in [0, 1).
+    #[inline(always)]
     pub fn sample_lanes<const N: usize>(&self, u: f64) -> Wavelengths<N> {
         let mut lanes = Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO };
         for lane in 0..N {
             let turned = u + lane as f64 / N as f64;
-            let (nm, pdf) = self.sample(if turned < 1.0 { turned } else { turned - 1.0 });
-            lanes.lambda_nm[lane] = nm;
-            lanes.pdf[lane] = pdf;
+            let turned = if turned < 1.0 { turned } else { turned - 1.0 };
+            let cell = self.cell(turned);
+            lanes.lambda_nm[lane] = cell.wavelength_nm(turned);
+            lanes.pdf[lane] = cell.pdf;
         }
         lanes
     }
@@ -147,13 +182,18 @@ impl WavelengthDistribution {
 impl<const N: usize> Wavelengths<N> {
     /// The CIE XYZ estimate that the spectral radiance estimate `radiance` stands for, normalised so that a constant
     /// spectrum 1 over the whole visible range has Y = 1: Σ_lanes L·(x̄, ȳ, z̄)/pdf / N / ∫ȳ.
+    #[inline(always)]
     pub fn to_xyz<R: Real>(&self, radiance: Lanes<R, N>) -> [f64; 3] {
-        let mut xyz = [0.0; 3];
         let scale = N as f64 * cie_y_integral_nm();
+        let bars = colour_matching_lanes(&self.lambda_nm.0);
+        let mut xyz = [0.0; 3];
+        let mut weights = [0.0; N];
         for lane in 0..N {
-            let weight = radiance[lane].to_f64() / (self.pdf[lane] * scale);
-            for (sum, bar) in xyz.iter_mut().zip(colour_matching(self.lambda_nm[lane])) {
-                *sum += weight * bar;
+            weights[lane] = radiance[lane].to_f64() / (self.pdf[lane] * scale);
+        }
+        for lane in 0..N {
+            for c in 0..3 {
+                xyz[c] += weights[lane] * bars[c][lane];
             }
         }
         xyz

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use etalon_scene::Scene;
 use etalon_transport::plan::{Decision, Effect, LaneModel, Plan};
-use etalon_transport::{Control, EffectName, Extent, Prepared, Study, prepare_study};
+use etalon_transport::{Control, EffectName, Extent, PathLoop, Prepared, Study, prepare_study};
 use miette::Report;
 use serde::Serialize;
 
@@ -105,12 +105,18 @@ fn how(plan: &Plan) -> Vec<(&'static str, String)> {
         LaneModel::Shared | LaneModel::Hero => format!("{} wavelengths that always go the same way", plan.lanes),
         LaneModel::ThreeChannels => format!("{}: red, green and blue", plan.lanes),
     };
+    let paths = match plan.path_loop.name {
+        PathLoop::Plain => "one at a time",
+        PathLoop::Lanes => "many at once",
+    };
+    let paths = format!("{paths} ({}): {}", plan.path_loop.name.as_str(), plan.path_loop.because);
     let [first, last] = plan.wavelength_range_nm;
     let depth = plan.max_depth.map_or("no limit".to_owned(), |depth| format!("at most {depth} path edges"));
     let roulette = if plan.roulette { "Russian roulette" } else { "no Russian roulette" };
     vec![
         ("kernel", plan.kernel.to_owned()),
         ("lanes", lanes),
+        ("paths", paths),
         ("wavelengths", format!("{first}–{last} nm")),
         ("precision", format!("{} of what each wavelength carries", plan.precision)),
         ("directions", format!("{} in every kernel: {}", plan.directions.precision, plan.directions.because)),

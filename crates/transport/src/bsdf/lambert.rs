@@ -2,6 +2,7 @@
 
 use super::BsdfSample;
 use crate::mis::Density;
+use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Frame, Lanes, Real, Vec3};
@@ -19,6 +20,14 @@ impl Lambert {
         Self { reflectance }
     }
 
+    /// The reflectance, if it is the same everywhere.
+    pub(crate) fn uniform(&self) -> Option<&PathSpectrum> {
+        match &self.reflectance {
+            PathTexture::Uniform(spectrum) => Some(spectrum),
+            PathTexture::Image { .. } => None,
+        }
+    }
+
     pub(super) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
@@ -27,11 +36,11 @@ impl Lambert {
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<R, N>, Lanes<R, N>) {
-        let cos_i = n.dot(wi);
-        if cos_i * n.dot(wo) <= 0.0 {
+        let cos = common_cosine(n, wo, wi);
+        if cos == 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
         }
-        let pdf = R::from_f64(cos_i.abs() * FRAC_1_PI);
+        let pdf = R::from_f64(density(cos));
         (self.reflectance.lanes::<R, N>(lambda_nm, uv) * pdf, Lanes::splat(pdf))
     }
 
@@ -43,16 +52,36 @@ impl Lambert {
         wo: Vec3<f64>,
         u: [f64; 2],
     ) -> Option<BsdfSample<R, N>> {
-        let n = if n.dot(wo) < 0.0 { -n } else { n };
-        let wi = Frame::from_normal(n).to_world(cosine_hemisphere(u)).renormalized();
-        // The density of the direction as it came out, rounding included, so that it equals what `eval` says of it.
-        let cos_i = n.dot(wi);
+        let (wi, cos_i) = direction(n, wo, u);
         (cos_i > 0.0).then(|| BsdfSample {
             wi,
             weight: self.reflectance.lanes(lambda_nm, uv),
-            density: Density::SolidAngle(cos_i * FRAC_1_PI),
+            density: Density::SolidAngle(density(cos_i)),
             lane_density: Lanes::ONE,
             eta: 1.0,
         })
     }
+}
+
+/// A direction on the side of `wo`, and its cosine; drawn in vain where that is not above 0. Without branches, so that a loop over
+/// surfaces is vectorised.
+#[inline(always)]
+pub(crate) fn direction(n: Vec3<f64>, wo: Vec3<f64>, u: [f64; 2]) -> (Vec3<f64>, f64) {
+    let n = if n.dot(wo) < 0.0 { -n } else { n };
+    let wi = Frame::from_normal(n).to_world(cosine_hemisphere(u)).renormalized();
+    // The cosine of the direction as it came out, rounding included, so that its density equals what `eval` says of it.
+    (wi, n.dot(wi))
+}
+
+/// The cosine between `wi` and the normal on the side of `wo`; 0 if `wi` is on the other.
+#[inline(always)]
+pub(crate) fn common_cosine(n: Vec3<f64>, wo: Vec3<f64>, wi: Vec3<f64>) -> f64 {
+    let cos = n.dot(wi);
+    if cos * n.dot(wo) <= 0.0 { 0.0 } else { cos.abs() }
+}
+
+/// The density of a direction with this cosine, sr⁻¹.
+#[inline(always)]
+pub(crate) fn density(cos: f64) -> f64 {
+    cos * FRAC_1_PI
 }

@@ -9,7 +9,7 @@ mod albedo;
 mod blend;
 mod conductor;
 mod dielectric;
-mod lambert;
+pub(crate) mod lambert;
 mod metal;
 mod microfacet;
 mod mirror;

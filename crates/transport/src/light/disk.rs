@@ -1,5 +1,6 @@
 //! An emitting disk, sampled uniformly by area.
 
+use super::planar::Flat;
 use super::{Emitter, LightSample, planar};
 use crate::warp::concentric_disk;
 use etalon_geometry::Disk;
@@ -33,6 +34,10 @@ impl DiskLight {
         let frame = Frame::from_normal(self.shape.normal());
         let radius = self.shape.radius();
         let point = self.shape.centre() + frame.s * (radius * x) + frame.t * (radius * y);
-        planar::sample(from, point, frame.n, &self.emitter, |wi| self.density(from, wi))
+        let Emitter { front, back, surface, .. } = self.emitter;
+        let (corner, normal, area) = (self.shape.centre(), frame.n, self.area());
+        Flat { corner, edges: [frame.s, frame.t], normal, area, half: false, front, back }
+            .seen(from, point)
+            .sample(surface)
     }
 }

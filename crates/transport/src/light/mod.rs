@@ -27,6 +27,8 @@ pub use spot::SpotLight;
 pub use table::LightTable;
 pub use triangle::TriangleLight;
 
+pub(crate) use planar::{Aim, Flat};
+
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::SurfaceId;
@@ -103,6 +105,16 @@ impl Light {
             Self::Spot(light) => light.sample(from),
             Self::Directional(light) => Some(light.sample()),
             Self::Environment(light) => light.sample(u),
+        }
+    }
+
+    /// The light as far as its points and their densities depend on it, where it is a parallelogram or a triangle.
+    #[inline]
+    pub(crate) fn flat(&self) -> Option<Flat> {
+        match self {
+            Self::Parallelogram(light) => Some(light.flat()),
+            Self::Triangle(light) => Some(light.flat()),
+            _ => None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! An emitting triangle, sampled uniformly by area.
 
+use super::planar::Flat;
 use super::{Emitter, LightSample, planar};
 use etalon_geometry::Triangle;
 use etalon_optics::Vec3;
@@ -29,11 +30,22 @@ impl TriangleLight {
         planar::density(from, wi, self.shape.vertices()[0], self.normal, self.area)
     }
 
-    pub(super) fn sample(&self, from: Vec3<f64>, u: [f64; 2]) -> Option<LightSample> {
-        // Heitz 2019, *A Low-Distortion Map Between Triangle and Square*: the square folded along its diagonal.
-        let (s, t) = if u[1] > u[0] { (0.5 * u[0], u[1] - 0.5 * u[0]) } else { (u[0] - 0.5 * u[1], 0.5 * u[1]) };
+    /// The light as far as its points and their densities depend on it.
+    #[inline]
+    pub(crate) fn flat(&self) -> Flat {
         let [a, b, c] = self.shape.vertices();
-        let point = a + (b - a) * s + (c - a) * t;
-        planar::sample(from, point, self.normal, &self.emitter, |wi| self.density(from, wi))
+        Flat {
+            corner: a,
+            edges: [b - a, c - a],
+            normal: self.normal,
+            area: self.area,
+            half: true,
+            front: self.emitter.front,
+            back: self.emitter.back,
+        }
+    }
+
+    pub(super) fn sample(&self, from: Vec3<f64>, u: [f64; 2]) -> Option<LightSample> {
+        self.flat().sample(from, u, self.emitter.surface)
     }
 }

@@ -15,6 +15,7 @@ pub(crate) use grey::OneLaneFilm;
 pub(crate) use study::simulated;
 pub(crate) use three_channels::CHANNELS_NM;
 
+use crate::engine::hindrance;
 use crate::kernel::{Kernel, kernel, study_kernel};
 use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
 use serde::{Serialize, Serializer};
@@ -205,6 +206,35 @@ pub enum LaneModel {
     ThreeChannels,
 }
 
+/// How paths are traced: two ways to the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PathLoop {
+    /// One path at a time: the specification.
+    Plain,
+    /// Many at once, for the scenes that it covers.
+    Lanes,
+}
+
+impl PathLoop {
+    /// Its name on the command line and in files.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Plain => "plain",
+            Self::Lanes => "lanes",
+        }
+    }
+}
+
+/// The loop that traces the paths.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ChosenLoop {
+    /// Which.
+    pub name: PathLoop,
+    /// Why.
+    pub because: &'static str,
+}
+
 /// The scalar type of all that is geometry, the same in every kernel.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Directions {
@@ -227,6 +257,8 @@ pub struct Plan {
     pub directions: Directions,
     /// Lanes that a path carries.
     pub lanes: usize,
+    /// How paths are traced.
+    pub path_loop: ChosenLoop,
     /// Range of the wavelengths, nm.
     pub wavelength_range_nm: [f64; 2],
     /// Number sequence.
@@ -243,6 +275,24 @@ pub struct Plan {
     pub effects: Vec<Effect>,
     /// What a study left out although the scene calls for it, with what the picture lacks: it is an approximation.
     pub approximations: Vec<String>,
+}
+
+/// Many paths at once where that is covered, unless the study wants otherwise.
+fn chosen_loop(kernel: &Kernel, runs: impl Fn(EffectName) -> bool, study: &Study) -> Result<ChosenLoop, StudyError> {
+    let hindrance = match kernel.render_lanes {
+        Some(_) => hindrance(runs, kernel.precision),
+        None if kernel.precision == Precision::F64 && kernel.polarised => {
+            Some("light is followed with its polarisation")
+        }
+        None if kernel.precision == Precision::F64 => Some("a study decides what paths carry"),
+        None => hindrance(runs, kernel.precision),
+    };
+    match (study.path_loop, hindrance) {
+        (Some(PathLoop::Lanes), Some(because)) => Err(StudyError::OnePathAtATime(because)),
+        (Some(PathLoop::Plain), _) => Ok(ChosenLoop { name: PathLoop::Plain, because: "the command line wants it" }),
+        (_, Some(because)) => Ok(ChosenLoop { name: PathLoop::Plain, because }),
+        (_, None) => Ok(ChosenLoop { name: PathLoop::Lanes, because: "it covers all that the scene calls for" }),
+    }
 }
 
 impl Plan {
@@ -297,6 +347,7 @@ impl Plan {
         if kernel.lanes == LaneModel::ThreeChannels {
             approximations.push("spectra: light and surfaces have three channels instead".to_owned());
         }
+        let path_loop = chosen_loop(kernel, runs, study)?;
         let &Kernel { name, lanes, precision, lane_count, .. } = kernel;
         Ok(Self {
             kernel: name,
@@ -310,6 +361,7 @@ impl Plan {
                 because: directions::evidence(scene).unwrap_or_else(|otherwise| otherwise),
             },
             lanes: lane_count,
+            path_loop,
             wavelength_range_nm: i.wavelength_range_nm,
             sampler: match i.sampler {
                 SamplerKind::Sobol => "sobol",

@@ -1,7 +1,7 @@
 //! Renders of what a scene does not call for, and without what it does: for study.
 
 use super::evidence::{self, middle};
-use super::{EffectName, three_channels};
+use super::{EffectName, PathLoop, three_channels};
 use crate::texture;
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
@@ -23,6 +23,8 @@ pub struct Study {
     pub polarised: bool,
     /// What paths carry instead of the wavelengths that the plan would give them.
     pub carried: Option<Carried>,
+    /// How paths are to be traced; both ways give the same bits.
+    pub path_loop: Option<PathLoop>,
 }
 
 /// What a path may carry for comparison with the wavelengths that a plan gives it. Double precision only.
@@ -47,6 +49,9 @@ pub enum StudyError {
     /// Nothing to force.
     #[error("{0} cannot be forced: it is what surfaces and film are made of, and without them there is nothing to do")]
     NothingToForce(EffectName),
+    /// Not covered by the loop over many paths.
+    #[error("many paths at once are not possible: {0}")]
+    OnePathAtATime(&'static str),
     /// The integrator's setting stands against it.
     #[error("{effect} cannot be simulated: {because}")]
     Contradicted {

@@ -1,0 +1,203 @@
+//! Many paths at once: the path loop of [`path`](crate::path) for [`W`](rows::W) paths side by side.
+//!
+//! The plain loop is the specification; this one gives its film and its counts bit for bit, for the scenes that it covers
+//! ([`hindrance`]). What is geometry is kept as rows, one number a path, and each step of it is a loop over the paths that the compiler
+//! turns into vector instructions ([`level`]); what wavelengths carry is kept path by path, whose lanes are vectors already. Spectra
+//! are evaluated once for each path ([`tables`]). A path that ends makes room for the next sample of the tile ([`stream`]).
+//! Whatever has no row form, such as rough metals or lights other than flat ones, is asked path by path of the very functions
+//! of the plain loop.
+
+mod direct;
+mod level;
+mod paths;
+mod rows;
+mod scatter;
+mod starts;
+mod stream;
+mod surface;
+mod tables;
+#[cfg(test)]
+mod tests;
+
+use crate::compiled;
+use crate::film::{Counters, NonFinite, PixelRect, Sums};
+use crate::kernel::Tracer;
+use crate::model::WavelengthModel;
+use crate::path::World;
+use crate::plan::EffectName;
+use crate::prepare::Prepared;
+use crate::wavelength::Wavelengths;
+use direct::Sight;
+use etalon_optics::Lanes;
+use etalon_scene::Precision;
+use level::{Level, Set, stages};
+use paths::Paths;
+use rows::{Mask, lanes};
+use starts::Starts;
+use std::ops::Range;
+use stream::{Cursor, Window};
+pub(crate) use tables::Tables;
+
+/// Why the engine does not cover a scene with these effects and this precision of what wavelengths carry; `None` if it does.
+pub(crate) fn hindrance(runs: impl Fn(EffectName) -> bool, precision: Precision) -> Option<&'static str> {
+    match () {
+        () if precision == Precision::F32 => Some("wavelengths are carried in single precision"),
+        () if runs(EffectName::Polarisation) => Some("light is followed with its polarisation"),
+        () if runs(EffectName::NestedDielectrics) => Some("dielectrics are nested"),
+        () if runs(EffectName::Absorption) => Some("media absorb"),
+        () if runs(EffectName::Masks) => Some("surfaces let paths pass"),
+        () => None,
+    }
+}
+
+/// The samples `samples` of every pixel of `tile`, added to `sums` in the order of their numbers.
+pub(crate) fn render_tile_lanes<M: WavelengthModel<f64, N>, const N: usize>(
+    prepared: &Prepared,
+    tile: PixelRect,
+    samples: Range<u32>,
+    sums: Sums<'_>,
+) -> Counters {
+    render_on::<M, N>(Level::detect(), prepared, tile, samples, sums)
+}
+
+fn render_on<M: WavelengthModel<f64, N>, const N: usize>(
+    level: Level,
+    prepared: &Prepared,
+    tile: PixelRect,
+    samples: Range<u32>,
+    sums: Sums<'_>,
+) -> Counters {
+    let tracer = Tracer::new(prepared);
+    let mut engine = Engine::<M, N> {
+        prepared,
+        world: &tracer.world,
+        tables: &prepared.tables,
+        level,
+        counters: Counters::default(),
+        paths: Paths::new(tracer.sampler(0, 0, 0)),
+        sight: Sight::new(),
+        finished: Finished::new(Cursor::new(tile, samples.clone()), prepared, sums),
+    };
+    let mut starts = Starts::new(&tracer, Cursor::new(tile, samples));
+    trace::<M, N>(level, &mut engine, &mut starts);
+    engine.counters
+}
+
+stages! {
+    /// All samples.
+    fn trace [M: WavelengthModel<f64, N>, const N: usize][M, N] (engine: &mut Engine<'_, M, N>, starts: &mut Starts<'_, N>) {
+        loop {
+            engine.begin(starts);
+            if engine.paths.alive == 0 {
+                break;
+            }
+            engine.step();
+        }
+    }
+}
+
+/// A tile under way.
+struct Engine<'a, M, const N: usize> {
+    prepared: &'a Prepared,
+    world: &'a World<'a>,
+    tables: &'a Tables,
+    level: Level,
+    counters: Counters,
+    paths: Paths<'a, M, N>,
+    sight: Sight<N>,
+    finished: Finished<'a, N>,
+}
+
+impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+    /// Puts the next samples where no path is.
+    #[inline(always)]
+    fn begin(&mut self, starts: &mut Starts<'_, N>) {
+        for lane in lanes(!self.paths.alive & paths::ALL) {
+            if !self.finished.window.admits(starts.number()) {
+                break;
+            }
+            if !starts.ready::<M>(self.level, &mut self.counters) {
+                break;
+            }
+            starts.put(lane, &mut self.paths);
+        }
+    }
+
+    /// Takes every path one vertex further.
+    #[inline(always)]
+    fn step(&mut self) {
+        #[cfg(test)]
+        self.spoil();
+        let escaped = self.meet();
+        let met = self.paths.alive & !escaped;
+        self.escape(escaped);
+        let (scatters, shared) = self.arrive(met);
+        self.direct_light(shared);
+        self.scatter(scatters, shared);
+        self.end((escaped | met) & !self.paths.alive);
+    }
+
+    /// Takes what ended paths have gathered.
+    #[inline(always)]
+    fn end(&mut self, ended: Mask) {
+        for lane in lanes(ended) {
+            let wavelengths = &self.paths.wavelengths[lane];
+            let radiance = self.paths.radiance[lane];
+            let xyz = M::to_xyz(self.prepared, wavelengths, radiance);
+            self.finished.put(self.paths.number[lane], xyz, wavelengths, radiance);
+        }
+        if ended != 0 {
+            self.finished.add::<M>(self.prepared, &mut self.counters);
+        }
+    }
+}
+
+/// What finished samples came to, on its way into the sums.
+struct Finished<'a, const N: usize> {
+    cursor: Cursor,
+    window: Window<[f64; 3]>,
+    /// What the bands of a film ask of the samples that wait; empty without bands.
+    spectral: Vec<(Wavelengths<N>, Lanes<f64, N>)>,
+    replicates: usize,
+    sums: Sums<'a>,
+}
+
+impl<'a, const N: usize> Finished<'a, N> {
+    fn new(cursor: Cursor, prepared: &Prepared, sums: Sums<'a>) -> Self {
+        let nothing = (Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO }, Lanes::ZERO);
+        let size = cursor.window();
+        let spectral = if !compiled::BANDS || sums.bands.is_empty() { Vec::new() } else { vec![nothing; size] };
+        let replicates = prepared.scene.integrator.replicates as usize;
+        Self { cursor, window: Window::new(size), spectral, replicates, sums }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, number: u32, xyz: [f64; 3], wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) {
+        if let Some(waiting) = self.spectral.get_mut(self.window.place(number)) {
+            *waiting = (*wavelengths, radiance);
+        }
+        self.window.put(number, xyz);
+    }
+
+    /// Adds those whose turn it is.
+    #[inline(always)]
+    fn add<M: WavelengthModel<f64, N>>(&mut self, prepared: &Prepared, counters: &mut Counters) {
+        let bands = prepared.scene.film.bands.as_ref().filter(|_| !self.spectral.is_empty());
+        let per_replicate = self.sums.bands.len() / self.sums.xyz.len();
+        while let Some((number, xyz)) = self.window.take() {
+            let place = self.cursor.next().expect("as many samples come back as went out");
+            counters.paths += 1;
+            let replicate = place.pixel * self.replicates + place.sample as usize % self.replicates;
+            if xyz.iter().all(|v| v.is_finite()) {
+                self.sums.xyz[replicate].add(xyz);
+                if let Some(bands) = bands {
+                    let sums = &mut self.sums.bands[replicate * per_replicate..][..per_replicate];
+                    let (wavelengths, radiance) = &self.spectral[self.window.place(number)];
+                    M::to_bands(bands, wavelengths, *radiance, sums);
+                }
+            } else {
+                counters.record_nonfinite(NonFinite { y: place.y, x: place.x, sample: place.sample });
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Camera rays and wavelengths of the samples to come, a set at a time.
+
+use super::level::{Level, Set, stages};
+use super::paths::Paths;
+use super::rows::{Row, Rows3, W};
+use super::stream::Cursor;
+use crate::camera::Camera;
+use crate::compiled;
+use crate::film::Counters;
+use crate::kernel::Tracer;
+use crate::model::WavelengthModel;
+use crate::sampler::Samplers;
+use crate::wavelength::Wavelengths;
+use etalon_geometry::SurfaceId;
+use etalon_optics::Lanes;
+
+/// See the module.
+pub(super) struct Starts<'a, const N: usize> {
+    tracer: &'a Tracer<'a>,
+    cursor: Cursor,
+    samplers: Samplers<W>,
+    origin: Rows3,
+    direction: Rows3,
+    wavelengths: [Wavelengths<N>; W],
+    /// How many of the set there are, and the next of them.
+    count: usize,
+    next: usize,
+    /// Number of the next.
+    number: u32,
+}
+
+impl<'a, const N: usize> Starts<'a, N> {
+    pub(super) fn new(tracer: &'a Tracer<'a>, cursor: Cursor) -> Self {
+        Self {
+            tracer,
+            cursor,
+            samplers: Samplers::new(tracer.sampler(0, 0, 0)),
+            origin: Rows3::ZERO,
+            direction: Rows3::ZERO,
+            wavelengths: [Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO }; W],
+            count: 0,
+            next: 0,
+            number: 0,
+        }
+    }
+
+    /// Number of the next sample.
+    #[inline(always)]
+    pub(super) fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// Sees to it that there is a next sample, unless there is none left.
+    #[inline(always)]
+    pub(super) fn ready<M: WavelengthModel<f64, N>>(&mut self, level: Level, counters: &mut Counters) -> bool {
+        if self.next == self.count {
+            self.fill::<M>(level, counters);
+        }
+        self.next < self.count
+    }
+
+    /// Draws what the camera draws for the next samples.
+    #[inline(always)]
+    fn fill<M: WavelengthModel<f64, N>>(&mut self, level: Level, counters: &mut Counters) {
+        (self.count, self.next) = (0, 0);
+        let (mut x, mut y) = ([0; W], [0; W]);
+        for (lane, place) in self.cursor.by_ref().take(W).enumerate() {
+            self.samplers.put(lane, self.tracer.sampler(place.x, place.y, place.sample));
+            (x[lane], y[lane]) = (place.x, place.y);
+            self.count += 1;
+        }
+        if self.count == 0 {
+            return;
+        }
+        let mut numbers = [[0.0; W]; 4];
+        camera_numbers(level, &self.samplers, 1, &mut numbers);
+        for lane in 0..self.count {
+            self.wavelengths[lane] = M::wavelengths(self.tracer.prepared, || numbers[0][lane]);
+        }
+        camera_numbers(level, &self.samplers, 0, &mut numbers);
+        let camera = &self.tracer.camera;
+        counters.lens_draws += self.count as u64 * u64::from(compiled::LENS && camera.has_lens());
+        let mut film = [Row::ZERO; 2];
+        for lane in 0..self.count {
+            let [column, row] = self.tracer.film_point(x[lane], y[lane], [numbers[0][lane], numbers[1][lane]]);
+            (film[0].0[lane], film[1].0[lane]) = (column, row);
+        }
+        let lens = [Row(numbers[2]), Row(numbers[3])];
+        camera_rays(level, camera, &film, &lens, &mut self.origin, &mut self.direction);
+    }
+
+    /// Begins the next sample in the place of a path.
+    #[inline(always)]
+    pub(super) fn put<M: WavelengthModel<f64, N>>(&mut self, lane: usize, paths: &mut Paths<'_, M, N>) {
+        let start = self.next % W;
+        self.next += 1;
+        paths.alive |= 1 << lane;
+        paths.number[lane] = self.number;
+        self.number = self.number.wrapping_add(1);
+        paths.samplers.put(lane, self.samplers.lane(start));
+        paths.vertex[lane] = 0;
+        paths.origin.set(lane, self.origin.at(start));
+        paths.direction.set(lane, self.direction.at(start));
+        paths.leaves[lane] = SurfaceId::NONE;
+        paths.shared &= !(1 << lane);
+        paths.eta_squared.0[lane] = 1.0;
+        paths.beta[lane] = Lanes::ONE;
+        paths.radiance[lane] = Lanes::ZERO;
+        paths.model[lane] = M::start();
+        paths.parted &= !(1 << lane);
+        paths.wavelengths[lane] = self.wavelengths[start];
+        paths.known.forget(lane, &self.wavelengths[start].lambda_nm, &self.tracer.prepared.tables);
+    }
+}
+
+stages! {
+    /// Set number `set` of every path.
+    fn camera_numbers(samplers: &Samplers<W>, set: u32, numbers: &mut [[f64; W]; 4]) {
+        samplers.sets(&[set; W], numbers);
+    }
+
+    /// Rays through points of the film.
+    fn camera_rays(camera: &Camera, film: &[Row; 2], lens: &[Row; 2], origin: &mut Rows3, direction: &mut Rows3) {
+        camera.rays([&film[0].0, &film[1].0], [&lens[0].0, &lens[1].0], |lane, ray| {
+            origin.set(lane, ray.origin);
+            direction.set(lane, ray.direction);
+        });
+    }
+}

@@ -1,0 +1,139 @@
+//! Where paths arrive: the surfaces that they meet, and the light that they run into there or at infinity.
+
+use super::Engine;
+use super::rows::{GROUPS, Mask, group_of, lanes};
+#[cfg(test)]
+use super::tests::{Fault, is_wrong};
+use crate::compiled;
+use crate::model::WavelengthModel;
+use crate::path::{MOST_VERTICES, ShadowRays, Step};
+use etalon_geometry::{LANES, Rays, SurfaceId};
+
+impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+    /// Finds what each path meets, and tells which meet nothing.
+    #[inline(always)]
+    pub(super) fn meet(&mut self) -> Mask {
+        let (paths, geometry) = (&mut self.paths, self.world.geometry);
+        let count = u64::from(paths.alive.count_ones());
+        self.counters.rays += count;
+        self.counters.lane_weights += count * u64::from(M::CARRIES_WEIGHTS);
+        let mut escaped = 0;
+        for group in 0..GROUPS {
+            let active = group_of(paths.alive, group);
+            if active == 0 {
+                continue;
+            }
+            let first = group * LANES;
+            let rays = Rays {
+                origin: paths.origin.group(group),
+                direction: paths.direction.group(group),
+                t_max: [f64::INFINITY; LANES],
+                leaves: std::array::from_fn(|lane| paths.leaves[first + lane]),
+                aims_at: [SurfaceId::NONE; LANES],
+            };
+            let hits = geometry.closest_hits(&rays, active);
+            let found = geometry.surfaces(&rays, &hits, hits.mask);
+            escaped |= Mask::from(active & !hits.mask) << first;
+            let at = &mut paths.at;
+            at.t.set_group(group, &hits.t);
+            (0..2).for_each(|k| at.uv[k].set_group(group, &hits.uv[k]));
+            at.position.set_group(group, &found.position);
+            at.error.set_group(group, &found.position_error);
+            at.normal.set_group(group, &found.normal);
+            at.surface[first..][..LANES].copy_from_slice(&hits.surface);
+            at.labels[first..][..LANES].copy_from_slice(&found.label);
+        }
+        escaped
+    }
+
+    /// Light from infinity; the paths end.
+    #[inline(always)]
+    pub(super) fn escape(&mut self, escaped: Mask) {
+        let paths = &mut self.paths;
+        let environments = if compiled::ENVIRONMENT { self.world.environments } else { &[] };
+        for lane in lanes(escaped) {
+            for (index, sky) in environments.iter().enumerate() {
+                self.counters.environment_lookups += 1;
+                let direction = paths.direction.at(lane);
+                let mis = if compiled::MIS && self.world.weigh_hits {
+                    self.world.weight_of_hit(paths.step(lane), SurfaceId::NONE, sky.light, direction)
+                } else {
+                    1.0
+                };
+                let lambda_nm = &paths.wavelengths[lane].lambda_nm;
+                let radiance = match self.tables.environments[index] {
+                    Some(slot) => paths.known.spectrum(lane, slot, self.tables, lambda_nm),
+                    None => sky.radiance.lanes(lambda_nm, direction),
+                };
+                let light = paths.beta[lane] * radiance * (paths.model[lane].weight() * mis);
+                paths.radiance[lane] += light;
+            }
+        }
+        paths.alive &= !escaped;
+    }
+
+    /// Light from the surfaces that paths have met. Tells which paths go on, and which of those send shadow rays.
+    #[inline(always)]
+    pub(super) fn arrive(&mut self, met: Mask) -> (Mask, Mask) {
+        let (paths, world) = (&mut self.paths, self.world);
+        let (mut scatters, mut shared) = (0, 0);
+        for lane in lanes(met) {
+            let surface_id = paths.at.surface[lane];
+            let object = world.surfaces.object_of[paths.at.labels[lane] as usize][surface_id.primitive.0 as usize];
+            let record = &self.tables.objects[object as usize];
+            if record.emits {
+                let point = paths.at.point(lane);
+                let surface = world.surfaces.of(&point);
+                let direction = paths.direction.at(lane);
+                if let Some(emitter) = surface.emission_along(point.normal, -direction) {
+                    let mis = if compiled::MIS && world.weigh_hits {
+                        world.weight_of_hit(paths.step(lane), point.surface, surface.light, direction)
+                    } else {
+                        1.0
+                    };
+                    let lambda_nm = &paths.wavelengths[lane].lambda_nm;
+                    let emitted = paths.known.of(lane, record.emission, emitter, self.tables, lambda_nm);
+                    let light = paths.beta[lane] * emitted * (paths.model[lane].weight() * mis);
+                    paths.radiance[lane] += light;
+                }
+            }
+            let vertex = paths.vertex[lane];
+            if vertex + 1 >= world.max_depth || vertex + 1 == MOST_VERTICES {
+                self.counters.cut_paths += u64::from(vertex + 1 == MOST_VERTICES);
+                paths.alive &= !(1 << lane);
+                continue;
+            }
+            scatters |= 1 << lane;
+            let useful = match world.shadow_rays {
+                _ if !compiled::SHADOW_RAYS => false,
+                ShadowRays::Never => false,
+                ShadowRays::WhereUseful => record.solid_angle_part,
+                ShadowRays::Everywhere => true,
+            };
+            shared |= Mask::from(useful) << lane;
+            paths.at.lambert[lane] = record.lambert;
+            if record.lambert.is_none() {
+                let point = paths.at.point(lane);
+                let surface = world.surfaces.of(&point);
+                let hit = paths.at.hit(lane);
+                paths.at.scattering[lane] = Some(surface.scattering(world.geometry, &point, &hit, None));
+            }
+        }
+        #[cfg(test)]
+        if is_wrong(Fault::LostShadowRay) {
+            shared &= !0b100;
+        }
+        (scatters, shared)
+    }
+}
+
+impl<M, const N: usize> super::Paths<'_, M, N> {
+    /// The last step of a path.
+    #[inline(always)]
+    fn step(&self, lane: usize) -> Step {
+        match self.shared >> lane & 1 {
+            0 => Step::Unshared,
+            _ => Step::Shared { from: self.from.at(lane), leaves: self.leaves[lane], density: self.density.0[lane] },
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What the engine looks up instead of asking the scene each time: what objects do, and which spectra there are.
+
+use crate::bsdf::Bsdf;
+use crate::coordinates::Coordinates;
+use crate::light::{Environment, EnvironmentRadiance, Light, LightTable};
+use crate::spectral::PathSpectrum;
+use crate::surface::{ObjectSurface, Surfaces};
+
+/// Spectra whose values at its wavelengths a path keeps.
+pub(super) const SLOTS: usize = 16;
+
+/// Place of a spectrum among those kept.
+pub(super) type Slot = Option<u8>;
+
+/// What the surfaces of an object do, as far as the engine knows it by heart.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ObjectRecord {
+    /// The reflectance, where all that the object does is Lambert's reflection around its own normals.
+    pub lambert: Slot,
+    /// Whether shadow rays are of use.
+    pub solid_angle_part: bool,
+    /// Whether it emits.
+    pub emits: bool,
+    /// What it emits.
+    pub emission: Slot,
+}
+
+/// See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Tables {
+    pub(super) spectra: Vec<PathSpectrum>,
+    /// The first wavelength of those that are tabulated at each nanometre.
+    pub(super) first_nm: f64,
+    pub(super) objects: Vec<ObjectRecord>,
+    /// Of the lights, in their order.
+    pub(super) lights: Vec<Slot>,
+    /// Of the environments.
+    pub(super) environments: Vec<Slot>,
+}
+
+impl Tables {
+    pub(crate) fn new(surfaces: &Surfaces, lights: &LightTable, skies: &[Environment]) -> Self {
+        let mut spectra = Vec::new();
+        let objects = surfaces.objects.iter().map(|object| record(object, &surfaces.bsdfs, &mut spectra)).collect();
+        let environments = skies
+            .iter()
+            .map(|sky| match &sky.radiance {
+                EnvironmentRadiance::Uniform(spectrum) => slot(spectrum, &mut spectra),
+                EnvironmentRadiance::Image(_) => None,
+            })
+            .collect();
+        // The triangles of a mesh share their spectrum, and come one after the other.
+        let mut last: Option<(*const PathSpectrum, Slot)> = None;
+        let lights = lights
+            .lights()
+            .iter()
+            .map(|light| {
+                if matches!(light, Light::Environment(_)) {
+                    return None;
+                }
+                let spectrum = light.spectrum();
+                let found = match last {
+                    Some((of, found)) if std::ptr::eq(of, spectrum) => found,
+                    _ => slot(spectrum, &mut spectra),
+                };
+                last = Some((spectrum, found));
+                found
+            })
+            .collect();
+        let first_nm = spectra.iter().find_map(PathSpectrum::first_nm).unwrap_or(0.0);
+        Self { spectra, first_nm, objects, lights, environments }
+    }
+}
+
+fn record(object: &ObjectSurface, bsdfs: &[Bsdf], spectra: &mut Vec<PathSpectrum>) -> ObjectRecord {
+    let bends = object.relief.is_some()
+        || match &object.coordinates {
+            Coordinates::Mesh(mesh) => !mesh.mesh.normals.is_empty(),
+            Coordinates::None | Coordinates::Parallelogram { .. } | Coordinates::Round(_) => false,
+        };
+    let bsdf = &bsdfs[object.material];
+    let lambert = match bsdf {
+        Bsdf::Lambert(lambert) if !bends => lambert.uniform().and_then(|spectrum| slot(spectrum, spectra)),
+        _ => None,
+    };
+    let emission = object.emission.as_ref();
+    ObjectRecord {
+        lambert,
+        solid_angle_part: bsdf.has_solid_angle_part(),
+        emits: emission.is_some(),
+        emission: emission.and_then(|emission| slot(&emission.radiance, spectra)),
+    }
+}
+
+/// The place of a spectrum, if there is room for it.
+fn slot(spectrum: &PathSpectrum, spectra: &mut Vec<PathSpectrum>) -> Slot {
+    if let Some(place) = spectra.iter().position(|known| known.is_same(spectrum)) {
+        return Some(place as u8);
+    }
+    if spectra.len() == SLOTS {
+        return None;
+    }
+    spectra.push(spectrum.clone());
+    Some(spectra.len() as u8 - 1)
+}

@@ -1,0 +1,131 @@
+//! Every instruction set of this machine leaves the film of the plain loop, and engines that are wrong on purpose do not.
+
+use super::level::Level;
+use super::{Engine, render_on};
+use crate::film::{Counters, Film, PixelRect, TileSums};
+use crate::model::{Hero, OneLane, Shared, WavelengthModel};
+use crate::plan::{EffectName, LaneModel, PathLoop};
+use crate::prepare::Prepared;
+use crate::{Control, Study, prepare_study};
+use std::cell::Cell;
+
+/// What may be wrong with an engine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fault {
+    /// A path draws its neighbour's numbers.
+    NeighboursNumbers,
+    /// A path that should send a shadow ray does not.
+    LostShadowRay,
+    /// A path keeps the spectra at the wavelengths of the one before it.
+    StaleSpectra,
+    /// A sample is added in another's turn.
+    OutOfTurn,
+    /// A path goes on that has ended.
+    Undead,
+}
+
+thread_local! {
+    static FAULT: Cell<Option<Fault>> = const { Cell::new(None) };
+}
+
+/// Whether an engine of this thread is to be wrong in this way.
+pub(super) fn is_wrong(fault: Fault) -> bool {
+    FAULT.get() == Some(fault)
+}
+
+/// A room with a lamp, walls of three colours, a glass ball and a mirror, under a sky.
+fn room() -> etalon_scene::Scene {
+    let wall = |origin: &str, u: &str, v: &str, material: &str| {
+        format!(
+            r#"{{"shape": {{"type": "parallelogram", "origin_m": {origin}, "u_m": {u}, "v_m": {v}}}, "material": {material}}}"#
+        )
+    };
+    let rgb = |rgb: &str| format!(r#"{{"type": "lambert", "reflectance": {{"type": "rgb", "rgb": {rgb}}}}}"#);
+    let objects = [
+        wall("[-1, -1, -1]", "[2, 0, 0]", "[0, 0, 2]", &rgb("[0.7, 0.7, 0.7]")),
+        wall("[-1, -1, -1]", "[0, 2, 0]", "[2, 0, 0]", &rgb("[0.2, 0.7, 0.3]")),
+        wall("[-1, -1, -1]", "[0, 0, 2]", "[0, 2, 0]", &rgb("[0.8, 0.1, 0.1]")),
+        r#"{"shape": {"type": "sphere", "center_m": [0.3, -0.6, 0], "radius_m": 0.4},
+            "material": {"type": "dielectric", "interior": 1.5}}"#
+            .to_owned(),
+        r#"{"shape": {"type": "sphere", "center_m": [-0.5, -0.7, 0.2], "radius_m": 0.3}, "material": {"type": "mirror"}}"#
+            .to_owned(),
+        r#"{"shape": {"type": "parallelogram", "origin_m": [-0.3, 1, -0.3], "u_m": [0.6, 0, 0], "v_m": [0, 0, 0.6]},
+            "material": {"type": "lambert", "reflectance": 0.5}, "emission": {"radiance": 8, "sides": "both"}}"#
+            .to_owned(),
+    ];
+    let json = format!(
+        r#"{{"etalon": 1, "film": {{"width": 16, "height": 16}}, "integrator": {{"spp": 8}},
+            "camera": {{"type": "perspective", "position_m": [0.2, 0, 4], "look_at_m": [0, 0, 0], "vertical_fov_deg": 35}},
+            "objects": [{}], "lights": [{{"type": "environment", "radiance": 0.2}}]}}"#,
+        objects.join(",")
+    );
+    etalon_scene::parse(&json, "room").unwrap().0
+}
+
+fn prepared(force: &[EffectName], path_loop: PathLoop) -> Prepared {
+    let study = Study { force: force.to_vec(), path_loop: Some(path_loop), ..Study::default() };
+    prepare_study(&room(), &study).unwrap()
+}
+
+fn plain(force: &[EffectName]) -> Film {
+    let prepared = prepared(force, PathLoop::Plain);
+    prepared.render(&prepared.whole(Some(1)), &|_| Control::Continue).unwrap()
+}
+
+/// The sums of the whole room and what was counted, on one instruction set.
+fn lanes<M: WavelengthModel<f64, N>, const N: usize>(level: Level, prepared: &Prepared) -> (TileSums, Counters) {
+    let film = &prepared.scene.film;
+    let tile = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
+    let mut sums = prepared.film().tile(tile);
+    let counters = render_on::<M, N>(level, prepared, tile, 0..prepared.scene.integrator.spp, sums.borrow());
+    (sums, counters)
+}
+
+fn is_that_of(film: &Film, (sums, counters): &(TileSums, Counters)) -> bool {
+    let rect = PixelRect { x0: 0, y0: 0, x1: film.width(), y1: film.height() };
+    film.tile(rect).to_bytes() == sums.to_bytes() && film.counters == *counters
+}
+
+#[test]
+fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_plain_loop() {
+    for level in Level::all() {
+        let shared = prepared(&[], PathLoop::Lanes);
+        assert_eq!(shared.plan().lane_model, LaneModel::Shared);
+        assert!(is_that_of(&plain(&[]), &lanes::<Shared, 8>(level, &shared)), "{level:?}");
+        let hero = prepared(&[EffectName::Dispersion], PathLoop::Lanes);
+        let film = plain(&[EffectName::Dispersion]);
+        assert!(is_that_of(&film, &lanes::<Hero<f64, 8>, 8>(level, &hero)), "{level:?}");
+        // One lane of the same scene: not its picture, but the same paths on every instruction set.
+        let one = lanes::<OneLane, 1>(level, &shared);
+        let baseline = lanes::<OneLane, 1>(*Level::all().last().unwrap(), &shared);
+        assert!(one.0.to_bytes() == baseline.0.to_bytes() && one.1 == baseline.1, "{level:?}");
+    }
+}
+
+#[test]
+fn engines_that_are_wrong_on_purpose_are_told_from_the_plain_loop() {
+    let film = plain(&[]);
+    let shared = prepared(&[], PathLoop::Lanes);
+    for fault in [Fault::NeighboursNumbers, Fault::LostShadowRay, Fault::StaleSpectra, Fault::OutOfTurn, Fault::Undead]
+    {
+        FAULT.set(Some(fault));
+        let wrong = lanes::<Shared, 8>(Level::detect(), &shared);
+        FAULT.set(None);
+        assert!(!is_that_of(&film, &wrong), "{fault:?} is not noticed");
+    }
+    assert!(is_that_of(&film, &lanes::<Shared, 8>(Level::detect(), &shared)));
+}
+
+impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+    /// Spoils what the next step begins with.
+    pub(super) fn spoil(&mut self) {
+        if is_wrong(Fault::NeighboursNumbers) {
+            let neighbour = self.paths.samplers.lane(1);
+            self.paths.samplers.put(0, neighbour);
+        }
+        if is_wrong(Fault::OutOfTurn) {
+            self.paths.number.swap(2, 3);
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Many paths at once against one at a time: the same films and the same counts, bit for bit, on the ready-made scenes and on
+//! scenes made up by chance.
+
+use etalon_scene::{SamplerKind, Scene};
+use etalon_transport::{Control, EffectName, Film, PathLoop, Prepared, Study, StudyError, prepare_study};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// The ready-made scenes, small.
+fn ready_made() -> Vec<(String, Scene)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut scenes: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .map(|path| {
+            let text = etalon_scene::json::load_text(&path).unwrap();
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            let mut scene = etalon_scene::parse_in(&text, &name, path.parent(), Some([22, 17])).unwrap().scene;
+            scene.integrator.spp = 4;
+            (name, scene)
+        })
+        .collect();
+    scenes.sort_by(|a, b| a.0.cmp(&b.0));
+    assert!(scenes.len() >= 11);
+    scenes
+}
+
+fn render(prepared: &Prepared) -> Film {
+    prepared.render(&prepared.whole(Some(2)), &|_| Control::Continue).unwrap()
+}
+
+/// Whether the engine covers the scene; if it does, its film must be that of the plain loop.
+fn agrees(name: &str, scene: &Scene, force: &[EffectName]) -> bool {
+    let study = |path_loop| Study { force: force.to_vec(), path_loop: Some(path_loop), ..Study::default() };
+    let lanes = match prepare_study(scene, &study(PathLoop::Lanes)) {
+        Ok(lanes) => lanes,
+        Err(error) => {
+            assert!(error.to_string().contains("many paths at once"), "{name}: {error}");
+            return false;
+        }
+    };
+    let plain = prepare_study(scene, &study(PathLoop::Plain)).unwrap();
+    assert_eq!((lanes.plan().path_loop.name, plain.plan().path_loop.name), (PathLoop::Lanes, PathLoop::Plain));
+    let (lanes, plain) = (render(&lanes), render(&plain));
+    assert_eq!(lanes.counters, plain.counters, "{name}");
+    // Sums of all replicates and bands, as bits: zeros of either sign are told apart.
+    let bits = |film: &Film| -> Vec<u64> {
+        film.pixels().flat_map(|pixel| pixel.sums().to_vec()).flat_map(|sum| sum.xyz.map(f64::to_bits)).collect()
+    };
+    assert!(lanes == plain && bits(&lanes) == bits(&plain), "{name}: the films differ");
+    true
+}
+
+#[test]
+fn many_paths_at_once_leave_the_film_of_the_plain_loop_on_every_ready_made_scene() {
+    let mut covered = 0;
+    for (name, mut scene) in ready_made() {
+        covered += u32::from(agrees(&name, &scene, &[]));
+        for effect in [EffectName::Wavelengths, EffectName::Dispersion] {
+            // Another model of lanes than the scene's own.
+            if !prepare_study(&scene, &Study::default()).unwrap().plan().runs(effect) {
+                covered += u32::from(agrees(&format!("{name}, {effect}"), &scene, &[effect]));
+            }
+        }
+        scene.integrator.sampler = SamplerKind::Independent;
+        (scene.integrator.replicates, scene.integrator.spp) = (1, 5);
+        covered += u32::from(agrees(&format!("{name}, independent numbers"), &scene, &[]));
+    }
+    assert!(covered >= 35, "only {covered} were covered");
+}
+
+#[test]
+fn what_the_engine_does_not_cover_is_traced_one_path_at_a_time_unless_it_was_asked_for() {
+    let mut scene = ready_made().remove(0).1;
+    scene.integrator.precision = etalon_scene::Precision::F32;
+    let plan = prepare_study(&scene, &Study::default()).unwrap();
+    assert_eq!(plan.plan().path_loop.name, PathLoop::Plain);
+    let lanes = prepare_study(&scene, &Study { path_loop: Some(PathLoop::Lanes), ..Study::default() });
+    assert!(lanes.is_err_and(|error| error.to_string().contains("single precision")));
+    let _: fn(&'static str) -> StudyError = StudyError::OnePathAtATime;
+}
+
+/// Numbers by SplitMix64.
+struct Chance(u64);
+
+impl Chance {
+    fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.number()
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.number() * n as f64) as usize
+    }
+
+    fn point(&mut self, reach: f64) -> Value {
+        json!([self.within(-reach, reach), self.within(-reach, reach), self.within(-reach, reach)])
+    }
+
+    fn spectrum(&mut self, most: f64) -> Value {
+        let level = self.within(0.05, most);
+        match self.below(4) {
+            0 => json!(level),
+            1 => {
+                json!({"type": "tabulated", "outside": "clamp", "wavelengths_nm": [400, 550, 700], "values": [level, 0.3 * level, 0.7 * level]})
+            }
+            2 => json!({"type": "rgb", "rgb": [level, 0.5 * level, 0.2 * level]}),
+            _ => json!(0),
+        }
+    }
+
+    fn material(&mut self) -> Value {
+        match self.below(10) {
+            0 => json!({"type": "mirror", "reflectance": self.within(0.3, 1.0)}),
+            1 => json!({"type": "dielectric", "interior": self.within(1.1, 2.4)}),
+            2 => json!({"type": "dielectric", "interior": "N-SF11"}),
+            3 => json!({"type": "conductor", "metal": "Au", "alpha": self.within(0.0, 0.5)}),
+            4 => json!({"type": "plastic", "reflectance": self.spectrum(0.9)}),
+            5 => json!({"type": "black"}),
+            _ => json!({"type": "lambert", "reflectance": self.spectrum(1.0)}),
+        }
+    }
+
+    fn shape(&mut self) -> Value {
+        match self.below(5) {
+            0 => json!({"type": "sphere", "center_m": self.point(1.0), "radius_m": self.within(0.1, 0.6)}),
+            1 => {
+                json!({"type": "disk", "center_m": self.point(1.0), "normal": self.point(1.0), "radius_m": self.within(0.2, 1.0)})
+            }
+            2 => {
+                json!({"type": "cylinder", "start_m": self.point(1.0), "end_m": self.point(1.0), "radius_m": self.within(0.05, 0.3)})
+            }
+            3 => {
+                let (x, y, z, size) =
+                    (self.within(-1.0, 1.0), self.within(-1.0, 1.0), self.within(-1.0, 1.0), self.within(0.1, 0.7));
+                json!({"type": "box", "min_m": [x, y, z], "max_m": [x + size, y + 0.5 * size, z + size]})
+            }
+            _ => {
+                json!({"type": "parallelogram", "origin_m": self.point(1.5), "u_m": self.point(1.5), "v_m": self.point(1.5)})
+            }
+        }
+    }
+
+    fn scene(&mut self) -> Value {
+        let objects: Vec<Value> = (0..2 + self.below(14))
+            .map(|index| {
+                let mut object = json!({"shape": self.shape(), "material": self.material()});
+                if index == 0 || self.below(4) == 0 {
+                    let sides = ["front", "back", "both"][self.below(3)];
+                    object["emission"] = json!({"radiance": self.within(0.5, 20.0), "sides": sides});
+                }
+                object
+            })
+            .collect();
+        let mut lights = Vec::new();
+        if self.below(2) == 0 {
+            lights.push(json!({"type": "environment", "radiance": self.within(0.1, 1.0)}));
+        }
+        if self.below(3) == 0 {
+            lights.push(json!({"type": "point", "position_m": self.point(2.0), "intensity": 3}));
+        }
+        if self.below(3) == 0 {
+            lights.push(json!({"type": "directional", "direction": self.point(1.0), "irradiance": 2}));
+        }
+        let mut camera =
+            json!({"type": "perspective", "position_m": [0.3, 0.2, 4], "look_at_m": [0, 0, 0], "vertical_fov_deg": 40});
+        if self.below(3) == 0 {
+            camera["lens"] = json!({"radius_m": 0.05, "focus_distance_m": 4});
+        }
+        let mut film = json!({"width": 19, "height": 18});
+        if self.below(3) == 0 {
+            film["bands_nm"] = json!([400, 700, 30]);
+        }
+        if self.below(3) == 0 {
+            film["filter"] = json!({"type": "gaussian", "sigma_px": 0.5});
+        }
+        let sampling = ["mis", "light", "bsdf"][self.below(3)];
+        let mut integrator = json!({"spp": 1 + self.below(12), "wavelength_range_nm": [380, 720], "seed": self.below(1000), "light_sampling": sampling});
+        if self.below(2) == 0 {
+            integrator["max_depth"] = json!(1 + self.below(9));
+        }
+        json!({"etalon": 1, "camera": camera, "film": film, "integrator": integrator, "objects": objects, "lights": lights})
+    }
+}
+
+#[test]
+fn many_paths_at_once_leave_the_film_of_the_plain_loop_on_scenes_made_up_by_chance() {
+    let mut chance = Chance(7);
+    let mut covered = 0;
+    for number in 0..32 {
+        let json = chance.scene();
+        let scene = etalon_scene::parse(&json.to_string(), "test").unwrap_or_else(|e| panic!("{json:#}\n{e:?}")).0;
+        covered += u32::from(agrees(&format!("scene {number}: {json:#}"), &scene, &[]));
+    }
+    assert!(covered >= 28, "only {covered} were covered");
+}
