@@ -9,6 +9,7 @@
 //! | [`prepare`](mod@prepare) | shapes in world space, lights, the accelerator |
 //! | [`plan`] | which effects the scene calls for, and why |
 //! | [`frame`] | centring and scaling |
+//! | `engine` | many paths at once: the film of `path`, bit for bit |
 //! | `path`, `media`, [`polarisation`] | the path loop; which medium it is in; the Stokes vector that it carries |
 //! | `coordinates` | shading normals and texture coordinates |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
