@@ -55,6 +55,11 @@ static KERNELS: &[Kernel] = &[
     #[cfg(not(feature = "without-polarisation"))]
     Kernel {
         polarised: true,
+        ..entry::<f64, Shared, Followed<LANES>, LANES>(Precision::F64, LaneModel::Shared, "polarised-shared-8-f64")
+    },
+    #[cfg(not(feature = "without-polarisation"))]
+    Kernel {
+        polarised: true,
         ..entry::<f64, Hero<f64, LANES>, Followed<LANES>, LANES>(
             Precision::F64,
             LaneModel::Hero,
@@ -96,12 +101,13 @@ const fn with_lanes<M: WavelengthModel<f64, N>, const N: usize>(lanes: LaneModel
     }
 }
 
-/// The kernel of a scalar type and a model of wavelengths; the one for polarised light covers them all.
+/// The kernel of a scalar type and a model of wavelengths; those for polarised light are in double precision.
 pub(crate) fn kernel(precision: Precision, lanes: LaneModel, polarised: bool) -> &'static Kernel {
     KERNELS
         .iter()
         .find(|kernel| {
-            kernel.polarised == polarised && (polarised || (kernel.precision, kernel.lanes) == (precision, lanes))
+            let fits = kernel.lanes == lanes && kernel.polarised == polarised;
+            fits && (polarised || kernel.precision == precision)
         })
         .expect("the table has every pair")
 }
@@ -306,6 +312,9 @@ mod tests {
         for precision in [Precision::F32, Precision::F64] {
             for lanes in [LaneModel::One, LaneModel::Shared, LaneModel::Hero] {
                 kernel(precision, lanes, false);
+            }
+            for lanes in [LaneModel::Shared, LaneModel::Hero] {
+                kernel(precision, lanes, true);
             }
         }
     }

@@ -328,9 +328,9 @@ impl Plan {
             .collect();
         let runs = |name| effects.iter().any(|effect: &Effect| effect.name == name && effect.on);
         // Without wavelengths there is none that could go another way.
-        let lane_model = if runs(EffectName::Dispersion) || runs(EffectName::Polarisation) {
+        let lane_model = if runs(EffectName::Dispersion) {
             LaneModel::Hero
-        } else if runs(EffectName::Wavelengths) {
+        } else if runs(EffectName::Wavelengths) || runs(EffectName::Polarisation) {
             LaneModel::Shared
         } else {
             LaneModel::One
