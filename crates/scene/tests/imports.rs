@@ -373,3 +373,24 @@ proptest! {
         }
     }
 }
+
+/// What a fuzzer found: libraries that panicked.
+#[test]
+fn files_that_contradict_themselves_are_refused() {
+    let mut short = glb(&model());
+    short[8..12].copy_from_slice(&3_u32.to_le_bytes());
+    let error = import_bytes("glb", &short, &nothing, "", "m.glb").unwrap_err();
+    assert!(error.contains("header"), "{error}");
+
+    let obj = b"mtllib a.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for (colour, right) in [("Kd 0.5 0.5", false), ("Ks", false), ("Ka 1 1 1 1", true), ("Kd 0.5 0.25 1", true)] {
+        let near = |_: &str| Ok(format!("newmtl red\n{colour}\n").into_bytes());
+        let imported = import_bytes("obj", obj, &near, "", "a.obj").unwrap();
+        let said: Vec<_> = imported.left_out.iter().map(|l| l.what.as_str()).collect();
+        assert_eq!(
+            !said.iter().any(|what| what.contains("line 2: a colour has three numbers")),
+            right,
+            "{colour} {said:?}"
+        );
+    }
+}

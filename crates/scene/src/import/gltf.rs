@@ -15,6 +15,8 @@ use crate::mesh::MAX_ELEMENTS;
 use crate::model::Mesh;
 use crate::vector::unit;
 
+/// Bytes of the header of a binary file.
+const GLB_HEADER: u32 = 12;
 /// Deepest nesting of nodes.
 const MAX_DEPTH: usize = 256;
 
@@ -60,6 +62,12 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
 fn check_primitives(bytes: &[u8]) -> Result<(), String> {
     let glb;
     let text = if bytes.starts_with(b"glTF") {
+        // The library subtracts the header's own length before it compares.
+        if let Some(&[a, b, c, d]) = bytes.get(8..12)
+            && u32::from_le_bytes([a, b, c, d]) < GLB_HEADER
+        {
+            return Err(format!("its header takes {GLB_HEADER} bytes, and says that the whole file takes fewer"));
+        }
         glb = gltf::Glb::from_slice(bytes).map_err(|error| error.to_string())?;
         &*glb.json
     } else {

@@ -42,6 +42,9 @@ pub fn read_obj(bytes: &[u8], library: impl Fn(&Path) -> Result<Vec<u8>, String>
         match library(path) {
             Err(why) => give_up(why),
             Ok(bytes) => {
+                if let Some(line) = short_colour(&bytes) {
+                    return give_up(format!("{}: line {line}: a colour has three numbers", path.display()));
+                }
                 let library_line = Cell::new(0);
                 match tobj::load_mtl_buf(&mut Lines { bytes: &bytes, line: &library_line }) {
                     Ok(materials) => Ok(materials),
@@ -111,6 +114,17 @@ fn part(model: tobj::Model, material: Option<String>) -> Result<Option<Part>, Me
         start += arity;
     }
     Ok((!mesh.triangles.is_empty()).then(|| Part { name, material, mesh, left_out: Vec::new() }))
+}
+
+/// The number of the first line of a material library that states a colour by fewer than three numbers, which the library that
+/// reads them does not expect.
+fn short_colour(bytes: &[u8]) -> Option<usize> {
+    let is_short = |line: &[u8]| {
+        let text = String::from_utf8_lossy(line);
+        let mut words = text.split_whitespace();
+        matches!(words.next(), Some("Ka" | "Kd" | "Ks" | "Ke")) && words.count() < 3
+    };
+    bytes.split(|&b| b == b'\n').position(is_short).map(|i| i + 1)
 }
 
 /// Bytes that count the lines which have been taken of them.
