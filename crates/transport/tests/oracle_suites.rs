@@ -145,8 +145,9 @@ impl<R: Real> Scatters for Material<R> {
                 let (n, k) = match metal {
                     Metal::Index(index) => index.eval(wavelength_nm),
                     Metal::Reflectance(reflectance) => {
-                        let root = uniform(reflectance).eval(wavelength_nm).sqrt();
-                        ((1.0 + root) / (1.0 - root), 0.0)
+                        let share = uniform(reflectance).eval(wavelength_nm);
+                        // ((n − 1)² + k²)/((n + 1)² + k²) with n = 1.
+                        (1.0, (4.0 * share / (1.0 - share)).sqrt())
                     }
                 };
                 let weight = fresnel::conductor(cos, n, k).reflectance;
@@ -266,12 +267,12 @@ fn texel(rgb: [f32; 3]) -> ImageTexture {
     }
 }
 
-/// Smooth below a roughness of 0.2, rougher from there on; at 0.35 now.
+/// Smooth below a roughness of 0.2, rougher from there on; at 0.7 now, between two rough ones.
 fn metal_of_varied_roughness() -> Material<f64> {
     let metal = Metal::Reflectance(Spectrum::rgb_reflectance([0.9, 0.6, 0.3]).unwrap().into());
     let rough = |alpha| MaterialKind::RoughConductor { metal: metal.clone(), alpha, compensated: true };
-    let parts = vec![(0.2, MaterialKind::Conductor { metal: metal.clone() }), (0.4, rough(0.16)), (0.9, rough(0.81))];
-    Material::new(MaterialKind::Blend { parts, by: NumberTexture::Image(texel([0.35; 3])) })
+    let parts = vec![(0.2, MaterialKind::Conductor { metal: metal.clone() }), (0.55, rough(0.3)), (0.9, rough(0.81))];
+    Material::new(MaterialKind::Blend { parts, by: NumberTexture::Image(texel([0.7; 3])) })
 }
 
 /// A ground and a coat by images.

@@ -48,7 +48,7 @@ crate::record! {
         n: Optional<List<Spanned<Positive>>>,
         /// Imaginary part k (extinction coefficient) at each wavelength.
         k: Optional<List<Spanned<NonNegative>>>,
-        /// Share of light R reflected head-on, from 0 to 1 (0.999 at most is), perhaps an image: n = (1 + √R)/(1 − √R), k = 0.
+        /// Share of light R reflected head-on, from 0 to 1 (0.9999 at most is), perhaps an image: n = 1, k = 2√(R/(1 − R)).
         reflectance: Optional<SpectrumForm>,
         /// What holds at wavelengths for which there are no values.
         outside_fit: Required<OutsideFit> = r#""error""#,

@@ -112,19 +112,19 @@ pub enum MaterialKind {
 pub enum Metal {
     /// n + ik.
     Index(ComplexIndex),
-    /// What it reflects head-on, R: it has the index n = (1 + √R)/(1 − √R) that does, without absorption.
+    /// What it reflects head-on, R: it has the index 1 + ik with k = 2√(R/(1 − R)) that does.
     Reflectance(SpectrumTexture),
 }
 
 impl Metal {
-    /// The most that a metal of a given reflectance returns head-on: an index of refraction alone never reflects all.
-    pub const MOST_REFLECTANCE: f64 = 0.999;
+    /// The most that a metal of a given reflectance returns head-on: no index reflects all.
+    pub const MOST_REFLECTANCE: f64 = 0.9999;
 
-    /// The index that reflects a share in [0, 1] of light head-on, at most [`Metal::MOST_REFLECTANCE`].
+    /// The k of n = 1 that reflects a share in [0, 1] of light head-on, at most [`Metal::MOST_REFLECTANCE`].
     #[inline]
-    pub fn index_of(reflectance: f64) -> f64 {
-        let root = reflectance.clamp(0.0, Self::MOST_REFLECTANCE).sqrt();
-        (1.0 + root) / (1.0 - root)
+    pub fn k_of(reflectance: f64) -> f64 {
+        let share = reflectance.clamp(0.0, Self::MOST_REFLECTANCE);
+        2.0 * (share / (1.0 - share)).sqrt()
     }
 }
 

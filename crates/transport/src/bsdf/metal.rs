@@ -10,7 +10,7 @@ use etalon_scene::Metal;
 pub enum PathMetal {
     /// The same everywhere.
     Index(ComplexIndex),
-    /// That which reflects such a share of light head-on, without absorption ([`Metal::index_of`]).
+    /// 1 + ik of which such a share of light is reflected head-on ([`Metal::k_of`]).
     Reflectance(PathTexture),
 }
 
@@ -29,7 +29,7 @@ impl PathMetal {
         match self {
             Self::Index(index) => lambda_nm.0.map(|nm| index.eval(nm)),
             Self::Reflectance(reflectance) => {
-                reflectance.lanes::<f64, N>(lambda_nm, uv).0.map(|r| (Metal::index_of(r), 0.0))
+                reflectance.lanes::<f64, N>(lambda_nm, uv).0.map(|r| (1.0, Metal::k_of(r)))
             }
         }
     }
@@ -63,20 +63,20 @@ impl OfMetal {
             PathMetal::Reflectance(_) => {
                 let at = |i: usize| {
                     let root = i as f64 / STEPS as f64;
-                    function(Metal::index_of(root * root), 0.0)
+                    function(1.0, Metal::k_of(root * root))
                 };
                 Self::Root((0..STEPS).map(|i| [at(i), at(i + 1) - at(i)]).collect())
             }
         }
     }
 
-    /// The value for a metal of index `n` at a wavelength, nm.
+    /// The value for a metal of n + ik at a wavelength, nm.
     #[inline]
-    pub(super) fn eval(&self, wavelength_nm: f64, n: f64) -> f64 {
+    pub(super) fn eval(&self, wavelength_nm: f64, k: f64) -> f64 {
         match self {
             Self::Spectrum(spectrum) => spectrum.eval(wavelength_nm),
             Self::Root(steps) => {
-                let x = (n - 1.0) / (n + 1.0) * STEPS as f64;
+                let x = k / (4.0 + k * k).sqrt() * STEPS as f64;
                 let i = (x as usize).min(STEPS - 1);
                 let [value, step] = steps[i];
                 value + (x - i as f64) * step

@@ -74,7 +74,7 @@ impl RoughConductor {
             let (eta, k) = index[lane];
             let mut f = fresnel::conductor(single.cos, eta, k).reflectance * single.term;
             if let Some(compensation) = &self.compensation {
-                f += several * compensation.factor.eval(lambda_nm[lane], eta);
+                f += several * compensation.factor.eval(lambda_nm[lane], k);
             }
             R::from_f64(f * wi.z)
         });
@@ -100,7 +100,7 @@ impl RoughConductor {
         Some(std::array::from_fn(|lane| {
             let (eta, k) = index[lane];
             let facet = fresnel::conductor(single.cos, eta, k).reflectance * single.term;
-            let forgotten = self.compensation.as_ref().map_or(0.0, |c| several * c.factor.eval(lambda_nm[lane], eta));
+            let forgotten = self.compensation.as_ref().map_or(0.0, |c| several * c.factor.eval(lambda_nm[lane], k));
             mueller::mixed([
                 (facet, mueller::conductor_reflection(single.cos, eta, k)),
                 (forgotten, mueller::DEPOLARISER),

@@ -160,7 +160,7 @@ impl Walk<'_, '_, '_> {
             }
             "conductor" | "roughconductor" => self.conductor(element, plugin == "roughconductor")?,
             "plastic" | "roughplastic" => {
-                let reflectance = self.colour(element, "diffuse_reflectance", Of::Reflectance)?.unwrap_or(json!(0.5));
+                let reflectance = self.colour(element, "diffuse_reflectance", Of::Texture)?.unwrap_or(json!(0.5));
                 let coat = self.index(element, "int_ior", 1.49)? / self.index(element, "ext_ior", 1.000_277)?;
                 self.untinted(element, &["specular_reflectance"])?;
                 let alpha = if plugin == "plastic" { 0.0 } else { self.alpha(element)? };

@@ -16,7 +16,7 @@ impl Reading<'_, '_> {
                 json!({ "type": "lambert", "reflectance": reflectance })
             }
             "coateddiffuse" => {
-                let reflectance = self.reflectance(list, "reflectance", false)?.unwrap_or(json!(0.5));
+                let reflectance = self.reflectance(list, "reflectance", true)?.unwrap_or(json!(0.5));
                 let coat = self.index(list, 1.5)?;
                 // What the coat adds to its thickness of 0 is nothing without absorption, which is listed if there is some.
                 for harmless in ["thickness", "maxdepth", "nsamples"] {
@@ -79,13 +79,9 @@ impl Reading<'_, '_> {
         let named = |what: &str| list.string(&format!("{prefix}{what}")).map(str::to_owned);
         let eta = named("eta");
         named("k");
-        let mut value = if let Some(reflectance) = self.reflectance(list, &format!("{prefix}reflectance"), false)? {
-            // In pbrt an index chosen so that this is reflected head-on; here a mirror of the same colour at every angle.
-            if alpha == 0.0 {
-                return Ok(json!({ "type": "mirror", "reflectance": reflectance }));
-            }
-            self.builder.leave_out(place, "a rough metal by its reflectance is not known: aluminium is taken for it");
-            json!({ "type": "conductor", "metal": "Al" })
+        let mut value = if let Some(reflectance) = self.reflectance(list, &format!("{prefix}reflectance"), true)? {
+            // The same index as in pbrt: 1 + ik.
+            json!({ "type": "conductor", "reflectance": reflectance })
         } else if let Some((eta, k)) = self.own_indices(list, prefix)? {
             metal(&eta, &k)
         } else {

@@ -54,23 +54,10 @@ fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
         MaterialKind::ThinDielectric { index } => glass(index.eval(middle(range_nm))),
         MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
         | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
-            glass(Metal::index_of(texture::mean(reflectance, middle(range_nm))))
+            metal(range_nm, |nm| (1.0, Metal::k_of(texture::mean(reflectance, nm))))
         }
         MaterialKind::Conductor { metal: Metal::Index(index) }
-        | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => {
-            let diattenuation = |nm: f64, cos: f64| {
-                let (n, k) = index.eval(nm);
-                let f = fresnel::conductor(cos, n, k);
-                ((f.reflectance_s - f.reflectance_p) / (f.reflectance_s + f.reflectance_p)).abs()
-            };
-            let everywhere =
-                seen(range_nm).into_iter().flat_map(|nm| (1..100).map(move |i| (nm, f64::from(i) / 100.0)));
-            let (most, nm, cos) = everywhere
-                .map(|(nm, cos)| (diattenuation(nm, cos), nm, cos))
-                .fold((0.0, 0.0, 1.0), |most, other| if other.0 > most.0 { other } else { most });
-            let (share, degrees) = (most * most, cos.acos().to_degrees());
-            Some((share, format!("up to {:.2} % after two reflections, at {degrees:.0}° and {nm} nm", 100.0 * share)))
-        }
+        | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => metal(range_nm, |nm| index.eval(nm)),
         MaterialKind::Blend { parts, .. } => {
             let worst = parts.iter().filter_map(|(_, part)| polarises(part, range_nm));
             worst.reduce(|worst, other| if other.0 > worst.0 { other } else { worst })
@@ -82,6 +69,25 @@ fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Black => None,
     }
+}
+
+/// [`polarises`] of a metal of n + ik at each wavelength.
+fn metal(range_nm: [f64; 2], index: impl Fn(f64) -> (f64, f64)) -> Option<(f64, String)> {
+    let mut worst = (0.0, 0.0, 1.0);
+    for nm in seen(range_nm) {
+        let (n, k) = index(nm);
+        for cos in (1..100).map(|i| f64::from(i) / 100.0) {
+            let f = fresnel::conductor(cos, n, k);
+            let sum = f.reflectance_s + f.reflectance_p;
+            let most = ((f.reflectance_s - f.reflectance_p) / sum).abs();
+            if most > worst.0 {
+                worst = (most, nm, cos);
+            }
+        }
+    }
+    let (most, nm, cos) = worst;
+    let (share, degrees) = (most * most, cos.acos().to_degrees());
+    Some((share, format!("up to {:.2} % after two reflections, at {degrees:.0}° and {nm} nm", 100.0 * share)))
 }
 
 /// The wavelengths of a range that count for what the eye sees, at least a hundredth of the most; all, if none does.
