@@ -43,13 +43,16 @@ impl World {
 
     fn radiance(&self, mut origin: Vec3, mut d: Vec3, numbers: &mut Uniform) -> f64 {
         let (mut sum, mut weight, mut edges) = (0.0, 1.0_f64, 0);
-        let (mut leaving, mut diffuse, mut medium) = (None, false, 1.0_f64);
+        // Where the path last left a diffuse surface, from which shadow rays were sent too.
+        let (mut leaving, mut diffuse, mut medium) = (None, None::<Vec3>, 1.0_f64);
         loop {
             edges += 1;
             let Some(hit) = self.hit(origin, d, leaving) else { return sum + weight * self.sky };
             let object = &self.objects[self.primitives[hit.primitive].object];
             let front = dot(hit.normal, d) < 0.0;
-            let counted = !(diffuse && object.sampled) || self.fault == "light found both ways in full";
+            let shape = &self.primitives[hit.primitive].shape;
+            let aimed_at = object.sampled && diffuse.is_some_and(|from| !shape.is_near(from));
+            let counted = !aimed_at || self.fault == "light found both ways in full";
             if counted && if front { object.front } else { object.back } {
                 sum += weight * object.radiance;
             }
@@ -59,11 +62,11 @@ impl World {
             let point = plus(origin, hit.t, d);
             // The normal on the side that the ray comes from.
             let n = if front || self.fault == "normals not turned" { hit.normal } else { times(-1.0, hit.normal) };
-            diffuse = false;
+            diffuse = None;
             match object.material {
                 Material::Black => return sum,
                 Material::Lambert(albedo) => {
-                    diffuse = true;
+                    diffuse = Some(point);
                     if edges < self.most_edges {
                         sum += weight * albedo / PI * self.direct(point, n, hit.primitive, numbers);
                     }
@@ -179,6 +182,9 @@ impl World {
             }
             Light::Primitive(target) => {
                 let object = &self.objects[self.primitives[target].object];
+                if self.primitives[target].shape.is_near(point) {
+                    return 0.0;
+                }
                 let u = [numbers.number(), numbers.number()];
                 let Some((d, facing, inverse)) = self.primitives[target].shape.towards(point, u, self.fault) else {
                     return 0.0;

@@ -80,6 +80,20 @@ impl Shape {
         }
     }
 
+    /// Whether it is so near that light from it is to be found by the walk: the variance of a point drawn on its area has no bound
+    /// where it touches what it shines on.
+    pub(crate) fn is_near(&self, from: Vec3) -> bool {
+        // Of the shapes drawn by their area, what the truths have within reach of a receiver is rectangles.
+        let Self::Quad { origin, u, v } = self else { return false };
+        let normal = cross(*u, *v);
+        let at = minus(from, *origin);
+        let scale = 1.0 / dot(normal, normal);
+        let [a, b] = [dot(cross(at, *v), normal), dot(cross(*u, at), normal)].map(|x| (x * scale).clamp(0.0, 1.0));
+        let off = minus(at, plus(times(a, *u), b, *v));
+        // Nearer than a quarter of its own size.
+        dot(off, off) < dot(normal, normal).sqrt() / 16.0
+    }
+
     /// A direction towards it: unit vector, whether it leads to the front, and 1/density over solid angle.
     pub(crate) fn towards(&self, from: Vec3, u: [f64; 2], fault: &str) -> Option<(Vec3, bool, f64)> {
         let (point, normal, area) = match self {
