@@ -28,7 +28,8 @@ units of the picture's mean luminance, against the reference (whose own error is
 than the reference's, by the scatter of the picture's own replicates. **Slope** is how the scatter falls with the number of \
 samples n, as n to the power −slope: 0.5 for independent numbers. **Efficiency** is 1/(error² · seconds), in units of the scene \
 as it is. **Bias** is the difference of the mean luminance to the reference's (or to the truth, where that is known), with its z: \
-beyond ±4 it is no accident. Time a sample is relative to the scene as it is.";
+beyond ±4 it is no accident. Time a sample is relative to the scene as it is. Choices that follow one path at a time, where the \
+scene as it is follows many at once, say so: their times compare with that of the row of this name.";
 
 /// The cells of a row.
 pub(super) fn cells(row: &Row, study: &SceneStudy) -> [String; 11] {
