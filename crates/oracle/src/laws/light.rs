@@ -1,5 +1,6 @@
 //! Laws of a light that is sampled by direction.
 
+use super::cells::{Cells, expected, rest};
 use crate::{
     Uniform, Verdict,
     quadrature::directions,
@@ -85,55 +86,36 @@ pub fn light_pdf_integrates_to_one(subject: &dyn Emits, from_m: [f64; 3], tolera
     Verdict::bounded(LAW, (total.value - 1.0).abs(), total.error.max(tolerance), story)
 }
 
-/// χ² of 65536 sampled directions against the density, in 16 × 32 cells of equal solid angle over the light's extent.
+/// χ² of 65536 sampled directions against the density, in 16 × 32 cells of equal solid angle over the light's extent, with one
+/// cell for refusals. A direction beyond the extent contradicts it.
 pub fn light_samples_follow_pdf(subject: &dyn Emits, from_m: [f64; 3], budget: Budget, seed: u64) -> Verdict {
     const LAW: &str = "a light's samples are distributed as its density says";
-    const ROWS: usize = 16;
-    const COLUMNS: usize = 32;
-    const SUBCELLS: usize = 4;
-    let cone = subject.extent(from_m);
-    let mut expected = Vec::with_capacity(ROWS * COLUMNS + 2);
-    for row in 0..ROWS {
-        for column in 0..COLUMNS {
-            // A flat light's edge may cut off a corner of a cell that a first look at the whole cell would miss.
-            let along = |i: usize, n: usize| [i as f64 / n as f64, (i + 1) as f64 / n as f64];
-            let density = |h: f64, phi: f64| subject.pdf(from_m, cone.direction(h, phi));
-            let share: f64 = (0..SUBCELLS * SUBCELLS)
-                .map(|part| {
-                    let rise = along(row * SUBCELLS + part / SUBCELLS, ROWS * SUBCELLS);
-                    let azimuth = along(column * SUBCELLS + part % SUBCELLS, COLUMNS * SUBCELLS)
-                        .map(|x| x * std::f64::consts::TAU);
-                    crate::quadrature::rectangle(density, rise, azimuth, 1e-7 / cone.one_minus_cos, 2_000).value
-                })
-                .sum();
-            // What is left unseen is pooled with other small cells rather than called impossible: that a sample has a
-            // density at all is the business of `light_sample_is_consistent`.
-            expected.push((share * cone.one_minus_cos).max(f64::MIN_POSITIVE));
-        }
-    }
-    // One cell for directions beyond the extent and one for refusals; neither may hold anything if ∫pdf is 1.
-    let absent = 1.0 - expected.iter().sum::<f64>();
-    expected.extend([0.0, if absent < 1e-4 { 0.0 } else { absent }]);
-    let mut observed = vec![0_u64; expected.len()];
+    let mut cells = Cells::new(subject.extent(from_m));
+    let pdf = |wi: Vec3| subject.pdf(from_m, wi);
+    let mut refused = 0_u64;
     let mut numbers = Uniform::new(seed);
     for _ in 0..SAMPLES {
-        let u = [numbers.number(), numbers.number()];
-        let cell = match subject.sample(from_m, u) {
-            None => ROWS * COLUMNS + 1,
-            Some(drawn) => {
-                let (h, phi) = cone.coordinates(drawn.wi);
-                let row = (h * ROWS as f64) as usize;
-                let column = ((phi / std::f64::consts::TAU * COLUMNS as f64) as usize).min(COLUMNS - 1);
-                // The rim itself, moved out by rounding, belongs to the last row.
-                if h > 1.0 + 1e-6 { ROWS * COLUMNS } else { row.min(ROWS - 1) * COLUMNS + column }
-            }
-        };
-        observed[cell] += 1;
+        match subject.sample(from_m, [numbers.number(), numbers.number()]) {
+            None => refused += 1,
+            Some(drawn) if cells.count(drawn.wi, || pdf(drawn.wi)) => {}
+            Some(drawn) => return Verdict::broken(LAW, format!("from {from_m:?}: {drawn:?} is beyond the extent")),
+        }
     }
-    for share in &mut expected {
-        *share *= f64::from(SAMPLES);
+    let mut probabilities = cells.integrals(pdf, SAMPLES);
+    for cell in &mut probabilities {
+        // A sample on the very rim, whose direction rounding moves past the light, is pooled with other small cells rather than
+        // called impossible: that a sample has a density is the business of `light_sample_is_consistent`.
+        cell.value = cell.value.max(f64::MIN_POSITIVE);
     }
-    chi_square_verdict(LAW, &observed, &expected, budget.each(), &format!("from {from_m:?}"))
+    probabilities.push(rest(&probabilities, 1e-4));
+    cells.observed.push(refused);
+    chi_square_verdict(
+        LAW,
+        &cells.observed,
+        &expected(&probabilities, SAMPLES),
+        budget.each(),
+        &format!("from {from_m:?}"),
+    )
 }
 
 /// The irradiance that a light's samples give a surface with the given unit normal, Σ L·cos⁺/pdf, against the true one, W·m⁻²·nm⁻¹.

@@ -5,6 +5,7 @@
 //! are rounded to what the subject can represent, and bounds are stated in units of it. Sweeps take a seed and are the same
 //! for equal seeds.
 
+mod cells;
 mod directions;
 mod fresnel;
 mod intersection;

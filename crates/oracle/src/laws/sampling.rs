@@ -1,6 +1,10 @@
 //! Laws of a BSDF as a whole: its density integrates to one, its samples follow it, it creates no energy.
 
-use super::{directions::few_directions, scattering::side_index};
+use super::{
+    cells::{Cells, expected, rest},
+    directions::few_directions,
+    scattering::side_index,
+};
 use crate::{
     Uniform, Verdict,
     quadrature::{Cone, Integral, directions},
@@ -16,9 +20,6 @@ const SAMPLES: u32 = 65_536;
 /// Absolute error asked of quadratures over the sphere, and the most evaluations spent on one.
 const QUADRATURE_TOLERANCE: f64 = 1e-7;
 const QUADRATURE_EVALUATIONS: usize = 1_000_000;
-
-/// Cells of the χ² test: 16 of equal height on the sphere by 32 in azimuth.
-const CELLS: (usize, usize) = (16, 32);
 
 fn cases(subject: &dyn Scatters, seed: u64) -> Vec<(Vec3, f64)> {
     let directions = few_directions(subject.two_sided(), subject.epsilon(), seed);
@@ -71,63 +72,45 @@ pub fn pdf_integrates_to_one(subject: &dyn Scatters, budget: Budget, seed: u64) 
 }
 
 /// χ² of 65536 samples a direction against the density, in 512 cells of equal solid angle, with one more cell for each delta
-/// lobe and one for absorption. Cells' expectations come from quadrature of `pdf`, cell by cell.
+/// lobe and one for absorption. Cells' expectations come from quadrature of `pdf`, cell by cell, and are as exact as that.
 pub fn samples_follow_pdf(subject: &dyn Scatters, budget: Budget, seed: u64) -> Verdict {
     const LAW: &str = "samples are distributed as the density says";
     let cases = cases(subject, seed);
     let significance = budget.split(cases.len()).each();
     let verdicts = cases.into_iter().enumerate().map(|(i, (wo, wavelength_nm))| {
         let lobes = subject.deltas(wo, wavelength_nm);
-        let (rows, columns) = CELLS;
-        let smooth = rows * columns;
-        let mut expected = Vec::with_capacity(smooth + lobes.len() + 1);
-        for row in 0..rows {
-            for column in 0..columns {
-                expected.push(cell_probability(subject, wo, wavelength_nm, row, column));
-            }
-        }
-        expected.extend(lobes.iter().map(|lobe| lobe.probability));
-        let absorbed = 1.0 - expected.iter().sum::<f64>();
-        // What quadrature leaves over is not absorption.
-        expected.push(if absorbed < 1e-6 { 0.0 } else { absorbed });
-        let mut observed = vec![0_u64; expected.len()];
+        let pdf = |wi: Vec3| subject.pdf(wo, wi, wavelength_nm);
+        let mut cells = Cells::new(Cone::SPHERE);
+        let (mut sharp, mut absorbed) = (vec![0_u64; lobes.len()], 0_u64);
         let mut numbers = Uniform::new(seed ^ (i as u64) << 32);
         for _ in 0..SAMPLES {
-            let cell = match subject.sample(wo, draw(subject, &mut numbers), wavelength_nm) {
-                None => smooth + lobes.len(),
-                Some(drawn) => match drawn.density {
-                    Density::SolidAngle(_) => {
-                        let (h, phi) = Cone::SPHERE.coordinates(drawn.wi);
-                        let row = (h * rows as f64) as usize;
-                        let column = (phi / std::f64::consts::TAU * columns as f64) as usize;
-                        row.min(rows - 1) * columns + column.min(columns - 1)
-                    }
-                    Density::Delta(_) => {
-                        let distance = |j: &usize| distance_max(lobes[*j].wi, drawn.wi);
-                        let Some(lobe) = (0..lobes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
-                            return Verdict::broken(LAW, format!("wo {wo:?}: {drawn:?}, but deltas() lists none"));
-                        };
-                        smooth + lobe
-                    }
-                },
+            let Some(drawn) = subject.sample(wo, draw(subject, &mut numbers), wavelength_nm) else {
+                absorbed += 1;
+                continue;
             };
-            observed[cell] += 1;
+            match drawn.density {
+                Density::SolidAngle(_) => {
+                    if !cells.count(drawn.wi, || pdf(drawn.wi)) {
+                        return Verdict::broken(LAW, format!("wo {wo:?}: {drawn:?} is no direction"));
+                    }
+                }
+                Density::Delta(_) => {
+                    let distance = |j: &usize| distance_max(lobes[*j].wi, drawn.wi);
+                    let Some(lobe) = (0..lobes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
+                        return Verdict::broken(LAW, format!("wo {wo:?}: {drawn:?}, but deltas() lists none"));
+                    };
+                    sharp[lobe] += 1;
+                }
+            }
         }
-        for share in &mut expected {
-            *share *= f64::from(SAMPLES);
-        }
+        let mut probabilities = cells.integrals(pdf, SAMPLES);
+        probabilities.extend(lobes.iter().map(|lobe| Integral { value: lobe.probability, error: 0.0 }));
+        probabilities.push(rest(&probabilities, 1e-6));
+        let observed: Vec<u64> = cells.observed.into_iter().chain(sharp).chain([absorbed]).collect();
+        let expected = expected(&probabilities, SAMPLES);
         chi_square_verdict(LAW, &observed, &expected, significance, &format!("wo {wo:?}, {wavelength_nm} nm"))
     });
     Verdict::worst_of(LAW, verdicts)
-}
-
-fn cell_probability(subject: &dyn Scatters, wo: Vec3, wavelength_nm: f64, row: usize, column: usize) -> f64 {
-    let (rows, columns) = (CELLS.0 as f64, CELLS.1 as f64);
-    let along = |i: usize, n: f64| [i as f64 / n, (i as f64 + 1.0) / n];
-    let azimuth = along(column, columns).map(|x| x * std::f64::consts::TAU);
-    let density = |h: f64, phi: f64| subject.pdf(wo, Cone::SPHERE.direction(h, phi), wavelength_nm);
-    // 1e-6 of probability is .07 samples of 65536: far below a cell's own noise.
-    2.0 * crate::quadrature::rectangle(density, along(row, rows), azimuth, 1e-6, 20_000).value
 }
 
 /// Directional albedo with the indices taken out, ∫ f·|cosθ|·(n_i/n_o)² dω + Σ weights·(n_i/n_o)²: the share of a white

@@ -9,7 +9,7 @@ mod power;
 mod tails;
 mod welch;
 
-pub use chi_square::{ChiSquare, chi_square, chi_square_verdict};
+pub use chi_square::{ChiSquare, Expected, chi_square, chi_square_verdict};
 pub use estimate::{Estimate, Welford};
 pub use power::{Budget, POWER, SUITE_SIGNIFICANCE, resolvable_bias, samples_needed, sidak};
 pub use tails::{

@@ -9,6 +9,7 @@ mod light;
 mod pictures;
 mod polarisation;
 mod renderer;
+mod rough_glass;
 mod shapes;
 mod surface;
 mod trees;
