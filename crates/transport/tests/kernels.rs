@@ -5,26 +5,12 @@ use etalon_oracle::statistics::Welford;
 use etalon_scene::{Precision, Scene};
 use etalon_transport::plan::LaneModel;
 use etalon_transport::{Carried, Control, EffectName, Film, Prepared, Study, prepare_study};
-use std::path::Path;
+
+mod common;
 
 /// The ready-made scenes at a size and number of samples that a test can afford.
 fn scenes() -> Vec<(String, Scene)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let mut scenes: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
-        .map(|path| {
-            let text = etalon_scene::json::load_text(&path).unwrap();
-            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-            let mut scene = etalon_scene::parse_in(&text, &name, path.parent(), Some([24, 18])).unwrap().scene;
-            scene.integrator.spp = 4;
-            (name, scene)
-        })
-        .collect();
-    scenes.sort_by(|a, b| a.0.cmp(&b.0));
-    assert!(scenes.len() >= 11);
-    scenes
+    common::ready_made([24, 18], 4)
 }
 
 fn prepared(scene: &Scene, force: &[EffectName]) -> Prepared {

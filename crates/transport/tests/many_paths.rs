@@ -4,26 +4,12 @@
 use etalon_scene::{SamplerKind, Scene};
 use etalon_transport::{Control, EffectName, Film, PathLoop, Prepared, Study, StudyError, prepare_study};
 use serde_json::{Value, json};
-use std::path::Path;
+
+mod common;
 
 /// The ready-made scenes, small.
 fn ready_made() -> Vec<(String, Scene)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let mut scenes: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
-        .map(|path| {
-            let text = etalon_scene::json::load_text(&path).unwrap();
-            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-            let mut scene = etalon_scene::parse_in(&text, &name, path.parent(), Some([22, 17])).unwrap().scene;
-            scene.integrator.spp = 4;
-            (name, scene)
-        })
-        .collect();
-    scenes.sort_by(|a, b| a.0.cmp(&b.0));
-    assert!(scenes.len() >= 11);
-    scenes
+    common::ready_made([22, 17], 4)
 }
 
 fn render(prepared: &Prepared) -> Film {

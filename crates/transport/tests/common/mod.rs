@@ -1,0 +1,25 @@
+//! What several tests need.
+
+use std::path::Path;
+
+use etalon_scene::Scene;
+
+/// The ready-made scenes by name, at a size, pixels, and a number of samples that a test can afford.
+pub(crate) fn ready_made(size: [u32; 2], spp: u32) -> Vec<(String, Scene)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut scenes: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .map(|path| {
+            let text = etalon_scene::json::load_text(&path).unwrap();
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            let mut scene = etalon_scene::parse_in(&text, &name, path.parent(), Some(size)).unwrap().scene;
+            scene.integrator.spp = spp;
+            (name, scene)
+        })
+        .collect();
+    scenes.sort_by(|a, b| a.0.cmp(&b.0));
+    assert!(scenes.len() >= 11);
+    scenes
+}

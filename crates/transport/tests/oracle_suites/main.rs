@@ -1,0 +1,92 @@
+//! Every material and every area light, held to the oracle's whole suite for its kind.
+
+use etalon_optics::{ComplexIndex, Frame, Real, RefractiveIndex, Spectrum, Vec3, fresnel};
+use etalon_oracle::laws::{self, FresnelPowers, SINGLE};
+use etalon_oracle::{Verdict, suite};
+use etalon_scene::{MaterialKind, Metal};
+use etalon_transport::mis;
+
+mod lamp;
+mod lamps;
+mod material;
+mod materials;
+
+use lamps::{disk_lamp, parallelogram_lamp, sphere_lamp, triangle_lamp};
+use material::Material;
+
+/// Every law for a material in both scalars.
+fn in_both_scalars(kind: &MaterialKind) -> Vec<Verdict> {
+    let mut verdicts = suite::scatters(&Material::<f32>::new(kind.clone()), 1);
+    verdicts.extend(suite::scatters(&Material::<f64>::new(kind.clone()), 1));
+    verdicts
+}
+
+/// Fresnel's equations and what else is a function of a few numbers, in both scalars.
+fn functions<R: Real>() -> Vec<Verdict> {
+    let epsilon = if size_of::<R>() == 4 { SINGLE } else { f64::EPSILON };
+    let powers = |cos: f64, eta: f64| match fresnel::dielectric(R::from_f64(cos), R::from_f64(eta)) {
+        None => FresnelPowers { r_s: 1.0, r_p: 1.0, t_s: 0.0, t_p: 0.0 },
+        Some(f) => {
+            let [r_s, r_p] = [f.r_s, f.r_p].map(|r| (r * r).to_f64());
+            // Ours is the unpolarised transmittance; the law asks for its parts, which the reflectances share out.
+            let whole = f.transmittance.to_f64();
+            let [t_s, t_p] =
+                [1.0 - r_s, 1.0 - r_p].map(|t| if r_s + r_p < 2.0 { t * 2.0 * whole / (2.0 - r_s - r_p) } else { 0.0 });
+            FresnelPowers { r_s, r_p, t_s, t_p }
+        }
+    };
+    let frame = |n: [f64; 3]| {
+        let frame = Frame::from_normal(Vec3::<R>::from_f64(n));
+        let axis = |x: f64, y: f64| frame.to_world(Vec3::from_f64([x, y, 0.0])).to_f64().to_array();
+        (axis(1.0, 0.0), axis(0.0, 1.0))
+    };
+    vec![
+        laws::fresnel_conserves_energy(powers, epsilon, 1),
+        laws::fresnel_obeys_brewster(powers, epsilon, 1),
+        laws::fresnel_reflects_totally(powers, epsilon, 1),
+        laws::frame_is_orthonormal(frame, epsilon, 1),
+        laws::mis_weights_add_up(mis::power_heuristic, epsilon, 1),
+    ]
+}
+
+/// The whole of our materials, lights and functions under every law, counted; the count and the closest call are printed by
+/// `cargo test --release -p etalon-transport --test oracle_suites -- --nocapture two_hundred`.
+#[test]
+#[allow(clippy::print_stdout, reason = "the count is for whoever asks for it")]
+fn more_than_two_hundred_instances_of_laws_hold() {
+    let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
+    let dielectric = |interior: &str, exterior: &str| MaterialKind::Dielectric {
+        interior: index(interior),
+        exterior: index(exterior),
+        priority: None,
+    };
+    let mut kinds = vec![
+        MaterialKind::Black,
+        MaterialKind::Lambert { reflectance: Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap().into() },
+        MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9).into() },
+    ];
+    kinds.extend(
+        ["Al", "Cu"].map(|name| MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named(name).unwrap()) }),
+    );
+    kinds.extend(["N-BK7", "N-SF11", "fused-silica", "diamond", "water"].map(|name| dielectric(name, "vacuum")));
+    kinds.extend([dielectric("vacuum", "water"), dielectric("diamond", "N-BK7")]);
+    let from = [[0.0; 3], [1.0, 2.0, 0.0], [-2.0, 0.5, -1.0]];
+    let (first, second) = kinds.split_at(kinds.len() / 2);
+    let run = |kinds: &[MaterialKind]| kinds.iter().flat_map(in_both_scalars).collect::<Vec<_>>();
+    let mut verdicts = std::thread::scope(|scope| {
+        let half = scope.spawn(|| run(first));
+        let mut verdicts = run(second);
+        verdicts.extend(half.join().expect("the laws are tried to the end"));
+        verdicts
+    });
+    verdicts.extend(functions::<f32>());
+    verdicts.extend(functions::<f64>());
+    verdicts.extend(suite::emits(&sphere_lamp(), &from, 1e-6, 2));
+    for lamp in [disk_lamp(), parallelogram_lamp(), triangle_lamp()] {
+        verdicts.extend(suite::emits(&lamp, &from[..1], 0.02, 2));
+    }
+    verdicts.iter().for_each(Verdict::assert);
+    let closest = verdicts.iter().max_by(|a, b| a.severity().total_cmp(&b.severity())).unwrap();
+    println!("{} instances of laws hold; the closest call: {closest}", verdicts.len());
+    assert!(verdicts.len() >= 200, "{}", verdicts.len());
+}

@@ -1,0 +1,189 @@
+//! A material of ours as the oracle sees one.
+
+use std::marker::PhantomData;
+
+use etalon_optics::{Lanes, Real, Spectrum, Vec3, fresnel};
+use etalon_oracle::{
+    laws::{self, SINGLE},
+    subjects::{DeltaLobe, Density, Scattered, Scatters},
+};
+use etalon_scene::{MaterialKind, Metal, PolarisingSheet, SpectrumTexture};
+use etalon_transport::{
+    bsdf::{Bsdf, Shading},
+    mis,
+};
+
+const RANGE_NM: [f64; 2] = [380.0, 780.0];
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// One of our materials in scalar type `R`, with what the oracle cannot ask a [`Bsdf`] for.
+pub(crate) struct Material<R> {
+    kind: MaterialKind,
+    bsdf: Bsdf,
+    scalar: PhantomData<R>,
+}
+
+fn uniform(texture: &SpectrumTexture) -> &Spectrum {
+    match texture {
+        SpectrumTexture::Uniform(spectrum) => spectrum,
+        SpectrumTexture::Image(_) => panic!("these materials are the same everywhere"),
+    }
+}
+
+impl<R: Real> Material<R> {
+    pub(crate) fn new(kind: MaterialKind) -> Self {
+        Self { bsdf: Bsdf::new(&kind, RANGE_NM), kind, scalar: PhantomData }
+    }
+
+    fn eval(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> (f64, f64) {
+        let lambda = Lanes([wavelength_nm]);
+        let (f_cos, pdf) =
+            self.bsdf.eval::<R, 1>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), Vec3::from_f64(wi));
+        (f_cos[0].to_f64(), pdf[0].to_f64())
+    }
+}
+
+impl<R: Real> Scatters for Material<R> {
+    fn f(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> f64 {
+        let cos = R::from_f64(wi[2]).to_f64().abs();
+        if cos == 0.0 { 0.0 } else { self.eval(wo, wi, wavelength_nm).0 / cos }
+    }
+
+    fn pdf(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> f64 {
+        self.eval(wo, wi, wavelength_nm).1
+    }
+
+    fn sample(&self, wo: [f64; 3], u: [f64; 3], wavelength_nm: f64) -> Option<Scattered> {
+        let lambda = Lanes([wavelength_nm]);
+        let s = self.bsdf.sample::<R, 1>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), u)?;
+        let wi = s.wi.to_f64().to_array();
+        let density = match s.density {
+            mis::Density::SolidAngle(pdf) => Density::SolidAngle(pdf),
+            mis::Density::Delta => {
+                let nearest = self.deltas(wo, wavelength_nm).into_iter().min_by(|a, b| {
+                    let off = |lobe: &DeltaLobe| (Vec3::from_array(lobe.wi) - Vec3::from_array(wi)).length();
+                    off(a).total_cmp(&off(b))
+                });
+                Density::Delta(nearest.map_or(f64::NAN, |lobe| lobe.probability))
+            }
+        };
+        Some(Scattered { wi, weight: s.weight[0].to_f64(), density })
+    }
+
+    /// Written from the laws, not from what `sample` does.
+    fn deltas(&self, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLobe> {
+        let mirrored = [-wo[0], -wo[1], wo[2]];
+        let cos = wo[2].abs().min(1.0);
+        match &self.kind {
+            MaterialKind::Lambert { .. }
+            | MaterialKind::RoughConductor { .. }
+            | MaterialKind::RoughDielectric { .. }
+            | MaterialKind::OrenNayar { .. }
+            | MaterialKind::Black => Vec::new(),
+            MaterialKind::PolarisingSheet { sheet, .. } => {
+                let weight = match sheet {
+                    PolarisingSheet::Polariser { transmittance, extinction } => {
+                        0.5 * transmittance.eval(wavelength_nm) * (1.0 + extinction)
+                    }
+                    PolarisingSheet::Retarder { .. } => 1.0,
+                };
+                vec![DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight, probability: 1.0 }]
+            }
+            MaterialKind::Plastic { alpha, .. } if *alpha > 0.0 => Vec::new(),
+            MaterialKind::Plastic { reflectance, coat, .. } => {
+                let (n, rho) = (coat.eval(wavelength_nm), uniform(reflectance).eval(wavelength_nm));
+                let weight = laws::fresnel_exact(cos, n).reflectance();
+                let passed = 1.0 - etalon_oracle::truths::walsh_reflectance(n);
+                let ground = passed * rho / (n * n * (1.0 - rho * (1.0 - passed / (n * n))));
+                let probability = weight / (weight + (1.0 - weight) * ground);
+                vec![DeltaLobe { wi: mirrored, weight, probability }]
+            }
+            MaterialKind::ThinDielectric { index } => {
+                // s and p each go their way between the faces.
+                let face = laws::fresnel_exact(cos, index.eval(wavelength_nm));
+                let weight = face.r_s / (1.0 + face.r_s) + face.r_p / (1.0 + face.r_p);
+                let through = 0.5 * (face.t_s / (1.0 + face.r_s) + face.t_p / (1.0 + face.r_p));
+                vec![
+                    DeltaLobe { wi: mirrored, weight, probability: weight },
+                    DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight: through, probability: through },
+                ]
+            }
+            MaterialKind::Blend { parts, by } => {
+                let number = by.eval([0.0; 2]);
+                let part = |i: usize| {
+                    // A hat: 1 at its own place, 0 at its neighbours', 1 beyond the first and the last.
+                    let place = |i: usize| parts[i].0;
+                    let share = if number < place(i) {
+                        if i == 0 { 1.0 } else { 1.0 - (place(i) - number) / (place(i) - place(i - 1)) }
+                    } else if i + 1 == parts.len() {
+                        1.0
+                    } else {
+                        1.0 - (number - place(i)) / (place(i + 1) - place(i))
+                    };
+                    let lobes = Self::new(parts[i].1.clone()).deltas(wo, wavelength_nm);
+                    let scaled = move |l: DeltaLobe| DeltaLobe {
+                        wi: l.wi,
+                        weight: l.weight * share,
+                        probability: l.probability * share,
+                    };
+                    lobes.into_iter().filter(|_| share > 0.0).map(scaled).collect::<Vec<_>>()
+                };
+                (0..parts.len()).flat_map(part).collect()
+            }
+            MaterialKind::Mirror { reflectance } => {
+                vec![DeltaLobe { wi: mirrored, weight: uniform(reflectance).eval(wavelength_nm), probability: 1.0 }]
+            }
+            MaterialKind::Conductor { metal } => {
+                let (n, k) = match metal {
+                    Metal::Index(index) => index.eval(wavelength_nm),
+                    Metal::Reflectance(reflectance) => {
+                        let share = uniform(reflectance).eval(wavelength_nm);
+                        // ((n − 1)² + k²)/((n + 1)² + k²) with n = 1.
+                        (1.0, (4.0 * share / (1.0 - share)).sqrt())
+                    }
+                };
+                let weight = fresnel::conductor(cos, n, k).reflectance;
+                vec![DeltaLobe { wi: mirrored, weight, probability: 1.0 }]
+            }
+            MaterialKind::Dielectric { .. } => {
+                let (above, below) = (self.index(true, wavelength_nm), self.index(false, wavelength_nm));
+                let eta = if wo[2] > 0.0 { below / above } else { above / below };
+                let reflected = laws::fresnel_exact(cos, eta).reflectance();
+                let mut lobes = vec![DeltaLobe { wi: mirrored, weight: reflected, probability: reflected }];
+                if reflected < 1.0 {
+                    let sin2 = (1.0 - cos * cos) / (eta * eta);
+                    let z = -(1.0 - sin2).max(0.0).sqrt().copysign(wo[2]);
+                    let weight = (1.0 - reflected) / (eta * eta);
+                    let wi = [-wo[0] / eta, -wo[1] / eta, z];
+                    lobes.push(DeltaLobe { wi, weight, probability: 1.0 - reflected });
+                }
+                lobes
+            }
+        }
+    }
+
+    fn index(&self, above: bool, wavelength_nm: f64) -> f64 {
+        match &self.kind {
+            MaterialKind::Dielectric { interior, exterior, .. }
+            | MaterialKind::RoughDielectric { interior, exterior, .. } => {
+                if above { exterior } else { interior }.eval(wavelength_nm)
+            }
+            _ => 1.0,
+        }
+    }
+
+    fn wavelengths_nm(&self) -> Vec<f64> {
+        match &self.kind {
+            // Seconds a wavelength.
+            MaterialKind::RoughConductor { .. }
+            | MaterialKind::RoughDielectric { .. }
+            | MaterialKind::Plastic { .. }
+            | MaterialKind::Blend { .. } => vec![550.0],
+            _ => vec![400.0, 550.0, 700.0],
+        }
+    }
+
+    fn epsilon(&self) -> f64 {
+        if size_of::<R>() == 4 { SINGLE } else { f64::EPSILON }
+    }
+}

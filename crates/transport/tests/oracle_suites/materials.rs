@@ -1,0 +1,125 @@
+//! Every material, held to every law of a BSDF.
+
+use std::sync::Arc;
+
+use etalon_optics::{ComplexIndex, Real, RefractiveIndex, Spectrum};
+use etalon_oracle::scatters_suite;
+use etalon_scene::{
+    Image, ImageTexture, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture, Texels, TextureFilter,
+    Wrap,
+};
+
+use crate::material::Material;
+
+fn lambert<R: Real>() -> Material<R> {
+    Material::new(MaterialKind::Lambert { reflectance: Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap().into() })
+}
+
+fn metal<R: Real>(name: &str) -> Material<R> {
+    Material::new(MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named(name).unwrap()) })
+}
+
+fn glass<R: Real>(interior: &str, exterior: &str) -> Material<R> {
+    let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
+    Material::new(MaterialKind::Dielectric { interior: index(interior), exterior: index(exterior), priority: None })
+}
+
+fn rough_metal<R: Real>(name: &str, alpha: f64, compensated: bool) -> Material<R> {
+    let metal = Metal::Index(ComplexIndex::named(name).unwrap());
+    Material::new(MaterialKind::RoughConductor { metal, alpha, compensated })
+}
+
+/// Reflects everything: n → 0 with k > 0.
+fn lossless_metal(alpha: f64) -> Material<f64> {
+    let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
+    Material::new(MaterialKind::RoughConductor { metal: Metal::Index(index), alpha, compensated: true })
+}
+
+fn rough_glass<R: Real>(interior: &str, exterior: &str, alpha: f64, compensated: bool) -> Material<R> {
+    let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
+    let (interior, exterior) = (index(interior), index(exterior));
+    Material::new(MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority: None })
+}
+
+scatters_suite!(lambert_f32, lambert::<f32>());
+scatters_suite!(gold_f64, metal::<f64>("Au"));
+scatters_suite!(glass_in_water_f64, glass::<f64>("N-BK7", "water"));
+scatters_suite!(rough_gold_f32, rough_metal::<f32>("Au", 0.3, true));
+scatters_suite!(lossless_metal_furnace, lossless_metal(1.0));
+scatters_suite!(rough_silver_without_compensation, rough_metal::<f64>("Ag", 0.3, false));
+scatters_suite!(rough_glass_f32, rough_glass::<f32>("N-BK7", "vacuum", 0.4, true));
+scatters_suite!(very_rough_diamond_in_water, rough_glass::<f64>("diamond", "water", 1.0, true));
+
+fn plastic<R: Real>(rho: f64, alpha: f64) -> Material<R> {
+    let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(1.5));
+    Material::new(MaterialKind::Plastic { reflectance, coat, alpha })
+}
+
+fn oren_nayar<R: Real>(rho: f64, roughness: f64) -> Material<R> {
+    Material::new(MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho).into(), roughness })
+}
+
+fn pane<R: Real>() -> Material<R> {
+    Material::new(MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5) })
+}
+
+fn mixture() -> Material<f64> {
+    let first = MaterialKind::Mirror { reflectance: Spectrum::Constant(0.8).into() };
+    let second = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.6).into(), roughness: 0.5 };
+    Material::new(MaterialKind::blend(first, second, 0.3))
+}
+
+/// An image of one texel.
+fn texel(rgb: [f32; 3]) -> ImageTexture {
+    ImageTexture {
+        image: Arc::new(Image { width: 1, height: 1, texels: Texels::F32(vec![rgb]) }),
+        name: String::new(),
+        wrap: [Wrap::Repeat; 2],
+        filter: TextureFilter::Bilinear,
+        uv_scale: [1.0; 2],
+        uv_offset: [0.0; 2],
+        factor: [1.0; 3],
+    }
+}
+
+/// Smooth below a roughness of 0.2, rougher from there on; at 0.7 now, between two rough ones.
+fn metal_of_varied_roughness() -> Material<f64> {
+    let metal = Metal::Reflectance(Spectrum::rgb_reflectance([0.9, 0.6, 0.3]).unwrap().into());
+    let rough = |alpha| MaterialKind::RoughConductor { metal: metal.clone(), alpha, compensated: true };
+    let parts = vec![(0.2, MaterialKind::Conductor { metal: metal.clone() }), (0.55, rough(0.3)), (0.9, rough(0.81))];
+    Material::new(MaterialKind::Blend { parts, by: NumberTexture::Image(texel([0.7; 3])) })
+}
+
+/// A ground and a coat by images.
+fn painted_plastic() -> Material<f64> {
+    let reflectance = SpectrumTexture::Image(texel([0.9, 0.2, 0.4]));
+    Material::new(MaterialKind::Plastic { reflectance, coat: RefractiveIndex::Constant(1.5), alpha: 0.3 })
+}
+
+/// Metal that reflects all that a metal of a given reflectance can.
+fn white_metal(alpha: f64) -> Material<f64> {
+    let metal = Metal::Reflectance(Spectrum::Constant(1.0).into());
+    Material::new(MaterialKind::RoughConductor { metal, alpha, compensated: true })
+}
+
+scatters_suite!(varied_metal_f64, metal_of_varied_roughness());
+scatters_suite!(painted_plastic_f64, painted_plastic());
+scatters_suite!(white_metal_f64, white_metal(0.7));
+
+scatters_suite!(smooth_plastic_f32, plastic::<f32>(0.7, 0.0));
+scatters_suite!(white_smooth_plastic_f64, plastic::<f64>(1.0, 0.0));
+scatters_suite!(white_rough_plastic_f64, plastic::<f64>(1.0, 0.4));
+scatters_suite!(oren_nayar_f32, oren_nayar::<f32>(0.5, 0.4));
+scatters_suite!(white_oren_nayar_f64, oren_nayar::<f64>(1.0, 1.0));
+scatters_suite!(pane_f32, pane::<f32>());
+scatters_suite!(pane_f64, pane::<f64>());
+
+/// A tinted polariser that is not quite one.
+fn polariser() -> Material<f64> {
+    let transmittance = Spectrum::rgb_reflectance([0.8, 0.7, 0.9]).unwrap();
+    let sheet = PolarisingSheet::Polariser { transmittance, extinction: 0.1 };
+    Material::new(MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet })
+}
+
+scatters_suite!(polariser_f64, polariser());
+scatters_suite!(mirror_and_clay, mixture());
