@@ -1,9 +1,10 @@
 //! Lights: the density of a sample is the density that the light reports, and it is the density of the directions.
 
-use etalon_geometry::{Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
+use etalon_geometry::{Cylinder, Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
 use etalon_optics::Vec3;
 use etalon_transport::light::{
-    DirectionalLight, DiskLight, Emitter, Light, ParallelogramLight, PointLight, SphereLight, Target, TriangleLight,
+    CylinderLight, DirectionalLight, DiskLight, Emitter, Light, ParallelogramLight, PointLight, SphereLight, Target,
+    TriangleLight,
 };
 use etalon_transport::mis::Density;
 use etalon_transport::spectral::PathSpectrum;
@@ -110,6 +111,42 @@ fn flat_lights_fill_their_solid_angle() {
     // Lambert's formula for the triangle of the list of truths.
     let listed = triangle(Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0), Vec3::new(0.0, 0.0, 2.0));
     close(integral(&listed, 512, |wi| wi.z), 0.302_299_894, 1e-3, "irradiance of a triangle");
+}
+
+#[test]
+fn a_surface_shines_only_from_the_sides_that_emit_and_not_along_itself() {
+    let (x, y, up) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0));
+    let tube = Cylinder::new(-up, up, 1.0, false).unwrap();
+    let of_sides = |front, back| {
+        let emitter = || Emitter { front, back, ..emitter() };
+        [
+            Light::Parallelogram(ParallelogramLight::new(
+                Parallelogram::new(-x - y, x * 2.0, y * 2.0).unwrap(),
+                emitter(),
+            )),
+            Light::Triangle(TriangleLight::new(Triangle::new(-x - y, x, y).unwrap(), emitter())),
+            Light::Disk(DiskLight::new(Disk::new(Vec3::ZERO, up, 1.0).unwrap(), emitter())),
+            Light::Cylinder(CylinderLight::new(tube.clone(), emitter()).unwrap()),
+        ]
+    };
+    // Before the front of each, behind it, and for what is flat in its plane; out of the tube and in it.
+    let flat = [up * 2.0 + x * 0.1, up * -2.0 + x * 0.1, x * 3.0];
+    let round = [x * 2.0, x * 0.5, up * 3.0 + x];
+    for (front, back) in [(true, true), (true, false), (false, true)] {
+        for (k, light) in of_sides(front, back).iter().enumerate() {
+            let places = if k == 3 { round } else { flat };
+            for u in [[0.1, 0.3], [0.8, 0.35], [0.6, 0.9]] {
+                let lit = |place: Vec3<f64>| light.sample(place, u).is_some();
+                assert_eq!([lit(places[0]), lit(places[1])], [front, back], "{k}, {u:?}");
+                assert!(k == 3 || !lit(places[2]), "{k}, {u:?}: lit in its own plane");
+                for place in &places[..2] {
+                    let Some(sample) = light.sample(*place, u) else { continue };
+                    let Density::SolidAngle(density) = sample.density else { panic!("an area light has no delta") };
+                    assert!(density > 0.0 && density.is_finite());
+                }
+            }
+        }
+    }
 }
 
 #[test]

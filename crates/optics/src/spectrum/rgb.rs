@@ -181,7 +181,8 @@ impl RgbEmission {
     }
 
     pub(super) fn is_constant(&self) -> bool {
-        matches!(self.shape, Shape::Flat(_)) && (self.white == Illuminant::E || self.factor == 0.0)
+        // Black alone: every other colour is a smooth shape times its white.
+        self.factor == 0.0
     }
 }
 

@@ -29,6 +29,7 @@ fn examples() -> Vec<Spectrum> {
         Spectrum::rgb_reflectance([0.9, 0.1, 0.9]).unwrap(),
         Spectrum::rgb_emission([3.0, 2.0, 1.0], Illuminant::D65).unwrap(),
         Spectrum::rgb_emission([0.1, 0.2, 1.0], Illuminant::A).unwrap(),
+        Spectrum::rgb_emission([0.3, 1.0, 0.2], Illuminant::E).unwrap(),
         Spectrum::blackbody(6500.0, 1.0).unwrap().scaled(1e-4).unwrap(),
     ]
 }
@@ -182,7 +183,19 @@ fn rgb_emissions_come_back_in_linear_rec709_under_every_white() {
         }
     }
     let dark = Spectrum::rgb_emission([0.0; 3], Illuminant::A).unwrap();
-    assert!(dark.is_zero() && dark.max_over(CIE_RANGE_NM) == 0.0);
+    assert!(dark.is_zero() && dark.is_constant() && dark.max_over(CIE_RANGE_NM) == 0.0);
+}
+
+#[test]
+fn a_light_of_k_times_a_colour_has_k_times_its_spectrum() {
+    // Powers of two, so that nothing is rounded. Blue under A is out of reach of twice its largest channel; under D65 it is not.
+    for (rgb, white) in [([0.0, 0.0, 1.0], Illuminant::A), ([0.1, 0.2, 0.7], Illuminant::D65)] {
+        let light = RgbEmission::new(rgb, white).unwrap();
+        for k in [2.0_f64.powi(-20), 2.0_f64.powi(20)] {
+            let scaled = RgbEmission::new(rgb.map(|v| k * v), white).unwrap();
+            assert!((360..830).map(f64::from).all(|nm| scaled.eval(nm) == k * light.eval(nm)), "{rgb:?} by {k}");
+        }
+    }
 }
 
 #[test]

@@ -86,14 +86,28 @@ fn visible_sum(spectrum: &PathSpectrum, [first, last]: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
     use crate::light::{
-        DirectionalLight, DiskLight, Emitter, ParallelogramLight, PointLight, SphereLight, TriangleLight,
+        CylinderLight, DirectionalLight, DiskLight, Emitter, EnvironmentLight, ParallelogramLight, PointLight,
+        SphereLight, SpotLight, TriangleLight,
     };
-    use etalon_geometry::{Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
-    use etalon_optics::Vec3;
+    use etalon_geometry::{Cylinder, Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
+    use etalon_optics::{Spectrum, Vec3};
+    use etalon_scene::{EnvironmentImage, Image, Texels};
     use std::f64::consts::PI;
+    use std::sync::Arc;
+
+    fn white_sky() -> EnvironmentImage {
+        EnvironmentImage {
+            image: Arc::new(Image { width: 2, height: 3, texels: Texels::F32(vec![[1.0; 3]; 6]) }),
+            name: String::new(),
+            forward: [1.0, 0.0, 0.0],
+            right: [0.0, -1.0, 0.0],
+            up: [0.0, 0.0, 1.0],
+            white: Spectrum::ONE,
+        }
+    }
 
     /// Radiant power of a surface is π times radiance, area and sides, of a point 4π times intensity, of parallel light the
-    /// irradiance on the scene's disk. Only the noise depends on it.
+    /// irradiance on the scene's disk, of a sky 4π times that. Only the noise depends on it.
     #[test]
     fn lights_are_chosen_by_their_power() {
         let (x, y) = (Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 3.0, 0.0));
@@ -104,6 +118,7 @@ mod tests {
             surface: PrimitiveId(0).into(),
         };
         let one = || PathSpectrum::Constant(1.0);
+        let point = || PointLight { position: Vec3::ZERO, intensity: one(), per_m: 2.0 };
         let lights = vec![
             Light::Sphere(SphereLight::new(Sphere::new(Vec3::ZERO, 2.0).unwrap(), shines(true, false))),
             Light::Parallelogram(ParallelogramLight::new(
@@ -115,14 +130,26 @@ mod tests {
                 shines(false, true),
             )),
             Light::Triangle(TriangleLight::new(Triangle::new(Vec3::ZERO, x, y).unwrap(), shines(true, true))),
-            Light::Point(PointLight { position: Vec3::ZERO, intensity: one(), per_m: 1.0 }),
+            Light::Cylinder(
+                CylinderLight::new(Cylinder::new(Vec3::ZERO, x, 1.5, false).unwrap(), shines(true, false)).unwrap(),
+            ),
+            Light::Point(point()),
+            Light::Spot(SpotLight { point: point(), axis: Vec3::new(0.0, 0.0, 1.0), cosines: [0.8, 0.5] }),
             Light::Directional(DirectionalLight { toward: Vec3::new(0.0, 0.0, 1.0), irradiance: one() }),
+            Light::Environment(Arc::new(EnvironmentLight::new(&white_sky(), [360.0, 830.0]))),
         ];
-        let powers = [16.0 * PI, 2.0 * 6.0, 9.0 * PI, 2.0 * 3.0, 4.0, 25.0].map(|power: f64| power * PI);
+        // A spot's smooth edge lets half of the light between its cosines pass: 2π(1 − .65) of the sphere. Half a metre is 1 here.
+        let of_points = [4.0 * 4.0, 2.0 * 4.0 * (1.0 - 0.65)];
+        let powers = [16.0 * PI, 2.0 * 6.0, 9.0 * PI, 2.0 * 3.0, 2.0 * PI * 1.5 * 2.0]
+            .into_iter()
+            .chain(of_points)
+            .chain([25.0, 25.0 * 4.0 * PI])
+            .map(|power: f64| power * PI)
+            .collect::<Vec<_>>();
         let total: f64 = powers.iter().sum();
         let table = LightTable::new(lights, 5.0, [360.0, 830.0]);
         for (i, power) in powers.iter().enumerate() {
-            let share = 0.9 * power / total + 0.1 / 6.0;
+            let share = 0.9 * power / total + 0.1 / 9.0;
             assert!((table.probability(i) - share).abs() < 1e-14, "{i}: {} is not {share}", table.probability(i));
         }
     }
