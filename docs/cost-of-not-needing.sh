@@ -38,6 +38,7 @@ polarisation cornell-glass.json
 textures cornell.json
 shading-normals cornell.json
 masks cornell.json
+motion lanterns.json
 bands cornell.json
 wide-filter furnace.json
 LIST

@@ -52,6 +52,8 @@ mod tests {
         let orthographic = Projection::Orthographic { height_m: 2.0 };
         // Looking along −z with y up, x is to the right.
         let base = Camera {
+            shutter_s: [0.0; 2],
+            motion: None,
             position_m: [1.0, 2.0, 3.0],
             forward: [0.0, 0.0, -1.0],
             up: [0.0, 1.0, 0.0],

@@ -222,39 +222,39 @@ impl Geometry {
         path
     }
 
-    /// A normal at a surface, from the coordinates of the geometry that holds the surface's primitive to those of this one:
-    /// of any length.
+    /// A normal at a surface, from the coordinates of the geometry that holds the surface's primitive to those of this one, at
+    /// a time of the shutter's: of any length.
     #[inline]
-    pub fn placed_normal(&self, surface: SurfaceId, normal: Vec3<f64>) -> Vec3<f64> {
-        if surface.instance == 0 { normal } else { self.normal_within(surface, normal) }
+    pub fn placed_normal(&self, surface: SurfaceId, normal: Vec3<f64>, time: f64) -> Vec3<f64> {
+        if surface.instance == 0 { normal } else { self.normal_within(surface, normal, time) }
     }
 
-    fn normal_within(&self, surface: SurfaceId, normal: Vec3<f64>) -> Vec3<f64> {
+    fn normal_within(&self, surface: SurfaceId, normal: Vec3<f64>, time: f64) -> Vec3<f64> {
         let Some((_, instance)) = self.instance_of(surface) else { return normal };
         let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
-        instance.placement().normal(instance.geometry().placed_normal(inner, normal))
+        instance.placement_at(time).normal(instance.geometry().placed_normal(inner, normal, time))
     }
 
     /// A vector along a surface, carried as [`Geometry::placed_normal`] carries normals: as the points of the surface move.
     #[inline]
-    pub fn placed_vector(&self, surface: SurfaceId, vector: Vec3<f64>) -> Vec3<f64> {
+    pub fn placed_vector(&self, surface: SurfaceId, vector: Vec3<f64>, time: f64) -> Vec3<f64> {
         if surface.instance == 0 {
             return vector;
         }
         let Some((_, instance)) = self.instance_of(surface) else { return vector };
         let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
-        instance.placement().vector(instance.geometry().placed_vector(inner, vector))
+        instance.placement_at(time).vector(instance.geometry().placed_vector(inner, vector, time))
     }
 
-    /// A point of this geometry in the coordinates of the geometry that holds the surface's primitive.
+    /// A point of this geometry in the coordinates of the geometry that holds the surface's primitive, at a time.
     #[inline]
-    pub fn local_point(&self, surface: SurfaceId, point: Vec3<f64>) -> Vec3<f64> {
+    pub fn local_point(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> Vec3<f64> {
         if surface.instance == 0 {
             return point;
         }
         let Some((_, instance)) = self.instance_of(surface) else { return point };
         let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
-        instance.geometry().local_point(inner, instance.placement().local_point(point))
+        instance.geometry().local_point(inner, instance.placement_at(time).local_point(point), time)
     }
 
     /// The closest hit along a ray.
@@ -305,12 +305,12 @@ impl Geometry {
                 Some(flat) => flat.surface(&self.primitives, hit.surface.primitive, p),
                 None => primitive.surface(p),
             };
-            return SurfacePoint::rounded(&point, hit.surface, self.label);
+            return SurfacePoint::rounded(&point, hit.surface, self.label, ray.time);
         }
         let found = Query::new(ray)
             .and_then(|query| self.exact_point(&query, hit.t.to_f64() / query.scale, refine, hit.surface));
         let Some((point, label)) = found else { panic!("the hit is of another geometry or another ray") };
-        SurfacePoint::rounded(&point, hit.surface, label)
+        SurfacePoint::rounded(&point, hit.surface, label, ray.time)
     }
 
     /// The surface at parameter `t` of a query, and the label of the geometry that it belongs to; `refine` if `t` is

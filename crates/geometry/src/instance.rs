@@ -8,8 +8,9 @@ use crate::best::Found;
 use crate::double_double::{cross, dot, widen};
 use crate::query::Query;
 use crate::ray::ExactPoint;
-use crate::{Aabb, Geometry, MAX_COORDINATE, Ray, ShapeError, SurfaceId};
+use crate::{Aabb, Geometry, MAX_COORDINATE, Motion, Ray, ShapeError, SurfaceId};
 use etalon_optics::{Real, Vec3};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Beyond this (2⁵⁰) for the largest component of |L|·|L⁻¹|, `f64` cannot tell where a placed surface is.
@@ -23,7 +24,13 @@ pub struct Placement {
     translation: Vec3<f64>,
     /// Rows of L⁻¹, each right to a few unit roundoffs of the largest.
     inverse: [Vec3<f64>; 3],
+    /// What L·L⁻¹ of a similarity that was not inverted with care may differ from the identity, as an operator; else 0.
+    looseness: f64,
 }
+
+/// See [`Placement::of_similarity`]: RᵀR − I of a rotation that is the sum of three matrices, each the product of two, has
+/// entries below 40 unit roundoffs, as an operator three times that.
+const LOOSENESS: f64 = 128.0 * f64::UNIT_ROUNDOFF;
 
 impl Placement {
     /// The map with these rows of L and this T (m).
@@ -34,21 +41,34 @@ impl Placement {
         let linear = linear.map(Vec3::from_array);
         let translation = Vec3::from_array(translation_m);
         super::shapes::check_points(&[linear[0], linear[1], linear[2], translation])?;
-        let rows = linear.map(widen);
-        // The columns of the inverse are these over the determinant.
-        let columns = [cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])];
-        let determinant = dot(rows[0], columns[0]);
-        if determinant.to_f64() == 0.0 {
+        let placement = Self::of(linear, translation);
+        if !placement.inverse.iter().all(|row| row.is_finite()) {
             return Err(ShapeError::Singular);
         }
-        let inverse = [0, 1, 2].map(|i| Vec3::from_array(columns.map(|column| column[i].ratio(determinant))));
-        let placement = Self { linear, translation, inverse };
         let condition = placement.spread(Vec3::splat(1.0)).max_component();
         if condition.is_nan() || condition > MAX_CONDITION {
             return Err(ShapeError::Singular);
         }
-        super::shapes::check_points(&inverse)?;
+        super::shapes::check_points(&placement.inverse)?;
         Ok(placement)
+    }
+
+    /// The map with these rows of L and this T, which can be inverted.
+    pub(crate) fn of(linear: [Vec3<f64>; 3], translation: Vec3<f64>) -> Self {
+        let rows = linear.map(widen);
+        // The columns of the inverse are these over the determinant.
+        let columns = [cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])];
+        let determinant = dot(rows[0], columns[0]);
+        let inverse = [0, 1, 2].map(|i| Vec3::from_array(columns.map(|column| column[i].ratio(determinant))));
+        Self { linear, translation, inverse, looseness: 0.0 }
+    }
+
+    /// [`Placement::of`] for L that is a multiple of a rotation to rounding: L⁻¹ is Lᵀ over the square of the factor.
+    pub(crate) fn of_similarity(linear: [Vec3<f64>; 3], translation: Vec3<f64>) -> Self {
+        let [a, b, c] = linear;
+        let per_square = 3.0 / (a.length_squared() + b.length_squared() + c.length_squared());
+        let inverse = [Vec3::new(a.x, b.x, c.x), Vec3::new(a.y, b.y, c.y), Vec3::new(a.z, b.z, c.z)];
+        Self { linear, translation, inverse: inverse.map(|row| row * per_square), looseness: LOOSENESS }
     }
 
     /// Rows of L.
@@ -67,7 +87,7 @@ impl Placement {
     }
 
     /// L·v.
-    pub(crate) fn vector(&self, v: Vec3<f64>) -> Vec3<f64> {
+    pub fn vector(&self, v: Vec3<f64>) -> Vec3<f64> {
         product(&self.linear, v)
     }
 
@@ -89,7 +109,7 @@ impl Placement {
     }
 
     /// A box around the image of some boxes within one, wide enough for the rounding of points and of rays that start near it.
-    fn bounds(&self, inner: Aabb, outline: &[Aabb]) -> Aabb {
+    pub(crate) fn bounds(&self, inner: Aabb, outline: &[Aabb]) -> Aabb {
         let forward = magnitudes(&self.linear);
         let image = |b: &Aabb| {
             let centre = b.centre();
@@ -99,7 +119,10 @@ impl Placement {
         };
         let image = outline.iter().map(image).fold(Aabb::EMPTY, Aabb::union);
         let far = product(&forward, inner.min.abs().max(inner.max.abs()));
-        let margin = (self.spread(far) + far + self.translation.abs()) * (32.0 * f64::UNIT_ROUNDOFF);
+        let mut margin = (self.spread(far) + far + self.translation.abs()) * (32.0 * f64::UNIT_ROUNDOFF);
+        if self.looseness > 0.0 {
+            margin += Vec3::splat(far.length() * self.looseness);
+        }
         Aabb { min: image.min - margin, max: image.max + margin }
     }
 
@@ -111,7 +134,10 @@ impl Placement {
     fn outward(&self, p: &ExactPoint) -> ExactPoint {
         let forward = magnitudes(&self.linear);
         let turned = product(&forward, p.position.abs());
-        let rounding = (turned + self.translation.abs()) * 4.0 + self.spread(turned) * 10.0;
+        let mut rounding = ((turned + self.translation.abs()) * 4.0 + self.spread(turned) * 10.0) * f64::UNIT_ROUNDOFF;
+        if self.looseness > 0.0 {
+            rounding += Vec3::splat(turned.length() * self.looseness);
+        }
         // The inverse transpose: right for any map, and a mirror leaves the outward side outward.
         let normal = transposed_product(&self.inverse, p.normal);
         let shrink = normal.abs().max_component();
@@ -120,7 +146,7 @@ impl Placement {
         let stretch: f64 = self.inverse.iter().map(|row| row.length_squared()).sum();
         ExactPoint {
             position: self.point(p.position),
-            error: product(&forward, p.error) + rounding * f64::UNIT_ROUNDOFF,
+            error: product(&forward, p.error) + rounding,
             normal: (normal / shrink).normalized(),
             curvature: if p.curvature == 0.0 { 0.0 } else { p.curvature * stretch / normal.length() },
         }
@@ -143,16 +169,30 @@ fn magnitudes(rows: &[Vec3<f64>; 3]) -> [Vec3<f64>; 3] {
 #[derive(Clone, Debug)]
 pub struct Instance {
     geometry: Arc<Geometry>,
+    /// Of one that moves, that in the middle of the shutter's time.
     placement: Placement,
+    moving: Option<Box<Moving>>,
     bounds: Aabb,
     /// The [`SurfaceId::instance`] of its own primitives in the geometry that it is part of.
     pub(crate) first: u32,
 }
 
+/// Parts of the shutter's time, each with a box of its own.
+const SLICES: usize = 16;
+
+/// How an instance moves.
+#[derive(Clone, Debug)]
+struct Moving {
+    motion: Arc<Motion>,
+    /// Around it in each part of the shutter's time.
+    slices: [Aabb; SLICES],
+}
+
 impl PartialEq for Instance {
     /// Whether both place the same geometry at the same place.
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.geometry, &other.geometry) && self.placement == other.placement
+        let same = Arc::ptr_eq(&self.geometry, &other.geometry) && self.placement == other.placement;
+        same && self.motion() == other.motion()
     }
 }
 
@@ -163,11 +203,30 @@ impl Instance {
     /// If the geometry is empty, or would reach beyond [`MAX_COORDINATE`].
     pub fn new(geometry: Arc<Geometry>, placement: Placement) -> Result<Self, ShapeError> {
         let bounds = placement.bounds(geometry.bounds().ok_or(ShapeError::Empty)?, geometry.outline());
-        let largest = bounds.min.abs().max(bounds.max.abs()).max_component();
+        Self { geometry, placement, moving: None, bounds, first: 0 }.checked()
+    }
+
+    /// Places a geometry that moves while the shutter is open.
+    ///
+    /// # Errors
+    /// As [`Instance::new`].
+    pub fn moving(geometry: Arc<Geometry>, motion: Arc<Motion>) -> Result<Self, ShapeError> {
+        let inner = geometry.bounds().ok_or(ShapeError::Empty)?;
+        let edge = |slice: usize| slice as f64 / SLICES as f64;
+        let slices: [Aabb; SLICES] =
+            std::array::from_fn(|i| motion.swept([edge(i), edge(i + 1)], inner, geometry.outline()));
+        let bounds = slices.iter().copied().reduce(Aabb::union).unwrap_or(Aabb::EMPTY);
+        let placement = motion.at(0.5);
+        let moving = Some(Box::new(Moving { motion, slices }));
+        Self { geometry, placement, moving, bounds, first: 0 }.checked()
+    }
+
+    fn checked(self) -> Result<Self, ShapeError> {
+        let largest = self.bounds.min.abs().max(self.bounds.max.abs()).max_component();
         if largest.is_nan() || largest > MAX_COORDINATE {
             return Err(ShapeError::OutOfRange);
         }
-        Ok(Self { geometry, placement, bounds, first: 0 })
+        Ok(self)
     }
 
     /// What is placed.
@@ -175,12 +234,34 @@ impl Instance {
         &self.geometry
     }
 
-    /// How it is placed.
+    /// How it is placed; one that moves, in the middle of the shutter's time.
     pub fn placement(&self) -> &Placement {
         &self.placement
     }
 
-    /// A box around it.
+    /// How it moves, if it does.
+    pub fn motion(&self) -> Option<&Arc<Motion>> {
+        self.moving.as_ref().map(|moving| &moving.motion)
+    }
+
+    /// How it is placed at a time from 0 to 1 of the shutter's.
+    #[inline]
+    pub fn placement_at(&self, time: f64) -> Cow<'_, Placement> {
+        match &self.moving {
+            None => Cow::Borrowed(&self.placement),
+            Some(moving) => Cow::Owned(moving.motion.at(time)),
+        }
+    }
+
+    /// A box around it at a time; of one that moves, around it at times near that.
+    fn bounds_at(&self, time: f64) -> &Aabb {
+        match &self.moving {
+            None => &self.bounds,
+            Some(moving) => &moving.slices[((time * SLICES as f64) as usize).min(SLICES - 1)],
+        }
+    }
+
+    /// A box around it, wherever it is while the shutter is open.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
@@ -203,8 +284,10 @@ impl Instance {
     /// The query in the coordinates of what is placed, up to `t_max` of the given one; its parameter times its `scale` is
     /// that of the given one. `None` if no ray can be computed with there.
     pub(crate) fn enter(&self, query: &Query, t_max: f64) -> Option<Query> {
-        let Placement { translation, inverse, .. } = &self.placement;
+        let placement = self.placement_at(query.time);
+        let Placement { translation, inverse, .. } = &*placement;
         Query::new(&Ray {
+            time: query.time,
             origin: product(inverse, query.origin - *translation),
             direction: product(inverse, query.direction),
             t_max,
@@ -219,9 +302,10 @@ impl Instance {
     /// instance's coordinates would let it hit something while it passes by outside, both agree that it does not.
     fn is_met(&self, query: &Query, t_max: f64) -> bool {
         let (mut near, mut far) = (0.0_f64, t_max);
+        let bounds = self.bounds_at(query.time);
         for k in 0..3 {
             let (d, o) = (query.direction[k], query.origin[k]);
-            let (lower, upper) = (self.bounds.min[k] - o, self.bounds.max[k] - o);
+            let (lower, upper) = (bounds.min[k] - o, bounds.max[k] - o);
             if d != 0.0 {
                 let (t0, t1) = (lower / d, upper / d);
                 near = near.max(t0.min(t1));
@@ -263,6 +347,6 @@ impl Instance {
     ) -> Option<(ExactPoint, u32)> {
         let inner = self.enter(query, query.t_max)?;
         let (point, label) = self.geometry.exact_point(&inner, t / inner.scale, refine, self.inward(surface))?;
-        Some((self.placement.outward(&point), label))
+        Some((self.placement_at(query.time).outward(&point), label))
     }
 }

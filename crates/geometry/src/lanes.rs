@@ -93,6 +93,7 @@ impl Rays {
             t_max: self.t_max[lane],
             leaves: self.leaves[lane],
             aims_at: self.aims_at[lane],
+            time: 0.0,
         }
     }
 
@@ -150,6 +151,7 @@ impl SurfacePoints {
             normal: vector(&self.normal, lane),
             surface: self.surface[lane],
             label: self.label[lane],
+            time: 0.0,
         }
     }
 

@@ -19,6 +19,7 @@
 //! | `best` | the closest hit so far |
 //! | `lanes` | [`Rays`]: eight rays at once |
 //! | `instance` | [`Instance`]: a geometry within another, placed by an affine map |
+//! | `motion` | [`Motion`]: such a map that changes while the shutter is open |
 
 mod aabb;
 mod best;
@@ -28,6 +29,7 @@ mod frame;
 mod geometry;
 mod instance;
 mod lanes;
+mod motion;
 mod pages;
 mod query;
 mod ray;
@@ -39,6 +41,7 @@ pub use aabb::Aabb;
 pub use geometry::{Geometry, GeometryError, MAX_NESTING};
 pub use instance::{Instance, Placement};
 pub use lanes::{Hits, LANES, Rays, SurfacePoints};
+pub use motion::{Motion, Pose};
 pub use ray::{Hit, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 pub use shapes::{Cylinder, Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, Primitive, ShapeError, Sphere, Triangle};
 

@@ -34,6 +34,7 @@ pub(crate) struct Query {
     /// The same wherever they are.
     pub(crate) leaves_placed: SurfaceId,
     pub(crate) aims_at_placed: SurfaceId,
+    pub(crate) time: f64,
     pub(crate) projection: Projection,
 }
 
@@ -79,6 +80,7 @@ impl Query {
             aims_at: ray.aims_at.own(),
             leaves_placed: ray.leaves,
             aims_at_placed: ray.aims_at,
+            time: ray.time,
             projection: Projection::new(origin, direction, axis),
         })
     }

@@ -54,13 +54,15 @@ pub struct Ray<R> {
     pub leaves: SurfaceId,
     /// The surface at which a shadow ray aims: it never occludes.
     pub aims_at: SurfaceId,
+    /// When: from 0 as the shutter opens to 1 as it closes. Nothing depends on it where nothing moves.
+    pub time: f64,
 }
 
 impl<R: Real> Ray<R> {
-    /// A ray without end that starts in free space.
+    /// A ray without end that starts in free space, as the shutter opens.
     #[inline]
     pub fn free(origin: Vec3<R>, direction: Vec3<R>) -> Self {
-        Self { origin, direction, t_max: R::INFINITY, leaves: SurfaceId::NONE, aims_at: SurfaceId::NONE }
+        Self { origin, direction, t_max: R::INFINITY, leaves: SurfaceId::NONE, aims_at: SurfaceId::NONE, time: 0.0 }
     }
 
     /// The point at parameter `t`.
@@ -107,12 +109,14 @@ pub struct SurfacePoint<R> {
     pub surface: SurfaceId,
     /// The [label](crate::Geometry::label) of the geometry whose primitive it is.
     pub label: u32,
+    /// When it is there: the time of the ray that found it, and of those that leave it.
+    pub time: f64,
 }
 
 impl<R: Real> SurfacePoint<R> {
     /// Rounds a surface point computed in `f64` to `R`. What the rounding adds to its error is measured, not estimated.
     #[inline(always)]
-    pub(crate) fn rounded(point: &ExactPoint, surface: SurfaceId, label: u32) -> Self {
+    pub(crate) fn rounded(point: &ExactPoint, surface: SurfaceId, label: u32, time: f64) -> Self {
         let ExactPoint { position, error, normal, curvature } = *point;
         let rounded: Vec3<R> = position.cast();
         let error = error + (rounded.to_f64() - position).abs();
@@ -123,7 +127,7 @@ impl<R: Real> SurfacePoint<R> {
         // 8 roundoffs cover this sum and the rounding of the normal along which rays are moved.
         let distance = distance * (1.0 + 8.0 * R::UNIT_ROUNDOFF.to_f64());
         let position_error = R::from_f64(distance).next_up();
-        Self { position: rounded, position_error, normal: normal.cast(), surface, label }
+        Self { position: rounded, position_error, normal: normal.cast(), surface, label, time }
     }
 
     /// The point moved off the surface to the side of `direction`, by the error bound and rounded away from the surface
@@ -152,6 +156,7 @@ impl<R: Real> SurfacePoint<R> {
             t_max: R::INFINITY,
             leaves: self.surface,
             aims_at: SurfaceId::NONE,
+            time: self.time,
         }
     }
 
@@ -171,6 +176,6 @@ impl<R: Real> SurfacePoint<R> {
         let error = R::from_f64(4.0) * R::UNIT_ROUNDOFF * (reach.x + reach.y + reach.z);
         let length = direction.abs().max_component();
         let t_max = if error < length { R::ONE_MINUS_EPSILON - error / length } else { R::ZERO };
-        Ray { origin, direction, t_max, leaves: self.surface, aims_at }
+        Ray { origin, direction, t_max, leaves: self.surface, aims_at, time: self.time }
     }
 }

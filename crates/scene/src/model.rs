@@ -6,10 +6,13 @@
 mod detail;
 mod environment;
 mod material;
+mod motion;
 
 pub use detail::{OpacityImage, Relief};
 pub use environment::EnvironmentImage;
 pub use material::{LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture};
+
+pub use motion::{CameraMotion, Keyframe, Motion};
 
 use std::sync::Arc;
 
@@ -53,7 +56,7 @@ impl Scene {
     }
 }
 
-/// A camera in world space.
+/// A camera in world space: if it moves, as it stands in the middle of the shutter's time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     /// Position of the eye (the centre of the lens), m.
@@ -64,6 +67,10 @@ pub struct Camera {
     pub up: [f64; 3],
     /// How points project.
     pub projection: Projection,
+    /// When the shutter opens and when it closes, s.
+    pub shutter_s: [f64; 2],
+    /// How it moves, if it does while the shutter is open.
+    pub motion: Option<CameraMotion>,
 }
 
 /// How a camera projects.
@@ -244,8 +251,10 @@ pub struct Instance {
     pub name: String,
     /// Index into [`Scene::groups`].
     pub group: usize,
-    /// From the group's coordinates to those where it is placed.
+    /// From the group's coordinates to those where it is placed: if it moves, in the middle of the shutter's time.
     pub transform: Transform,
+    /// How it moves, if it does while the shutter is open.
+    pub motion: Option<Motion>,
 }
 
 /// A shape in its own coordinates, lengths in m.

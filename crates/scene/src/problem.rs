@@ -123,6 +123,8 @@ codes! {
     SingularTransform = "singular-transform",
     /// A shape that its transform would turn into another kind of shape.
     NotSimilarity = "not-similarity",
+    /// Keyframes that no motion joins.
+    Motion = "motion",
     /// A mesh that names a vertex it does not have.
     IndexOutOfRange = "index-out-of-range",
     /// A mesh without triangles.

@@ -364,9 +364,32 @@ fn groups_come_after_what_they_place_and_transforms_make_an_instance_each() {
     let tube = Shape::Cylinder { start: [0.0; 3], end: [0.0, 1.0, 0.0], radius_m: 1.0, capped: false };
     assert_eq!((&unused.objects[0].shape, &unused.instances), (&tube, &Vec::new()));
     let stretched = Transform { linear: [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, -3.0]], translation_m: [0.0; 3] };
-    let instance = |name: &str, group, transform| Instance { name: name.to_owned(), group, transform };
+    let instance = |name: &str, group, transform| Instance { name: name.to_owned(), group, transform, motion: None };
     assert_eq!(pair.instances, [instance("two[0]", 0, Transform::IDENTITY), instance("two[1]", 0, stretched)]);
     let moved = Transform { translation_m: [0.0, 0.0, 9.0], ..Transform::IDENTITY };
-    assert_eq!(scene.instances, [instance("instances[0]", 1, moved), instance("alone", 0, Transform::IDENTITY)]);
+    let [first, alone, rolls] = scene.instances.as_slice() else { panic!("three") };
+    assert_eq!((first, alone), (&instance("instances[0]", 1, moved), &instance("alone", 0, Transform::IDENTITY)));
+    // From −0.5 s to 1.5 s: in the middle, at 0.5 s, halfway between the keyframes.
+    let twice = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
+    assert_eq!(rolls.transform, Transform { linear: twice, translation_m: [2.0, 0.0, 1.0] });
+    let keyframes = &rolls.motion.as_ref().expect("it moves").keyframes;
+    assert_eq!((keyframes.len(), keyframes[1].time_s, keyframes[1].mirrors()), (2, 1.0, false));
+    assert_eq!(keyframes[1].transform.translation_m, [4.0, 0.0, 2.0]);
+    // A keyframe that is the only one moves nothing.
+    assert_eq!((scene.camera.shutter_s, &scene.camera.motion), ([-0.5, 1.5], &None));
     assert_eq!(scene.placed_objects().count(), scene.objects.len() + 1);
+}
+
+#[test]
+fn a_camera_moves_as_a_thing_does_in_a_group_so_placed() {
+    let camera = r#"{"type": "orthographic", "position_m": [0, 0, 5], "direction": [0, 0, -1], "height_m": 1, "shutter_s": [0, 2],
+        "keyframes": [{"time_s": 0}, {"time_s": 2, "transform": [{"rotate": {"axis": [0, 1, 0], "angle_deg": 90}}]}]}"#;
+    let scene = scene(&Parts { camera, ..RIGHT }.text());
+    let moving = scene.camera.motion.as_ref().expect("it moves");
+    assert_eq!((moving.position_m, moving.forward, moving.up), ([0.0, 0.0, 5.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
+    // In the middle of the time it has gone an eighth of the circle around the y axis.
+    let half = 0.5_f64.sqrt();
+    let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-14);
+    assert!(near(scene.camera.position_m, [5.0 * half, 0.0, 5.0 * half]), "{:?}", scene.camera);
+    assert!(near(scene.camera.forward, [-half, 0.0, -half]) && near(scene.camera.up, [0.0, 1.0, 0.0]));
 }

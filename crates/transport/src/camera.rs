@@ -4,8 +4,9 @@
 //! and no exposure. The ray that belongs to the centre of the lens is the pinhole's ray.
 
 use crate::compiled;
+use crate::frame::SceneFrame;
 use crate::warp::concentric_disk;
-use etalon_geometry::Ray;
+use etalon_geometry::{Motion, Ray};
 use etalon_optics::Vec3;
 use etalon_scene as scene;
 use etalon_scene::Projection;
@@ -20,6 +21,17 @@ pub struct Camera {
     /// Half its height.
     half_up: Vec3<f64>,
     kind: Kind,
+    moving: Option<Moving>,
+}
+
+/// How a camera moves. It is then prepared with its eye at the origin, turned as it stands before any motion.
+#[derive(Clone, Debug)]
+pub(crate) struct Moving {
+    /// In the world, m.
+    pub motion: Motion,
+    /// The eye before any motion, in the world, m.
+    pub eye_m: Vec3<f64>,
+    pub frame: SceneFrame,
 }
 
 #[derive(Clone, Debug)]
@@ -61,12 +73,36 @@ impl Camera {
             half_right: right * (half_height * aspect),
             half_up: up * half_height,
             kind,
+            moving: None,
         }
     }
 
-    /// Along the picture's right; not of unit length.
-    pub(crate) fn right(&self) -> Vec3<f64> {
-        self.half_right
+    /// The camera, its eye at the origin, as it moves.
+    pub(crate) fn moving(self, moving: Moving) -> Self {
+        Self { moving: Some(moving), ..self }
+    }
+
+    /// Along the picture's right at a time; not of unit length.
+    pub(crate) fn right(&self, time: f64) -> Vec3<f64> {
+        match &self.moving {
+            None => self.half_right,
+            Some(moving) => moving.motion.at(time).vector(self.half_right),
+        }
+    }
+
+    /// [`Camera::ray`] at a time of the shutter's, from 0 as it opens to 1 as it closes.
+    pub(crate) fn ray_at(&self, film: [f64; 2], lens_u: [f64; 2], time: f64) -> Ray<f64> {
+        let ray = self.ray(film, lens_u);
+        match &self.moving {
+            None => Ray { time, ..ray },
+            Some(Moving { motion, eye_m, frame }) => {
+                let placement = motion.at(time);
+                let eye = frame.point(placement.point(*eye_m));
+                // Its rotation is one to rounding.
+                let direction = placement.vector(ray.direction).normalized();
+                Ray { origin: eye + placement.vector(ray.origin), direction, time, ..ray }
+            }
+        }
     }
 
     /// Whether [`Camera::ray`] draws a point on a lens.
@@ -153,7 +189,14 @@ mod tests {
     use proptest::prelude::*;
 
     fn camera(projection: Projection) -> scene::Camera {
-        scene::Camera { position_m: [1.0, 2.0, 3.0], forward: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0], projection }
+        scene::Camera {
+            position_m: [1.0, 2.0, 3.0],
+            forward: [0.0, 0.0, -1.0],
+            up: [0.0, 1.0, 0.0],
+            projection,
+            shutter_s: [0.0; 2],
+            motion: None,
+        }
     }
 
     fn thin(radius_m: f64, focus_distance_m: f64) -> Camera {

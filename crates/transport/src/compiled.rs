@@ -14,5 +14,6 @@ pub(crate) const ABSORPTION: bool = !cfg!(feature = "without-absorption");
 pub(crate) const TEXTURES: bool = !cfg!(feature = "without-textures");
 pub(crate) const SHADING_NORMALS: bool = !cfg!(feature = "without-shading-normals");
 pub(crate) const MASKS: bool = !cfg!(feature = "without-masks");
+pub(crate) const MOTION: bool = !cfg!(feature = "without-motion");
 pub(crate) const BANDS: bool = !cfg!(feature = "without-bands");
 pub(crate) const WIDE_FILTER: bool = !cfg!(feature = "without-wide-filter");

@@ -35,6 +35,8 @@ pub(crate) struct At<'a> {
     /// Where it is, and its own outward normal.
     pub position: Vec3<f64>,
     pub normal: Vec3<f64>,
+    /// When.
+    pub time: f64,
 }
 
 /// What the vertices of a mesh carry.
@@ -77,7 +79,7 @@ impl Coordinates {
                 let [a, b] = at.uv;
                 if *swapped { [b, a] } else { [a, b] }
             }
-            Self::Round(round) => round.uv(at.geometry.local_point(at.surface, at.position)),
+            Self::Round(round) => round.uv(at.geometry.local_point(at.surface, at.position, at.time)),
             Self::Mesh(mesh) => mesh.uv(at.surface.primitive, at.uv),
         }
     }
@@ -93,7 +95,7 @@ impl Coordinates {
             Self::Mesh(mesh) => {
                 let normal = mesh.normal(at.surface.primitive, at.uv);
                 let flat = if mesh.mesh.uvs.is_empty() { flat } else { flat.with_uv(self.uv(at)) };
-                match normal.map(|normal| at.geometry.placed_normal(at.surface, normal)) {
+                match normal.map(|normal| at.geometry.placed_normal(at.surface, normal, at.time)) {
                     // Opposite normals may cancel: then the triangle's own stands for them.
                     Some(normal) if normal.length_squared() > 0.0 => flat.bent_to(normal.normalized()),
                     _ => flat,
@@ -107,10 +109,10 @@ impl Coordinates {
         let local = match self {
             Self::None => None,
             Self::Parallelogram { edges, .. } => Some(*edges),
-            Self::Round(round) => round.tangents(at.geometry.local_point(at.surface, at.position)),
+            Self::Round(round) => round.tangents(at.geometry.local_point(at.surface, at.position, at.time)),
             Self::Mesh(mesh) => mesh.tangents(at.surface.primitive),
         };
-        local.map(|vectors| vectors.map(|v| at.geometry.placed_vector(at.surface, v)))
+        local.map(|vectors| vectors.map(|v| at.geometry.placed_vector(at.surface, v, at.time)))
     }
 }
 

@@ -8,6 +8,7 @@
 use etalon_geometry::{Aabb, Cylinder, Disk, Parallelogram, Placement, Primitive, ShapeError, Sphere, Triangle};
 use etalon_optics::Vec3;
 use etalon_scene::{Camera, Projection, ThinLens, Transform};
+use std::sync::Arc;
 
 /// World coordinates ⇄ those of the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +92,10 @@ impl SceneFrame {
                 Cylinder::new(start, end, q.radius() * s, q.is_capped())?.into()
             }
             Primitive::Instance(q) => {
+                if let Some(motion) = q.motion() {
+                    let framed = Arc::new(motion.framed(self.centre, s));
+                    return Ok(etalon_geometry::Instance::moving(q.geometry().clone(), framed)?.into());
+                }
                 let placement = Placement::new(
                     q.placement().linear().map(|row| (row * s).to_array()),
                     self.point(q.placement().translation()).to_array(),

@@ -174,16 +174,18 @@ pub(crate) struct Tracer<'a> {
     pub(crate) prepared: &'a Prepared,
     pub(crate) camera: Camera,
     pub(crate) world: World<'a>,
+    /// Whether paths have times.
+    moves: bool,
 }
 
 impl<'a> Tracer<'a> {
     pub(crate) fn new(prepared: &'a Prepared) -> Self {
         let integrator = &prepared.scene.integrator;
-        let film = &prepared.scene.film;
         let plan = prepared.plan();
         Self {
             prepared,
-            camera: Camera::new(&prepared.camera, film.width, film.height, plan.runs(EffectName::Lens)),
+            camera: prepared.tracing_camera(),
+            moves: plan.runs(EffectName::Motion),
             world: World {
                 geometry: &prepared.geometry,
                 surfaces: &prepared.surfaces,
@@ -222,7 +224,14 @@ impl<'a> Tracer<'a> {
         let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
         let film = self.film_point(x, y, [film_x, film_y]);
         counters.lens_draws += u64::from(compiled::LENS && self.camera.has_lens());
-        let ray = self.camera.ray(film, [lens_1, lens_2]);
+        let time = if compiled::MOTION && self.moves {
+            counters.time_draws += 1;
+            let [_, time, ..] = sampler.set(1);
+            time
+        } else {
+            0.0
+        };
+        let ray = self.camera.ray_at(film, [lens_1, lens_2], time);
         let inside = match self.world.media {
             Some(media) if compiled::NESTED_DIELECTRICS => {
                 media.around(&self.prepared.geometry, &self.prepared.surfaces, &ray, &mut counters.lost_media)
@@ -283,7 +292,7 @@ impl<'a> Tracer<'a> {
             wavelength
         });
         let (ray, inside) = self.camera_ray(x, y, &sampler, counters);
-        let mut polarisation = P::at_camera(ray.direction, self.camera.right());
+        let mut polarisation = P::at_camera(ray.direction, self.camera.right(ray.time));
         let radiance = self.world.radiance::<R, M, P, N>(
             ray,
             inside,

@@ -42,6 +42,7 @@ pub mod light;
 mod media;
 pub mod mis;
 mod model;
+mod motion;
 pub mod observer;
 mod path;
 pub mod pilot;

@@ -274,7 +274,7 @@ impl Media {
         let t_max = 2.0 * (point.position - origin).dot(direction);
         let mut leaves = point.surface;
         for next in 1..MOST_COINCIDENT {
-            let probe = Ray { origin, direction, t_max, leaves, aims_at: SurfaceId::NONE };
+            let probe = Ray { origin, direction, t_max, leaves, aims_at: SurfaceId::NONE, time: point.time };
             let Some(hit) = geometry.closest_hit(&probe) else { break };
             let other = geometry.surface(&probe, &hit);
             let apart = (other.position - point.position).dot(point.normal).abs();

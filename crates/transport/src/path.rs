@@ -139,7 +139,7 @@ impl World<'_> {
                 for sky in environments {
                     counters.environment_lookups += 1;
                     let mis = if compiled::MIS && self.weigh_hits {
-                        self.weight_of_hit(step, SurfaceId::NONE, sky.light, ray.direction)
+                        self.weight_of_hit(step, SurfaceId::NONE, sky.light, ray.direction, ray.time)
                     } else {
                         1.0
                     };
@@ -162,7 +162,7 @@ impl World<'_> {
 
             if let Some(emitter) = surface.emission_along(point.normal, wo) {
                 let mis = if compiled::MIS && self.weigh_hits {
-                    self.weight_of_hit(step, point.surface, surface.light, ray.direction)
+                    self.weight_of_hit(step, point.surface, surface.light, ray.direction, ray.time)
                 } else {
                     1.0
                 };
@@ -282,14 +282,14 @@ impl World<'_> {
     }
 
     /// The MIS weight of light that the walk ran into `on` a surface whose light, if any, is number `light`.
-    pub(crate) fn weight_of_hit(&self, step: Step, on: SurfaceId, light: Option<u32>, wi: Vec3<f64>) -> f64 {
+    pub(crate) fn weight_of_hit(&self, step: Step, on: SurfaceId, light: Option<u32>, wi: Vec3<f64>, time: f64) -> f64 {
         match (step, light) {
             (Step::Unshared, _) | (_, None) => 1.0,
             // The far side of the sphere that it left: see `direct_light`.
             (Step::Shared { leaves, .. }, _) if leaves == on => 1.0,
             (Step::Shared { from, density, .. }, Some(light)) => {
                 let light = light as usize;
-                let of_direction = self.lights.lights()[light].density(from, wi);
+                let of_direction = self.lights.lights()[light].density(from, wi, time);
                 match self.light_sampling {
                     // No shadow ray could have found it.
                     _ if of_direction == 0.0 => 1.0,
@@ -318,7 +318,7 @@ impl World<'_> {
         }
         let index = self.lights.choose(u_light);
         let light = &self.lights.lights()[index];
-        let sample = light.sample(point.position, [u1, u2])?;
+        let sample = light.sample(point.position, [u1, u2], point.time)?;
         if sample.surface == point.surface {
             // A surface is no target for its own points: rounding decides on which side of a sphere they lie, and the
             // BSDF's directions find the sphere's inside at least as well.

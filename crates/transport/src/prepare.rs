@@ -2,6 +2,7 @@
 
 use crate::absorption::{Absorption, Interior};
 use crate::bsdf::Bsdf;
+use crate::camera::{Camera, Moving};
 use crate::engine::Tables;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
@@ -10,6 +11,7 @@ use crate::light::{
     DirectionalLight, Environment, EnvironmentLight, EnvironmentRadiance, Light, LightTable, PointLight, SpotLight,
 };
 use crate::media::{Media, Solid, open_edges};
+use crate::motion::motion;
 use crate::path::ShadowRays;
 use crate::plan::{Carried, EffectName, OneLaneFilm, PathLoop, Plan, Study, StudyError, simulated};
 use crate::shapes::{self, SceneShapes};
@@ -27,6 +29,7 @@ pub struct Prepared {
     pub(crate) frame: SceneFrame,
     /// In the frame.
     pub(crate) camera: etalon_scene::Camera,
+    camera_motion: Option<Moving>,
     pub(crate) geometry: Geometry,
     pub(crate) surfaces: Surfaces,
     pub(crate) lights: LightTable,
@@ -61,6 +64,9 @@ pub enum PrepareError {
         /// What is wrong with it.
         source: ShapeError,
     },
+    /// A camera that cannot move as it should.
+    #[error("the camera: {0}")]
+    Camera(ShapeError),
     /// The scene as a whole cannot be built.
     #[error("the scene's geometry: {0}")]
     Geometry(#[from] GeometryError),
@@ -193,11 +199,20 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         object_of,
         light_of,
     };
+    let camera_motion = match &scene.camera.motion {
+        None => None,
+        Some(moves) => Some(Moving {
+            motion: motion(&moves.motion, scene.camera.shutter_s).map_err(PrepareError::Camera)?,
+            eye_m: Vec3::from_array(moves.position_m),
+            frame,
+        }),
+    };
     let tables = Tables::new(&surfaces, &lights, &environments);
     let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene)).transpose()?;
     Ok(Prepared {
         frame,
         camera: frame.camera(&scene.camera),
+        camera_motion,
         media,
         geometry,
         surfaces,
@@ -251,6 +266,22 @@ impl Prepared {
     /// What will be simulated, and why.
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// The camera that makes the rays.
+    pub(crate) fn tracing_camera(&self) -> Camera {
+        let film = &self.scene.film;
+        let made = |camera: &etalon_scene::Camera| {
+            Camera::new(camera, film.width, film.height, self.plan.runs(EffectName::Lens))
+        };
+        match (&self.camera_motion, &self.scene.camera.motion) {
+            (Some(moving), Some(unmoved)) => {
+                let (forward, up) = (unmoved.forward, unmoved.up);
+                let own = etalon_scene::Camera { position_m: [0.0; 3], forward, up, ..self.camera.clone() };
+                made(&own).moving(moving.clone())
+            }
+            _ => made(&self.camera),
+        }
     }
 
     /// The kernel that the plan chose.

@@ -2,7 +2,10 @@
 
 use crate::coordinates::{Coordinates, MeshCoordinates};
 use crate::frame::{Affine, SceneFrame};
-use crate::light::{CylinderLight, DiskLight, Emitter, Light, ParallelogramLight, SphereLight, TriangleLight};
+use crate::light::{
+    CylinderLight, DiskLight, Emitter, Light, Link, MovingLight, ParallelogramLight, SphereLight, TriangleLight,
+};
+use crate::motion::motion;
 use crate::prepare::PrepareError;
 use crate::round::RoundCoordinates;
 use crate::spectral::PathSpectrum;
@@ -39,6 +42,7 @@ pub(crate) fn objects(scene: &Scene) -> impl Iterator<Item = &Object> {
 /// Builds the geometry of a scene and of each of its groups.
 pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, PrepareError> {
     let mut warnings = Vec::new();
+    let shutter_s = scene.camera.shutter_s;
     let mut object_of = vec![Vec::new()];
     let mut shared: Vec<Arc<Geometry>> = Vec::with_capacity(scene.groups.len());
     let placed = placed(scene);
@@ -47,7 +51,7 @@ pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, Pr
     for (index, group) in scene.groups.iter().enumerate() {
         let mut collected = Collected::default();
         if placed[index] {
-            collected.add_all(first_object, &group.objects, &group.instances, &shared, &mut warnings)?;
+            collected.add_all(first_object, &group.objects, (&group.instances, shutter_s), &shared, &mut warnings)?;
         }
         collected.coordinates.resize(group.objects.len(), Coordinates::None);
         grouped_coordinates.append(&mut collected.coordinates);
@@ -56,7 +60,7 @@ pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, Pr
         shared.push(Arc::new(Geometry::build(collected.primitives)?.with_label(index as u32 + 1)));
     }
     let mut collected = Collected::default();
-    collected.add_all(0, &scene.objects, &scene.instances, &shared, &mut warnings)?;
+    collected.add_all(0, &scene.objects, (&scene.instances, shutter_s), &shared, &mut warnings)?;
     let Collected { primitives, object_of: own, mut coordinates } = collected;
     coordinates.append(&mut grouped_coordinates);
     let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
@@ -82,7 +86,8 @@ pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, Pr
         lit[index + 1] |= group.instances.iter().any(|instance| lit[instance.group + 1]);
     }
     lit[0] |= scene.instances.iter().any(|instance| lit[instance.group + 1]);
-    let mut lamps = Lamps { objects: &objects, object_of: &object_of, lit: &lit, range_nm, lights: Vec::new() };
+    let mut lamps =
+        Lamps { objects: &objects, object_of: &object_of, lit: &lit, range_nm, chain: Vec::new(), lights: Vec::new() };
     lamps.add(&geometry, 0, &Affine::IDENTITY)?;
     let emitters = lamps.lights;
     Ok(SceneShapes { frame, geometry, object_of, emitters, coordinates, warnings })
@@ -114,7 +119,7 @@ impl Collected {
         &mut self,
         first_object: usize,
         objects: &[Object],
-        instances: &[scene::Instance],
+        (instances, shutter_s): (&[scene::Instance], [f64; 2]),
         shared: &[Arc<Geometry>],
         warnings: &mut Vec<String>,
     ) -> Result<(), PrepareError> {
@@ -127,9 +132,14 @@ impl Collected {
             if geometry.is_empty() {
                 continue;
             }
-            let made = Placement::new(instance.transform.linear, instance.transform.translation_m)
-                .and_then(|placement| Instance::new(geometry.clone(), placement))
-                .map_err(|source| PrepareError::Instance { instance: instance.name.clone(), source })?;
+            let made = match &instance.motion {
+                None => Placement::new(instance.transform.linear, instance.transform.translation_m)
+                    .and_then(|placement| Instance::new(geometry.clone(), placement)),
+                Some(moves) => {
+                    motion(moves, shutter_s).and_then(|motion| Instance::moving(geometry.clone(), Arc::new(motion)))
+                }
+            };
+            let made = made.map_err(|source| PrepareError::Instance { instance: instance.name.clone(), source })?;
             self.primitives.push(made.into());
             self.object_of.push(NO_OBJECT);
         }
@@ -212,7 +222,21 @@ struct Lamps<'a> {
     /// By label: whether anything within emits.
     lit: &'a [bool],
     range_nm: [f64; 2],
+    /// The placements around what is being added, the outermost first.
+    chain: Vec<Link>,
     lights: Vec<Light>,
+}
+
+/// The light that a shape is.
+fn light(shape: Primitive, emitter: Emitter) -> Result<Option<Light>, PrepareError> {
+    Ok(Some(match shape {
+        Primitive::Sphere(shape) => Light::Sphere(SphereLight::new(shape, emitter)),
+        Primitive::Parallelogram(shape) => Light::Parallelogram(ParallelogramLight::new(shape, emitter)),
+        Primitive::Disk(shape) => Light::Disk(DiskLight::new(shape, emitter)),
+        Primitive::Triangle(shape) => Light::Triangle(TriangleLight::new(shape, emitter)),
+        Primitive::Cylinder(shape) => Light::Cylinder(CylinderLight::new(shape, emitter)?),
+        Primitive::Instance(_) => return Ok(None),
+    }))
 }
 
 impl Lamps<'_> {
@@ -222,6 +246,8 @@ impl Lamps<'_> {
         if !self.lit[label] {
             return Ok(());
         }
+        let moves = self.chain.iter().any(|link| matches!(link, Link::Moving(_)));
+        let chain: Arc<[Link]> = if moves { self.chain.clone().into() } else { Arc::default() };
         // One spectrum for each object, not for each of its triangles.
         let mut radiance: Option<(u32, Arc<PathSpectrum>)> = None;
         for (i, &object) in self.object_of[label].iter().enumerate() {
@@ -245,22 +271,22 @@ impl Lamps<'_> {
             };
             // The scene's own shapes are in place, to the bit.
             let shape = match number {
+                _ if moves => geometry.primitive(primitive).clone(),
                 0 => geometry.primitive(primitive).clone(),
                 _ => to_frame
                     .shape(geometry.primitive(primitive))
                     .map_err(|source| PrepareError::Shape { object: object.name.clone(), source })?,
             };
-            self.lights.push(match shape {
-                Primitive::Sphere(shape) => Light::Sphere(SphereLight::new(shape, emitter)),
-                Primitive::Parallelogram(shape) => Light::Parallelogram(ParallelogramLight::new(shape, emitter)),
-                Primitive::Disk(shape) => Light::Disk(DiskLight::new(shape, emitter)),
-                Primitive::Triangle(shape) => Light::Triangle(TriangleLight::new(shape, emitter)),
-                Primitive::Cylinder(shape) => Light::Cylinder(CylinderLight::new(shape, emitter)?),
-                Primitive::Instance(_) => continue,
-            });
+            let Some(light) = light(shape, emitter)? else { continue };
+            self.lights.push(if moves { Light::Moving(MovingLight::new(chain.clone(), light)) } else { light });
         }
         for (inner, instance) in geometry.instances() {
+            self.chain.push(match instance.motion() {
+                None => Link::Still(*instance.placement()),
+                Some(motion) => Link::Moving(Arc::clone(motion)),
+            });
             self.add(instance.geometry(), number + inner, &to_frame.after(instance.placement()))?;
+            self.chain.pop();
         }
         Ok(())
     }

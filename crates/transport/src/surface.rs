@@ -106,7 +106,7 @@ impl Surfaces {
 }
 
 fn at<'a>(geometry: &'a Geometry, point: &SurfacePoint<f64>, hit: &Hit<f64>) -> At<'a> {
-    At { geometry, surface: hit.surface, uv: hit.uv, position: point.position, normal: point.normal }
+    At { geometry, surface: hit.surface, uv: hit.uv, position: point.position, normal: point.normal, time: point.time }
 }
 
 impl<'a> Surface<'a> {
@@ -137,7 +137,7 @@ impl<'a> Surface<'a> {
             shading = relief::bend(&relief.image, shading, tangents, relief.per_m);
         }
         if let Some(axis) = self.axis {
-            shading = shading.with_axis(geometry.placed_normal(hit.surface, axis).normalized());
+            shading = shading.with_axis(geometry.placed_normal(hit.surface, axis, point.time).normalized());
         }
         Scattering { bsdf: self.bsdf, at: shading.between(interface) }
     }

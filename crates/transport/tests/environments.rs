@@ -40,7 +40,7 @@ fn subject(image: &EnvironmentImage, irradiance: fn([f64; 3]) -> Option<f64>) ->
 
 impl Emits for Sky {
     fn sample(&self, from_m: [f64; 3], u: [f64; 2]) -> Option<Emitted> {
-        let s = Light::Environment(Arc::new(self.light.clone())).sample(Vec3::from_array(from_m), u)?;
+        let s = Light::Environment(Arc::new(self.light.clone())).sample(Vec3::from_array(from_m), u, 0.0)?;
         let Density::SolidAngle(pdf) = s.density else { panic!("an image has no delta") };
         assert_eq!((s.target, s.surface, s.scale), (Target::Infinity, SurfaceId::NONE, 1.0));
         Some(Emitted {

@@ -179,13 +179,14 @@ fn three_channels_multiply_one_by_one_and_wavelengths_do_not() {
 #[test]
 fn what_a_scene_does_not_call_for_is_counted_zero_times_and_what_it_does_is_counted() {
     type Count = fn(&Film) -> u64;
-    let counted: [(EffectName, Count); 4] = [
+    let counted: [(EffectName, Count); 5] = [
         (EffectName::ShadowRays, |film| film.counters.shadow_rays),
         (EffectName::Lens, |film| film.counters.lens_draws),
         (EffectName::Environment, |film| film.counters.environment_lookups),
         (EffectName::Dispersion, |film| film.counters.lane_weights),
+        (EffectName::Motion, |film| film.counters.time_draws),
     ];
-    let mut seen = [[false; 2]; 4];
+    let mut seen = [[false; 2]; 5];
     for (name, scene) in scenes() {
         let prepared = prepared(&scene, &[]);
         let film = render(&prepared);

@@ -44,7 +44,7 @@ fn integral(light: &Light, n: usize, g: impl Fn(Vec3<f64>) -> f64) -> f64 {
     let at = |i: usize| (i as f64 + 0.5) / n as f64;
     let mut sum = 0.0;
     for i in 0..n * n {
-        if let Some(sample) = light.sample(Vec3::ZERO, [at(i % n), at(i / n)]) {
+        if let Some(sample) = light.sample(Vec3::ZERO, [at(i % n), at(i / n)], 0.0) {
             let Density::SolidAngle(density) = sample.density else { panic!("an area light has no delta") };
             sum += g(sample.wi) / density;
         }
@@ -82,7 +82,7 @@ fn a_shadow_ray_ends_on_the_near_side_of_a_sphere_or_on_the_far_one_from_inside(
     let (center, radius) = (Vec3::new(0.5, 1.0, 4.0), 1.5);
     for (from, outward) in [(Vec3::ZERO, -1.0), (Vec3::new(0.0, 1.0, 3.5), 1.0)] {
         for u in [[0.0, 0.0], [0.3, 0.1], [0.7, 0.8], [0.99, 0.4]] {
-            let sample = sphere(center, radius).sample(from, u).unwrap();
+            let sample = sphere(center, radius).sample(from, u, 0.0).unwrap();
             let Target::Point(target) = sample.target else { panic!("a sphere is not at infinity") };
             let normal = (target - center) / radius;
             assert!((normal.length() - 1.0).abs() < 1e-14, "{u:?}: {target:?} is not on the sphere");
@@ -136,11 +136,11 @@ fn a_surface_shines_only_from_the_sides_that_emit_and_not_along_itself() {
         for (k, light) in of_sides(front, back).iter().enumerate() {
             let places = if k == 3 { round } else { flat };
             for u in [[0.1, 0.3], [0.8, 0.35], [0.6, 0.9]] {
-                let lit = |place: Vec3<f64>| light.sample(place, u).is_some();
+                let lit = |place: Vec3<f64>| light.sample(place, u, 0.0).is_some();
                 assert_eq!([lit(places[0]), lit(places[1])], [front, back], "{k}, {u:?}");
                 assert!(k == 3 || !lit(places[2]), "{k}, {u:?}: lit in its own plane");
                 for place in &places[..2] {
-                    let Some(sample) = light.sample(*place, u) else { continue };
+                    let Some(sample) = light.sample(*place, u, 0.0) else { continue };
                     let Density::SolidAngle(density) = sample.density else { panic!("an area light has no delta") };
                     assert!(density > 0.0 && density.is_finite());
                 }
@@ -157,16 +157,19 @@ fn lights_without_a_surface_shine_from_where_they_are() {
         intensity: PathSpectrum::Constant(1.0),
         per_m: 1.0,
     });
-    let sample = point.sample(from, [0.3, 0.7]).unwrap();
+    let sample = point.sample(from, [0.3, 0.7], 0.0).unwrap();
     // I/d² at two metres.
     assert_eq!((sample.wi, sample.scale, sample.density), (Vec3::new(1.0, 0.0, 0.0), 0.25, Density::Delta));
     assert_eq!(sample.target, Target::Point(Vec3::new(3.0, 2.0, 3.0)));
-    assert!(point.sample(Vec3::new(3.0, 2.0, 3.0), [0.5; 2]).is_none());
+    assert!(point.sample(Vec3::new(3.0, 2.0, 3.0), [0.5; 2], 0.0).is_none());
     let toward = Vec3::new(0.0, 0.6, 0.8);
     let sun = Light::Directional(DirectionalLight { toward, irradiance: PathSpectrum::Constant(1.0) });
-    let sample = sun.sample(from, [0.3, 0.7]).unwrap();
+    let sample = sun.sample(from, [0.3, 0.7], 0.0).unwrap();
     assert_eq!((sample.wi, sample.scale, sample.density), (toward, 1.0, Density::Delta));
-    assert_eq!((sample.target, point.density(from, toward), sun.density(from, toward)), (Target::Infinity, 0.0, 0.0));
+    assert_eq!(
+        (sample.target, point.density(from, toward, 0.0), sun.density(from, toward, 0.0)),
+        (Target::Infinity, 0.0, 0.0)
+    );
 }
 
 proptest! {
@@ -185,10 +188,10 @@ proptest! {
             disk(Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0), s),
             triangle(Vec3::ZERO, axis(0), axis(2)),
         ] {
-            let Some(sample) = light.sample(from, [u0, u1]) else { continue };
+            let Some(sample) = light.sample(from, [u0, u1], 0.0) else { continue };
             let Density::SolidAngle(density) = sample.density else { panic!("an area light has no delta") };
             // The same function of the same arguments.
-            prop_assert_eq!(density, light.density(from, sample.wi));
+            prop_assert_eq!(density, light.density(from, sample.wi, 0.0));
             let Target::Point(target) = sample.target else { panic!("an area light is not at infinity") };
             let toward = (target - from).normalized();
             // The target is rounded where it lies, the direction where it starts.

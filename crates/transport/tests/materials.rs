@@ -85,7 +85,7 @@ fn a_spot_has_its_intensity_and_its_power() {
     let spot = Light::Spot(SpotLight { point, axis: Vec3::new(0.0, 0.0, -1.0), cosines });
     let intensity = |toward: Vec3<f64>| {
         let from = Vec3::new(0.0, 0.0, 2.0) + toward * 5.0;
-        spot.sample(from, [0.5; 2]).map_or(0.0, |s| s.scale * 25.0)
+        spot.sample(from, [0.5; 2], 0.0).map_or(0.0, |s| s.scale * 25.0)
     };
     // Half way between the cosines half of the intensity is left, by symmetry of 3x² − 2x³.
     for (cos, share) in [(1.0, 1.0), (0.9, 1.0), (0.75, 0.5), (0.6, 0.0), (-1.0, 0.0)] {

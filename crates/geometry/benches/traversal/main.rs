@@ -195,6 +195,7 @@ fn eights(name: &str, kind: &str, geometry: &Geometry, rays: &[Ray<f32>], shadow
             t_max: f64::from(r.t_max),
             leaves: r.leaves,
             aims_at: r.aims_at,
+            time: r.time,
         })
         .collect();
     let (eights, _) = alone.as_chunks::<LANES>();

@@ -88,6 +88,7 @@ fn check<R: Real>(geometry: &Geometry, alone: &[Geometry], bytes: &mut Bytes<'_>
         t_max: R::from_f64(bytes.number()),
         leaves: leaves.into(),
         aims_at: aims_at.into(),
+        time: 0.0,
     };
     let wide = Ray {
         origin: ray.origin.to_f64(),
@@ -95,6 +96,7 @@ fn check<R: Real>(geometry: &Geometry, alone: &[Geometry], bytes: &mut Bytes<'_>
         t_max: ray.t_max.to_f64(),
         leaves: ray.leaves,
         aims_at: ray.aims_at,
+        time: ray.time,
     };
     assert_eq!((geometry.closest_hit(&wide), geometry.occluded(&wide)), geometry.one_by_one(&wide), "{wide:?}");
     let mine = |id: PrimitiveId, i: usize| if id.0 == i as u32 { PrimitiveId(0).into() } else { SurfaceId::NONE };

@@ -41,6 +41,9 @@ pub enum ShapeError {
     /// An instance of a geometry without primitives.
     #[error("the instance places nothing")]
     Empty,
+    /// Poses of a motion that no smooth motion joins, or that are none.
+    #[error("the poses of the motion cannot be joined")]
+    Unjoinable,
 }
 
 /// Checks coordinates.

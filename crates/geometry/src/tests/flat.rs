@@ -80,7 +80,7 @@ fn compare(geometry: &Geometry, rays: &Rays, active: u8) -> [usize; 2] {
                     assert_eq!((one.surface, one.label), (ours.surface, ours.label));
                     // And what is shared among hits is what the shape computes for one.
                     let p = geometry.primitive(hit.surface.primitive).surface(ray.at(hit.t));
-                    let own = SurfacePoint::rounded(&p, hit.surface, geometry.label());
+                    let own = SurfacePoint::rounded(&p, hit.surface, geometry.label(), 0.0);
                     assert_eq!(bits(&one), bits(&own));
                 }
             }

@@ -3,6 +3,7 @@
 mod cylinders;
 mod flat;
 mod instances;
+mod motion;
 mod oracle;
 mod spawn;
 mod spheres;

@@ -35,7 +35,7 @@ fn a_sphere_is_not_missed_from_a_hundred_thousand_radii() {
 
 /// The point of a sphere, the only primitive of a geometry, near `p`.
 fn on<R: Real>(sphere: &Sphere, p: V) -> SurfacePoint<R> {
-    SurfacePoint::rounded(&sphere.surface(p), PrimitiveId(0).into(), 0)
+    SurfacePoint::rounded(&sphere.surface(p), PrimitiveId(0).into(), 0, 0.0)
 }
 
 #[test]

@@ -6,10 +6,10 @@ use crate::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, 
 use etalon_optics::{Real, Vec3};
 
 /// Compares closest hits (bit for bit) and occlusion for one ray in both scalar types; counts hits.
-pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> usize {
-    fn one<R: Real>(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId) -> usize {
+pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId, time: f64) -> usize {
+    fn one<R: Real>(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId, time: f64) -> usize {
         let leaves = leaves.into();
-        let ray = Ray::<R> { t_max: R::from_f64(t_max), leaves, ..Ray::free(line.0.cast(), line.1.cast()) };
+        let ray = Ray::<R> { t_max: R::from_f64(t_max), leaves, time, ..Ray::free(line.0.cast(), line.1.cast()) };
         let Some(query) = crate::query::Query::new(&ray) else {
             assert!(geometry.closest_hit(&ray).is_none() && !geometry.occluded(&ray));
             return 0;
@@ -46,7 +46,7 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
         }
         usize::from(flat.is_some())
     }
-    one::<f64>(geometry, line, t_max, leaves) + one::<f32>(geometry, line, t_max, leaves)
+    one::<f64>(geometry, line, t_max, leaves, time) + one::<f32>(geometry, line, t_max, leaves, time)
 }
 
 /// Holds the tree of some primitives against brute force on `rays` adversarial rays; returns the fraction of hits.
@@ -56,6 +56,8 @@ pub(super) fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: i
 
 /// The same of what serves a geometry.
 pub(super) fn check_geometry(geometry: &Geometry, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
+    // Nothing depends on them where nothing moves.
+    let mut times = Random::new(seed ^ 1 << 32);
     let mut random = Random::new(seed);
     let features = features(geometry.primitives());
     let mut hits = 0;
@@ -66,7 +68,7 @@ pub(super) fn check_geometry(geometry: &Geometry, rays: usize, seed: u64, place:
             0 => PrimitiveId(random.below(geometry.len()) as u32),
             _ => PrimitiveId::NONE,
         };
-        hits += agrees(geometry, line, t_max, leaves);
+        hits += agrees(geometry, line, t_max, leaves, times.unit());
     }
     hits as f64 / (2 * rays) as f64
 }
@@ -289,7 +291,7 @@ fn rays_of_which_no_point_is_defined_hit_nothing() {
     for far in [1e30, 1e200, 1e307] {
         // So far away that the scene is below the rounding of the origin: no panic, and the same as brute force.
         let line = (v(far, 0.5 * far, 0.0), v(-2.0, -1.0, 0.0));
-        agrees(&geometry, line, f64::INFINITY, PrimitiveId::NONE);
+        agrees(&geometry, line, f64::INFINITY, PrimitiveId::NONE, 0.0);
     }
     let empty = Geometry::build(Vec::new()).unwrap();
     assert!(empty.closest_hit(&Ray::free(v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0))).is_none());
@@ -330,7 +332,7 @@ fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
                 p.spawn_to(origin, SurfaceId::NONE);
             }
             let t_max = random.any_number();
-            hits += agrees(&geometry, (origin, target - origin), t_max, PrimitiveId(random.below(9) as u32));
+            hits += agrees(&geometry, (origin, target - origin), t_max, PrimitiveId(random.below(9) as u32), 0.0);
         }
     }
     assert!(shapes > 30_000 && hits > 10_000, "{shapes} {hits}");

@@ -82,6 +82,7 @@ impl Claim {
             Self::PhotometricSensor => "photometric-sensor",
             Self::Priorities => "priorities",
             Self::Absorption => "absorption",
+            Self::Motion => "motion",
         }
     }
 }

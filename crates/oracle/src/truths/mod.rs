@@ -18,6 +18,7 @@ mod illumination;
 mod irradiance;
 mod judge;
 mod lamps;
+mod motion;
 mod polarised;
 mod prisms;
 mod scene;
@@ -61,11 +62,13 @@ pub enum Claim {
     Priorities,
     /// Media absorb what goes through them.
     Absorption,
+    /// Things move while the shutter is open.
+    Motion,
 }
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 9] = [
+    pub const UNPOLARISED: [Self; 10] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -75,6 +78,7 @@ impl Claim {
         Self::PhotometricSensor,
         Self::Priorities,
         Self::Absorption,
+        Self::Motion,
     ];
 }
 
@@ -228,6 +232,9 @@ impl Truth {
     pub fn white_scene(&self) -> String {
         let mut scene: Value = serde_json::from_str(&self.scene).expect("a truth's scene is JSON");
         scene["objects"] = json!([]);
+        if let Some(scene) = scene.as_object_mut() {
+            scene.retain(|key, _| key != "groups" && key != "instances");
+        }
         scene["lights"] = json!([{ "type": "environment", "radiance": 1.0 }]);
         serde_json::to_string_pretty(&scene).expect("a JSON value always prints")
     }
@@ -250,6 +257,7 @@ pub fn truths() -> Vec<Truth> {
         water::truths(),
         prisms::truths(),
         cameras::truths(),
+        motion::truths(),
     ]
     .into_iter()
     .flatten()

@@ -12,6 +12,8 @@ pub(super) struct Scene {
     film: (u32, u32),
     spp: u32,
     objects: Vec<Value>,
+    /// Objects that move together, and their keyframes.
+    moving: Vec<(Vec<Value>, Vec<Value>)>,
     lights: Vec<Value>,
     max_depth: Option<u32>,
     light_sampling: Option<&'static str>,
@@ -30,6 +32,7 @@ impl Scene {
             film: (32, 32),
             spp: 1024,
             objects: Vec::new(),
+            moving: Vec::new(),
             lights: Vec::new(),
             max_depth: None,
             light_sampling: None,
@@ -112,6 +115,24 @@ impl Scene {
         self
     }
 
+    /// Objects that move through some keyframes.
+    pub(super) fn moving(mut self, objects: &[Value], keyframes: &[Value]) -> Self {
+        self.moving.push((objects.to_vec(), keyframes.to_vec()));
+        self
+    }
+
+    /// When the shutter opens and closes, s.
+    pub(super) fn shutter(mut self, shutter_s: [f64; 2]) -> Self {
+        self.camera["shutter_s"] = json!(shutter_s);
+        self
+    }
+
+    /// A camera that moves.
+    pub(super) fn camera_keys(mut self, keyframes: &[Value]) -> Self {
+        self.camera["keyframes"] = json!(keyframes);
+        self
+    }
+
     pub(super) fn sky(mut self, radiance: f64) -> Self {
         self.lights.push(json!({ "type": "environment", "radiance": radiance }));
         self
@@ -189,7 +210,7 @@ impl Scene {
         if let Some(band) = self.band_nm {
             integrator["wavelength_range_nm"] = json!(band);
         }
-        let scene = json!({
+        let mut scene = json!({
             "etalon": 1,
             "camera": self.camera,
             "film": { "width": self.film.0, "height": self.film.1, "filter": { "type": "box" } },
@@ -197,6 +218,15 @@ impl Scene {
             "lights": self.lights,
             "integrator": integrator,
         });
+        if !self.moving.is_empty() {
+            let name = |i: usize| format!("group {i}");
+            let groups =
+                self.moving.iter().enumerate().map(|(i, (objects, _))| (name(i), json!({ "objects": objects })));
+            scene["groups"] = groups.collect::<serde_json::Map<_, _>>().into();
+            let instances =
+                self.moving.iter().enumerate().map(|(i, (_, keys))| json!({ "group": name(i), "keyframes": keys }));
+            scene["instances"] = instances.collect();
+        }
         serde_json::to_string_pretty(&scene).expect("a JSON value always prints")
     }
 }

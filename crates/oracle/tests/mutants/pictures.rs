@@ -10,11 +10,11 @@ use etalon_oracle::{
 use crate::renderer::Tracer;
 
 /// Truths that a renderer without polarisation, without thermal spectra and with the media on both sides of each surface
-/// stated, instead of priorities, can be held to.
+/// stated, instead of priorities, in which nothing moves, can be held to.
 fn readable() -> Vec<Truth> {
     let claims: Vec<_> = Claim::UNPOLARISED
         .into_iter()
-        .filter(|claim| ![Claim::Priorities, Claim::Absorption].contains(claim))
+        .filter(|claim| ![Claim::Priorities, Claim::Absorption, Claim::Motion].contains(claim))
         .collect();
     let applies = |truth: &Truth| truth.applies_to(&claims) && !truth.scene.contains("blackbody");
     truths().into_iter().filter(applies).collect()

@@ -1,9 +1,10 @@
 //! Cameras and film.
 
+use super::motion::{KeyframeForm, Placed, Stretch, given, shutter_s};
 use super::spectrum::Wavelength;
-use crate::json::{Code, Direction, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
-use crate::model::{Bands, Camera, Film, Filter, Projection, ThinLens};
-use crate::vector::{cross, dot, length, scale, sub, unit};
+use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
+use crate::model::{Bands, Camera, CameraMotion, Film, Filter, Projection, ThinLens};
+use crate::vector::{apply, cross, dot, length, scale, sub, unit};
 
 crate::number! {
     /// A full angle of view, degrees.
@@ -34,6 +35,10 @@ crate::record! {
         sensor_width_m: Optional<Positive>,
         /// A thin lens; without it, the camera is a pinhole and everything is in focus.
         lens: Optional<Lens>,
+        /// When the shutter opens and when it closes, s.
+        shutter_s: Required<Spanned<[f64; 2]>> = "[0, 0]",
+        /// How the camera moves: its placement at some times.
+        keyframes: Optional<Spanned<List<Box<KeyframeForm>>>>,
     } with [
         Rule::OneOf(&["look_at_m", "direction"]),
         Rule::OneOf(&["vertical_fov_deg", "horizontal_fov_deg", "sensor_height_m", "sensor_width_m"]),
@@ -67,6 +72,10 @@ crate::record! {
         up: Required<Spanned<Direction>> = "[0, 1, 0]",
         /// Height of the picture in the world, m.
         height_m: Required<Positive>,
+        /// When the shutter opens and when it closes, s.
+        shutter_s: Required<Spanned<[f64; 2]>> = "[0, 0]",
+        /// How the camera moves: its placement at some times.
+        keyframes: Optional<Spanned<List<Box<KeyframeForm>>>>,
     } with [Rule::OneOf(&["look_at_m", "direction"])]
 }
 
@@ -210,15 +219,53 @@ pub(crate) fn camera(form: &CameraForm, film: Option<&Film>, reader: &mut Reader
         CameraForm::Perspective(form) => {
             let view = orientation(form.position_m, &form.look_at_m, &form.direction, form.up, reader);
             let projection = perspective(form, film, reader);
+            let shutter_s = shutter_s(form.shutter_s.as_ref(), reader);
+            let placed = given(&form.keyframes, shutter_s.unwrap_or_default(), Stretch::Refused, reader);
             let (forward, up) = view?;
-            Some(Camera { position_m: form.position_m?, forward, up, projection: projection? })
+            let still = Camera {
+                position_m: form.position_m?,
+                forward,
+                up,
+                projection: projection?,
+                shutter_s: shutter_s?,
+                motion: None,
+            };
+            Some(moving(still, placed?))
         }
         CameraForm::Orthographic(form) => {
             let view = orientation(form.position_m, &form.look_at_m, &form.direction, form.up, reader);
             let projection = Projection::Orthographic { height_m: form.height_m?.0 };
+            let shutter_s = shutter_s(form.shutter_s.as_ref(), reader);
+            let placed = given(&form.keyframes, shutter_s.unwrap_or_default(), Stretch::Refused, reader);
             let (forward, up) = view?;
-            Some(Camera { position_m: form.position_m?, forward, up, projection })
+            let still =
+                Camera { position_m: form.position_m?, forward, up, projection, shutter_s: shutter_s?, motion: None };
+            Some(moving(still, placed?))
         }
+    }
+}
+
+/// When the shutter of a camera opens and closes, s; an instant where that is wrong, which is reported with the camera.
+pub(crate) fn shutter_of(form: Option<&CameraForm>) -> [f64; 2] {
+    let shutter = match form {
+        Some(CameraForm::Perspective(form)) => form.shutter_s.as_ref(),
+        Some(CameraForm::Orthographic(form)) => form.shutter_s.as_ref(),
+        None => None,
+    };
+    shutter.map(|shutter| shutter.value).filter(|[open, close]| open <= close).unwrap_or_default()
+}
+
+/// A camera where its keyframes put it.
+fn moving(still: Camera, placed: Option<Placed>) -> Camera {
+    let Some((middle, motion)) = placed else { return still };
+    let direction = |v| apply(&middle.linear, v);
+    let Camera { position_m, forward, up, .. } = still;
+    Camera {
+        position_m: middle.point(position_m),
+        forward: unit(direction(forward)).unwrap_or(forward),
+        up: unit(direction(up)).unwrap_or(up),
+        motion: motion.map(|motion| CameraMotion { motion, position_m, forward, up }),
+        ..still
     }
 }
 

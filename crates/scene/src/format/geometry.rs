@@ -370,7 +370,7 @@ pub(crate) fn check_instance_similarity(what: &str, transform: &Transform, at: S
     }
 }
 
-fn is_similarity(transform: &Transform) -> bool {
+pub(crate) fn is_similarity(transform: &Transform) -> bool {
     let largest = transform.linear.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let a = transform.linear.map(|row| row.map(|v| v / largest));
     let column = |j: usize| [a[0][j], a[1][j], a[2][j]];

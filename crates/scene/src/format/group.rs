@@ -1,10 +1,11 @@
 //! Groups of objects that are defined once, and the instances that place them.
 
-use super::geometry::{Step, check_instance_similarity, transform};
+use super::geometry::{Step, check_instance_similarity, is_similarity, transform};
+use super::motion::{KeyframeForm, Placed, Stretch, motion};
 use super::names::Names;
 use super::scene::ObjectForm;
 use crate::json::{Code, List, NamedEntry, Optional, Reader, Required, Spanned};
-use crate::model::{Group, Instance, Object, Shape};
+use crate::model::{Group, Instance, Object, Shape, Transform};
 
 /// Most groups within each other: rays descend through them by recursion.
 pub(crate) const MAX_NESTING: usize = 16;
@@ -32,6 +33,8 @@ crate::record! {
         transform: Optional<Spanned<List<Box<Step>>>>,
         /// Several placements at once: a transform for each.
         transforms: Optional<Spanned<List<Spanned<List<Box<Step>>>>>>,
+        /// A placement that moves, instead: its transform at some times.
+        keyframes: Optional<Spanned<List<Box<KeyframeForm>>>>,
     }
 }
 
@@ -40,6 +43,7 @@ fn instances<'f>(
     forms: &'f List<Box<InstanceForm>>,
     place: &str,
     names: &Names<'_>,
+    shutter_s: [f64; 2],
     reader: &mut Reader<'_>,
 ) -> (Vec<(Instance, &'f InstanceForm)>, bool) {
     let mut all = Vec::new();
@@ -48,15 +52,17 @@ fn instances<'f>(
         let made = form.as_ref().and_then(|form| {
             let name = form.name.clone().checked().map(|name| name.unwrap_or_else(|| format!("{place}instances[{i}]")));
             let group = form.group.as_ref().and_then(|name| names.find(name, reader));
-            let transforms = placements(form, reader);
+            let transforms = placements(form, shutter_s, reader);
             let (name, group) = (name?, group?);
             let mut transforms = transforms?;
             if let [_] = transforms.as_slice() {
-                let transform = transforms.pop()?;
-                return Some(vec![(Instance { name, group, transform }, &**form)]);
+                let (transform, motion) = transforms.pop()?;
+                return Some(vec![(Instance { name, group, transform, motion }, &**form)]);
             }
             let numbered = transforms.into_iter().enumerate();
-            let one = |(k, transform)| (Instance { name: format!("{name}[{k}]"), group, transform }, &**form);
+            let one = |(k, (transform, motion))| {
+                (Instance { name: format!("{name}[{k}]"), group, transform, motion }, &**form)
+            };
             Some(numbered.map(one).collect())
         });
         match made {
@@ -67,11 +73,26 @@ fn instances<'f>(
     (all, right)
 }
 
-fn placements(form: &InstanceForm, reader: &mut Reader<'_>) -> Option<Vec<crate::model::Transform>> {
+fn placements(form: &InstanceForm, shutter_s: [f64; 2], reader: &mut Reader<'_>) -> Option<Vec<Placed>> {
+    let moving = match &form.keyframes {
+        Optional::Absent => None,
+        Optional::Invalid => return None,
+        Optional::Given(keyframes) => {
+            let transform = form.transform.given().map(|given| ("transform", given.at));
+            let other = transform.or(form.transforms.given().map(|given| ("transforms", given.at)));
+            if let Some((key, at)) = other {
+                let message = format!("\"{key}\" and \"keyframes\" exclude each other");
+                let label = (at.head(), "the other one");
+                reader.error_related(Code::KeyConflict, keyframes.at.head(), message, "keep one of them", label);
+                return None;
+            }
+            Some(motion(keyframes, shutter_s, Stretch::Allowed, reader)?)
+        }
+    };
     match (&form.transform, &form.transforms) {
-        (Optional::Absent, Optional::Absent) => Some(vec![crate::model::Transform::IDENTITY]),
+        (Optional::Absent, Optional::Absent) => Some(vec![moving.unwrap_or((Transform::IDENTITY, None))]),
         (Optional::Given(steps), Optional::Absent) => {
-            transform(&steps.value, steps.at.head(), reader).map(|transform| vec![transform])
+            transform(&steps.value, steps.at.head(), reader).map(|transform| vec![(transform, None)])
         }
         (Optional::Absent, Optional::Given(several)) => {
             if several.value.0.is_empty() {
@@ -85,6 +106,7 @@ fn placements(form: &InstanceForm, reader: &mut Reader<'_>) -> Option<Vec<crate:
                 .0
                 .iter()
                 .map(|steps| steps.as_ref().and_then(|steps| transform(&steps.value, steps.at.head(), reader)))
+                .map(|transform| transform.map(|transform| (transform, None)))
                 .collect();
             made.into_iter().collect()
         }
@@ -102,6 +124,7 @@ fn placements(form: &InstanceForm, reader: &mut Reader<'_>) -> Option<Vec<crate:
 pub(crate) fn groups<'f>(
     entries: &'f [NamedEntry<Box<GroupForm>>],
     top: Option<&List<Box<InstanceForm>>>,
+    shutter_s: [f64; 2],
     mut object: impl FnMut(&'f ObjectForm, String, &mut Reader<'_>) -> Option<Object>,
     reader: &mut Reader<'_>,
 ) -> Option<(Vec<Group>, Vec<Instance>)> {
@@ -122,7 +145,7 @@ pub(crate) fn groups<'f>(
                     }
                 }
                 if let Some(list) = &form.instances {
-                    let (made, all_right) = instances(list, &place, &names, reader);
+                    let (made, all_right) = instances(list, &place, &names, shutter_s, reader);
                     group.instances = made;
                     right &= all_right;
                 }
@@ -132,7 +155,7 @@ pub(crate) fn groups<'f>(
         }
         members.push(group);
     }
-    let top = top.map(|list| instances(list, "", &names, reader));
+    let top = top.map(|list| instances(list, "", &names, shutter_s, reader));
     let order = order(&members, reader)?;
     let (top, all_right) = top?;
     if !(right && all_right) {
@@ -230,7 +253,11 @@ fn check(
             sum.placed = sum.placed.saturating_add(of.placed);
             sum.round_emitter = sum.round_emitter.or(of.round_emitter);
             if let Some(what) = of.round_emitter {
-                check_instance_similarity(what, &instance.transform, form.at.head(), reader);
+                let moving = instance.motion.iter().flat_map(|motion| &motion.keyframes).map(|key| &key.transform);
+                // The first that is none is enough.
+                if let Some(other) = moving.chain([&instance.transform]).find(|transform| !is_similarity(transform)) {
+                    check_instance_similarity(what, other, form.at.head(), reader);
+                }
             }
         }
         sum

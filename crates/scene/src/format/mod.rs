@@ -11,6 +11,7 @@ mod integrator;
 mod light;
 mod material;
 mod mesh;
+mod motion;
 mod names;
 mod scene;
 mod spectra;

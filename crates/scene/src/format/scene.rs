@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::camera::{CameraForm, FilmForm, camera, film};
+use super::camera::{CameraForm, FilmForm, camera, film, shutter_of};
 use super::detail::{BumpMapForm, NormalMapForm, OpacityImageForm, bump_map, normal_map, opacity_image};
 use super::geometry::{ShapeForm, Step, check_extent, check_similarity, shape, transform};
 use super::group::{GroupForm, InstanceForm, groups};
@@ -186,6 +186,7 @@ pub(crate) fn scene(
     let grouped = groups(
         form.groups.as_ref().map_or(&[][..], |named| &named.0),
         form.instances.as_ref(),
+        shutter_of(form.camera.as_ref()),
         |form, place, reader| object(form, place, &named, &mut materials, &mut spectra, files, reader),
         reader,
     );

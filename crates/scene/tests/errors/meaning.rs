@@ -402,3 +402,50 @@ fn groups_and_instances() {
     let text = grouped(&balls.replace("\"radius_m\": 1", "\"radius_m\": «-1»"), "[]");
     one(Severity::Error, Code::OutOfRange, "$.groups.ball.objects[0].shape.radius_m", &text);
 }
+
+#[test]
+fn keyframes_and_shutters() {
+    let ball =
+        "{\"ball\": {\"objects\": [{\"shape\": {\"type\": \"sphere\", \"radius_m\": 1}, \"material\": \"white\"}]}}";
+    let placed = |rest: &str| format!("[{{\"group\": \"ball\", {rest}}}]");
+    let refused = |rest: &str, code, path: &str| {
+        one(Severity::Error, code, &format!("$.instances[0].{path}"), &grouped(ball, &placed(rest)))
+    };
+    refused("\"keyframes\": «[»]", Code::WrongLength, "keyframes");
+    refused("\"keyframes\": [«{»\"transform\": []}]", Code::MissingKey, "keyframes[0]");
+    refused("\"transform\": [], \"keyframes\": «[»{\"time_s\": 0}]", Code::KeyConflict, "keyframes");
+    refused("\"transforms\": [[]], \"keyframes\": «[»{\"time_s\": 0}]", Code::KeyConflict, "keyframes");
+    let second = |key: &str| format!("\"keyframes\": [{{\"time_s\": 0}}, «{{»{key}}}]");
+    refused(&second("\"time_s\": 0"), Code::OutOfRange, "keyframes[1]");
+    refused(&second("\"time_s\": 1e-320"), Code::OutOfRange, "keyframes[1]");
+    refused(&second("\"time_s\": 1, \"transform\": [{\"scale\": -2}]"), Code::Motion, "keyframes[1]");
+    let half_turn = "\"time_s\": 1, \"transform\": [{\"rotate\": {\"axis\": [1, 2, 3], \"angle_deg\": -180}}]";
+    let problem = refused(&second(half_turn), Code::Motion, "keyframes[1]");
+    assert!(problem.hint.is_some_and(|hint| hint.contains("between")));
+    let nearly = half_turn.replace("-180", "179.99");
+    assert_eq!(problems(&grouped(ball, &placed(&second(&nearly).replace(['«', '»'], "")))), []);
+    refused(
+        "\"keyframes\": [{\"time_s\": 0, \"transform\": [{\"scale\": «0»}]}]",
+        Code::SingularTransform,
+        "keyframes[0].transform[0].scale",
+    );
+    // A lamp that is stretched on the way.
+    let lamp = ball.replace("\"material\"", "\"emission\": {\"radiance\": 1}, \"material\"");
+    let stretched = "[«{»\"group\": \"ball\", \"keyframes\": [{\"time_s\": 0}, {\"time_s\": 1, \"transform\": [{\"scale\": [1, 2, 1]}]}]}]";
+    // Only where the shutter sees it.
+    assert_eq!(problems(&grouped(&lamp, &stretched.replace(['«', '»'], ""))), []);
+    let open = |text: String| text.replacen("\"look_at_m\"", "\"shutter_s\": [0, 1], \"look_at_m\"", 1);
+    one(Severity::Error, Code::NotSimilarity, "$.instances[0]", &open(grouped(&lamp, stretched)));
+
+    let eye = |rest: &str| {
+        format!(
+            "{{\"type\": \"perspective\", \"position_m\": [0, 0, 5], \"look_at_m\": [0, 0, 0], \"vertical_fov_deg\": 40, {rest}}}"
+        )
+    };
+    error(Code::OutOfRange, "$.camera.shutter_s", camera(&eye("\"shutter_s\": «[1, 0]»")));
+    error(Code::WrongLength, "$.camera.shutter_s", camera(&eye("\"shutter_s\": «[»1]")));
+    let steps = |step: &str| format!("\"keyframes\": [{{\"time_s\": 0, \"transform\": «[»{step}]}}]");
+    for step in ["{\"scale\": 2}", "{\"scale\": [1, 1, 1.1]}", "{\"scale\": -1}"] {
+        error(Code::NotSimilarity, "$.camera.keyframes[0].transform", camera(&eye(&steps(step))));
+    }
+}

@@ -131,7 +131,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         let mut others = [const { None }; W];
         for lane in lanes(shared & !flat) {
             let light = &lights[sight.light[lane] as usize];
-            let Some(sample) = light.sample(paths.at.position.at(lane), [u1[lane], u2[lane]]) else { continue };
+            let Some(sample) = light.sample(paths.at.position.at(lane), [u1[lane], u2[lane]], 0.0) else { continue };
             if sample.surface == paths.at.surface[lane] {
                 // A surface is no target for its own points: see the plain loop.
                 continue;
@@ -342,6 +342,7 @@ stages! {
                 normal: normal.at(lane),
                 surface: SurfaceId::NONE,
                 label: 0,
+                time: 0.0,
             };
             let ray = from.spawn_to(target.at(lane), SurfaceId::NONE);
             rays.origin.set(lane, ray.origin);

@@ -45,6 +45,7 @@ pub(crate) fn hindrance(runs: impl Fn(EffectName) -> bool, precision: Precision)
         () if runs(EffectName::Polarisation) => Some("light is followed with its polarisation"),
         () if runs(EffectName::NestedDielectrics) => Some("dielectrics are nested"),
         () if runs(EffectName::Absorption) => Some("media absorb"),
+        () if runs(EffectName::Motion) => Some("something moves while the shutter is open"),
         () if runs(EffectName::Masks) => Some("surfaces let paths pass"),
         () => None,
     }

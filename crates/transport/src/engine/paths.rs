@@ -69,6 +69,7 @@ impl Vertices<'_> {
             normal: self.normal.at(lane),
             surface: self.surface[lane],
             label: self.labels[lane],
+            time: 0.0,
         }
     }
 

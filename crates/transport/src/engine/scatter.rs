@@ -113,6 +113,7 @@ stages! {
                 normal: normal.at(lane),
                 surface: SurfaceId::NONE,
                 label: 0,
+                time: 0.0,
             };
             origin.set(lane, point.spawn(wi.at(lane)).origin);
         }

@@ -56,7 +56,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 self.counters.environment_lookups += 1;
                 let direction = paths.direction.at(lane);
                 let mis = if compiled::MIS && self.world.weigh_hits {
-                    self.world.weight_of_hit(paths.step(lane), SurfaceId::NONE, sky.light, direction)
+                    self.world.weight_of_hit(paths.step(lane), SurfaceId::NONE, sky.light, direction, 0.0)
                 } else {
                     1.0
                 };
@@ -87,7 +87,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 let direction = paths.direction.at(lane);
                 if let Some(emitter) = surface.emission_along(point.normal, -direction) {
                     let mis = if compiled::MIS && world.weigh_hits {
-                        world.weight_of_hit(paths.step(lane), point.surface, surface.light, direction)
+                        world.weight_of_hit(paths.step(lane), point.surface, surface.light, direction, 0.0)
                     } else {
                         1.0
                     };

@@ -27,6 +27,9 @@ pub struct Counters {
     pub shadow_rays: u64,
     /// Points drawn on a lens.
     pub lens_draws: u64,
+    /// Times drawn while the shutter is open.
+    #[serde(default)]
+    pub time_draws: u64,
     /// Times that a light at infinity was asked for its radiance.
     pub environment_lookups: u64,
     /// Vertices at which weights of the lanes were carried, because dispersion may part them.
@@ -55,6 +58,7 @@ impl Counters {
         self.rays += other.rays;
         self.shadow_rays += other.shadow_rays;
         self.lens_draws += other.lens_draws;
+        self.time_draws += other.time_draws;
         self.environment_lookups += other.environment_lookups;
         self.lane_weights += other.lane_weights;
         self.lost_media += other.lost_media;

@@ -8,6 +8,7 @@ mod cylinder;
 mod directional;
 mod disk;
 mod environment;
+mod moving;
 mod parallelogram;
 mod planar;
 mod point;
@@ -20,6 +21,7 @@ pub use cylinder::CylinderLight;
 pub use directional::DirectionalLight;
 pub use disk::DiskLight;
 pub use environment::EnvironmentLight;
+pub use moving::MovingLight;
 pub use parallelogram::ParallelogramLight;
 pub use point::PointLight;
 pub use sphere::SphereLight;
@@ -27,6 +29,7 @@ pub use spot::SpotLight;
 pub use table::LightTable;
 pub use triangle::TriangleLight;
 
+pub(crate) use moving::Link;
 pub(crate) use planar::{Aim, Flat};
 
 use crate::mis::Density;
@@ -90,11 +93,14 @@ pub enum Light {
     Directional(DirectionalLight),
     /// An image of everything around.
     Environment(Arc<EnvironmentLight>),
+    /// An emitter that moves.
+    Moving(MovingLight),
 }
 
 impl Light {
-    /// Draws a direction from `from` toward the light with `u` in [0, 1)²; `None` where none of its light arrives.
-    pub fn sample(&self, from: Vec3<f64>, u: [f64; 2]) -> Option<LightSample> {
+    /// Draws a direction from `from` toward the light with `u` in [0, 1)² at a time of the shutter's, from 0 to 1; `None` where
+    /// none of its light arrives.
+    pub fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
         match self {
             Self::Sphere(light) => light.sample(from, u),
             Self::Parallelogram(light) => light.sample(from, u),
@@ -105,6 +111,7 @@ impl Light {
             Self::Spot(light) => light.sample(from),
             Self::Directional(light) => Some(light.sample()),
             Self::Environment(light) => light.sample(u),
+            Self::Moving(light) => light.sample(from, u, time),
         }
     }
 
@@ -118,8 +125,8 @@ impl Light {
         }
     }
 
-    /// The density in sr⁻¹ with which [`Light::sample`] draws the direction `wi`, which meets the light, from `from`.
-    pub fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64 {
+    /// The density in sr⁻¹ with which [`Light::sample`] draws the direction `wi`, which meets the light at that time, from `from`.
+    pub fn density(&self, from: Vec3<f64>, wi: Vec3<f64>, time: f64) -> f64 {
         match self {
             Self::Sphere(light) => light.density(from),
             Self::Parallelogram(light) => light.density(from, wi),
@@ -127,6 +134,7 @@ impl Light {
             Self::Triangle(light) => light.density(from, wi),
             Self::Cylinder(light) => light.density(from, wi),
             Self::Environment(light) => light.density(wi),
+            Self::Moving(light) => light.density(from, wi, time),
             Self::Point(_) | Self::Spot(_) | Self::Directional(_) => 0.0,
         }
     }
@@ -152,6 +160,7 @@ impl Light {
             Self::Spot(light) => &light.point.intensity,
             Self::Directional(light) => &light.irradiance,
             Self::Environment(light) => light.white(),
+            Self::Moving(light) => light.own().spectrum(),
         }
     }
 
@@ -163,6 +172,7 @@ impl Light {
             Self::Disk(light) => Some(&light.emitter),
             Self::Triangle(light) => Some(&light.emitter),
             Self::Cylinder(light) => Some(&light.emitter),
+            Self::Moving(light) => light.emitter(),
             Self::Point(_) | Self::Spot(_) | Self::Directional(_) | Self::Environment(_) => None,
         }
     }
@@ -185,6 +195,7 @@ impl Light {
             Self::Spot(light) => light.power_factor(),
             Self::Directional(_) => PI * scene_radius * scene_radius,
             Self::Environment(light) => light.total() * PI * scene_radius * scene_radius,
+            Self::Moving(light) => light.own().power_factor(scene_radius) * light.area_factor(),
         }
     }
 }

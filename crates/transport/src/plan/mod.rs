@@ -53,6 +53,8 @@ pub enum EffectName {
     Masks,
     /// Groups of objects are placed where they are met, instead of being copied.
     Instances,
+    /// Things move while the shutter is open.
+    Motion,
     /// A pixel looks beyond its own square.
     WideFilter,
     /// The film keeps bands of wavelengths apart.
@@ -61,7 +63,7 @@ pub enum EffectName {
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Lens,
@@ -76,6 +78,7 @@ impl EffectName {
         Self::ShadingNormals,
         Self::Masks,
         Self::Instances,
+        Self::Motion,
         Self::WideFilter,
         Self::Bands,
     ];
@@ -97,6 +100,7 @@ impl EffectName {
             Self::ShadingNormals => "shading-normals",
             Self::Masks => "masks",
             Self::Instances => "instances",
+            Self::Motion => "motion",
             Self::WideFilter => "wide-filter",
             Self::Bands => "bands",
         }
@@ -121,6 +125,7 @@ impl EffectName {
             Self::ShadingNormals => "meshes show their triangles",
             Self::Masks => "every surface is opaque",
             Self::Instances => "what instances place is left out",
+            Self::Motion => "everything stands still, as in the middle of the shutter's time",
             Self::WideFilter => "a pixel is its own square",
             Self::Bands => "the film keeps the colour only",
         }
@@ -132,7 +137,7 @@ impl EffectName {
             Self::Wavelengths | Self::Dispersion | Self::Lens | Self::ShadowRays | Self::Mis | Self::Environment => {
                 true
             }
-            Self::NestedDielectrics | Self::Absorption | Self::Polarisation => true,
+            Self::NestedDielectrics | Self::Absorption | Self::Polarisation | Self::Motion => true,
             // They are what the surfaces, or the film, are made of.
             Self::SpecularChains
             | Self::Textures

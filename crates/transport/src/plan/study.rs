@@ -190,6 +190,11 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             }
         }
         EffectName::Instances => scene.instances.clear(),
+        EffectName::Motion => {
+            scene.camera.motion = None;
+            let grouped = scene.groups.iter_mut().flat_map(|group| &mut group.instances);
+            scene.instances.iter_mut().chain(grouped).for_each(|instance| instance.motion = None);
+        }
         EffectName::WideFilter => scene.film.filter = Filter::Box,
         EffectName::Bands => scene.film.bands = None,
     }

@@ -56,7 +56,7 @@ impl Lamp {
 
 impl Emits for Lamp {
     fn sample(&self, from_m: [f64; 3], u: [f64; 2]) -> Option<Emitted> {
-        let s = self.light.sample(Vec3::from_array(from_m), u)?;
+        let s = self.light.sample(Vec3::from_array(from_m), u, 0.0)?;
         let (mis::Density::SolidAngle(pdf), Target::Point(target)) = (s.density, s.target) else {
             panic!("an area light has neither a delta nor an infinite distance");
         };
@@ -66,7 +66,11 @@ impl Emits for Lamp {
     }
 
     fn pdf(&self, from_m: [f64; 3], wi: [f64; 3]) -> f64 {
-        if self.is_met(from_m, wi) { self.light.density(Vec3::from_array(from_m), Vec3::from_array(wi)) } else { 0.0 }
+        if self.is_met(from_m, wi) {
+            self.light.density(Vec3::from_array(from_m), Vec3::from_array(wi), 0.0)
+        } else {
+            0.0
+        }
     }
 
     fn radiance(&self, from_m: [f64; 3], wi: [f64; 3]) -> f64 {

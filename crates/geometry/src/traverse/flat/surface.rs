@@ -91,7 +91,7 @@ impl Job for Surfaces<'_> {
         for l in lanes_of(active & !is_plane) {
             let ray = rays.get(l);
             let point = primitives[ids[l] as usize].surface(ray.origin + ray.direction * hits.t[l]);
-            out.set(l, &SurfacePoint::rounded(&point, hits.surface[l], label));
+            out.set(l, &SurfacePoint::rounded(&point, hits.surface[l], label, ray.time));
         }
         out
     }

@@ -2,6 +2,7 @@
 
 mod lights;
 mod materials;
+mod motion;
 mod polarisation;
 
 pub(super) use lights::sources;
@@ -65,6 +66,7 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             }
             None => nothing("every object stands where it is defined"),
         },
+        EffectName::Motion => motion::motion(scene),
         EffectName::WideFilter => match scene.film.filter {
             Filter::Box => nothing("a pixel is its own square"),
             Filter::Tent { radius_px } => Ok(format!("film: tent of radius {radius_px} px")),

@@ -1,0 +1,125 @@
+//! Keyframes of instances and of the camera.
+
+use super::geometry::{Step, is_similarity, transform};
+use crate::json::{Code, List, Optional, Reader, Required, Spanned};
+use crate::model::{Keyframe, Motion, Transform};
+use crate::vector::dot;
+
+crate::record! {
+    /// Where something is at one time.
+    pub(crate) struct KeyframeForm + comment {
+        /// The time, s.
+        time_s: Required<f64>,
+        /// Its transform then: steps, the first of which is applied first.
+        transform: Required<Spanned<List<Box<Step>>>> = "[]",
+    }
+}
+
+/// When the shutter opens and closes, s.
+pub(crate) fn shutter_s(form: Option<&Spanned<[f64; 2]>>, reader: &mut Reader<'_>) -> Option<[f64; 2]> {
+    let shutter = form?;
+    let [open, close] = shutter.value;
+    if close < open {
+        let message = format!("the shutter closes at {close} s, before it opens at {open} s");
+        reader.error(Code::OutOfRange, shutter.at, message);
+        return None;
+    }
+    // Also where each alone is finite.
+    if !(close - open).is_finite() {
+        reader.error(Code::OutOfRange, shutter.at, "the shutter is open for longer than can be computed with");
+        return None;
+    }
+    Some(shutter.value)
+}
+
+/// Whether what moves may be stretched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stretch {
+    Allowed,
+    Refused,
+}
+
+/// A placement in the middle of the shutter's time, and how it moves if it does while the shutter is open.
+pub(crate) type Placed = (Transform, Option<Motion>);
+
+/// The motion of some keyframes.
+pub(crate) fn motion(
+    forms: &Spanned<List<Box<KeyframeForm>>>,
+    shutter_s: [f64; 2],
+    stretch: Stretch,
+    reader: &mut Reader<'_>,
+) -> Option<Placed> {
+    if forms.value.0.is_empty() {
+        let hint = "one is where it rests; two are a motion";
+        reader.error_hint(Code::WrongLength, forms.at.head(), "there are no keyframes", hint);
+        return None;
+    }
+    // All of them are read before the first that is wrong ends it.
+    let made: Vec<Option<Keyframe>> =
+        forms.value.0.iter().map(|form| keyframe(form.as_deref()?, stretch, reader)).collect();
+    let keyframes: Vec<Keyframe> = made.into_iter().collect::<Option<_>>()?;
+    let before = reader.error_count();
+    for (pair, form) in keyframes.windows(2).zip(&forms.value.0[1..]) {
+        let Some(at) = form.as_ref().map(|form| form.at.head()) else { continue };
+        let (a, b) = (&pair[0], &pair[1]);
+        if a.time_s >= b.time_s {
+            let message = format!("the keyframe at {} s does not come after the one at {} s", b.time_s, a.time_s);
+            reader.error_hint(Code::OutOfRange, at, message, "times must increase");
+        } else if !((b.time_s - a.time_s).is_finite() && (b.time_s - a.time_s).recip().is_finite()) {
+            reader.error(Code::OutOfRange, at, "the time from the keyframe before cannot be computed with");
+        } else if a.mirrors() != b.mirrors() {
+            let message =
+                "this keyframe mirrors and the one before does not, or the reverse: on the way all would be flat";
+            reader.error(Code::Motion, at, message);
+        } else if a.is_half_turn_from(b) {
+            let message = "the keyframe is half a turn from the one before: it does not say which way round";
+            reader.error_hint(Code::Motion, at, message, "put another one between the two");
+        }
+    }
+    if reader.error_count() != before {
+        return None;
+    }
+    let motion = Motion { keyframes };
+    let [open, close] = shutter_s;
+    let middle = motion.at(open + 0.5 * (close - open));
+    let moves = motion.moves(shutter_s);
+    Some((middle, moves.then_some(motion)))
+}
+
+fn keyframe(form: &KeyframeForm, stretch: Stretch, reader: &mut Reader<'_>) -> Option<Keyframe> {
+    let steps = form.transform.as_ref()?;
+    let transform = transform(&steps.value, steps.at.head(), reader)?;
+    let scale = dot(transform.linear[0], transform.linear[0]);
+    if stretch == Stretch::Refused && !(is_similarity(&transform) && (scale - 1.0).abs() <= RIGID) {
+        let message = "a camera can only be moved and turned";
+        reader.error_hint(Code::NotSimilarity, steps.at.head(), message, "change its angle of view to zoom");
+        return None;
+    }
+    let mut keyframe = Keyframe::new(form.time_s?, transform);
+    if stretch == Stretch::Refused {
+        if keyframe.mirrors() {
+            reader.error(Code::NotSimilarity, steps.at.head(), "a camera cannot be mirrored");
+            return None;
+        }
+        keyframe.stretch = Transform::IDENTITY.linear;
+        keyframe.transform.linear = keyframe.rotation;
+    }
+    Some(keyframe)
+}
+
+/// How far the square of a camera's scale may be from 1: matrices in files are often written with seven digits.
+const RIGID: f64 = 1e-6;
+
+/// The keyframes of a form, if it has some; `Err` where they are wrong.
+pub(crate) fn given(
+    forms: &Optional<Spanned<List<Box<KeyframeForm>>>>,
+    shutter_s: [f64; 2],
+    stretch: Stretch,
+    reader: &mut Reader<'_>,
+) -> Option<Option<Placed>> {
+    match forms {
+        Optional::Absent => Some(None),
+        Optional::Invalid => None,
+        Optional::Given(forms) => motion(forms, shutter_s, stretch, reader).map(Some),
+    }
+}

@@ -1,0 +1,200 @@
+//! What moves while the shutter is open, against closed forms and against what stands still.
+
+use etalon_oracle::truths::{Claim, truths};
+use etalon_scene::{Precision, SamplerKind, Scene};
+use etalon_transport::{Control, EffectName, Film, Study, prepare_study};
+use serde_json::{Value, json};
+
+fn parse(json: &str) -> Scene {
+    etalon_scene::parse(json, "test").unwrap_or_else(|errors| panic!("{errors}")).0
+}
+
+fn render(scene: &Scene, study: &Study) -> Film {
+    let prepared = prepare_study(scene, study).unwrap();
+    prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap()
+}
+
+fn mean_y(film: &Film) -> f64 {
+    film.xyz().map(|xyz| xyz[1]).sum::<f64>() / film.xyz().count() as f64
+}
+
+fn without() -> Study {
+    Study { without: vec![EffectName::Motion], ..Study::default() }
+}
+
+#[test]
+fn truths_hold_in_both_precisions_and_reject_what_stands_still() {
+    let moving: Vec<_> = truths().into_iter().filter(|truth| truth.claims.contains(&Claim::Motion)).collect();
+    assert!(moving.len() >= 8);
+    for truth in moving {
+        for precision in [Precision::F32, Precision::F64] {
+            let mut scene = parse(&truth.scene);
+            scene.integrator.precision = precision;
+            // The same number of paths whatever the film: 16 a pixel of the usual one, 2¹⁴ in all.
+            scene.integrator.spp = (1 << 14) / (scene.film.width * scene.film.height);
+            let film = render(&scene, &Study::default());
+            // The worst of them, a lamp found by chance, scatters by (1/√p)/128 = 2.5 % at most if points were independent, and
+            // they are stratified.
+            let error = (mean_y(&film) / truth.value - 1.0).abs();
+            assert!(error < 0.04, "{}: {} is not {}", truth.name, mean_y(&film), truth.value);
+            assert_eq!(film.counters.nonfinite, 0, "{}", truth.name);
+            assert_eq!(film.counters.time_draws, film.counters.paths);
+            let error = (mean_y(&render(&scene, &without())) / truth.value - 1.0).abs();
+            assert!(error > 0.08, "{}: the mutant that stands still is not seen", truth.name);
+        }
+    }
+}
+
+/// A room of things of all kinds, some of them placed by `placed`; a lamp among them.
+fn room(placed: &Value, shutter_s: [f64; 2]) -> Scene {
+    let lambert = |reflectance: f64| json!({"type": "lambert", "reflectance": reflectance});
+    let mut instance = json!({"name": "thing", "group": "things"});
+    for (key, value) in placed.as_object().unwrap() {
+        instance[key] = value.clone();
+    }
+    parse(
+        &json!({
+            "etalon": 1,
+            "camera": {"type": "perspective", "position_m": [0, 1, 4], "look_at_m": [0, 0.5, 0], "vertical_fov_deg": 40,
+                "shutter_s": shutter_s},
+            "film": {"width": 16, "height": 12},
+            "objects": [
+                {"shape": {"type": "disk", "normal": [0, 1, 0], "radius_m": 3}, "material": lambert(0.6)},
+                {"shape": {"type": "parallelogram", "origin_m": [-1, 3, -1], "u_m": [1, 0, 0], "v_m": [0, 0, 1]},
+                    "material": lambert(0.0), "emission": {"radiance": 4}}
+            ],
+            "groups": {"things": {"objects": [
+                {"shape": {"type": "sphere", "center_m": [0, 0.4, 0], "radius_m": 0.4},
+                    "material": {"type": "dielectric", "interior": "N-BK7"}},
+                {"shape": {"type": "box", "min_m": [0.5, 0, 0], "max_m": [0.8, 0.6, 0.5]}, "material": lambert(0.4)},
+                {"shape": {"type": "sphere", "center_m": [-0.6, 0.3, 0.3], "radius_m": 0.1}, "material": lambert(0.2),
+                    "emission": {"radiance": 6}}
+            ]}},
+            "instances": [instance],
+            "integrator": {"spp": 8}
+        })
+        .to_string(),
+    )
+}
+
+fn placement() -> Value {
+    json!([{"rotate": {"axis": [1, 2, 3], "angle_deg": 20}}, {"scale": 1.1}, {"translate_m": [0.1, 0.2, 0.3]}])
+}
+
+#[test]
+fn keyframes_that_are_all_the_same_are_a_placement_that_stands_still_bit_for_bit() {
+    let still = render(&room(&json!({"transform": placement()}), [0.0, 0.0]), &Study::default());
+    let key = |time_s: f64| json!({"time_s": time_s, "transform": placement()});
+    let other = json!({"time_s": 3, "transform": [{"translate_m": [5, 5, 5]}]});
+    for (keyframes, shutter_s) in [
+        (json!([key(0.0), key(1.0)]), [0.0, 1.0]),
+        (json!([key(0.0), key(0.5), key(0.75)]), [0.1, 2.0]),
+        (json!([key(0.2)]), [0.0, 1.0]),
+        // What moves does so when the shutter is closed.
+        (json!([key(0.0), key(1.0), other]), [0.25, 0.75]),
+        (json!([key(0.0), key(1.0), other]), [0.0, 1.0]),
+        // An instant.
+        (json!([key(1.0), other]), [1.0, 1.0]),
+    ] {
+        let scene = room(&json!({"keyframes": keyframes}), shutter_s);
+        let film = render(&scene, &Study::default());
+        assert!(film.pixels().eq(still.pixels()), "{keyframes} {shutter_s:?}");
+        assert_eq!(film.counters, still.counters);
+        assert_eq!(film.counters.time_draws, 0);
+        // Times that nothing needs change no bit.
+        let forced = render(&scene, &Study { force: vec![EffectName::Motion], ..Study::default() });
+        assert!(forced.pixels().eq(still.pixels()) && forced.counters.time_draws == forced.counters.paths);
+    }
+}
+
+#[test]
+fn without_motion_everything_stands_as_in_the_middle_of_the_time() {
+    let steps = |x: f64| json!([{"scale": 1.25}, {"translate_m": [x, 0.25, 0.5]}]);
+    let keyframes = json!([{"time_s": 0, "transform": steps(-0.5)}, {"time_s": 1, "transform": steps(1.0)}]);
+    let moving = room(&json!({"keyframes": keyframes}), [0.5, 1.0]);
+    // Three quarters of 1.5 m; exact in binary.
+    let still = room(&json!({"transform": steps(0.625)}), [0.0, 0.0]);
+    let (frozen, still) = (render(&moving, &without()), render(&still, &Study::default()));
+    assert!(frozen.pixels().eq(still.pixels()));
+    assert!(!render(&moving, &Study::default()).pixels().eq(still.pixels()));
+    let plan = |study: &Study| prepare_study(&moving, study).unwrap().plan().clone();
+    assert!(plan(&without()).approximations.iter().any(|text| text.starts_with("motion: everything stands still")));
+    assert!(plan(&Study::default()).runs(EffectName::Motion));
+}
+
+/// The whole picture is bright until 0.37 s, when a shutter of our own closes before it.
+fn curtain(spp: u32, sampler: SamplerKind) -> Scene {
+    let at = |time_s: f64, y: f64| json!({"time_s": time_s, "transform": [{"translate_m": [0, y, 0]}]});
+    let mut scene = parse(
+        &json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 3], "direction": [0, 0, -1], "height_m": 1,
+                "shutter_s": [0, 1]},
+            "film": {"width": 8, "height": 8},
+            "groups": {"curtain": {"objects": [
+                {"shape": {"type": "parallelogram", "origin_m": [-1, -1, 0], "u_m": [2, 0, 0], "v_m": [0, 2, 0]},
+                    "material": {"type": "black"}}
+            ]}},
+            "instances": [{"group": "curtain", "keyframes": [at(0.37, 9.0), at(0.370_000_1, 0.0)]}],
+            "lights": [{"type": "environment", "radiance": 1}],
+            "integrator": {"spp": spp, "replicates": 1}
+        })
+        .to_string(),
+    );
+    scene.integrator.sampler = sampler;
+    scene
+}
+
+/// Of n stratified times of a pixel, one for each n-th part, 0.37 n are before 0.37 but for one; that takes times of their own
+/// for the samples of a pixel. Independent ones miss by √(0.37·0.63·n): the mutant.
+#[test]
+fn times_of_a_pixel_are_stratified_over_the_shutters_time_and_differ_from_pixel_to_pixel() {
+    let n = 256;
+    let late = |sampler| {
+        let film = render(&curtain(n, sampler), &Study::default());
+        let white = {
+            let mut open = curtain(n, sampler);
+            open.instances.clear();
+            mean_y(&render(&open, &Study::default()))
+        };
+        let counts: Vec<f64> = film.xyz().map(|xyz| xyz[1] / white * f64::from(n)).collect();
+        counts.iter().map(|count| (count - 0.37 * f64::from(n)).abs()).fold(0.0, f64::max)
+    };
+    assert!(late(SamplerKind::Sobol) <= 1.01, "{}", late(SamplerKind::Sobol));
+    assert!(late(SamplerKind::Independent) > 5.0, "the mutant is not seen");
+    // One sample each: pixels have times of their own, or all would be bright, or none.
+    let once = render(&curtain(1, SamplerKind::Sobol), &Study::default());
+    let bright = once.xyz().filter(|xyz| xyz[1] > 0.0).count();
+    // 64 pixels, bright with probability 0.37: 23.7 ± 3.9.
+    assert!((5..=43).contains(&bright), "{bright}");
+}
+
+#[test]
+fn a_world_scaled_by_a_power_of_two_moves_to_the_same_bits() {
+    let scene = |scale: f64| {
+        let at = |v: [f64; 3]| json!(v.map(|x| x * scale));
+        let key = |time_s: f64, degrees: f64, x: f64| {
+            json!({"time_s": time_s, "transform":
+                [{"rotate": {"axis": [0, 1, 1], "angle_deg": degrees}}, {"translate_m": at([x, 0.3, 0.0])}]})
+        };
+        let grey = json!({"type": "lambert", "reflectance": 0.5});
+        let text = json!({
+            "etalon": 1,
+            "camera": {"type": "perspective", "position_m": at([0.0, 1.0, 4.0]), "look_at_m": [0, 0, 0],
+                "vertical_fov_deg": 40, "shutter_s": [0, 1], "keyframes": [key(0.0, 0.0, 0.0), key(1.0, 3.0, 0.1)]},
+            "film": {"width": 16, "height": 12},
+            "groups": {"lamp": {"objects": [{"shape": {"type": "sphere", "center_m": at([0.3, 1.0, 0.0]), "radius_m": 0.2 * scale},
+                "material": grey, "emission": {"radiance": 5}}]}},
+            "instances": [{"group": "lamp", "keyframes": [key(0.0, 10.0, -0.5), key(0.6, 95.0, 0.25), key(1.0, 40.0, 0.5)]}],
+            "objects": [{"shape": {"type": "disk", "center_m": at([0.0, -0.5, 0.0]), "normal": [0, 1, 0], "radius_m": 3.0 * scale},
+                "material": grey}],
+            "integrator": {"spp": 4}
+        });
+        render(&parse(&text.to_string()), &Study::default())
+    };
+    let one = scene(1.0);
+    assert!(mean_y(&one) > 0.01);
+    for scale in [4.0, 1.0 / 1024.0] {
+        assert!(scene(scale).pixels().eq(one.pixels()), "{scale}");
+    }
+}
