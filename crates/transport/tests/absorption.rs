@@ -4,6 +4,7 @@ use etalon_oracle::truths::{Claim, truths};
 use etalon_scene::{Precision, Scene};
 use etalon_transport::{Control, EffectName, Film, Study, prepare_study};
 use serde_json::{Value, json};
+use std::f64::consts::PI;
 
 fn parse(json: &str) -> Scene {
     etalon_scene::parse(json, "test").unwrap_or_else(|errors| panic!("{errors}")).0
@@ -128,4 +129,54 @@ fn a_world_scaled_by_a_power_of_two_with_its_coefficients_shows_the_same_bits() 
     for scale in [4.0, 1.0 / 1024.0] {
         assert!(scene(scale).pixels().eq(one.pixels()), "{scale}");
     }
+}
+
+/// Light that reaches a floor straight from a lamp of intensity 1 two metres above it, all within an absorbing body of index 1 that
+/// carries a priority: what stands between them lets through what its opacity leaves, and each stretch is absorbed once.
+#[test]
+fn a_shadow_ray_is_stopped_dimmed_and_absorbed_by_what_it_meets_within_a_medium() {
+    let read_by = |between: Option<Value>, spp: u32| {
+        let mut objects = vec![
+            json!({
+                "shape": {"type": "box", "min_m": [-9, -9, -9], "max_m": [9, 9, 9]},
+                "material": {"type": "dielectric", "interior": 1, "priority": 0, "absorption_per_m": 0.5}
+            }),
+            json!({
+                "shape": {"type": "disk", "center_m": [0, 0, 3], "normal": [0, 0, 1], "radius_m": 1},
+                "material": {"type": "lambert", "reflectance": 0.5}
+            }),
+        ];
+        objects.extend(between);
+        let scene = json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 3.25], "direction": [0, 0, -1], "height_m": 0.001},
+            "film": {"width": 2, "height": 2},
+            "objects": objects,
+            "lights": [{"type": "point", "position_m": [0, 0, 5], "intensity": 1}],
+            "integrator": {"spp": spp, "max_depth": 2, "roulette": false}
+        });
+        mean_y(&render(&parse(&scene.to_string()), &Study::default()))
+    };
+    let read = |between| read_by(between, 64);
+    let sheet_at = |height_m: f64, opacity: f64| {
+        let shape = json!({"type": "disk", "center_m": [0, 0, height_m], "normal": [0, 0, 1], "radius_m": 1});
+        Some(json!({"shape": shape, "material": {"type": "black"}, "opacity": opacity}))
+    };
+    let sheet = |opacity| sheet_at(4.0, opacity);
+    let ball = |priority: u32| {
+        let material = json!({"type": "dielectric", "interior": 1.5, "priority": priority});
+        Some(json!({"shape": {"type": "sphere", "center_m": [0, 0, 4], "radius_m": 0.5}, "material": material}))
+    };
+    // (ρ/π)·I/d² over 2 m, absorbed along them and along a quarter of a metre to the eye; the picture's size changes 1e-6 of it.
+    let clear = 0.5 / PI / 4.0 * (-0.5_f64 * 2.25).exp();
+    let close = |got: f64, want: f64| assert!((got / want - 1.0).abs() < 1e-3, "{got} is not {want}");
+    close(read(None), clear);
+    // 64 samples of a half in each of four pixels: the mean of a shadow ray's share, not of a choice, has no noise.
+    close(read(sheet(0.5)), 0.5 * clear);
+    assert_eq!(read(sheet(1.0)), 0.0);
+    // Between the eye and the floor, where the eye's ray passes it by choice and the shadow ray again by its share, it is no vertex: two
+    // edges still reach the lamp. 16384 choices of a half: five standard errors are .04 of them.
+    let seen = read_by(sheet_at(3.1, 0.5), 4096);
+    assert!((seen / (0.25 * clear) - 1.0).abs() < 0.04, "{seen}");
+    assert_eq!(read(ball(1)), 0.0, "glass that is there stops a shadow ray");
 }
