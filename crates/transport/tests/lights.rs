@@ -143,7 +143,7 @@ fn a_surface_shines_only_from_the_sides_that_emit_and_not_along_itself() {
                     let Some(sample) = light.sample(*place, u, 0.0) else { continue };
                     let Density::SolidAngle(density) = sample.density else { panic!("an area light has no delta") };
                     assert!(density > 0.0 && density.is_finite());
-                    assert_eq!(density, light.density(*place, sample.wi), "{k}, {u:?}");
+                    assert_eq!(density, light.density(*place, sample.wi, 0.0), "{k}, {u:?}");
                 }
             }
         }
