@@ -5,7 +5,8 @@
 //! never rejects a box that holds a primitive which the `f64` test would accept.
 
 use crate::Aabb;
-use crate::query::{AXES, Four, Query, larger, power_of_two, projection_axis};
+pub(crate) use crate::narrow::{Lanes4, Plain};
+use crate::query::{Four, Query, larger, power_of_two, projection_axis};
 use etalon_optics::Vec3;
 use std::array::from_fn;
 use std::cmp::Ordering;
@@ -32,6 +33,8 @@ pub(crate) struct Frame {
     centre: Vec3<f64>,
     scale: f64,
     unscale: f64,
+    /// Whether nothing is translated, and `f32` holds the scale.
+    scales: bool,
 }
 
 /// Boxes are widened by this much (2⁻⁴²): more than [`SLACK`], and more than a ray whose direction component was clamped to
@@ -59,7 +62,8 @@ impl Frame {
         let half = (bounds.max - centre).abs().max((bounds.min - centre).abs()).max_component();
         let exponent = if half > 0.0 { (half.to_bits() >> 52) as i64 - 1022 } else { 0 };
         let exponent = exponent.clamp(-500, 500);
-        Self { centre, scale: power_of_two(-exponent), unscale: power_of_two(exponent) }
+        let scales = centre == Vec3::ZERO && exponent.abs() <= 100;
+        Self { centre, scale: power_of_two(-exponent), unscale: power_of_two(exponent), scales }
     }
 
     /// A box in this frame, rounded outward.
@@ -139,11 +143,14 @@ impl Frame {
         // Most directions need not be scaled: their reciprocals are.
         let usual = (USUAL_SCALE..=1.0 / USUAL_SCALE).contains(&q.scale);
         let (direction, unit) = if usual { (q.given, q.scale.recip() as f32) } else { (q.direction, 1.0) };
+        let limits = [self.distance(start, q.t_max), self.distance_below(start, q.t_max)];
         Some(self.ray(RayParts {
             origin: L::new(token, [origin[0], origin[1], origin[2], 0.0]),
-            inexact: L::new(token, [inexact(0), inexact(1), inexact(2), 0.0]),
+            inexact: Some(L::new(token, [inexact(0), inexact(1), inexact(2), 0.0])),
             direction: L::new(token, [direction.x as f32, direction.y as f32, direction.z as f32, 0.0]),
             unit,
+            factors: [-NEAR_FACTOR * unit, -FAR_FACTOR * unit],
+            limits,
             axis: q.projection.axis,
             reach,
             slack,
@@ -166,15 +173,17 @@ impl Frame {
         let Vec3 { x, y, z } = self.centre;
         let o = (origin - F::new(token, [x, y, z, 0.0])) * F::splat(token, self.scale);
         let (reach, magnitudes) = (o.abs(), direction.abs());
-        let magnitude = magnitudes.largest();
+        // Bits of numbers that are not negative are ordered as they are, and compared sooner.
+        let bits = magnitudes.to_array().map(f64::to_bits);
+        let magnitude = larger(larger(bits[0], bits[1]), bits[2]);
         // False if a component is NaN.
         let near = reach.all_at_most(NEAR_REACH) && magnitudes.all_at_most(1.0 / USUAL_SCALE);
-        if !(near && magnitude >= USUAL_SCALE) {
+        if !(near && magnitude >= USUAL_SCALE.to_bits()) {
             return None;
         }
         // The power of two below, and its inverse: the exponent alone, and that turned about zero.
         const EXPONENT: u64 = 0x7FF << 52;
-        let exponent = magnitude.to_bits() & EXPONENT;
+        let exponent = magnitude & EXPONENT;
         let (unit, t_scale) = (f64::from_bits(exponent), f64::from_bits((2046 << 52) - exponent));
         let t_max = t_max(unit);
         // A NaN is none either.
@@ -182,13 +191,17 @@ impl Frame {
             return None;
         }
         let origin = o.narrowed();
-        let [ax, ay, az, _] = magnitudes.to_array();
+        let axis = projection_axis(bits);
+        // What is multiplied by the unit has its exponent added, which takes half as long as to round the unit and to multiply.
+        let power = ((exponent >> 52) as u32).wrapping_sub(1023) << 23;
         Some(self.ray(RayParts {
             origin,
-            inexact: o.differs(origin),
+            inexact: Some(o.differs(origin)),
             direction: direction.narrowed(),
-            unit: unit as f32,
-            axis: projection_axis([ax, ay, az]),
+            unit: f32::from_bits(1.0_f32.to_bits().wrapping_add(power)),
+            factors: scaled_factors(power),
+            limits: self.limits(t_max),
+            axis,
             reach: reach.largest(),
             slack: SLACK,
             start: 0.0,
@@ -197,46 +210,140 @@ impl Frame {
         }))
     }
 
+    /// [`Frame::enter_near`] of a ray in `f32`, three lanes and a zero each, in a frame that only scales: no number is rounded (if
+    /// not by less than [`SLACK`], where one is all but zero).
+    #[inline(always)]
+    pub(crate) fn enter_exact<L: Lanes4>(
+        &self,
+        [origin, direction]: [L; 2],
+        t_max: impl FnOnce(f64) -> f64,
+    ) -> Option<FrameRay<L>> {
+        if !self.scales {
+            return None;
+        }
+        let origin = origin.times(self.scale as f32);
+        let (reach, magnitudes) = (origin.abs(), direction.abs());
+        let [rx, ry, rz, _] = reach.to_array();
+        // Bits of numbers that are not negative are ordered as they are, and compared sooner.
+        let [ax, ay, az, _] = magnitudes.to_array().map(f32::to_bits);
+        let magnitude = larger(larger(ax, ay), az);
+        let near = reach.all_at_most(NEAR_REACH as f32) && magnitudes.all_at_most(1.0 / USUAL_SCALE as f32);
+        if !(near && magnitude >= (USUAL_SCALE as f32).to_bits()) {
+            return None;
+        }
+        // See `enter_near`.
+        let power = (magnitude & 0xFF << 23).wrapping_sub(1.0_f32.to_bits());
+        let double = 1.0_f64.to_bits() as i64;
+        let exponent = i64::from(power as i32) << 29;
+        let (unit, t_scale) = (f64::from_bits((double + exponent) as u64), f64::from_bits((double - exponent) as u64));
+        let t_max = t_max(unit);
+        if t_max.partial_cmp(&0.0) != Some(Ordering::Greater) {
+            return None;
+        }
+        Some(self.ray(RayParts {
+            origin,
+            inexact: None,
+            direction,
+            unit: f32::from_bits(1.0_f32.to_bits().wrapping_add(power)),
+            factors: scaled_factors(power),
+            limits: self.limits(t_max),
+            axis: projection_axis([ax, ay, az, 0]),
+            reach: f64::from(larger(larger(rx, ry), rz)),
+            slack: SLACK,
+            start: 0.0,
+            t_max,
+            t_scale,
+        }))
+    }
+
+    /// [`Frame::distance`] and [`Frame::distance_below`] of a start at zero.
+    #[inline(always)]
+    fn limits(&self, t_max: f64) -> [f32; 2] {
+        // 4 roundoffs cover what accepted distances err by, the rounding to `f32`, and that of the product and of the sum.
+        let distance = (t_max * self.scale) as f32;
+        let known = if distance < FARTHEST { distance } else { FARTHEST };
+        let error = |distance: f32| distance * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE;
+        [distance + error(distance), known - error(known)]
+    }
+
     #[inline(always)]
     fn ray<L: Lanes4>(&self, parts: RayParts<L>) -> FrameRay<L> {
-        let RayParts { origin, inexact, direction, unit, axis, reach, slack, start, t_max, t_scale } = parts;
+        let RayParts { origin, inexact, direction, unit, factors, limits, axis, reach, slack, start, t_max, t_scale } =
+            parts;
         // Unless it is exact the origin is displaced along the ray and against it by more than its error: an `f32` ε of it
         // covers its rounding and that of the displaced one, half an ε each; another one, second orders.
-        let error = origin.abs().times(2.0 * f32::EPSILON).plus(above(slack));
-        let displaced = error.product(inexact).signed_as(direction);
+        let [origin_near, origin_far] = match inexact {
+            Some(inexact) => {
+                let error = origin.abs().times(2.0 * f32::EPSILON).plus(above(slack));
+                let displaced = error.product(inexact).signed_as(direction);
+                [origin.sum(displaced), origin.difference(displaced)]
+            }
+            None => [origin; 2],
+        };
         let reciprocal = direction.abs().at_least(MIN_DIRECTION).signed_as(direction).reciprocal();
         // Of the largest component, which is not clamped.
         let slope = reciprocal.turned(axis).to_array()[2];
         FrameRay {
             boxes: BoxRay {
-                origin_near: origin.sum(displaced),
-                origin_far: origin.difference(displaced),
-                reciprocal_near: reciprocal.times(unit * NEAR_FACTOR),
-                reciprocal_far: reciprocal.times(unit * FAR_FACTOR),
+                origin_near,
+                origin_far,
+                reciprocal_near: reciprocal.times(factors[0]),
+                reciprocal_far: reciprocal.times(factors[1]),
                 negative: direction.negative(),
             },
             axis,
             start_along: origin.turned(axis),
             slopes: direction.turned(axis).times(slope),
             per_depth: slope * unit,
-            error: above(reach * PROJECTION_ERROR + 2.0 * slack),
-            scale: self.scale,
+            // A little more than what is stated, for the rounding of the reach, the product and the sum.
+            error: reach as f32 * (PROJECTION_ERROR as f32 * (1.0 + 8.0 * f32::EPSILON)) + above(2.0 * slack),
+            limit: limits[0],
+            certain_limit: limits[1],
             start,
             t_max,
             t_scale,
         }
     }
+
+    /// A distance in this frame that is not below the distance of any hit up to `t` of the [`Query`] of a ray that was moved by
+    /// [`FrameRay::start`].
+    #[inline]
+    pub(crate) fn distance(&self, start: f64, t: f64) -> f32 {
+        // Accepted distances err by up to 2⁻³⁰ of themselves.
+        const WIDER: f64 = 1.0 + 1.0 / (1_u64 << 29) as f64;
+        above(t * self.scale * WIDER - start).max(0.0)
+    }
+
+    /// A distance in this frame that is not above the distance of any hit beyond `t` of the [`Query`].
+    #[inline]
+    fn distance_below(&self, start: f64, t: f64) -> f32 {
+        const NARROWER: f64 = 1.0 - 1.0 / (1_u64 << 29) as f64;
+        let t = t * self.scale * NARROWER - start;
+        let farthest = f64::from(FARTHEST);
+        below(if t < farthest { t } else { farthest })
+    }
 }
 
+/// The negative factors of near and far distances times a power of two, the bits that it adds.
+#[inline(always)]
+fn scaled_factors(power: u32) -> [f32; 2] {
+    [-NEAR_FACTOR, -FAR_FACTOR].map(|factor| f32::from_bits(factor.to_bits().wrapping_add(power)))
+}
+
+/// Beyond this nothing is in the frame.
+const FARTHEST: f32 = 1e30;
+
 /// What a [`FrameRay`] is made of: three lanes of the origin, rounded; 1 in those where that changed it, or where it is not known,
-/// else 0; the direction as it was given or [`Query::direction`], rounded; parameters along [`Query::direction`] for one along
-/// that; the axis of the projection; the largest magnitude of the origin and the bound on its error before it was rounded; and
+/// else 0, or none if it changed none; the direction as it was given or [`Query::direction`], rounded; parameters along [`Query::direction`] for one along
+/// that, times one, and times the negative factors of near and far distances; the end, not too near and not too far; the axis of the projection; the largest magnitude of the origin and the bound on its error before it was rounded; and
 /// fields of the same names.
 struct RayParts<L> {
     origin: L,
-    inexact: L,
+    inexact: Option<L>,
     direction: L,
     unit: f32,
+    factors: [f32; 2],
+    limits: [f32; 2],
     axis: usize,
     reach: f64,
     slack: f64,
@@ -303,8 +410,12 @@ pub(crate) struct FrameRay<L> {
     pub(crate) per_depth: f32,
     /// The ray's part of the bound on the error of a vertex's projected coordinates.
     pub(crate) error: f32,
-    scale: f64,
-    start: f64,
+    /// [`Frame::distance`] of the end.
+    pub(crate) limit: f32,
+    /// A distance not above that of any hit beyond the end.
+    pub(crate) certain_limit: f32,
+    /// By how much the origin was moved along the ray.
+    pub(crate) start: f64,
     /// [`Query::t_max`].
     pub(crate) t_max: f64,
     /// [`Query::scale`].
@@ -318,128 +429,13 @@ pub(crate) struct BoxRay<L> {
     pub(crate) origin_near: L,
     /// The origin displaced against the ray by more than its error: for the planes where the ray leaves boxes.
     pub(crate) origin_far: L,
-    /// 1/direction, finite, with the sign of the direction's sign bit, and a little smaller: a distance ahead comes out
-    /// no larger than it is.
+    /// −1/direction, finite, with the other sign than the direction's sign bit, and a little smaller: a distance ahead comes out
+    /// no larger than it is. Negative because an instruction subtracts what it reads from memory, not from it.
     pub(crate) reciprocal_near: L,
     /// The same, a little larger: a distance ahead comes out no smaller than it is.
     pub(crate) reciprocal_far: L,
     /// The direction's sign bits.
     pub(crate) negative: [usize; 3],
-}
-
-impl<L: Lanes4> FrameRay<L> {
-    /// A distance in this frame that is not below the distance of any hit up to `t` of the [`Query`].
-    #[inline]
-    pub(crate) fn distance(&self, t: f64) -> f32 {
-        // Accepted distances err by up to 2⁻³⁰ of themselves.
-        const WIDER: f64 = 1.0 + 1.0 / (1_u64 << 29) as f64;
-        above(t * self.scale * WIDER - self.start).max(0.0)
-    }
-
-    /// A distance in this frame that is not above the distance of any hit beyond `t` of the [`Query`].
-    #[inline]
-    pub(crate) fn distance_below(&self, t: f64) -> f32 {
-        const NARROWER: f64 = 1.0 - 1.0 / (1_u64 << 29) as f64;
-        let t = t * self.scale * NARROWER - self.start;
-        // Beyond this nothing is in the frame.
-        below(if t < 1e30 { t } else { 1e30 })
-    }
-}
-
-/// Four floats, whatever the instruction set.
-pub(crate) trait Lanes4: Copy {
-    /// The proof that the processor has the instructions.
-    type Token: Copy;
-    fn new(token: Self::Token, v: [f32; 4]) -> Self;
-    fn to_array(self) -> [f32; 4];
-    fn abs(self) -> Self;
-    fn sum(self, o: Self) -> Self;
-    fn difference(self, o: Self) -> Self;
-    fn product(self, o: Self) -> Self;
-    fn times(self, factor: f32) -> Self;
-    fn plus(self, v: f32) -> Self;
-    fn at_least(self, v: f32) -> Self;
-    fn reciprocal(self) -> Self;
-    /// The magnitudes of positive numbers with the sign bits of others.
-    fn signed_as(self, o: Self) -> Self;
-    /// The sign bits of the first three.
-    fn negative(self) -> [usize; 3];
-    /// Those along [`AXES`] of an axis.
-    fn turned(self, axis: usize) -> Self;
-}
-
-/// [`Lanes4`] in plain Rust.
-#[derive(Clone, Copy)]
-pub(crate) struct Plain([f32; 4]);
-
-impl Lanes4 for Plain {
-    type Token = ();
-
-    #[inline(always)]
-    fn new((): (), v: [f32; 4]) -> Self {
-        Self(v)
-    }
-
-    #[inline(always)]
-    fn to_array(self) -> [f32; 4] {
-        self.0
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.map(f32::abs))
-    }
-
-    #[inline(always)]
-    fn sum(self, o: Self) -> Self {
-        Self(from_fn(|i| self.0[i] + o.0[i]))
-    }
-
-    #[inline(always)]
-    fn difference(self, o: Self) -> Self {
-        Self(from_fn(|i| self.0[i] - o.0[i]))
-    }
-
-    #[inline(always)]
-    fn product(self, o: Self) -> Self {
-        Self(from_fn(|i| self.0[i] * o.0[i]))
-    }
-
-    #[inline(always)]
-    fn times(self, factor: f32) -> Self {
-        Self(self.0.map(|v| v * factor))
-    }
-
-    #[inline(always)]
-    fn plus(self, v: f32) -> Self {
-        Self(self.0.map(|w| w + v))
-    }
-
-    #[inline(always)]
-    fn at_least(self, v: f32) -> Self {
-        Self(self.0.map(|w| if w > v { w } else { v }))
-    }
-
-    #[inline(always)]
-    fn reciprocal(self) -> Self {
-        Self(self.0.map(|v| 1.0 / v))
-    }
-
-    #[inline(always)]
-    fn signed_as(self, o: Self) -> Self {
-        Self(from_fn(|i| self.0[i].copysign(o.0[i])))
-    }
-
-    #[inline(always)]
-    fn negative(self) -> [usize; 3] {
-        from_fn(|i| usize::from(self.0[i].is_sign_negative()))
-    }
-
-    #[inline(always)]
-    fn turned(self, axis: usize) -> Self {
-        let [x, y, z] = AXES[axis % AXES.len()];
-        Self([self.0[x], self.0[y], self.0[z], self.0[3]])
-    }
 }
 
 /// Where a line crosses the box [−`half`, `half`]³.

@@ -30,6 +30,7 @@ mod geometry;
 mod instance;
 mod lanes;
 mod motion;
+mod narrow;
 mod pages;
 mod query;
 mod ray;

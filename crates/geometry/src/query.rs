@@ -69,7 +69,7 @@ impl Query {
         let scale = power_of_two(-exponent);
         let given = direction;
         let direction = given * scale;
-        let axis = projection_axis(a.to_array());
+        let axis = projection_axis([a.x, a.y, a.z, 0.0]);
         Some(Self {
             origin,
             direction,
@@ -118,7 +118,7 @@ impl Projection {
 
 /// The larger of two numbers; the second if one is NaN. One instruction, unlike [`f64::max`].
 #[inline(always)]
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
+pub(crate) fn larger<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
@@ -138,6 +138,8 @@ pub(crate) trait Four: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Outp
     fn narrowed(self) -> Self::Narrow;
     /// 1 where a float is not the number, else 0.
     fn differs(self, o: Self::Narrow) -> Self::Narrow;
+    /// The numbers below zero, and those above it, one bit each; none that is NaN.
+    fn signs(self) -> [u32; 2];
     /// Whether no number is above a limit, or NaN.
     fn all_at_most(self, limit: f64) -> bool;
     /// The numbers.
@@ -209,6 +211,12 @@ impl Four for Plain4 {
     }
 
     #[inline(always)]
+    fn signs(self) -> [u32; 2] {
+        let lanes = |is: fn(f64) -> bool| (0..4).fold(0, |mask, i| mask | u32::from(is(self.0[i])) << i);
+        [lanes(|v| v < 0.0), lanes(|v| v > 0.0)]
+    }
+
+    #[inline(always)]
     fn all_at_most(self, limit: f64) -> bool {
         self.0.iter().all(|&v| v <= limit)
     }
@@ -244,9 +252,9 @@ impl Four for Plain4 {
 /// Origins within this (2²⁰⁰, in the 1-norm) keep every product of an intersection test finite.
 pub(crate) const MAX_ORIGIN: f64 = (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
 
-/// The axis along which a direction of these magnitudes is largest, an index into [`AXES`].
+/// The axis along which a direction of these magnitudes (the first three) is largest, an index into [`AXES`].
 #[inline(always)]
-pub(crate) fn projection_axis([x, y, z]: [f64; 3]) -> usize {
+pub(crate) fn projection_axis<T: PartialOrd + Copy>([x, y, z, _]: [T; 4]) -> usize {
     // Without a branch: the axis of a ray is as good as random.
     usize::from(y > larger(x, z)) + 2 * usize::from(z > x && z >= y)
 }

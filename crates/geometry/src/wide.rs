@@ -12,6 +12,8 @@ use rayon::prelude::*;
 pub(crate) const NODE_WIDTH: usize = 16;
 /// Primitives of a leaf.
 pub(crate) const LEAF_WIDTH: usize = 8;
+/// Trees up to this size, bytes, are mostly in caches from which prefetching gains nothing.
+const NEAR_CACHE: usize = 16 << 20;
 /// Above this many binary nodes the two halves of a tree are taken in parallel.
 const PARALLEL_LIMIT: usize = 16_384;
 /// Marks a child that is a leaf.
@@ -26,8 +28,30 @@ pub(crate) const LONE: u32 = 1 << 30;
 pub(crate) struct Node16 {
     /// For x, y and z the lower and the upper planes of the children; a missing child has an inverted, infinite box.
     pub(crate) planes: [[[f32; NODE_WIDTH]; 2]; 3],
-    /// The index of a node, or of a leaf with [`LEAF`].
+    /// The first [`Line`] of a node, or the index of a leaf with [`LEAF`].
     pub(crate) children: Children,
+}
+
+/// A cache line of a node.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C, align(64))]
+pub(crate) struct Line([f32; NODE_WIDTH]);
+
+/// Lines of a node.
+const NODE_LINES: usize = size_of::<Node16>() / size_of::<Line>();
+
+/// The nodes of a tree, found by their lines: where one begins is a shift away, not a multiplication, and a ray waits for it.
+#[derive(Clone, Copy)]
+pub(crate) struct Nodes<'a>(&'a [Line]);
+
+impl<'a> Nodes<'a> {
+    /// The node that begins at a line.
+    #[inline(always)]
+    pub(crate) fn at(self, line: u32) -> &'a Node16 {
+        let line = line as usize;
+        let lines = self.0[line..line + NODE_LINES].first_chunk::<NODE_LINES>().expect("a node");
+        bytemuck::cast_ref(lines)
+    }
 }
 
 /// The children of a node, in one cache line.
@@ -75,6 +99,10 @@ pub(crate) struct WideTree {
     pub(crate) depth: usize,
     /// Whether there are spheres.
     pub(crate) spheres: bool,
+    /// Whether the tree is larger than near caches, so that what waits on the stack is announced.
+    pub(crate) prefetch: bool,
+    /// Whether there are triangles alone, for which rays have a path of their own.
+    pub(crate) mesh: bool,
 }
 
 impl WideTree {
@@ -89,6 +117,8 @@ impl WideTree {
             leaves: Pages::new(size.leaves),
             depth: size.depth,
             spheres: false,
+            mesh: false,
+            prefetch: size.nodes * size_of::<Node16>() + size.leaves * size_of::<Leaf8>() > NEAR_CACHE,
         };
         let mut filler = Filler {
             choices: &choices,
@@ -103,13 +133,14 @@ impl WideTree {
             *leaf = Leaf8::new(&frame, tree, root, primitives);
         });
         wide.spheres = wide.leaves().iter().any(|leaf| leaf.spheres != 0);
+        wide.mesh = primitives.iter().all(|p| matches!(p, Primitive::Triangle(_)));
         wide
     }
 
     /// The nodes, the root first.
     #[inline(always)]
-    pub(crate) fn nodes(&self) -> &[Node16] {
-        self.nodes.as_slice()
+    pub(crate) fn nodes(&self) -> Nodes<'_> {
+        Nodes(bytemuck::cast_slice(self.nodes.as_slice()))
     }
 
     /// The leaves.
@@ -121,7 +152,7 @@ impl WideTree {
     /// Up to `limit` boxes that hold all primitives, as small as the upper nodes of the tree are.
     pub(crate) fn outline(&self, limit: usize) -> Vec<Aabb> {
         let children = |node: u32| {
-            let Node16 { planes, children } = &self.nodes()[node as usize];
+            let Node16 { planes, children } = self.nodes().at(node);
             let of = move |lane: usize| {
                 let corner = |side: usize| [0, 1, 2].map(|k| planes[k][side][lane]);
                 (Box32 { min: corner(0), max: corner(1) }, children.0[lane])
@@ -141,7 +172,7 @@ impl WideTree {
 
     /// Memory held beside the struct itself, bytes.
     pub(crate) fn memory_bytes(&self) -> usize {
-        size_of_val(self.nodes()) + size_of_val(self.leaves())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves())
     }
 }
 
@@ -287,7 +318,8 @@ impl Filler<'_> {
             };
         }
         self.nodes[index] = node;
-        index as u32
+        // Far fewer than there are primitives, of which 2²⁹ at most: it fits.
+        (index * NODE_LINES) as u32
     }
 }
 

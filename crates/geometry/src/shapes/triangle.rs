@@ -94,16 +94,19 @@ impl Triangle {
         // (c, a, b) × (b, c, a)
         let (px, py) = (x.turned(), y.turned());
         let (qx, qy) = (px.turned(), py.turned());
-        let [mut u, mut v, mut w, _] = (px * qy - py * qx).to_array();
-        if u == 0.0 || v == 0.0 || w == 0.0 {
+        let edges = px * qy - py * qx;
+        let [mut u, mut v, mut w, _] = edges.to_array();
+        let [below, above] = edges.signs().map(|lanes| lanes & 0b111);
+        // Inclusive: an edge that passes through the ray as far as rounding tells belongs to both its triangles.
+        let mut outside = below != 0 && above != 0;
+        if below | above != 0b111 {
             let (x, y) = (x.to_array(), y.to_array());
             let edge = |p: usize, q: usize, area: f64| {
                 if area == 0.0 { exact_edge([x[p], y[p]], [x[q], y[q]]) } else { area }
             };
             (u, v, w) = (edge(2, 1, u), edge(0, 2, v), edge(1, 0, w));
+            outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
         }
-        // Inclusive: an edge that passes through the ray as far as rounding tells belongs to both its triangles.
-        let outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
         if outside {
             return None;
         }

@@ -29,6 +29,15 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
             }
             let scaled = flat.map(|(hit, id)| (R::from_f64(hit.t * query.scale), id));
             assert_eq!(geometry.closest_hit(&ray).map(|hit| (hit.t, hit.surface)), scaled, "{ray:?}");
+            // Rays, too, not queries made of them.
+            let start = flat.map(|(hit, id)| (crate::query::RawHit { t: hit.t * query.scale, ..hit }, id));
+            assert_eq!(traverse::closest_portable(tree, primitives, &ray), start, "{ray:?}");
+            assert_eq!(traverse::any_portable(tree, primitives, &ray), occluded, "{ray:?}");
+            #[cfg(target_arch = "x86_64")]
+            if let Some(found) = traverse::closest_avx2(tree, primitives, &ray) {
+                assert_eq!(found, start, "{ray:?}");
+                assert_eq!(traverse::any_avx2(tree, primitives, &ray), Some(occluded), "{ray:?}");
+            }
             assert_eq!(traverse::closest_deep(tree, primitives, &query), flat, "{ray:?}");
             assert_eq!(traverse::any_deep(tree, primitives, &query), occluded, "{ray:?}");
         }

@@ -1,19 +1,20 @@
 //! Whether anything is hit at all.
 
 use super::leaf::{Chords, candidates};
+use super::met::Met;
 use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
 use super::{Filters, Narrow, intersect_exact};
 use crate::frame::FrameRay;
 use crate::query::Query;
-use crate::wide::{LEAF, LONE, Leaf8, WideTree};
+use crate::wide::{LEAF, LONE, Leaf8, NODE_WIDTH, Node16, Nodes, WideTree};
 use crate::{Primitive, PrimitiveId};
 
 /// Whether anything is hit, in the order of the tree. A level of the stack is one entry, the children yet to be visited:
 /// that spares a loop over them whose length no branch predictor can know.
 #[inline(always)]
-pub(super) fn any_on<F: Filters, S: Start, const N: usize>(
+pub(super) fn any_on<F: Filters, S: Start, const MESH: bool, const N: usize>(
     filters: F,
     tree: &WideTree,
     primitives: &[Primitive],
@@ -21,59 +22,107 @@ pub(super) fn any_on<F: Filters, S: Start, const N: usize>(
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> bool {
     let ray = filters.ray(&frame_ray.boxes);
-    let chords = Chords::new(frame_ray, tree.spheres);
+    let chords = Chords::new(frame_ray, !MESH && tree.spheres);
     let mut query = Deferred::new(start);
     let (leaves_id, aims_at) = (start.leaves(), start.aims_at());
-    let limit = frame_ray.distance(frame_ray.t_max);
-    let certain_limit = frame_ray.distance_below(frame_ray.t_max);
+    let limit = frame_ray.limit;
+    let certain_limit = frame_ray.certain_limit;
     let (nodes, leaves) = (tree.nodes(), tree.leaves());
     let mut room = Room::<(u32, u32), N>::new();
     let mut levels = Stack::new(&mut room);
-    let mut index = 0;
+    let (mut node, mut index, mut mask) = (nodes.at(0), 0, 0);
+    let mut child = 0;
     loop {
-        let mut node = &nodes[index as usize];
-        let mut mask = filters.enter(&ray, node, limit).mask;
-        loop {
-            while mask == 0 {
-                match levels.pop() {
-                    Some(level) => (index, mask) = level,
-                    None => return false,
-                }
-                node = &nodes[index as usize];
-            }
-            let lane = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            let child = node.children.0[lane];
-            if child & LEAF == 0 {
+        // The walk calls no function, lest registers be saved for it.
+        let open = loop {
+            while child & LEAF == 0 {
                 if mask != 0 {
                     levels.push((index, mask));
                 }
-                index = child;
-                break;
-            }
-            if child & LONE != 0 {
-                if occludes(primitives, query.get(), PrimitiveId(child & !(LEAF | LONE))) {
-                    return true;
+                (node, index) = (nodes.at(child), child);
+                let met = filters.enter(&ray, node, limit);
+                mask = met.mask();
+                if mask == 0 {
+                    match next(&mut levels, nodes, (&mut node, &mut index, &mut mask)) {
+                        Some(next) => child = next,
+                        None => return false,
+                    }
+                } else {
+                    child = met.first(node);
+                    mask &= mask - 1;
                 }
-                continue;
+            }
+            if !MESH && child & LONE != 0 {
+                break Open::Instance(PrimitiveId(child & !(LEAF | LONE)));
             }
             let leaf = &leaves[(child & !LEAF) as usize];
-            let mut candidates = candidates(filters, frame_ray, &chords, leaf, limit, certain_limit);
-            while candidates.mask != 0 {
-                let lane = candidates.mask.trailing_zeros() as usize;
-                candidates.mask &= candidates.mask - 1;
+            let candidates = candidates::<F, MESH>(filters, frame_ray, &chords, leaf, limit, certain_limit);
+            let (mut met, mut open) = (candidates.mask & !candidates.missed, 0);
+            while met != 0 {
+                let lane = met.trailing_zeros() as usize;
+                met &= met - 1;
                 let id = leaf.id(lane);
-                if id == aims_at || id == leaves_id && candidates.left >> lane & 1 == 1 {
+                if id == aims_at || id == leaves_id && (MESH || candidates.left >> lane & 1 == 1) {
                     continue;
                 }
-                let certain = candidates.certain >> lane & 1 == 1 && id != leaves_id;
-                let hit = certain || occludes_by(tree, leaf, lane, primitives, &mut query);
-                if hit {
+                if candidates.certain >> lane & 1 == 1 && id != leaves_id {
                     return true;
                 }
+                open |= 1 << lane;
             }
+            if open != 0 {
+                break Open::Leaf(leaf, open);
+            }
+            match next(&mut levels, nodes, (&mut node, &mut index, &mut mask)) {
+                Some(next) => child = next,
+                None => return false,
+            }
+        };
+        let hit = match open {
+            Open::Instance(id) => occludes(primitives, query.get(), id),
+            Open::Leaf(leaf, mut mask) => loop {
+                if mask == 0 {
+                    break false;
+                }
+                let lane = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                if occludes_by(tree, leaf, lane, primitives, &mut query) {
+                    break true;
+                }
+            },
+        };
+        if hit {
+            return true;
+        }
+        match next(&mut levels, nodes, (&mut node, &mut index, &mut mask)) {
+            Some(next) => child = next,
+            None => return false,
         }
     }
+}
+
+/// What a walk leaves open.
+enum Open<'a> {
+    /// Whether these lanes of a leaf are hit.
+    Leaf(&'a Leaf8, u32),
+    /// Whether anything within an instance is.
+    Instance(PrimitiveId),
+}
+
+/// The next child of a node or, if there is none left, of one above it.
+#[inline(always)]
+fn next<'a, const N: usize>(
+    levels: &mut Stack<'_, (u32, u32), N>,
+    nodes: Nodes<'a>,
+    (node, index, mask): (&mut &'a Node16, &mut u32, &mut u32),
+) -> Option<u32> {
+    if *mask == 0 {
+        (*index, *mask) = levels.pop()?;
+        *node = nodes.at(*index);
+    }
+    let child = node.children.0[mask.trailing_zeros() as usize % NODE_WIDTH];
+    *mask &= *mask - 1;
+    Some(child)
 }
 
 /// Whether the primitive in a lane of a leaf hides the end of a ray from its start, where `f32` does not tell.

@@ -1,9 +1,10 @@
 //! The filters in AVX2.
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
+use super::met::{Entered, Row};
 use super::vector::Vector;
 use super::wide256::D8;
-use super::{Entered, Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
+use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
 use crate::best::Found;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
@@ -88,6 +89,30 @@ operator!(Mul, mul, _mm256_mul_ps);
 operator!(Div, div, _mm256_div_ps);
 
 impl F8 {
+    /// The larger of each pair of numbers as integers, in a cycle instead of four: numbers that are not negative are ordered as
+    /// they are, one that is negative is below them all.
+    #[inline(always)]
+    fn max_bits(self, o: Self) -> Self {
+        // SAFETY: as for the operators; where an `F8` comes from AVX2 is proved too.
+        Self(unsafe { _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(self.0), _mm256_castps_si256(o.0))) })
+    }
+
+    /// The smaller of each pair, likewise.
+    #[inline(always)]
+    fn min_bits(self, o: Self) -> Self {
+        // SAFETY: as above.
+        Self(unsafe { _mm256_castsi256_ps(_mm256_min_epi32(_mm256_castps_si256(self.0), _mm256_castps_si256(o.0))) })
+    }
+
+    /// The lanes that are not above, likewise, one bit each.
+    #[inline(always)]
+    fn at_most_bits(self, o: Self) -> u32 {
+        // SAFETY: as above.
+        let above = unsafe { _mm256_cmpgt_epi32(_mm256_castps_si256(self.0), _mm256_castps_si256(o.0)) };
+        // SAFETY: as above.
+        Self::mask(unsafe { _mm256_castsi256_ps(above) }) ^ 0xFF
+    }
+
     #[inline(always)]
     fn mask(v: __m256) -> u32 {
         // SAFETY: as for the operators.
@@ -223,6 +248,16 @@ impl Four for D4 {
     }
 
     #[inline(always)]
+    fn signs(self) -> [u32; 2] {
+        // SAFETY: as for the operators.
+        unsafe {
+            let zero = _mm256_setzero_pd();
+            [_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, zero), _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, zero)]
+                .map(|lanes| _mm256_movemask_pd(lanes) as u32)
+        }
+    }
+
+    #[inline(always)]
     fn all_at_most(self, limit: f64) -> bool {
         // SAFETY: as for the operators.
         unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, _mm256_set1_pd(limit))) == 0b1111 }
@@ -342,6 +377,11 @@ impl Lanes4 for F4 {
     }
 
     #[inline(always)]
+    fn all_at_most(self, limit: f32) -> bool {
+        sse!(_mm_movemask_ps(_mm_cmple_ps(self.0, Self::splat(limit)))) == 0b1111
+    }
+
+    #[inline(always)]
     fn negative(self) -> [usize; 3] {
         let bits = sse!(_mm_movemask_ps(self.0)) as usize;
         [bits & 1, bits >> 1 & 1, bits >> 2 & 1]
@@ -369,6 +409,7 @@ pub(super) struct Ray8 {
 
 impl Filters for Avx2 {
     type Ray = Ray8;
+    type Met = Entered;
     type Vector = F8;
     type Wide = F8;
     type Eight = D8;
@@ -393,23 +434,23 @@ impl Filters for Avx2 {
     fn enter(self, ray: &Ray8, node: &Node16, limit: f32) -> Entered {
         // The children's numbers lie in a cache line of their own, which would be asked for only once the mask is known.
         self.prefetch(&node.children);
-        let mut out = Entered { mask: 0, near: [0.0; NODE_WIDTH] };
+        let mut out = Entered { mask: 0, near: Row([0.0; NODE_WIDTH]) };
         let [ex, ey, ez] = ray.entry;
         for half in 0..2 {
             let plane = |k: usize, side: usize| {
                 let (halves, _) = node.planes[k][side & 1].as_chunks::<LEAF_WIDTH>();
                 F8::load(self, &halves[half])
             };
-            let near_x = (plane(0, ex) - ray.origin_near[0]) * ray.reciprocal_near[0];
-            let near_y = (plane(1, ey) - ray.origin_near[1]) * ray.reciprocal_near[1];
-            let near_z = (plane(2, ez) - ray.origin_near[2]) * ray.reciprocal_near[2];
-            let far_x = (plane(0, 1 - ex) - ray.origin_far[0]) * ray.reciprocal_far[0];
-            let far_y = (plane(1, 1 - ey) - ray.origin_far[1]) * ray.reciprocal_far[1];
-            let far_z = (plane(2, 1 - ez) - ray.origin_far[2]) * ray.reciprocal_far[2];
-            let near = near_x.max(near_y).max(near_z.max(F8::splat(self, LEAST_DISTANCE)));
-            let far = far_x.min(far_y).min(far_z.min(F8::splat(self, limit)));
-            out.mask |= near.at_most(far) << (half * LEAF_WIDTH);
-            out.near[half * LEAF_WIDTH..][..LEAF_WIDTH].copy_from_slice(&near.to_array());
+            let near_x = (ray.origin_near[0] - plane(0, ex)) * ray.reciprocal_near[0];
+            let near_y = (ray.origin_near[1] - plane(1, ey)) * ray.reciprocal_near[1];
+            let near_z = (ray.origin_near[2] - plane(2, ez)) * ray.reciprocal_near[2];
+            let far_x = (ray.origin_far[0] - plane(0, 1 - ex)) * ray.reciprocal_far[0];
+            let far_y = (ray.origin_far[1] - plane(1, 1 - ey)) * ray.reciprocal_far[1];
+            let far_z = (ray.origin_far[2] - plane(2, 1 - ez)) * ray.reciprocal_far[2];
+            let near = near_x.max_bits(near_y).max_bits(near_z.max_bits(F8::splat(self, LEAST_DISTANCE)));
+            let far = far_x.min_bits(far_y).min_bits(far_z.min_bits(F8::splat(self, limit)));
+            out.mask |= near.at_most_bits(far) << (half * LEAF_WIDTH);
+            out.near.0[half * LEAF_WIDTH..][..LEAF_WIDTH].copy_from_slice(&near.to_array());
         }
         out
     }

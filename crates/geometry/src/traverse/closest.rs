@@ -4,16 +4,16 @@ use super::leaf::{Chords, candidates};
 use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
-use super::{Entered, Filters, Narrow, intersect_exact};
+use super::{Filters, Met, Narrow, intersect_exact};
 use crate::best::{Best, Found};
 use crate::frame::FrameRay;
-use crate::query::{Query, RawHit};
-use crate::wide::{LEAF, LEAF_WIDTH, LONE, WideTree};
-use crate::{Primitive, PrimitiveId, Triangle};
+use crate::query::{Projection, Query, RawHit};
+use crate::wide::{LEAF, LEAF_WIDTH, LONE, NODE_WIDTH, WideTree};
+use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.
 #[inline(always)]
-pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
+pub(super) fn closest_on<F: Filters, S: Start, const MESH: bool, const N: usize>(
     filters: F,
     tree: &WideTree,
     primitives: &[Primitive],
@@ -21,12 +21,14 @@ pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> Option<Found> {
     let ray = filters.ray(&frame_ray.boxes);
-    let chords = Chords::new(frame_ray, tree.spheres);
+    let chords = Chords::new(frame_ray, !MESH && tree.spheres);
     let mut query = Deferred::new(start);
+    // At once, for its division takes as long as two nodes and waits for nothing.
+    let projection = start.projection(frame_ray.t_scale, frame_ray.axis);
     let leaves_id = start.leaves();
     let mut best = Best::new(frame_ray.t_max);
-    let mut limit = frame_ray.distance(frame_ray.t_max);
-    let certain_limit = frame_ray.distance_below(frame_ray.t_max);
+    let mut limit = frame_ray.limit;
+    let certain_limit = frame_ray.certain_limit;
     let nothing = Waiting { leaf: 0, lane: 0, near: 0.0 };
     let mut pending = Pending { list: [nothing; Pending::LIMIT], count: 0 };
     let (nodes, leaves) = (tree.nodes(), tree.leaves());
@@ -35,51 +37,76 @@ pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
     let mut child = 0;
     loop {
         if child & LEAF == 0 {
-            let node = &nodes[child as usize];
-            let Entered { mut mask, near } = filters.enter(&ray, node, limit);
+            let node = nodes.at(child);
+            let met = filters.enter(&ray, node, limit);
+            let mask = met.mask();
             if mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                if mask == 0 {
-                    child = node.children.0[lane];
+                let second = mask & (mask - 1);
+                if second == 0 {
+                    child = met.first(node);
                     continue;
                 }
-                let first = entry(near[lane], node.children.0[lane]);
-                let lane = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                let second = entry(near[lane], node.children.0[lane]);
-                let mut nearest = first.min(second);
-                prefetch(filters, tree, first.max(second) as u32);
-                let base = stack.len();
-                stack.push(first.max(second));
-                while mask != 0 {
-                    let lane = mask.trailing_zeros() as usize;
-                    mask &= mask - 1;
-                    let new = entry(near[lane], node.children.0[lane]);
-                    prefetch(filters, tree, node.children.0[lane]);
-                    stack.insert(base, nearest.max(new));
-                    nearest = nearest.min(new);
+                let [a, b] = met.pair::<false>(node);
+                let [mut nearest, mut last] = sorted(a, b);
+                let third = second & (second - 1);
+                if third == 0 {
+                    prefetch::<F, MESH>(filters, tree, last as u32);
+                    stack.push(last);
+                    child = nearest as u32;
+                    continue;
                 }
+                let [c, d] = met.pair::<true>(node);
+                let fourth = third & (third - 1);
+                let mut middle;
+                [nearest, middle] = sorted(nearest, c);
+                [middle, last] = sorted(middle, last);
+                let base = stack.len();
+                if fourth == 0 {
+                    stack.push(last);
+                    stack.push(middle);
+                } else {
+                    let mut next;
+                    [nearest, next] = sorted(nearest, d);
+                    [next, middle] = sorted(next, middle);
+                    [middle, last] = sorted(middle, last);
+                    stack.push(last);
+                    stack.push(middle);
+                    stack.push(next);
+                    prefetch::<F, MESH>(filters, tree, next as u32);
+                    let beyond = (fourth & (fourth - 1)).count_ones() as usize;
+                    if beyond > 0 {
+                        let all = met.all(node);
+                        for &new in &all.0[4..4 + beyond % (NODE_WIDTH - 3)] {
+                            prefetch::<F, MESH>(filters, tree, new as u32);
+                            let [near, far] = sorted(nearest, new);
+                            stack.insert(base, far);
+                            nearest = near;
+                        }
+                    }
+                }
+                prefetch::<F, MESH>(filters, tree, middle as u32);
+                prefetch::<F, MESH>(filters, tree, last as u32);
                 child = nearest as u32;
                 continue;
             }
-        } else if child & LONE != 0 {
+        } else if !MESH && child & LONE != 0 {
             let id = PrimitiveId(child & !(LEAF | LONE));
             if decide_instance(&mut best, primitives, &mut query, id) {
-                limit = limit.min(frame_ray.distance(best.t_max));
+                limit = limit.min(tree.frame.distance(frame_ray.start, best.t_max));
             }
         } else {
             let index = child & !LEAF;
             let leaf = &leaves[index as usize];
-            let mut candidates = candidates(filters, frame_ray, &chords, leaf, limit, certain_limit);
+            let mut candidates = candidates::<F, MESH>(filters, frame_ray, &chords, leaf, limit, certain_limit);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
                 let id = leaf.id(lane);
-                if candidates.near[lane % LEAF_WIDTH] > limit && candidates.unbounded >> lane & 1 == 0 {
+                let beyond = candidates.near.0[lane % LEAF_WIDTH] > limit && candidates.unbounded >> lane & 1 == 0;
+                if beyond || candidates.missed >> lane & 1 == 1 {
                     continue;
                 }
-                if id == leaves_id && candidates.left >> lane & 1 == 1 {
+                if id == leaves_id && (MESH || candidates.left >> lane & 1 == 1) {
                     continue;
                 }
                 if candidates.certain >> lane & 1 == 1 && id != leaves_id {
@@ -90,18 +117,18 @@ pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
                     if pending.count == Pending::LIMIT {
                         pending.resolve(&mut best, tree, primitives, query.get(), limit);
                     }
-                    if candidates.far[lane] < limit {
-                        limit = candidates.far[lane];
+                    if candidates.far.0[lane] < limit {
+                        limit = candidates.far.0[lane];
                         // Most often what waited is now beyond the limit.
                         if pending.count == 1 && pending.list[0].near > limit {
                             pending.count = 0;
                         }
                     }
                     pending.list[pending.count] =
-                        Waiting { leaf: index, lane: lane as u32, near: candidates.near[lane] };
+                        Waiting { leaf: index, lane: lane as u32, near: candidates.near.0[lane] };
                     pending.count += 1;
                 } else if decide_now(&mut best, tree, index, lane as u32, primitives, &mut query) {
-                    limit = limit.min(frame_ray.distance(best.t_max));
+                    limit = limit.min(tree.frame.distance(frame_ray.start, best.t_max));
                 }
             }
         }
@@ -109,7 +136,11 @@ pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
             let Some(next) = stack.pop() else {
                 if pending.count == 1 {
                     let Waiting { leaf, lane, .. } = pending.list[0];
-                    decide_last(filters, &mut best, tree, (leaf, lane), primitives, &mut query, frame_ray);
+                    let last = decide_last(filters, &best, tree, (leaf, lane), primitives, &mut query, &projection);
+                    if let Some((hit, id)) = last {
+                        let t = start.distance(frame_ray.t_scale, hit.t);
+                        return Some((RawHit { t, ..hit }, SurfaceId::from(id)));
+                    }
                 } else if pending.count > 1 {
                     pending.resolve(&mut best, tree, primitives, query.get(), limit);
                 }
@@ -117,7 +148,7 @@ pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
                     .found()
                     .map(|(hit, id)| (RawHit { t: start.distance(frame_ray.t_scale, hit.t), ..hit }, id));
             };
-            if f32::from_bits((next >> 32) as u32) <= limit {
+            if (next >> 32) as u32 <= limit.to_bits() {
                 child = next as u32;
                 break;
             }
@@ -125,10 +156,10 @@ pub(super) fn closest_on<F: Filters, S: Start, const N: usize>(
     }
 }
 
-/// A stack entry: the distance's bits above (those of non-negative numbers are ordered as they are), the child below.
+/// Two entries, the nearer one first.
 #[inline(always)]
-fn entry(near: f32, child: u32) -> u64 {
-    u64::from(near.to_bits()) << 32 | u64::from(child)
+fn sorted(a: u64, b: u64) -> [u64; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// What is likely to be the closest hit, though its exact distance is not yet known.
@@ -184,35 +215,32 @@ fn decide(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives: &[
 #[inline(always)]
 fn decide_last<F: Filters, S: Start>(
     filters: F,
-    best: &mut Best,
+    best: &Best,
     tree: &WideTree,
     (leaf, lane): (u32, u32),
     primitives: &[Primitive],
     query: &mut Deferred<S>,
-    ray: &FrameRay<Narrow<F>>,
-) {
+    projection: &Projection,
+) -> Option<(RawHit, PrimitiveId)> {
     let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
-    let projection = query.start.projection(ray.t_scale, ray.axis);
     let (limit, token) = (best.limit(id), filters.into());
     let found = if leaf.is_exact(lane) {
-        intersect_exact(filters, tree, (leaf, lane), primitives, &projection, || *query.get(), limit)
+        intersect_exact(filters, tree, (leaf, lane), primitives, projection, || *query.get(), limit)
     } else {
         // Whose like is certain before leaves no primitive that it hits.
         match &primitives[id.0 as usize] {
             Primitive::Triangle(shape) => {
                 let lanes = shape.lanes::<F::Four>(token, projection.axes());
-                Triangle::intersect_lanes::<F::Four>(token, lanes, &projection, || (shape, *query.get()), limit)
+                Triangle::intersect_lanes::<F::Four>(token, lanes, projection, || (shape, *query.get()), limit)
             }
             Primitive::Parallelogram(shape) => {
-                shape.intersect_lanes::<F::Four>(token, &projection, || *query.get(), limit)
+                shape.intersect_lanes::<F::Four>(token, projection, || *query.get(), limit)
             }
             shape => shape.intersect(query.get(), limit, false),
         }
     };
-    if let Some(hit) = found {
-        best.set(hit, id);
-    }
+    found.map(|hit| (hit, id))
 }
 
 /// [`decide`] where it is not the rule.
@@ -243,10 +271,13 @@ fn decide_instance<S: Start>(
 /// Announces that a child that waits on the stack will be visited. Without it rays that share nothing are a tenth slower in
 /// trees that no cache holds.
 #[inline(always)]
-fn prefetch<F: Filters>(filters: F, tree: &WideTree, child: u32) {
+fn prefetch<F: Filters, const MESH: bool>(filters: F, tree: &WideTree, child: u32) {
+    if !tree.prefetch {
+        return;
+    }
     if child & LEAF == 0 {
-        filters.prefetch(&tree.nodes()[child as usize]);
-    } else if child & LONE == 0 {
+        filters.prefetch(tree.nodes().at(child));
+    } else if MESH || child & LONE == 0 {
         filters.prefetch(&tree.leaves()[(child & !LEAF) as usize]);
     }
 }

@@ -1,7 +1,7 @@
 //! The filters of leaves, once for all instruction sets.
 
 use super::vector::Vector;
-use super::{Candidates, Filters, Narrow};
+use super::{Candidates, Filters, Narrow, Row};
 use crate::frame::{FrameRay, Lanes4};
 use crate::query::AXES;
 use crate::wide::{LEAF_WIDTH, Leaf8};
@@ -9,7 +9,7 @@ use crate::wide::{LEAF_WIDTH, Leaf8};
 /// The primitives of a leaf that the ray may hit in [0, `limit`], and the flat shapes and spheres that it certainly hits in
 /// (0, `certain_limit`). The primitive that the ray leaves may be among them.
 #[inline(always)]
-pub(super) fn candidates<F: Filters>(
+pub(super) fn candidates<F: Filters, const MESH: bool>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
     chords: &Chords,
@@ -17,21 +17,30 @@ pub(super) fn candidates<F: Filters>(
     limit: f32,
     certain_limit: f32,
 ) -> Candidates {
+    if MESH {
+        let mut found = flats::<F, true>(filters, ray, leaf, limit, certain_limit);
+        found.left = u32::MAX;
+        return found;
+    }
     let others = u32::from(leaf.others);
     let mut found = if leaf.flats != 0 {
-        flats(filters, ray, leaf, limit, certain_limit)
+        flats::<F, false>(filters, ray, leaf, limit, certain_limit)
     } else {
         spheres(filters, ray, chords, leaf, limit, certain_limit)
     };
     if leaf.flats != 0 && leaf.spheres != 0 {
         // Mixed leaves are rare: of their spheres no distance is known.
         let balls = spheres(filters, ray, chords, leaf, limit, certain_limit);
-        let met = balls.mask & u32::from(leaf.spheres);
+        let met = balls.mask & !balls.missed & u32::from(leaf.spheres);
         found.mask |= met;
+        found.missed &= !met;
+        found.certain &= !met;
         found.unbounded |= met;
         found.left |= balls.left & met;
     }
     found.mask |= others;
+    found.missed &= !others;
+    found.certain &= !others;
     found.unbounded |= others;
     found.left |= u32::from(leaf.flats);
     found
@@ -47,7 +56,7 @@ pub(super) fn candidates<F: Filters>(
 /// most three times that times their spread, over the determinant, and by less than 3δ for the rounding of distances, sum and
 /// quotient.
 #[inline(always)]
-fn flats<F: Filters>(
+fn flats<F: Filters, const MESH: bool>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
     leaf: &Leaf8,
@@ -62,7 +71,7 @@ fn flats<F: Filters>(
     let delta = ray.error + leaf.error;
     let mut error = leaf_error(delta, leaf.extent);
     let (mut least, mut most) = (v.min(w), v.max(w));
-    if leaf.quads == 0 {
+    if MESH || leaf.quads == 0 {
         (least, most) = (least.min(u), most.max(u));
     } else {
         error *= 2.0;
@@ -74,32 +83,34 @@ fn flats<F: Filters>(
         return Candidates::NONE;
     }
     let det = u + v + w;
-    let reciprocal = all(ray.per_depth) / det;
+    let reciprocal = all(-ray.per_depth) / det;
     let t = (u * a[2] + v * b[2] + w * c[2]) * reciprocal;
-    let depth = a[2].max(b[2]).max(c[2]) - a[2].min(b[2]).min(c[2]) + all(2.0 * delta);
-    let t_error = all(6.0 * error) * depth * reciprocal.abs() + all(3.0 * delta);
+    // Along an axis vertices are no farther apart than the extent, to rounding.
+    let t_error = all(6.0 * error * (leaf.extent + 2.0 * delta)) * reciprocal.abs() + all(3.0 * delta);
     let determined = all(6.0 * error).below(det.abs());
     let (near, far) = (t - t_error, t + t_error);
-    let met = met & !(determined & (all(limit).below(near) | far.below(all(0.0))));
+    let missed = determined & (all(limit).below(near) | far.below(all(0.0)));
     let inside = all(error).below(least) | most.below(all(-error));
     let ahead = all(0.0).below(near) & far.below(all(certain_limit));
     Candidates {
         mask: met,
-        unbounded: met & !determined,
-        certain: met & determined & inside & ahead & !u32::from(leaf.disks),
+        missed,
+        unbounded: !determined,
+        certain: determined & inside & ahead & if MESH { u32::MAX } else { !u32::from(leaf.disks) },
         left: 0,
-        near: near.to_array(),
-        far: far.to_array(),
+        near: Row(near.to_array()),
+        far: Row(far.to_array()),
     }
 }
 
-/// A vertex in the projection of the ray: z is not yet scaled.
+/// A vertex in the projection of the ray, all its coordinates negated (an instruction subtracts what it reads from memory, not
+/// from it): z is not yet scaled.
 #[inline(always)]
 fn project<F: Filters>(filters: F, ray: &FrameRay<Narrow<F>>, vertex: &[[f32; LEAF_WIDTH]; 3]) -> [F::Vector; 3] {
     let [kx, ky, kz] = AXES[ray.axis % AXES.len()];
     let (start, slopes) = (ray.start_along.to_array(), ray.slopes.to_array());
     let all = |v| F::Vector::splat(filters.into(), v);
-    let from_origin = |row: usize, k: usize| F::Vector::load(filters.into(), &vertex[row]) - all(start[k]);
+    let from_origin = |row: usize, k: usize| all(start[k]) - F::Vector::load(filters.into(), &vertex[row]);
     let (x, y, z) = (from_origin(kx, 0), from_origin(ky, 1), from_origin(kz, 2));
     [x - all(slopes[0]) * z, y - all(slopes[1]) * z, z]
 }
@@ -109,7 +120,7 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
     p[0] * q[1] - p[1] * q[0]
 }
 
-/// What spheres ask of a ray: n = 1 + s² of its slopes s, and 1/(the largest component of the direction) over it.
+/// What spheres ask of a ray: n = 1 + s² of its slopes s, and −1/(the largest component of the direction) over it.
 pub(super) struct Chords {
     n: f32,
     per_n: f32,
@@ -124,7 +135,7 @@ impl Chords {
         }
         let [sx, sy, _, _] = ray.slopes.to_array();
         let n = 1.0 + sx * sx + sy * sy;
-        Self { n, per_n: ray.per_depth / n }
+        Self { n, per_n: -ray.per_depth / n }
     }
 }
 
@@ -146,7 +157,7 @@ fn spheres<F: Filters>(
     certain_limit: f32,
 ) -> Candidates {
     let all = |v| F::Vector::splat(filters.into(), v);
-    let ([sx, sy, _, _], sz) = (ray.slopes.to_array(), ray.per_depth);
+    let ([sx, sy, _, _], sz) = (ray.slopes.to_array(), -ray.per_depth);
     let [x, y, z] = project(filters, ray, &leaf.vertices[0]);
     let radius = F::Vector::load(filters.into(), &leaf.vertices[1][0]);
     let along = x * all(sx) + y * all(sy);
@@ -167,13 +178,13 @@ fn spheres<F: Filters>(
     let shorter = shortest.sqrt() * all(per_n.abs() * (1.0 - 32.0 * f32::EPSILON));
     let t_error = all(8.0 * delta);
     let (near, far) = (middle - longer - t_error, middle - shorter + t_error);
-    let met = met & near.at_most(all(limit)) & all(0.0).at_most(middle + longer + t_error);
+    let missed = !(near.at_most(all(limit)) & all(0.0).at_most(middle + longer + t_error));
     // The first root is the hit only where it is certainly ahead.
     let ahead = all(0.0).below(near) & far.below(all(certain_limit));
-    let certain = met & ahead & all(0.0).below(shortest) & all(0.0).below(inner);
+    let certain = ahead & all(0.0).below(shortest) & all(0.0).below(inner);
     // A sphere that the ray leaves is hit again only if its centre is ahead.
     let left = (middle + t_error).below(all(0.0));
-    Candidates { mask: met, unbounded: 0, certain, left, near: near.to_array(), far: far.to_array() }
+    Candidates { mask: met, missed, unbounded: 0, certain, left, near: Row(near.to_array()), far: Row(far.to_array()) }
 }
 
 /// Bound on the error of the edge functions of a leaf's flat shapes in the projection of a ray that meets the leaf's box.

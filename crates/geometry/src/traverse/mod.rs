@@ -11,6 +11,7 @@ mod avx512;
 mod closest;
 mod flat;
 mod leaf;
+mod met;
 mod portable;
 mod stack;
 mod start;
@@ -31,39 +32,41 @@ pub(crate) use any::occludes;
 use closest::closest_on;
 use flat::{Eight, Wide};
 pub(crate) use flat::{FLAT_LIMIT, Flat};
+use met::{Met, Row};
 use start::Start;
 use vector::Vector;
 
 /// Levels of the stack that serves all but degenerate trees, and of the one that serves any: as many as a binary tree has.
 const LEVELS: [usize; 2] = [12, MAX_DEPTH];
 
-/// The children of a node that a ray meets.
-struct Entered {
-    /// One bit a child.
-    mask: u32,
-    /// The distances at which it enters them, not above the true ones.
-    near: [f32; NODE_WIDTH],
-}
-
 /// The primitives of a leaf that a ray may hit.
 struct Candidates {
-    /// Those that may be hit, one bit each.
+    /// Those that the line of the ray may meet, one bit each. Of others the fields below tell nothing.
     mask: u32,
-    /// Those among them of which no distance is known.
+    /// Those that it certainly meets behind the origin or beyond the limit. Apart from the mask, which is known sooner.
+    missed: u32,
+    /// Those of which no distance is known.
     unbounded: u32,
-    /// Those among them that are certainly hit between the origin and the certain limit.
+    /// Those that are certainly hit between the origin and the certain limit.
     certain: u32,
     /// Those that are certainly not hit if it is they that the ray leaves.
     left: u32,
     /// Distances not above the true ones.
-    near: [f32; LEAF_WIDTH],
+    near: Row<f32, LEAF_WIDTH>,
     /// Distances not below the true ones of those certainly hit.
-    far: [f32; LEAF_WIDTH],
+    far: Row<f32, LEAF_WIDTH>,
 }
 
 impl Candidates {
-    const NONE: Self =
-        Self { mask: 0, unbounded: 0, certain: 0, left: 0, near: [0.0; LEAF_WIDTH], far: [0.0; LEAF_WIDTH] };
+    const NONE: Self = Self {
+        mask: 0,
+        missed: 0,
+        unbounded: 0,
+        certain: 0,
+        left: 0,
+        near: Row([0.0; LEAF_WIDTH]),
+        far: Row([0.0; LEAF_WIDTH]),
+    };
 }
 
 /// The four floats of an instruction set.
@@ -79,6 +82,8 @@ trait Filters:
 {
     /// The ray as the filter of nodes wants it.
     type Ray: Copy;
+    /// What a ray meets of a node.
+    type Met: Met;
     /// Eight floats.
     type Vector: Vector;
     /// Eight floats, or sixteen.
@@ -90,7 +95,7 @@ trait Filters:
     /// Prepares a ray.
     fn ray(self, ray: &BoxRay<Narrow<Self>>) -> Self::Ray;
     /// The children of a node that the ray meets in [0, `limit`].
-    fn enter(self, ray: &Self::Ray, node: &Node16, limit: f32) -> Entered;
+    fn enter(self, ray: &Self::Ray, node: &Node16, limit: f32) -> Self::Met;
     /// Announces that an item will be read.
     fn prefetch<T>(self, item: &T);
     /// [`closest_far_with`], compiled for the instruction set.
@@ -210,7 +215,12 @@ fn closest_with<F: Filters, S: Start>(
 ) -> Option<Found> {
     let near = if tree.depth <= LEVELS[0] { start.enter_near::<F::Four>(filters.into(), &tree.frame) } else { None };
     match near {
-        Some(ray) => closest_on::<F, S, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray),
+        Some(ray) if tree.mesh => {
+            closest_on::<F, S, true, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray)
+        }
+        Some(ray) => {
+            closest_on::<F, S, false, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray)
+        }
         None => filters.closest_far(tree, primitives, start),
     }
 }
@@ -229,7 +239,7 @@ fn closest_far_with<F: Filters, S: Start>(
         return Some((RawHit { t: start.distance(query.scale, hit.t), ..hit }, id));
     }
     let ray = tree.frame.enter(filters.into(), &query)?;
-    closest_on::<F, S, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray)
+    closest_on::<F, S, false, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray)
 }
 
 /// Whether anything is hit by a ray that starts near the frame.
@@ -237,7 +247,8 @@ fn closest_far_with<F: Filters, S: Start>(
 fn any_with<F: Filters, S: Start>(filters: F, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
     let near = if tree.depth <= LEVELS[0] { start.enter_near::<F::Four>(filters.into(), &tree.frame) } else { None };
     match near {
-        Some(ray) => any_on::<F, S, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
+        Some(ray) if tree.mesh => any_on::<F, S, true, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
+        Some(ray) => any_on::<F, S, false, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
         None => filters.any_far(tree, primitives, start),
     }
 }
@@ -250,7 +261,7 @@ fn any_far_with<F: Filters, S: Start>(filters: F, tree: &WideTree, primitives: &
         return any_deep(tree, primitives, &query);
     }
     let Some(ray) = tree.frame.enter(filters.into(), &query) else { return false };
-    any_on::<F, S, { LEVELS[0] }>(filters, tree, primitives, start, &ray)
+    any_on::<F, S, false, { LEVELS[0] }>(filters, tree, primitives, start, &ray)
 }
 
 /// Degenerate trees, by the portable filters.
@@ -258,7 +269,7 @@ fn any_far_with<F: Filters, S: Start>(filters: F, tree: &WideTree, primitives: &
 #[inline(never)]
 pub(crate) fn closest_deep(tree: &WideTree, primitives: &[Primitive], query: &Query) -> Option<Found> {
     let ray = tree.frame.enter((), query)?;
-    closest_on::<_, _, { LEVELS[1] * (NODE_WIDTH - 1) }>(portable::Portable, tree, primitives, query, &ray)
+    closest_on::<_, _, false, { LEVELS[1] * (NODE_WIDTH - 1) }>(portable::Portable, tree, primitives, query, &ray)
 }
 
 /// Degenerate trees, by the portable filters.
@@ -267,7 +278,7 @@ pub(crate) fn closest_deep(tree: &WideTree, primitives: &[Primitive], query: &Qu
 pub(crate) fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query) -> bool {
     tree.frame
         .enter((), query)
-        .is_some_and(|ray| any_on::<_, _, { LEVELS[1] }>(portable::Portable, tree, primitives, query, &ray))
+        .is_some_and(|ray| any_on::<_, _, false, { LEVELS[1] }>(portable::Portable, tree, primitives, query, &ray))
 }
 
 /// [`Primitive::intersect`] in the vectors of an instruction set.

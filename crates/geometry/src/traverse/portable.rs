@@ -1,8 +1,9 @@
 //! The filters in plain Rust.
 
 use super::flat::{BLOCK, PlainEight, Wide};
+use super::met::{Entered, Row};
 use super::vector::Vector;
-use super::{Entered, Filters, Start, any_far_with, closest_far_with};
+use super::{Filters, Start, any_far_with, closest_far_with};
 use crate::best::Found;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
 use crate::query::Plain4;
@@ -186,6 +187,7 @@ impl Wide for Floats {
 
 impl Filters for Portable {
     type Ray = BoxRay<Plain>;
+    type Met = Entered;
     type Vector = Floats;
     type Wide = Floats;
     type Eight = PlainEight;
@@ -200,20 +202,20 @@ impl Filters for Portable {
     fn enter(self, ray: &BoxRay<Plain>, node: &Node16, limit: f32) -> Entered {
         let [origin_near, origin_far] = [ray.origin_near, ray.origin_far].map(Plain::to_array);
         let [reciprocal_near, reciprocal_far] = [ray.reciprocal_near, ray.reciprocal_far].map(Plain::to_array);
-        let mut out = Entered { mask: 0, near: [LEAST_DISTANCE; NODE_WIDTH] };
+        let mut out = Entered { mask: 0, near: Row([LEAST_DISTANCE; NODE_WIDTH]) };
         let mut far = [limit; NODE_WIDTH];
         for k in 0..3 {
             let entry = &node.planes[k][ray.negative[k]];
             let exit = &node.planes[k][1 - ray.negative[k]];
             for lane in 0..NODE_WIDTH {
-                let near = (entry[lane] - origin_near[k]) * reciprocal_near[k];
-                out.near[lane] = if near > out.near[lane] { near } else { out.near[lane] };
-                let exit = (exit[lane] - origin_far[k]) * reciprocal_far[k];
+                let near = (origin_near[k] - entry[lane]) * reciprocal_near[k];
+                out.near.0[lane] = if near > out.near.0[lane] { near } else { out.near.0[lane] };
+                let exit = (origin_far[k] - exit[lane]) * reciprocal_far[k];
                 far[lane] = if exit < far[lane] { exit } else { far[lane] };
             }
         }
         for lane in 0..NODE_WIDTH {
-            out.mask |= u32::from(out.near[lane] <= far[lane]) << lane;
+            out.mask |= u32::from(out.near.0[lane] <= far[lane]) << lane;
         }
         out
     }

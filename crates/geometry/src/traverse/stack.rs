@@ -3,7 +3,9 @@
 
 use std::mem::MaybeUninit;
 
-/// Room for up to `N` entries of a [`Stack`].
+/// Room for up to `N` entries of a [`Stack`]. It aligns the frame of the function that holds it, where compilers that run out of registers
+/// would else put vectors across cache lines.
+#[repr(align(64))]
 pub(super) struct Room<T, const N: usize>([MaybeUninit<T>; N]);
 
 impl<T, const N: usize> Room<T, N> {

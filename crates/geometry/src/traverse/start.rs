@@ -1,6 +1,6 @@
 //! What a traversal starts with.
 
-use crate::frame::{Frame, FrameRay};
+use crate::frame::{Frame, FrameRay, Lanes4};
 use crate::query::{Four, Projection, Query};
 use crate::{PrimitiveId, Ray};
 use etalon_optics::{Real, Vec3};
@@ -62,8 +62,17 @@ impl<R: Real> Start for &Ray<R> {
 
     #[inline(always)]
     fn enter_near<F: Four>(self, token: F::Token, frame: &Frame) -> Option<FrameRay<F::Narrow>> {
+        let t_max = |unit| self.t_max.to_f64() * unit;
+        if size_of::<R>() == size_of::<f32>() {
+            // They come from `f32`.
+            let lanes = [self.origin, self.direction]
+                .map(|v| F::Narrow::new(token, [v.x.to_f64() as f32, v.y.to_f64() as f32, v.z.to_f64() as f32, 0.0]));
+            if let Some(ray) = frame.enter_exact(lanes, t_max) {
+                return Some(ray);
+            }
+        }
         let lanes = [lanes::<R, F>(token, self.origin), lanes::<R, F>(token, self.direction)];
-        frame.enter_near(token, lanes, |unit| self.t_max.to_f64() * unit)
+        frame.enter_near(token, lanes, t_max)
     }
 
     #[inline(always)]
