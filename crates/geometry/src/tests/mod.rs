@@ -2,6 +2,7 @@
 
 mod cylinders;
 mod flat;
+mod frames;
 mod instances;
 mod motion;
 mod oracle;
