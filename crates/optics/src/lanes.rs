@@ -43,14 +43,25 @@ impl<R: Real, const N: usize> Lanes<R, N> {
         Self::from_fn(|i| f(self.0[i], o.0[i]))
     }
 
-    /// Sum over the lanes, in order.
+    /// Sum over the lanes: pairs first, then pairs of these, for a sum in order waits for each of its steps.
     #[inline(always)]
     pub fn sum(self) -> R {
-        let mut sum = self.0[0];
-        for i in 1..N {
-            sum += self.0[i];
+        self.folded(|a, b| a + b)
+    }
+
+    /// `f` of pairs of lanes, then of pairs of what came of these, down to one.
+    #[inline(always)]
+    fn folded(self, f: impl Fn(R, R) -> R) -> R {
+        let Self(mut lanes) = self;
+        let mut count = N;
+        while count > 1 {
+            let half = count.div_ceil(2);
+            for lane in 0..count - half {
+                lanes[lane] = f(lanes[lane], lanes[lane + half]);
+            }
+            count = half;
         }
-        sum
+        lanes[0]
     }
 
     /// Mean over the lanes.
@@ -62,11 +73,7 @@ impl<R: Real, const N: usize> Lanes<R, N> {
     /// The largest lane.
     #[inline(always)]
     pub fn max_lane(self) -> R {
-        let mut largest = self.0[0];
-        for lane in 1..N {
-            largest = largest.max(self.0[lane]);
-        }
-        largest
+        self.folded(R::max)
     }
 
     /// Whether every lane is exactly zero.

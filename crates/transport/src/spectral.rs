@@ -96,8 +96,8 @@ impl PathSpectrum {
     /// The wavelength of the first value of a table at each nanometre.
     pub(crate) fn first_nm(&self) -> Option<f64> {
         match self {
-            Self::Grid { first_nm, .. } => Some(*first_nm),
-            Self::Constant(_) | Self::Band { .. } | Self::Symbolic(_) => None,
+            Self::Grid { first_nm, .. } | Self::Band { first_nm, .. } => Some(*first_nm),
+            Self::Constant(_) | Self::Symbolic(_) => None,
         }
     }
 
@@ -110,15 +110,11 @@ impl PathSpectrum {
         lambda_nm: &Lanes<f64, N>,
     ) -> Lanes<f64, N> {
         match self {
-            Self::Grid { first_nm, steps } if *first_nm == from_nm => {
-                let (mut value, mut step) = ([0.0; N], [0.0; N]);
-                for lane in 0..N {
-                    [value[lane], step[lane]] = steps[places.index[lane] as usize];
-                }
-                for lane in 0..N {
-                    value[lane] += places.fraction[lane] * step[lane];
-                }
-                Lanes(value)
+            Self::Grid { first_nm, steps } if *first_nm == from_nm => places.interpolate(steps),
+            Self::Band { first_nm, steps, band_nm: [from, to] } if *first_nm == from_nm => {
+                let values = places.interpolate(steps);
+                let inside = |nm: f64| (*from <= nm) & (nm <= *to);
+                Lanes::from_fn(|lane| if inside(lambda_nm[lane]) { values[lane] } else { 0.0 })
             }
             Self::Constant(value) => Lanes::splat(*value),
             _ => self.lanes(lambda_nm),
@@ -160,6 +156,21 @@ impl<const N: usize> Places<N> {
             places.fraction[lane] = x - f64::from(index);
         }
         places
+    }
+}
+
+impl<const N: usize> Places<N> {
+    /// What a table holds there.
+    #[inline(always)]
+    fn interpolate(&self, steps: &[[f64; 2]]) -> Lanes<f64, N> {
+        let (mut value, mut step) = ([0.0; N], [0.0; N]);
+        for lane in 0..N {
+            [value[lane], step[lane]] = steps[self.index[lane] as usize];
+        }
+        for lane in 0..N {
+            value[lane] += self.fraction[lane] * step[lane];
+        }
+        Lanes(value)
     }
 }
 

@@ -26,35 +26,29 @@ pub struct Wavelengths<const N: usize> {
 /// the worse choice: hence the blur.
 #[derive(Clone, Debug)]
 pub struct WavelengthDistribution {
-    /// Cell borders, nm.
-    borders_nm: Vec<f64>,
-    /// Cumulative probability at each border, from 0 to 1.
-    cdf: Vec<f64>,
+    /// Where cells begin and end, in order: the cumulative probability, from 0 to 1, and the wavelength, nm.
+    borders: Vec<[f64; 2]>,
     /// The cell at each multiple of 1/[`GUIDES`] of probability: where the search for a cell begins.
-    guides: Vec<u32>,
-    cells: Vec<Cell>,
+    guides: Vec<u16>,
+    /// Most cells that a search passes.
+    most_passed: u32,
 }
 
-/// What a number that falls into a cell becomes.
-#[derive(Clone, Copy, Debug)]
+/// A cell: see [`WavelengthDistribution`].
+#[derive(Clone, Copy)]
 struct Cell {
-    /// Cumulative probability where it ends.
-    end: f64,
-    /// Cumulative probability where it begins, and its own.
-    begin: f64,
-    probability: f64,
-    /// Where it begins and how wide it is, nm.
-    first_nm: f64,
-    width_nm: f64,
-    /// Density, nm⁻¹.
-    pdf: f64,
+    /// Cumulative probability where it begins and ends.
+    cdf: [f64; 2],
+    /// Wavelengths there, nm.
+    nm: [f64; 2],
 }
 
 impl Cell {
-    /// The wavelength at cumulative probability `u`, nm.
+    /// The wavelength at cumulative probability `u`, nm, and its density, nm⁻¹.
     #[inline(always)]
-    fn wavelength_nm(&self, u: f64) -> f64 {
-        self.first_nm + (u - self.begin) / self.probability * self.width_nm
+    fn at(&self, u: f64) -> (f64, f64) {
+        let (probability, width_nm) = (self.cdf[1] - self.cdf[0], self.nm[1] - self.nm[0]);
+        (self.nm[0] + (u - self.cdf[0]) / probability * width_nm, probability / width_nm)
     }
 }
 
@@ -64,8 +58,8 @@ const FLOOR: f64 = 0.02;
 /// Standard deviation of the blur, nm. Of 10 to 40 nm, and of several other shapes, this leaves eight lanes the least colour
 /// noise over daylight, lamps, black bodies and what paints reflect of them: a tenth of that without blur.
 const BLUR_NM: i32 = 40;
-/// About twice as many as there are nanometres in the visible range, so that most searches end where they begin.
-const GUIDES: usize = 1024;
+/// So many times the nanometres of the visible range that hardly a search passes more than one cell.
+const GUIDES: usize = 4096;
 
 /// Share of the samples that bands of a film get evenly: every band then has at least half as many as an even spread would
 /// give it, and the variance of the colour at most doubles.
@@ -78,8 +72,9 @@ impl WavelengthDistribution {
         let plain = Self::new(range_nm);
         let edges: Vec<f64> = (0..=bands.count).map(|index| bands.edge_nm(index)).collect();
         let (begin, end) = (edges[0], edges[edges.len() - 1]);
-        let outside = |nm: &&f64| **nm < begin || **nm > end;
-        let mut borders_nm: Vec<f64> = plain.borders_nm.iter().filter(outside).copied().chain(edges).collect();
+        let outside = |nm: &f64| *nm < begin || *nm > end;
+        let plain_nm = plain.borders.iter().map(|&[_, nm]| nm);
+        let mut borders_nm: Vec<f64> = plain_nm.filter(outside).chain(edges).collect();
         borders_nm.sort_by(f64::total_cmp);
         let of_bands = plain.cumulative(end) - plain.cumulative(begin);
         let mut cdf = vec![0.0];
@@ -97,9 +92,9 @@ impl WavelengthDistribution {
 
     /// Probability of the wavelengths up to `nm`.
     fn cumulative(&self, nm: f64) -> f64 {
-        let cell = self.borders_nm.partition_point(|&border| border <= nm).clamp(1, self.borders_nm.len() - 1) - 1;
-        let (nm0, nm1) = (self.borders_nm[cell], self.borders_nm[cell + 1]);
-        self.cdf[cell] + (self.cdf[cell + 1] - self.cdf[cell]) * ((nm - nm0) / (nm1 - nm0))
+        let cell = self.borders.partition_point(|&[_, border]| border <= nm).clamp(1, self.borders.len() - 1) - 1;
+        let ([c0, nm0], [c1, nm1]) = (self.borders[cell], self.borders[cell + 1]);
+        c0 + (c1 - c0) * ((nm - nm0) / (nm1 - nm0))
     }
 
     /// The distribution over `range_nm`, which must be finite, ordered and not empty.
@@ -133,47 +128,65 @@ impl WavelengthDistribution {
     }
 
     fn of_cells(borders_nm: Vec<f64>, cdf: Vec<f64>) -> Self {
-        let cell_at = |guide: usize| cdf.partition_point(|&c| c <= guide as f64 / GUIDES as f64) - 1;
-        let guides = (0..GUIDES).map(|guide| cell_at(guide) as u32).collect();
-        let cell = |(c, nm): (&[f64], &[f64])| {
-            let (probability, width_nm) = (c[1] - c[0], nm[1] - nm[0]);
-            Cell { end: c[1], begin: c[0], probability, first_nm: nm[0], width_nm, pdf: probability / width_nm }
-        };
-        let cells = cdf.windows(2).zip(borders_nm.windows(2)).map(cell).collect();
-        Self { borders_nm, cdf, guides, cells }
+        let cell_at = |u: f64| cdf.partition_point(|&c| c <= u) - 1;
+        let at = |guide: usize| guide as f64 / GUIDES as f64;
+        // Fewer cells than 2¹⁶: wavelengths are tabulated at nanometres, and files of bands hold fewer.
+        let guides: Vec<u16> = (0..GUIDES).map(|g| cell_at(at(g)).try_into().expect("cells have short numbers")).collect();
+        // What a number below the next guide's may pass.
+        let last = |g: usize| cell_at(at(g + 1).next_down());
+        let most_passed = (0..GUIDES).map(|g| last(g) - usize::from(guides[g])).max().expect("there are guides") as u32;
+        let borders = cdf.into_iter().zip(borders_nm).map(|(c, nm)| [c, nm]).collect();
+        Self { borders, guides, most_passed }
     }
 
     /// The first and the last wavelength, nm.
     pub fn range_nm(&self) -> [f64; 2] {
-        [self.borders_nm[0], self.borders_nm[self.borders_nm.len() - 1]]
+        [self.borders[0][1], self.borders[self.borders.len() - 1][1]]
     }
 
-    /// The cell that `u` in [0, 1) falls into.
+    /// Number of the cell that `u` in [0, 1) falls into; no branch depends on `u`.
     #[inline(always)]
-    fn cell(&self, u: f64) -> &Cell {
-        let mut cell = self.guides[(u * GUIDES as f64) as u32 as usize] as usize;
-        while self.cells[cell].end <= u {
-            cell += 1;
+    fn number(&self, u: f64) -> usize {
+        let mut cell = usize::from(self.guides[(u * GUIDES as f64) as u32 as usize]);
+        for _ in 0..self.most_passed {
+            cell += usize::from(self.borders[cell + 1][0] <= u);
         }
-        &self.cells[cell]
+        cell
+    }
+
+    /// The cell of a number.
+    #[inline(always)]
+    fn cell(&self, number: usize) -> Cell {
+        let (begin, end) = (self.borders[number], self.borders[number + 1]);
+        Cell { cdf: [begin[0], end[0]], nm: [begin[1], end[1]] }
     }
 
     /// The wavelength at cumulative probability `u` in [0, 1), and its density in nm⁻¹.
     pub fn sample(&self, u: f64) -> (f64, f64) {
-        let cell = self.cell(u);
-        (cell.wavelength_nm(u), cell.pdf)
+        self.cell(self.number(u)).at(u)
     }
 
     /// The wavelengths of a path whose hero is drawn by `u` in [0, 1).
     #[inline(always)]
     pub fn sample_lanes<const N: usize>(&self, u: f64) -> Wavelengths<N> {
+        // Loops apart, of which the arithmetic becomes vector instructions.
+        let (mut turned, mut numbers) = ([0.0; N], [0; N]);
+        for lane in 0..N {
+            let on = u + lane as f64 / N as f64;
+            turned[lane] = if on < 1.0 { on } else { on - 1.0 };
+        }
+        for lane in 0..N {
+            numbers[lane] = self.number(turned[lane]);
+        }
+        let (mut begin, mut end, mut first, mut last) = ([0.0; N], [0.0; N], [0.0; N], [0.0; N]);
+        for lane in 0..N {
+            let Cell { cdf, nm } = self.cell(numbers[lane]);
+            ([begin[lane], end[lane]], [first[lane], last[lane]]) = (cdf, nm);
+        }
         let mut lanes = Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO };
         for lane in 0..N {
-            let turned = u + lane as f64 / N as f64;
-            let turned = if turned < 1.0 { turned } else { turned - 1.0 };
-            let cell = self.cell(turned);
-            lanes.lambda_nm[lane] = cell.wavelength_nm(turned);
-            lanes.pdf[lane] = cell.pdf;
+            let cell = Cell { cdf: [begin[lane], end[lane]], nm: [first[lane], last[lane]] };
+            (lanes.lambda_nm[lane], lanes.pdf[lane]) = cell.at(turned[lane]);
         }
         lanes
     }
@@ -186,17 +199,8 @@ impl<const N: usize> Wavelengths<N> {
     pub fn to_xyz<R: Real>(&self, radiance: Lanes<R, N>) -> [f64; 3] {
         let scale = N as f64 * cie_y_integral_nm();
         let bars = colour_matching_lanes(&self.lambda_nm.0);
-        let mut xyz = [0.0; 3];
-        let mut weights = [0.0; N];
-        for lane in 0..N {
-            weights[lane] = radiance[lane].to_f64() / (self.pdf[lane] * scale);
-        }
-        for lane in 0..N {
-            for c in 0..3 {
-                xyz[c] += weights[lane] * bars[c][lane];
-            }
-        }
-        xyz
+        let weights = Lanes::from_fn(|lane| radiance[lane].to_f64() / (self.pdf[lane] * scale));
+        bars.map(|bar| (weights * Lanes(bar)).sum())
     }
 }
 
