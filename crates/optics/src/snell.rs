@@ -29,11 +29,12 @@ fn refract_f64(wi: Vec3<f64>, n: Vec3<f64>, eta: f64) -> Option<Vec3<f64>> {
 /// [`refracted_cosine`] or [`crate::fresnel::dielectric`] of the same arguments.
 ///
 /// ω_t = −ω_i/n + (c/n − c_t)·n⃗, with the difference in the form (1 − n²)/(n·(c + n·c_t)), which does not cancel near n = 1.
-#[inline]
+#[inline(always)]
 pub fn refract_with_cosines<R: Real>(wi: Vec3<R>, n: Vec3<R>, eta: R, cos_i: R, cos_t: R) -> Vec3<R> {
-    if eta == R::ONE {
-        return -wi;
-    }
     let along = (R::ONE - eta) * (R::ONE + eta) / (eta * (cos_i + eta * cos_t));
-    n * along - wi / eta
+    let refracted = n * along - wi / eta;
+    // A choice without a branch, so that a loop over interfaces is vectorised.
+    let nothing = eta == R::ONE;
+    let choose = |a: R, b: R| if nothing { a } else { b };
+    Vec3::new(choose(-wi.x, refracted.x), choose(-wi.y, refracted.y), choose(-wi.z, refracted.z))
 }

@@ -1,7 +1,7 @@
 //! Fresnel's equations against values computed to 60 digits (`reference/fresnel.py`), and mutants that must fail.
 
 use etalon_optics::Real;
-use etalon_optics::fresnel::{DielectricFresnel, conductor, dielectric, refracted_cosine};
+use etalon_optics::fresnel::{DielectricFresnel, conductor, dielectric, dielectric_reflectance, refracted_cosine};
 use proptest::prelude::*;
 
 struct Row {
@@ -246,6 +246,25 @@ proptest! {
             let bound = 4.0 * f64::EPSILON * (1.0 + eta * eta) / c;
             prop_assert!((back.cos_t - c).abs() <= bound);
             prop_assert!((back.transmittance - f.transmittance).abs() <= 8.0 * f64::EPSILON + 4.0 * bound / c.min(f.cos_t));
+        }
+    }
+
+    /// Any angle, and those where the two forms part: at the critical angle and at equal indices.
+    #[test]
+    fn the_form_without_branches_has_the_same_bits(
+        c in 0.0..=1.0_f64, eta in 0.2..5.0_f64, near in -1e-6..1e-6_f64, place in 0..4_u8,
+    ) {
+        let (c, eta) = match place {
+            0 => (c, eta),
+            1 => ((1.0 - eta * eta).max(0.0).sqrt() * (1.0 + near), eta),
+            2 => (c, 1.0 + near),
+            _ => (c, 1.0),
+        };
+        let c = c.clamp(0.0, 1.0);
+        let (reflectance, cos_t) = dielectric_reflectance(c, eta);
+        match dielectric(c, eta) {
+            None => prop_assert_eq!(reflectance, 1.0),
+            Some(f) => prop_assert_eq!((reflectance.to_bits(), cos_t.to_bits()), (f.reflectance.to_bits(), f.cos_t.to_bits())),
         }
     }
 

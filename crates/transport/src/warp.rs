@@ -36,7 +36,7 @@ pub fn uniform_sphere(u: [f64; 2]) -> Vec3<f64> {
 }
 
 /// Direction uniform in the cone about +z whose half angle has 1 − cos = `one_minus_cos`.
-#[inline]
+#[inline(always)]
 pub fn uniform_cone(u: [f64; 2], one_minus_cos: f64) -> Vec3<f64> {
     let a = u[0] * one_minus_cos;
     let sin_theta = (a * (2.0 - a)).sqrt_nonnegative();

@@ -131,7 +131,8 @@ impl WavelengthDistribution {
         let cell_at = |u: f64| cdf.partition_point(|&c| c <= u) - 1;
         let at = |guide: usize| guide as f64 / GUIDES as f64;
         // Fewer cells than 2¹⁶: wavelengths are tabulated at nanometres, and files of bands hold fewer.
-        let guides: Vec<u16> = (0..GUIDES).map(|g| cell_at(at(g)).try_into().expect("cells have short numbers")).collect();
+        let guides: Vec<u16> =
+            (0..GUIDES).map(|g| cell_at(at(g)).try_into().expect("cells have short numbers")).collect();
         // What a number below the next guide's may pass.
         let last = |g: usize| cell_at(at(g + 1).next_down());
         let most_passed = (0..GUIDES).map(|g| last(g) - usize::from(guides[g])).max().expect("there are guides") as u32;

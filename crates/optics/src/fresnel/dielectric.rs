@@ -18,22 +18,63 @@ pub struct DielectricFresnel<R> {
     pub cos_t: R,
 }
 
+/// The reflectance of [`dielectric`] and its cosine of refraction, bit for bit, without branches, so that a loop over interfaces is
+/// vectorised. Under total internal reflection the reflectance is 1 and the cosine means nothing.
+#[inline(always)]
+pub fn dielectric_reflectance(cos_i: f64, eta: f64) -> (f64, f64) {
+    let (n, c) = (eta, cos_i);
+    let (plain, exact) = (normal_component_squared_plain(c, n), normal_component_squared_exact(c, n));
+    let w = if keeps_its_bits(plain, c) { plain } else { exact };
+    let refracts = w > 0.0;
+    let cos_t = w.sqrt() / n;
+    let k = c + n * cos_t;
+    let l = n * c + cos_t;
+    let n2_minus_1 = (n - 1.0) * (n + 1.0);
+    let sin2 = (1.0 - c) * (1.0 + c);
+    let (below, above) = (c * c - sin2 / (n * n), cos_t * cos_t - sin2);
+    let brewster = if n > 1.0 { below } else { above };
+    let r_s = -n2_minus_1 / (k * k);
+    let r_p = n2_minus_1 * brewster / (l * l);
+    let reflectance = 0.5 * (r_s * r_s + r_p * r_p);
+    let reflectance = if refracts { reflectance } else { 1.0 };
+    let nothing = n == 1.0;
+    (if nothing { 0.0 } else { reflectance }, if nothing { c } else { cos_t })
+}
+
+/// c² + n² − 1 as it stands.
+#[inline(always)]
+fn normal_component_squared_plain(c: f64, n: f64) -> f64 {
+    c * c + (n - 1.0) * (n + 1.0)
+}
+
+/// Whether no more than three bits of it cancel.
+#[inline(always)]
+fn keeps_its_bits(plain: f64, c: f64) -> bool {
+    plain.abs() > 0.125 * c * c
+}
+
+/// The same where n² + c² is near 1, by sums and products of two terms.
+#[inline(always)]
+fn normal_component_squared_exact(c: f64, n: f64) -> f64 {
+    let (c2, c2_error) = exact_square(c);
+    let (n2, n2_error) = exact_square(n);
+    // n² − 1 and the sum are both exact to their two-term forms.
+    let (head, head_error) = exact_sum(n2, -1.0);
+    let (sum, sum_error) = exact_sum(head, c2);
+    sum + (((sum_error + head_error) + c2_error) + n2_error)
+}
+
 /// c² + n² − 1 for 0 ≤ c ≤ 1 and n > 0, to a few roundoffs of the result even where it cancels; its square root is n·cos_t.
 #[inline(always)]
 fn normal_component_squared<R: Real>(cos_i: R, eta: R) -> f64 {
     let (c, n) = (cos_i.to_f64(), eta.to_f64());
-    let plain = c * c + (n - 1.0) * (n + 1.0);
+    let plain = normal_component_squared_plain(c, n);
     // From f32 the products c² and (n − 1)(n + 1) are exact in f64 unless n is far from 1, where nothing cancels. From
     // f64 they are rounded, which matters once more than three bits cancel.
-    if size_of::<R>() == 4 || plain.abs() > 0.125 * c * c {
+    if size_of::<R>() == 4 || keeps_its_bits(plain, c) {
         return plain;
     }
-    let (c2, c2_error) = exact_square(c);
-    let (n2, n2_error) = exact_square(n);
-    // Here n² + c² is near 1: n² − 1 and the sum are both exact to their two-term forms.
-    let (head, head_error) = exact_sum(n2, -1.0);
-    let (sum, sum_error) = exact_sum(head, c2);
-    sum + (((sum_error + head_error) + c2_error) + n2_error)
+    normal_component_squared_exact(c, n)
 }
 
 /// a² as an unevaluated sum of two numbers, exactly (Veltkamp's splitting and Dekker's product; no fused operation).

@@ -7,4 +7,4 @@ mod conductor;
 mod dielectric;
 
 pub use conductor::{ConductorFresnel, conductor};
-pub use dielectric::{DielectricFresnel, dielectric, refracted_cosine};
+pub use dielectric::{DielectricFresnel, dielectric, dielectric_reflectance, refracted_cosine};

@@ -26,6 +26,49 @@ impl Dielectric {
         Self { interior, exterior, dispersive }
     }
 
+    /// The indices behind and before the outward normal, if they are the same at every wavelength; and otherwise `None`.
+    pub(crate) fn constant_indices(&self) -> Option<[f64; 2]> {
+        match (&self.interior, &self.exterior) {
+            (RefractiveIndex::Constant(interior), RefractiveIndex::Constant(exterior)) => Some([*interior, *exterior]),
+            _ => None,
+        }
+    }
+
+    /// The indices behind and before the outward normal at a wavelength.
+    pub(crate) fn indices(&self, wavelength_nm: f64) -> [f64; 2] {
+        [self.interior.eval(wavelength_nm), self.exterior.eval(wavelength_nm)]
+    }
+
+    /// Whether wavelengths part.
+    pub(crate) fn is_dispersive(&self) -> bool {
+        compiled::DISPERSION && self.dispersive
+    }
+
+    /// How likely each lane is to be reflected, relative to the hero, whose `reflectance` is known.
+    pub(crate) fn relative_reflectances<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        (cos, from_outside): (f64, bool),
+        reflectance: f64,
+    ) -> Lanes<f64, N> {
+        self.relative(lambda_nm, (cos, from_outside, None), reflectance)
+    }
+
+    fn relative<R: Real, const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        (cos, from_outside, interface): (f64, bool, Option<Interface<'_>>),
+        reflectance: f64,
+    ) -> Lanes<R, N> {
+        Lanes::from_fn(|lane| match lane {
+            0 => R::ONE,
+            _ => {
+                let eta = self.eta(lambda_nm[lane], from_outside, interface);
+                R::from_f64(fresnel::dielectric_reflectance(cos, eta).0 / reflectance)
+            }
+        })
+    }
+
     /// n_transmitted / n_incident for a path that arrives on the outside, or on the inside.
     fn eta(&self, lambda_nm: f64, from_outside: bool, interface: Option<Interface<'_>>) -> f64 {
         if let Some(media) = interface {
@@ -59,40 +102,20 @@ impl Dielectric {
         interface: Option<Interface<'_>>,
     ) -> Option<BsdfSample<R, N>> {
         let from_outside = n.dot(wo) > 0.0;
-        let n = if from_outside { n } else { -n };
-        // Rounding may carry the product of two unit vectors past 1.
-        let cos_o = n.dot(wo).min(1.0);
         let dispersive = compiled::DISPERSION
             && match interface {
                 Some(media) => media.incident.is_dispersive() || media.transmitted.is_dispersive(),
                 None => self.dispersive,
             };
-        // Whether a wavelength is reflected for certain, or how likely and, if it is not, where it goes.
-        let at = |lane: usize| {
-            let eta = self.eta(lambda_nm[lane], from_outside, interface);
-            (eta, fresnel::dielectric(cos_o, eta))
-        };
-        let (eta, hero) = at(0);
-        let reflectance = hero.map_or(1.0, |f| f.reflectance);
-
-        if u < reflectance {
-            let lane_density = if dispersive {
-                Lanes::from_fn(|lane| match lane {
-                    0 => R::ONE,
-                    _ => R::from_f64(at(lane).1.map_or(1.0, |f| f.reflectance) / reflectance),
-                })
-            } else {
-                Lanes::ONE
+        let eta = self.eta(lambda_nm[0], from_outside, interface);
+        let Turn { wi, reflects, reflectance, cos } = turn(n, wo, eta, u);
+        if reflects {
+            let lane_density = match dispersive {
+                true => self.relative(lambda_nm, (cos, from_outside, interface), reflectance),
+                false => Lanes::ONE,
             };
-            return Some(BsdfSample {
-                wi: wo.reflected_about(n).renormalized(),
-                weight: lane_density,
-                density: Density::Delta,
-                lane_density,
-                eta: 1.0,
-            });
+            return Some(BsdfSample { wi, weight: lane_density, density: Density::Delta, lane_density, eta: 1.0 });
         }
-        let wi = snell::refract_with_cosines(wo, n, eta, cos_o, hero?.cos_t);
         let lane_density = if dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE };
         Some(BsdfSample {
             wi,
@@ -103,4 +126,35 @@ impl Dielectric {
             eta,
         })
     }
+}
+
+/// Where an interface sends the hero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn {
+    /// Toward the light; a unit vector.
+    pub wi: Vec3<f64>,
+    /// Whether it is reflected, and how likely that was.
+    pub reflects: bool,
+    /// See above.
+    pub reflectance: f64,
+    /// Cosine of incidence.
+    pub cos: f64,
+}
+
+/// Reflects or refracts at an interface with outward normal `n` and relative index `eta` = n_transmitted / n_incident, by a number
+/// `u` in [0, 1); without branches, so that a loop over interfaces is vectorised.
+#[inline(always)]
+pub(crate) fn turn(n: Vec3<f64>, wo: Vec3<f64>, eta: f64, u: f64) -> Turn {
+    let n = if n.dot(wo) > 0.0 { n } else { -n };
+    // Rounding may carry the product of two unit vectors past 1.
+    let cos = n.dot(wo);
+    let cos = if cos < 1.0 { cos } else { 1.0 };
+    let (reflectance, cos_t) = fresnel::dielectric_reflectance(cos, eta);
+    let reflects = u < reflectance;
+    let reflected = wo.reflected_about(n).renormalized();
+    let refracted = snell::refract_with_cosines(wo, n, eta, cos, cos_t);
+    let choose = |a: f64, b: f64| if reflects { a } else { b };
+    let wi =
+        Vec3::new(choose(reflected.x, refracted.x), choose(reflected.y, refracted.y), choose(reflected.z, refracted.z));
+    Turn { wi, reflects, reflectance, cos }
 }

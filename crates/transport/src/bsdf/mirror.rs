@@ -2,6 +2,7 @@
 
 use super::BsdfSample;
 use crate::mis::Density;
+use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
 use etalon_optics::{Lanes, Real, Vec3};
 
@@ -15,6 +16,14 @@ impl Mirror {
     /// A mirror of this reflectance, in [0, 1].
     pub fn new(reflectance: PathTexture) -> Self {
         Self { reflectance }
+    }
+
+    /// The reflectance, if it is the same everywhere.
+    pub(crate) fn uniform(&self) -> Option<&PathSpectrum> {
+        match &self.reflectance {
+            PathTexture::Uniform(spectrum) => Some(spectrum),
+            PathTexture::Image { .. } => None,
+        }
     }
 
     pub(super) fn sample<R: Real, const N: usize>(

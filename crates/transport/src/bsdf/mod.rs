@@ -8,7 +8,7 @@
 mod albedo;
 mod blend;
 mod conductor;
-mod dielectric;
+pub(crate) mod dielectric;
 pub(crate) mod lambert;
 mod metal;
 mod microfacet;

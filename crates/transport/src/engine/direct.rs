@@ -3,13 +3,16 @@
 use super::Engine;
 use super::level::{Level, Set, stages};
 use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes};
+use super::tables::Form;
+#[cfg(test)]
+use super::tests::{Fault, is_wrong};
 use crate::bsdf::lambert;
-use crate::light::{Aim, Flat, LightTable, Target};
+use crate::light::{Aim, Flat, LightTable, Round, Target};
 use crate::mis::{Density, power_heuristic};
 use crate::model::WavelengthModel;
 use crate::sampler::{CAMERA_SETS, SETS_PER_VERTEX, Samplers};
 use etalon_geometry::{LANES, Rays, SurfaceId, SurfacePoint};
-use etalon_optics::Lanes;
+use etalon_optics::{Lanes, Vec3};
 use etalon_scene::LightSampling;
 
 /// The lights that paths look at, and what comes of it before the shadow rays are traced. Kept from vertex to vertex.
@@ -17,7 +20,10 @@ pub(super) struct Sight<const N: usize> {
     /// Numbers of the lights, and the probabilities of having chosen them.
     light: [u32; W],
     probability: Row,
+    /// Their surfaces, of those with a row form.
+    surface: [SurfaceId; W],
     flats: Flats,
+    rounds: Rounds,
     aims: Aims,
     rays: ShadowRows,
     /// Cosines on the viewer's side of Lambert's surfaces.
@@ -30,8 +36,9 @@ pub(super) struct Sight<const N: usize> {
 
 /// Flat lights, one for each path.
 pub(super) struct Flats {
-    /// Which of them are flat at all.
+    /// Which of them are parallelograms or triangles, and which are disks.
     mask: Mask,
+    disks: Mask,
     corner: Rows3,
     edges: [Rows3; 2],
     normal: Rows3,
@@ -39,7 +46,15 @@ pub(super) struct Flats {
     half: [bool; W],
     front: [bool; W],
     back: [bool; W],
-    surface: [SurfaceId; W],
+}
+
+/// Spheres that shine, one for each path.
+pub(super) struct Rounds {
+    /// Which of them are spheres at all.
+    mask: Mask,
+    centre: Rows3,
+    radius: Row,
+    front: [bool; W],
 }
 
 /// What paths see of a light.
@@ -62,8 +77,10 @@ impl<const N: usize> Sight<N> {
         Self {
             light: [u32::MAX; W],
             probability: Row::ZERO,
+            surface: [SurfaceId::NONE; W],
             flats: Flats {
                 mask: 0,
+                disks: 0,
                 corner: Rows3::ZERO,
                 edges: [Rows3::ZERO; 2],
                 normal: Rows3::ZERO,
@@ -71,8 +88,8 @@ impl<const N: usize> Sight<N> {
                 half: [false; W],
                 front: [false; W],
                 back: [false; W],
-                surface: [SurfaceId::NONE; W],
             },
+            rounds: Rounds { mask: 0, centre: Rows3::ZERO, radius: Row::ZERO, front: [false; W] },
             aims: Aims { point: Rows3::ZERO, wi: Rows3::ZERO, density: Row::ZERO, lit: [false; W] },
             rays: ShadowRows { origin: Rows3::ZERO, direction: Rows3::ZERO, t_max: Row::ZERO },
             cos: Row::ZERO,
@@ -88,12 +105,27 @@ impl<const N: usize> Sight<N> {
         if self.light[lane] == index as u32 {
             return;
         }
+        #[cfg(test)]
+        if is_wrong(Fault::StaleLamp) && lane == 6 && self.light[lane] != u32::MAX {
+            return;
+        }
         self.light[lane] = index as u32;
         self.probability.0[lane] = lights.probability(index);
         let light = &lights.lights()[index];
-        self.flats.mask &= !(1 << lane);
-        if let (Some(flat), Some(emitter)) = (light.flat(), light.emitter()) {
-            self.flats.put(lane, &flat, emitter.surface);
+        let here = 1 << lane;
+        self.flats.mask &= !here;
+        self.flats.disks &= !here;
+        self.rounds.mask &= !here;
+        self.surface[lane] = light.emitter().map_or(SurfaceId::NONE, |emitter| emitter.surface);
+        if let Some(flat) = light.flat() {
+            self.flats.mask |= here;
+            self.flats.put(lane, &flat);
+        } else if let Some(disk) = light.disk() {
+            self.flats.disks |= here;
+            self.flats.put(lane, &disk);
+        } else if let Some(round) = light.round() {
+            self.rounds.mask |= here;
+            self.rounds.put(lane, &round);
         }
     }
 }
@@ -115,21 +147,30 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
             let index = if lights.len() == 1 { 0 } else { world.lights.choose(u_light[lane]) };
             sight.look(lane, index, world.lights);
         }
-        let flat = sight.flats.mask;
-        if flat & shared != 0 {
+        if sight.flats.mask & shared != 0 {
             aim(self.level, &paths.at.position, [u1, u2], &sight.flats, &mut sight.aims);
+        }
+        if sight.flats.disks & shared != 0 {
+            aim_at_disks(self.level, &paths.at.position, [u1, u2], &sight.flats, &mut sight.aims);
+        }
+        let mut rows = sight.flats.mask | sight.flats.disks;
+        if sight.rounds.mask & shared != 0 {
+            let mut outside = [false; W];
+            aim_at_rounds(self.level, &paths.at.position, [u1, u2], &sight.rounds, &mut sight.aims, &mut outside);
+            // Those within a sphere are asked for one by one.
+            rows |= lanes(sight.rounds.mask).fold(0, |mask, lane| mask | Mask::from(outside[lane]) << lane);
         }
         // What each shadow ray aims at.
         let mut surfaces = [SurfaceId::NONE; W];
         let mut endless: Mask = 0;
         let mut seen: Mask = 0;
-        for lane in lanes(shared & flat) {
-            let aims = sight.aims.lit[lane] && sight.flats.surface[lane] != paths.at.surface[lane];
-            surfaces[lane] = sight.flats.surface[lane];
+        for lane in lanes(shared & rows) {
+            let aims = sight.aims.lit[lane] && sight.surface[lane] != paths.at.surface[lane];
+            surfaces[lane] = sight.surface[lane];
             seen |= Mask::from(aims) << lane;
         }
         let mut others = [const { None }; W];
-        for lane in lanes(shared & !flat) {
+        for lane in lanes(shared & !rows) {
             let light = &lights[sight.light[lane] as usize];
             let Some(sample) = light.sample(paths.at.position.at(lane), [u1[lane], u2[lane]], 0.0) else { continue };
             if sample.surface == paths.at.surface[lane] {
@@ -164,8 +205,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         for lane in lanes(seen) {
             let lambda_nm = &paths.wavelengths[lane].lambda_nm;
             let parted = paths.parted >> lane & 1 == 1;
-            let (f_cos, mean_density) = match paths.at.lambert[lane] {
-                Some(slot) => {
+            let (f_cos, mean_density) = match paths.at.form[lane] {
+                Form::Lambert(slot) => {
                     if sight.cos.0[lane] == 0.0 {
                         continue;
                     }
@@ -174,7 +215,9 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     let mean = if parted { paths.model[lane].mean_density(Lanes::splat(pdf)) } else { pdf };
                     (reflectance * pdf, mean)
                 }
-                None => {
+                // Deltas make nothing of it.
+                Form::Mirror(_) | Form::Dielectric(_) => continue,
+                Form::Other => {
                     let scattering = paths.at.scattering[lane].as_ref().expect("what is not Lambert's has been made");
                     let (f_cos, densities) =
                         scattering.eval(lambda_nm, -paths.direction.at(lane), sight.aims.wi.at(lane));
@@ -189,7 +232,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 None => (Density::SolidAngle(sight.aims.density.0[lane]), 1.0),
                 Some(sample) => sample,
             };
-            if parted || paths.at.lambert[lane].is_none() || others[lane].is_some() {
+            if parted || paths.at.form[lane] == Form::Other || others[lane].is_some() {
                 sight.weight.0[lane] =
                     weight(world.light_sampling, density, scale, sight.probability.0[lane], mean_density);
             }
@@ -259,9 +302,7 @@ fn weight(sampling: LightSampling, density: Density, scale: f64, probability: f6
 
 impl Flats {
     #[inline(always)]
-    fn put(&mut self, lane: usize, light: &Flat, surface: SurfaceId) {
-        self.mask |= 1 << lane;
-        self.surface[lane] = surface;
+    fn put(&mut self, lane: usize, light: &Flat) {
         self.corner.set(lane, light.corner);
         self.edges[0].set(lane, light.edges[0]);
         self.edges[1].set(lane, light.edges[1]);
@@ -284,6 +325,42 @@ impl Flats {
     }
 }
 
+impl Rounds {
+    #[inline(always)]
+    fn put(&mut self, lane: usize, light: &Round) {
+        self.centre.set(lane, light.centre);
+        (self.radius.0[lane], self.front[lane]) = (light.radius, light.front);
+    }
+}
+
+impl Aims {
+    #[inline(always)]
+    fn put(&mut self, lane: usize, aim: &Aim) {
+        self.point.set(lane, aim.point);
+        self.wi.set(lane, aim.wi);
+        self.density.0[lane] = aim.density;
+        self.lit[lane] = aim.lit;
+    }
+
+    #[inline(always)]
+    fn at(&self, lane: usize) -> Aim {
+        Aim { point: self.point.at(lane), wi: self.wi.at(lane), density: self.density.0[lane], lit: self.lit[lane] }
+    }
+}
+
+/// The first if `condition` holds, else the second, without a branch.
+#[inline(always)]
+fn choose_aim(condition: bool, a: &Aim, b: &Aim) -> Aim {
+    let number = |a: f64, b: f64| if condition { a } else { b };
+    let vector = |a: Vec3<f64>, b: Vec3<f64>| Vec3::new(number(a.x, b.x), number(a.y, b.y), number(a.z, b.z));
+    Aim {
+        point: vector(a.point, b.point),
+        wi: vector(a.wi, b.wi),
+        density: number(a.density, b.density),
+        lit: (condition & a.lit) | (!condition & b.lit),
+    }
+}
+
 stages! {
     /// Set number `set` of the vertex that each path is at: (point 1, point 2, choice, decision).
     fn vertex_numbers(samplers: &Samplers<W>, vertex: &[u32; W], set: u32, numbers: &mut [[f64; W]; 4]) {
@@ -297,11 +374,26 @@ stages! {
     /// Points of lights as they are seen.
     fn aim(from: &Rows3, u: [&[f64; W]; 2], lights: &Flats, aims: &mut Aims) {
         for lane in 0..W {
-            let Aim { point, wi, density, lit } = lights.at(lane).aim(from.at(lane), [u[0][lane], u[1][lane]]);
-            aims.point.set(lane, point);
-            aims.wi.set(lane, wi);
-            aims.density.0[lane] = density;
-            aims.lit[lane] = lit;
+            aims.put(lane, &lights.at(lane).aim(from.at(lane), [u[0][lane], u[1][lane]]));
+        }
+    }
+
+    /// Points of disks as they are seen, in place of those that are there.
+    fn aim_at_disks(from: &Rows3, u: [&[f64; W]; 2], lights: &Flats, aims: &mut Aims) {
+        for lane in 0..W {
+            let aim = lights.at(lane).aim_at_disk(from.at(lane), [u[0][lane], u[1][lane]]);
+            aims.put(lane, &choose_aim(lights.disks >> lane & 1 == 1, &aim, &aims.at(lane)));
+        }
+    }
+
+    /// Points of spheres as they are seen from outside, in place of those that are there; and who is outside.
+    fn aim_at_rounds(from: &Rows3, u: [&[f64; W]; 2], lights: &Rounds, aims: &mut Aims, outside: &mut [bool; W]) {
+        for lane in 0..W {
+            let (centre, radius) = (lights.centre.at(lane), lights.radius.0[lane]);
+            let round = Round { centre, radius, front: lights.front[lane] };
+            let aim = round.aim(from.at(lane), [u[0][lane], u[1][lane]]);
+            outside[lane] = round.is_outside(from.at(lane));
+            aims.put(lane, &choose_aim(lights.mask >> lane & 1 == 1, &aim, &aims.at(lane)));
         }
     }
 

@@ -144,7 +144,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         for lane in lanes(ended) {
             let wavelengths = &self.paths.wavelengths[lane];
             let radiance = self.paths.radiance[lane];
-            let xyz = M::to_xyz(self.prepared, wavelengths, radiance);
+            // Much light is none, whose colour is known.
+            let xyz = if radiance.is_zero() { [0.0; 3] } else { M::to_xyz(self.prepared, wavelengths, radiance) };
             self.finished.put(self.paths.number[lane], xyz, wavelengths, radiance);
         }
         if ended != 0 {

@@ -1,7 +1,7 @@
 //! The state of the paths of a set, between two vertices and at one.
 
 use super::rows::{Mask, Row, Rows3, W};
-use super::tables::{SLOTS, Slot, Tables};
+use super::tables::{Form, SLOTS, Slot, Tables};
 #[cfg(test)]
 use super::tests::{Fault, is_wrong};
 use crate::model::WavelengthModel;
@@ -53,9 +53,9 @@ pub(super) struct Vertices<'a> {
     pub position: Rows3,
     pub error: Row,
     pub normal: Rows3,
-    /// Reflectances of those that are Lambert's.
-    pub lambert: [Slot; W],
-    /// The other ones.
+    /// What they do to light.
+    pub form: [Form; W],
+    /// That of those without a row form.
     pub scattering: [Option<Scattering<'a>>; W],
 }
 
@@ -111,7 +111,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Paths<'_, M, N> {
                 position: Rows3::ZERO,
                 error: Row::ZERO,
                 normal: Rows3::ZERO,
-                lambert: [None; W],
+                form: [Form::Other; W],
                 scattering: [const { None }; W],
             },
         }

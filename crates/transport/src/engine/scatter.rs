@@ -4,14 +4,16 @@ use super::Engine;
 use super::direct::vertex_numbers;
 use super::level::{Level, Set, stages};
 use super::rows::{Mask, Row, Rows3, W, lanes};
+use super::tables::Form;
 #[cfg(test)]
 use super::tests::{Fault, is_wrong};
+use crate::bsdf::dielectric::{self, Turn};
 use crate::bsdf::lambert;
 use crate::mis::Density;
 use crate::model::WavelengthModel;
 use crate::path::{ROULETTE_FROM_VERTEX, ROULETTE_THROUGHPUT, THROUGHPUT_FLOOR};
 use etalon_geometry::{SurfaceId, SurfacePoint};
-use etalon_optics::Lanes;
+use etalon_optics::{Lanes, Vec3};
 
 impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
     /// Takes the next step of each of `scatters`; a shadow ray was sent from those that are also `shared`.
@@ -26,13 +28,28 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         let [u1, u2, u_lobe, u_roulette] = &numbers;
         let (mut wi, mut cos) = (Rows3::ZERO, Row::ZERO);
         lambert_directions(self.level, (&paths.at.normal, &paths.direction), [u1, u2], &mut wi, &mut cos);
+        let mut turns = Turns::NONE;
+        for lane in lanes(scatters) {
+            match paths.at.form[lane] {
+                Form::Mirror(_) => turns.put_mirror(lane),
+                Form::Dielectric(number) => {
+                    let interface = &self.tables.interfaces[usize::from(number)];
+                    let hero_nm = paths.wavelengths[lane].lambda_nm[0];
+                    turns.put(lane, interface.constant.unwrap_or_else(|| interface.glass.indices(hero_nm)));
+                }
+                Form::Lambert(_) | Form::Other => {}
+            }
+        }
+        if turns.any {
+            turn(self.level, (&paths.at.normal, &paths.direction), u_lobe, &mut turns, &mut wi);
+        }
 
         let mut goes_on = 0;
         paths.shared = 0;
         for lane in lanes(scatters) {
             let lambda_nm = &paths.wavelengths[lane].lambda_nm;
-            let density = match paths.at.lambert[lane] {
-                Some(slot) => {
+            let density = match paths.at.form[lane] {
+                Form::Lambert(slot) => {
                     if cos.0[lane] <= 0.0 || cos.0[lane].is_nan() {
                         continue;
                     }
@@ -42,7 +59,35 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                         if paths.parted >> lane & 1 == 1 { paths.model[lane].follow(Lanes::ONE) } else { 1.0 };
                     Density::SolidAngle(lambert::density(cos.0[lane]) * mean_of_hero)
                 }
-                None => {
+                Form::Mirror(slot) => {
+                    paths.beta[lane] *= paths.known.spectrum(lane, slot, self.tables, lambda_nm);
+                    if paths.parted >> lane & 1 == 1 {
+                        // As if it had followed lanes that are all alike.
+                        paths.model[lane].follow(Lanes::ONE);
+                    }
+                    Density::Delta
+                }
+                Form::Dielectric(number) => {
+                    let glass = &self.tables.interfaces[usize::from(number)].glass;
+                    let eta = if turns.reflects[lane] { 1.0 } else { turns.eta.0[lane] };
+                    let lane_density = match turns.reflects[lane] {
+                        _ if !glass.is_dispersive() => Lanes::ONE,
+                        true => {
+                            let incidence = (turns.cos.0[lane], turns.from_outside[lane]);
+                            glass.relative_reflectances(lambda_nm, incidence, turns.reflectance.0[lane])
+                        }
+                        false => Lanes::ONE.hero_only(),
+                    };
+                    paths.beta[lane] *= if turns.reflects[lane] { lane_density } else { lane_density / (eta * eta) };
+                    let parts = lane_density != Lanes::ONE;
+                    paths.parted |= Mask::from(parts) << lane;
+                    if paths.parted >> lane & 1 == 1 {
+                        paths.model[lane].follow(lane_density);
+                    }
+                    paths.eta_squared.0[lane] *= eta * eta;
+                    Density::Delta
+                }
+                Form::Other => {
                     let scattering = paths.at.scattering[lane].as_ref().expect("what is not Lambert's has been made");
                     let u = [u_lobe[lane], u1[lane], u2[lane]];
                     let Some(next) = scattering.sample(lambda_nm, -paths.direction.at(lane), u) else { continue };
@@ -91,7 +136,76 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
     }
 }
 
+/// Where mirrors and smooth interfaces send the paths that are at one.
+pub(super) struct Turns {
+    /// Whether there is any.
+    any: bool,
+    is: [bool; W],
+    is_mirror: [bool; W],
+    /// Indices behind and before the outward normal, at the hero's wavelength.
+    interior: Row,
+    exterior: Row,
+    /// The cosine of incidence, n_transmitted / n_incident, and the share that is reflected.
+    cos: Row,
+    eta: Row,
+    reflectance: Row,
+    from_outside: [bool; W],
+    reflects: [bool; W],
+}
+
+impl Turns {
+    const NONE: Self = Self {
+        any: false,
+        is: [false; W],
+        is_mirror: [false; W],
+        interior: Row([1.0; W]),
+        exterior: Row([1.0; W]),
+        cos: Row::ZERO,
+        eta: Row::ZERO,
+        reflectance: Row::ZERO,
+        from_outside: [false; W],
+        reflects: [false; W],
+    };
+
+    #[inline(always)]
+    fn put_mirror(&mut self, lane: usize) {
+        self.any = true;
+        (self.is[lane], self.is_mirror[lane]) = (true, true);
+    }
+
+    #[inline(always)]
+    fn put(&mut self, lane: usize, [interior, exterior]: [f64; 2]) {
+        #[cfg(test)]
+        let (interior, exterior) =
+            if is_wrong(Fault::InsideOut) && lane == 3 { (exterior, interior) } else { (interior, exterior) };
+        self.any = true;
+        self.is[lane] = true;
+        (self.interior.0[lane], self.exterior.0[lane]) = (interior, exterior);
+    }
+}
+
 stages! {
+    /// The directions of [`Turns`], in place of those that are there.
+    fn turn(surface: (&Rows3, &Rows3), u_lobe: &[f64; W], turns: &mut Turns, wi: &mut Rows3) {
+        let (normal, direction) = surface;
+        for lane in 0..W {
+            let (n, wo) = (normal.at(lane), -direction.at(lane));
+            let from_outside = n.dot(wo) > 0.0;
+            let (interior, exterior) = (turns.interior.0[lane], turns.exterior.0[lane]);
+            let (inward, outward) = (interior / exterior, exterior / interior);
+            let eta = if from_outside { inward } else { outward };
+            // Below any reflectance: a mirror.
+            let u = if turns.is_mirror[lane] { -1.0 } else { u_lobe[lane] };
+            let Turn { wi: turned, reflects, reflectance, cos } = dielectric::turn(n, wo, eta, u);
+            turns.from_outside[lane] = from_outside;
+            turns.reflects[lane] = reflects;
+            (turns.cos.0[lane], turns.eta.0[lane], turns.reflectance.0[lane]) = (cos, eta, reflectance);
+            let there = wi.at(lane);
+            let choose = |a: f64, b: f64| if turns.is[lane] { a } else { b };
+            wi.set(lane, Vec3::new(choose(turned.x, there.x), choose(turned.y, there.y), choose(turned.z, there.z)));
+        }
+    }
+
     /// Directions in proportion to the cosine, and their cosines.
     fn lambert_directions(surface: (&Rows3, &Rows3), u: [&[f64; W]; 2], wi: &mut Rows3, cos: &mut Row) {
         let (normal, direction) = surface;

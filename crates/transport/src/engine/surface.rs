@@ -2,6 +2,7 @@
 
 use super::Engine;
 use super::rows::{GROUPS, Mask, group_of, lanes};
+use super::tables::Form;
 #[cfg(test)]
 use super::tests::{Fault, is_wrong};
 use crate::compiled;
@@ -111,8 +112,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 ShadowRays::Everywhere => true,
             };
             shared |= Mask::from(useful) << lane;
-            paths.at.lambert[lane] = record.lambert;
-            if record.lambert.is_none() {
+            paths.at.form[lane] = record.form;
+            if record.form == Form::Other {
                 let point = paths.at.point(lane);
                 let surface = world.surfaces.of(&point);
                 let hit = paths.at.hit(lane);

@@ -1,6 +1,7 @@
 //! What the engine looks up instead of asking the scene each time: what objects do, and which spectra there are.
 
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, Dielectric};
+use crate::compiled;
 use crate::coordinates::Coordinates;
 use crate::light::{Environment, EnvironmentRadiance, Light, LightTable};
 use crate::spectral::PathSpectrum;
@@ -9,14 +10,37 @@ use crate::surface::{ObjectSurface, Surfaces};
 /// Spectra whose values at its wavelengths a path keeps.
 pub(super) const SLOTS: usize = 16;
 
+/// Most smooth interfaces that have numbers.
+const INTERFACES: usize = 256;
+
 /// Place of a spectrum among those kept.
 pub(super) type Slot = Option<u8>;
+
+/// What an object does to light, where that has a row form: around its own normals, the same everywhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// Lambert's reflection, of this reflectance.
+    Lambert(u8),
+    /// A mirror's, of this reflectance.
+    Mirror(u8),
+    /// That of a smooth interface: its number.
+    Dielectric(u8),
+    /// Anything else.
+    Other,
+}
+
+/// A smooth interface.
+#[derive(Clone, Debug)]
+pub(super) struct SmoothInterface {
+    pub glass: Dielectric,
+    /// The indices behind and before the outward normal, where they are the same at every wavelength.
+    pub constant: Option<[f64; 2]>,
+}
 
 /// What the surfaces of an object do, as far as the engine knows it by heart.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ObjectRecord {
-    /// The reflectance, where all that the object does is Lambert's reflection around its own normals.
-    pub lambert: Slot,
+    pub form: Form,
     /// Whether shadow rays are of use.
     pub solid_angle_part: bool,
     /// Whether it emits.
@@ -32,6 +56,8 @@ pub(crate) struct Tables {
     /// The first wavelength of those that are tabulated at each nanometre.
     pub(super) first_nm: f64,
     pub(super) objects: Vec<ObjectRecord>,
+    /// The first [`INTERFACES`] of them.
+    pub(super) interfaces: Vec<SmoothInterface>,
     /// Of the lights, in their order.
     pub(super) lights: Vec<Slot>,
     /// Of the environments.
@@ -40,8 +66,10 @@ pub(crate) struct Tables {
 
 impl Tables {
     pub(crate) fn new(surfaces: &Surfaces, lights: &LightTable, skies: &[Environment]) -> Self {
-        let mut spectra = Vec::new();
-        let objects = surfaces.objects.iter().map(|object| record(object, &surfaces.bsdfs, &mut spectra)).collect();
+        let (mut spectra, mut interfaces) = (Vec::new(), Vec::new());
+        // Objects of one material share its form.
+        let forms: Vec<_> = surfaces.bsdfs.iter().map(|bsdf| form(bsdf, &mut spectra, &mut interfaces)).collect();
+        let objects = surfaces.objects.iter().map(|object| record(object, surfaces, &forms, &mut spectra)).collect();
         let environments = skies
             .iter()
             .map(|sky| match &sky.radiance {
@@ -68,25 +96,40 @@ impl Tables {
             })
             .collect();
         let first_nm = spectra.iter().find_map(PathSpectrum::first_nm).unwrap_or(0.0);
-        Self { spectra, first_nm, objects, lights, environments }
+        Self { spectra, first_nm, objects, interfaces, lights, environments }
     }
 }
 
-fn record(object: &ObjectSurface, bsdfs: &[Bsdf], spectra: &mut Vec<PathSpectrum>) -> ObjectRecord {
+fn form(bsdf: &Bsdf, spectra: &mut Vec<PathSpectrum>, interfaces: &mut Vec<SmoothInterface>) -> Form {
+    let of = |known: Slot, form: fn(u8) -> Form| known.map_or(Form::Other, form);
+    match bsdf {
+        Bsdf::Lambert(lambert) => of(lambert.uniform().and_then(|spectrum| slot(spectrum, spectra)), Form::Lambert),
+        Bsdf::Mirror(mirror) if compiled::SPECULAR_CHAINS => {
+            of(mirror.uniform().and_then(|spectrum| slot(spectrum, spectra)), Form::Mirror)
+        }
+        Bsdf::Dielectric(glass) if compiled::SPECULAR_CHAINS && interfaces.len() < INTERFACES => {
+            interfaces.push(SmoothInterface { glass: glass.clone(), constant: glass.constant_indices() });
+            Form::Dielectric((interfaces.len() - 1) as u8)
+        }
+        _ => Form::Other,
+    }
+}
+
+fn record(
+    object: &ObjectSurface,
+    surfaces: &Surfaces,
+    forms: &[Form],
+    spectra: &mut Vec<PathSpectrum>,
+) -> ObjectRecord {
     let bends = object.relief.is_some()
         || match &object.coordinates {
             Coordinates::Mesh(mesh) => !mesh.mesh.normals.is_empty(),
             Coordinates::None | Coordinates::Parallelogram { .. } | Coordinates::Round(_) => false,
         };
-    let bsdf = &bsdfs[object.material];
-    let lambert = match bsdf {
-        Bsdf::Lambert(lambert) if !bends => lambert.uniform().and_then(|spectrum| slot(spectrum, spectra)),
-        _ => None,
-    };
     let emission = object.emission.as_ref();
     ObjectRecord {
-        lambert,
-        solid_angle_part: bsdf.has_solid_angle_part(),
+        form: if bends { Form::Other } else { forms[object.material] },
+        solid_angle_part: surfaces.bsdfs[object.material].has_solid_angle_part(),
         emits: emission.is_some(),
         emission: emission.and_then(|emission| slot(&emission.radiance, spectra)),
     }

@@ -22,6 +22,10 @@ pub(super) enum Fault {
     OutOfTurn,
     /// A path goes on that has ended.
     Undead,
+    /// An interface has its media on the wrong sides.
+    InsideOut,
+    /// A path goes on to look at the lamp that it looked at first.
+    StaleLamp,
 }
 
 thread_local! {
@@ -33,7 +37,7 @@ pub(super) fn is_wrong(fault: Fault) -> bool {
     FAULT.get() == Some(fault)
 }
 
-/// A room with a lamp, walls of three colours, a glass ball and a mirror, under a sky.
+/// A room with lamps of three shapes, walls of three colours, a glass ball and a mirror, under a sky.
 fn room() -> etalon_scene::Scene {
     let wall = |origin: &str, u: &str, v: &str, material: &str| {
         format!(
@@ -52,6 +56,12 @@ fn room() -> etalon_scene::Scene {
             .to_owned(),
         r#"{"shape": {"type": "parallelogram", "origin_m": [-0.3, 1, -0.3], "u_m": [0.6, 0, 0], "v_m": [0, 0, 0.6]},
             "material": {"type": "lambert", "reflectance": 0.5}, "emission": {"radiance": 8, "sides": "both"}}"#
+            .to_owned(),
+        r#"{"shape": {"type": "sphere", "center_m": [0.7, 0.5, 0.3], "radius_m": 0.1},
+            "material": {"type": "black"}, "emission": {"radiance": 20}}"#
+            .to_owned(),
+        r#"{"shape": {"type": "disk", "center_m": [-0.7, 0.6, 0.2], "normal": [1, -1, 0.2], "radius_m": 0.2},
+            "material": {"type": "mirror", "reflectance": 0.7}, "emission": {"radiance": 9}}"#
             .to_owned(),
     ];
     let json = format!(
@@ -107,8 +117,15 @@ fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_plain_l
 fn engines_that_are_wrong_on_purpose_are_told_from_the_plain_loop() {
     let film = plain(&[]);
     let shared = prepared(&[], PathLoop::Lanes);
-    for fault in [Fault::NeighboursNumbers, Fault::LostShadowRay, Fault::StaleSpectra, Fault::OutOfTurn, Fault::Undead]
-    {
+    for fault in [
+        Fault::NeighboursNumbers,
+        Fault::LostShadowRay,
+        Fault::StaleSpectra,
+        Fault::OutOfTurn,
+        Fault::Undead,
+        Fault::InsideOut,
+        Fault::StaleLamp,
+    ] {
         FAULT.set(Some(fault));
         let wrong = lanes::<Shared, 8>(Level::detect(), &shared);
         FAULT.set(None);

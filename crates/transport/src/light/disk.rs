@@ -2,7 +2,6 @@
 
 use super::planar::Flat;
 use super::{Emitter, LightSample, planar};
-use crate::warp::concentric_disk;
 use etalon_geometry::Disk;
 use etalon_optics::{Frame, Vec3};
 
@@ -30,14 +29,15 @@ impl DiskLight {
     }
 
     pub(super) fn sample(&self, from: Vec3<f64>, u: [f64; 2]) -> Option<LightSample> {
-        let [x, y] = concentric_disk(u);
+        self.flat().aim_at_disk(from, u).sample(self.emitter.surface)
+    }
+
+    /// See [`super::Light::disk`].
+    pub(super) fn flat(&self) -> Flat {
+        let Emitter { front, back, .. } = self.emitter;
         let frame = Frame::from_normal(self.shape.normal());
         let radius = self.shape.radius();
-        let point = self.shape.centre() + frame.s * (radius * x) + frame.t * (radius * y);
-        let Emitter { front, back, surface, .. } = self.emitter;
-        let (corner, normal, area) = (self.shape.centre(), frame.n, self.area());
-        Flat { corner, edges: [frame.s, frame.t], normal, area, half: false, front, back }
-            .seen(from, point)
-            .sample(surface)
+        let edges = [frame.s * radius, frame.t * radius];
+        Flat { corner: self.shape.centre(), edges, normal: frame.n, area: self.area(), half: false, front, back }
     }
 }

@@ -31,6 +31,7 @@ pub use triangle::TriangleLight;
 
 pub(crate) use moving::Link;
 pub(crate) use planar::{Aim, Flat};
+pub(crate) use sphere::Round;
 
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
@@ -121,6 +122,24 @@ impl Light {
         match self {
             Self::Parallelogram(light) => Some(light.flat()),
             Self::Triangle(light) => Some(light.flat()),
+            _ => None,
+        }
+    }
+
+    /// The same of a disk: its middle and two radii stand for the corner and the edges.
+    #[inline]
+    pub(crate) fn disk(&self) -> Option<Flat> {
+        match self {
+            Self::Disk(light) => Some(light.flat()),
+            _ => None,
+        }
+    }
+
+    /// The same of a sphere.
+    #[inline]
+    pub(crate) fn round(&self) -> Option<Round> {
+        match self {
+            Self::Sphere(light) => Some(light.round()),
             _ => None,
         }
     }

@@ -2,6 +2,7 @@
 
 use super::{LightSample, Target};
 use crate::mis::Density;
+use crate::warp::concentric_disk;
 use etalon_geometry::SurfaceId;
 use etalon_optics::Vec3;
 
@@ -59,9 +60,17 @@ impl Flat {
         self.seen(from, self.corner + self.edges[0] * s + self.edges[1] * t)
     }
 
+    /// The uniform point for `u` in [0, 1)² of the disk whose middle is the corner and whose radii along the frame's axes are the
+    /// edges, seen from `from`; without branches.
+    #[inline(always)]
+    pub(crate) fn aim_at_disk(&self, from: Vec3<f64>, u: [f64; 2]) -> Aim {
+        let [x, y] = concentric_disk(u);
+        self.seen(from, self.corner + self.edges[0] * x + self.edges[1] * y)
+    }
+
     /// A point of the light, seen from `from`.
     #[inline(always)]
-    pub(super) fn seen(&self, from: Vec3<f64>, point: Vec3<f64>) -> Aim {
+    fn seen(&self, from: Vec3<f64>, point: Vec3<f64>) -> Aim {
         let toward = point - from;
         let distance = toward.length();
         let wi = toward / distance;
