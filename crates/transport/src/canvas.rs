@@ -156,7 +156,6 @@ impl Canvas {
         on_piece: &(dyn Fn(&Counters, PixelRect, &TileSums) -> Control + Sync),
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
-        let render_tile = prepared.render_tile();
         let stopped = AtomicBool::new(false);
         pool.install(|| {
             (0..self.tiles()).into_par_iter().for_each(|number| {
@@ -168,7 +167,7 @@ impl Canvas {
                 let piece = (PATHS_OF_PIECE / tile.rect.area()).max(1) as u32;
                 while tile.samples < samples && !stopped.load(Ordering::Relaxed) {
                     let until = tile.samples.saturating_add(piece).min(samples);
-                    let counters = render_tile(prepared, tile.rect, tile.samples..until, sums.borrow());
+                    let counters = prepared.render_tile(tile.rect, tile.samples..until, sums.borrow());
                     tile.samples = until;
                     tile.counters.merge(&counters);
                     {

@@ -3,7 +3,7 @@
 
 use crate::camera::Camera;
 use crate::compiled;
-use crate::engine::render_tile_lanes;
+use crate::engine::render_spots_lanes;
 use crate::film::{Counters, NonFinite, PixelRect, Sums};
 use crate::media::{Inside, Met};
 use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
@@ -27,6 +27,31 @@ pub(crate) const LANES: usize = 8;
 /// Adds samples to one tile: to the sums of its pixels, row by row, in each replicate by replicate.
 pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, Sums<'_>) -> Counters;
 
+/// Adds samples to spots: to their sums, spot by spot, in each replicate by replicate; and what rays of all kinds each spot took,
+/// unless nobody asks for that.
+pub(crate) type RenderSpots = fn(&Prepared, &[Spot], Sums<'_>, &mut [u64]) -> Counters;
+
+/// Some samples of one pixel.
+#[derive(Clone, Debug)]
+pub(crate) struct Spot {
+    pub x: u32,
+    pub y: u32,
+    /// Their numbers.
+    pub samples: Range<u32>,
+}
+
+impl Spot {
+    /// The same samples of each pixel of a tile.
+    pub(crate) fn of_tile(tile: PixelRect, samples: &Range<u32>) -> Vec<Self> {
+        tile.pixels().map(|(x, y)| Self { x, y, samples: samples.clone() }).collect()
+    }
+
+    /// How many.
+    pub(crate) fn count(&self) -> u32 {
+        self.samples.end.saturating_sub(self.samples.start)
+    }
+}
+
 /// The path loop for one scalar type and one model of wavelengths.
 pub(crate) struct Kernel {
     pub precision: Precision,
@@ -39,7 +64,7 @@ pub(crate) struct Kernel {
     pub name: &'static str,
     pub render: RenderTile,
     /// The same, bit for bit, by many paths at once, where there is that.
-    pub render_lanes: Option<RenderTile>,
+    pub render_lanes: Option<RenderSpots>,
     /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
 }
@@ -96,7 +121,7 @@ const fn entry<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
 /// One that can also follow many paths at once.
 const fn with_lanes<M: WavelengthModel<f64, N>, const N: usize>(lanes: LaneModel, name: &'static str) -> Kernel {
     Kernel {
-        render_lanes: Some(render_tile_lanes::<M, N>),
+        render_lanes: Some(render_spots_lanes::<M, N>),
         ..entry::<f64, M, Averaged, N>(Precision::F64, lanes, name)
     }
 }

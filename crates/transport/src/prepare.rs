@@ -6,14 +6,14 @@ use crate::camera::{Camera, Moving};
 use crate::engine::Tables;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
-use crate::kernel::{Kernel, RenderTile, kernel, study_kernel};
+use crate::kernel::{Kernel, kernel, study_kernel};
 use crate::light::{
     DirectionalLight, Environment, EnvironmentLight, EnvironmentRadiance, Light, LightTable, PointLight, SpotLight,
 };
 use crate::media::{Media, Solid, open_edges};
 use crate::motion::motion;
 use crate::path::ShadowRays;
-use crate::plan::{Carried, EffectName, OneLaneFilm, PathLoop, Plan, Study, StudyError, simulated};
+use crate::plan::{Carried, EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
 use crate::shapes::{self, SceneShapes};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
@@ -291,15 +291,6 @@ impl Prepared {
                 kernel(self.scene.integrator.precision, self.plan.lane_model, self.plan.runs(EffectName::Polarisation))
             }
             Some(carried) => study_kernel(carried),
-        }
-    }
-
-    /// The loop that the plan chose, of that kernel.
-    pub(crate) fn render_tile(&self) -> RenderTile {
-        let kernel = self.kernel();
-        match self.plan.path_loop.name {
-            PathLoop::Plain => kernel.render,
-            PathLoop::Lanes => kernel.render_lanes.expect("the plan knows which kernels have it"),
         }
     }
 

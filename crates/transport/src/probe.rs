@@ -1,6 +1,7 @@
 //! Pixels traced with random numbers that no picture uses: what explorations and pilots are made of.
 
-use crate::film::{Counters, Pixel, PixelRect, Sums, XyzSum};
+use crate::film::{Counters, Pixel, XyzSum};
+use crate::kernel::Spot;
 use crate::prepare::Prepared;
 use crate::render::ThreadError;
 use crate::sampler::SOBOL_POINTS;
@@ -19,6 +20,9 @@ pub(crate) enum Purpose {
     /// To tell where the error is.
     Exploration,
 }
+
+/// Pixels that a thread takes at once, so that many paths are under way together whatever the samples of each.
+const BATCH: usize = 64;
 
 /// The number of purposes.
 const PURPOSES: u32 = 2;
@@ -108,7 +112,6 @@ impl<'a> Probe<'a> {
     ) {
         let (replicates, copies, stride) = (self.replicates(), self.copies(), self.stride());
         let prepared = self.prepared;
-        let kernel = prepared.render_tile();
         // A whole number of point sets beyond every number of samples that a picture can have.
         let set = replicates * SOBOL_POINTS;
         let beyond = (i32::MAX as u32).div_ceil(set) * set;
@@ -118,27 +121,25 @@ impl<'a> Probe<'a> {
         let Self { pool, pixels, sums, paths, rays, .. } = self;
         pool.install(|| {
             pixels[first..]
-                .par_iter()
-                .zip(sums[first * stride..].par_chunks_exact_mut(stride))
-                .zip(paths[first..].par_iter_mut().zip(&mut rays[first..]))
-                .with_min_len(16)
-                .for_each(|((&(x, y), sums), (paths, rays))| {
-                    let pixel = PixelRect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
-                    let samples = samples(x, y);
-                    let mut counters = Counters::default();
-                    for (copy, sums) in sums.chunks_exact_mut(replicates as usize).enumerate() {
-                        let start = beyond + (own + copy as u32) * length;
-                        let range = start + samples.start..start + samples.end;
-                        counters.merge(&kernel(
-                            prepared,
-                            pixel,
-                            range,
-                            Sums { xyz: sums, stokes: &mut [], bands: &mut [] },
-                        ));
+                .par_chunks(BATCH)
+                .zip(sums[first * stride..].par_chunks_mut(BATCH * stride))
+                .zip(paths[first..].par_chunks_mut(BATCH).zip(rays[first..].par_chunks_mut(BATCH)))
+                .for_each(|((pixels, sums), (paths, rays))| {
+                    let mut spots = Vec::with_capacity(pixels.len() * copies as usize);
+                    for (&(x, y), paths) in pixels.iter().zip(paths) {
+                        let samples = samples(x, y);
+                        for copy in 0..copies {
+                            let start = beyond + (own + copy) * length;
+                            let spot = Spot { x, y, samples: start + samples.start..start + samples.end };
+                            *paths += u64::from(spot.count());
+                            spots.push(spot);
+                        }
                     }
-                    on_work(&counters);
-                    *paths += counters.paths;
-                    *rays += counters.rays + counters.shadow_rays;
+                    let mut rays_of_spots = vec![0; spots.len()];
+                    on_work(&prepared.render_spots(&spots, sums, &mut rays_of_spots));
+                    for (rays, of_copies) in rays.iter_mut().zip(rays_of_spots.chunks_exact(copies as usize)) {
+                        *rays += of_copies.iter().sum::<u64>();
+                    }
                 });
         });
     }

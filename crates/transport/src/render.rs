@@ -1,7 +1,8 @@
 //! Rendering: tiles over all cores, the same bytes whatever their number.
 
-use crate::film::{Counters, Film, PixelRect};
-use crate::plan::LaneModel;
+use crate::film::{Counters, Film, PixelRect, Sums, XyzSum};
+use crate::kernel::{RenderSpots, Spot};
+use crate::plan::{LaneModel, PathLoop};
 use crate::prepare::Prepared;
 use crate::shares::Shares;
 use rayon::prelude::*;
@@ -106,6 +107,40 @@ impl Prepared {
         )
     }
 
+    /// Adds samples to a tile, by the loop that the plan chose: to the sums of its pixels, row by row, in each replicate by
+    /// replicate.
+    pub(crate) fn render_tile(&self, tile: PixelRect, samples: Range<u32>, sums: Sums<'_>) -> Counters {
+        match self.lanes() {
+            None => (self.kernel().render)(self, tile, samples, sums),
+            Some(render) => render(self, &Spot::of_tile(tile, &samples), sums, &mut []),
+        }
+    }
+
+    /// Adds samples to spots without bands, and the rays of all kinds that each took to `rays`.
+    pub(crate) fn render_spots(&self, spots: &[Spot], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
+        let sums = |xyz| Sums { xyz, stokes: &mut [], bands: &mut [] };
+        if let Some(render) = self.lanes() {
+            return render(self, spots, sums(xyz), rays);
+        }
+        let mut counters = Counters::default();
+        let each = xyz.chunks_exact_mut(self.scene.integrator.replicates as usize);
+        for ((spot, xyz), rays) in spots.iter().zip(each).zip(rays) {
+            let pixel = PixelRect { x0: spot.x, y0: spot.y, x1: spot.x + 1, y1: spot.y + 1 };
+            let of_spot = (self.kernel().render)(self, pixel, spot.samples.clone(), sums(xyz));
+            *rays += of_spot.rays + of_spot.shadow_rays;
+            counters.merge(&of_spot);
+        }
+        counters
+    }
+
+    /// The loop that follows many paths at once, if the plan chose it.
+    fn lanes(&self) -> Option<RenderSpots> {
+        match self.plan().path_loop.name {
+            PathLoop::Plain => None,
+            PathLoop::Lanes => Some(self.kernel().render_lanes.expect("the plan knows which kernels have it")),
+        }
+    }
+
     /// Renders `extent` onto a new film. `on_tile` hears what a finished tile took.
     pub fn render(
         &self,
@@ -126,7 +161,6 @@ impl Prepared {
         on_tile: &(dyn Fn(&Counters) -> Control + Sync),
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(extent.threads.unwrap_or(0)).build()?;
-        let render_tile = self.render_tile();
         let tiles = extent.tiles();
         let replicates = self.scene.integrator.replicates;
         let stopped = AtomicBool::new(false);
@@ -139,7 +173,7 @@ impl Prepared {
                         return None;
                     }
                     let mut sums = before.tile(tile);
-                    let counters = render_tile(self, tile, extent.samples_of(tile, replicates), sums.borrow());
+                    let counters = self.render_tile(tile, extent.samples_of(tile, replicates), sums.borrow());
                     if on_tile(&counters) == Control::Stop {
                         stopped.store(true, Ordering::Relaxed);
                     }

@@ -113,7 +113,7 @@ impl PathSpectrum {
             Self::Grid { first_nm, steps } if *first_nm == from_nm => places.interpolate(steps),
             Self::Band { first_nm, steps, band_nm: [from, to] } if *first_nm == from_nm => {
                 let values = places.interpolate(steps);
-                let inside = |nm: f64| (*from <= nm) & (nm <= *to);
+                let inside = |nm: f64| (*from..=*to).contains(&nm);
                 Lanes::from_fn(|lane| if inside(lambda_nm[lane]) { values[lane] } else { 0.0 })
             }
             Self::Constant(value) => Lanes::splat(*value),

@@ -49,7 +49,7 @@ pub fn colour_matching_lanes<const N: usize>(wavelength_nm: &[f64; N]) -> [[f64;
     let mut index = [0; N];
     for lane in 0..N {
         let x = wavelength_nm[lane] - CIE_RANGE_NM[0];
-        inside[lane] = (0.0 <= x) & (x <= 470.0);
+        inside[lane] = (0.0..=470.0).contains(&x);
         // A narrow integer: its conversions are single instructions.
         let i = if inside[lane] { x as u32 } else { 0 };
         index[lane] = i.min(469);

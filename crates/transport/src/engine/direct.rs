@@ -1,18 +1,19 @@
 //! Direct light: a shadow ray toward a light from each path whose surface can make something of it.
 
 use super::Engine;
+use super::lamps::{Aims, Flats, Rounds, aim, aim_at_disks, aim_at_rounds};
 use super::level::{Level, Set, stages};
 use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes};
 use super::tables::Form;
 #[cfg(test)]
 use super::tests::{Fault, is_wrong};
 use crate::bsdf::lambert;
-use crate::light::{Aim, Flat, LightTable, Round, Target};
+use crate::light::{LightTable, Target};
 use crate::mis::{Density, power_heuristic};
 use crate::model::WavelengthModel;
 use crate::sampler::{CAMERA_SETS, SETS_PER_VERTEX, Samplers};
 use etalon_geometry::{LANES, Rays, SurfaceId, SurfacePoint};
-use etalon_optics::{Lanes, Vec3};
+use etalon_optics::Lanes;
 use etalon_scene::LightSampling;
 
 /// The lights that paths look at, and what comes of it before the shadow rays are traced. Kept from vertex to vertex.
@@ -34,37 +35,6 @@ pub(super) struct Sight<const N: usize> {
     weight: Row,
 }
 
-/// Flat lights, one for each path.
-pub(super) struct Flats {
-    /// Which of them are parallelograms or triangles, and which are disks.
-    mask: Mask,
-    disks: Mask,
-    corner: Rows3,
-    edges: [Rows3; 2],
-    normal: Rows3,
-    area: Row,
-    half: [bool; W],
-    front: [bool; W],
-    back: [bool; W],
-}
-
-/// Spheres that shine, one for each path.
-pub(super) struct Rounds {
-    /// Which of them are spheres at all.
-    mask: Mask,
-    centre: Rows3,
-    radius: Row,
-    front: [bool; W],
-}
-
-/// What paths see of a light.
-pub(super) struct Aims {
-    point: Rows3,
-    wi: Rows3,
-    density: Row,
-    lit: [bool; W],
-}
-
 /// The shadow rays of paths.
 pub(super) struct ShadowRows {
     origin: Rows3,
@@ -78,19 +48,9 @@ impl<const N: usize> Sight<N> {
             light: [u32::MAX; W],
             probability: Row::ZERO,
             surface: [SurfaceId::NONE; W],
-            flats: Flats {
-                mask: 0,
-                disks: 0,
-                corner: Rows3::ZERO,
-                edges: [Rows3::ZERO; 2],
-                normal: Rows3::ZERO,
-                area: Row::ZERO,
-                half: [false; W],
-                front: [false; W],
-                back: [false; W],
-            },
-            rounds: Rounds { mask: 0, centre: Rows3::ZERO, radius: Row::ZERO, front: [false; W] },
-            aims: Aims { point: Rows3::ZERO, wi: Rows3::ZERO, density: Row::ZERO, lit: [false; W] },
+            flats: Flats::NONE,
+            rounds: Rounds::NONE,
+            aims: Aims::NONE,
             rays: ShadowRows { origin: Rows3::ZERO, direction: Rows3::ZERO, t_max: Row::ZERO },
             cos: Row::ZERO,
             f_cos: [Lanes::ZERO; W],
@@ -112,21 +72,11 @@ impl<const N: usize> Sight<N> {
         self.light[lane] = index as u32;
         self.probability.0[lane] = lights.probability(index);
         let light = &lights.lights()[index];
-        let here = 1 << lane;
-        self.flats.mask &= !here;
-        self.flats.disks &= !here;
-        self.rounds.mask &= !here;
         self.surface[lane] = light.emitter().map_or(SurfaceId::NONE, |emitter| emitter.surface);
-        if let Some(flat) = light.flat() {
-            self.flats.mask |= here;
-            self.flats.put(lane, &flat);
-        } else if let Some(disk) = light.disk() {
-            self.flats.disks |= here;
-            self.flats.put(lane, &disk);
-        } else if let Some(round) = light.round() {
-            self.rounds.mask |= here;
-            self.rounds.put(lane, &round);
-        }
+        self.flats.forget(lane);
+        self.rounds.forget(lane);
+        self.flats.put(lane, light);
+        self.rounds.put(lane, light);
     }
 }
 
@@ -237,6 +187,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     weight(world.light_sampling, density, scale, sight.probability.0[lane], mean_density);
             }
             asks |= 1 << lane;
+            paths.shadow_rays[lane] += 1;
         }
         self.counters.shadow_rays += u64::from(asks.count_ones());
         if asks == 0 {
@@ -300,67 +251,6 @@ fn weight(sampling: LightSampling, density: Density, scale: f64, probability: f6
     }
 }
 
-impl Flats {
-    #[inline(always)]
-    fn put(&mut self, lane: usize, light: &Flat) {
-        self.corner.set(lane, light.corner);
-        self.edges[0].set(lane, light.edges[0]);
-        self.edges[1].set(lane, light.edges[1]);
-        self.normal.set(lane, light.normal);
-        self.area.0[lane] = light.area;
-        (self.half[lane], self.front[lane], self.back[lane]) = (light.half, light.front, light.back);
-    }
-
-    #[inline(always)]
-    fn at(&self, lane: usize) -> Flat {
-        Flat {
-            corner: self.corner.at(lane),
-            edges: [self.edges[0].at(lane), self.edges[1].at(lane)],
-            normal: self.normal.at(lane),
-            area: self.area.0[lane],
-            half: self.half[lane],
-            front: self.front[lane],
-            back: self.back[lane],
-        }
-    }
-}
-
-impl Rounds {
-    #[inline(always)]
-    fn put(&mut self, lane: usize, light: &Round) {
-        self.centre.set(lane, light.centre);
-        (self.radius.0[lane], self.front[lane]) = (light.radius, light.front);
-    }
-}
-
-impl Aims {
-    #[inline(always)]
-    fn put(&mut self, lane: usize, aim: &Aim) {
-        self.point.set(lane, aim.point);
-        self.wi.set(lane, aim.wi);
-        self.density.0[lane] = aim.density;
-        self.lit[lane] = aim.lit;
-    }
-
-    #[inline(always)]
-    fn at(&self, lane: usize) -> Aim {
-        Aim { point: self.point.at(lane), wi: self.wi.at(lane), density: self.density.0[lane], lit: self.lit[lane] }
-    }
-}
-
-/// The first if `condition` holds, else the second, without a branch.
-#[inline(always)]
-fn choose_aim(condition: bool, a: &Aim, b: &Aim) -> Aim {
-    let number = |a: f64, b: f64| if condition { a } else { b };
-    let vector = |a: Vec3<f64>, b: Vec3<f64>| Vec3::new(number(a.x, b.x), number(a.y, b.y), number(a.z, b.z));
-    Aim {
-        point: vector(a.point, b.point),
-        wi: vector(a.wi, b.wi),
-        density: number(a.density, b.density),
-        lit: (condition & a.lit) | (!condition & b.lit),
-    }
-}
-
 stages! {
     /// Set number `set` of the vertex that each path is at: (point 1, point 2, choice, decision).
     fn vertex_numbers(samplers: &Samplers<W>, vertex: &[u32; W], set: u32, numbers: &mut [[f64; W]; 4]) {
@@ -369,32 +259,6 @@ stages! {
             sets[lane] = CAMERA_SETS + vertex[lane] * SETS_PER_VERTEX + set;
         }
         samplers.sets(&sets, numbers);
-    }
-
-    /// Points of lights as they are seen.
-    fn aim(from: &Rows3, u: [&[f64; W]; 2], lights: &Flats, aims: &mut Aims) {
-        for lane in 0..W {
-            aims.put(lane, &lights.at(lane).aim(from.at(lane), [u[0][lane], u[1][lane]]));
-        }
-    }
-
-    /// Points of disks as they are seen, in place of those that are there.
-    fn aim_at_disks(from: &Rows3, u: [&[f64; W]; 2], lights: &Flats, aims: &mut Aims) {
-        for lane in 0..W {
-            let aim = lights.at(lane).aim_at_disk(from.at(lane), [u[0][lane], u[1][lane]]);
-            aims.put(lane, &choose_aim(lights.disks >> lane & 1 == 1, &aim, &aims.at(lane)));
-        }
-    }
-
-    /// Points of spheres as they are seen from outside, in place of those that are there; and who is outside.
-    fn aim_at_rounds(from: &Rows3, u: [&[f64; W]; 2], lights: &Rounds, aims: &mut Aims, outside: &mut [bool; W]) {
-        for lane in 0..W {
-            let (centre, radius) = (lights.centre.at(lane), lights.radius.0[lane]);
-            let round = Round { centre, radius, front: lights.front[lane] };
-            let aim = round.aim(from.at(lane), [u[0][lane], u[1][lane]]);
-            outside[lane] = round.is_outside(from.at(lane));
-            aims.put(lane, &choose_aim(lights.mask >> lane & 1 == 1, &aim, &aims.at(lane)));
-        }
     }
 
     /// Cosines of directions on the viewer's side of surfaces; 0 on the other.

@@ -3,11 +3,12 @@
 //! The plain loop is the specification; this one gives its film and its counts bit for bit, for the scenes that it covers
 //! ([`hindrance`]). What is geometry is kept as rows, one number a path, and each step of it is a loop over the paths that the compiler
 //! turns into vector instructions ([`level`]); what wavelengths carry is kept path by path, whose lanes are vectors already. Spectra
-//! are evaluated once for each path ([`tables`]). A path that ends makes room for the next sample of the tile ([`stream`]).
+//! are evaluated once for each path ([`tables`]). A path that ends makes room for the next sample ([`stream`]).
 //! Whatever has no row form, such as rough metals or lights other than flat ones, is asked path by path of the very functions
 //! of the plain loop.
 
 mod direct;
+mod lamps;
 mod level;
 mod paths;
 mod rows;
@@ -20,8 +21,8 @@ mod tables;
 mod tests;
 
 use crate::compiled;
-use crate::film::{Counters, NonFinite, PixelRect, Sums};
-use crate::kernel::Tracer;
+use crate::film::{Counters, NonFinite, Sums};
+use crate::kernel::{Spot, Tracer};
 use crate::model::WavelengthModel;
 use crate::path::World;
 use crate::plan::EffectName;
@@ -34,7 +35,6 @@ use level::{Level, Set, stages};
 use paths::Paths;
 use rows::{Mask, lanes};
 use starts::Starts;
-use std::ops::Range;
 use stream::{Cursor, Window};
 pub(crate) use tables::Tables;
 
@@ -51,22 +51,23 @@ pub(crate) fn hindrance(runs: impl Fn(EffectName) -> bool, precision: Precision)
     }
 }
 
-/// The samples `samples` of every pixel of `tile`, added to `sums` in the order of their numbers.
-pub(crate) fn render_tile_lanes<M: WavelengthModel<f64, N>, const N: usize>(
+/// The samples of spots, added to `sums` spot by spot in the order of their numbers, and the rays that each spot took to `rays`,
+/// unless that is empty.
+pub(crate) fn render_spots_lanes<M: WavelengthModel<f64, N>, const N: usize>(
     prepared: &Prepared,
-    tile: PixelRect,
-    samples: Range<u32>,
+    spots: &[Spot],
     sums: Sums<'_>,
+    rays: &mut [u64],
 ) -> Counters {
-    render_on::<M, N>(Level::detect(), prepared, tile, samples, sums)
+    render_on::<M, N>(Level::detect(), prepared, spots, sums, rays)
 }
 
 fn render_on<M: WavelengthModel<f64, N>, const N: usize>(
     level: Level,
     prepared: &Prepared,
-    tile: PixelRect,
-    samples: Range<u32>,
+    spots: &[Spot],
     sums: Sums<'_>,
+    rays: &mut [u64],
 ) -> Counters {
     let tracer = Tracer::new(prepared);
     let mut engine = Engine::<M, N> {
@@ -77,9 +78,9 @@ fn render_on<M: WavelengthModel<f64, N>, const N: usize>(
         counters: Counters::default(),
         paths: Paths::new(tracer.sampler(0, 0, 0)),
         sight: Sight::new(),
-        finished: Finished::new(Cursor::new(tile, samples.clone()), prepared, sums),
+        finished: Finished::new(Cursor::new(spots), prepared, sums, rays),
     };
-    let mut starts = Starts::new(&tracer, Cursor::new(tile, samples));
+    let mut starts = Starts::new(&tracer, Cursor::new(spots));
     trace::<M, N>(level, &mut engine, &mut starts);
     engine.counters
 }
@@ -97,7 +98,7 @@ stages! {
     }
 }
 
-/// A tile under way.
+/// Spots under way.
 struct Engine<'a, M, const N: usize> {
     prepared: &'a Prepared,
     world: &'a World<'a>,
@@ -146,7 +147,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
             let radiance = self.paths.radiance[lane];
             // Much light is none, whose colour is known.
             let xyz = if radiance.is_zero() { [0.0; 3] } else { M::to_xyz(self.prepared, wavelengths, radiance) };
-            self.finished.put(self.paths.number[lane], xyz, wavelengths, radiance);
+            let rays = self.paths.vertex[lane] + 1 + self.paths.shadow_rays[lane];
+            self.finished.put(self.paths.number[lane], (xyz, rays), wavelengths, radiance);
         }
         if ended != 0 {
             self.finished.add::<M>(self.prepared, &mut self.counters);
@@ -156,29 +158,32 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
 
 /// What finished samples came to, on its way into the sums.
 struct Finished<'a, const N: usize> {
-    cursor: Cursor,
-    window: Window<[f64; 3]>,
+    cursor: Cursor<'a>,
+    /// Colours, and rays of all kinds.
+    window: Window<([f64; 3], u32)>,
     /// What the bands of a film ask of the samples that wait; empty without bands.
     spectral: Vec<(Wavelengths<N>, Lanes<f64, N>)>,
     replicates: usize,
     sums: Sums<'a>,
+    /// Rays of all kinds that spots took; empty if nobody asks.
+    rays: &'a mut [u64],
 }
 
 impl<'a, const N: usize> Finished<'a, N> {
-    fn new(cursor: Cursor, prepared: &Prepared, sums: Sums<'a>) -> Self {
+    fn new(cursor: Cursor<'a>, prepared: &Prepared, sums: Sums<'a>, rays: &'a mut [u64]) -> Self {
         let nothing = (Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO }, Lanes::ZERO);
         let size = cursor.window();
         let spectral = if !compiled::BANDS || sums.bands.is_empty() { Vec::new() } else { vec![nothing; size] };
         let replicates = prepared.scene.integrator.replicates as usize;
-        Self { cursor, window: Window::new(size), spectral, replicates, sums }
+        Self { cursor, window: Window::new(size), spectral, replicates, sums, rays }
     }
 
     #[inline(always)]
-    fn put(&mut self, number: u32, xyz: [f64; 3], wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) {
+    fn put(&mut self, number: u32, came_to: ([f64; 3], u32), wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) {
         if let Some(waiting) = self.spectral.get_mut(self.window.place(number)) {
             *waiting = (*wavelengths, radiance);
         }
-        self.window.put(number, xyz);
+        self.window.put(number, came_to);
     }
 
     /// Adds those whose turn it is.
@@ -186,10 +191,13 @@ impl<'a, const N: usize> Finished<'a, N> {
     fn add<M: WavelengthModel<f64, N>>(&mut self, prepared: &Prepared, counters: &mut Counters) {
         let bands = prepared.scene.film.bands.as_ref().filter(|_| !self.spectral.is_empty());
         let per_replicate = self.sums.bands.len() / self.sums.xyz.len();
-        while let Some((number, xyz)) = self.window.take() {
+        while let Some((number, (xyz, rays))) = self.window.take() {
             let place = self.cursor.next().expect("as many samples come back as went out");
             counters.paths += 1;
-            let replicate = place.pixel * self.replicates + place.sample as usize % self.replicates;
+            if let Some(of_spot) = self.rays.get_mut(place.spot) {
+                *of_spot += u64::from(rays);
+            }
+            let replicate = place.spot * self.replicates + place.sample as usize % self.replicates;
             if xyz.iter().all(|v| v.is_finite()) {
                 self.sums.xyz[replicate].add(xyz);
                 if let Some(bands) = bands {

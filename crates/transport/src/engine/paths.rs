@@ -23,6 +23,8 @@ pub(super) struct Paths<'a, M, const N: usize> {
     pub number: [u32; W],
     pub samplers: Samplers<W>,
     pub vertex: [u32; W],
+    /// Shadow rays sent so far.
+    pub shadow_rays: [u32; W],
     /// The ray, which leaves the surface `leaves`.
     pub origin: Rows3,
     pub direction: Rows3,
@@ -90,6 +92,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Paths<'_, M, N> {
             number: [0; W],
             samplers: Samplers::new(sampler),
             vertex: [0; W],
+            shadow_rays: [0; W],
             origin: Rows3::ZERO,
             direction: Rows3::ZERO,
             leaves: [nowhere; W],

@@ -40,8 +40,14 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 Form::Lambert(_) | Form::Other => {}
             }
         }
-        if turns.any {
+        if turns.count >= FEWEST_TURNS {
             turn(self.level, (&paths.at.normal, &paths.direction), u_lobe, &mut turns, &mut wi);
+        } else if turns.count > 0 {
+            for lane in lanes(scatters) {
+                if turns.is[lane] {
+                    turns.take(lane, (paths.at.normal.at(lane), -paths.direction.at(lane)), u_lobe[lane], &mut wi);
+                }
+            }
         }
 
         let mut goes_on = 0;
@@ -136,10 +142,13 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
     }
 }
 
+/// Fewest paths at mirrors and smooth interfaces for which all of a set are computed at once.
+const FEWEST_TURNS: u32 = 3;
+
 /// Where mirrors and smooth interfaces send the paths that are at one.
 pub(super) struct Turns {
-    /// Whether there is any.
-    any: bool,
+    /// How many there are.
+    count: u32,
     is: [bool; W],
     is_mirror: [bool; W],
     /// Indices behind and before the outward normal, at the hero's wavelength.
@@ -155,7 +164,7 @@ pub(super) struct Turns {
 
 impl Turns {
     const NONE: Self = Self {
-        any: false,
+        count: 0,
         is: [false; W],
         is_mirror: [false; W],
         interior: Row([1.0; W]),
@@ -167,9 +176,27 @@ impl Turns {
         reflects: [false; W],
     };
 
+    /// The direction of a path, in place of that which is there, if it is at an interface; without branches.
+    #[inline(always)]
+    fn take(&mut self, lane: usize, (n, wo): (Vec3<f64>, Vec3<f64>), u_lobe: f64, wi: &mut Rows3) {
+        let from_outside = n.dot(wo) > 0.0;
+        let (interior, exterior) = (self.interior.0[lane], self.exterior.0[lane]);
+        let (inward, outward) = (interior / exterior, exterior / interior);
+        let eta = if from_outside { inward } else { outward };
+        // Below any reflectance: a mirror.
+        let u = if self.is_mirror[lane] { -1.0 } else { u_lobe };
+        let Turn { wi: turned, reflects, reflectance, cos } = dielectric::turn(n, wo, eta, u);
+        self.from_outside[lane] = from_outside;
+        self.reflects[lane] = reflects;
+        (self.cos.0[lane], self.eta.0[lane], self.reflectance.0[lane]) = (cos, eta, reflectance);
+        let there = wi.at(lane);
+        let choose = |a: f64, b: f64| if self.is[lane] { a } else { b };
+        wi.set(lane, Vec3::new(choose(turned.x, there.x), choose(turned.y, there.y), choose(turned.z, there.z)));
+    }
+
     #[inline(always)]
     fn put_mirror(&mut self, lane: usize) {
-        self.any = true;
+        self.count += 1;
         (self.is[lane], self.is_mirror[lane]) = (true, true);
     }
 
@@ -178,7 +205,7 @@ impl Turns {
         #[cfg(test)]
         let (interior, exterior) =
             if is_wrong(Fault::InsideOut) && lane == 3 { (exterior, interior) } else { (interior, exterior) };
-        self.any = true;
+        self.count += 1;
         self.is[lane] = true;
         (self.interior.0[lane], self.exterior.0[lane]) = (interior, exterior);
     }
@@ -189,20 +216,7 @@ stages! {
     fn turn(surface: (&Rows3, &Rows3), u_lobe: &[f64; W], turns: &mut Turns, wi: &mut Rows3) {
         let (normal, direction) = surface;
         for lane in 0..W {
-            let (n, wo) = (normal.at(lane), -direction.at(lane));
-            let from_outside = n.dot(wo) > 0.0;
-            let (interior, exterior) = (turns.interior.0[lane], turns.exterior.0[lane]);
-            let (inward, outward) = (interior / exterior, exterior / interior);
-            let eta = if from_outside { inward } else { outward };
-            // Below any reflectance: a mirror.
-            let u = if turns.is_mirror[lane] { -1.0 } else { u_lobe[lane] };
-            let Turn { wi: turned, reflects, reflectance, cos } = dielectric::turn(n, wo, eta, u);
-            turns.from_outside[lane] = from_outside;
-            turns.reflects[lane] = reflects;
-            (turns.cos.0[lane], turns.eta.0[lane], turns.reflectance.0[lane]) = (cos, eta, reflectance);
-            let there = wi.at(lane);
-            let choose = |a: f64, b: f64| if turns.is[lane] { a } else { b };
-            wi.set(lane, Vec3::new(choose(turned.x, there.x), choose(turned.y, there.y), choose(turned.z, there.z)));
+            turns.take(lane, (normal.at(lane), -direction.at(lane)), u_lobe[lane], wi);
         }
     }
 

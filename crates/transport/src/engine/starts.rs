@@ -17,7 +17,7 @@ use etalon_optics::Lanes;
 /// See the module.
 pub(super) struct Starts<'a, const N: usize> {
     tracer: &'a Tracer<'a>,
-    cursor: Cursor,
+    cursor: Cursor<'a>,
     samplers: Samplers<W>,
     origin: Rows3,
     direction: Rows3,
@@ -30,7 +30,7 @@ pub(super) struct Starts<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Starts<'a, N> {
-    pub(super) fn new(tracer: &'a Tracer<'a>, cursor: Cursor) -> Self {
+    pub(super) fn new(tracer: &'a Tracer<'a>, cursor: Cursor<'a>) -> Self {
         Self {
             tracer,
             cursor,
@@ -99,6 +99,7 @@ impl<'a, const N: usize> Starts<'a, N> {
         self.number = self.number.wrapping_add(1);
         paths.samplers.put(lane, self.samplers.lane(start));
         paths.vertex[lane] = 0;
+        paths.shadow_rays[lane] = 0;
         paths.origin.set(lane, self.origin.at(start));
         paths.direction.set(lane, self.direction.at(start));
         paths.leaves[lane] = SurfaceId::NONE;

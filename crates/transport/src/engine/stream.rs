@@ -1,9 +1,8 @@
-//! The samples of a tile in their order: handed out to paths, and taken back.
+//! The samples of spots in their order: handed out to paths, and taken back.
 //!
 //! Paths end in any order, but a pixel's sums are in the order of its samples: what is finished early waits.
 
-use crate::film::PixelRect;
-use std::ops::Range;
+use crate::kernel::Spot;
 
 /// Most samples that may be under way or wait for others: many times the paths in a set, so that one long path does not hold up
 /// the rest.
@@ -12,36 +11,47 @@ const WINDOW: u64 = 1024;
 /// One sample of one pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    /// Number of the pixel in the tile.
-    pub pixel: usize,
+    /// Number of the spot.
+    pub spot: usize,
     pub x: u32,
     pub y: u32,
     pub sample: u32,
 }
 
-/// Goes through the samples of a tile, pixel by pixel.
+/// Goes through the samples of spots, one spot after the other.
 #[derive(Clone, Debug)]
-pub(super) struct Cursor {
-    tile: PixelRect,
-    samples: Range<u32>,
+pub(super) struct Cursor<'a> {
+    spots: &'a [Spot],
     next: Place,
     left: u64,
 }
 
-impl Cursor {
-    pub(super) fn new(tile: PixelRect, samples: Range<u32>) -> Self {
-        let left = tile.area() * u64::from(samples.end.saturating_sub(samples.start));
-        let next = Place { pixel: 0, x: tile.x0, y: tile.y0, sample: samples.start };
-        Self { tile, samples, next, left }
+impl<'a> Cursor<'a> {
+    pub(super) fn new(spots: &'a [Spot]) -> Self {
+        let left = spots.iter().map(|spot| u64::from(spot.count())).sum();
+        let mut cursor = Self { spots, next: Place { spot: 0, x: 0, y: 0, sample: 0 }, left };
+        cursor.go_to(0);
+        cursor
     }
 
     /// How many of them a window should hold: a power of two.
     pub(super) fn window(&self) -> usize {
         self.left.clamp(1, WINDOW).next_power_of_two() as usize
     }
+
+    /// The first sample of this spot, or of the next that has one.
+    #[inline(always)]
+    fn go_to(&mut self, first: usize) {
+        for (spot, Spot { x, y, samples }) in self.spots.iter().enumerate().skip(first) {
+            if !samples.is_empty() {
+                self.next = Place { spot, x: *x, y: *y, sample: samples.start };
+                return;
+            }
+        }
+    }
 }
 
-impl Iterator for Cursor {
+impl Iterator for Cursor<'_> {
     type Item = Place;
 
     #[inline(always)]
@@ -49,11 +59,8 @@ impl Iterator for Cursor {
         self.left = self.left.checked_sub(1)?;
         let place = self.next;
         self.next.sample += 1;
-        if self.next.sample == self.samples.end {
-            self.next = Place { pixel: place.pixel + 1, x: place.x + 1, y: place.y, sample: self.samples.start };
-            if self.next.x == self.tile.x1 {
-                (self.next.x, self.next.y) = (self.tile.x0, place.y + 1);
-            }
+        if self.next.sample == self.spots[place.spot].samples.end {
+            self.go_to(place.spot + 1);
         }
         Some(place)
     }

@@ -3,6 +3,7 @@
 use super::level::Level;
 use super::{Engine, render_on};
 use crate::film::{Counters, Film, PixelRect, TileSums};
+use crate::kernel::Spot;
 use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::plan::{EffectName, LaneModel, PathLoop};
 use crate::prepare::Prepared;
@@ -35,6 +36,10 @@ thread_local! {
 /// Whether an engine of this thread is to be wrong in this way.
 pub(super) fn is_wrong(fault: Fault) -> bool {
     FAULT.get() == Some(fault)
+}
+
+fn is_wrong_at_all() -> bool {
+    FAULT.get().is_some()
 }
 
 /// A room with lamps of three shapes, walls of three colours, a glass ball and a mirror, under a sky.
@@ -88,7 +93,13 @@ fn lanes<M: WavelengthModel<f64, N>, const N: usize>(level: Level, prepared: &Pr
     let film = &prepared.scene.film;
     let tile = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let mut sums = prepared.film().tile(tile);
-    let counters = render_on::<M, N>(level, prepared, tile, 0..prepared.scene.integrator.spp, sums.borrow());
+    let counters = {
+        let spots = Spot::of_tile(tile, &(0..prepared.scene.integrator.spp));
+        let mut rays = vec![0; spots.len()];
+        let counters = render_on::<M, N>(level, prepared, &spots, sums.borrow(), &mut rays);
+        assert!(is_wrong_at_all() || rays.iter().sum::<u64>() == counters.rays + counters.shadow_rays);
+        counters
+    };
     (sums, counters)
 }
 
