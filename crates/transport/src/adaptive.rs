@@ -20,8 +20,8 @@ use std::sync::Arc;
 
 /// The part of the samples that is spread evenly.
 pub const EVEN: f64 = 0.25;
-/// The part of the picture's paths that an exploration takes at most; one round of replicates for a quarter of the pixels, if
-/// that is more.
+/// The part of the picture's paths that an exploration takes at most; one round of replicates for every pixel (of a large picture:
+/// for some of them), if that is more.
 pub const EFFORT: f64 = 1.0 / 16.0;
 /// The foretold gain from which shares are used where they need not be: it pays for the exploration and for what the law
 /// behind it leaves out.
@@ -90,24 +90,23 @@ pub fn explore(
     let (mut layers, mut samples) = (0, probe.replicates());
     add_layers(&mut probe, rect, &mut layers, 1);
     probe.trace(0, |_, _| 0..samples, on_work);
-    let mut deepen = true;
     loop {
         let found = found(&probe, rect);
-        // The next step takes as much again as all of them did.
-        if 2.0 * probe.paths() as f64 > EFFORT * foretold_paths(&probe, rect, goal, samples, found.gain) || enough() {
+        // The next step takes as much again as all of them did. Before every pixel was seen, nothing is foretold: the error may be in
+        // a few of them.
+        let worth = || EFFORT * foretold_paths(&probe, rect, goal, samples, found.gain) >= 2.0 * probe.paths() as f64;
+        if enough() || layers == most_layers && !worth() {
             return Ok(found);
         }
-        // Pixels and samples by turns.
-        if deepen || layers >= most_layers {
-            probe.trace(0, |_, _| samples..2 * samples, on_work);
-            samples *= 2;
-        } else {
+        if layers < most_layers {
             let first = probe.len();
             let as_many = layers.min(most_layers - layers);
             add_layers(&mut probe, rect, &mut layers, as_many);
             probe.trace(first, |_, _| 0..samples, on_work);
+        } else {
+            probe.trace(0, |_, _| samples..2 * samples, on_work);
+            samples *= 2;
         }
-        deepen = !deepen;
     }
 }
 

@@ -39,9 +39,13 @@ pub(crate) fn price(points: &[PilotPoint], target: f64, sampler: SamplerKind, fe
     let n = f64::from(last.samples);
     let second_per_sample = last.seconds / n;
     let fewest = f64::from(fewest);
-    let mixture = Mixture::fit(points, sampler);
-    let local = mixture.slope(n);
-    let inverse = |target: f64| between(points, target).unwrap_or_else(|| mixture.samples_for(target)).max(fewest);
+    let law = Law::fit(points, sampler, fewest);
+    let local = law.mixture.slope(n);
+    let beyond = |target: f64| match last.relative_rmse > target {
+        true => law.samples_beyond(n, last.relative_rmse, target),
+        false => law.mixture.samples_for(target),
+    };
+    let inverse = |target: f64| between(points, target).unwrap_or_else(|| beyond(target)).max(fewest);
     // The error at the pilot's end is known to a share; beyond it, the slope may stay as steep as it is there, or the part
     // that stratification does not reach may be all that is left. Toward fewer samples there are points on both sides.
     let slack = (Z_95 * last.uncertainty).exp();
@@ -66,12 +70,98 @@ pub(crate) fn price(points: &[PilotPoint], target: f64, sampler: SamplerKind, fe
 /// smaller or larger than all of them.
 pub(crate) fn between(points: &[PilotPoint], target: f64) -> Option<f64> {
     let after = points.iter().position(|point| point.relative_rmse <= target)?;
-    let (before, after) = (points[after.checked_sub(1)?], points[after]);
-    let log = |a: f64, b: f64| (a / b).ln();
-    let share = log(before.relative_rmse, target) / log(before.relative_rmse, after.relative_rmse);
-    let samples = f64::from(before.samples) * (share * log(f64::from(after.samples), f64::from(before.samples))).exp();
+    let pair = |point: PilotPoint| (f64::from(point.samples), point.relative_rmse);
+    Some(crossing(pair(points[after.checked_sub(1)?]), pair(points[after]), target))
+}
+
+/// The number of samples at which the error is `target`, as a power of it between two pairs of samples and error.
+fn crossing(before: (f64, f64), after: (f64, f64), target: f64) -> f64 {
+    let share = (before.1 / target).ln() / (before.1 / after.1).ln();
+    let samples = before.0 * (share * (after.0 / before.0).ln()).exp();
     // Not a number where there is no error left.
-    Some(if samples.is_finite() { samples } else { f64::from(after.samples) })
+    if samples.is_finite() { samples } else { after.0 }
+}
+
+/// Steps of an octave of samples at which a law tells apart how the variance falls within it.
+const STEPS_OF_OCTAVE: u32 = 4;
+
+/// The step that follows so many rounds of replicates: 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20 … Every power of two is one.
+pub fn next_step(rounds: u32) -> u32 {
+    let width = 1 << rounds.max(1).ilog2().saturating_sub(STEPS_OF_OCTAVE.ilog2());
+    (rounds / width).saturating_add(1).saturating_mul(width)
+}
+
+/// How the variance falls with the number of samples, from octave to octave and within them: Sobol points of which there is a whole power of
+/// two are spread better than the law between two such numbers says of those between.
+#[derive(Clone, Copy, Debug)]
+struct Law {
+    mixture: Mixture,
+    /// Samples of one round of replicates.
+    round: f64,
+    /// Samples at which the mixture is exact.
+    exact_at: f64,
+    /// The variance over the mixture's, at each step of an octave, as last seen.
+    excess: [f64; STEPS_OF_OCTAVE as usize],
+}
+
+impl Law {
+    fn fit(points: &[PilotPoint], sampler: SamplerKind, round: f64) -> Self {
+        let rounds = |point: &PilotPoint| f64::from(point.samples) / round;
+        let whole = |point: &&PilotPoint| rounds(point).log2().fract() == 0.0;
+        let octaves: Vec<PilotPoint> = points.iter().filter(whole).copied().collect();
+        if sampler == SamplerKind::Independent || octaves.is_empty() {
+            let mixture = Mixture::fit(points, sampler);
+            let exact_at = points.last().map_or(round, |last| f64::from(last.samples));
+            return Self { mixture, round, exact_at, excess: [1.0; STEPS_OF_OCTAVE as usize] };
+        }
+        let mixture = Mixture::fit(&octaves, sampler);
+        let mut law = Self {
+            mixture,
+            round,
+            exact_at: octaves.last().map_or(round, |last| f64::from(last.samples)),
+            excess: [1.0; STEPS_OF_OCTAVE as usize],
+        };
+        for point in points {
+            let (step, between) = law.step(f64::from(point.samples));
+            let seen = point.relative_rmse.powi(2) / mixture.variance(f64::from(point.samples));
+            if step > 0 && between == 0.0 && seen.is_finite() && seen > 0.0 {
+                law.excess[step] = seen;
+            }
+        }
+        law
+    }
+
+    /// The step of its octave that so many samples are at, and how far they are from it to the next.
+    fn step(&self, samples: f64) -> (usize, f64) {
+        let rounds = samples / self.round;
+        let of_octave = (rounds / rounds.log2().floor().exp2() - 1.0) * f64::from(STEPS_OF_OCTAVE);
+        (of_octave as usize % STEPS_OF_OCTAVE as usize, of_octave.fract())
+    }
+
+    /// The variance of a number of samples that is a step of its octave.
+    fn variance(&self, samples: f64) -> f64 {
+        // What powers of two gain vanishes where stratification does: where the variance falls as 1/n.
+        let gains = |n: f64| (2.0 * self.mixture.slope(n) - 1.0).max(0.0);
+        let (now, then) = (gains(samples), gains(self.exact_at));
+        let left = if then > 0.0 { (now / then).min(1.0) } else { 0.0 };
+        self.mixture.variance(samples) * self.excess[self.step(samples).0].powf(left)
+    }
+
+    /// The number of samples for a relative error that is smaller than that of so many.
+    fn samples_beyond(&self, samples: f64, relative_rmse: f64, target: f64) -> f64 {
+        let mut before = (samples, relative_rmse);
+        let mut rounds = (samples / self.round).ceil() as u32;
+        while rounds < u32::MAX {
+            rounds = next_step(rounds);
+            let samples = f64::from(rounds) * self.round;
+            let after = (samples, self.variance(samples).sqrt());
+            if after.1 <= target {
+                return crossing(before, after, target);
+            }
+            before = after;
+        }
+        self.mixture.samples_for(target)
+    }
 }
 
 /// V(n) = Σ aₖ n^−eₖ with aₖ ≥ 0: how the variance falls with the number of samples.
@@ -165,6 +255,39 @@ mod tests {
         }
         let price = price(&points, 0.01, SamplerKind::Independent, 4);
         assert!((price.samples / (128.0 * law(128.0) * 1e4) - 1.0).abs() < 1e-6, "{price:?}");
+    }
+
+    #[test]
+    fn steps_of_octaves_hold_each_power_of_two() {
+        let steps: Vec<u32> = std::iter::successors(Some(1), |&step| Some(next_step(step))).take(14).collect();
+        assert_eq!(steps, [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24]);
+        assert_eq!([next_step(17), next_step(1030), next_step(u32::MAX)], [20, 1280, u32::MAX]);
+    }
+
+    #[test]
+    fn prices_know_that_whole_powers_of_two_are_spread_better() {
+        // Between powers of two the variance is up to 1.5 of the law's, as blocks of 1, 1/2, 1/4 … that know nothing of each other have it.
+        let law = |n: f64| {
+            let of_octave = n / n.log2().floor().exp2();
+            n.powf(-1.5) * (1.0 + 2.0 * (of_octave - 1.0) * (2.0 - of_octave))
+        };
+        let steps = std::iter::successors(Some(1_u32), |&step| Some(next_step(step)));
+        let seen: Vec<PilotPoint> = steps
+            .map(|rounds| 4 * rounds)
+            .take_while(|&samples| samples <= 448)
+            .map(|samples| {
+                let n = f64::from(samples);
+                PilotPoint { samples, relative_rmse: law(n).sqrt(), uncertainty: 0.01, seconds: 0.5 * n }
+            })
+            .collect();
+        // The first number with so small an error, found one by one: 4096 and others shortly before a power of two.
+        for (target, at_least) in [(4096.0_f64.powf(-0.75), 4000.0), (5200.0_f64.powf(-0.75), 6000.0), (0.0035, 500.0)]
+        {
+            let first = (448..).map(f64::from).find(|&n| law(n).sqrt() <= target).unwrap();
+            let price = price(&seen, target, SamplerKind::Sobol, 4);
+            assert!(first >= at_least);
+            assert!((price.samples / first - 1.0).abs() < 0.08, "{price:?} is not {first}");
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::canvas::{Canvas, Shard};
 use crate::film::{Counters, Film, PixelRect, TileSums};
 use crate::pilot::Pilot;
 use crate::prepare::Prepared;
-use crate::price::{Price, between};
+use crate::price::{Price, between, next_step};
 use crate::render::{Control, Extent, ThreadError};
 use crate::shares::Shares;
 use std::sync::Arc;
@@ -319,11 +319,12 @@ impl Pilot<'_> {
             {
                 return None;
             }
-            // No further than the law of the error says, nor twice as far, for that law is a guess.
+            // No further than the law of the error says, and over no step of an octave, for that law is a guess, and a whole power of
+            // two may have an error that no number before it has.
             let foretold = self.price(target).samples / f64::from(replicates);
             let rounds = point.samples / replicates;
-            let rounds =
-                (foretold.ceil().min(f64::from(u32::MAX)) as u32).clamp(rounds + rounds.div_ceil(16), 2 * rounds);
+            let foretold = (foretold.ceil().min(f64::from(u32::MAX)) as u32).max(rounds + rounds.div_ceil(16));
+            let rounds = foretold.min(next_step(rounds));
             next = rounds.saturating_mul(replicates).min(most.max(replicates));
         }
     }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use etalon_transport::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
+use etalon_transport::price::next_step;
 use etalon_transport::{Pilot, PixelRect, Price, prepare_study};
 use miette::Report;
 use serde::Serialize;
@@ -46,7 +47,7 @@ pub(crate) struct Args {
 }
 
 /// Part of the pilot's time that the exploration may take before it takes no further step.
-const EXPLORING: f64 = 0.125;
+const EXPLORING: f64 = 0.25;
 
 #[derive(Serialize)]
 struct QuoteJson {
@@ -125,15 +126,16 @@ pub(crate) fn run(args: Args) -> Outcome {
         shares = used.then_some(found.shares);
     }
     let mut pilot = Pilot::new(&prepared, whole, shares, Some(threads)).map_err(started)?;
-    let mut next = pilot.first_step();
+    let mut rounds = 1;
     loop {
-        pilot.advance(next, &|| clock.seconds(), &|_| ());
+        pilot.advance(rounds * pilot.first_step(), &|| clock.seconds(), &|_| ());
         let reached = pilot.points().last().is_some_and(|point| point.relative_rmse <= finest);
-        // To double the samples takes as long again as all of them did.
-        if reached || 2.0 * pilot.seconds() > args.pilot || next > i32::MAX as u32 / 2 {
+        let next = next_step(rounds);
+        let seconds = pilot.seconds() * f64::from(next) / f64::from(rounds);
+        if reached || seconds > args.pilot || next > i32::MAX as u32 / pilot.first_step() {
             break;
         }
-        next *= 2;
+        rounds = next;
     }
     let quote = QuoteJson {
         scene: args.scene.display().to_string(),
