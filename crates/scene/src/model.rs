@@ -413,6 +413,8 @@ pub struct Integrator {
     pub roulette: bool,
     /// How direct light is found.
     pub light_sampling: LightSampling,
+    /// Which of several lights a shadow ray aims at.
+    pub light_selection: LightSelection,
     /// Wavelengths rendered: the first and the last, nm.
     pub wavelength_range_nm: [f64; 2],
     /// Scalar type of what each wavelength carries along a path.
@@ -440,6 +442,17 @@ pub enum LightSampling {
     Light,
     /// BSDF sampling wherever it can find the light.
     Bsdf,
+}
+
+/// Which of several lights a shadow ray aims at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightSelection {
+    /// By a tree where there are many, by power where there are few.
+    Auto,
+    /// In proportion to their power, wherever they are.
+    Power,
+    /// By a tree over where they are and where they shine, for each point anew.
+    Tree,
 }
 
 /// Scalar type of what each wavelength carries along a path.

@@ -42,6 +42,7 @@ fn camera_film_and_integrator() {
             max_depth: Some(8),
             roulette: false,
             light_sampling: LightSampling::Light,
+            light_selection: LightSelection::Power,
             wavelength_range_nm: [380.0, 780.0],
             precision: Precision::F32,
         }
@@ -61,6 +62,7 @@ fn defaults() {
             max_depth: None,
             roulette: true,
             light_sampling: LightSampling::Mis,
+            light_selection: LightSelection::Auto,
             wavelength_range_nm: [360.0, 830.0],
             precision: Precision::F64,
         }

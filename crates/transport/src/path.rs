@@ -295,7 +295,7 @@ impl World<'_> {
                     _ if of_direction == 0.0 => 1.0,
                     LightSampling::Light => 0.0,
                     LightSampling::Bsdf => 1.0,
-                    LightSampling::Mis => power_heuristic(density, self.lights.probability(light) * of_direction),
+                    LightSampling::Mis => power_heuristic(density, self.lights.probability(light, from) * of_direction),
                 }
             }
         }
@@ -316,7 +316,7 @@ impl World<'_> {
         if self.lights.is_empty() {
             return None;
         }
-        let index = self.lights.choose(u_light);
+        let (index, probability) = self.lights.choose(point.position, u_light)?;
         let light = &self.lights.lights()[index];
         let sample = light.sample(point.position, [u1, u2], point.time)?;
         if sample.surface == point.surface {
@@ -354,7 +354,6 @@ impl World<'_> {
         if arriving == 0.0 {
             return None;
         }
-        let probability = self.lights.probability(index);
         let weight = match sample.density {
             Density::Delta => sample.scale / probability,
             Density::SolidAngle(density) => {

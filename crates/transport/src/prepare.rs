@@ -135,7 +135,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
     if plan.forces(EffectName::Environment) {
         environments.push(PathSpectrum::Constant(0.0).into());
     }
-    let lights = LightTable::new(emitters, radius, range_nm);
+    let lights = LightTable::new(emitters, radius, range_nm, scene.integrator.light_selection);
     let mut skies = environments.iter_mut().filter(|sky| matches!(sky.radiance, EnvironmentRadiance::Image(_)));
     for (index, light) in lights.lights().iter().enumerate() {
         if let Light::Environment(light) = light {

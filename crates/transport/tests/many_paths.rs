@@ -170,6 +170,7 @@ impl Chance {
         }
         let sampling = ["mis", "light", "bsdf"][self.below(3)];
         let mut integrator = json!({"spp": 1 + self.below(12), "wavelength_range_nm": [380, 720], "seed": self.below(1000), "light_sampling": sampling});
+        integrator["light_selection"] = json!(["auto", "power", "tree"][self.below(3)]);
         if self.below(2) == 0 {
             integrator["max_depth"] = json!(1 + self.below(9));
         }

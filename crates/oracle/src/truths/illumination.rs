@@ -25,6 +25,7 @@ pub(super) fn truths() -> Vec<Truth> {
     list.extend(polygons());
     list.extend(ways_of_sampling());
     list.extend(without_surface());
+    list.push(hundreds());
     list.extend(shadows());
     list.extend(mirrors());
     list
@@ -279,6 +280,57 @@ fn without_surface() -> Vec<Truth> {
             .because("Irradiances add up.")
             .or_else("only one of them", shown(0.25 * PI)),
     ]
+}
+
+/// Square lamps side by side in one plane, so that none hides another, every third turned away, among point lights and the sun.
+fn hundreds() -> Truth {
+    let numbers = || (0..14_i32).flat_map(|i| (0..14_i32).map(move |j| (i, j)));
+    let lamp = |(i, j): (i32, i32)| {
+        let half = 0.02 + 0.01 * f64::from((3 * i + 5 * j) % 7);
+        let center = [0.2 * f64::from(i) - 1.1, 0.2 * f64::from(j) - 1.5, 1.0];
+        (center, half, f64::from(1 + (i * j) % 5))
+    };
+    let turned_away = |(i, j): (i32, i32)| (i + j) % 3 == 0;
+    let point = |k: i32| ([0.3 * f64::from(k) - 2.0, 2.0, 0.5 + 0.1 * f64::from(k % 4)], 0.02 * f64::from(1 + k % 3));
+    let mut scene = Scene::light_meter().directional_light([0.75_f64.sqrt(), 0.0, -0.5], 0.3);
+    for number in numbers() {
+        let (center, half, radiance) = lamp(number);
+        scene = scene.lamp(level_square(center, half, turned_away(number)), black(), radiance, "front");
+    }
+    for k in 0..12 {
+        let (position, intensity) = point(k);
+        scene = scene.point_light(position, intensity);
+    }
+    let of_points: f64 = (0..12)
+        .map(|k| {
+            let ([x, y, z], intensity) = point(k);
+            intensity * z / (x * x + y * y + z * z).powf(1.5)
+        })
+        .sum();
+    let of_lamps = move |away: bool, one: &dyn Fn(Vec3, f64) -> f64| -> f64 {
+        numbers()
+            .filter(|&number| away || !turned_away(number))
+            .map(|number| {
+                let (center, half, radiance) = lamp(number);
+                radiance * one(center, half)
+            })
+            .sum()
+    };
+    let polygon = |[x, y, z]: Vec3, h: f64| {
+        lambert_polygon(&[[x - h, y - h, z], [x + h, y - h, z], [x + h, y + h, z], [x - h, y + h, z]], UP)
+    };
+    let value = shown(of_lamps(false, &polygon) + of_points + 0.15);
+    Truth::new("hundreds-of-lamps", &scene, value, "(ρ/π)(Σ Lᵢ·Eᵢ + Σ Iₖcosθₖ/dₖ² + E₀cosθ)")
+        .because("Irradiances add up: 130 of 196 squares by Lambert's formula, twelve points, parallel light of E₀ = 0.3 at 60°.")
+        .confirmed("quadrature over the squares", 1e-6, move || {
+            let quadrature = |[x, y, z]: Vec3, h: f64| {
+                let (u, v) = ([0.0, 2.0 * h, 0.0], [2.0 * h, 0.0, 0.0]);
+                parallelogram_by_quadrature([x - h, y - h, z], u, v, [0.0; 3], UP)
+            };
+            shown(of_lamps(false, &quadrature) + of_points + 0.15)
+        })
+        .or_else("those turned away counted too", shown(of_lamps(true, &polygon) + of_points + 0.15))
+        .or_else("the sun left out", shown(of_lamps(false, &polygon) + of_points))
 }
 
 fn shadows() -> Vec<Truth> {

@@ -2,7 +2,7 @@
 
 use super::spectrum::Wavelength;
 use crate::json::{Code, Nullable, Reader, Required, Spanned, Whole};
-use crate::model::{Integrator, LightSampling, MOST_REPLICATES, Precision, SamplerKind};
+use crate::model::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, Precision, SamplerKind};
 
 crate::record! {
     /// How to integrate. The command line may override each key.
@@ -22,6 +22,8 @@ crate::record! {
         roulette: Required<bool> = "true",
         /// How direct light is found.
         light_sampling: Required<LightSampling> = r#""mis""#,
+        /// Which of several lights a shadow ray aims at.
+        light_selection: Required<LightSelection> = r#""auto""#,
         /// First and last wavelength rendered, nm.
         wavelength_range_nm: Required<Spanned<[Wavelength; 2]>> = "[360, 830]",
         /// Scalar type of the kernel.
@@ -43,6 +45,15 @@ crate::keywords!(LightSampling {
     "light" => Self::Light,
     /// BSDF sampling wherever it can find the light.
     "bsdf" => Self::Bsdf,
+});
+
+crate::keywords!(LightSelection {
+    /// By a tree from 8 lights on that have a place, by power below.
+    "auto" => Self::Auto,
+    /// In proportion to their power, wherever they are.
+    "power" => Self::Power,
+    /// By a tree over where they are and where they shine, for each point anew.
+    "tree" => Self::Tree,
 });
 
 crate::keywords!(Precision {
@@ -85,6 +96,7 @@ pub(crate) fn integrator(form: &IntegratorForm, wavelength_range_nm: Option<[f64
         },
         roulette: form.roulette?,
         light_sampling: form.light_sampling?,
+        light_selection: form.light_selection?,
         wavelength_range_nm: wavelength_range_nm?,
         precision: form.precision?,
     })

@@ -60,7 +60,8 @@ impl<const N: usize> Sight<N> {
 
     /// The light that a path looks at.
     #[inline(always)]
-    fn look(&mut self, lane: usize, index: usize, lights: &LightTable) {
+    fn look(&mut self, lane: usize, (index, probability): (usize, f64), lights: &LightTable) {
+        self.probability.0[lane] = probability;
         // Where there are few lights it is mostly the same again.
         if self.light[lane] == index as u32 {
             return;
@@ -70,7 +71,6 @@ impl<const N: usize> Sight<N> {
             return;
         }
         self.light[lane] = index as u32;
-        self.probability.0[lane] = lights.probability(index);
         let light = &lights.lights()[index];
         self.surface[lane] = light.emitter().map_or(SurfaceId::NONE, |emitter| emitter.surface);
         self.flats.forget(lane);
@@ -93,9 +93,13 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         vertex_numbers(self.level, &paths.samplers, &paths.vertex, 1, &mut numbers);
         let [u1, u2, u_light, _] = &numbers;
         let lights = world.lights.lights();
+        let mut shared = shared;
         for lane in lanes(shared) {
-            let index = if lights.len() == 1 { 0 } else { world.lights.choose(u_light[lane]) };
-            sight.look(lane, index, world.lights);
+            let from = paths.at.position.at(lane);
+            match if lights.len() == 1 { Some((0, 1.0)) } else { world.lights.choose(from, u_light[lane]) } {
+                Some(chosen) => sight.look(lane, chosen, world.lights),
+                None => shared &= !(1 << lane),
+            }
         }
         if sight.flats.mask & shared != 0 {
             aim(self.level, &paths.at.position, [u1, u2], &sight.flats, &mut sight.aims);

@@ -4,7 +4,7 @@
 use super::{Emitter, LightSample, Target};
 use crate::mis::Density;
 use crate::warp::concentric_disk;
-use etalon_geometry::{Cylinder, Geometry, Ray, SurfacePoint};
+use etalon_geometry::{Aabb, Cylinder, Geometry, Ray, SurfacePoint};
 use etalon_optics::{Frame, Vec3};
 use std::sync::Arc;
 
@@ -51,6 +51,10 @@ impl CylinderLight {
     }
 
     /// Zero where `wi` meets nothing, or first a side that is dark.
+    pub(super) fn bounds(&self) -> Aabb {
+        self.shape.bounds()
+    }
+
     pub(super) fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64 {
         match self.seen(from, wi) {
             Some((first, density)) if self.emitter.emits_along(first.normal, -wi) => density,

@@ -2,7 +2,7 @@
 
 use super::planar::Flat;
 use super::{Emitter, LightSample, planar};
-use etalon_geometry::Disk;
+use etalon_geometry::{Aabb, Disk};
 use etalon_optics::{Frame, Vec3};
 
 /// An emitting disk.
@@ -22,6 +22,14 @@ impl DiskLight {
     /// Surface area of one side, m².
     pub fn area(&self) -> f64 {
         self.shape.area()
+    }
+
+    pub(super) fn bounds(&self) -> Aabb {
+        self.shape.bounds()
+    }
+
+    pub(super) fn normal(&self) -> Vec3<f64> {
+        self.shape.normal()
     }
 
     pub(super) fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64 {

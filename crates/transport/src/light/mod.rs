@@ -15,6 +15,7 @@ mod point;
 mod sphere;
 mod spot;
 mod table;
+mod tree;
 mod triangle;
 
 pub use cylinder::CylinderLight;
@@ -35,9 +36,10 @@ pub(crate) use sphere::Round;
 
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
-use etalon_geometry::SurfaceId;
+use etalon_geometry::{Aabb, SurfaceId};
 use etalon_optics::{Lanes, Real, Vec3};
 use std::sync::Arc;
+use tree::LightBounds;
 
 /// Where a shadow ray ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,6 +195,45 @@ impl Light {
             Self::Cylinder(light) => Some(&light.emitter),
             Self::Moving(light) => light.emitter(),
             Self::Point(_) | Self::Spot(_) | Self::Directional(_) | Self::Environment(_) => None,
+        }
+    }
+
+    /// Where it is and where it shines, with a power of 1; `None` if it is nowhere, or not always at one place.
+    fn place(&self) -> Option<LightBounds> {
+        let x = Vec3::new(1.0, 0.0, 0.0);
+        let surface = |bounds: Aabb, emitter: &Emitter, normal: Option<Vec3<f64>>| LightBounds {
+            bounds,
+            axis: normal.map_or(x, |normal| if emitter.front { normal } else { -normal }),
+            // Normals of what is round point everywhere.
+            cos_normals: if normal.is_some() { 1.0 } else { -1.0 },
+            cos_shines: 0.0,
+            both_sides: emitter.front && emitter.back,
+            power: 1.0,
+        };
+        let point = |position| LightBounds {
+            bounds: Aabb { min: position, max: position },
+            axis: x,
+            cos_normals: -1.0,
+            cos_shines: 0.0,
+            both_sides: false,
+            power: 1.0,
+        };
+        match self {
+            Self::Sphere(light) => Some(surface(light.bounds(), &light.emitter, None)),
+            Self::Cylinder(light) => Some(surface(light.bounds(), &light.emitter, None)),
+            Self::Disk(light) => Some(surface(light.bounds(), &light.emitter, Some(light.normal()))),
+            Self::Parallelogram(light) => {
+                Some(surface(light.flat().bounds(), &light.emitter, Some(light.flat().normal)))
+            }
+            Self::Triangle(light) => Some(surface(light.flat().bounds(), &light.emitter, Some(light.flat().normal))),
+            Self::Point(light) => Some(point(light.position)),
+            Self::Spot(light) => Some(LightBounds {
+                axis: light.axis,
+                cos_normals: light.cosines[0],
+                cos_shines: light.cos_beyond_inner(),
+                ..point(light.point.position)
+            }),
+            Self::Directional(_) | Self::Environment(_) | Self::Moving(_) => None,
         }
     }
 

@@ -3,7 +3,7 @@
 use super::{LightSample, Target};
 use crate::mis::Density;
 use crate::warp::concentric_disk;
-use etalon_geometry::SurfaceId;
+use etalon_geometry::{Aabb, SurfaceId};
 use etalon_optics::Vec3;
 
 /// The density in sr⁻¹ of the direction `wi` from `from` when points are uniform on a flat light of this `area`, through
@@ -49,6 +49,13 @@ pub(crate) struct Aim {
 }
 
 impl Flat {
+    /// The box that it fills.
+    pub(super) fn bounds(&self) -> Aabb {
+        let [a, b] = self.edges.map(|edge| self.corner + edge);
+        let far = if self.half { a } else { a + self.edges[1] };
+        Aabb::of_points([self.corner, a, b, far])
+    }
+
     /// The uniform point for `u` in [0, 1)², seen from `from`; without branches, so that a loop over points is vectorised.
     #[inline(always)]
     pub(crate) fn aim(&self, from: Vec3<f64>, u: [f64; 2]) -> Aim {

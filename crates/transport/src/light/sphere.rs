@@ -3,7 +3,7 @@
 use super::{Aim, Emitter, LightSample, Target};
 use crate::mis::Density;
 use crate::warp::{uniform_cone, uniform_sphere};
-use etalon_geometry::Sphere;
+use etalon_geometry::{Aabb, Sphere};
 use etalon_optics::{Frame, Real, Vec3};
 use std::f64::consts::PI;
 
@@ -82,6 +82,10 @@ impl SphereLight {
     /// A light of this shape.
     pub fn new(shape: Sphere, emitter: Emitter) -> Self {
         Self { shape, emitter }
+    }
+
+    pub(super) fn bounds(&self) -> Aabb {
+        self.shape.bounds()
     }
 
     /// Surface area, m².

@@ -37,6 +37,12 @@ impl SpotLight {
         (falloff > 0.0).then_some(LightSample { scale: sample.scale * falloff, ..sample })
     }
 
+    /// Cosine of the angle between the inner and the outer cone.
+    pub(super) fn cos_beyond_inner(&self) -> f64 {
+        let [inner, outer] = self.cosines;
+        inner * outer + ((1.0 - inner * inner) * (1.0 - outer * outer)).max(0.0).sqrt()
+    }
+
     /// Power over the intensity along the axis.
     pub(super) fn power_factor(&self) -> f64 {
         let [inner, outer] = self.cosines;

@@ -1,24 +1,137 @@
-//! Which light a shadow ray aims at: in proportion to its power, with a share spread evenly.
+//! Which light a shadow ray aims at.
+//!
+//! Few lights are chosen in proportion to their power, with a share spread evenly: one table for all points. Of many, most are too far
+//! away to matter: those that are somewhere are chosen by a [`LightTree`], for each point anew, with a tenth left to the table, so that
+//! a light which the tree thinks little of is still found with a bounded weight.
 
 use super::Light;
+use super::tree::{LightBounds, LightTree};
 use crate::spectral::PathSpectrum;
+use etalon_optics::Vec3;
 use etalon_optics::colour::colour_matching;
+use etalon_scene::LightSelection;
 
 /// Share of the choices that is spread evenly over the lights, so that a dim light beside the point is still found.
 const EVEN_SHARE: f64 = 0.1;
+/// Share of the choices that a tree leaves to the table.
+const TABLE_SHARE: f64 = 0.1;
+/// Lights with a place from which a tree is made where the scene leaves it open.
+pub(crate) const TREE_FROM: usize = 8;
 
 /// All lights that shadow rays aim at, with the probability of each.
 #[derive(Clone, Debug, Default)]
 pub struct LightTable {
     lights: Vec<Light>,
-    /// Cumulative probability after each light; the last is 1.
-    cdf: Vec<f64>,
+    /// By power.
+    table: Table,
+    near: Option<Near>,
+}
+
+/// Cumulative probabilities; the last is 1.
+#[derive(Clone, Debug, Default)]
+struct Table(Vec<f64>);
+
+impl Table {
+    /// Probabilities in proportion to `weights`, and `even` of all spread evenly.
+    fn new(weights: impl ExactSizeIterator<Item = f64> + Clone, even: f64) -> Self {
+        let total: f64 = weights.clone().sum();
+        let each = even / weights.len() as f64;
+        let mut sum = 0.0;
+        let mut cdf: Vec<f64> = weights
+            .map(|weight| {
+                sum += (1.0 - even) * weight / total + each;
+                sum
+            })
+            .collect();
+        if let Some(last) = cdf.last_mut() {
+            *last = 1.0;
+        }
+        Self(cdf)
+    }
+
+    fn choose(&self, u: f64) -> usize {
+        self.0.partition_point(|&c| c <= u)
+    }
+
+    fn probability(&self, index: usize) -> f64 {
+        self.0[index] - if index == 0 { 0.0 } else { self.0[index - 1] }
+    }
+}
+
+/// Lights chosen by where they are.
+#[derive(Clone, Debug)]
+struct Near {
+    tree: LightTree,
+    /// Which light each of the tree's is.
+    within: Vec<u32>,
+    /// Those that are nowhere, such as a sky, or not always at one place, by power; and the part of the choices that is theirs.
+    beyond: Vec<u32>,
+    beyond_table: Table,
+    beyond_share: f64,
+    /// Of each light, its number in the tree or among those beyond.
+    number: Vec<Number>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Number {
+    Within(u32),
+    Beyond(u32),
+}
+
+impl Near {
+    fn new(lights: &[Light], powers: &[f64]) -> Option<Self> {
+        let (mut bounds, mut within, mut beyond) = (Vec::new(), Vec::new(), Vec::new());
+        let number = lights
+            .iter()
+            .zip(powers)
+            .enumerate()
+            .map(|(index, (light, &power))| match light.place() {
+                Some(place) => {
+                    within.push(index as u32);
+                    bounds.push(LightBounds { power, ..place });
+                    Number::Within(within.len() as u32 - 1)
+                }
+                None => {
+                    beyond.push(index as u32);
+                    Number::Beyond(beyond.len() as u32 - 1)
+                }
+            })
+            .collect();
+        let tree = LightTree::new(&bounds)?;
+        let power_of = |of: &[u32]| of.iter().map(|&index| powers[index as usize]).sum::<f64>();
+        let beyond_share = power_of(&beyond) / (power_of(&beyond) + power_of(&within));
+        let beyond_table = Table::new(beyond.iter().map(|&index| powers[index as usize]), EVEN_SHARE);
+        Some(Self { tree, within, beyond, beyond_table, beyond_share, number })
+    }
+
+    /// A light and its probability.
+    fn choose(&self, from: Vec3<f64>, u: f64) -> Option<(usize, f64)> {
+        if u < self.beyond_share {
+            let number = self.beyond_table.choose(u / self.beyond_share).min(self.beyond.len() - 1);
+            return Some((self.beyond[number] as usize, self.beyond_share * self.beyond_table.probability(number)));
+        }
+        let u = (u - self.beyond_share) / (1.0 - self.beyond_share);
+        let (light, probability) = self.tree.choose(from, u.min(1.0 - f64::EPSILON))?;
+        Some((self.within[light as usize] as usize, (1.0 - self.beyond_share) * probability))
+    }
+
+    fn probability(&self, index: usize, from: Vec3<f64>) -> f64 {
+        match self.number[index] {
+            Number::Within(light) => (1.0 - self.beyond_share) * self.tree.probability(from, light),
+            Number::Beyond(light) => self.beyond_share * self.beyond_table.probability(light as usize),
+        }
+    }
+}
+
+/// The probability of a light by the table and by the tree.
+fn mix(by_power: f64, by_place: f64) -> f64 {
+    TABLE_SHARE * by_power + (1.0 - TABLE_SHARE) * by_place
 }
 
 impl LightTable {
     /// A table over lights of a scene with this bounding radius; lights that emit nothing within the
     /// wavelengths `range_nm` are left out.
-    pub fn new(lights: Vec<Light>, scene_radius: f64, range_nm: [f64; 2]) -> Self {
+    pub fn new(lights: Vec<Light>, scene_radius: f64, range_nm: [f64; 2], selection: LightSelection) -> Self {
         // The triangles of a mesh share their spectrum, and come one after the other.
         let mut last: Option<(*const PathSpectrum, f64)> = None;
         let powers = lights.iter().map(|light| {
@@ -32,20 +145,14 @@ impl LightTable {
         });
         let (lights, powers): (Vec<_>, Vec<_>) =
             lights.iter().cloned().zip(powers).filter(|&(_, power)| power > 0.0).unzip();
-        let total: f64 = powers.iter().sum();
-        let even = EVEN_SHARE / powers.len() as f64;
-        let mut sum = 0.0;
-        let mut cdf: Vec<f64> = powers
-            .iter()
-            .map(|power| {
-                sum += (1.0 - EVEN_SHARE) * power / total + even;
-                sum
-            })
-            .collect();
-        if let Some(last) = cdf.last_mut() {
-            *last = 1.0;
-        }
-        Self { lights, cdf }
+        let table = Table::new(powers.iter().copied(), EVEN_SHARE);
+        let by_place = match selection {
+            LightSelection::Power => false,
+            LightSelection::Tree => true,
+            LightSelection::Auto => lights.iter().filter(|light| light.place().is_some()).count() >= TREE_FROM,
+        };
+        let near = if by_place { Near::new(&lights, &powers) } else { None };
+        Self { lights, table, near }
     }
 
     /// Whether there is no light to aim at.
@@ -63,14 +170,31 @@ impl LightTable {
         &self.lights
     }
 
-    /// The index of the light that `u` in [0, 1) chooses.
-    pub fn choose(&self, u: f64) -> usize {
-        self.cdf.partition_point(|&c| c <= u)
+    /// The index of the light that `u` in [0, 1) chooses for shadow rays from a point, and its probability; `None` where no light
+    /// shines.
+    #[inline]
+    pub fn choose(&self, from: Vec3<f64>, u: f64) -> Option<(usize, f64)> {
+        let by_power = |u: f64| self.table.choose(u).min(self.lights.len() - 1);
+        let Some(near) = &self.near else {
+            let index = by_power(u);
+            return Some((index, self.table.probability(index)));
+        };
+        if u < TABLE_SHARE {
+            let index = by_power(u / TABLE_SHARE);
+            return Some((index, self.probability(index, from)));
+        }
+        let (index, by_place) = near.choose(from, (u - TABLE_SHARE) / (1.0 - TABLE_SHARE))?;
+        Some((index, mix(self.table.probability(index), by_place)))
     }
 
-    /// The probability of a light.
-    pub fn probability(&self, index: usize) -> f64 {
-        self.cdf[index] - if index == 0 { 0.0 } else { self.cdf[index - 1] }
+    /// The probability of a light for shadow rays from a point.
+    #[inline]
+    pub fn probability(&self, index: usize, from: Vec3<f64>) -> f64 {
+        let by_power = self.table.probability(index);
+        match &self.near {
+            None => by_power,
+            Some(near) => mix(by_power, near.probability(index, from)),
+        }
     }
 }
 
@@ -147,10 +271,15 @@ mod tests {
             .map(|power: f64| power * PI)
             .collect::<Vec<_>>();
         let total: f64 = powers.iter().sum();
-        let table = LightTable::new(lights, 5.0, [360.0, 830.0]);
+        let table = LightTable::new(lights, 5.0, [360.0, 830.0], LightSelection::Auto);
+        let from = Vec3::ZERO;
         for (i, power) in powers.iter().enumerate() {
             let share = 0.9 * power / total + 0.1 / 9.0;
-            assert!((table.probability(i) - share).abs() < 1e-14, "{i}: {} is not {share}", table.probability(i));
+            assert!(
+                (table.probability(i, from) - share).abs() < 1e-14,
+                "{i}: {} is not {share}",
+                table.probability(i, from)
+            );
         }
     }
 
