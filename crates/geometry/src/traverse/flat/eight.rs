@@ -47,6 +47,13 @@ pub(in crate::traverse) trait Eight:
     }
 }
 
+/// What a function makes of each of three axes. `array::map` may stay a function of its own, without the caller's vector
+/// instructions, and each operation within it then becomes a call.
+#[inline(always)]
+pub(in crate::traverse) fn axes<T>(f: impl Fn(usize) -> T) -> [T; 3] {
+    [f(0), f(1), f(2)]
+}
+
 /// Exponents' bits.
 pub(in crate::traverse) const EXPONENT: u64 = 0x7FF << 52;
 /// The sum of the bits of a power of two and of its inverse.

@@ -2,7 +2,7 @@
 //! order.
 
 use super::FLAT_LIMIT;
-use super::eight::Eight;
+use super::eight::{Eight, axes};
 use crate::shapes::planar::{T_DETERMINED, W_DETERMINED};
 use crate::{LANES, Primitive};
 use std::array::from_fn;
@@ -56,7 +56,8 @@ impl Corners {
         let kz = rays.axis;
         let kx = kz.map(|k| if k == 2 { 0 } else { k + 1 });
         let ky = kz.map(|k| if k == 0 { 2 } else { k - 1 });
-        let corners: [([E; 3], E); 3] = [0, 4, 8].map(|corner| {
+        let corners: [([E; 3], E); 3] = axes(|corner| {
+            let corner = 4 * corner as u32;
             let along = |k: &[u32; LANES]| -> E {
                 E::gathered(token, table, &from_fn(|l| ids[l] * ROW as u32 + corner + k[l]))
             };

@@ -1,6 +1,6 @@
 //! Eight rays against each primitive in turn.
 
-use super::eight::Eight;
+use super::eight::{Eight, axes};
 use super::exact::{Corners, Decided, Eights};
 use super::filter::*;
 use super::{BLOCK, FLAT_LIMIT, FURTHEST, Flat, MOST_REACH, NO_ID, SLACK, Wide};
@@ -58,9 +58,9 @@ impl<E: Eight> Prepared<E> {
             & all(power_of_two(-900)).at_most(magnitude)
             & magnitude.below(all(power_of_two(901)))
             & all(0.0).below(t);
-        let direction = given.map(|d| d * scale);
+        let direction = axes(|k| given[k] * scale);
         let (centre, per_m) = (flat.frame.centre().to_array(), all(flat.frame.scale()));
-        let place = [0, 1, 2].map(|k| (origin[k] - all(centre[k])) * per_m);
+        let place = axes(|k| (origin[k] - all(centre[k])) * per_m);
         let own = E::largest(place);
         let usable = E::bits(usable & own.at_most(all(MOST_REACH)));
         let t_max = t * unit;
@@ -78,7 +78,7 @@ impl<E: Eight> Prepared<E> {
         beams[LEAVES] = rays.leaves.map(id_of);
         beams[AIMS_AT] = rays.aims_at.map(id_of);
         // As `projection_axis` has it.
-        let [x, y, z] = given.map(E::abs);
+        let [x, y, z] = axes(|k| given[k].abs());
         let (along_y, reaches_z) = (x.max(z).below(y), x.below(z) & y.at_most(z));
         // Where both, y comes first; where neither, x.
         let one = all(1.0);
@@ -208,7 +208,7 @@ impl Job for Closest<'_> {
         let t = t * prepared.scale;
         let finite = t.below(F::Eight::splat(filters.into(), f64::INFINITY));
         hits.t = t.to_array();
-        hits.uv = uv.map(F::Eight::to_array);
+        hits.uv = [uv[0].to_array(), uv[1].to_array()];
         hits.surface = ids.map(|id| PrimitiveId(id).into());
         hits.mask = F::Eight::bits(hit & finite) & found;
         for l in lanes_of(found & !hits.mask) {

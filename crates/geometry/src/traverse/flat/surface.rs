@@ -1,7 +1,7 @@
 //! The surfaces of few primitives at eight hits: the operations of each shape's own, in their order, on what they share.
 
 use super::FLAT_LIMIT;
-use super::eight::Eight;
+use super::eight::{Eight, axes};
 use crate::lanes::lanes_of;
 use crate::ray::ExactPoint;
 use crate::shapes::planar;
@@ -70,20 +70,20 @@ impl Job for Surfaces<'_> {
         let (n, point) = (three(0), three(POINT));
         let (origin, direction) = (F::Eight::rows(token, &rays.origin), F::Eight::rows(token, &rays.direction));
         let t = F::Eight::new(token, &hits.t);
-        let p = [0, 1, 2].map(|k| origin[k] + direction[k] * t);
-        let away = [0, 1, 2].map(|k| p[k] - point[k]);
+        let p = axes(|k| origin[k] + direction[k] * t);
+        let away = axes(|k| p[k] - point[k]);
         let height = away[0] * n[0] + away[1] * n[1] + away[2] * n[2];
-        let position = [0, 1, 2].map(|k| p[k] - n[k] * height);
+        let position = axes(|k| p[k] - n[k] * height);
         let reach = F::Eight::largest(away).max(of(SIZE)) * all(16.0);
         let u = all(f64::UNIT_ROUNDOFF);
-        let error = [0, 1, 2].map(|k| (p[k].abs() + position[k].abs() + reach) * u);
+        let error = axes(|k| (p[k].abs() + position[k].abs() + reach) * u);
         let distance = n[0].abs() * error[0] + n[1].abs() * error[1] + n[2].abs() * error[2];
         let distance = distance * all(1.0 + 8.0 * f64::UNIT_ROUNDOFF);
         let mut out = SurfacePoints {
-            position: position.map(F::Eight::to_array),
+            position: axes(|k| position[k].to_array()),
             // The next number up, of one that is not negative.
             position_error: distance.to_array().map(|d| f64::from_bits(d.to_bits().wrapping_add(1))),
-            normal: n.map(F::Eight::to_array),
+            normal: axes(|k| n[k].to_array()),
             surface: hits.surface,
             label: [label; LANES],
         };
