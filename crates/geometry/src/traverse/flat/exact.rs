@@ -2,7 +2,7 @@
 //! order.
 
 use super::FLAT_LIMIT;
-use super::eight::{Eight, axes};
+use super::eight::Eight;
 use crate::shapes::planar::{T_DETERMINED, W_DETERMINED};
 use crate::{LANES, Primitive};
 use std::array::from_fn;
@@ -56,15 +56,11 @@ impl Corners {
         let kz = rays.axis;
         let kx = kz.map(|k| if k == 2 { 0 } else { k + 1 });
         let ky = kz.map(|k| if k == 0 { 2 } else { k - 1 });
-        let corners: [([E; 3], E); 3] = axes(|corner| {
-            let corner = 4 * corner as u32;
-            let along = |k: &[u32; LANES]| -> E {
-                E::gathered(token, table, &from_fn(|l| ids[l] * ROW as u32 + corner + k[l]))
-            };
-            let (x, y, z) = (along(&kx) - rays.start[0], along(&ky) - rays.start[1], along(&kz) - rays.start[2]);
-            ([x - rays.shear[0] * z, y - rays.shear[1] * z, z * rays.shear[2]], E::largest([x, y, z]))
-        });
-        let [([ax, ay, za], ma), ([bx, by, zb], mb), ([cx, cy, zc], mc)] = corners;
+        let axes = [&kx, &ky, &kz];
+        // Functions and not closures, which may be left outside without the caller's vector instructions.
+        let ([ax, ay, za], ma) = corner::<E>(token, table, rays, ids, axes, 0);
+        let ([bx, by, zb], mb) = corner::<E>(token, table, rays, ids, axes, 4);
+        let ([cx, cy, zc], mc) = corner::<E>(token, table, rays, ids, axes, 8);
         let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
         let det = (u + v) + w;
         let t_det = (u * za + v * zb) + w * zc;
@@ -83,4 +79,32 @@ impl Corners {
         let in_range = zero.below(t) & t.below(rays.t_max);
         Decided { hit: (above | below) & determined & in_range, t, uv: [v / det, w / det] }
     }
+}
+
+/// A corner of each triangle as its ray sees it, along the axes of the projection, and its largest distance along them.
+#[inline(always)]
+fn corner<E: Eight>(
+    token: E::Token,
+    table: &[f64; ROW * FLAT_LIMIT],
+    rays: &Eights<E>,
+    ids: &[u32; LANES],
+    [kx, ky, kz]: [&[u32; LANES]; 3],
+    corner: u32,
+) -> ([E; 3], E) {
+    let x = coordinate::<E>(token, table, ids, kx, corner) - rays.start[0];
+    let y = coordinate::<E>(token, table, ids, ky, corner) - rays.start[1];
+    let z = coordinate::<E>(token, table, ids, kz, corner) - rays.start[2];
+    ([x - rays.shear[0] * z, y - rays.shear[1] * z, z * rays.shear[2]], E::largest([x, y, z]))
+}
+
+/// The coordinate along `axis` of a corner of each triangle.
+#[inline(always)]
+fn coordinate<E: Eight>(
+    token: E::Token,
+    table: &[f64; ROW * FLAT_LIMIT],
+    ids: &[u32; LANES],
+    axis: &[u32; LANES],
+    corner: u32,
+) -> E {
+    E::gathered(token, table, &from_fn(|l| ids[l] * ROW as u32 + corner + axis[l]))
 }

@@ -65,16 +65,16 @@ impl Job for Surfaces<'_> {
         let all = |v| F::Eight::splat(token, v);
         let ids = hits.surface.map(|s| s.primitive.0 % FLAT_LIMIT as u32);
         let planes: &[f64; ROW * FLAT_LIMIT] = table.0.as_slice().try_into().expect("a plane for each id");
-        let of = |k: u32| F::Eight::gathered(token, planes, &ids.map(|id| id * ROW as u32 + k));
-        let three = |k: u32| [of(k), of(k + 1), of(k + 2)];
-        let (n, point) = (three(0), three(POINT));
+        // Functions and not closures, which may be left outside without the caller's vector instructions.
+        let n: [F::Eight; 3] = three(token, planes, &ids, 0);
+        let point: [F::Eight; 3] = three(token, planes, &ids, POINT);
         let (origin, direction) = (F::Eight::rows(token, &rays.origin), F::Eight::rows(token, &rays.direction));
         let t = F::Eight::new(token, &hits.t);
         let p = axes(|k| origin[k] + direction[k] * t);
         let away = axes(|k| p[k] - point[k]);
         let height = away[0] * n[0] + away[1] * n[1] + away[2] * n[2];
         let position = axes(|k| p[k] - n[k] * height);
-        let reach = F::Eight::largest(away).max(of(SIZE)) * all(16.0);
+        let reach = F::Eight::largest(away).max(number::<F::Eight>(token, planes, &ids, SIZE)) * all(16.0);
         let u = all(f64::UNIT_ROUNDOFF);
         let error = axes(|k| (p[k].abs() + position[k].abs() + reach) * u);
         let distance = n[0].abs() * error[0] + n[1].abs() * error[1] + n[2].abs() * error[2];
@@ -87,7 +87,7 @@ impl Job for Surfaces<'_> {
             surface: hits.surface,
             label: [label; LANES],
         };
-        let is_plane = F::Eight::bits(all(0.0).below(of(IS_PLANE)));
+        let is_plane = F::Eight::bits(all(0.0).below(number::<F::Eight>(token, planes, &ids, IS_PLANE)));
         for l in lanes_of(active & !is_plane) {
             let ray = rays.get(l);
             let point = primitives[ids[l] as usize].surface(ray.origin + ray.direction * hits.t[l]);
@@ -95,4 +95,16 @@ impl Job for Surfaces<'_> {
         }
         out
     }
+}
+
+/// Number `k` of each surface's row.
+#[inline(always)]
+fn number<E: Eight>(token: E::Token, planes: &[f64; ROW * FLAT_LIMIT], ids: &[u32; LANES], k: u32) -> E {
+    E::gathered(token, planes, &ids.map(|id| id * ROW as u32 + k))
+}
+
+/// The three from number `k` on.
+#[inline(always)]
+fn three<E: Eight>(token: E::Token, planes: &[f64; ROW * FLAT_LIMIT], ids: &[u32; LANES], k: u32) -> [E; 3] {
+    [number(token, planes, ids, k), number(token, planes, ids, k + 1), number(token, planes, ids, k + 2)]
 }
