@@ -93,7 +93,17 @@ fn what_was_not_needed_can_be_measured() {
     let names: Vec<_> = costs.iter().map(|cost| cost["effect"].as_str().unwrap()).collect();
     assert_eq!(
         names,
-        ["wavelengths", "dispersion", "lens", "shadow-rays", "mis", "nested-dielectrics", "absorption", "polarisation"]
+        [
+            "wavelengths",
+            "dispersion",
+            "lens",
+            "shadow-rays",
+            "mis",
+            "nested-dielectrics",
+            "absorption",
+            "polarisation",
+            "motion"
+        ]
     );
     assert!(costs.iter().all(|cost| cost["ratio"].as_f64().unwrap() > 0.0));
     let text = etalon_line("explain {} --measure", [&small]).expect(0).stdout;
