@@ -10,7 +10,9 @@ use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
 use crate::plan::{Carried, EffectName, LaneModel};
-use crate::polarisation::{Averaged, Followed, Polarisation};
+#[cfg(not(feature = "without-polarisation"))]
+use crate::polarisation::Followed;
+use crate::polarisation::{Averaged, Polarisation};
 use crate::prepare::Prepared;
 use crate::replay::{Replay, replay};
 use crate::sampler::Sampler;
