@@ -132,7 +132,7 @@ fn circling_camera() -> Truth {
     let scene = Scene::orthographic(position, [0.0; 3], 8.0)
         .up([0.0, 0.0, 1.0])
         .film(1, 1)
-        .spp(1 << 16)
+        .spp(1 << 18)
         .shutter([0.0, 1.0])
         .camera_keys(&keys)
         .lamp(card, black(), 1.0, "front");
