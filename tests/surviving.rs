@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::support::{command, entries, etalon_line, pixel_bits, scene, words};
 
-/// Two to four seconds on one core.
+/// Three to seven seconds, so that ten kills come before its end.
 const SHORT: &str = "--size 96x72 --spp 1000 --seed 5";
 /// Minutes.
 const LONG: &str = "--spp 1000000 --size 256x256 --threads 2";
