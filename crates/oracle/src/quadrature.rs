@@ -97,10 +97,11 @@ pub(crate) type Clue = ([f64; 2], f64);
 /// ∫∫ f over a rectangle, f ≥ 0 and perhaps zero beyond some line, where it may end as a step or grow without bound as an inverse
 /// root, to a tolerance that depends on the value.
 ///
-/// Where some nodes meet zero and some do not, the integral is taken line by line between the ends of what is not zero, which are
-/// found by bisection: the sum over lines is then continuous, and the difference of two rules is an honest error again. A rule whose
-/// nodes all miss where f is not zero would report 0 ± 0: where a clue lies far above all of them, the error is at least what one row of
-/// nodes at its value would be.
+/// Where some nodes meet zero and some do not, or two rules differ and most of a line's change is between two neighbours, the integral is
+/// taken line by line between the places where f ends or jumps, which are found by bisection: the sum over lines is then continuous, and
+/// the difference of two rules is an honest error again. (A line cut where nothing jumps is integrated as well as before.) A rule
+/// whose nodes all miss where f is not zero would report 0 ± 0: where a clue lies far above all of them, the error is at least what one
+/// row of nodes at its value would be.
 pub(crate) fn nonnegative(
     mut f: impl FnMut(f64, f64) -> f64,
     bounds: [f64; 4],
@@ -119,28 +120,40 @@ pub(crate) fn nonnegative(
         let met = nodes(&fine);
         let most = met.iter().copied().fold(0.0, f64::max);
         let zero = |i: usize, j: usize| met[i * FINE + j] == 0.0;
-        let (value, other) = if most == 0.0 || !met.contains(&0.0) {
-            let sum = |values: &[f64], rule: &[(f64, f64)]| {
-                let weights = rule.iter().flat_map(|(_, wx)| rule.iter().map(move |(_, wy)| 0.25 * area * wx * wy));
-                values.iter().zip(weights).map(|(value, weight)| value * weight).sum::<f64>()
-            };
-            (sum(&met, &fine), sum(&nodes(&coarse), &coarse))
-        } else {
+        let sum = |values: &[f64], rule: &[(f64, f64)]| {
+            let weights = rule.iter().flat_map(|(_, wx)| rule.iter().map(move |(_, wy)| 0.25 * area * wx * wy));
+            values.iter().zip(weights).map(|(value, weight)| value * weight).sum::<f64>()
+        };
+        let ends = if most > 0.0 && met.contains(&0.0) {
             // Along the axis on which more lines meet an end.
             let ends = |line: &dyn Fn(usize, usize) -> bool| {
                 (0..FINE).filter(|&i| (1..FINE).any(|j| line(i, j) != line(i, j - 1))).count()
             };
-            let along_y = ends(&|i, j| zero(i, j)) >= ends(&|i, j| zero(j, i));
+            Some((ends(&|i, j| zero(i, j)) >= ends(&|i, j| zero(j, i)), jump(&met).map_or(0.0, |(_, level)| level)))
+        } else {
+            None
+        };
+        let by_lines = |(along_y, level): (bool, f64), f: &mut dyn FnMut(f64, f64) -> f64| {
             let mut sum = |rule: &[(f64, f64)]| {
                 let (across, along) = if along_y { ([a, b], [c, d]) } else { ([c, d], [a, b]) };
-                let line = |(node, weight): &(f64, f64)| {
+                let mut line = |(node, weight): &(f64, f64)| {
                     let place = at(across, *node);
                     let over = |x: f64| if along_y { f(place, x) } else { f(x, place) };
-                    0.5 * (across[1] - across[0]) * weight * line_with_ends(over, along, rule)
+                    0.5 * (across[1] - across[0]) * weight * line_in_pieces(over, along, level, rule)
                 };
-                rule.iter().map(line).sum::<f64>()
+                rule.iter().map(&mut line).sum::<f64>()
             };
             (sum(&fine), sum(&coarse))
+        };
+        let (value, other) = match ends {
+            Some(ends) => by_lines(ends, &mut f),
+            None => {
+                let whole = (sum(&met, &fine), sum(&nodes(&coarse), &coarse));
+                match jump(&met) {
+                    Some(jump) if (whole.0 - whole.1).abs() > SMOOTH * whole.0 => by_lines(jump, &mut f),
+                    _ => whole,
+                }
+            }
         };
         let mut error = (value - other).abs();
         let within = |[x, y]: [f64; 2]| a <= x && x <= b && c <= y && y <= d;
@@ -153,39 +166,63 @@ pub(crate) fn nonnegative(
     adapt([bounds], rule, quarter, tolerance, most_cells)
 }
 
-/// ∫ f over [a, b] where f is zero in some parts, which the nodes of the rule tell from the others. Their ends are found by
-/// bisection to 2⁻²⁴ of the interval, and nodes gather there (x = t²(3 − 2t)), so that an inverse root is integrated like a step.
-fn line_with_ends(mut f: impl FnMut(f64) -> f64, [a, b]: [f64; 2], rule: &[(f64, f64)]) -> f64 {
+/// Two rules that differ by less than this part of the integral have met no jump that matters.
+const SMOOTH: f64 = 1e-4;
+
+/// Whether values at the nodes of a rectangle jump, along which axis (y if true), and the middle of the largest jump: where, on at least two
+/// lines along that axis, most of the whole change is between two neighbours.
+fn jump(met: &[f64]) -> Option<(bool, f64)> {
+    let most = met.iter().copied().fold(0.0, f64::max);
+    let lines = |along_y: bool| {
+        let at = move |i: usize, j: usize| if along_y { met[i * FINE + j] } else { met[j * FINE + i] };
+        let steps = move |i: usize| (1..FINE).map(move |j| (at(i, j) - at(i, j - 1)).abs());
+        (0..FINE).filter_map(move |i| {
+            let (whole, (size, j)) = steps(i).zip(1..).fold((0.0, (0.0, 0)), |(sum, most), (size, j)| {
+                (sum + size, if size > most.0 { (size, j) } else { most })
+            });
+            (size > 0.6 * whole && size > 0.05 * most).then(|| (size, 0.5 * (at(i, j) + at(i, j - 1))))
+        })
+    };
+    let along_y = lines(true).count() >= lines(false).count();
+    let (_, level) = lines(along_y).max_by(|a, b| a.0.total_cmp(&b.0)).filter(|_| lines(along_y).count() >= 2)?;
+    Some((along_y, level))
+}
+
+/// ∫ f over [a, b] where f is zero in some parts, or jumps across `level`, which the nodes of the rule tell from the others. These places
+/// are found by bisection to 2⁻²⁴ of the interval, and nodes gather there (x = t²(3 − 2t)), so that an inverse root is integrated like
+/// a step.
+fn line_in_pieces(mut f: impl FnMut(f64) -> f64, [a, b]: [f64; 2], level: f64, rule: &[(f64, f64)]) -> f64 {
     let inner = rule.iter().map(|(node, _)| 0.5 * (a + b) + 0.5 * (b - a) * node);
     let mut places: Vec<f64> = [a, b].into_iter().chain(inner).collect();
     places.sort_by(f64::total_cmp);
-    let lit: Vec<bool> = places.iter().map(|&x| f(x) > 0.0).collect();
-    let mut ends = if lit[0] { vec![a] } else { Vec::new() };
-    for (pair, lit) in places.windows(2).zip(lit.windows(2)) {
-        if lit[0] == lit[1] {
+    let mut kind = |x: f64| {
+        let value = f(x);
+        (value > 0.0, value > level)
+    };
+    let kinds: Vec<_> = places.iter().map(|&x| kind(x)).collect();
+    let (mut pieces, mut begin) = (Vec::new(), a);
+    for (pair, kinds) in places.windows(2).zip(kinds.windows(2)) {
+        if kinds[0] == kinds[1] {
             continue;
         }
         let (mut low, mut high) = (pair[0], pair[1]);
         while high - low > (b - a) * 0.5_f64.powi(24) {
             let middle = 0.5 * (low + high);
-            if (f(middle) > 0.0) == lit[0] { low = middle } else { high = middle }
+            if kind(middle) == kinds[0] { low = middle } else { high = middle }
         }
-        // The side where f is not zero.
-        ends.push(if lit[0] { low } else { high });
+        if kinds[0].0 {
+            pieces.push([begin, low]);
+        }
+        begin = high;
     }
-    if lit[lit.len() - 1] {
-        ends.push(b);
+    if kinds[kinds.len() - 1].0 {
+        pieces.push([begin, b]);
     }
     let mut sum = 0.0;
-    for piece in ends.chunks_exact(2) {
+    for [begin, end] in pieces {
         for (node, weight) in rule {
             let t = 0.5 + 0.5 * node;
-            sum += 3.0
-                * t
-                * (1.0 - t)
-                * weight
-                * f(piece[0] + (piece[1] - piece[0]) * t * t * (3.0 - 2.0 * t))
-                * (piece[1] - piece[0]);
+            sum += 3.0 * t * (1.0 - t) * weight * f(begin + (end - begin) * t * t * (3.0 - 2.0 * t)) * (end - begin);
         }
     }
     sum
@@ -348,6 +385,13 @@ mod tests {
         assert_eq!(nonnegative(wedge, unit, &[], |_| 1e-9, 20), Integral { value: 0.0, error: 0.0 });
         let met = nonnegative(wedge, unit, &[([0.009, 0.001], 1.0)], |value| 1e-3 * value, 1000);
         assert!((met.value - 2e-4).abs() < met.error.max(1e-9) && met.error < 4e-7, "{met:?}");
+        // The disk on a ground of 1, and on one that rises.
+        let raised = |x: f64, y: f64| 1.0 + disk(x, y);
+        let met = nonnegative(raised, unit, &[], |value| 1e-4 * value, 1000);
+        assert!((met.value - 1.0 - 0.75 * PI).abs() < met.error && met.error < 4e-4, "{met:?}");
+        let sloping = |x: f64, y: f64| 1.0 + x + 2.0 * y + disk(x, y);
+        let met = nonnegative(sloping, unit, &[], |value| 1e-4 * value, 1000);
+        assert!((met.value - 2.5 - 0.75 * PI).abs() < met.error && met.error < 5e-4, "{met:?}");
         // ∫ from 0 to 1/2 of 2·√(1 − 2y) dy.
         let met = nonnegative(rim, unit, &[], |_| 1e-4, 1000);
         assert!((met.value - 2.0 / 3.0).abs() < met.error.max(1e-6) && met.error < 1e-4, "{met:?}");

@@ -2,22 +2,13 @@
 
 use etalon_oracle::truths::{Claim, truths};
 use etalon_scene::{Precision, Scene};
-use etalon_transport::{Control, EffectName, Film, Study, prepare_study};
+use etalon_transport::{EffectName, Study};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
-fn parse(json: &str) -> Scene {
-    etalon_scene::parse(json, "test").unwrap_or_else(|errors| panic!("{errors}")).0
-}
-
-fn render(scene: &Scene, study: &Study) -> Film {
-    let prepared = prepare_study(scene, study).unwrap();
-    prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap()
-}
-
-fn mean_y(film: &Film) -> f64 {
-    film.xyz().map(|xyz| xyz[1]).sum::<f64>() / film.xyz().count() as f64
-}
+#[path = "common/rendering.rs"]
+mod rendering;
+use rendering::{mean_y, parse, render};
 
 #[test]
 fn truths_hold_in_both_precisions_and_reject_clear_glass() {

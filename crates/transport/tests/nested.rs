@@ -3,21 +3,12 @@
 use etalon_oracle::truths::{Claim, Truth, truths};
 use etalon_scene::{Precision, Scene};
 use etalon_transport::plan::EffectName;
-use etalon_transport::{Control, Film, PrepareError, Study, prepare, prepare_study};
+use etalon_transport::{Film, PrepareError, Study, prepare};
 use serde_json::{Value, json};
 
-fn parse(json: &str) -> Scene {
-    etalon_scene::parse(json, "test").unwrap_or_else(|e| panic!("{e:?}")).0
-}
-
-fn render(scene: &Scene, study: &Study) -> Film {
-    let prepared = prepare_study(scene, study).unwrap();
-    prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap()
-}
-
-fn mean_y(film: &Film) -> f64 {
-    film.xyz().map(|xyz| xyz[1]).sum::<f64>() / f64::from(film.width() * film.height())
-}
+#[path = "common/rendering.rs"]
+mod rendering;
+use rendering::{mean_y, parse, render};
 
 fn nested_truths() -> Vec<Truth> {
     let nested: Vec<_> = truths().into_iter().filter(|truth| truth.claims.contains(&Claim::Priorities)).collect();

@@ -117,7 +117,6 @@ pub struct RgbEmission {
     white: Illuminant,
     factor: f64,
     shape: Shape,
-    round_trip_error: f64,
 }
 
 /// Largest error of a channel, relative to the largest channel, at which a fit counts as found.
@@ -133,15 +132,14 @@ impl RgbEmission {
         }
         let largest = rgb.iter().copied().fold(0.0, f64::max);
         if largest == 0.0 {
-            return Ok(Self { rgb, white, factor: 0.0, shape: Shape::Flat(0.0), round_trip_error: 0.0 });
+            return Ok(Self { rgb, white, factor: 0.0, shape: Shape::Flat(0.0) });
         }
         let observer = observer(white, &REC709_FROM_XYZ);
         let mut factor = 2.0 * largest;
         for _ in 0..10 {
             let (sigmoid, error) = fit(&observer, rgb.map(|v| v / factor));
-            let round_trip_error = error * factor;
-            if round_trip_error <= REACHED * largest {
-                return Ok(Self { rgb, white, factor, shape: Shape::Smooth(sigmoid), round_trip_error });
+            if error * factor <= REACHED * largest {
+                return Ok(Self { rgb, white, factor, shape: Shape::Smooth(sigmoid) });
             }
             factor *= 2.0;
         }
@@ -156,11 +154,6 @@ impl RgbEmission {
     /// The illuminant that gives the spectrum its structure.
     pub fn white(&self) -> Illuminant {
         self.white
-    }
-
-    /// Largest difference in a channel between the colour asked for and the colour shown.
-    pub fn round_trip_error(&self) -> f64 {
-        self.round_trip_error
     }
 
     /// Value at a wavelength in nm.

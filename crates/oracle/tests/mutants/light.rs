@@ -182,6 +182,39 @@ impl Emits for Panel {
     }
 }
 
+/// A panel of which one half is drawn more often than the other, as a tube that shows an end beside its side is: the density jumps
+/// between two values neither of which is zero.
+struct Halves {
+    panel: Panel,
+    /// How often the first half is drawn, and how often the density has it.
+    drawn: f64,
+    said: f64,
+}
+
+impl Halves {
+    fn share(&self, first: bool) -> f64 {
+        2.0 * if first { self.said } else { 1.0 - self.said }
+    }
+}
+
+impl Emits for Halves {
+    fn sample(&self, from: Vec3, u: [f64; 2]) -> Option<Emitted> {
+        let first = u[0] < self.drawn;
+        let a = if first { 0.5 * u[0] / self.drawn } else { 1.0 - 0.5 * (1.0 - u[0]) / (1.0 - self.drawn) };
+        let drawn = self.panel.sample(from, [a, u[1]])?;
+        Some(Emitted { pdf: drawn.pdf * self.share(first), ..drawn })
+    }
+
+    fn pdf(&self, from: Vec3, wi: Vec3) -> f64 {
+        let half = Panel { u: times(0.5, self.panel.u), ..self.panel };
+        self.panel.pdf(from, wi) * self.share(half.reach(from, wi).is_some())
+    }
+
+    fn radiance(&self, from: Vec3, wi: Vec3) -> f64 {
+        self.panel.radiance(from, wi)
+    }
+}
+
 const FROM: Vec3 = [0.0, 0.0, 0.0];
 
 fn ball(distance: f64, fault: &'static str) -> Ball {
@@ -253,6 +286,18 @@ fn wrong_panel_lights_are_rejected() {
         let verdicts = panel_verdicts(fault, 1);
         assert!(verdicts.iter().any(|verdict| !verdict.pass), "the mutant \"{fault}\" survived");
     }
+}
+
+/// Three quarters of the samples in one half, a border that crosses the cells of χ², and a density that is 3 % off on one side of it.
+#[test]
+fn a_density_that_jumps_between_two_values_is_judged_on_both_sides() {
+    let follows = |drawn: f64| {
+        let panel = Panel { corner: [-0.7, -1.2, 1.0], u: [0.1, 2.0, 0.3], v: [1.8, 0.2, 0.1], fault: "" };
+        laws::light_samples_follow_pdf(&Halves { panel, drawn, said: 0.75 }, FROM, Budget::for_tests(1), 1)
+    };
+    follows(0.75).assert();
+    let verdict = follows(0.7725);
+    assert!(!verdict.pass, "{verdict}");
 }
 
 #[test]
