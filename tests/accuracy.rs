@@ -178,7 +178,7 @@ fn luminance(path: &Path) -> Vec<f64> {
     (0..r.len()).map(y).collect()
 }
 
-/// Scenes on which errors and prices are tried, and the side of their pictures: small, for what takes the time are their references.
+/// Scenes on which errors are tried, and the side of their pictures: small, for what takes the time are their references.
 const SIX: [(&str, u32); 6] = [
     ("cornell-glass", 32),
     ("assignment", 24),
@@ -232,61 +232,85 @@ impl Reference {
     }
 }
 
-/// Pictures of other seeds than the quote's, to 2 % twice and to 1 % once. Their error against a reference must be 1.7 to 2.3 % where
-/// 2 % were asked for; and they must take what was quoted, within a factor of 1.25, nine times of ten. Times are of the processor,
-/// so that other programs do not count.
+/// Pictures to 2 % twice and to 1 % once. Their error against a reference must be 1.7 to 2.3 % where 2 % were asked for.
 #[test]
-#[ignore = "takes some ten minutes of two processors: the table of docs/accuracy.md on errors and prices"]
-fn six_scenes_end_at_the_error_and_in_the_time_that_were_foretold() {
+#[ignore = "takes some ten minutes of two processors: the table of docs/accuracy.md on errors"]
+fn six_scenes_end_at_the_error_that_was_asked_for() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut outside, mut tried, mut dear) = (Vec::new(), 0, Vec::new());
+    let mut outside = Vec::new();
     for (name, side) in SIX {
         let file = scene(&format!("{name}.json"));
         let run = |settings: &str| {
             let output = folder.path().join("a.exr");
-            let line = format!("render {{}} -o {{}} --size {side}x{side} --clock cpu --json {settings}");
+            let line = format!("render {{}} -o {{}} --size {side}x{side} --json {settings}");
             let report = etalon_line(&line, [&file, &output]).expect(0).json();
             (luminance(&output), report)
         };
         let number = |value: &Value| value.as_f64().unwrap();
-        let quote = format!("quote {{}} --size {side}x{side} --clock cpu --seed 3 --error 2%,1% --json");
-        let quote = etalon_line(&quote, [&file]).expect(0).json();
-        let pictures = [("2%", 0, 1), ("2%", 0, 2), ("1%", 1, 1)].map(|(error, price, seed)| {
+        let pictures = [("2%", 1), ("2%", 2), ("1%", 1)].map(|(error, seed)| {
             let (picture, report) = run(&format!("--error {error} --seed {seed}"));
-            (error, seed, picture, report, number(&quote["prices"][price]["seconds"]))
+            (error, seed, picture, report)
         });
         let of = |report: &Value| report["spp"].as_u64().unwrap();
         let adaptive = if pictures[0].3["adaptive"]["used"] == true { "always" } else { "never" };
         let many = |seed, spp| run(&format!("--replicates 1 --spp {spp} --adaptive {adaptive} --seed {seed}")).0;
         let reference = Reference::new(&many, of(&pictures[0].3));
-        for (error, seed, picture, report, quoted) in &pictures {
+        for (error, seed, picture, report) in &pictures {
             let measured = reference.error_of(picture);
             if *error == "2%" && !(0.017..=0.023).contains(&measured) {
                 outside.push(format!("{name}: {measured}"));
-            }
-            let before =
-                number(&report["foretold"]["pilot_seconds"]) + number(&report["adaptive"]["exploration_seconds"]);
-            let ratio = (number(&report["seconds"]) - before) / quoted;
-            tried += 1;
-            if !(1.0 / 1.25..=1.25).contains(&ratio) {
-                dear.push(format!("{name}: {ratio}"));
             }
             // The table is what this test is for.
             #[allow(clippy::print_stdout)]
             {
                 println!(
-                    "| {name} | {error} | {seed} | {adaptive} | {} | {:.2} % | {:.2} % | {:.2} % | {:.2} s | {ratio:.2} |",
+                    "| {name} | {error} | {seed} | {adaptive} | {} | {:.2} % | {:.2} % | {:.2} % |",
                     of(report),
                     100.0 * number(&report["error"]["relative_rmse"]),
                     100.0 * measured,
                     100.0 * reference.own,
-                    quoted,
                 );
             }
         }
     }
     assert!(outside.is_empty(), "{outside:?}");
-    assert!(10 * dear.len() <= tried, "{} of {tried}: {dear:?}", dear.len());
+}
+
+/// Pictures of 64 × 64 pixels of other seeds than the quote's: they must take what was quoted, within a factor of 1.25, nine times of
+/// ten. Times are of the processor, so that other programs count little. In smaller pictures a few pixels carry the error of some
+/// scenes, and neither a quote nor a picture knows it to better than a tenth.
+#[test]
+#[ignore = "takes some five minutes of two processors: the table of docs/accuracy.md on prices"]
+fn six_scenes_take_the_time_that_was_quoted() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut tried, mut wrong) = (0, Vec::new());
+    for (name, _) in SIX {
+        let file = scene(&format!("{name}.json"));
+        let quote = "quote {} --size 64x64 --clock cpu --seed 3 --error 2%,1% --json";
+        let quote = etalon_line(quote, [&file]).expect(0).json();
+        for (error, price, seed) in [("2%", 0, 1), ("2%", 0, 2), ("1%", 1, 1), ("1%", 1, 2)] {
+            let line = format!("render {{}} -o {{}} --size 64x64 --clock cpu --json --error {error} --seed {seed}");
+            let report = etalon_line(&line, [&file, &folder.path().join("a.exr")]).expect(0).json();
+            let number = |value: &Value| value.as_f64().unwrap();
+            let before =
+                number(&report["foretold"]["pilot_seconds"]) + number(&report["adaptive"]["exploration_seconds"]);
+            let (took, quoted) = (number(&report["seconds"]) - before, number(&quote["prices"][price]["seconds"]));
+            let ratio = took / quoted;
+            tried += 1;
+            if !(1.0 / 1.25..=1.25).contains(&ratio) {
+                wrong.push(format!("{name}, {error}: {ratio}"));
+            }
+            // The table is what this test is for.
+            #[allow(clippy::print_stdout)]
+            {
+                println!(
+                    "| {name} | {error} | {seed} | {} | {quoted:.2} s | {took:.2} s | {ratio:.2} |",
+                    report["spp"]
+                );
+            }
+        }
+    }
+    assert!(10 * wrong.len() <= tried, "{} of {tried}: {wrong:?}", wrong.len());
 }
 
 fn small_study(folder: &Path) -> String {

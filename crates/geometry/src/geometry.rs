@@ -257,6 +257,17 @@ impl Geometry {
         instance.geometry().local_point(inner, instance.placement_at(time).local_point(point), time)
     }
 
+    /// A primitive's own parameters at a point of this geometry that lies on it, at a time: what a hit of it there carries, to rounding.
+    /// 0 of what has none of its own.
+    pub fn parameters(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> [f64; 2] {
+        if surface.instance == 0 {
+            return self.primitive(surface.primitive).parameters(point);
+        }
+        let Some((_, instance)) = self.instance_of(surface) else { return [0.0; 2] };
+        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+        instance.geometry().parameters(inner, instance.placement_at(time).local_point(point), time)
+    }
+
     /// The closest hit along a ray.
     ///
     /// A ray of which no point is defined (NaN, zero direction) hits nothing, nor does one that starts beyond 2²⁰⁰ m or

@@ -4,11 +4,13 @@
 //! may rely on everything that `docs/scene-format.md` lists as an error being absent from it.
 
 mod detail;
+mod emission;
 mod environment;
 mod material;
 mod motion;
 
 pub use detail::{OpacityImage, Relief};
+pub use emission::{Emission, EmissionSides};
 pub use environment::EnvironmentImage;
 pub use material::{LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture};
 
@@ -328,26 +330,6 @@ impl Transform {
     /// Leaves everything in place.
     pub const IDENTITY: Self =
         Self { linear: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation_m: [0.0; 3] };
-}
-
-/// Diffuse emission of a surface: the same radiance in every direction.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Emission {
-    /// Emitted radiance, W·m⁻²·sr⁻¹·nm⁻¹.
-    pub radiance: Spectrum,
-    /// Which sides emit.
-    pub sides: EmissionSides,
-}
-
-/// Which sides of a surface emit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EmissionSides {
-    /// The side the surface normal points into.
-    Front,
-    /// The side the surface normal points away from (a room that is itself a lamp).
-    Back,
-    /// Both.
-    Both,
 }
 
 /// A light without a surface.

@@ -247,6 +247,23 @@ fn is_opaque(image: &DynamicImage) -> bool {
 }
 
 impl ImageTexture {
+    /// Whether it is black.
+    pub fn is_zero(&self) -> bool {
+        self.image.linear_texels().all(|texel| (0..3).all(|c| texel[c] * self.factor[c] == 0.0))
+    }
+
+    /// Whether its three channels are the same everywhere.
+    pub fn is_grey(&self) -> bool {
+        let [r, g, b] = self.factor;
+        r == g && g == b && self.image.is_grey()
+    }
+
+    /// The mean of its texels, times the factor.
+    pub fn mean(&self) -> [f64; 3] {
+        let mean = self.image.mean();
+        [0, 1, 2].map(|c| mean[c] * self.factor[c])
+    }
+
     /// The colour at texture coordinates: what a filter of the image shows there, times the factor.
     ///
     /// Only correctly rounded operations: the same bits on every machine.

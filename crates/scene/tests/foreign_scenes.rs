@@ -140,6 +140,24 @@ fn every_property_that_nobody_asks_for_is_listed() {
 }
 
 #[test]
+fn surfaces_that_shine_by_an_image_arrive() {
+    let mitsuba = r#"<scene version="3.0.0"><shape type="rectangle"><emitter type="area">
+        <texture type="bitmap" name="radiance"><string name="filename" value="chequers.png"/></texture></emitter></shape></scene>"#;
+    let pbrt = "WorldBegin\nAreaLightSource \"diffuse\" \"string filename\" \"chequers.png\" \"float scale\" 3\n\
+        Shape \"disk\" \"float radius\" 1\n";
+    // v from below, while Mitsuba counts from above.
+    for (kind, text, factor, scale) in [("xml", mitsuba, 1.0, [1.0, -1.0]), ("pbrt", pbrt, 3.0, [1.0, 1.0])] {
+        let imported = imported(kind, text);
+        let scene = scene(&imported);
+        let emission = scene.placed_objects().find_map(|object| object.emission.as_ref()).expect("a lamp");
+        let image = emission.image.as_ref().unwrap_or_else(|| panic!("{kind}: an image"));
+        assert_eq!((image.factor, image.uv_scale), ([factor; 3], scale), "{kind}");
+        assert_eq!(imported.files.len(), 1);
+        assert!(!said(&imported).iter().any(|what| what.contains("image")), "{:?}", said(&imported));
+    }
+}
+
+#[test]
 fn a_damaged_mitsuba_scene_is_refused_with_its_line() {
     for (text, part) in [
         (

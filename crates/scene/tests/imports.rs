@@ -177,6 +177,28 @@ fn a_glb_file_becomes_a_scene_whose_nodes_are_where_they_were_placed() {
 }
 
 #[test]
+fn what_shines_by_an_image_does_so_where_there_are_texture_coordinates() {
+    let mut model = model();
+    for material in [0, 2] {
+        model["materials"][material]["emissiveFactor"] = json!([1, 0.5, 0.25]);
+        model["materials"][material]["emissiveTexture"] = json!({ "index": 0 });
+    }
+    let imported = imported(&model).unwrap();
+    let scene = scene(&imported);
+    let emission = |i: usize| scene.groups[scene.instances[i].group].objects[0].emission.as_ref();
+    let image = emission(0).expect("a lamp").image.as_ref().expect("an image");
+    assert_eq!((image.factor, image.uv_scale, image.wrap), ([1.0, 0.5, 0.25], [1.0; 2], [Wrap::Clamp, Wrap::Mirror]));
+    // The strip has no texture coordinates: nothing says which texel shines where.
+    assert!(emission(2).is_none());
+    assert!(imported.left_out.iter().any(|l| l.what.contains("does not shine")), "{:?}", imported.left_out);
+    // Of the material with another strength, where there are coordinates.
+    model["materials"][0]["extensions"] = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 8 } });
+    let brighter = self::scene(&self::imported(&model).unwrap());
+    let object = &brighter.groups[brighter.instances[0].group].objects[0];
+    assert_eq!(object.emission.as_ref().and_then(|e| e.image.as_ref()).expect("an image").factor, [8.0, 4.0, 2.0]);
+}
+
+#[test]
 fn glb_materials_lights_and_cameras_arrive() {
     let scene = scene(&imported(&model()).unwrap());
     let part = |i: usize| &scene.groups[scene.instances[i].group].objects[0];

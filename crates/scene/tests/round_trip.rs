@@ -179,11 +179,11 @@ fn objects_and_lights() {
     assert_eq!(ball.shape, Shape::Sphere { center: [1.0, 0.0, 0.0], radius_m: 0.5 });
     assert_eq!(sheet.shape, Shape::Parallelogram { origin: [0.0; 3], u: [1.0, 0.0, 0.0], v: [0.0, 2.0, 0.0] });
     let radiance = Spectrum::rgb_emission([4.0, 4.0 * 0.8, 2.0], Illuminant::A).expect("right");
-    assert_eq!(sheet.emission, Some(Emission { radiance, sides: EmissionSides::Both }));
+    assert_eq!(sheet.emission, Some(Emission { radiance, image: None, sides: EmissionSides::Both }));
     assert_eq!((sheet.name.as_str(), sheet.material), ("objects[1]", 11));
     assert_eq!(disk.shape, Shape::Disk { center: [0.0, 1.0, 0.0], normal: [0.0, -0.6, 0.8], radius_m: 2.0 });
     let radiance = Spectrum::blackbody(5000.0, 1e-3).expect("right");
-    assert_eq!(disk.emission, Some(Emission { radiance, sides: EmissionSides::Front }));
+    assert_eq!(disk.emission, Some(Emission { radiance, image: None, sides: EmissionSides::Front }));
     let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     let corner = -(1.0 / 3.0_f64.sqrt()) as f32;

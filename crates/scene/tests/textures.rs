@@ -64,6 +64,33 @@ fn what_is_wrong_with_an_image_is_said_where_it_is_named() {
 }
 
 #[test]
+fn a_surface_shines_by_an_image_of_any_brightness_but_none_below_0() {
+    let with = |radiance: &str, shape: &str| {
+        let material = r#"{"type": "black"}"#;
+        let objects =
+            format!(r#"[{{"shape": {shape}, "material": {material}, "emission": {{"radiance": {radiance}}}}}]"#);
+        let text = Parts { objects: &objects, ..RIGHT }.text();
+        etalon_scene::parse_in(&text, "test.json", Some(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests"))), None)
+    };
+    let bright = r#"{"type": "image", "file": "files/chequers.png", "factor": [50, 1, 0], "uv_scale": [2, 1]}"#;
+    let scene = with(bright, SQUARE).unwrap_or_else(|errors| panic!("{errors}")).scene;
+    let emission = scene.objects[0].emission.as_ref().expect("a lamp");
+    let white = etalon_optics::Spectrum::illuminant(etalon_optics::Illuminant::D65, 1.0).unwrap();
+    assert_eq!(emission.radiance, white);
+    let image = emission.image.as_ref().expect("an image");
+    assert_eq!((image.factor, image.uv_scale), ([50.0, 1.0, 0.0], [2.0, 1.0]));
+    let bare = r#"{"type": "box", "min_m": [0, 0, 0], "max_m": [1, 1, 1]}"#;
+    for (radiance, shape, code) in [
+        (bright, bare, Code::NoTextureCoordinates),
+        (r#"{"type": "image", "file": "files/chequers.png", "factor": [1e31, 1, 1]}"#, SQUARE, Code::OutOfRange),
+        (r#"{"type": "image", "file": "files/chequers.png", "factor": [-1, 1, 1]}"#, SQUARE, Code::OutOfRange),
+    ] {
+        let errors = with(radiance, shape).expect_err(radiance);
+        assert_eq!(errors.problems[0].code, code, "{errors}");
+    }
+}
+
+#[test]
 fn images_of_opacity_normals_and_heights_arrive() {
     let with = |keys: &str| {
         let objects = format!(r#"[{{"shape": {SQUARE}, "material": {{"type": "black"}}, {keys}}}]"#);

@@ -23,6 +23,9 @@ pub const EVEN: f64 = 0.25;
 /// The part of the picture's paths that an exploration takes at most; one round of replicates for every pixel (of a large picture:
 /// for some of them), if that is more.
 pub const EFFORT: f64 = 1.0 / 16.0;
+/// Camera paths, in the whole picture, below which what few samples foretell of its price is not believed: edges and other rare
+/// things may not have been met, and the exploration is over in a moment anyway.
+const LEAST_PATHS: f64 = (1 << 21) as f64;
 /// The foretold gain from which shares are used where they need not be: it pays for the exploration and for what the law
 /// behind it leaves out.
 pub const WORTHWHILE: f64 = 1.2;
@@ -125,7 +128,8 @@ fn foretold_paths(probe: &Probe<'_>, rect: PixelRect, goal: &Goal, samples: u32,
         let mut error = ErrorSum::default();
         probe.seen().for_each(|seen| error.push(seen.pixel));
         let ratio = error.relative_rmse()? * f64::from(probe.copies()).sqrt() / target;
-        ratio.is_finite().then(|| f64::from(samples) * ratio.powf(2.0 / power) / gain.max(1.0))
+        let foretold = ratio.is_finite().then(|| f64::from(samples) * ratio.powf(2.0 / power) / gain.max(1.0))?;
+        Some(foretold.max(LEAST_PATHS / rect.area() as f64))
     });
     by_error.unwrap_or(f64::INFINITY).min(f64::from(goal.samples)) * rect.area() as f64
 }

@@ -5,7 +5,7 @@ use crate::frame::SceneFrame;
 use crate::round::RoundCoordinates;
 use etalon_geometry::{Geometry, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
-use etalon_scene::Mesh;
+use etalon_scene::{ImageTexture, Mesh};
 use std::sync::Arc;
 
 /// How the points of an object come by their texture coordinates and shading normals.
@@ -102,6 +102,39 @@ impl Coordinates {
                 }
             }
         }
+    }
+
+    /// About the mean luminance of an image over a primitive: by a grid of points as fine as its texels, up to some thousand. On
+    /// what is round, over texture coordinates instead of over the surface.
+    pub(crate) fn mean_luminance(&self, primitive: PrimitiveId, texture: &ImageTexture) -> f64 {
+        const FINEST: f64 = 64.0;
+        let texels = [0, 1].map(|k| texture.uv_scale[k].abs());
+        let texels = [texels[0] * f64::from(texture.image.width), texels[1] * f64::from(texture.image.height)];
+        // Corner and edges in texture coordinates, and whether the half beyond the diagonal counts.
+        let (corner, [along_u, along_v], square) = match self {
+            Self::Mesh(mesh) if !mesh.mesh.uvs.is_empty() => {
+                let [a, b, c] = mesh.corners(primitive).map(|i| mesh.mesh.uvs[i].map(f64::from));
+                (a, [[b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]], false)
+            }
+            _ => ([0.0; 2], [[1.0, 0.0], [0.0, 1.0]], true),
+        };
+        let longest =
+            [along_u, along_v].map(|[u, v]| (u * texels[0]).hypot(v * texels[1])).into_iter().fold(1.0, f64::max);
+        let steps = longest.min(FINEST).ceil() as u32;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for i in 0..steps {
+            for j in 0..steps {
+                let mut shares = [i, j].map(|k| (f64::from(k) + 0.5) / f64::from(steps));
+                if !square && shares[0] + shares[1] > 1.0 {
+                    shares = shares.map(|share| 1.0 - share);
+                }
+                let [r, g, b] =
+                    texture.eval([0, 1].map(|k| corner[k] + shares[0] * along_u[k] + shares[1] * along_v[k]));
+                sum += 0.2126 * r + 0.7152 * g + 0.0722 * b;
+                count += 1.0;
+            }
+        }
+        sum / count
     }
 
     /// How the point moves with u and with v, in units of the frame; `None` where it does not with both.

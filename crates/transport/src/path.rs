@@ -160,7 +160,7 @@ impl World<'_> {
             }
             observer.vertex(vertex, point.position, surface.object, beta);
 
-            if let Some(emitter) = surface.emission_along(point.normal, wo) {
+            if let Some(emitter) = surface.emission_along(self.geometry, &point, &hit, wo) {
                 let mis = if compiled::MIS && self.weigh_hits {
                     self.weight_of_hit(step, point.surface, surface.light, ray.direction, ray.time)
                 } else {
@@ -366,8 +366,30 @@ impl World<'_> {
                 mis * (sample.scale / density)
             }
         };
-        let direct = f_cos * light.lanes(lambda_nm, sample.wi) * R::from_f64(weight * arriving);
+        let shines = self.light_arriving(index, sample.wi, sample.target, point.time, lambda_nm);
+        let direct = f_cos * shines * R::from_f64(weight * arriving);
         Some(Direct { light: index as u32, wi: sample.wi, radiance: direct * transmittance })
+    }
+
+    /// What a light sends along `wi` from the point that a shadow ray aims at, but for the scale of its sample.
+    #[inline]
+    pub(crate) fn light_arriving<R: Real, const N: usize>(
+        &self,
+        light: usize,
+        wi: Vec3<f64>,
+        target: Target,
+        time: f64,
+        lambda_nm: &Lanes<f64, N>,
+    ) -> Lanes<R, N> {
+        let light = &self.lights.lights()[light];
+        if compiled::TEXTURES
+            && let (Some(emitter), Target::Point(position)) = (light.emitter(), target)
+            && let Some(image) = emitter.image
+            && let Some(emitted) = self.surfaces.emitted(image.object, self.geometry, (emitter.surface, position), time)
+        {
+            return emitted.lanes(lambda_nm);
+        }
+        light.lanes(lambda_nm, wi)
     }
 
     /// The share of light from a sampled light that reaches the start of the shadow ray: masks let their part through, and

@@ -16,9 +16,10 @@ use crate::path::ShadowRays;
 use crate::plan::{Carried, EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
 use crate::shapes::{self, SceneShapes};
 use crate::spectral::PathSpectrum;
-use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
+use crate::surface::{Emission, EmissionImage, ObjectSurface, Relief, Surfaces};
 use crate::wavelength::WavelengthDistribution;
 use etalon_geometry::{Geometry, GeometryError, ShapeError, SurfaceId};
+use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
 use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, Scene};
 use std::sync::Arc;
@@ -188,7 +189,11 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
             .zip(coordinates)
             .map(|(o, coordinates)| ObjectSurface {
                 material: o.material,
-                emission: o.emission.as_ref().map(|e| Emission { radiance: spectrum(&e.radiance), sides: e.sides }),
+                emission: o.emission.as_ref().map(|e| Emission {
+                    radiance: spectrum(&e.radiance),
+                    sides: e.sides,
+                    image: e.image.clone().map(|texture| EmissionImage { texture, basis: RgbBasis::get() }),
+                }),
                 opacity: o.opacity,
                 opacity_image: o.opacity_image.clone(),
                 relief: o.relief.clone().map(|image| Relief { image, per_m: frame.per_m() }),

@@ -3,7 +3,8 @@
 use crate::coordinates::{Coordinates, MeshCoordinates};
 use crate::frame::{Affine, SceneFrame};
 use crate::light::{
-    CylinderLight, DiskLight, Emitter, Light, Link, MovingLight, ParallelogramLight, SphereLight, TriangleLight,
+    CylinderLight, DiskLight, Emitter, ImageOf, Light, Link, MovingLight, ParallelogramLight, SphereLight,
+    TriangleLight,
 };
 use crate::motion::motion;
 use crate::prepare::PrepareError;
@@ -86,8 +87,15 @@ pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, Pr
         lit[index + 1] |= group.instances.iter().any(|instance| lit[instance.group + 1]);
     }
     lit[0] |= scene.instances.iter().any(|instance| lit[instance.group + 1]);
-    let mut lamps =
-        Lamps { objects: &objects, object_of: &object_of, lit: &lit, range_nm, chain: Vec::new(), lights: Vec::new() };
+    let mut lamps = Lamps {
+        objects: &objects,
+        object_of: &object_of,
+        coordinates: &coordinates,
+        lit: &lit,
+        range_nm,
+        chain: Vec::new(),
+        lights: Vec::new(),
+    };
     lamps.add(&geometry, 0, &Affine::IDENTITY)?;
     let emitters = lamps.lights;
     Ok(SceneShapes { frame, geometry, object_of, emitters, coordinates, warnings })
@@ -219,6 +227,8 @@ impl Collected {
 struct Lamps<'a> {
     objects: &'a [&'a Object],
     object_of: &'a [Vec<u32>],
+    /// Of each object.
+    coordinates: &'a [Coordinates],
     /// By label: whether anything within emits.
     lit: &'a [bool],
     range_nm: [f64; 2],
@@ -268,6 +278,10 @@ impl Lamps<'_> {
                 front: emission.sides != EmissionSides::Back,
                 back: emission.sides != EmissionSides::Front,
                 surface: SurfaceId { instance: number, primitive },
+                image: emission.image.as_ref().map(|texture| ImageOf {
+                    object: number_of_object,
+                    mean: self.coordinates[number_of_object as usize].mean_luminance(primitive, texture),
+                }),
             };
             // The scene's own shapes are in place, to the bit.
             let shape = match number {

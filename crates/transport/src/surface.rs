@@ -9,8 +9,9 @@ use crate::polarisation::mueller::Mueller;
 use crate::relief;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
+use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{Lanes, Real, Vec3};
-use etalon_scene::{EmissionSides, OpacityImage};
+use etalon_scene::{EmissionSides, ImageTexture, OpacityImage};
 
 /// What belongs to one object.
 #[derive(Clone, Debug)]
@@ -40,8 +41,58 @@ pub(crate) struct Relief {
 /// What a surface emits.
 #[derive(Clone, Debug)]
 pub(crate) struct Emission {
+    /// With an image, that of its white.
     pub radiance: PathSpectrum,
     pub sides: EmissionSides,
+    /// An image of shares of white.
+    pub image: Option<EmissionImage>,
+}
+
+/// Colours over a surface that shines.
+#[derive(Clone, Debug)]
+pub(crate) struct EmissionImage {
+    pub texture: ImageTexture,
+    pub basis: RgbBasis,
+}
+
+/// What shines at a point of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Emitted<'a> {
+    /// With a colour, that of its white.
+    pub radiance: &'a PathSpectrum,
+    /// Shares of the white.
+    colour: Option<(&'a RgbBasis, [f64; 3])>,
+}
+
+impl Emitted<'_> {
+    /// The radiance in each lane, where that of [`Emitted::radiance`] is `white`.
+    #[inline]
+    pub(crate) fn of_white<R: Real, const N: usize>(
+        &self,
+        white: Lanes<R, N>,
+        lambda_nm: &Lanes<f64, N>,
+    ) -> Lanes<R, N> {
+        match self.colour {
+            None => white,
+            Some((basis, rgb)) => white * Lanes::from_fn(|lane| R::from_f64(basis.reflectance(rgb, lambda_nm[lane]))),
+        }
+    }
+
+    /// The radiance in each lane.
+    #[inline]
+    pub(crate) fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<R, N> {
+        self.of_white(self.radiance.lanes(lambda_nm), lambda_nm)
+    }
+}
+
+impl Emission {
+    /// What it emits at texture coordinates, which it asks for where it needs them.
+    #[inline]
+    fn at(&self, uv: impl FnOnce() -> [f64; 2]) -> Emitted<'_> {
+        let image = self.image.as_ref().filter(|_| compiled::TEXTURES);
+        let colour = image.map(|image| (&image.basis, image.texture.eval(uv())));
+        Emitted { radiance: &self.radiance, colour }
+    }
 }
 
 /// Look-up from primitives to what they are made of.
@@ -99,6 +150,24 @@ impl Surfaces {
 }
 
 impl Surfaces {
+    /// What an object emits at a point of one of its surfaces that a shadow ray aims at.
+    pub(crate) fn emitted(
+        &self,
+        object: u32,
+        geometry: &Geometry,
+        (surface, position): (SurfaceId, Vec3<f64>),
+        time: f64,
+    ) -> Option<Emitted<'_>> {
+        let object = &self.objects[object as usize];
+        // No texture coordinates hang on the normal.
+        let normal = Vec3::ZERO;
+        let uv = || {
+            let uv = geometry.parameters(surface, position, time);
+            object.coordinates.uv(&At { geometry, surface, uv, position, normal, time })
+        };
+        Some(object.emission.as_ref()?.at(uv))
+    }
+
     /// What the surface of an object does to light.
     pub(crate) fn bsdf_of(&self, object: u32) -> &Bsdf {
         &self.bsdfs[self.objects[object as usize].material]
@@ -147,17 +216,23 @@ impl<'a> Surface<'a> {
         self.bsdf.takes_medium()
     }
 
-    /// The radiance emitted along `wo` where the normal is `n`, if that side emits.
+    /// What is emitted along `wo` at a point of it, if that side emits.
     #[inline]
-    pub(crate) fn emission_along(&self, n: Vec3<f64>, wo: Vec3<f64>) -> Option<&'a PathSpectrum> {
+    pub(crate) fn emission_along(
+        &self,
+        geometry: &Geometry,
+        point: &SurfacePoint<f64>,
+        hit: &Hit<f64>,
+        wo: Vec3<f64>,
+    ) -> Option<Emitted<'a>> {
         let emission = self.emission?;
-        let front = n.dot(wo) > 0.0;
+        let front = point.normal.dot(wo) > 0.0;
         let emits = match emission.sides {
             EmissionSides::Front => front,
             EmissionSides::Back => !front,
             EmissionSides::Both => true,
         };
-        emits.then_some(&emission.radiance)
+        emits.then(|| emission.at(|| self.coordinates.uv(&at(geometry, point, hit))))
     }
 }
 

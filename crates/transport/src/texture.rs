@@ -3,7 +3,7 @@
 use crate::compiled;
 use crate::spectral::PathSpectrum;
 use etalon_optics::spectrum::RgbBasis;
-use etalon_optics::{Lanes, Real, Spectrum};
+use etalon_optics::{Illuminant, Lanes, Real, Spectrum};
 use etalon_scene::{ImageTexture, SpectrumTexture};
 
 /// A reflectance prepared for paths, perhaps another one at each place.
@@ -28,9 +28,7 @@ impl PathTexture {
         match texture {
             SpectrumTexture::Uniform(spectrum) => Self::Uniform(PathSpectrum::new(spectrum, range_nm)),
             SpectrumTexture::Image(texture) => {
-                let texels = texture.image.mean();
-                let mean = [0, 1, 2].map(|c| texels[c] * texture.factor[c]);
-                Self::Image { texture: texture.clone(), basis: RgbBasis::get(), mean }
+                Self::Image { texture: texture.clone(), basis: RgbBasis::get(), mean: texture.mean() }
             }
         }
     }
@@ -65,9 +63,13 @@ impl From<PathSpectrum> for PathTexture {
 
 /// What stands for an image in a picture without textures: its mean.
 pub(crate) fn mean_colour(texture: &ImageTexture) -> Spectrum {
-    let mean = texture.image.mean();
-    let rgb = [0, 1, 2].map(|c| (mean[c] * texture.factor[c]).clamp(0.0, 1.0));
+    let rgb = texture.mean().map(|v| v.clamp(0.0, 1.0));
     Spectrum::rgb_reflectance(rgb).expect("a mean of reflectances is one")
+}
+
+/// What stands there for an image of what a surface emits.
+pub(crate) fn mean_emission(texture: &ImageTexture) -> Spectrum {
+    Spectrum::rgb_emission(texture.mean(), Illuminant::D65).expect("a mean of emissions is one")
 }
 
 /// The value of a reflectance at a wavelength, nm; of an image that of its mean colour.

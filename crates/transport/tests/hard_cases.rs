@@ -24,6 +24,7 @@ fn a_square_light_fills_its_solid_angle_from_ten_thousand_sides_across_to_a_hund
             front: true,
             back: true,
             surface: PrimitiveId(0).into(),
+            image: None,
         };
         let light = Light::Parallelogram(ParallelogramLight::new(shape, emitter));
         let per_sample = |u: f64, v: f64| match light.sample(from, [u, v], 0.0).map(|sample| sample.density) {

@@ -12,7 +12,13 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 
 fn emitter() -> Emitter {
-    Emitter { radiance: PathSpectrum::Constant(1.0).into(), front: true, back: true, surface: PrimitiveId(0).into() }
+    Emitter {
+        radiance: PathSpectrum::Constant(1.0).into(),
+        front: true,
+        back: true,
+        surface: PrimitiveId(0).into(),
+        image: None,
+    }
 }
 
 fn sphere(center: Vec3<f64>, radius: f64) -> Light {

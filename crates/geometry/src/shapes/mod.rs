@@ -154,6 +154,22 @@ impl Primitive {
         }
     }
 
+    /// The parameters that a hit at the point `p` of it carries, to rounding; 0 of shapes whose hits carry none.
+    pub(crate) fn parameters(&self, p: Vec3<f64>) -> [f64; 2] {
+        let (corner, [a, b]) = match self {
+            Self::Triangle(s) => {
+                let [a, b, c] = s.vertices();
+                (a, [b - a, c - a])
+            }
+            Self::Parallelogram(s) => (s.corner(), s.edges()),
+            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) | Self::Instance(_) => return [0.0; 2],
+        };
+        // p = corner + u a + v b, each by its share of a × b.
+        let (n, d) = (a.cross(b), p - corner);
+        let whole = n.length_squared();
+        [d.cross(b).dot(n) / whole, a.cross(d).dot(n) / whole]
+    }
+
     /// The surface at the point `p`, which lies near it.
     #[inline]
     pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {

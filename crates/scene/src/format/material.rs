@@ -304,17 +304,19 @@ pub(crate) fn material<'f>(
 ) -> Option<Made> {
     let kind = match form {
         MaterialForm::Lambert(lambert) => {
-            let reflectance = spectra.resolve_texture(lambert.reflectance.as_ref()?, files, reader)?;
+            let reflectance =
+                spectra.resolve_texture(lambert.reflectance.as_ref()?, Role::Reflectance, files, reader)?;
             Some(MaterialKind::Lambert { reflectance })
         }
         MaterialForm::Mirror(mirror) => {
-            let reflectance = spectra.resolve_texture(mirror.reflectance.as_ref()?, files, reader)?;
+            let reflectance =
+                spectra.resolve_texture(mirror.reflectance.as_ref()?, Role::Reflectance, files, reader)?;
             Some(MaterialKind::Mirror { reflectance })
         }
         MaterialForm::Conductor(conductor) => {
             let metal = match &conductor.reflectance {
                 Optional::Given(reflectance) => {
-                    spectra.resolve_texture(reflectance, files, reader).map(Metal::Reflectance)
+                    spectra.resolve_texture(reflectance, Role::Reflectance, files, reader).map(Metal::Reflectance)
                 }
                 _ => complex_index(conductor, spectra.range_nm, reader).map(Metal::Index),
             };
@@ -341,12 +343,14 @@ pub(crate) fn material<'f>(
             return Some(Made { kind, absorption: absorption? });
         }
         MaterialForm::OrenNayar(rough) => {
-            let reflectance = spectra.resolve_texture(rough.reflectance.as_ref()?, files, reader)?;
+            let reflectance = spectra.resolve_texture(rough.reflectance.as_ref()?, Role::Reflectance, files, reader)?;
             Some(MaterialKind::OrenNayar { reflectance, roughness: rough.roughness?.0 })
         }
         MaterialForm::Plastic(plastic) => {
-            let reflectance =
-                plastic.reflectance.as_ref().and_then(|form| spectra.resolve_texture(form, files, reader));
+            let reflectance = plastic
+                .reflectance
+                .as_ref()
+                .and_then(|form| spectra.resolve_texture(form, Role::Reflectance, files, reader));
             let coat = plastic.coat.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let roughness = roughness(plastic.alpha.as_ref(), &plastic.roughness_image, files, reader);
             let (reflectance, coat) = (reflectance?, coat?);

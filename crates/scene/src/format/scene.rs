@@ -10,7 +10,7 @@ use super::integrator::{IntegratorForm, integrator, wavelength_range_nm};
 use super::light::{LightForm, light};
 use super::material::{Before, MaterialForm, Share, material};
 use super::names::Names;
-use super::spectra::{Role, Spectra};
+use super::spectra::Spectra;
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{
@@ -99,7 +99,7 @@ crate::record! {
 crate::record! {
     /// Diffuse emission: the same radiance in every direction.
     pub(crate) struct EmissionForm + comment {
-        /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹.
+        /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹, perhaps an image: of 1, white (1, 1, 1) has the luminance of the constant spectrum 1.
         radiance: Required<SpectrumForm>,
         /// Which sides emit.
         sides: Required<EmissionSides> = r#""front""#,
@@ -289,21 +289,22 @@ fn object<'f>(
         (Optional::Absent, Optional::Given(map)) => bump_map(map, files, reader).map(Some),
         _ => None,
     };
-    if let Some(shape) = &shape {
-        let of_opacity = opacity_image.iter().flatten().map(|image| &image.texture);
-        let of_relief = relief.iter().flatten().map(|relief| relief.texture());
-        for texture in of_opacity.chain(of_relief) {
-            check_coordinates(Some(texture), shape, form.at.head(), reader);
-        }
-    }
     let emission = match &form.emission {
         Optional::Absent => Some(None),
         Optional::Invalid => None,
         Optional::Given(emission) => {
-            let radiance = emission.radiance.as_ref().and_then(|form| spectra.resolve(form, Role::Emission, reader));
-            radiance.zip(emission.sides).map(|(radiance, sides)| Some(Emission { radiance, sides }))
+            let radiance = emission.radiance.as_ref().and_then(|form| spectra.resolve_emission(form, files, reader));
+            radiance.zip(emission.sides).map(|((radiance, image), sides)| Some(Emission { radiance, image, sides }))
         }
     };
+    if let Some(shape) = &shape {
+        let of_opacity = opacity_image.iter().flatten().map(|image| &image.texture);
+        let of_relief = relief.iter().flatten().map(|relief| relief.texture());
+        let of_emission = emission.iter().flatten().filter_map(|emission| emission.image.as_ref());
+        for texture in of_opacity.chain(of_relief).chain(of_emission) {
+            check_coordinates(Some(texture), shape, form.at.head(), reader);
+        }
+    }
     Some(Object {
         name: name?,
         shape: shape?,
@@ -344,7 +345,7 @@ fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {
         | LightKind::Environment { radiance: spectrum } => !spectrum.is_zero(),
         LightKind::ImageEnvironment(image) => !image.is_zero(),
     });
-    let glowing = scene.placed_objects().filter_map(|o| o.emission.as_ref()).any(|e| !e.radiance.is_zero());
+    let glowing = scene.placed_objects().filter_map(|o| o.emission.as_ref()).any(|e| !e.is_zero());
     if !lit && !glowing {
         let hint = "give an object an \"emission\", or add to \"lights\"".to_owned();
         let message = "nothing emits light: the picture will be black";

@@ -91,25 +91,39 @@ impl<'f> Spectra<'f> {
         made
     }
 
-    /// The spectrum of a form that may vary over a surface, in a role; images may only be reflectances.
+    /// The spectrum of a form that may vary over a surface: a reflectance or an emission.
     pub(crate) fn resolve_texture(
         &mut self,
         form: &'f SpectrumForm,
+        role: Role,
         files: &mut Files,
         reader: &mut Reader<'_>,
     ) -> Option<SpectrumTexture> {
         let (target, used) = match form {
             SpectrumForm::Name(name) => {
                 let target = self.targets[self.names.find(name, reader)?]?;
-                (self.entries[target].value.as_deref()?, Use { role: Role::Reflectance, at: Some(name.at) })
+                (self.entries[target].value.as_deref()?, Use { role, at: Some(name.at) })
             }
-            form => (form, Use { role: Role::Reflectance, at: None }),
+            form => (form, Use { role, at: None }),
         };
         match target {
             SpectrumForm::Object(SpectrumObject::Image(image)) => {
                 self.image(image, used, files, reader).map(SpectrumTexture::Image)
             }
-            _ => self.resolve(form, Role::Reflectance, reader).map(SpectrumTexture::Uniform),
+            _ => self.resolve(form, role, reader).map(SpectrumTexture::Uniform),
+        }
+    }
+
+    /// The emission of a form: a spectrum, and if that is the white of an image, the image.
+    pub(crate) fn resolve_emission(
+        &mut self,
+        form: &'f SpectrumForm,
+        files: &mut Files,
+        reader: &mut Reader<'_>,
+    ) -> Option<(Spectrum, Option<ImageTexture>)> {
+        match self.resolve_texture(form, Role::Emission, files, reader)? {
+            SpectrumTexture::Uniform(spectrum) => Some((spectrum, None)),
+            SpectrumTexture::Image(image) => Some((self.daylight(1.0, form.at(), reader)?, Some(image))),
         }
     }
 
@@ -135,16 +149,21 @@ impl<'f> Spectra<'f> {
             return None;
         }
         let image = image?;
-        let impossible = |texel: [f64; 3]| (0..3).any(|c| !(0.0..=1.0).contains(&(texel[c] * factor[c])));
+        let (range, code, not) = match used.role {
+            Role::Emission => {
+                (0.0..=BRIGHTEST, Code::OutOfRange, format!("no emission, which lies from 0 to {BRIGHTEST:e}"))
+            }
+            _ => (0.0..=1.0, Code::Reflectance, "no reflectance, which lies from 0 to 1".to_owned()),
+        };
+        let impossible = |texel: [f64; 3]| (0..3).any(|c| !range.contains(&(texel[c] * factor[c])));
         if let Some(i) = image.linear_texels().position(impossible) {
             let (column, row) = (i % image.width as usize, i / image.width as usize);
             let texel = image.texel(column, row);
             let message = format!(
-                "{}: the texel in column {column}, row {row} is {texel:?}: with the factors {factor:?} it is no \
-                 reflectance, which lies from 0 to 1",
+                "{}: the texel in column {column}, row {row} is {texel:?}: with the factors {factor:?} it is {not}",
                 file.value
             );
-            self.complain(Code::Reflectance, file.at, message, "", used, reader);
+            self.complain(code, file.at, message, "", used, reader);
             return None;
         }
         let wrap = form.wrap?;
@@ -171,7 +190,7 @@ impl<'f> Spectra<'f> {
             SpectrumForm::Object(SpectrumObject::Tabulated(table)) => self.table(table, used, reader),
             SpectrumForm::Object(SpectrumObject::Rgb(colour)) => self.rgb(colour, used, reader),
             SpectrumForm::Object(SpectrumObject::Image(image)) => {
-                let hint = "images are for what a material reflects";
+                let hint = "images are for what a material reflects and a surface emits";
                 self.complain(
                     Code::KeyConflict,
                     image.at.head(),

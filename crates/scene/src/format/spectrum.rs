@@ -114,7 +114,7 @@ crate::record! {
 }
 
 crate::record! {
-    /// An image over the texture coordinates of a surface: for what a material reflects.
+    /// An image over the texture coordinates of a surface: for what a material reflects or a surface emits.
     pub(crate) struct ImageSpectrum + comment {
         /// A PNG, JPEG, EXR or HDR file, relative to this file's folder.
         file: Required<Spanned<String>>,

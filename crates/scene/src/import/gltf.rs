@@ -328,12 +328,13 @@ impl Walk<'_, '_> {
         };
         let mut material = look.material.clone();
         let mut detail = look.detail.clone();
+        let mut emission = look.emission.clone();
         if mesh.uvs.is_empty() && look.has_image {
-            self.builder.leave_out(place, "it has no texture coordinates for the images of its material, and is grey");
+            self.builder.leave_out(place, "it has no texture coordinates for the images of its material, and is grey; what an image says does not shine");
             material = json!({ "type": "lambert", "reflectance": 0.8 });
             detail.clear();
+            emission = emission.filter(|emission| emission["radiance"]["type"] != "image");
         }
-        let emission = look.emission.clone();
         let file = self.builder.mesh_file(&mesh);
         Ok(Some(MadePart { file, mesh, material, emission, detail }))
     }

@@ -54,11 +54,11 @@ impl Materials {
         self.alpha_counts = material.alpha_mode() != AlphaMode::Opaque;
         let (value, mut uv_set) = self.value(material, &place, buffers, builder);
         let detail = self.detail(material, &place, &mut uv_set, buffers, builder);
+        let emission = self.emission(material, &place, &mut uv_set, buffers, builder);
         let has_image = uv_set.is_some();
         let uv_set = uv_set.unwrap_or(0);
         let name = builder.material_name(material.name().unwrap_or_default());
         builder.materials.insert(name.clone(), value);
-        let emission = self.emission(material, &place, buffers, builder);
         let look = Look { material: json!(name), emission, detail, uv_set, has_image };
         self.known.insert(material.index(), look.clone());
         Ok(look)
@@ -332,6 +332,7 @@ impl Materials {
         &mut self,
         material: &gltf::Material<'_>,
         place: &str,
+        uv_set: &mut Option<u32>,
         buffers: &[Vec<u8>],
         builder: &mut Builder<'_>,
     ) -> Option<Value> {
@@ -339,17 +340,22 @@ impl Materials {
         if rgb == [0.0; 3] {
             return None;
         }
-        if let Some(info) = material.emissive_texture() {
-            let at = format!("{place}.emissiveTexture");
-            builder.leave_out(at, "every place shines with the mean of the image");
-            let (_, mean) = self.source(&info.texture(), place, buffers, builder)?;
-            rgb = std::array::from_fn(|c| rgb[c] * mean[c]);
-        }
-        if rgb == [0.0; 3] {
-            return None;
-        }
         let strength = f64::from(material.emissive_strength().unwrap_or(1.0)).max(0.0);
         let sides = if material.double_sided() { "both" } else { "front" };
+        if let Some(info) = material.emissive_texture() {
+            let at = format!("{place}.emissiveTexture");
+            let (mut image, set) = self.image(&info, &at, buffers, builder)?;
+            let (_, mean) = self.source(&info.texture(), place, buffers, builder)?;
+            rgb = std::array::from_fn(|c| rgb[c] * mean[c]);
+            if rgb == [0.0; 3] {
+                return None;
+            }
+            if *uv_set.get_or_insert(set) == set {
+                image["factor"] = json!(material.emissive_factor().map(|v| f64::from(v).max(0.0) * strength));
+                return Some(json!({ "radiance": image, "sides": sides }));
+            }
+            builder.leave_out(at, "it uses another set of texture coordinates than the first image: its mean shines");
+        }
         Some(json!({ "radiance": light(rgb, strength), "sides": sides }))
     }
 }

@@ -279,11 +279,7 @@ impl SpectrumTexture {
     pub fn is_grey(&self) -> bool {
         match self {
             Self::Uniform(spectrum) => spectrum.is_constant(),
-            Self::Image(texture) => {
-                texture.factor[0] == texture.factor[1]
-                    && texture.factor[1] == texture.factor[2]
-                    && texture.image.is_grey()
-            }
+            Self::Image(texture) => texture.is_grey(),
         }
     }
 

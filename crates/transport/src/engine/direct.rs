@@ -229,7 +229,10 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
             let lambda_nm = &paths.wavelengths[lane].lambda_nm;
             let arriving = match self.tables.lights[index] {
                 Some(slot) => paths.known.spectrum(lane, slot, self.tables, lambda_nm),
-                None => lights[index].lanes(lambda_nm, sight.aims.wi.at(lane)),
+                None => {
+                    let (wi, point) = (sight.aims.wi.at(lane), Target::Point(sight.aims.point.at(lane)));
+                    world.light_arriving(index, wi, point, 0.0, lambda_nm)
+                }
             };
             let direct = sight.f_cos[lane] * arriving * sight.weight.0[lane];
             let found = paths.beta[lane] * direct * paths.model[lane].weight();

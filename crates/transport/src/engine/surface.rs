@@ -86,14 +86,15 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 let point = paths.at.point(lane);
                 let surface = world.surfaces.of(&point);
                 let direction = paths.direction.at(lane);
-                if let Some(emitter) = surface.emission_along(point.normal, -direction) {
+                if let Some(emitter) = surface.emission_along(world.geometry, &point, &paths.at.hit(lane), -direction) {
                     let mis = if compiled::MIS && world.weigh_hits {
                         world.weight_of_hit(paths.step(lane), point.surface, surface.light, direction, 0.0)
                     } else {
                         1.0
                     };
                     let lambda_nm = &paths.wavelengths[lane].lambda_nm;
-                    let emitted = paths.known.of(lane, record.emission, emitter, self.tables, lambda_nm);
+                    let white = paths.known.of(lane, record.emission, emitter.radiance, self.tables, lambda_nm);
+                    let emitted = emitter.of_white(white, lambda_nm);
                     let light = paths.beta[lane] * emitted * (paths.model[lane].weight() * mis);
                     paths.radiance[lane] += light;
                 }

@@ -83,7 +83,7 @@ impl Tables {
             .lights()
             .iter()
             .map(|light| {
-                if matches!(light, Light::Environment(_)) {
+                if matches!(light, Light::Environment(_)) || light.emitter().is_some_and(|e| e.image.is_some()) {
                     return None;
                 }
                 let spectrum = light.spectrum();

@@ -246,11 +246,11 @@ impl Light {
     fn power_factor(&self, scene_radius: f64) -> f64 {
         use std::f64::consts::PI;
         match self {
-            Self::Sphere(light) => light.emitter.side_count() * PI * light.area(),
-            Self::Parallelogram(light) => light.emitter.side_count() * PI * light.area(),
-            Self::Disk(light) => light.emitter.side_count() * PI * light.area(),
-            Self::Triangle(light) => light.emitter.side_count() * PI * light.area(),
-            Self::Cylinder(light) => light.emitter.side_count() * PI * light.area(),
+            Self::Sphere(light) => light.emitter.brightness() * PI * light.area(),
+            Self::Parallelogram(light) => light.emitter.brightness() * PI * light.area(),
+            Self::Disk(light) => light.emitter.brightness() * PI * light.area(),
+            Self::Triangle(light) => light.emitter.brightness() * PI * light.area(),
+            Self::Cylinder(light) => light.emitter.brightness() * PI * light.area(),
             Self::Point(light) => 4.0 * PI * light.per_m * light.per_m,
             Self::Spot(light) => light.power_factor(),
             Self::Directional(_) => PI * scene_radius * scene_radius,
@@ -306,6 +306,17 @@ pub struct Emitter {
     pub back: bool,
     /// The surface.
     pub surface: SurfaceId,
+    /// Where an image says what it emits.
+    pub image: Option<ImageOf>,
+}
+
+/// An image of what an emitting surface emits, of which `radiance` is the white.
+#[derive(Clone, Copy, Debug)]
+pub struct ImageOf {
+    /// The number of the object that has it.
+    pub object: u32,
+    /// About the mean luminance of its colours over the surface, which only decides how often the surface is aimed at.
+    pub mean: f64,
 }
 
 impl Emitter {
@@ -314,7 +325,9 @@ impl Emitter {
         if n.dot(direction) > 0.0 { self.front } else { self.back }
     }
 
-    fn side_count(&self) -> f64 {
-        f64::from(u8::from(self.front)) + f64::from(u8::from(self.back))
+    /// What the spectrum and the area are to be multiplied by for what all sides emit.
+    fn brightness(&self) -> f64 {
+        let sides = f64::from(u8::from(self.front)) + f64::from(u8::from(self.back));
+        sides * self.image.map_or(1.0, |image| image.mean)
     }
 }

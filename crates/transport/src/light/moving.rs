@@ -158,7 +158,13 @@ mod tests {
     use proptest::prelude::*;
 
     fn emitter(front: bool, back: bool) -> Emitter {
-        Emitter { radiance: PathSpectrum::Constant(1.0).into(), front, back, surface: PrimitiveId(3).into() }
+        Emitter {
+            radiance: PathSpectrum::Constant(1.0).into(),
+            front,
+            back,
+            surface: PrimitiveId(3).into(),
+            image: None,
+        }
     }
 
     fn light(shape: Primitive, emitter: Emitter) -> Light {

@@ -240,6 +240,7 @@ mod tests {
             front,
             back,
             surface: PrimitiveId(0).into(),
+            image: None,
         };
         let one = || PathSpectrum::Constant(1.0);
         let point = || PointLight { position: Vec3::ZERO, intensity: one(), per_m: 2.0 };

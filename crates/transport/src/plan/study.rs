@@ -133,6 +133,9 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             }
             leave_out(EffectName::Dispersion, scene);
             lights_mut(scene).for_each(|spectrum| *spectrum = grey(spectrum, range_nm));
+            for emission in objects_mut(scene).filter_map(|object| object.emission.as_mut()) {
+                emission.image = emission.image.as_ref().map(grey_image);
+            }
             for light in &mut scene.lights {
                 if let LightKind::ImageEnvironment(image) = &mut light.kind {
                     image.image = Arc::new(luminances(&image.image, [1.0; 3]));
@@ -173,6 +176,11 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::Polarisation => scene.film.stokes = false,
         EffectName::Textures => {
             scene.materials.iter_mut().for_each(|material| material.kind.flatten(&texture::mean_colour));
+            for emission in objects_mut(scene).filter_map(|object| object.emission.as_mut()) {
+                if let Some(image) = emission.image.take() {
+                    emission.radiance = texture::mean_emission(&image);
+                }
+            }
         }
         EffectName::ShadingNormals => {
             for object in objects_mut(scene) {

@@ -44,6 +44,7 @@ impl Lamp {
             front: true,
             back: true,
             surface: PrimitiveId(0).into(),
+            image: None,
         };
         let geometry = Geometry::build(vec![shape.clone().into()]).unwrap();
         Self { light: light(shape, emitter), geometry, center, radius, form }

@@ -18,6 +18,14 @@ pub(super) enum Of {
     Reflectance,
     /// Light.
     Emission,
+    /// Light of a surface; images may stand here.
+    Shining,
+}
+
+impl Of {
+    fn is_light(self) -> bool {
+        matches!(self, Self::Emission | Self::Shining)
+    }
 }
 
 impl Walk<'_, '_, '_> {
@@ -58,7 +66,7 @@ impl Walk<'_, '_, '_> {
             _ => return Err(format!("{place}: \"{text}\" is no colour")),
         };
         Ok(match of {
-            Of::Emission => {
+            Of::Emission | Of::Shining => {
                 if rgb.iter().any(|v| *v < 0.0) {
                     self.builder.leave_out(place, "negative light is taken for none");
                 }
@@ -74,7 +82,7 @@ impl Walk<'_, '_, '_> {
     }
 
     fn constant(&mut self, value: f64, place: &str, of: Of) -> Value {
-        let (low, high) = if of == Of::Emission { (0.0, f64::MAX) } else { (0.0, 1.0) };
+        let (low, high) = if of.is_light() { (0.0, f64::MAX) } else { (0.0, 1.0) };
         if !(low..=high).contains(&value) {
             self.builder.leave_out(place, format!("{value} is brought into {low} to {high}"));
         }
@@ -120,13 +128,13 @@ impl Walk<'_, '_, '_> {
                     values.iter().enumerate().flat_map(|(i, value)| [low + step * i as f64, *value]).collect();
                 self.table(&pairs, place, of)
             }
-            ("blackbody", Of::Emission) => {
+            ("blackbody", Of::Emission | Of::Shining) => {
                 let kelvin = element.number("temperature")?.unwrap_or(5000.0);
                 Ok(
                     json!({ "type": "blackbody", "temperature_k": kelvin, "scale": element.number("scale")?.unwrap_or(1.0) }),
                 )
             }
-            ("d65", Of::Emission) => {
+            ("d65", Of::Emission | Of::Shining) => {
                 let scale = element.number("scale")?.unwrap_or(1.0);
                 match element.property("color") {
                     Some(colour) => self.rgb(colour.attribute("value").unwrap_or(""), place, of).map(|mut light| {
@@ -162,7 +170,7 @@ impl Walk<'_, '_, '_> {
         let table = Table::of_pairs(pairs);
         let mut table =
             table.ok_or_else(|| format!("{place}: {} numbers are no table of wavelengths and values", pairs.len()))?;
-        let highest = if of == Of::Emission { f64::MAX } else { 1.0 };
+        let highest = if of.is_light() { f64::MAX } else { 1.0 };
         if table.0.iter().any(|(_, v)| !(0.0..=highest).contains(v)) {
             self.builder.leave_out(place, format!("values are brought into 0 to {highest}"));
             table.0.iter_mut().for_each(|(_, v)| *v = v.clamp(0.0, highest));
@@ -183,13 +191,13 @@ impl Walk<'_, '_, '_> {
         let name = element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
         let raw = element.flag("raw")?.unwrap_or(false);
         let Some((file, mean)) = self.image(&name, raw, place) else {
-            return Ok(if of == Of::Emission { json!(0.0) } else { json!(0.5) });
+            return Ok(if of.is_light() { json!(0.0) } else { json!(0.5) });
         };
         let word = element.string("wrap_mode").unwrap_or("repeat").to_owned();
         let filter = element.string("filter_type").unwrap_or("bilinear").to_owned();
-        if of != Of::Texture {
+        if of != Of::Texture && of != Of::Shining {
             self.builder.leave_out(place, "the mean of the image stands for it everywhere");
-            return Ok(if of == Of::Emission { light(mean, 1.0) } else { reflectance(mean) });
+            return Ok(if of.is_light() { light(mean, 1.0) } else { reflectance(mean) });
         }
         // The program counts v from the top of the image: 1 − (sv·v + ov).
         let (mut scale, mut offset) = ([1.0, -1.0], [0.0, 1.0]);

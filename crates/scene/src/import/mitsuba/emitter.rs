@@ -68,7 +68,7 @@ impl Walk<'_, '_, '_> {
             return Ok(None);
         }
         let one = json!({ "type": "illuminant", "name": "D65", "scale": 1 });
-        let radiance = self.colour(emitter, "radiance", Of::Emission)?.unwrap_or(one);
+        let radiance = self.colour(emitter, "radiance", Of::Shining)?.unwrap_or(one);
         emitter.list_unused(self.builder);
         Ok(Some(json!({ "radiance": radiance, "sides": "front" })))
     }

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::Reading;
 use super::parameters::Parameters;
 use crate::import::matrix::{direction, point};
+use crate::texture::Encoding;
 use crate::vector::sub;
 
 impl Reading<'_, '_> {
@@ -57,13 +58,25 @@ impl Reading<'_, '_> {
             self.builder.leave_out(place, format!("the light \"{kind}\" is not known, and is left out"));
             return Ok(None);
         }
-        if list.get("filename").is_some() {
-            self.builder.leave_out(place, "an image that shines is not read: the light is left out");
-            list.mark_all();
-            return Ok(None);
-        }
         let scale = list.number("scale")?.unwrap_or(1.0).max(0.0);
-        let radiance = self.emitted(list, "L", scale)?;
+        let radiance = match list.string("filename").map(str::to_owned) {
+            None => self.emitted(list, "L", scale)?,
+            Some(file) => {
+                let found = self
+                    .near(&file, place)
+                    .and_then(|bytes| self.builder.image_file(&file, bytes, Encoding::Auto, place));
+                match found {
+                    Ok((name, _)) => {
+                        json!({ "type": "image", "file": name, "wrap": "clamp", "factor": [scale, scale, scale] })
+                    }
+                    Err(why) => {
+                        self.builder.leave_out(place, format!("the light is left out with its image: {why}"));
+                        list.mark_all();
+                        return Ok(None);
+                    }
+                }
+            }
+        };
         let sides = if list.flag("twosided").unwrap_or(false) { "both" } else { "front" };
         list.list_unused(self.builder);
         Ok(Some(json!({ "radiance": radiance, "sides": sides })))

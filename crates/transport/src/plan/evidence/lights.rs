@@ -38,7 +38,7 @@ fn spectrum(light: &Light) -> &Spectrum {
 }
 
 fn emitter(scene: &Scene) -> Option<&Object> {
-    scene.placed_objects().find(|object| object.emission.as_ref().is_some_and(|e| !e.radiance.is_zero()))
+    scene.placed_objects().find(|object| object.emission.as_ref().is_some_and(|e| !e.is_zero()))
 }
 
 /// A diffuse surface, one that does not shine itself if there is any.

@@ -49,7 +49,10 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         EffectName::Polarisation => polarisation(scene, false),
         EffectName::Textures => match first_surface(scene, |material, _| material.kind.image().map(size)) {
             Some(found) => Ok(found),
-            None => nothing("no image on a surface"),
+            None => match scene.placed_objects().find_map(shining_image) {
+                Some((object, image)) => Ok(format!("emission of \"{}\": {}", object.name, size(image))),
+                None => nothing("no image on a surface"),
+            },
         },
         EffectName::ShadingNormals => match scene.placed_objects().find_map(bent) {
             Some(found) => Ok(found),
@@ -107,6 +110,11 @@ fn size(texture: &ImageTexture) -> String {
     format!("\"{}\", {} × {} texels", texture.name, texture.image.width, texture.image.height)
 }
 
+/// An object and the image of what it emits, if there is one.
+fn shining_image(object: &Object) -> Option<(&Object, &ImageTexture)> {
+    Some((object, object.emission.as_ref()?.image.as_ref()?))
+}
+
 /// What bends the normals of an object, if something does.
 fn bent(object: &Object) -> Option<String> {
     match &object.relief {
@@ -160,6 +168,10 @@ fn wavelengths(scene: &Scene) -> Result<String, String> {
         {
             return Ok(format!("light \"{}\": colours of \"{}\"", light.name, sky.name));
         }
+    }
+    let coloured = |(_, image): &(&Object, &ImageTexture)| !image.is_grey();
+    if let Some((object, image)) = scene.placed_objects().filter_map(shining_image).find(coloured) {
+        return Ok(format!("emission of \"{}\": colours of \"{}\"", object.name, image.name));
     }
     let range_nm = scene.integrator.wavelength_range_nm;
     let lamps = sources(scene);
