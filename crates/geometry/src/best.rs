@@ -74,4 +74,11 @@ impl Best {
         self.within = None;
         self.t_max = hit.t;
     }
+
+    /// Takes a hit within an instance that is the best so far.
+    #[inline(always)]
+    pub(crate) fn set_within(&mut self, hit: RawHit, id: PrimitiveId, surface: SurfaceId) {
+        self.set(hit, id);
+        self.within = Some(surface);
+    }
 }

@@ -3,6 +3,7 @@
 //! How its trees compare with those of the `obvhs` crate stands in `docs/decisions.md`.
 
 use crate::frame::Box32;
+use crate::wide::LEAF_WIDTH;
 use std::array::from_fn;
 
 /// Above this many primitives a node is split between bins, below at any of their sorted centres.
@@ -40,20 +41,21 @@ pub(crate) struct BinaryTree {
 pub(crate) struct Costs {
     /// Primitives that a leaf tests at the cost of one.
     pub(crate) block: u32,
-    /// Most primitives in a leaf.
-    pub(crate) leaf_limit: u32,
     /// Cost of visiting a node, in units of testing a block.
     pub(crate) node: f32,
 }
 
 impl Costs {
-    fn leaf(self, count: usize) -> f32 {
-        (count as u32).div_ceil(self.block) as f32
+    /// Cost of testing some primitives whose box is this.
+    #[inline(always)]
+    fn leaf(self, bounds: Span, count: usize) -> f32 {
+        let block = if bounds.is_lone() { 1 } else { self.block };
+        (count as u32).div_ceil(block) as f32
     }
 }
 
 /// A box as one vector, so that a union is one maximum: its lower corner negated, a lane for a primitive's index, its upper
-/// corner, an unused lane.
+/// corner, 1 if it holds a primitive that shares its leaf with no other.
 #[derive(Clone, Copy, Debug)]
 struct Span([f32; 8]);
 
@@ -95,6 +97,12 @@ impl Span {
         if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
     }
 
+    /// Whether it holds a primitive that shares its leaf with no other.
+    #[inline(always)]
+    fn is_lone(self) -> bool {
+        self.0[7] > 0.0
+    }
+
     fn to_box(self) -> Box32 {
         Box32 { min: from_fn(|k| self.lower(k)), max: from_fn(|k| self.upper(k)) }
     }
@@ -106,9 +114,10 @@ impl Span {
 pub(crate) struct Item(Span);
 
 impl Item {
-    pub(crate) fn new(b: &Box32, id: u32) -> Self {
+    /// `lone`: it shares its leaf with no other.
+    pub(crate) fn new(b: &Box32, id: u32, lone: bool) -> Self {
         let [x, y, z] = b.min;
-        Self(Span([-x, -y, -z, f32::from_bits(id), b.max[0], b.max[1], b.max[2], 0.0]))
+        Self(Span([-x, -y, -z, f32::from_bits(id), b.max[0], b.max[1], b.max[2], f32::from(u8::from(lone))]))
     }
 
     fn id(&self) -> u32 {
@@ -218,9 +227,9 @@ impl Builder {
         } else {
             self.bins(items, &extent)
         };
-        if count as u32 <= self.costs.leaf_limit {
+        if count <= LEAF_WIDTH && !extent.bounds.is_lone() {
             let area = extent.bounds.half_area();
-            let leaf_cost = self.costs.leaf(count) * area;
+            let leaf_cost = self.costs.leaf(extent.bounds, count) * area;
             if !split.as_ref().is_some_and(|s| s.cost + self.costs.node * area < leaf_cost) {
                 return;
             }
@@ -307,7 +316,7 @@ impl Builder {
             let mut sum = (Span::EMPTY, 0);
             for bin in (1..BINS).rev() {
                 sum = (sum.0.union(bins[k][bin].0), sum.1 + bins[k][bin].1);
-                right[bin] = (sum.0.half_area(), sum.1);
+                right[bin] = (sum.0.half_area() * self.costs.leaf(sum.0, sum.1 as usize), sum.1);
             }
             let mut sum = (Span::EMPTY, 0);
             for bin in 1..BINS {
@@ -315,8 +324,7 @@ impl Builder {
                 if sum.1 == 0 || right[bin].1 == 0 {
                     continue;
                 }
-                let (left_cost, right_cost) = (self.costs.leaf(sum.1 as usize), self.costs.leaf(right[bin].1 as usize));
-                let cost = sum.0.half_area() * left_cost + right[bin].0 * right_cost;
+                let cost = sum.0.half_area() * self.costs.leaf(sum.0, sum.1 as usize) + right[bin].0;
                 if best.as_ref().is_none_or(|b| cost < b.cost) {
                     best = Some(Split { cost, axis: k, position: Position::Bin(map, bin) });
                 }
@@ -348,12 +356,12 @@ impl Builder {
             let mut sum = Span::EMPTY;
             for rank in (1..order.len()).rev() {
                 sum = sum.union(at(rank));
-                right[rank] = sum.half_area();
+                right[rank] = sum.half_area() * self.costs.leaf(sum, order.len() - rank);
             }
             let mut sum = Span::EMPTY;
             for rank in 1..order.len() {
                 sum = sum.union(at(rank - 1));
-                let cost = sum.half_area() * self.costs.leaf(rank) + right[rank] * self.costs.leaf(order.len() - rank);
+                let cost = sum.half_area() * self.costs.leaf(sum, rank) + right[rank];
                 if best.is_none_or(|(least, ..)| cost < least) {
                     best = Some((cost, k, rank));
                 }

@@ -256,6 +256,75 @@ impl Frame {
         }))
     }
 
+    /// What [`Frame::enter`] gives for the [`Query`] of a ray, as [`Frame::enter_near`] does, wherever the ray starts: a frame is
+    /// small beside the distances from which rays meet an instance.
+    #[inline(always)]
+    pub(crate) fn enter_anywhere<F: Four>(
+        &self,
+        token: F::Token,
+        [origin, direction]: [F; 2],
+        t_max: f64,
+    ) -> Entry<F::Narrow> {
+        let Vec3 { x, y, z } = self.centre;
+        let o = (origin - F::new(token, [x, y, z, 0.0])) * F::splat(token, self.scale);
+        let (reach, magnitudes) = (o.abs(), direction.abs());
+        let bits = magnitudes.to_array().map(f64::to_bits);
+        let magnitude = larger(larger(bits[0], bits[1]), bits[2]);
+        // False if a component is NaN.
+        let usual = reach.all_at_most(AFAR) && magnitudes.all_at_most(GREATEST);
+        if !(usual && magnitude >= (1.0 / GREATEST).to_bits()) {
+            return Entry::Unknown;
+        }
+        // See `enter_near`.
+        const EXPONENT: u64 = 0x7FF << 52;
+        let exponent = magnitude & EXPONENT;
+        let (unit, t_scale) = (f64::from_bits(exponent), f64::from_bits((2046 << 52) - exponent));
+        let t_max = t_max * unit;
+        if t_max.partial_cmp(&0.0) != Some(Ordering::Greater) {
+            return Entry::Unknown;
+        }
+        let axis = projection_axis(bits);
+        let direction = direction * F::splat(token, t_scale);
+        let farthest = reach.largest();
+        let mut parts = RayParts {
+            origin: o.narrowed(),
+            inexact: None,
+            direction: direction.narrowed(),
+            unit: 1.0,
+            factors: [-NEAR_FACTOR, -FAR_FACTOR],
+            limits: [0.0; 2],
+            axis,
+            reach: farthest,
+            slack: SLACK,
+            start: 0.0,
+            t_max,
+            t_scale,
+        };
+        if farthest > NEAR_REACH {
+            // To the plane that the frame's [−1, 1]³ turns towards the ray along its largest component. What the ray meets of the
+            // frame is up to 2 beyond that plane, so up to 2 aside of where the ray passes it, and up to 1 from the axis: a ray that
+            // passes it farther than 3 from the axis misses all. So does one that starts beyond the plane, but more than 4
+            // away along some axis: it is behind the frame, or as much as 3 aside, and gets no nearer than 1 by the frame's end.
+            let along = axis.min(2);
+            let per_unit = 1.0 / direction.to_array()[along];
+            let start = -(o.to_array()[along] * per_unit) - per_unit.abs();
+            let moved = o + direction * F::splat(token, start);
+            // Of NaN neither holds.
+            if !(start > 0.0 && moved.abs().all_at_most(NEAR_REACH)) {
+                return Entry::Misses;
+            }
+            parts.origin = moved.narrowed();
+            parts.inexact = Some(F::splat(token, 1.0).narrowed());
+            parts.reach = moved.abs().largest();
+            parts.slack = (farthest + 2.0) * (128.0 * f64::EPSILON);
+            parts.start = start;
+        } else {
+            parts.inexact = Some(o.differs(parts.origin));
+        }
+        parts.limits = [self.distance(parts.start, t_max), self.distance_below(parts.start, t_max)];
+        Entry::Ray(self.ray(parts))
+    }
+
     /// [`Frame::distance`] and [`Frame::distance_below`] of a start at zero.
     #[inline(always)]
     fn limits(&self, t_max: f64) -> [f32; 2] {
@@ -323,6 +392,22 @@ impl Frame {
         below(if t < farthest { t } else { farthest })
     }
 }
+
+/// What [`Frame::enter_anywhere`] finds of a ray.
+pub(crate) enum Entry<L> {
+    /// The ray in the frame.
+    Ray(FrameRay<L>),
+    /// It certainly misses the whole frame.
+    Misses,
+    /// [`Frame::enter`] knows.
+    Unknown,
+}
+
+/// Rays from as far as this, in units of the frame (2²⁰), are moved near it without a second thought: what their origins err by is
+/// below 2⁻²⁴.
+const AFAR: f64 = (1_u32 << 20) as f64;
+/// Directions up to this (2²⁰⁰), and down to its inverse, can be scaled by powers of two.
+const GREATEST: f64 = (1_u128 << 100) as f64 * (1_u128 << 100) as f64;
 
 /// The negative factors of near and far distances times a power of two, the bits that it adds.
 #[inline(always)]

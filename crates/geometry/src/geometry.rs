@@ -96,7 +96,9 @@ impl Geometry {
         let flat = bounds.filter(|_| is_flat).map(|bounds| Flat::new(&primitives, bounds));
         let tree = bounds.filter(|_| !is_flat && primitives.len() > TREELESS_LIMIT).map(|bounds| {
             let frame = Frame::around(bounds);
-            let item = |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32);
+            // What is within an instance costs far more than a node.
+            let lone = |p: &Primitive| matches!(p, Primitive::Instance(_));
+            let item = |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32, lone(p));
             let items = primitives.par_iter().enumerate().map(item).collect();
             let binary = build(items, costs(&primitives));
             WideTree::collapse(frame, &binary, &primitives)
@@ -387,8 +389,7 @@ impl Geometry {
         self.flat.iter_mut().for_each(Flat::forget_rounding);
     }
 
-    /// The tree, for tests of its traversals.
-    #[cfg(test)]
+    /// The tree, if there is one.
     pub(crate) fn tree(&self) -> Option<&WideTree> {
         self.tree.as_ref()
     }
@@ -399,11 +400,10 @@ impl Geometry {
     }
 }
 
-/// What the tree's builder weighs: a leaf tests eight flat shapes or spheres at once, but cylinders and instances one by one.
+/// What the tree's builder weighs: a leaf tests eight flat shapes or spheres at once, but cylinders one by one.
 fn costs(primitives: &[Primitive]) -> Costs {
-    // What is within an instance costs far more than a node.
-    let leaf_limit = if primitives.iter().any(|p| matches!(p, Primitive::Instance(_))) { 1 } else { 8 };
-    let filtered = |p: &&Primitive| !matches!(p, Primitive::Cylinder(_) | Primitive::Instance(_));
-    let most = primitives.iter().filter(filtered).count() > primitives.len() / 2;
-    Costs { block: if most { 8 } else { 1 }, leaf_limit, node: 0.35 }
+    let count = |is: fn(&Primitive) -> bool| primitives.iter().filter(|p| is(p)).count();
+    let cylinders = count(|p| matches!(p, Primitive::Cylinder(_)));
+    let most = 2 * cylinders < primitives.len() - count(|p| matches!(p, Primitive::Instance(_)));
+    Costs { block: if most { 8 } else { 1 }, node: 0.35 }
 }

@@ -71,6 +71,11 @@ impl Placement {
         Self { linear, translation, inverse: inverse.map(|row| row * per_square), looseness: LOOSENESS }
     }
 
+    /// Rows of L⁻¹.
+    pub(crate) fn inverse(&self) -> [Vec3<f64>; 3] {
+        self.inverse
+    }
+
     /// Rows of L.
     pub fn linear(&self) -> [Vec3<f64>; 3] {
         self.linear
@@ -298,23 +303,10 @@ impl Instance {
 
     /// Whether a ray meets the bounds before `t_max`, to rounding.
     ///
-    /// Every test of the instance asks this first, with a tree around it or without: where the ray's rounding in the
+    /// Every test of the instance asks this too, with a tree around it or without: where the ray's rounding in the
     /// instance's coordinates would let it hit something while it passes by outside, both agree that it does not.
     fn is_met(&self, query: &Query, t_max: f64) -> bool {
-        let (mut near, mut far) = (0.0_f64, t_max);
-        let bounds = self.bounds_at(query.time);
-        for k in 0..3 {
-            let (d, o) = (query.direction[k], query.origin[k]);
-            let (lower, upper) = (bounds.min[k] - o, bounds.max[k] - o);
-            if d != 0.0 {
-                let (t0, t1) = (lower / d, upper / d);
-                near = near.max(t0.min(t1));
-                far = far.min(t0.max(t1));
-            } else if lower > 0.0 || upper < 0.0 {
-                return false;
-            }
-        }
-        near <= far * (1.0 + 8.0 * f64::EPSILON)
+        query.meets(self.bounds_at(query.time), t_max)
     }
 
     /// The closest hit with 0 < t < `t_max`.

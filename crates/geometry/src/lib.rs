@@ -16,6 +16,7 @@
 //! | `pages` | arrays in large pages |
 //! | `traverse` | its traversal, for each instruction set; `traverse::flat`: few primitives, without a tree |
 //! | `geometry` | [`Geometry`]: the queries |
+//! | `portal` | what a ray needs to go into an instance |
 //! | `best` | the closest hit so far |
 //! | `lanes` | [`Rays`]: eight rays at once |
 //! | `instance` | [`Instance`]: a geometry within another, placed by an affine map |
@@ -32,6 +33,7 @@ mod lanes;
 mod motion;
 mod narrow;
 mod pages;
+mod portal;
 mod query;
 mod ray;
 mod shapes;

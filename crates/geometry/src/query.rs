@@ -2,7 +2,7 @@
 
 use crate::double_double::product_difference;
 use crate::frame::{Lanes4, Plain};
-use crate::{PrimitiveId, Ray, SurfaceId};
+use crate::{Aabb, PrimitiveId, Ray, SurfaceId};
 use etalon_optics::{Real, Vec3};
 use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
@@ -83,6 +83,26 @@ impl Query {
             time: ray.time,
             projection: Projection::new(origin, direction, axis),
         })
+    }
+}
+
+impl Query {
+    /// Whether it meets a box before `t_max`, to rounding.
+    #[inline]
+    pub(crate) fn meets(&self, bounds: &Aabb, t_max: f64) -> bool {
+        let (mut near, mut far) = (0.0_f64, t_max);
+        for k in 0..3 {
+            let (d, o) = (self.direction[k], self.origin[k]);
+            let (lower, upper) = (bounds.min[k] - o, bounds.max[k] - o);
+            if d != 0.0 {
+                let (t0, t1) = (lower / d, upper / d);
+                near = near.max(t0.min(t1));
+                far = far.min(t0.max(t1));
+            } else if lower > 0.0 || upper < 0.0 {
+                return false;
+            }
+        }
+        near <= far * (1.0 + 8.0 * f64::EPSILON)
     }
 }
 

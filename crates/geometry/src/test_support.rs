@@ -256,6 +256,11 @@ pub(crate) fn blocks(random: &mut Random, count: usize) -> Vec<Primitive> {
     enough(count, || generators::blocks(&mut random.0, count))
 }
 
+/// Sheets and shells close behind each other.
+pub(crate) fn stacks(random: &mut Random, count: usize) -> Vec<Primitive> {
+    enough(count, || generators::stacks(&mut random.0, count))
+}
+
 /// A ray's origin and direction.
 pub(crate) type Line = (V, V);
 

@@ -3,8 +3,9 @@
 use crate::build::{BinaryTree, Node};
 use crate::frame::{Box32, Frame};
 use crate::pages::Pages;
+use crate::portal::Portal;
 use crate::query::Four;
-use crate::{Aabb, Primitive, PrimitiveId};
+use crate::{Aabb, Instance, Primitive, PrimitiveId};
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
@@ -18,8 +19,8 @@ const NEAR_CACHE: usize = 16 << 20;
 const PARALLEL_LIMIT: usize = 16_384;
 /// Marks a child that is a leaf.
 pub(crate) const LEAF: u32 = 1 << 31;
-/// Marks, together with [`LEAF`], a leaf that holds but an instance: the rest is its id. What a leaf tells of others would say
-/// nothing of it.
+/// Marks, together with [`LEAF`], a leaf that holds but an instance: the rest is the index of its portal. What a leaf tells of
+/// others would say nothing of it.
 pub(crate) const LONE: u32 = 1 << 30;
 
 /// A node: the boxes of up to sixteen children.
@@ -95,6 +96,8 @@ pub(crate) struct WideTree {
     pub(crate) frame: Frame,
     nodes: Pages<Node16>,
     leaves: Pages<Leaf8>,
+    /// Of the instances that have a leaf of their own, in the order of the tree.
+    portals: Vec<Portal>,
     /// Levels of nodes.
     pub(crate) depth: usize,
     /// Whether there are spheres.
@@ -115,6 +118,7 @@ impl WideTree {
             frame,
             nodes: Pages::new(size.nodes),
             leaves: Pages::new(size.leaves),
+            portals: Vec::new(),
             depth: size.depth,
             spheres: false,
             mesh: false,
@@ -126,9 +130,11 @@ impl WideTree {
             nodes: wide.nodes.as_mut_slice(),
             node_count: 0,
             leaves: Vec::with_capacity(size.leaves),
+            portals: Vec::new(),
         };
         filler.node(0);
         let roots = filler.leaves;
+        wide.portals = filler.portals;
         wide.leaves.as_mut_slice().par_iter_mut().zip(roots).with_min_len(256).for_each(|(leaf, root)| {
             *leaf = Leaf8::new(&frame, tree, root, primitives);
         });
@@ -147,6 +153,12 @@ impl WideTree {
     #[inline(always)]
     pub(crate) fn leaves(&self) -> &[Leaf8] {
         self.leaves.as_slice()
+    }
+
+    /// The portals.
+    #[inline(always)]
+    pub(crate) fn portals(&self) -> &[Portal] {
+        &self.portals
     }
 
     /// Up to `limit` boxes that hold all primitives, as small as the upper nodes of the tree are.
@@ -172,7 +184,7 @@ impl WideTree {
 
     /// Memory held beside the struct itself, bytes.
     pub(crate) fn memory_bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves()) + size_of_val(self.portals())
     }
 }
 
@@ -194,11 +206,14 @@ impl<'a> Choices<'a> {
         Self { tree, primitives, splits }
     }
 
-    /// The instance that a leaf is, if it is but one.
-    fn lone(&self, leaf: u32) -> Option<u32> {
+    /// The instance that a leaf is, if it is one, and its id.
+    fn lone(&self, leaf: u32) -> Option<(&'a Instance, u32)> {
         let Node { first, count, .. } = self.tree.nodes[leaf as usize];
         let id = self.tree.order[first as usize];
-        (count == 1 && matches!(self.primitives[id as usize], Primitive::Instance(_))).then_some(id)
+        match &self.primitives[id as usize] {
+            Primitive::Instance(instance) if count == 1 => Some((instance, id)),
+            _ => None,
+        }
     }
 
     /// The least area of the nodes below a binary node if it becomes up to 1, 2, … 16 children. Itself counts if it stays
@@ -287,6 +302,7 @@ struct Filler<'a> {
     node_count: usize,
     /// The binary nodes that become leaves, in turn.
     leaves: Vec<u32>,
+    portals: Vec<Portal>,
 }
 
 impl Filler<'_> {
@@ -307,8 +323,9 @@ impl Filler<'_> {
                 node.planes[k][1][lane] = max[k];
             }
             node.children.0[lane] = if child_node.count > 0 {
-                if let Some(id) = self.choices.lone(child) {
-                    node.children.0[lane] = id | LEAF | LONE;
+                if let Some((instance, id)) = self.choices.lone(child) {
+                    node.children.0[lane] = self.portals.len() as u32 | LEAF | LONE;
+                    self.portals.push(Portal::new(instance, PrimitiveId(id)));
                     continue;
                 }
                 self.leaves.push(child);
@@ -408,11 +425,19 @@ impl Leaf8 {
     /// [`Triangle::lanes`]: crate::Triangle::lanes
     #[inline(always)]
     pub(crate) fn lanes<F: Four>(&self, token: F::Token, frame: &Frame, lane: usize, axes: [usize; 3]) -> [F; 3] {
-        let lane = lane % LEAF_WIDTH;
-        let [a, b, c] = &self.vertices;
         let unscale = F::splat(token, frame.unscale());
-        let row = |k: usize| F::widened(token, [a[k][lane], b[k][lane], c[k][lane], c[k][lane]]) * unscale;
         let [kx, ky, kz] = axes;
-        [row(kx), row(ky), row(kz)]
+        [
+            F::widened(token, self.row(kx, lane)) * unscale,
+            F::widened(token, self.row(ky, lane)) * unscale,
+            F::widened(token, self.row(kz, lane)) * unscale,
+        ]
+    }
+
+    /// The coordinates of the vertices in a lane along an axis; the fourth is the third's.
+    #[inline(always)]
+    fn row(&self, axis: usize, lane: usize) -> [f32; 4] {
+        let ([a, b, c], lane) = (&self.vertices, lane % LEAF_WIDTH);
+        [a[axis][lane], b[axis][lane], c[axis][lane], c[axis][lane]]
     }
 }

@@ -210,6 +210,7 @@ pub fn scenes(epsilon: f64, seed: u64) -> Vec<Scene> {
             "one triangle, a hundred times",
             vec![Shape::Triangle { corners_m: [[-0.5, -0.5, 0.0], [0.5, -0.5, 0.1], [0.0, 0.6, 0.0]] }; 100],
         ),
+        scene("sheets and shells behind each other", stacks(&mut numbers, 160)),
     ]
 }
 
@@ -261,6 +262,39 @@ pub fn blocks(numbers: &mut Uniform, count: usize) -> Vec<Shape> {
             }
         })
         .collect()
+}
+
+/// Stacks of twenty surfaces each, 1e-6 to 1e-4 apart and in no order: sheets (triangles, parallelograms and disks), shells (spheres
+/// about a point), and balls that touch sheets from behind. A tree that gives up a surface for one that is nearer by a hair, or
+/// nearer but for an error that it allows for, is wrong here.
+#[must_use]
+pub fn stacks(numbers: &mut Uniform, count: usize) -> Vec<Shape> {
+    const IN_STACK: usize = 20;
+    let mut out = Vec::with_capacity(count + IN_STACK);
+    while out.len() < count {
+        let (p, size) = (scale(0.7, in_cube(numbers)), numbers.log_between(0.2, 0.8));
+        let gap_m = numbers.log_between(1e-6, 1e-4);
+        let kind = out.len() / IN_STACK % 3;
+        // What balls touch is where they have a pole.
+        let up = if kind == 2 { [1.0, 0.0, 0.0] } else { numbers.direction() };
+        let (s, t) = frame(up);
+        for i in 0..IN_STACK {
+            let height_m = gap_m * below(numbers, IN_STACK) as f64;
+            let top = add(p, scale(height_m, up));
+            let mut edge = || {
+                scale(size, normalize(add(scale(numbers.between(-1.0, 1.0), s), scale(numbers.between(-1.0, 1.0), t))))
+            };
+            let (a, b) = (edge(), edge());
+            out.push(match (kind, i % 4) {
+                (1, _) => Shape::Sphere { center_m: p, radius_m: size + height_m },
+                (2, 0) => Shape::Sphere { center_m: add(top, scale(-size, up)), radius_m: size },
+                (_, 1) => Shape::Disk { center_m: top, normal: up, radius_m: size },
+                (_, 2) => Shape::Parallelogram { corner_m: add(top, scale(-0.5, add(a, b))), edges_m: [a, b] },
+                _ => Shape::Triangle { corners_m: [add(top, a), add(top, b), sub(sub(top, a), b)] },
+            });
+        }
+    }
+    out
 }
 
 /// Triangles whose sizes and distances from a corner halve at every step: a tree as deep as they are many.

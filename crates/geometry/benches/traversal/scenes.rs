@@ -43,8 +43,7 @@ pub(crate) struct Mesh {
 impl Mesh {
     /// The triangles that have an area.
     pub(crate) fn primitives(&self) -> Vec<Primitive> {
-        let at = |i: u32| Vec3::from_f64(self.vertices[i as usize].map(f64::from));
-        self.faces.iter().filter_map(|f| Triangle::new(at(f[0]), at(f[1]), at(f[2])).ok()).map(Into::into).collect()
+        self.faces.iter().filter_map(|face| triangle(&self.vertices, face)).map(Into::into).collect()
     }
 
     /// Adds a grid of (n × m) quads, two triangles each, at the points `at(i, j)`.
@@ -98,6 +97,9 @@ impl Mesh {
             let r = 1.0 + 0.25 * wave(5.0) + 0.06 * wave(23.0) + 0.015 * wave(97.0);
             d.map(|c| c * r)
         });
+        // Without those at the poles that have no area, all have the same numbers for primitives.
+        let vertices = &self.vertices;
+        self.faces.retain(|face| triangle(vertices, face).is_some());
     }
 
     /// The room that the ball is in.
@@ -180,6 +182,12 @@ impl Mesh {
         mesh.add_box([-3.0, -3.0, -3.0], [3.0, 3.0, 3.0], 1);
         mesh
     }
+}
+
+/// The triangle that a face is, if it has an area.
+fn triangle(vertices: &[[f32; 3]], face: &[u32; 3]) -> Option<Triangle> {
+    let [a, b, c] = face.map(|i| Vec3::from_f64(vertices[i as usize].map(f64::from)));
+    Triangle::new(a, b, c).ok()
 }
 
 /// Balls in a room of six huge balls.

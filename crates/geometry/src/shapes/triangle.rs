@@ -76,8 +76,11 @@ impl Triangle {
     #[inline(always)]
     pub(crate) fn lanes<F: Four>(&self, token: F::Token, [kx, ky, kz]: [usize; 3]) -> [F; 3] {
         let [a, b, c] = [self.a.to_array(), self.b.to_array(), self.c.to_array()];
-        let row = |k: usize| F::new(token, [a[k], b[k], c[k], c[k]]);
-        [row(kx), row(ky), row(kz)]
+        [
+            F::new(token, [a[kx], b[kx], c[kx], c[kx]]),
+            F::new(token, [a[ky], b[ky], c[ky], c[ky]]),
+            F::new(token, [a[kz], b[kz], c[kz], c[kz]]),
+        ]
     }
 
     /// [`Triangle::intersect`] with the result of [`Triangle::lanes`], for the triangle and the query themselves where that does

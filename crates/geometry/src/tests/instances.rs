@@ -94,6 +94,33 @@ fn tree_equals_brute_force_on_instances_within_instances() {
     }
 }
 
+#[test]
+fn tree_equals_brute_force_on_placed_meshes() {
+    // What is placed has a tree, of triangles alone or of others too, and is small beside the ways that rays take to it.
+    for seed in 0..3 {
+        let mut random = Random::new(80 + seed);
+        let mesh = Mesh::sphere(9, 12, |p| 1.0 + 0.3 * (7.0 * p.x).sin() * (5.0 * p.y).cos()).primitives();
+        let others = soup(&mut random, 40, -2.0..0.0);
+        let placed = [representable(&mesh), mesh, others].map(|p| Arc::new(Geometry::build_with(p, 0).unwrap()));
+        let primitives: Vec<Primitive> = (0..60)
+            .map(|i| {
+                let by = random.in_cube();
+                let rows = match i % 4 {
+                    0 => affine(&mut random, -3.0..0.0),
+                    1 => scaling([[1.0, 0.5, 0.01][i / 4 % 3]; 3]),
+                    _ => {
+                        let scale = random.log_uniform(-5.0, 0.0);
+                        similarity(&mut random, scale, i % 4 == 2)
+                    }
+                };
+                place(&placed[i % 3], rows, by)
+            })
+            .collect();
+        let hits = tree::check(primitives, 6_000, 180 + seed, |l| l);
+        assert!(hits > 0.3, "only {hits} of the rays hit anything");
+    }
+}
+
 /// Compares hits of `rays` lines on a geometry with those on its baked copy; counts them.
 fn same_as_baked(random: &mut Random, placed: &Geometry, flat: &Geometry, rays: usize) -> usize {
     let bounds = flat.bounds().unwrap();

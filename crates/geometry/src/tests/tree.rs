@@ -52,6 +52,11 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
             let aimed = Ray { aims_at: closest, ..ray };
             let query = crate::query::Query::new(&aimed).unwrap();
             assert_eq!(geometry.occluded(&aimed), geometry.any_flat(&query), "{aimed:?}");
+            // One that leaves it goes on.
+            let left = Ray { leaves: closest, ..ray };
+            let query = crate::query::Query::new(&left).unwrap();
+            assert_eq!(geometry.closest(&query), geometry.closest_flat(&query), "{left:?}");
+            assert_eq!(geometry.occluded(&left), geometry.any_flat(&query), "{left:?}");
         }
         usize::from(flat.is_some())
     }
@@ -187,6 +192,19 @@ fn tree_equals_brute_force_on_triangles_that_converge() {
     }
     let hits = check(all, 20_000, 140, |l| l);
     assert!(hits > 0.1, "only {hits} of the rays hit anything");
+}
+
+#[test]
+fn tree_equals_brute_force_where_surfaces_lie_close_behind_each_other() {
+    for seed in 0..3 {
+        let shapes = stacks(&mut Random::new(70 + seed), 200);
+        // All that is flat in trees of triangles alone, too.
+        let triangles = shapes.iter().filter(|p| matches!(p, Primitive::Triangle(_))).cloned().collect();
+        for primitives in [representable(&shapes), triangles, shapes] {
+            let hits = check(primitives, 15_000, 170 + seed, |l| l);
+            assert!(hits > 0.3, "only {hits} of the rays hit anything");
+        }
+    }
 }
 
 #[test]

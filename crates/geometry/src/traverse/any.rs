@@ -7,6 +7,7 @@ use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
 use super::{Filters, Narrow, intersect_exact};
 use crate::frame::FrameRay;
+use crate::portal::Portal;
 use crate::query::Query;
 use crate::wide::{LEAF, LONE, Leaf8, NODE_WIDTH, Node16, Nodes, WideTree};
 use crate::{Primitive, PrimitiveId};
@@ -53,7 +54,7 @@ pub(super) fn any_on<F: Filters, S: Start, const MESH: bool, const N: usize>(
                 }
             }
             if !MESH && child & LONE != 0 {
-                break Open::Instance(PrimitiveId(child & !(LEAF | LONE)));
+                break Open::Instance(&tree.portals()[(child & !(LEAF | LONE)) as usize]);
             }
             let leaf = &leaves[(child & !LEAF) as usize];
             let candidates = candidates::<F, MESH>(filters, frame_ray, &chords, leaf, limit, certain_limit);
@@ -79,7 +80,7 @@ pub(super) fn any_on<F: Filters, S: Start, const MESH: bool, const N: usize>(
             }
         };
         let hit = match open {
-            Open::Instance(id) => occludes(primitives, query.get(), id),
+            Open::Instance(portal) => filters.occludes_within(portal, primitives, query.get_apart()),
             Open::Leaf(leaf, mut mask) => loop {
                 if mask == 0 {
                     break false;
@@ -106,7 +107,7 @@ enum Open<'a> {
     /// Whether these lanes of a leaf are hit.
     Leaf(&'a Leaf8, u32),
     /// Whether anything within an instance is.
-    Instance(PrimitiveId),
+    Instance(&'a Portal),
 }
 
 /// The next child of a node or, if there is none left, of one above it.

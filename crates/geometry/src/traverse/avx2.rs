@@ -4,11 +4,13 @@
 use super::met::{Entered, Row};
 use super::vector::Vector;
 use super::wide256::D8;
+use super::within::{closest_within, occludes_within};
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
-use crate::best::Found;
+use crate::best::{Best, Found};
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
-use crate::query::Four;
+use crate::portal::Portal;
+use crate::query::{Four, Query};
 use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
 use std::arch::x86_64::*;
 
@@ -59,6 +61,18 @@ fn any<S: Start>(filters: Avx2, tree: &WideTree, primitives: &[Primitive], start
 #[target_feature(enable = "avx2,bmi1")]
 fn closest_far<S: Start>(filters: Avx2, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
     closest_far_with(filters, tree, primitives, start)
+}
+
+#[target_feature(enable = "avx2,bmi1")]
+#[inline(never)]
+fn closest_in(filters: Avx2, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+    closest_within(filters, best, portal, primitives, query)
+}
+
+#[target_feature(enable = "avx2,bmi1")]
+#[inline(never)]
+fn occludes_in(filters: Avx2, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+    occludes_within(filters, portal, primitives, query)
 }
 
 #[target_feature(enable = "avx2,bmi1")]
@@ -251,9 +265,11 @@ impl Four for D4 {
     fn signs(self) -> [u32; 2] {
         // SAFETY: as for the operators.
         unsafe {
+            // Without a closure, which would be called, and be compiled without AVX.
             let zero = _mm256_setzero_pd();
-            [_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, zero), _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, zero)]
-                .map(|lanes| _mm256_movemask_pd(lanes) as u32)
+            let below = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, zero));
+            let above = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(self.0, zero));
+            [below as u32, above as u32]
         }
     }
 
@@ -407,6 +423,13 @@ pub(super) struct Ray8 {
     entry: [usize; 3],
 }
 
+/// Each of three numbers, in all lanes.
+#[inline(always)]
+fn broadcast(token: Avx2, v: F4) -> [F8; 3] {
+    let [x, y, z, _] = v.to_array();
+    [F8::splat(token, x), F8::splat(token, y), F8::splat(token, z)]
+}
+
 impl Filters for Avx2 {
     type Ray = Ray8;
     type Met = Entered;
@@ -417,15 +440,11 @@ impl Filters for Avx2 {
 
     #[inline(always)]
     fn ray(self, ray: &BoxRay<F4>) -> Ray8 {
-        let all = |v: F4| {
-            let [x, y, z, _] = v.to_array();
-            [F8::splat(self, x), F8::splat(self, y), F8::splat(self, z)]
-        };
         Ray8 {
-            origin_near: all(ray.origin_near),
-            origin_far: all(ray.origin_far),
-            reciprocal_near: all(ray.reciprocal_near),
-            reciprocal_far: all(ray.reciprocal_far),
+            origin_near: broadcast(self, ray.origin_near),
+            origin_far: broadcast(self, ray.origin_far),
+            reciprocal_near: broadcast(self, ray.reciprocal_near),
+            reciprocal_far: broadcast(self, ray.reciprocal_far),
             entry: ray.negative,
         }
     }
@@ -470,6 +489,18 @@ impl Filters for Avx2 {
     fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
         // SAFETY: `self` proves that the processor has AVX2.
         unsafe { any_far(self, tree, primitives, start) }
+    }
+
+    #[inline(always)]
+    fn closest_within(self, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+        // SAFETY: `self` proves that the processor has AVX2.
+        unsafe { closest_in(self, best, portal, primitives, query) }
+    }
+
+    #[inline(always)]
+    fn occludes_within(self, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+        // SAFETY: `self` proves that the processor has AVX2.
+        unsafe { occludes_in(self, portal, primitives, query) }
     }
 }
 

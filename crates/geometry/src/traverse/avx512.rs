@@ -4,10 +4,13 @@
 use super::avx2::{Avx2, D4, F4, F8, prefetch};
 use super::met::{Met, Row};
 use super::wide512::{D8, F16};
+use super::within::{closest_within, occludes_within};
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
-use crate::best::Found;
+use crate::best::{Best, Found};
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
+use crate::portal::Portal;
+use crate::query::Query;
 use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use std::arch::x86_64::*;
 
@@ -70,6 +73,18 @@ fn closest_far<S: Start>(filters: Avx512, tree: &WideTree, primitives: &[Primiti
 }
 
 #[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
+#[inline(never)]
+fn closest_in(filters: Avx512, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+    closest_within(filters, best, portal, primitives, query)
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
+#[inline(never)]
+fn occludes_in(filters: Avx512, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+    occludes_within(filters, portal, primitives, query)
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
 fn any_far<S: Start>(filters: Avx512, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
     any_far_with(filters, tree, primitives, start)
 }
@@ -122,7 +137,8 @@ impl Met for Met16 {
     fn pair<const SECOND: bool>(&self, node: &Node16) -> [u64; 2] {
         // SAFETY: as above.
         unsafe {
-            let [children, near] = self.front(node).map(|v| _mm512_castsi512_si128(v));
+            let [children, near] = self.front(node);
+            let (children, near) = (_mm512_castsi512_si128(children), _mm512_castsi512_si128(near));
             let pair = if SECOND { _mm_unpackhi_epi32(children, near) } else { _mm_unpacklo_epi32(children, near) };
             [_mm_cvtsi128_si64(pair) as u64, _mm_extract_epi64::<1>(pair) as u64]
         }
@@ -144,6 +160,14 @@ impl Met for Met16 {
     }
 }
 
+/// Each of three numbers, in all lanes.
+#[inline(always)]
+fn broadcast(_: Avx512, v: F4) -> [__m512; 3] {
+    let [x, y, z, _] = v.to_array();
+    // SAFETY: the token proves AVX-512.
+    unsafe { [_mm512_set1_ps(x), _mm512_set1_ps(y), _mm512_set1_ps(z)] }
+}
+
 impl Filters for Avx512 {
     type Ray = Ray16;
     type Met = Met16;
@@ -154,16 +178,11 @@ impl Filters for Avx512 {
 
     #[inline(always)]
     fn ray(self, ray: &BoxRay<F4>) -> Ray16 {
-        let all = |v: F4| {
-            let [x, y, z, _] = v.to_array();
-            // SAFETY: the token proves AVX-512.
-            unsafe { [_mm512_set1_ps(x), _mm512_set1_ps(y), _mm512_set1_ps(z)] }
-        };
         Ray16 {
-            origin_near: all(ray.origin_near),
-            origin_far: all(ray.origin_far),
-            reciprocal_near: all(ray.reciprocal_near),
-            reciprocal_far: all(ray.reciprocal_far),
+            origin_near: broadcast(self, ray.origin_near),
+            origin_far: broadcast(self, ray.origin_far),
+            reciprocal_near: broadcast(self, ray.reciprocal_near),
+            reciprocal_far: broadcast(self, ray.reciprocal_far),
             entry: ray.negative,
         }
     }
@@ -206,5 +225,17 @@ impl Filters for Avx512 {
     fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
         // SAFETY: `self` proves that the processor has AVX-512.
         unsafe { any_far(self, tree, primitives, start) }
+    }
+
+    #[inline(always)]
+    fn closest_within(self, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+        // SAFETY: `self` proves that the processor has AVX-512.
+        unsafe { closest_in(self, best, portal, primitives, query) }
+    }
+
+    #[inline(always)]
+    fn occludes_within(self, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+        // SAFETY: `self` proves that the processor has AVX-512.
+        unsafe { occludes_in(self, portal, primitives, query) }
     }
 }

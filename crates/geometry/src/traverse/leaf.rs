@@ -109,10 +109,17 @@ fn flats<F: Filters, const MESH: bool>(
 fn project<F: Filters>(filters: F, ray: &FrameRay<Narrow<F>>, vertex: &[[f32; LEAF_WIDTH]; 3]) -> [F::Vector; 3] {
     let [kx, ky, kz] = AXES[ray.axis % AXES.len()];
     let (start, slopes) = (ray.start_along.to_array(), ray.slopes.to_array());
-    let all = |v| F::Vector::splat(filters.into(), v);
-    let from_origin = |row: usize, k: usize| all(start[k]) - F::Vector::load(filters.into(), &vertex[row]);
-    let (x, y, z) = (from_origin(kx, 0), from_origin(ky, 1), from_origin(kz, 2));
-    [x - all(slopes[0]) * z, y - all(slopes[1]) * z, z]
+    let x = from_origin(filters, start[0], &vertex[kx]);
+    let y = from_origin(filters, start[1], &vertex[ky]);
+    let z = from_origin(filters, start[2], &vertex[kz]);
+    let (sx, sy) = (F::Vector::splat(filters.into(), slopes[0]), F::Vector::splat(filters.into(), slopes[1]));
+    [x - sx * z, y - sy * z, z]
+}
+
+/// The origin's coordinate less the vertices'. No closure, which may be called, and be compiled without vector instructions.
+#[inline(always)]
+fn from_origin<F: Filters>(filters: F, start: f32, row: &[f32; LEAF_WIDTH]) -> F::Vector {
+    F::Vector::splat(filters.into(), start) - F::Vector::load(filters.into(), row)
 }
 
 #[inline(always)]
@@ -177,11 +184,18 @@ fn spheres<F: Filters>(
     let shortest = inner * inner * all(n) - squared * all(1.0 + 32.0 * f32::EPSILON);
     let shorter = shortest.sqrt() * all(per_n.abs() * (1.0 - 32.0 * f32::EPSILON));
     let t_error = all(8.0 * delta);
-    let (near, far) = (middle - longer - t_error, middle - shorter + t_error);
-    let missed = !(near.at_most(all(limit)) & all(0.0).at_most(middle + longer + t_error));
-    // The first root is the hit only where it is certainly ahead.
-    let ahead = all(0.0).below(near) & far.below(all(certain_limit));
-    let certain = ahead & all(0.0).below(shortest) & all(0.0).below(inner);
+    let (mut near, mut far) = (middle - longer - t_error, middle - shorter + t_error);
+    let farther = middle + longer + t_error;
+    let missed = !(near.at_most(all(limit)) & all(0.0).at_most(farther));
+    let pierced = all(0.0).below(shortest) & all(0.0).below(inner);
+    // Around the origin, where the first root is certainly behind, the second is the hit.
+    let around = met & pierced & far.below(all(0.0)) & !missed;
+    if around != 0 {
+        near = near.only(!around as u8) + (middle + shorter - t_error).only(around as u8);
+        far = far.only(!around as u8) + farther.only(around as u8);
+    }
+    // A root is the hit only where it is certainly ahead.
+    let certain = pierced & all(0.0).below(near) & far.below(all(certain_limit));
     // A sphere that the ray leaves is hit again only if its centre is ahead.
     let left = (middle + t_error).below(all(0.0));
     Candidates { mask: met, missed, unbounded: 0, certain, left, near: Row(near.to_array()), far: Row(far.to_array()) }

@@ -20,10 +20,12 @@ mod vector;
 mod wide256;
 #[cfg(target_arch = "x86_64")]
 mod wide512;
+mod within;
 
-use crate::best::Found;
+use crate::best::{Best, Found};
 use crate::build::MAX_DEPTH;
 use crate::frame::BoxRay;
+use crate::portal::Portal;
 use crate::query::{Four, Projection, Query, RawHit};
 use crate::wide::{LEAF_WIDTH, Leaf8, NODE_WIDTH, Node16, WideTree};
 use crate::{Primitive, Triangle};
@@ -102,6 +104,10 @@ trait Filters:
     fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found>;
     /// [`any_far_with`], likewise.
     fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool;
+    /// [`within::closest_within`], likewise.
+    fn closest_within(self, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool;
+    /// [`within::occludes_within`], likewise.
+    fn occludes_within(self, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool;
 }
 
 /// Work that is compiled for each instruction set. Its function is inlined into one that is.

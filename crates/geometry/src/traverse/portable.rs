@@ -3,10 +3,12 @@
 use super::flat::{BLOCK, PlainEight, Wide};
 use super::met::{Entered, Row};
 use super::vector::Vector;
+use super::within::{closest_within, occludes_within};
 use super::{Filters, Start, any_far_with, closest_far_with};
-use crate::best::Found;
+use crate::best::{Best, Found};
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
-use crate::query::Plain4;
+use crate::portal::Portal;
+use crate::query::{Plain4, Query};
 use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
 use crate::{LANES, Primitive};
 use std::array::from_fn;
@@ -229,5 +231,15 @@ impl Filters for Portable {
 
     fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
         any_far_with(self, tree, primitives, start)
+    }
+
+    #[inline(never)]
+    fn closest_within(self, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+        closest_within(self, best, portal, primitives, query)
+    }
+
+    #[inline(never)]
+    fn occludes_within(self, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
+        occludes_within(self, portal, primitives, query)
     }
 }

@@ -121,6 +121,12 @@ impl<S: Start> Deferred<S> {
         Self { start, query: None }
     }
 
+    /// [`Deferred::get`] where it is seldom asked for.
+    #[inline(never)]
+    pub(super) fn get_apart(&mut self) -> &Query {
+        self.get()
+    }
+
     /// The query of a start that has entered a frame.
     pub(super) fn get(&mut self) -> &Query {
         let start = self.start;

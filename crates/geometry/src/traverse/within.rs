@@ -1,0 +1,76 @@
+//! From the walk of a tree into what an instance places.
+
+use super::{Filters, LEVELS, any_on, closest_on, occludes};
+use crate::Primitive;
+use crate::best::Best;
+use crate::frame::Entry;
+use crate::portal::Portal;
+use crate::query::Query;
+use crate::wide::NODE_WIDTH;
+
+/// [`Best::test`] of an instance: the same, without a query where there is a tree to walk. The bounds, which cost more than what
+/// most rays that miss find out in the tree's root, are asked for only where there is a hit.
+#[inline(always)]
+pub(super) fn closest_within<F: Filters>(
+    filters: F,
+    best: &mut Best,
+    portal: &Portal,
+    primitives: &[Primitive],
+    query: &Query,
+) -> bool {
+    let Some((geometry, tree)) = portal.tree() else { return best.test(primitives, query, portal.id) };
+    // Left as a whole.
+    if query.leaves == portal.id {
+        return false;
+    }
+    let t_max = best.limit(portal.id);
+    let (lanes, ray) = portal.enter::<F::Four>(filters.into(), query, t_max);
+    let (inner, ray) = (geometry.primitives(), &ray);
+    let entry = if tree.depth <= LEVELS[0] {
+        tree.frame.enter_anywhere::<F::Four>(filters.into(), lanes, t_max)
+    } else {
+        Entry::Unknown
+    };
+    const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
+    let found = match entry {
+        Entry::Misses => None,
+        Entry::Ray(near) if tree.mesh => closest_on::<F, _, true, ROOM>(filters, tree, inner, ray, &near),
+        Entry::Ray(near) => closest_on::<F, _, false, ROOM>(filters, tree, inner, ray, &near),
+        Entry::Unknown => filters.closest_far(tree, inner, ray),
+    };
+    let Some((hit, surface)) = found else { return false };
+    // False where t is so small that the change of units lost it.
+    let found = 0.0 < hit.t && hit.t < t_max && portal.is_met(query, t_max);
+    if found {
+        best.set_within(hit, portal.id, portal.outward(surface));
+    }
+    found
+}
+
+/// [`occludes`] of an instance, likewise.
+#[inline(always)]
+pub(super) fn occludes_within<F: Filters>(
+    filters: F,
+    portal: &Portal,
+    primitives: &[Primitive],
+    query: &Query,
+) -> bool {
+    let Some((geometry, tree)) = portal.tree() else { return occludes(primitives, query, portal.id) };
+    if portal.id == query.aims_at || portal.id == query.leaves {
+        return false;
+    }
+    let (lanes, ray) = portal.enter::<F::Four>(filters.into(), query, query.t_max);
+    let (inner, ray) = (geometry.primitives(), &ray);
+    let entry = if tree.depth <= LEVELS[0] {
+        tree.frame.enter_anywhere::<F::Four>(filters.into(), lanes, query.t_max)
+    } else {
+        Entry::Unknown
+    };
+    let hit = match entry {
+        Entry::Misses => false,
+        Entry::Ray(near) if tree.mesh => any_on::<F, _, true, { LEVELS[0] }>(filters, tree, inner, ray, &near),
+        Entry::Ray(near) => any_on::<F, _, false, { LEVELS[0] }>(filters, tree, inner, ray, &near),
+        Entry::Unknown => filters.any_far(tree, inner, ray),
+    };
+    hit && portal.is_met(query, query.t_max)
+}
