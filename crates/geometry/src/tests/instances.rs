@@ -101,7 +101,14 @@ fn tree_equals_brute_force_on_placed_meshes() {
         let mut random = Random::new(80 + seed);
         let mesh = Mesh::sphere(9, 12, |p| 1.0 + 0.3 * (7.0 * p.x).sin() * (5.0 * p.y).cos()).primitives();
         let others = soup(&mut random, 40, -2.0..0.0);
-        let placed = [representable(&mesh), mesh, others].map(|p| Arc::new(Geometry::build_with(p, 0).unwrap()));
+        // Whose corners are those of its box: what rounding lets a ray meet outside, the box decides.
+        let sheet = (0..32_u8).map(|i| {
+            let corner = v(f64::from(i / 2 % 4) * 0.5 - 1.0, f64::from(i / 8) * 0.5 - 1.0, 0.0);
+            let [x, y] = [v(0.5, 0.0, 0.0), v(0.0, 0.5, 0.0)];
+            Triangle::new(corner, corner + x + y, corner + if i % 2 == 0 { x } else { y }).unwrap().into()
+        });
+        let placed = [representable(&mesh), mesh, others, sheet.collect()];
+        let placed = placed.map(|p| Arc::new(Geometry::build_with(p, 0).unwrap()));
         let primitives: Vec<Primitive> = (0..60)
             .map(|i| {
                 let by = random.in_cube();
@@ -113,7 +120,7 @@ fn tree_equals_brute_force_on_placed_meshes() {
                         similarity(&mut random, scale, i % 4 == 2)
                     }
                 };
-                place(&placed[i % 3], rows, by)
+                place(&placed[i * 7 / 4 % 4], rows, by)
             })
             .collect();
         let hits = tree::check(primitives, 6_000, 180 + seed, |l| l);
