@@ -3,6 +3,8 @@
 mod accuracy;
 mod assignment;
 mod channels;
+#[cfg(feature = "denoise")]
+mod denoise;
 mod display;
 mod explain;
 mod farm;

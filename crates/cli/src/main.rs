@@ -44,6 +44,8 @@ enum Command {
     Farm(commands::farm::Args),
     Quote(commands::quote::Args),
     Compare(commands::compare::Args),
+    #[cfg(feature = "denoise")]
+    Denoise(commands::denoise::Args),
     Study(commands::study::Args),
     Explain(commands::explain::Args),
     Import(commands::import::Args),
@@ -62,6 +64,8 @@ fn main() -> ExitCode {
         Command::Farm(args) => commands::farm::run(args),
         Command::Quote(args) => commands::quote::run(args),
         Command::Compare(args) => commands::compare::run(args),
+        #[cfg(feature = "denoise")]
+        Command::Denoise(args) => commands::denoise::run(args),
         Command::Study(args) => commands::study::run(args),
         Command::Explain(args) => commands::explain::run(args),
         Command::Import(args) => commands::import::run(args),

@@ -1,6 +1,8 @@
 //! The commands, one a module: an `Args` for clap, and `pub(crate) fn run(args: Args) -> Outcome`.
 
 pub(crate) mod compare;
+#[cfg(feature = "denoise")]
+pub(crate) mod denoise;
 pub(crate) mod explain;
 pub(crate) mod farm;
 pub(crate) mod figures;
