@@ -77,6 +77,27 @@ fn rough_diffuse_reflection_has_the_mean_albedo_of_its_closed_form() {
     }
 }
 
+/// With the ground too dark for a second bounce f·π/ρ = A(1 + r·s/t) for each pair of directions: s is what is left of their cosine
+/// without the heights, t the larger height where s > 0 and 1 elsewhere (Portsmouth et al. 2024, equation (5)).
+#[test]
+fn rough_diffuse_reflection_is_brightest_toward_its_light() {
+    let (rho, roughness) = (1e-9, 0.6);
+    let kind = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho).into(), roughness };
+    let (bsdf, up) = (Bsdf::new(&kind, RANGE_NM), Shading::flat(Vec3::new(0.0, 0.0, 1.0)));
+    let scale = 1.0 / (1.0 + roughness * (0.5 - 2.0 / (3.0 * PI)));
+    for (mu_o, mu_i) in [(0.6, 0.6), (0.9, 0.3), (0.2, 0.8)] {
+        for turns in [0.0_f64, 0.1, 0.3, 0.5, 0.85] {
+            let s = f64::sqrt((1.0 - mu_o * mu_o) * (1.0 - mu_i * mu_i)) * (2.0 * PI * turns).cos();
+            let t = if s > 0.0 { f64::max(mu_o, mu_i) } else { 1.0 };
+            let (wo, wi) = (direction(mu_o, 0.2), direction(mu_i, 0.2 + turns));
+            let (f_cos, _) = bsdf.eval::<f64, 1>(&Lanes([550.0]), &up, wo, wi);
+            let (read, truth) = (f_cos[0] * PI / (rho * mu_i), scale * (1.0 + roughness * s / t));
+            // The second bounce, ρ of the first.
+            assert!((read - truth).abs() < 1e-8, "{mu_o}, {mu_i}, {turns} turns: {read} is not {truth}");
+        }
+    }
+}
+
 #[test]
 fn a_spot_has_its_intensity_and_its_power() {
     let intensity = PathSpectrum::Constant(3.0);

@@ -275,3 +275,105 @@ fn sheets_pass_light_straight_on_along_their_axis() {
         assert_eq!(passed, [1.0, 1.0, 0.0, 0.0]);
     }
 }
+
+/// f·|cos θ| and the Mueller matrix of a pair of directions; `None` where nothing is scattered.
+fn scattered(bsdf: &Bsdf, wo: Vec3<f64>, wi: Vec3<f64>) -> Option<(f64, Matrix)> {
+    let (lambda, at) = (Lanes([550.0]), Shading::flat(up()));
+    let (f_cos, _) = bsdf.eval::<f64, 1>(&lambda, &at, wo, wi);
+    (f_cos[0] > 0.0).then(|| {
+        let mueller = bsdf.mueller(&lambda, &at, wo, wi, Lobe::SolidAngle);
+        (f_cos[0], mueller.map_or(DEPOLARISER, |mueller| mueller.matrix(0)))
+    })
+}
+
+fn differ(a: &Matrix, b: &Matrix) -> f64 {
+    a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// Pairs of directions in general position, the second on either side.
+fn pairs() -> impl Iterator<Item = (Vec3<f64>, Vec3<f64>)> {
+    let from = [direction(0.6, 0.2), direction(0.3, 0.0), -direction(0.9, 0.6), -direction(0.5, 0.1)];
+    from.into_iter().flat_map(|wo| {
+        let up = [direction(0.7, 0.65), direction(0.2, 0.4), direction(0.75, 0.62), direction(0.7, 0.1)];
+        let to = up.into_iter().chain([-direction(0.8, 0.7), -direction(0.85, 0.22), -direction(0.7, 0.03)]);
+        to.map(move |wi| (wo, wi))
+    })
+}
+
+/// What meets one facet leaves it as it leaves a smooth surface that lies as the facet does.
+#[test]
+fn a_facet_does_to_polarised_light_what_a_smooth_surface_in_its_place_does() {
+    let conductor = MaterialKind::Conductor { metal: metal(0.2, 3.0) };
+    let rough_conductor = MaterialKind::RoughConductor { metal: metal(0.2, 3.0), alpha: 0.4, compensated: false };
+    let mut compared = [0; 2];
+    for (rough, smooth, coated) in [
+        (rough_conductor, conductor, false),
+        (rough_glass(0.4, false), glass(1.5, 1.0), false),
+        (plastic(0.0, 0.4), glass(1.5, 1.0), true),
+    ] {
+        let (rough, smooth) = (bsdf(&rough), bsdf(&smooth));
+        // A coat is on both sides, so that from below nothing is inside.
+        for (wo, wi) in pairs().filter(|(wo, _)| !coated || wo.z > 0.0) {
+            let Some((_, read)) = scattered(&rough, wo, wi) else { continue };
+            let crosses = wo.z * wi.z < 0.0;
+            let index = |w: Vec3<f64>| if w.z > 0.0 { 1.0 } else { 1.5 };
+            let h = if crosses { wo * index(wo) + wi * index(wi) } else { wo + wi }.normalized();
+            let facet = Shading::flat(if h.z < 0.0 { -h } else { h });
+            let lobe = Lobe::Delta(if crosses { 0.999_999 } else { 0.0 });
+            let truth = smooth.mueller(&Lanes([550.0]), &facet, wo, wi, lobe).unwrap().matrix(0);
+            assert!(differ(&read, &truth) < 1e-9, "{wo:?} {wi:?}: {read:?} is not {truth:?}");
+            assert!(differ(&read, &DEPOLARISER) > 1e-3);
+            compared[usize::from(crosses)] += 1;
+        }
+    }
+    assert!(compared[0] > 10 && compared[1] >= 3, "{compared:?}");
+}
+
+/// f times the matrix adds up over the parts of a surface: what several facets of a metal add is unpolarised, and a mixture is its parts.
+#[test]
+fn what_parts_of_a_surface_do_to_polarised_light_adds_up() {
+    let rough = |compensated| MaterialKind::RoughConductor { metal: metal(0.2, 3.0), alpha: 0.8, compensated };
+    let (single, whole) = (bsdf(&rough(false)), bsdf(&rough(true)));
+    let (first, second) = (bsdf(&rough_metal(0.2, 3.0, 0.3)), bsdf(&plastic(0.6, 0.2)));
+    let mixed = bsdf(&blend());
+    let mut compared = 0;
+    for (wo, wi) in pairs().filter(|(wo, wi)| wo.z > 0.0 && wi.z > 0.0) {
+        let part = |bsdf: &Bsdf, share: f64| {
+            let (f, matrix) = scattered(bsdf, wo, wi).unwrap();
+            matrix.map(|row| row.map(|entry| share * f * entry))
+        };
+        let sum =
+            |a: Matrix, b: Matrix| -> Matrix { std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + b[i][j])) };
+        let [f_single, f_whole] = [&single, &whole].map(|bsdf| scattered(bsdf, wo, wi).unwrap().0);
+        assert!(f_whole > 1.01 * f_single);
+        let several = DEPOLARISER.map(|row| row.map(|entry| (f_whole - f_single) * entry));
+        assert!(differ(&part(&whole, 1.0), &sum(part(&single, 1.0), several)) < 1e-12, "{wo:?} {wi:?}");
+        assert!(differ(&part(&mixed, 1.0), &sum(part(&first, 0.6), part(&second, 0.4))) < 1e-12, "{wo:?} {wi:?}");
+        compared += 1;
+    }
+    assert_eq!(compared, 8);
+}
+
+/// Amplitudes 1 : √e give diattenuation (1 − e)/(1 + e) and leave 2√e/(1 + e) of the rest; 1 : exp(iδ) turns by δ, which a plate of a fixed thickness
+/// has in inverse proportion to the wavelength.
+#[test]
+fn sheets_that_leak_or_delay_have_the_matrices_of_their_amplitudes() {
+    let axis = [1.0, 0.0, 0.0];
+    let matrix = |sheet: PolarisingSheet, nm: f64| {
+        let bsdf = bsdf(&MaterialKind::PolarisingSheet { axis, sheet });
+        let at = Shading::flat(up()).with_axis(Vec3::from_array(axis));
+        bsdf.mueller(&Lanes([nm]), &at, direction(0.8, 0.1), -direction(0.8, 0.1), Lobe::Delta(0.5)).unwrap().matrix(0)
+    };
+    let diagonal =
+        |a: f64, b: f64, c: f64| [[1.0, a, 0.0, 0.0], [a, 1.0, 0.0, 0.0], [0.0, 0.0, b, c], [0.0, 0.0, -c, b]];
+    let leaky = PolarisingSheet::Polariser { transmittance: Spectrum::Constant(0.8), extinction: 0.25 };
+    assert!(differ(&matrix(leaky, 550.0), &diagonal(0.6, 0.8, 0.0)) < 1e-12);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    for (at_nm, nm, delay) in
+        [(None, 440.0, quarter), (Some(550.0), 550.0, quarter), (Some(550.0), 440.0, 1.25 * quarter)]
+    {
+        let read = matrix(PolarisingSheet::Retarder { retardance_rad: quarter, at_nm }, nm);
+        let truth = diagonal(0.0, delay.cos(), delay.sin());
+        assert!(differ(&read, &truth) < 1e-12, "{at_nm:?} at {nm} nm: {read:?} is not {truth:?}");
+    }
+}

@@ -95,6 +95,33 @@ pub fn is_reciprocal(subject: &dyn Scatters, seed: u64) -> Verdict {
     })
 }
 
+/// A surface without grain looks the same turned about its normal: f and pdf of two directions turned together stay what they are, to
+/// 256 ε relative and what rounding the turned directions may do to them. For subjects that have no grain; it is in no suite.
+pub fn is_isotropic(subject: &dyn Scatters, seed: u64) -> Verdict {
+    const LAW: &str = "f and pdf are the same turned about the normal";
+    let epsilon = subject.epsilon();
+    let strategy = (pairs(subject), 0.0..std::f64::consts::TAU);
+    for_all(LAW, strategy, CASES, seed, |((wo, wi, wavelength_nm), angle)| {
+        let (sin, cos) = angle.sin_cos();
+        let turned = |w: Vec3| representable([cos * w[0] - sin * w[1], sin * w[0] + cos * w[1], w[2]], epsilon);
+        let f = |wo: Vec3, wi: Vec3| subject.f(wo, wi, wavelength_nm);
+        let pdf = |wo: Vec3, wi: Vec3| subject.pdf(wo, wi, wavelength_nm);
+        let judged = |name: &str, of: &dyn Fn(Vec3, Vec3) -> f64| {
+            let (here, there) = (of(wo, wi), of(turned(wo), turned(wi)));
+            let largest = here.abs().max(there.abs());
+            let error = if largest == 0.0 { 0.0 } else { (here - there).abs() / largest };
+            let mut bound = RELATIVE_BOUND * epsilon;
+            if error > bound {
+                bound += variation(of, wo, wi, epsilon) / largest;
+            }
+            let story =
+                format!("wo {wo:?}, wi {wi:?}, {wavelength_nm} nm: {name} {here:e}, turned by {angle} rad {there:e}");
+            Verdict::bounded(LAW, error, bound, story)
+        };
+        Verdict::worst_of(LAW, [judged("f", &f), judged("pdf", &pdf)])
+    })
+}
+
 fn reversed(subject: &dyn Scatters, wo: Vec3, lobe: &DeltaLobe, wavelength_nm: f64) -> Verdict {
     const LAW: &str = "a delta lobe has its reverse";
     let epsilon = subject.epsilon();

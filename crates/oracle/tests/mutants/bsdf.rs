@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use etalon_oracle::{
+    laws,
     subjects::{DeltaLobe, Density, Scattered, Scatters},
     suite,
 };
@@ -29,6 +30,8 @@ impl Scatters for Lambert {
             "no division by pi" => self.albedo,
             "half pi" => self.albedo * 2.0 / PI,
             "depends on wo" => self.albedo / PI * (1.0 + 0.1 * wo[2].abs()),
+            // Reciprocal, and of the same albedo.
+            "prefers an azimuth" => self.albedo / PI * (1.0 + 0.1 * (wo[0] * wi[0] - wo[1] * wi[1])),
             _ => self.albedo / PI,
         }
     }
@@ -245,6 +248,14 @@ fn wrong_lamberts_are_rejected() {
     ] {
         rejected(&Lambert { albedo: 1.0, fault }, fault);
     }
+}
+
+#[test]
+fn what_prefers_an_azimuth_has_a_grain() {
+    let isotropic = |fault| laws::is_isotropic(&Lambert { albedo: 0.7, fault }, 1);
+    isotropic("").assert();
+    assert!(!isotropic("prefers an azimuth").pass);
+    laws::is_isotropic(&Rough { alpha: 0.1, fault: "" }, 2).assert();
 }
 
 #[test]

@@ -161,6 +161,14 @@ impl LossTable {
     }
 }
 
+/// The least and the greatest of a positive, smooth function of the wavelength within `range_nm`, at 65 places: the relative indices that a
+/// table is to hold.
+pub(super) fn extremes([first, last]: [f64; 2], of: impl Fn(f64) -> f64) -> [f64; 2] {
+    (0..=64)
+        .map(|i| of(first + (last - first) * f64::from(i) / 64.0))
+        .fold([f64::MAX, 0.0_f64], |[least, most], value| [least.min(value), most.max(value)])
+}
+
 /// The cell of a cosine: it lies between nodes `i` and `i + 1`.
 fn cell_of(mu: f64) -> usize {
     ((mu.sqrt() * (NODES - 1) as f64) as usize).min(NODES - 2)

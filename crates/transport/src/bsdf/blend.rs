@@ -125,3 +125,42 @@ impl Blend {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn three(by: f64) -> Blend {
+        Blend::new([(0.2, Bsdf::Black), (0.5, Bsdf::Black), (1.0, Bsdf::Black)], NumberTexture::Uniform(by))
+    }
+
+    /// Linear between two neighbours, one part alone before the first and after the last.
+    #[test]
+    fn a_number_between_two_places_shares_the_surface_between_their_parts() {
+        for (by, expected) in [
+            (0.0, [1.0, 0.0, 0.0]),
+            (0.2, [1.0, 0.0, 0.0]),
+            (0.275, [0.75, 0.25, 0.0]),
+            (0.5, [0.0, 1.0, 0.0]),
+            (0.625, [0.0, 0.75, 0.25]),
+            (1.0, [0.0, 0.0, 1.0]),
+            (3.0, [0.0, 0.0, 1.0]),
+        ] {
+            let mut shares = [0.0; 3];
+            three(by).shares([0.0; 2]).0.iter().for_each(|(part, share)| shares[*part] += share);
+            assert!(shares.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{by}: {shares:?}");
+        }
+    }
+
+    /// Each part is chosen as often as its share says, and what is left of the number is uniform again.
+    #[test]
+    fn choosing_a_part_leaves_a_whole_number_for_the_choices_within_it() {
+        let shares = three(0.625).shares([0.0; 2]);
+        for rest in [0.0, 0.3, 0.999] {
+            for (part, u) in [(2, 0.25 * rest), (1, 0.25 + 0.75 * rest)] {
+                let (chosen, left) = shares.choose(u);
+                assert!(chosen == part && (left - rest).abs() < 1e-12, "{u}: {chosen}, {left}");
+            }
+        }
+    }
+}

@@ -116,14 +116,15 @@ pub(crate) struct Refraction {
 /// Mean over the facets that a direction of cosine `mu` sees of `loss`.
 ///
 /// Midpoints in azimuth, of which half a turn suffices, and an adaptive rule along the cap: total reflection and the
-/// horizon leave kinks and square roots inside. Good to 1e-3 of the result for mirrors, and to 5e-3 where facets refract.
+/// horizon leave kinks and square roots inside, at grazing angles in the azimuth too. Losses by it are too high by 1e-3 of themselves at
+/// most, and too low by 1.5e-3 of all light at most (narrow facets seen from inside glass).
 pub(crate) fn mean_over_facets(ggx: &Ggx, mu: f64, loss: impl Fn(&Facet) -> f64) -> f64 {
-    const AZIMUTHS: u32 = 24;
+    let azimuths: u32 = if mu < 0.15 { 72 } else { 24 };
     let wo = Vec3::new(((1.0 - mu) * (1.0 + mu)).sqrt_nonnegative(), 0.0, mu);
     let s_o = ggx.stretch(wo);
     let rule = gauss_rule(8);
     let along = |i: u32| {
-        let turns = 0.5 * (f64::from(i) + 0.5) / f64::from(AZIMUTHS);
+        let turns = 0.5 * (f64::from(i) + 0.5) / f64::from(azimuths);
         let at = |v: f64| {
             let h = ggx.visible_normal(wo, [turns, v]);
             let cos = wo.dot(h).clamp(0.0, 1.0);
@@ -147,7 +148,7 @@ pub(crate) fn mean_over_facets(ggx: &Ggx, mu: f64, loss: impl Fn(&Facet) -> f64)
         }
         sum
     };
-    (0..AZIMUTHS).map(along).sum::<f64>() / f64::from(AZIMUTHS)
+    (0..azimuths).map(along).sum::<f64>() / f64::from(azimuths)
 }
 
 /// A facet that [`mean_over_facets`] visits.

@@ -20,6 +20,8 @@ mod polarising_sheet;
 mod rough_conductor;
 mod rough_dielectric;
 mod shading;
+#[cfg(test)]
+mod tests;
 mod thin_dielectric;
 
 pub use blend::Blend;

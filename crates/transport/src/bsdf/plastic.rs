@@ -52,7 +52,7 @@ impl Plastic {
         let steps = || (0..=64).map(move |i| first + (last - first) * f64::from(i) / 64.0);
         let rough = (alpha > 0.0).then(|| {
             let ggx = Ggx::new(alpha);
-            let eta = steps().map(|nm| coat.eval(nm)).fold([f64::MAX, 0.0_f64], |e, n| [e[0].min(n), e[1].max(n)]);
+            let eta = albedo::extremes(range_nm, |nm| coat.eval(nm));
             let reflected = |facet: f64, eta: f64| fresnel::dielectric(facet, eta).map_or(1.0, |f| f.reflectance);
             let transmittance = albedo::shared(Tabulated::Coat, alpha, eta, || {
                 LossTable::new(eta, 1e-3, |mu, eta| {

@@ -15,7 +15,7 @@
 //! along the hero's direction, each with its own value and its own density of that direction.
 
 use super::BsdfSample;
-use super::albedo::LossTable;
+use super::albedo::{self, LossTable};
 use super::microfacet::{Facet, Facing, Ggx, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use crate::media::Interface;
@@ -106,11 +106,7 @@ impl Boundary {
         let dispersive = interior.is_dispersive() || exterior.is_dispersive();
         let compensation = compensated.then(|| {
             let ratio = |nm: f64| interior.eval(nm) / exterior.eval(nm);
-            let mut eta = [ratio(range_nm[0]); 2];
-            for i in 0..=64 {
-                let at = ratio(range_nm[0] + (range_nm[1] - range_nm[0]) * f64::from(i) / 64.0);
-                eta = [eta[0].min(at), eta[1].max(at)];
-            }
+            let eta = albedo::extremes(range_nm, ratio);
             Box::new(Compensation {
                 outside: LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, eta)),
                 inside: LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, 1.0 / eta)),
@@ -380,7 +376,7 @@ impl RoughDielectric {
 }
 
 /// What one scattering loses of light from above, for η = n_below/n_above.
-fn loss(ggx: &Ggx, mu: f64, eta: f64) -> f64 {
+pub(super) fn loss(ggx: &Ggx, mu: f64, eta: f64) -> f64 {
     if eta == 1.0 {
         return 0.0;
     }
@@ -397,7 +393,7 @@ fn passed(ggx: &Ggx, facet: &Facet, eta: f64, cos_t: f64) -> f64 {
 }
 
 /// What a facet loses of unpolarised light, and of S₁ in its own frame: T_s − T_p = R_p − R_s.
-fn polarised_loss(ggx: &Ggx, facet: &Facet, eta: f64) -> [f64; 2] {
+pub(super) fn polarised_loss(ggx: &Ggx, facet: &Facet, eta: f64) -> [f64; 2] {
     let Some(f) = fresnel::dielectric(facet.cos, eta).filter(|_| eta != 1.0) else {
         return [1.0 - facet.mirrored, 0.0];
     };

@@ -70,106 +70,12 @@ impl<R: Real> Scatters for Material<R> {
         Some(Scattered { wi, weight: s.weight[0].to_f64(), density })
     }
 
-    /// Written from the laws, not from what `sample` does.
     fn deltas(&self, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLobe> {
-        let mirrored = [-wo[0], -wo[1], wo[2]];
-        let cos = wo[2].abs().min(1.0);
-        match &self.kind {
-            MaterialKind::Lambert { .. }
-            | MaterialKind::RoughConductor { .. }
-            | MaterialKind::RoughDielectric { .. }
-            | MaterialKind::OrenNayar { .. }
-            | MaterialKind::Black => Vec::new(),
-            MaterialKind::PolarisingSheet { sheet, .. } => {
-                let weight = match sheet {
-                    PolarisingSheet::Polariser { transmittance, extinction } => {
-                        0.5 * transmittance.eval(wavelength_nm) * (1.0 + extinction)
-                    }
-                    PolarisingSheet::Retarder { .. } => 1.0,
-                };
-                vec![DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight, probability: 1.0 }]
-            }
-            MaterialKind::Plastic { alpha, .. } if *alpha > 0.0 => Vec::new(),
-            MaterialKind::Plastic { reflectance, coat, .. } => {
-                let (n, rho) = (coat.eval(wavelength_nm), uniform(reflectance).eval(wavelength_nm));
-                let weight = laws::fresnel_exact(cos, n).reflectance();
-                let passed = 1.0 - etalon_oracle::truths::walsh_reflectance(n);
-                let ground = passed * rho / (n * n * (1.0 - rho * (1.0 - passed / (n * n))));
-                let probability = weight / (weight + (1.0 - weight) * ground);
-                vec![DeltaLobe { wi: mirrored, weight, probability }]
-            }
-            MaterialKind::ThinDielectric { index } => {
-                // s and p each go their way between the faces.
-                let face = laws::fresnel_exact(cos, index.eval(wavelength_nm));
-                let weight = face.r_s / (1.0 + face.r_s) + face.r_p / (1.0 + face.r_p);
-                let through = 0.5 * (face.t_s / (1.0 + face.r_s) + face.t_p / (1.0 + face.r_p));
-                vec![
-                    DeltaLobe { wi: mirrored, weight, probability: weight },
-                    DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight: through, probability: through },
-                ]
-            }
-            MaterialKind::Blend { parts, by } => {
-                let number = by.eval([0.0; 2]);
-                let part = |i: usize| {
-                    // A hat: 1 at its own place, 0 at its neighbours', 1 beyond the first and the last.
-                    let place = |i: usize| parts[i].0;
-                    let share = if number < place(i) {
-                        if i == 0 { 1.0 } else { 1.0 - (place(i) - number) / (place(i) - place(i - 1)) }
-                    } else if i + 1 == parts.len() {
-                        1.0
-                    } else {
-                        1.0 - (number - place(i)) / (place(i + 1) - place(i))
-                    };
-                    let lobes = Self::new(parts[i].1.clone()).deltas(wo, wavelength_nm);
-                    let scaled = move |l: DeltaLobe| DeltaLobe {
-                        wi: l.wi,
-                        weight: l.weight * share,
-                        probability: l.probability * share,
-                    };
-                    lobes.into_iter().filter(|_| share > 0.0).map(scaled).collect::<Vec<_>>()
-                };
-                (0..parts.len()).flat_map(part).collect()
-            }
-            MaterialKind::Mirror { reflectance } => {
-                vec![DeltaLobe { wi: mirrored, weight: uniform(reflectance).eval(wavelength_nm), probability: 1.0 }]
-            }
-            MaterialKind::Conductor { metal } => {
-                let (n, k) = match metal {
-                    Metal::Index(index) => index.eval(wavelength_nm),
-                    Metal::Reflectance(reflectance) => {
-                        let share = uniform(reflectance).eval(wavelength_nm);
-                        // ((n − 1)² + k²)/((n + 1)² + k²) with n = 1.
-                        (1.0, (4.0 * share / (1.0 - share)).sqrt())
-                    }
-                };
-                let weight = fresnel::conductor(cos, n, k).reflectance;
-                vec![DeltaLobe { wi: mirrored, weight, probability: 1.0 }]
-            }
-            MaterialKind::Dielectric { .. } => {
-                let (above, below) = (self.index(true, wavelength_nm), self.index(false, wavelength_nm));
-                let eta = if wo[2] > 0.0 { below / above } else { above / below };
-                let reflected = laws::fresnel_exact(cos, eta).reflectance();
-                let mut lobes = vec![DeltaLobe { wi: mirrored, weight: reflected, probability: reflected }];
-                if reflected < 1.0 {
-                    let sin2 = (1.0 - cos * cos) / (eta * eta);
-                    let z = -(1.0 - sin2).max(0.0).sqrt().copysign(wo[2]);
-                    let weight = (1.0 - reflected) / (eta * eta);
-                    let wi = [-wo[0] / eta, -wo[1] / eta, z];
-                    lobes.push(DeltaLobe { wi, weight, probability: 1.0 - reflected });
-                }
-                lobes
-            }
-        }
+        deltas(&self.kind, wo, wavelength_nm)
     }
 
     fn index(&self, above: bool, wavelength_nm: f64) -> f64 {
-        match &self.kind {
-            MaterialKind::Dielectric { interior, exterior, .. }
-            | MaterialKind::RoughDielectric { interior, exterior, .. } => {
-                if above { exterior } else { interior }.eval(wavelength_nm)
-            }
-            _ => 1.0,
-        }
+        index(&self.kind, above, wavelength_nm)
     }
 
     fn wavelengths_nm(&self) -> Vec<f64> {
@@ -185,5 +91,108 @@ impl<R: Real> Scatters for Material<R> {
 
     fn epsilon(&self) -> f64 {
         if size_of::<R>() == 4 { SINGLE } else { f64::EPSILON }
+    }
+}
+
+/// The delta lobes of a material, written from the laws, not from what `sample` does.
+fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLobe> {
+    let mirrored = [-wo[0], -wo[1], wo[2]];
+    let cos = wo[2].abs().min(1.0);
+    match kind {
+        MaterialKind::Lambert { .. }
+        | MaterialKind::RoughConductor { .. }
+        | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Black => Vec::new(),
+        MaterialKind::PolarisingSheet { sheet, .. } => {
+            let weight = match sheet {
+                PolarisingSheet::Polariser { transmittance, extinction } => {
+                    0.5 * transmittance.eval(wavelength_nm) * (1.0 + extinction)
+                }
+                PolarisingSheet::Retarder { .. } => 1.0,
+            };
+            vec![DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight, probability: 1.0 }]
+        }
+        MaterialKind::Plastic { alpha, .. } if *alpha > 0.0 => Vec::new(),
+        MaterialKind::Plastic { reflectance, coat, .. } => {
+            let (n, rho) = (coat.eval(wavelength_nm), uniform(reflectance).eval(wavelength_nm));
+            let weight = laws::fresnel_exact(cos, n).reflectance();
+            let passed = 1.0 - etalon_oracle::truths::walsh_reflectance(n);
+            let ground = passed * rho / (n * n * (1.0 - rho * (1.0 - passed / (n * n))));
+            let probability = weight / (weight + (1.0 - weight) * ground);
+            vec![DeltaLobe { wi: mirrored, weight, probability }]
+        }
+        MaterialKind::ThinDielectric { index } => {
+            // s and p each go their way between the faces.
+            let face = laws::fresnel_exact(cos, index.eval(wavelength_nm));
+            let weight = face.r_s / (1.0 + face.r_s) + face.r_p / (1.0 + face.r_p);
+            let through = 0.5 * (face.t_s / (1.0 + face.r_s) + face.t_p / (1.0 + face.r_p));
+            vec![
+                DeltaLobe { wi: mirrored, weight, probability: weight },
+                DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight: through, probability: through },
+            ]
+        }
+        MaterialKind::Blend { parts, by } => {
+            let number = by.eval([0.0; 2]);
+            let part = |i: usize| {
+                // A hat: 1 at its own place, 0 at its neighbours', 1 beyond the first and the last.
+                let place = |i: usize| parts[i].0;
+                let share = if number < place(i) {
+                    if i == 0 { 1.0 } else { 1.0 - (place(i) - number) / (place(i) - place(i - 1)) }
+                } else if i + 1 == parts.len() {
+                    1.0
+                } else {
+                    1.0 - (number - place(i)) / (place(i + 1) - place(i))
+                };
+                let lobes = deltas(&parts[i].1, wo, wavelength_nm);
+                let scaled = move |l: DeltaLobe| DeltaLobe {
+                    wi: l.wi,
+                    weight: l.weight * share,
+                    probability: l.probability * share,
+                };
+                lobes.into_iter().filter(|_| share > 0.0).map(scaled).collect::<Vec<_>>()
+            };
+            (0..parts.len()).flat_map(part).collect()
+        }
+        MaterialKind::Mirror { reflectance } => {
+            vec![DeltaLobe { wi: mirrored, weight: uniform(reflectance).eval(wavelength_nm), probability: 1.0 }]
+        }
+        MaterialKind::Conductor { metal } => {
+            let (n, k) = match metal {
+                Metal::Index(index) => index.eval(wavelength_nm),
+                Metal::Reflectance(reflectance) => {
+                    let share = uniform(reflectance).eval(wavelength_nm);
+                    // ((n − 1)² + k²)/((n + 1)² + k²) with n = 1.
+                    (1.0, (4.0 * share / (1.0 - share)).sqrt())
+                }
+            };
+            let weight = fresnel::conductor(cos, n, k).reflectance;
+            vec![DeltaLobe { wi: mirrored, weight, probability: 1.0 }]
+        }
+        MaterialKind::Dielectric { .. } => {
+            let (above, below) = (index(kind, true, wavelength_nm), index(kind, false, wavelength_nm));
+            let eta = if wo[2] > 0.0 { below / above } else { above / below };
+            let reflected = laws::fresnel_exact(cos, eta).reflectance();
+            let mut lobes = vec![DeltaLobe { wi: mirrored, weight: reflected, probability: reflected }];
+            if reflected < 1.0 {
+                let sin2 = (1.0 - cos * cos) / (eta * eta);
+                let z = -(1.0 - sin2).max(0.0).sqrt().copysign(wo[2]);
+                let weight = (1.0 - reflected) / (eta * eta);
+                let wi = [-wo[0] / eta, -wo[1] / eta, z];
+                lobes.push(DeltaLobe { wi, weight, probability: 1.0 - reflected });
+            }
+            lobes
+        }
+    }
+}
+
+/// Index of refraction above or below a material.
+fn index(kind: &MaterialKind, above: bool, wavelength_nm: f64) -> f64 {
+    match kind {
+        MaterialKind::Dielectric { interior, exterior, .. }
+        | MaterialKind::RoughDielectric { interior, exterior, .. } => {
+            if above { exterior } else { interior }.eval(wavelength_nm)
+        }
+        _ => 1.0,
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use etalon_optics::{ComplexIndex, Real, RefractiveIndex, Spectrum};
-use etalon_oracle::scatters_suite;
+use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
 use etalon_scene::{
     Image, ImageTexture, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture, Texels, TextureFilter,
     Wrap,
@@ -123,3 +123,21 @@ fn polariser() -> Material<f64> {
 
 scatters_suite!(polariser_f64, polariser());
 scatters_suite!(mirror_and_clay, mixture());
+
+/// None of ours has a grain but for the sheets, whose axis is in their Mueller matrices alone.
+#[test]
+fn every_material_is_the_same_turned_about_its_normal() {
+    let subjects: [&dyn Scatters; 10] = [
+        &lambert::<f64>(),
+        &rough_metal::<f32>("Au", 0.3, true),
+        &rough_metal::<f64>("Ag", 0.3, false),
+        &rough_glass::<f64>("N-BK7", "vacuum", 0.4, true),
+        &painted_plastic(),
+        &plastic::<f32>(0.7, 0.0),
+        &oren_nayar::<f32>(0.5, 0.4),
+        &oren_nayar::<f64>(1.0, 1.0),
+        &mixture(),
+        &metal_of_varied_roughness(),
+    ];
+    subjects.into_iter().for_each(|subject| laws::is_isotropic(subject, 1).assert());
+}

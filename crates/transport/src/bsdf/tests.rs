@@ -1,0 +1,206 @@
+//! The rules and tables that materials are prepared with, against closed forms and independent quadrature.
+
+use super::albedo::{LossTable, NODES, extremes, node};
+use super::metal::{OfMetal, PathMetal};
+use super::microfacet::{Ggx, gauss_rule, mean_over_facets};
+use super::mueller::PolarisedLoss;
+use super::rough_dielectric::{loss, mean_transmittance, polarised_loss};
+use etalon_optics::Spectrum;
+use etalon_oracle::laws::{Masking, fresnel_exact, ggx_albedo};
+use etalon_oracle::truths::walsh_reflectance;
+use etalon_scene::Metal;
+use std::f64::consts::{PI, TAU};
+
+const RANGE_NM: [f64; 2] = [380.0, 780.0];
+
+#[test]
+fn rules_integrate_polynomials_up_to_their_degree() {
+    for points in [1, 2, 3, 8, 24, 48] {
+        for degree in 0..2 * points {
+            let sum: f64 = gauss_rule(points).iter().map(|(x, weight)| weight * x.powi(degree as i32)).sum();
+            // Sums of at most 48 terms below 1.
+            assert!((sum * (degree as f64 + 1.0) - 1.0).abs() < 1e-12, "{points} points, degree {degree}: {sum}");
+        }
+    }
+}
+
+#[test]
+fn indices_within_a_range_lie_between_their_extremes() {
+    assert_eq!(extremes([400.0, 800.0], |nm| 1000.0 / nm), [1.25, 2.5]);
+    assert_eq!(extremes([400.0, 800.0], |nm| nm / 1000.0), [0.4, 0.8]);
+    // Half way is one of the places.
+    assert_eq!(extremes([400.0, 800.0], |nm| 1.0 + (nm - 600.0).powi(2)), [1.0, 40_001.0]);
+}
+
+/// Never too high by more than the 1e-3 of themselves that metals and coats take off, so that no energy is created; and too low by at most what the
+/// rule says of itself. The oracle's own error is 1e-5.
+#[test]
+fn what_facets_lose_is_what_an_independent_quadrature_misses() {
+    let pairs = [
+        (0.03, 0.05),
+        (0.03, 0.2),
+        (0.1, 0.02),
+        (0.1, 0.2),
+        (0.3, 0.05),
+        (0.3, 0.2),
+        (1.0, 0.05),
+        (1.0, 0.3),
+        (1.0, 0.9),
+    ];
+    for (alpha, mu) in pairs {
+        let ggx = Ggx::new(alpha);
+        for eta in [None, Some(1.5), Some(1.0 / 1.5)] {
+            let truth = ggx_albedo(alpha, mu, eta, Masking::Correlated);
+            let truth = 1.0 - truth.reflected - truth.refracted;
+            let read = match eta {
+                None => mean_over_facets(&ggx, mu, |facet| 1.0 - facet.mirrored),
+                Some(eta) => loss(&ggx, mu, eta),
+            };
+            let close = read - truth < 1e-3 * truth + 1e-5 && truth - read < 1.5e-3;
+            assert!(close, "η {eta:?}, α {alpha} µ {mu}: {read} is not {truth}");
+        }
+        // What is the same on both sides is no interface.
+        assert_eq!(loss(&ggx, mu, 1.0), 0.0);
+    }
+}
+
+/// T of diffuse light from outside is 1 less Walsh's reflectance, and from inside, by reciprocity, 1/n² of that.
+#[test]
+fn diffuse_light_is_transmitted_as_walsh_says() {
+    for n in [1.1, 1.33, 1.5, 2.4] {
+        let truth = 1.0 - walsh_reflectance(n);
+        let [outside, inside] = [n, 1.0 / n].map(mean_transmittance);
+        // The rule's own error: T has a root at the critical angle.
+        assert!((outside - truth).abs() < 1e-6, "n {n}: {outside} is not {truth}");
+        assert!((inside * n * n - truth).abs() < 1e-5, "n {n} from inside: {} is not {truth}", inside * n * n);
+    }
+    assert!((mean_transmittance(1.0) - 1.0).abs() < 1e-12);
+}
+
+/// A loss of which all is known: 2∫ℓµ dµ = (η − 1)/20 + 1/20.
+fn known_loss(mu: f64, eta: f64) -> f64 {
+    0.3 * (eta - 1.0) * (1.0 - mu) * (1.0 - mu) + 0.05
+}
+
+/// Between its nodes, in cosine and in index, a table stays below the loss but for 3e-5 of itself (the lowered line meets
+/// the loss in the middle, at a slope that is a little off), and reaches it but for what a parabola leaves below its
+/// chords: h²/8 of its second derivative, h ≤ 2/64, 1e-4 at most, and as much again for the lowering of either end.
+#[test]
+fn a_table_of_losses_lies_just_below_them() {
+    for (range, error) in [([1.5, 1.5], 0.0), ([1.4, 1.8], 0.0), ([1.4, 1.8], 0.02)] {
+        let table = LossTable::new(range, error, known_loss);
+        for eta in [range[0], 0.7 * range[0] + 0.3 * range[1], range[1]] {
+            for i in 0..=1000 {
+                let mu = f64::from(i) / 1000.0;
+                let (read, truth) = (table.eval(mu, eta) / (1.0 - error), known_loss(mu, eta));
+                assert!(read <= truth * (1.0 + 3e-5) && read > truth - 3e-4, "µ {mu}, η {eta}: {read} is not {truth}");
+            }
+            let (read, truth) = (table.average(eta) / (1.0 - error), 0.05 * eta);
+            assert!(read <= truth && read > truth - 3e-4, "η {eta}: {read} is not {truth}");
+        }
+        // Beyond its indices it goes on as at their end.
+        assert_eq!(table.eval(0.3, 9.0), table.eval(0.3, range[1]));
+    }
+}
+
+/// The share of directions below a cosine, from the density alone, which is a multiple of the cosine in each cell.
+fn share_below(table: &LossTable, mu: f64) -> f64 {
+    (0..NODES - 1)
+        .map(|i| (node(i), node(i + 1).min(mu)))
+        .filter(|(low, high)| low < high)
+        .map(|(low, high)| TAU * table.density(0.5 * (low + high)) * (high - low))
+        .sum()
+}
+
+#[test]
+fn directions_are_drawn_as_their_density_and_the_loss_say() {
+    let table = LossTable::new([1.4, 1.8], 0.0, known_loss);
+    assert!((share_below(&table, 1.0) - 1.0).abs() < 1e-12);
+    for i in 0..200 {
+        let u = [(f64::from(i) + 0.3) / 200.0, f64::from(i % 8) / 8.0];
+        let direction = table.sample(u);
+        assert!((share_below(&table, direction.z) - u[0]).abs() < 1e-9, "{u:?}: {direction:?}");
+        assert!((direction.length() - 1.0).abs() < 1e-12);
+        let (sin, cos) = (TAU * u[1]).sin_cos();
+        let across = (1.0 - direction.z * direction.z).sqrt();
+        assert!(
+            (direction.x - across * cos).abs() + (direction.y - across * sin).abs() < 1e-12,
+            "{u:?}: {direction:?}"
+        );
+    }
+    // ∫ℓµ dµ up to ½ over that up to 1, the mean over both ends of the indices: ℓ = 0.18(1 − µ)² + 0.05.
+    let below = |mu: f64| 0.18 * (mu * mu / 2.0 - 2.0 * mu.powi(3) / 3.0 + mu.powi(4) / 4.0) + 0.025 * mu * mu;
+    // The table lies up to 3e-4 of 0.05 or more below.
+    assert!((share_below(&table, 0.5) - below(0.5) / below(1.0)).abs() < 3e-3);
+    // Where nothing is lost nothing is drawn.
+    assert_eq!(LossTable::new([1.0, 1.0], 0.0, |_, _| 0.0).density(0.5), 0.0);
+}
+
+/// By steps of √R, between which it is linear.
+#[test]
+fn a_function_of_a_metal_given_by_its_reflectance_is_found_by_it() {
+    let metal = PathMetal::new(&Metal::Reflectance(Spectrum::Constant(0.5).into()), RANGE_NM);
+    // (n² + k²) made bounded: R itself is k²/(4 + k²).
+    let of_metal = OfMetal::new(&metal, RANGE_NM, |n, k| n * (1.0 + k * k / (4.0 + k * k)));
+    for i in 0..100 {
+        let reflectance = f64::from(i) / 100.0;
+        let read = of_metal.eval(550.0, Metal::k_of(reflectance));
+        // (1/256)²/8 of the second derivative, 2.
+        assert!((read - 1.0 - reflectance).abs() < 4e-6, "{reflectance}: {read}");
+    }
+}
+
+/// ℓ₁/ℓ₀ by an even grid over slopes and azimuths of facets, which no sampler knows: of each facet that light of the cosine `mu` sees, the
+/// powers that it reflects and refracts, in its own s and p, less what other facets let pass of them, turned into the surface's.
+fn diattenuation_of_the_lost(alpha: f64, mu: f64, eta: f64) -> f64 {
+    let o = [(1.0 - mu * mu).sqrt(), 0.0, mu];
+    let lambda = |cos: f64| 0.5 * ((1.0 + alpha * alpha * (1.0 - cos * cos) / (cos * cos)).sqrt() - 1.0);
+    let (lambda_o, steps) = (lambda(mu), 160);
+    let mut lost = [0.0; 2];
+    for k in 0..steps * steps {
+        let place = |k: usize| (k as f64 + 0.5) / steps as f64;
+        let (x, phi) = (place(k % steps), PI * place(k / steps));
+        let tan2 = alpha * alpha * x / (1.0 - x);
+        let cos_h = 1.0 / (1.0 + tan2).sqrt();
+        let sin_h = tan2.sqrt() * cos_h;
+        let h = [sin_h * phi.cos(), sin_h * phi.sin(), cos_h];
+        let c = o[0] * h[0] + o[2] * h[2];
+        if c <= 0.0 {
+            continue;
+        }
+        let seen = c / (cos_h * (1.0 + lambda_o));
+        let powers = fresnel_exact(c.min(1.0), eta);
+        let up = 2.0 * c * h[2] - o[2];
+        let mirrored = if up > 0.0 { (1.0 + lambda_o) / (1.0 + lambda_o + lambda(up)) } else { 0.0 };
+        let square = 1.0 - (1.0 - c * c) / (eta * eta);
+        let down = if square > 0.0 { o[2] / eta - (c / eta - square.sqrt()) * h[2] } else { 0.0 };
+        let passed = if down > 0.0 { 1.0 / (1.0 + lambda(down)) } else { 0.0 };
+        let of = |r: f64, t: f64| r * (1.0 - mirrored) + t * (1.0 - passed);
+        let (s, p) = (of(powers.r_s, powers.t_s), of(powers.r_p, powers.t_p));
+        // The facet's s is o × h, the surface's y.
+        let across = [-o[2] * h[1], o[2] * h[0] - o[0] * h[2], o[0] * h[1]];
+        let squared: f64 = across.iter().map(|a| a * a).sum();
+        lost[0] += seen * 0.5 * (s + p);
+        lost[1] += seen * 0.5 * (s - p) * (2.0 * across[1] * across[1] / squared - 1.0);
+    }
+    lost[1] / lost[0]
+}
+
+/// To 5e-3, what the rule over facets says of its sums, and a hundredth more where a table's nodes are far apart.
+#[test]
+fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
+    for alpha in [0.3, 1.0] {
+        let ggx = Ggx::new(alpha);
+        for inside in [false, true] {
+            let side = |eta: f64| if inside { 1.0 / eta } else { eta };
+            let of = |range| PolarisedLoss::new(range, &ggx, |facet, eta| polarised_loss(&ggx, facet, side(eta)));
+            let (one, two) = (of([1.5, 1.5]), of([1.4, 1.6]));
+            for mu in [0.9, 0.5, 0.2] {
+                for (table, eta) in [(&one, 1.5), (&two, 1.4), (&two, 1.45), (&two, 1.6)] {
+                    let (read, truth) = (table.eval(mu, eta), diattenuation_of_the_lost(alpha, mu, side(eta)));
+                    assert!((read - truth).abs() < 1.5e-2, "α {alpha} µ {mu} η {eta} {inside}: {read} is not {truth}");
+                }
+            }
+        }
+    }
+}
