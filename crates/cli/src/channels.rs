@@ -17,6 +17,8 @@ pub(crate) enum Aov {
     Samples,
     /// `S0.…nm`: the bands that the film keeps; with Stokes parameters also `S1.…nm` to `S3.…nm`.
     Bands,
+    /// `S1.R` to `S3.B` and their errors: Stokes parameters, where the film keeps them.
+    Stokes,
     /// `Albedo.R/G/B`: the share of light that the first surface scatters.
     Albedo,
     /// `N.X/Y/Z`: its shading normal in the world, toward the camera.
@@ -48,7 +50,7 @@ impl Channels {
 
     /// Whether a group is wanted.
     pub(crate) fn has(&self, aov: Aov) -> bool {
-        let of_every_picture = matches!(aov, Aov::Color | Aov::Error | Aov::Bands);
+        let of_every_picture = matches!(aov, Aov::Color | Aov::Error | Aov::Bands | Aov::Stokes);
         self.also.contains(&aov) || !self.only && of_every_picture
     }
 
@@ -64,7 +66,7 @@ impl Channels {
         let shown = 3 + parameters * of_bands;
         let errors = shown * (u64::from(self.has(Aov::Error)) + u64::from(self.has(Aov::Variance)));
         // The colours of S₁, S₂ and S₃, and their errors.
-        let stokes = 2 * 3 * (parameters - 1);
+        let stokes = if self.has(Aov::Stokes) { 2 * 3 * (parameters - 1) } else { 0 };
         let of_features = |aov, count| count * u64::from(self.has(aov));
         colours
             + errors
@@ -90,6 +92,12 @@ mod tests {
         let beside = Channels::new(&[Aov::Depth], false);
         assert!(beside.has(Aov::Color) && beside.has(Aov::Depth) && !beside.has(Aov::Normal) && beside.has_features());
         let alone = Channels::new(&[Aov::Depth, Aov::Variance], true);
-        assert!(!alone.has(Aov::Color) && !alone.has(Aov::Error) && alone.has(Aov::Depth) && alone.has(Aov::Variance));
+        assert!(
+            !alone.has(Aov::Color)
+                && !alone.has(Aov::Error)
+                && !alone.has(Aov::Stokes)
+                && alone.has(Aov::Depth)
+                && alone.has(Aov::Variance)
+        );
     }
 }

@@ -70,7 +70,9 @@ impl Delivery<'_> {
 
     fn contents(&self, film: &Film, tiles: &[PixelRect]) -> Result<(Picture<f32>, Attributes), PictureError> {
         let (mut picture, mut attributes) = (self.picture(film, tiles)?, self.attributes(film)?);
-        crate::stokes::add(&mut picture, &mut attributes, film, self.header.subject.crop)?;
+        if self.header.channels.has(Aov::Stokes) {
+            crate::stokes::add(&mut picture, &mut attributes, film, self.header.subject.crop)?;
+        }
         Ok((picture, attributes))
     }
 
@@ -239,7 +241,7 @@ const SPREADS: [Spread; 2] = [(Aov::Error, ERROR_PREFIX, f64::sqrt), (Aov::Varia
 
 /// Whether nothing of the picture itself is wanted.
 fn channels_only_features(channels: &Channels) -> bool {
-    ![Aov::Color, Aov::Error, Aov::Variance, Aov::Bands].into_iter().any(|aov| channels.has(aov))
+    ![Aov::Color, Aov::Error, Aov::Variance, Aov::Bands, Aov::Stokes].into_iter().any(|aov| channels.has(aov))
 }
 
 fn insert_three(picture: &mut Picture<f32>, names: [&str; 3], pixels: &[[f32; 3]]) -> Result<(), PictureError> {

@@ -158,6 +158,18 @@ fn surfaces_that_shine_by_an_image_arrive() {
 }
 
 #[test]
+fn a_sky_of_mitsuba_arrives_with_its_turn() {
+    let text = r#"<scene version="3.0.0"><emitter type="envmap"><string name="filename" value="chequers.png"/><float name="scale" value="2"/>
+        <transform name="to_world"><rotate y="1" angle="90"/></transform></emitter><shape type="sphere"/></scene>"#;
+    let scene = scene(&imported("xml", text));
+    let LightKind::ImageEnvironment(sky) = &scene.lights[0].kind else { panic!("a sky") };
+    // A quarter turn about y takes the middle of the image from +z to +x; to its right, seen from within, then lies +z.
+    for (found, expected) in [(sky.forward, [1.0, 0.0, 0.0]), (sky.up, [0.0, 1.0, 0.0]), (sky.right, [0.0, 0.0, 1.0])] {
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?} is not {expected:?}");
+    }
+}
+
+#[test]
 fn a_damaged_mitsuba_scene_is_refused_with_its_line() {
     for (text, part) in [
         (

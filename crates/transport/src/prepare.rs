@@ -273,6 +273,11 @@ impl Prepared {
         &self.plan
     }
 
+    /// How many lights shadow rays aim at, and whether those near and bright are chosen for each point anew.
+    pub fn lights(&self) -> (usize, bool) {
+        (self.lights.lights().len(), self.lights.chooses_by_place())
+    }
+
     /// The camera that makes the rays.
     pub(crate) fn tracing_camera(&self) -> Camera {
         let film = &self.scene.film;

@@ -33,6 +33,10 @@ pub(crate) struct Args {
 struct ExplainJson<'a> {
     scene: String,
     plan: &'a Plan,
+    /// Lights that shadow rays aim at: emitting surfaces one by one, and lights without a surface.
+    lights: usize,
+    /// Whether they are chosen for each point anew, by where they are; else by power alone.
+    lights_by_place: bool,
     /// What effects that are off would have cost, if it was measured.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     costs: Vec<Cost>,
@@ -59,9 +63,10 @@ pub(crate) fn run(args: Args) -> Outcome {
     let plan = prepared.plan();
     let costs = if args.measure { measure(&loaded.scene, &study, &prepared)? } else { Vec::new() };
     if args.json {
-        print::json(&ExplainJson { scene: args.scene.display().to_string(), plan, costs });
+        let ((lights, lights_by_place), scene) = (prepared.lights(), args.scene.display().to_string());
+        print::json(&ExplainJson { scene, plan, lights, lights_by_place, costs });
     } else {
-        print::line(&describe(plan, &costs));
+        print::line(&describe(&prepared, &costs));
     }
     Ok(())
 }
@@ -71,10 +76,11 @@ fn prepared(scene: &Scene, study: &Study) -> Result<Prepared, Failure> {
 }
 
 /// The plan, for people: a line an effect, then how the paths are traced.
-fn describe(plan: &Plan, costs: &[Cost]) -> String {
+fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
+    let plan = prepared.plan();
     let mut lines: Vec<String> = plan.effects.iter().map(|effect| line(effect, costs)).collect();
     lines.push(String::new());
-    lines.extend(how(plan).into_iter().map(|(what, value)| format!("{what:<18} {value}")));
+    lines.extend(how(prepared).into_iter().map(|(what, value)| format!("{what:<18} {value}")));
     for lost in &plan.approximations {
         lines.push(format!("{:<18} without {lost}", "approximation"));
     }
@@ -96,7 +102,15 @@ fn line(effect: &Effect, costs: &[Cost]) -> String {
     format!("{:<18} {state:<4} {study}{}{cost}", effect.name, effect.because)
 }
 
-fn how(plan: &Plan) -> Vec<(&'static str, String)> {
+fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
+    let plan = prepared.plan();
+    let choice = match prepared.lights() {
+        _ if !plan.runs(EffectName::ShadowRays) => "no shadow rays".to_owned(),
+        (0, _) => "no shadow ray has an aim".to_owned(),
+        (1, _) => "one".to_owned(),
+        (count, false) => format!("of {count}, by their power"),
+        (count, true) => format!("of {count}, by a tree: those that are bright, near and turned this way"),
+    };
     let lanes = match plan.lane_model {
         LaneModel::One => "1: radiance is a number times the one spectrum of all light".to_owned(),
         LaneModel::Hero if plan.runs(EffectName::Dispersion) => {
@@ -122,6 +136,7 @@ fn how(plan: &Plan) -> Vec<(&'static str, String)> {
         ("directions", format!("{} in every kernel: {}", plan.directions.precision, plan.directions.because)),
         ("bounces", format!("{depth}, {roulette}")),
         ("light sampling", plan.light_sampling.to_owned()),
+        ("choice of lights", choice),
         ("numbers", plan.sampler.to_owned()),
     ]
 }

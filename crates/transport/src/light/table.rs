@@ -16,7 +16,7 @@ const EVEN_SHARE: f64 = 0.1;
 /// Share of the choices that a tree leaves to the table.
 const TABLE_SHARE: f64 = 0.1;
 /// Lights with a place from which a tree is made where the scene leaves it open.
-pub(crate) const TREE_FROM: usize = 8;
+const TREE_FROM: usize = 8;
 
 /// All lights that shadow rays aim at, with the probability of each.
 #[derive(Clone, Debug, Default)]
@@ -158,6 +158,11 @@ impl LightTable {
     /// Whether there is no light to aim at.
     pub fn is_empty(&self) -> bool {
         self.lights.is_empty()
+    }
+
+    /// Whether lights are chosen for each point anew, by where they are.
+    pub fn chooses_by_place(&self) -> bool {
+        self.near.is_some()
     }
 
     /// Whether the walk itself may run into a light that is aimed at.

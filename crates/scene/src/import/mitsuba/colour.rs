@@ -220,7 +220,7 @@ impl Walk<'_, '_, '_> {
     }
 
     /// The file of an image in the scene, and the mean of its texels; `None`, and a note, if it cannot be read.
-    fn image(&mut self, name: &str, raw: bool, place: &str) -> Option<(String, [f64; 3])> {
+    pub(super) fn image(&mut self, name: &str, raw: bool, place: &str) -> Option<(String, [f64; 3])> {
         let encoding = if raw { crate::texture::Encoding::Linear } else { crate::texture::Encoding::Auto };
         let found = self.near(name, place).and_then(|bytes| self.builder.image_file(name, bytes, encoding, place));
         match found {

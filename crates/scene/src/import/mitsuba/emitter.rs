@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::Walk;
 use super::colour::Of;
 use super::element::Element;
-use crate::import::matrix::column;
+use crate::import::matrix::{column, determinant};
 
 impl Walk<'_, '_, '_> {
     pub(super) fn emitter(&mut self, element: &Element) -> Result<(), String> {
@@ -16,6 +16,23 @@ impl Walk<'_, '_, '_> {
             "constant" => {
                 let radiance = self.colour(element, "radiance", Of::Emission)?.unwrap_or_else(one);
                 json!({ "type": "environment", "radiance": radiance })
+            }
+            "envmap" => {
+                let file =
+                    element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+                let Some((file, _)) = self.image(&file, false, &place) else { return Ok(()) };
+                let to_world = self.placement(element)?;
+                if determinant(&to_world) < 0.0 {
+                    self.builder.leave_out(&place, "a transform that mirrors it is taken for one that does not");
+                }
+                // The middle of the image is along +z, its upper edge along +y.
+                json!({
+                    "type": "environment",
+                    "image": {
+                        "file": file, "scale": element.number("scale")?.unwrap_or(1.0).max(0.0),
+                        "up": column(&to_world, 1), "forward": column(&to_world, 2),
+                    },
+                })
             }
             "point" => {
                 let intensity = self.colour(element, "intensity", Of::Emission)?.unwrap_or_else(one);
