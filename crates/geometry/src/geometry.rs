@@ -383,6 +383,11 @@ impl Geometry {
         self.flat.as_ref().map(|flat| (flat, self.level))
     }
 
+    /// The instruction set.
+    pub(crate) fn level(&self) -> Level {
+        self.level
+    }
+
     /// Wrong on purpose, for tests: see [`Flat::forget_rounding`].
     #[cfg(test)]
     pub(crate) fn forget_rounding(&mut self) {

@@ -2,7 +2,7 @@
 //!
 //! Every ray is answered to the bit as it is alone, whatever the others are.
 
-use crate::{Geometry, Hit, Ray, SurfaceId, SurfacePoint};
+use crate::{Geometry, Hit, Ray, SurfaceId, SurfacePoint, traverse};
 use etalon_optics::Vec3;
 
 /// Rays that are asked for at once.
@@ -54,7 +54,7 @@ pub struct SurfacePoints {
 
 /// A vector of one lane.
 #[inline(always)]
-fn vector(v: &[[f64; LANES]; 3], lane: usize) -> Vec3<f64> {
+pub(crate) fn vector(v: &[[f64; LANES]; 3], lane: usize) -> Vec3<f64> {
     Vec3::new(v[0][lane], v[1][lane], v[2][lane])
 }
 
@@ -169,6 +169,9 @@ impl SurfacePoints {
 impl Geometry {
     /// [`Geometry::closest_hit`] of the rays in the lanes of `active`, one bit each.
     pub fn closest_hits(&self, rays: &Rays, active: u8) -> Hits {
+        if let Some(tree) = self.tree() {
+            return traverse::closest_hits(self.level(), tree, self.primitives(), rays, active);
+        }
         let (mut hits, undecided) = match self.flat() {
             Some((flat, level)) => flat.closest_hits(level, self.primitives(), rays, active),
             None => (Hits::NONE, active),
@@ -181,6 +184,9 @@ impl Geometry {
 
     /// [`Geometry::occluded`] of the rays in the lanes of `active`: one bit for each lane, zero in the others.
     pub fn any_hits(&self, rays: &Rays, active: u8) -> u8 {
+        if let Some(tree) = self.tree() {
+            return traverse::any_hits(self.level(), tree, self.primitives(), rays, active);
+        }
         let (hits, undecided) = match self.flat() {
             Some((flat, level)) => flat.any_hits(level, rays, active),
             None => (0, active),

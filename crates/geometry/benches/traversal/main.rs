@@ -1,8 +1,9 @@
 //! Rays a second, for closest hits and shadow rays, and the same rays through Embree 3.13 where it is installed.
 //!
 //! One thread; all engines take turns on the same rays, and each figure is made of the best of several turns. Run with
-//! `cargo bench -p etalon-geometry --bench traversal -- [NAME] [--rays KIND] [--turns N] [--alone]`, where NAME and KIND
-//! select scenes and rays by substring; `--alone` leaves Embree out.
+//! `cargo bench -p etalon-geometry --bench traversal -- [NAME] [--rays KIND] [--turns N] [--alone] [--eights]`, where NAME and
+//! KIND select scenes and rays by substring; `--alone` leaves Embree out, `--eights` casts eight rays at once, too, where there is a
+//! tree.
 #![allow(missing_docs, clippy::print_stdout)] // A bench prints.
 
 mod embree;
@@ -22,10 +23,11 @@ struct Options {
     rays: String,
     turns: usize,
     alone: bool,
+    eights: bool,
 }
 
 fn main() {
-    let mut options = Options { filter: String::new(), rays: String::new(), turns: 7, alone: false };
+    let mut options = Options { filter: String::new(), rays: String::new(), turns: 7, alone: false, eights: false };
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
@@ -33,6 +35,7 @@ fn main() {
             "--turns" => options.turns = arguments.next().and_then(|n| n.parse().ok()).expect("--turns takes a number"),
             "--rays" => options.rays = arguments.next().expect("--rays takes a kind of rays"),
             "--alone" => options.alone = true,
+            "--eights" => options.eights = true,
             name => options.filter = name.to_owned(),
         }
     }
@@ -46,7 +49,11 @@ fn main() {
         "{:<16} {:<10} {:>8} {:>9} {:>8} {:>9} {:>8}",
         "scene", "rays", "Mrays/s", "default", "ratio", "robust", "ratio"
     );
-    for (size, label) in [(100_000, "100k"), (1_000_000, "1M")] {
+    for (size, label) in [(100_000, "100k"), (1_000_000, "1M"), (10_000_000, "10M")] {
+        if label == "10M" && !options.filter.contains(label) {
+            // Named, or not at all: it takes gigabytes.
+            continue;
+        }
         for kind in ["displaced", "gridded", "slivers"] {
             let name = format!("{kind}-{label}");
             if name.contains(&options.filter) {
@@ -109,7 +116,7 @@ fn measure(
     });
     for (kind, rays, shadow) in rays(&geometry).into_iter().filter(|(kind, ..)| kind.contains(&options.rays)) {
         compare(name, kind, &geometry, &peers, &rays, shadow, options.turns);
-        if count <= 128 {
+        if options.eights || count <= 128 {
             eights(name, kind, &geometry, &rays, shadow, options.turns);
         }
     }
@@ -215,24 +222,31 @@ fn eights(name: &str, kind: &str, geometry: &Geometry, rays: &[Ray<f32>], shadow
     let (alone, eights) = (&alone[..eights.len() * LANES], &eights[..]);
     let mut best = [(); 4].map(|()| vec![f64::INFINITY; alone.len().div_ceil(CHUNK)]);
     let mut sum = 0.0;
-    for _ in 0..turns {
+    // Each of them all rays in turn, so that none finds in caches what the one before it fetched for the same rays.
+    for i in (0..turns).flat_map(|_| 0..4) {
         for (chunk, (alone, eights)) in alone.chunks(CHUNK).zip(eights.chunks(CHUNKS)).enumerate() {
-            let mut time = |i: usize, run: &mut dyn FnMut() -> f64| {
+            let mut time = |run: &mut dyn FnMut() -> f64| {
                 let start = Instant::now();
                 sum += run();
                 best[i][chunk] = best[i][chunk].min(start.elapsed().as_secs_f64());
             };
-            if shadow {
-                time(0, &mut || alone.iter().filter(|r| geometry.occluded(r)).count() as f64);
-                time(1, &mut || eights.iter().map(|r| f64::from(geometry.any_hits(r, 0xFF).count_ones())).sum());
-                continue;
+            match i {
+                0 if shadow => time(&mut || alone.iter().filter(|r| geometry.occluded(r)).count() as f64),
+                1 if shadow => {
+                    time(&mut || eights.iter().map(|r| f64::from(geometry.any_hits(r, 0xFF).count_ones())).sum());
+                }
+                _ if shadow => {}
+                0 => time(&mut || alone.iter().filter_map(|r| geometry.closest_hit(r)).map(|h| h.t).sum()),
+                1 => time(&mut || eights.iter().map(|r| geometry.closest_hits(r, 0xFF).t[0]).sum()),
+                2 => {
+                    let hits: Vec<_> = alone.iter().filter_map(|r| Some((r, geometry.closest_hit(r)?))).collect();
+                    time(&mut || hits.iter().map(|(r, h)| geometry.surface(r, h).position_error).sum());
+                }
+                _ => {
+                    let hits: Vec<_> = eights.iter().map(|r| (r, geometry.closest_hits(r, 0xFF))).collect();
+                    time(&mut || hits.iter().map(|(r, h)| geometry.surfaces(r, h, h.mask).position_error[0]).sum());
+                }
             }
-            time(0, &mut || alone.iter().filter_map(|r| geometry.closest_hit(r)).map(|h| h.t).sum());
-            time(1, &mut || eights.iter().map(|r| geometry.closest_hits(r, 0xFF).t[0]).sum());
-            let hits: Vec<_> = alone.iter().filter_map(|r| Some((r, geometry.closest_hit(r)?))).collect();
-            time(2, &mut || hits.iter().map(|(r, h)| geometry.surface(r, h).position_error).sum());
-            let hits: Vec<_> = eights.iter().map(|r| (r, geometry.closest_hits(r, 0xFF))).collect();
-            time(3, &mut || hits.iter().map(|(r, h)| geometry.surfaces(r, h, h.mask).position_error[0]).sum());
         }
     }
     let ns = best.map(|s| s.iter().sum::<f64>() * 1e9 / alone.len() as f64);

@@ -9,6 +9,7 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod closest;
+mod eight;
 mod flat;
 mod leaf;
 mod met;
@@ -28,7 +29,7 @@ use crate::frame::BoxRay;
 use crate::portal::Portal;
 use crate::query::{Four, Projection, Query, RawHit};
 use crate::wide::{LEAF_WIDTH, Leaf8, NODE_WIDTH, Node16, WideTree};
-use crate::{Primitive, Triangle};
+use crate::{Hits, Primitive, Rays, Triangle};
 use any::any_on;
 pub(crate) use any::occludes;
 use closest::closest_on;
@@ -187,6 +188,18 @@ pub(crate) fn any<S: Start>(level: Level, tree: &WideTree, primitives: &[Primiti
         Level::Avx2(filters) => filters.any(tree, primitives, start),
         Level::Portable => any_portable(tree, primitives, start),
     }
+}
+
+/// [`closest`] of the rays in the lanes of `active`, one bit each.
+#[inline]
+pub(crate) fn closest_hits(level: Level, tree: &WideTree, primitives: &[Primitive], rays: &Rays, active: u8) -> Hits {
+    level.run(eight::Closest { tree, primitives, rays, active })
+}
+
+/// [`any`] of the rays in the lanes of `active`: one bit for each lane, zero in the others.
+#[inline]
+pub(crate) fn any_hits(level: Level, tree: &WideTree, primitives: &[Primitive], rays: &Rays, active: u8) -> u8 {
+    level.run(eight::Any { tree, primitives, rays, active })
 }
 
 /// [`closest`] on any machine.

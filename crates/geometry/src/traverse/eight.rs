@@ -1,0 +1,102 @@
+//! The rays of eight lanes through a tree, one after the other: as single rays, but set out from the lanes themselves and without a
+//! call for each. To gather a ray in memory first, and to read it back in vectors, costs as much as two nodes.
+
+use super::start::Start;
+use super::{Filters, Job, any_with, closest_with};
+use crate::frame::{Frame, FrameRay};
+use crate::lanes::{Hits, LANES, Rays, lanes_of, vector};
+use crate::query::{Four, Projection, Query, RawHit};
+use crate::wide::WideTree;
+use crate::{Hit, Primitive, PrimitiveId};
+
+/// A ray in a lane.
+#[derive(Clone, Copy)]
+struct Lane<'a> {
+    rays: &'a Rays,
+    lane: usize,
+}
+
+impl Start for Lane<'_> {
+    #[inline(always)]
+    fn query(self) -> Option<Query> {
+        Query::new(&self.rays.get(self.lane))
+    }
+
+    #[inline(always)]
+    fn enter_near<F: Four>(self, token: F::Token, frame: &Frame) -> Option<FrameRay<F::Narrow>> {
+        let ([ox, oy, oz], [dx, dy, dz], lane) = (&self.rays.origin, &self.rays.direction, self.lane % LANES);
+        let lanes =
+            [F::new(token, [ox[lane], oy[lane], oz[lane], 0.0]), F::new(token, [dx[lane], dy[lane], dz[lane], 0.0])];
+        frame.enter_near(token, lanes, |unit| self.rays.t_max[lane] * unit)
+    }
+
+    #[inline(always)]
+    fn projection(self, scale: f64, axis: usize) -> Projection {
+        let lane = self.lane % LANES;
+        Projection::new(vector(&self.rays.origin, lane), vector(&self.rays.direction, lane) * scale, axis)
+    }
+
+    #[inline(always)]
+    fn distance(self, scale: f64, t: f64) -> f64 {
+        t * scale
+    }
+
+    #[inline(always)]
+    fn leaves(self) -> PrimitiveId {
+        self.rays.leaves[self.lane % LANES].own()
+    }
+
+    #[inline(always)]
+    fn aims_at(self) -> PrimitiveId {
+        self.rays.aims_at[self.lane % LANES].own()
+    }
+}
+
+/// The closest hits of the rays in the lanes of `active`.
+pub(super) struct Closest<'a> {
+    pub(super) tree: &'a WideTree,
+    pub(super) primitives: &'a [Primitive],
+    pub(super) rays: &'a Rays,
+    pub(super) active: u8,
+}
+
+impl Job for Closest<'_> {
+    type Output = Hits;
+
+    #[inline(always)]
+    fn run<F: Filters>(self, filters: F) -> Hits {
+        let Self { tree, primitives, rays, active } = self;
+        let mut hits = Hits::NONE;
+        for lane in lanes_of(active) {
+            let found = closest_with(filters, tree, primitives, Lane { rays, lane });
+            if let Some((RawHit { t, uv }, surface)) = found
+                && t < f64::INFINITY
+            {
+                hits.set(lane, Some(&Hit { t, surface, uv }));
+            }
+        }
+        hits
+    }
+}
+
+/// Whether anything hides the ends of the rays in the lanes of `active`, one bit each.
+pub(super) struct Any<'a> {
+    pub(super) tree: &'a WideTree,
+    pub(super) primitives: &'a [Primitive],
+    pub(super) rays: &'a Rays,
+    pub(super) active: u8,
+}
+
+impl Job for Any<'_> {
+    type Output = u8;
+
+    #[inline(always)]
+    fn run<F: Filters>(self, filters: F) -> u8 {
+        let Self { tree, primitives, rays, active } = self;
+        let mut hidden = 0;
+        for lane in lanes_of(active) {
+            hidden |= u8::from(any_with(filters, tree, primitives, Lane { rays, lane })) << lane;
+        }
+        hidden
+    }
+}
