@@ -138,7 +138,8 @@ fuzz_target!(|data: &[u8]| {
     let mut bytes = Bytes(data);
     let mut shapes = bytes.shapes();
     if bytes.byte() % 4 == 0 {
-        let inner = Arc::new(Geometry::build(bytes.shapes()).expect("few"));
+        let flat_limit = if bytes.byte() % 2 == 0 { 0 } else { 128 };
+        let inner = Arc::new(Geometry::build_with(bytes.shapes(), flat_limit).expect("few"));
         for _ in 0..bytes.byte() % 16 {
             let rows = [bytes.vector(), bytes.vector(), bytes.vector()].map(Vec3::to_array);
             let placement = Placement::new(rows, bytes.vector().to_array());
