@@ -74,7 +74,7 @@ impl OrenNayar {
 }
 
 /// Albedo of the single scattering of a white surface: A(1 + r·G(µ)/π), G = sin θ(θ − sin θ cos θ) + ⅔(tan θ(1 − sin³θ) − sin θ).
-fn albedo(roughness: f64, scale: f64, mu: f64) -> f64 {
+pub(super) fn albedo(roughness: f64, scale: f64, mu: f64) -> f64 {
     let (theta, sin) = (mu.acos(), ((1.0 - mu) * (1.0 + mu)).sqrt());
     let g = sin * (theta - sin * mu) + 2.0 / 3.0 * (sin / mu * (1.0 - sin * sin * sin) - sin);
     scale * (1.0 + roughness * FRAC_1_PI * g)

@@ -4,11 +4,13 @@ use super::albedo::{LossTable, NODES, extremes, node};
 use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Ggx, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
+use super::oren_nayar::albedo;
 use super::rough_dielectric::{loss, mean_transmittance, polarised_loss};
-use etalon_optics::Spectrum;
+use super::{Bsdf, Shading};
+use etalon_optics::{ComplexIndex, Lanes, Spectrum, Vec3, fresnel};
 use etalon_oracle::laws::{Masking, fresnel_exact, ggx_albedo};
 use etalon_oracle::truths::walsh_reflectance;
-use etalon_scene::Metal;
+use etalon_scene::{MaterialKind, Metal};
 use std::f64::consts::{PI, TAU};
 
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
@@ -75,6 +77,26 @@ fn diffuse_light_is_transmitted_as_walsh_says() {
         assert!((inside * n * n - truth).abs() < 1e-5, "n {n} from inside: {} is not {truth}", inside * n * n);
     }
     assert!((mean_transmittance(1.0) - 1.0).abs() < 1e-12);
+}
+
+/// The albedo of a white rough diffuse surface is the mean of A(1 + r·s/t) over cosine-weighted directions, here by midpoints in cos² and azimuth.
+#[test]
+fn rough_diffuse_surfaces_have_the_albedo_of_their_scattering() {
+    let steps = 200;
+    let place = |i: usize| (i as f64 + 0.5) / steps as f64;
+    for (roughness, mu) in [(0.0, 0.4), (0.5, 0.9), (1.0, 0.6), (1.0, 0.2), (0.7, 0.3)] {
+        let scale = 1.0 / (1.0 + roughness * (0.5 - 2.0 / (3.0 * PI)));
+        let of = |i: usize| {
+            let (mu_i, turn) = (place(i % steps).sqrt(), PI * place(i / steps));
+            let s = f64::sqrt((1.0 - mu * mu) * (1.0 - mu_i * mu_i)) * turn.cos();
+            let t = if s > 0.0 { f64::max(mu, mu_i) } else { 1.0 };
+            scale * (1.0 + roughness * s / t)
+        };
+        let truth = (0..steps * steps).map(of).sum::<f64>() / (steps * steps) as f64;
+        let read = albedo(roughness, scale, mu);
+        // The midpoint rule, at the kink where s = 0.
+        assert!((read - truth).abs() < 1e-4, "r {roughness} µ {mu}: {read} is not {truth}");
+    }
 }
 
 /// A loss of which all is known: 2∫ℓµ dµ = (η − 1)/20 + 1/20.
@@ -202,5 +224,35 @@ fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
                 }
             }
         }
+    }
+}
+
+/// What light that meets several facets of a metal adds is (1 − E(µ_o))(1 − E(µ_i))/(π(1 − Ē)) of the F̄²Ē/(1 − F̄(1 − Ē)) that is not absorbed on its way
+/// (Kulla & Conty 2017), with the albedos of facets by independent quadrature. The metal absorbs enough for a power of F̄ to be told from another.
+#[test]
+fn what_several_facets_of_a_metal_add_is_coloured_by_as_many_reflections() {
+    let (alpha, n, k) = (0.8, 1.5, 3.0);
+    let bsdf = |compensated| {
+        let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![n; 2], vec![k; 2]).unwrap();
+        let kind = MaterialKind::RoughConductor { metal: Metal::Index(index), alpha, compensated };
+        Bsdf::new(&kind, RANGE_NM)
+    };
+    let at = |i: u32, steps: u32| (f64::from(i) + 0.5) / f64::from(steps);
+    let albedo = |mu: f64| ggx_albedo(alpha, mu, None, Masking::Correlated).reflected;
+    let mean_albedo = (0..12).map(|i| 2.0 * at(i, 12) * albedo(at(i, 12)) / 12.0).sum::<f64>();
+    let of_facet = |mu: f64| 2.0 * mu * fresnel::conductor(mu, n, k).reflectance;
+    let mean = (0..10_000).map(|i| of_facet(at(i, 10_000)) / 10_000.0).sum::<f64>();
+    let colour = mean * mean * mean_albedo / (1.0 - mean * (1.0 - mean_albedo));
+    let (whole, single) = (bsdf(true), bsdf(false));
+    for (mu_o, mu_i) in [(0.9, 0.5), (0.3, 0.7), (0.2, 0.2)] {
+        let direction = |mu: f64, sign: f64| Vec3::new(sign * (1.0 - mu * mu).sqrt(), 0.0, mu);
+        let eval = |bsdf: &Bsdf| {
+            let up = Shading::flat(Vec3::new(0.0, 0.0, 1.0));
+            bsdf.eval::<f64, 1>(&Lanes([550.0]), &up, direction(mu_o, 1.0), direction(mu_i, -1.0)).0[0]
+        };
+        let read = eval(&whole) - eval(&single);
+        let truth = mu_i * (1.0 - albedo(mu_o)) * (1.0 - albedo(mu_i)) / (PI * (1.0 - mean_albedo)) * colour;
+        // Twelve midpoints and the tables.
+        assert!((read / truth - 1.0).abs() < 0.01, "{mu_o} {mu_i}: {read} is not {truth}");
     }
 }
