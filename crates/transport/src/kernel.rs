@@ -2,6 +2,7 @@
 //! names them. Positions, directions and densities are `f64` in all of them.
 
 use crate::camera::Camera;
+use crate::caustics::{Trial, try_casters};
 use crate::compiled;
 use crate::engine::render_spots_lanes;
 use crate::film::{Counters, NonFinite, PixelRect, Sums};
@@ -69,6 +70,8 @@ pub(crate) struct Kernel {
     pub render_lanes: Option<RenderSpots>,
     /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
+    /// Tells what casters of caustics would win.
+    pub try_casters: fn(&Prepared) -> Trial,
 }
 
 /// The whole table. What is no type parameter is decided by the plan, at run time: a branch costs nothing, work does.
@@ -117,7 +120,8 @@ const fn entry<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
     name: &'static str,
 ) -> Kernel {
     let (render, replay) = (render_tile::<R, M, P, N>, replay::<R, M, P, N>);
-    Kernel { precision, lanes, lane_count: N, polarised: false, name, render, render_lanes: None, replay }
+    let try_casters = try_casters::<R, M, P, N>;
+    Kernel { precision, lanes, lane_count: N, polarised: false, name, render, render_lanes: None, replay, try_casters }
 }
 
 /// One that can also follow many paths at once.
@@ -226,6 +230,7 @@ impl<'a> Tracer<'a> {
                 weigh_hits: prepared.lights.can_be_met() || plan.runs(EffectName::Mis),
                 max_depth: integrator.max_depth.unwrap_or(MOST_VERTICES).min(MOST_VERTICES),
                 roulette: integrator.roulette,
+                casters: &prepared.casters,
             },
         }
     }

@@ -30,6 +30,7 @@ pub mod adaptive;
 pub mod bsdf;
 pub mod camera;
 pub mod canvas;
+mod caustics;
 mod compiled;
 mod coordinates;
 mod engine;

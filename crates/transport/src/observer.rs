@@ -1,10 +1,11 @@
 //! Watching a single path, for replays and for counting; costs nothing when nobody watches.
 
+use crate::caustics::Mixture;
 use etalon_optics::{Lanes, Real, Vec3};
 
 /// What ended a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub(crate) enum End {
     /// It left the scene.
     Escaped,
     /// The surface scattered nothing on.
@@ -20,18 +21,20 @@ pub enum End {
 }
 
 /// A watcher of a path. Every method does nothing unless it is implemented.
-pub trait Observer<R: Real, const N: usize> {
+pub(crate) trait Observer<R: Real, const N: usize> {
     /// The path meets a surface: vertex number `vertex` (0 is the first), where, which object, and its throughput so far.
     fn vertex(&mut self, _vertex: u32, _position: Vec3<f64>, _object: u32, _beta: Lanes<R, N>) {}
     /// Light is added: at which vertex, how, and how much in each lane.
     fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<R, N>) {}
+    /// A direction is drawn from a mixture.
+    fn direction(&mut self, _mixture: &Mixture) {}
     /// The path ends.
     fn end(&mut self, _end: End) {}
 }
 
 /// How light was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
+pub(crate) enum Found {
     /// The path ran into an emitting surface.
     Emitter,
     /// The path left the scene into the environment.

@@ -16,6 +16,7 @@
 
 use crate::absorption::{Absorption, Body};
 use crate::bsdf::Lobe;
+use crate::caustics::Casters;
 use crate::compiled;
 use crate::film::Counters;
 use crate::light::{Environment, LightSample, LightTable, Target};
@@ -59,6 +60,8 @@ pub(crate) struct World<'a> {
     /// Most path edges from the camera to a light, at most [`MOST_VERTICES`].
     pub max_depth: u32,
     pub roulette: bool,
+    /// What diffuse surfaces draw directions toward.
+    pub casters: &'a Casters,
 }
 
 /// From which surfaces shadow rays are sent.
@@ -212,11 +215,14 @@ impl World<'_> {
             }
 
             let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(vertex, 0);
-            let Some(next) = scattering.sample(lambda_nm, wo, [u_lobe, u1, u2]) else {
+            let Some((next, mixture)) = self.casters.sample(&point, &scattering, lambda_nm, wo, [u_lobe, u1, u2])
+            else {
                 observer.end(End::Absorbed);
                 break;
             };
             beta *= next.weight;
+            beta *= R::from_f64(mixture.factor(1.0));
+            observer.direction(&mixture);
             let lobe = match next.density {
                 Density::Delta => Lobe::Delta(u_lobe),
                 Density::SolidAngle(_) => Lobe::SolidAngle,

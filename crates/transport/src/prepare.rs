@@ -3,6 +3,8 @@
 use crate::absorption::{Absorption, Interior};
 use crate::bsdf::Bsdf;
 use crate::camera::{Camera, Moving};
+use crate::caustics::Casters;
+use crate::compiled;
 use crate::engine::Tables;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
@@ -40,6 +42,7 @@ pub struct Prepared {
     pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
     pub(crate) tables: Tables,
+    pub(crate) casters: Casters,
     plan: Plan,
     /// What paths carry for the sake of a study.
     carried: Option<Carried>,
@@ -212,9 +215,13 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
             frame,
         }),
     };
+    let casters = match study.carried {
+        None if compiled::SPECULAR_CHAINS => Casters::new(&surfaces, &geometry, &lights),
+        _ => Casters::default(),
+    };
     let tables = Tables::new(&surfaces, &lights, &environments);
     let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene)).transpose()?;
-    Ok(Prepared {
+    let mut prepared = Prepared {
         frame,
         camera: frame.camera(&scene.camera),
         camera_motion,
@@ -230,11 +237,14 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         one_lane: OneLaneFilm::new(scene),
         filter: FilterSampler::new(&scene.film.filter),
         tables,
+        casters,
         plan,
         carried: study.carried,
         warnings,
         scene: simulated,
-    })
+    };
+    prepared.choose_casters();
+    Ok(prepared)
 }
 
 /// The axis of an object that is a polarising sheet, in the coordinates of its group.
@@ -327,6 +337,13 @@ impl Prepared {
     /// What was noticed and is not an error, such as triangles without area that were left out.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// The share of the directions of diffuse surfaces that is drawn toward mirrors and bodies of glass where all of them are seen, and
+    /// the number of these; 0 where that does not pay.
+    pub fn casters(&self) -> (f64, usize) {
+        let bodies = self.casters.aimed_at().len();
+        (self.casters.each * bodies as f64, bodies)
     }
 
     /// The frame in which the scene is rendered; the geometry is in it.

@@ -254,6 +254,15 @@ impl Scattering<'_> {
         self.bsdf.eval(lambda_nm, &self.at, wo, wi)
     }
 
+    /// The reflectance, if it is Lambert's around the surface's own normal.
+    #[inline]
+    pub(crate) fn diffuse<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Option<Lanes<R, N>> {
+        match self.bsdf {
+            Bsdf::Lambert(lambert) if !self.at.is_bent() => Some(lambert.reflectance(lambda_nm, self.at.uv)),
+            _ => None,
+        }
+    }
+
     /// The unit normal to scatter around, on the surface's own outward side.
     pub(crate) fn shading_normal(&self) -> Vec3<f64> {
         self.at.shading_normal()

@@ -28,6 +28,12 @@ impl Lambert {
         }
     }
 
+    /// At these texture coordinates.
+    #[inline]
+    pub(crate) fn reflectance<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> Lanes<R, N> {
+        self.reflectance.lanes(lambda_nm, uv)
+    }
+
     pub(super) fn eval<R: Real, const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
@@ -63,11 +69,17 @@ impl Lambert {
     }
 }
 
+/// The normal on the side of `wo`.
+#[inline(always)]
+pub(crate) fn toward(n: Vec3<f64>, wo: Vec3<f64>) -> Vec3<f64> {
+    if n.dot(wo) < 0.0 { -n } else { n }
+}
+
 /// A direction on the side of `wo`, and its cosine; drawn in vain where that is not above 0. Without branches, so that a loop over
 /// surfaces is vectorised.
 #[inline(always)]
 pub(crate) fn direction(n: Vec3<f64>, wo: Vec3<f64>, u: [f64; 2]) -> (Vec3<f64>, f64) {
-    let n = if n.dot(wo) < 0.0 { -n } else { n };
+    let n = toward(n, wo);
     let wi = Frame::from_normal(n).to_world(cosine_hemisphere(u)).renormalized();
     // The cosine of the direction as it came out, rounding included, so that its density equals what `eval` says of it.
     (wi, n.dot(wi))

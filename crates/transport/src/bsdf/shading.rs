@@ -82,7 +82,7 @@ impl<'a> Shading<'a> {
         self.bent.filter(|_| compiled::SHADING_NORMALS).unwrap_or(self.normal)
     }
 
-    pub(super) fn is_bent(&self) -> bool {
+    pub(crate) fn is_bent(&self) -> bool {
         compiled::SHADING_NORMALS && self.bent.is_some()
     }
 

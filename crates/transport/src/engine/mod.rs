@@ -7,6 +7,7 @@
 //! Whatever has no row form, such as rough metals or lights other than flat ones, is asked path by path of the very functions
 //! of the plain loop.
 
+mod casters;
 mod direct;
 mod lamps;
 mod level;

@@ -1,6 +1,7 @@
 //! The walk's next step: a direction from each surface, what it is worth, and whether the path goes on.
 
 use super::Engine;
+use super::casters::Drawn;
 use super::direct::vertex_numbers;
 use super::level::{Level, Set, stages};
 use super::rows::{Mask, Row, Rows3, W, lanes};
@@ -27,7 +28,20 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         vertex_numbers(self.level, &paths.samplers, &paths.vertex, 0, &mut numbers);
         let [u1, u2, u_lobe, u_roulette] = &numbers;
         let (mut wi, mut cos) = (Rows3::ZERO, Row::ZERO);
-        lambert_directions(self.level, (&paths.at.normal, &paths.direction), [u1, u2], &mut wi, &mut cos);
+        let casters = self.world.casters;
+        let mut drawn = Drawn::NONE;
+        let aims = !casters.aimed_at().is_empty();
+        if aims {
+            for lane in lanes(scatters) {
+                drawn.diffuse[lane] = matches!(paths.at.form[lane], Form::Lambert(_));
+            }
+            let surface = (&paths.at.position, &paths.at.normal, &paths.direction);
+            drawn.aim(self.level, casters, surface, [u1, u2]);
+            lambert_directions(self.level, (&paths.at.normal, &paths.direction), [&drawn.u1.0, u2], &mut wi, &mut cos);
+            drawn.take(self.level, casters, surface, &mut wi, &mut cos);
+        } else {
+            lambert_directions(self.level, (&paths.at.normal, &paths.direction), [u1, u2], &mut wi, &mut cos);
+        }
         let mut turns = Turns::NONE;
         for lane in lanes(scatters) {
             match paths.at.form[lane] {
@@ -60,6 +74,9 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                         continue;
                     }
                     paths.beta[lane] *= paths.known.spectrum(lane, slot, self.tables, lambda_nm);
+                    if aims {
+                        paths.beta[lane] *= drawn.factor.0[lane];
+                    }
                     // As if it had followed lanes that are all alike.
                     let mean_of_hero =
                         if paths.parted >> lane & 1 == 1 { paths.model[lane].follow(Lanes::ONE) } else { 1.0 };
@@ -96,9 +113,13 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 Form::Other => {
                     let scattering = paths.at.scattering[lane].as_ref().expect("what is not Lambert's has been made");
                     let u = [u_lobe[lane], u1[lane], u2[lane]];
-                    let Some(next) = scattering.sample(lambda_nm, -paths.direction.at(lane), u) else { continue };
+                    let (point, wo) = (paths.at.point(lane), -paths.direction.at(lane));
+                    let Some((next, mixture)) = casters.sample(&point, scattering, lambda_nm, wo, u) else {
+                        continue;
+                    };
                     wi.set(lane, next.wi);
                     paths.beta[lane] *= next.weight;
+                    paths.beta[lane] *= mixture.factor(1.0);
                     let mean_of_hero = paths.model[lane].follow(next.lane_density);
                     paths.parted |= Mask::from(next.lane_density != Lanes::ONE) << lane;
                     paths.eta_squared.0[lane] *= next.eta * next.eta;

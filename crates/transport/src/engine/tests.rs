@@ -125,6 +125,23 @@ fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_plain_l
 }
 
 #[test]
+fn directions_toward_casters_leave_the_film_of_the_plain_loop_too() {
+    let plain = {
+        let mut prepared = prepared(&[], PathLoop::Plain);
+        prepared.casters.each = 0.25;
+        prepared.render(&prepared.whole(Some(1)), &|_| Control::Continue).unwrap()
+    };
+    let mut lanes_of = prepared(&[], PathLoop::Lanes);
+    assert_eq!(lanes_of.casters.bodies.len(), 2);
+    lanes_of.casters.each = 0.25;
+    for level in Level::all() {
+        assert!(is_that_of(&plain, &lanes::<Shared, 8>(level, &lanes_of)), "{level:?}");
+    }
+    lanes_of.casters.each = 0.2;
+    assert!(!is_that_of(&plain, &lanes::<Shared, 8>(Level::detect(), &lanes_of)));
+}
+
+#[test]
 fn engines_that_are_wrong_on_purpose_are_told_from_the_plain_loop() {
     let film = plain(&[]);
     let shared = prepared(&[], PathLoop::Lanes);

@@ -72,6 +72,18 @@ impl Round {
     }
 }
 
+impl Round {
+    /// The density of the direction `wi` where [`Round::aim`] draws directions from `from`, a point outside, sr⁻¹: zero beyond the
+    /// cone.
+    #[inline(always)]
+    pub(crate) fn density_of(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64 {
+        let View { axis, one_minus_cos, .. } = self.view(from);
+        // 1 − cos between unit vectors, without cancellation.
+        let within = 0.5 * (wi - axis).length_squared() <= one_minus_cos;
+        if within { cone_density(one_minus_cos) } else { 0.0 }
+    }
+}
+
 /// Density of directions uniform in a cone, sr⁻¹.
 #[inline(always)]
 fn cone_density(one_minus_cos: f64) -> f64 {
