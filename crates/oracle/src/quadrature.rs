@@ -113,13 +113,14 @@ pub(crate) fn nonnegative(
     let rule = |[a, b, c, d]: [f64; 4]| {
         let area = (b - a) * (d - c);
         let at = |[a, b]: [f64; 2], node: f64| 0.5 * (a + b) + 0.5 * (b - a) * node;
-        let mut nodes = |rule: &[(f64, f64)]| -> Vec<f64> {
+        let nodes = |rule: &[(f64, f64)], f: &mut dyn FnMut(f64, f64) -> f64| -> Vec<f64> {
             let along = |x: f64| rule.iter().map(move |(y, _)| (x, *y));
             rule.iter().flat_map(|(x, _)| along(*x)).map(|(x, y)| f(at([a, b], x), at([c, d], y))).collect()
         };
-        let met = nodes(&fine);
+        let met = nodes(&fine, &mut f);
         let most = met.iter().copied().fold(0.0, f64::max);
         let zero = |i: usize, j: usize| met[i * FINE + j] == 0.0;
+        let places = [[a, b], [c, d]].map(|side| std::array::from_fn(|i| at(side, fine[i].0)));
         let sum = |values: &[f64], rule: &[(f64, f64)]| {
             let weights = rule.iter().flat_map(|(_, wx)| rule.iter().map(move |(_, wy)| 0.25 * area * wx * wy));
             values.iter().zip(weights).map(|(value, weight)| value * weight).sum::<f64>()
@@ -129,7 +130,8 @@ pub(crate) fn nonnegative(
             let ends = |line: &dyn Fn(usize, usize) -> bool| {
                 (0..FINE).filter(|&i| (1..FINE).any(|j| line(i, j) != line(i, j - 1))).count()
             };
-            Some((ends(&|i, j| zero(i, j)) >= ends(&|i, j| zero(j, i)), jump(&met).map_or(0.0, |(_, level)| level)))
+            let along_y = ends(&|i, j| zero(i, j)) >= ends(&|i, j| zero(j, i));
+            Some((along_y, jump(&met, &places, &mut f).map_or(0.0, |(_, level)| level)))
         } else {
             None
         };
@@ -148,8 +150,8 @@ pub(crate) fn nonnegative(
         let (value, other) = match ends {
             Some(ends) => by_lines(ends, &mut f),
             None => {
-                let whole = (sum(&met, &fine), sum(&nodes(&coarse), &coarse));
-                match jump(&met) {
+                let whole = (sum(&met, &fine), sum(&nodes(&coarse, &mut f), &coarse));
+                match jump(&met, &places, &mut f) {
                     Some(jump) if (whole.0 - whole.1).abs() > SMOOTH * whole.0 => by_lines(jump, &mut f),
                     _ => whole,
                 }
@@ -169,24 +171,43 @@ pub(crate) fn nonnegative(
 /// Two rules that differ by less than this part of the integral have met no jump that matters.
 const SMOOTH: f64 = 1e-4;
 
-/// Whether values at the nodes of a rectangle jump, along which axis (y if true), and the middle of the largest jump: where, on at least two
-/// lines along that axis, most of the whole change is between two neighbours.
-fn jump(met: &[f64]) -> Option<(bool, f64)> {
+/// Whether values at the nodes of a rectangle, of which `places` has the coordinates, jump from one above 0 to another, along which axis (y if
+/// true), and the middle of the largest jump: where, on at least two lines along that axis, most of the whole change is between two
+/// neighbours, and at least half of that still is between points so near to each other that only a jump can be.
+fn jump(met: &[f64], places: &[[f64; FINE]; 2], f: &mut dyn FnMut(f64, f64) -> f64) -> Option<(bool, f64)> {
     let most = met.iter().copied().fold(0.0, f64::max);
+    let at = |along_y: bool, i: usize, j: usize| if along_y { met[i * FINE + j] } else { met[j * FINE + i] };
     let lines = |along_y: bool| {
-        let at = move |i: usize, j: usize| if along_y { met[i * FINE + j] } else { met[j * FINE + i] };
-        let steps = move |i: usize| (1..FINE).map(move |j| (at(i, j) - at(i, j - 1)).abs());
+        let step = move |i: usize, j: usize| match (at(along_y, i, j - 1), at(along_y, i, j)) {
+            // Where it ends, which is no matter of levels.
+            (before, after) if before == 0.0 || after == 0.0 => 0.0,
+            (before, after) => (after - before).abs(),
+        };
         (0..FINE).filter_map(move |i| {
-            let (whole, (size, j)) = steps(i).zip(1..).fold((0.0, (0.0, 0)), |(sum, most), (size, j)| {
-                (sum + size, if size > most.0 { (size, j) } else { most })
-            });
-            (size > 0.6 * whole && size > 0.05 * most).then(|| (size, 0.5 * (at(i, j) + at(i, j - 1))))
+            let (whole, (size, j)) =
+                (1..FINE).map(|j| (step(i, j), j)).fold((0.0, (0.0, 0)), |(sum, most), (size, j)| {
+                    (sum + size, if size > most.0 { (size, j) } else { most })
+                });
+            (size > 0.6 * whole && size > 0.05 * most).then_some((size, i, j))
         })
     };
     let along_y = lines(true).count() >= lines(false).count();
-    let (_, level) = lines(along_y).max_by(|a, b| a.0.total_cmp(&b.0)).filter(|_| lines(along_y).count() >= 2)?;
-    Some((along_y, level))
+    let (size, i, j) = lines(along_y).max_by(|a, b| a.0.total_cmp(&b.0)).filter(|_| lines(along_y).count() >= 2)?;
+    let level = 0.5 * (at(along_y, i, j) + at(along_y, i, j - 1));
+    // What grows steeply, such as toward an inverse root, is no jump.
+    let [across, along] = if along_y { [&places[0], &places[1]] } else { [&places[1], &places[0]] };
+    let mut over = |x: f64| if along_y { f(across[i], x) } else { f(x, across[i]) };
+    let (mut low, mut high) = (along[j - 1], along[j]);
+    let below = at(along_y, i, j - 1) <= level;
+    for _ in 0..24 {
+        let middle = 0.5 * (low + high);
+        if (over(middle) <= level) == below { low = middle } else { high = middle }
+    }
+    ((over(low) - over(high)).abs() > 0.5 * size).then_some((along_y, level))
 }
+
+/// Most places between two neighbouring nodes at which a line is cut.
+const MOST_PLACES: usize = 4;
 
 /// ∫ f over [a, b] where f is zero in some parts, or jumps across `level`, which the nodes of the rule tell from the others. These places
 /// are found by bisection to 2⁻²⁴ of the interval, and nodes gather there (x = t²(3 − 2t)), so that an inverse root is integrated like
@@ -202,18 +223,22 @@ fn line_in_pieces(mut f: impl FnMut(f64) -> f64, [a, b]: [f64; 2], level: f64, r
     let kinds: Vec<_> = places.iter().map(|&x| kind(x)).collect();
     let (mut pieces, mut begin) = (Vec::new(), a);
     for (pair, kinds) in places.windows(2).zip(kinds.windows(2)) {
-        if kinds[0] == kinds[1] {
-            continue;
+        // One place after the other: what grows without bound before it ends crosses the level and then ends.
+        let (mut low, mut now) = (pair[0], kinds[0]);
+        for _ in 0..MOST_PLACES {
+            if now == kinds[1] {
+                break;
+            }
+            let mut high = pair[1];
+            while high - low > (b - a) * 0.5_f64.powi(24) {
+                let middle = 0.5 * (low + high);
+                if kind(middle) == now { low = middle } else { high = middle }
+            }
+            if now.0 {
+                pieces.push([begin, low]);
+            }
+            (begin, low, now) = (high, high, kind(high));
         }
-        let (mut low, mut high) = (pair[0], pair[1]);
-        while high - low > (b - a) * 0.5_f64.powi(24) {
-            let middle = 0.5 * (low + high);
-            if kind(middle) == kinds[0] { low = middle } else { high = middle }
-        }
-        if kinds[0].0 {
-            pieces.push([begin, low]);
-        }
-        begin = high;
     }
     if kinds[kinds.len() - 1].0 {
         pieces.push([begin, b]);
