@@ -9,6 +9,7 @@ use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
 use crate::sampler::mix;
 use etalon_optics::{Lanes, Real};
+use rayon::prelude::*;
 
 /// The share of all casters together that is tried, and those that the trial decides between.
 const TRIED: f64 = 0.35;
@@ -94,29 +95,30 @@ pub(crate) fn try_casters<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, 
     let step = (pixels as f64 / tried as f64).sqrt().ceil() as u32;
     let (rows, columns) = (step / 2..film.height, step / 2..film.width);
     let tracer = Tracer::new(prepared);
-    let mut moments = Vec::new();
-    for y in rows.step_by(step as usize) {
-        for x in columns.clone().step_by(step as usize) {
-            let (mut mean, mut squares) = (0.0, [0.0; 1 + SHARES.len()]);
-            for sample in 0..SAMPLES {
-                let mut path = Weighed { factors: [1.0; _], tried: 1.0, found: [0.0; _] };
-                tracer.sample::<R, M, P, N>(x, y, sample, &mut Counters::default(), &mut path);
-                // What is not finite the picture reports.
-                if !path.found.iter().all(|found| found.is_finite()) {
-                    continue;
-                }
-                mean += path.found[0] * path.tried / f64::from(SAMPLES);
-                if path.tried < RARE {
-                    continue;
-                }
-                for ((square, found), factor) in squares.iter_mut().zip(path.found).zip(path.factors) {
-                    *square += found * found * (path.tried / factor) / f64::from(SAMPLES);
-                }
+    let of_pixel = |x: u32, y: u32| {
+        let (mut mean, mut squares) = (0.0, [0.0; 1 + SHARES.len()]);
+        for sample in 0..SAMPLES {
+            let mut path = Weighed { factors: [1.0; _], tried: 1.0, found: [0.0; _] };
+            tracer.sample::<R, M, P, N>(x, y, sample, &mut Counters::default(), &mut path);
+            // What is not finite the picture reports.
+            if !path.found.iter().all(|found| found.is_finite()) {
+                continue;
             }
-            moments.push((mean, squares));
+            mean += path.found[0] * path.tried / f64::from(SAMPLES);
+            if path.tried < RARE {
+                continue;
+            }
+            for ((square, found), factor) in squares.iter_mut().zip(path.found).zip(path.factors) {
+                *square += found * found * (path.tried / factor) / f64::from(SAMPLES);
+            }
         }
-    }
-    Trial { columns: columns.step_by(step as usize).count(), moments }
+        (mean, squares)
+    };
+    // In the order of the pixels, whichever thread they are tried by.
+    let rows: Vec<u32> = rows.step_by(step as usize).collect();
+    let of_row = |y: u32| columns.clone().step_by(step as usize).map(move |x| (x, y));
+    let moments = rows.into_par_iter().flat_map_iter(|y| of_row(y).map(|(x, y)| of_pixel(x, y))).collect();
+    Trial { columns: columns.clone().step_by(step as usize).count(), moments }
 }
 
 impl Trial {
