@@ -37,6 +37,10 @@ struct ExplainJson<'a> {
     lights: usize,
     /// Whether they are chosen for each point anew, by where they are; else by power alone.
     lights_by_place: bool,
+    /// Share of the directions of diffuse surfaces that is drawn toward mirrors and bodies of glass, and how many these are; 0 where
+    /// that does not pay.
+    casters_share: f64,
+    casters: usize,
     /// What effects that are off would have cost, if it was measured.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     costs: Vec<Cost>,
@@ -63,8 +67,9 @@ pub(crate) fn run(args: Args) -> Outcome {
     let plan = prepared.plan();
     let costs = if args.measure { measure(&loaded.scene, &study, &prepared)? } else { Vec::new() };
     if args.json {
-        let ((lights, lights_by_place), scene) = (prepared.lights(), args.scene.display().to_string());
-        print::json(&ExplainJson { scene, plan, lights, lights_by_place, costs });
+        let scene = args.scene.display().to_string();
+        let ((lights, lights_by_place), (casters_share, casters)) = (prepared.lights(), prepared.casters());
+        print::json(&ExplainJson { scene, plan, lights, lights_by_place, casters_share, casters, costs });
     } else {
         print::line(&describe(&prepared, &costs));
     }

@@ -330,7 +330,9 @@ impl Walk<'_, '_> {
         let mut detail = look.detail.clone();
         let mut emission = look.emission.clone();
         if mesh.uvs.is_empty() && look.has_image {
-            self.builder.leave_out(place, "it has no texture coordinates for the images of its material, and is grey; what an image says does not shine");
+            let what = "it has no texture coordinates for the images of its material, and is grey; what an image says does \
+                        not shine";
+            self.builder.leave_out(place, what);
             material = json!({ "type": "lambert", "reflectance": 0.8 });
             detail.clear();
             emission = emission.filter(|emission| emission["radiance"]["type"] != "image");
