@@ -161,6 +161,13 @@ fn what_is_wrong_with_an_obj_file_is_said_with_its_line() {
     for (text, expected) in [
         ("v 0 0 0\nv 1 x 0\n", "line 2: "),
         ("v 0 0 0\nf 1 2 9\nv 1 1 1\n", "line 3: "),
+        // The library that reads OBJ files takes such numbers modulo 2⁶⁴ (a fuzzer found it).
+        (
+            "v 0 0 0\nvt 0 0\nf 1/-1 1/1 1/-3\n",
+            "line 3: a face names texture coordinate -3, where there are only 1 so far",
+        ),
+        ("v 0 0 0\nf 1//9223372036854775807 1 1\n", "line 2: a face names normal 9223372036854775807, more than"),
+        ("v 0 0 0\nf 1 0 1\n", "line 2: a face names vertex 0, but the first has the number 1"),
         ("v 0 0 0\nv nan 0 0\nv 1 1 1\nf 1 2 3\n", "its faces: vertex 1 lies at [NaN, 0.0, 0.0]"),
     ] {
         let error = read_obj(text.as_bytes(), |_| Ok(Vec::new())).expect_err(expected).to_string();

@@ -29,6 +29,7 @@ pub struct ObjFile {
 /// # Errors
 /// If a line cannot be read, a face names something that the file does not have, or a coordinate is not finite.
 pub fn read_obj(bytes: &[u8], library: impl Fn(&Path) -> Result<Vec<u8>, String>) -> Result<ObjFile, MeshError> {
+    check_faces(bytes)?;
     let line = Cell::new(0);
     let missing = RefCell::new(Vec::new());
     let mut reader = Lines { bytes, line: &line };
@@ -125,6 +126,40 @@ fn short_colour(bytes: &[u8]) -> Option<usize> {
         matches!(words.next(), Some("Ka" | "Kd" | "Ks" | "Ke")) && words.count() < 3
     };
     bytes.split(|&b| b == b'\n').position(is_short).map(|i| i + 1)
+}
+
+/// Refuses faces whose numbers count from nothing, or reach back before the first: the library that reads them computes with
+/// such numbers modulo 2⁶⁴ and may find others in their place.
+fn check_faces(bytes: &[u8]) -> Result<(), MeshError> {
+    const NAMES: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+    let mut counts = [0_i64; 3];
+    for (i, line) in bytes.split(|&b| b == b'\n').enumerate() {
+        // What is no text or no number is left to the reader, which refuses it.
+        let mut words = std::str::from_utf8(line).unwrap_or_default().split_whitespace();
+        match words.next() {
+            Some("v") => counts[0] += 1,
+            Some("vt") => counts[1] += 1,
+            Some("vn") => counts[2] += 1,
+            Some("f" | "l") => {
+                for corner in words {
+                    for (k, number) in corner.split('/').enumerate().take(3) {
+                        let fail =
+                            |why: &str| MeshError::at_line(i + 1, format!("a face names {} {number}, {why}", NAMES[k]));
+                        match number.parse::<i64>() {
+                            Ok(0) => return Err(fail("but the first has the number 1")),
+                            Ok(n) if n < -counts[k] => {
+                                return Err(fail(&format!("where there are only {} so far", counts[k])));
+                            }
+                            Ok(n) if n > i64::from(u32::MAX) => return Err(fail("more than a mesh can have")),
+                            _ => {}
+                        }
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Bytes that count the lines which have been taken of them.
