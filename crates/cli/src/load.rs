@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use etalon_scene::import::{Imported, import, is_model};
+use etalon_scene::import::{Imported, Moment, import, is_model};
 use etalon_scene::{FileUse, LoadError, Scene};
 use miette::{Report, Severity, miette};
 use sha2::{Digest, Sha256};
@@ -42,14 +42,14 @@ pub(crate) fn load(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedSce
     Ok(LoadedScene { scene: loaded.scene, warnings: scene_warnings(&name, text, loaded.warnings), sha256 })
 }
 
-/// A model as a scene, with a folder's name before the names of its files.
-pub(crate) fn import_model(path: &Path, prefix: &str) -> Result<Imported, Failure> {
-    import(path, prefix).map_err(|error| Failure::input(miette!(code = "model", "{error}")))
+/// A model as a scene, as it is at a moment, with a folder's name before the names of its files.
+pub(crate) fn import_model(path: &Path, prefix: &str, moment: Option<&Moment>) -> Result<Imported, Failure> {
+    import(path, prefix, moment).map_err(|error| Failure::input(miette!(code = "model", "{error}")))
 }
 
 /// A model rendered directly: what it does not say is added, what is not honoured listed, both as warnings.
 fn load_model(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedScene, Failure> {
-    let imported = import_model(path, "")?;
+    let imported = import_model(path, "", None)?;
     let name = format!("{} as a scene", path.display());
     let loaded = etalon_scene::parse_imported(&imported, &name, film_size).map_err(scene_failure)?;
     let sha256 = scene_sha256(&imported.text, &loaded.files);

@@ -43,7 +43,7 @@ pub(crate) struct Files {
     given: HashMap<String, Vec<u8>>,
     meshes: HashMap<MeshKey, Option<Arc<Mesh>>>,
     images: HashMap<(String, Encoding), Option<Arc<Image>>>,
-    data: HashMap<(String, Channel), Option<Arc<Image>>>,
+    data: HashMap<(String, Channel, Encoding), Option<Arc<Image>>>,
     /// What of images is not used as colours.
     left_out: Vec<(Spanned<String>, String)>,
     used: Vec<FileUse>,
@@ -114,8 +114,8 @@ impl Files {
     /// Warns of what images hold and nothing uses, once everything has been read.
     pub(crate) fn warn_of_what_is_left_out(&mut self, reader: &mut Reader<'_>) {
         for (name, what) in self.left_out.drain(..) {
-            let used = |channel| self.data.contains_key(&(name.value.clone(), channel));
-            if !used(Channel::Alpha) && !used(Channel::Auto) {
+            let uses_alpha = |channel| matches!(channel, Channel::Alpha | Channel::Auto);
+            if !self.data.keys().any(|(file, channel, _)| *file == name.value && uses_alpha(*channel)) {
                 reader.warning(Code::LeftOut, name.at, format!("{}: {what}", name.value), None);
             }
         }
@@ -126,14 +126,15 @@ impl Files {
         &mut self,
         name: &Spanned<String>,
         channel: Channel,
+        encoding: Encoding,
         reader: &mut Reader<'_>,
     ) -> Option<Arc<Image>> {
-        let key = (name.value.clone(), channel);
+        let key = (name.value.clone(), channel, encoding);
         if let Some(known) = self.data.get(&key) {
             return known.clone();
         }
         let made = self.bytes(name, reader).and_then(|bytes| {
-            let decoded = Image::decode_data(&bytes, channel);
+            let decoded = Image::decode_data(&bytes, channel, encoding);
             self.put_back(&name.value, bytes);
             decoded
                 .map_err(|why| reader.error(Code::ImageFile, name.at, format!("{}: {why}", name.value)))

@@ -11,7 +11,7 @@ mod motion;
 
 pub use detail::{OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
-pub use environment::EnvironmentImage;
+pub use environment::{EnvironmentImage, EnvironmentProjection};
 pub use material::{LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture};
 
 pub use motion::{CameraMotion, Keyframe, Motion};

@@ -56,8 +56,10 @@ pub enum Channel {
     Green,
     /// Blue.
     Blue,
-    /// 0.2126 R + 0.7152 G + 0.0722 B of the numbers as they are written.
+    /// 0.2126 R + 0.7152 G + 0.0722 B.
     Luminance,
+    /// (R + G + B)/3.
+    Mean,
     /// Red, green and blue, each as it is.
     All,
 }
@@ -125,33 +127,38 @@ impl Image {
         Self::of(decoded, encoding).map(|image| (image, left_out))
     }
 
-    /// Decodes one channel of such a file, or three, as linear numbers; one stands in all three of the image.
+    /// Decodes one channel of such a file, or three, as linear numbers; one stands in all three of the image. Alpha is linear
+    /// whatever the encoding.
     ///
     /// # Errors
     /// As [`Image::decode`].
-    pub fn decode_data(bytes: &[u8], channel: Channel) -> Result<Self, String> {
+    pub fn decode_data(bytes: &[u8], channel: Channel, encoding: Encoding) -> Result<Self, String> {
         let decoded = Self::read(bytes)?;
         let channel = match channel {
             Channel::Auto if decoded.color().has_alpha() => Channel::Alpha,
             Channel::Auto => Channel::Luminance,
             other => other,
         };
-        if channel == Channel::All {
-            return Self::of(decoded, Encoding::Linear);
+        let (width, height) = (decoded.width(), decoded.height());
+        if channel == Channel::Alpha {
+            let texels = decoded.into_rgba32f().pixels().flat_map(|p| [p.0[3]; 3]).collect();
+            let alpha = image::Rgb32FImage::from_raw(width, height, texels).ok_or("it has no texels")?;
+            return Self::of(DynamicImage::ImageRgb32F(alpha), Encoding::Linear);
         }
-        let pick = |[r, g, b, a]: [f32; 4]| match channel {
-            Channel::Alpha => a,
+        let image = Self::of(decoded, encoding)?;
+        let pick = |[r, g, b]: [f64; 3]| match channel {
             Channel::Red => r,
             Channel::Green => g,
             Channel::Blue => b,
+            Channel::Mean => (r + g + b) / 3.0,
             Channel::Luminance => 0.2126 * r + 0.7152 * g + 0.0722 * b,
-            Channel::Auto | Channel::All => unreachable!("decided above"),
+            Channel::Auto | Channel::Alpha | Channel::All => unreachable!("decided above, or below"),
         };
-        let picked = decoded.into_rgba32f();
-        let (width, height) = picked.dimensions();
-        let texels = picked.pixels().map(|p| image::Rgb([pick(p.0); 3])).flat_map(|p| p.0).collect();
-        let picked = image::Rgb32FImage::from_raw(width, height, texels).ok_or("it has no texels")?;
-        Self::of(DynamicImage::ImageRgb32F(picked), Encoding::Linear)
+        if channel == Channel::All {
+            return Ok(image);
+        }
+        let texels = image.linear_texels().map(|texel| [pick(texel) as f32; 3]).collect();
+        Ok(Self { width, height, texels: Texels::F32(texels) })
     }
 
     fn read(bytes: &[u8]) -> Result<DynamicImage, String> {

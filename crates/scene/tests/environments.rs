@@ -46,6 +46,18 @@ fn directions_are_those_of_one_who_looks_along_forward() {
 }
 
 #[test]
+fn projections_and_mirrors_arrive() {
+    use etalon_scene::EnvironmentProjection::{EqualArea, LatitudeLongitude, LatitudeLongitudeAtPoles};
+    assert_eq!(image("").projection, LatitudeLongitude);
+    assert_eq!(image(r#", "projection": "latitude-longitude-at-poles""#).projection, LatitudeLongitudeAtPoles);
+    let square = image(r#", "projection": "equal-area", "mirrored": true, "up": [0, 0, 1], "forward": [0, 1, 0]"#);
+    assert_eq!(square.projection, EqualArea);
+    close(square.forward, [0.0, 1.0, 0.0]);
+    close(square.right, [-1.0, 0.0, 0.0]);
+    close(square.up, [0.0, 0.0, 1.0]);
+}
+
+#[test]
 fn what_is_wrong_with_an_image_is_said_where_it_is_named() {
     for (light, code) in [
         (r#"{"type": "environment", "image": {"file": "files/no.hdr"}}"#, Code::File),

@@ -1,7 +1,10 @@
 //! Scenes of Mitsuba and pbrt: what they say arrives in the scene, what cannot be honoured is listed with its line.
 
 use etalon_scene::import::{Imported, import_bytes};
-use etalon_scene::{LightKind, MaterialKind, Projection, Scene, Shape, SpectrumTexture, parse_imported};
+use etalon_scene::{
+    EnvironmentProjection, LightKind, MaterialKind, NumberTexture, Projection, Scene, Shape, SpectrumTexture,
+    parse_imported,
+};
 use proptest::prelude::*;
 
 const PNG: &[u8] = include_bytes!("files/chequers.png");
@@ -157,12 +160,121 @@ fn surfaces_that_shine_by_an_image_arrive() {
     }
 }
 
+/// What a roughness by an image becomes: the numbers at which parts of a blend stand, each with the width of its part.
+fn widths(kind: &MaterialKind) -> Vec<(f64, f64)> {
+    let MaterialKind::Blend { parts, by: NumberTexture::Image(_) } = kind else { panic!("{kind:?}") };
+    let width = |kind: &MaterialKind| match kind {
+        MaterialKind::RoughConductor { alpha, .. } | MaterialKind::Plastic { alpha, .. } => *alpha,
+        MaterialKind::Conductor { .. } => 0.0,
+        other => panic!("{other:?}"),
+    };
+    parts.iter().map(|(number, part)| (*number, width(part))).collect()
+}
+
+fn image_of(kind: &MaterialKind) -> &etalon_scene::ImageTexture {
+    let MaterialKind::Blend { by: NumberTexture::Image(image), .. } = kind else { panic!("{kind:?}") };
+    image
+}
+
+#[test]
+fn roughness_by_an_image_says_the_width_that_its_program_means() {
+    let mitsuba = |keys: &str| {
+        format!(
+            r#"<scene version="3.0.0"><shape type="rectangle"><bsdf type="roughconductor"><string name="distribution" value="ggx"/>
+            <texture type="bitmap" name="alpha"><string name="filename" value="chequers.png"/>{keys}</texture></bsdf></shape></scene>"#
+        )
+    };
+    let pbrt = |keys: &str| {
+        format!(
+            "WorldBegin\nTexture \"r\" \"float\" \"imagemap\" \"string filename\" \"chequers.png\" \"float scale\" 0.5\n\
+             Material \"coateddiffuse\" \"texture roughness\" \"r\"{keys}\n\
+             Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 ]\n"
+        )
+    };
+    // Mitsuba: α as it stands, or by sRGB; pbrt: α², or α where nothing is remapped.
+    let raw = "<boolean name=\"raw\" value=\"true\"/>";
+    let same = |v: f64| v;
+    let alpha_of: [fn(f64) -> f64; 4] = [same, same, f64::sqrt, same];
+    let cases = [
+        ("xml", mitsuba(raw), 1.0),
+        ("xml", mitsuba(""), 1.0),
+        ("pbrt", pbrt(""), 0.5),
+        ("pbrt", pbrt(" \"bool remaproughness\" false"), 0.5),
+    ];
+    let mut means = Vec::new();
+    for ((kind, text, factor), alpha_of) in cases.into_iter().zip(alpha_of) {
+        let imported = imported(kind, &text);
+        let scene = scene(&imported);
+        let material = &scene.materials[scene.objects[0].material].kind;
+        let widths = widths(material);
+        assert!(widths.len() >= 2, "{text}");
+        for (number, alpha) in widths {
+            // A node is 0, or a root taken and squared again.
+            assert!((alpha_of(number) - alpha).abs() < 1e-12, "{number} says {alpha} in {text}");
+        }
+        let image = image_of(material);
+        assert_eq!(image.factor, [factor; 3]);
+        means.push(image.image.mean()[0]);
+        assert!(said(&imported).is_empty(), "{:?}", said(&imported));
+    }
+    // The curve of sRGB makes grey darker; pbrt decodes PNG files by it.
+    assert!(means[1] < means[0], "{means:?}");
+    assert_eq!(means[2], means[3]);
+}
+
+#[test]
+fn opacity_and_weights_by_an_image_arrive() {
+    let mitsuba = r#"<scene version="3.0.0"><texture type="bitmap" id="t"><string name="filename" value="chequers.png"/></texture>
+        <shape type="rectangle"><bsdf type="mask"><ref name="opacity" id="t"/><bsdf type="blendbsdf"><ref name="weight" id="t"/>
+            <bsdf type="diffuse"/><bsdf type="conductor"/></bsdf></bsdf></shape></scene>"#;
+    let pbrt = "WorldBegin\nTexture \"t\" \"float\" \"imagemap\" \"string filename\" \"chequers.png\"\n\
+        MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"conductor\"\n\
+        Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"texture amount\" \"t\"\n\
+        Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 ] \"texture alpha\" \"t\"\n";
+    for (kind, text) in [("xml", mitsuba), ("pbrt", pbrt)] {
+        let imported = imported(kind, text);
+        let scene = scene(&imported);
+        let object = &scene.objects[0];
+        assert!(object.opacity_image.is_some(), "{kind}");
+        assert_eq!(image_of(&scene.materials[object.material].kind).image.width, 2, "{kind}");
+        assert!(said(&imported).is_empty(), "{kind}: {:?}", said(&imported));
+    }
+}
+
+#[test]
+fn a_sky_of_pbrt_is_a_square_of_equal_areas_in_its_axes() {
+    // Without a mirroring transform the world is mirrored in x, and the sky with it: +x of the light, the right edge, is −x here.
+    let plain = "WorldBegin\nLightSource \"infinite\" \"string filename\" \"chequers.png\" \"float scale\" 2\nShape \"sphere\"\n";
+    // Mirrored, the axes are ours; a turn by 90° about x takes +z to −y and +y to +z.
+    let turned =
+        format!("Scale -1 1 1\nCamera \"perspective\"\n{}", plain.replace("LightS", "Rotate 90 1 0 0\nLightS"));
+    for (text, right, forward, up) in [
+        (format!("Camera \"perspective\"\n{plain}"), [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]),
+        (turned, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]),
+    ] {
+        let imported = imported("pbrt", &text);
+        let scene = scene(&imported);
+        let LightKind::ImageEnvironment(sky) = &scene.lights[0].kind else { panic!("a sky") };
+        assert_eq!(sky.projection, EnvironmentProjection::EqualArea);
+        for (found, expected) in [(sky.right, right), (sky.forward, forward), (sky.up, up)] {
+            assert!(
+                found.iter().zip(expected).all(|(a, b): (&f64, f64)| (a - b).abs() < 1e-12),
+                "{found:?} is not {expected:?}"
+            );
+        }
+        // (1, 1, 1) at scale 2 has the luminance 2.
+        assert!((etalon_optics::colour::luminance_of(|nm| sky.white.eval(nm)) - 2.0).abs() < 1e-9);
+        assert!(said(&imported).is_empty(), "{:?}", said(&imported));
+    }
+}
+
 #[test]
 fn a_sky_of_mitsuba_arrives_with_its_turn() {
     let text = r#"<scene version="3.0.0"><emitter type="envmap"><string name="filename" value="chequers.png"/><float name="scale" value="2"/>
         <transform name="to_world"><rotate y="1" angle="90"/></transform></emitter><shape type="sphere"/></scene>"#;
     let scene = scene(&imported("xml", text));
     let LightKind::ImageEnvironment(sky) = &scene.lights[0].kind else { panic!("a sky") };
+    assert_eq!(sky.projection, EnvironmentProjection::LatitudeLongitudeAtPoles);
     // A quarter turn about y takes the middle of the image from +z to +x; to its right, seen from within, then lies +z.
     for (found, expected) in [(sky.forward, [1.0, 0.0, 0.0]), (sky.up, [0.0, 1.0, 0.0]), (sky.right, [0.0, 0.0, 1.0])] {
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?} is not {expected:?}");

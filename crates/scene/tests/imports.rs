@@ -245,12 +245,14 @@ fn glb_materials_lights_and_cameras_arrive() {
 fn what_is_not_honoured_is_listed_with_its_path() {
     let mut model = model();
     model["animations"] = json!([{ "channels": [], "samplers": [] }]);
+    model["skins"] = json!([{ "joints": [0] }]);
     model["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] = json!([1, 0, 0, 1]);
     model["materials"][2]["extensions"]["KHR_materials_clearcoat"] = json!({});
     let imported = imported(&model).unwrap();
     let places: Vec<&str> = imported.left_out.iter().map(|l| l.place.as_str()).collect();
     for expected in [
-        "$.animations",
+        "$.animations[0]",
+        "$.skins",
         "$.materials[1].pbrMetallicRoughness",
         "$.materials[2].extensions.KHR_materials_clearcoat",
         "$.extensions.KHR_lights_punctual.lights[2]",

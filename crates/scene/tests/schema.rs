@@ -129,9 +129,18 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
     // them.
     let exclusive = ["height_m", "horizontal_fov_deg", "radius_px", "sensor_width_m", "vertical_fov_deg"];
     let of_files = ["encoding", "factor", "file", "uv_offset", "uv_scale", "wrap", "wrap_v"];
-    let of_detail =
-        ["bump_map", "channel", "cutoff", "normal_map", "opacity_image", "roughness_image", "strength", "weight_image"];
-    let of_skies = ["forward", "image", "rotation_deg"];
+    let of_detail = [
+        "bump_map",
+        "channel",
+        "cutoff",
+        "normal_map",
+        "opacity_image",
+        "quantity",
+        "roughness_image",
+        "strength",
+        "weight_image",
+    ];
+    let of_skies = ["forward", "image", "mirrored", "projection", "rotation_deg"];
     let mut expected = [exclusive.as_slice(), &of_files, &of_detail, &of_skies].concat();
     expected.sort_unstable();
     assert_eq!(unused, expected);

@@ -5,7 +5,7 @@ use etalon_optics::{Illuminant, Lanes, Spectrum, Vec3};
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::{Emits, Emitted};
 use etalon_oracle::{Uniform, Verdict, emits_suite, laws};
-use etalon_scene::{EnvironmentImage, Image, LightKind, LightSampling, Scene, Texels};
+use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image, LightKind, LightSampling, Scene, Texels};
 use etalon_transport::light::{EnvironmentLight, Light, Target};
 use etalon_transport::mis::Density;
 use etalon_transport::{Control, prepare};
@@ -20,6 +20,7 @@ fn sky(width: u32, height: u32, texels: &[f64]) -> EnvironmentImage {
     EnvironmentImage {
         image: Arc::new(Image { width, height, texels: Texels::F32(texels) }),
         name: "sky".to_owned(),
+        projection: EnvironmentProjection::LatitudeLongitude,
         forward: [1.0, 0.0, 0.0],
         right: [0.0, -1.0, 0.0],
         up: [0.0, 0.0, 1.0],
@@ -78,6 +79,116 @@ fn uneven() -> EnvironmentImage {
 // Quadrature of a continuous function with creases along the rows and columns of its cells.
 emits_suite!(uneven_sky, subject(&uneven(), |_| None), from: [[0.0; 3]], pdf_tolerance: 1e-4);
 emits_suite!(constant_sky, subject(&sky(1, 1, &[2.0]), |_| Some(2.0 * PI)), from: [[0.0; 3]], pdf_tolerance: 1e-6);
+
+/// The same texels, of which the first and the last row lie at the poles.
+fn at_poles(image: EnvironmentImage) -> EnvironmentImage {
+    EnvironmentImage { projection: EnvironmentProjection::LatitudeLongitudeAtPoles, ..image }
+}
+
+emits_suite!(uneven_sky_with_rows_at_the_poles, subject(&at_poles(uneven()), |_| None), from: [[0.0; 3]], pdf_tolerance: 1e-4);
+
+/// A square of equal areas.
+fn square(side: u32, texels: &[f64]) -> EnvironmentImage {
+    EnvironmentImage { projection: EnvironmentProjection::EqualArea, ..sky(side, side, texels) }
+}
+
+/// Black next to bright within and across the fold, which is the diamond between the middles of the edges.
+fn uneven_square() -> EnvironmentImage {
+    let texels = [
+        1.0, 0.0, 3.0, 0.5, //
+        9.0, 0.5, 0.0, 1.0, //
+        0.1, 0.2, 7.0, 0.0, //
+        0.0, 6.0, 0.0, 2.0,
+    ];
+    square(4, &texels)
+}
+
+// Quadrature of a function that jumps along the edges of texels.
+emits_suite!(uneven_equal_area_sky, subject(&uneven_square(), |_| None), from: [[0.0; 3]], pdf_tolerance: 2e-2);
+emits_suite!(constant_equal_area_sky, subject(&square(3, &[2.0; 9]), |_| Some(2.0 * PI)), from: [[0.0; 3]], pdf_tolerance: 1e-6);
+
+/// Where the centre of a texel of a square lies, written from the paper's figure: the square's upper right quarter is, inside the
+/// diagonal, the octant of positive axes, where r = 1 − z runs outward by √, and the angle in proportion along it.
+fn equal_area_centre(column: u32, row: u32, side: u32) -> [f64; 3] {
+    let [p, q] = [column, row].map(|k| (2.0 * f64::from(k) + 1.0) / f64::from(side) - 1.0);
+    let (size_p, size_q) = (p.abs(), q.abs());
+    let above = size_p + size_q <= 1.0;
+    // Folded back over the diagonal.
+    let (a, b) = if above { (size_p, size_q) } else { (1.0 - size_q, 1.0 - size_p) };
+    let (r, angle) = (a + b, b / (a + b) * 0.5 * PI);
+    let z = 1.0 - r * r;
+    let level = (1.0 - z * z).sqrt();
+    let (x, y) = (level * angle.cos() * p.signum(), level * angle.sin() * q.signum());
+    [x, y, if above { z } else { -z }]
+}
+
+#[test]
+fn each_texel_of_an_equal_area_sky_shows_its_colour_over_the_same_solid_angle() {
+    const SIDE: u32 = 16;
+    let texels: Vec<f64> = (0..SIDE * SIDE).map(f64::from).collect();
+    let image = square(SIDE, &texels);
+    let subject = subject(&image, |_| None);
+    for i in 0..SIDE * SIDE {
+        let [x, y, z] = equal_area_centre(i % SIDE, i / SIDE, SIDE);
+        let world = |k: usize| x * image.right[k] + y * image.forward[k] + z * image.up[k];
+        let wi = [world(0), world(1), world(2)];
+        // The three primaries add up to white within roundoffs.
+        assert!((subject.radiance([0.0; 3], wi) - f64::from(i)).abs() < 1e-11, "texel {i} toward {wi:?}");
+    }
+    // An image that is read down its columns is noticed.
+    let transposed = EnvironmentImage { forward: image.right, right: image.forward, ..image.clone() };
+    let wrong = (0..SIDE * SIDE).filter(|&i| {
+        let [x, y, z] = equal_area_centre(i % SIDE, i / SIDE, SIDE);
+        let wi = std::array::from_fn(|k| x * image.right[k] + y * image.forward[k] + z * image.up[k]);
+        (self::subject(&transposed, |_| None).radiance([0.0; 3], wi) - f64::from(i)).abs() > 0.5
+    });
+    assert_eq!(wrong.count() as u32, SIDE * (SIDE - 1), "all but those of the diagonal");
+    // Directions spread evenly over the sphere meet each texel as often: 256 counts of mean 1000, scatter 1 of √1000.
+    let mut random = Uniform::new(3);
+    let mut counts = vec![0_u32; (SIDE * SIDE) as usize];
+    (0..256_000).for_each(|_| counts[subject.radiance([0.0; 3], random.direction()).round() as usize] += 1);
+    let chi2: f64 = counts.iter().map(|&n| (f64::from(n) - 1000.0).powi(2) / 1000.0).sum();
+    // χ² of 255 degrees of freedom: mean 255, standard deviation 22.6; five of them are one wrong alarm in a million.
+    assert!((chi2 - 255.0).abs() < 5.0 * 22.6, "{chi2}");
+}
+
+/// A level plate under a square whose upper half (a diamond) is T and lower half B: E = πT on its upper side.
+#[test]
+fn an_equal_area_sky_lights_a_plate_as_a_closed_form_says() {
+    const SIDE: u32 = 64;
+    // L = a + b·(texel's mean of z), which is a polynomial of the place within the diamond; here L = 1 above, 3 below, so that
+    // texels on the fold, half above, show the mean of both: their error is 1/SIDE of the horizon, whose cosine is nearly 0.
+    let texels: Vec<f64> = (0..SIDE * SIDE)
+        .map(|i| {
+            let [_, _, z] = equal_area_centre(i % SIDE, i / SIDE, SIDE);
+            1.0 + 2.0 * f64::from(u8::from(z < 0.0))
+        })
+        .collect();
+    let truth = white_y() * 0.5;
+    for sampling in [LightSampling::Mis, LightSampling::Light, LightSampling::Bsdf] {
+        shows(|seed| plate(square(SIDE, &texels), sampling, seed, 256), truth, 0.05);
+    }
+}
+
+#[test]
+fn rows_at_the_poles_stand_where_they_say() {
+    let image = at_poles(uneven());
+    for i in 0..32_u32 {
+        let (polar, azimuth) = (f64::from(i / 8) / 3.0 * PI, (f64::from(i % 8) + 0.5) / 4.0 * PI - PI);
+        let wi = [polar.sin() * azimuth.cos(), -polar.sin() * azimuth.sin(), polar.cos()];
+        let texel = image.image.texel(i as usize % 8, i as usize / 8)[0];
+        // At the poles themselves the azimuth is that of a roundoff.
+        if (0.1..3.1).contains(&polar) {
+            assert!((subject(&image, |_| None).radiance([0.0; 3], wi) - texel).abs() < 1e-12, "texel {i}");
+        }
+    }
+    // Two rows, T and B: L = T + (B − T)·θ/π, on a level plate 2π∫L sin θ cos θ dθ = πT + (B − T)·2·(π/8), by parts:
+    // ∫θ sin θ cos θ from 0 to π/2 = [−θ cos 2θ/4 + sin 2θ/8] = π/8.
+    let (top, bottom) = (3.0, 1.0);
+    let subject = subject(&at_poles(sky(2, 2, &[top, top, bottom, bottom])), |_| None);
+    let want = PI * top + (bottom - top) * 2.0 * PI / 8.0;
+    laws::light_gives_irradiance(&subject, [0.0; 3], [0.0, 0.0, 1.0], want, 1e-12, Budget::for_tests(2), 3).assert();
+}
 
 /// One row of four texels is constant along each meridian, and linear in longitude between the texels at ±45° and ±135°. On an
 /// upright surface that faces texel c between its neighbours b and d, E = (π/2)((b + d)(1 − 2/π)) + 2c: ∫sin²θ dθ = π/2, and

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use etalon_picture::write_atomically;
+use etalon_scene::import::Moment;
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -21,9 +22,40 @@ pub(crate) struct Args {
     /// The scene to write.
     #[arg(short, long, value_name = "SCENE.json")]
     output: PathBuf,
+    /// When the shutter opens, of a glTF model that moves: 1.25s, 40ms. Without it the model is as its nodes place it.
+    #[arg(long, value_name = "TIME", value_parser = instant, allow_hyphen_values = true)]
+    time: Option<f64>,
+    /// How long the shutter stays open: 20ms. Without it the picture shows an instant.
+    #[arg(long, value_name = "TIME", value_parser = shutter, requires = "time", default_value = "0s")]
+    shutter: f64,
+    /// Which animation: its name, or its index from 0; the first if left out.
+    #[arg(long, value_name = "NAME", requires = "time")]
+    animation: Option<String>,
     /// Print one JSON object on standard output about what was written and what was left out.
     #[arg(long)]
     json: bool,
+}
+
+/// A point in time: `1.25s`, `40ms`, `2`. Seconds.
+fn instant(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let (number, unit) = match (text.strip_suffix("ms"), text.strip_suffix('s')) {
+        (Some(number), _) => (number, 1e-3),
+        (None, Some(number)) => (number, 1.0),
+        (None, None) => (text, 1.0),
+    };
+    match number.trim_end().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(unit * value),
+        _ => Err("a time such as 1.25s or 40ms".to_owned()),
+    }
+}
+
+/// A stretch of time, 0 or above. Seconds.
+fn shutter(text: &str) -> Result<f64, String> {
+    match instant(text)? {
+        seconds if seconds >= 0.0 => Ok(seconds),
+        _ => Err("a shutter is open for no less than no time".to_owned()),
+    }
 }
 
 /// What `--json` prints.
@@ -47,7 +79,9 @@ pub(crate) fn run(args: Args) -> Outcome {
         return Err(Failure::input(miette!(code = "output-format", "`{}` is not named .json", args.output.display())));
     }
     let prefix = format!("{stem}-files/");
-    let imported = import_model(&args.model, &prefix)?;
+    let moment =
+        args.time.map(|opens_s| Moment { animation: args.animation.clone(), opens_s, shutter_s: args.shutter });
+    let imported = import_model(&args.model, &prefix, moment.as_ref())?;
     // What would not load is not written.
     let name = args.output.display().to_string();
     etalon_scene::parse_imported(&imported, &name, None).map_err(refused_scene)?;
@@ -87,4 +121,21 @@ pub(crate) fn run(args: Args) -> Outcome {
         print::line(&format!("  not honoured: {}: {}", left_out.place, left_out.what));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{instant, shutter};
+
+    #[test]
+    fn times_are_read_as_they_are_written() {
+        for (text, expected) in [("1.25s", 1.25), ("40ms", 0.04), ("2", 2.0), ("-0.5 s", -0.5), ("0s", 0.0)] {
+            assert_eq!(instant(text), Ok(expected), "{text}");
+        }
+        for text in ["", "s", "ms", "1m", "nan", "1e999s", "1.2.3s"] {
+            assert!(instant(text).is_err(), "{text}");
+        }
+        assert!(shutter("-1ms").is_err());
+        assert_eq!(shutter("20ms"), Ok(0.02));
+    }
 }

@@ -6,7 +6,7 @@ use super::spectra::{BRIGHTEST, Role, Spectra};
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{Code, Direction, NonNegative, Optional, Reader, Required, Rule, Spanned};
-use crate::model::{EnvironmentImage, Light, LightKind};
+use crate::model::{EnvironmentImage, EnvironmentProjection, Light, LightKind};
 use crate::texture::Encoding;
 use crate::vector::{add, cross, dot, length, scale, sub, unit};
 
@@ -75,18 +75,23 @@ crate::record! {
 }
 
 crate::record! {
-    /// An image of all directions: longitude along its rows, latitude along its columns.
+    /// An image of all directions.
     pub(crate) struct EnvironmentImageForm + comment {
         /// An EXR, HDR, PNG or JPEG file, relative to this file's folder.
         file: Required<Spanned<String>>,
         /// How its numbers are to be read.
         encoding: Required<Encoding> = r#""auto""#,
+        /// How directions stand in it.
+        projection: Required<EnvironmentProjection> = r#""latitude-longitude""#,
         /// Factor on the radiance; of 1, white (1, 1, 1) has the luminance of the constant spectrum 1.
         scale: Required<NonNegative> = "1",
-        /// The direction of the image's upper edge.
+        /// The direction of the image's upper edge, or in the middle of an equal-area square.
         up: Required<Spanned<Direction>> = "[0, 1, 0]",
-        /// The direction in the middle of the image; only its part across `up` counts.
+        /// The direction in the middle of the image, or of the middle of the lower edge of an equal-area square; only its part
+        /// across `up` counts.
         forward: Required<Spanned<Direction>> = "[0, 0, -1]",
+        /// Whether left and right of the image change places.
+        mirrored: Required<bool> = "false",
         /// Turns the whole about `up`, counter-clockwise when `up` points at the viewer, degrees.
         rotation_deg: Required<f64> = "0",
     }
@@ -152,6 +157,15 @@ pub(crate) fn light<'f>(
     Some(Light { name, kind })
 }
 
+crate::keywords!(EnvironmentProjection {
+    /// Longitude along its rows, latitude along its columns; the first row is a band that begins at the pole.
+    "latitude-longitude" => Self::LatitudeLongitude,
+    /// The same with the centres of the first and the last row at the poles.
+    "latitude-longitude-at-poles" => Self::LatitudeLongitudeAtPoles,
+    /// A square whose texels are all of the same solid angle (Clarberg 2008), each of its own colour.
+    "equal-area" => Self::EqualArea,
+});
+
 /// Below this sine of the angle between `up` and `forward`, the turn of an image hangs on digits that nobody meant.
 const PARALLEL: f64 = 1e-6;
 
@@ -177,10 +191,21 @@ fn environment_image(
         let right = cross(forward, up);
         let (sin, cos) = form.rotation_deg?.to_radians().sin_cos();
         let turned = |along: f64, across: f64| add(scale(forward, along), scale(right, across));
-        Some((turned(cos, -sin), turned(sin, cos), up))
+        let hand = if form.mirrored? { -1.0 } else { 1.0 };
+        Some((turned(cos, -sin), scale(turned(sin, cos), hand), up))
     });
     let white = spectra.daylight(form.scale?.0, form.at, reader);
-    let image = image?;
+    let (image, projection) = (image?, form.projection?);
+    let wrong = match projection {
+        EnvironmentProjection::EqualArea if image.width != image.height => Some("an equal-area image is a square"),
+        EnvironmentProjection::LatitudeLongitudeAtPoles if image.height < 2 => Some("two poles need two rows"),
+        _ => None,
+    };
+    if let Some(wrong) = wrong {
+        let message = format!("{}: {wrong}, and this is {} × {}", file.value, image.width, image.height);
+        reader.error(Code::OutOfRange, file.at, message);
+        return None;
+    }
     let texel_at = |i: usize| (i % image.width as usize, i / image.width as usize);
     if let Some(i) = image.linear_texels().position(|texel| texel.iter().any(|v| *v < 0.0)) {
         let (column, row) = texel_at(i);
@@ -196,5 +221,5 @@ fn environment_image(
         reader.error_hint(Code::OutOfRange, file.at, message, "single precision could not carry it");
         return None;
     }
-    Some(EnvironmentImage { image, name: file.value.clone(), forward, right, up, white })
+    Some(EnvironmentImage { image, name: file.value.clone(), projection, forward, right, up, white })
 }

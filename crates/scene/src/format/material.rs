@@ -7,7 +7,7 @@ use etalon_optics::{OutsideFit, Spectrum};
 
 use std::ops::Bound;
 
-use super::detail::{NumberImageForm, number_image};
+use super::detail::{NumberImageForm, RoughnessImageForm, number_image};
 use super::names::Names;
 use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra};
@@ -54,8 +54,8 @@ crate::record! {
         outside_fit: Required<OutsideFit> = r#""error""#,
         /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
-        /// Instead: an image of the roughness, whose square is α.
-        roughness_image: Optional<NumberImageForm>,
+        /// Instead: an image that says the width at each place.
+        roughness_image: Optional<RoughnessImageForm>,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
         multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
     } with [
@@ -138,8 +138,8 @@ crate::record! {
         coat: Required<IndexForm> = "1.5",
         /// Roughness of the coat: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
-        /// Instead: an image of the coat's roughness, whose square is α.
-        roughness_image: Optional<NumberImageForm>,
+        /// Instead: an image that says the coat's width at each place.
+        roughness_image: Optional<RoughnessImageForm>,
     } with [
         Rule::NotBoth("alpha", "roughness_image"),
     ]

@@ -12,7 +12,8 @@ pub(super) fn numbers<const N: usize>(accessor: &Accessor<'_>, buffers: &[Vec<u8
     let expected = match N {
         1 => Dimensions::Scalar,
         2 => Dimensions::Vec2,
-        _ => Dimensions::Vec3,
+        3 => Dimensions::Vec3,
+        _ => Dimensions::Vec4,
     };
     if accessor.dimensions() != expected {
         return Err(fail("it has another number of components than is needed here"));

@@ -24,6 +24,8 @@ pub(super) struct Builder<'a> {
     /// The box around each group, in its own coordinates.
     pub(super) group_bounds: HashMap<String, Bounds>,
     pub(super) camera: Option<Value>,
+    /// When the shutter opens and when it closes, s; an instant if left out.
+    pub(super) shutter_s: Option<[f64; 2]>,
     pub(super) film: Value,
     pub(super) integrator: Map<String, Value>,
     pub(super) files: Vec<ImportedFile>,
@@ -53,6 +55,8 @@ pub(super) struct Placed {
     pub(super) material: Value,
     pub(super) emission: Option<Value>,
     pub(super) opacity: f64,
+    /// Further keys of the object.
+    pub(super) detail: Map<String, Value>,
     pub(super) rows: Rows,
     /// Whether its normals point the other way.
     pub(super) flipped: bool,
@@ -70,6 +74,7 @@ impl<'a> Builder<'a> {
             instances: Vec::new(),
             group_bounds: HashMap::new(),
             camera: None,
+            shutter_s: None,
             film: json!({ "width": 1280, "height": 720 }),
             integrator: Map::new(),
             files: Vec::new(),
@@ -182,6 +187,9 @@ impl<'a> Builder<'a> {
         if placed.opacity < 1.0 {
             object["opacity"] = json!(placed.opacity);
         }
+        for (key, value) in &placed.detail {
+            object[key] = value.clone();
+        }
         let round = matches!(placed.shape["type"].as_str(), Some("sphere" | "disk" | "cylinder"));
         let stretched = round && !is_similarity(&placed.rows);
         if stretched && emission.is_some() {
@@ -261,6 +269,21 @@ impl<'a> Builder<'a> {
         self.enclose(bounds, rows);
     }
 
+    /// Places a group that moves: keyframes are times, s, and maps at them.
+    pub(super) fn place_moving(&mut self, name: &str, group: &str, keyframes: &[(f64, Rows)]) {
+        let Some(Some(bounds)) = self.group_bounds.get(group).copied() else {
+            // There is nothing in it.
+            self.groups.remove(group);
+            return;
+        };
+        let frames: Vec<Value> = keyframes
+            .iter()
+            .map(|(time_s, rows)| json!({ "time_s": time_s, "transform": [{ "matrix": rows }] }))
+            .collect();
+        self.instances.push(json!({ "name": name, "group": group, "keyframes": frames }));
+        keyframes.iter().for_each(|(_, rows)| self.enclose(bounds, rows));
+    }
+
     /// Adds the file of an image, once, and gives its name in the scene and the mean of its texels.
     pub(super) fn image_file(
         &mut self,
@@ -297,7 +320,7 @@ impl<'a> Builder<'a> {
     pub(super) fn finish(mut self, source: &str) -> Result<Imported, String> {
         let Some([low, high]) = self.bounds else { return Err("there is nothing in it to see".to_owned()) };
         let mut added = std::mem::take(&mut self.added);
-        let camera = self.camera.take().unwrap_or_else(|| {
+        let mut camera = self.camera.take().unwrap_or_else(|| {
             let center: [f64; 3] = std::array::from_fn(|k| 0.5 * low[k] + 0.5 * high[k]);
             // So far that the ball around the bounds fits into the height of the picture.
             let radius = (0.5 * length(sub(high, low))).max(f64::MIN_POSITIVE);
@@ -310,6 +333,9 @@ impl<'a> Builder<'a> {
                 "type": "perspective", "position_m": position, "look_at_m": center, "vertical_fov_deg": fov_deg
             })
         });
+        if let Some(shutter_s) = self.shutter_s {
+            camera["shutter_s"] = json!(shutter_s);
+        }
         if self.lights.is_empty() && !self.emits {
             added.push("the model has no light: an even white sky is added".to_owned());
             self.lights.push(json!({

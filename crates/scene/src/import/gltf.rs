@@ -8,9 +8,10 @@ use gltf::{Gltf, Node, buffer};
 use serde_json::{Value, json};
 
 use super::accessor::numbers;
+use super::gltf_animation::{Animated, Pose};
 use super::gltf_material::Materials;
-use super::matrix::Rows;
-use super::{Builder, light};
+use super::matrix::{Rows, is_similarity};
+use super::{Builder, Moment, light};
 use crate::mesh::MAX_ELEMENTS;
 use crate::model::Mesh;
 use crate::vector::unit;
@@ -21,21 +22,29 @@ const GLB_HEADER: u32 = 12;
 const MAX_DEPTH: usize = 256;
 
 /// A 4 × 4 matrix by columns, as glTF has it.
-type Columns = [[f64; 4]; 4];
+pub(super) type Columns = [[f64; 4]; 4];
 
-pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
+const IDENTITY: Columns = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+/// Things that move within things that move: each takes up to two groups within each other, of which the format knows sixteen.
+const MAX_MOVING: usize = 7;
+
+pub(super) fn import(bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder<'_>) -> Result<(), String> {
     check_primitives(bytes)?;
     let file = Gltf::from_slice(bytes).map_err(|error| error.to_string())?;
     check_images(&file)?;
     check_lights(&file)?;
     let buffers = buffers(&file, builder)?;
-    for (what, count) in [("animations", file.animations().count()), ("skins", file.skins().count())] {
-        if count > 0 {
-            builder.leave_out(format!("$.{what}"), "they are not honoured: the model is as its nodes place it");
-        }
+    if file.skins().count() > 0 {
+        builder.leave_out("$.skins", "they are not honoured: the model is as its nodes place it");
+    }
+    let animated = Animated::read(&file, &buffers, moment, builder)?;
+    if moment.is_some_and(|moment| moment.shutter_s > 0.0) {
+        builder.shutter_s = Some(animated.shutter_s);
     }
     let mut walk = Walk {
         builder,
+        animated: &animated,
+        chain: Vec::new(),
         buffers: &buffers,
         materials: Materials::default(),
         parts: HashMap::new(),
@@ -48,7 +57,6 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
     for other in file.scenes().filter(|other| other.index() != scene.index()) {
         walk.builder.leave_out(format!("$.scenes[{}]", other.index()), "only one scene is imported");
     }
-    const IDENTITY: Columns = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
     for mesh in file.nodes().filter_map(|node| node.mesh()) {
         walk.uses[mesh.index()] += 1;
     }
@@ -171,8 +179,11 @@ struct MadePart {
     detail: serde_json::Map<String, Value>,
 }
 
-struct Walk<'w, 'b> {
-    builder: &'w mut Builder<'b>,
+pub(super) struct Walk<'w, 'b> {
+    pub(super) builder: &'w mut Builder<'b>,
+    pub(super) animated: &'w Animated,
+    /// What moves around the node: the map from its parent to what moves around that in turn, and its poses.
+    pub(super) chain: Vec<(Columns, Vec<(f64, Pose)>)>,
     buffers: &'w [Vec<u8>],
     materials: Materials,
     /// Parts by mesh and primitive; `None` is one without triangles.
@@ -191,16 +202,87 @@ impl Walk<'_, '_> {
         if std::mem::replace(&mut self.visited[node.index()], true) {
             return Err(format!("{place}: it is part of the scene twice"));
         }
-        let local = node.transform().matrix().map(|column| column.map(f64::from));
-        let matrix = product(parent, &local);
+        if let Some(poses) = self.motion(node, parent, &place) {
+            return self.moving(node, parent, poses, depth);
+        }
+        let matrix = product(parent, &self.animated.local(node, self.animated.shutter_s[0]));
         if matrix.iter().flatten().any(|v| !v.is_finite()) {
             return Err(format!("{place}: its transform is not finite"));
         }
+        self.content(node, &matrix, depth)
+    }
+
+    /// How a node moves, if it does and can.
+    fn motion(&mut self, node: &Node<'_>, parent: &Columns, place: &str) -> Option<Vec<(f64, Pose)>> {
+        let poses = self.animated.motion(node)?;
+        let sides = poses[0].1.scale.map(f64::signum);
+        let why = if self.chain.len() >= MAX_MOVING {
+            format!("it moves within {MAX_MOVING} things that move")
+        } else if poses.iter().any(|(_, pose)| pose.scale.contains(&0.0) || pose.scale.map(f64::signum) != sides) {
+            "its scale goes through 0".to_owned()
+        } else if determinant(parent) == 0.0 {
+            "it is flattened by its parents".to_owned()
+        } else {
+            return Some(poses);
+        };
+        self.builder.leave_out(place, format!("{why}: it rests as it is when the shutter opens"));
+        None
+    }
+
+    /// A node that moves: a group of what is in it, placed by keyframes.
+    fn moving(
+        &mut self,
+        node: &Node<'_>,
+        parent: &Columns,
+        poses: Vec<(f64, Pose)>,
+        depth: usize,
+    ) -> Result<(), String> {
+        let name = node.name().map_or_else(|| format!("node {}", node.index()), str::to_owned);
+        let maps: Vec<(f64, Columns)> = poses.iter().map(|(time_s, pose)| (*time_s, pose.columns())).collect();
+        let outside = self.builder.begin_group();
+        self.chain.push((*parent, poses));
+        let within = self.content(node, &IDENTITY, depth);
+        self.chain.pop();
+        let group = self.builder.group_name(&name);
+        self.builder.end_group(&group, outside);
+        within?;
+        let frames = |before: &Columns| -> Vec<(f64, Rows)> {
+            maps.iter().map(|(time_s, map)| (*time_s, rows(&product(before, map)))).collect()
+        };
+        // Between keyframes stretches, turns and moves are joined each for itself: a similarity changes nothing about that.
+        if is_similarity(&rows(parent)) {
+            self.builder.place_moving(&name, &group, &frames(parent));
+        } else {
+            let outside = self.builder.begin_group();
+            self.builder.place_moving(&name, &group, &frames(&IDENTITY));
+            let around = self.builder.group_name(&name);
+            self.builder.end_group(&around, outside);
+            if self.builder.group_bounds.get(&around).copied().flatten().is_some() {
+                let place = format!("$.nodes[{}]", node.index());
+                self.builder.place_group(&name, &around, &rows(parent), &place);
+            } else {
+                self.builder.groups.remove(&around);
+            }
+        }
+        Ok(())
+    }
+
+    /// What is in a node, and in those below it. `matrix` leads from its coordinates to the world, or to those of the group that is
+    /// being made.
+    fn content(&mut self, node: &Node<'_>, matrix: &Columns, depth: usize) -> Result<(), String> {
+        let place = format!("$.nodes[{}]", node.index());
         if let Some(camera) = node.camera() {
-            self.camera(&camera, &matrix);
+            self.camera(&camera, matrix);
         }
         if let Some(lamp) = node.light() {
-            self.light(&lamp, node, &matrix);
+            let [opens, closes] = self.animated.shutter_s;
+            if !self.chain.is_empty() {
+                let what =
+                    "a light without a surface does not move: it is where it is in the middle of the shutter's time";
+                self.builder.leave_out(&place, what);
+            }
+            let world = self.world(matrix, 0.5 * (opens + closes));
+            self.light(&lamp, node, &world);
         }
         if node.weights().is_some() {
             self.builder.leave_out(&place, "morph weights are not honoured");
@@ -212,13 +294,22 @@ impl Walk<'_, '_> {
                     (Some(name), _) => format!("{name}, part {}", primitive.index()),
                     (None, _) => format!("node {}, part {}", node.index(), primitive.index()),
                 };
-                self.place(&mesh, &primitive, &name, &matrix)?;
+                self.place(&mesh, &primitive, &name, matrix)?;
             }
         }
         for child in node.children() {
-            self.node(&child, &matrix, depth + 1)?;
+            self.node(&child, matrix, depth + 1)?;
         }
         Ok(())
+    }
+
+    /// From the coordinates of a node to the world at a time, by what moves around it.
+    pub(super) fn world(&self, matrix: &Columns, time_s: f64) -> Columns {
+        let moved = self
+            .chain
+            .iter()
+            .fold(IDENTITY, |map, (before, poses)| product(&product(&map, before), &Pose::at(poses, time_s).columns()));
+        product(&moved, matrix)
     }
 
     /// Adds a primitive where a node places it; its mesh is made once.
@@ -240,7 +331,7 @@ impl Walk<'_, '_> {
             self.builder.leave_out(format!("node \"{name}\""), "it is flattened by its transform, and left out");
             return Ok(());
         }
-        let rows: Rows = std::array::from_fn(|i| std::array::from_fn(|j| matrix[j][i]));
+        let rows = rows(matrix);
         if self.uses[key.0] < 2 {
             let transform = json!([{ "matrix": rows }]);
             self.builder.add_object(
@@ -341,38 +432,6 @@ impl Walk<'_, '_> {
         Ok(Some(MadePart { file, mesh, material, emission, detail }))
     }
 
-    /// The first camera is the scene's.
-    fn camera(&mut self, camera: &gltf::Camera<'_>, matrix: &Columns) {
-        let place = format!("$.cameras[{}]", camera.index());
-        if self.builder.camera.is_some() {
-            self.builder.leave_out(place, "only the first camera of the scene is used");
-            return;
-        }
-        let axis = |k: usize, sign: f64| unit([matrix[k][0], matrix[k][1], matrix[k][2]]).map(|v| v.map(|c| sign * c));
-        let (Some(direction), Some(up)) = (axis(2, -1.0), axis(1, 1.0)) else {
-            self.builder.leave_out(place, "its node flattens it");
-            return;
-        };
-        let position = [matrix[3][0], matrix[3][1], matrix[3][2]];
-        let mut value = json!({ "position_m": position, "direction": direction, "up": up });
-        let aspect = match camera.projection() {
-            gltf::camera::Projection::Perspective(lens) => {
-                value["type"] = json!("perspective");
-                value["vertical_fov_deg"] = json!(f64::from(lens.yfov()).to_degrees());
-                lens.aspect_ratio().map(f64::from)
-            }
-            gltf::camera::Projection::Orthographic(view) => {
-                value["type"] = json!("orthographic");
-                value["height_m"] = json!(2.0 * f64::from(view.ymag()));
-                Some(f64::from(view.xmag() / view.ymag()))
-            }
-        };
-        if let Some(aspect) = aspect.filter(|a| (0.01..=100.0).contains(a)) {
-            self.builder.film = json!({ "width": (720.0 * aspect).round().max(1.0) as u32, "height": 720 });
-        }
-        self.builder.camera = Some(value);
-    }
-
     /// Candela and lux become the format's units as they are: a luminance of 1 cd/m² is a radiance of 1.
     fn light(&mut self, lamp: &gltf::khr_lights_punctual::Light<'_>, node: &Node<'_>, matrix: &Columns) {
         use gltf::khr_lights_punctual::Kind;
@@ -407,6 +466,11 @@ fn forward(matrix: &Columns) -> [f64; 3] {
     unit([-matrix[2][0], -matrix[2][1], -matrix[2][2]]).unwrap_or([0.0, 0.0, -1.0])
 }
 
+/// The upper three rows.
+pub(super) fn rows(m: &Columns) -> Rows {
+    std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
+}
+
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::Triangles => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
@@ -425,7 +489,7 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
 }
 
 /// a·b, both by columns.
-fn product(a: &Columns, b: &Columns) -> Columns {
+pub(super) fn product(a: &Columns, b: &Columns) -> Columns {
     std::array::from_fn(|j| std::array::from_fn(|i| (0..4).map(|k| a[k][i] * b[j][k]).sum()))
 }
 

@@ -7,9 +7,12 @@
 mod accessor;
 mod builder;
 mod gltf;
+mod gltf_animation;
+mod gltf_camera;
 mod gltf_material;
 mod matrix;
 mod mitsuba;
+mod number;
 mod obj;
 mod pbrt;
 mod table;
@@ -55,6 +58,17 @@ pub struct LeftOut {
     pub what: String,
 }
 
+/// When a model that moves is seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// The animation, by its name or its index from 0; the first if left out.
+    pub animation: Option<String>,
+    /// When the shutter opens, s, finite.
+    pub opens_s: f64,
+    /// How long it stays open, s, 0 or above: 0 shows the model as it is at that instant.
+    pub shutter_s: f64,
+}
+
 /// Why a model cannot be imported.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {message}", path.display())]
@@ -75,24 +89,24 @@ fn extension(path: &Path) -> String {
 }
 
 /// Imports a model. `prefix` comes before the names of all files of the scene: the name of their folder and a slash, or
-/// nothing.
+/// nothing. Of a `moment` that is left out, the model is as its nodes place it.
 ///
 /// # Errors
-/// If the file, or one that it cannot be understood without, is missing or damaged.
-pub fn import(path: &Path, prefix: &str) -> Result<Imported, ImportError> {
+/// If the file, or one that it cannot be understood without, is missing or damaged, or knows nothing of moments.
+pub fn import(path: &Path, prefix: &str, moment: Option<&Moment>) -> Result<Imported, ImportError> {
     let fail = |message: String| ImportError { path: path.to_owned(), message };
     let bytes = crate::files::read(path).map_err(|why| fail(format!("cannot be read: {why}")))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let near = |name: &str| crate::files::read(&folder.join(name));
     let kind = extension(path);
-    import_bytes(&kind, &bytes, &near, prefix, &path.file_name().unwrap_or_default().to_string_lossy()).map_err(fail)
+    let source = path.file_name().unwrap_or_default().to_string_lossy();
+    import_bytes_at(&kind, &bytes, &near, prefix, &source, moment).map_err(fail)
 }
 
-/// Imports a model of a kind (`glb`, `gltf`, `obj`, `ply`, `xml`, `pbrt`) from its bytes; `near` gives the bytes of a file by the name
-/// that the model has for it.
+/// As [`import_bytes_at`], without a moment.
 ///
 /// # Errors
-/// A sentence that says what is wrong, with its place.
+/// As [`import_bytes_at`].
 pub fn import_bytes(
     kind: &str,
     bytes: &[u8],
@@ -100,6 +114,25 @@ pub fn import_bytes(
     prefix: &str,
     source: &str,
 ) -> Result<Imported, String> {
+    import_bytes_at(kind, bytes, near, prefix, source, None)
+}
+
+/// Imports a model of a kind (`glb`, `gltf`, `obj`, `ply`, `xml`, `pbrt`) from its bytes, as it is at a moment; `near` gives the bytes
+/// of a file by the name that the model has for it.
+///
+/// # Errors
+/// A sentence that says what is wrong, with its place.
+pub fn import_bytes_at(
+    kind: &str,
+    bytes: &[u8],
+    near: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    prefix: &str,
+    source: &str,
+    moment: Option<&Moment>,
+) -> Result<Imported, String> {
+    if moment.is_some() && !matches!(kind, "gltf" | "glb") {
+        return Err("a time is asked for, and only animations of glTF are read".to_owned());
+    }
     let mut builder = Builder { near, prefix: prefix.to_owned(), ..Builder::new(near) };
     match kind {
         "ply" => {
@@ -109,7 +142,7 @@ pub fn import_bytes(
             builder.add_mesh("mesh", part.mesh, &json!("grey"), None, Value::Null)?;
         }
         "obj" => obj::import(bytes, &mut builder)?,
-        "gltf" | "glb" => gltf::import(bytes, &mut builder)?,
+        "gltf" | "glb" => gltf::import(bytes, moment, &mut builder)?,
         "xml" => mitsuba::import(bytes, &mut builder)?,
         "pbrt" => pbrt::import(bytes, &mut builder)?,
         other => return Err(format!("\"{other}\" is no kind of model that is imported")),

@@ -220,7 +220,7 @@ mod tests {
     };
     use etalon_geometry::{Cylinder, Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
     use etalon_optics::{Spectrum, Vec3};
-    use etalon_scene::{EnvironmentImage, Image, Texels};
+    use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image, Texels};
     use std::f64::consts::PI;
     use std::sync::Arc;
 
@@ -228,6 +228,7 @@ mod tests {
         EnvironmentImage {
             image: Arc::new(Image { width: 2, height: 3, texels: Texels::F32(vec![[1.0; 3]; 6]) }),
             name: String::new(),
+            projection: EnvironmentProjection::LatitudeLongitude,
             forward: [1.0, 0.0, 0.0],
             right: [0.0, -1.0, 0.0],
             up: [0.0, 0.0, 1.0],

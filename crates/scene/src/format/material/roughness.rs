@@ -1,6 +1,6 @@
 //! How rough a surface is: a width of facets, or an image of widths.
 
-use super::super::detail::{NumberImageForm, number_image};
+use super::super::detail::{RoughnessImageForm, RoughnessQuantity, roughness_image};
 use super::Alpha;
 use crate::files::Files;
 use crate::json::{Code, Optional, Reader, Spanned};
@@ -8,7 +8,8 @@ use crate::model::{LEAST_ALPHA, MaterialKind, NumberTexture};
 use crate::texture::ImageTexture;
 
 /// Neighbouring widths of an image have roughnesses √α in this ratio. The peak of a highlight, in proportion to 1/α², is then at
-/// most 0.6 % higher in a blend of two than at the width between them, which is less than a step of an image of eight bits makes.
+/// most 0.6 % higher in a blend of two than at the width between them (0.8 % where the image says α, 1.1 % where it says α²), which
+/// is less than a step of an image of eight bits makes.
 const RATIO: f64 = 1.05;
 /// The most widths that an image of roughness makes: from [`LEAST_ALPHA`] to 1, and a smooth one.
 pub(super) const MOST_WIDTHS: usize = 97;
@@ -17,8 +18,20 @@ pub(super) const MOST_WIDTHS: usize = 97;
 pub(super) enum Roughness {
     /// α, the same everywhere.
     Width(f64),
-    /// √α, by an image.
-    Image(ImageTexture),
+    /// A number that says it, by an image.
+    Image(ImageTexture, RoughnessQuantity),
+}
+
+impl RoughnessQuantity {
+    /// The number that says a roughness √α.
+    fn of(self, roughness: f64) -> f64 {
+        let alpha = roughness * roughness;
+        match self {
+            Self::Roughness => roughness,
+            Self::Alpha => alpha,
+            Self::AlphaSquared => alpha * alpha,
+        }
+    }
 }
 
 impl Roughness {
@@ -26,39 +39,42 @@ impl Roughness {
     pub(super) fn material(self, of: impl Fn(f64) -> MaterialKind) -> MaterialKind {
         match self {
             Self::Width(alpha) => of(alpha),
-            Self::Image(texture) => {
+            Self::Image(texture, quantity) => {
                 let range = texture.image.linear_texels().map(|[texel, ..]| texel * texture.factor[0]);
                 let [least, most] = range.fold([1.0_f64, 0.0], |[least, most], r| [least.min(r), most.max(r)]);
-                let parts: Vec<_> = nodes(least, most).into_iter().map(|r| (r, of(r * r))).collect();
+                let nodes = nodes(least, most, quantity).into_iter();
+                let parts: Vec<_> = nodes.map(|r| (quantity.of(r), of(r * r))).collect();
                 MaterialKind::Blend { parts, by: NumberTexture::Image(texture) }
             }
         }
     }
 }
 
-/// The roughnesses between which those from `least` to `most` lie, increasing, at least two.
-fn nodes(least: f64, most: f64) -> Vec<f64> {
+/// The roughnesses between which those lie that numbers from `least` to `most` say, increasing, at least two.
+fn nodes(least: f64, most: f64, quantity: RoughnessQuantity) -> Vec<f64> {
     // Downward from 1, so that images share them.
     let rough =
         std::iter::successors(Some(1.0), |r| (*r > LEAST_ALPHA.sqrt()).then(|| (r / RATIO).max(LEAST_ALPHA.sqrt())));
     let mut all: Vec<f64> = rough.chain([0.0]).collect();
     all.reverse();
     // The last at or below the least, the first at or above the most.
-    let first = all.partition_point(|r| *r <= least).saturating_sub(1).min(all.len() - 2);
-    let last = all.partition_point(|r| *r < most).clamp(first + 1, all.len() - 1);
+    let first = all.partition_point(|r| quantity.of(*r) <= least).saturating_sub(1).min(all.len() - 2);
+    let last = all.partition_point(|r| quantity.of(*r) < most).clamp(first + 1, all.len() - 1);
     all[first..=last].to_vec()
 }
 
 /// The roughness of a form.
 pub(super) fn roughness(
     alpha: Option<&Spanned<Alpha>>,
-    image: &Optional<NumberImageForm>,
+    image: &Optional<RoughnessImageForm>,
     files: &mut Files,
     reader: &mut Reader<'_>,
 ) -> Option<Roughness> {
     match image {
         Optional::Absent => width(alpha, reader).map(Roughness::Width),
-        Optional::Given(image) => number_image(image, files, reader).map(Roughness::Image),
+        Optional::Given(image) => {
+            roughness_image(image, files, reader).map(|(image, quantity)| Roughness::Image(image, quantity))
+        }
         Optional::Invalid => None,
     }
 }
@@ -78,31 +94,48 @@ pub(super) fn width(alpha: Option<&Spanned<Alpha>>, reader: &mut Reader<'_>) -> 
 mod tests {
     use super::*;
 
+    const QUANTITIES: [(RoughnessQuantity, f64); 3] = [
+        // The excess of the chord of v^(−4), v^(−2) and v^(−1) over them, at a ratio of 1.05, 1.05² and 1.05⁴.
+        (RoughnessQuantity::Roughness, 0.0063),
+        (RoughnessQuantity::Alpha, 0.0073),
+        (RoughnessQuantity::AlphaSquared, 0.0096),
+    ];
+
     #[test]
     fn widths_between_nodes_lie_close_to_their_blend() {
-        let all = nodes(0.0, 1.0);
-        assert_eq!(all.len(), MOST_WIDTHS);
-        assert_eq!(all[..2], [0.0, LEAST_ALPHA.sqrt()]);
-        assert_eq!(all.last(), Some(&1.0));
-        let peak = |r: f64| r.powi(-4);
-        for pair in all[1..].windows(2) {
-            for i in 1..16 {
-                let share = f64::from(i) / 16.0;
-                let r = pair[0] + share * (pair[1] - pair[0]);
-                let excess = ((1.0 - share) * peak(pair[0]) + share * peak(pair[1])) / peak(r) - 1.0;
-                assert!((0.0..0.0063).contains(&excess), "{excess} at {r}");
+        for (quantity, bound) in QUANTITIES {
+            let all = nodes(0.0, 1.0, quantity);
+            assert_eq!(all.len(), MOST_WIDTHS);
+            assert_eq!(all[..2], [0.0, LEAST_ALPHA.sqrt()]);
+            assert_eq!(all.last(), Some(&1.0));
+            // The peak by the number, which is a power of the roughness.
+            let power = quantity.of(2.0).log2();
+            let peak = |v: f64| v.powf(-4.0 / power);
+            let mut largest = 0.0_f64;
+            for pair in all[1..].windows(2) {
+                let [a, b] = [pair[0], pair[1]].map(|r| quantity.of(r));
+                for i in 1..16 {
+                    let share = f64::from(i) / 16.0;
+                    let v = a + share * (b - a);
+                    let excess = ((1.0 - share) * peak(a) + share * peak(b)) / peak(v) - 1.0;
+                    assert!((0.0..bound).contains(&excess), "{excess} at {v}");
+                    largest = largest.max(excess);
+                }
             }
+            assert!(largest > 0.9 * bound, "{quantity:?}: {largest}");
         }
     }
 
     #[test]
     fn only_widths_that_an_image_has_are_made() {
-        for (least, most) in [(0.3, 0.3), (0.3, 0.4), (0.0, 0.0), (1.0, 1.0), (0.0, 0.01), (0.005, 0.2)] {
-            let few = nodes(least, most);
-            assert!(few.len() >= 2 && few.is_sorted_by(|a, b| a < b));
-            assert!(few[0] <= least && few[few.len() - 1] >= most, "{least} {most}");
-            let inner = &few[1..few.len() - 1];
-            assert!(inner.iter().all(|r| (least..=most).contains(r)), "{few:?}");
+        for (quantity, _) in QUANTITIES {
+            for (least, most) in [(0.3, 0.3), (0.3, 0.4), (0.0, 0.0), (1.0, 1.0), (0.0, 0.01), (0.005, 0.2)] {
+                let few: Vec<f64> = nodes(least, most, quantity).into_iter().map(|r| quantity.of(r)).collect();
+                assert!(few.len() >= 2 && few.is_sorted_by(|a, b| a < b));
+                assert!(few[0] <= least && few[few.len() - 1] >= most, "{least} {most}");
+                let inner = &few[1..few.len() - 1];
+                assert!(inner.iter().all(|r| (least..=most).contains(r)), "{few:?}");
+            }
         }
     }
 }

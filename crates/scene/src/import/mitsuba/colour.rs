@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::Walk;
 use super::element::{Element, numbers};
+use crate::import::number::Number;
 use crate::import::table::Table;
 use crate::import::{extension, light, reflectance};
 
@@ -32,6 +33,35 @@ impl Walk<'_, '_, '_> {
     /// The colour that an element has under one of some names, as a spectrum of the format.
     pub(super) fn colour(&mut self, element: &Element, name: &str, of: Of) -> Result<Option<Value>, String> {
         element.property(name).map(|colour| self.colour_of(colour, of)).transpose()
+    }
+
+    /// A number from 0 to 1 that an element has under a name, perhaps by an image. A colour counts by the mean of its channels.
+    pub(super) fn number(&mut self, element: &Element, name: &str) -> Result<Option<Number>, String> {
+        let Some(stated) = element.property(name) else { return Ok(None) };
+        let target = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
+        if target.tag == "texture" && target.plugin() == "bitmap" {
+            target.mark();
+            let (image, mean) = self.bitmap(target)?.unzip();
+            target.list_unused(self.builder);
+            let Some(mut image) = image else { return Ok(None) };
+            // Three channels count by their luminance there, after the curve of sRGB.
+            image["channel"] = json!("luminance");
+            if let Some(keys) = image.as_object_mut() {
+                keys.remove("type");
+            }
+            let [r, g, b] = mean.unwrap_or([0.0; 3]);
+            return Ok(Some(Number::Image(image, 0.2126 * r + 0.7152 * g + 0.0722 * b)));
+        }
+        let value = self.colour_of(stated, Of::Reflectance)?;
+        Ok(Some(Number::Value(match value.as_f64() {
+            Some(number) => number,
+            None => {
+                self.builder
+                    .leave_out(&element.place, format!("a coloured \"{name}\" counts by the mean of its channels"));
+                let channels = value["rgb"].as_array().map_or(&[][..], Vec::as_slice);
+                channels.iter().filter_map(Value::as_f64).sum::<f64>() / channels.len().max(1) as f64
+            }
+        })))
     }
 
     fn colour_of(&mut self, element: &Element, of: Of) -> Result<Value, String> {
@@ -188,17 +218,23 @@ impl Walk<'_, '_, '_> {
             element.children.iter().for_each(Element::mark);
             return Ok(json!(0.5));
         }
-        let name = element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
-        let raw = element.flag("raw")?.unwrap_or(false);
-        let Some((file, mean)) = self.image(&name, raw, place) else {
+        let Some((image, mean)) = self.bitmap(element)? else {
             return Ok(if of.is_light() { json!(0.0) } else { json!(0.5) });
         };
-        let word = element.string("wrap_mode").unwrap_or("repeat").to_owned();
-        let filter = element.string("filter_type").unwrap_or("bilinear").to_owned();
         if of != Of::Texture && of != Of::Shining {
             self.builder.leave_out(place, "the mean of the image stands for it everywhere");
             return Ok(if of.is_light() { light(mean, 1.0) } else { reflectance(mean) });
         }
+        Ok(image)
+    }
+
+    /// The image of the format that a `bitmap` is, and the mean of its texels; `None`, and a note, if it cannot be read.
+    fn bitmap(&mut self, element: &Element) -> Result<Option<(Value, [f64; 3])>, String> {
+        let place = &element.place;
+        let name = element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+        let raw = element.flag("raw")?.unwrap_or(false);
+        let word = element.string("wrap_mode").unwrap_or("repeat").to_owned();
+        let filter = element.string("filter_type").unwrap_or("bilinear").to_owned();
         // The program counts v from the top of the image: 1 − (sv·v + ov).
         let (mut scale, mut offset) = ([1.0, -1.0], [0.0, 1.0]);
         if let Some(transform) = element.property("to_uv") {
@@ -213,9 +249,13 @@ impl Walk<'_, '_, '_> {
             _ => "repeat",
         };
         let filter = if filter == "nearest" { "nearest" } else { "bilinear" };
-        Ok(json!({
-            "type": "image", "file": file, "encoding": if raw { "linear" } else { "auto" }, "wrap": wrap,
-            "filter": filter, "uv_scale": scale, "uv_offset": offset,
+        Ok(self.image(&name, raw, place).map(|(file, mean)| {
+            let encoding = if raw { "linear" } else { "auto" };
+            let image = json!({
+                "type": "image", "file": file, "encoding": encoding, "wrap": wrap, "filter": filter, "uv_scale": scale,
+                "uv_offset": offset,
+            });
+            (image, mean)
         }))
     }
 

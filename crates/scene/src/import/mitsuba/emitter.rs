@@ -22,14 +22,12 @@ impl Walk<'_, '_, '_> {
                     element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
                 let Some((file, _)) = self.image(&file, false, &place) else { return Ok(()) };
                 let to_world = self.placement(element)?;
-                if determinant(&to_world) < 0.0 {
-                    self.builder.leave_out(&place, "a transform that mirrors it is taken for one that does not");
-                }
-                // The middle of the image is along +z, its upper edge along +y.
+                // The middle of the image is along +z, its upper edge along +y; the centres of its first row lie at the pole.
                 json!({
                     "type": "environment",
                     "image": {
                         "file": file, "scale": element.number("scale")?.unwrap_or(1.0).max(0.0),
+                        "projection": "latitude-longitude-at-poles", "mirrored": determinant(&to_world) < 0.0,
                         "up": column(&to_world, 1), "forward": column(&to_world, 2),
                     },
                 })

@@ -1,12 +1,12 @@
 //! Materials of Mitsuba.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::Walk;
 use super::colour::Of;
 use super::element::Element;
+use crate::import::number::{Number, Rough};
 use crate::import::table::{Table, metal};
-use crate::model::LEAST_ALPHA;
 
 /// Indices of refraction that Mitsuba has names for, as its documentation lists them.
 const INDICES: [(&str, f64); 21] = [
@@ -40,23 +40,17 @@ pub(super) struct Look {
     pub material: Value,
     /// Share of light that meets it.
     pub opacity: f64,
+    /// Further keys of its objects: an image of that share.
+    pub detail: Map<String, Value>,
 }
 
 impl Look {
-    fn of(material: Value) -> Self {
-        Self { material, opacity: 1.0 }
+    pub(super) fn of(material: Value) -> Self {
+        Self { material, opacity: 1.0, detail: Map::new() }
     }
 
-    pub(super) fn has_image(&self) -> bool {
-        has_image(&self.material)
-    }
-}
-
-fn has_image(value: &Value) -> bool {
-    match value {
-        Value::Object(map) => map.get("type").is_some_and(|t| t == "image") || map.values().any(has_image),
-        Value::Array(list) => list.iter().any(has_image),
-        _ => false,
+    pub(super) fn plain(material: Value, opacity: f64) -> Self {
+        Self { opacity, ..Self::of(material) }
     }
 }
 
@@ -78,7 +72,13 @@ impl Walk<'_, '_, '_> {
             }
             "mask" => {
                 let mut look = self.nested_look(element)?;
-                look.opacity *= self.share(element, "opacity", 0.5)?;
+                match self.number(element, "opacity")?.unwrap_or(Number::Value(0.5)) {
+                    Number::Value(share) => look.opacity *= share,
+                    Number::Image(image, _) if look.detail.is_empty() => {
+                        look.detail.insert("opacity_image".to_owned(), image);
+                    }
+                    image => look.opacity *= image.mean("opacity", &place, self.builder),
+                }
                 look
             }
             "bumpmap" | "normalmap" => {
@@ -87,23 +87,24 @@ impl Walk<'_, '_, '_> {
                 element.children.iter().for_each(Element::mark);
                 look
             }
-            "null" => Look { material: json!({ "type": "black" }), opacity: 0.0 },
+            "null" => Look::plain(json!({ "type": "black" }), 0.0),
             "blendbsdf" => {
                 let nested = element.nested("bsdf", self.ids)?;
                 let [first, second] = nested[..] else {
                     return Err(format!("{place}: a blend has two materials, not {}", nested.len()));
                 };
                 let (first, second) = (self.look(first)?, self.look(second)?);
-                let weight = self.share(element, "weight", 0.5)?;
-                if first.opacity != second.opacity {
-                    self.builder.leave_out(&place, "masks within a blend count by their mean");
+                let weight = self.number(element, "weight")?.unwrap_or(Number::Value(0.5));
+                let mean = match weight {
+                    Number::Value(mean) | Number::Image(_, mean) => mean,
+                };
+                if first.opacity != second.opacity || !first.detail.is_empty() || !second.detail.is_empty() {
+                    self.builder
+                        .leave_out(&place, "masks within a blend count by their mean, images of them not at all");
                 }
-                Look {
-                    material: json!({
-                        "type": "blend", "first": first.material, "second": second.material, "weight": weight
-                    }),
-                    opacity: (1.0 - weight) * first.opacity + weight * second.opacity,
-                }
+                let mut material = json!({ "type": "blend", "first": first.material, "second": second.material });
+                weight.put_weight(&mut material);
+                Look::plain(material, (1.0 - mean) * first.opacity + mean * second.opacity)
             }
             plugin => Look::of(self.material(element, plugin, &place)?),
         };
@@ -123,22 +124,6 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// A number from 0 to 1; an image counts by its mean.
-    fn share(&mut self, element: &Element, name: &str, default: f64) -> Result<f64, String> {
-        let value = self.colour(element, name, Of::Reflectance)?;
-        Ok(match value {
-            None => default,
-            Some(Value::Number(number)) => number.as_f64().unwrap_or(default),
-            Some(coloured) => {
-                self.builder
-                    .leave_out(&element.place, format!("a coloured \"{name}\" counts by the mean of its channels"));
-                coloured["rgb"]
-                    .as_array()
-                    .map_or(default, |rgb| rgb.iter().filter_map(Value::as_f64).sum::<f64>() / 3.0)
-            }
-        })
-    }
-
     fn material(&mut self, element: &Element, plugin: &str, place: &str) -> Result<Value, String> {
         Ok(match plugin {
             "diffuse" => {
@@ -149,7 +134,10 @@ impl Walk<'_, '_, '_> {
                 let (interior, exterior) =
                     (self.index(element, "int_ior", 1.5046)?, self.index(element, "ext_ior", 1.000_277)?);
                 self.untinted(element, &["specular_reflectance", "specular_transmittance"])?;
-                let alpha = if plugin == "dielectric" { 0.0 } else { self.alpha(element)? };
+                let alpha = match plugin {
+                    "dielectric" => 0.0,
+                    _ => self.alpha(element)?.everywhere(place, self.builder),
+                };
                 json!({ "type": "dielectric", "interior": interior, "exterior": exterior, "alpha": alpha,
                     "multiple_scattering": "lost" })
             }
@@ -163,12 +151,14 @@ impl Walk<'_, '_, '_> {
                 let reflectance = self.colour(element, "diffuse_reflectance", Of::Texture)?.unwrap_or(json!(0.5));
                 let coat = self.index(element, "int_ior", 1.49)? / self.index(element, "ext_ior", 1.000_277)?;
                 self.untinted(element, &["specular_reflectance"])?;
-                let alpha = if plugin == "plastic" { 0.0 } else { self.alpha(element)? };
+                let rough = if plugin == "plastic" { Rough::Alpha(0.0) } else { self.alpha(element)? };
                 if !element.flag("nonlinear")?.unwrap_or(false) {
                     let what = "light that is reflected within the coat is coloured by the ground (nonlinear)";
                     self.builder.leave_out(place, what);
                 }
-                json!({ "type": "plastic", "reflectance": reflectance, "coat": coat, "alpha": alpha })
+                let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat });
+                rough.put(&mut plastic);
+                plastic
             }
             "principled" | "principledthin" => {
                 self.builder.leave_out(place, format!("\"{plugin}\" is taken for diffuse, of its base colour"));
@@ -185,7 +175,7 @@ impl Walk<'_, '_, '_> {
 
     fn conductor(&mut self, element: &Element, rough: bool) -> Result<Value, String> {
         let place = &element.place;
-        let alpha = if rough { self.alpha(element)? } else { 0.0 };
+        let facets = if rough { self.alpha(element)? } else { Rough::Alpha(0.0) };
         let tint = self.colour(element, "specular_reflectance", Of::Reflectance)?;
         let mut value = match element.string("material") {
             Some("none") => {
@@ -204,7 +194,7 @@ impl Walk<'_, '_, '_> {
         if tint.is_some_and(|tint| tint != json!(1.0)) {
             self.builder.leave_out(place, "specular_reflectance does not tint it");
         }
-        value["alpha"] = json!(alpha);
+        facets.put(&mut value);
         value["outside_fit"] = json!("clamp");
         // As in the program.
         value["multiple_scattering"] = json!("lost");
@@ -241,22 +231,28 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    fn alpha(&mut self, element: &Element) -> Result<f64, String> {
+    fn alpha(&mut self, element: &Element) -> Result<Rough, String> {
+        let place = &element.place;
         if element.string("distribution").unwrap_or("beckmann") != "ggx" {
-            self.builder.leave_out(&element.place, "the distribution of facets is taken for GGX of the same alpha");
+            self.builder.leave_out(place, "the distribution of facets is taken for GGX of the same alpha");
         }
         element.string("sample_visible");
-        let both = (element.number("alpha_u")?, element.number("alpha_v")?);
-        let alpha = match (self.colour(element, "alpha", Of::Reflectance)?, both) {
-            (_, (Some(u), Some(v))) if u != v => {
-                let what = "alpha_u and alpha_v differ: their geometric mean is taken for both";
-                self.builder.leave_out(&element.place, what);
-                (u * v).max(0.0).sqrt()
+        let both = (self.number(element, "alpha_u")?, self.number(element, "alpha_v")?);
+        let alpha = match (self.number(element, "alpha")?, both) {
+            (_, (Some(u), Some(v))) => {
+                let (u, v) = (u.mean("alpha_u", place, self.builder), v.mean("alpha_v", place, self.builder));
+                if u != v {
+                    let what = "alpha_u and alpha_v differ: their geometric mean is taken for both";
+                    self.builder.leave_out(place, what);
+                }
+                Number::Value((u * v).max(0.0).sqrt())
             }
-            (_, (Some(alpha), _)) => alpha,
-            (Some(alpha), _) => alpha.as_f64().or_else(|| alpha["rgb"][0].as_f64()).unwrap_or(0.1),
-            (None, _) => 0.1,
+            (Some(alpha), _) | (None, (Some(alpha), None)) => alpha,
+            (None, _) => Number::Value(0.1),
         };
-        Ok(if alpha < LEAST_ALPHA { 0.0 } else { alpha.min(1.0) })
+        Ok(match alpha {
+            Number::Value(alpha) => Rough::width(alpha),
+            Number::Image(image, mean) => Rough::image(image, "alpha", mean),
+        })
     }
 }

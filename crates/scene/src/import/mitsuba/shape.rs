@@ -10,6 +10,7 @@ use super::element::Element;
 use super::material::{Look, grey};
 use crate::import::Placed;
 use crate::import::matrix::Rows;
+use crate::import::number::has_image;
 use crate::mesh::{Part, read_obj, read_ply};
 
 /// A mesh file, as files of the scene.
@@ -66,7 +67,7 @@ impl<'a> Walk<'a, '_, '_> {
         let rows = self.placement(element)?;
         let look = match element.nested("bsdf", self.ids)?.first() {
             Some(bsdf) => self.known_look(bsdf)?,
-            None => Look { material: grey(), opacity: 1.0 },
+            None => Look::of(grey()),
         };
         let emission = self.emission(element)?;
         let flipped = element.flag("flip_normals")?.unwrap_or(false);
@@ -137,6 +138,9 @@ impl<'a> Walk<'a, '_, '_> {
     fn analytic(&mut self, mut dressed: Dressed, shape: Value, reach: [[f64; 3]; 2], place: &str) {
         let has_uvs = shape["type"] == "parallelogram";
         self.without_images(&mut dressed, has_uvs, place);
+        if !has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
+            self.builder.leave_out(place, "what it shines by is laid over texture coordinates of another kind");
+        }
         self.builder.place(&dressed.placed(shape, Some(reach)), place);
     }
 
@@ -153,6 +157,11 @@ impl<'a> Walk<'a, '_, '_> {
                 dressed.name = format!("{}, {name}", dressed.name);
             }
             self.without_images(&mut dressed, part.has_uvs, place);
+            if !part.has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
+                let what = "it has no texture coordinates for the image that it shines by, and is dark";
+                self.builder.leave_out(place, what);
+                dressed.emission = None;
+            }
             let mut shape = json!({ "type": "mesh", "file": part.file });
             if flat {
                 shape["shading"] = json!("flat");
@@ -204,11 +213,14 @@ impl<'a> Walk<'a, '_, '_> {
 
     /// Takes images away from what has no texture coordinates.
     fn without_images(&mut self, dressed: &mut Dressed, has_uvs: bool, place: &str) {
-        let named = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name)).cloned();
-        let look = Look { material: named.unwrap_or_else(|| dressed.look.material.clone()), opacity: 1.0 };
-        if !has_uvs && look.has_image() {
+        let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
+        if !has_uvs && has_image(own.unwrap_or(&dressed.look.material)) {
             self.builder.leave_out(place, "it has no texture coordinates for the image of its material, and is grey");
             dressed.look.material = grey();
+        }
+        if !has_uvs && !dressed.look.detail.is_empty() {
+            self.builder.leave_out(place, "it has no texture coordinates for the image of its opacity, and is opaque");
+            dressed.look.detail.clear();
         }
     }
 }
@@ -232,6 +244,7 @@ impl Dressed {
             material: self.look.material.clone(),
             emission: self.emission.clone(),
             opacity: self.look.opacity,
+            detail: self.look.detail.clone(),
             rows: self.rows,
             flipped: self.flipped,
         }

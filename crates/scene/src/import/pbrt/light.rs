@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::Reading;
 use super::parameters::Parameters;
-use crate::import::matrix::{direction, point};
+use crate::import::matrix::{Rows, column, determinant, direction, is_similarity, point};
 use crate::texture::Encoding;
 use crate::vector::sub;
 
@@ -33,14 +33,13 @@ impl Reading<'_, '_> {
                     "half_angle_deg": outer, "inner_half_angle_deg": inner.clamp(0.0, outer),
                 })
             }
-            "infinite" => {
-                if list.get("filename").is_some() {
-                    self.builder.leave_out(place, "the image of the sky is not read: the sky is left out");
-                    list.mark_all();
-                    return Ok(());
-                }
-                json!({ "type": "environment", "radiance": self.emitted(list, "L", scale)? })
-            }
+            "infinite" => match list.string("filename").map(str::to_owned) {
+                Some(file) => match self.sky(&file, list, scale, &rows, place)? {
+                    Some(sky) => sky,
+                    None => return Ok(()),
+                },
+                None => json!({ "type": "environment", "radiance": self.emitted(list, "L", scale)? }),
+            },
             other => {
                 self.builder.leave_out(place, format!("the light \"{other}\" is not known, and is left out"));
                 return Ok(());
@@ -50,6 +49,38 @@ impl Reading<'_, '_> {
         self.builder.lights.push(value);
         list.list_unused(self.builder);
         Ok(())
+    }
+
+    /// A square image of all directions; `None`, and a note, if it cannot be read.
+    fn sky(
+        &mut self,
+        file: &str,
+        list: &Parameters,
+        scale: f64,
+        rows: &Rows,
+        place: &str,
+    ) -> Result<Option<Value>, String> {
+        let found =
+            self.near(file, place).and_then(|bytes| self.builder.image_file(file, bytes, Encoding::Auto, place));
+        let name = match found {
+            Ok((name, _)) => name,
+            Err(why) => {
+                self.builder.leave_out(place, format!("the sky is left out with its image: {why}"));
+                list.mark_all();
+                return Ok(None);
+            }
+        };
+        if !is_similarity(rows) {
+            self.builder.leave_out(place, "its transform stretches the sky, which is not honoured");
+        }
+        // The middle of the square is along +z, its right edge along +x and its lower edge along +y.
+        Ok(Some(json!({
+            "type": "environment",
+            "image": {
+                "file": name, "projection": "equal-area", "scale": scale, "up": column(rows, 2), "forward": column(rows, 1),
+                "mirrored": determinant(rows) < 0.0,
+            },
+        })))
     }
 
     /// What the shapes from here on emit.

@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use super::parameters::Parameters;
 use super::{Look, Reading};
+use crate::import::number::{Number, Rough};
 use crate::import::table::{Table, metal};
-use crate::model::LEAST_ALPHA;
 
 impl Reading<'_, '_> {
     pub(super) fn material(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Look, String> {
@@ -22,7 +22,9 @@ impl Reading<'_, '_> {
                 for harmless in ["thickness", "maxdepth", "nsamples"] {
                     list.get(harmless);
                 }
-                json!({ "type": "plastic", "reflectance": reflectance, "coat": coat, "alpha": self.alpha(list, place)? })
+                let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat });
+                self.rough(list, place)?.put(&mut plastic);
+                plastic
             }
             "conductor" | "coatedconductor" => {
                 if kind == "coatedconductor" {
@@ -31,7 +33,8 @@ impl Reading<'_, '_> {
                 self.conductor(list, place)?
             }
             "dielectric" => json!({
-                "type": "dielectric", "interior": self.index(list, 1.5)?, "alpha": self.alpha(list, place)?,
+                "type": "dielectric", "interior": self.index(list, 1.5)?,
+                "alpha": self.rough(list, place)?.everywhere(place, self.builder),
                 "multiple_scattering": "lost",
             }),
             "thindielectric" => json!({ "type": "thin-dielectric", "index": self.index(list, 1.5)? }),
@@ -51,12 +54,9 @@ impl Reading<'_, '_> {
                     Ok::<Value, String>(value)
                 };
                 let (first, second) = (known(first)?, known(second)?);
-                let amount = self.reflectance(list, "amount", false)?.unwrap_or(json!(0.5));
-                let weight = amount.as_f64().unwrap_or_else(|| {
-                    self.builder.leave_out(place, "an amount that is no number is taken for one half");
-                    0.5
-                });
-                json!({ "type": "blend", "first": first, "second": second, "weight": weight })
+                let mut blend = json!({ "type": "blend", "first": first, "second": second });
+                self.share(list, "amount")?.unwrap_or(Number::Value(0.5)).put_weight(&mut blend);
+                blend
             }
             "interface" | "" => {
                 opacity = 0.0;
@@ -74,7 +74,7 @@ impl Reading<'_, '_> {
     }
 
     fn conductor(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
-        let alpha = self.alpha(list, place)?;
+        let rough = self.rough(list, place)?;
         let prefix = if list.0.iter().any(|p| p.name.starts_with("conductor.")) { "conductor." } else { "" };
         let named = |what: &str| list.string(&format!("{prefix}{what}")).map(str::to_owned);
         let eta = named("eta");
@@ -98,7 +98,7 @@ impl Reading<'_, '_> {
             };
             json!({ "type": "conductor", "metal": name })
         };
-        value["alpha"] = json!(alpha);
+        rough.put(&mut value);
         value["outside_fit"] = json!("clamp");
         value["multiple_scattering"] = json!("lost");
         Ok(value)
@@ -138,26 +138,28 @@ impl Reading<'_, '_> {
         }
     }
 
-    fn alpha(&mut self, list: &Parameters, place: &str) -> Result<f64, String> {
-        let mut number = |name: &str| -> Result<Option<f64>, String> {
-            let Some(parameter) = list.get(name) else { return Ok(None) };
-            if parameter.kind == "texture" {
-                let value = self.reflectance(list, name, false)?;
-                return Ok(value.and_then(|v| v.as_f64().or_else(|| v["rgb"][1].as_f64())));
-            }
-            list.number(name)
-        };
+    fn rough(&mut self, list: &Parameters, place: &str) -> Result<Rough, String> {
         let prefixed = list.0.iter().any(|p| p.name.starts_with("interface."));
         let prefix = if prefixed { "interface." } else { "" };
-        let both = number(&format!("{prefix}roughness"))?;
-        let (u, v) = (number(&format!("{prefix}uroughness"))?, number(&format!("{prefix}vroughness"))?);
-        let (u, v) = (u.or(both).unwrap_or(0.0), v.or(both).unwrap_or(0.0));
-        if u != v {
-            self.builder.leave_out(place, "roughnesses along u and v differ: their geometric mean is taken for both");
-        }
-        let roughness = (u * v).max(0.0).sqrt();
+        let both = self.share(list, &format!("{prefix}roughness"))?;
+        let (u, v) =
+            (self.share(list, &format!("{prefix}uroughness"))?, self.share(list, &format!("{prefix}vroughness"))?);
+        let (u, v) = (u.or_else(|| both.clone()), v.or(both));
         // Unless told otherwise pbrt takes the square of alpha.
-        let alpha = if list.flag("remaproughness").unwrap_or(true) { roughness.sqrt() } else { roughness };
-        Ok(if alpha < LEAST_ALPHA { 0.0 } else { alpha.min(1.0) })
+        let squared = list.flag("remaproughness").unwrap_or(true);
+        let alpha = |roughness: f64| if squared { roughness.max(0.0).sqrt() } else { roughness };
+        Ok(match (u.unwrap_or(Number::Value(0.0)), v.unwrap_or(Number::Value(0.0))) {
+            (Number::Image(u, mean), Number::Image(v, _)) if u == v => {
+                Rough::image(u, if squared { "alpha-squared" } else { "alpha" }, alpha(mean))
+            }
+            (u, v) => {
+                let (u, v) = (u.mean("uroughness", place, self.builder), v.mean("vroughness", place, self.builder));
+                if u != v {
+                    let what = "roughnesses along u and v differ: their geometric mean is taken for both";
+                    self.builder.leave_out(place, what);
+                }
+                Rough::width(alpha((u * v).max(0.0).sqrt()))
+            }
+        })
     }
 }

@@ -1,11 +1,12 @@
 //! Shapes of pbrt.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::Reading;
 use super::parameters::Parameters;
 use super::spectrum::kind;
 use crate::import::Placed;
+use crate::import::number::{Number, has_image};
 use crate::mesh::{MAX_ELEMENTS, read_ply};
 use crate::model::Mesh;
 use crate::vector::unit;
@@ -57,21 +58,43 @@ impl Reading<'_, '_> {
             }
         };
         let mut opacity = self.state.material.opacity;
-        if let Some(alpha) = self.reflectance(list, "alpha", false)? {
-            match alpha.as_f64() {
-                Some(alpha) => opacity *= alpha,
-                None => self.builder.leave_out(place, "the image of its alpha is not honoured: it is opaque"),
+        let mut detail = Map::new();
+        match self.share(list, "alpha")? {
+            None => {}
+            Some(Number::Value(alpha)) => opacity *= alpha,
+            Some(Number::Image(..)) if !has_uvs => {
+                self.builder
+                    .leave_out(place, "it has no texture coordinates for the image of its alpha, and is opaque");
+            }
+            Some(Number::Image(mut image, _)) => {
+                // The format has the factor beside the image.
+                opacity *= image["factor"].as_f64().unwrap_or(1.0);
+                if let Some(keys) = image.as_object_mut() {
+                    keys.remove("factor");
+                }
+                detail.insert("opacity_image".to_owned(), image);
             }
         }
         list.list_unused(self.builder);
         let material = self.untextured(has_uvs, place);
+        let mut emission = self.state.emission.clone();
+        if !has_uvs && emission.as_ref().is_some_and(has_image) {
+            if matches!(shape, "disk" | "sphere" | "cylinder") {
+                self.builder.leave_out(place, "what it shines by is laid over texture coordinates of another kind");
+            } else {
+                let what = "it has no texture coordinates for the image that it shines by, and is dark";
+                self.builder.leave_out(place, what);
+                emission = None;
+            }
+        }
         let placed = Placed {
             name,
             shape: value,
             reach,
             material,
-            emission: self.state.emission.clone(),
+            emission,
             opacity,
+            detail,
             rows: self.to_world(),
             flipped: self.state.reversed,
         };
@@ -83,7 +106,7 @@ impl Reading<'_, '_> {
     fn untextured(&mut self, has_uvs: bool, place: &str) -> Value {
         let value = &self.state.material.value;
         let own = value.as_str().and_then(|name| self.builder.materials.get(name)).unwrap_or(value);
-        if !has_uvs && own["reflectance"]["type"] == "image" {
+        if !has_uvs && has_image(own) {
             self.builder.leave_out(place, "it has no texture coordinates for the image of its material, and is grey");
             return json!({ "type": "lambert", "reflectance": 0.5 });
         }

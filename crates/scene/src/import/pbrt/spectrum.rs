@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::Reading;
 use super::parameters::{Parameter, Parameters, Values};
+use crate::import::number::Number;
 use crate::import::table::Table;
 use crate::import::{extension, light, reflectance};
 use crate::texture::Encoding;
@@ -63,6 +64,26 @@ impl Reading<'_, '_> {
             _ => return Err(format!("{place}: \"{name}\" is no reflectance")),
         };
         Ok(Some(without_mean(value)))
+    }
+
+    /// A number from 0 to 1, perhaps by an image, whose channels count by their mean.
+    pub(super) fn share(&mut self, list: &Parameters, name: &str) -> Result<Option<Number>, String> {
+        let Some(parameter) = list.get(name) else { return Ok(None) };
+        if parameter.kind == "texture" {
+            let texture = parameter.strings().first().and_then(|texture| self.textures.get(texture));
+            if let Some(image) = texture.filter(|value| value["type"] == "image") {
+                return Ok(Some(number_image(image)));
+            }
+        }
+        let place = parameter.place.clone();
+        let value = self.reflectance(list, name, false)?;
+        Ok(value.map(|value| {
+            Number::Value(value.as_f64().unwrap_or_else(|| {
+                self.builder.leave_out(&place, format!("a coloured \"{name}\" counts by the mean of its channels"));
+                let channels = value["rgb"].as_array().map_or(&[][..], Vec::as_slice);
+                channels.iter().filter_map(Value::as_f64).sum::<f64>() / channels.len().max(1) as f64
+            }))
+        }))
     }
 
     /// Light: a colour as it is, any other spectrum with a luminance of 1.
@@ -217,6 +238,25 @@ impl Reading<'_, '_> {
         });
         Ok(scaled(image, number("scale", 1.0)?))
     }
+}
+
+/// An image of colours as one of numbers.
+fn number_image(colours: &Value) -> Number {
+    let mut image = without_mean(colours.clone());
+    let factor = colours["factor"][0].as_f64().unwrap_or(1.0);
+    if let Some(keys) = image.as_object_mut() {
+        keys.remove("type");
+        keys.remove("factor");
+        keys.insert("channel".to_owned(), json!("mean"));
+        if factor != 1.0 {
+            keys.insert("factor".to_owned(), json!(factor));
+        }
+    }
+    let mean = colours["mean"].as_f64().or_else(|| {
+        let channels = colours["mean"]["rgb"].as_array()?;
+        Some(channels.iter().filter_map(Value::as_f64).sum::<f64>() / 3.0)
+    });
+    Number::Image(image, factor * mean.unwrap_or(0.5))
 }
 
 /// An image times a factor.
