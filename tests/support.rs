@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 use etalon_picture::{ExrFile, read_exr};
 use serde_json::Value;
@@ -68,6 +68,12 @@ pub(crate) fn etalon<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) ->
 #[track_caller]
 pub(crate) fn etalon_line<const N: usize>(line: &str, paths: [&Path; N]) -> Ran {
     etalon(words(line, paths))
+}
+
+/// Sends a signal, `INT` or `TERM`.
+pub(crate) fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
 }
 
 /// The words of a line, `{}` standing for each of `paths` in turn (it may end a word: `--output={}`).

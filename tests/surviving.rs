@@ -3,10 +3,10 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Command};
+use std::process::Child;
 use std::time::{Duration, Instant};
 
-use crate::support::{command, entries, etalon_line, pixel_bits, scene, words};
+use crate::support::{command, entries, etalon_line, pixel_bits, scene, signal, words};
 
 /// Three to seven seconds, so that ten kills come before its end.
 const SHORT: &str = "--size 96x72 --spp 1000 --seed 5";
@@ -20,11 +20,6 @@ fn picture(path: &Path) -> (Vec<(String, Vec<u32>)>, etalon_picture::Attributes)
     let mut attributes = file.attributes;
     attributes.remove("renderTimeSeconds").expect("a render says how long it took");
     (bits, attributes)
-}
-
-fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status().unwrap();
-    assert!(sent.success());
 }
 
 /// Waits until a file is there.

@@ -1,11 +1,12 @@
 //! `etalon verify`: our own renders, and pictures that come from elsewhere.
 
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 use etalon_picture::{Attributes, Picture, read_exr, write_exr};
 use serde_json::Value;
 
-use crate::support::{entries, etalon, etalon_line};
+use crate::support::{command, entries, etalon, etalon_line, signal, words};
 
 fn exported(folder: &Path) {
     etalon_line("verify --export {}", [folder]).expect(0);
@@ -36,8 +37,45 @@ fn a_few_truths_hold_and_are_reported_in_the_documented_form() {
         assert_eq!(row["pass"], true);
     }
     assert_eq!(row(&report, "eye-in-diamond")["truth"], 2.4175 * 2.4175);
+    assert_eq!(report["complete"], true);
     let table = etalon(["verify", "lens-closed"]).expect(0).stdout;
     assert!(table.contains("lens-closed") && table.contains("1 passed, 0 failed"), "{table}");
+}
+
+#[test]
+fn a_reading_is_the_same_for_any_number_of_threads() {
+    // Of one wavelength, relative to white; and one that is taken in several steps.
+    for names in ["prism-bk7-at-656.2725-nanometres", "pinhole-window --thorough"] {
+        let [one, three] = ["1", "3"].map(|threads| {
+            let report = etalon_line(&format!("verify {names} --json --threads {threads}"), []).expect(0).json();
+            let row = &report["truths"][0];
+            ["measured", "standard_error", "resolvable_bias", "paths"].map(|key| row[key].as_number().unwrap().clone())
+        });
+        assert_eq!(one, three, "{names}");
+    }
+}
+
+#[test]
+fn a_signal_ends_a_run_with_what_has_been_judged() {
+    for (name, status) in [("INT", 130), ("TERM", 143)] {
+        // The second takes minutes.
+        let line = "verify sky-alone two-fresnel-rhombs-between-crossed-brewster-mirrors --thorough --json";
+        let mut child = command(words(line, [])).spawn().unwrap();
+        let mut notes = BufReader::new(child.stderr.take().unwrap());
+        let mut note = String::new();
+        notes.read_line(&mut note).unwrap();
+        assert!(note.starts_with("1/2 sky-alone: passes"), "{note}");
+        signal(&child, name);
+        let output = child.wait_with_output().unwrap();
+        let mut said = String::new();
+        notes.read_to_string(&mut said).unwrap();
+        assert_eq!(output.status.code(), Some(status), "{said}");
+        assert!(said.contains("1 truths, 1 are not judged"), "{said}");
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!((&report["complete"], &report["passed"], &report["failed"]), (&false.into(), &1.into(), &0.into()));
+        assert_eq!(row(&report, "sky-alone")["pass"], true);
+        assert_eq!(report["unjudged"], serde_json::json!(["two-fresnel-rhombs-between-crossed-brewster-mirrors"]));
+    }
 }
 
 #[test]

@@ -278,6 +278,12 @@ impl Prepared {
         &self.scene
     }
 
+    /// Other random numbers for the same scene. Nothing that is prepared depends on the seed: what is rendered from now on has every
+    /// bit that it has in a scene of this seed.
+    pub fn reseed(&mut self, seed: u64) {
+        self.scene.integrator.seed = seed;
+    }
+
     /// What will be simulated, and why.
     pub fn plan(&self) -> &Plan {
         &self.plan

@@ -4,6 +4,7 @@ mod export;
 mod ours;
 mod pictures;
 mod report;
+mod series;
 
 use std::path::PathBuf;
 
@@ -30,7 +31,8 @@ pub(crate) struct Args {
     /// Seed of every random number.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Take more samples until a bias of one part in ten thousand would show, at most 64 times as many.
+    /// Take more samples until a bias of one part in ten thousand would show: 32 million rays a truth, and up to 256 million where
+    /// these will do. Each film is one pixel then, whose samples are spread over the whole picture.
     #[arg(long)]
     thorough: bool,
     /// Scalar type that paths are computed in.

@@ -3,123 +3,201 @@
 use std::time::Instant;
 
 use etalon_oracle::statistics::{Budget, Welford};
-use etalon_oracle::subjects::{Reading, Renders};
+use etalon_oracle::subjects::Reading;
 use etalon_oracle::truths::{Claim, Truth, judge};
 use etalon_scene::{Precision, Scene};
-use etalon_transport::{Control, Extent, Study, prepare_study};
+use etalon_transport::Study;
+use miette::Report as Problem;
 
 use super::report::{Report, Row};
+use super::series::{Series, Stop};
 use super::{Args, PrecisionArg};
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt::Interrupt;
 
 /// Independent renders of each truth: their scatter is the standard error, whatever the samples within one have to do
 /// with each other. With 64 of them Student's t at the suite's significance is close to the normal distribution.
 const REPLICATES: u32 = 64;
-/// At the first try, all replicates together take this part of the samples that the truth's scene suggests: those are meant
-/// for independent numbers.
+/// At first, all replicates together take this part of the samples that the truth's scene suggests: those are meant for independent
+/// numbers.
 const FIRST: u32 = 4;
-/// A reading too noisy to count is taken again with this many times the paths, so many times.
-const MORE: u64 = 4;
-const TRIES: u32 = 5;
-/// What a thorough run wants to see of each truth, relative, and after how many tries it gives up: 64 times the paths.
+/// A reading too noisy to count goes on to this many times the paths, so many times.
+const MORE: u32 = 4;
+const STEPS: u32 = 4;
+/// What a thorough run wants to see of each truth, relative; how many rays it spends on that of every truth, and how many where as many
+/// will do. In rays, not in seconds, so that what is read is the same on every machine.
 const THOROUGH_SEES: f64 = 1e-4;
-const THOROUGH_TRIES: u32 = 4;
+const THOROUGH_RAYS: u64 = 32_000_000;
+const THOROUGH_REACH_RAYS: u64 = 256_000_000;
 
-/// Our renderer, as the oracle sees one.
-struct Etalon {
-    seed: u64,
-    /// In parts of the samples that the scene suggests, [`FIRST`] of them.
-    effort: u64,
-    precision: Precision,
-    /// Whether light is followed with its polarisation.
-    polarised: bool,
-    threads: Option<usize>,
+/// A truth's picture by our integrator, taken with many seeds.
+struct Measurement<'a> {
+    truth: &'a Truth,
+    of_truth: Series,
+    /// A film of CIE Y reads a narrow band relative to a white sky in the same band.
+    of_white: Option<Series>,
+    /// Samples that a pixel of each replicate has after the first step.
+    first_spp: u32,
 }
 
-impl Etalon {
-    /// The scene as one replicate renders it.
-    fn replicate(&self, json: &str, replicate: u32) -> Result<Scene, String> {
-        let (mut scene, _) = etalon_scene::parse(json, "truth").map_err(|errors| errors.summary())?;
-        let suggested = self.effort * u64::from(scene.integrator.spp);
-        let spp = suggested.div_ceil(u64::from(FIRST * REPLICATES)).next_power_of_two();
-        scene.integrator.precision = self.precision;
+impl<'a> Measurement<'a> {
+    fn new(truth: &'a Truth, args: &Args) -> Result<Self, String> {
+        let scene = |json: &str| Self::scene(json, args);
+        let threads = args.threads.map(|threads| threads as usize);
         // Distinct for each pair: fewer replicates than 2¹⁶.
-        scene.integrator.seed = self.seed << 16 | u64::from(replicate);
-        // Each render is one replicate here.
+        let seeds: Vec<u64> = (0..REPLICATES).map(|replicate| args.seed << 16 | u64::from(replicate)).collect();
+        let polarised = truth.claims.contains(&Claim::CarriesPolarisation);
+        let study = Study { polarised, ..Study::default() };
+        let series = |json: &str| Series::new(&scene(json)?, &study, seeds.clone(), threads);
+        let first_spp = scene(&truth.scene)?.integrator.spp.div_ceil(FIRST * REPLICATES).next_power_of_two();
+        let of_white = truth.band_nm.map(|_| series(&truth.white_scene())).transpose()?;
+        Ok(Self { truth, of_truth: series(&truth.scene)?, of_white, first_spp })
+    }
+
+    /// The scene as each replicate renders it.
+    fn scene(json: &str, args: &Args) -> Result<Scene, String> {
+        let (mut scene, _) = etalon_scene::parse(json, "truth").map_err(|errors| errors.summary())?;
+        scene.integrator.precision = match args.precision {
+            PrecisionArg::F32 => Precision::F32,
+            PrecisionArg::F64 => Precision::F64,
+        };
+        // Each film is one replicate here.
         scene.integrator.replicates = 1;
-        scene.integrator.spp = u32::try_from(spp).map_err(|error| error.to_string())?;
+        if args.thorough {
+            // The whole film as one pixel, with the samples of all: points that are spread evenly over it and over whatever follows,
+            // where each of a thousand pixels would have a handful. Another picture than by default, with the same mean.
+            let film = &mut scene.film;
+            let side = gcd(film.width, film.height);
+            (film.width, film.height) = (film.width / side, film.height / side);
+            scene.integrator.spp = scene.integrator.spp.saturating_mul(side * side);
+        }
         Ok(scene)
     }
 
-    /// Mean Y of the whole film, and its non-finite samples.
-    fn mean_y(&self, scene: &Scene) -> Result<(f64, u64), String> {
-        let study = Study { polarised: self.polarised, ..Study::default() };
-        let prepared = prepare_study(scene, &study).map_err(|error| error.to_string())?;
-        let extent = Extent { threads: self.threads, ..prepared.whole(None) };
-        let film = prepared.render(&extent, &|_| Control::Continue).map_err(|error| error.to_string())?;
-        if film.counters.cut_paths > 0 {
-            return Err(format!("{} paths were cut at the internal limit", film.counters.cut_paths));
+    /// Goes on to so many times the samples of the first step.
+    fn render_to(&mut self, effort: u32, interrupt: &Interrupt) -> Result<Reading, Stop> {
+        for series in [Some(&mut self.of_truth), self.of_white.as_mut()].into_iter().flatten() {
+            series.render_to(self.first_spp.saturating_mul(effort), interrupt)?;
         }
-        Ok((film.mean_y(extent.rect), film.counters.nonfinite))
+        let white: Vec<f64> = match &self.of_white {
+            Some(series) => series.means().collect(),
+            None => vec![1.0; REPLICATES as usize],
+        };
+        let mut moments = Welford::new();
+        self.of_truth.means().zip(white).for_each(|(mean, white)| moments.push(mean / white));
+        Ok(Reading { estimate: moments.estimate(), nonfinite: self.of_truth.counted(|counters| counters.nonfinite) })
+    }
+
+    /// Rays of all kinds so far.
+    fn rays(&self) -> u64 {
+        let of = |series: &Series| series.counted(|counters| counters.rays + counters.shadow_rays);
+        of(&self.of_truth) + self.of_white.as_ref().map_or(0, of)
+    }
+
+    /// Camera paths so far.
+    fn paths(&self) -> u64 {
+        self.of_truth.counted(|counters| counters.paths)
     }
 }
 
-impl Renders for Etalon {
-    fn render(&mut self, truth: &Truth) -> Result<Reading, String> {
-        let (mut moments, mut nonfinite) = (Welford::new(), 0);
-        for replicate in 0..REPLICATES {
-            let (mean, bad) = self.mean_y(&self.replicate(&truth.scene, replicate)?)?;
-            // A film of CIE Y reads a narrow band relative to a white sky in the same band.
-            let white = match truth.band_nm {
-                Some(_) => self.mean_y(&self.replicate(&truth.white_scene(), replicate)?)?.0,
-                None => 1.0,
-            };
-            moments.push(mean / white);
-            nonfinite += bad;
-        }
-        Ok(Reading { estimate: moments.estimate(), nonfinite })
-    }
+/// Greatest common divisor.
+fn gcd(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 pub(super) fn run(args: &Args, chosen: Vec<Truth>) -> Outcome {
+    let interrupt = Interrupt::listen()
+        .map_err(|error| Failure::run(Problem::from_err(error).wrap_err("cannot listen to signals")))?;
     // Plain radiance with polarisations averaged at every interface, or with polarisation, each where a truth wants it.
     let claims = [&Claim::UNPOLARISED[..], &[Claim::CarriesPolarisation]].concat();
     let chosen: Vec<Truth> = chosen.into_iter().filter(|truth| truth.applies_to(&claims)).collect();
     let budget = Budget::for_tests(chosen.len());
-    let mut report = Report::new(!args.json).with_seed(args.seed);
-    for truth in &chosen {
-        report.push(judged(args, truth, budget.each()));
+    let mut report = Report::new(!args.json).with_seed(args.seed).of(chosen.len());
+    for (index, truth) in chosen.iter().enumerate() {
+        match judged(args, truth, budget.each(), &interrupt) {
+            Some(row) => report.push(row),
+            None => {
+                let signal = interrupt.signal().expect("nothing else ends a measurement early");
+                return report.interrupted(signal, &chosen[index..]);
+            }
+        }
     }
     report.finish()
 }
 
-/// Renders and judges one truth; takes more samples, never more seeds to choose from, where the reading was too noisy to
-/// exclude a known mistake, or for a thorough run to see what it wants to. Whether it was depends on the noise alone, so that
-/// stopping does not favour a verdict.
-fn judged(args: &Args, truth: &Truth, significance: f64) -> Row {
+/// Renders and judges one truth. `None` if the program was asked to end before.
+fn judged(args: &Args, truth: &Truth, significance: f64, interrupt: &Interrupt) -> Option<Row> {
     let start = Instant::now();
-    let mut renderer = Etalon {
-        seed: args.seed,
-        effort: 1,
-        precision: match args.precision {
-            PrecisionArg::F32 => Precision::F32,
-            PrecisionArg::F64 => Precision::F64,
-        },
-        polarised: truth.claims.contains(&Claim::CarriesPolarisation),
-        threads: args.threads.map(|threads| threads as usize),
+    let measured = Measurement::new(truth, args).map_err(Stop::Failed).and_then(|mut measurement| {
+        Ok((measured(args, &mut measurement, significance, interrupt)?, measurement.paths()))
+    });
+    let (reading, paths) = match measured {
+        Ok((reading, paths)) => (Ok(reading), Some(paths)),
+        Err(Stop::Failed(why)) => (Err(why), None),
+        Err(Stop::Interrupted) => return None,
     };
-    let mut tries = 1;
-    let reading = loop {
-        let reading = renderer.render(truth);
-        let Ok(read) = &reading else { break reading };
-        let seen = judge(truth, read, significance).resolvable_bias;
-        let enough = seen <= truth.must_resolve() || tries >= TRIES;
-        let thorough = seen <= THOROUGH_SEES * truth.value || tries >= THOROUGH_TRIES;
-        if enough && (thorough || !args.thorough) {
-            break reading;
+    Some(Row::new(truth, reading, significance).took(start.elapsed().as_secs_f64(), paths))
+}
+
+/// Takes more samples, never more seeds to choose from, where the reading was too noisy to exclude a known mistake, or for a thorough
+/// run to see what it wants to. Whether it was depends on the noise alone, so that stopping does not favour a verdict.
+fn measured(
+    args: &Args,
+    measurement: &mut Measurement<'_>,
+    significance: f64,
+    interrupt: &Interrupt,
+) -> Result<Reading, Stop> {
+    let truth = measurement.truth;
+    let (mut step, mut seen_before) = (0, f64::INFINITY);
+    loop {
+        let reading = measurement.render_to(MORE.pow(step), interrupt)?;
+        let seen = judge(truth, &reading, significance).resolvable_bias;
+        let enough = seen <= truth.must_resolve() || step >= STEPS;
+        let thorough = || is_worth_more(measurement.rays(), seen_before, seen, truth.value);
+        if enough && !(args.thorough && thorough()) {
+            break Ok(reading);
         }
-        tries += 1;
-        renderer.effort *= MORE;
-    };
-    Row::new(truth, reading, significance).took(start.elapsed().as_secs_f64())
+        (step, seen_before) = (step + 1, seen);
+    }
+}
+
+/// Whether a thorough run goes on that saw `seen` by so many rays, and `before` by the step before: to [`THOROUGH_RAYS`] as long as it
+/// does not see what it wants to, and beyond only if it will see that by [`THOROUGH_REACH_RAYS`], at the rate of the last step or at
+/// 1/√n.
+fn is_worth_more(mut rays: u64, before: f64, seen: f64, value: f64) -> bool {
+    let wanted = THOROUGH_SEES * value;
+    if rays * u64::from(MORE) <= THOROUGH_RAYS {
+        // What is not a number is judged as it is.
+        return seen > wanted;
+    }
+    let gain = (before / seen).max(f64::from(MORE).sqrt());
+    let mut foretold = seen;
+    while foretold > wanted && rays * u64::from(MORE) <= THOROUGH_REACH_RAYS {
+        (rays, foretold) = (rays * u64::from(MORE), foretold / gain);
+    }
+    seen > wanted && foretold <= wanted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thorough_run_spends_rays_where_they_will_show_what_it_wants_to_see() {
+        let seen_enough = is_worth_more(1_000, f64::INFINITY, 0.9e-4, 1.0);
+        let cheap = is_worth_more(8_000_000, 2e-2, 1e-2, 1.0);
+        let hopeless = is_worth_more(9_000_000, 2e-2, 1e-2, 1.0);
+        // Two steps at 1/√n end at 225 million rays and 1e-4; at the rate 4 they come from 1.6e-3.
+        let (near, too_far) =
+            (is_worth_more(14_000_000, 5e-4, 4e-4, 1.0), is_worth_more(14_000_000, 9e-4, 4.1e-4, 1.0));
+        let steep = is_worth_more(14_000_000, 6.4e-3, 1.6e-3, 1.0);
+        let too_dear = is_worth_more(65_000_000, 2e-4, 1.1e-4, 1.0);
+        assert_eq!(
+            [seen_enough, cheap, hopeless, near, too_far, steep, too_dear],
+            [false, true, false, true, false, true, false]
+        );
+        // A black picture has no relative error, and a reading that is no number is not improved by more.
+        assert!(is_worth_more(1_000, f64::INFINITY, 1e-9, 0.0) && !is_worth_more(9_000_000, 2e-9, 1e-9, 0.0));
+        assert!(!is_worth_more(1_000, f64::INFINITY, f64::NAN, 1.0));
+    }
 }

@@ -27,6 +27,9 @@ pub(super) struct Row {
     evidence: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     seconds: Option<f64>,
+    /// Camera paths that were taken.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    paths: Option<u64>,
 }
 
 impl Row {
@@ -47,12 +50,12 @@ impl Row {
             pass: verdict.pass,
             evidence: verdict.evidence,
             seconds: None,
+            paths: None,
         }
     }
 
-    pub(super) fn took(mut self, seconds: f64) -> Self {
-        self.seconds = Some(seconds);
-        self
+    pub(super) fn took(self, seconds: f64, paths: Option<u64>) -> Self {
+        Self { seconds: Some(seconds), paths, ..self }
     }
 }
 
@@ -68,9 +71,14 @@ pub(super) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
     seconds: f64,
+    /// Whether every truth that was asked for has been judged.
+    complete: bool,
     passed: usize,
     failed: usize,
     truths: Vec<Row>,
+    /// Truths that a signal left unjudged.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unjudged: Vec<String>,
     /// Truths of which there is no picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     missing: Option<Vec<String>>,
@@ -78,6 +86,9 @@ pub(super) struct Report {
     start: Instant,
     #[serde(skip)]
     table: bool,
+    /// How many truths there will be; of pictures nobody asks.
+    #[serde(skip)]
+    expected: Option<usize>,
 }
 
 impl Report {
@@ -95,13 +106,21 @@ impl Report {
             images: None,
             seed: None,
             seconds: 0.0,
+            complete: true,
             passed: 0,
             failed: 0,
             truths: Vec::new(),
+            unjudged: Vec::new(),
             missing: None,
             start: Instant::now(),
             table,
+            expected: None,
         }
+    }
+
+    /// Says how far a run of so many truths has come, where no table shows it.
+    pub(super) fn of(self, expected: usize) -> Self {
+        Self { expected: Some(expected), ..self }
     }
 
     pub(super) fn with_seed(self, seed: u64) -> Self {
@@ -126,6 +145,17 @@ impl Report {
                 if row.pass { String::new() } else { format!("  FAILED: {}", row.evidence) }
             ));
         }
+        if let Some(expected) = self.expected.filter(|_| !self.table) {
+            print::note(&format!(
+                "{}/{expected} {}: {}, sees {:.1e} of {:.10}, {:.1} s",
+                self.truths.len() + 1,
+                row.name,
+                if row.pass { "passes".to_owned() } else { format!("FAILED: {}", row.evidence) },
+                row.resolvable_bias,
+                row.truth,
+                row.seconds.unwrap_or_default(),
+            ));
+        }
         *if row.pass { &mut self.passed } else { &mut self.failed } += 1;
         self.truths.push(row);
     }
@@ -146,6 +176,18 @@ impl Report {
         (!named.is_empty()).then(|| named.join(", "))
     }
 
+    /// As [`Report::finish`], of a run that a signal has ended before these truths.
+    pub(super) fn interrupted(mut self, signal: u8, left: &[Truth]) -> Outcome {
+        self.complete = false;
+        self.unjudged = left.iter().map(|truth| truth.name.clone()).collect();
+        let (done, left) = (self.truths.len(), left.len());
+        let ended =
+            Failure::signal(signal, miette!(code = "interrupted", "ended after {done} truths, {left} are not judged"));
+        let mut failure = self.finish().err().unwrap_or_default();
+        failure.add(ended);
+        Err(failure)
+    }
+
     /// Prints what is left to say; a failure if any truth does not hold.
     pub(super) fn finish(mut self) -> Outcome {
         self.seconds = self.start.elapsed().as_secs_f64();
@@ -154,8 +196,12 @@ impl Report {
                 Some(missing) if !missing.is_empty() => format!(", {} without a picture", missing.len()),
                 _ => String::new(),
             };
+            let unjudged = match self.unjudged.len() {
+                0 => String::new(),
+                left => format!(", {left} not judged"),
+            };
             print::line(&format!(
-                "{} passed, {} failed{missing}, in {:.1} s; a right renderer fails any of them with probability {:.0e}",
+                "{} passed, {} failed{missing}{unjudged}, in {:.1} s; a right renderer fails any of them with probability {:.0e}",
                 self.passed, self.failed, self.seconds, SUITE_SIGNIFICANCE
             ));
             if let Some(slowest) = self.slowest() {

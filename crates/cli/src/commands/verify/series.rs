@@ -1,0 +1,89 @@
+//! One scene rendered with many seeds, side by side, and on and on.
+
+use std::num::NonZero;
+use std::sync::Mutex;
+use std::thread;
+
+use etalon_scene::Scene;
+use etalon_transport::{Control, Counters, Extent, Film, Prepared, Study, prepare_study};
+
+use crate::interrupt::Interrupt;
+
+/// Films of one scene that differ by their seeds alone.
+pub(super) struct Series {
+    /// The scene, ready to be rendered, once for each thread.
+    prepared: Vec<Prepared>,
+    seeds: Vec<u64>,
+    films: Vec<Film>,
+    /// How many samples the pixels of each film have.
+    samples: u32,
+}
+
+/// Why a series has no more samples than before.
+pub(super) enum Stop {
+    /// The program was asked to end.
+    Interrupted,
+    /// It cannot be rendered.
+    Failed(String),
+}
+
+impl Series {
+    /// Black films, one for each seed.
+    pub(super) fn new(scene: &Scene, study: &Study, seeds: Vec<u64>, threads: Option<usize>) -> Result<Self, String> {
+        let threads = threads.unwrap_or_else(cores).min(seeds.len());
+        let prepare = |_| prepare_study(scene, study).map_err(|error| error.to_string());
+        let prepared: Vec<Prepared> = (0..threads).map(prepare).collect::<Result<_, _>>()?;
+        let films = seeds.iter().map(|_| prepared[0].film()).collect();
+        Ok(Self { prepared, seeds, films, samples: 0 })
+    }
+
+    /// Goes on until each pixel of each film has this many samples: the same films whether at once or in several steps, and on however
+    /// many threads.
+    pub(super) fn render_to(&mut self, samples: u32, interrupt: &Interrupt) -> Result<(), Stop> {
+        let range = self.samples..samples;
+        let queue = Mutex::new(self.seeds.iter().zip(&mut self.films));
+        let on_tile = |_: &Counters| match interrupt.signal() {
+            None => Control::Continue,
+            Some(_) => Control::Stop,
+        };
+        let work = |prepared: &mut Prepared| -> Result<(), Stop> {
+            loop {
+                let Some((&seed, film)) = queue.lock().expect("nobody panics while taking a film").next() else {
+                    return Ok(());
+                };
+                prepared.reseed(seed);
+                // Small films are side by side already: each has one thread.
+                let extent = Extent { samples: range.clone(), ..prepared.whole(Some(1)) };
+                prepared.render_onto(film, &extent, &on_tile).map_err(|error| Stop::Failed(error.to_string()))?;
+                if interrupt.signal().is_some() {
+                    return Err(Stop::Interrupted);
+                }
+            }
+        };
+        thread::scope(|scope| {
+            let threads: Vec<_> = self.prepared.iter_mut().map(|prepared| scope.spawn(|| work(prepared))).collect();
+            threads.into_iter().try_for_each(|thread| thread.join().expect("renders do not panic"))
+        })?;
+        self.samples = samples;
+        match self.counted(|counters| counters.cut_paths) {
+            0 => Ok(()),
+            cut => Err(Stop::Failed(format!("{cut} paths were cut at the internal limit"))),
+        }
+    }
+
+    /// Mean Y of each film.
+    pub(super) fn means(&self) -> impl Iterator<Item = f64> {
+        let rect = self.prepared[0].whole(None).rect;
+        self.films.iter().map(move |film| film.mean_y(rect))
+    }
+
+    /// A counter in the sum over all films.
+    pub(super) fn counted(&self, counter: impl Fn(&Counters) -> u64) -> u64 {
+        self.films.iter().map(|film| counter(&film.counters)).sum()
+    }
+}
+
+/// Processors that there are for us.
+fn cores() -> usize {
+    thread::available_parallelism().map_or(1, NonZero::get)
+}
