@@ -31,6 +31,7 @@ pub mod bsdf;
 pub mod camera;
 pub mod canvas;
 mod caustics;
+mod cells;
 mod compiled;
 mod coordinates;
 mod engine;

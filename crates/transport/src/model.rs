@@ -93,7 +93,7 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
 
     #[inline(always)]
     fn wavelengths(prepared: &Prepared, _: impl FnOnce() -> f64) -> Wavelengths<1> {
-        Wavelengths { lambda_nm: Lanes([prepared.one_lane.wavelength_nm]), pdf: Lanes([f64::INFINITY]) }
+        Wavelengths::fixed([prepared.one_lane.wavelength_nm])
     }
 
     #[inline(always)]
@@ -136,8 +136,8 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
     }
 
     #[inline(always)]
-    fn to_xyz(_: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
-        wavelengths.to_xyz(radiance)
+    fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
+        prepared.wavelengths.to_xyz(wavelengths, radiance)
     }
 }
 
@@ -174,8 +174,8 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
     }
 
     #[inline(always)]
-    fn to_xyz(_: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
-        wavelengths.to_xyz(radiance)
+    fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
+        prepared.wavelengths.to_xyz(wavelengths, radiance)
     }
 }
 
@@ -203,7 +203,7 @@ impl<R: Real> WavelengthModel<R, 3> for ThreeChannels {
     }
 
     fn wavelengths(_: &Prepared, _: impl FnOnce() -> f64) -> Wavelengths<3> {
-        Wavelengths { lambda_nm: Lanes(CHANNELS_NM), pdf: Lanes([f64::INFINITY; 3]) }
+        Wavelengths::fixed(CHANNELS_NM)
     }
 
     fn to_xyz(_: &Prepared, _: &Wavelengths<3>, radiance: Lanes<R, 3>) -> [f64; 3] {

@@ -15,7 +15,7 @@ use crate::light::{
 use crate::media::{Media, Solid, open_edges};
 use crate::motion::motion;
 use crate::path::ShadowRays;
-use crate::plan::{Carried, EffectName, OneLaneFilm, Plan, Study, StudyError, simulated};
+use crate::plan::{Carried, EffectName, LaneModel, OneLaneFilm, Plan, Study, StudyError, simulated};
 use crate::shapes::{self, SceneShapes};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, EmissionImage, ObjectSurface, Relief, Surfaces};
@@ -219,7 +219,12 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         None if compiled::SPECULAR_CHAINS => Casters::new(&surfaces, &geometry, &lights),
         _ => Casters::default(),
     };
-    let tables = Tables::new(&surfaces, &lights, &environments);
+    let wavelengths = match &scene.film.bands {
+        Some(bands) => WavelengthDistribution::for_bands(range_nm, bands),
+        None => WavelengthDistribution::new(range_nm),
+    };
+    let drawn = matches!(plan.lane_model, LaneModel::Shared | LaneModel::Hero).then_some(&wavelengths);
+    let tables = Tables::new(&surfaces, &lights, &environments, drawn);
     let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene)).transpose()?;
     let mut prepared = Prepared {
         frame,
@@ -230,10 +235,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         surfaces,
         lights,
         environments,
-        wavelengths: match &scene.film.bands {
-            Some(bands) => WavelengthDistribution::for_bands(range_nm, bands),
-            None => WavelengthDistribution::new(range_nm),
-        },
+        wavelengths,
         one_lane: OneLaneFilm::new(scene),
         filter: FilterSampler::new(&scene.film.filter),
         tables,

@@ -1,5 +1,6 @@
 //! Spectra as paths meet them: tabulated once, so that no path calls the platform's mathematics library.
 
+use crate::cells::CellTable;
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{Lanes, Real, Spectrum};
 
@@ -93,32 +94,19 @@ impl PathSpectrum {
         }
     }
 
-    /// The wavelength of the first value of a table at each nanometre.
-    pub(crate) fn first_nm(&self) -> Option<f64> {
-        match self {
-            Self::Grid { first_nm, .. } | Self::Band { first_nm, .. } => Some(*first_nm),
-            Self::Constant(_) | Self::Symbolic(_) => None,
-        }
-    }
-
-    /// Values in every lane; `places` are those of the wavelengths in tables that begin at `from_nm`.
-    #[inline(always)]
-    pub(crate) fn lanes_at<const N: usize>(
-        &self,
-        from_nm: f64,
-        places: &Places<N>,
-        lambda_nm: &Lanes<f64, N>,
-    ) -> Lanes<f64, N> {
-        match self {
-            Self::Grid { first_nm, steps } if *first_nm == from_nm => places.interpolate(steps),
-            Self::Band { first_nm, steps, band_nm: [from, to] } if *first_nm == from_nm => {
-                let values = places.interpolate(steps);
-                let inside = |nm: f64| (*from..=*to).contains(&nm);
-                Lanes::from_fn(|lane| if inside(lambda_nm[lane]) { values[lane] } else { 0.0 })
-            }
-            Self::Constant(value) => Lanes::splat(*value),
-            _ => self.lanes(lambda_nm),
-        }
+    /// Its values by cells of wavelengths, each of which lies within the nanometre that begins at one of `whole_nm`: at the
+    /// beginning of the nanometre, and how much larger it is at its end. `None` if it is not linear there.
+    pub(crate) fn by_cells(&self, whole_nm: &[f64]) -> Option<CellTable> {
+        let (first_nm, steps, [from, to]) = match self {
+            Self::Grid { first_nm, steps } => (first_nm, steps, [f64::NEG_INFINITY, f64::INFINITY]),
+            Self::Band { first_nm, steps, band_nm } => (first_nm, steps, *band_nm),
+            Self::Constant(_) | Self::Symbolic(_) => return None,
+        };
+        Some(CellTable::new(whole_nm.len() as u32, |cell| {
+            let nm = whole_nm[cell as usize];
+            // Bands end at whole nanometres, where no wavelength is drawn.
+            if from <= nm && nm + 1.0 <= to { steps[(nm - first_nm) as usize] } else { [0.0; 2] }
+        }))
     }
 
     /// Values in every lane.
@@ -131,46 +119,6 @@ impl PathSpectrum {
             }
             Self::Band { .. } | Self::Symbolic(_) => Lanes::from_fn(|lane| R::from_f64(self.eval(lambda_nm[lane]))),
         }
-    }
-}
-
-/// Where wavelengths are in a table at each nanometre: after which value, and how far, nm.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Places<const N: usize> {
-    index: [u32; N],
-    fraction: [f64; N],
-}
-
-impl<const N: usize> Places<N> {
-    /// Nowhere.
-    pub(crate) const NONE: Self = Self { index: [0; N], fraction: [0.0; N] };
-
-    /// In tables from `first_nm`.
-    #[inline(always)]
-    pub(crate) fn new(first_nm: f64, lambda_nm: &Lanes<f64, N>) -> Self {
-        let mut places = Self::NONE;
-        for lane in 0..N {
-            let x = lambda_nm[lane] - first_nm;
-            let index = x as u32;
-            places.index[lane] = index;
-            places.fraction[lane] = x - f64::from(index);
-        }
-        places
-    }
-}
-
-impl<const N: usize> Places<N> {
-    /// What a table holds there.
-    #[inline(always)]
-    fn interpolate(&self, steps: &[[f64; 2]]) -> Lanes<f64, N> {
-        let (mut value, mut step) = ([0.0; N], [0.0; N]);
-        for lane in 0..N {
-            [value[lane], step[lane]] = steps[self.index[lane] as usize];
-        }
-        for lane in 0..N {
-            value[lane] += self.fraction[lane] * step[lane];
-        }
-        Lanes(value)
     }
 }
 

@@ -4,7 +4,8 @@
 //! hero, the other lanes are its rotations by 1/N **in the cumulative distribution**, so that each lane alone has the
 //! density of the distribution and the lanes together are stratified.
 
-use etalon_optics::colour::{cie_y_integral_nm, colour_matching, colour_matching_lanes};
+use crate::cells::{CellTable, Place};
+use etalon_optics::colour::{cie_y_integral_nm, colour_matching};
 use etalon_optics::{Lanes, Real};
 use etalon_scene::Bands;
 
@@ -13,8 +14,8 @@ use etalon_scene::Bands;
 pub struct Wavelengths<const N: usize> {
     /// Wavelengths in nm; lane 0 is the hero.
     pub lambda_nm: Lanes<f64, N>,
-    /// Density of each, nm⁻¹.
-    pub pdf: Lanes<f64, N>,
+    /// Where they are among the cells that they were drawn from.
+    pub(crate) place: Place,
 }
 
 /// A density over wavelengths: x̄ + ȳ + z̄ blurred, with a floor, constant within each nanometre.
@@ -24,32 +25,25 @@ pub struct Wavelengths<const N: usize> {
 /// The lanes of a path are equidistant in the cumulative distribution: together they are a quadrature rule, whose error is how
 /// rough S·x̄/density is along that distribution. A density as bumpy as x̄ + ȳ + z̄ itself is nearer to what is integrated, and yet
 /// the worse choice: hence the blur.
+///
+/// Every nanometre is divided evenly into whole numbers of cells of the same probability ([`crate::cells`]), so that its density is that
+/// of the blurred sum to the nearest cell, and at least one cell's: what is linear between whole nanometres, as the
+/// matching functions and tabulated spectra are, is linear along a cell.
 #[derive(Clone, Debug)]
 pub struct WavelengthDistribution {
-    /// Where cells begin and end, in order: the cumulative probability, from 0 to 1, and the wavelength, nm.
-    borders: Vec<[f64; 2]>,
-    /// The cell at each multiple of 1/[`GUIDES`] of probability: where the search for a cell begins.
-    guides: Vec<u16>,
-    /// Most cells that a search passes.
-    most_passed: u32,
+    /// The wavelength at which each cell begins and its width, nm.
+    cells: Vec<[f64; 2]>,
+    last_nm: f64,
+    lambda_nm: CellTable,
+    /// x̄, ȳ and z̄ over the density and ∫ȳ.
+    responses: [CellTable; 3],
 }
 
-/// A cell: see [`WavelengthDistribution`].
-#[derive(Clone, Copy)]
-struct Cell {
-    /// Cumulative probability where it begins and ends.
-    cdf: [f64; 2],
-    /// Wavelengths there, nm.
-    nm: [f64; 2],
-}
-
-impl Cell {
-    /// The wavelength at cumulative probability `u`, nm, and its density, nm⁻¹.
-    #[inline(always)]
-    fn at(&self, u: f64) -> (f64, f64) {
-        let (probability, width_nm) = (self.cdf[1] - self.cdf[0], self.nm[1] - self.nm[0]);
-        (self.nm[0] + (u - self.cdf[0]) / probability * width_nm, probability / width_nm)
-    }
+/// Wavelengths between borders, each with its own constant density.
+struct Segments {
+    borders_nm: Vec<f64>,
+    /// The probability up to each border, times a constant.
+    cumulative: Vec<f64>,
 }
 
 /// Share of the largest colour-matching sum below which no wavelength's density falls: the ends of the range matter
@@ -58,50 +52,16 @@ const FLOOR: f64 = 0.02;
 /// Standard deviation of the blur, nm. Of 10 to 40 nm, and of several other shapes, this leaves eight lanes the least colour
 /// noise over daylight, lamps, black bodies and what paints reflect of them: a tenth of that without blur.
 const BLUR_NM: i32 = 40;
-/// So many times the nanometres of the visible range that hardly a search passes more than one cell.
-const GUIDES: usize = 4096;
+/// Fewest cells: nine a nanometre of the visible range in the mean, so that one, the fewest that a nanometre may have, is not much more
+/// than the ends of the range would have by the floor, and few enough for tables by cells to stay in caches.
+const FEWEST_CELLS: usize = 4096;
 
 /// Share of the samples that bands of a film get evenly: every band then has at least half as many as an even spread would
 /// give it, and the variance of the colour at most doubles.
 const EVEN_SHARE: f64 = 0.5;
 
-impl WavelengthDistribution {
-    /// The distribution for a film that keeps bands: within each band the density is constant, so that the mean over the
-    /// wavelengths that fall into a band is the mean over the band; half of the samples in the bands are spread evenly.
-    pub fn for_bands(range_nm: [f64; 2], bands: &Bands) -> Self {
-        let plain = Self::new(range_nm);
-        let edges: Vec<f64> = (0..=bands.count).map(|index| bands.edge_nm(index)).collect();
-        let (begin, end) = (edges[0], edges[edges.len() - 1]);
-        let outside = |nm: &f64| *nm < begin || *nm > end;
-        let plain_nm = plain.borders.iter().map(|&[_, nm]| nm);
-        let mut borders_nm: Vec<f64> = plain_nm.filter(outside).chain(edges).collect();
-        borders_nm.sort_by(f64::total_cmp);
-        let of_bands = plain.cumulative(end) - plain.cumulative(begin);
-        let mut cdf = vec![0.0];
-        let mut sum = 0.0;
-        for w in borders_nm.windows(2) {
-            let seen = plain.cumulative(w[1]) - plain.cumulative(w[0]);
-            let even = of_bands / f64::from(bands.count);
-            let in_band = w[0] >= begin && w[1] <= end;
-            sum += if in_band { EVEN_SHARE * even + (1.0 - EVEN_SHARE) * seen } else { seen };
-            cdf.push(sum);
-        }
-        cdf.iter_mut().for_each(|c| *c /= sum);
-        Self::of_cells(borders_nm, cdf)
-    }
-
-    /// Probability of the wavelengths up to `nm`.
-    fn cumulative(&self, nm: f64) -> f64 {
-        let cell = self.borders.partition_point(|&[_, border]| border <= nm).clamp(1, self.borders.len() - 1) - 1;
-        let ([c0, nm0], [c1, nm1]) = (self.borders[cell], self.borders[cell + 1]);
-        c0 + (c1 - c0) * ((nm - nm0) / (nm1 - nm0))
-    }
-
-    /// The distribution over `range_nm`, which must be finite, ordered and not empty.
-    pub fn new(range_nm: [f64; 2]) -> Self {
-        Self::blurred(range_nm, BLUR_NM)
-    }
-
+impl Segments {
+    /// Nanometre by nanometre, in proportion to the blurred sum.
     fn blurred(range_nm: [f64; 2], blur_nm: i32) -> Self {
         let [first, last] = range_nm;
         let mut borders_nm = vec![first];
@@ -117,91 +77,161 @@ impl WavelengthDistribution {
         let floor = FLOOR * density.iter().fold(0.0, |a, &b| f64::max(a, b));
         // A range without any visible wavelength is sampled uniformly.
         let floor = if floor > 0.0 { floor } else { 1.0 };
-        let mut cdf = vec![0.0];
+        let mut cumulative = vec![0.0];
         let mut sum = 0.0;
         for (w, d) in borders_nm.windows(2).zip(density) {
             sum += (w[1] - w[0]) * f64::max(d, floor);
-            cdf.push(sum);
+            cumulative.push(sum);
         }
-        cdf.iter_mut().for_each(|c| *c /= sum);
-        Self::of_cells(borders_nm, cdf)
+        Self { borders_nm, cumulative }
     }
 
-    fn of_cells(borders_nm: Vec<f64>, cdf: Vec<f64>) -> Self {
-        let cell_at = |u: f64| cdf.partition_point(|&c| c <= u) - 1;
-        let at = |guide: usize| guide as f64 / GUIDES as f64;
-        // Fewer cells than 2¹⁶: wavelengths are tabulated at nanometres, and files of bands hold fewer.
-        let guides: Vec<u16> =
-            (0..GUIDES).map(|g| cell_at(at(g)).try_into().expect("cells have short numbers")).collect();
-        // What a number below the next guide's may pass.
-        let last = |g: usize| cell_at(at(g + 1).next_down());
-        let most_passed = (0..GUIDES).map(|g| last(g) - usize::from(guides[g])).max().expect("there are guides") as u32;
-        let borders = cdf.into_iter().zip(borders_nm).map(|(c, nm)| [c, nm]).collect();
-        Self { borders, guides, most_passed }
+    /// The same with a segment for each band, half of what they have together spread evenly over them.
+    fn with_bands(&self, bands: &Bands) -> Self {
+        let edges: Vec<f64> = (0..=bands.count).map(|index| bands.edge_nm(index)).collect();
+        let (begin, end) = (edges[0], edges[edges.len() - 1]);
+        let outside = |nm: &f64| *nm < begin || *nm > end;
+        let mut borders_nm: Vec<f64> = self.borders_nm.iter().copied().filter(outside).chain(edges).collect();
+        borders_nm.sort_by(f64::total_cmp);
+        let of_bands = self.up_to(end) - self.up_to(begin);
+        let mut cumulative = vec![0.0];
+        let mut sum = 0.0;
+        for w in borders_nm.windows(2) {
+            let seen = self.up_to(w[1]) - self.up_to(w[0]);
+            let even = of_bands / f64::from(bands.count);
+            let in_band = w[0] >= begin && w[1] <= end;
+            sum += if in_band { EVEN_SHARE * even + (1.0 - EVEN_SHARE) * seen } else { seen };
+            cumulative.push(sum);
+        }
+        Self { borders_nm, cumulative }
+    }
+
+    /// What [`Segments::cumulative`] is at `nm`.
+    fn up_to(&self, nm: f64) -> f64 {
+        let segment = self.borders_nm.partition_point(|&border| border <= nm).clamp(1, self.borders_nm.len() - 1) - 1;
+        let (c, nms) = (&self.cumulative[segment..=segment + 1], &self.borders_nm[segment..=segment + 1]);
+        c[0] + (c[1] - c[0]) * ((nm - nms[0]) / (nms[1] - nms[0]))
+    }
+
+    /// How many of `cells` each segment gets: what is nearest to its probability, at least one.
+    fn shares(&self, cells: usize) -> Vec<usize> {
+        let masses: Vec<f64> = self.cumulative.windows(2).map(|c| c[1] - c[0]).collect();
+        // A little more than one, so that a sum of such is rounded up by one at least.
+        let enough = |scale: f64, mass: f64| f64::max(scale * mass, 1.0 + 1e-9);
+        let all = |scale: f64| masses.iter().map(|&mass| enough(scale, mass)).sum::<f64>();
+        let (mut low, mut high) = (0.0, 2.0 * cells as f64 / self.cumulative[masses.len()]);
+        // Halved as often as there are bits in a double.
+        for _ in 0..64 {
+            let middle = 0.5 * (low + high);
+            if all(middle) < cells as f64 { low = middle } else { high = middle }
+        }
+        let (mut sum, mut before) = (0.0, 0);
+        let mut shares: Vec<usize> = Vec::with_capacity(masses.len());
+        for mass in masses {
+            sum += enough(high, mass);
+            let up_to_here = f64::round(sum) as usize;
+            shares.push(up_to_here - before);
+            before = up_to_here;
+        }
+        debug_assert!(before == cells && shares.iter().all(|&share| share > 0));
+        shares
+    }
+
+    fn distribution(&self) -> WavelengthDistribution {
+        let count = (4 * self.borders_nm.len()).next_power_of_two().max(FEWEST_CELLS);
+        let mut cells = Vec::with_capacity(count);
+        for (nm, share) in self.borders_nm.windows(2).zip(self.shares(count)) {
+            let width_nm = (nm[1] - nm[0]) / share as f64;
+            cells.extend((0..share).map(|cell| [nm[0] + cell as f64 * width_nm, width_nm]));
+        }
+        WavelengthDistribution::of_cells(cells, self.borders_nm[self.borders_nm.len() - 1])
+    }
+}
+
+impl WavelengthDistribution {
+    /// The distribution for a film that keeps bands: within each band the density is constant, so that the mean over the
+    /// wavelengths that fall into a band is the mean over the band; half of the samples in the bands are spread evenly.
+    pub fn for_bands(range_nm: [f64; 2], bands: &Bands) -> Self {
+        Segments::blurred(range_nm, BLUR_NM).with_bands(bands).distribution()
+    }
+
+    /// The distribution over `range_nm`, which must be finite, ordered and not empty.
+    pub fn new(range_nm: [f64; 2]) -> Self {
+        Segments::blurred(range_nm, BLUR_NM).distribution()
+    }
+
+    fn of_cells(cells: Vec<[f64; 2]>, last_nm: f64) -> Self {
+        let count = cells.len() as u32;
+        let lambda_nm = CellTable::new(count, |cell| {
+            let begin_nm = cells[cell as usize][0];
+            let end_nm = cells.get(cell as usize + 1).map_or(last_nm, |next| next[0]);
+            // Nothing is drawn where two cells meet, whatever is rounded: it would be in both.
+            let first_nm = begin_nm.next_up();
+            [first_nm, end_nm.next_down() - first_nm]
+        });
+        let responses = std::array::from_fn(|c| {
+            CellTable::new(count, |cell| {
+                let [begin_nm, width_nm] = cells[cell as usize];
+                let at = |part: f64| colour_matching(begin_nm + part * width_nm)[c];
+                // From within: at either end another stretch may begin.
+                let step = 2.0 * (at(0.75) - at(0.25));
+                let scale = f64::from(count) * width_nm / cie_y_integral_nm();
+                [(at(0.5) - 0.5 * step) * scale, step * scale]
+            })
+        });
+        Self { cells, last_nm, lambda_nm, responses }
     }
 
     /// The first and the last wavelength, nm.
     pub fn range_nm(&self) -> [f64; 2] {
-        [self.borders[0][1], self.borders[self.borders.len() - 1][1]]
+        [self.cells[0][0], self.last_nm]
     }
 
-    /// Number of the cell that `u` in [0, 1) falls into; no branch depends on `u`.
-    #[inline(always)]
-    fn number(&self, u: f64) -> usize {
-        let mut cell = usize::from(self.guides[(u * GUIDES as f64) as u32 as usize]);
-        for _ in 0..self.most_passed {
-            cell += usize::from(self.borders[cell + 1][0] <= u);
-        }
-        cell
+    /// How many cells there are.
+    pub(crate) fn count(&self) -> u32 {
+        self.cells.len() as u32
     }
 
-    /// The cell of a number.
-    #[inline(always)]
-    fn cell(&self, number: usize) -> Cell {
-        let (begin, end) = (self.borders[number], self.borders[number + 1]);
-        Cell { cdf: [begin[0], end[0]], nm: [begin[1], end[1]] }
+    /// The whole nanometres between which each cell is, as the first of the two; `None` if one of them is not between two.
+    pub(crate) fn whole_nm(&self) -> Option<Vec<f64>> {
+        let ends = self.cells[1..].iter().map(|cell| cell[0]).chain([self.last_nm]);
+        let floors = self.cells.iter().zip(ends).map(|(&[begin_nm, _], end_nm)| {
+            let whole_nm = begin_nm.floor();
+            (end_nm <= whole_nm + 1.0).then_some(whole_nm)
+        });
+        floors.collect()
     }
 
     /// The wavelength at cumulative probability `u` in [0, 1), and its density in nm⁻¹.
     pub fn sample(&self, u: f64) -> (f64, f64) {
-        self.cell(self.number(u)).at(u)
+        let [_, width_nm] = self.cells[(u * self.cells.len() as f64) as usize];
+        (self.sample_lanes::<1>(u).lambda_nm[0], 1.0 / (self.cells.len() as f64 * width_nm))
     }
 
-    /// The wavelengths of a path whose hero is drawn by `u` in [0, 1).
+    /// The wavelengths of a path whose hero is drawn by `u` in [0, 1); `N` divides eight.
     #[inline(always)]
     pub fn sample_lanes<const N: usize>(&self, u: f64) -> Wavelengths<N> {
-        // Loops apart, of which the arithmetic becomes vector instructions.
-        let (mut turned, mut numbers) = ([0.0; N], [0; N]);
-        for lane in 0..N {
-            let on = u + lane as f64 / N as f64;
-            turned[lane] = if on < 1.0 { on } else { on - 1.0 };
+        let place = Place::draw(u, self.count());
+        Wavelengths { lambda_nm: self.lambda_nm.along(&place), place }
+    }
+
+    /// The CIE XYZ estimate that the spectral radiance estimate `radiance` stands for, normalised so that a constant
+    /// spectrum 1 over the whole visible range has Y = 1: Σ_lanes L·(x̄, ȳ, z̄)/pdf / N / ∫ȳ.
+    #[inline(always)]
+    pub fn to_xyz<R: Real, const N: usize>(&self, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
+        let radiance: Lanes<f64, N> = Lanes::from_fn(|lane| radiance[lane].to_f64());
+        let mut xyz = [0.0; 3];
+        for c in 0..3 {
+            xyz[c] = (radiance * self.responses[c].along(&wavelengths.place)).sum() * (1.0 / N as f64);
         }
-        for lane in 0..N {
-            numbers[lane] = self.number(turned[lane]);
-        }
-        let (mut begin, mut end, mut first, mut last) = ([0.0; N], [0.0; N], [0.0; N], [0.0; N]);
-        for lane in 0..N {
-            let Cell { cdf, nm } = self.cell(numbers[lane]);
-            ([begin[lane], end[lane]], [first[lane], last[lane]]) = (cdf, nm);
-        }
-        let mut lanes = Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO };
-        for lane in 0..N {
-            let cell = Cell { cdf: [begin[lane], end[lane]], nm: [first[lane], last[lane]] };
-            (lanes.lambda_nm[lane], lanes.pdf[lane]) = cell.at(turned[lane]);
-        }
-        lanes
+        xyz
     }
 }
 
 impl<const N: usize> Wavelengths<N> {
-    /// The CIE XYZ estimate that the spectral radiance estimate `radiance` stands for, normalised so that a constant
-    /// spectrum 1 over the whole visible range has Y = 1: Σ_lanes L·(x̄, ȳ, z̄)/pdf / N / ∫ȳ.
-    #[inline(always)]
-    pub fn to_xyz<R: Real>(&self, radiance: Lanes<R, N>) -> [f64; 3] {
-        let scale = N as f64 * cie_y_integral_nm();
-        let bars = colour_matching_lanes(&self.lambda_nm.0);
-        let weights = Lanes::from_fn(|lane| radiance[lane].to_f64() / (self.pdf[lane] * scale));
-        bars.map(|bar| (weights * Lanes(bar)).sum())
+    /// Those that are not drawn.
+    pub(crate) const fn fixed(lambda_nm: [f64; N]) -> Self {
+        Self { lambda_nm: Lanes(lambda_nm), place: Place::NONE }
     }
 }
 
@@ -227,6 +257,52 @@ mod tests {
         }
     }
 
+    /// A nanometre has at least one cell and what is nearest to its probability else; what is drawn there is spread evenly over it. Counted
+    /// over an even comb of numbers with so many in each cell, so nothing is left to chance.
+    #[test]
+    fn densities_are_those_of_the_blurred_sum_to_half_a_cell_and_what_is_drawn_has_them() {
+        let range = [360.0, 830.0];
+        let (d, wanted) = (WavelengthDistribution::new(range), Segments::blurred(range, BLUR_NM));
+        let cells = f64::from(d.count());
+        let each = 16;
+        let mut drawn = vec![(0_u32, 0.0); 470];
+        for i in 0..d.count() * each {
+            let (nm, pdf) = d.sample((f64::from(i) + 0.5) / f64::from(d.count() * each));
+            let (count, within) = &mut drawn[(nm - range[0]) as usize];
+            *count += 1;
+            *within += nm.fract();
+            // Of this very wavelength's cell: its share of all, over its width.
+            let share = f64::from(d.cells.iter().filter(|cell| cell[0].floor() == nm.floor()).count() as u32);
+            assert!((pdf - share / cells).abs() < 1e-12, "{nm} nm: {pdf}");
+        }
+        // One cell more or less than wanted: half by rounding where it begins, half where it ends; and by what raises others to one.
+        let total = wanted.cumulative[470];
+        for (nm, &(count, within)) in drawn.iter().enumerate() {
+            let share = f64::from(count) / f64::from(each);
+            let of_blurred = (wanted.cumulative[nm + 1] - wanted.cumulative[nm]) / total * cells;
+            assert!(share >= 1.0 && share > 0.95 * of_blurred - 1.0 && share < of_blurred + 1.0, "{nm}: {share}");
+            // The middles of even parts average to the middle, but for one ulp that no wavelength comes near borders.
+            assert!((within / f64::from(count) - 0.5).abs() < 1e-9, "{nm}: {within}");
+        }
+    }
+
+    #[test]
+    fn no_wavelength_is_where_two_cells_meet() {
+        for range in [[360.0, 830.0], [400.5, 700.25], [587.0, 587.5]] {
+            let d = WavelengthDistribution::new(range);
+            let whole_nm = d.whole_nm().expect("each cell is within a nanometre");
+            for (cell, begin) in whole_nm.iter().enumerate() {
+                for part in [0.0, 0.5, 1.0 - f64::EPSILON] {
+                    let (nm, _) = d.sample((cell as f64 + part) / f64::from(d.count()));
+                    assert!(nm > *begin && nm < begin + 1.0 && nm > range[0] && nm < range[1], "{cell}: {nm}");
+                }
+            }
+        }
+        // Bands that do not keep to nanometres are of one density each all the same.
+        let bands = Bands::new([400.25, 700.25, 0.7], [360.0, 830.0]).unwrap();
+        assert!(WavelengthDistribution::for_bands([360.0, 830.0], &bands).whole_nm().is_none());
+    }
+
     /// Hard case 34: a sky of constant radiance 1. The estimate is an average over the hero's number alone.
     #[test]
     fn constant_one_reads_one_in_y_and_the_equal_energy_white_in_x_and_z() {
@@ -235,7 +311,7 @@ mod tests {
         let mut xyz = [0.0; 3];
         for i in 0..n {
             let w = d.sample_lanes::<4>((f64::from(i) + 0.5) / f64::from(n));
-            let sample = w.to_xyz(Lanes::<f64, 4>::ONE);
+            let sample = d.to_xyz(&w, Lanes::<f64, 4>::ONE);
             (0..3).for_each(|c| xyz[c] += sample[c] / f64::from(n));
         }
         let white = etalon_optics::colour::xyz_of(|_| 1.0);
@@ -257,7 +333,7 @@ mod tests {
             let (mut sum, mut squares) = ([0.0; 3], [0.0; 3]);
             for i in 0..n {
                 let w = d.sample_lanes::<8>((f64::from(i) + 0.5) / f64::from(n));
-                let xyz = w.to_xyz(Lanes::<f64, 8>::from_fn(|lane| spectrum(w.lambda_nm[lane]) / white));
+                let xyz = d.to_xyz(&w, Lanes::<f64, 8>::from_fn(|lane| spectrum(w.lambda_nm[lane]) / white));
                 let rgb = etalon_optics::colour::rec709_from_xyz(xyz);
                 for c in 0..3 {
                     sum[c] += rgb[c] / f64::from(n);
@@ -267,7 +343,7 @@ mod tests {
             (0..3).map(|c| squares[c] - sum[c] * sum[c]).sum::<f64>() / 3.0
         };
         let smooth = WavelengthDistribution::new([360.0, 830.0]);
-        let near = WavelengthDistribution::blurred([360.0, 830.0], 1);
+        let near = Segments::blurred([360.0, 830.0], 1).distribution();
         for spectrum in [&daylight as &dyn Fn(f64) -> f64, &rising] {
             let (smooth, near) = (variance(&smooth, spectrum), variance(&near, spectrum));
             assert!(smooth < 0.005 && near > 0.01, "{smooth} and {near}");

@@ -41,37 +41,6 @@ pub fn colour_matching(wavelength_nm: f64) -> [f64; 3] {
     std::array::from_fn(|c| lerp(rows[i][c], rows[i + 1][c], t))
 }
 
-/// [`colour_matching`] at many wavelengths, component by component: the same bits.
-#[inline(always)]
-pub fn colour_matching_lanes<const N: usize>(wavelength_nm: &[f64; N]) -> [[f64; N]; 3] {
-    let rows: &[[f64; 3]; 471] = COLOUR_MATCHING.as_slice().try_into().expect("a row for each nanometre");
-    let (mut before, mut after, mut t, mut inside) = ([[0.0; N]; 3], [[0.0; N]; 3], [0.0; N], [false; N]);
-    let mut index = [0; N];
-    for lane in 0..N {
-        let x = wavelength_nm[lane] - CIE_RANGE_NM[0];
-        inside[lane] = (0.0..=470.0).contains(&x);
-        // A narrow integer: its conversions are single instructions.
-        let i = if inside[lane] { x as u32 } else { 0 };
-        index[lane] = i.min(469);
-        t[lane] = x - f64::from(index[lane]);
-    }
-    for lane in 0..N {
-        let i = index[lane] as usize;
-        let (low, high) = (rows[i], rows[i + 1]);
-        for c in 0..3 {
-            (before[c][lane], after[c][lane]) = (low[c], high[c]);
-        }
-    }
-    let mut bars = [[0.0; N]; 3];
-    for c in 0..3 {
-        for lane in 0..N {
-            let bar = lerp(before[c][lane], after[c][lane], t[lane]);
-            bars[c][lane] = if inside[lane] { bar } else { 0.0 };
-        }
-    }
-    bars
-}
-
 /// ∫ȳ dλ, nm: the sum of ȳ over the 471 rows at 1 nm, 106.856917.
 ///
 /// The trapezoid rule, which is the integral of the interpolated function, differs by 2·10⁻⁸ of it. The figure

@@ -165,7 +165,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                         continue;
                     }
                     let pdf = lambert::density(sight.cos.0[lane]);
-                    let reflectance = paths.known.spectrum(lane, slot, self.tables, lambda_nm);
+                    let reflectance = paths.known.spectrum(lane, slot, self.tables, &paths.wavelengths[lane]);
                     let mean = if parted { paths.model[lane].mean_density(Lanes::splat(pdf)) } else { pdf };
                     (reflectance * pdf, mean)
                 }
@@ -228,7 +228,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
             let index = sight.light[lane] as usize;
             let lambda_nm = &paths.wavelengths[lane].lambda_nm;
             let arriving = match self.tables.lights[index] {
-                Some(slot) => paths.known.spectrum(lane, slot, self.tables, lambda_nm),
+                Some(slot) => paths.known.spectrum(lane, slot, self.tables, &paths.wavelengths[lane]),
                 None => {
                     let (wi, point) = (sight.aims.wi.at(lane), Target::Point(sight.aims.point.at(lane)));
                     world.light_arriving(index, wi, point, 0.0, lambda_nm)

@@ -172,7 +172,7 @@ struct Finished<'a, const N: usize> {
 
 impl<'a, const N: usize> Finished<'a, N> {
     fn new(cursor: Cursor<'a>, prepared: &Prepared, sums: Sums<'a>, rays: &'a mut [u64]) -> Self {
-        let nothing = (Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO }, Lanes::ZERO);
+        let nothing = (Wavelengths::fixed([0.0; N]), Lanes::ZERO);
         let size = cursor.window();
         let spectral = if !compiled::BANDS || sums.bands.is_empty() { Vec::new() } else { vec![nothing; size] };
         let replicates = prepared.scene.integrator.replicates as usize;

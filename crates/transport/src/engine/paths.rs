@@ -6,7 +6,7 @@ use super::tables::{Form, SLOTS, Slot, Tables};
 use super::tests::{Fault, is_wrong};
 use crate::model::WavelengthModel;
 use crate::sampler::{Sampler, Samplers};
-use crate::spectral::{PathSpectrum, Places};
+use crate::spectral::PathSpectrum;
 use crate::surface::Scattering;
 use crate::wavelength::Wavelengths;
 use etalon_geometry::{Hit, PrimitiveId, SurfaceId, SurfacePoint};
@@ -104,7 +104,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Paths<'_, M, N> {
             radiance: [Lanes::ZERO; W],
             model: [M::start(); W],
             parted: 0,
-            wavelengths: [Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO }; W],
+            wavelengths: [Wavelengths::fixed([0.0; N]); W],
             known: Known::new(),
             at: Vertices {
                 t: Row::ZERO,
@@ -121,47 +121,53 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Paths<'_, M, N> {
     }
 }
 
-/// Values of spectra at the wavelengths of paths, evaluated when they are asked for first.
+/// Values of spectra at the wavelengths of paths: of those that no cells know, evaluated when they are asked for first.
 pub(super) struct Known<const N: usize> {
     valid: [u32; W],
     values: [[Lanes<f64, N>; SLOTS]; W],
-    places: [Places<N>; W],
+    /// How far wavelengths are from the whole nanometre before.
+    past_nm: [Lanes<f64, N>; W],
 }
 
 impl<const N: usize> Known<N> {
     fn new() -> Self {
-        Self { valid: [0; W], values: [[Lanes::ZERO; SLOTS]; W], places: [Places::NONE; W] }
+        Self { valid: [0; W], values: [[Lanes::ZERO; SLOTS]; W], past_nm: [Lanes::ZERO; W] }
     }
 
     /// Another path, of these wavelengths, takes the place.
     #[inline(always)]
-    pub(super) fn forget(&mut self, lane: usize, lambda_nm: &Lanes<f64, N>, tables: &Tables) {
+    pub(super) fn forget(&mut self, lane: usize, lambda_nm: &Lanes<f64, N>) {
         #[cfg(test)]
         if is_wrong(Fault::StaleSpectra) && lane == 5 {
             return;
         }
         self.valid[lane] = 0;
-        self.places[lane] = Places::new(tables.first_nm, lambda_nm);
+        // A narrow integer: its conversions are single instructions.
+        self.past_nm[lane] = Lanes::from_fn(|k| lambda_nm[k] - f64::from(lambda_nm[k] as u32));
     }
 
-    /// A tabulated spectrum at the wavelengths of a path.
+    /// A spectrum with a place at the wavelengths of a path.
     #[inline(always)]
     pub(super) fn spectrum(
         &mut self,
         lane: usize,
         slot: u8,
         tables: &Tables,
-        lambda_nm: &Lanes<f64, N>,
+        wavelengths: &Wavelengths<N>,
     ) -> Lanes<f64, N> {
         let slot = usize::from(slot) % SLOTS;
+        if let Some(table) = &tables.by_cells[slot] {
+            let [value, step] = table.at(&wavelengths.place);
+            return value + self.past_nm[lane] * step;
+        }
         if self.valid[lane] >> slot & 1 == 0 {
-            self.values[lane][slot] = tables.spectra[slot].lanes_at(tables.first_nm, &self.places[lane], lambda_nm);
+            self.values[lane][slot] = tables.spectra[slot].lanes(&wavelengths.lambda_nm);
             self.valid[lane] |= 1 << slot;
         }
         self.values[lane][slot]
     }
 
-    /// A spectrum at the wavelengths of a path, tabulated or not.
+    /// A spectrum at the wavelengths of a path, with a place or not.
     #[inline(always)]
     pub(super) fn of(
         &mut self,
@@ -169,11 +175,11 @@ impl<const N: usize> Known<N> {
         slot: Slot,
         spectrum: &PathSpectrum,
         tables: &Tables,
-        lambda_nm: &Lanes<f64, N>,
+        wavelengths: &Wavelengths<N>,
     ) -> Lanes<f64, N> {
         match slot {
-            Some(slot) => self.spectrum(lane, slot, tables, lambda_nm),
-            None => spectrum.lanes(lambda_nm),
+            Some(slot) => self.spectrum(lane, slot, tables, wavelengths),
+            None => spectrum.lanes(&wavelengths.lambda_nm),
         }
     }
 }

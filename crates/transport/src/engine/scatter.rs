@@ -73,7 +73,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     if cos.0[lane] <= 0.0 || cos.0[lane].is_nan() {
                         continue;
                     }
-                    paths.beta[lane] *= paths.known.spectrum(lane, slot, self.tables, lambda_nm);
+                    paths.beta[lane] *= paths.known.spectrum(lane, slot, self.tables, &paths.wavelengths[lane]);
                     if aims {
                         paths.beta[lane] *= drawn.factor.0[lane];
                     }
@@ -83,7 +83,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     Density::SolidAngle(lambert::density(cos.0[lane]) * mean_of_hero)
                 }
                 Form::Mirror(slot) => {
-                    paths.beta[lane] *= paths.known.spectrum(lane, slot, self.tables, lambda_nm);
+                    paths.beta[lane] *= paths.known.spectrum(lane, slot, self.tables, &paths.wavelengths[lane]);
                     if paths.parted >> lane & 1 == 1 {
                         // As if it had followed lanes that are all alike.
                         paths.model[lane].follow(Lanes::ONE);

@@ -37,7 +37,7 @@ impl<'a, const N: usize> Starts<'a, N> {
             samplers: Samplers::new(tracer.sampler(0, 0, 0)),
             origin: Rows3::ZERO,
             direction: Rows3::ZERO,
-            wavelengths: [Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO }; W],
+            wavelengths: [Wavelengths::fixed([0.0; N]); W],
             count: 0,
             next: 0,
             number: 0,
@@ -110,7 +110,7 @@ impl<'a, const N: usize> Starts<'a, N> {
         paths.model[lane] = M::start();
         paths.parted &= !(1 << lane);
         paths.wavelengths[lane] = self.wavelengths[start];
-        paths.known.forget(lane, &self.wavelengths[start].lambda_nm, &self.tracer.prepared.tables);
+        paths.known.forget(lane, &self.wavelengths[start].lambda_nm);
     }
 }
 

@@ -63,7 +63,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 };
                 let lambda_nm = &paths.wavelengths[lane].lambda_nm;
                 let radiance = match self.tables.environments[index] {
-                    Some(slot) => paths.known.spectrum(lane, slot, self.tables, lambda_nm),
+                    Some(slot) => paths.known.spectrum(lane, slot, self.tables, &paths.wavelengths[lane]),
                     None => sky.radiance.lanes(lambda_nm, direction),
                 };
                 let light = paths.beta[lane] * radiance * (paths.model[lane].weight() * mis);
@@ -93,7 +93,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                         1.0
                     };
                     let lambda_nm = &paths.wavelengths[lane].lambda_nm;
-                    let white = paths.known.of(lane, record.emission, emitter.radiance, self.tables, lambda_nm);
+                    let white =
+                        paths.known.of(lane, record.emission, emitter.radiance, self.tables, &paths.wavelengths[lane]);
                     let emitted = emitter.of_white(white, lambda_nm);
                     let light = paths.beta[lane] * emitted * (paths.model[lane].weight() * mis);
                     paths.radiance[lane] += light;

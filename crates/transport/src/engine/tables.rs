@@ -1,11 +1,13 @@
 //! What the engine looks up instead of asking the scene each time: what objects do, and which spectra there are.
 
 use crate::bsdf::{Bsdf, Dielectric};
+use crate::cells::CellTable;
 use crate::compiled;
 use crate::coordinates::Coordinates;
 use crate::light::{Environment, EnvironmentRadiance, Light, LightTable};
 use crate::spectral::PathSpectrum;
 use crate::surface::{ObjectSurface, Surfaces};
+use crate::wavelength::WavelengthDistribution;
 
 /// Spectra whose values at its wavelengths a path keeps.
 pub(super) const SLOTS: usize = 16;
@@ -53,8 +55,8 @@ pub(super) struct ObjectRecord {
 #[derive(Clone, Debug)]
 pub(crate) struct Tables {
     pub(super) spectra: Vec<PathSpectrum>,
-    /// The first wavelength of those that are tabulated at each nanometre.
-    pub(super) first_nm: f64,
+    /// The same, in their order, by cells of wavelengths, where they can be.
+    pub(super) by_cells: Vec<Option<CellTable>>,
     pub(super) objects: Vec<ObjectRecord>,
     /// The first [`INTERFACES`] of them.
     pub(super) interfaces: Vec<SmoothInterface>,
@@ -65,7 +67,13 @@ pub(crate) struct Tables {
 }
 
 impl Tables {
-    pub(crate) fn new(surfaces: &Surfaces, lights: &LightTable, skies: &[Environment]) -> Self {
+    /// For paths whose wavelengths are drawn from `wavelengths`, if they are drawn.
+    pub(crate) fn new(
+        surfaces: &Surfaces,
+        lights: &LightTable,
+        skies: &[Environment],
+        wavelengths: Option<&WavelengthDistribution>,
+    ) -> Self {
         let (mut spectra, mut interfaces) = (Vec::new(), Vec::new());
         // Objects of one material share its form.
         let forms: Vec<_> = surfaces.bsdfs.iter().map(|bsdf| form(bsdf, &mut spectra, &mut interfaces)).collect();
@@ -95,8 +103,9 @@ impl Tables {
                 found
             })
             .collect();
-        let first_nm = spectra.iter().find_map(PathSpectrum::first_nm).unwrap_or(0.0);
-        Self { spectra, first_nm, objects, interfaces, lights, environments }
+        let whole_nm = wavelengths.and_then(WavelengthDistribution::whole_nm);
+        let by_cells = spectra.iter().map(|spectrum| spectrum.by_cells(whole_nm.as_deref()?)).collect();
+        Self { spectra, by_cells, objects, interfaces, lights, environments }
     }
 }
 

@@ -42,7 +42,7 @@ fn is_wrong_at_all() -> bool {
     FAULT.get().is_some()
 }
 
-/// A room with lamps of three shapes, walls of three colours, a glass ball and a mirror, under a sky.
+/// A room with lamps of three shapes, walls of three colours, one of them tabulated, a glass ball and a mirror, under a sky.
 fn room() -> etalon_scene::Scene {
     let wall = |origin: &str, u: &str, v: &str, material: &str| {
         format!(
@@ -50,8 +50,10 @@ fn room() -> etalon_scene::Scene {
         )
     };
     let rgb = |rgb: &str| format!(r#"{{"type": "lambert", "reflectance": {{"type": "rgb", "rgb": {rgb}}}}}"#);
+    let tabulated = r#"{"type": "lambert", "reflectance":
+        {"type": "tabulated", "wavelengths_nm": [400, 500, 700], "values": [0.2, 0.9, 0.4], "outside": "zero"}}"#;
     let objects = [
-        wall("[-1, -1, -1]", "[2, 0, 0]", "[0, 0, 2]", &rgb("[0.7, 0.7, 0.7]")),
+        wall("[-1, -1, -1]", "[2, 0, 0]", "[0, 0, 2]", tabulated),
         wall("[-1, -1, -1]", "[0, 2, 0]", "[2, 0, 0]", &rgb("[0.2, 0.7, 0.3]")),
         wall("[-1, -1, -1]", "[0, 0, 2]", "[0, 2, 0]", &rgb("[0.8, 0.1, 0.1]")),
         r#"{"shape": {"type": "sphere", "center_m": [0.3, -0.6, 0], "radius_m": 0.4},

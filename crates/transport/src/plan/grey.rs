@@ -163,7 +163,7 @@ mod tests {
                 for i in 0..n {
                     let w = distribution.sample_lanes::<4>((f64::from(i) + 0.5) / f64::from(n));
                     let radiance = Lanes::<f64, 4>::from_fn(|lane| spectrum.eval(w.lambda_nm[lane]));
-                    let xyz = w.to_xyz(radiance);
+                    let xyz = distribution.to_xyz(&w, radiance);
                     (0..3).for_each(|c| mean[c] += xyz[c] / f64::from(n));
                 }
                 for c in 0..3 {
