@@ -39,8 +39,14 @@ pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
     /// The wavelengths of a path; `u` gives the hero's number, if one is to be drawn.
     fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N>;
 
+    /// What each lane of the path's radiance adds to the film, in each of CIE XYZ.
+    fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [Lanes<f64, N>; 3];
+
     /// What the path's radiance adds to the film, CIE XYZ.
-    fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3];
+    #[inline(always)]
+    fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
+        Self::seen(prepared, wavelengths, radiance).map(Lanes::sum)
+    }
 
     /// Adds the path's radiance to the sums of the bands that its wavelengths fall into.
     fn to_bands(bands: &Bands, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>, sums: &mut [BandSum]) {
@@ -97,8 +103,8 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
     }
 
     #[inline(always)]
-    fn to_xyz(prepared: &Prepared, _: &Wavelengths<1>, radiance: Lanes<R, 1>) -> [f64; 3] {
-        prepared.one_lane.xyz_of_unit.map(|v| v * radiance[0].to_f64())
+    fn seen(prepared: &Prepared, _: &Wavelengths<1>, radiance: Lanes<R, 1>) -> [Lanes<f64, 1>; 3] {
+        prepared.one_lane.xyz_of_unit.map(|v| Lanes([v * radiance[0].to_f64()]))
     }
 
     /// One sum stands for all bands: each is it times a known number.
@@ -136,8 +142,8 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
     }
 
     #[inline(always)]
-    fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
-        prepared.wavelengths.to_xyz(wavelengths, radiance)
+    fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [Lanes<f64, N>; 3] {
+        prepared.wavelengths.seen(wavelengths, radiance)
     }
 }
 
@@ -174,8 +180,8 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
     }
 
     #[inline(always)]
-    fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
-        prepared.wavelengths.to_xyz(wavelengths, radiance)
+    fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [Lanes<f64, N>; 3] {
+        prepared.wavelengths.seen(wavelengths, radiance)
     }
 }
 
@@ -206,7 +212,8 @@ impl<R: Real> WavelengthModel<R, 3> for ThreeChannels {
         Wavelengths::fixed(CHANNELS_NM)
     }
 
-    fn to_xyz(_: &Prepared, _: &Wavelengths<3>, radiance: Lanes<R, 3>) -> [f64; 3] {
-        rec709_to_xyz([2, 1, 0].map(|lane: usize| radiance[lane].to_f64()))
+    fn seen(_: &Prepared, _: &Wavelengths<3>, radiance: Lanes<R, 3>) -> [Lanes<f64, 3>; 3] {
+        let [red, green, blue] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(rec709_to_xyz);
+        [0, 1, 2].map(|c: usize| Lanes::from_fn(|lane| [blue, green, red][lane][c] * radiance[lane].to_f64()))
     }
 }

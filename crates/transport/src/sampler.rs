@@ -81,6 +81,9 @@ fn scramble(pixel_seed: u64, set: u32, points: u32) -> u32 {
     (mix(pixel_seed ^ (u64::from(set) << 32 | u64::from(points))) >> 32) as u32
 }
 
+/// Which of the four numbers of a set.
+pub(crate) type Wanted = [bool; 4];
+
 /// What the numbers of `W` samples depend on, beside the set.
 #[derive(Clone, Debug)]
 pub(crate) struct Samplers<const W: usize> {
@@ -115,11 +118,11 @@ impl<const W: usize> Samplers<W> {
         self.samplers[lane]
     }
 
-    /// [`Sampler::set`] of each, lane `i` of set `sets[i]`: the same bits.
+    /// [`Sampler::set`] of each, lane `i` of set `sets[i]`: the same bits, of the numbers in `wanted`; others are left as they are.
     #[inline(always)]
-    pub(crate) fn sets(&self, sets: &[u32; W], numbers: &mut [[f64; W]; 4]) {
+    pub(crate) fn sets(&self, sets: &[u32; W], wanted: Wanted, numbers: &mut [[f64; W]; 4]) {
         match self.kind {
-            SamplerKind::Sobol => self.sobol(sets, numbers),
+            SamplerKind::Sobol => self.sobol(sets, wanted, numbers),
             SamplerKind::Independent => {
                 for lane in 0..W {
                     let set = self.samplers[lane].set(sets[lane]);
@@ -131,7 +134,7 @@ impl<const W: usize> Samplers<W> {
 
     /// One loop for each step, so that each is vectorised.
     #[inline(always)]
-    fn sobol(&self, sets: &[u32; W], numbers: &mut [[f64; W]; 4]) {
+    fn sobol(&self, sets: &[u32; W], wanted: Wanted, numbers: &mut [[f64; W]; 4]) {
         let SobolTable([high, low]) = self.samplers[0].sobol;
         let (mut seeds, mut indices) = ([0; W], [0; W]);
         for lane in 0..W {
@@ -142,6 +145,9 @@ impl<const W: usize> Samplers<W> {
             seeds[lane] = seeds[lane].wrapping_mul(SEED_FACTOR);
         }
         for dimension in 0..4 {
+            if !wanted[dimension] {
+                continue;
+            }
             for lane in 0..W {
                 let index = indices[lane];
                 let point = high[(index >> 24) as usize][dimension] ^ low[(index >> 16 & 0xff) as usize][dimension];

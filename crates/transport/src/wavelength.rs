@@ -219,12 +219,22 @@ impl WavelengthDistribution {
     /// spectrum 1 over the whole visible range has Y = 1: Σ_lanes L·(x̄, ȳ, z̄)/pdf / N / ∫ȳ.
     #[inline(always)]
     pub fn to_xyz<R: Real, const N: usize>(&self, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
-        let radiance: Lanes<f64, N> = Lanes::from_fn(|lane| radiance[lane].to_f64());
-        let mut xyz = [0.0; 3];
+        self.seen(wavelengths, radiance).map(Lanes::sum)
+    }
+
+    /// What each lane adds to [`WavelengthDistribution::to_xyz`].
+    #[inline(always)]
+    pub(crate) fn seen<R: Real, const N: usize>(
+        &self,
+        wavelengths: &Wavelengths<N>,
+        radiance: Lanes<R, N>,
+    ) -> [Lanes<f64, N>; 3] {
+        let radiance: Lanes<f64, N> = Lanes::from_fn(|lane| radiance[lane].to_f64() * (1.0 / N as f64));
+        let mut seen = [Lanes::ZERO; 3];
         for c in 0..3 {
-            xyz[c] = (radiance * self.responses[c].along(&wavelengths.place)).sum() * (1.0 / N as f64);
+            seen[c] = radiance * self.responses[c].along(&wavelengths.place);
         }
-        xyz
+        seen
     }
 }
 
@@ -292,7 +302,7 @@ mod tests {
             let d = WavelengthDistribution::new(range);
             let whole_nm = d.whole_nm().expect("each cell is within a nanometre");
             for (cell, begin) in whole_nm.iter().enumerate() {
-                for part in [0.0, 0.5, 1.0 - f64::EPSILON] {
+                for part in [0.0, 0.5, 1.0 - f64::from(f32::EPSILON)] {
                     let (nm, _) = d.sample((cell as f64 + part) / f64::from(d.count()));
                     assert!(nm > *begin && nm < begin + 1.0 && nm > range[0] && nm < range[1], "{cell}: {nm}");
                 }

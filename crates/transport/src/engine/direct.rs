@@ -4,6 +4,7 @@ use super::Engine;
 use super::lamps::{Aims, Flats, Rounds, aim, aim_at_disks, aim_at_rounds};
 use super::level::{Level, Set, stages};
 use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes};
+use super::surface::of_group;
 use super::tables::Form;
 #[cfg(test)]
 use super::tests::{Fault, is_wrong};
@@ -11,7 +12,7 @@ use crate::bsdf::lambert;
 use crate::light::{LightTable, Target};
 use crate::mis::{Density, power_heuristic};
 use crate::model::WavelengthModel;
-use crate::sampler::{CAMERA_SETS, SETS_PER_VERTEX, Samplers};
+use crate::sampler::{CAMERA_SETS, SETS_PER_VERTEX, Samplers, Wanted};
 use etalon_geometry::{LANES, Rays, SurfaceId, SurfacePoint};
 use etalon_optics::Lanes;
 use etalon_scene::LightSampling;
@@ -90,13 +91,14 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         }
         let (paths, sight) = (&mut self.paths, &mut self.sight);
         let mut numbers = [[0.0; W]; 4];
-        vertex_numbers(self.level, &paths.samplers, &paths.vertex, 1, &mut numbers);
-        let [u1, u2, u_light, _] = &numbers;
         let lights = world.lights.lights();
+        let chooses = lights.len() > 1;
+        vertex_numbers(self.level, &paths.samplers, &paths.vertex, 1, [true, true, chooses, false], &mut numbers);
+        let [u1, u2, u_light, _] = &numbers;
         let mut shared = shared;
         for lane in lanes(shared) {
             let from = paths.at.position.at(lane);
-            match if lights.len() == 1 { Some((0, 1.0)) } else { world.lights.choose(from, u_light[lane]) } {
+            match if chooses { world.lights.choose(from, u_light[lane]) } else { Some((0, 1.0)) } {
                 Some(chosen) => sight.look(lane, chosen, world.lights),
                 None => shared &= !(1 << lane),
             }
@@ -209,20 +211,33 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
             sight.rays.direction.set(lane, ray.direction);
             sight.rays.t_max.0[lane] = ray.t_max;
         }
-        for group in 0..GROUPS {
-            let active = group_of(asks, group);
-            if active == 0 {
-                continue;
-            }
-            let first = group * LANES;
+        if asks.count_ones() as usize <= LANES {
+            // As many as are cast at once, wherever they are.
+            let mut from = [0; LANES];
+            lanes(asks).enumerate().for_each(|(place, lane)| from[place % LANES] = lane);
             let rays = Rays {
-                origin: sight.rays.origin.group(group),
-                direction: sight.rays.direction.group(group),
-                t_max: sight.rays.t_max.group(group),
-                leaves: std::array::from_fn(|lane| paths.at.surface[first + lane]),
-                aims_at: std::array::from_fn(|lane| surfaces[first + lane]),
+                origin: sight.rays.origin.of(&from),
+                direction: sight.rays.direction.of(&from),
+                t_max: sight.rays.t_max.of(&from),
+                leaves: from.map(|lane| paths.at.surface[lane]),
+                aims_at: from.map(|lane| surfaces[lane]),
             };
-            asks &= !(Mask::from(world.geometry.any_hits(&rays, active)) << first);
+            let active = ((1_u32 << asks.count_ones()) - 1) as u8;
+            for place in lanes(world.geometry.any_hits(&rays, active).into()) {
+                asks &= !(1 << from[place % LANES]);
+            }
+        } else {
+            for group in 0..GROUPS {
+                let first = group * LANES;
+                let rays = Rays {
+                    origin: sight.rays.origin.group(group),
+                    direction: sight.rays.direction.group(group),
+                    t_max: sight.rays.t_max.group(group),
+                    leaves: of_group(&paths.at.surface, first),
+                    aims_at: of_group(&surfaces, first),
+                };
+                asks &= !(Mask::from(world.geometry.any_hits(&rays, group_of(asks, group))) << first);
+            }
         }
         for lane in lanes(asks) {
             let index = sight.light[lane] as usize;
@@ -260,12 +275,18 @@ fn weight(sampling: LightSampling, density: Density, scale: f64, probability: f6
 
 stages! {
     /// Set number `set` of the vertex that each path is at: (point 1, point 2, choice, decision).
-    fn vertex_numbers(samplers: &Samplers<W>, vertex: &[u32; W], set: u32, numbers: &mut [[f64; W]; 4]) {
+    fn vertex_numbers(
+        samplers: &Samplers<W>,
+        vertex: &[u32; W],
+        set: u32,
+        wanted: Wanted,
+        numbers: &mut [[f64; W]; 4],
+    ) {
         let mut sets = [0; W];
         for lane in 0..W {
             sets[lane] = CAMERA_SETS + vertex[lane] * SETS_PER_VERTEX + set;
         }
-        samplers.sets(&sets, numbers);
+        samplers.sets(&sets, wanted, numbers);
     }
 
     /// Cosines of directions on the viewer's side of surfaces; 0 on the other.

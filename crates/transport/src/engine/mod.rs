@@ -34,7 +34,7 @@ use etalon_optics::Lanes;
 use etalon_scene::Precision;
 use level::{Level, Set, stages};
 use paths::Paths;
-use rows::{Mask, lanes};
+use rows::{Mask, W, lanes};
 use starts::Starts;
 use stream::{Cursor, Window};
 pub(crate) use tables::Tables;
@@ -79,6 +79,7 @@ fn render_on<M: WavelengthModel<f64, N>, const N: usize>(
         counters: Counters::default(),
         paths: Paths::new(tracer.sampler(0, 0, 0)),
         sight: Sight::new(),
+        seen: [[Lanes::ZERO; 3]; W],
         finished: Finished::new(Cursor::new(spots), prepared, sums, rays),
     };
     let mut starts = Starts::new(&tracer, Cursor::new(spots));
@@ -108,6 +109,8 @@ struct Engine<'a, M, const N: usize> {
     counters: Counters,
     paths: Paths<'a, M, N>,
     sight: Sight<N>,
+    /// What the lanes of paths that ended add to the film.
+    seen: [[Lanes<f64, N>; 3]; W],
     finished: Finished<'a, N>,
 }
 
@@ -143,12 +146,14 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
     /// Takes what ended paths have gathered.
     #[inline(always)]
     fn end(&mut self, ended: Mask) {
+        // In two loops, of which the first becomes vector instructions.
         for lane in lanes(ended) {
-            let wavelengths = &self.paths.wavelengths[lane];
-            let radiance = self.paths.radiance[lane];
-            // Much light is none, whose colour is known.
-            let xyz = if radiance.is_zero() { [0.0; 3] } else { M::to_xyz(self.prepared, wavelengths, radiance) };
+            self.seen[lane] = M::seen(self.prepared, &self.paths.wavelengths[lane], self.paths.radiance[lane]);
+        }
+        for lane in lanes(ended) {
+            let xyz = self.seen[lane].map(Lanes::sum);
             let rays = self.paths.vertex[lane] + 1 + self.paths.shadow_rays[lane];
+            let (wavelengths, radiance) = (&self.paths.wavelengths[lane], self.paths.radiance[lane]);
             self.finished.put(self.paths.number[lane], (xyz, rays), wavelengths, radiance);
         }
         if ended != 0 {
@@ -164,7 +169,7 @@ struct Finished<'a, const N: usize> {
     window: Window<([f64; 3], u32)>,
     /// What the bands of a film ask of the samples that wait; empty without bands.
     spectral: Vec<(Wavelengths<N>, Lanes<f64, N>)>,
-    replicates: usize,
+    replicates: u32,
     sums: Sums<'a>,
     /// Rays of all kinds that spots took; empty if nobody asks.
     rays: &'a mut [u64],
@@ -175,7 +180,7 @@ impl<'a, const N: usize> Finished<'a, N> {
         let nothing = (Wavelengths::fixed([0.0; N]), Lanes::ZERO);
         let size = cursor.window();
         let spectral = if !compiled::BANDS || sums.bands.is_empty() { Vec::new() } else { vec![nothing; size] };
-        let replicates = prepared.scene.integrator.replicates as usize;
+        let replicates = prepared.scene.integrator.replicates;
         Self { cursor, window: Window::new(size), spectral, replicates, sums, rays }
     }
 
@@ -198,7 +203,7 @@ impl<'a, const N: usize> Finished<'a, N> {
             if let Some(of_spot) = self.rays.get_mut(place.spot) {
                 *of_spot += u64::from(rays);
             }
-            let replicate = place.spot * self.replicates + place.sample as usize % self.replicates;
+            let replicate = place.spot * self.replicates as usize + (place.sample % self.replicates) as usize;
             if xyz.iter().all(|v| v.is_finite()) {
                 self.sums.xyz[replicate].add(xyz);
                 if let Some(bands) = bands {

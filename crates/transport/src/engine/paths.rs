@@ -142,8 +142,7 @@ impl<const N: usize> Known<N> {
             return;
         }
         self.valid[lane] = 0;
-        // A narrow integer: its conversions are single instructions.
-        self.past_nm[lane] = Lanes::from_fn(|k| lambda_nm[k] - f64::from(lambda_nm[k] as u32));
+        self.past_nm[lane] = lambda_nm.map(past_whole);
     }
 
     /// A spectrum with a place at the wavelengths of a path.
@@ -180,6 +179,25 @@ impl<const N: usize> Known<N> {
         match slot {
             Some(slot) => self.spectrum(lane, slot, tables, wavelengths),
             None => spectrum.lanes(&wavelengths.lambda_nm),
+        }
+    }
+}
+
+/// How far a number is from the whole one before, exactly; in 0 to 2⁵¹.
+#[inline(always)]
+fn past_whole(x: f64) -> f64 {
+    // No double of this size has a fraction: rounded to the nearest whole number.
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    let nearest = (x + WHOLE) - WHOLE;
+    x - if nearest > x { nearest - 1.0 } else { nearest }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn what_is_past_a_whole_number_is_its_fraction() {
+        for x in [0.0, 0.25, 0.5, 1.0_f64.next_down(), 1.0, 1.5, 360.0, 360.0_f64.next_up(), 555.49, 555.5, 829.999] {
+            assert_eq!(super::past_whole(x), x.fract(), "{x}");
         }
     }
 }

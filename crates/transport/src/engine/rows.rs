@@ -31,7 +31,17 @@ impl Row {
     /// The numbers of a group.
     #[inline(always)]
     pub(super) fn group(&self, group: usize) -> [f64; LANES] {
-        std::array::from_fn(|lane| self.0[group * LANES + lane])
+        *self.0[group * LANES..].first_chunk().expect("a group is of as many")
+    }
+
+    /// The numbers of some paths.
+    #[inline(always)]
+    pub(super) fn of(&self, paths: &[usize; LANES]) -> [f64; LANES] {
+        let mut numbers = [0.0; LANES];
+        for lane in 0..LANES {
+            numbers[lane] = self.0[paths[lane] % W];
+        }
+        numbers
     }
 
     /// Becomes these numbers in a group.
@@ -53,6 +63,12 @@ impl Rows3 {
     #[inline(always)]
     pub(super) fn group(&self, group: usize) -> [[f64; LANES]; 3] {
         [self.x.group(group), self.y.group(group), self.z.group(group)]
+    }
+
+    /// The vectors of some paths.
+    #[inline(always)]
+    pub(super) fn of(&self, paths: &[usize; LANES]) -> [[f64; LANES]; 3] {
+        [self.x.of(paths), self.y.of(paths), self.z.of(paths)]
     }
 
     /// Becomes these vectors in a group.

@@ -25,7 +25,10 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         }
         let paths = &mut self.paths;
         let mut numbers = [[0.0; W]; 4];
-        vertex_numbers(self.level, &paths.samplers, &paths.vertex, 0, &mut numbers);
+        // Lambert's reflection has one lobe.
+        let lobes = lanes(scatters).any(|lane| !matches!(paths.at.form[lane], Form::Lambert(_)));
+        let wanted = [true, true, lobes, self.world.roulette];
+        vertex_numbers(self.level, &paths.samplers, &paths.vertex, 0, wanted, &mut numbers);
         let [u1, u2, u_lobe, u_roulette] = &numbers;
         let (mut wi, mut cos) = (Rows3::ZERO, Row::ZERO);
         let casters = self.world.casters;

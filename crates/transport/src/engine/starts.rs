@@ -9,7 +9,7 @@ use crate::compiled;
 use crate::film::Counters;
 use crate::kernel::Tracer;
 use crate::model::WavelengthModel;
-use crate::sampler::Samplers;
+use crate::sampler::{Samplers, Wanted};
 use crate::wavelength::Wavelengths;
 use etalon_geometry::SurfaceId;
 use etalon_optics::Lanes;
@@ -73,13 +73,14 @@ impl<'a, const N: usize> Starts<'a, N> {
             return;
         }
         let mut numbers = [[0.0; W]; 4];
-        camera_numbers(level, &self.samplers, 1, &mut numbers);
+        camera_numbers(level, &self.samplers, 1, [true, false, false, false], &mut numbers);
         for lane in 0..self.count {
             self.wavelengths[lane] = M::wavelengths(self.tracer.prepared, || numbers[0][lane]);
         }
-        camera_numbers(level, &self.samplers, 0, &mut numbers);
         let camera = &self.tracer.camera;
-        counters.lens_draws += self.count as u64 * u64::from(compiled::LENS && camera.has_lens());
+        let lens = compiled::LENS && camera.has_lens();
+        camera_numbers(level, &self.samplers, 0, [true, true, lens, lens], &mut numbers);
+        counters.lens_draws += self.count as u64 * u64::from(lens);
         let mut film = [Row::ZERO; 2];
         for lane in 0..self.count {
             let [column, row] = self.tracer.film_point(x[lane], y[lane], [numbers[0][lane], numbers[1][lane]]);
@@ -116,8 +117,8 @@ impl<'a, const N: usize> Starts<'a, N> {
 
 stages! {
     /// Set number `set` of every path.
-    fn camera_numbers(samplers: &Samplers<W>, set: u32, numbers: &mut [[f64; W]; 4]) {
-        samplers.sets(&[set; W], numbers);
+    fn camera_numbers(samplers: &Samplers<W>, set: u32, wanted: Wanted, numbers: &mut [[f64; W]; 4]) {
+        samplers.sets(&[set; W], wanted, numbers);
     }
 
     /// Rays through points of the film.

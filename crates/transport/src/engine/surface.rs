@@ -1,7 +1,7 @@
 //! Where paths arrive: the surfaces that they meet, and the light that they run into there or at infinity.
 
 use super::Engine;
-use super::rows::{GROUPS, Mask, group_of, lanes};
+use super::rows::{GROUPS, Mask, W, group_of, lanes};
 use super::tables::Form;
 #[cfg(test)]
 use super::tests::{Fault, is_wrong};
@@ -29,7 +29,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 origin: paths.origin.group(group),
                 direction: paths.direction.group(group),
                 t_max: [f64::INFINITY; LANES],
-                leaves: std::array::from_fn(|lane| paths.leaves[first + lane]),
+                leaves: of_group(&paths.leaves, first),
                 aims_at: [SurfaceId::NONE; LANES],
             };
             let hits = geometry.closest_hits(&rays, active);
@@ -56,7 +56,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
             for (index, sky) in environments.iter().enumerate() {
                 self.counters.environment_lookups += 1;
                 let direction = paths.direction.at(lane);
-                let mis = if compiled::MIS && self.world.weigh_hits {
+                // No shadow ray could have found a sky that is no light.
+                let mis = if compiled::MIS && self.world.weigh_hits && sky.light.is_some() {
                     self.world.weight_of_hit(paths.step(lane), SurfaceId::NONE, sky.light, direction, 0.0)
                 } else {
                     1.0
@@ -128,6 +129,13 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         }
         (scatters, shared)
     }
+}
+
+/// The surfaces of the group that begins at `first`.
+#[inline(always)]
+pub(super) fn of_group(surfaces: &[SurfaceId; W], first: usize) -> [SurfaceId; LANES] {
+    // Copied at once: the library's function of an array's index is not always made part of its caller.
+    *surfaces[first..].first_chunk().expect("a group is of as many")
 }
 
 impl<M, const N: usize> super::Paths<'_, M, N> {
