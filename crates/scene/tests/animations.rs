@@ -271,6 +271,18 @@ fn what_cannot_be_followed_is_said() {
         // Not asked for, it does no harm.
         assert!(at(&model, None).is_ok());
     }
+    let mut lost = single("translation", &[0.0; 6]);
+    lost["animations"][0]["channels"][0]["target"]["node"] = json!(7);
+    assert_eq!(
+        at(&lost, Some(&moment(0.0, 1.0))).unwrap_err(),
+        "$.animations[0].channels[0]: it names node 7; there are 1"
+    );
+    let mut unknown = single("translation", &[0.0; 6]);
+    unknown["animations"][0]["channels"][0]["target"]["path"] = json!("pointer");
+    assert_eq!(
+        said(&at(&unknown, Some(&moment(0.0, 1.0))).unwrap()),
+        ["$.animations[0].channels[0]: what it changes is not known"]
+    );
     let vanishing = single("scale", &[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
     let imported = at(&vanishing, Some(&moment(0.0, 1.0))).unwrap();
     assert!(said(&imported)[0].contains("its scale goes through 0: it rests"), "{:?}", said(&imported));

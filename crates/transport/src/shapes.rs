@@ -17,6 +17,7 @@ use etalon_geometry::{
 use etalon_optics::Vec3;
 use etalon_scene as scene;
 use etalon_scene::{EmissionSides, Object, Scene, Shape};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// All shapes of a scene. Objects are numbered through: the scene's own, then those of each group.
@@ -94,6 +95,7 @@ pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, Pr
         lit: &lit,
         range_nm,
         chain: Vec::new(),
+        means: HashMap::new(),
         lights: Vec::new(),
     };
     lamps.add(&geometry, 0, &Affine::IDENTITY)?;
@@ -234,6 +236,8 @@ struct Lamps<'a> {
     range_nm: [f64; 2],
     /// The placements around what is being added, the outermost first.
     chain: Vec<Link>,
+    /// Mean luminances of images over primitives, by the label and the primitive.
+    means: HashMap<(usize, usize), f64>,
     lights: Vec<Light>,
 }
 
@@ -280,7 +284,10 @@ impl Lamps<'_> {
                 surface: SurfaceId { instance: number, primitive },
                 image: emission.image.as_ref().map(|texture| ImageOf {
                     object: number_of_object,
-                    mean: self.coordinates[number_of_object as usize].mean_luminance(primitive, texture),
+                    // The same wherever its group is placed.
+                    mean: *self.means.entry((label, i)).or_insert_with(|| {
+                        self.coordinates[number_of_object as usize].mean_luminance(primitive, texture)
+                    }),
                 }),
             };
             // The scene's own shapes are in place, to the bit.

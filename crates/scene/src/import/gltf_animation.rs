@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use gltf::animation::{Interpolation, Property};
+use gltf::json::validation::Checked;
 use gltf::{Gltf, Node};
 
 use super::accessor::numbers;
@@ -71,6 +72,19 @@ impl Animated {
         let mut animated = Self { shutter_s: [moment.opens_s, moment.opens_s + moment.shutter_s], ..Self::default() };
         for (i, channel) in asked.channels().enumerate() {
             let place = format!("$.animations[{}].channels[{i}]", asked.index());
+            // The library takes both for granted.
+            let target = &file.as_json().animations[asked.index()].channels[i].target;
+            if matches!(target.path, Checked::Invalid) {
+                builder.leave_out(place, "what it changes is not known");
+                continue;
+            }
+            if target.node.value() >= file.nodes().count() {
+                return Err(format!(
+                    "{place}: it names node {}; there are {}",
+                    target.node.value(),
+                    file.nodes().count()
+                ));
+            }
             let property = channel.target().property();
             if property == Property::MorphTargetWeights {
                 builder.leave_out(place, "morph weights are not honoured");

@@ -162,8 +162,28 @@ impl MaterialKind {
         Self::Blend { parts: vec![(0.0, first), (1.0, second)], by: weight.into() }
     }
 
-    /// The spectrum that may vary over a surface, if it has one.
-    fn texture(&self) -> Option<&SpectrumTexture> {
+    /// What it reflects, which may vary over a surface, if it states that; of a blend, its parts do.
+    pub fn reflectance(&self) -> Option<&SpectrumTexture> {
+        match self {
+            Self::Lambert { reflectance }
+            | Self::Mirror { reflectance }
+            | Self::OrenNayar { reflectance, .. }
+            | Self::Plastic { reflectance, .. }
+            | Self::Conductor { metal: Metal::Reflectance(reflectance) }
+            | Self::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => Some(reflectance),
+            Self::Conductor { metal: Metal::Index(_) }
+            | Self::RoughConductor { metal: Metal::Index(_), .. }
+            | Self::Dielectric { .. }
+            | Self::RoughDielectric { .. }
+            | Self::ThinDielectric { .. }
+            | Self::PolarisingSheet { .. }
+            | Self::Blend { .. }
+            | Self::Black => None,
+        }
+    }
+
+    /// As [`MaterialKind::reflectance`], to be changed.
+    pub fn reflectance_mut(&mut self) -> Option<&mut SpectrumTexture> {
         match self {
             Self::Lambert { reflectance }
             | Self::Mirror { reflectance }
@@ -186,38 +206,24 @@ impl MaterialKind {
     pub fn image(&self) -> Option<&ImageTexture> {
         match self {
             Self::Blend { parts, by } => parts.iter().find_map(|(_, part)| part.image()).or_else(|| by.image()),
-            kind => kind.texture()?.image(),
+            kind => kind.reflectance()?.image(),
         }
     }
 
     /// Replaces every image that varies something over a surface by one value, for spectra that of `mean` and for numbers the
     /// mean of their texels.
     pub fn flatten(&mut self, mean: &dyn Fn(&ImageTexture) -> Spectrum) {
-        match self {
-            Self::Lambert { reflectance }
-            | Self::Mirror { reflectance }
-            | Self::OrenNayar { reflectance, .. }
-            | Self::Plastic { reflectance, .. }
-            | Self::Conductor { metal: Metal::Reflectance(reflectance) }
-            | Self::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
-                if let Some(image) = reflectance.image() {
-                    *reflectance = mean(image).into();
-                }
+        if let Self::Blend { parts, by } = self {
+            parts.iter_mut().for_each(|(_, part)| part.flatten(mean));
+            if let NumberTexture::Image(image) = by {
+                let [number, ..] = image.image.mean();
+                *by = NumberTexture::Uniform(number * image.factor[0]);
             }
-            Self::Blend { parts, by } => {
-                parts.iter_mut().for_each(|(_, part)| part.flatten(mean));
-                if let NumberTexture::Image(image) = by {
-                    let [number, ..] = image.image.mean();
-                    *by = NumberTexture::Uniform(number * image.factor[0]);
-                }
-            }
-            Self::Conductor { metal: Metal::Index(_) }
-            | Self::RoughConductor { metal: Metal::Index(_), .. }
-            | Self::Dielectric { .. }
-            | Self::RoughDielectric { .. }
-            | Self::ThinDielectric { .. }
-            | Self::PolarisingSheet { .. }
-            | Self::Black => {}
+        }
+        if let Some(reflectance) = self.reflectance_mut()
+            && let Some(image) = reflectance.image()
+        {
+            *reflectance = mean(image).into();
         }
     }
 }

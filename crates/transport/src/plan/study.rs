@@ -230,20 +230,13 @@ pub(super) fn lights_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Spectru
 
 /// Makes a material treat all wavelengths alike.
 fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
+    if let Some(reflectance) = kind.reflectance_mut() {
+        *reflectance = grey_texture(reflectance, range_nm);
+    }
     match kind {
-        MaterialKind::Lambert { reflectance }
-        | MaterialKind::Mirror { reflectance }
-        | MaterialKind::OrenNayar { reflectance, .. }
-        | MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
-        | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
-            *reflectance = grey_texture(reflectance, range_nm);
-        }
         MaterialKind::Conductor { metal: Metal::Index(index) }
         | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => *index = grey_metal(index, range_nm),
-        MaterialKind::Plastic { reflectance, coat, .. } => {
-            *reflectance = grey_texture(reflectance, range_nm);
-            *coat = index_at_middle(coat, range_nm);
-        }
+        MaterialKind::Plastic { coat, .. } => *coat = index_at_middle(coat, range_nm),
         MaterialKind::ThinDielectric { index } => *index = index_at_middle(index, range_nm),
         MaterialKind::PolarisingSheet { sheet, .. } => match sheet {
             PolarisingSheet::Polariser { transmittance, .. } => *transmittance = grey(transmittance, range_nm),
@@ -254,7 +247,14 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
             }
         },
         MaterialKind::Blend { parts, .. } => parts.iter_mut().for_each(|(_, part)| turn_grey(part, range_nm)),
-        MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Black => {}
+        MaterialKind::Lambert { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Conductor { metal: Metal::Reflectance(_) }
+        | MaterialKind::RoughConductor { metal: Metal::Reflectance(_), .. }
+        | MaterialKind::Dielectric { .. }
+        | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::Black => {}
     }
 }
 

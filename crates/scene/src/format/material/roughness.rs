@@ -8,7 +8,7 @@ use crate::model::{LEAST_ALPHA, MaterialKind, NumberTexture};
 use crate::texture::ImageTexture;
 
 /// Neighbouring widths of an image have roughnesses √α in this ratio. The peak of a highlight, in proportion to 1/α², is then at
-/// most 0.6 % higher in a blend of two than at the width between them (0.8 % where the image says α, 1.1 % where it says α²), which
+/// most 0.6 % higher in a blend of two than at the width between them (0.8 % where the image says α, 1 % where it says α²), which
 /// is less than a step of an image of eight bits makes.
 const RATIO: f64 = 1.05;
 /// The most widths that an image of roughness makes: from [`LEAST_ALPHA`] to 1, and a smooth one.

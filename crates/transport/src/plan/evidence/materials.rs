@@ -26,22 +26,18 @@ pub(super) fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<Stri
 
 /// How the light that a material hands on depends on the wavelength, if it does.
 pub(super) fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
+    if let Some(found) = kind.reflectance().and_then(|reflectance| colour_of_texture(reflectance, range_nm)) {
+        return Some(found);
+    }
     match kind {
-        MaterialKind::Lambert { reflectance }
-        | MaterialKind::Mirror { reflectance }
-        | MaterialKind::OrenNayar { reflectance, .. }
-        | MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
-        | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
-            colour_of_texture(reflectance, range_nm)
-        }
         MaterialKind::Conductor { metal: Metal::Index(index) }
         | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => {
             index.is_dispersive().then(|| metal_range(index, range_nm))
         }
         MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } => dispersion(kind, range_nm),
-        MaterialKind::Plastic { reflectance, coat, .. } => colour_of_texture(reflectance, range_nm)
-            .or_else(|| coat.is_dispersive().then(|| index_range(coat, range_nm))),
-        MaterialKind::ThinDielectric { index } => index.is_dispersive().then(|| index_range(index, range_nm)),
+        MaterialKind::Plastic { coat: index, .. } | MaterialKind::ThinDielectric { index } => {
+            index.is_dispersive().then(|| index_range(index, range_nm))
+        }
         MaterialKind::PolarisingSheet { sheet, .. } => match sheet {
             PolarisingSheet::Polariser { transmittance, .. } => (!transmittance.is_constant())
                 .then(|| format!("transmittance {}", spread(range_nm, |nm| transmittance.eval(nm)))),
@@ -50,7 +46,12 @@ pub(super) fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> 
             }),
         },
         MaterialKind::Blend { parts, .. } => parts.iter().find_map(|(_, part)| colour(part, range_nm)),
-        MaterialKind::Black => None,
+        MaterialKind::Lambert { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Conductor { metal: Metal::Reflectance(_) }
+        | MaterialKind::RoughConductor { metal: Metal::Reflectance(_), .. }
+        | MaterialKind::Black => None,
     }
 }
 
