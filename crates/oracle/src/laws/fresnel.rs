@@ -255,43 +255,30 @@ mod tests {
     use super::{super::SINGLE, *};
 
     /// The forms without cancellation, independent of the exact evaluation above.
-    fn careful(c: f64, n: f64) -> FresnelPowers {
-        let excess = (n - 1.0) * (n + 1.0);
-        let g2 = excess + c * c;
-        if g2 < 0.0 {
-            return FresnelPowers { r_s: 1.0, r_p: 1.0, t_s: 0.0, t_p: 0.0 };
-        }
-        let g = g2.sqrt();
-        let (k, l) = (c + g, n * c + g / n);
-        if k == 0.0 {
-            return FresnelPowers { r_s: 0.0, r_p: 0.0, t_s: 1.0, t_p: 1.0 };
-        }
-        let r_s = -excess / (k * k);
-        let r_p = excess * (c * c * (n * n + 1.0) - 1.0) / (n * n * l * l);
-        FresnelPowers { r_s: r_s * r_s, r_p: r_p * r_p, t_s: 4.0 * c * g / (k * k), t_p: 4.0 * c * g / (l * l) }
+    macro_rules! careful {
+        ($name:ident, $scalar:ty) => {
+            fn $name(c: f64, n: f64) -> FresnelPowers {
+                let (c, n) = (c as $scalar, n as $scalar);
+                let excess = (n - 1.0) * (n + 1.0);
+                let g2 = excess + c * c;
+                if g2 < 0.0 {
+                    return FresnelPowers { r_s: 1.0, r_p: 1.0, t_s: 0.0, t_p: 0.0 };
+                }
+                let g = g2.sqrt();
+                let (k, l) = (c + g, n * c + g / n);
+                if k == 0.0 {
+                    return FresnelPowers { r_s: 0.0, r_p: 0.0, t_s: 1.0, t_p: 1.0 };
+                }
+                let r_s = -excess / (k * k);
+                let r_p = excess * (c * c * (n * n + 1.0) - 1.0) / (n * n * l * l);
+                let powers = [r_s * r_s, r_p * r_p, 4.0 * c * g / (k * k), 4.0 * c * g / (l * l)];
+                let [r_s, r_p, t_s, t_p] = powers.map(f64::from);
+                FresnelPowers { r_s, r_p, t_s, t_p }
+            }
+        };
     }
-
-    fn careful_single(c: f64, n: f64) -> FresnelPowers {
-        let (c, n) = (c as f32, n as f32);
-        let excess = (n - 1.0) * (n + 1.0);
-        let g2 = excess + c * c;
-        if g2 < 0.0 {
-            return FresnelPowers { r_s: 1.0, r_p: 1.0, t_s: 0.0, t_p: 0.0 };
-        }
-        let g = g2.sqrt();
-        let (k, l) = (c + g, n * c + g / n);
-        if k == 0.0 {
-            return FresnelPowers { r_s: 0.0, r_p: 0.0, t_s: 1.0, t_p: 1.0 };
-        }
-        let r_s = -excess / (k * k);
-        let r_p = excess * (c * c * (n * n + 1.0) - 1.0) / (n * n * l * l);
-        FresnelPowers {
-            r_s: f64::from(r_s * r_s),
-            r_p: f64::from(r_p * r_p),
-            t_s: f64::from(4.0 * c * g / (k * k)),
-            t_p: f64::from(4.0 * c * g / (l * l)),
-        }
-    }
+    careful!(careful, f64);
+    careful!(careful_single, f32);
 
     fn textbook(c: f64, n: f64) -> FresnelPowers {
         let ct = (1.0 - (1.0 - c * c) / (n * n)).max(0.0).sqrt();
