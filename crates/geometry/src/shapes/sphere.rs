@@ -59,8 +59,13 @@ impl Sphere {
     /// if it starts toward the centre.
     #[inline]
     pub(crate) fn intersect(&self, query: &Query, t_max: f64, leaves: bool) -> Option<RawHit> {
-        let d = query.direction;
-        let to_centre = self.centre - query.origin;
+        self.intersect_line(query.origin, query.direction, t_max, leaves)
+    }
+
+    /// [`Sphere::intersect`] of the ray of a query by its origin and its direction.
+    #[inline]
+    pub(crate) fn intersect_line(&self, origin: Vec3<f64>, d: Vec3<f64>, t_max: f64, leaves: bool) -> Option<RawHit> {
+        let to_centre = self.centre - origin;
         let d2 = d.length_squared();
         let t_middle = to_centre.dot(d) / d2;
         let perpendicular = d * t_middle - to_centre;

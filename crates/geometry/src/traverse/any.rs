@@ -57,16 +57,16 @@ pub(super) fn any_on<F: Filters, S: Start, const MESH: bool, const N: usize>(
                 break Open::Instance(&tree.portals()[(child & !(LEAF | LONE)) as usize]);
             }
             let leaf = &leaves[(child & !LEAF) as usize];
-            let candidates = candidates::<F, MESH>(filters, frame_ray, &chords, leaf, limit, certain_limit);
+            let candidates = candidates::<F, MESH>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
             let (mut met, mut open) = (candidates.mask & !candidates.missed, 0);
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;
                 met &= met - 1;
                 let id = leaf.id(lane);
-                if id == aims_at || id == leaves_id && (MESH || candidates.left >> lane & 1 == 1) {
+                if id == aims_at {
                     continue;
                 }
-                if candidates.certain >> lane & 1 == 1 && id != leaves_id {
+                if candidates.certain >> lane & 1 == 1 {
                     return true;
                 }
                 open |= 1 << lane;

@@ -150,6 +150,14 @@ impl Vector for F8 {
     }
 
     #[inline(always)]
+    fn lanes_with(_: Avx2, row: &[u32; LEAF_WIDTH], v: u32) -> u32 {
+        // SAFETY: the token proves AVX2; eight numbers are readable at the reference, aligned or not.
+        let same = unsafe { _mm256_cmpeq_epi32(_mm256_loadu_si256(row.as_ptr().cast()), _mm256_set1_epi32(v as i32)) };
+        // SAFETY: as above.
+        Self::mask(unsafe { _mm256_castsi256_ps(same) })
+    }
+
+    #[inline(always)]
     fn to_array(self) -> [f32; LEAF_WIDTH] {
         let mut out = [0.0; LEAF_WIDTH];
         // SAFETY: as for the operators; eight floats are writable at the reference, aligned or not.

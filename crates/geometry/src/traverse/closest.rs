@@ -7,7 +7,7 @@ use super::start::{Deferred, Start};
 use super::{Filters, Met, Narrow, intersect_exact};
 use crate::best::{Best, Found};
 use crate::frame::FrameRay;
-use crate::query::{Projection, Query, RawHit};
+use crate::query::{Projection, RawHit};
 use crate::wide::{LEAF, LEAF_WIDTH, LONE, NODE_WIDTH, WideTree};
 use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
@@ -97,7 +97,8 @@ pub(super) fn closest_on<F: Filters, S: Start, const MESH: bool, const N: usize>
         } else {
             let index = child & !LEAF;
             let leaf = &leaves[index as usize];
-            let mut candidates = candidates::<F, MESH>(filters, frame_ray, &chords, leaf, limit, certain_limit);
+            let mut candidates =
+                candidates::<F, MESH>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
@@ -106,16 +107,13 @@ pub(super) fn closest_on<F: Filters, S: Start, const MESH: bool, const N: usize>
                 if beyond || candidates.missed >> lane & 1 == 1 {
                     continue;
                 }
-                if id == leaves_id && (MESH || candidates.left >> lane & 1 == 1) {
-                    continue;
-                }
-                if candidates.certain >> lane & 1 == 1 && id != leaves_id {
+                if candidates.certain >> lane & 1 == 1 {
                     // Its exact distance can wait until the end, when it has been fetched.
                     if !leaf.is_exact(lane) {
                         filters.prefetch(&primitives[id.0 as usize]);
                     }
                     if pending.count == Pending::LIMIT {
-                        pending.resolve(&mut best, tree, primitives, query.get(), limit);
+                        pending.resolve(&mut best, tree, primitives, &mut query, &projection, limit);
                     }
                     if candidates.far.0[lane] < limit {
                         limit = candidates.far.0[lane];
@@ -127,7 +125,7 @@ pub(super) fn closest_on<F: Filters, S: Start, const MESH: bool, const N: usize>
                     pending.list[pending.count] =
                         Waiting { leaf: index, lane: lane as u32, near: candidates.near.0[lane] };
                     pending.count += 1;
-                } else if decide_now(&mut best, tree, index, lane as u32, primitives, &mut query) {
+                } else if decide(&mut best, tree, (index, lane as u32), primitives, &mut query, &projection) {
                     limit = limit.min(tree.frame.distance(frame_ray.start, best.t_max));
                 }
             }
@@ -136,13 +134,22 @@ pub(super) fn closest_on<F: Filters, S: Start, const MESH: bool, const N: usize>
             let Some(next) = stack.pop() else {
                 if pending.count == 1 {
                     let Waiting { leaf, lane, .. } = pending.list[0];
-                    let last = decide_last(filters, &best, tree, (leaf, lane), primitives, &mut query, &projection);
+                    let last = decide_last(
+                        filters,
+                        &best,
+                        tree,
+                        (leaf, lane),
+                        primitives,
+                        &mut query,
+                        &projection,
+                        frame_ray.t_scale,
+                    );
                     if let Some((hit, id)) = last {
                         let t = start.distance(frame_ray.t_scale, hit.t);
                         return Some((RawHit { t, ..hit }, SurfaceId::from(id)));
                     }
                 } else if pending.count > 1 {
-                    pending.resolve(&mut best, tree, primitives, query.get(), limit);
+                    pending.resolve(&mut best, tree, primitives, &mut query, &projection, limit);
                 }
                 return best
                     .found()
@@ -185,10 +192,18 @@ impl Pending {
     /// Decides those that are not beyond `limit`.
     #[cold]
     #[inline(never)]
-    fn resolve(&mut self, best: &mut Best, tree: &WideTree, primitives: &[Primitive], query: &Query, limit: f32) {
+    fn resolve<S: Start>(
+        &mut self,
+        best: &mut Best,
+        tree: &WideTree,
+        primitives: &[Primitive],
+        query: &mut Deferred<S>,
+        projection: &Projection,
+        limit: f32,
+    ) {
         for waiting in &self.list[..self.count] {
             if waiting.near <= limit {
-                decide(best, tree, waiting.leaf, waiting.lane, primitives, query);
+                decide(best, tree, (waiting.leaf, waiting.lane), primitives, query, projection);
             }
         }
         self.count = 0;
@@ -196,15 +211,23 @@ impl Pending {
 }
 
 /// Decides in `f64` whether a lane of a leaf holds the closest hit so far.
-#[inline]
-fn decide(best: &mut Best, tree: &WideTree, leaf: u32, lane: u32, primitives: &[Primitive], query: &Query) -> bool {
+#[cold]
+#[inline(never)]
+fn decide<S: Start>(
+    best: &mut Best,
+    tree: &WideTree,
+    (leaf, lane): (u32, u32),
+    primitives: &[Primitive],
+    query: &mut Deferred<S>,
+    projection: &Projection,
+) -> bool {
     let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
     if !leaf.is_exact(lane) {
-        return best.test(primitives, query, id);
+        return best.test(primitives, query.get(), id);
     }
     let limit = best.limit(id);
-    let found = intersect_exact(Portable, tree, (leaf, lane), primitives, &query.projection, || *query, limit);
+    let found = intersect_exact(Portable, tree, (leaf, lane), primitives, projection, || *query.get(), limit);
     if let Some(hit) = found {
         best.set(hit, id);
     }
@@ -221,6 +244,7 @@ fn decide_last<F: Filters, S: Start>(
     primitives: &[Primitive],
     query: &mut Deferred<S>,
     projection: &Projection,
+    t_scale: f64,
 ) -> Option<(RawHit, PrimitiveId)> {
     let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
@@ -237,24 +261,14 @@ fn decide_last<F: Filters, S: Start>(
             Primitive::Parallelogram(shape) => {
                 shape.intersect_lanes::<F::Four>(token, projection, || *query.get(), limit)
             }
+            Primitive::Sphere(shape) => {
+                let [origin, direction] = query.start.line(t_scale);
+                shape.intersect_line(origin, direction, limit, false)
+            }
             shape => shape.intersect(query.get(), limit, false),
         }
     };
     found.map(|hit| (hit, id))
-}
-
-/// [`decide`] where it is not the rule.
-#[cold]
-#[inline(never)]
-fn decide_now<S: Start>(
-    best: &mut Best,
-    tree: &WideTree,
-    leaf: u32,
-    lane: u32,
-    primitives: &[Primitive],
-    query: &mut Deferred<S>,
-) -> bool {
-    decide(best, tree, leaf, lane, primitives, query.get())
 }
 
 /// Announces that a child that waits on the stack will be visited. Without it rays that share nothing are a tenth slower in

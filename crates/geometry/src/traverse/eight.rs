@@ -8,6 +8,7 @@ use crate::lanes::{Hits, LANES, Rays, lanes_of, vector};
 use crate::query::{Four, Projection, Query, RawHit};
 use crate::wide::WideTree;
 use crate::{Hit, Primitive, PrimitiveId};
+use etalon_optics::Vec3;
 
 /// A ray in a lane.
 #[derive(Clone, Copy)]
@@ -31,9 +32,15 @@ impl Start for Lane<'_> {
     }
 
     #[inline(always)]
-    fn projection(self, scale: f64, axis: usize) -> Projection {
+    fn line(self, scale: f64) -> [Vec3<f64>; 2] {
         let lane = self.lane % LANES;
-        Projection::new(vector(&self.rays.origin, lane), vector(&self.rays.direction, lane) * scale, axis)
+        [vector(&self.rays.origin, lane), vector(&self.rays.direction, lane) * scale]
+    }
+
+    #[inline(always)]
+    fn projection(self, scale: f64, axis: usize) -> Projection {
+        let [origin, direction] = self.line(scale);
+        Projection::new(origin, direction, axis)
     }
 
     #[inline(always)]

@@ -2,12 +2,13 @@
 
 use super::vector::Vector;
 use super::{Candidates, Filters, Narrow, Row};
+use crate::PrimitiveId;
 use crate::frame::{FrameRay, Lanes4};
 use crate::query::AXES;
 use crate::wide::{LEAF_WIDTH, Leaf8};
 
 /// The primitives of a leaf that the ray may hit in [0, `limit`], and the flat shapes and spheres that it certainly hits in
-/// (0, `certain_limit`). The primitive that the ray leaves may be among them.
+/// (0, `certain_limit`). The primitive that the ray leaves is not among them unless it may be hit again, and never certain.
 #[inline(always)]
 pub(super) fn candidates<F: Filters, const MESH: bool>(
     filters: F,
@@ -16,10 +17,13 @@ pub(super) fn candidates<F: Filters, const MESH: bool>(
     leaf: &Leaf8,
     limit: f32,
     certain_limit: f32,
+    leaves: PrimitiveId,
 ) -> Candidates {
+    // By lanes: a ray that leaves a primitive comes by it most often, at no time that could be foretold.
+    let own = F::Vector::lanes_with(filters.into(), &leaf.ids, leaves.0);
     if MESH {
         let mut found = flats::<F, true>(filters, ray, leaf, limit, certain_limit);
-        found.left = u32::MAX;
+        found.mask &= !own;
         return found;
     }
     let others = u32::from(leaf.others);
@@ -31,7 +35,7 @@ pub(super) fn candidates<F: Filters, const MESH: bool>(
     if leaf.flats != 0 && leaf.spheres != 0 {
         // Mixed leaves are rare: of their spheres no distance is known.
         let balls = spheres(filters, ray, chords, leaf, limit, certain_limit);
-        let met = balls.mask & !balls.missed & u32::from(leaf.spheres);
+        let met = balls.mask & u32::from(leaf.spheres);
         found.mask |= met;
         found.missed &= !met;
         found.certain &= !met;
@@ -43,6 +47,8 @@ pub(super) fn candidates<F: Filters, const MESH: bool>(
     found.certain &= !others;
     found.unbounded |= others;
     found.left |= u32::from(leaf.flats);
+    found.mask &= !(own & found.left);
+    found.certain &= !own;
     found
 }
 
@@ -198,7 +204,15 @@ fn spheres<F: Filters>(
     let certain = pierced & all(0.0).below(near) & far.below(all(certain_limit));
     // A sphere that the ray leaves is hit again only if its centre is ahead.
     let left = (middle + t_error).below(all(0.0));
-    Candidates { mask: met, missed, unbounded: 0, certain, left, near: Row(near.to_array()), far: Row(far.to_array()) }
+    Candidates {
+        mask: met & !missed,
+        missed: 0,
+        unbounded: 0,
+        certain,
+        left,
+        near: Row(near.to_array()),
+        far: Row(far.to_array()),
+    }
 }
 
 /// Bound on the error of the edge functions of a leaf's flat shapes in the projection of a ray that meets the leaf's box.

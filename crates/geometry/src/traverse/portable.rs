@@ -56,6 +56,11 @@ impl Vector for Floats {
     }
 
     #[inline(always)]
+    fn lanes_with(_: Portable, row: &[u32; LEAF_WIDTH], v: u32) -> u32 {
+        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(row[i] == v) << i)
+    }
+
+    #[inline(always)]
     fn to_array(self) -> [f32; LEAF_WIDTH] {
         self.0
     }

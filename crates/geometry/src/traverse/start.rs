@@ -11,6 +11,8 @@ pub(crate) trait Start: Copy {
     fn query(self) -> Option<Query>;
     /// The ray in a frame by [`Frame::enter_near`].
     fn enter_near<F: Four>(self, token: F::Token, frame: &Frame) -> Option<FrameRay<F::Narrow>>;
+    /// [`Query::origin`] and [`Query::direction`]; `scale` is [`Query::scale`].
+    fn line(self, scale: f64) -> [Vec3<f64>; 2];
     /// [`Query::projection`]; `scale` is [`Query::scale`], `axis` that of the projection.
     fn projection(self, scale: f64, axis: usize) -> Projection;
     /// A distance along the query's direction in the units of what it starts with; `scale` is [`Query::scale`].
@@ -31,6 +33,11 @@ impl Start for &Query {
     fn enter_near<F: Four>(self, token: F::Token, frame: &Frame) -> Option<FrameRay<F::Narrow>> {
         let lanes = [lanes::<f64, F>(token, self.origin), lanes::<f64, F>(token, self.given)];
         frame.enter_near(token, lanes, |_| self.t_max)
+    }
+
+    #[inline(always)]
+    fn line(self, _: f64) -> [Vec3<f64>; 2] {
+        [self.origin, self.direction]
     }
 
     #[inline(always)]
@@ -76,8 +83,14 @@ impl<R: Real> Start for &Ray<R> {
     }
 
     #[inline(always)]
+    fn line(self, scale: f64) -> [Vec3<f64>; 2] {
+        [self.origin.to_f64(), self.direction.to_f64() * scale]
+    }
+
+    #[inline(always)]
     fn projection(self, scale: f64, axis: usize) -> Projection {
-        Projection::new(self.origin.to_f64(), self.direction.to_f64() * scale, axis)
+        let [origin, direction] = self.line(scale);
+        Projection::new(origin, direction, axis)
     }
 
     #[inline(always)]

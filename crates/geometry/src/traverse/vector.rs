@@ -13,6 +13,8 @@ pub(super) trait Vector:
     fn splat(token: Self::Token, v: f32) -> Self;
     /// Eight from memory.
     fn load(token: Self::Token, row: &[f32; LEAF_WIDTH]) -> Self;
+    /// The lanes of a row that are this number, one bit each.
+    fn lanes_with(token: Self::Token, row: &[u32; LEAF_WIDTH], v: u32) -> u32;
     /// Into memory.
     fn to_array(self) -> [f32; LEAF_WIDTH];
     /// The smaller of each pair; the second if one is NaN.
