@@ -57,13 +57,19 @@ impl Costs {
 /// A box as one vector, so that a union is one maximum: its lower corner negated, a lane for a primitive's index, its upper
 /// corner, 1 if it holds a primitive that shares its leaf with no other.
 #[derive(Clone, Copy, Debug)]
-struct Span([f32; 8]);
+pub(crate) struct Span([f32; 8]);
 
 impl Span {
     const EMPTY: Self = Self([f32::NEG_INFINITY; 8]);
 
+    /// A box, with zero in the other lanes.
+    pub(crate) fn of(b: &Box32) -> Self {
+        let [x, y, z] = b.min;
+        Self([-x, -y, -z, 0.0, b.max[0], b.max[1], b.max[2], 0.0])
+    }
+
     #[inline(always)]
-    fn union(self, o: Self) -> Self {
+    pub(crate) fn union(self, o: Self) -> Self {
         Self(from_fn(|i| if self.0[i] > o.0[i] { self.0[i] } else { o.0[i] }))
     }
 
@@ -92,7 +98,7 @@ impl Span {
 
     /// Half the surface area; zero for the empty box.
     #[inline(always)]
-    fn half_area(self) -> f32 {
+    pub(crate) fn half_area(self) -> f32 {
         let [x, y, z] = from_fn(|k| self.0[k + 4] + self.0[k]);
         if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
     }
@@ -103,7 +109,7 @@ impl Span {
         self.0[7] > 0.0
     }
 
-    fn to_box(self) -> Box32 {
+    pub(crate) fn to_box(self) -> Box32 {
         Box32 { min: from_fn(|k| self.lower(k)), max: from_fn(|k| self.upper(k)) }
     }
 }

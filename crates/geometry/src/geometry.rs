@@ -5,6 +5,7 @@ use crate::build::{Costs, Item, build};
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
+use crate::reinsert::improved;
 use crate::traverse::{self, FLAT_LIMIT, Flat, Level};
 use crate::wide::WideTree;
 use crate::{Aabb, Hit, Instance, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
@@ -100,7 +101,7 @@ impl Geometry {
             let lone = |p: &Primitive| matches!(p, Primitive::Instance(_));
             let item = |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32, lone(p));
             let items = primitives.par_iter().enumerate().map(item).collect();
-            let binary = build(items, costs(&primitives));
+            let binary = improved(build(items, costs(&primitives)));
             WideTree::collapse(frame, &binary, &primitives)
         });
         let level = Level::detect();

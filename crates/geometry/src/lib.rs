@@ -36,6 +36,7 @@ mod pages;
 mod portal;
 mod query;
 mod ray;
+mod reinsert;
 mod shapes;
 mod traverse;
 mod wide;

@@ -6,6 +6,7 @@ mod frames;
 mod instances;
 mod motion;
 mod oracle;
+mod portals;
 mod spawn;
 mod spheres;
 mod tree;
