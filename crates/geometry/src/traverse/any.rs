@@ -1,11 +1,12 @@
 //! Whether anything is hit at all.
 
+use super::compiled::Compiled;
 use super::leaf::{Chords, candidates};
 use super::met::Met;
 use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
-use super::{Filters, Narrow, intersect_exact};
+use super::{Narrow, intersect_exact};
 use crate::frame::FrameRay;
 use crate::portal::Portal;
 use crate::query::Query;
@@ -15,7 +16,7 @@ use crate::{Primitive, PrimitiveId};
 /// Whether anything is hit, in the order of the tree. A level of the stack is one entry, the children yet to be visited:
 /// that spares a loop over them whose length no branch predictor can know.
 #[inline(always)]
-pub(super) fn any_on<F: Filters, S: Start, const MESH: bool, const N: usize>(
+pub(super) fn any_on<F: Compiled, S: Start, const MESH: bool, const N: usize>(
     filters: F,
     tree: &WideTree,
     primitives: &[Primitive],

@@ -1,7 +1,9 @@
 //! The filters in AVX-512: all children of a node at once.
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
-use super::avx2::{Avx2, D4, F4, F8, prefetch};
+use super::avx2::{Avx2, prefetch};
+use super::compiled::{Compiled, compiled};
+use super::lanes256::{D4, F4, F8};
 use super::met::{Met, Row};
 use super::wide512::{D8, F16};
 use super::within::{closest_within, occludes_within};
@@ -32,62 +34,9 @@ impl Avx512 {
             && std::arch::is_x86_feature_detected!("avx512dq");
         Avx2::detect().filter(|_| present).map(Self)
     }
-
-    #[inline(always)]
-    pub(super) fn closest<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
-        // SAFETY: `self` proves that the processor has AVX-512.
-        unsafe { closest(self, tree, primitives, start) }
-    }
-
-    #[inline(always)]
-    pub(super) fn any<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
-        // SAFETY: `self` proves that the processor has AVX-512.
-        unsafe { any(self, tree, primitives, start) }
-    }
-
-    #[inline(always)]
-    pub(super) fn run<J: Job>(self, job: J) -> J::Output {
-        // SAFETY: `self` proves that the processor has AVX-512.
-        unsafe { run(self, job) }
-    }
 }
 
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,bmi1")]
-fn run<J: Job>(filters: Avx512, job: J) -> J::Output {
-    job.run(filters)
-}
-
-#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
-fn closest<S: Start>(filters: Avx512, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
-    closest_with(filters, tree, primitives, start)
-}
-
-#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
-fn any<S: Start>(filters: Avx512, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
-    any_with(filters, tree, primitives, start)
-}
-
-#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
-fn closest_far<S: Start>(filters: Avx512, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
-    closest_far_with(filters, tree, primitives, start)
-}
-
-#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
-#[inline(never)]
-fn closest_in(filters: Avx512, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
-    closest_within(filters, best, portal, primitives, query)
-}
-
-#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
-#[inline(never)]
-fn occludes_in(filters: Avx512, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
-    occludes_within(filters, portal, primitives, query)
-}
-
-#[target_feature(enable = "avx512f,avx512vl,avx2,bmi1")]
-fn any_far<S: Start>(filters: Avx512, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
-    any_far_with(filters, tree, primitives, start)
-}
+compiled!(Avx512, "avx512f,avx512vl,avx512dq,avx2,bmi1");
 
 /// A ray broadcast to all lanes.
 #[derive(Clone, Copy)]
@@ -213,29 +162,5 @@ impl Filters for Avx512 {
     #[inline(always)]
     fn prefetch<T>(self, item: &T) {
         prefetch(item);
-    }
-
-    #[inline(always)]
-    fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
-        // SAFETY: `self` proves that the processor has AVX-512.
-        unsafe { closest_far(self, tree, primitives, start) }
-    }
-
-    #[inline(always)]
-    fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
-        // SAFETY: `self` proves that the processor has AVX-512.
-        unsafe { any_far(self, tree, primitives, start) }
-    }
-
-    #[inline(always)]
-    fn closest_within(self, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
-        // SAFETY: `self` proves that the processor has AVX-512.
-        unsafe { closest_in(self, best, portal, primitives, query) }
-    }
-
-    #[inline(always)]
-    fn occludes_within(self, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
-        // SAFETY: `self` proves that the processor has AVX-512.
-        unsafe { occludes_in(self, portal, primitives, query) }
     }
 }

@@ -1,5 +1,6 @@
 //! The closest hit.
 
+use super::compiled::Compiled;
 use super::leaf::{Chords, candidates};
 use super::portable::Portable;
 use super::stack::{Room, Stack};
@@ -13,7 +14,7 @@ use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.
 #[inline(always)]
-pub(super) fn closest_on<F: Filters, S: Start, const MESH: bool, const N: usize>(
+pub(super) fn closest_on<F: Compiled, S: Start, const MESH: bool, const N: usize>(
     filters: F,
     tree: &WideTree,
     primitives: &[Primitive],

@@ -1,11 +1,12 @@
 //! The rays of eight lanes through a tree, one after the other: as single rays, but set out from the lanes themselves and without a
 //! call for each. To gather a ray in memory first, and to read it back in vectors, costs as much as two nodes.
 
+use super::compiled::Compiled;
 use super::start::Start;
-use super::{Filters, Job, any_with, closest_with};
+use super::{Job, any_with, closest_with};
 use crate::frame::{Frame, FrameRay};
 use crate::lanes::{Hits, LANES, Rays, lanes_of, vector};
-use crate::query::{Four, Projection, Query, RawHit};
+use crate::query::{Four, Query, RawHit};
 use crate::wide::WideTree;
 use crate::{Hit, Primitive, PrimitiveId};
 use etalon_optics::Vec3;
@@ -38,17 +39,6 @@ impl Start for Lane<'_> {
     }
 
     #[inline(always)]
-    fn projection(self, scale: f64, axis: usize) -> Projection {
-        let [origin, direction] = self.line(scale);
-        Projection::new(origin, direction, axis)
-    }
-
-    #[inline(always)]
-    fn distance(self, scale: f64, t: f64) -> f64 {
-        t * scale
-    }
-
-    #[inline(always)]
     fn leaves(self) -> PrimitiveId {
         self.rays.leaves[self.lane % LANES].own()
     }
@@ -71,7 +61,7 @@ impl Job for Closest<'_> {
     type Output = Hits;
 
     #[inline(always)]
-    fn run<F: Filters>(self, filters: F) -> Hits {
+    fn run<F: Compiled>(self, filters: F) -> Hits {
         let Self { tree, primitives, rays, active } = self;
         let mut hits = Hits::NONE;
         for lane in lanes_of(active) {
@@ -98,7 +88,7 @@ impl Job for Any<'_> {
     type Output = u8;
 
     #[inline(always)]
-    fn run<F: Filters>(self, filters: F) -> u8 {
+    fn run<F: Compiled>(self, filters: F) -> u8 {
         let Self { tree, primitives, rays, active } = self;
         let mut hidden = 0;
         for lane in lanes_of(active) {

@@ -9,8 +9,11 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod closest;
+mod compiled;
 mod eight;
 mod flat;
+#[cfg(target_arch = "x86_64")]
+mod lanes256;
 mod leaf;
 mod met;
 mod portable;
@@ -23,16 +26,16 @@ mod wide256;
 mod wide512;
 mod within;
 
-use crate::best::{Best, Found};
+use crate::best::Found;
 use crate::build::MAX_DEPTH;
 use crate::frame::BoxRay;
-use crate::portal::Portal;
 use crate::query::{Four, Projection, Query, RawHit};
 use crate::wide::{LEAF_WIDTH, Leaf8, NODE_WIDTH, Node16, WideTree};
 use crate::{Hits, Primitive, Rays, Triangle};
 use any::any_on;
 pub(crate) use any::occludes;
 use closest::closest_on;
+use compiled::Compiled;
 use flat::{Eight, Wide};
 pub(crate) use flat::{FLAT_LIMIT, Flat};
 use met::{Met, Row};
@@ -101,14 +104,6 @@ trait Filters:
     fn enter(self, ray: &Self::Ray, node: &Node16, limit: f32) -> Self::Met;
     /// Announces that an item will be read.
     fn prefetch<T>(self, item: &T);
-    /// [`closest_far_with`], compiled for the instruction set.
-    fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found>;
-    /// [`any_far_with`], likewise.
-    fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool;
-    /// [`within::closest_within`], likewise.
-    fn closest_within(self, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool;
-    /// [`within::occludes_within`], likewise.
-    fn occludes_within(self, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool;
 }
 
 /// Work that is compiled for each instruction set. Its function is inlined into one that is.
@@ -116,7 +111,7 @@ trait Job {
     /// What comes of it.
     type Output;
     /// The work.
-    fn run<F: Filters>(self, filters: F) -> Self::Output;
+    fn run<F: Compiled>(self, filters: F) -> Self::Output;
 }
 
 /// An instruction set that the processor has.
@@ -159,7 +154,7 @@ impl Level {
             Self::Avx512(filters) => filters.run(job),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(filters) => filters.run(job),
-            Self::Portable => job.run(portable::Portable),
+            Self::Portable => portable::Portable.run(job),
         }
     }
 }
@@ -204,12 +199,12 @@ pub(crate) fn any_hits(level: Level, tree: &WideTree, primitives: &[Primitive], 
 
 /// [`closest`] on any machine.
 pub(crate) fn closest_portable<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
-    closest_with(portable::Portable, tree, primitives, start)
+    portable::Portable.closest(tree, primitives, start)
 }
 
 /// [`any`] on any machine.
 pub(crate) fn any_portable<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
-    any_with(portable::Portable, tree, primitives, start)
+    portable::Portable.any(tree, primitives, start)
 }
 
 /// [`closest`] with AVX2 alone; none without.
@@ -226,7 +221,7 @@ pub(crate) fn any_avx2<S: Start>(tree: &WideTree, primitives: &[Primitive], star
 
 /// The closest hit of a ray that starts near the frame, as most do: without a query until one is needed.
 #[inline(always)]
-fn closest_with<F: Filters, S: Start>(
+fn closest_with<F: Compiled, S: Start>(
     filters: F,
     tree: &WideTree,
     primitives: &[Primitive],
@@ -246,7 +241,7 @@ fn closest_with<F: Filters, S: Start>(
 
 /// The closest hit of any ray.
 #[inline(always)]
-fn closest_far_with<F: Filters, S: Start>(
+fn closest_far_with<F: Compiled, S: Start>(
     filters: F,
     tree: &WideTree,
     primitives: &[Primitive],
@@ -263,7 +258,7 @@ fn closest_far_with<F: Filters, S: Start>(
 
 /// Whether anything is hit by a ray that starts near the frame.
 #[inline(always)]
-fn any_with<F: Filters, S: Start>(filters: F, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+fn any_with<F: Compiled, S: Start>(filters: F, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
     let near = if tree.depth <= LEVELS[0] { start.enter_near::<F::Four>(filters.into(), &tree.frame) } else { None };
     match near {
         Some(ray) if tree.mesh => any_on::<F, S, true, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
@@ -274,7 +269,7 @@ fn any_with<F: Filters, S: Start>(filters: F, tree: &WideTree, primitives: &[Pri
 
 /// Whether anything is hit by any ray.
 #[inline(always)]
-fn any_far_with<F: Filters, S: Start>(filters: F, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+fn any_far_with<F: Compiled, S: Start>(filters: F, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
     let Some(query) = start.query() else { return false };
     if tree.depth > LEVELS[0] {
         return any_deep(tree, primitives, &query);

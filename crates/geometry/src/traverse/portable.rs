@@ -1,10 +1,11 @@
 //! The filters in plain Rust.
 
+use super::compiled::Compiled;
 use super::flat::{BLOCK, PlainEight, Wide};
 use super::met::{Entered, Row};
 use super::vector::Vector;
 use super::within::{closest_within, occludes_within};
-use super::{Filters, Start, any_far_with, closest_far_with};
+use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::best::{Best, Found};
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
 use crate::portal::Portal;
@@ -229,6 +230,20 @@ impl Filters for Portable {
 
     #[inline(always)]
     fn prefetch<T>(self, _: &T) {}
+}
+
+impl Compiled for Portable {
+    fn closest<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+        closest_with(self, tree, primitives, start)
+    }
+
+    fn any<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
+        any_with(self, tree, primitives, start)
+    }
+
+    fn run<J: Job>(self, job: J) -> J::Output {
+        job.run(self)
+    }
 
     fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
         closest_far_with(self, tree, primitives, start)

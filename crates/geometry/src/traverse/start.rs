@@ -14,9 +14,16 @@ pub(crate) trait Start: Copy {
     /// [`Query::origin`] and [`Query::direction`]; `scale` is [`Query::scale`].
     fn line(self, scale: f64) -> [Vec3<f64>; 2];
     /// [`Query::projection`]; `scale` is [`Query::scale`], `axis` that of the projection.
-    fn projection(self, scale: f64, axis: usize) -> Projection;
+    #[inline(always)]
+    fn projection(self, scale: f64, axis: usize) -> Projection {
+        let [origin, direction] = self.line(scale);
+        Projection::new(origin, direction, axis)
+    }
     /// A distance along the query's direction in the units of what it starts with; `scale` is [`Query::scale`].
-    fn distance(self, scale: f64, t: f64) -> f64;
+    #[inline(always)]
+    fn distance(self, scale: f64, t: f64) -> f64 {
+        t * scale
+    }
     /// [`Query::leaves`].
     fn leaves(self) -> PrimitiveId;
     /// [`Query::aims_at`].
@@ -85,17 +92,6 @@ impl<R: Real> Start for &Ray<R> {
     #[inline(always)]
     fn line(self, scale: f64) -> [Vec3<f64>; 2] {
         [self.origin.to_f64(), self.direction.to_f64() * scale]
-    }
-
-    #[inline(always)]
-    fn projection(self, scale: f64, axis: usize) -> Projection {
-        let [origin, direction] = self.line(scale);
-        Projection::new(origin, direction, axis)
-    }
-
-    #[inline(always)]
-    fn distance(self, scale: f64, t: f64) -> f64 {
-        t * scale
     }
 
     #[inline(always)]

@@ -1,8 +1,9 @@
 //! Eight floats of AVX2 as the filters of flat geometries want them.
 #![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
-use super::avx2::{Avx2, F8};
+use super::avx2::Avx2;
 use super::flat::{BLOCK, EXPONENT, Eight, TURN, Wide};
+use super::lanes256::F8;
 use super::vector::Vector;
 use crate::LANES;
 use std::arch::x86_64::*;

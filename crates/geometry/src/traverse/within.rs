@@ -1,6 +1,7 @@
 //! From the walk of a tree into what an instance places.
 
-use super::{Filters, LEVELS, any_on, closest_on, occludes};
+use super::compiled::Compiled;
+use super::{LEVELS, any_on, closest_on, occludes};
 use crate::Primitive;
 use crate::best::Best;
 use crate::frame::Entry;
@@ -11,7 +12,7 @@ use crate::wide::NODE_WIDTH;
 /// [`Best::test`] of an instance: the same, without a query where there is a tree to walk. The bounds, which cost more than what
 /// most rays that miss find out in the tree's root, are asked for only where there is a hit.
 #[inline(always)]
-pub(super) fn closest_within<F: Filters>(
+pub(super) fn closest_within<F: Compiled>(
     filters: F,
     best: &mut Best,
     portal: &Portal,
@@ -49,7 +50,7 @@ pub(super) fn closest_within<F: Filters>(
 
 /// [`occludes`] of an instance, likewise.
 #[inline(always)]
-pub(super) fn occludes_within<F: Filters>(
+pub(super) fn occludes_within<F: Compiled>(
     filters: F,
     portal: &Portal,
     primitives: &[Primitive],
