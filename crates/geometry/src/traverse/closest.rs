@@ -142,8 +142,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const MESH: bool, const N: usize
                         (leaf, lane),
                         primitives,
                         &mut query,
-                        &projection,
-                        frame_ray.t_scale,
+                        (&projection, frame_ray.t_scale),
                     );
                     if let Some((hit, id)) = last {
                         let t = start.distance(frame_ray.t_scale, hit.t);
@@ -244,8 +243,7 @@ fn decide_last<F: Filters, S: Start>(
     (leaf, lane): (u32, u32),
     primitives: &[Primitive],
     query: &mut Deferred<S>,
-    projection: &Projection,
-    t_scale: f64,
+    (projection, t_scale): (&Projection, f64),
 ) -> Option<(RawHit, PrimitiveId)> {
     let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
