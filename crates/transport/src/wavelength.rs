@@ -26,7 +26,7 @@ pub struct Wavelengths<const N: usize> {
 /// rough S·x̄/density is along that distribution. A density as bumpy as x̄ + ȳ + z̄ itself is nearer to what is integrated, and yet
 /// the worse choice: hence the blur.
 ///
-/// Every nanometre is divided evenly into whole numbers of cells of the same probability ([`crate::cells`]), so that its density is that
+/// Every nanometre is divided evenly into whole numbers of cells of the same probability (module `cells`), so that its density is that
 /// of the blurred sum to the nearest cell, and at least one cell's: what is linear between whole nanometres, as the
 /// matching functions and tabulated spectra are, is linear along a cell.
 #[derive(Clone, Debug)]
