@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+"""Renders Mitsuba scenes by Mitsuba 3 and, imported, by etalon, and holds the pictures against each other.
+
+    python3 docs/foreign-scenes.py [--etalon target/release/etalon] [--folder twins] [--spp 64] [NAME ...]
+
+Each scene is written as Mitsuba XML and, where pbrt can say the same, as pbrt too, which etalon renders as well: so what pbrt files become
+is held to Mitsuba's pictures by way of the same scene. `etalon compare` judges by the errors of both pictures; where the programs are
+known to differ, the scene says by how much they may. Needs `pip install mitsuba==3.9.1 OpenEXR numpy`.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+
+import numpy as np
+
+SIZE = (48, 36)
+PASSES = 16  # independent seeds behind each standard error of Mitsuba's
+
+# A ball over a floor under a lamp and a sky. `ball` and `floor` are materials of both programs, `sky` a light.
+XML = """<scene version="3.0.0">
+  <integrator type="path"><integer name="max_depth" value="12"/></integrator>
+  <sensor type="perspective"><float name="fov" value="30"/><string name="fov_axis" value="y"/>
+    <transform name="to_world"><lookat origin="0, 2, 6" target="0, 0.8, 0" up="0, 1, 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="{width}"/><integer name="height" value="{height}"/><rfilter type="box"/></film>
+    <sampler type="independent"><integer name="sample_count" value="{spp}"/></sampler></sensor>
+  {sky}
+  <shape type="rectangle"><transform name="to_world"><scale value="0.7"/><rotate x="1" angle="90"/><translate y="4"/></transform>
+    <bsdf type="diffuse"><float name="reflectance" value="0"/></bsdf><emitter type="area"><rgb name="radiance" value="8"/></emitter></shape>
+  <shape type="rectangle"><transform name="to_world"><scale value="4"/><rotate x="1" angle="-90"/></transform>{floor}</shape>
+  <shape type="sphere"><point name="center" x="0" y="1" z="0"/><float name="radius" value="1"/>{ball}</shape>
+</scene>
+"""
+# The same. The axes of pbrt are left-handed unless a transform mirrors. Light is of equal channels: what is grey here is grey there.
+PBRT = """Scale -1 1 1
+LookAt 0 2 6  0 0.8 0  0 1 0
+Film "rgb" "integer xresolution" {width} "integer yresolution" {height}
+Camera "perspective" "float fov" 30
+Sampler "independent" "integer pixelsamples" {spp}
+Integrator "path" "integer maxdepth" 11
+PixelFilter "box"
+WorldBegin
+{sky}
+AttributeBegin
+  Material "diffuse" "float reflectance" 0
+  AreaLightSource "diffuse" "rgb L" [ 8 8 8 ]
+  Shape "trianglemesh" "point3 P" [ -0.7 4 -0.7  0.7 4 -0.7  0.7 4 0.7  -0.7 4 0.7 ] "integer indices" [ 0 1 2 0 2 3 ]
+AttributeEnd
+AttributeBegin
+  {floor}
+  Shape "trianglemesh" "point3 P" [ -4 0 4  4 0 4  4 0 -4  -4 0 -4 ] "integer indices" [ 0 1 2 0 2 3 ] "point2 uv" [ 0 0 1 0 1 1 0 1 ]
+AttributeEnd
+{ball}
+Translate 0 1 0
+Shape "sphere" "float radius" 1
+"""
+
+GREY = ('<bsdf type="diffuse"><float name="reflectance" value="0.5"/></bsdf>', 'Material "diffuse" "float reflectance" 0.5')
+EVEN = (
+    '<emitter type="constant"><rgb name="radiance" value="0.3"/></emitter>',
+    'LightSource "infinite" "rgb L" [ 0.3 0.3 0.3 ]',
+)
+
+
+def rough_conductor(alpha):
+    return (
+        f'<bsdf type="roughconductor"><string name="distribution" value="ggx"/><float name="alpha" value="{alpha}"/>'
+        '<spectrum name="eta" value="0.2"/><spectrum name="k" value="3"/></bsdf>',
+        f'Material "conductor" "spectrum eta" [ 300 0.2 900 0.2 ] "spectrum k" [ 300 3 900 3 ] "float roughness" {alpha} '
+        '"bool remaproughness" false',
+    )
+
+
+def textured(alpha):
+    return (
+        '<bsdf type="roughconductor"><string name="distribution" value="ggx"/><spectrum name="eta" value="0.2"/>'
+        '<spectrum name="k" value="3"/><texture type="bitmap" name="alpha"><string name="filename" value="alpha.exr"/>'
+        '<boolean name="raw" value="true"/></texture></bsdf>',
+        'Texture "a" "float" "imagemap" "string filename" "alpha.exr" "string encoding" "linear"\n'
+        'Material "conductor" "spectrum eta" [ 300 0.2 900 0.2 ] "spectrum k" [ 300 3 900 3 ] "texture roughness" "a" '
+        '"bool remaproughness" false',
+    )
+
+
+# Ball, floor, sky, and why the pictures may differ. `None` for pbrt: it has no such thing, or means another.
+SCENES = {
+    "diffuse": (GREY, GREY, EVEN, None),
+    "rough-metal": (rough_conductor(0.1), GREY, EVEN, "facets are masked by G1·G1 there, height-correlated here"),
+    "rough-glass": (
+        (
+            '<bsdf type="roughdielectric"><string name="distribution" value="ggx"/><float name="alpha" value="0.1"/>'
+            '<float name="int_ior" value="1.5"/><float name="ext_ior" value="1"/></bsdf>',
+            'Material "dielectric" "float eta" 1.5 "float roughness" 0.1 "bool remaproughness" false',
+        ),
+        GREY,
+        EVEN,
+        "facets are masked by G1·G1 there, height-correlated here",
+    ),
+    "smooth-plastic": (
+        (
+            '<bsdf type="plastic"><float name="int_ior" value="1.5"/><float name="ext_ior" value="1"/>'
+            '<float name="diffuse_reflectance" value="0.5"/><boolean name="nonlinear" value="true"/></bsdf>',
+            'Material "coateddiffuse" "float reflectance" 0.5 "float eta" 1.5 "float roughness" 0',
+        ),
+        GREY,
+        EVEN,
+        None,
+    ),
+    "textured-metal": (GREY, textured(0.3), EVEN, "facets are masked by G1·G1 there, height-correlated here"),
+    "sky-image": (
+        GREY,
+        GREY,
+        ('<emitter type="envmap"><string name="filename" value="sky.exr"/></emitter>', None),
+        None,
+    ),
+}
+
+
+def write_exr(path, channels):
+    import OpenEXR
+
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with OpenEXR.File(header, {k: np.ascontiguousarray(v, np.float32) for k, v in channels.items()}) as file:
+        file.write(str(path))
+
+
+def images(folder):
+    rng = np.random.default_rng(7)
+    for name, texels in [("alpha.exr", rng.uniform(0.05, 0.5, (8, 8))), ("sky.exr", rng.uniform(0, 1, (6, 12)) ** 3)]:
+        write_exr(folder / name, {c: texels for c in "RGB"})
+
+
+def by_mitsuba(mi, scene, path, spp):
+    scene = mi.load_file(str(scene))
+    pictures = [np.array(mi.render(scene, spp=spp, seed=seed), np.float64)[..., 0] for seed in range(PASSES)]
+    mean, error = np.mean(pictures, 0), np.std(pictures, 0, ddof=1) / np.sqrt(PASSES)
+    write_exr(path, {c: mean for c in "RGB"} | {f"Error.{c}": error for c in "RGB"})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--etalon", default="target/release/etalon")
+    parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("twins"))
+    parser.add_argument("--spp", type=int, default=64)
+    args = parser.parse_args()
+
+    import mitsuba as mi
+
+    mi.set_variant("scalar_rgb")
+    mi.set_log_level(mi.LogLevel.Error)
+    args.folder.mkdir(parents=True, exist_ok=True)
+    images(args.folder)
+    wrong = []
+    for name, (ball, floor, sky, why) in SCENES.items():
+        if args.names and name not in args.names:
+            continue
+        xml, pbrt = args.folder / f"{name}.xml", args.folder / f"{name}.pbrt"
+        numbers = {"width": SIZE[0], "height": SIZE[1], "spp": args.spp * PASSES}
+        xml.write_text(XML.format(ball=ball[0], floor=floor[0], sky=sky[0], **numbers))
+        parts = (ball[1], floor[1], sky[1])
+        if None not in parts:
+            pbrt.write_text(PBRT.format(ball=parts[0], floor=parts[1], sky=parts[2], **numbers))
+        reference = args.folder / f"{name}-mitsuba.exr"
+        by_mitsuba(mi, xml, reference, args.spp)
+        for source in [xml] + ([pbrt] if None not in parts else []):
+            ours = args.folder / f"{name}-{source.suffix[1:]}.exr"
+            command = [args.etalon, "render", source, "-o", ours, "--quiet"]
+            subprocess.run(command, check=True, capture_output=True)
+            told = subprocess.run([args.etalon, "compare", ours, reference, "--json"], capture_output=True, text=True)
+            means = []
+            for picture in (ours, reference):
+                import OpenEXR
+
+                with OpenEXR.File(str(picture), separate_channels=True) as file:
+                    means.append(float(file.channels()["G"].pixels.mean()))
+            same = told.returncode == 0
+            verdict = "the same within noise" if same else f"differ: {why or 'AND NOTHING EXPLAINS IT'}"
+            print(f"{name} by {source.suffix[1:]}: mean {means[0] / means[1]:.4f} of Mitsuba's; {verdict}", flush=True)
+            if not same and why is None:
+                wrong.append(f"{name} by {source.suffix[1:]}")
+                print(json.dumps(json.loads(told.stdout), indent=1)[:1500] if told.stdout else told.stderr[:1500])
+    if wrong:
+        raise SystemExit(f"differ without a reason: {', '.join(wrong)}")
+
+
+if __name__ == "__main__":
+    main()
