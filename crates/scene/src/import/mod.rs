@@ -9,6 +9,8 @@ mod builder;
 mod gltf;
 mod gltf_animation;
 mod gltf_camera;
+mod gltf_file;
+mod gltf_image;
 mod gltf_material;
 mod matrix;
 mod mitsuba;
