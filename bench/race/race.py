@@ -34,6 +34,7 @@ EPS = 0.01
 ENTRIES = {
     "etalon": ("etalon", "cpu", {}, ()),
     "etalon-error-bars": ("etalon", "cpu", {"replicates": 4}, ()),
+    "etalon-path-reuse": ("etalon", "cpu", {"path-reuse": "4x4"}, ("prism", "prism-plain")),
     "mitsuba-spectral": ("mitsuba", "llvm_ad_spectral", {"sampler": "multijitter", "chunk": 1024}, ("prism",)),
     "mitsuba-rgb": ("mitsuba", "llvm_ad_rgb", {"sampler": "multijitter", "chunk": 1024}, ("prism",)),
     "mitsuba-mono": ("mitsuba", "llvm_ad_mono", {"sampler": "multijitter", "chunk": 1024}, ("cornell", "glass", "prism-plain", "dof", "mesh1m")),

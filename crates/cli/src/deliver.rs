@@ -293,6 +293,7 @@ fn error_info(film: &Film, error: &ImageError) -> ErrorInfo {
     let tile = error.noisiest.rect;
     ErrorInfo {
         replicates: film.replicates(),
+        correlated_pixels: film.correlated_pixels(),
         relative_rmse: error.relative_rmse,
         interval: error.interval,
         tail_index: error.tail_index,

@@ -1,7 +1,7 @@
 //! Settings of a scene that the command line may override.
 
 use clap::ValueEnum;
-use etalon_scene::{Bands, LightSampling, MOST_REPLICATES, Precision, SamplerKind, Scene};
+use etalon_scene::{Bands, LightSampling, MOST_REPLICATES, PathReuse, Precision, SamplerKind, Scene};
 use etalon_transport::{Carried, EffectName, PathLoop, Study};
 use miette::miette;
 
@@ -32,6 +32,9 @@ pub(crate) struct Overrides {
     /// How direct light is found.
     #[arg(long, value_enum)]
     light_sampling: Option<LightSamplingArg>,
+    /// Which neighbouring pixels share paths: less noise within each block, of which their errors then have a part in common.
+    #[arg(long, value_enum, value_name = "BLOCK")]
+    path_reuse: Option<PathReuseArg>,
     /// Most path edges from the camera to a light; 1 shows emitters only, 2 adds one bounce.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_depth: Option<u32>,
@@ -79,6 +82,32 @@ enum PrecisionArg {
     F32,
     /// 64-bit floating point.
     F64,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum PathReuseArg {
+    /// None.
+    None,
+    /// Blocks of 2 × 2 pixels.
+    #[value(name = "2x2")]
+    Block2x2,
+    /// Blocks of 4 × 2 pixels.
+    #[value(name = "4x2")]
+    Block4x2,
+    /// Blocks of 4 × 4 pixels.
+    #[value(name = "4x4")]
+    Block4x4,
+}
+
+impl From<PathReuseArg> for PathReuse {
+    fn from(arg: PathReuseArg) -> Self {
+        match arg {
+            PathReuseArg::None => Self::None,
+            PathReuseArg::Block2x2 => Self::Block2x2,
+            PathReuseArg::Block4x2 => Self::Block4x2,
+            PathReuseArg::Block4x4 => Self::Block4x4,
+        }
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -161,6 +190,9 @@ impl Overrides {
                 LightSamplingArg::Bsdf => LightSampling::Bsdf,
             };
         }
+        if let Some(path_reuse) = self.path_reuse {
+            integrator.path_reuse = path_reuse.into();
+        }
         if self.max_depth.is_some() {
             integrator.max_depth = self.max_depth;
         }
@@ -204,6 +236,7 @@ impl Overrides {
             ("precision", self.precision.and_then(word)),
             ("sampler", self.sampler.and_then(word)),
             ("light-sampling", self.light_sampling.and_then(word)),
+            ("path-reuse", self.path_reuse.and_then(word)),
             ("max-depth", self.max_depth.map(|depth| depth.to_string())),
             ("bands", self.bands.map(|BandsArg([first, last, step])| format!("{first}:{last}:{step}"))),
             ("force", names(&self.force)),

@@ -13,6 +13,8 @@ pub const ERROR_PREFIX: &str = "Error.";
 pub struct ErrorInfo {
     /// Independent replicates of each pixel.
     pub replicates: u32,
+    /// Most pixels whose errors have a part in common, because they share paths: 1 if none do.
+    pub correlated_pixels: u32,
     /// Root mean square over all pixels of the standard error of Y, in units of the mean Y.
     pub relative_rmse: f64,
     /// 95 % confidence interval of `relative_rmse`.
@@ -35,6 +37,10 @@ impl ErrorInfo {
             ("relativeRmseInterval".to_owned(), Attribute::Vec2(self.interval.map(|v| v as f32))),
             ("noisiestTile".to_owned(), Attribute::Text(tile)),
         ]);
+        if self.correlated_pixels > 1 {
+            let pixels = i32::try_from(self.correlated_pixels).unwrap_or(i32::MAX);
+            attributes.insert("correlatedPixels".to_owned(), Attribute::Int(pixels));
+        }
         if let Some(index) = self.tail_index {
             attributes.insert("tailIndex".to_owned(), Attribute::Float(index as f32));
         }
@@ -54,6 +60,10 @@ impl ErrorInfo {
         let tile: Option<Vec<u32>> = tile.split(',').map(|side| side.parse().ok()).collect();
         Some(Self {
             replicates: u32::try_from(*replicates).ok()?,
+            correlated_pixels: match attributes.get("correlatedPixels") {
+                Some(Attribute::Int(pixels)) => u32::try_from(*pixels).ok()?,
+                _ => 1,
+            },
             relative_rmse: float("relativeRmse")?,
             interval: interval.map(f64::from),
             tail_index: float("tailIndex"),
@@ -68,9 +78,10 @@ mod tests {
 
     #[test]
     fn what_attributes_say_is_read_back() {
-        for tail_index in [None, Some(0.25)] {
+        for (tail_index, correlated_pixels) in [(None, 1), (Some(0.25), 8)] {
             let info = ErrorInfo {
                 replicates: 4,
+                correlated_pixels,
                 relative_rmse: 0.5,
                 interval: [0.25, 1.0],
                 tail_index,

@@ -399,12 +399,39 @@ pub struct Integrator {
     pub light_selection: LightSelection,
     /// Wavelengths rendered: the first and the last, nm.
     pub wavelength_range_nm: [f64; 2],
+    /// Which neighbouring pixels share paths.
+    pub path_reuse: PathReuse,
     /// Scalar type of what each wavelength carries along a path.
     pub precision: Precision,
 }
 
 /// Most replicates that samples can be dealt to.
 pub const MOST_REPLICATES: u32 = 64;
+
+/// Which neighbouring pixels share paths: blocks, counted from the upper left corner of the film.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathReuse {
+    /// None.
+    None,
+    /// 2 × 2 pixels.
+    Block2x2,
+    /// 4 × 2 pixels.
+    Block4x2,
+    /// 4 × 4 pixels.
+    Block4x4,
+}
+
+impl PathReuse {
+    /// Width and height of a block, pixels.
+    pub fn block_px(self) -> Option<[u32; 2]> {
+        match self {
+            Self::None => None,
+            Self::Block2x2 => Some([2, 2]),
+            Self::Block4x2 => Some([4, 2]),
+            Self::Block4x4 => Some([4, 4]),
+        }
+    }
+}
 
 /// Number sequence that drives the estimates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

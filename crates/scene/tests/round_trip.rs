@@ -44,6 +44,7 @@ fn camera_film_and_integrator() {
             light_sampling: LightSampling::Light,
             light_selection: LightSelection::Power,
             wavelength_range_nm: [380.0, 780.0],
+            path_reuse: PathReuse::Block4x2,
             precision: Precision::F32,
         }
     );
@@ -64,6 +65,7 @@ fn defaults() {
             light_sampling: LightSampling::Mis,
             light_selection: LightSelection::Auto,
             wavelength_range_nm: [360.0, 830.0],
+            path_reuse: PathReuse::None,
             precision: Precision::F64,
         }
     );

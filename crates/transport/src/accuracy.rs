@@ -1,8 +1,8 @@
 //! How wrong a film is, by the scatter of its independent replicates.
 //!
 //! The relative error of a picture is E = √(mean over pixels of Var(Y)) / mean Y: the root mean square over all pixels of
-//! the standard error of luminance, in units of the picture's own mean luminance. Pixels are independent of each other, so
-//! the mean of many poorly known variances is well known.
+//! the standard error of luminance, in units of the picture's own mean luminance. Pixels are independent of each other (or in blocks, where
+//! they share paths), so the mean of many poorly known variances is well known.
 
 use crate::film::{Film, Pixel, PixelRect, XyzSum};
 use std::f64::consts::PI;
@@ -240,7 +240,9 @@ impl Film {
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         Some(ImageError {
             relative_rmse,
-            interval: interval(relative_rmse, all.uncertainty()),
+            // ln E is, to first order, a sum over pixels: among B of them with a common part of error its variance is at most B times
+            // that of independent ones (Cauchy and Schwarz).
+            interval: interval(relative_rmse, all.uncertainty() * f64::from(self.correlated_pixels()).sqrt()),
             mean_y: all.mean_y(),
             tail_index: all.tail_index(),
             pixel_tail_index: all.pixel_tail_index(),

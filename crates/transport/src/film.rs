@@ -132,6 +132,8 @@ pub struct Film {
     height: u32,
     replicates: u32,
     bands: u32,
+    /// Most pixels whose errors have a part in common.
+    correlated: u32,
     /// Pixel by pixel, in each replicate by replicate.
     sums: Vec<XyzSum>,
     /// The same of the other Stokes parameters; empty if they are not recorded.
@@ -156,11 +158,22 @@ impl Film {
             height,
             replicates,
             bands,
+            correlated: 1,
             sums: vec![XyzSum::default(); number],
             stokes: Vec::new(),
             band_sums: vec![BandSum::default(); number * bands as usize],
             counters: Counters::default(),
         }
+    }
+
+    /// The same, of pixels that share paths in blocks of this width and height, if any do: their errors are not independent.
+    pub fn sharing(self, block: Option<[u32; 2]>) -> Self {
+        Self { correlated: block.map_or(1, |[width, height]| width * height), ..self }
+    }
+
+    /// Most pixels whose errors have a part in common: 1 if the errors of all pixels are independent.
+    pub fn correlated_pixels(&self) -> u32 {
+        self.correlated
     }
 
     /// Width in pixels.

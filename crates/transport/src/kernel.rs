@@ -16,6 +16,7 @@ use crate::polarisation::Followed;
 use crate::polarisation::{Averaged, Polarisation};
 use crate::prepare::Prepared;
 use crate::replay::{Replay, replay};
+use crate::reuse;
 use crate::sampler::Sampler;
 use crate::surface::Scattering;
 use crate::wavelength::Wavelengths;
@@ -68,6 +69,8 @@ pub(crate) struct Kernel {
     pub render: RenderTile,
     /// The same, bit for bit, by many paths at once, where there is that.
     pub render_lanes: Option<RenderSpots>,
+    /// One path at a time where neighbouring pixels share paths.
+    pub render_reused: Option<RenderSpots>,
     /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
     /// Tells what casters of caustics would win.
@@ -121,13 +124,25 @@ const fn entry<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
 ) -> Kernel {
     let (render, replay) = (render_tile::<R, M, P, N>, replay::<R, M, P, N>);
     let try_casters = try_casters::<R, M, P, N>;
-    Kernel { precision, lanes, lane_count: N, polarised: false, name, render, render_lanes: None, replay, try_casters }
+    Kernel {
+        precision,
+        lanes,
+        lane_count: N,
+        polarised: false,
+        name,
+        render,
+        render_lanes: None,
+        replay,
+        try_casters,
+        render_reused: None,
+    }
 }
 
 /// One that can also follow many paths at once.
 const fn with_lanes<M: WavelengthModel<f64, N>, const N: usize>(lanes: LaneModel, name: &'static str) -> Kernel {
     Kernel {
         render_lanes: Some(render_spots_lanes::<M, N>),
+        render_reused: Some(reuse::render_spots::<M, N>),
         ..entry::<f64, M, Averaged, N>(Precision::F64, lanes, name)
     }
 }
@@ -207,6 +222,8 @@ pub(crate) struct Tracer<'a> {
     pub(crate) world: World<'a>,
     /// Whether paths have times.
     moves: bool,
+    /// The block of pixels that share paths: alone, one.
+    block: [u32; 2],
 }
 
 impl<'a> Tracer<'a> {
@@ -217,6 +234,7 @@ impl<'a> Tracer<'a> {
             prepared,
             camera: prepared.tracing_camera(),
             moves: plan.runs(EffectName::Motion),
+            block: prepared.path_reuse().unwrap_or([1, 1]),
             world: World {
                 geometry: &prepared.geometry,
                 surfaces: &prepared.surfaces,
@@ -230,6 +248,8 @@ impl<'a> Tracer<'a> {
                 weigh_hits: prepared.lights.can_be_met() || plan.runs(EffectName::Mis),
                 max_depth: integrator.max_depth.unwrap_or(MOST_VERTICES).min(MOST_VERTICES),
                 roulette: integrator.roulette,
+                tables: &prepared.tables,
+                plain_skies: prepared.environments.iter().all(|sky| sky.light.is_none()),
                 casters: &prepared.casters,
             },
         }
@@ -239,6 +259,13 @@ impl<'a> Tracer<'a> {
         let integrator = &self.prepared.scene.integrator;
         let pixel = u64::from(y) << 32 | u64::from(x);
         Sampler::new(integrator.sampler, integrator.seed, pixel, sample, integrator.replicates)
+    }
+
+    /// The sampler of what the pixels of a block have in common.
+    #[inline]
+    pub(crate) fn of_block(&self, x: u32, y: u32, sample: u32) -> Sampler {
+        let [width, height] = self.block;
+        self.sampler(x / width * width, y / height * height, sample)
     }
 
     /// The point of the film, in [−1, 1]², that two numbers draw for a pixel.
@@ -320,7 +347,7 @@ impl<'a> Tracer<'a> {
         let sampler = self.sampler(x, y, sample);
 
         let wavelengths = M::wavelengths(self.prepared, || {
-            let [wavelength, ..] = sampler.set(1);
+            let [wavelength, ..] = self.of_block(x, y, sample).set(1);
             wavelength
         });
         let (ray, inside) = self.camera_ray(x, y, &sampler, counters);

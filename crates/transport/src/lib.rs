@@ -56,6 +56,7 @@ mod probe;
 mod relief;
 pub mod render;
 pub mod replay;
+mod reuse;
 mod round;
 pub mod sampler;
 mod shapes;

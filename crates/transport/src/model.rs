@@ -33,6 +33,12 @@ pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
     /// The mean of the lanes' own densities of a step, each weighed by its density of the path so far.
     fn mean_density(&self, density: Lanes<R, N>) -> f64;
 
+    /// Whether all lanes have had the hero's densities so far.
+    #[inline(always)]
+    fn together(&self) -> bool {
+        true
+    }
+
     /// The balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5): N / Σ densities.
     fn weight(&self) -> R;
 
@@ -149,6 +155,11 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
 
 impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
     const CARRIES_WEIGHTS: bool = true;
+
+    #[inline(always)]
+    fn together(&self) -> bool {
+        self.0 == Lanes::ONE
+    }
 
     #[inline(always)]
     fn start() -> Self {

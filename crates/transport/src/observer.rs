@@ -1,6 +1,7 @@
 //! Watching a single path, for replays and for counting; costs nothing when nobody watches.
 
 use crate::caustics::Mixture;
+use crate::reuse::Gathered;
 use etalon_optics::{Lanes, Real, Vec3};
 
 /// What ended a path.
@@ -28,6 +29,11 @@ pub(crate) trait Observer<R: Real, const N: usize> {
     fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<R, N>) {}
     /// A direction is drawn from a mixture.
     fn direction(&mut self, _mixture: &Mixture) {}
+    /// What the path brings into its block, where neighbouring pixels share paths.
+    #[inline(always)]
+    fn gathers(&mut self) -> Option<&mut Gathered<R, N>> {
+        None
+    }
     /// The path ends.
     fn end(&mut self, _end: End) {}
 }

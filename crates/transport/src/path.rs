@@ -18,6 +18,7 @@ use crate::absorption::{Absorption, Body};
 use crate::bsdf::Lobe;
 use crate::caustics::Casters;
 use crate::compiled;
+use crate::engine::Tables;
 use crate::film::Counters;
 use crate::light::{Environment, LightSample, LightTable, Target};
 use crate::media::{Inside, Media, Met};
@@ -60,6 +61,10 @@ pub(crate) struct World<'a> {
     /// Most path edges from the camera to a light, at most [`MOST_VERTICES`].
     pub max_depth: u32,
     pub roulette: bool,
+    /// What objects do, by heart.
+    pub tables: &'a Tables,
+    /// Whether no shadow ray aims at any of the skies.
+    pub plain_skies: bool,
     /// What diffuse surfaces draw directions toward.
     pub casters: &'a Casters,
 }
@@ -138,6 +143,9 @@ impl World<'_> {
                 if let Some(absorption) = &self.absorption {
                     beta *= absorption.transmittance(body, self.media, &inside, lambda_nm, f64::INFINITY);
                 }
+                if let Some(gathered) = observer.gathers().filter(|gathered| gathered.has_left()) {
+                    gathered.escape(ray.direction, self.plain_skies);
+                }
                 let environments = if compiled::ENVIRONMENT { self.environments } else { &[] };
                 for sky in environments {
                     counters.environment_lookups += 1;
@@ -172,6 +180,9 @@ impl World<'_> {
                 let light = polarisation.receive(beta * emitter.lanes(lambda_nm) * (lane_weight * R::from_f64(mis)));
                 observer.light(vertex, Found::Emitter, light);
                 radiance += light;
+            }
+            if let Some(gathered) = observer.gathers().filter(|gathered| gathered.has_left()) {
+                gathered.arrive(&point, wo, self.tables.is_diffuse(surface.object), &mut radiance);
             }
             let opacity =
                 if compiled::MASKS && self.masks { surface.opacity(self.geometry, &point, &hit) } else { 1.0 };
@@ -253,6 +264,12 @@ impl World<'_> {
                 // Shown to the film, which counts and locates it.
                 observer.end(End::NonFinite);
                 return beta;
+            }
+            if !matches!(next.density, Density::Delta)
+                && let Some(gathered) = observer.gathers().filter(|gathered| gathered.begins())
+            {
+                let diffuse = self.tables.is_diffuse(surface.object) && lanes.together();
+                gathered.leave(vertex, &point, wo, diffuse, (&mut radiance, &mut beta, &mut eta_squared));
             }
             let throughput = (beta.max_lane() * lanes.weight()).to_f64() * eta_squared;
             if throughput < THROUGHPUT_FLOOR {

@@ -332,6 +332,11 @@ impl Prepared {
         self.plan.runs(EffectName::Absorption).then(|| Absorption { unit_m: 1.0 / self.frame.per_m() })
     }
 
+    /// Width and height of the blocks of pixels that share paths, if any do.
+    pub fn path_reuse(&self) -> Option<[u32; 2]> {
+        self.plan.path_reuse
+    }
+
     /// From which surfaces shadow rays are sent.
     pub(crate) fn shadow_rays(&self) -> ShadowRays {
         match () {

@@ -77,7 +77,8 @@ impl Prepared {
     /// A black film for this scene.
     pub fn film(&self) -> Film {
         let film = &self.scene.film;
-        let film = Film::with_bands(film.width, film.height, self.scene.integrator.replicates, self.band_sums());
+        let film = Film::with_bands(film.width, film.height, self.scene.integrator.replicates, self.band_sums())
+            .sharing(self.path_reuse());
         if self.records_stokes() { film.recording_stokes() } else { film }
     }
 
@@ -110,7 +111,7 @@ impl Prepared {
     /// Adds samples to a tile, by the loop that the plan chose: to the sums of its pixels, row by row, in each replicate by
     /// replicate.
     pub(crate) fn render_tile(&self, tile: PixelRect, samples: Range<u32>, sums: Sums<'_>) -> Counters {
-        match self.lanes() {
+        match self.spots() {
             None => (self.kernel().render)(self, tile, samples, sums),
             Some(render) => render(self, &Spot::of_tile(tile, &samples), sums, &mut []),
         }
@@ -119,7 +120,7 @@ impl Prepared {
     /// Adds samples to spots without bands, and the rays of all kinds that each took to `rays`.
     pub(crate) fn render_spots(&self, spots: &[Spot], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
         let sums = |xyz| Sums { xyz, stokes: &mut [], bands: &mut [] };
-        if let Some(render) = self.lanes() {
+        if let Some(render) = self.spots() {
             return render(self, spots, sums(xyz), rays);
         }
         let mut counters = Counters::default();
@@ -133,9 +134,12 @@ impl Prepared {
         counters
     }
 
-    /// The loop that follows many paths at once, if the plan chose it.
-    fn lanes(&self) -> Option<RenderSpots> {
+    /// The loop that takes spots, if the plan chose one: that over many paths at once, or the plain one where pixels share paths.
+    fn spots(&self) -> Option<RenderSpots> {
         match self.plan().path_loop.name {
+            PathLoop::Plain if self.path_reuse().is_some() => {
+                Some(self.kernel().render_reused.expect("the plan knows which kernels have it"))
+            }
             PathLoop::Plain => None,
             PathLoop::Lanes => Some(self.kernel().render_lanes.expect("the plan knows which kernels have it")),
         }

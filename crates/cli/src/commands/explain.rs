@@ -146,6 +146,7 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
         ("bounces", format!("{depth}, {roulette}")),
         ("light sampling", plan.light_sampling.to_owned()),
         ("choice of lights", choice),
+        ("path reuse", plan.path_reuse.map_or("none".to_owned(), |[w, h]| format!("among blocks of {w} × {h} pixels"))),
         ("numbers", plan.sampler.to_owned()),
     ]
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use etalon_transport::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
 use etalon_transport::price::next_step;
 use etalon_transport::{Pilot, PixelRect, Price, prepare_study};
-use miette::Report;
+use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::args::percentage;
@@ -109,6 +109,13 @@ pub(crate) fn run(args: Args) -> Outcome {
     let prepared = prepare_study(&loaded.scene, &args.overrides.study())
         .map_err(|error| Failure::input(Report::from_err(error)))?;
     let prepare_seconds = clock.seconds();
+    if prepared.path_reuse().is_some() {
+        return Err(Failure::input(miette!(
+            code = "path-reuse",
+            help = "leave out --path-reuse",
+            "a quote is made from single paths, and where neighbouring pixels share paths none stands alone"
+        )));
+    }
 
     let film = &loaded.scene.film;
     let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };

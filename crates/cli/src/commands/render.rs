@@ -237,6 +237,15 @@ fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
             return Err(failure);
         }
     };
+    if prepared.path_reuse().is_some()
+        && (args.error.is_some() || args.adaptive == Adaptive::Always || args.pixel.is_some())
+    {
+        failure.add(Failure::input(miette!(
+            code = "path-reuse",
+            help = "leave out --path-reuse, or give --spp or --time",
+            "where neighbouring pixels share paths, no path stands alone: --error, --adaptive always and --pixel trace single ones"
+        )));
+    }
     std::mem::take(&mut failure).into_outcome()?;
     let mut warnings = std::mem::take(&mut loaded.warnings);
     warnings.extend(

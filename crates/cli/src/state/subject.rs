@@ -95,7 +95,8 @@ impl Subject {
 
     /// A black film of this picture.
     pub(crate) fn film(&self) -> Film {
-        let film = Film::with_bands(self.size[0], self.size[1], self.replicates, self.band_sums());
+        let block = serde_json::from_value(self.plan["path_reuse"].clone()).ok();
+        let film = Film::with_bands(self.size[0], self.size[1], self.replicates, self.band_sums()).sharing(block);
         if self.records_stokes() { film.recording_stokes() } else { film }
     }
 

@@ -2,7 +2,7 @@
 
 use super::spectrum::Wavelength;
 use crate::json::{Code, Nullable, Reader, Required, Spanned, Whole};
-use crate::model::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, Precision, SamplerKind};
+use crate::model::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, Precision, SamplerKind};
 
 crate::record! {
     /// How to integrate. The command line may override each key.
@@ -26,6 +26,8 @@ crate::record! {
         light_selection: Required<LightSelection> = r#""auto""#,
         /// First and last wavelength rendered, nm.
         wavelength_range_nm: Required<Spanned<[Wavelength; 2]>> = "[360, 830]",
+        /// Which neighbouring pixels share paths.
+        path_reuse: Required<PathReuse> = r#""none""#,
         /// Scalar type of the kernel.
         precision: Required<Precision> = r#""f64""#,
     }
@@ -54,6 +56,17 @@ crate::keywords!(LightSelection {
     "power" => Self::Power,
     /// By a tree over where they are and where they shine, for each point anew.
     "tree" => Self::Tree,
+});
+
+crate::keywords!(PathReuse {
+    /// None: the errors of pixels are independent.
+    "none" => Self::None,
+    /// Blocks of 2 × 2 pixels.
+    "2x2" => Self::Block2x2,
+    /// Blocks of 4 × 2 pixels.
+    "4x2" => Self::Block4x2,
+    /// Blocks of 4 × 4 pixels.
+    "4x4" => Self::Block4x4,
 });
 
 crate::keywords!(Precision {
@@ -98,6 +111,7 @@ pub(crate) fn integrator(form: &IntegratorForm, wavelength_range_nm: Option<[f64
         light_sampling: form.light_sampling?,
         light_selection: form.light_selection?,
         wavelength_range_nm: wavelength_range_nm?,
+        path_reuse: form.path_reuse?,
         precision: form.precision?,
     })
 }

@@ -7,6 +7,7 @@
 //! Whatever has no row form, such as rough metals or lights other than flat ones, is asked path by path of the very functions
 //! of the plain loop.
 
+mod blocks;
 mod casters;
 mod direct;
 mod lamps;
@@ -28,7 +29,9 @@ use crate::model::WavelengthModel;
 use crate::path::World;
 use crate::plan::EffectName;
 use crate::prepare::Prepared;
+use crate::reuse::Blocks;
 use crate::wavelength::Wavelengths;
+use blocks::Dealing;
 use direct::Sight;
 use etalon_optics::Lanes;
 use etalon_scene::Precision;
@@ -71,18 +74,34 @@ fn render_on<M: WavelengthModel<f64, N>, const N: usize>(
     rays: &mut [u64],
 ) -> Counters {
     let tracer = Tracer::new(prepared);
+    let film = &prepared.scene.film;
+    let blocks = prepared.path_reuse().map(|block| Blocks::of(spots, block, [film.width, film.height]));
+    let cursor = match &blocks {
+        None => Cursor::new(spots, &[]),
+        Some(blocks) => Cursor::new(&blocks.spots, &blocks.mates),
+    };
+    // Where paths are shared, others than those that end there add to the sums.
+    let nothing = Sums { xyz: &mut [], stokes: &mut [], bands: &mut [] };
+    let (dealing, finished) = match &blocks {
+        None => (None, Finished::new(cursor.clone(), prepared, sums, rays)),
+        Some(blocks) => (
+            Some(Dealing::new(blocks, cursor.window(), prepared, sums, rays)),
+            Finished::new(cursor.clone(), prepared, nothing, &mut []),
+        ),
+    };
     let mut engine = Engine::<M, N> {
         prepared,
         world: &tracer.world,
         tables: &prepared.tables,
         level,
         counters: Counters::default(),
-        paths: Paths::new(tracer.sampler(0, 0, 0)),
+        paths: Paths::new(tracer.sampler(0, 0, 0), blocks.is_some()),
         sight: Sight::new(),
         seen: [[Lanes::ZERO; 3]; W],
-        finished: Finished::new(Cursor::new(spots), prepared, sums, rays),
+        finished,
+        dealing,
     };
-    let mut starts = Starts::new(&tracer, Cursor::new(spots));
+    let mut starts = Starts::new(&tracer, cursor);
     trace::<M, N>(level, &mut engine, &mut starts);
     engine.counters
 }
@@ -112,6 +131,8 @@ struct Engine<'a, M, const N: usize> {
     /// What the lanes of paths that ended add to the film.
     seen: [[Lanes<f64, N>; 3]; W],
     finished: Finished<'a, N>,
+    /// Where neighbouring pixels share paths.
+    dealing: Option<Dealing<'a, N>>,
 }
 
 impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
@@ -146,6 +167,9 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
     /// Takes what ended paths have gathered.
     #[inline(always)]
     fn end(&mut self, ended: Mask) {
+        if self.paths.shares {
+            return self.end_shared(ended);
+        }
         // In two loops, of which the first becomes vector instructions.
         for lane in lanes(ended) {
             self.seen[lane] = M::seen(self.prepared, &self.paths.wavelengths[lane], self.paths.radiance[lane]);

@@ -5,6 +5,7 @@ use super::tables::{Form, SLOTS, Slot, Tables};
 #[cfg(test)]
 use super::tests::{Fault, is_wrong};
 use crate::model::WavelengthModel;
+use crate::reuse::Gathered;
 use crate::sampler::{Sampler, Samplers};
 use crate::spectral::PathSpectrum;
 use crate::surface::Scattering;
@@ -41,6 +42,9 @@ pub(super) struct Paths<'a, M, const N: usize> {
     pub parted: Mask,
     pub wavelengths: [Wavelengths<N>; W],
     pub known: Known<N>,
+    /// Whether neighbouring pixels share paths, and then what each path brings in.
+    pub shares: bool,
+    pub gathered: [Gathered<f64, N>; W],
     /// The vertex that each path is at.
     pub at: Vertices<'a>,
 }
@@ -55,6 +59,8 @@ pub(super) struct Vertices<'a> {
     pub position: Rows3,
     pub error: Row,
     pub normal: Rows3,
+    /// Of which objects they are.
+    pub object: [u32; W],
     /// What they do to light.
     pub form: [Form; W],
     /// That of those without a row form.
@@ -85,7 +91,7 @@ impl Vertices<'_> {
 
 impl<M: WavelengthModel<f64, N>, const N: usize> Paths<'_, M, N> {
     /// None yet; numbers will be drawn by samplers of the kind of this one.
-    pub(super) fn new(sampler: Sampler) -> Self {
+    pub(super) fn new(sampler: Sampler, shares: bool) -> Self {
         let nowhere = SurfaceId::from(PrimitiveId::NONE);
         Self {
             alive: 0,
@@ -106,6 +112,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Paths<'_, M, N> {
             parted: 0,
             wavelengths: [Wavelengths::fixed([0.0; N]); W],
             known: Known::new(),
+            shares,
+            gathered: [Gathered::NOTHING; W],
             at: Vertices {
                 t: Row::ZERO,
                 surface: [nowhere; W],
@@ -114,6 +122,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Paths<'_, M, N> {
                 position: Rows3::ZERO,
                 error: Row::ZERO,
                 normal: Rows3::ZERO,
+                object: [0; W],
                 form: [Form::Other; W],
                 scattering: [const { None }; W],
             },

@@ -142,6 +142,14 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 paths.radiance[lane] = beta;
                 continue;
             }
+            if paths.shares && matches!(density, Density::SolidAngle(_)) && paths.gathered[lane].begins() {
+                let diffuse =
+                    self.tables.objects[paths.at.object[lane] as usize].diffuse && paths.model[lane].together();
+                let (point, wo) = (paths.at.point(lane), -paths.direction.at(lane));
+                let state = (&mut paths.radiance[lane], &mut paths.beta[lane], &mut paths.eta_squared.0[lane]);
+                paths.gathered[lane].leave(paths.vertex[lane], &point, wo, diffuse, state);
+            }
+            let beta = paths.beta[lane];
             let throughput = (beta.max_lane() * paths.model[lane].weight()) * paths.eta_squared.0[lane];
             if throughput < THROUGHPUT_FLOOR {
                 continue;

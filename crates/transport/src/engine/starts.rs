@@ -9,6 +9,7 @@ use crate::compiled;
 use crate::film::Counters;
 use crate::kernel::Tracer;
 use crate::model::WavelengthModel;
+use crate::reuse::Gathered;
 use crate::sampler::{Samplers, Wanted};
 use crate::wavelength::Wavelengths;
 use etalon_geometry::SurfaceId;
@@ -63,17 +64,25 @@ impl<'a, const N: usize> Starts<'a, N> {
     #[inline(always)]
     fn fill<M: WavelengthModel<f64, N>>(&mut self, level: Level, counters: &mut Counters) {
         (self.count, self.next) = (0, 0);
-        let (mut x, mut y) = ([0; W], [0; W]);
+        let (mut x, mut y, mut samples) = ([0; W], [0; W], [0; W]);
         for (lane, place) in self.cursor.by_ref().take(W).enumerate() {
             self.samplers.put(lane, self.tracer.sampler(place.x, place.y, place.sample));
-            (x[lane], y[lane]) = (place.x, place.y);
+            (x[lane], y[lane], samples[lane]) = (place.x, place.y, place.sample);
             self.count += 1;
         }
         if self.count == 0 {
             return;
         }
         let mut numbers = [[0.0; W]; 4];
-        camera_numbers(level, &self.samplers, 1, [true, false, false, false], &mut numbers);
+        if self.tracer.prepared.path_reuse().is_some() {
+            let mut of_blocks = self.samplers.clone();
+            for lane in 0..self.count {
+                of_blocks.put(lane, self.tracer.of_block(x[lane], y[lane], samples[lane]));
+            }
+            camera_numbers(level, &of_blocks, 1, [true, false, false, false], &mut numbers);
+        } else {
+            camera_numbers(level, &self.samplers, 1, [true, false, false, false], &mut numbers);
+        }
         for lane in 0..self.count {
             self.wavelengths[lane] = M::wavelengths(self.tracer.prepared, || numbers[0][lane]);
         }
@@ -110,6 +119,9 @@ impl<'a, const N: usize> Starts<'a, N> {
         paths.radiance[lane] = Lanes::ZERO;
         paths.model[lane] = M::start();
         paths.parted &= !(1 << lane);
+        if paths.shares {
+            paths.gathered[lane] = Gathered::NOTHING;
+        }
         paths.wavelengths[lane] = self.wavelengths[start];
         paths.known.forget(lane, &self.wavelengths[start].lambda_nm);
     }

@@ -22,14 +22,20 @@ pub(super) struct Place {
 #[derive(Clone, Debug)]
 pub(super) struct Cursor<'a> {
     spots: &'a [Spot],
+    /// How many spots take turns that begin there, sample by sample; empty if each is alone.
+    mates: &'a [usize],
+    /// Those whose turn it is: the first, and the one after the last.
+    group: [usize; 2],
     next: Place,
     left: u64,
 }
 
 impl<'a> Cursor<'a> {
-    pub(super) fn new(spots: &'a [Spot]) -> Self {
+    /// Of spots of which `mates` tells who take turns: they have the same samples.
+    pub(super) fn new(spots: &'a [Spot], mates: &'a [usize]) -> Self {
         let left = spots.iter().map(|spot| u64::from(spot.count())).sum();
-        let mut cursor = Self { spots, next: Place { spot: 0, x: 0, y: 0, sample: 0 }, left };
+        let next = Place { spot: 0, x: 0, y: 0, sample: 0 };
+        let mut cursor = Self { spots, mates, group: [0; 2], next, left };
         cursor.go_to(0);
         cursor
     }
@@ -45,6 +51,7 @@ impl<'a> Cursor<'a> {
         for (spot, Spot { x, y, samples }) in self.spots.iter().enumerate().skip(first) {
             if !samples.is_empty() {
                 self.next = Place { spot, x: *x, y: *y, sample: samples.start };
+                self.group = [spot, spot + self.mates.get(spot).copied().unwrap_or(1)];
                 return;
             }
         }
@@ -58,9 +65,19 @@ impl Iterator for Cursor<'_> {
     fn next(&mut self) -> Option<Place> {
         self.left = self.left.checked_sub(1)?;
         let place = self.next;
-        self.next.sample += 1;
-        if self.next.sample == self.spots[place.spot].samples.end {
-            self.go_to(place.spot + 1);
+        let [first, end] = self.group;
+        if place.spot + 1 < end {
+            self.next.spot += 1;
+        } else {
+            self.next.spot = first;
+            self.next.sample += 1;
+            if self.next.sample == self.spots[first].samples.end {
+                self.go_to(end);
+                return Some(place);
+            }
+        }
+        if end - first > 1 {
+            (self.next.x, self.next.y) = (self.spots[self.next.spot].x, self.spots[self.next.spot].y);
         }
         Some(place)
     }

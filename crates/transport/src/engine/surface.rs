@@ -53,6 +53,9 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         let paths = &mut self.paths;
         let environments = if compiled::ENVIRONMENT { self.world.environments } else { &[] };
         for lane in lanes(escaped) {
+            if paths.shares && paths.gathered[lane].has_left() {
+                paths.gathered[lane].escape(paths.direction.at(lane), self.world.plain_skies);
+            }
             for (index, sky) in environments.iter().enumerate() {
                 self.counters.environment_lookups += 1;
                 let direction = paths.direction.at(lane);
@@ -101,6 +104,10 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     paths.radiance[lane] += light;
                 }
             }
+            if paths.shares && paths.gathered[lane].has_left() {
+                let (point, wo) = (paths.at.point(lane), -paths.direction.at(lane));
+                paths.gathered[lane].arrive(&point, wo, record.diffuse, &mut paths.radiance[lane]);
+            }
             let vertex = paths.vertex[lane];
             if vertex + 1 >= world.max_depth || vertex + 1 == MOST_VERTICES {
                 self.counters.cut_paths += u64::from(vertex + 1 == MOST_VERTICES);
@@ -116,6 +123,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
             };
             shared |= Mask::from(useful) << lane;
             paths.at.form[lane] = record.form;
+            paths.at.object[lane] = object;
             if record.form == Form::Other {
                 let point = paths.at.point(lane);
                 let surface = world.surfaces.of(&point);

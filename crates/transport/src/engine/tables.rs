@@ -43,6 +43,8 @@ pub(super) struct SmoothInterface {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ObjectRecord {
     pub form: Form,
+    /// Whether it reflects as Lambert's law says, around its own normals.
+    pub diffuse: bool,
     /// Whether shadow rays are of use.
     pub solid_angle_part: bool,
     /// Whether it emits.
@@ -109,6 +111,14 @@ impl Tables {
     }
 }
 
+impl Tables {
+    /// Whether an object reflects as Lambert's law says, around its own normals.
+    #[inline(always)]
+    pub(crate) fn is_diffuse(&self, object: u32) -> bool {
+        self.objects[object as usize].diffuse
+    }
+}
+
 fn form(bsdf: &Bsdf, spectra: &mut Vec<PathSpectrum>, interfaces: &mut Vec<SmoothInterface>) -> Form {
     let of = |known: Slot, form: fn(u8) -> Form| known.map_or(Form::Other, form);
     match bsdf {
@@ -138,6 +148,7 @@ fn record(
     let emission = object.emission.as_ref();
     ObjectRecord {
         form: if bends { Form::Other } else { forms[object.material] },
+        diffuse: !bends && matches!(surfaces.bsdfs[object.material], Bsdf::Lambert(_)),
         solid_angle_part: surfaces.bsdfs[object.material].has_solid_angle_part(),
         emits: emission.is_some(),
         emission: emission.and_then(|emission| slot(&emission.radiance, spectra)),

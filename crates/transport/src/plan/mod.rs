@@ -264,6 +264,8 @@ pub struct Plan {
     pub lanes: usize,
     /// How paths are traced.
     pub path_loop: ChosenLoop,
+    /// Width and height of the blocks of pixels that share paths, if any do.
+    pub path_reuse: Option<[u32; 2]>,
     /// Range of the wavelengths, nm.
     pub wavelength_range_nm: [f64; 2],
     /// Number sequence.
@@ -282,17 +284,21 @@ pub struct Plan {
     pub approximations: Vec<String>,
 }
 
-/// Many paths at once where that is covered, unless the study wants otherwise.
-fn chosen_loop(kernel: &Kernel, runs: impl Fn(EffectName) -> bool, study: &Study) -> Result<ChosenLoop, StudyError> {
-    let hindrance = match kernel.render_lanes {
+/// Why neither the loop over many paths at once nor what it has in common with the reuse of paths covers a scene; `None` if they do.
+fn hindrance_of(kernel: &Kernel, runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
+    match kernel.render_lanes {
         Some(_) => hindrance(runs, kernel.precision),
         None if kernel.precision == Precision::F64 && kernel.polarised => {
             Some("light is followed with its polarisation")
         }
         None if kernel.precision == Precision::F64 => Some("a study decides what paths carry"),
         None => hindrance(runs, kernel.precision),
-    };
-    match (study.path_loop, hindrance) {
+    }
+}
+
+/// Many paths at once where that is covered, unless the study wants otherwise.
+fn chosen_loop(kernel: &Kernel, runs: impl Fn(EffectName) -> bool, study: &Study) -> Result<ChosenLoop, StudyError> {
+    match (study.path_loop, hindrance_of(kernel, runs)) {
         (Some(PathLoop::Lanes), Some(because)) => Err(StudyError::OnePathAtATime(because)),
         (Some(PathLoop::Plain), _) => Ok(ChosenLoop { name: PathLoop::Plain, because: "the command line wants it" }),
         (_, Some(because)) => Ok(ChosenLoop { name: PathLoop::Plain, because }),
@@ -353,6 +359,10 @@ impl Plan {
             approximations.push("spectra: light and surfaces have three channels instead".to_owned());
         }
         let path_loop = chosen_loop(kernel, runs, study)?;
+        let path_reuse = i.path_reuse.block_px();
+        if let (Some(_), Some(because)) = (path_reuse, hindrance_of(kernel, runs)) {
+            return Err(StudyError::PathReuse(because));
+        }
         let &Kernel { name, lanes, precision, lane_count, .. } = kernel;
         Ok(Self {
             kernel: name,
@@ -367,6 +377,7 @@ impl Plan {
             },
             lanes: lane_count,
             path_loop,
+            path_reuse,
             wavelength_range_nm: i.wavelength_range_nm,
             sampler: match i.sampler {
                 SamplerKind::Sobol => "sobol",

@@ -52,6 +52,9 @@ pub enum StudyError {
     /// Not covered by the loop over many paths.
     #[error("many paths at once are not possible: {0}")]
     OnePathAtATime(&'static str),
+    /// Neighbouring pixels cannot share paths.
+    #[error("neighbouring pixels cannot share paths: {0}")]
+    PathReuse(&'static str),
     /// The integrator's setting stands against it.
     #[error("{effect} cannot be simulated: {because}")]
     Contradicted {

@@ -14,21 +14,32 @@ pub(super) struct Measured<'a> {
     errors: &'a [f32],
     /// Degrees of freedom of each pixel's error; `None` if the file does not tell: then the errors count as known.
     freedom: Option<f64>,
+    /// Most pixels whose errors have a part in common.
+    correlated: f64,
 }
 
 impl<'a> Measured<'a> {
     /// The channel `name`, if the file has it with its errors.
     pub(super) fn new(file: &'a ExrFile, name: &str) -> Option<Self> {
-        let replicates = ErrorInfo::from_attributes(&file.attributes).map(|info| info.replicates);
+        let info = ErrorInfo::from_attributes(&file.attributes);
+        let replicates = info.as_ref().map(|info| info.replicates);
         Some(Self {
             values: file.picture.channel(name)?,
             errors: file.picture.channel(&format!("{ERROR_PREFIX}{name}"))?,
             freedom: replicates.map(|replicates| f64::from(replicates.saturating_sub(1).max(1))),
+            correlated: info.map_or(1.0, |info| f64::from(info.correlated_pixels.max(1))),
         })
     }
 
-    /// Sum of squared standard errors of some pixels, and of what Welch & Satterthwaite divide its square by.
+    /// The variance of the sum of some pixels, and what Welch & Satterthwaite divide its square by. Among B pixels with a common part
+    /// of error the variance of the sum is at most B times the sum of variances, and so is the sum of blocks' squared variances of that
+    /// of pixels' (Cauchy and Schwarz): where paths are shared, differences are judged by these bounds.
     fn spread(&self, pixels: &[usize]) -> (f64, f64) {
+        let (sum, squares) = self.spread_of_independent(pixels);
+        (self.correlated * sum, self.correlated.powi(3) * squares)
+    }
+
+    fn spread_of_independent(&self, pixels: &[usize]) -> (f64, f64) {
         pixels.iter().fold((0.0, 0.0), |(sum, squares), &pixel| {
             let variance = f64::from(self.errors[pixel]).powi(2);
             // The square of a variance that is itself an estimate with ν degrees of freedom is (ν + 2)/ν times too large.
@@ -171,7 +182,8 @@ mod tests {
     }
 
     fn channel(pair: &[(Vec<f32>, Vec<f32>); 2]) -> Channel {
-        let [a, b] = [0, 1].map(|i| Measured { values: &pair[i].0, errors: &pair[i].1, freedom: Some(3.0) });
+        let [a, b] =
+            [0, 1].map(|i| Measured { values: &pair[i].0, errors: &pair[i].1, freedom: Some(3.0), correlated: 1.0 });
         test("Y", &a, &b, 64, 16)
     }
 
@@ -188,7 +200,8 @@ mod tests {
         let below = (0..400)
             .map(|seed| {
                 let [a, b] = pair(1000 + seed, 0.1, |_| 0.0);
-                let [a, b] = [&a, &b].map(|p| Measured { values: &p.0, errors: &p.1, freedom: Some(3.0) });
+                let [a, b] =
+                    [&a, &b].map(|p| Measured { values: &p.0, errors: &p.1, freedom: Some(3.0), correlated: 1.0 });
                 (0..16)
                     .filter(|tile| {
                         let pixels: Vec<usize> = (0..256).map(|i| tile * 256 + i).collect();
@@ -216,7 +229,7 @@ mod tests {
     fn rounding_to_f32_is_no_difference_and_unknown_errors_are_not_tested() {
         let (a, b) = (vec![0.1_f32; 256], vec![0.1_f32.next_up(); 256]);
         let exact = vec![0.0_f32; 256];
-        let measured = |values, errors| Measured { values, errors, freedom: Some(3.0) };
+        let measured = |values, errors| Measured { values, errors, freedom: Some(3.0), correlated: 1.0 };
         assert_eq!(test("R", &measured(&a, &exact), &measured(&b, &exact), 16, 16).p(), 1.0);
         let far = vec![0.2_f32; 256];
         assert_eq!(test("R", &measured(&a, &exact), &measured(&far, &exact), 16, 16).p(), 0.0);

@@ -1,0 +1,122 @@
+//! Where neighbouring pixels share paths: what has been gathered waits for the rest of its block, and is dealt out.
+
+use super::Engine;
+use super::rows::lanes;
+use super::stream::{Cursor, Window};
+use crate::film::{Counters, Sums};
+use crate::model::WavelengthModel;
+use crate::prepare::Prepared;
+use crate::reuse::{Adding, Blocks, Gathered, MOST_MATES, deal};
+use crate::wavelength::Wavelengths;
+use etalon_geometry::{Geometry, LANES, Ray, Rays};
+use etalon_optics::Lanes;
+
+/// See the module.
+pub(super) struct Dealing<'a, const N: usize> {
+    blocks: &'a Blocks,
+    adding: Adding<'a>,
+    /// By their places in the window.
+    waiting: Vec<(Gathered<f64, N>, Wavelengths<N>)>,
+    /// Those of a block whose turn has come, and their rays.
+    gathered: [Gathered<f64, N>; MOST_MATES],
+    rays: [u64; MOST_MATES],
+    count: usize,
+}
+
+impl<'a, const N: usize> Dealing<'a, N> {
+    pub(super) fn new(
+        blocks: &'a Blocks,
+        size: usize,
+        prepared: &'a Prepared,
+        sums: Sums<'a>,
+        rays: &'a mut [u64],
+    ) -> Self {
+        let nothing = Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO };
+        Self {
+            blocks,
+            adding: Adding::new(prepared, sums, rays),
+            waiting: vec![(Gathered::NOTHING, nothing); size],
+            gathered: [Gathered::NOTHING; MOST_MATES],
+            rays: [0; MOST_MATES],
+            count: 0,
+        }
+    }
+
+    /// Deals out the light of each block that is complete.
+    #[inline(always)]
+    fn add<M: WavelengthModel<f64, N>>(
+        &mut self,
+        window: &mut Window<([f64; 3], u32)>,
+        cursor: &mut Cursor<'_>,
+        geometry: &Geometry,
+        counters: &mut Counters,
+    ) {
+        while let Some((number, (_, rays))) = window.take() {
+            let place = cursor.next().expect("as many samples come back as went out");
+            let (gathered, wavelengths) = &self.waiting[window.place(number)];
+            self.gathered[self.count] = *gathered;
+            self.rays[self.count] = u64::from(rays);
+            self.count += 1;
+            let first = place.spot + 1 - self.count;
+            let mates = self.blocks.mates[first];
+            if self.count < mates {
+                continue;
+            }
+            self.count = 0;
+            let mut radiance = [Lanes::ZERO; MOST_MATES];
+            let shadow_rays = deal(&self.gathered[..mates], &mut radiance, |rays| occluded(geometry, rays));
+            counters.shadow_rays += shadow_rays;
+            self.rays[0] += shadow_rays;
+            for (mate, pixel) in self.blocks.spots[first..][..mates].iter().enumerate() {
+                let place = (self.blocks.kept[first + mate], pixel.x, pixel.y, place.sample);
+                self.adding.add::<M, N>(place, self.rays[mate], wavelengths, radiance[mate], counters);
+            }
+        }
+    }
+}
+
+/// Which of some rays are cut off, eight at a time.
+#[inline(always)]
+fn occluded(geometry: &Geometry, rays: &[Ray<f64>]) -> u64 {
+    let mut hidden = 0;
+    for (group, rays) in rays.chunks(LANES).enumerate() {
+        // Lanes without a ray repeat the last, and are not asked.
+        let of = |lane: usize| &rays[lane.min(rays.len() - 1)];
+        let (mut origin, mut direction) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+        for lane in 0..LANES {
+            let (from, along) = (of(lane).origin.to_array(), of(lane).direction.to_array());
+            for axis in 0..3 {
+                (origin[axis][lane], direction[axis][lane]) = (from[axis], along[axis]);
+            }
+        }
+        let packed = Rays {
+            origin,
+            direction,
+            t_max: std::array::from_fn(|lane| of(lane).t_max),
+            leaves: std::array::from_fn(|lane| of(lane).leaves),
+            aims_at: std::array::from_fn(|lane| of(lane).aims_at),
+        };
+        let active = ((1_u16 << rays.len()) - 1) as u8;
+        hidden |= u64::from(geometry.any_hits(&packed, active)) << (group * LANES);
+    }
+    hidden
+}
+
+impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+    /// Takes what ended paths have gathered.
+    #[inline(always)]
+    pub(super) fn end_shared(&mut self, ended: super::rows::Mask) {
+        let Some(dealing) = &mut self.dealing else { return };
+        let finished = &mut self.finished;
+        for lane in lanes(ended) {
+            let number = self.paths.number[lane];
+            self.paths.gathered[lane].end(self.paths.radiance[lane]);
+            dealing.waiting[finished.window.place(number)] = (self.paths.gathered[lane], self.paths.wavelengths[lane]);
+            let rays = self.paths.vertex[lane] + 1 + self.paths.shadow_rays[lane];
+            finished.window.put(number, ([0.0; 3], rays));
+        }
+        if ended != 0 {
+            dealing.add::<M>(&mut finished.window, &mut finished.cursor, self.world.geometry, &mut self.counters);
+        }
+    }
+}

@@ -1,0 +1,418 @@
+//! Paths that neighbouring pixels share (Bekaert, Sbert and Halton 2002, *Accelerating Path Tracing by Re-Using Paths*).
+//!
+//! The samples of one number of the pixels of a block have their wavelengths in common. Path j leaves its first diffuse surface at xⱼ
+//! and finds yⱼ, a diffuse surface or a sky that no shadow ray aims at. What arrives at xⱼ from there arrives at every other first
+//! surface xᵢ of the block that sees yⱼ, too. Drawn by any of the paths, a point y has the density p̄(y) = Σₖ pₖ(y) in area measure,
+//! pₖ(y) = V(xₖ, y)·cos θₖ/π · cos θ′ₖ/r²ₖ with θ′ₖ at y (the balance heuristic, Veach 1997, §9.2.2). With f = ρᵢ/π pixel i receives
+//!
+//! ρᵢ Σⱼ wᵢⱼ L(yⱼ),   wᵢⱼ = qᵢⱼ / Σₖ qₖⱼ,   qₖⱼ = V(xₖ, yⱼ)·cos θₖ·cos θ′ₖ/r²ₖ,
+//!
+//! and cos θₖ alone for a sky. So each path's light is dealt out to the pixels that it could have served: no weight is above ρᵢ. The
+//! visibility is part of the densities: weights that left it out would not add up to one where somebody does not see y.
+//!
+//! Light that a path finds before x, at x, and on y itself (by MIS with the shadow ray from x) stays its own. So does all light of a path
+//! whose first surface is not diffuse, or that meets a mirror or glass there.
+
+#[cfg(test)]
+mod tests;
+
+use crate::film::{Counters, NonFinite, Sums};
+use crate::kernel::{Spot, Tracer};
+use crate::model::WavelengthModel;
+use crate::observer::Observer;
+use crate::polarisation::Averaged;
+use crate::prepare::Prepared;
+use crate::wavelength::Wavelengths;
+use etalon_geometry::{Ray, SurfaceId, SurfacePoint};
+use etalon_optics::{Lanes, Real, Vec3};
+use std::collections::BTreeMap;
+#[cfg(test)]
+use tests::{Fault, is_wrong};
+
+/// Most pixels of a block.
+pub(crate) const MOST_MATES: usize = 16;
+
+/// How far a path has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// Its first surface that is no delta is still to come.
+    Begins,
+    /// It has left x.
+    Left,
+    /// Its light since y is for all.
+    Shares,
+    /// It has no x, or none that others can be of use to.
+    Alone,
+    /// It has an x, but what it met from there is for itself.
+    Receives,
+}
+
+/// Where a path leaves its first diffuse surface.
+#[derive(Clone, Copy, Debug)]
+struct Start<R, const N: usize> {
+    vertex: u32,
+    point: SurfacePoint<f64>,
+    /// The normal on the side that the path came from.
+    normal: Vec3<f64>,
+    /// Throughput from the camera up to here, the reflectance here included.
+    beta: Lanes<R, N>,
+}
+
+/// What it finds from there.
+#[derive(Clone, Copy, Debug)]
+enum Target {
+    /// A point of a surface, and the normal on the side that is seen.
+    Surface { position: Vec3<f64>, surface: SurfaceId, normal: Vec3<f64> },
+    /// A sky, in this direction.
+    Sky(Vec3<f64>),
+}
+
+/// What one path brings into its block.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gathered<R, const N: usize> {
+    stage: Stage,
+    start: Start<R, N>,
+    target: Target,
+    /// Radiance that is its pixel's alone.
+    own: Lanes<R, N>,
+    /// Radiance that leaves y toward x.
+    shared: Lanes<R, N>,
+}
+
+/// The state of a path that sharing touches: what it has gathered, its throughput, and what of that roulette counts besides.
+pub(crate) type State<'a, R, const N: usize> = (&'a mut Lanes<R, N>, &'a mut Lanes<R, N>, &'a mut f64);
+
+impl<R: Real, const N: usize> Gathered<R, N> {
+    /// Of a path that begins.
+    pub(crate) const NOTHING: Self = Self {
+        stage: Stage::Begins,
+        start: Start {
+            vertex: 0,
+            point: SurfacePoint {
+                position: Vec3::ZERO,
+                position_error: 0.0,
+                normal: Vec3::ZERO,
+                surface: SurfaceId::NONE,
+                label: 0,
+                time: 0.0,
+            },
+            normal: Vec3::ZERO,
+            beta: Lanes::ZERO,
+        },
+        target: Target::Sky(Vec3::ZERO),
+        own: Lanes::ZERO,
+        shared: Lanes::ZERO,
+    };
+
+    /// Whether the next surface that is no delta is the first.
+    #[inline(always)]
+    pub(crate) fn begins(&self) -> bool {
+        self.stage == Stage::Begins
+    }
+
+    /// Whether the next thing that is met is y.
+    #[inline(always)]
+    pub(crate) fn has_left(&self) -> bool {
+        self.stage == Stage::Left
+    }
+
+    /// The path has drawn its direction at its first surface that is no delta, whose throughput is in `state`. From x on throughput begins
+    /// anew; what roulette goes by does not.
+    #[inline(always)]
+    pub(crate) fn leave(
+        &mut self,
+        vertex: u32,
+        point: &SurfacePoint<f64>,
+        wo: Vec3<f64>,
+        diffuse: bool,
+        (radiance, beta, eta_squared): State<'_, R, N>,
+    ) {
+        if !diffuse {
+            self.stage = Stage::Alone;
+            return;
+        }
+        let normal = if point.normal.dot(wo) < 0.0 { -point.normal } else { point.normal };
+        self.start = Start { vertex, point: *point, normal, beta: *beta };
+        self.stage = Stage::Left;
+        self.own = *radiance;
+        *radiance = Lanes::ZERO;
+        *eta_squared *= beta.max_lane().to_f64();
+        *beta = Lanes::ONE;
+    }
+
+    /// The path, having left x, has met a surface and taken what that emits.
+    #[inline(always)]
+    pub(crate) fn arrive(
+        &mut self,
+        point: &SurfacePoint<f64>,
+        wo: Vec3<f64>,
+        diffuse: bool,
+        radiance: &mut Lanes<R, N>,
+    ) {
+        if !diffuse {
+            self.stage = Stage::Receives;
+            return;
+        }
+        let normal = if point.normal.dot(wo) < 0.0 { -point.normal } else { point.normal };
+        self.target = Target::Surface { position: point.position, surface: point.surface, normal };
+        self.take(radiance);
+        self.stage = Stage::Shares;
+    }
+
+    /// The path, having left x, meets skies only, in this direction; `plain` if no shadow ray aims at any of them.
+    #[inline(always)]
+    pub(crate) fn escape(&mut self, direction: Vec3<f64>, plain: bool) {
+        self.target = Target::Sky(direction);
+        self.stage = if plain { Stage::Shares } else { Stage::Receives };
+    }
+
+    #[inline(always)]
+    fn take(&mut self, radiance: &mut Lanes<R, N>) {
+        self.own += self.start.beta * *radiance;
+        *radiance = Lanes::ZERO;
+    }
+
+    /// The path has ended with this radiance.
+    #[inline(always)]
+    pub(crate) fn end(&mut self, mut radiance: Lanes<R, N>) {
+        match self.stage {
+            Stage::Begins | Stage::Alone => self.own = radiance,
+            Stage::Left | Stage::Receives => self.take(&mut radiance),
+            Stage::Shares => self.shared = radiance,
+        }
+    }
+
+    /// Whether its first surface is diffuse.
+    fn has_start(&self) -> bool {
+        matches!(self.stage, Stage::Left | Stage::Shares | Stage::Receives)
+    }
+}
+
+/// q of one first surface and one target, but for the visibility, and the shadow ray that tells that; 0 where the surfaces are
+/// turned away from each other.
+#[inline(always)]
+fn facing<const N: usize>(x: &Start<f64, N>, target: &Target) -> f64 {
+    match target {
+        Target::Surface { position, normal, .. } => {
+            let d = *position - x.point.position;
+            let (r_squared, at_x, at_y) = (d.dot(d), x.normal.dot(d), -normal.dot(d));
+            #[cfg(test)]
+            let (r_squared, at_y) = match () {
+                () if is_wrong(Fault::NoDistance) => (1.0, at_y),
+                () if is_wrong(Fault::NoCosine) && at_y > 0.0 => (r_squared, r_squared.sqrt()),
+                () => (r_squared, at_y),
+            };
+            if at_x > 0.0 && at_y > 0.0 { (at_x / r_squared) * (at_y / r_squared) } else { 0.0 }
+        }
+        Target::Sky(direction) => x.normal.dot(*direction).max(0.0),
+    }
+}
+
+/// The ray that tells whether a first surface sees a target.
+#[inline(always)]
+fn shadow_ray<const N: usize>(x: &Start<f64, N>, target: &Target) -> Ray<f64> {
+    match *target {
+        Target::Surface { position, surface, .. } => x.point.spawn_to(position, surface),
+        Target::Sky(direction) => x.point.spawn(direction),
+    }
+}
+
+/// What each pixel of a block receives from all paths, in the order of the pixels, put into `radiance`. `occluded` tells of some rays which
+/// of them are cut off, one bit each. Returns the number of shadow rays.
+#[inline(always)]
+pub(crate) fn deal<const N: usize>(
+    paths: &[Gathered<f64, N>],
+    radiance: &mut [Lanes<f64, N>; MOST_MATES],
+    mut occluded: impl FnMut(&[Ray<f64>]) -> u64,
+) -> u64 {
+    let mut received = [Lanes::ZERO; MOST_MATES];
+    let mut shadow_rays = 0;
+    let mut rays = [paths[0].start.point.spawn(Vec3::ZERO); MOST_MATES];
+    let (mut q, mut of) = ([0.0; MOST_MATES], [0; MOST_MATES]);
+    for (j, path) in paths.iter().enumerate() {
+        if path.stage != Stage::Shares || path.shared.is_zero() {
+            continue;
+        }
+        let mut count = 0;
+        for (i, mate) in paths.iter().enumerate() {
+            q[i] = 0.0;
+            // Light may take as many steps from there as are left to path j.
+            if !mate.has_start() || mate.start.vertex != path.start.vertex {
+                continue;
+            }
+            q[i] = facing(&mate.start, &path.target);
+            // That its own path sees it is known.
+            if i != j && q[i] > 0.0 {
+                rays[count] = shadow_ray(&mate.start, &path.target);
+                of[count] = i;
+                count += 1;
+            }
+        }
+        shadow_rays += count as u64;
+        let hidden = if count == 0 { 0 } else { occluded(&rays[..count]) };
+        #[cfg(test)]
+        let unhidden: f64 = q[..paths.len()].iter().sum();
+        for (ray, &i) in of[..count].iter().enumerate() {
+            if hidden >> ray & 1 == 1 {
+                q[i] = 0.0;
+            }
+        }
+        let total: f64 = q[..paths.len()].iter().sum();
+        #[cfg(test)]
+        let total = if is_wrong(Fault::AllSeen) { unhidden } else { total };
+        if q[j] > 0.0 {
+            for i in 0..paths.len() {
+                if q[i] > 0.0 {
+                    received[i] += path.shared * (q[i] / total);
+                }
+            }
+        } else {
+            // So flat to the surface that rounding took it below: its own.
+            received[j] += path.shared;
+        }
+    }
+    for (i, path) in paths.iter().enumerate() {
+        radiance[i] = if path.has_start() { path.own + path.start.beta * received[i] } else { path.own };
+    }
+    shadow_rays
+}
+
+/// The pixels of blocks, one block after the other: those of some spots, and their mates, whose paths are traced for them.
+pub(crate) struct Blocks {
+    pub spots: Vec<Spot>,
+    /// How many pixels the block has that begins there; of others 0.
+    pub mates: Vec<usize>,
+    /// The place of each among the spots asked for; `None` of mates.
+    pub kept: Vec<Option<usize>>,
+}
+
+impl Blocks {
+    /// The blocks of `block` pixels that hold these spots, on a film of this size. They begin at the corner of the film, whichever part of it
+    /// is rendered, so that a sample is the same in each.
+    pub(crate) fn of(spots: &[Spot], block: [u32; 2], film: [u32; 2]) -> Self {
+        let mut of_block: BTreeMap<_, Vec<(u32, u32, usize)>> = BTreeMap::new();
+        for (place, spot) in spots.iter().enumerate() {
+            let corner = [spot.y / block[1] * block[1], spot.x / block[0] * block[0]];
+            let key = (corner, spot.samples.start, spot.samples.end);
+            of_block.entry(key).or_default().push((spot.x, spot.y, place));
+        }
+        let mut blocks = Self { spots: Vec::new(), mates: Vec::new(), kept: Vec::new() };
+        for (([y0, x0], start, end), held) in of_block {
+            let first = blocks.spots.len();
+            for y in y0..(y0 + block[1]).min(film[1]) {
+                for x in x0..(x0 + block[0]).min(film[0]) {
+                    let place = held.iter().find(|(of_x, of_y, _)| (*of_x, *of_y) == (x, y));
+                    blocks.kept.push(place.map(|(.., place)| *place));
+                    blocks.spots.push(Spot { x, y, samples: start..end });
+                    blocks.mates.push(0);
+                }
+            }
+            blocks.mates[first] = blocks.spots.len() - first;
+        }
+        blocks
+    }
+}
+
+/// Watches a path of the plain loop.
+struct Watch<const N: usize>(Gathered<f64, N>);
+
+impl<const N: usize> Observer<f64, N> for Watch<N> {
+    fn gathers(&mut self) -> Option<&mut Gathered<f64, N>> {
+        Some(&mut self.0)
+    }
+}
+
+/// The samples of spots by the plain loop, as the engine's `render_spots_lanes` has it.
+pub(crate) fn render_spots<M: WavelengthModel<f64, N>, const N: usize>(
+    prepared: &Prepared,
+    spots: &[Spot],
+    sums: Sums<'_>,
+    rays: &mut [u64],
+) -> Counters {
+    let film = &prepared.scene.film;
+    let block = prepared.path_reuse().expect("only where paths are shared");
+    let blocks = Blocks::of(spots, block, [film.width, film.height]);
+    let tracer = Tracer::new(prepared);
+    let mut counters = Counters::default();
+    let mut adding = Adding::new(prepared, sums, rays);
+    for (first, &mates) in blocks.mates.iter().enumerate().filter(|(_, mates)| **mates > 0) {
+        let pixels = &blocks.spots[first..first + mates];
+        let mut gathered = [Gathered::NOTHING; MOST_MATES];
+        let mut rays_of = [0; MOST_MATES];
+        for sample in pixels[0].samples.clone() {
+            let mut shared = None;
+            for (mate, pixel) in pixels.iter().enumerate() {
+                let before = counters.rays + counters.shadow_rays;
+                let mut watch = Watch(Gathered::NOTHING);
+                let (wavelengths, radiance, _) =
+                    tracer.sample::<f64, M, Averaged, N>(pixel.x, pixel.y, sample, &mut counters, &mut watch);
+                watch.0.end(radiance);
+                gathered[mate] = watch.0;
+                rays_of[mate] = counters.rays + counters.shadow_rays - before;
+                shared = Some(wavelengths);
+            }
+            let mut radiance = [Lanes::ZERO; MOST_MATES];
+            let occluded = |rays: &[Ray<f64>]| {
+                let hidden = rays.iter().enumerate().filter(|(_, ray)| prepared.geometry.occluded(ray));
+                hidden.fold(0, |mask, (ray, _)| mask | 1 << ray)
+            };
+            let shadow_rays = deal(&gathered[..mates], &mut radiance, occluded);
+            counters.shadow_rays += shadow_rays;
+            rays_of[0] += shadow_rays;
+            let wavelengths = shared.expect("a block has a pixel");
+            for (mate, pixel) in pixels.iter().enumerate() {
+                let place = (blocks.kept[first + mate], pixel.x, pixel.y, sample);
+                adding.add::<M, N>(place, rays_of[mate], &wavelengths, radiance[mate], &mut counters);
+            }
+        }
+    }
+    counters
+}
+
+/// Adds the samples of blocks to the sums of spots.
+pub(crate) struct Adding<'a> {
+    prepared: &'a Prepared,
+    sums: Sums<'a>,
+    rays: &'a mut [u64],
+    replicates: usize,
+    per_replicate: usize,
+    /// The spot whose block's rays nobody else counts.
+    last: usize,
+}
+
+impl<'a> Adding<'a> {
+    pub(crate) fn new(prepared: &'a Prepared, sums: Sums<'a>, rays: &'a mut [u64]) -> Self {
+        let replicates = prepared.scene.integrator.replicates as usize;
+        let per_replicate = sums.bands.len() / sums.xyz.len().max(1);
+        Self { prepared, sums, rays, replicates, per_replicate, last: 0 }
+    }
+
+    /// A sample of the spot number `.0`, or of a mate, at the pixel (`.1`, `.2`). What a mate's path took counts for one of the spots.
+    #[inline(always)]
+    pub(crate) fn add<M: WavelengthModel<f64, N>, const N: usize>(
+        &mut self,
+        (spot, x, y, sample): (Option<usize>, u32, u32, u32),
+        rays: u64,
+        wavelengths: &Wavelengths<N>,
+        radiance: Lanes<f64, N>,
+        counters: &mut Counters,
+    ) {
+        self.last = spot.unwrap_or(self.last);
+        if let Some(of_spot) = self.rays.get_mut(self.last) {
+            *of_spot += rays;
+        }
+        let Some(spot) = spot else { return };
+        counters.paths += 1;
+        let xyz = if radiance.is_zero() { [0.0; 3] } else { M::to_xyz(self.prepared, wavelengths, radiance) };
+        if !xyz.iter().all(|v| v.is_finite()) {
+            counters.record_nonfinite(NonFinite { y, x, sample });
+            return;
+        }
+        let replicate = spot * self.replicates + sample as usize % self.replicates;
+        self.sums.xyz[replicate].add(xyz);
+        if let Some(bands) = self.prepared.scene.film.bands.as_ref().filter(|_| self.per_replicate > 0) {
+            let sums = &mut self.sums.bands[replicate * self.per_replicate..][..self.per_replicate];
+            M::to_bands(bands, wavelengths, radiance, sums);
+        }
+    }
+}
