@@ -31,7 +31,7 @@ impl<'a, const N: usize> Dealing<'a, N> {
         sums: Sums<'a>,
         rays: &'a mut [u64],
     ) -> Self {
-        let nothing = Wavelengths { lambda_nm: Lanes::ZERO, pdf: Lanes::ZERO };
+        let nothing = Wavelengths::fixed([0.0; N]);
         Self {
             blocks,
             adding: Adding::new(prepared, sums, rays),
