@@ -125,6 +125,8 @@ impl World<'_> {
         let mut lanes = M::start();
         // ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
         let mut eta_squared = 1.0;
+        // What a direction drawn toward a caster took from beta since the last diffuse surface, which roulette must not count either.
+        let mut aim_factor = 1.0;
         let mut step = Step::Unshared;
         let mut body = match self.absorption {
             Some(_) => Body::around(self.geometry, self.surfaces, &ray),
@@ -234,6 +236,9 @@ impl World<'_> {
             beta *= next.weight;
             beta *= R::from_f64(mixture.factor(1.0));
             observer.direction(&mixture);
+            if let Density::SolidAngle(_) = next.density {
+                aim_factor = mixture.aim_factor();
+            }
             let lobe = match next.density {
                 Density::Delta => Lobe::Delta(u_lobe),
                 Density::SolidAngle(_) => Lobe::SolidAngle,
@@ -278,7 +283,7 @@ impl World<'_> {
             }
             if self.roulette && vertex + 1 >= ROULETTE_FROM_VERTEX {
                 // No cap below one: it would make the variance infinite between good mirrors (hard case 29).
-                let survival = (throughput / ROULETTE_THROUGHPUT).min(1.0);
+                let survival = (throughput / (aim_factor * ROULETTE_THROUGHPUT)).min(1.0);
                 if u_roulette >= survival {
                     observer.end(End::Roulette);
                     break;

@@ -216,7 +216,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         }),
     };
     let casters = match study.carried {
-        None if compiled::SPECULAR_CHAINS => Casters::new(&surfaces, &geometry, &lights),
+        None if compiled::SPECULAR_CHAINS => Casters::new(&surfaces, &geometry, &lights, range_nm),
         _ => Casters::default(),
     };
     let wavelengths = match &scene.film.bands {
@@ -355,8 +355,14 @@ impl Prepared {
     /// The share of the directions of diffuse surfaces that is drawn toward mirrors and bodies of glass where all of them are seen, and
     /// the number of these; 0 where that does not pay.
     pub fn casters(&self) -> (f64, usize) {
-        let bodies = self.casters.aimed_at().len();
-        (self.casters.each * bodies as f64, bodies)
+        let bodies = self.casters.bodies_aimed_at().0.len();
+        (if bodies > 0 { self.casters.share } else { 0.0 }, bodies)
+    }
+
+    /// The largest share that is drawn toward images of lamps in smooth balls, and the number of images; 0 where that does not pay.
+    pub fn images_of_lamps(&self) -> (f64, usize) {
+        let images = self.casters.images_aimed_at().len();
+        (if images > 0 { self.casters.share } else { 0.0 }, images)
     }
 
     /// The frame in which the scene is rendered; the geometry is in it.

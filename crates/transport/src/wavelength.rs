@@ -309,7 +309,7 @@ mod tests {
             }
         }
         // Bands that do not keep to nanometres are of one density each all the same.
-        let bands = Bands::new([400.25, 700.25, 0.7], [360.0, 830.0]).unwrap();
+        let bands = Bands::new([400.25, 700.25, 0.75], [360.0, 830.0]).unwrap();
         assert!(WavelengthDistribution::for_bands([360.0, 830.0], &bands).whole_nm().is_none());
     }
 

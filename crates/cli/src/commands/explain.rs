@@ -41,6 +41,9 @@ struct ExplainJson<'a> {
     /// that does not pay.
     casters_share: f64,
     casters: usize,
+    /// The largest share that is drawn toward images of lamps in smooth balls, and how many these are; 0 where that does not pay.
+    images_share: f64,
+    images_of_lamps: usize,
     /// What effects that are off would have cost, if it was measured.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     costs: Vec<Cost>,
@@ -69,7 +72,18 @@ pub(crate) fn run(args: Args) -> Outcome {
     if args.json {
         let scene = args.scene.display().to_string();
         let ((lights, lights_by_place), (casters_share, casters)) = (prepared.lights(), prepared.casters());
-        print::json(&ExplainJson { scene, plan, lights, lights_by_place, casters_share, casters, costs });
+        let (images_share, images_of_lamps) = prepared.images_of_lamps();
+        print::json(&ExplainJson {
+            scene,
+            plan,
+            lights,
+            lights_by_place,
+            casters_share,
+            casters,
+            images_share,
+            images_of_lamps,
+            costs,
+        });
     } else {
         print::line(&describe(&prepared, &costs));
     }
@@ -89,6 +103,10 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     if let (share, bodies @ 1..) = prepared.casters() {
         let share = format!("{:.0} % of what diffuse surfaces scatter is drawn toward", 100.0 * share);
         lines.push(format!("{:<18} {share} {bodies} that mirror or refract: a trial found less noise", "caustics"));
+    }
+    if let (share, images @ 1..) = prepared.images_of_lamps() {
+        let share = format!("up to {:.0} % of what diffuse surfaces scatter is drawn toward", 100.0 * share);
+        lines.push(format!("{:<18} {share} {images} images of lamps in balls: a trial found less noise", "caustics"));
     }
     for lost in &plan.approximations {
         lines.push(format!("{:<18} without {lost}", "approximation"));

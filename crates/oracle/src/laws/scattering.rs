@@ -29,9 +29,9 @@ pub(super) fn side_index(subject: &dyn Scatters, direction: Vec3, wavelength_nm:
     subject.index(direction[2] > 0.0, wavelength_nm)
 }
 
-/// The most by which a function of two directions changes when either moves by [`NEARBY`] ε, across and along, without leaving its
-/// side: what rounding may do to it that is as good as exact for directions nearby (backward stability; Higham, *Accuracy and Stability of
-/// Numerical Algorithms*, §1.5). It is measured on the subject, so that nothing needs to be known of how it computes.
+/// The most by which a function of two directions changes, to first order, when both move by [`NEARBY`] ε in any direction without
+/// leaving their sides: what rounding may do to it that is as good as exact for directions nearby (backward stability; Higham, *Accuracy
+/// and Stability of Numerical Algorithms*, §1.5). It is measured on the subject, so that nothing needs to be known of how it computes.
 fn variation(of: impl Fn(Vec3, Vec3) -> f64, wo: Vec3, wi: Vec3, epsilon: f64) -> f64 {
     let here = of(wo, wi);
     let moves = |w: Vec3| {
@@ -40,8 +40,11 @@ fn variation(of: impl Fn(Vec3, Vec3) -> f64, wo: Vec3, wi: Vec3, epsilon: f64) -
         let moved = move |(sign, axis)| representable(normalize(add(w, scale(sign * step, axis))), epsilon);
         [(1.0, s), (-1.0, s), (1.0, t), (-1.0, t)].map(moved).into_iter().filter(move |moved| moved[2] * w[2] > 0.0)
     };
-    let there = moves(wo).map(|moved| of(moved, wi)).chain(moves(wi).map(|moved| of(wo, moved)));
-    there.map(|there| (there - here).abs()).fold(0.0, f64::max)
+    let most = |there: f64, most: f64| (there - here).abs().max(most);
+    let by_wo = moves(wo).map(|moved| of(moved, wi)).fold(0.0, |so_far, there| most(there, so_far));
+    let by_wi = moves(wi).map(|moved| of(wo, moved)).fold(0.0, |so_far, there| most(there, so_far));
+    // A gradient is at most √2 times the larger of its components along two axes.
+    std::f64::consts::SQRT_2 * (by_wo + by_wi)
 }
 
 /// f and pdf are finite, not negative, and wherever f lets light through pdf finds it.

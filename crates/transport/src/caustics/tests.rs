@@ -1,8 +1,8 @@
 //! Directions toward casters have the densities that are said of them, a room of constant radiance stays one, and directions that are
 //! not weighed are noticed.
 
-use super::{Caster, Hull, Target};
-use crate::film::PixelRect;
+use super::{Aims, Caster, Hull, Mirrored, Pair, Refracted, Shows, Target, View};
+use crate::film::{PixelRect, XyzSum};
 use crate::light::Round;
 use crate::plan::PathLoop;
 use crate::prepare::Prepared;
@@ -46,6 +46,10 @@ fn mean(count: usize, mut sample: impl FnMut() -> f64) -> (f64, f64) {
 /// Whether densities integrate to one, and draws have them: integrals of (1, x, y, z²) over what is seen by draws over their densities
 /// and by uniform directions. Five standard errors each: a right target fails one of the five with probability 3e-6.
 fn is_sound(target: &impl Target, density: &dyn Fn(Vec3<f64>) -> f64, from: Vec3<f64>, seed: u64) -> bool {
+    draws_are_sound(&|u| target.aim(from, u), density, seed)
+}
+
+fn draws_are_sound(aim: &dyn Fn([f64; 2]) -> Vec3<f64>, density: &dyn Fn(Vec3<f64>) -> f64, seed: u64) -> bool {
     let mut u = numbers(seed);
     let count = 100_000;
     let mut uniform = || uniform_sphere([u(), u()]);
@@ -56,7 +60,7 @@ fn is_sound(target: &impl Target, density: &dyn Fn(Vec3<f64>) -> f64, from: Vec3
     for of in moments {
         let mut u = numbers(seed ^ 1);
         let drawn = mean(count, || {
-            let wi = target.aim(from, [u(), u()]);
+            let wi = aim([u(), u()]);
             let density = density(wi);
             // A direction may round over the rim.
             if density > 0.0 { of(wi) / density } else { 0.0 }
@@ -162,16 +166,151 @@ fn level(prepared: &Prepared) -> (f64, f64) {
 /// 1 % is seen.
 #[test]
 fn a_room_of_constant_radiance_stays_one_with_directions_toward_casters_and_not_if_they_are_not_weighed() {
-    for path_loop in [PathLoop::Plain, PathLoop::Lanes] {
+    for (path_loop, aims) in [
+        (PathLoop::Plain, Aims::Bodies),
+        (PathLoop::Lanes, Aims::Bodies),
+        (PathLoop::Plain, Aims::Images),
+        (PathLoop::Lanes, Aims::Images),
+    ] {
         let mut prepared = room(path_loop);
-        assert_eq!(prepared.casters.bodies.len(), 3);
+        assert_eq!((prepared.casters.bodies.len(), prepared.casters.images.len()), (3, 12));
         assert!(matches!(prepared.casters.bodies[0], Caster::Box(_)));
-        prepared.casters.each = 0.5 / 3.0;
+        (prepared.casters.aims, prepared.casters.share) = (aims, 0.5);
         let (mean, error) = level(&prepared);
-        assert!((mean - 1.0).abs() <= 6.0 * error && error < 0.003, "{path_loop:?}: {mean} ± {error}");
+        assert!((mean - 1.0).abs() <= 6.0 * error && error < 0.003, "{path_loop:?}, {aims:?}: {mean} ± {error}");
         UNWEIGHED.set(true);
         let (mean, error) = level(&prepared);
         UNWEIGHED.set(false);
-        assert!((mean - 1.0).abs() > 6.0 * error, "{path_loop:?} unweighed: {mean} ± {error}");
+        assert!((mean - 1.0).abs() > 6.0 * error, "{path_loop:?}, {aims:?} unweighed: {mean} ± {error}");
     }
+}
+
+/// A ray that leaves along `wi` by way of a ball about the origin: where it goes on, if it meets the ball. By Snell's law with vectors,
+/// and nothing that images are found by.
+fn by_way_of(radius: f64, index: Option<f64>, from: Vec3<f64>, wi: Vec3<f64>) -> Option<(Vec3<f64>, Vec3<f64>)> {
+    let along = from.dot(wi);
+    let chord = along * along - (from.length_squared() - radius * radius);
+    let first = from + wi * (-along - (chord >= 0.0).then(|| chord.sqrt())?);
+    let n = first / radius;
+    let Some(index) = index else { return Some((first, wi - n * (2.0 * wi.dot(n)))) };
+    let refract = |d: Vec3<f64>, n: Vec3<f64>, eta: f64| {
+        let cos = -d.dot(n);
+        d * eta + n * (eta * cos - (1.0 - eta * eta * (1.0 - cos * cos)).sqrt())
+    };
+    let within = refract(wi, n, 1.0 / index);
+    let second = first + within * (-2.0 * first.dot(within));
+    Some((second, refract(within, -second / radius, index)))
+}
+
+/// What ellipses take in of the directions by which a lamp is seen, and what of an ellipse shows the lamp, over points around a ball: a
+/// mirror, or glass.
+fn hits(index: Option<f64>) -> (f64, f64) {
+    let mut u = numbers(3);
+    let (radius, lamp_radius) = (0.8, 0.15);
+    let ball = Round { centre: Vec3::ZERO, radius, front: true };
+    let (mut shown, mut drawn, mut covered, mut seen) = (0.0, 0.0, 0.0, 0.0);
+    for _ in 0..400 {
+        let from = uniform_sphere([u(), u()]) * (radius * (1.5 + 4.0 * u()));
+        let lamp = Round { centre: uniform_sphere([u(), u()]) * (3.0 + 5.0 * u()), radius: lamp_radius, front: true };
+        let n = -from / from.length();
+        let pair = Pair::new(ball, lamp, 1.0);
+        let view = match index {
+            None => Mirrored(pair).view(from.cast(), n.cast()),
+            Some(index) => Refracted(pair, index as f32).view(from.cast(), n.cast()),
+        };
+        let shows = |wi: Vec3<f64>| {
+            by_way_of(radius, index, from, wi).is_some_and(|(start, onward)| {
+                let toward = lamp.centre - start;
+                toward.dot(onward) > 0.0 && toward.cross(onward).length() < lamp_radius
+            })
+        };
+        if view.weight > 0.0 {
+            for _ in 0..100 {
+                drawn += 1.0;
+                shown += f64::from(u8::from(shows(view.aim([u(), u()]))));
+            }
+        }
+        // Of all directions that meet the ball.
+        for _ in 0..4000 {
+            let wi = Target::aim(&ball, from, [u(), u()]);
+            if shows(wi) {
+                seen += 1.0;
+                covered += f64::from(u8::from(view.weight > 0.0 && view.density(wi) > 0.0));
+            }
+        }
+    }
+    (covered / seen, shown / drawn)
+}
+
+/// Images are found where they are: their ellipses take in nearly all of what balls show of lamps, and mostly that. By chance a direction
+/// toward the ball shows a lamp with a probability of some 1e-3, and an ellipse anywhere else would take in nothing.
+#[test]
+fn images_of_lamps_are_where_rays_by_way_of_balls_find_them() {
+    let (covered, shown) = hits(None);
+    assert!(covered > 0.99 && shown > 0.6, "mirror: {covered}, {shown}");
+    let (covered, shown) = hits(Some(1.5));
+    assert!(covered > 0.8 && shown > 0.4, "glass: {covered}, {shown}");
+}
+
+#[test]
+fn directions_toward_images_have_their_densities_and_wrong_densities_are_noticed() {
+    // As wide as images may be, so that few draws tell.
+    let ellipse = |axis: [f64; 3], across: [f64; 3], half| View {
+        axis: Vec3::from_array(axis).cast(),
+        in_plane: Vec3::from_array(across).cast(),
+        half,
+        weight: 1.0,
+    };
+    let views = [
+        ellipse([0.6, 0.0, 0.8], [0.8, 0.0, -0.6], [0.9, 0.5]),
+        ellipse([0.0, -0.28, 0.96], [1.0, 0.0, 0.0], [0.4, 1.0]),
+    ];
+    for (seed, view) in views.into_iter().enumerate() {
+        let seed = 20 * seed as u64 + 50;
+        assert!(draws_are_sound(&|u| view.aim(u), &|wi| view.density(wi), seed), "{view:?}");
+        assert!(!draws_are_sound(&|u| view.aim(u), &|wi| 1.1 * view.density(wi), seed));
+        // As if the plane were the sphere.
+        let cos = |wi: Vec3<f64>| wi.dot(view.axis.to_f64());
+        assert!(!draws_are_sound(&|u| view.aim(u), &|wi| view.density(wi) * cos(wi).powi(3), seed));
+    }
+}
+
+/// A floor under a sky with a lamp, and a mirror ball that throws the lamp's light on it.
+fn floor() -> Prepared {
+    let json = r#"{"etalon": 1, "film": {"width": 48, "height": 48}, "integrator": {"spp": 256, "replicates": 16},
+        "camera": {"type": "perspective", "position_m": [0, 3, 6], "look_at_m": [0, -0.5, 0], "vertical_fov_deg": 30},
+        "objects": [
+            {"shape": {"type": "disk", "center_m": [0, -1, 0], "normal": [0, 1, 0], "radius_m": 30},
+             "material": {"type": "lambert", "reflectance": 0.5}},
+            {"shape": {"type": "sphere", "center_m": [0, 0.1, 0], "radius_m": 1}, "material": {"type": "mirror"}},
+            {"shape": {"type": "sphere", "center_m": [3, 6, 1], "radius_m": 0.3}, "material": {"type": "black"},
+             "emission": {"radiance": 100}}],
+        "lights": [{"type": "environment", "radiance": 0.2}]}"#;
+    prepare_study(&etalon_scene::parse(json, "floor").unwrap().0, &Study::default()).unwrap()
+}
+
+/// Mean over pixels of the variance of Y, by the scatter of 16 replicates, relative to its square.
+fn noise(prepared: &Prepared) -> f64 {
+    let film = &prepared.scene.film;
+    let tile = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
+    let mut sums = prepared.film().tile(tile);
+    prepared.render_tile(tile, 0..prepared.scene.integrator.spp, sums.borrow());
+    let of_pixel = |replicates: &[XyzSum]| {
+        let mut y = replicates.iter().map(|sum| sum.xyz[1] / f64::from(sum.count));
+        let (mean, error) = mean(16, || y.next().unwrap());
+        error * error / (mean * mean)
+    };
+    sums.xyz.chunks(16).map(of_pixel).sum::<f64>() / f64::from(film.width * film.height)
+}
+
+/// A trial finds that images are worth it, and they are: the noise of a floor that a mirror ball throws light on falls to less than a
+/// half. It would not if roulette ended paths for the weight that aiming takes from them.
+#[test]
+fn lamps_in_a_mirror_ball_are_aimed_at_and_that_leaves_less_noise() {
+    let mut prepared = floor();
+    assert_eq!(prepared.casters.aims, Aims::Images);
+    let aimed = noise(&prepared);
+    prepared.casters.aims = Aims::Nothing;
+    let alone = noise(&prepared);
+    assert!(aimed < 0.5 * alone, "{aimed} of {alone}");
 }

@@ -1,6 +1,6 @@
 //! Before a picture: what share of the directions casters of caustics are worth.
 
-use super::Mixture;
+use super::{Aims, Mixture};
 use crate::film::Counters;
 use crate::kernel::Tracer;
 use crate::model::WavelengthModel;
@@ -20,6 +20,8 @@ const SAMPLES: u32 = 16;
 /// What must be left of the variance. Much, since the trial knows of no strata: where the picture's samples would be spread evenly over
 /// directions, a share taken from them costs more than it foretells; and paths through casters are longer.
 const WORTH_IT: f64 = 0.4;
+/// The same of images of lamps: small, so that little is taken from what comes in otherwise.
+const IMAGES_WORTH_IT: f64 = 0.9;
 /// Paths that the trial draws more than five times as often as the cosine would do not count. Without casters they bear much of the
 /// variance, but are so rare that hardly any picture has them: with them, the trial promises much where nothing is won (two balls in
 /// a room: .1 to .5 of the variance, in truth .9 of the error).
@@ -42,12 +44,24 @@ impl Prepared {
         let own = self.scene.integrator.seed;
         // The same for each seed, so that pictures of different ones are drawn alike; and none that anyone would choose.
         self.scene.integrator.seed = mix(0x6361_7573_7469_6373);
-        let count = self.casters.bodies.len() as f64;
-        self.casters.each = TRIED / count;
-        let [alone, shares @ ..] = (self.kernel().try_casters)(self).variances();
-        let best = SHARES.iter().zip(shares).min_by(|a, b| a.1.total_cmp(&b.1));
-        let share = best.filter(|&(_, variance)| variance < WORTH_IT * alone).map_or(0.0, |(share, _)| *share);
-        self.casters.each = share / count;
+        let mut best = (1.0, Aims::Nothing, 0.0);
+        for (aims, worth_it, there) in [
+            (Aims::Bodies, WORTH_IT, !self.casters.bodies.is_empty()),
+            (Aims::Images, IMAGES_WORTH_IT, !self.casters.images.is_empty()),
+        ] {
+            if !there {
+                continue;
+            }
+            (self.casters.aims, self.casters.share) = (aims, TRIED);
+            let [alone, shares @ ..] = (self.kernel().try_casters)(self).variances();
+            for (share, variance) in SHARES.into_iter().zip(shares) {
+                let left = variance / alone;
+                if left < worth_it && left < best.0 {
+                    best = (left, aims, share);
+                }
+            }
+        }
+        (_, self.casters.aims, self.casters.share) = best;
         self.scene.integrator.seed = own;
     }
 }
@@ -106,7 +120,7 @@ pub(crate) fn try_casters<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, 
                 continue;
             }
             mean += path.found[0] * path.tried / f64::from(SAMPLES);
-            if path.tried < RARE {
+            if path.tried < RARE && tracer.prepared.casters.aims == Aims::Bodies {
                 continue;
             }
             for ((square, found), factor) in squares.iter_mut().zip(path.found).zip(path.factors) {

@@ -33,15 +33,15 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         let (mut wi, mut cos) = (Rows3::ZERO, Row::ZERO);
         let casters = self.world.casters;
         let mut drawn = Drawn::NONE;
-        let aims = !casters.aimed_at().is_empty();
+        let aims = casters.aim();
         if aims {
             for lane in lanes(scatters) {
                 drawn.diffuse[lane] = matches!(paths.at.form[lane], Form::Lambert(_));
             }
             let surface = (&paths.at.position, &paths.at.normal, &paths.direction);
-            drawn.aim(self.level, casters, surface, [u1, u2]);
+            drawn.aim(self.level, casters, surface, [u1, u2], &mut self.views);
             lambert_directions(self.level, (&paths.at.normal, &paths.direction), [&drawn.u1.0, u2], &mut wi, &mut cos);
-            drawn.take(self.level, casters, surface, &mut wi, &mut cos);
+            drawn.take(self.level, casters, surface, &self.views, (&mut wi, &mut cos));
         } else {
             lambert_directions(self.level, (&paths.at.normal, &paths.direction), [u1, u2], &mut wi, &mut cos);
         }
@@ -79,6 +79,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     paths.beta[lane] *= paths.known.spectrum(lane, slot, self.tables, &paths.wavelengths[lane]);
                     if aims {
                         paths.beta[lane] *= drawn.factor.0[lane];
+                        paths.aim_factor.0[lane] = drawn.factor.0[lane].min(1.0);
                     }
                     // As if it had followed lanes that are all alike.
                     let mean_of_hero =
@@ -127,7 +128,10 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     paths.parted |= Mask::from(next.lane_density != Lanes::ONE) << lane;
                     paths.eta_squared.0[lane] *= next.eta * next.eta;
                     match next.density {
-                        Density::SolidAngle(density) => Density::SolidAngle(density * mean_of_hero),
+                        Density::SolidAngle(density) => {
+                            paths.aim_factor.0[lane] = mixture.aim_factor();
+                            Density::SolidAngle(density * mean_of_hero)
+                        }
                         Density::Delta => Density::Delta,
                     }
                 }
@@ -155,7 +159,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 continue;
             }
             if self.world.roulette && paths.vertex[lane] + 1 >= ROULETTE_FROM_VERTEX {
-                let survival = (throughput / ROULETTE_THROUGHPUT).min(1.0);
+                let survival = (throughput / (paths.aim_factor.0[lane] * ROULETTE_THROUGHPUT)).min(1.0);
                 #[cfg(test)]
                 let survival = if is_wrong(Fault::Undead) && lane == 7 { 1.0 } else { survival };
                 if u_roulette[lane] >= survival {

@@ -115,6 +115,7 @@ impl<'a, const N: usize> Starts<'a, N> {
         paths.leaves[lane] = SurfaceId::NONE;
         paths.shared &= !(1 << lane);
         paths.eta_squared.0[lane] = 1.0;
+        paths.aim_factor.0[lane] = 1.0;
         paths.beta[lane] = Lanes::ONE;
         paths.radiance[lane] = Lanes::ZERO;
         paths.model[lane] = M::start();

@@ -2,6 +2,7 @@
 
 use super::level::Level;
 use super::{Engine, render_on};
+use crate::caustics::Aims;
 use crate::film::{Counters, Film, PixelRect, TileSums};
 use crate::kernel::Spot;
 use crate::model::{Hero, OneLane, Shared, WavelengthModel};
@@ -127,20 +128,24 @@ fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_plain_l
 }
 
 #[test]
-fn directions_toward_casters_leave_the_film_of_the_plain_loop_too() {
-    let plain = {
-        let mut prepared = prepared(&[], PathLoop::Plain);
-        prepared.casters.each = 0.25;
-        prepared.render(&prepared.whole(Some(1)), &|_| Control::Continue).unwrap()
-    };
-    let mut lanes_of = prepared(&[], PathLoop::Lanes);
-    assert_eq!(lanes_of.casters.bodies.len(), 2);
-    lanes_of.casters.each = 0.25;
-    for level in Level::all() {
-        assert!(is_that_of(&plain, &lanes::<Shared, 8>(level, &lanes_of)), "{level:?}");
+fn directions_toward_casters_and_images_of_lamps_leave_the_film_of_the_plain_loop_too() {
+    for aims in [Aims::Bodies, Aims::Images] {
+        let aiming = |path_loop, share| {
+            let mut prepared = prepared(&[], path_loop);
+            // Two balls, one of which mirrors three lamps; the other shows them through itself.
+            assert_eq!((prepared.casters.bodies.len(), prepared.casters.images.len()), (2, 6));
+            (prepared.casters.aims, prepared.casters.share) = (aims, share);
+            prepared
+        };
+        let plain = aiming(PathLoop::Plain, 0.5);
+        let film = plain.render(&plain.whole(Some(1)), &|_| Control::Continue).unwrap();
+        for level in Level::all() {
+            let lanes_of = aiming(PathLoop::Lanes, 0.5);
+            assert!(is_that_of(&film, &lanes::<Shared, 8>(level, &lanes_of)), "{aims:?}, {level:?}");
+        }
+        let other = aiming(PathLoop::Lanes, 0.4);
+        assert!(!is_that_of(&film, &lanes::<Shared, 8>(Level::detect(), &other)), "{aims:?}");
     }
-    lanes_of.casters.each = 0.2;
-    assert!(!is_that_of(&plain, &lanes::<Shared, 8>(Level::detect(), &lanes_of)));
 }
 
 #[test]

@@ -33,6 +33,7 @@ pub use triangle::TriangleLight;
 pub(crate) use moving::Link;
 pub(crate) use planar::{Aim, Flat};
 pub(crate) use sphere::Round;
+pub(crate) use table::visible_sum;
 
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;

@@ -205,7 +205,7 @@ impl LightTable {
 
 /// ∫ S·(x̄ + ȳ + z̄ + floor) by 256 equal steps of the range: only the choice of lights depends on it. The floor keeps
 /// lights whose wavelengths are hardly visible.
-fn visible_sum(spectrum: &PathSpectrum, [first, last]: [f64; 2]) -> f64 {
+pub(crate) fn visible_sum(spectrum: &PathSpectrum, [first, last]: [f64; 2]) -> f64 {
     let steps = 256;
     let at = |i: i32| first + (last - first) * (f64::from(i) + 0.5) / f64::from(steps);
     (0..steps).map(at).map(|nm| spectrum.eval(nm) * (colour_matching(nm).iter().sum::<f64>() + 1e-3)).sum()
