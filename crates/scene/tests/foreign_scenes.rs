@@ -378,6 +378,19 @@ fn a_pbrt_scene_arrives_with_its_camera_shapes_materials_and_lights() {
     assert_eq!(scene.instances.len(), 1);
 }
 
+/// The first found by a fuzzer, which made the sum of a number as large as it can be and one.
+#[test]
+fn a_depth_beyond_all_limits_is_the_largest_that_a_scene_can_say() {
+    let shape = "Shape \"sphere\" \"float radius\" 2\n";
+    let pbrt = format!("Integrator \"path\" \"integer maxdepth\" 30000000000000000000\nWorldBegin\n{shape}");
+    let mitsuba = r#"<scene version="3.0.0"><integrator type="path"><integer name="max_depth" value="30000000000000000000"/></integrator>
+        <shape type="sphere"/></scene>"#;
+    for (kind, text) in [("pbrt", pbrt.as_str()), ("xml", mitsuba)] {
+        let json: serde_json::Value = serde_json::from_str(&imported(kind, text).text).unwrap();
+        assert_eq!(json["integrator"]["max_depth"], u32::MAX, "{kind}");
+    }
+}
+
 #[test]
 fn what_pbrt_says_and_we_cannot_is_listed_with_its_line() {
     let said = said(&imported("pbrt", PBRT));

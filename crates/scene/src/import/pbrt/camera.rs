@@ -114,8 +114,8 @@ impl Reading<'_, '_> {
         if !matches!(kind, "path" | "volpath" | "simplepath" | "simplevolpath") {
             self.builder.leave_out(place, format!("the integrator \"{kind}\" becomes a path tracer"));
         }
-        // A depth of 0 is light seen directly, which is one edge of a path.
-        let depth = list.number("maxdepth")?.unwrap_or(5.0).max(0.0) as u64 + 1;
+        // A depth of 0 is light seen directly, which is one edge of a path. What is more than a scene can say stands for no limit.
+        let depth = (list.number("maxdepth")?.unwrap_or(5.0).max(0.0) + 1.0).min(f64::from(u32::MAX)) as u32;
         self.builder.integrator.insert("max_depth".to_owned(), json!(depth));
         for harmless in ["lightsampler", "regularize"] {
             if list.flag(harmless) != Some(true) {
