@@ -57,6 +57,9 @@ pub(crate) struct Overrides {
     /// For study: trace one path at a time, or many at once where that is possible. Both give the same picture, bit for bit.
     #[arg(long = "loop", value_enum, value_name = "WHICH")]
     path_loop: Option<PathLoopArg>,
+    /// For study: draw all directions of diffuse surfaces by the cosine, none toward what casts caustics.
+    #[arg(long)]
+    by_cosine: bool,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -211,6 +214,7 @@ impl Overrides {
             polarised: self.polarised,
             carried: self.carry.map(Carried::from),
             path_loop: self.path_loop.map(PathLoop::from),
+            by_cosine_alone: self.by_cosine,
         }
     }
 
@@ -246,6 +250,7 @@ impl Overrides {
         .into_iter()
         .filter_map(|(name, value)| value.map(|value| format!(" --{name} {value}")))
         .chain(self.polarised.then(|| " --polarised".to_owned()))
+        .chain(self.by_cosine.then(|| " --by-cosine".to_owned()))
         .collect()
     }
 }

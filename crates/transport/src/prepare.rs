@@ -245,7 +245,9 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         warnings,
         scene: simulated,
     };
-    prepared.choose_casters();
+    if !study.by_cosine_alone {
+        prepared.choose_casters();
+    }
     Ok(prepared)
 }
 

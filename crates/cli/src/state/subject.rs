@@ -28,6 +28,8 @@ pub(crate) struct Subject {
     pub bands: Option<KeptBands>,
     /// The plan: effects, kernel, sampler, depth.
     pub plan: Value,
+    /// The share of directions that is drawn toward what casts caustics, and how many these are: bodies, and images of lamps.
+    pub casters: [(f64, usize); 2],
 }
 
 /// Bands of wavelengths, and how the film keeps them.
@@ -90,6 +92,7 @@ impl Subject {
                 factors: prepared.band_factors().map(|factors| factors.iter().map(|factor| factor.to_bits()).collect()),
             }),
             plan: serde_json::to_value(prepared.plan()).expect("a plan is plain data"),
+            casters: [prepared.casters(), prepared.images_of_lamps()],
         }
     }
 
@@ -127,7 +130,7 @@ impl Subject {
             let mut value = serde_json::to_value(subject).expect("plain data");
             let plan = value["plan"].take().as_object().cloned().unwrap_or_default();
             // A picture of another size has another crop too, and another seed is no surprise where the scene is another.
-            let first = ["software", "scene_sha256", "size", "crop", "seed", "replicates", "bands"];
+            let first = ["software", "scene_sha256", "size", "crop", "seed", "replicates", "bands", "casters"];
             let first: Vec<_> = first.iter().map(|&key| (key.to_owned(), value[key].take())).collect();
             first.into_iter().chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value))).collect()
         };
@@ -147,6 +150,7 @@ impl Subject {
             .map(|(key, value)| (key, value, others.get(key).unwrap_or(&Value::Null)))
             .find(|(_, a, b)| a != b)
             .map(|(key, own, other)| match key.as_str() {
+                "casters" => "its directions are drawn toward other casters (see `etalon explain`)".to_owned(),
                 "plan.effects" => "its effects are others (see `etalon explain`)".to_owned(),
                 _ => format!("{} is {own}, not {other}", name(key)),
             })
@@ -168,6 +172,7 @@ mod tests {
             replicates: 4,
             matrices: [[0.0; 16]; 2],
             bands: None,
+            casters: [(0.0, 0); 2],
             plan: serde_json::json!({"sampler": "sobol", "approximations": ["lens: everything is in focus"]}),
         };
         assert_eq!(subject.difference(&subject.clone()), None);
@@ -178,6 +183,10 @@ mod tests {
             subject.difference(&other).unwrap()
         };
         assert_eq!(with(&|s| s.seed = 4), "its seed is 3, not 4");
+        assert_eq!(
+            with(&|s| s.casters[1] = (0.5, 2)),
+            "its directions are drawn toward other casters (see `etalon explain`)"
+        );
         assert_eq!(with(&|s| s.scene_sha256 = "cd".to_owned()), "the SHA-256 of its scene is \"ab\", not \"cd\"");
         assert_eq!(
             with(&|s| s.plan["sampler"] = "independent".into()),

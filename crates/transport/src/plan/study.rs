@@ -25,6 +25,9 @@ pub struct Study {
     pub carried: Option<Carried>,
     /// How paths are to be traced; both ways give the same bits.
     pub path_loop: Option<PathLoop>,
+    /// Whether diffuse surfaces are to draw all directions by the cosine, without a trial of whether some had better be drawn toward
+    /// what casts caustics.
+    pub by_cosine_alone: bool,
 }
 
 /// What a path may carry for comparison with the wavelengths that a plan gives it. Double precision only.

@@ -189,7 +189,7 @@ mod tests {
         let hopeless = is_worth_more(9_000_000, 2e-2, 1e-2, 1.0);
         // Two steps at 1/√n end at 225 million rays and 1e-4; at the rate 4 they come from 1.6e-3.
         let (near, too_far) =
-            (is_worth_more(14_000_000, 5e-4, 4e-4, 1.0), is_worth_more(14_000_000, 9e-4, 4.1e-4, 1.0));
+            (is_worth_more(14_000_000, 5e-4, 4e-4, 1.0), is_worth_more(14_000_000, 8e-4, 4.1e-4, 1.0));
         let steep = is_worth_more(14_000_000, 6.4e-3, 1.6e-3, 1.0);
         let too_dear = is_worth_more(65_000_000, 2e-4, 1.1e-4, 1.0);
         assert_eq!(
