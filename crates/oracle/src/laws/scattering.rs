@@ -47,6 +47,21 @@ fn variation(of: impl Fn(Vec3, Vec3) -> f64, wo: Vec3, wi: Vec3, epsilon: f64) -
     std::f64::consts::SQRT_2 * (by_wo + by_wi)
 }
 
+/// What rounding may do to light that is refracted by a facet, relatively, where the facet's cosine on one side is taken from that on the
+/// other by Snell's law, as √(1 − η²(1 − cos²)): η, its square and the difference err by some 8 ε together, which is nothing but near
+/// the critical angle. There the cosine is small, and f goes with its square at most. No direction nearby shows this: it is as if the index were
+/// another by an ε.
+fn snell_rounding([n_o, n_i]: [f64; 2], wo: Vec3, wi: Vec3, epsilon: f64) -> f64 {
+    if wo[2] * wi[2] > 0.0 {
+        return 0.0;
+    }
+    // The facet that sends one direction into the other (Walter et al. 2007, eq. 16).
+    let facet = normalize(add(scale(n_o, wo), scale(n_i, wi)));
+    let least = dot(wo, facet).abs().min(dot(wi, facet).abs());
+    // Where there is no facet, for equal indices straight on, nothing is refracted.
+    if least > 0.0 { 8.0 * epsilon / (least * least) } else { 0.0 }
+}
+
 /// f and pdf are finite, not negative, and wherever f lets light through pdf finds it.
 pub fn f_and_pdf_are_proper(subject: &dyn Scatters, seed: u64) -> Verdict {
     const LAW: &str = "f and pdf are finite, not negative, and pdf > 0 wherever f > 0";
@@ -66,7 +81,7 @@ pub fn f_and_pdf_are_proper(subject: &dyn Scatters, seed: u64) -> Verdict {
 ///
 /// Where f changes fast, at grazing angles and near total reflection, an arithmetic that takes the same cosine once from `wo` and once
 /// from `wi` misses that without being wrong: it is exact for directions a few roundings away. So what misses the bound may differ, besides, by
-/// what f itself changes when a direction moves by 64 ε.
+/// what f itself changes when both directions move by 64 ε, and, where light is refracted, by what rounding does to Snell's law.
 ///
 /// A delta lobe's partner is looked for within √ε, because near the critical angle directions are that ill-conditioned; there
 /// weights are compared to √ε too.
@@ -83,7 +98,7 @@ pub fn is_reciprocal(subject: &dyn Scatters, seed: u64) -> Verdict {
         if error > bound {
             let there = variation(|wo, wi| subject.f(wo, wi, wavelength_nm), wo, wi, epsilon) / (n_o * n_o);
             let reverse = variation(|wo, wi| subject.f(wo, wi, wavelength_nm), wi, wo, epsilon) / (n_i * n_i);
-            bound += there.max(reverse) / largest;
+            bound += there.max(reverse) / largest + snell_rounding([n_o, n_i], wo, wi, epsilon);
         }
         let smooth = Verdict::bounded(
             LAW,
