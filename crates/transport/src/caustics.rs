@@ -109,8 +109,7 @@ pub(crate) struct Casters {
 impl Casters {
     /// The scene's own mirrors and bodies of glass, where there are lamps that a walk may run into; none is aimed at yet.
     pub(crate) fn new(surfaces: &Surfaces, geometry: &Geometry, lights: &LightTable, range_nm: [f64; 2]) -> Self {
-        let lamps = lamps(surfaces, geometry, lights, range_nm);
-        if lamps.is_empty() {
+        if !lights.lights().iter().any(|light| light.emitter().is_some()) {
             return Self::default();
         }
         let (mut bodies, mut boxes): (Vec<Caster>, Vec<(u32, Aabb)>) = (Vec::new(), Vec::new());
@@ -136,6 +135,8 @@ impl Casters {
         bodies.sort_by(|a, b| b.size().total_cmp(&a.size()));
         bodies.truncate(MOST_CASTERS);
         balls.sort_by(|a, b| b.0.radius.total_cmp(&a.0.radius));
+        // Thousands of lamps are not looked at where nothing shows them.
+        let lamps = if balls.is_empty() { Vec::new() } else { lamps(surfaces, geometry, lights, range_nm) };
         let shown = balls.iter().flat_map(|&(ball, bsdf)| {
             lamps.iter().filter_map(move |&(lamp, radiance)| {
                 let pair = Pair::new(ball, lamp, radiance);
