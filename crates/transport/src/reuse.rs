@@ -14,6 +14,8 @@
 //! whose first surface is not diffuse, or that meets a mirror or glass there.
 
 #[cfg(test)]
+mod room;
+#[cfg(test)]
 mod tests;
 
 use crate::film::{Counters, NonFinite, Sums};
