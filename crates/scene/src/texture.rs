@@ -19,6 +19,9 @@ pub struct Image {
     pub height: u32,
     /// The texels.
     pub texels: Texels,
+    /// What is asked of all of them, by each part of each material that shows the image: found once.
+    mean: [f64; 3],
+    grey: bool,
 }
 
 /// Texels, as they are stored.
@@ -112,6 +115,28 @@ static SRGB: LazyLock<[f64; 256]> = LazyLock::new(|| {
 });
 
 impl Image {
+    /// An image of `width` × `height` texels, rows from the top.
+    ///
+    /// # Panics
+    /// If there are more or fewer texels.
+    pub fn new(width: u32, height: u32, texels: Texels) -> Self {
+        let count = match &texels {
+            Texels::Srgb8(texels) | Texels::Linear8(texels) => texels.len(),
+            Texels::F32(texels) => texels.len(),
+        };
+        assert_eq!(count, width as usize * height as usize, "texels of an image of {width} × {height}");
+        let mut image = Self { width, height, texels, mean: [0.0; 3], grey: true };
+        let mut sum = [0.0; 3];
+        let mut grey = true;
+        for texel in image.linear_texels() {
+            (0..3).for_each(|c| sum[c] += texel[c]);
+            grey &= texel[0] == texel[1] && texel[1] == texel[2];
+        }
+        image.mean = sum.map(|v| v / (f64::from(width) * f64::from(height)));
+        image.grey = grey;
+        image
+    }
+
     /// Decodes a PNG, JPEG, EXR or HDR file, told apart by its first bytes. What it says beyond three channels is left
     /// out: the second value says what.
     ///
@@ -158,7 +183,7 @@ impl Image {
             return Ok(image);
         }
         let texels = image.linear_texels().map(|texel| [pick(texel) as f32; 3]).collect();
-        Ok(Self { width, height, texels: Texels::F32(texels) })
+        Ok(Self::new(width, height, Texels::F32(texels)))
     }
 
     fn read(bytes: &[u8]) -> Result<DynamicImage, String> {
@@ -209,7 +234,7 @@ impl Image {
                 texels[i]
             ));
         }
-        Ok(Self { width, height, texels })
+        Ok(Self::new(width, height, texels))
     }
 
     /// The texel in a column and a row, counted from 0 at the top left, in linear numbers.
@@ -231,14 +256,12 @@ impl Image {
 
     /// The mean of all texels.
     pub fn mean(&self) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        self.linear_texels().for_each(|texel| (0..3).for_each(|c| sum[c] += texel[c]));
-        sum.map(|v| v / (f64::from(self.width) * f64::from(self.height)))
+        self.mean
     }
 
     /// Whether every texel has three equal channels.
     pub fn is_grey(&self) -> bool {
-        self.linear_texels().all(|[r, g, b]| r == g && g == b)
+        self.grey
     }
 }
 
@@ -334,7 +357,7 @@ mod tests {
     /// Two columns and two rows: red = column, green = 1 in the upper row.
     fn square(wrap: Wrap, filter: TextureFilter) -> ImageTexture {
         let texels = vec![[0.0, 1.0, 0.25], [1.0, 1.0, 0.25], [0.0, 0.0, 0.25], [1.0, 0.0, 0.25]];
-        let image = Arc::new(Image { width: 2, height: 2, texels: Texels::F32(texels) });
+        let image = Arc::new(Image::new(2, 2, Texels::F32(texels)));
         ImageTexture {
             image,
             name: String::new(),

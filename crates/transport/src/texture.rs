@@ -5,6 +5,7 @@ use crate::spectral::PathSpectrum;
 use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{Illuminant, Lanes, Real, Spectrum};
 use etalon_scene::{ImageTexture, SpectrumTexture};
+use std::borrow::Cow;
 
 /// A reflectance prepared for paths, perhaps another one at each place.
 #[derive(Clone, Debug)]
@@ -72,10 +73,10 @@ pub(crate) fn mean_emission(texture: &ImageTexture) -> Spectrum {
     Spectrum::rgb_emission(texture.mean(), Illuminant::D65).expect("a mean of emissions is one")
 }
 
-/// The value of a reflectance at a wavelength, nm; of an image that of its mean colour.
-pub(crate) fn mean(reflectance: &SpectrumTexture, wavelength_nm: f64) -> f64 {
+/// A reflectance as a spectrum; of an image that of its mean colour.
+pub(crate) fn mean(reflectance: &SpectrumTexture) -> Cow<'_, Spectrum> {
     match reflectance {
-        SpectrumTexture::Uniform(spectrum) => spectrum.eval(wavelength_nm),
-        SpectrumTexture::Image(texture) => mean_colour(texture).eval(wavelength_nm),
+        SpectrumTexture::Uniform(spectrum) => Cow::Borrowed(spectrum),
+        SpectrumTexture::Image(texture) => Cow::Owned(mean_colour(texture)),
     }
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 fn texture(width: u32, height: u32, texels: Vec<[f32; 3]>, filter: TextureFilter) -> ImageTexture {
     ImageTexture {
-        image: Arc::new(Image { width, height, texels: Texels::F32(texels) }),
+        image: Arc::new(Image::new(width, height, Texels::F32(texels))),
         name: "texels".to_owned(),
         wrap: [Wrap::Clamp; 2],
         filter,

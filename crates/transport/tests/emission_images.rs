@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// Columns from the left, all one row high.
 fn columns(texels: &[[f32; 3]]) -> ImageTexture {
     ImageTexture {
-        image: Arc::new(Image { width: texels.len() as u32, height: 1, texels: Texels::F32(texels.to_vec()) }),
+        image: Arc::new(Image::new(texels.len() as u32, 1, Texels::F32(texels.to_vec()))),
         name: "columns".to_owned(),
         wrap: [Wrap::Clamp; 2],
         filter: TextureFilter::Nearest,

@@ -18,7 +18,7 @@ const RANGE_NM: [f64; 2] = [400.0, 700.0];
 fn sky(width: u32, height: u32, texels: &[f64]) -> EnvironmentImage {
     let texels = texels.iter().map(|&v| [v as f32; 3]).collect();
     EnvironmentImage {
-        image: Arc::new(Image { width, height, texels: Texels::F32(texels) }),
+        image: Arc::new(Image::new(width, height, Texels::F32(texels))),
         name: "sky".to_owned(),
         projection: EnvironmentProjection::LatitudeLongitude,
         forward: [1.0, 0.0, 0.0],
@@ -412,7 +412,7 @@ fn white_is_daylight_and_primaries_add_up_to_it() {
     let lambda = Lanes([450.0, 500.0, 550.0, 650.0]);
     let of = |rgb: [f32; 3]| {
         let image = EnvironmentImage {
-            image: Arc::new(Image { width: 1, height: 1, texels: Texels::F32(vec![rgb]) }),
+            image: Arc::new(Image::new(1, 1, Texels::F32(vec![rgb]))),
             white: daylight.clone(),
             ..uneven()
         };

@@ -220,7 +220,7 @@ fn every_strategy_finds_the_same_light_through_rough_flint() {
 /// An image of one texel.
 fn texel(value: f32) -> ImageTexture {
     ImageTexture {
-        image: Arc::new(Image { width: 1, height: 1, texels: Texels::F32(vec![[value; 3]]) }),
+        image: Arc::new(Image::new(1, 1, Texels::F32(vec![[value; 3]]))),
         name: String::new(),
         wrap: [Wrap::Repeat; 2],
         filter: TextureFilter::Bilinear,

@@ -18,7 +18,7 @@ const TEXELS: [[f32; 3]; 8] = [
 
 fn texture(filter: TextureFilter) -> ImageTexture {
     ImageTexture {
-        image: Arc::new(Image { width: 4, height: 2, texels: Texels::F32(TEXELS.to_vec()) }),
+        image: Arc::new(Image::new(4, 2, Texels::F32(TEXELS.to_vec()))),
         name: "texels".to_owned(),
         wrap: [Wrap::Clamp; 2],
         filter,
@@ -113,7 +113,7 @@ fn interpolation_keeps_the_mean() {
 #[test]
 fn white_texels_are_white_at_every_wavelength() {
     let mut white = texture(TextureFilter::Bilinear);
-    white.image = Arc::new(Image { width: 1, height: 1, texels: Texels::Srgb8(vec![[255; 3]]) });
+    white.image = Arc::new(Image::new(1, 1, Texels::Srgb8(vec![[255; 3]])));
     // Each sample is worth the sky itself, as with the constant reflectance 1: the same noise.
     let shown = picture(SQUARE, white, [2, 2], 64);
     let text = format!(

@@ -226,7 +226,7 @@ mod tests {
 
     fn white_sky() -> EnvironmentImage {
         EnvironmentImage {
-            image: Arc::new(Image { width: 2, height: 3, texels: Texels::F32(vec![[1.0; 3]; 6]) }),
+            image: Arc::new(Image::new(2, 3, Texels::F32(vec![[1.0; 3]; 6]))),
             name: String::new(),
             projection: EnvironmentProjection::LatitudeLongitude,
             forward: [1.0, 0.0, 0.0],

@@ -339,7 +339,7 @@ fn luminances(image: &Image, factor: [f64; 3]) -> Image {
         [(0.2126 * r + 0.7152 * g + 0.0722 * b) as f32; 3]
     };
     let Image { width, height, .. } = *image;
-    Image { width, height, texels: Texels::F32(image.linear_texels().map(luminance).collect()) }
+    Image::new(width, height, Texels::F32(image.linear_texels().map(luminance).collect()))
 }
 
 fn grey_metal(index: &ComplexIndex, range_nm: [f64; 2]) -> ComplexIndex {

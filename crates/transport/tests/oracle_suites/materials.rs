@@ -72,7 +72,7 @@ fn mixture() -> Material<f64> {
 /// An image of one texel.
 fn texel(rgb: [f32; 3]) -> ImageTexture {
     ImageTexture {
-        image: Arc::new(Image { width: 1, height: 1, texels: Texels::F32(vec![rgb]) }),
+        image: Arc::new(Image::new(1, 1, Texels::F32(vec![rgb]))),
         name: String::new(),
         wrap: [Wrap::Repeat; 2],
         filter: TextureFilter::Bilinear,

@@ -54,7 +54,8 @@ fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
         MaterialKind::ThinDielectric { index } => glass(index.eval(middle(range_nm))),
         MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
         | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
-            metal(range_nm, |nm| (1.0, Metal::k_of(texture::mean(reflectance, nm))))
+            let mean = texture::mean(reflectance);
+            metal(range_nm, |nm| (1.0, Metal::k_of(mean.eval(nm))))
         }
         MaterialKind::Conductor { metal: Metal::Index(index) }
         | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => metal(range_nm, |nm| index.eval(nm)),
