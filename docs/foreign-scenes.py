@@ -31,7 +31,8 @@ XML = """<scene version="3.0.0">
   <shape type="sphere"><point name="center" x="0" y="1" z="0"/><float name="radius" value="1"/>{ball}</shape>
 </scene>
 """
-# The same. The axes of pbrt are left-handed unless a transform mirrors. Light is of equal channels: what is grey here is grey there.
+# The same. The axes of pbrt are left-handed unless a transform mirrors; its images begin at v = 1, those of Mitsuba at 0.
+# Light is of equal channels: what is grey here is grey there.
 PBRT = """Scale -1 1 1
 LookAt 0 2 6  0 0.8 0  0 1 0
 Film "rgb" "integer xresolution" {width} "integer yresolution" {height}
@@ -48,7 +49,7 @@ AttributeBegin
 AttributeEnd
 AttributeBegin
   {floor}
-  Shape "trianglemesh" "point3 P" [ -4 0 4  4 0 4  4 0 -4  -4 0 -4 ] "integer indices" [ 0 1 2 0 2 3 ] "point2 uv" [ 0 0 1 0 1 1 0 1 ]
+  Shape "trianglemesh" "point3 P" [ -4 0 4  4 0 4  4 0 -4  -4 0 -4 ] "integer indices" [ 0 1 2 0 2 3 ] "point2 uv" [ 0 1 1 1 1 0 0 0 ]
 AttributeEnd
 {ball}
 Translate 0 1 0
