@@ -171,6 +171,9 @@ pub struct Reading {
     pub estimate: Estimate,
     /// Samples that were NaN or infinite. A good renderer has none, and a truth fails with any.
     pub nonfinite: u64,
+    /// Largest absolute bias that paths may have caused which the renderer cut for no reason of the scene's; 0 if there were none.
+    /// [`Truth::bias_of_cut_paths`](crate::truths::Truth::bias_of_cut_paths) bounds it. What cannot be bounded is infinite.
+    pub cut_bias: f64,
 }
 
 /// A whole renderer.

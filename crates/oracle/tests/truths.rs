@@ -87,7 +87,7 @@ fn values_are_the_published_ones() {
 }
 
 fn reading(mean: f64, standard_error: f64) -> Reading {
-    Reading { estimate: Estimate::new(mean, standard_error), nonfinite: 0 }
+    Reading { estimate: Estimate::new(mean, standard_error), nonfinite: 0, cut_bias: 0.0 }
 }
 
 #[test]
@@ -103,6 +103,40 @@ fn a_right_and_quiet_reading_passes_a_wrong_or_noisy_one_does_not() {
     assert!(!judge(&truth, &Reading { nonfinite: 1, ..reading(2.25, 1e-4) }, significance).pass);
     assert!(!judge(&truth, &reading(f64::NAN, 1e-4), significance).pass);
     assert!(!judge(&truth, &reading(2.25, f64::NAN), significance).pass);
+}
+
+#[test]
+fn paths_that_were_cut_count_by_what_they_may_have_carried() {
+    let truth = find("light-through-a-mirror-tunnel");
+    let significance = 5.7e-9;
+    let judged = |cut, throughput, paths| {
+        let cut_bias = truth.bias_of_cut_paths(cut, throughput, paths, significance);
+        judge(&truth, &Reading { cut_bias, ..reading(0.5, 1e-6) }, significance)
+    };
+    // Seen: 8.9e-6 + 1e-5 that single precision is allowed. A Poisson count of one excludes means above 22.2.
+    let seen = judged(0, 0.0, 1).resolvable_bias;
+    let one = judged(1, 1.0, 134_000_000);
+    one.assert();
+    assert!(
+        one.evidence.contains("may have caused a bias of 1.7e-7") && (one.resolvable_bias / seen - 1.009).abs() < 1e-3,
+        "{one}"
+    );
+    // A hundredth of the paths, a hundred times the throughput, a thousand cut, or a bound that is none: too much may be missing.
+    for (cut, throughput, paths) in [
+        (1, 1.0, 1_340_000),
+        (1, 100.0, 134_000_000),
+        (1000, 1.0, 134_000_000),
+        (1, f64::MAX, u64::MAX),
+        (1, f64::NAN, 1),
+    ] {
+        let refused = judged(cut, throughput, paths);
+        assert!(!refused.pass && refused.evidence.contains("more than 1."), "{refused}");
+    }
+    // Nobody has said how bright this room may be.
+    let room = find("room-cube");
+    assert_eq!(room.bias_of_cut_paths(1, 1.0, u64::MAX, significance), f64::INFINITY);
+    assert!(!judge(&room, &Reading { cut_bias: f64::INFINITY, ..reading(1.0, 1e-6) }, significance).pass);
+    assert_eq!(room.bias_of_cut_paths(0, 0.0, 1, significance), 0.0);
 }
 
 #[test]

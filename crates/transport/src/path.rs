@@ -202,7 +202,9 @@ impl World<'_> {
                 }
             }
             if vertex + 1 - passed >= self.max_depth || vertex + 1 == MOST_VERTICES {
-                counters.cut_paths += u64::from(vertex + 1 == MOST_VERTICES);
+                if vertex + 1 == MOST_VERTICES {
+                    counters.record_cut((beta.max_lane() * lane_weight).to_f64());
+                }
                 observer.end(End::Depth);
                 break;
             }
@@ -461,7 +463,7 @@ impl World<'_> {
                 inside = beyond.inside;
             }
         }
-        counters.cut_paths += 1;
+        counters.record_cut(f64::MAX);
         0.0
     }
 }

@@ -3,7 +3,9 @@
 use etalon_oracle::statistics::Welford;
 use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
 use etalon_transport::film::PixelRect;
-use etalon_transport::{Canvas, Control, Extent, Film, Prepared, Shard, TileSums, prepare};
+use etalon_transport::{
+    Canvas, Control, Extent, Film, PathLoop, Prepared, Shard, Study, TileSums, prepare, prepare_study,
+};
 use serde_json::{Value, json};
 
 fn parse(json: &Value) -> Scene {
@@ -278,6 +280,29 @@ fn a_room_without_absorption_ends_and_says_so() {
     }));
     let prepared = prepare(&scene).unwrap();
     let film = render(&prepared, &prepared.whole(Some(1)));
-    assert_eq!(film.counters.cut_paths, 2);
+    assert_eq!((film.counters.cut_paths, film.counters.cut_throughput), (2, 1.0));
     assert_eq!(film.mean_y(prepared.whole(None).rect), 0.0);
+}
+
+#[test]
+fn a_path_that_is_cut_tells_what_its_light_would_have_been_multiplied_by() {
+    // The camera's ray meets 65,536 walls, the last of which cuts it: it has been reflected by one less.
+    let reflectance = 0.9999_f64;
+    let truth = reflectance.powi(65_535);
+    let scene = parse(&json!({
+        "etalon": 1,
+        "camera": {"type": "perspective", "position_m": [0, 0, 0.5], "look_at_m": [0, 0, 0], "vertical_fov_deg": 60},
+        "film": {"width": 1, "height": 1},
+        "materials": {"mirror": {"type": "mirror", "reflectance": reflectance}},
+        "objects": [{"material": "mirror", "shape": {"type": "sphere", "center_m": [0, 0, 0], "radius_m": 1}}],
+        "lights": [{"type": "environment", "radiance": 1}],
+        "integrator": {"spp": 2, "roulette": false, "precision": "f64"}
+    }));
+    for path_loop in [PathLoop::Plain, PathLoop::Lanes] {
+        let prepared = prepare_study(&scene, &Study { path_loop: Some(path_loop), ..Study::default() }).unwrap();
+        let counters = render(&prepared, &prepared.whole(Some(1))).counters;
+        assert_eq!(counters.cut_paths, 2);
+        // A rounding at each reflection, and those of the spectrum that the reflectance is given as.
+        assert!((counters.cut_throughput / truth - 1.0).abs() < 1e-9, "{path_loop:?}: {}", counters.cut_throughput);
+    }
 }

@@ -60,6 +60,14 @@ pub fn chi_square_upper_tail_quantile(p: f64, degrees_of_freedom: f64) -> f64 {
     invert_falling(|x| chi_square_upper_tail(x, degrees_of_freedom), p, 0.0, far)
 }
 
+/// The mean of a Poisson distribution by which as few as `count` come with this probability, in (0, 1): whoever has counted so few can
+/// exclude what is more frequent.
+#[must_use]
+pub fn poisson_mean_bound(count: u64, significance: f64) -> f64 {
+    // P(N ≤ n | μ) = P(χ² > 2μ) with 2n + 2 degrees of freedom.
+    0.5 * chi_square_upper_tail_quantile(significance, 2.0 * (count as f64 + 1.0))
+}
+
 /// P(D > d) of the one-sample Kolmogorov–Smirnov statistic of n values, by the asymptotic series with Stephens' (1970)
 /// correction for finite n.
 #[must_use]
@@ -116,6 +124,19 @@ mod tests {
         close(student_two_sided_tail(5.0, 1e9), normal_two_sided_tail(5.0), 1e-6);
         // Smirnov's table: the 5 % point of √n·D is 1.3581.
         close(kolmogorov_upper_tail(1.358_1 / 1e3, 1_000_000), 0.05, 1e-3);
+    }
+
+    #[test]
+    fn as_few_as_were_counted_have_the_probability_stated() {
+        // P(N ≤ n) = e^(−μ) Σ μᵏ/k!, term by term.
+        for (count, significance) in [(0_u64, 1e-3), (1, 5.7e-9), (7, 1e-6), (300, 0.025)] {
+            let mean = poisson_mean_bound(count, significance);
+            let terms = (0..=count).scan(1.0, |term, k| {
+                *term *= if k == 0 { 1.0 } else { mean / k as f64 };
+                Some(*term)
+            });
+            close((-mean).exp() * terms.sum::<f64>(), significance, 1e-8);
+        }
     }
 
     #[test]

@@ -256,6 +256,8 @@ fn mirror_rooms() -> Vec<Truth> {
             .because(because)
             .or_else("roulette capped at 0.95: what a finite sample shows", 0.3)
             .or_else("paths cut at 1000 edges", 1.0 - 0.999_f64.powi(1000))
+            // The same everywhere.
+            .no_brighter_than(1.0)
             .sees(0.1),
         Truth::new("mirror-room-cut-at-5", &room(0.9, 256).depth(5), 1.0 - 0.9_f64.powi(5), "1 − ρ⁵, ρ = 0.9")
             .because("n edges hold n terms of Le Σρᵏ with Le = 1 − ρ, without noise.")

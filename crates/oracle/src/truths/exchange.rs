@@ -111,7 +111,11 @@ impl Reading {
         let count = finite().count() as f64;
         let mean = finite().map(|(value, _)| value).sum::<f64>() / count;
         let variance = finite().map(|(_, error)| error * error).sum::<f64>();
-        Self { estimate: Estimate::new(mean, variance.sqrt() / count), nonfinite: values.len() as u64 - count as u64 }
+        Self {
+            estimate: Estimate::new(mean, variance.sqrt() / count),
+            nonfinite: values.len() as u64 - count as u64,
+            cut_bias: 0.0,
+        }
     }
 
     /// Reads several pictures of the same scene with different seeds and equally many paths: the mean of each. Their
@@ -119,7 +123,7 @@ impl Reading {
     #[must_use]
     pub fn from_means(means: &[f64], nonfinite: u64) -> Self {
         let moments: Welford = means.iter().copied().collect();
-        Self { estimate: moments.estimate(), nonfinite }
+        Self { estimate: moments.estimate(), nonfinite, cut_bias: 0.0 }
     }
 
     /// The reading in units of another, such as a band's in units of white; their noise is taken to be independent.
@@ -136,6 +140,8 @@ impl Reading {
         Self {
             estimate: Estimate { mean, standard_error, degrees_of_freedom: fewer },
             nonfinite: self.nonfinite + white.nonfinite,
+            // As an error, but biases add up.
+            cut_bias: (self.cut_bias + mean.abs() * white.cut_bias) / b.mean.abs(),
         }
     }
 }
@@ -147,9 +153,9 @@ mod tests {
     #[test]
     fn pixels_average_and_their_errors_add_in_quadrature() {
         let reading = Reading::from_pixels(&[1.0, 3.0, 5.0, 7.0], &[3.0, 0.0, 4.0, 0.0]);
-        assert_eq!(reading, Reading { estimate: Estimate::new(4.0, 1.25), nonfinite: 0 });
+        assert_eq!(reading, Reading { estimate: Estimate::new(4.0, 1.25), nonfinite: 0, cut_bias: 0.0 });
         let broken = Reading::from_pixels(&[1.0, f64::NAN, 3.0, 9.0], &[0.0, 0.0, 0.0, f64::INFINITY]);
-        assert_eq!(broken, Reading { estimate: Estimate::new(2.0, 0.0), nonfinite: 2 });
+        assert_eq!(broken, Reading { estimate: Estimate::new(2.0, 0.0), nonfinite: 2, cut_bias: 0.0 });
     }
 
     #[test]
@@ -162,13 +168,15 @@ mod tests {
 
     #[test]
     fn a_quotient_carries_both_errors() {
-        let part = Reading { estimate: Estimate::new(3.0, 0.3), nonfinite: 1 };
-        let white =
-            Reading { estimate: Estimate { degrees_of_freedom: Some(5.0), ..Estimate::new(2.0, 0.2) }, nonfinite: 2 };
+        let part = Reading { estimate: Estimate::new(3.0, 0.3), nonfinite: 1, cut_bias: 0.1 };
+        let white = Estimate { degrees_of_freedom: Some(5.0), ..Estimate::new(2.0, 0.2) };
+        let white = Reading { estimate: white, nonfinite: 2, cut_bias: 0.2 };
         let ratio = part.relative_to(white);
         assert_eq!(ratio.estimate.mean, 1.5);
         // Each is a tenth of its mean, so the quotient's is √2 tenths of it.
         assert!((ratio.estimate.standard_error - 0.15 * 2.0_f64.sqrt()).abs() < 1e-15);
         assert_eq!((ratio.estimate.degrees_of_freedom, ratio.nonfinite), (Some(5.0), 3));
+        // The part is up to .1 more, the white up to .2: 3.1/2 − 3/2 and, to first order, 3/2 of .2/2.
+        assert!((ratio.cut_bias - 0.2).abs() < 1e-15);
     }
 }

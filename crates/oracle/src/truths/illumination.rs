@@ -397,8 +397,10 @@ fn mirrors() -> Vec<Truth> {
         Truth::new("light-through-a-mirror-tunnel", &tunnel, PLATE_ALBEDO, "(ρ/π)·π")
             .because(
                 "The images of the light in four perfect mirrors tile the plane at its height: E = π, however long the tunnel. \
-                 Only BSDF rays find it, after up to hundreds of reflections.",
+                 Only BSDF rays find it, after up to hundreds of reflections: after k with a probability that falls as 1/k², so that no \
+                 number of them holds all paths. Nothing is brighter than the light, 1, for mirrors and the plate only pass on what they get.",
             )
+            .no_brighter_than(1.0)
             .or_else("direct light only", shown(PI * 4.0 * rectangle_corner_factor(0.1, 0.1))),
     ]
 }

@@ -3,6 +3,9 @@
 use super::Truth;
 use crate::{Verdict, statistics::z_verdict, subjects::Reading};
 
+/// The part of a reading's resolvable bias that paths which were cut may make up at most.
+pub const CUT_SHARE: f64 = 0.1;
+
 /// Holds what a renderer measured to the truth, at the significance of one test
 /// ([`Budget::each`](crate::statistics::Budget::each) of the number of truths judged together).
 ///
@@ -10,6 +13,9 @@ use crate::{Verdict, statistics::z_verdict, subjects::Reading};
 /// **when the noise is so large that a bias of [`must_see`](Truth::must_see), or one of the truth's known mistakes, could pass**:
 /// such a reading shows nothing, and the evidence says how many times the samples it takes. The resolvable bias is in units of
 /// the value.
+///
+/// It also fails when paths were cut that may have carried more than [`CUT_SHARE`] of that bias: what has been left out would no longer be
+/// small beside what the test sees. Where it is, it could hide as much of an error of the other sign, and is added to the resolvable bias.
 pub fn judge(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
     if reading.nonfinite > 0 {
         return Verdict::broken(&truth.name, format!("{} samples were not finite numbers", reading.nonfinite));
@@ -25,6 +31,18 @@ pub fn judge(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
         };
         return verdict
             .without_power(&format!("too noisy to exclude {what}: take {:.1} times the samples", noise * noise));
+    }
+    if reading.cut_bias > 0.0 || reading.cut_bias.is_nan() {
+        let most = CUT_SHARE * verdict.resolvable_bias;
+        verdict.evidence += &format!("; paths that were cut may have caused a bias of {:.1e}", reading.cut_bias);
+        // What is not a number is not small.
+        let small = reading.cut_bias <= most;
+        if !small {
+            verdict.pass = false;
+            verdict.evidence += &format!(", more than {most:.1e}");
+            return verdict;
+        }
+        verdict.resolvable_bias += reading.cut_bias;
     }
     if !verdict.pass {
         let noise = verdict.resolvable_bias;

@@ -31,12 +31,14 @@ use std::{fmt, sync::Arc};
 
 use serde_json::{Value, json};
 
+use crate::statistics::poisson_mean_bound;
 pub use exchange::{ExchangeFile, exchange_files};
 pub use irradiance::{
     cylinder_factor, disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
     walsh_reflectance,
 };
-pub use judge::judge;
+
+pub use judge::{CUT_SHARE, judge};
 pub use prisms::photometric_weight;
 
 /// What a renderer must be able to do, or claims to do, for a truth to apply to it.
@@ -150,6 +152,9 @@ pub struct Truth {
     pub claims: Vec<Claim>,
     /// The wavelengths rendered, nm, when the truth holds for them only.
     pub band_nm: Option<[f64; 2]>,
+    /// The largest radiance at any place of the scene in any direction, where it has been derived: what a path that is cut cannot
+    /// have missed more of.
+    pub brightest: Option<f64>,
 }
 
 /// Relative rounding allowed to an f32 renderer: some thousand roundings of 6e-8 that do not average out.
@@ -170,6 +175,7 @@ impl Truth {
             must_see: 0.02,
             claims: scene.claims(),
             band_nm: scene.band_nm(),
+            brightest: None,
         }
     }
 
@@ -211,6 +217,12 @@ impl Truth {
         self
     }
 
+    /// Says how much radiance there is at most anywhere in the scene.
+    fn no_brighter_than(mut self, radiance: f64) -> Self {
+        self.brightest = Some(radiance);
+        self
+    }
+
     /// Whether the truth applies to a renderer that meets these claims and no others.
     #[must_use]
     pub fn applies_to(&self, claims: &[Claim]) -> bool {
@@ -223,6 +235,21 @@ impl Truth {
     pub fn must_resolve(&self) -> f64 {
         let relative = if self.value == 0.0 { f64::INFINITY } else { self.must_see * self.value };
         self.mistakes.iter().map(|mistake| (mistake.value - self.value).abs()).fold(relative, f64::min)
+    }
+
+    /// A bound on the absolute bias of a reading that took so many paths and cut some, though the scene did not end them, none with
+    /// more than `throughput` (largest over the wavelengths): what light found beyond would have been multiplied by.
+    ///
+    /// The mean of what one of them would still have found is at most its throughput times the [`brightest`](Self::brightest) radiance.
+    /// How often paths are cut is known by a count only: if on the mean more were than [`poisson_mean_bound`] allows, so few would have
+    /// been found with a probability below `significance`. Infinite where nothing bounds the radiance; 0 if no path was cut.
+    #[must_use]
+    pub fn bias_of_cut_paths(&self, cut: u64, throughput: f64, paths: u64, significance: f64) -> f64 {
+        if cut == 0 {
+            return 0.0;
+        }
+        let brightest = self.brightest.unwrap_or(f64::INFINITY);
+        poisson_mean_bound(cut, significance) / paths as f64 * throughput * brightest
     }
 
     /// The same camera, film and band under a constant sky of radiance 1, and nothing else: a sensor that answers 1 to a

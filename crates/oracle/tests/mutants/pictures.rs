@@ -3,7 +3,7 @@
 use etalon_oracle::{
     Verdict,
     statistics::{Budget, z_verdict},
-    subjects::Renders,
+    subjects::{Reading, Renders},
     truths::{Claim, Truth, judge, truths},
 };
 
@@ -114,5 +114,22 @@ fn every_wrong_renderer_is_rejected() {
         let verdict = judge(truth, &reading, significance);
         let noisy = verdict.evidence.contains("too noisy");
         assert!(!verdict.pass && !noisy, "the mutant \"{fault}\" survived {name}: {verdict}");
+    }
+}
+
+#[test]
+fn a_renderer_that_cuts_many_paths_is_refused_though_what_it_lost_does_not_stand_out() {
+    // After k edges one path in k²/25 is still under way in the tunnel: after 100 it has up to half a per cent of the light left, which these
+    // paths do not show; after 400 so little that they need not.
+    let truth = truths().into_iter().find(|truth| truth.name == "light-through-a-mirror-tunnel").expect("a truth");
+    let significance = Budget::for_tests(truths().len()).each();
+    for (fault, accepted) in
+        [("paths cut at 100 edges, and counted", false), ("paths cut at 400 edges, and counted", true)]
+    {
+        let reading = Tracer { fault, paths: 200_000, seed: 1 }.render(&truth).expect("a readable scene");
+        judge(&truth, &Reading { cut_bias: 0.0, ..reading }, significance).assert();
+        let verdict = judge(&truth, &reading, significance);
+        assert!(reading.cut_bias > 0.0 && verdict.evidence.contains("paths that were cut"), "{verdict}");
+        assert_eq!(verdict.pass, accepted, "{fault}: {verdict}");
     }
 }

@@ -56,6 +56,16 @@ impl World {
             if counted && if front { object.front } else { object.back } {
                 sum += weight * object.radiance;
             }
+            let limit = match self.fault {
+                "paths cut at 100 edges, and counted" => 100,
+                "paths cut at 400 edges, and counted" => 400,
+                _ => u64::MAX,
+            };
+            if edges >= limit {
+                let (count, throughput) = self.cut.get();
+                self.cut.set((count + 1, throughput.max(weight)));
+                return sum;
+            }
             if edges >= self.most_edges {
                 return sum;
             }
@@ -297,6 +307,8 @@ impl Renders for Tracer {
             }
         }
         let count = f64::from(strata) * f64::from(strata);
-        Ok(Reading { estimate: Estimate::new(means.mean(), variance.sqrt() / count), nonfinite })
+        let cut = worlds.iter().map(|(_, world)| world.cut.get()).fold((0, 0.0_f64), |a, b| (a.0 + b.0, a.1.max(b.1)));
+        let cut_bias = truth.bias_of_cut_paths(cut.0, cut.1, 2 * count as u64, 1e-9);
+        Ok(Reading { estimate: Estimate::new(means.mean(), variance.sqrt() / count), nonfinite, cut_bias })
     }
 }

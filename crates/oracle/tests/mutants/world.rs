@@ -1,5 +1,7 @@
 //! The small renderer's own reader of the oracle's scenes.
 
+use std::cell::Cell;
+
 use serde_json::Value;
 
 use crate::{
@@ -36,6 +38,8 @@ pub(crate) struct World {
     pub(crate) lights: Vec<Light>,
     pub(crate) sky: f64,
     pub(crate) most_edges: u64,
+    /// Paths cut by a fault that says so, and the largest throughput of one.
+    pub(crate) cut: Cell<(u64, f64)>,
     pub(crate) camera: Value,
     pub(crate) aspect: f64,
 }
@@ -84,6 +88,7 @@ impl World {
             lights: Vec::new(),
             sky: 0.0,
             most_edges: scene["integrator"]["max_depth"].as_u64().unwrap_or(u64::MAX),
+            cut: Cell::default(),
             camera: scene["camera"].clone(),
             aspect: number(&film["width"]) / number(&film["height"]),
         };

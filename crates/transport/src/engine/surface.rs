@@ -110,7 +110,9 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
             }
             let vertex = paths.vertex[lane];
             if vertex + 1 >= world.max_depth || vertex + 1 == MOST_VERTICES {
-                self.counters.cut_paths += u64::from(vertex + 1 == MOST_VERTICES);
+                if vertex + 1 == MOST_VERTICES {
+                    self.counters.record_cut(paths.beta[lane].max_lane() * paths.model[lane].weight());
+                }
                 paths.alive &= !(1 << lane);
                 continue;
             }

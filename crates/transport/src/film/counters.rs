@@ -17,7 +17,7 @@ pub struct NonFinite {
 pub const NONFINITE_LOCATED: usize = 16;
 
 /// What a render counted.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counters {
     /// Camera paths.
     pub paths: u64,
@@ -39,6 +39,10 @@ pub struct Counters {
     /// Paths, and shadow rays between masks, cut at the internal limit on vertices rather than ended by the scene: each may
     /// lack light.
     pub cut_paths: u64,
+    /// The largest throughput with which one of them was cut: what light found beyond would have been multiplied by. A shadow ray, whose
+    /// sample is bounded by no radiance, counts as [`f64::MAX`].
+    #[serde(default)]
+    pub cut_throughput: f64,
     /// Samples that were not finite.
     pub nonfinite: u64,
     /// The first of them, in the order of rows, columns and samples.
@@ -52,6 +56,14 @@ impl Counters {
         self.locate(&[at]);
     }
 
+    /// Records that a path was cut which had this throughput, its largest over the wavelengths.
+    pub(crate) fn record_cut(&mut self, throughput: f64) {
+        self.cut_paths += 1;
+        // Not a number is no bound either.
+        let bound = if throughput.is_finite() { throughput } else { f64::MAX };
+        self.cut_throughput = self.cut_throughput.max(bound);
+    }
+
     /// Adds another count to this one.
     pub fn merge(&mut self, other: &Self) {
         self.paths += other.paths;
@@ -63,6 +75,7 @@ impl Counters {
         self.lane_weights += other.lane_weights;
         self.lost_media += other.lost_media;
         self.cut_paths += other.cut_paths;
+        self.cut_throughput = self.cut_throughput.max(other.cut_throughput);
         self.nonfinite += other.nonfinite;
         self.locate(&other.nonfinite_at);
     }
@@ -95,5 +108,22 @@ mod tests {
         let forward = count(&mut (0..100));
         assert_eq!(forward, count(&mut (0..100).rev()));
         assert_eq!((forward.nonfinite, forward.nonfinite_at.len()), (100, NONFINITE_LOCATED));
+    }
+
+    #[test]
+    fn the_largest_throughput_of_cut_paths_is_kept_and_what_is_no_number_bounds_nothing() {
+        let cut = |throughputs: &[f64]| {
+            let mut counters = Counters::default();
+            throughputs.iter().for_each(|throughput| counters.record_cut(*throughput));
+            counters
+        };
+        let mut both = cut(&[0.25, 0.5]);
+        both.merge(&cut(&[0.125]));
+        both.merge(&Counters::default());
+        assert_eq!((both.cut_paths, both.cut_throughput), (3, 0.5));
+        for nothing in [f64::NAN, f64::INFINITY] {
+            both.merge(&cut(&[nothing]));
+            assert_eq!(both.cut_throughput, f64::MAX);
+        }
     }
 }

@@ -6,7 +6,7 @@ use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::Reading;
 use etalon_oracle::truths::{Claim, Truth, judge};
 use etalon_scene::{Precision, Scene};
-use etalon_transport::Study;
+use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
 
 use super::report::{Report, Row};
@@ -75,7 +75,7 @@ impl<'a> Measurement<'a> {
     }
 
     /// Goes on to so many times the samples of the first step.
-    fn render_to(&mut self, effort: u32, interrupt: &Interrupt) -> Result<Reading, Stop> {
+    fn render_to(&mut self, effort: u32, significance: f64, interrupt: &Interrupt) -> Result<Reading, Stop> {
         for series in [Some(&mut self.of_truth), self.of_white.as_mut()].into_iter().flatten() {
             series.render_to(self.first_spp.saturating_mul(effort), interrupt)?;
         }
@@ -85,7 +85,22 @@ impl<'a> Measurement<'a> {
         };
         let mut moments = Welford::new();
         self.of_truth.means().zip(white).for_each(|(mean, white)| moments.push(mean / white));
-        Ok(Reading { estimate: moments.estimate(), nonfinite: self.of_truth.counted(|counters| counters.nonfinite) })
+        let counted = |counter: fn(&Counters) -> u64| self.of_truth.counted(counter);
+        let cut_bias = match self.cut_paths() {
+            // A quotient of two pictures is not bounded here.
+            1.. if self.of_white.is_some() => f64::INFINITY,
+            cut => {
+                let (throughput, paths) = (self.of_truth.cut_throughput(), self.paths());
+                self.truth.bias_of_cut_paths(cut, throughput, paths, significance)
+            }
+        };
+        Ok(Reading { estimate: moments.estimate(), nonfinite: counted(|counters| counters.nonfinite), cut_bias })
+    }
+
+    /// Paths that were cut at the internal limit on vertices.
+    fn cut_paths(&self) -> u64 {
+        let of = |series: &Series| series.counted(|counters| counters.cut_paths);
+        of(&self.of_truth) + self.of_white.as_ref().map_or(0, of)
     }
 
     /// Rays of all kinds so far.
@@ -129,14 +144,17 @@ pub(super) fn run(args: &Args, chosen: Vec<Truth>) -> Outcome {
 fn judged(args: &Args, truth: &Truth, significance: f64, interrupt: &Interrupt) -> Option<Row> {
     let start = Instant::now();
     let measured = Measurement::new(truth, args).map_err(Stop::Failed).and_then(|mut measurement| {
-        Ok((measured(args, &mut measurement, significance, interrupt)?, measurement.paths()))
+        let reading = measured(args, &mut measurement, significance, interrupt)?;
+        Ok((reading, measurement.paths(), measurement.cut_paths()))
     });
-    let (reading, paths) = match measured {
-        Ok((reading, paths)) => (Ok(reading), Some(paths)),
-        Err(Stop::Failed(why)) => (Err(why), None),
-        Err(Stop::Interrupted) => return None,
-    };
-    Some(Row::new(truth, reading, significance).took(start.elapsed().as_secs_f64(), paths))
+    let seconds = || start.elapsed().as_secs_f64();
+    match measured {
+        Ok((reading, paths, cut)) => {
+            Some(Row::new(truth, Ok(reading), significance).took(seconds(), Some(paths)).cut(cut, reading.cut_bias))
+        }
+        Err(Stop::Failed(why)) => Some(Row::new(truth, Err(why), significance).took(seconds(), None)),
+        Err(Stop::Interrupted) => None,
+    }
 }
 
 /// Takes more samples, never more seeds to choose from, where the reading was too noisy to exclude a known mistake, or for a thorough
@@ -150,7 +168,11 @@ fn measured(
     let truth = measurement.truth;
     let (mut step, mut seen_before) = (0, f64::INFINITY);
     loop {
-        let reading = measurement.render_to(MORE.pow(step), interrupt)?;
+        let reading = measurement.render_to(MORE.pow(step), significance, interrupt)?;
+        if reading.cut_bias.is_infinite() {
+            // No number of paths bounds it.
+            break Ok(reading);
+        }
         let seen = judge(truth, &reading, significance).resolvable_bias;
         let enough = seen <= truth.must_resolve() || step >= STEPS;
         let thorough = || is_worth_more(measurement.rays(), seen_before, seen, truth.value);

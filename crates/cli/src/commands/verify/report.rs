@@ -30,6 +30,12 @@ pub(super) struct Row {
     /// Camera paths that were taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     paths: Option<u64>,
+    /// Camera paths, and shadow rays, that were cut at the internal limit on vertices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cut_paths: Option<u64>,
+    /// The largest bias that they may have caused, in the units of the truth; `null` where nothing bounds it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cut_bias: Option<f64>,
 }
 
 impl Row {
@@ -51,7 +57,14 @@ impl Row {
             evidence: verdict.evidence,
             seconds: None,
             paths: None,
+            cut_paths: None,
+            cut_bias: None,
         }
+    }
+
+    /// Says how many paths were cut, if any, and what bias they may have caused.
+    pub(super) fn cut(self, paths: u64, bias: f64) -> Self {
+        if paths == 0 { self } else { Self { cut_paths: Some(paths), cut_bias: Some(bias), ..self } }
     }
 
     pub(super) fn took(self, seconds: f64, paths: Option<u64>) -> Self {
@@ -142,7 +155,12 @@ impl Report {
                 row.z,
                 row.resolvable_bias,
                 row.seconds.map(|seconds| format!("{seconds:.1}")).unwrap_or_default(),
-                if row.pass { String::new() } else { format!("  FAILED: {}", row.evidence) }
+                match (row.pass, row.cut_paths.zip(row.cut_bias)) {
+                    (true, None) => String::new(),
+                    (true, Some((1, bias))) => format!("  1 path was cut: a bias of at most {bias:.1e}"),
+                    (true, Some((paths, bias))) => format!("  {paths} paths were cut: a bias of at most {bias:.1e}"),
+                    (false, _) => format!("  FAILED: {}", row.evidence),
+                }
             ));
         }
         if let Some(expected) = self.expected.filter(|_| !self.table) {

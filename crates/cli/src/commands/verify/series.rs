@@ -65,16 +65,18 @@ impl Series {
             threads.into_iter().try_for_each(|thread| thread.join().expect("renders do not panic"))
         })?;
         self.samples = samples;
-        match self.counted(|counters| counters.cut_paths) {
-            0 => Ok(()),
-            cut => Err(Stop::Failed(format!("{cut} paths were cut at the internal limit"))),
-        }
+        Ok(())
     }
 
     /// Mean Y of each film.
     pub(super) fn means(&self) -> impl Iterator<Item = f64> {
         let rect = self.prepared[0].whole(None).rect;
         self.films.iter().map(move |film| film.mean_y(rect))
+    }
+
+    /// The largest throughput of a path that was cut in any film.
+    pub(super) fn cut_throughput(&self) -> f64 {
+        self.films.iter().map(|film| film.counters.cut_throughput).fold(0.0, f64::max)
     }
 
     /// A counter in the sum over all films.
