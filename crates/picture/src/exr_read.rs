@@ -6,8 +6,8 @@ use exr::image::read::image::ReadLayers;
 use exr::image::read::layers::ReadChannels;
 use exr::image::{FlatSamples, read};
 
-use crate::exr_header;
 use crate::{Attributes, Picture, PictureError, Window};
+use crate::{exr_header, exr_size};
 
 /// What an EXR file holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,10 +22,20 @@ pub struct ExrFile {
 /// 32-bit integers become the nearest `f32`.
 ///
 /// # Errors
-/// A file that cannot be opened or is no EXR file that we can read (deep or subsampled channels).
+/// A file that cannot be opened or is no EXR file that we can read (deep or subsampled channels), or says that it holds more than
+/// [`most_exr_bytes`](crate::most_exr_bytes).
 pub fn read_exr(path: &Path) -> Result<ExrFile, PictureError> {
-    let failed = |source| PictureError::exr("read", path, source);
     let bytes = std::fs::read(path).map_err(|source| PictureError::io("read", path, source))?;
+    decode_exr(&bytes, path)
+}
+
+/// Reads what [`read_exr`] does from the bytes of a file; `path` names it in errors.
+///
+/// # Errors
+/// As [`read_exr`].
+pub fn decode_exr(bytes: &[u8], path: &Path) -> Result<ExrFile, PictureError> {
+    let failed = |source| PictureError::exr("read", path, source);
+    exr_size::check(bytes, exr_size::most_exr_bytes(bytes.len() as u64), u64::MAX).map_err(failed)?;
     let image = read::read()
         .no_deep_data()
         .largest_resolution_level()

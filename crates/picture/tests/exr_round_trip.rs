@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use etalon_picture::{
-    Attribute, Attributes, Chromaticities, Picture, PictureError, RenderInfo, Window, encode_exr, read_exr, write_exr,
+    Attribute, Attributes, Chromaticities, Picture, PictureError, RenderInfo, Window, decode_exr, encode_exr, read_exr,
+    write_exr,
 };
 use proptest::prelude::*;
 
@@ -203,5 +204,29 @@ fn a_truncated_file_is_an_error_wherever_it_ends() {
     for length in (0..whole.len()).step_by(7) {
         std::fs::write(&path, &whole[..length]).unwrap();
         assert!(read_exr(Path::new(&path)).is_err(), "{length} of {} bytes were enough", whole.len());
+    }
+}
+
+/// Where the data window stands in a file, so that one can be written whose few bytes claim any number of pixels.
+fn claiming(picture: &Picture<f32>, last: [i32; 2]) -> Vec<u8> {
+    let mut bytes = encode_exr(picture, &render_info().attributes().unwrap()).unwrap();
+    let key = b"dataWindow\0box2i\0";
+    // Behind the key stand the value's size and its first corner.
+    let place = bytes.windows(key.len()).position(|window| window == key).unwrap() + key.len() + 12;
+    for (k, last) in last.into_iter().enumerate() {
+        bytes[place + 4 * k..place + 4 * k + 4].copy_from_slice(&last.to_le_bytes());
+    }
+    bytes
+}
+
+#[test]
+fn a_few_bytes_cannot_claim_memory_for_pixels_that_they_do_not_hold() {
+    let picture = Picture::from_rgb(20, 20, &[[0.25_f32, 0.5, 1e-3]; 400]).unwrap();
+    let path = Path::new("claims.exr");
+    assert_eq!(decode_exr(&claiming(&picture, [19, 19]), path).unwrap().picture.width(), 20);
+    for last in [[1 << 29, 0], [0, 1 << 29], [1 << 29, 1 << 29], [1 << 14, 1 << 14]] {
+        let error = decode_exr(&claiming(&picture, last), path).unwrap_err().with_causes();
+        let [width, height] = last.map(|v| v + 1);
+        assert!(error.contains("claims.exr") && error.contains(&format!("{width} × {height} pixels")), "{error}");
     }
 }

@@ -3,7 +3,8 @@
 use std::io::Cursor;
 use std::sync::{Arc, LazyLock};
 
-use image::{DynamicImage, ImageReader, Limits};
+use etalon_picture::check_exr_size;
+use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 
 /// Largest side of an image, pixels.
 pub const MAX_IMAGE_SIDE: u32 = 65_536;
@@ -191,10 +192,15 @@ impl Image {
         if reader.format().is_none() {
             return Err("it is no PNG, JPEG, EXR or HDR file".to_owned());
         }
+        let most_bytes = MAX_IMAGE_BYTES.min((64 << 20) + 2000 * bytes.len() as u64);
+        if reader.format() == Some(ImageFormat::OpenExr) {
+            // The decoder's own limits are of the window that is shown, not of the one that is stored.
+            check_exr_size(bytes, most_bytes, u64::from(MAX_IMAGE_SIDE))?;
+        }
         let mut limits = Limits::default();
         limits.max_image_width = Some(MAX_IMAGE_SIDE);
         limits.max_image_height = Some(MAX_IMAGE_SIDE);
-        limits.max_alloc = Some(MAX_IMAGE_BYTES.min((64 << 20) + 2000 * bytes.len() as u64));
+        limits.max_alloc = Some(most_bytes);
         reader.limits(limits);
         reader.decode().map_err(|e| e.to_string())
     }
@@ -420,7 +426,7 @@ mod tests {
         assert_eq!(t.eval([0.625, 0.5]), [3.0, 0.5, 0.5]);
     }
 
-    fn encoded(image: &DynamicImage, format: image::ImageFormat) -> Vec<u8> {
+    fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
         image.write_to(&mut bytes, format).unwrap();
         bytes.into_inner()
@@ -429,7 +435,7 @@ mod tests {
     #[test]
     fn files_mean_what_their_encoding_says() {
         let grey = DynamicImage::ImageRgb8(image::RgbImage::from_pixel(3, 2, image::Rgb([188, 0, 255])));
-        let png = encoded(&grey, image::ImageFormat::Png);
+        let png = encoded(&grey, ImageFormat::Png);
         let (srgb, left_out) = Image::decode(&png, Encoding::Auto).unwrap();
         assert_eq!((srgb.width, srgb.height, left_out), (3, 2, None));
         // 188/255 = 0.737254902; ((0.737254902 + 0.055)/1.055)^2.4 by hand.
@@ -439,22 +445,22 @@ mod tests {
         assert_eq!(linear.texel(1, 1), [188.0 / 255.0, 0.0, 1.0]);
 
         let float = DynamicImage::ImageRgb32F(image::Rgb32FImage::from_pixel(2, 2, image::Rgb([0.5, 2.0, 0.125])));
-        for format in [image::ImageFormat::OpenExr, image::ImageFormat::Hdr] {
+        for format in [ImageFormat::OpenExr, ImageFormat::Hdr] {
             let (image, _) = Image::decode(&encoded(&float, format), Encoding::Auto).unwrap();
             assert_eq!(image.texel(1, 0), [0.5, 2.0, 0.125], "{format:?}");
         }
-        let jpeg = encoded(&grey, image::ImageFormat::Jpeg);
+        let jpeg = encoded(&grey, ImageFormat::Jpeg);
         let (image, _) = Image::decode(&jpeg, Encoding::Linear).unwrap();
         // A lossy file of one colour: chroma is rounded to whole levels.
         assert!((image.texel(1, 1)[0] - 188.0 / 255.0).abs() < 0.02);
         let rgba = DynamicImage::ImageRgba8(image::RgbaImage::from_pixel(1, 1, image::Rgba([1, 2, 3, 4])));
-        assert!(Image::decode(&encoded(&rgba, image::ImageFormat::Png), Encoding::Auto).unwrap().1.is_some());
+        assert!(Image::decode(&encoded(&rgba, ImageFormat::Png), Encoding::Auto).unwrap().1.is_some());
     }
 
     #[test]
     fn damaged_files_and_those_larger_than_they_look_are_refused() {
         let image = DynamicImage::ImageRgb8(image::RgbImage::from_pixel(30, 20, image::Rgb([1, 2, 3])));
-        let png = encoded(&image, image::ImageFormat::Png);
+        let png = encoded(&image, ImageFormat::Png);
         for length in [0, 3, 20, png.len() / 2] {
             assert!(Image::decode(&png[..length], Encoding::Auto).is_err(), "{length}");
         }
@@ -464,10 +470,6 @@ mod tests {
         huge[16..24].copy_from_slice(&[0, 0, 0xea, 0x60, 0, 0, 0xea, 0x60]);
         assert!(Image::decode(&huge, Encoding::Auto).is_err());
         let nan = DynamicImage::ImageRgb32F(image::Rgb32FImage::from_pixel(2, 2, image::Rgb([0.5, f32::NAN, 0.1])));
-        assert!(
-            Image::decode(&encoded(&nan, image::ImageFormat::OpenExr), Encoding::Auto)
-                .unwrap_err()
-                .contains("column 0")
-        );
+        assert!(Image::decode(&encoded(&nan, ImageFormat::OpenExr), Encoding::Auto).unwrap_err().contains("column 0"));
     }
 }

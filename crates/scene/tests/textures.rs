@@ -4,7 +4,8 @@ mod common;
 
 use common::{Parts, RIGHT};
 use etalon_scene::{
-    Code, Loaded, MaterialKind, Metal, NumberTexture, Relief, SceneErrors, SpectrumTexture, Texels, TextureFilter, Wrap,
+    Code, Encoding, Image, Loaded, MaterialKind, Metal, NumberTexture, Relief, SceneErrors, SpectrumTexture, Texels,
+    TextureFilter, Wrap,
 };
 use std::path::Path;
 
@@ -31,6 +32,23 @@ fn every_key_of_an_image_arrives() {
     assert_eq!((t.image.width, t.image.height), (2, 2));
     assert_eq!(t.image.texels, Texels::Linear8(vec![[230; 3], [40, 40, 60], [40, 40, 60], [230; 3]]));
     assert_eq!(loaded.files.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["files/chequers.png"]);
+}
+
+/// The window of the texels that it holds is another than the one that it shows, which is 4 × 4.
+#[test]
+fn an_exr_image_of_a_few_bytes_cannot_claim_memory_for_texels_that_it_does_not_hold() {
+    let small = include_bytes!("../fuzz/seeds/image/small.exr");
+    assert!(Image::decode(small, Encoding::Auto).is_ok());
+    let key = b"dataWindow\0box2i\0";
+    let place = small.windows(key.len()).position(|window| window == key).unwrap() + key.len() + 12;
+    for (last, said) in [([109_457_407, 0], "109457408 × 1 pixels"), ([70_000, 3], "at most 65536 a side")] {
+        let mut bytes = small.to_vec();
+        for (k, last) in last.into_iter().enumerate() {
+            bytes[place + 4 * k..place + 4 * k + 4].copy_from_slice(&i32::to_le_bytes(last));
+        }
+        let error = Image::decode(&bytes, Encoding::Auto).unwrap_err();
+        assert!(error.contains(said), "{error}");
+    }
 }
 
 #[test]
