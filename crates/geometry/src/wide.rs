@@ -23,6 +23,13 @@ pub(crate) const LEAF: u32 = 1 << 31;
 /// others would say nothing of it.
 pub(crate) const LONE: u32 = 1 << 30;
 
+/// What primitives a tree holds, as far as rays have walks of their own: any.
+pub(crate) const MIXED: u8 = 0;
+/// Triangles alone.
+pub(crate) const MESH: u8 = 1;
+/// Spheres alone.
+pub(crate) const BALLS: u8 = 2;
+
 /// A node: the boxes of up to sixteen children.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]
@@ -74,8 +81,8 @@ pub(crate) struct WideTree {
     pub(crate) spheres: bool,
     /// Whether the tree is larger than near caches, so that what waits on the stack is announced.
     pub(crate) prefetch: bool,
-    /// Whether there are triangles alone, for which rays have a path of their own.
-    pub(crate) mesh: bool,
+    /// One of [`MIXED`], [`MESH`] and [`BALLS`].
+    pub(crate) kind: u8,
 }
 
 impl WideTree {
@@ -91,7 +98,7 @@ impl WideTree {
             portals: Vec::new(),
             depth: size.depth,
             spheres: false,
-            mesh: false,
+            kind: MIXED,
             prefetch: size.nodes * size_of::<Node16>() + size.leaves * size_of::<Leaf8>() > NEAR_CACHE,
         };
         let mut filler = Filler {
@@ -109,7 +116,11 @@ impl WideTree {
             *leaf = Leaf8::new(&frame, tree, root, primitives);
         });
         wide.spheres = wide.leaves().iter().any(|leaf| leaf.spheres != 0);
-        wide.mesh = primitives.iter().all(|p| matches!(p, Primitive::Triangle(_)));
+        wide.kind = match primitives {
+            p if p.iter().all(|p| matches!(p, Primitive::Triangle(_))) => MESH,
+            p if p.iter().all(|p| matches!(p, Primitive::Sphere(_))) => BALLS,
+            _ => MIXED,
+        };
         wide
     }
 

@@ -175,24 +175,25 @@ impl Embree {
 }
 
 impl Ray {
-    fn new(origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Self {
-        Self { origin, t_near: 0.0, direction, time: 0.0, t_far: t_max, mask: u32::MAX, id: 0, flags: 0 }
+    fn new(ray: &etalon_geometry::Ray<f32>, t_near: f32) -> Self {
+        let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+        Self { origin, t_near, direction, time: 0.0, t_far: ray.t_max, mask: u32::MAX, id: 0, flags: 0 }
     }
 }
 
 impl Scene {
-    /// The closest hit's distance, infinite for none, and its primitive.
-    pub(crate) fn closest(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> (f32, u32) {
+    /// The closest hit's distance from `t_near` on, infinite for none, and its primitive.
+    pub(crate) fn closest(&self, ray: &etalon_geometry::Ray<f32>, t_near: f32) -> (f32, u32) {
         let hit = Hit { normal: [0.0; 3], uv: [0.0; 2], primitive: INVALID, geometry: INVALID, instance: [INVALID] };
-        let mut ray = RayHit { ray: Ray::new(origin, direction, t_max), hit };
+        let mut ray = RayHit { ray: Ray::new(ray, t_near), hit };
         // SAFETY: the scene is committed and alive; the ray and the context are laid out as the header says.
         unsafe { (self.intersect)(self.scene, &mut Context::new(), &mut ray) };
         (if ray.hit.geometry == INVALID { f32::INFINITY } else { ray.ray.t_far }, ray.hit.primitive)
     }
 
-    /// Whether anything is hit.
-    pub(crate) fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
-        let mut ray = Ray::new(origin, direction, t_max);
+    /// Whether anything is hit from `t_near` on.
+    pub(crate) fn occluded(&self, ray: &etalon_geometry::Ray<f32>, t_near: f32) -> bool {
+        let mut ray = Ray::new(ray, t_near);
         // SAFETY: as above.
         unsafe { (self.occluded)(self.scene, &mut Context::new(), &mut ray) };
         ray.t_far < 0.0

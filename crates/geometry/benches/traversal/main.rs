@@ -46,7 +46,7 @@ fn main() {
     }
     println!("{threads} build threads; Mrays/s of one thread, and the ratio to Embree (above 1: faster than Embree)\n");
     println!(
-        "{:<16} {:<10} {:>8} {:>9} {:>8} {:>9} {:>8}",
+        "{:<16} {:<17} {:>8} {:>9} {:>8} {:>9} {:>8}",
         "scene", "rays", "Mrays/s", "default", "ratio", "robust", "ratio"
     );
     for (size, label) in [(100_000, "100k"), (1_000_000, "1M"), (10_000_000, "10M")] {
@@ -114,8 +114,17 @@ fn measure(
             })
             .into()
     });
-    for (kind, rays, shadow) in rays(&geometry).into_iter().filter(|(kind, ..)| kind.contains(&options.rays)) {
-        compare(name, kind, &geometry, &peers, &rays, shadow, options.turns);
+    for (kind, rays, t_near, shadow) in rays(&geometry).into_iter().filter(|(kind, ..)| kind.contains(&options.rays)) {
+        let all = Cast { name, geometry: &geometry, peers: &peers, shadow, turns: options.turns };
+        all.compare(kind, &rays, None);
+        let agreed = all.agreed(kind, &rays, None);
+        if agreed.len() * 100 < rays.len() * 99 {
+            // A ray that ends where it starts is soon done.
+            all.compare(&format!("{kind}, agreed"), &agreed, None);
+            let kind = format!("{kind}, t_near");
+            all.compare(&kind, &rays, Some(&t_near));
+            all.agreed(&kind, &rays, Some(&t_near));
+        }
         if options.eights || count <= 128 {
             eights(name, kind, &geometry, &rays, shadow, options.turns);
         }
@@ -126,72 +135,82 @@ fn measure(
 /// Rays whose time is taken together: fewer milliseconds than a scheduler's slice.
 const CHUNK: usize = 1024;
 
-/// Times the engines in turn on the same rays. Of each chunk of rays the shortest time of all turns counts, so that what
-/// else runs on the machine is seen no more than it must.
-#[inline(never)]
-fn compare(
-    name: &str,
-    kind: &str,
-    geometry: &Geometry,
-    peers: &[Scene],
-    rays: &[Ray<f32>],
+/// What rays are cast through.
+struct Cast<'a> {
+    name: &'a str,
+    geometry: &'a Geometry,
+    peers: &'a [Scene],
     shadow: bool,
     turns: usize,
-) {
-    let engines = 1 + peers.len();
-    let mut best = vec![vec![f64::INFINITY; rays.len().div_ceil(CHUNK)]; engines];
-    let mut hits = vec![0_usize; engines];
-    for _ in 0..turns {
-        for engine in 0..engines {
-            hits[engine] = 0;
-            for (chunk, best) in rays.chunks(CHUNK).zip(&mut best[engine]) {
-                let start = Instant::now();
-                hits[engine] += match (engine, shadow) {
-                    (0, false) => chunk.iter().filter(|r| geometry.closest_hit(r).is_some()).count(),
-                    (0, true) => chunk.iter().filter(|r| geometry.occluded(r)).count(),
-                    (_, shadow) => {
-                        let peer = &peers[engine - 1];
-                        let hit = |r: &&Ray<f32>| {
-                            let (o, d) = (r.origin.to_array(), r.direction.to_array());
-                            if shadow {
-                                peer.occluded(o, d, r.t_max)
-                            } else {
-                                peer.closest(o, d, r.t_max).0.is_finite()
-                            }
-                        };
-                        chunk.iter().filter(hit).count()
-                    }
-                };
-                *best = best.min(start.elapsed().as_secs_f64());
+}
+
+impl Cast<'_> {
+    /// Times the engines in turn on the same rays, which Embree's begin at the distances `t_near`, if there are any. Of each chunk
+    /// of rays the shortest time of all turns counts, so that what else runs on the machine is seen no more than it must.
+    #[inline(never)]
+    fn compare(&self, kind: &str, rays: &[Ray<f32>], t_near: Option<&[f32]>) {
+        let &Self { name, geometry, peers, shadow, turns } = self;
+        let engines = 1 + peers.len();
+        let mut best = vec![vec![f64::INFINITY; rays.len().div_ceil(CHUNK)]; engines];
+        let mut hits = vec![0_usize; engines];
+        let zeros = vec![0.0; rays.len()];
+        let t_near = t_near.unwrap_or(&zeros);
+        for _ in 0..turns {
+            for engine in 0..engines {
+                hits[engine] = 0;
+                for ((chunk, t_near), best) in rays.chunks(CHUNK).zip(t_near.chunks(CHUNK)).zip(&mut best[engine]) {
+                    let start = Instant::now();
+                    hits[engine] += match (engine, shadow) {
+                        (0, false) => chunk.iter().filter(|r| geometry.closest_hit(r).is_some()).count(),
+                        (0, true) => chunk.iter().filter(|r| geometry.occluded(r)).count(),
+                        (_, false) => {
+                            let peer = &peers[engine - 1];
+                            chunk.iter().zip(t_near).filter(|&(r, &t)| peer.closest(r, t).0.is_finite()).count()
+                        }
+                        (_, true) => {
+                            let peer = &peers[engine - 1];
+                            chunk.iter().zip(t_near).filter(|&(r, &t)| peer.occluded(r, t)).count()
+                        }
+                    };
+                    *best = best.min(start.elapsed().as_secs_f64());
+                }
             }
         }
-    }
-    let rate = |engine: usize| rays.len() as f64 / best[engine].iter().sum::<f64>() * 1e-6;
-    let mut line = format!("{name:<16} {kind:<10} {:>8.2}", rate(0));
-    for engine in 1..engines {
-        line += &format!(" {:>9.2} {:>8.2}", rate(engine), rate(0) / rate(engine));
-    }
-    println!("{line}   hits {hits:?} of {}", rays.len());
-    let mut agreed = rays.to_vec();
-    for (peer, mode) in peers.iter().zip(["default", "robust"]) {
-        // What it finds where we find nothing, or nothing so near: what the ray leaves, of which it does not know.
-        let is_false = |r: &Ray<f32>, and: fn(&Ray<f32>, u32) -> bool| {
-            let (t, primitive) = peer.closest(r.origin.to_array(), r.direction.to_array(), r.t_max);
-            let ours = || geometry.closest_hit(r).map_or(f32::INFINITY, |hit| hit.t * 0.999);
-            t < r.t_max && !(shadow && geometry.occluded(r)) && t < ours() && and(r, primitive)
-        };
-        let more = rays.iter().filter(|r| is_false(r, |_, _| true)).count();
-        let left = rays.iter().filter(|r| is_false(r, |r, primitive| primitive == r.leaves.primitive.0)).count();
-        if more > 0 {
-            println!(
-                "{name:<16} {kind:<10} Embree {mode}: {more} hits where we have none or farther ones, {left} of the primitive left"
-            );
+        let rate = |engine: usize| rays.len() as f64 / best[engine].iter().sum::<f64>() * 1e-6;
+        let mut line = format!("{name:<16} {kind:<17} {:>8.2}", rate(0));
+        for engine in 1..engines {
+            line += &format!(" {:>9.2} {:>8.2}", rate(engine), rate(0) / rate(engine));
         }
-        agreed.retain(|r| !is_false(r, |_, _| true));
+        println!("{line}   hits {hits:?} of {}", rays.len());
     }
-    if agreed.len() * 100 < rays.len() * 99 {
-        // A ray that ends where it starts is soon done.
-        compare(name, &format!("{kind}, agreed"), geometry, peers, &agreed, shadow, turns);
+
+    /// The rays of which all engines find the same. The others are counted.
+    fn agreed(&self, kind: &str, rays: &[Ray<f32>], t_near: Option<&[f32]>) -> Vec<Ray<f32>> {
+        let &Self { name, geometry, peers, shadow, .. } = self;
+        let zeros = vec![0.0; rays.len()];
+        let mut agree = vec![true; rays.len()];
+        for (peer, mode) in peers.iter().zip(["default", "robust"]) {
+            let (mut false_hits, mut left, mut missed) = (0, 0, 0);
+            for ((r, &t_near), agree) in rays.iter().zip(t_near.unwrap_or(&zeros)).zip(&mut agree) {
+                let (t, primitive) = peer.closest(r, t_near);
+                let ours = geometry.closest_hit(r);
+                // What it finds where we find nothing, or nothing so near: what the ray leaves, of which it does not know.
+                let is_false = t < r.t_max
+                    && !(shadow && geometry.occluded(r))
+                    && t < ours.map_or(f32::INFINITY, |hit| hit.t * 0.999);
+                false_hits += usize::from(is_false);
+                left += usize::from(is_false && primitive == r.leaves.primitive.0);
+                missed += usize::from(ours.is_some_and(|hit| hit.t < t_near));
+                *agree &= !is_false;
+            }
+            if false_hits > 0 || missed > 0 {
+                println!(
+                    "{name:<16} {kind:<17} Embree {mode}: {false_hits} hits where we have none or farther ones, {left} of the \
+                     primitive left; {missed} of ours are before t_near"
+                );
+            }
+        }
+        rays.iter().zip(agree).filter(|(_, agree)| *agree).map(|(r, _)| *r).collect()
     }
 }
 
@@ -251,13 +270,34 @@ fn eights(name: &str, kind: &str, geometry: &Geometry, rays: &[Ray<f32>], shadow
     }
     let ns = best.map(|s| s.iter().sum::<f64>() * 1e9 / alone.len() as f64);
     println!(
-        "{name:<16} {kind:<10} f64: {:.1} ns alone, {:.1} eight at once; surface {:.1} and {:.1} ns   ({sum:.1})",
+        "{name:<16} {kind:<17} f64: {:.1} ns alone, {:.1} eight at once; surface {:.1} and {:.1} ns   ({sum:.1})",
         ns[0], ns[1], ns[2], ns[3]
     );
 }
 
+/// The distance along a direction at which a renderer that casts through Embree must let a ray begin, lest it meet the surface that
+/// it leaves: where the ray is clear of it if the origin lies behind it, by the error bound of the origin in `f32` and by the
+/// rounding, also in `f32`, of an intersection with a shape of that size at that place.
+fn t_near(geometry: &Geometry, point: &SurfacePoint<f32>, direction: Vec3<f32>) -> f32 {
+    let radius = match geometry.primitive(point.surface.primitive) {
+        Primitive::Sphere(sphere) => sphere.radius(),
+        _ => 0.0,
+    };
+    let (d, n) = (direction.to_f64(), point.normal.to_f64());
+    let reach = point.position.to_f64().abs().max_component() + radius;
+    let depth = f64::from(point.position_error) + 8.0 * f64::from(f32::EPSILON) * 0.5 * reach;
+    let cos = (d.dot(n) / d.length()).abs();
+    // The root of s² + 2·cos·r·s = 2·depth·r: how far a ray that starts so deep within a sphere is from its surface.
+    let curvature = if radius > 0.0 { 1.0 / radius } else { 0.0 };
+    let distance = 2.0 * depth / (cos + (cos * cos + 2.0 * depth * curvature).sqrt());
+    (distance / d.length()) as f32
+}
+
+/// Rays of a kind, where Embree's may begin, and whether they are shadow rays.
+type Kind = (&'static str, Vec<Ray<f32>>, Vec<f32>, bool);
+
 /// Primary rays, shadow rays from what they hit, and the rays of the first and the third diffuse bounce.
-fn rays(geometry: &Geometry) -> Vec<(&'static str, Vec<Ray<f32>>, bool)> {
+fn rays(geometry: &Geometry) -> Vec<Kind> {
     let eye = Vec3::new(2.6_f32, -2.7, 0.9);
     let frame = Frame::from_normal((-eye).normalized());
     // In tiles, as a renderer would.
@@ -280,32 +320,34 @@ fn rays(geometry: &Geometry) -> Vec<(&'static str, Vec<Ray<f32>>, bool)> {
             })
             .collect()
     };
-    let mut bounce = |points: &[(SurfacePoint<f32>, Ray<f32>)]| -> Vec<Ray<f32>> {
+    let spawned = |p: &SurfacePoint<f32>, ray: Ray<f32>| (ray, t_near(geometry, p, ray.direction));
+    let mut bounce = |points: &[(SurfacePoint<f32>, Ray<f32>)]| -> (Vec<Ray<f32>>, Vec<f32>) {
         points
             .iter()
             .map(|(p, ray)| {
                 let n = if p.normal.dot(ray.direction) > 0.0 { -p.normal } else { p.normal };
                 // Lambert: the normal plus a point of the unit sphere.
-                p.spawn((n.to_f64() + random.direction()).cast())
+                spawned(p, p.spawn((n.to_f64() + random.direction()).cast()))
             })
-            .collect()
+            .unzip()
     };
     let first_points = surfaces(&primary);
-    let first = bounce(&first_points);
-    let second = bounce(&surfaces(&first));
-    let third = bounce(&surfaces(&second));
+    let (first, first_near) = bounce(&first_points);
+    let (second, _) = bounce(&surfaces(&first));
+    let (third, third_near) = bounce(&surfaces(&second));
     let mut random = Random(22);
-    let shadow = first_points
+    let (shadow, shadow_near) = first_points
         .iter()
         .map(|(p, _)| {
             let jitter = Vec3::new(random.signed(), random.signed(), 0.0) * 0.3;
-            p.spawn_to((lamp + jitter).cast(), etalon_geometry::SurfaceId::NONE)
+            spawned(p, p.spawn_to((lamp + jitter).cast(), etalon_geometry::SurfaceId::NONE))
         })
-        .collect();
+        .unzip();
+    let nowhere = vec![0.0; primary.len()];
     vec![
-        ("primary", primary, false),
-        ("shadow", shadow, true),
-        ("diffuse-1", first, false),
-        ("diffuse-3", third, false),
+        ("primary", primary, nowhere, false),
+        ("shadow", shadow, shadow_near, true),
+        ("diffuse-1", first, first_near, false),
+        ("diffuse-3", third, third_near, false),
     ]
 }

@@ -54,7 +54,8 @@ impl Sphere {
     /// The discriminant is r² less the squared distance of the line from the centre, that distance taken from the
     /// perpendicular vector (Haines, Günther & Akenine-Möller, *Precision Improvements for Ray/Sphere Intersection*,
     /// Ray Tracing Gems, 2019, ch. 7), and of the two roots the one nearer to zero comes from their product, so that
-    /// neither cancels. An origin on the surface, as far as rounding tells, may have its root there on either side of
+    /// neither cancels. Differences of squares are taken of the squares: they err by as little as products of sum and
+    /// difference, since the distances are themselves roots of rounded squares, and wait for no root. An origin on the surface, as far as rounding tells, may have its root there on either side of
     /// zero: a ray that leaves this sphere therefore drops the nearer root by name, and has the other one if and only
     /// if it starts toward the centre.
     #[inline]
@@ -63,25 +64,25 @@ impl Sphere {
     }
 
     /// [`Sphere::intersect`] of the ray of a query by its origin and its direction.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn intersect_line(&self, origin: Vec3<f64>, d: Vec3<f64>, t_max: f64, leaves: bool) -> Option<RawHit> {
         let to_centre = self.centre - origin;
         let d2 = d.length_squared();
-        let t_middle = to_centre.dot(d) / d2;
+        // What comes later waits for no other division. This one must not be rounded twice: the line's distance hangs on it.
+        let (t_middle, per_d2) = (to_centre.dot(d) / d2, 1.0 / d2);
         let perpendicular = d * t_middle - to_centre;
-        let distance = perpendicular.length();
-        let quarter = (self.radius - distance) * (self.radius + distance);
+        let r2 = self.radius * self.radius;
+        let quarter = r2 - perpendicular.length_squared();
         // NaN: an origin so far away that the arithmetic overflows.
         if quarter < 0.0 || quarter.is_nan() {
             return None;
         }
-        let half_chord = (quarter / d2).sqrt();
+        let half_chord = (quarter * per_d2).sqrt();
         let hit = |t: f64| (0.0 < t && t < t_max).then_some(RawHit { t, uv: [0.0; 2] });
         if leaves {
             return if t_middle > 0.0 { hit(t_middle + half_chord) } else { None };
         }
-        let origin_distance = to_centre.length();
-        let product = (origin_distance - self.radius) * (origin_distance + self.radius) / d2;
+        let product = (to_centre.length_squared() - r2) * per_d2;
         if t_middle > 0.0 {
             let far = t_middle + half_chord;
             let near = product / far;

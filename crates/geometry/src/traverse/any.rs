@@ -10,13 +10,13 @@ use super::{Narrow, intersect_exact};
 use crate::frame::FrameRay;
 use crate::portal::Portal;
 use crate::query::Query;
-use crate::wide::{LEAF, LONE, Leaf8, NODE_WIDTH, Node16, Nodes, WideTree};
+use crate::wide::{BALLS, LEAF, LONE, Leaf8, MIXED, NODE_WIDTH, Node16, Nodes, WideTree};
 use crate::{Primitive, PrimitiveId};
 
 /// Whether anything is hit, in the order of the tree. A level of the stack is one entry, the children yet to be visited:
 /// that spares a loop over them whose length no branch predictor can know.
 #[inline(always)]
-pub(super) fn any_on<F: Compiled, S: Start, const MESH: bool, const N: usize>(
+pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
     filters: F,
     tree: &WideTree,
     primitives: &[Primitive],
@@ -24,7 +24,7 @@ pub(super) fn any_on<F: Compiled, S: Start, const MESH: bool, const N: usize>(
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> bool {
     let ray = filters.ray(&frame_ray.boxes);
-    let chords = Chords::new(frame_ray, !MESH && tree.spheres);
+    let chords = Chords::new(frame_ray, KIND == BALLS || KIND == MIXED && tree.spheres);
     let mut query = Deferred::new(start);
     let (leaves_id, aims_at) = (start.leaves(), start.aims_at());
     let limit = frame_ray.limit;
@@ -54,11 +54,11 @@ pub(super) fn any_on<F: Compiled, S: Start, const MESH: bool, const N: usize>(
                     mask &= mask - 1;
                 }
             }
-            if !MESH && child & LONE != 0 {
+            if KIND == MIXED && child & LONE != 0 {
                 break Open::Instance(&tree.portals()[(child & !(LEAF | LONE)) as usize]);
             }
             let leaf = &leaves[(child & !LEAF) as usize];
-            let candidates = candidates::<F, MESH>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
+            let candidates = candidates::<F, KIND>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
             let (mut met, mut open) = (candidates.mask & !candidates.missed, 0);
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;

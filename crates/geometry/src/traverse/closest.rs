@@ -9,12 +9,12 @@ use super::{Filters, Met, Narrow, intersect_exact};
 use crate::best::{Best, Found};
 use crate::frame::FrameRay;
 use crate::query::{Projection, RawHit};
-use crate::wide::{LEAF, LEAF_WIDTH, LONE, NODE_WIDTH, WideTree};
+use crate::wide::{BALLS, LEAF, LEAF_WIDTH, LONE, MIXED, NODE_WIDTH, WideTree};
 use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.
 #[inline(always)]
-pub(super) fn closest_on<F: Compiled, S: Start, const MESH: bool, const N: usize>(
+pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
     filters: F,
     tree: &WideTree,
     primitives: &[Primitive],
@@ -22,7 +22,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const MESH: bool, const N: usize
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> Option<Found> {
     let ray = filters.ray(&frame_ray.boxes);
-    let chords = Chords::new(frame_ray, !MESH && tree.spheres);
+    let chords = Chords::new(frame_ray, KIND == BALLS || KIND == MIXED && tree.spheres);
     let mut query = Deferred::new(start);
     // At once, for its division takes as long as two nodes and waits for nothing.
     let projection = start.projection(frame_ray.t_scale, frame_ray.axis);
@@ -51,7 +51,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const MESH: bool, const N: usize
                 let [mut nearest, mut last] = sorted(a, b);
                 let third = second & (second - 1);
                 if third == 0 {
-                    prefetch::<F, MESH>(filters, tree, last as u32);
+                    prefetch::<F, KIND>(filters, tree, last as u32);
                     stack.push(last);
                     child = nearest as u32;
                     continue;
@@ -73,24 +73,24 @@ pub(super) fn closest_on<F: Compiled, S: Start, const MESH: bool, const N: usize
                     stack.push(last);
                     stack.push(middle);
                     stack.push(next);
-                    prefetch::<F, MESH>(filters, tree, next as u32);
+                    prefetch::<F, KIND>(filters, tree, next as u32);
                     let beyond = (fourth & (fourth - 1)).count_ones() as usize;
                     if beyond > 0 {
                         let all = met.all(node);
                         for &new in &all.0[4..4 + beyond % (NODE_WIDTH - 3)] {
-                            prefetch::<F, MESH>(filters, tree, new as u32);
+                            prefetch::<F, KIND>(filters, tree, new as u32);
                             let [near, far] = sorted(nearest, new);
                             stack.insert(base, far);
                             nearest = near;
                         }
                     }
                 }
-                prefetch::<F, MESH>(filters, tree, middle as u32);
-                prefetch::<F, MESH>(filters, tree, last as u32);
+                prefetch::<F, KIND>(filters, tree, middle as u32);
+                prefetch::<F, KIND>(filters, tree, last as u32);
                 child = nearest as u32;
                 continue;
             }
-        } else if !MESH && child & LONE != 0 {
+        } else if KIND == MIXED && child & LONE != 0 {
             let portal = &tree.portals()[(child & !(LEAF | LONE)) as usize];
             if filters.closest_within(&mut best, portal, primitives, query.get_apart()) {
                 limit = limit.min(tree.frame.distance(frame_ray.start, best.t_max));
@@ -99,7 +99,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const MESH: bool, const N: usize
             let index = child & !LEAF;
             let leaf = &leaves[index as usize];
             let mut candidates =
-                candidates::<F, MESH>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
+                candidates::<F, KIND>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
@@ -110,7 +110,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const MESH: bool, const N: usize
                 }
                 if candidates.certain >> lane & 1 == 1 {
                     // Its exact distance can wait until the end, when it has been fetched.
-                    if !leaf.is_exact(lane) {
+                    if KIND == BALLS || !leaf.is_exact(lane) {
                         filters.prefetch(&primitives[id.0 as usize]);
                     }
                     if pending.count == Pending::LIMIT {
@@ -273,13 +273,13 @@ fn decide_last<F: Filters, S: Start>(
 /// Announces that a child that waits on the stack will be visited. Without it rays that share nothing are a tenth slower in
 /// trees that no cache holds.
 #[inline(always)]
-fn prefetch<F: Filters, const MESH: bool>(filters: F, tree: &WideTree, child: u32) {
+fn prefetch<F: Filters, const KIND: u8>(filters: F, tree: &WideTree, child: u32) {
     if !tree.prefetch {
         return;
     }
     if child & LEAF == 0 {
         filters.prefetch(tree.nodes().at(child));
-    } else if MESH || child & LONE == 0 {
+    } else if KIND != MIXED || child & LONE == 0 {
         filters.prefetch(&tree.leaves()[(child & !LEAF) as usize]);
     }
 }

@@ -5,12 +5,12 @@ use super::{Candidates, Filters, Narrow, Row};
 use crate::PrimitiveId;
 use crate::frame::{FrameRay, Lanes4};
 use crate::query::AXES;
-use crate::wide::{LEAF_WIDTH, Leaf8};
+use crate::wide::{BALLS, LEAF_WIDTH, Leaf8, MESH};
 
 /// The primitives of a leaf that the ray may hit in [0, `limit`], and the flat shapes and spheres that it certainly hits in
 /// (0, `certain_limit`). The primitive that the ray leaves is not among them unless it may be hit again, and never certain.
 #[inline(always)]
-pub(super) fn candidates<F: Filters, const MESH: bool>(
+pub(super) fn candidates<F: Filters, const KIND: u8>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
     chords: &Chords,
@@ -21,33 +21,34 @@ pub(super) fn candidates<F: Filters, const MESH: bool>(
 ) -> Candidates {
     // By lanes: a ray that leaves a primitive comes by it most often, at no time that could be foretold.
     let own = F::Vector::lanes_with(filters.into(), &leaf.ids, leaves.0);
-    if MESH {
+    if KIND == MESH {
         let mut found = flats::<F, true>(filters, ray, leaf, limit, certain_limit);
         found.mask &= !own;
         return found;
+    }
+    if KIND == BALLS {
+        return spheres(filters, ray, chords, leaf, own, limit, certain_limit);
     }
     let others = u32::from(leaf.others);
     let mut found = if leaf.flats != 0 {
         flats::<F, false>(filters, ray, leaf, limit, certain_limit)
     } else {
-        spheres(filters, ray, chords, leaf, limit, certain_limit)
+        spheres(filters, ray, chords, leaf, own, limit, certain_limit)
     };
     if leaf.flats != 0 && leaf.spheres != 0 {
         // Mixed leaves are rare: of their spheres no distance is known.
-        let balls = spheres(filters, ray, chords, leaf, limit, certain_limit);
+        let balls = spheres(filters, ray, chords, leaf, own, limit, certain_limit);
         let met = balls.mask & u32::from(leaf.spheres);
         found.mask |= met;
         found.missed &= !met;
         found.certain &= !met;
         found.unbounded |= met;
-        found.left |= balls.left & met;
     }
     found.mask |= others;
     found.missed &= !others;
     found.certain &= !others;
     found.unbounded |= others;
-    found.left |= u32::from(leaf.flats);
-    found.mask &= !(own & found.left);
+    found.mask &= !(own & u32::from(leaf.flats));
     found.certain &= !own;
     found
 }
@@ -103,7 +104,6 @@ fn flats<F: Filters, const MESH: bool>(
         missed,
         unbounded: !determined,
         certain: determined & inside & ahead & if MESH { u32::MAX } else { !u32::from(leaf.disks) },
-        left: 0,
         near: Row(near.to_array()),
         far: Row(far.to_array()),
     }
@@ -133,9 +133,12 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
     p[0] * q[1] - p[1] * q[0]
 }
 
-/// What spheres ask of a ray: n = 1 + s² of its slopes s, and −1/(the largest component of the direction) over it.
+/// What spheres ask of a ray of slopes s: n = 1 + s², n times the squared distance from the ray of a point that projects to (x, y)
+/// as the form a·x² − 2b·xy + c·y², and −1/(the largest component of the direction) over n, which takes the place abreast of the
+/// point from what it is along the slopes.
 pub(super) struct Chords {
     n: f32,
+    form: [f32; 3],
     per_n: f32,
 }
 
@@ -144,28 +147,34 @@ impl Chords {
     #[inline(always)]
     pub(super) fn new<L: Lanes4>(ray: &FrameRay<L>, spheres: bool) -> Self {
         if !spheres {
-            return Self { n: 1.0, per_n: 0.0 };
+            return Self { n: 1.0, form: [0.0; 3], per_n: 0.0 };
         }
         let [sx, sy, _, _] = ray.slopes.to_array();
-        let n = 1.0 + sx * sx + sy * sy;
-        Self { n, per_n: -ray.per_depth / n }
+        let (sx2, sy2) = (sx * sx, sy * sy);
+        let n = 1.0 + sx2 + sy2;
+        Self { n, form: [1.0 + sy2, sx * sy, 1.0 + sx2], per_n: -ray.per_depth / n }
     }
 }
 
 /// [`candidates`] among the spheres.
 ///
 /// With δ the bound on the error of a projected coordinate, the slopes s of the projection and n = 1 + s² ∈ [1, 3],
-/// a centre that projects to (x, y) is √(x² + y² − (x·sx + y·sy)²/n) from the ray and abreast of it at z + (x·sx + y·sy)/n.
-/// The distance errs by no more than √2·δ, and its square, since the difference is at least a third of x² + y², by 30
-/// roundoffs of itself besides; the radius errs by one; the place along the ray by at most 4δ. So the half chord
-/// √((r² − d²)/n) lies between those of a radius 6δ smaller and of one 6δ larger, and both ends of the chord err by at most
-/// 4δ, by 16 roundoffs of the half chord, and by 4 of the place itself, whose magnitude is below that of which δ is at least 12.
+/// a centre that projects to (x, y) is at the distance d from the ray of which n·d² = (1 + sy²)·x² − 2·sx·sy·xy + (1 + sx²)·y²,
+/// and abreast of it at z + (x·sx + y·sy)/n. The distance errs by no more than √2·δ, the radius and its sum with the slack by two
+/// roundoffs of the radius, of which δ is at least 12: by less than 1.6δ together. The place along the ray errs by at most 4δ, and
+/// by 4 roundoffs of itself, whose magnitude is below that of which δ is at least 12.
+///
+/// Of radii 6δ smaller and larger 4.4δ are left. They change n·r² by at least 100 roundoffs of it. The form, which is not below
+/// x² + y² and whose terms add up to at most three times that, errs by 18 roundoffs of itself, which matter where it is not above
+/// n·r², and that is computed to 8. The other 74 and more are of the square of the half chord, too, and their half pays for the 16
+/// roundoffs by which the half chord √((r² − d²)/n) errs.
 #[inline(always)]
 fn spheres<F: Filters>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
-    &Chords { n, per_n }: &Chords,
+    &Chords { n, form: [a, b, c], per_n }: &Chords,
     leaf: &Leaf8,
+    own: u32,
     limit: f32,
     certain_limit: f32,
 ) -> Candidates {
@@ -173,23 +182,23 @@ fn spheres<F: Filters>(
     let ([sx, sy, _, _], sz) = (ray.slopes.to_array(), -ray.per_depth);
     let [x, y, z] = project(filters, ray, &leaf.vertices[0]);
     let radius = F::Vector::load(filters.into(), &leaf.vertices[1][0]);
-    let along = x * all(sx) + y * all(sy);
     // n times the squares of the distance, of the radii and of the half chords.
-    let squared = (x * x + y * y) * all(n) - along * along;
+    let squared = x * (all(a) * x - all(b) * y) + y * (all(c) * y - all(b) * x);
     let delta = ray.error + leaf.error;
     let slack = all(6.0 * delta);
     let (inner, outer) = (radius - slack, radius + slack);
-    let longest = outer * outer * all(n) - squared * all(1.0 - 32.0 * f32::EPSILON);
-    let met = all(0.0).at_most(longest);
+    let outer_squared = outer * outer * all(n);
+    let middle = z * all(sz) + (x * all(sx) + y * all(sy)) * all(per_n);
+    let t_error = all(8.0 * delta);
+    // A sphere that the ray leaves is hit again only if its centre is ahead.
+    let met = squared.at_most(outer_squared) & !(own & middle.below(all(-8.0 * delta)));
     if met == 0 {
         return Candidates::NONE;
     }
-    let middle = z * all(sz) + along * all(per_n);
     // Lanes of NaN are none of `met`, or not certain.
-    let longer = longest.sqrt() * all(per_n.abs() * (1.0 + 32.0 * f32::EPSILON));
-    let shortest = inner * inner * all(n) - squared * all(1.0 + 32.0 * f32::EPSILON);
-    let shorter = shortest.sqrt() * all(per_n.abs() * (1.0 - 32.0 * f32::EPSILON));
-    let t_error = all(8.0 * delta);
+    let longer = (outer_squared - squared).sqrt() * all(per_n.abs());
+    let shortest = inner * inner * all(n) - squared;
+    let shorter = shortest.sqrt() * all(per_n.abs());
     let (mut near, mut far) = (middle - longer - t_error, middle - shorter + t_error);
     let farther = middle + longer + t_error;
     let missed = !(near.at_most(all(limit)) & all(0.0).at_most(farther));
@@ -200,16 +209,13 @@ fn spheres<F: Filters>(
         near = near.only(!around as u8) + (middle + shorter - t_error).only(around as u8);
         far = far.only(!around as u8) + farther.only(around as u8);
     }
-    // A root is the hit only where it is certainly ahead.
-    let certain = pierced & all(0.0).below(near) & far.below(all(certain_limit));
-    // A sphere that the ray leaves is hit again only if its centre is ahead.
-    let left = (middle + t_error).below(all(0.0));
+    // A root is the hit only where it is certainly ahead, and not of the sphere left.
+    let certain = pierced & !own & all(0.0).below(near) & far.below(all(certain_limit));
     Candidates {
         mask: met & !missed,
         missed: 0,
         unbounded: 0,
         certain,
-        left,
         near: Row(near.to_array()),
         far: Row(far.to_array()),
     }

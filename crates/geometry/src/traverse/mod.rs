@@ -30,7 +30,7 @@ use crate::best::Found;
 use crate::build::MAX_DEPTH;
 use crate::frame::BoxRay;
 use crate::query::{Four, Projection, Query, RawHit};
-use crate::wide::{LEAF_WIDTH, Leaf8, NODE_WIDTH, Node16, WideTree};
+use crate::wide::{BALLS, LEAF_WIDTH, Leaf8, MESH, MIXED, NODE_WIDTH, Node16, WideTree};
 use crate::{Hits, Primitive, Rays, Triangle};
 use any::any_on;
 pub(crate) use any::occludes;
@@ -55,8 +55,6 @@ struct Candidates {
     unbounded: u32,
     /// Those that are certainly hit between the origin and the certain limit.
     certain: u32,
-    /// Those that are certainly not hit if it is they that the ray leaves.
-    left: u32,
     /// Distances not above the true ones.
     near: Row<f32, LEAF_WIDTH>,
     /// Distances not below the true ones of those certainly hit.
@@ -69,7 +67,6 @@ impl Candidates {
         missed: 0,
         unbounded: 0,
         certain: 0,
-        left: 0,
         near: Row([0.0; LEAF_WIDTH]),
         far: Row([0.0; LEAF_WIDTH]),
     };
@@ -229,11 +226,13 @@ fn closest_with<F: Compiled, S: Start>(
 ) -> Option<Found> {
     let near = if tree.depth <= LEVELS[0] { start.enter_near::<F::Four>(filters.into(), &tree.frame) } else { None };
     match near {
-        Some(ray) if tree.mesh => {
-            closest_on::<F, S, true, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray)
-        }
         Some(ray) => {
-            closest_on::<F, S, false, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray)
+            const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
+            match tree.kind {
+                MESH => closest_on::<F, S, MESH, ROOM>(filters, tree, primitives, start, &ray),
+                BALLS => closest_on::<F, S, BALLS, ROOM>(filters, tree, primitives, start, &ray),
+                _ => closest_on::<F, S, MIXED, ROOM>(filters, tree, primitives, start, &ray),
+            }
         }
         None => filters.closest_far(tree, primitives, start),
     }
@@ -253,7 +252,7 @@ fn closest_far_with<F: Compiled, S: Start>(
         return Some((RawHit { t: start.distance(query.scale, hit.t), ..hit }, id));
     }
     let ray = tree.frame.enter(filters.into(), &query)?;
-    closest_on::<F, S, false, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray)
+    closest_on::<F, S, MIXED, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray)
 }
 
 /// Whether anything is hit by a ray that starts near the frame.
@@ -261,8 +260,11 @@ fn closest_far_with<F: Compiled, S: Start>(
 fn any_with<F: Compiled, S: Start>(filters: F, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
     let near = if tree.depth <= LEVELS[0] { start.enter_near::<F::Four>(filters.into(), &tree.frame) } else { None };
     match near {
-        Some(ray) if tree.mesh => any_on::<F, S, true, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
-        Some(ray) => any_on::<F, S, false, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
+        Some(ray) => match tree.kind {
+            MESH => any_on::<F, S, MESH, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
+            BALLS => any_on::<F, S, BALLS, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
+            _ => any_on::<F, S, MIXED, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
+        },
         None => filters.any_far(tree, primitives, start),
     }
 }
@@ -275,7 +277,7 @@ fn any_far_with<F: Compiled, S: Start>(filters: F, tree: &WideTree, primitives: 
         return any_deep(tree, primitives, &query);
     }
     let Some(ray) = tree.frame.enter(filters.into(), &query) else { return false };
-    any_on::<F, S, false, { LEVELS[0] }>(filters, tree, primitives, start, &ray)
+    any_on::<F, S, MIXED, { LEVELS[0] }>(filters, tree, primitives, start, &ray)
 }
 
 /// Degenerate trees, by the portable filters.
@@ -283,7 +285,7 @@ fn any_far_with<F: Compiled, S: Start>(filters: F, tree: &WideTree, primitives: 
 #[inline(never)]
 pub(crate) fn closest_deep(tree: &WideTree, primitives: &[Primitive], query: &Query) -> Option<Found> {
     let ray = tree.frame.enter((), query)?;
-    closest_on::<_, _, false, { LEVELS[1] * (NODE_WIDTH - 1) }>(portable::Portable, tree, primitives, query, &ray)
+    closest_on::<_, _, MIXED, { LEVELS[1] * (NODE_WIDTH - 1) }>(portable::Portable, tree, primitives, query, &ray)
 }
 
 /// Degenerate trees, by the portable filters.
@@ -292,7 +294,7 @@ pub(crate) fn closest_deep(tree: &WideTree, primitives: &[Primitive], query: &Qu
 pub(crate) fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query) -> bool {
     tree.frame
         .enter((), query)
-        .is_some_and(|ray| any_on::<_, _, false, { LEVELS[1] }>(portable::Portable, tree, primitives, query, &ray))
+        .is_some_and(|ray| any_on::<_, _, MIXED, { LEVELS[1] }>(portable::Portable, tree, primitives, query, &ray))
 }
 
 /// [`Primitive::intersect`] in the vectors of an instruction set.

@@ -7,7 +7,7 @@ use crate::best::Best;
 use crate::frame::Entry;
 use crate::portal::Portal;
 use crate::query::Query;
-use crate::wide::NODE_WIDTH;
+use crate::wide::{MESH, MIXED, NODE_WIDTH};
 
 /// [`Best::test`] of an instance: the same, without a query where there is a tree to walk. The bounds, which cost more than what
 /// most rays that miss find out in the tree's root, are asked for only where there is a hit.
@@ -35,8 +35,8 @@ pub(super) fn closest_within<F: Compiled>(
     const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
     let found = match entry {
         Entry::Misses => None,
-        Entry::Ray(near) if tree.mesh => closest_on::<F, _, true, ROOM>(filters, tree, inner, ray, &near),
-        Entry::Ray(near) => closest_on::<F, _, false, ROOM>(filters, tree, inner, ray, &near),
+        Entry::Ray(near) if tree.kind == MESH => closest_on::<F, _, MESH, ROOM>(filters, tree, inner, ray, &near),
+        Entry::Ray(near) => closest_on::<F, _, MIXED, ROOM>(filters, tree, inner, ray, &near),
         Entry::Unknown => filters.closest_far(tree, inner, ray),
     };
     let Some((hit, surface)) = found else { return false };
@@ -69,8 +69,8 @@ pub(super) fn occludes_within<F: Compiled>(
     };
     let hit = match entry {
         Entry::Misses => false,
-        Entry::Ray(near) if tree.mesh => any_on::<F, _, true, { LEVELS[0] }>(filters, tree, inner, ray, &near),
-        Entry::Ray(near) => any_on::<F, _, false, { LEVELS[0] }>(filters, tree, inner, ray, &near),
+        Entry::Ray(near) if tree.kind == MESH => any_on::<F, _, MESH, { LEVELS[0] }>(filters, tree, inner, ray, &near),
+        Entry::Ray(near) => any_on::<F, _, MIXED, { LEVELS[0] }>(filters, tree, inner, ray, &near),
         Entry::Unknown => filters.any_far(tree, inner, ray),
     };
     hit && portal.is_met(query, query.t_max)
