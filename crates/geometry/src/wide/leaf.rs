@@ -13,10 +13,6 @@ pub(crate) const LEAF_WIDTH: usize = 8;
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub(crate) struct Leaf8 {
-    /// The vertices of triangles in the accelerator's frame, rounded: x, y, z of a, then of b, then of c; of a parallelogram
-    /// a corner and its neighbours; those of a square around a disk. The rows of the first vertex hold a sphere's centre, the first row of the second its radius. NaN in all other lanes, which no
-    /// filter for flat shapes or spheres keeps.
-    pub(crate) vertices: [[[f32; LEAF_WIDTH]; 3]; 3],
     /// Ids; `u32::MAX` for an empty lane.
     pub(crate) ids: [u32; LEAF_WIDTH],
     /// The largest extent of the primitives' common box along an axis.
@@ -37,6 +33,10 @@ pub(crate) struct Leaf8 {
     /// The lanes of triangles whose vertices are exact: they need not be fetched to be tested in `f64`.
     pub(crate) exact: u8,
     padding: [u8; 18],
+    /// The vertices of triangles in the accelerator's frame, rounded: x, y, z of a, then of b, then of c; of a parallelogram
+    /// a corner and its neighbours; those of a square around a disk. The rows of the first vertex hold a sphere's centre, the first row of the second its radius. NaN in all other lanes, which no
+    /// filter for flat shapes or spheres keeps.
+    pub(crate) vertices: [[[f32; LEAF_WIDTH]; 3]; 3],
 }
 
 impl Leaf8 {
