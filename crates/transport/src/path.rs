@@ -236,7 +236,8 @@ impl World<'_> {
                 break;
             };
             beta *= next.weight;
-            beta *= R::from_f64(mixture.factor(1.0));
+            let (unaimed, aim) = (beta, mixture.factor(1.0));
+            beta *= R::from_f64(aim);
             observer.direction(&mixture);
             if let Density::SolidAngle(_) = next.density {
                 aim_factor = mixture.aim_factor();
@@ -276,7 +277,14 @@ impl World<'_> {
                 && let Some(gathered) = observer.gathers().filter(|gathered| gathered.begins())
             {
                 let diffuse = self.tables.is_diffuse(surface.object) && lanes.together();
-                gathered.leave(vertex, &point, wo, diffuse, (&mut radiance, &mut beta, &mut eta_squared));
+                gathered.leave(
+                    vertex,
+                    &point,
+                    wo,
+                    diffuse,
+                    (&unaimed, aim),
+                    (&mut radiance, &mut beta, &mut eta_squared),
+                );
             }
             let throughput = (beta.max_lane() * lanes.weight()).to_f64() * eta_squared;
             if throughput < THROUGHPUT_FLOOR {

@@ -10,6 +10,11 @@
 //! and cos θₖ alone for a sky. So each path's light is dealt out to the pixels that it could have served: no weight is above ρᵢ. The
 //! visibility is part of the densities: weights that left it out would not add up to one where somebody does not see y.
 //!
+//! Directions of the paths need not be drawn by the cosine alone: of any density p̂ⱼ path j brings its light times pⱼ/p̂ⱼ, and the weights
+//! stay those of the cosine. Any weights do that add up to one, and what is left of pixel i's share is
+//! Σⱼ ∫ p̂ⱼ (pⱼ/p̂ⱼ) wᵢⱼ L = ∫ (Σⱼ pⱼ) pᵢ/Σₖ pₖ L = ∫ pᵢ L. So directions go toward casters of caustics here, too
+//! ([`caustics`](crate::caustics)), and no mate asks for the densities of another's.
+//!
 //! Light that a path finds before x, at x, and on y itself (by MIS with the shadow ray from x) stays its own. So does all light of a path
 //! whose first surface is not diffuse, or that meets a mirror or glass there.
 
@@ -118,8 +123,9 @@ impl<R: Real, const N: usize> Gathered<R, N> {
         self.stage == Stage::Left
     }
 
-    /// The path has drawn its direction at its first surface that is no delta, whose throughput is in `state`. From x on throughput begins
-    /// anew; what roulette goes by does not.
+    /// The path has drawn its direction at its first surface that is no delta, whose throughput is in `state`; `unaimed` is that but for
+    /// what the direction is worth against one drawn by the cosine alone, `aim`. From x on throughput begins anew, with that; what roulette
+    /// goes by does not.
     #[inline(always)]
     pub(crate) fn leave(
         &mut self,
@@ -127,6 +133,7 @@ impl<R: Real, const N: usize> Gathered<R, N> {
         point: &SurfacePoint<f64>,
         wo: Vec3<f64>,
         diffuse: bool,
+        (unaimed, aim): (&Lanes<R, N>, f64),
         (radiance, beta, eta_squared): State<'_, R, N>,
     ) {
         if !diffuse {
@@ -134,12 +141,19 @@ impl<R: Real, const N: usize> Gathered<R, N> {
             return;
         }
         let normal = if point.normal.dot(wo) < 0.0 { -point.normal } else { point.normal };
-        self.start = Start { vertex, point: *point, normal, beta: *beta };
+        self.start = Start { vertex, point: *point, normal, beta: *unaimed };
         self.stage = Stage::Left;
         self.own = *radiance;
         *radiance = Lanes::ZERO;
-        *eta_squared *= beta.max_lane().to_f64();
-        *beta = Lanes::ONE;
+        *eta_squared *= unaimed.max_lane().to_f64();
+        #[cfg(test)]
+        let aim = if is_wrong(Fault::AimStays) {
+            self.start.beta = *beta;
+            1.0
+        } else {
+            aim
+        };
+        *beta = Lanes::splat(R::from_f64(aim));
     }
 
     /// The path, having left x, has met a surface and taken what that emits.

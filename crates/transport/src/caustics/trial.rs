@@ -37,8 +37,7 @@ impl Prepared {
     /// mean square under s is E[xₛ²·F/Fₛ], F that under the share tried (importance sampling of the second moment, but for what roulette
     /// does). The rare bright paths that bear the variance without casters are common in the trial.
     pub(crate) fn choose_casters(&mut self) {
-        // Who shares paths must know the density of any direction from any pixel: the cosine's.
-        if self.casters.bodies.is_empty() || self.path_reuse().is_some() {
+        if self.casters.bodies.is_empty() {
             return;
         }
         let own = self.scene.integrator.seed;

@@ -55,10 +55,22 @@ impl Drawn {
         views: &mut [Views],
     ) {
         let (bodies, each) = casters.bodies_aimed_at();
+        let mut taken = Taken { number: [0; W], place: [0.0; W], is: [false; W] };
         for (number, body) in bodies.iter().enumerate() {
             match body {
-                Caster::Sphere(round) => aim(level, round, (number, each), surface, u, self),
-                Caster::Box(body) => aim(level, body, (number, each), surface, u, self),
+                Caster::Sphere(round) => portion(level, round, (number, each), surface, u[0], &mut taken, self),
+                Caster::Box(body) => portion(level, body, (number, each), surface, u[0], &mut taken, self),
+            }
+        }
+        // Few paths: one by one.
+        for lane in 0..W {
+            if taken.is[lane] {
+                let (from, u) = (surface.0.at(lane), [taken.place[lane], u[1][lane]]);
+                let wi = match &bodies[usize::from(taken.number[lane])] {
+                    Caster::Sphere(round) => Target::aim(round, from, u),
+                    Caster::Box(body) => body.aim(from, u),
+                };
+                self.put(lane, (true, wi));
             }
         }
         let mut light = Row32([0.0; W]);
@@ -111,7 +123,7 @@ impl Drawn {
     }
 }
 
-/// The image that has taken each path, and where in its share its number is.
+/// The target that has taken each path, and where in its share its number is.
 pub(super) struct Taken {
     number: [u8; W],
     place: [f64; W],
@@ -166,12 +178,13 @@ impl Views {
 }
 
 stages! {
-    /// The share that a body has at each point, and the directions that fall into it.
-    fn aim [T: Target][T] (
+    /// The share that a body has at each point, and the paths that it takes.
+    fn portion [T: Target][T] (
         caster: &T,
         numbered: (usize, f64),
         surface: (&Rows3, &Rows3, &Rows3),
-        u: [&[f64; W]; 2],
+        u1: &[f64; W],
+        taken: &mut Taken,
         drawn: &mut Drawn,
     ) {
         let ((number, each), (position, normal, direction)) = (numbered, surface);
@@ -180,9 +193,11 @@ stages! {
             let share = share_of(caster, each, from, lambert::toward(normal.at(lane), wo));
             let share = if drawn.diffuse[lane] { share } else { 0.0 };
             let begin = drawn.total.0[lane];
-            let takes = is_within(u[0][lane], begin, share);
-            let wi = caster.aim(from, [place_within(u[0][lane], begin, share), u[1][lane]]);
-            drawn.put(lane, (takes, wi));
+            let takes = is_within(u1[lane], begin, share);
+            let place = place_within(u1[lane], begin, share);
+            taken.number[lane] = if takes { number as u8 } else { taken.number[lane] };
+            taken.place[lane] = if takes { place } else { taken.place[lane] };
+            taken.is[lane] |= takes;
             drawn.shares[number].0[lane] = share;
             drawn.total.0[lane] = begin + share;
         }

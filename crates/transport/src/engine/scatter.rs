@@ -70,6 +70,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         let mut goes_on = 0;
         paths.shared = 0;
         for lane in lanes(scatters) {
+            // What the path's throughput was, and is to be, multiplied by for its direction not being drawn by the cosine alone.
+            let mut aim = 1.0;
             let lambda_nm = &paths.wavelengths[lane].lambda_nm;
             let density = match paths.at.form[lane] {
                 Form::Lambert(slot) => {
@@ -78,7 +80,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     }
                     paths.beta[lane] *= paths.known.spectrum(lane, slot, self.tables, &paths.wavelengths[lane]);
                     if aims {
-                        paths.beta[lane] *= drawn.factor.0[lane];
+                        aim = drawn.factor.0[lane];
                         paths.aim_factor.0[lane] = drawn.factor.0[lane].min(1.0);
                     }
                     // As if it had followed lanes that are all alike.
@@ -123,7 +125,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     };
                     wi.set(lane, next.wi);
                     paths.beta[lane] *= next.weight;
-                    paths.beta[lane] *= mixture.factor(1.0);
+                    aim = mixture.factor(1.0);
                     let mean_of_hero = paths.model[lane].follow(next.lane_density);
                     paths.parted |= Mask::from(next.lane_density != Lanes::ONE) << lane;
                     paths.eta_squared.0[lane] *= next.eta * next.eta;
@@ -140,6 +142,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 paths.density.0[lane] = density;
                 paths.shared |= shared & 1 << lane;
             }
+            let unaimed = paths.beta[lane];
+            paths.beta[lane] *= aim;
             let beta = paths.beta[lane];
             if !beta.is_finite() {
                 // Shown to the film, which counts and locates it.
@@ -151,7 +155,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     self.tables.objects[paths.at.object[lane] as usize].diffuse && paths.model[lane].together();
                 let (point, wo) = (paths.at.point(lane), -paths.direction.at(lane));
                 let state = (&mut paths.radiance[lane], &mut paths.beta[lane], &mut paths.eta_squared.0[lane]);
-                paths.gathered[lane].leave(paths.vertex[lane], &point, wo, diffuse, state);
+                paths.gathered[lane].leave(paths.vertex[lane], &point, wo, diffuse, (&unaimed, aim), state);
             }
             let beta = paths.beta[lane];
             let throughput = (beta.max_lane() * paths.model[lane].weight()) * paths.eta_squared.0[lane];

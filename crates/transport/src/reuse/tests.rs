@@ -1,5 +1,6 @@
 //! A room of known radiance, and what is wrong on purpose.
 
+use crate::caustics::Aims;
 use crate::film::Film;
 use crate::plan::PathLoop;
 use crate::{Study, prepare_study};
@@ -14,6 +15,8 @@ pub(super) enum Fault {
     NoDistance,
     /// Densities do not know at which angle a target is seen: as if all saw it at the same.
     NoCosine,
+    /// What a direction is worth that was drawn toward a caster counts where it was drawn, not with the light that it finds.
+    AimStays,
 }
 
 thread_local! {
@@ -27,12 +30,14 @@ pub(super) fn is_wrong(fault: Fault) -> bool {
 
 const REPLICATES: u32 = 16;
 
-/// The film, by this thread.
-fn film(path_loop: PathLoop) -> Film {
-    let prepared =
+/// The film, by this thread, with this share of the directions drawn toward such casters.
+fn film(path_loop: PathLoop, aims: Aims) -> Film {
+    let mut prepared =
         prepare_study(&super::room::room(REPLICATES), &Study { path_loop: Some(path_loop), ..Study::default() })
             .unwrap();
     assert_eq!(prepared.path_reuse(), Some([4, 4]));
+    assert_eq!((prepared.casters.bodies.len(), prepared.casters.images.len()), (2, 16));
+    (prepared.casters.aims, prepared.casters.share) = (aims, 0.4);
     let extent = prepared.whole(None);
     let mut film = prepared.film();
     let mut sums = film.tile(extent.rect);
@@ -54,11 +59,16 @@ fn farthest(film: &Film) -> (f64, f64) {
 #[test]
 fn every_pixel_of_a_room_of_constant_radiance_stays_one_and_not_if_densities_are_wrong() {
     for path_loop in [PathLoop::Plain, PathLoop::Lanes] {
-        let (z, error) = farthest(&film(path_loop));
-        assert!(z < 9.0 && error < 0.02, "{path_loop:?}: {z} standard errors of at most {error}");
-        for fault in [Fault::AllSeen, Fault::NoDistance, Fault::NoCosine] {
+        for aims in [Aims::Nothing, Aims::Bodies, Aims::Images] {
+            let (z, error) = farthest(&film(path_loop, aims));
+            assert!(z < 9.0 && error < 0.02, "{path_loop:?}, {aims:?}: {z} standard errors of at most {error}");
+        }
+        let faults = [Fault::AllSeen, Fault::NoDistance, Fault::NoCosine].map(|fault| (fault, Aims::Nothing));
+        for (fault, aims) in
+            faults.into_iter().chain([(Fault::AimStays, Aims::Bodies), (Fault::AimStays, Aims::Images)])
+        {
             FAULT.set(Some(fault));
-            let (z, _) = farthest(&film(path_loop));
+            let (z, _) = farthest(&film(path_loop, aims));
             FAULT.set(None);
             assert!(z > 9.0, "{path_loop:?}, {fault:?}: {z} standard errors");
         }
