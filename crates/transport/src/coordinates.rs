@@ -203,3 +203,88 @@ impl MeshCoordinates {
         along.iter().all(|v| v.length_squared().is_finite() && v.length_squared() > 0.0).then_some(along)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etalon_scene::{Image, Texels, TextureFilter, Wrap};
+
+    const UNTURNED: [Vec3<f64>; 3] = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+
+    fn image(width: u32, height: u32, uv_scale: [f64; 2], of: impl Fn(u32, u32) -> [f32; 3]) -> ImageTexture {
+        let texels = (0..width * height).map(|i| of(i % width, i / width)).collect();
+        ImageTexture {
+            image: Arc::new(Image::new(width, height, Texels::F32(texels))),
+            name: "texels".to_owned(),
+            wrap: [Wrap::Repeat; 2],
+            filter: TextureFilter::Nearest,
+            uv_scale,
+            uv_offset: [0.0; 2],
+            factor: [1.0; 3],
+        }
+    }
+
+    fn mesh(vertices: Vec<[f64; 3]>, uvs: Vec<[f32; 2]>, linear: [Vec3<f64>; 3]) -> MeshCoordinates {
+        let triangles = vec![[0, 1, 2]];
+        let mesh = Arc::new(Mesh { vertices, triangles, normals: Vec::new(), uvs });
+        MeshCoordinates { mesh, first: 5, kept: None, normal_to_world: UNTURNED, linear, swapped: false }
+    }
+
+    const THE_TRIANGLE: PrimitiveId = PrimitiveId(5);
+
+    #[test]
+    fn an_image_has_the_mean_luminance_of_the_part_that_is_shown() {
+        // Each channel alone is worth what Rec. 709 says, and white 1.
+        for (rgb, want) in
+            [([1.0, 0.0, 0.0], 0.2126), ([0.0, 1.0, 0.0], 0.7152), ([0.0, 0.0, 1.0], 0.0722), ([1.0, 1.0, 1.0], 1.0)]
+        {
+            let plain = image(1, 1, [1.0; 2], |_, _| rgb);
+            assert!((Coordinates::None.mean_luminance(PrimitiveId(0), &plain) - want).abs() < 1e-12, "{rgb:?}");
+        }
+        // Whole squares: as many columns or rows as there are texels, whatever the scale; half of them, or a row of four, shine.
+        for scale in [1.0, -1.0, 3.0] {
+            let columns = image(2, 1, [scale, 1.0], |column, _| [[0.0, 1.0][column as usize]; 3]);
+            let rows = image(1, 4, [1.0, scale], |_, row| [if row == 1 { 4.0 } else { 0.0 }; 3]);
+            for (texture, want) in [(columns, 0.5), (rows, 1.0)] {
+                let got = Coordinates::None.mean_luminance(PrimitiveId(0), &texture);
+                assert!((got - want).abs() < 1e-12, "{scale}: {got} is not {want}");
+            }
+        }
+        // Triangles, by their area on either side of u = ½ + a and v = ½ + b in an image of 64²: (corners, share of the lit part).
+        let half = |by_row: bool| {
+            image(64, 64, [1.0; 2], move |c, r| [if (if by_row { r } else { c }) < 32 { 0.0 } else { 1.0 }; 3])
+        };
+        for (uvs, by_row, want) in [
+            (vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], false, 0.75),
+            (vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], false, 0.25),
+            (vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], true, 0.75),
+            (vec![[0.5, 0.25], [1.0, 0.5], [0.75, 0.75]], false, 1.0),
+            (vec![[0.25, 0.75], [0.45, 1.0], [0.45, 0.5]], false, 0.0),
+            (vec![[0.25, 0.5], [0.75, 0.75], [0.75, 0.25]], true, 0.5),
+        ] {
+            let coordinates = Coordinates::Mesh(mesh(vec![[0.0; 3]; 3], uvs.clone(), UNTURNED));
+            let got = coordinates.mean_luminance(THE_TRIANGLE, &half(by_row));
+            // A grid of 64² at most, of which a line cuts off cells along its length.
+            assert!((got - want).abs() < 0.03, "{uvs:?}: {got} is not {want}");
+        }
+    }
+
+    #[test]
+    fn a_triangle_moves_with_u_and_v_as_its_corners_say() {
+        let linear = [Vec3::new(1.0, 0.5, 0.0), Vec3::new(-0.5, 2.0, 0.3), Vec3::new(0.0, 0.1, 1.5)];
+        // p = o + u·a + v·b at each corner, for any a and b and corners anywhere.
+        let (origin, a, b) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.5, 1.0, -0.25), Vec3::new(-1.0, 0.75, 2.0));
+        let uvs = vec![[0.25, 0.5], [1.25, 0.75], [0.5, 2.0]];
+        let vertices = uvs.iter().map(|[u, v]: &[f32; 2]| (origin + a * f64::from(*u) + b * f64::from(*v)).to_array());
+        let got = mesh(vertices.collect(), uvs.clone(), linear).tangents(THE_TRIANGLE).unwrap();
+        for (got, want) in got.into_iter().zip([a, b]) {
+            let want = Vec3::from_array(linear.map(|row| row.dot(want)));
+            assert!((got - want).length() < 1e-12, "{got:?} is not {want:?}");
+        }
+        // Coordinates on a line, or all the same, say nothing of a direction.
+        for flat in [vec![[0.0, 0.0], [0.5, 0.5], [1.0, 1.0]], vec![[0.5; 2]; 3]] {
+            let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+            assert!(mesh(vertices, flat, UNTURNED).tangents(THE_TRIANGLE).is_none());
+        }
+    }
+}

@@ -53,3 +53,78 @@ fn slopes(texture: &ImageTexture, [u, v]: [f64; 2]) -> [f64; 2] {
     let slope = |difference: f64, step: f64| if step.is_finite() { difference / (2.0 * step) } else { 0.0 };
     [slope(height(u + du, v) - height(u - du, v), du), slope(height(u, v + dv) - height(u, v - dv), dv)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etalon_scene::{Image, Texels, TextureFilter, Wrap};
+    use std::sync::Arc;
+
+    /// Eight columns and four rows, whose heights are told by column and row, both from zero and rows from the top.
+    fn heights(of: impl Fn(f64, f64) -> f64, uv_scale: [f64; 2], uv_offset: [f64; 2]) -> ImageTexture {
+        let texels = (0..32).map(|i| [of(f64::from(i % 8), f64::from(i / 8)) as f32; 3]).collect();
+        ImageTexture {
+            image: Arc::new(Image::new(8, 4, Texels::F32(texels))),
+            name: "heights".to_owned(),
+            wrap: [Wrap::Clamp; 2],
+            filter: TextureFilter::Bilinear,
+            uv_scale,
+            uv_offset,
+            factor: [1.0; 3],
+        }
+    }
+
+    #[test]
+    fn slopes_are_those_of_an_even_ramp_and_of_a_step_over_one_texel() {
+        for (scale, offset) in [([1.0, 1.0], [0.0, 0.0]), ([2.0, 0.5], [-0.5, 0.25]), ([-0.5, -2.0], [0.75, 1.5])] {
+            // Image coordinates ½, ½ are in the middle: those of the texture that are mapped there.
+            let middle = [0, 1].map(|k| (0.5 - offset[k]) / scale[k]);
+            let even = heights(|column, row| 0.25 * column - 0.5 * row, scale, offset);
+            // A texel is 1/8 wide and 1/4 high, and rows count from the top, v from below.
+            let want = [0.25 * 8.0 * scale[0], 0.5 * 4.0 * scale[1]];
+            let got = slopes(&even, middle);
+            // Heights are exact in single precision, and so is the interpolation but for rounding.
+            assert!((got[0] - want[0]).abs().max((got[1] - want[1]).abs()) < 1e-12, "{got:?} is not {want:?}");
+            // Up by one between the middle columns, and between the middle rows: over a texel, neither more nor less.
+            let step = heights(|c, r| f64::from(u8::from(c > 3.5)) + f64::from(u8::from(r < 1.5)), scale, offset);
+            let want = [8.0 * scale[0], 4.0 * scale[1]];
+            let got = slopes(&step, middle);
+            assert!((got[0] - want[0]).abs().max((got[1] - want[1]).abs()) < 1e-12, "{got:?} is not {want:?}");
+        }
+    }
+
+    #[test]
+    fn heights_bend_a_normal_to_that_of_the_surface_they_raise() {
+        // Neither perpendicular nor of unit length.
+        let along = [Vec3::new(2.0, 0.3, -0.4), Vec3::new(-0.5, 1.5, 0.2)];
+        let n = along[0].cross(along[1]).normalized();
+        let texture = heights(|column, row| 0.25 * column - 0.5 * row, [1.0; 2], [0.0; 2]);
+        let (height_m, per_m) = (0.1, 4.0);
+        let shading = Shading::flat(n).with_uv([0.5, 0.5]);
+        let got = bend(&Relief::Heights { texture, height_m }, shading, along, per_m).shading_normal();
+        // p + hn moves with u by p_u + h_u n: slopes 2 and 2 of the image.
+        let raised = along.map(|v| v + n * (2.0 * height_m * per_m));
+        let want = raised[0].cross(raised[1]).normalized();
+        assert!((got - want).length() < 1e-14, "{got:?} is not {want:?}");
+    }
+
+    #[test]
+    fn an_image_of_normals_stands_in_the_frame_of_its_coordinates() {
+        let texel = [0.5 + 0.5 * 0.48, 0.5 + 0.5 * 0.36, 0.5 + 0.5 * 0.8].map(|v: f64| v as f32);
+        let mut texture = heights(|_, _| 0.0, [1.0; 2], [0.0; 2]);
+        texture.image = Arc::new(Image::new(1, 1, Texels::F32(vec![texel])));
+        let n = Vec3::new(0.0, 0.0, 1.0);
+        let relief = Relief::Normals { texture, strength: 0.5 };
+        // u grows along x, but not across the normal; v against y, or along it.
+        for (v, sign) in [(Vec3::new(0.4, -3.0, 0.5), -1.0), (Vec3::new(0.4, 3.0, 0.5), 1.0)] {
+            let along = [Vec3::new(2.0, 0.0, 1.0), v];
+            let got = bend(&relief, Shading::flat(n), along, 1.0).shading_normal();
+            let want = Vec3::new(0.5 * 0.48, sign * 0.5 * 0.36, 0.8).normalized();
+            // Texels in single precision.
+            assert!((got - want).length() < 1e-6, "{got:?} is not {want:?}");
+        }
+        // Where nothing grows across the normal there is no frame.
+        let nowhere = bend(&relief, Shading::flat(n), [n * 2.0, n], 1.0).shading_normal();
+        assert_eq!(nowhere, n);
+    }
+}

@@ -112,3 +112,89 @@ impl RoundCoordinates {
         Some([along_u, along_v].map(|v| x * v.x + y * v.y + z * v.z))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etalon_scene::Transform;
+
+    /// Places that turn, stretch and mirror.
+    fn placements() -> [Affine; 3] {
+        [
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            [[0.3, -1.1, 0.4], [2.0, 0.5, -0.2], [0.1, 0.7, 1.9]],
+            [[-1.5, 0.0, 0.2], [0.3, 0.8, 0.0], [0.0, -0.4, 1.2]],
+        ]
+        .map(|linear| Affine::new(&Transform { linear, translation_m: [3.0, -2.0, 0.5] }))
+    }
+
+    /// A shape, and the point of it that has some texture coordinates, as the scene format says.
+    type Case<'a> = (&'a str, RoundCoordinates, Box<dyn Fn(f64, f64) -> Vec3<f64> + 'a>);
+
+    fn cases(place: &Affine) -> Vec<Case<'_>> {
+        let (centre, radius) = ([0.4, 0.1, -0.3], 1.7);
+        let normal = Vec3::new(0.6, 0.0, 0.8);
+        let frame = Frame::from_normal(normal);
+        let on = move |p: Vec3<f64>| place.point((Vec3::from_array(centre) + p).to_array());
+        let end = (Vec3::from_array(centre) + normal * 2.5).to_array();
+        let ball = move |u: f64, v: f64| {
+            let (longitude, latitude) = (TAU * (u - 0.5), PI * (v - 0.5));
+            let around = Vec3::new(longitude.sin(), 0.0, longitude.cos()) * latitude.cos();
+            on((around + Vec3::new(0.0, latitude.sin(), 0.0)) * radius)
+        };
+        let disk = move |u: f64, v: f64| on((frame.s * (2.0 * u - 1.0) + frame.t * (2.0 * v - 1.0)) * radius);
+        let tube = move |u: f64, v: f64| {
+            let angle = TAU * (u - 0.5);
+            on((frame.s * angle.cos() + frame.t * angle.sin()) * radius + normal * (2.5 * v))
+        };
+        vec![
+            ("sphere", RoundCoordinates::sphere(centre, radius, place), Box::new(ball)),
+            ("disk", RoundCoordinates::disk(centre, normal.to_array(), radius, place), Box::new(disk)),
+            ("cylinder", RoundCoordinates::cylinder(centre, end, radius, place), Box::new(tube)),
+        ]
+    }
+
+    #[test]
+    fn a_point_has_the_coordinates_it_was_made_from_and_moves_with_them_as_its_tangents_say() {
+        const STEP: f64 = 1e-5;
+        for place in placements() {
+            for (name, shape, point) in cases(&place) {
+                for i in 1..10 {
+                    for j in 1..10 {
+                        // On the disk, within it.
+                        let (u, v) = (0.15 + 0.07 * f64::from(i), 0.15 + 0.07 * f64::from(j));
+                        let got = shape.uv(point(u, v));
+                        assert!((got[0] - u).abs().max((got[1] - v).abs()) < 1e-12, "{name}: {got:?} is not {u}, {v}");
+                        let tangents = shape.tangents(point(u, v)).unwrap();
+                        let moved = [
+                            (point(u + STEP, v) - point(u - STEP, v)) * (0.5 / STEP),
+                            (point(u, v + STEP) - point(u, v - STEP)) * (0.5 / STEP),
+                        ];
+                        for (got, want) in tangents.into_iter().zip(moved) {
+                            // Third derivatives are below 1e3, so that a central difference is off by 1e3·STEP²/6, and by rounding, 1e-10.
+                            assert!((got - want).length() < 1e-7, "{name} at {u}, {v}: {got:?} is not {want:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn poles_and_caps_have_no_tangents() {
+        let [place, ..] = placements();
+        let [ball, _, tube] = [0, 1, 2].map(|i| cases(&place).remove(i).1);
+        let at = |p: [f64; 3]| place.point(p);
+        assert!(ball.tangents(at([0.4, 0.1 + 1.7, -0.3])).is_none());
+        // Within the tube's ends, at all distances from the axis but the rim's; and close to them on the wall.
+        let frame = Frame::from_normal(Vec3::new(0.6, 0.0, 0.8));
+        let on = |share: f64, along_m: f64| {
+            let p = Vec3::new(0.4, 0.1, -0.3) + (frame.s * 0.8 + frame.t * 0.6) * (1.7 * share) + frame.n * along_m;
+            tube.tangents(at(p.to_array())).is_some()
+        };
+        for share in [0.0, 0.5, 0.99] {
+            assert!(!on(share, 0.0) && !on(share, 2.5), "{share}");
+        }
+        assert!(on(1.0, 0.01) && on(1.0, 2.49) && on(1.0, 1.0));
+    }
+}

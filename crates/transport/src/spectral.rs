@@ -195,4 +195,19 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_smooth_function_is_interpolated_up_to_ends_that_are_no_whole_nanometres() {
+        let range = [400.25, 410.75];
+        let prepared = PathSpectrum::tabulate(range, |nm| 0.5 * nm - 100.0);
+        for nm in [401.0, 401.5, 405.125, 409.0, 410.0] {
+            assert!((prepared.eval(nm) - (0.5 * nm - 100.0)).abs() < 1e-9, "{nm}: {}", prepared.eval(nm));
+        }
+        // Nothing is known beyond the ends: the last steps lead to the values there, and go half as far, or a quarter more.
+        let ends = [(400.25, 0.25 * 0.375), (400.5, 0.5 * 0.375), (410.75, 0.75 * 0.375)];
+        for (nm, since) in ends {
+            let start = if nm < 405.0 { 0.5 * 400.25 - 100.0 } else { 105.0 };
+            assert!((prepared.eval(nm) - start - since).abs() < 1e-9, "{nm}: {}", prepared.eval(nm));
+        }
+    }
 }

@@ -1,0 +1,128 @@
+//! What shadow rays bring to surfaces within media and between them, and by each model of wavelengths.
+
+use etalon_oracle::truths::truths;
+use etalon_transport::{Carried, Study};
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+
+#[path = "common/rendering.rs"]
+mod rendering;
+use rendering::{mean_y, parse, render};
+
+fn read(scene: &Value) -> f64 {
+    mean_y(&render(&parse(&scene.to_string()), &Study::default()))
+}
+
+/// A lamp in a ball of rough glass is seen on its surface by shadow rays that go through the ball; one before the ball by shadow rays that
+/// are outside of it. Both stand aside, so that no cosine is 1 but the viewer's. The paths are the same in clear glass.
+#[test]
+fn a_lamp_within_rough_glass_is_dimmed_by_the_way_to_it_and_one_before_it_is_not() {
+    let shown = |lamp_z_m: f64, absorption_per_m: f64| {
+        read(&json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 3], "direction": [0, 0, -1], "height_m": 0.001},
+            "film": {"width": 4, "height": 4},
+            "objects": [{
+                "shape": {"type": "sphere", "center_m": [0, 0, 0], "radius_m": 1},
+                "material": {"type": "dielectric", "interior": 1.5, "alpha": 0.4, "absorption_per_m": absorption_per_m}
+            }],
+            "lights": [{"type": "point", "position_m": [0.5, 0, lamp_z_m], "intensity": 1}],
+            "integrator": {"spp": 64, "max_depth": 2, "roulette": false, "precision": "f64"}
+        }))
+    };
+    for (lamp_z_m, length_m, footprint) in [(0.0, 1.25_f64.sqrt(), 3e-4), (4.0, 0.0, 0.0)] {
+        let (clear, dim) = (shown(lamp_z_m, 1e-300), shown(lamp_z_m, 0.7));
+        assert!(clear > 0.0, "a lamp at {lamp_z_m} m is not seen");
+        // The ways from a footprint of a millimetre differ by .45 mm at most; and rounding of an exponential and of some sums.
+        let share = dim / clear / (-0.7_f64 * length_m).exp();
+        assert!((share - 1.0).abs() < footprint + 1e-9, "{lamp_z_m}: {dim} of {clear}");
+    }
+}
+
+/// A shadow ray that goes on behind a boundary which changes no medium still ends at its lamp: what is beyond casts no shadow.
+#[test]
+fn what_is_beyond_a_lamp_casts_no_shadow_when_the_ray_has_crossed_a_boundary_on_its_way() {
+    let within = |priority: u32, from_m: f64, to_m: f64, absorption_per_m: f64| {
+        json!({
+            "shape": {"type": "box", "min_m": [-from_m, -from_m, -from_m], "max_m": [from_m, from_m, to_m]},
+            "material": {
+                "type": "dielectric", "interior": 1, "priority": priority, "absorption_per_m": absorption_per_m
+            }
+        })
+    };
+    let shown = read(&json!({
+        "etalon": 1,
+        "camera": {"type": "orthographic", "position_m": [0, 0, 3.25], "direction": [0, 0, -1], "height_m": 0.001},
+        "film": {"width": 2, "height": 2},
+        "objects": [
+            within(1, 9.0, 9.0, 0.5),
+            // Filled by the other, whose priority is higher.
+            within(0, 8.0, 4.0, 3.0),
+            {"shape": {"type": "disk", "center_m": [0, 0, 3], "normal": [0, 0, 1], "radius_m": 1},
+                "material": {"type": "lambert", "reflectance": 0.5}},
+            {"shape": {"type": "disk", "center_m": [0, 0, 6], "normal": [0, 0, 1], "radius_m": 1}, "material": {"type": "black"}}
+        ],
+        "lights": [{"type": "point", "position_m": [0, 0, 5], "intensity": 1}],
+        "integrator": {"spp": 4, "max_depth": 2, "roulette": false}
+    }));
+    let truth = 0.5 / PI / 4.0 * (-0.5_f64 * 2.25).exp();
+    // Single precision, and a footprint of a millimetre: its edge is 1e-7 farther from the lamp.
+    assert!((shown / truth - 1.0).abs() < 3e-6, "{shown} is not {truth}");
+}
+
+/// Where two solids share a face, that of the higher priority says whether it is smooth or rough. Seen from within the upper one, a small lamp
+/// within the lower one shows T(n_u/n_l)² through a smooth face; a rough one bends light by up to half the tilt of
+/// its facets, over a hundred times the lamp's solid angle.
+#[test]
+fn the_higher_priority_decides_what_a_shared_face_does() {
+    let (upper_n, lower_n) = (1.0_f64, 2.0_f64);
+    let transmitted = 1.0 - ((upper_n - lower_n) / (upper_n + lower_n)).powi(2);
+    let truth = transmitted * (upper_n / lower_n).powi(2);
+    let solid = |n: f64, rough: bool, priority: u32, z_m: [f64; 2]| {
+        json!({
+            "shape": {"type": "box", "min_m": [-1, -1, z_m[0]], "max_m": [1, 1, z_m[1]]},
+            "material": {"type": "dielectric", "interior": n, "alpha": if rough { 0.6 } else { 0.0 }, "priority": priority}
+        })
+    };
+    for upper_is_rough in [false, true] {
+        for upper_decides in [false, true] {
+            for order in [[0, 1, 2], [2, 1, 0]] {
+                let objects = [
+                    solid(upper_n, upper_is_rough, if upper_decides { 2 } else { 1 }, [0.0, 1.0]),
+                    solid(lower_n, !upper_is_rough, if upper_decides { 1 } else { 2 }, [-1.0, 0.0]),
+                    json!({
+                        "shape": {"type": "disk", "center_m": [0, 0, -0.5], "normal": [0, 0, 1], "radius_m": 0.01},
+                        "material": {"type": "black"}, "emission": {"radiance": 1, "sides": "front"}
+                    }),
+                ];
+                let shown = read(&json!({
+                    "etalon": 1,
+                    "camera": {"type": "orthographic", "position_m": [0, 0, 0.5], "direction": [0, 0, -1], "height_m": 0.001},
+                    "film": {"width": 4, "height": 4},
+                    "objects": order.map(|i: usize| objects[i].clone()),
+                    "integrator": {"spp": 256, "max_depth": 2, "roulette": false}
+                }));
+                let what = format!("upper rough: {upper_is_rough}, decides: {upper_decides}, {order:?}: {shown}");
+                if upper_is_rough == upper_decides {
+                    assert!((0.0..0.1 * truth).contains(&shown), "{what}");
+                } else {
+                    // One of nine paths is reflected: 4096 of them scatter by .6 %.
+                    assert!((shown / truth - 1.0).abs() < 0.03, "{what} is not {truth}");
+                }
+            }
+        }
+    }
+}
+
+/// A lamp that directions and shadow rays both find counts once, whatever the lanes of a path stand for.
+#[test]
+fn every_model_of_wavelengths_finds_a_square_lamp_once() {
+    let truth = truths().into_iter().find(|truth| truth.name == "square-light").expect("it is a truth");
+    for carried in [Carried::OneWavelength, Carried::FourWavelengths, Carried::ThreeChannels] {
+        let mut scene = parse(&truth.scene);
+        scene.integrator.spp = 64;
+        let shown = mean_y(&render(&scene, &Study { carried: Some(carried), ..Study::default() }));
+        // 16,384 paths and more of one value in [0, 2] that scatter by .3.
+        assert!((shown / truth.value - 1.0).abs() < 0.02, "{carried:?}: {shown} is not {}", truth.value);
+    }
+}
