@@ -54,8 +54,9 @@ impl CellTable {
     pub(crate) fn new(cells: u32, of: impl Fn(u32) -> [f64; 2]) -> Self {
         let rows = cells / TURNS as u32;
         let row = |row| {
-            let of_turn: [_; 2 * TURNS] = std::array::from_fn(|turn| of(row + (turn % TURNS) as u32 * rows));
-            Row { value: of_turn.map(|[value, _]| value), step: of_turn.map(|[_, step]| step) }
+            let of_turn: [_; TURNS] = std::array::from_fn(|turn| of(row + turn as u32 * rows));
+            let twice = |k: usize| std::array::from_fn(|turn| of_turn[turn % TURNS][k]);
+            Row { value: twice(0), step: twice(1) }
         };
         Self { rows: (0..rows).map(row).collect() }
     }

@@ -169,16 +169,18 @@ impl WavelengthDistribution {
             let first_nm = begin_nm.next_up();
             [first_nm, end_nm.next_down() - first_nm]
         });
-        let responses = std::array::from_fn(|c| {
-            CellTable::new(count, |cell| {
-                let [begin_nm, width_nm] = cells[cell as usize];
-                let at = |part: f64| colour_matching(begin_nm + part * width_nm)[c];
-                // From within: at either end another stretch may begin.
-                let step = 2.0 * (at(0.75) - at(0.25));
-                let scale = f64::from(count) * width_nm / cie_y_integral_nm();
-                [(at(0.5) - 0.5 * step) * scale, step * scale]
+        let of_cell = |&[begin_nm, width_nm]: &[f64; 2]| {
+            // From within: at either end another stretch may begin.
+            let [quarter, half, three_quarters] =
+                [0.25, 0.5, 0.75].map(|part| colour_matching(begin_nm + part * width_nm));
+            let scale = f64::from(count) * width_nm / cie_y_integral_nm();
+            [0, 1, 2].map(|c: usize| {
+                let step = 2.0 * (three_quarters[c] - quarter[c]);
+                [(half[c] - 0.5 * step) * scale, step * scale]
             })
-        });
+        };
+        let of_cells: Vec<_> = cells.iter().map(of_cell).collect();
+        let responses = [0, 1, 2].map(|c: usize| CellTable::new(count, |cell| of_cells[cell as usize][c]));
         Self { cells, last_nm, lambda_nm, responses }
     }
 
