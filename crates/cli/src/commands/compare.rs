@@ -23,7 +23,8 @@ pub(crate) struct Args {
     /// Probability of calling two pictures of the same thing different.
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = probability)]
     significance: f64,
-    /// Side of the tiles that are compared, pixels.
+    /// Side of the tiles that are compared, pixels. Each counts as the sum of so many pixels, whose noise is taken for normally
+    /// distributed: of fewer than 4 it is not, and pictures of the same thing are called different too often.
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     tile: u32,
     /// Exposure for FLIP and the picture of the difference, in stops.

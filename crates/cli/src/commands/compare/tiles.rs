@@ -141,10 +141,19 @@ fn welch(a: &Measured<'_>, b: &Measured<'_>, pixels: &[usize], crop: [usize; 4])
     } else if squares_a + squares_b == 0.0 {
         normal_two_sided_tail(t)
     } else {
-        student_two_sided_tail(t, variance * variance / (squares_a + squares_b))
+        student_two_sided_tail(t, freedom([a, b], variance, squares_a + squares_b))
     };
     let n = pixels.len() as f64;
     Some(Tile { crop, means: [sum_a / n, sum_b / n], t, p, noisy: variance > 0.0 })
+}
+
+/// Degrees of freedom of a sum of variances, `squares` being the sum of the squares of each over its own ν + 2: (Σσ²)² over Σσ⁴/ν, both
+/// without bias (Welch 1947, *The generalization of "Student's" problem*). (ΣV)² is 2·ΣV²/(ν + 2) too large as well, hence the 2: without
+/// it a single pixel with four replicates would have five degrees of freedom, not three. No sum has fewer than the least of its parts,
+/// however they hang together.
+fn freedom(pictures: [&Measured<'_>; 2], variance: f64, squares: f64) -> f64 {
+    let least = pictures.iter().filter_map(|picture| picture.freedom).fold(f64::INFINITY, f64::min);
+    (variance * variance / squares - 2.0).max(least)
 }
 
 /// One-sided Kolmogorov–Smirnov: whether p-values are smaller than uniform ones. Larger ones, as errors give that were
@@ -164,15 +173,22 @@ mod tests {
     /// Two pictures of 64 × 64 pixels around 1, the second with a bias in some of its tiles; their errors are estimated from
     /// four replicates that are normally distributed with standard error `noise` of the mean.
     fn pair(seed: u64, noise: f64, bias: impl Fn(usize) -> f64) -> [(Vec<f32>, Vec<f32>); 2] {
+        pair_of_blocks(seed, noise, bias, 1)
+    }
+
+    /// The same, where all pixels of a block of `side` × `side` have the same noise.
+    fn pair_of_blocks(seed: u64, noise: f64, bias: impl Fn(usize) -> f64, side: usize) -> [(Vec<f32>, Vec<f32>); 2] {
         let mut numbers = Uniform::new(seed);
         let mut normal = || {
             let (u, v) = (1.0 - numbers.number(), numbers.number());
             (-2.0 * u.ln()).sqrt() * (2.0 * std::f64::consts::PI * v).cos()
         };
         [0.0, 1.0].map(|biased| {
+            let blocks: Vec<[f64; 4]> = (0..64 * 64 / (side * side)).map(|_| [0; 4].map(|_| normal())).collect();
             (0..64 * 64)
                 .map(|pixel| {
-                    let own: Vec<f64> = (0..4).map(|_| 1.0 + biased * bias(pixel) + 2.0 * noise * normal()).collect();
+                    let block = pixel / 64 / side * (64 / side) + pixel % 64 / side;
+                    let own = blocks[block].map(|normal| 1.0 + biased * bias(pixel) + 2.0 * noise * normal);
                     let mean = own.iter().sum::<f64>() / 4.0;
                     let squares: f64 = own.iter().map(|x| (x - mean) * (x - mean)).sum();
                     (mean as f32, (squares / 12.0).sqrt() as f32)
@@ -182,9 +198,13 @@ mod tests {
     }
 
     fn channel(pair: &[(Vec<f32>, Vec<f32>); 2]) -> Channel {
+        channel_in_tiles(pair, 16, 1.0)
+    }
+
+    fn channel_in_tiles(pair: &[(Vec<f32>, Vec<f32>); 2], side: usize, correlated: f64) -> Channel {
         let [a, b] =
-            [0, 1].map(|i| Measured { values: &pair[i].0, errors: &pair[i].1, freedom: Some(3.0), correlated: 1.0 });
-        test("Y", &a, &b, 64, 16)
+            [0, 1].map(|i| Measured { values: &pair[i].0, errors: &pair[i].1, freedom: Some(3.0), correlated });
+        test("Y", &a, &b, 64, side)
     }
 
     /// 400 pairs of equal pictures at 5 %: 20 false alarms are expected, five standard deviations of the binomial are 22.
@@ -192,6 +212,30 @@ mod tests {
     fn false_alarms_are_as_many_as_stated() {
         let alarms = (0..400).filter(|&seed| channel(&pair(seed, 0.1, |_| 0.0)).p() < each(0.05, 1)).count();
         assert!((2..=42).contains(&alarms), "{alarms} of 400");
+    }
+
+    /// 100 pairs at 5 %: 5 false alarms are expected, more than 16 once in 70,000 times. It sees that a single pixel was given five degrees
+    /// of freedom instead of three: then its smallest p of 4096 is that small in more than half of all pairs.
+    #[test]
+    fn false_alarms_are_as_many_as_stated_where_tiles_are_single_pixels() {
+        for side in [1, 2] {
+            let channel = |seed| channel_in_tiles(&pair(3000_u64 + seed, 0.1, |_| 0.0), side, 1.0);
+            let alarms = (0..100).filter(|&seed| channel(seed).p() < each(0.05, 1)).count();
+            assert!(alarms <= 16, "{alarms} of 100 in tiles of {side}");
+        }
+    }
+
+    /// Where all of a block's noise is common the bound on its error is reached: 400 pairs at 5 %, as above, for tiles of sixteen blocks and
+    /// of one. Told that pixels are independent, the test calls all of them different.
+    #[test]
+    fn false_alarms_are_as_many_as_stated_where_pixels_share_their_noise() {
+        let pair = |seed| pair_of_blocks(5000_u64 + seed, 0.1, |_| 0.0, 4);
+        for side in [16, 4] {
+            let alarms = (0..400).filter(|&seed| channel_in_tiles(&pair(seed), side, 16.0).p() < each(0.05, 1)).count();
+            assert!((2..=42).contains(&alarms), "{alarms} of 400 in tiles of {side}");
+            let alarms = (0..20).filter(|&seed| channel_in_tiles(&pair(seed), side, 1.0).p() < each(1e-3, 1)).count();
+            assert!(alarms >= 19, "{alarms} of 20 in tiles of {side}");
+        }
     }
 
     /// The p-values of tiles are uniform: five standard deviations of a count of 6400 at 10 % are 120.
