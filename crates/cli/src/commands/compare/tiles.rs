@@ -214,8 +214,8 @@ mod tests {
         assert!((2..=42).contains(&alarms), "{alarms} of 400");
     }
 
-    /// 100 pairs at 5 %: 5 false alarms are expected, more than 16 once in 70,000 times. It sees that a single pixel was given five degrees
-    /// of freedom instead of three: then its smallest p of 4096 is that small in more than half of all pairs.
+    /// 100 pairs at 5 %: 5 false alarms are expected, more than 16 once in 100,000 times. It sees that a single pixel was given five degrees
+    /// of freedom instead of three: then 44 of these pairs are called different.
     #[test]
     fn false_alarms_are_as_many_as_stated_where_tiles_are_single_pixels() {
         for side in [1, 2] {
