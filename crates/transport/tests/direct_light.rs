@@ -1,7 +1,9 @@
 //! What shadow rays bring to surfaces within media and between them, and by each model of wavelengths.
 
+use etalon_optics::colour::colour_matching;
+use etalon_oracle::laws::fresnel_exact;
 use etalon_oracle::truths::truths;
-use etalon_transport::{Carried, Study};
+use etalon_transport::{Carried, PathLoop, Study};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
@@ -125,4 +127,80 @@ fn every_model_of_wavelengths_finds_a_square_lamp_once() {
         // 16,384 paths and more of one value in [0, 2] that scatter by .3.
         assert!((shown / truth.value - 1.0).abs() < 0.02, "{carried:?}: {shown} is not {}", truth.value);
     }
+}
+
+/// A lit wall behind a slanting pane of a glass that disperses: each path that has been bent carries one wavelength, with the weight of all.
+/// The wall shows ρ/π·I cos θ/d² through two faces, ∫ȳT² dλ/∫ȳ dλ of it.
+#[test]
+fn what_is_lit_behind_a_dispersing_pane_is_dimmed_by_its_faces_alone() {
+    let (a, b_um2, cos) = (1.6, 0.05, 0.8);
+    let scene = parse(
+        &json!({
+            "etalon": 1,
+            "camera": {
+                "type": "orthographic", "position_m": [0, -0.5, 100], "direction": [0, 0.6, -cos], "up": [1, 0, 0],
+                "height_m": 0.001
+            },
+            "film": {"width": 4, "height": 4},
+            "objects": [
+                {"shape": {"type": "box", "min_m": [-5, -5, 99], "max_m": [5, 5, 99.01]},
+                    "material": {"type": "dielectric", "interior": {"type": "cauchy", "a": a, "b_um2": b_um2, "range_nm": [300, 900]}}},
+                {"shape": {"type": "parallelogram", "origin_m": [-500, -500, 0], "u_m": [1000, 0, 0], "v_m": [0, 1000, 0]},
+                    "material": {"type": "lambert", "reflectance": 0.5}}
+            ],
+            // Aside, so that the pane casts no shadow on what is seen.
+            "lights": [{"type": "point", "position_m": [0, -5000, 5000], "intensity": 1e8}],
+            "integrator": {"spp": 1024, "max_depth": 4, "roulette": false}
+        })
+        .to_string(),
+    );
+    let (seen_m, lamp_m) = (-0.5 + 100.0 * 0.6 / cos, [-5000.0_f64, 5000.0]);
+    let square = (lamp_m[0] - seen_m).powi(2) + lamp_m[1].powi(2);
+    let lit = 0.5 / PI * 1e8 * lamp_m[1] / square.powf(1.5);
+    let [mut passed, mut whole] = [0.0; 2];
+    for nm in 360..=830 {
+        let (nm, y) = (f64::from(nm), colour_matching(f64::from(nm))[1]);
+        let face = fresnel_exact(cos, a + b_um2 * 1e6 / (nm * nm));
+        passed += y * face.transmittance().powi(2);
+        whole += y;
+    }
+    let truth = lit * passed / whole;
+    for path_loop in [PathLoop::Plain, PathLoop::Lanes] {
+        let shown = mean_y(&render(&scene, &Study { path_loop: Some(path_loop), ..Study::default() }));
+        // 16,384 paths, of which one in five is reflected and the others carry eight times one wavelength's ȳ or nothing.
+        assert!((shown / truth - 1.0).abs() < 0.03, "{path_loop:?}: {shown} is not {truth}");
+    }
+}
+
+/// A lamp seen through rough glass that disperses, where lanes have densities of their own: what shadow rays and directions find is weighed so that it
+/// counts once.
+#[test]
+fn a_lamp_behind_rough_dispersing_glass_counts_once() {
+    let shown = |light_sampling: &str, seed: u64, path_loop: PathLoop| {
+        let scene = json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 5], "direction": [0, 0, -1], "height_m": 1.2},
+            "film": {"width": 16, "height": 16},
+            "objects": [
+                {"shape": {"type": "sphere", "center_m": [0, 0, 0], "radius_m": 1},
+                    "material": {"type": "dielectric", "alpha": 0.1, "multiple_scattering": "lost",
+                        "interior": {"type": "cauchy", "a": 1.5, "b_um2": 0.05, "range_nm": [300, 900]}}},
+                {"shape": {"type": "sphere", "center_m": [1, 0, -3], "radius_m": 0.7},
+                    "material": {"type": "black"}, "emission": {"radiance": 1}}
+            ],
+            "integrator": {"spp": 256, "max_depth": 3, "roulette": false, "light_sampling": light_sampling, "seed": seed}
+        });
+        let study = Study { path_loop: Some(path_loop), ..Study::default() };
+        mean_y(&render(&parse(&scene.to_string()), &study))
+    };
+    let of = |sampling: &str| {
+        let means: Vec<f64> = (0..16).map(|seed| shown(sampling, seed, PathLoop::Plain)).collect();
+        let mean = means.iter().sum::<f64>() / 16.0;
+        let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / 15.0 / 16.0;
+        (mean, variance)
+    };
+    let [(bsdf, noise), (mis, rest)] = ["bsdf", "mis"].map(of);
+    // Five standard errors; each is .15 % of what is shown.
+    assert!((mis - bsdf).abs() < 5.0 * (noise + rest).sqrt(), "{mis} is not {bsdf}");
+    assert_eq!(shown("mis", 0, PathLoop::Lanes), shown("mis", 0, PathLoop::Plain));
 }
