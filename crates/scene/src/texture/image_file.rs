@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::sync::LazyLock;
 
-use etalon_picture::check_exr_size;
+use etalon_picture::{check_exr_size, most_exr_bytes};
 use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 
 /// Largest side of an image, pixels.
@@ -153,7 +153,7 @@ impl Image {
         if reader.format().is_none() {
             return Err("it is no PNG, JPEG, EXR or HDR file".to_owned());
         }
-        let most_bytes = MAX_IMAGE_BYTES.min((64 << 20) + 2000 * bytes.len() as u64);
+        let most_bytes = MAX_IMAGE_BYTES.min(most_exr_bytes(bytes.len() as u64));
         if reader.format() == Some(ImageFormat::OpenExr) {
             // The decoder's own limits are of the window that is shown, not of the one that is stored.
             check_exr_size(bytes, most_bytes, u64::from(MAX_IMAGE_SIDE))?;
