@@ -2,6 +2,7 @@
 
 use crate::best::{Best, Found};
 use crate::build::{Costs, Item, build};
+use crate::census::Census;
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
@@ -76,8 +77,10 @@ impl Geometry {
         if primitives.len() > 1 << 29 {
             return Err(GeometryError::TooMany(primitives.len()));
         }
-        let (mut instances, mut instance_count, mut nesting) = (Vec::new(), 1, 0);
-        for (index, primitive) in primitives.iter_mut().enumerate() {
+        let census = Census::of(&primitives);
+        let (mut instances, mut instance_count, mut nesting) = (Vec::with_capacity(census.instances), 1, 0);
+        let may_be_instances = if census.instances > 0 { primitives.as_mut_slice() } else { &mut [] };
+        for (index, primitive) in may_be_instances.iter_mut().enumerate() {
             if let Primitive::Instance(instance) = primitive {
                 instances.push(index as u32);
                 instance.first = instance_count as u32;
@@ -92,7 +95,8 @@ impl Geometry {
         if nesting > MAX_NESTING {
             return Err(GeometryError::TooDeep(nesting));
         }
-        let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
+        let bounds = census.bounds;
+        let level = Level::detect();
         let is_flat = instances.is_empty() && primitives.len() <= flat_limit;
         let flat = bounds.filter(|_| is_flat).map(|bounds| Flat::new(&primitives, bounds));
         let tree = bounds.filter(|_| !is_flat && primitives.len() > TREELESS_LIMIT).map(|bounds| {
@@ -101,10 +105,9 @@ impl Geometry {
             let lone = |p: &Primitive| matches!(p, Primitive::Instance(_));
             let item = |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32, lone(p));
             let items = primitives.par_iter().enumerate().map(item).collect();
-            let binary = improved(build(items, costs(&primitives)));
-            WideTree::collapse(frame, &binary, &primitives)
+            let binary = improved(build(items, costs(&census), level));
+            WideTree::collapse(frame, &binary, &primitives, &census)
         });
-        let level = Level::detect();
         Ok(Self {
             primitives,
             bounds,
@@ -407,9 +410,7 @@ impl Geometry {
 }
 
 /// What the tree's builder weighs: a leaf tests eight flat shapes or spheres at once, but cylinders one by one.
-fn costs(primitives: &[Primitive]) -> Costs {
-    let count = |is: fn(&Primitive) -> bool| primitives.iter().filter(|p| is(p)).count();
-    let cylinders = count(|p| matches!(p, Primitive::Cylinder(_)));
-    let most = 2 * cylinders < primitives.len() - count(|p| matches!(p, Primitive::Instance(_)));
+fn costs(census: &Census) -> Costs {
+    let most = 2 * census.cylinders < census.count - census.instances;
     Costs { block: if most { 8 } else { 1 }, node: 0.35 }
 }

@@ -25,6 +25,7 @@
 mod aabb;
 mod best;
 mod build;
+mod census;
 mod double_double;
 mod frame;
 mod geometry;

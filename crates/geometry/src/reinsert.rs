@@ -199,6 +199,7 @@ mod tests {
     use crate::build::{Costs, Item, build};
     use crate::frame::Box32;
     use crate::test_support::Random;
+    use crate::traverse::Level;
 
     fn boxes(random: &mut Random, count: usize) -> Vec<Item> {
         (0..count as u32)
@@ -212,7 +213,7 @@ mod tests {
     }
 
     fn tree(random: &mut Random, count: usize) -> BinaryTree {
-        build(boxes(random, count), Costs { block: 1, node: 0.0 })
+        build(boxes(random, count), Costs { block: 1, node: 0.0 }, Level::detect())
     }
 
     /// The area of all inner nodes, from the leaves' boxes alone.

@@ -3,6 +3,7 @@
 mod leaf;
 
 use crate::build::{BinaryTree, Node};
+use crate::census::Census;
 use crate::frame::{Box32, Frame};
 use crate::pages::Pages;
 use crate::portal::Portal;
@@ -87,7 +88,7 @@ pub(crate) struct WideTree {
 
 impl WideTree {
     /// Collapses a binary tree.
-    pub(crate) fn collapse(frame: Frame, tree: &BinaryTree, primitives: &[Primitive]) -> Self {
+    pub(crate) fn collapse(frame: Frame, tree: &BinaryTree, primitives: &[Primitive], census: &Census) -> Self {
         let mut size = Size::default();
         let choices = Choices::new(tree, primitives);
         size.count(&choices, 0, 1);
@@ -97,8 +98,12 @@ impl WideTree {
             leaves: Pages::new(size.leaves),
             portals: Vec::new(),
             depth: size.depth,
-            spheres: false,
-            kind: MIXED,
+            spheres: census.spheres > 0,
+            kind: match census {
+                c if c.triangles == c.count => MESH,
+                c if c.spheres == c.count => BALLS,
+                _ => MIXED,
+            },
             prefetch: size.nodes * size_of::<Node16>() + size.leaves * size_of::<Leaf8>() > NEAR_CACHE,
         };
         let mut filler = Filler {
@@ -115,12 +120,6 @@ impl WideTree {
         wide.leaves.as_mut_slice().par_iter_mut().zip(roots).with_min_len(256).for_each(|(leaf, root)| {
             *leaf = Leaf8::new(&frame, tree, root, primitives);
         });
-        wide.spheres = wide.leaves().iter().any(|leaf| leaf.spheres != 0);
-        wide.kind = match primitives {
-            p if p.iter().all(|p| matches!(p, Primitive::Triangle(_))) => MESH,
-            p if p.iter().all(|p| matches!(p, Primitive::Sphere(_))) => BALLS,
-            _ => MIXED,
-        };
         wide
     }
 

@@ -156,6 +156,37 @@ impl Level {
     }
 }
 
+/// A loop that the compiler makes vectors of, as wide as an instruction set has.
+pub(crate) trait Loop {
+    /// What comes of it.
+    type Output;
+    /// The loop, marked to be inlined always, as all that it calls.
+    fn run(self) -> Self::Output;
+}
+
+/// Runs a loop in the vectors of an instruction set. Operations are the same in all of them, and so is the result.
+#[inline(always)]
+pub(crate) fn vectorised<L: Loop>(level: Level, work: L) -> L::Output {
+    let work = Vectorised(work);
+    match level {
+        // Vectors that the compiler makes of sixteen floats gain nothing, and what it stores by masks is waited for.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(filters) => avx2::Avx2::from(filters).run(work),
+        level => level.run(work),
+    }
+}
+
+struct Vectorised<L>(L);
+
+impl<L: Loop> Job for Vectorised<L> {
+    type Output = L::Output;
+
+    #[inline(always)]
+    fn run<F: Compiled>(self, _: F) -> L::Output {
+        self.0.run()
+    }
+}
+
 /// The closest hit, its distance in the units of the start.
 ///
 /// The query is made within, where its numbers can stay in registers.
