@@ -74,7 +74,7 @@ impl SceneFrame {
     }
 
     /// A shape of the world in the frame.
-    pub(crate) fn shape(&self, shape: Primitive) -> Result<Primitive, ShapeError> {
+    pub(crate) fn shape(&self, shape: &Primitive) -> Result<Primitive, ShapeError> {
         let s = self.per_m;
         Ok(match shape {
             Primitive::Sphere(q) => Sphere::new(self.point(q.centre()), q.radius() * s)?.into(),

@@ -17,6 +17,7 @@ use etalon_geometry::{
 use etalon_optics::Vec3;
 use etalon_scene as scene;
 use etalon_scene::{EmissionSides, Object, Scene, Shape};
+use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -35,6 +36,8 @@ pub(crate) struct SceneShapes {
 }
 
 const NO_OBJECT: u32 = u32::MAX;
+/// Shapes that a thread is given at once, at least.
+const CHUNK: usize = 1 << 13;
 
 /// The scene's objects, numbered as in [`SceneShapes`].
 pub(crate) fn objects(scene: &Scene) -> impl Iterator<Item = &Object> {
@@ -63,21 +66,28 @@ pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, Pr
     }
     let mut collected = Collected::default();
     collected.add_all(0, &scene.objects, (&scene.instances, shutter_s), &shared, &mut warnings)?;
-    let Collected { primitives, object_of: own, mut coordinates } = collected;
+    let Collected { mut primitives, object_of: own, mut coordinates } = collected;
     coordinates.append(&mut grouped_coordinates);
-    let bounds = primitives.iter().map(Primitive::bounds).reduce(Aabb::union);
+    // In an order that does not depend on the number of threads, as a million shapes are worth it.
+    let bounds_of = |shapes: &[Primitive]| shapes.iter().map(Primitive::bounds).reduce(Aabb::union);
+    let bounds: Vec<Option<Aabb>> = primitives.par_chunks(CHUNK).map(bounds_of).collect();
+    let bounds = bounds.into_iter().flatten().reduce(Aabb::union);
     let frame = bounds.map_or(SceneFrame::WORLD, SceneFrame::around);
     coordinates[..scene.objects.len()].iter_mut().for_each(|one| *one = one.clone().framed(&frame));
-    let framed: Result<Vec<Primitive>, PrepareError> = primitives
-        .into_iter()
-        .enumerate()
-        .map(|(i, shape)| {
-            let name = || own.get(i).and_then(|&o| scene.objects.get(o as usize)).map_or("", |o| o.name.as_str());
-            frame.shape(shape).map_err(|source| PrepareError::Shape { object: name().to_owned(), source })
-        })
-        .collect();
+    let name = |i: usize| own.get(i).and_then(|&o| scene.objects.get(o as usize)).map_or("", |o| o.name.as_str());
+    let into_frame = |(i, shape): (usize, &mut Primitive)| match frame.shape(shape) {
+        Ok(framed) => {
+            *shape = framed;
+            None
+        }
+        Err(source) => Some((i, source)),
+    };
+    let wrong = primitives.par_iter_mut().enumerate().with_min_len(CHUNK).filter_map(into_frame);
+    if let Some((i, source)) = wrong.min_by_key(|&(i, _)| i) {
+        return Err(PrepareError::Shape { object: name(i).to_owned(), source });
+    }
     object_of[0] = own;
-    let geometry = Geometry::build(framed?)?;
+    let geometry = Geometry::build(primitives)?;
 
     let objects: Vec<&Object> = objects(scene).collect();
     let emits =
@@ -184,13 +194,24 @@ impl Collected {
                 let vertices: Vec<Vec3<f64>> = mesh.vertices.iter().map(|v| to_world.point(*v)).collect();
                 let first = self.primitives.len() as u32;
                 let mut dropped = Vec::new();
-                for (number, triangle) in mesh.triangles.iter().enumerate() {
+                let made = |triangle: &[u32; 3]| {
                     let [a, b, c] = triangle.map(|i| vertices[i as usize]);
                     let (b, c) = to_world.oriented(b, c);
-                    match Triangle::new(a, b, c) {
-                        Ok(shape) => self.add(index, shape),
-                        Err(ShapeError::NoArea) => dropped.push(number as u32),
-                        Err(other) => return Err(other),
+                    Triangle::new(a, b, c)
+                };
+                self.primitives.reserve(mesh.triangles.len());
+                self.object_of.reserve(mesh.triangles.len());
+                // Some at a time, lest all be held twice.
+                let mut number = 0;
+                for chunk in mesh.triangles.chunks(8 * CHUNK) {
+                    let made: Vec<_> = chunk.par_iter().with_min_len(CHUNK).map(made).collect();
+                    for triangle in made {
+                        match triangle {
+                            Ok(shape) => self.add(index, shape),
+                            Err(ShapeError::NoArea) => dropped.push(number),
+                            Err(other) => return Err(other),
+                        }
+                        number += 1;
                     }
                 }
                 if !(mesh.normals.is_empty() && mesh.uvs.is_empty()) {

@@ -1,5 +1,6 @@
 //! Meshes, listed in the scene or in a file of their own.
 
+use rayon::prelude::*;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::path::Path;
 use std::sync::Arc;
@@ -9,7 +10,10 @@ use crate::files::{Files, MeshKey};
 use crate::json::{Code, Optional, Reader, Span, Spanned};
 use crate::mesh::{self, Part};
 use crate::model::Mesh;
-use crate::vector::{cross, length, scale, sub, unit};
+use crate::vector::{cross, dot, length, scale, sub, unit};
+
+/// Triangles that a thread is given at once, at least.
+const CHUNK: usize = 1 << 13;
 
 /// The mesh of a form.
 pub(super) fn mesh(form: &MeshShape, object: &str, files: &mut Files, reader: &mut Reader<'_>) -> Option<Arc<Mesh>> {
@@ -163,12 +167,14 @@ fn for_each_vertex<T, U>(
 /// Leaves out triangles without area, with a warning; none left is an error.
 fn keep_those_with_area(mesh: &mut Mesh, object: &str, at: Span, reader: &mut Reader<'_>) -> Option<()> {
     let all = mesh.triangles.len();
-    let vertices = &mesh.vertices;
-    mesh.triangles.retain(|t| {
-        let [a, b, c] = t.map(|i| vertices[i as usize]);
-        has_area(a, b, c)
-    });
-    let flat = all - mesh.triangles.len();
+    let is_flat = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize]);
+        !has_area(a, b, c)
+    };
+    let triangles = mesh.triangles.par_iter().enumerate().with_min_len(CHUNK);
+    let flat: Vec<usize> = triangles.filter(|(_, triangle)| is_flat(triangle)).map(|(number, _)| number).collect();
+    leave_out(mesh, &flat);
+    let flat = flat.len();
     if mesh.triangles.is_empty() {
         reader.error(Code::EmptyMesh, at, format!("none of the {flat} triangles of {object} has an area"));
         return None;
@@ -180,6 +186,18 @@ fn keep_those_with_area(mesh: &mut Mesh, object: &str, at: Span, reader: &mut Re
     Some(())
 }
 
+/// Leaves out triangles by their numbers, which rise.
+fn leave_out(mesh: &mut Mesh, numbers: &[usize]) {
+    if numbers.is_empty() {
+        return;
+    }
+    let mut number = 0;
+    mesh.triangles.retain(|_| {
+        number += 1;
+        numbers.binary_search(&(number - 1)).is_err()
+    });
+}
+
 /// Leaves out triangles that have the corners of an earlier one in the same turn, with a warning: light would be emitted there
 /// twice, and met once. The same corners turned the other way are another side, and stay.
 fn keep_one_of_each(mesh: &mut Mesh, object: &str, at: Span, reader: &mut Reader<'_>) {
@@ -188,11 +206,7 @@ fn keep_one_of_each(mesh: &mut Mesh, object: &str, at: Span, reader: &mut Reader
     if repeated.is_empty() {
         return;
     }
-    let mut number = 0;
-    mesh.triangles.retain(|_| {
-        number += 1;
-        repeated.binary_search(&(number - 1)).is_err()
-    });
+    leave_out(mesh, &repeated);
     let message =
         format!("{} of the {all} triangles of {object} repeat others and were dropped at load", repeated.len());
     reader.warning(Code::RepeatedTriangles, at, message, None);
@@ -207,8 +221,9 @@ fn repeated(mesh: &Mesh) -> Vec<usize> {
     };
     // Sorted hashes take a quarter of the memory of a set of corners.
     let hash = |number: usize| (BuildHasherDefault::<DefaultHasher>::default().hash_one(corners(number)), number);
-    let mut hashes: Vec<(u64, usize)> = (0..mesh.triangles.len()).map(hash).collect();
-    hashes.sort_unstable();
+    let numbers = (0..mesh.triangles.len()).into_par_iter().with_min_len(CHUNK);
+    let mut hashes: Vec<(u64, usize)> = numbers.map(hash).collect();
+    hashes.par_sort_unstable();
     let mut repeated = Vec::new();
     for alike in hashes.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
         let mut kept: Vec<[[u64; 3]; 3]> = Vec::new();
@@ -236,6 +251,12 @@ fn shade(mesh: &mut Mesh, shading: Shading) {
 
 /// Whether a triangle's normal can be told at all: three corners whose edges are not parallel to rounding.
 fn has_area(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> bool {
+    // Of most the angle at a corner is no smaller than 1e-8, and their sizes are usual, so that nothing overflows.
+    let (u, v) = (sub(b, a), sub(c, a));
+    let (squared, products) = (dot(cross(u, v), cross(u, v)), dot(u, u) * dot(v, v));
+    if (1e-200..1e200).contains(&products) && squared > 1e-16 * products {
+        return true;
+    }
     // Halved, so that the difference of two finite coordinates is finite.
     let [a, b, c] = [a, b, c].map(|p| scale(p, 0.5));
     // Two edges from the corner with the largest angle would be best; with unit vectors any two will do down to needles

@@ -50,11 +50,11 @@ pub fn read_ply(bytes: &[u8]) -> Result<Part, MeshError> {
     let (vertices, normals, uvs) = vertices.ok_or_else(|| MeshError::new("there is no element \"vertex\""))?;
     let faces = faces.ok_or_else(|| MeshError::new("there is no element \"face\": it holds points only"))?;
     let mut mesh = Mesh { vertices, normals, uvs, triangles: Vec::new() };
-    mesh.triangles.reserve_exact(faces.iter().map(|face| face.count().saturating_sub(2)).sum());
+    mesh.triangles.reserve_exact(faces.iter().map(|face| face.len().saturating_sub(2)).sum());
     let mut corners = Vec::new();
     for (i, face) in faces.iter().enumerate() {
         corners.clear();
-        for index in face.indices() {
+        for &index in face {
             let known = u32::try_from(index).ok().filter(|&known| (known as usize) < mesh.vertices.len());
             let Some(known) = known else {
                 let count = mesh.vertices.len();
@@ -194,7 +194,7 @@ fn read_faces(
     element: &ElementDef,
     header: &Header,
     left_out: &mut Vec<String>,
-) -> Result<Vec<Face>, MeshError> {
+) -> Result<Faces, MeshError> {
     let mut found = false;
     for (name, property) in &element.properties {
         let whole = |scalar: &ScalarType| !matches!(scalar, ScalarType::Float | ScalarType::Double);
@@ -206,7 +206,35 @@ fn read_faces(
     if !found {
         return Err(MeshError::new("its faces have no list of whole numbers \"vertex_indices\""));
     }
-    read_elements(reader, element, header)
+    let mut faces = Faces { corners: Vec::new(), ends: Vec::with_capacity(element.count) };
+    // Some at a time: as the parser gives them, each with a list of its own, they take four times the memory of the file.
+    let mut some = element.clone();
+    let mut left = element.count;
+    while left > 0 {
+        some.count = left.min(FACES_AT_ONCE);
+        left -= some.count;
+        for face in read_elements::<Face>(reader, &some, header)? {
+            faces.corners.extend(face.indices());
+            faces.ends.push(faces.corners.len());
+        }
+    }
+    Ok(faces)
+}
+
+/// Faces that the parser is asked for at once.
+const FACES_AT_ONCE: usize = 1 << 12;
+
+/// The corners of polygons, one after the other, and where those of each end.
+struct Faces {
+    corners: Vec<i64>,
+    ends: Vec<usize>,
+}
+
+impl Faces {
+    fn iter(&self) -> impl Iterator<Item = &[i64]> {
+        let starts = std::iter::once(&0).chain(&self.ends);
+        starts.zip(&self.ends).map(|(&start, &end)| &self.corners[start..end])
+    }
 }
 
 fn is_corners(name: &str) -> bool {
@@ -273,10 +301,6 @@ struct Face {
 }
 
 impl Face {
-    fn count(&self) -> usize {
-        self.signed.len() + self.unsigned.len()
-    }
-
     fn indices(&self) -> impl Iterator<Item = i64> {
         self.signed.iter().map(|&i| i64::from(i)).chain(self.unsigned.iter().map(|&i| i64::from(i)))
     }
