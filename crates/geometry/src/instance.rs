@@ -16,6 +16,16 @@ use std::sync::Arc;
 /// Beyond this (2⁵⁰) for the largest component of |L|·|L⁻¹|, `f64` cannot tell where a placed surface is.
 const MAX_CONDITION: f64 = (1_u64 << 50) as f64;
 
+/// The end of a ray within an instance: that outside, but no smaller than 2⁻¹²⁰. In the units there, which may be 2⁹⁰⁰ times as long, a
+/// smaller one would be rounded, and what of several instances is hit first would depend on which was asked before. What is found is
+/// compared with the end outside anyway.
+#[inline(always)]
+pub(crate) fn told_end(t_max: f64) -> f64 {
+    const LEAST: f64 = 1.0 / (1_u128 << 120) as f64;
+    // Never of NaN: ends are limits that have been compared.
+    if t_max > LEAST { t_max } else { LEAST }
+}
+
 /// An affine map p ↦ L·p + T from the coordinates of what is placed to those where it is placed, and its inverse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
@@ -315,11 +325,11 @@ impl Instance {
         if !self.is_met(query, t_max) {
             return None;
         }
-        let inner = self.enter(query, t_max)?;
+        let inner = self.enter(query, told_end(t_max))?;
         let (mut hit, mut surface) = self.geometry.closest(&inner)?;
         hit.t *= inner.scale;
         surface.instance += self.first;
-        // False where t is so small that the change of units lost it.
+        // False where t is so small that the change of units lost it, or beyond an end that was not told.
         (0.0 < hit.t && hit.t < t_max).then_some((hit, surface))
     }
 

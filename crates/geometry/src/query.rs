@@ -102,7 +102,8 @@ impl Query {
                 return false;
             }
         }
-        near <= far * (1.0 + 8.0 * f64::EPSILON)
+        // The smallest numbers are rounded to their like, not to a share of themselves.
+        near <= far * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE
     }
 }
 

@@ -401,3 +401,27 @@ fn what_is_shared_is_held_once() {
     let alone = Ray::<f32>::free(Vec3::ZERO, Vec3::new(0.3, 0.5, 0.7));
     assert_eq!(scene.closest_hit(&alone).is_some(), scene.occluded(&alone));
 }
+
+#[test]
+fn which_of_two_instances_is_nearer_does_not_depend_on_the_order_however_near_both_are() {
+    let plane = build(vec![Triangle::new(v(-1.0, -1.0, 0.0), v(1.0, -1.0, 0.0), v(0.0, 1.0, 0.0)).unwrap().into()]);
+    let mut differ = 0;
+    for ulps in 1..4000_u64 {
+        // From below the plane by some of the smallest numbers, of which the larger instance's units are eight.
+        let height = f64::from_bits(37 * ulps);
+        let ray = Ray::free(v(0.0, -0.2, -height), v(0.0, 0.0, 1.0));
+        let placed = [1.0, 8.0].map(|scale| place(&plane, scaling([scale; 3]), Vec3::ZERO));
+        let [a, b] = placed.clone().map(|one| build(vec![one]).closest_hit(&ray).map(|hit| hit.t));
+        differ += usize::from(a != b);
+        let nearest = a.into_iter().chain(b).fold(f64::INFINITY, f64::min);
+        let [first, second] = placed;
+        for order in [vec![first.clone(), second.clone()], vec![second, first]] {
+            for geometry in [build(order.clone()), Arc::new(Geometry::build_with(order, 0).unwrap())] {
+                let hit = geometry.closest_hit(&ray);
+                assert_eq!(hit.map(|hit| hit.t), Some(nearest).filter(|t| t.is_finite()), "{height:e}");
+                assert_eq!(hit, geometry.one_by_one(&ray).0);
+            }
+        }
+    }
+    assert!(differ > 100, "{differ}");
+}

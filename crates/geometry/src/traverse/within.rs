@@ -5,6 +5,7 @@ use super::{LEVELS, any_on, closest_on, occludes};
 use crate::Primitive;
 use crate::best::Best;
 use crate::frame::Entry;
+use crate::instance::told_end;
 use crate::portal::Portal;
 use crate::query::Query;
 use crate::wide::{MESH, MIXED, NODE_WIDTH};
@@ -25,10 +26,10 @@ pub(super) fn closest_within<F: Compiled>(
         return false;
     }
     let t_max = best.limit(portal.id);
-    let (lanes, ray) = portal.enter::<F::Four>(filters.into(), query, t_max);
+    let (lanes, ray) = portal.enter::<F::Four>(filters.into(), query, told_end(t_max));
     let (inner, ray) = (geometry.primitives(), &ray);
     let entry = if tree.depth <= LEVELS[0] {
-        tree.frame.enter_anywhere::<F::Four>(filters.into(), lanes, t_max)
+        tree.frame.enter_anywhere::<F::Four>(filters.into(), lanes, ray.t_max)
     } else {
         Entry::Unknown
     };
@@ -40,7 +41,7 @@ pub(super) fn closest_within<F: Compiled>(
         Entry::Unknown => filters.closest_far(tree, inner, ray),
     };
     let Some((hit, surface)) = found else { return false };
-    // False where t is so small that the change of units lost it.
+    // False where t is so small that the change of units lost it, or beyond an end that was not told.
     let found = 0.0 < hit.t && hit.t < t_max && portal.is_met(query, t_max);
     if found {
         best.set_within(hit, portal.id, portal.outward(surface));
