@@ -355,10 +355,10 @@ impl Prepared {
     }
 
     /// The share of the directions of diffuse surfaces that is drawn toward mirrors and bodies of glass where all of them are seen, and
-    /// the number of these; 0 where that does not pay.
+    /// the number of these; 0 where that does not pay. Beside images of lamps only bodies of glass.
     pub fn casters(&self) -> (f64, usize) {
-        let bodies = self.casters.bodies_aimed_at().0.len();
-        (if bodies > 0 { self.casters.share } else { 0.0 }, bodies)
+        let (bodies, each) = self.casters.bodies_aimed_at();
+        (each * bodies.len() as f64, bodies.len())
     }
 
     /// The largest share that is drawn toward images of lamps in smooth balls, and the number of images; 0 where that does not pay.

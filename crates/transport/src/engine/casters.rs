@@ -1,133 +1,49 @@
 //! Directions toward casters of caustics, for the paths that are at diffuse surfaces.
 
 use super::level::{Level, Set, stages};
-use super::rows::{Row, Rows3, W};
+use super::rows::{Mask, Row, Rows3, W, lanes};
 use crate::bsdf::lambert;
 use crate::caustics::{
-    Caster, Casters, Image, MOST_TARGETS, Mixture, Shows, Target, View, density_of, is_within, place_within, share_of,
-    share_of_image,
+    Aimed, Ball, Caster, Casters, Eye, Image, MOST_BODIES, MOST_IMAGES, Mixture, Seen, Shows, Target, density_of,
+    is_within, place_within, share_of, share_of_images,
 };
+use crate::light::Round;
 use etalon_optics::Vec3;
 
-/// What casters make of the directions of a set.
-pub(super) struct Drawn {
+/// What casters make of the directions of a set. Kept from vertex to vertex.
+pub(super) struct Casting {
     /// Whose directions may be drawn toward them.
-    pub diffuse: [bool; W],
+    pub diffuse: Mask,
     /// The first number of each direction by the cosine.
     pub u1: Row,
     /// What the weight of each direction is to be multiplied by.
     pub factor: Row,
     /// The part of the numbers that casters take.
-    total: Row,
-    shares: [Row; MOST_TARGETS],
-    is_aimed: [bool; W],
-    aimed: Rows3,
+    part: Row,
+    bodies: Bodies,
+    images: Images,
 }
 
-impl Drawn {
-    pub(super) const NONE: Self = Self {
-        diffuse: [false; W],
-        u1: Row::ZERO,
-        factor: Row::ZERO,
-        total: Row::ZERO,
-        shares: [Row::ZERO; MOST_TARGETS],
-        is_aimed: [false; W],
-        aimed: Rows3::ZERO,
-    };
-
-    /// The direction of a path is this one, if a target `takes` it.
-    #[inline(always)]
-    fn put(&mut self, lane: usize, (takes, wi): (bool, Vec3<f64>)) {
-        let there = self.aimed.at(lane);
-        let choose = |a: f64, b: f64| if takes { a } else { b };
-        self.aimed.set(lane, Vec3::new(choose(wi.x, there.x), choose(wi.y, there.y), choose(wi.z, there.z)));
-        self.is_aimed[lane] |= takes;
-    }
-
-    /// Draws the directions that go toward casters.
-    #[inline(always)]
-    pub(super) fn aim(
-        &mut self,
-        level: Level,
-        casters: &Casters,
-        surface: (&Rows3, &Rows3, &Rows3),
-        u: [&[f64; W]; 2],
-        views: &mut [Views],
-    ) {
-        let (bodies, each) = casters.bodies_aimed_at();
-        let mut taken = Taken { number: [0; W], place: [0.0; W], is: [false; W] };
-        for (number, body) in bodies.iter().enumerate() {
-            match body {
-                Caster::Sphere(round) => portion(level, round, (number, each), surface, u[0], &mut taken, self),
-                Caster::Box(body) => portion(level, body, (number, each), surface, u[0], &mut taken, self),
-            }
-        }
-        // Few paths: one by one.
-        for lane in 0..W {
-            if taken.is[lane] {
-                let (from, u) = (surface.0.at(lane), [taken.place[lane], u[1][lane]]);
-                let wi = match &bodies[usize::from(taken.number[lane])] {
-                    Caster::Sphere(round) => Target::aim(round, from, u),
-                    Caster::Box(body) => body.aim(from, u),
-                };
-                self.put(lane, (true, wi));
-            }
-        }
-        let mut light = Row32([0.0; W]);
-        let mut points = Points { from: [Row32([0.0; W]); 3], normal: [Row32([0.0; W]); 3], weight: Row32([0.0; W]) };
-        if !views.is_empty() {
-            stand(level, surface, &self.diffuse, &mut points);
-        }
-        for (image, views) in casters.images_aimed_at().iter().zip(views.iter_mut()) {
-            match image {
-                Image::Mirrored(image) => look(level, image, &points, views, &mut light),
-                Image::Refracted(image) => look(level, image, &points, views, &mut light),
-            }
-        }
-        if !views.is_empty() {
-            let mut taken = Taken { number: [0; W], place: [0.0; W], is: [false; W] };
-            for (number, views) in views.iter().enumerate() {
-                deal(level, (&views.weight, &light), (number, casters.share), u[0], &mut taken, self);
-            }
-            // One direction a path, whichever image has taken it.
-            let mut chosen = Views::NONE;
-            for lane in 0..W {
-                chosen.set(lane, &views[usize::from(taken.number[lane]) % views.len()].at(lane));
-            }
-            aim_at_image(level, &chosen, &taken, u[1], self);
-        }
-        leave_rest(level, u[0], self);
-    }
-
-    /// Puts them in place of those drawn by the cosine, and weighs all.
-    #[inline(always)]
-    pub(super) fn take(
-        &mut self,
-        level: Level,
-        casters: &Casters,
-        surface: (&Rows3, &Rows3, &Rows3),
-        views: &[Views],
-        (wi, cos): (&mut Rows3, &mut Row),
-    ) {
-        put(level, surface, self, wi, cos);
-        for (number, body) in casters.bodies_aimed_at().0.iter().enumerate() {
-            match body {
-                Caster::Sphere(round) => weigh(level, round, number, surface.0, wi, self),
-                Caster::Box(body) => weigh(level, body, number, surface.0, wi, self),
-            }
-        }
-        for (number, views) in views.iter().enumerate() {
-            weigh_image(level, views, number, wi, self);
-        }
-        finish(level, cos, self);
-    }
+/// The bodies that paths aim at.
+struct Bodies {
+    /// The share that each body has.
+    shares: [Row; MOST_BODIES],
+    /// The paths that one has taken.
+    taken: Mask,
 }
 
-/// The target that has taken each path, and where in its share its number is.
-pub(super) struct Taken {
-    number: [u8; W],
-    place: [f64; W],
-    is: [bool; W],
+/// The images that paths aim at; in single precision, twice as many in a register.
+pub(super) struct Images {
+    points: Points,
+    eyes: Eyes,
+    weights: [Row32; MOST_IMAGES],
+    light: Row32,
+    /// The share that all have together, and where it begins.
+    share: Row,
+    begin: Row,
+    /// The paths that one has taken, and the directions of those that were not drawn in vain.
+    taken: Mask,
+    aimed: [Option<Aimed>; W],
 }
 
 /// A number in single precision for each path.
@@ -142,69 +58,194 @@ pub(super) struct Points {
     weight: Row32,
 }
 
-/// The views of an image from the points that paths are at.
-#[derive(Clone, Copy)]
-pub(super) struct Views {
-    axis: [Row32; 3],
-    in_plane: [Row32; 3],
-    half: [Row32; 2],
-    weight: Row32,
+/// How they look at a ball.
+pub(super) struct Eyes {
+    toward: [Row32; 3],
+    distance: Row32,
+    rim: Row32,
+    most: Row32,
 }
 
-impl Views {
-    pub(super) const NONE: Self = {
-        let zero = Row32([0.0; W]);
-        Self { axis: [zero; 3], in_plane: [zero; 3], half: [zero; 2], weight: zero }
-    };
+impl Row32 {
+    const ZERO: Self = Self([0.0; W]);
+}
 
+impl Points {
     #[inline(always)]
-    fn at(&self, lane: usize) -> View {
-        let Self { axis: [ax, ay, az], in_plane: [x, y, z], half: [h, k], weight } = self;
-        View {
-            axis: Vec3::new(ax.0[lane], ay.0[lane], az.0[lane]),
-            in_plane: Vec3::new(x.0[lane], y.0[lane], z.0[lane]),
-            half: [h.0[lane], k.0[lane]],
-            weight: weight.0[lane],
+    fn at(&self, lane: usize) -> (Vec3<f32>, Vec3<f32>) {
+        let Self { from: [x, y, z], normal: [nx, ny, nz], .. } = self;
+        (Vec3::new(x.0[lane], y.0[lane], z.0[lane]), Vec3::new(nx.0[lane], ny.0[lane], nz.0[lane]))
+    }
+}
+
+impl Eyes {
+    #[inline(always)]
+    fn at(&self, lane: usize) -> Eye {
+        let [x, y, z] = &self.toward;
+        let toward = Vec3::new(x.0[lane], y.0[lane], z.0[lane]);
+        Eye { toward, distance: self.distance.0[lane], rim: self.rim.0[lane], most: self.most.0[lane] }
+    }
+}
+
+impl Images {
+    /// What a path sees of images.
+    #[inline(always)]
+    fn seen<'a>(&self, lane: usize, casters: &'a Casters, weights: &'a mut [f32; MOST_IMAGES]) -> Seen<'a> {
+        let images = casters.images_aimed_at();
+        for (weight, row) in weights.iter_mut().zip(&self.weights).take(images.len()) {
+            *weight = row.0[lane];
+        }
+        let (from, n) = self.points.at(lane);
+        Seen { images, from, n, weights, share: self.share.0[lane] }
+    }
+}
+
+impl Casting {
+    pub(super) fn new() -> Self {
+        let zero = Row32::ZERO;
+        Self {
+            diffuse: 0,
+            u1: Row::ZERO,
+            factor: Row::ZERO,
+            part: Row::ZERO,
+            bodies: Bodies { shares: [Row::ZERO; MOST_BODIES], taken: 0 },
+            images: Images {
+                points: Points { from: [zero; 3], normal: [zero; 3], weight: zero },
+                eyes: Eyes { toward: [zero; 3], distance: zero, rim: zero, most: zero },
+                weights: [zero; MOST_IMAGES],
+                light: zero,
+                share: Row::ZERO,
+                begin: Row::ZERO,
+                taken: 0,
+                aimed: [None; W],
+            },
         }
     }
 
+    /// Deals out the numbers of directions: to bodies, to images, and to the cosine.
     #[inline(always)]
-    fn set(&mut self, lane: usize, view: &View) {
-        let Self { axis: [ax, ay, az], in_plane: [x, y, z], half: [h, k], weight } = self;
-        (ax.0[lane], ay.0[lane], az.0[lane]) = (view.axis.x, view.axis.y, view.axis.z);
-        (x.0[lane], y.0[lane], z.0[lane]) = (view.in_plane.x, view.in_plane.y, view.in_plane.z);
-        (h.0[lane], k.0[lane], weight.0[lane]) = (view.half[0], view.half[1], view.weight);
+    pub(super) fn deal(&mut self, level: Level, casters: &Casters, surface: (&Rows3, &Rows3, &Rows3), u1: &[f64; W]) {
+        (self.part, self.images.light) = (Row::ZERO, Row32::ZERO);
+        let (bodies, each) = casters.bodies_aimed_at();
+        for (body, shares) in bodies.iter().zip(&mut self.bodies.shares) {
+            match body {
+                Caster::Sphere(round) => portion(level, round, each, surface, self.diffuse, shares, &mut self.part),
+                Caster::Box(body) => portion(level, body, each, surface, self.diffuse, shares, &mut self.part),
+            }
+        }
+        let images = casters.images_aimed_at();
+        if !images.is_empty() {
+            stand(level, surface, self.diffuse, &mut self.images.points);
+        }
+        let Images { points, eyes, weights, light, .. } = &mut self.images;
+        for (number, (image, weights)) in images.iter().zip(weights).enumerate() {
+            if number == 0 || images[number - 1].ball != image.ball {
+                look(level, &image.ball, points, eyes);
+            }
+            match image.ball.shows {
+                Shows::Mirrored => weigh_mirrored(level, image, points, eyes, weights, light),
+                Shows::Refracted(index) => weigh_refracted(level, image, index, points, eyes, weights, light),
+            }
+        }
+        leave_rest(level, casters.share, u1, self);
+    }
+
+    /// Draws the directions that are not by the cosine, in place of those that are, and weighs all.
+    #[inline(always)]
+    pub(super) fn take(
+        &mut self,
+        level: Level,
+        casters: &Casters,
+        surface: (&Rows3, &Rows3, &Rows3),
+        u: [&[f64; W]; 2],
+        (wi, cos): (&mut Rows3, &mut Row),
+    ) {
+        let (bodies, _) = casters.bodies_aimed_at();
+        let images = casters.images_aimed_at();
+        // Few paths: one by one.
+        for lane in lanes(self.bodies.taken) {
+            let mut begin = 0.0;
+            for (body, shares) in bodies.iter().zip(&self.bodies.shares) {
+                let share = shares.0[lane];
+                if is_within(u[0][lane], begin, share) {
+                    let place = place_within(u[0][lane], begin, share);
+                    wi.set(lane, body.aim(surface.0.at(lane), [place, u[1][lane]]));
+                }
+                begin += share;
+            }
+        }
+        let mut weights = [0.0; MOST_IMAGES];
+        for lane in lanes(self.images.taken) {
+            let seen = self.images.seen(lane, casters, &mut weights);
+            let begin = self.images.begin.0[lane];
+            let aimed = seen.aim([place_within(u[0][lane], begin, seen.share), u[1][lane]]);
+            if let Some(aimed) = &aimed {
+                wi.set(lane, aimed.wi);
+            }
+            self.images.aimed[lane] = aimed;
+        }
+        face(level, surface, wi, cos, self);
+        for (number, body) in bodies.iter().enumerate() {
+            match body {
+                Caster::Sphere(round) => {
+                    let mut met = [false; W];
+                    meet(level, round, surface.0, wi, &mut met);
+                    for lane in 0..W {
+                        let share = self.bodies.shares[number].0[lane];
+                        if met[lane] && share > 0.0 {
+                            self.factor.0[lane] +=
+                                density_of(share, Target::density(round, surface.0.at(lane), wi.at(lane)));
+                        }
+                    }
+                }
+                Caster::Box(body) => weigh(level, body, &self.bodies.shares[number], surface.0, wi, &mut self.factor),
+            }
+        }
+        if !images.is_empty() {
+            let mut met = [false; W];
+            for (number, image) in images.iter().enumerate() {
+                if number == 0 || images[number - 1].ball != image.ball {
+                    meet_ball(level, &image.ball, &self.images.points, wi, &mut met);
+                }
+            }
+            for lane in lanes(self.diffuse) {
+                let aimed = if self.images.taken >> lane & 1 == 1 { self.images.aimed[lane].as_ref() } else { None };
+                if met[lane] {
+                    let seen = self.images.seen(lane, casters, &mut weights);
+                    self.factor.0[lane] += seen.density(wi.at(lane), aimed);
+                }
+                if self.images.taken >> lane & 1 == 1 && aimed.is_none() {
+                    // Drawn in vain.
+                    cos.0[lane] = 0.0;
+                }
+            }
+        }
+        finish(level, cos, self);
     }
 }
 
 stages! {
-    /// The share that a body has at each point, and the paths that it takes.
+    /// The share that a body has at each point.
     fn portion [T: Target][T] (
-        caster: &T,
-        numbered: (usize, f64),
+        target: &T,
+        each: f64,
         surface: (&Rows3, &Rows3, &Rows3),
-        u1: &[f64; W],
-        taken: &mut Taken,
-        drawn: &mut Drawn,
+        diffuse: Mask,
+        shares: &mut Row,
+        part: &mut Row,
     ) {
-        let ((number, each), (position, normal, direction)) = (numbered, surface);
+        let (position, normal, direction) = surface;
         for lane in 0..W {
             let (from, wo) = (position.at(lane), -direction.at(lane));
-            let share = share_of(caster, each, from, lambert::toward(normal.at(lane), wo));
-            let share = if drawn.diffuse[lane] { share } else { 0.0 };
-            let begin = drawn.total.0[lane];
-            let takes = is_within(u1[lane], begin, share);
-            let place = place_within(u1[lane], begin, share);
-            taken.number[lane] = if takes { number as u8 } else { taken.number[lane] };
-            taken.place[lane] = if takes { place } else { taken.place[lane] };
-            taken.is[lane] |= takes;
-            drawn.shares[number].0[lane] = share;
-            drawn.total.0[lane] = begin + share;
+            let share = share_of(target, each, from, lambert::toward(normal.at(lane), wo));
+            let share = if diffuse >> lane & 1 == 1 { share } else { 0.0 };
+            shares.0[lane] = share;
+            part.0[lane] += share;
         }
     }
 
     /// The points in single precision.
-    fn stand(surface: (&Rows3, &Rows3, &Rows3), diffuse: &[bool; W], points: &mut Points) {
+    fn stand(surface: (&Rows3, &Rows3, &Rows3), diffuse: Mask, points: &mut Points) {
         let (position, normal, direction) = surface;
         for lane in 0..W {
             let from: Vec3<f32> = position.at(lane).cast();
@@ -212,94 +253,104 @@ stages! {
             let Points { from: [x, y, z], normal: [nx, ny, nz], weight } = points;
             (x.0[lane], y.0[lane], z.0[lane]) = (from.x, from.y, from.z);
             (nx.0[lane], ny.0[lane], nz.0[lane]) = (n.x, n.y, n.z);
-            weight.0[lane] = if diffuse[lane] { 1.0 } else { 0.0 };
+            weight.0[lane] = if diffuse >> lane & 1 == 1 { 1.0 } else { 0.0 };
         }
     }
 
-    /// What the points see of an image, and the sum of what images bring. All of it in single precision: twice as many in a register.
-    fn look [T: Shows][T] (image: &T, points: &Points, views: &mut Views, light: &mut Row32) {
+    /// How the points look at a ball.
+    fn look(ball: &Ball, points: &Points, eyes: &mut Eyes) {
+        let Eyes { toward: [x, y, z], distance, rim, most } = eyes;
         for lane in 0..W {
-            let Points { from: [x, y, z], normal: [nx, ny, nz], weight } = points;
-            let from = Vec3::new(x.0[lane], y.0[lane], z.0[lane]);
-            let view = image.view(from, Vec3::new(nx.0[lane], ny.0[lane], nz.0[lane]));
-            let view = View { weight: view.weight * weight.0[lane], ..view };
-            views.set(lane, &view);
-            light.0[lane] += view.weight;
+            let eye = ball.eye(points.at(lane).0);
+            (x.0[lane], y.0[lane], z.0[lane]) = (eye.toward.x, eye.toward.y, eye.toward.z);
+            (distance.0[lane], rim.0[lane], most.0[lane]) = (eye.distance, eye.rim, eye.most);
         }
     }
 
-    /// The share that an image has at each point, and the paths that it takes.
-    fn deal(
-        weights: (&Row32, &Row32),
-        numbered: (usize, f64),
-        u1: &[f64; W],
-        taken: &mut Taken,
-        drawn: &mut Drawn,
+    /// What an image that a ball mirrors brings to each point.
+    fn weigh_mirrored(image: &Image, points: &Points, eyes: &Eyes, weights: &mut Row32, light: &mut Row32) {
+        for lane in 0..W {
+            let weight = image.weight_mirrored(&eyes.at(lane), points.at(lane).1) * points.weight.0[lane];
+            weights.0[lane] = weight;
+            light.0[lane] += weight;
+        }
+    }
+
+    /// The same of one that is seen through a ball.
+    fn weigh_refracted(
+        image: &Image,
+        index: f32,
+        points: &Points,
+        eyes: &Eyes,
+        weights: &mut Row32,
+        light: &mut Row32,
     ) {
-        let ((weight, light), (number, most)) = (weights, numbered);
         for lane in 0..W {
-            let share = share_of_image(weight.0[lane], light.0[lane], most);
-            let begin = drawn.total.0[lane];
-            let takes = is_within(u1[lane], begin, share);
-            let place = place_within(u1[lane], begin, share);
-            taken.number[lane] = if takes { number as u8 } else { taken.number[lane] };
-            taken.place[lane] = if takes { place } else { taken.place[lane] };
-            taken.is[lane] |= takes;
-            drawn.shares[number].0[lane] = share;
-            drawn.total.0[lane] = begin + share;
+            let view = image.view_refracted(index, &eyes.at(lane), points.at(lane).1);
+            let weight = view.weight * points.weight.0[lane];
+            weights.0[lane] = weight;
+            light.0[lane] += weight;
         }
     }
 
-    /// The directions of the paths that images have taken.
-    fn aim_at_image(chosen: &Views, taken: &Taken, u2: &[f64; W], drawn: &mut Drawn) {
+    /// What is left to images and to the cosine.
+    fn leave_rest(most: f64, u1: &[f64; W], casting: &mut Casting) {
+        let Casting { part, bodies, images, .. } = casting;
+        let (mut by_bodies, mut by_images) = ([false; W], [false; W]);
         for lane in 0..W {
-            let wi = chosen.at(lane).aim([taken.place[lane], u2[lane]]);
-            drawn.put(lane, (taken.is[lane], wi));
+            let begin = part.0[lane];
+            let share = share_of_images(images.light.0[lane], most);
+            let all = begin + share;
+            by_bodies[lane] = u1[lane] < begin;
+            by_images[lane] = u1[lane] < all;
+            (images.begin.0[lane], images.share.0[lane]) = (begin, share);
+            part.0[lane] = all;
+            casting.u1.0[lane] = place_within(u1[lane], all, 1.0 - all);
         }
+        (bodies.taken, images.taken) = (0, 0);
+        for lane in 0..W {
+            bodies.taken |= Mask::from(by_bodies[lane]) << lane;
+            images.taken |= Mask::from(by_images[lane]) << lane;
+        }
+        images.taken &= !bodies.taken;
     }
 
-    /// The first numbers of the directions that are left to the cosine.
-    fn leave_rest(u1: &[f64; W], drawn: &mut Drawn) {
-        for lane in 0..W {
-            let total = drawn.total.0[lane];
-            drawn.u1.0[lane] = place_within(u1[lane], total, 1.0 - total);
-        }
-    }
-
-    /// The directions of both kinds and their cosines.
-    fn put(surface: (&Rows3, &Rows3, &Rows3), drawn: &mut Drawn, wi: &mut Rows3, cos: &mut Row) {
+    /// The cosines of directions.
+    fn face(surface: (&Rows3, &Rows3, &Rows3), wi: &Rows3, cos: &mut Row, casting: &mut Casting) {
         let (_, normal, direction) = surface;
         for lane in 0..W {
-            let (a, b) = (drawn.aimed.at(lane), wi.at(lane));
-            let choose = |a: f64, b: f64| if drawn.is_aimed[lane] { a } else { b };
-            let chosen = Vec3::new(choose(a.x, b.x), choose(a.y, b.y), choose(a.z, b.z));
-            wi.set(lane, chosen);
-            cos.0[lane] = lambert::toward(normal.at(lane), -direction.at(lane)).dot(chosen);
-            drawn.factor.0[lane] = 0.0;
+            cos.0[lane] = lambert::toward(normal.at(lane), -direction.at(lane)).dot(wi.at(lane));
+            casting.factor.0[lane] = 0.0;
         }
     }
 
     /// What a body adds to the densities.
-    fn weigh [T: Target][T] (caster: &T, number: usize, position: &Rows3, wi: &Rows3, drawn: &mut Drawn) {
+    fn weigh [T: Target][T] (target: &T, shares: &Row, position: &Rows3, wi: &Rows3, sum: &mut Row) {
         for lane in 0..W {
-            let density = caster.density(position.at(lane), wi.at(lane));
-            drawn.factor.0[lane] += density_of(drawn.shares[number].0[lane], density);
+            sum.0[lane] += density_of(shares.0[lane], target.density(position.at(lane), wi.at(lane)));
         }
     }
 
-    /// What an image adds to the densities.
-    fn weigh_image(views: &Views, number: usize, wi: &Rows3, drawn: &mut Drawn) {
+    /// Whether directions meet a sphere.
+    fn meet(round: &Round, position: &Rows3, wi: &Rows3, met: &mut [bool; W]) {
         for lane in 0..W {
-            let density = views.at(lane).density(wi.at(lane));
-            drawn.factor.0[lane] += density_of(drawn.shares[number].0[lane], density);
+            met[lane] = round.is_met(position.at(lane), wi.at(lane));
         }
     }
 
-    /// From what bodies have added to the factors.
-    fn finish(cos: &Row, drawn: &mut Drawn) {
+    /// Whether directions meet a ball that shows lamps, or have met one before.
+    fn meet_ball(ball: &Ball, points: &Points, wi: &Rows3, met: &mut [bool; W]) {
         for lane in 0..W {
-            let of_casters = drawn.factor.0[lane];
-            drawn.factor.0[lane] = Mixture { own: lambert::density(cos.0[lane]), part: drawn.total.0[lane], of_casters }.factor(1.0);
+            met[lane] |= ball.is_met(points.at(lane).0, wi.at(lane).cast());
+        }
+    }
+
+    /// From what casters have added to the factors.
+    fn finish(cos: &Row, casting: &mut Casting) {
+        for lane in 0..W {
+            let of_casters = casting.factor.0[lane];
+            let own = lambert::density(cos.0[lane]);
+            casting.factor.0[lane] = Mixture { own, part: casting.part.0[lane], of_casters }.factor(1.0);
         }
     }
 }

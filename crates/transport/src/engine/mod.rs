@@ -32,7 +32,7 @@ use crate::prepare::Prepared;
 use crate::reuse::Blocks;
 use crate::wavelength::Wavelengths;
 use blocks::Dealing;
-use casters::Views;
+use casters::Casting;
 use direct::Sight;
 use etalon_optics::Lanes;
 use etalon_scene::Precision;
@@ -98,7 +98,7 @@ fn render_on<M: WavelengthModel<f64, N>, const N: usize>(
         counters: Counters::default(),
         paths: Paths::new(tracer.sampler(0, 0, 0), blocks.is_some()),
         sight: Sight::new(),
-        views: vec![Views::NONE; tracer.world.casters.images_aimed_at().len()],
+        casting: Casting::new(),
         seen: [[Lanes::ZERO; 3]; W],
         finished,
         dealing,
@@ -130,8 +130,8 @@ struct Engine<'a, M, const N: usize> {
     counters: Counters,
     paths: Paths<'a, M, N>,
     sight: Sight<N>,
-    /// What the surfaces that paths are at see of each image of a lamp.
-    views: Vec<Views>,
+    /// Directions toward casters of caustics.
+    casting: Casting,
     /// What the lanes of paths that ended add to the film.
     seen: [[Lanes<f64, N>; 3]; W],
     finished: Finished<'a, N>,

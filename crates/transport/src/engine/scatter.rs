@@ -1,7 +1,6 @@
 //! The walk's next step: a direction from each surface, what it is worth, and whether the path goes on.
 
 use super::Engine;
-use super::casters::Drawn;
 use super::direct::vertex_numbers;
 use super::level::{Level, Set, stages};
 use super::rows::{Mask, Row, Rows3, W, lanes};
@@ -32,16 +31,18 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
         let [u1, u2, u_lobe, u_roulette] = &numbers;
         let (mut wi, mut cos) = (Rows3::ZERO, Row::ZERO);
         let casters = self.world.casters;
-        let mut drawn = Drawn::NONE;
+        let casting = &mut self.casting;
         let aims = casters.aim();
         if aims {
+            casting.diffuse = 0;
             for lane in lanes(scatters) {
-                drawn.diffuse[lane] = matches!(paths.at.form[lane], Form::Lambert(_));
+                casting.diffuse |= Mask::from(matches!(paths.at.form[lane], Form::Lambert(_))) << lane;
             }
             let surface = (&paths.at.position, &paths.at.normal, &paths.direction);
-            drawn.aim(self.level, casters, surface, [u1, u2], &mut self.views);
-            lambert_directions(self.level, (&paths.at.normal, &paths.direction), [&drawn.u1.0, u2], &mut wi, &mut cos);
-            drawn.take(self.level, casters, surface, &self.views, (&mut wi, &mut cos));
+            casting.deal(self.level, casters, surface, u1);
+            let u = [&casting.u1.0, u2];
+            lambert_directions(self.level, (&paths.at.normal, &paths.direction), u, &mut wi, &mut cos);
+            casting.take(self.level, casters, surface, [u1, u2], (&mut wi, &mut cos));
         } else {
             lambert_directions(self.level, (&paths.at.normal, &paths.direction), [u1, u2], &mut wi, &mut cos);
         }
@@ -80,8 +81,8 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                     }
                     paths.beta[lane] *= paths.known.spectrum(lane, slot, self.tables, &paths.wavelengths[lane]);
                     if aims {
-                        aim = drawn.factor.0[lane];
-                        paths.aim_factor.0[lane] = drawn.factor.0[lane].min(1.0);
+                        aim = casting.factor.0[lane];
+                        paths.aim_factor.0[lane] = casting.factor.0[lane].min(1.0);
                     }
                     // As if it had followed lanes that are all alike.
                     let mean_of_hero =

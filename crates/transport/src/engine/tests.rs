@@ -129,7 +129,7 @@ fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_plain_l
 
 #[test]
 fn directions_toward_casters_and_images_of_lamps_leave_the_film_of_the_plain_loop_too() {
-    for aims in [Aims::Bodies, Aims::Images] {
+    for aims in [Aims::Bodies, Aims::Images, Aims::ImagesAndLenses] {
         let aiming = |path_loop, share| {
             let mut prepared = prepared(&[], path_loop);
             // Two balls, one of which mirrors three lamps; the other shows them through itself.

@@ -77,10 +77,16 @@ impl Round {
     /// cone.
     #[inline(always)]
     pub(crate) fn density_of(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64 {
-        let View { axis, one_minus_cos, .. } = self.view(from);
-        // 1 − cos between unit vectors, without cancellation.
-        let within = 0.5 * (wi - axis).length_squared() <= one_minus_cos;
-        if within { cone_density(one_minus_cos) } else { 0.0 }
+        if self.is_met(from, wi) { cone_density(self.view(from).one_minus_cos) } else { 0.0 }
+    }
+
+    /// Whether a ray from outside meets it.
+    #[inline(always)]
+    pub(crate) fn is_met(&self, from: Vec3<f64>, wi: Vec3<f64>) -> bool {
+        let toward = self.centre - from;
+        let along = toward.dot(wi);
+        let across = toward - wi * along;
+        (along > 0.0) & (across.length_squared() < self.radius * self.radius)
     }
 }
 

@@ -59,7 +59,7 @@ fn farthest(film: &Film) -> (f64, f64) {
 #[test]
 fn every_pixel_of_a_room_of_constant_radiance_stays_one_and_not_if_densities_are_wrong() {
     for path_loop in [PathLoop::Plain, PathLoop::Lanes] {
-        for aims in [Aims::Nothing, Aims::Bodies, Aims::Images] {
+        for aims in [Aims::Nothing, Aims::Bodies, Aims::Images, Aims::ImagesAndLenses] {
             let (z, error) = farthest(&film(path_loop, aims));
             assert!(z < 9.0 && error < 0.02, "{path_loop:?}, {aims:?}: {z} standard errors of at most {error}");
         }
