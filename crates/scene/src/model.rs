@@ -6,14 +6,17 @@
 mod detail;
 mod emission;
 mod environment;
+mod film;
+mod integrator;
 mod material;
 mod motion;
 
 pub use detail::{OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};
+pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
+pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, Precision, SamplerKind};
 pub use material::{LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture};
-
 pub use motion::{CameraMotion, Keyframe, Motion};
 
 use std::sync::Arc;
@@ -99,119 +102,6 @@ pub struct ThinLens {
     pub radius_m: f64,
     /// Distance along `forward` of the plane in focus, m.
     pub focus_distance_m: f64,
-}
-
-/// Image size and reconstruction.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Film {
-    /// Width in pixels.
-    pub width: u32,
-    /// Height in pixels.
-    pub height: u32,
-    /// Pixel filter, sampled by importance so that every sample belongs to one pixel.
-    pub filter: Filter,
-    /// Whether S₁, S₂ and S₃ are recorded beside the radiance.
-    pub stokes: bool,
-    /// Bands of wavelengths that the film keeps apart, beside its colour.
-    pub bands: Option<Bands>,
-}
-
-/// Bands of wavelengths, each as wide as their centres are apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bands {
-    /// Centre of the first, nm.
-    pub first_nm: f64,
-    /// From centre to centre, nm.
-    pub step_nm: f64,
-    /// How many.
-    pub count: u32,
-}
-
-/// Most bands of a film.
-pub const MOST_BANDS: u32 = 512;
-
-/// Why there are no such bands.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BandsError {
-    /// Numbers that make no bands.
-    #[error(
-        "bands are the first centre, the last centre and the step in nm, the last a whole number of steps from the first"
-    )]
-    Malformed,
-    /// Too many.
-    #[error("{0} bands are more than {MOST_BANDS}")]
-    TooMany(u64),
-    /// Wavelengths that are not rendered.
-    #[error("the bands reach from {} to {} nm, and wavelengths from {} to {} nm are rendered", bands[0], bands[1], range[0], range[1])]
-    OutOfRange {
-        /// First and last edge, nm.
-        bands: [f64; 2],
-        /// What is rendered, nm.
-        range: [f64; 2],
-    },
-}
-
-impl Bands {
-    /// Bands from the centre of the first to that of the last, in steps, within the wavelengths that are rendered.
-    ///
-    /// # Errors
-    /// [`BandsError`].
-    pub fn new([first_nm, last_nm, step_nm]: [f64; 3], range_nm: [f64; 2]) -> Result<Self, BandsError> {
-        let steps = (last_nm - first_nm) / step_nm;
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        // Steps such as 0.1 are not exact; a millionth of a step is.
-        if !positive(first_nm)
-            || !positive(step_nm)
-            || !(0.0..1e9).contains(&steps)
-            || (steps - steps.round()).abs() > 1e-6
-        {
-            return Err(BandsError::Malformed);
-        }
-        let count = steps.round() as u64 + 1;
-        if count > u64::from(MOST_BANDS) {
-            return Err(BandsError::TooMany(count));
-        }
-        let bands = Self { first_nm, step_nm, count: count as u32 };
-        let edges = [bands.edge_nm(0), bands.edge_nm(bands.count)];
-        if edges[0] < range_nm[0] || edges[1] > range_nm[1] {
-            return Err(BandsError::OutOfRange { bands: edges, range: range_nm });
-        }
-        Ok(bands)
-    }
-
-    /// Where band `index` begins and the one before it ends, nm.
-    pub fn edge_nm(&self, index: u32) -> f64 {
-        self.first_nm + (f64::from(index) - 0.5) * self.step_nm
-    }
-
-    /// The band that a wavelength falls into: each has its lower edge.
-    pub fn at(&self, nm: f64) -> Option<u32> {
-        let from = (nm - self.edge_nm(0)) / self.step_nm;
-        // Within the range after the comparison.
-        (0.0..f64::from(self.count)).contains(&from).then_some(from as u32)
-    }
-
-    /// Centre of band `index`, nm.
-    pub fn centre_nm(&self, index: u32) -> f64 {
-        self.first_nm + f64::from(index) * self.step_nm
-    }
-}
-
-/// Pixel filter.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Filter {
-    /// The pixel's own square.
-    Box,
-    /// A tent of this radius, in pixels.
-    Tent {
-        /// Radius, pixels.
-        radius_px: f64,
-    },
-    /// A Gaussian of this standard deviation, cut at three of them.
-    Gaussian {
-        /// Standard deviation, pixels.
-        sigma_px: f64,
-    },
 }
 
 /// A thing with a surface.
@@ -376,99 +266,4 @@ pub enum LightKind {
     },
     /// Radiance from infinity that an image says for each direction.
     ImageEnvironment(EnvironmentImage),
-}
-
-/// How to integrate.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Integrator {
-    /// Samples a pixel.
-    pub spp: u32,
-    /// Independent replicates that the samples are dealt to, from 1 to [`MOST_REPLICATES`].
-    pub replicates: u32,
-    /// Seed of every random number.
-    pub seed: u64,
-    /// Number sequence.
-    pub sampler: SamplerKind,
-    /// Most path edges from the camera to a light: 1 is emission seen directly, 2 adds one bounce; `None` is no limit.
-    pub max_depth: Option<u32>,
-    /// Whether Russian roulette may end a path.
-    pub roulette: bool,
-    /// How direct light is found.
-    pub light_sampling: LightSampling,
-    /// Which of several lights a shadow ray aims at.
-    pub light_selection: LightSelection,
-    /// Wavelengths rendered: the first and the last, nm.
-    pub wavelength_range_nm: [f64; 2],
-    /// Which neighbouring pixels share paths.
-    pub path_reuse: PathReuse,
-    /// Scalar type of what each wavelength carries along a path.
-    pub precision: Precision,
-}
-
-/// Most replicates that samples can be dealt to.
-pub const MOST_REPLICATES: u32 = 64;
-
-/// Which neighbouring pixels share paths: blocks, counted from the upper left corner of the film.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PathReuse {
-    /// None.
-    None,
-    /// 2 × 2 pixels.
-    Block2x2,
-    /// 4 × 2 pixels.
-    Block4x2,
-    /// 4 × 4 pixels.
-    Block4x4,
-}
-
-impl PathReuse {
-    /// Width and height of a block, pixels.
-    pub fn block_px(self) -> Option<[u32; 2]> {
-        match self {
-            Self::None => None,
-            Self::Block2x2 => Some([2, 2]),
-            Self::Block4x2 => Some([4, 2]),
-            Self::Block4x4 => Some([4, 4]),
-        }
-    }
-}
-
-/// Number sequence that drives the estimates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SamplerKind {
-    /// Owen-scrambled Sobol points, padded.
-    Sobol,
-    /// Independent Xoshiro256++ numbers.
-    Independent,
-}
-
-/// How direct light is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LightSampling {
-    /// Shadow rays and BSDF sampling, combined by multiple importance sampling.
-    Mis,
-    /// Shadow rays wherever they can find the light.
-    Light,
-    /// BSDF sampling wherever it can find the light.
-    Bsdf,
-}
-
-/// Which of several lights a shadow ray aims at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LightSelection {
-    /// By a tree where there are many, by power where there are few.
-    Auto,
-    /// In proportion to their power, wherever they are.
-    Power,
-    /// By a tree over where they are and where they shine, for each point anew.
-    Tree,
-}
-
-/// Scalar type of what each wavelength carries along a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// 32-bit floating point.
-    F32,
-    /// 64-bit floating point.
-    F64,
 }

@@ -1,5 +1,7 @@
 //! `etalon render`: a scene in, a picture out.
 
+mod job;
+mod keep;
 mod report;
 mod resume;
 mod room;
@@ -7,29 +9,25 @@ mod run;
 mod warnings;
 mod watcher;
 
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::path::PathBuf;
 
-use etalon_transport::canvas::tiles_of;
-use etalon_transport::{
-    Adaptivity, Canvas, Ended, Explored, Features, ImageError, Limits, PixelRect, Prepared, Shard, prepare_study,
-};
+use etalon_transport::{Adaptivity, Canvas, Ended, Explored, Features, ImageError, Limits};
 use miette::{Report, miette};
 use serde::{Deserialize, Serialize};
 
 use crate::args::{Crop, PixelAt, ShardArg};
-use crate::channels::{Aov, Channels};
+use crate::channels::Aov;
 use crate::deliver::Delivery;
 use crate::display::{self, Display};
 use crate::failure::{Failure, Outcome, ProblemJson};
 use crate::interrupt::Interrupt;
-use crate::load::{LoadedScene, load};
 use crate::machine::ClockKind;
-use crate::output::{self, Output};
 use crate::overrides::Overrides;
 use crate::print;
 use crate::progress::RenderBar;
-use crate::state::{self, Header, Kept, Subject};
+use crate::state::Header;
+use job::{Job, set_up};
+use keep::{interrupted, keep, moved};
 use run::Run;
 use watcher::{ProgressKind, Watcher};
 
@@ -179,136 +177,6 @@ enum Stop {
     Reported(Failure),
 }
 
-/// A scene ready to be rendered.
-struct Job {
-    loaded: LoadedScene,
-    prepared: Prepared,
-    prepare_seconds: f64,
-    warnings: Vec<Report>,
-    rect: PixelRect,
-    threads: usize,
-    subject: Subject,
-    /// A checkpoint to go on from.
-    resumed: Option<Kept>,
-}
-
-/// Does all that can fail before the work, and collects all that is wrong.
-fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
-    let mut failure = Failure::default();
-    *outputs = output::plan(&args.output, &mut failure);
-    let mut loaded = match load(&args.scene, args.overrides.film_size()) {
-        Ok(loaded) => loaded,
-        Err(scene_failure) => {
-            failure.add(scene_failure);
-            return Err(failure);
-        }
-    };
-    if let Err(wrong) = args.overrides.apply(&mut loaded.scene) {
-        failure.add(wrong);
-        return Err(failure);
-    }
-    room::check_memory(&loaded.scene, loaded.scene.film.stokes || args.overrides.polarised(), &mut failure);
-    let film = &loaded.scene.film;
-    let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
-    let rect = args.crop.map_or(whole, |crop| crop.0);
-    if rect.x1 > whole.x1 || rect.y1 > whole.y1 {
-        failure.add(Failure::input(miette!(
-            code = "crop-outside",
-            "the crop reaches to column {} and row {} of a picture of {} × {} pixels",
-            rect.x1,
-            rect.y1,
-            whole.x1,
-            whole.y1
-        )));
-    }
-    if let Some(PixelAt { x, y }) = args.pixel.filter(|at| at.x >= whole.x1 || at.y >= whole.y1) {
-        failure.add(Failure::input(miette!(
-            code = "pixel-outside",
-            "pixel {x},{y} is not in a picture of {} × {} pixels",
-            whole.x1,
-            whole.y1
-        )));
-    }
-    let start = Instant::now();
-    let prepared = match prepare_study(&loaded.scene, &args.overrides.study()) {
-        Ok(prepared) => prepared,
-        Err(error) => {
-            failure.add(Failure::input(Report::from_err(error)));
-            return Err(failure);
-        }
-    };
-    if prepared.path_reuse().is_some()
-        && (args.error.is_some() || args.adaptive == Adaptive::Always || args.pixel.is_some())
-    {
-        failure.add(Failure::input(miette!(
-            code = "path-reuse",
-            help = "leave out --path-reuse, or give --spp or --time",
-            "where neighbouring pixels share paths, no path stands alone: --error, --adaptive always and --pixel trace single ones"
-        )));
-    }
-    std::mem::take(&mut failure).into_outcome()?;
-    let mut warnings = std::mem::take(&mut loaded.warnings);
-    warnings.extend(
-        prepared
-            .warnings()
-            .iter()
-            .map(|warning| miette!(severity = miette::Severity::Warning, code = "prepare", "{warning}")),
-    );
-    warnings.extend(prepared.plan().approximations.iter().map(|lost| {
-        miette!(
-            severity = miette::Severity::Warning,
-            code = "approximation",
-            "the picture is an approximation, without {lost}"
-        )
-    }));
-    if args.exposure != 0.0 && !outputs.iter().any(|output| output.format == output::Format::Png) {
-        warnings.push(miette!(
-            severity = miette::Severity::Warning,
-            code = "exposure-unused",
-            "--exposure changes PNG files only, and none is written"
-        ));
-    }
-    let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
-    let subject = Subject::new(&prepared, &loaded.sha256, rect);
-    let prepare_seconds = start.elapsed().as_secs_f64();
-    let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
-    check_shard(args, rect, shard, outputs, &mut failure);
-    let channels = Channels::new(&args.aov, args.only);
-    room::check_disks(args.checkpoint.is_some(), &subject, &channels, outputs, &mut failure, &mut warnings);
-    let resumed = if args.resume { resume::find(args, &subject, shard, &mut failure) } else { None };
-    failure.into_outcome()?;
-    if args.resume && resumed.is_none() {
-        warnings.push(miette!(
-            severity = miette::Severity::Warning,
-            code = "nothing-to-resume",
-            "there is no checkpoint, so the render starts from the beginning"
-        ));
-    }
-    Ok(Job { loaded, prepared, prepare_seconds, warnings, rect, threads, subject, resumed })
-}
-
-/// A share must have tiles, and something must come of it.
-fn check_shard(args: &Args, rect: PixelRect, shard: Shard, outputs: &[Output], failure: &mut Failure) {
-    let tiles = tiles_of(rect, Shard::WHOLE).len();
-    if shard.of as usize > tiles {
-        failure.add(Failure::input(miette!(
-            code = "shard-empty",
-            "the picture has {tiles} tiles of 16 × 16 pixels and cannot be divided into {} shares",
-            shard.of
-        )));
-    }
-    if args.shard.is_some()
-        && !outputs.is_empty()
-        && !outputs.iter().any(|output| output.format == output::Format::Part)
-    {
-        failure.add(Failure::input(miette!(
-            code = "shard-without-part",
-            help = "add -o NAME.part; an EXR or a PNG beside it shows the share's tiles",
-            "a share of a picture is merged from its .part file, and none is written"
-        )));
-    }
-}
-
 fn render(args: &Args) -> Result<(), Stop> {
     let mut outputs = Vec::new();
     let mut job = set_up(args, &mut outputs).map_err(Stop::Refused)?;
@@ -372,66 +240,6 @@ fn render(args: &Args) -> Result<(), Stop> {
         print::line(&report::summary(&job, &done, &written));
     }
     failure.into_outcome().map_err(Stop::Reported)
-}
-
-/// Keeps what was rendered where the outputs do not: after a signal, and after an output that could not be written. Takes the
-/// checkpoint away where they do.
-fn keep(args: &Args, done: &Done, failure: &Failure, begun: bool) -> Option<Result<PathBuf, Failure>> {
-    let beside = state::checkpoint_path(args.output.first()?);
-    if done.header.complete && failure.is_empty() {
-        // It may never have been written.
-        let _ = std::fs::remove_file(&beside);
-        return None;
-    }
-    if !begun {
-        return None;
-    }
-    let Err(error) = state::write(&beside, &done.header, &done.canvas, &[]) else { return Some(Ok(beside)) };
-    // The disk of the outputs may be full; another may not be.
-    let name = format!("etalon-{}.checkpoint", std::process::id());
-    let elsewhere = std::env::temp_dir().join(name);
-    Some(match state::write(&elsewhere, &done.header, &done.canvas, &[]) {
-        Ok(()) => Ok(elsewhere),
-        Err(_) => Err(Failure::run(Report::from_err(error).wrap_err("what was rendered is lost"))),
-    })
-}
-
-/// What must be done with a checkpoint before it is found.
-fn moved(args: &Args, kept: &Path) -> String {
-    match args.output.first().map(|output| state::checkpoint_path(output)) {
-        Some(beside) if beside != kept => format!("move it to `{}`: ", beside.display()),
-        _ => String::new(),
-    }
-}
-
-/// What is said of a render that a signal has ended.
-fn interrupted(
-    args: &Args,
-    signal: u8,
-    done: &Done,
-    written: &[output::Written],
-    kept: Option<&Result<PathBuf, Failure>>,
-) -> Failure {
-    let [fewest, most] = done.canvas.samples();
-    let mut text = match most {
-        0 => "interrupted before the first tile was done".to_owned(),
-        _ if fewest == most => format!("interrupted at {fewest} samples a pixel"),
-        _ => format!("interrupted at {fewest} to {most} samples a pixel"),
-    };
-    if !written.is_empty() {
-        text += &format!("; the picture has what there is: {}", {
-            let names: Vec<_> = written.iter().map(|written| format!("`{}`", written.path)).collect();
-            names.join(", ")
-        });
-    }
-    let help = match kept {
-        Some(Ok(path)) => {
-            format!("{}the same command with --resume goes on from `{}`", moved(args, path), path.display())
-        }
-        Some(Err(_)) => "the sums could not be kept, so it cannot be resumed".to_owned(),
-        None => "nothing is kept".to_owned(),
-    };
-    Failure::signal(signal, miette!(code = "interrupted", help = help, "{text}"))
 }
 
 /// A render that is done, and how wrong it is.

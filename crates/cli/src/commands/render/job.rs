@@ -1,0 +1,145 @@
+//! All that can fail before the work.
+
+use std::time::Instant;
+
+use etalon_transport::canvas::tiles_of;
+use etalon_transport::{PixelRect, Prepared, Shard, prepare_study};
+use miette::{Report, miette};
+
+use super::{Adaptive, Args, resume, room};
+use crate::args::PixelAt;
+use crate::channels::Channels;
+use crate::failure::Failure;
+use crate::load::{LoadedScene, load};
+use crate::output::{self, Output};
+use crate::state::{Kept, Subject};
+
+/// A scene ready to be rendered.
+pub(super) struct Job {
+    pub loaded: LoadedScene,
+    pub prepared: Prepared,
+    pub prepare_seconds: f64,
+    pub warnings: Vec<Report>,
+    pub rect: PixelRect,
+    pub threads: usize,
+    pub subject: Subject,
+    /// A checkpoint to go on from.
+    pub resumed: Option<Kept>,
+}
+
+/// Does all that can fail before the work, and collects all that is wrong.
+pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
+    let mut failure = Failure::default();
+    *outputs = output::plan(&args.output, &mut failure);
+    let mut loaded = match load(&args.scene, args.overrides.film_size()) {
+        Ok(loaded) => loaded,
+        Err(scene_failure) => {
+            failure.add(scene_failure);
+            return Err(failure);
+        }
+    };
+    if let Err(wrong) = args.overrides.apply(&mut loaded.scene) {
+        failure.add(wrong);
+        return Err(failure);
+    }
+    room::check_memory(&loaded.scene, loaded.scene.film.stokes || args.overrides.polarised(), &mut failure);
+    let film = &loaded.scene.film;
+    let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
+    let rect = args.crop.map_or(whole, |crop| crop.0);
+    if rect.x1 > whole.x1 || rect.y1 > whole.y1 {
+        failure.add(Failure::input(miette!(
+            code = "crop-outside",
+            "the crop reaches to column {} and row {} of a picture of {} × {} pixels",
+            rect.x1,
+            rect.y1,
+            whole.x1,
+            whole.y1
+        )));
+    }
+    if let Some(PixelAt { x, y }) = args.pixel.filter(|at| at.x >= whole.x1 || at.y >= whole.y1) {
+        failure.add(Failure::input(miette!(
+            code = "pixel-outside",
+            "pixel {x},{y} is not in a picture of {} × {} pixels",
+            whole.x1,
+            whole.y1
+        )));
+    }
+    let start = Instant::now();
+    let prepared = match prepare_study(&loaded.scene, &args.overrides.study()) {
+        Ok(prepared) => prepared,
+        Err(error) => {
+            failure.add(Failure::input(Report::from_err(error)));
+            return Err(failure);
+        }
+    };
+    if prepared.path_reuse().is_some()
+        && (args.error.is_some() || args.adaptive == Adaptive::Always || args.pixel.is_some())
+    {
+        failure.add(Failure::input(miette!(
+            code = "path-reuse",
+            help = "leave out --path-reuse, or give --spp or --time",
+            "where neighbouring pixels share paths, no path stands alone: --error, --adaptive always and --pixel trace single ones"
+        )));
+    }
+    std::mem::take(&mut failure).into_outcome()?;
+    let mut warnings = std::mem::take(&mut loaded.warnings);
+    warnings.extend(
+        prepared
+            .warnings()
+            .iter()
+            .map(|warning| miette!(severity = miette::Severity::Warning, code = "prepare", "{warning}")),
+    );
+    warnings.extend(prepared.plan().approximations.iter().map(|lost| {
+        miette!(
+            severity = miette::Severity::Warning,
+            code = "approximation",
+            "the picture is an approximation, without {lost}"
+        )
+    }));
+    if args.exposure != 0.0 && !outputs.iter().any(|output| output.format == output::Format::Png) {
+        warnings.push(miette!(
+            severity = miette::Severity::Warning,
+            code = "exposure-unused",
+            "--exposure changes PNG files only, and none is written"
+        ));
+    }
+    let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
+    let subject = Subject::new(&prepared, &loaded.sha256, rect);
+    let prepare_seconds = start.elapsed().as_secs_f64();
+    let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
+    check_shard(args, rect, shard, outputs, &mut failure);
+    let channels = Channels::new(&args.aov, args.only);
+    room::check_disks(args.checkpoint.is_some(), &subject, &channels, outputs, &mut failure, &mut warnings);
+    let resumed = if args.resume { resume::find(args, &subject, shard, &mut failure) } else { None };
+    failure.into_outcome()?;
+    if args.resume && resumed.is_none() {
+        warnings.push(miette!(
+            severity = miette::Severity::Warning,
+            code = "nothing-to-resume",
+            "there is no checkpoint, so the render starts from the beginning"
+        ));
+    }
+    Ok(Job { loaded, prepared, prepare_seconds, warnings, rect, threads, subject, resumed })
+}
+
+/// A share must have tiles, and something must come of it.
+fn check_shard(args: &Args, rect: PixelRect, shard: Shard, outputs: &[Output], failure: &mut Failure) {
+    let tiles = tiles_of(rect, Shard::WHOLE).len();
+    if shard.of as usize > tiles {
+        failure.add(Failure::input(miette!(
+            code = "shard-empty",
+            "the picture has {tiles} tiles of 16 × 16 pixels and cannot be divided into {} shares",
+            shard.of
+        )));
+    }
+    if args.shard.is_some()
+        && !outputs.is_empty()
+        && !outputs.iter().any(|output| output.format == output::Format::Part)
+    {
+        failure.add(Failure::input(miette!(
+            code = "shard-without-part",
+            help = "add -o NAME.part; an EXR or a PNG beside it shows the share's tiles",
+            "a share of a picture is merged from its .part file, and none is written"
+        )));
+    }
+}
