@@ -17,6 +17,7 @@ fn near(name: &str) -> Result<Vec<u8>, String> {
     match name {
         "chequers.png" => Ok(PNG.to_vec()),
         "a.obj" => Ok(OBJ.to_vec()),
+        "normals.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n".to_vec()),
         "inc.xml" => Ok(INCLUDED.to_vec()),
         "inc.pbrt" => Ok(b"Shape \"sphere\" \"float radius\" 2\n".to_vec()),
         "itself.xml" => Ok(br#"<scene version="3.0.0"><include filename="itself.xml"/></scene>"#.to_vec()),
@@ -106,6 +107,26 @@ fn a_mitsuba_scene_arrives_with_its_camera_shapes_materials_and_lights() {
     assert_eq!(scene.instances.len(), 3);
     assert!(matches!(scene.lights[0].kind, LightKind::Point { .. }));
     assert!(matches!(scene.lights[1].kind, LightKind::Environment { .. }));
+}
+
+/// There a mirroring transform turns triangles inside out, but not what has normals of its own.
+#[test]
+fn a_mirrored_mesh_of_mitsuba_shines_from_the_side_that_it_does_there() {
+    for (file, keys, scale, side) in [
+        ("a.obj", "", "1", "Front"),
+        ("a.obj", "", "-1 1 1", "Back"),
+        ("a.obj", "<boolean name=\"flip_normals\" value=\"true\"/>", "-1 1 1", "Front"),
+        ("normals.obj", "", "-1 1 1", "Front"),
+        ("normals.obj", "<boolean name=\"face_normals\" value=\"true\"/>", "-1 1 1", "Back"),
+    ] {
+        let text = format!(
+            r#"<scene version="3.0.0"><shape type="obj"><string name="filename" value="{file}"/>{keys}
+            <transform name="to_world"><scale value="{scale}"/></transform><emitter type="area"><rgb name="radiance" value="1"/></emitter></shape></scene>"#
+        );
+        let scene = scene(&imported("xml", &text));
+        let emission = scene.objects[0].emission.as_ref().expect("it shines");
+        assert_eq!(format!("{:?}", emission.sides), side, "{file} {keys} {scale}");
+    }
 }
 
 #[test]

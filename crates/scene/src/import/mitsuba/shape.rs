@@ -9,7 +9,7 @@ use super::colour::kind;
 use super::element::Element;
 use super::material::{Look, grey};
 use crate::import::Placed;
-use crate::import::matrix::Rows;
+use crate::import::matrix::{Rows, determinant};
 use crate::import::number::has_image;
 use crate::mesh::{Part, read_obj, read_ply};
 
@@ -155,6 +155,10 @@ impl<'a> Walk<'a, '_, '_> {
             let mut dressed = dressed.clone();
             if let Some(name) = part.name.as_ref().filter(|_| mesh.parts.len() > 1) {
                 dressed.name = format!("{}, {name}", dressed.name);
+            }
+            // What is mirrored is turned inside out there unless normals of its vertices say otherwise; here it never is.
+            if (flat || !part.has_normals) && determinant(&dressed.rows) < 0.0 {
+                dressed.flipped = !dressed.flipped;
             }
             self.without_images(&mut dressed, part.has_uvs, place);
             if !part.has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
