@@ -83,6 +83,28 @@ def textured(alpha):
     )
 
 
+def bumpy(scale):
+    return (
+        f'<bsdf type="bumpmap"><boolean name="use_shadowing_function" value="false"/><float name="scale" value="{scale}"/>'
+        '<texture type="bitmap"><string name="filename" value="heights.exr"/><boolean name="raw" value="true"/></texture>'
+        f"{GREY[0]}</bsdf>",
+        'Texture "h" "float" "imagemap" "string filename" "heights.exr" "string encoding" "linear"\n'
+        f'Texture "d" "float" "scale" "texture tex" "h" "float scale" {scale}\n{GREY[1]} "texture displacement" "d"',
+    )
+
+
+BENT = (
+    '<bsdf type="normalmap"><boolean name="use_shadowing_function" value="false"/><texture type="bitmap" name="normalmap">'
+    f'<string name="filename" value="normals.exr"/><boolean name="raw" value="true"/></texture>{GREY[0]}</bsdf>',
+    f'{GREY[1]} "string normalmap" "normals.exr"',
+)
+BLACK = (
+    '<bsdf type="diffuse"><float name="reflectance" value="0"/></bsdf>',
+    'Material "diffuse" "float reflectance" 0',
+)
+# Light that a bent normal loses there comes from below its horizon: here none does, from the lamp alone.
+DARK = ("", "")
+
 # Ball, floor, sky, and why the pictures may differ. `None` for pbrt: it has no such thing, or means another.
 SCENES = {
     "diffuse": (GREY, GREY, EVEN, None),
@@ -108,6 +130,8 @@ SCENES = {
         None,
     ),
     "textured-metal": (GREY, textured(0.3), EVEN, "facets are masked by G1·G1 there, height-correlated here"),
+    "bumps": (BLACK, bumpy(0.3), DARK, None),
+    "normals": (BLACK, BENT, DARK, None),
     "sky-image": (
         GREY,
         GREY,
@@ -129,6 +153,14 @@ def images(folder):
     rng = np.random.default_rng(7)
     for name, texels in [("alpha.exr", rng.uniform(0.05, 0.5, (8, 8))), ("sky.exr", rng.uniform(0, 1, (6, 12)) ** 3)]:
         write_exr(folder / name, {c: texels for c in "RGB"})
+    # Hills that no mirror image is like, so fine that their slope hardly changes within a texel, and tilts of up to 8°.
+    u, v = np.meshgrid((np.arange(256) + 0.5) / 256, (np.arange(256) + 0.5) / 256)
+    turns = 2 * np.pi
+    hills = 0.5 + 0.2 * np.sin(2 * turns * u + np.sin(turns * v)) + 0.1 * np.cos(3 * turns * v + 0.5 * np.sin(turns * u))
+    write_exr(folder / "heights.exr", {c: hills for c in "RGB"})
+    x, y = 0.1 * np.sin(turns * u + 2), 0.1 * np.cos(turns * (v + 0.1 * u)) * u
+    vectors = dict(zip("RGB", (x, y, np.sqrt(1 - x * x - y * y))))
+    write_exr(folder / "normals.exr", {c: 0.5 + 0.5 * part for c, part in vectors.items()})
 
 
 def by_mitsuba(mi, scene, path, spp):

@@ -11,7 +11,7 @@ mod integrator;
 mod material;
 mod motion;
 
-pub use detail::{OpacityImage, Relief};
+pub use detail::{Bitangent, OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};
 pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};

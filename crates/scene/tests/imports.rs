@@ -284,7 +284,11 @@ fn opacity_normals_and_absorption_arrive() {
     // The image has no alpha: all of it is there.
     let image = object.opacity_image.expect("an image of opacity");
     assert_eq!((object.opacity, image.cutoff, image.eval([0.3, 0.7])), (0.5, None, 1.0));
-    assert!(matches!(object.relief, Some(etalon_scene::Relief::Normals { strength: 0.5, .. })), "{:?}", object.relief);
+    assert!(
+        matches!(object.relief, Some(etalon_scene::Relief::Normals { strength: [0.5, 0.5], .. })),
+        "{:?}",
+        object.relief
+    );
     let object = textured(&with("MASK", 0.8));
     // A cutoff of ½ of what the factor has made of alpha.
     assert_eq!((object.opacity, object.opacity_image.and_then(|image| image.cutoff)), (1.0, Some(0.625)));

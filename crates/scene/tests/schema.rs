@@ -130,6 +130,7 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
     let exclusive = ["height_m", "horizontal_fov_deg", "radius_px", "sensor_width_m", "vertical_fov_deg"];
     let of_files = ["encoding", "factor", "file", "uv_offset", "uv_scale", "wrap", "wrap_v"];
     let of_detail = [
+        "bitangent",
         "bump_map",
         "channel",
         "cutoff",

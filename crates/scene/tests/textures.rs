@@ -4,8 +4,8 @@ mod common;
 
 use common::{Parts, RIGHT};
 use etalon_scene::{
-    Code, Encoding, Image, Loaded, MaterialKind, Metal, NumberTexture, Relief, SceneErrors, SpectrumTexture, Texels,
-    TextureFilter, Wrap,
+    Bitangent, Code, Encoding, Image, Loaded, MaterialKind, Metal, NumberTexture, Relief, SceneErrors, SpectrumTexture,
+    Texels, TextureFilter, Wrap,
 };
 use std::path::Path;
 
@@ -124,15 +124,29 @@ fn images_of_opacity_normals_and_heights_arrive() {
     // Chequers of (230, 230, 230) and (40, 40, 60), as numbers and not as sRGB.
     assert!((image.texture.image.texel(1, 0)[0] - 60.0 / 255.0).abs() < 1e-6);
     assert_eq!(image.eval([0.1, 0.1]), 1.0);
-    let Some(Relief::Normals { texture, strength }) =
+    let Some(Relief::Normals { texture, strength, bitangent }) =
         one(r#""normal_map": {"file": "files/chequers.png", "strength": 2}"#).relief
     else {
         panic!("a normal map")
     };
     assert_eq!(
         (strength, texture.image.texels.clone()),
-        (2.0, Texels::Linear8(vec![[230; 3], [40, 40, 60], [40, 40, 60], [230; 3]]))
+        ([2.0; 2], Texels::Linear8(vec![[230; 3], [40, 40, 60], [40, 40, 60], [230; 3]]))
     );
+    assert_eq!(bitangent, Bitangent::AlongV);
+    let keys = r#"{"file": "files/chequers.png", "strength": [1, -0.5], "bitangent": "across-u", "encoding": "srgb", "filter": "nearest"}"#;
+    let Some(Relief::Normals { texture, strength, bitangent }) = one(&format!("\"normal_map\": {keys}")).relief else {
+        panic!("a normal map")
+    };
+    assert_eq!((strength, bitangent, texture.filter), ([1.0, -0.5], Bitangent::AcrossU, TextureFilter::Nearest));
+    // 40/255 by the curve of sRGB.
+    assert!((texture.eval([0.75, 0.75])[0] - ((40.0_f64 / 255.0 + 0.055) / 1.055).powf(2.4)).abs() < 1e-6);
+    let Some(Relief::Heights { texture, .. }) =
+        one(r#""bump_map": {"file": "files/chequers.png", "height_m": 1, "channel": "blue"}"#).relief
+    else {
+        panic!("a bump map")
+    };
+    assert!((texture.eval([0.75, 0.75])[0] - 60.0 / 255.0).abs() < 1e-6);
     let Some(Relief::Heights { height_m, .. }) =
         one(r#""bump_map": {"file": "files/chequers.png", "height_m": -0.1}"#).relief
     else {
@@ -142,6 +156,7 @@ fn images_of_opacity_normals_and_heights_arrive() {
     for (keys, code) in [
         (r#""opacity_image": {"file": "files/no.png"}"#, Code::File),
         (r#""bump_map": {"file": "files/chequers.png"}"#, Code::MissingKey),
+        (r#""normal_map": {"file": "files/chequers.png", "strength": [1]}"#, Code::WrongLength),
         (
             r#""bump_map": {"file": "files/chequers.png", "height_m": 1}, "normal_map": {"file": "files/chequers.png"}"#,
             Code::KeyConflict,

@@ -3,12 +3,12 @@
 
 use crate::bsdf::Shading;
 use etalon_optics::Vec3;
-use etalon_scene::{ImageTexture, Relief};
+use etalon_scene::{Bitangent, ImageTexture, Relief};
 
 /// The point with the normal that an image gives it, from how it moves with u and with v, in units of the frame.
 ///
 /// **Normal maps.** The image's vector stands in the frame (t, b, n): n the normal that is there already, t the direction
-/// across it in which u grows, b the one across both in which v does.
+/// across it in which u grows, b the one across both in which v does, or n × t.
 ///
 /// **Bump maps** (Blinn 1978). The surface moved by h along its normal has the normal n − ∇h up to its length, with the gradient
 /// ∇h = h_u·(p_v × n)/J + h_v·(n × p_u)/J along the surface, J = n·(p_u × p_v).
@@ -20,7 +20,7 @@ pub(crate) fn bend<'a>(
 ) -> Shading<'a> {
     let n = shading.shading_normal();
     let normal = match relief {
-        Relief::Normals { texture, strength } => {
+        Relief::Normals { texture, strength, bitangent } => {
             let [x, y, z] = texture.eval(shading.uv).map(|v| 2.0 * v - 1.0);
             let across = along_u - n * n.dot(along_u);
             if across.length_squared() == 0.0 {
@@ -28,8 +28,8 @@ pub(crate) fn bend<'a>(
             }
             let t = across.normalized();
             let b = n.cross(t);
-            let b = if b.dot(along_v) < 0.0 { -b } else { b };
-            t * (x * strength) + b * (y * strength) + n * z
+            let b = if *bitangent == Bitangent::AlongV && b.dot(along_v) < 0.0 { -b } else { b };
+            t * (x * strength[0]) + b * (y * strength[1]) + n * z
         }
         Relief::Heights { texture, height_m } => {
             let [slope_u, slope_v] = slopes(texture, shading.uv).map(|slope| slope * height_m * per_m);
@@ -114,14 +114,20 @@ mod tests {
         let mut texture = heights(|_, _| 0.0, [1.0; 2], [0.0; 2]);
         texture.image = Arc::new(Image::new(1, 1, Texels::F32(vec![texel])));
         let n = Vec3::new(0.0, 0.0, 1.0);
-        let relief = Relief::Normals { texture, strength: 0.5 };
-        // u grows along x, but not across the normal; v against y, or along it.
-        for (v, sign) in [(Vec3::new(0.4, -3.0, 0.5), -1.0), (Vec3::new(0.4, 3.0, 0.5), 1.0)] {
-            let along = [Vec3::new(2.0, 0.0, 1.0), v];
-            let got = bend(&relief, Shading::flat(n), along, 1.0).shading_normal();
-            let want = Vec3::new(0.5 * 0.48, sign * 0.5 * 0.36, 0.8).normalized();
-            // Texels in single precision.
-            assert!((got - want).length() < 1e-6, "{got:?} is not {want:?}");
+        // u grows along x, but not across the normal; v against y, or along it. What is across u is y, whatever v does.
+        let mut relief = Relief::Normals { texture, strength: [0.5; 2], bitangent: Bitangent::AlongV };
+        for (bitangent, strength) in [(Bitangent::AlongV, [0.5, 0.5]), (Bitangent::AcrossU, [-0.5, 0.75])] {
+            if let Relief::Normals { strength: s, bitangent: b, .. } = &mut relief {
+                (*s, *b) = (strength, bitangent);
+            }
+            for (v, sign) in [(Vec3::new(0.4, -3.0, 0.5), -1.0), (Vec3::new(0.4, 3.0, 0.5), 1.0)] {
+                let sign = if bitangent == Bitangent::AlongV { sign } else { 1.0 };
+                let along = [Vec3::new(2.0, 0.0, 1.0), v];
+                let got = bend(&relief, Shading::flat(n), along, 1.0).shading_normal();
+                let want = Vec3::new(strength[0] * 0.48, sign * strength[1] * 0.36, 0.8).normalized();
+                // Texels in single precision.
+                assert!((got - want).length() < 1e-6, "{got:?} is not {want:?}");
+            }
         }
         // Where nothing grows across the normal there is no frame.
         let nowhere = bend(&relief, Shading::flat(n), [n * 2.0, n], 1.0).shading_normal();

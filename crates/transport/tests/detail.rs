@@ -1,7 +1,8 @@
 //! Images that give detail: normals, heights, opacity; and texture coordinates of round shapes. Against closed forms.
 
 use etalon_scene::{
-    Image, ImageTexture, MaterialKind, OpacityImage, Relief, Scene, SpectrumTexture, Texels, TextureFilter, Wrap,
+    Bitangent, Image, ImageTexture, MaterialKind, OpacityImage, Relief, Scene, SpectrumTexture, Texels, TextureFilter,
+    Wrap,
 };
 use etalon_transport::{Control, EffectName, Film, Study, prepare, prepare_study};
 use serde_json::{Value, json};
@@ -23,7 +24,8 @@ fn texture(width: u32, height: u32, texels: Vec<[f32; 3]>, filter: TextureFilter
 /// A map of one normal.
 fn one_normal(n: [f64; 3], strength: f64) -> Relief {
     let texel = n.map(|v| (0.5 + 0.5 * v) as f32);
-    Relief::Normals { texture: texture(1, 1, vec![texel], TextureFilter::Bilinear), strength }
+    let texture = texture(1, 1, vec![texel], TextureFilter::Bilinear);
+    Relief::Normals { texture, strength: [strength; 2], bitangent: Bitangent::AlongV }
 }
 
 /// A square of 2 × 2 m about the origin, u along x and v along y, as a parallelogram, a mesh, and a mesh whose coordinates
@@ -139,9 +141,10 @@ fn a_white_furnace_stays_white_under_any_map() {
     let noise = |n: u32| (0..64).map(|i: u32| [(i.wrapping_mul(n) % 97) as f32 / 97.0; 3]).collect::<Vec<_>>();
     let normals =
         (0..64).map(|i: u32| [(i * 37 % 97) as f32 / 97.0, (i * 53 % 89) as f32 / 89.0, 0.55 + (i % 7) as f32 / 16.0]);
+    let normals = texture(8, 8, normals.collect(), TextureFilter::Bilinear);
     let maps = [
         Relief::Heights { texture: texture(8, 8, noise(31), TextureFilter::Bilinear), height_m: 0.5 },
-        Relief::Normals { texture: texture(8, 8, normals.collect(), TextureFilter::Bilinear), strength: 1.0 },
+        Relief::Normals { texture: normals, strength: [1.0; 2], bitangent: Bitangent::AlongV },
     ];
     let sky = json!([{"type": "environment", "radiance": 1}]);
     let shapes = [

@@ -1,10 +1,14 @@
 //! Images that give a surface detail: opacity, normals, heights, numbers of its material.
 
+use serde_json::json;
+
 use super::material::Share;
 use super::spectra::FARTHEST_UV;
 use crate::files::Files;
-use crate::json::{Code, NonNegative, Optional, Reader, Required, Span, Spanned};
-use crate::model::{OpacityImage, Relief};
+use crate::json::{
+    Code, Decode, Node, NonNegative, Optional, Reader, Required, SchemaBuilder, SchemaValue, Span, Spanned,
+};
+use crate::model::{Bitangent, OpacityImage, Relief};
 use crate::texture::{Channel, Encoding, ImageTexture, TextureFilter, Wrap};
 
 /// Declares an image over the texture coordinates of a surface: its file, keys of its own, and how it is laid.
@@ -92,20 +96,54 @@ laid_image! {
 }
 
 laid_image! {
-    /// A normal map: red, green and blue are the normal's parts along u, along v and outward, from −1 (0) to 1 (1), linear.
+    /// A normal map: red, green and blue are the normal's parts along u, along v and outward, from −1 (0) to 1 (1).
     struct NormalMapForm {
-        /// Factor on the parts along u and v.
-        strength: Required<NonNegative> = "1",
+        /// Factor on the parts along the surface, or one each on red and green; below 0 they point the other way.
+        strength: Required<Strength> = "1",
+        /// Which way green points.
+        bitangent: Required<Bitangent> = r#""along-v""#,
+        /// How its numbers are to be read.
+        encoding: Required<Encoding> = r#""linear""#,
+        /// What it shows between the centres of its texels.
+        filter: Required<TextureFilter> = r#""bilinear""#,
     }
 }
 
 laid_image! {
-    /// A bump map: heights over the surface, which is shaded as if it had them; its first channel counts, and is linear.
+    /// A bump map: heights over the surface, which is shaded as if it had them.
     struct BumpMapForm {
         /// Height of white over black, m; below 0 white is deep.
         height_m: Required<f64>,
+        /// Which of its channels says the height.
+        channel: Required<Channel> = r#""red""#,
+        /// How its numbers are to be read.
+        encoding: Required<Encoding> = r#""linear""#,
     }
 }
+
+/// Factors on red and green of a normal map.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Strength([f64; 2]);
+
+impl Decode for Strength {
+    fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
+        json!({ "anyOf": [f64::schema(schema), <[f64; 2]>::schema(schema)] })
+    }
+
+    fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
+        Some(Self(match node.elements() {
+            Some(_) => <[f64; 2]>::decode(node, reader)?,
+            None => [f64::decode(node, reader)?; 2],
+        }))
+    }
+}
+
+crate::keywords!(Bitangent {
+    /// The way in which v grows.
+    "along-v" => Self::AlongV,
+    /// To the left of growing u, seen from outside, whichever way v grows.
+    "across-u" => Self::AcrossU,
+});
 
 crate::keywords!(Channel {
     /// "alpha" of an image that has it, else "luminance".
@@ -228,12 +266,13 @@ pub(super) fn roughness_image(
 
 /// The normal map of a form.
 pub(super) fn normal_map(form: &NormalMapForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<Relief> {
-    let data = Data { channel: Channel::All, encoding: Encoding::Linear, filter: TextureFilter::Bilinear };
-    Some(Relief::Normals { texture: form.texture(data, files, reader)?, strength: form.strength?.0 })
+    let data = Data { channel: Channel::All, encoding: form.encoding?, filter: form.filter? };
+    let texture = form.texture(data, files, reader)?;
+    Some(Relief::Normals { texture, strength: form.strength?.0, bitangent: form.bitangent? })
 }
 
 /// The bump map of a form.
 pub(super) fn bump_map(form: &BumpMapForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<Relief> {
-    let data = Data { channel: Channel::Red, encoding: Encoding::Linear, filter: TextureFilter::Bilinear };
+    let data = Data { channel: form.channel?, encoding: form.encoding?, filter: TextureFilter::Bilinear };
     Some(Relief::Heights { texture: form.texture(data, files, reader)?, height_m: form.height_m? })
 }

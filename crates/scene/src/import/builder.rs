@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::matrix::{Rows, determinant, is_similarity, point, steps};
+use super::relief::turn_over;
 use super::{Imported, ImportedFile, LeftOut, extension};
 use crate::mesh::write_ply;
 use crate::model::Mesh;
@@ -187,8 +188,12 @@ impl<'a> Builder<'a> {
         if placed.opacity < 1.0 {
             object["opacity"] = json!(placed.opacity);
         }
-        for (key, value) in &placed.detail {
-            object[key] = value.clone();
+        let mut detail = placed.detail.clone();
+        if placed.flipped {
+            turn_over(&mut detail);
+        }
+        for (key, value) in detail {
+            object[key] = value;
         }
         let round = matches!(placed.shape["type"].as_str(), Some("sphere" | "disk" | "cylinder"));
         let stretched = round && !is_similarity(&placed.rows);

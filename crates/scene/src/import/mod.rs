@@ -17,6 +17,7 @@ mod mitsuba;
 mod number;
 mod obj;
 mod pbrt;
+mod relief;
 mod table;
 
 use std::path::{Path, PathBuf};

@@ -23,15 +23,27 @@ impl OpacityImage {
     }
 }
 
+/// Which of the two directions along the surface, across that in which u grows, the green of a normal map stands for. They differ
+/// where texture coordinates are mirrored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bitangent {
+    /// The one in which v grows.
+    AlongV,
+    /// The one to the left of growing u, seen from outside: normal × tangent, in the world.
+    AcrossU,
+}
+
 /// An image by which a surface scatters around other normals than its own.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Relief {
-    /// A normal map: channels c are the vector 2c − 1 in the frame of the directions in which u and v grow, and the normal.
+    /// A normal map: channels c are the vector 2c − 1 in the frame of the direction in which u grows, the bitangent, and the normal.
     Normals {
         /// The image.
         texture: ImageTexture,
-        /// Factor on the two components along the surface.
-        strength: f64,
+        /// Factors on the two components along the surface.
+        strength: [f64; 2],
+        /// Which way the second of them points.
+        bitangent: Bitangent,
     },
     /// A bump map: heights over the surface.
     Heights {

@@ -229,7 +229,7 @@ impl Walk<'_, '_, '_> {
     }
 
     /// The image of the format that a `bitmap` is, and the mean of its texels; `None`, and a note, if it cannot be read.
-    fn bitmap(&mut self, element: &Element) -> Result<Option<(Value, [f64; 3])>, String> {
+    pub(super) fn bitmap(&mut self, element: &Element) -> Result<Option<(Value, [f64; 3])>, String> {
         let place = &element.place;
         let name = element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
         let raw = element.flag("raw")?.unwrap_or(false);

@@ -6,6 +6,7 @@ use super::Walk;
 use super::colour::Of;
 use super::element::Element;
 use crate::import::number::{Number, Rough};
+use crate::import::relief::{has_map, without_map};
 use crate::import::table::{Table, metal};
 
 /// Indices of refraction that Mitsuba has names for, as its documentation lists them.
@@ -40,7 +41,7 @@ pub(super) struct Look {
     pub material: Value,
     /// Share of light that meets it.
     pub opacity: f64,
-    /// Further keys of its objects: an image of that share.
+    /// Further keys of its objects: an image of that share, a map of normals or heights.
     pub detail: Map<String, Value>,
 }
 
@@ -74,7 +75,7 @@ impl Walk<'_, '_, '_> {
                 let mut look = self.nested_look(element)?;
                 match self.number(element, "opacity")?.unwrap_or(Number::Value(0.5)) {
                     Number::Value(share) => look.opacity *= share,
-                    Number::Image(image, _) if look.detail.is_empty() => {
+                    Number::Image(image, _) if !look.detail.contains_key("opacity_image") => {
                         look.detail.insert("opacity_image".to_owned(), image);
                     }
                     image => look.opacity *= image.mean("opacity", &place, self.builder),
@@ -82,9 +83,17 @@ impl Walk<'_, '_, '_> {
                 look
             }
             "bumpmap" | "normalmap" => {
-                let look = self.nested_look(element)?;
-                self.builder.leave_out(&place, format!("the \"{}\" is not honoured", element.plugin()));
-                element.children.iter().for_each(Element::mark);
+                let mut look = self.nested_look(element)?;
+                match self.relief(element)? {
+                    Some(_) if has_map(&look.detail) => {
+                        let what = format!("the \"{}\" around another map is left out", element.plugin());
+                        self.builder.leave_out(&place, what);
+                    }
+                    Some((key, map)) => {
+                        look.detail.insert(key.to_owned(), map);
+                    }
+                    None => {}
+                }
                 look
             }
             "null" => Look::plain(json!({ "type": "black" }), 0.0),
@@ -93,7 +102,11 @@ impl Walk<'_, '_, '_> {
                 let [first, second] = nested[..] else {
                     return Err(format!("{place}: a blend has two materials, not {}", nested.len()));
                 };
-                let (first, second) = (self.look(first)?, self.look(second)?);
+                let (mut first, mut second) = (self.look(first)?, self.look(second)?);
+                if without_map(&mut first.detail) | without_map(&mut second.detail) {
+                    self.builder
+                        .leave_out(&place, "the normals of a part of a blend are not bent: its map is left out");
+                }
                 let weight = self.number(element, "weight")?.unwrap_or(Number::Value(0.5));
                 let mean = match weight {
                     Number::Value(mean) | Number::Image(_, mean) => mean,

@@ -11,6 +11,7 @@ use super::material::{Look, grey};
 use crate::import::Placed;
 use crate::import::matrix::{Rows, determinant};
 use crate::import::number::has_image;
+use crate::import::relief::without_map;
 use crate::mesh::{Part, read_obj, read_ply};
 
 /// A mesh file, as files of the scene.
@@ -221,6 +222,9 @@ impl<'a> Walk<'a, '_, '_> {
         if !has_uvs && has_image(own.unwrap_or(&dressed.look.material)) {
             self.builder.leave_out(place, "it has no texture coordinates for the image of its material, and is grey");
             dressed.look.material = grey();
+        }
+        if !has_uvs && without_map(&mut dressed.look.detail) {
+            self.builder.leave_out(place, "it has no texture coordinates for the map of its normals, and is smooth");
         }
         if !has_uvs && !dressed.look.detail.is_empty() {
             self.builder.leave_out(place, "it has no texture coordinates for the image of its opacity, and is opaque");

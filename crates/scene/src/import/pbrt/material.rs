@@ -1,15 +1,18 @@
 //! Materials of pbrt.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::parameters::Parameters;
 use super::{Look, Reading};
 use crate::import::number::{Number, Rough};
+use crate::import::relief::has_map;
 use crate::import::table::{Table, metal};
 
 impl Reading<'_, '_> {
     pub(super) fn material(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Look, String> {
         let mut opacity = 1.0;
+        // What is chosen between has maps of its own, and what is not there has none.
+        let detail = if matches!(kind, "mix" | "interface" | "") { Map::new() } else { self.relief(list)? };
         let value = match kind {
             "diffuse" => {
                 let reflectance = self.reflectance(list, "reflectance", true)?.unwrap_or(json!(0.5));
@@ -43,9 +46,14 @@ impl Reading<'_, '_> {
                 let [first, second] = &names[..] else {
                     return Err(format!("{place}: a mix has two materials, not {}", names.len()));
                 };
-                let known = |name: &String| {
+                let mut known = |name: &String| {
                     let look = self.materials.get(name).cloned();
                     let look = look.ok_or_else(|| format!("{place}: there is no material \"{name}\""))?;
+                    if has_map(&look.detail) {
+                        let what =
+                            format!("the normals of a part of it, \"{name}\", are not bent: its map is left out");
+                        self.builder.leave_out(place, what);
+                    }
                     // In full, since a blend may only name what stands before it.
                     let value = match look.value.as_str().and_then(|name| self.builder.materials.get(name)) {
                         Some(value) => value.clone(),
@@ -70,7 +78,7 @@ impl Reading<'_, '_> {
         };
         list.get("type");
         list.list_unused(self.builder);
-        Ok(Look { value, opacity })
+        Ok(Look { value, opacity, detail })
     }
 
     fn conductor(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {

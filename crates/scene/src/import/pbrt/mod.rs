@@ -6,13 +6,14 @@ mod camera;
 mod light;
 mod material;
 mod parameters;
+mod relief;
 mod shape;
 mod spectrum;
 mod tokens;
 
 use std::collections::HashMap;
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::matrix::{IDENTITY, Rows, inverse, looking, product, rotation, scaling, translation};
 use super::{Builder, Outside};
@@ -65,11 +66,14 @@ struct State {
 struct Look {
     value: Value,
     opacity: f64,
+    /// Further keys of its objects: a map of normals or heights.
+    detail: Map<String, Value>,
 }
 
 impl Default for State {
     fn default() -> Self {
-        let material = Look { value: serde_json::json!({ "type": "lambert", "reflectance": 0.5 }), opacity: 1.0 };
+        let value = serde_json::json!({ "type": "lambert", "reflectance": 0.5 });
+        let material = Look { value, opacity: 1.0, detail: Map::new() };
         Self { transform: IDENTITY, material, emission: None, reversed: false }
     }
 }

@@ -1,12 +1,13 @@
 //! Shapes of pbrt.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::Reading;
 use super::parameters::Parameters;
 use super::spectrum::kind;
 use crate::import::Placed;
 use crate::import::number::{Number, has_image};
+use crate::import::relief::without_map;
 use crate::mesh::{MAX_ELEMENTS, read_ply};
 use crate::model::Mesh;
 use crate::vector::unit;
@@ -58,7 +59,10 @@ impl Reading<'_, '_> {
             }
         };
         let mut opacity = self.state.material.opacity;
-        let mut detail = Map::new();
+        let mut detail = self.state.material.detail.clone();
+        if !has_uvs && without_map(&mut detail) {
+            self.builder.leave_out(place, "it has no texture coordinates for the map of its normals, and is smooth");
+        }
         match self.share(list, "alpha")? {
             None => {}
             Some(Number::Value(alpha)) => opacity *= alpha,

@@ -72,7 +72,14 @@ impl Reading<'_, '_> {
         if parameter.kind == "texture" {
             let texture = parameter.strings().first().and_then(|texture| self.textures.get(texture));
             if let Some(image) = texture.filter(|value| value["type"] == "image") {
-                return Ok(Some(number_image(image)));
+                let number = number_image(image);
+                if let Number::Image(image, _) = &number
+                    && image["factor"].as_f64().is_some_and(|factor| factor < 0.0)
+                {
+                    self.builder.leave_out(&parameter.place, format!("a negative \"{name}\" is taken for none"));
+                    return Ok(Some(Number::Value(0.0)));
+                }
+                return Ok(Some(number));
             }
         }
         let place = parameter.place.clone();
@@ -169,7 +176,14 @@ impl Reading<'_, '_> {
             "constant" => self.reflectance(list, "value", true)?.unwrap_or(json!(1.0)),
             "scale" => {
                 let inner = self.reflectance(list, "tex", true)?.unwrap_or(json!(1.0));
-                let factor = self.reflectance(list, "scale", false)?.unwrap_or(json!(1.0));
+                let factor = match list.get("scale") {
+                    // An image of heights may have any.
+                    Some(number) if kind == "float" && number.kind == "float" && inner["type"] == "image" => {
+                        list.number("scale")?.map(Value::from)
+                    }
+                    _ => self.reflectance(list, "scale", false)?,
+                };
+                let factor = factor.unwrap_or(json!(1.0));
                 match (inner["type"].as_str(), factor.as_f64()) {
                     (Some("image"), Some(factor)) => scaled(inner, factor),
                     (None, Some(factor)) => json!(inner.as_f64().unwrap_or(1.0) * factor),
@@ -241,7 +255,7 @@ impl Reading<'_, '_> {
 }
 
 /// An image of colours as one of numbers.
-fn number_image(colours: &Value) -> Number {
+pub(super) fn number_image(colours: &Value) -> Number {
     let mut image = without_mean(colours.clone());
     let factor = colours["factor"][0].as_f64().unwrap_or(1.0);
     if let Some(keys) = image.as_object_mut() {
