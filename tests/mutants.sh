@@ -2,7 +2,8 @@
 # Hunts mutants that no test notices: operators of source files exchanged one by one, all in one build, chosen when the tests run.
 # Names those that tests reach and do not notice, and those that none reaches; exit status 1 if there are any of the first kind.
 # What follows `--` are the tests, as `cargo test --workspace` takes them.
-#   tests/mutants.sh [--limit N] FILE … -- TESTS
+#   tests/mutants.sh [--limit N] [--quick SECONDS] FILE … -- TESTS
+# --limit tries only so many mutants, evenly; --quick leaves out tests that take longer.
 #   tests/mutants.sh crates/transport/src/caustics/hull.rs -- --lib --test many_paths
 set -eu
 

@@ -14,16 +14,19 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let mut tree = PathBuf::from(".");
     let (mut files, mut tests, mut limit) = (Vec::new(), Vec::new(), usize::MAX);
+    // No test takes an hour.
+    let mut quick_s = 3600.0;
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--tree" => tree = arguments.next().map(PathBuf::from).expect("--tree takes a folder"),
             "--limit" => limit = arguments.next().and_then(|n| n.parse().ok()).expect("--limit takes a number"),
+            "--quick" => quick_s = arguments.next().and_then(|n| n.parse().ok()).expect("--quick takes seconds"),
             "--" => tests.extend(arguments.by_ref()),
             file => files.push(file.to_owned()),
         }
     }
-    match hunt::hunt(&tree, &files, &tests, limit) {
+    match hunt::hunt(&tree, &files, &tests, limit, quick_s) {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::from(1),
         Err(message) => {
