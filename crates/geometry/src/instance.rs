@@ -60,6 +60,12 @@ impl Placement {
             return Err(ShapeError::Singular);
         }
         super::shapes::check_points(&placement.inverse)?;
+        // The determinant of an inverse within that range is at most 6·MAX_COORDINATE³. If that of L is less than one over it, products
+        // were lost that double precision cannot hold, and the inverse is one of nothing.
+        const LEAST_DETERMINANT: f64 = 1.0 / (8.0 * MAX_COORDINATE * MAX_COORDINATE * MAX_COORDINATE);
+        if determinant(&linear).abs() < LEAST_DETERMINANT {
+            return Err(ShapeError::Singular);
+        }
         Ok(placement)
     }
 
@@ -166,6 +172,11 @@ impl Placement {
             curvature: if p.curvature == 0.0 { 0.0 } else { p.curvature * stretch / normal.length() },
         }
     }
+}
+
+fn determinant(rows: &[Vec3<f64>; 3]) -> f64 {
+    let rows = rows.map(widen);
+    dot(rows[0], cross(rows[1], rows[2])).ratio(1.0.into())
 }
 
 fn product(rows: &[Vec3<f64>; 3], v: Vec3<f64>) -> Vec3<f64> {

@@ -363,6 +363,11 @@ fn placements_that_flatten_and_instances_of_nothing_are_refused() {
     assert_eq!(Placement::new(scaling([1.0; 3]), [f64::INFINITY, 0.0, 0.0]), Err(NotFinite));
     assert_eq!(Placement::new(scaling([1e-40; 3]), zero), Err(OutOfRange));
     assert_eq!(Placement::new([[1.0, 1.0, 0.0], [1.0, 1.0 + 1e-15, 0.0], [0.0, 0.0, 1.0]], zero), Err(Singular));
+    // Products too small for double precision: what is left of the determinant is no zero, but means nothing. Found by the fuzzer.
+    let row = [0.5, -4.5, -0.5625];
+    assert_eq!(Placement::new([row, [5.60206894132e-312, 0.0, 0.0], row], zero), Err(Singular));
+    // As small as an inverse in range allows.
+    assert!(Placement::new(scaling([1.0 / (1_u128 << 119) as f64; 3]), zero).is_ok());
     let placement = Placement::new(scaling([1e30; 3]), zero).unwrap();
     assert_eq!(Instance::new(build(Vec::new()), placement), Err(Empty));
     let far = build(vec![Sphere::new(v(1e30, 0.0, 0.0), 1.0).unwrap().into()]);
