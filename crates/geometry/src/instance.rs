@@ -6,7 +6,7 @@
 
 use crate::best::Found;
 use crate::double_double::{cross, dot, widen};
-use crate::query::Query;
+use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
 use crate::{Aabb, Geometry, MAX_COORDINATE, Motion, Ray, ShapeError, SurfaceId};
 use etalon_optics::{Real, Vec3};
@@ -24,6 +24,17 @@ pub(crate) fn told_end(t_max: f64) -> f64 {
     const LEAST: f64 = 1.0 / (1_u128 << 120) as f64;
     // Never of NaN: ends are limits that have been compared.
     if t_max > LEAST { t_max } else { LEAST }
+}
+
+/// Puts a hit that rounding found before the ray has entered the instance's bounds to where it does, and tells whether it counts before
+/// `t_max`. What is hit first must not depend on whether the bounds are entered before `t_max`, and an instance that is flat to one part
+/// in 10³⁰ has coordinates in which rays are little but rounding.
+#[inline(always)]
+pub(crate) fn at_least(hit: &mut RawHit, entry: f64, t_max: f64) -> bool {
+    // Where t is so small that the change of units lost it there is no hit, nor beyond an end that was not told.
+    let is_ahead = hit.t > 0.0;
+    hit.t = if hit.t < entry { entry } else { hit.t };
+    is_ahead && hit.t < t_max
 }
 
 /// An affine map p ↦ L·p + T from the coordinates of what is placed to those where it is placed, and its inverse.
@@ -322,32 +333,30 @@ impl Instance {
         })
     }
 
-    /// Whether a ray meets the bounds before `t_max`, to rounding.
+    /// Where a ray enters the bounds, if it does before `t_max`, to rounding.
     ///
     /// Every test of the instance asks this too, with a tree around it or without: where the ray's rounding in the
     /// instance's coordinates would let it hit something while it passes by outside, both agree that it does not.
-    fn is_met(&self, query: &Query, t_max: f64) -> bool {
-        query.meets(self.bounds_at(query.time), t_max)
+    fn entry(&self, query: &Query, t_max: f64) -> Option<f64> {
+        query.entry(self.bounds_at(query.time), t_max)
     }
 
     /// The closest hit with 0 < t < `t_max`.
     #[inline(never)]
     pub(crate) fn closest(&self, query: &Query, t_max: f64) -> Option<Found> {
-        if !self.is_met(query, t_max) {
-            return None;
-        }
+        let entry = self.entry(query, t_max)?;
         let inner = self.enter(query, told_end(t_max))?;
         let (mut hit, mut surface) = self.geometry.closest(&inner)?;
         hit.t *= inner.scale;
         surface.instance += self.first;
-        // False where t is so small that the change of units lost it, or beyond an end that was not told.
-        (0.0 < hit.t && hit.t < t_max).then_some((hit, surface))
+        at_least(&mut hit, entry, t_max).then_some((hit, surface))
     }
 
     /// Whether anything but the surface aimed at is hit.
     #[inline(never)]
     pub(crate) fn occludes(&self, query: &Query) -> bool {
-        self.is_met(query, query.t_max) && self.enter(query, query.t_max).is_some_and(|inner| self.geometry.any(&inner))
+        self.entry(query, query.t_max).is_some()
+            && self.enter(query, query.t_max).is_some_and(|inner| self.geometry.any(&inner))
     }
 
     /// The point of a surface within at parameter `t` of the query; see [`Geometry::exact_point`].

@@ -83,9 +83,9 @@ impl Portal {
         SurfaceId { instance: surface.instance + self.first, ..surface }
     }
 
-    /// Whether a ray meets the instance's bounds before `t_max`, to rounding.
+    /// Where a ray enters the instance's bounds, if it does before `t_max`, to rounding.
     #[inline(always)]
-    pub(crate) fn is_met(&self, query: &Query, t_max: f64) -> bool {
-        query.meets(&self.bounds, t_max)
+    pub(crate) fn entry(&self, query: &Query, t_max: f64) -> Option<f64> {
+        query.entry(&self.bounds, t_max)
     }
 }

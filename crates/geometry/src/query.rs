@@ -87,9 +87,9 @@ impl Query {
 }
 
 impl Query {
-    /// Whether it meets a box before `t_max`, to rounding.
+    /// Where it enters a box, 0 from within, if that is before `t_max`, to rounding.
     #[inline]
-    pub(crate) fn meets(&self, bounds: &Aabb, t_max: f64) -> bool {
+    pub(crate) fn entry(&self, bounds: &Aabb, t_max: f64) -> Option<f64> {
         let (mut near, mut far) = (0.0_f64, t_max);
         for k in 0..3 {
             let (d, o) = (self.direction[k], self.origin[k]);
@@ -99,11 +99,11 @@ impl Query {
                 near = near.max(t0.min(t1));
                 far = far.min(t0.max(t1));
             } else if lower > 0.0 || upper < 0.0 {
-                return false;
+                return None;
             }
         }
         // The smallest numbers are rounded to their like, not to a share of themselves.
-        near <= far * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE
+        (near <= far * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE).then_some(near)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod cylinders;
 mod flat;
+mod flattened;
 mod frames;
 mod instances;
 mod motion;

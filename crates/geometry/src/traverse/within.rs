@@ -5,7 +5,7 @@ use super::{LEVELS, any_on, closest_on, occludes};
 use crate::Primitive;
 use crate::best::Best;
 use crate::frame::Entry;
-use crate::instance::told_end;
+use crate::instance::{at_least, told_end};
 use crate::portal::Portal;
 use crate::query::Query;
 use crate::wide::{MESH, MIXED, NODE_WIDTH};
@@ -40,9 +40,9 @@ pub(super) fn closest_within<F: Compiled>(
         Entry::Ray(near) => closest_on::<F, _, MIXED, ROOM>(filters, tree, inner, ray, &near),
         Entry::Unknown => filters.closest_far(tree, inner, ray),
     };
-    let Some((hit, surface)) = found else { return false };
-    // False where t is so small that the change of units lost it, or beyond an end that was not told.
-    let found = 0.0 < hit.t && hit.t < t_max && portal.is_met(query, t_max);
+    let Some((mut hit, surface)) = found else { return false };
+    let Some(entry) = portal.entry(query, t_max) else { return false };
+    let found = at_least(&mut hit, entry, t_max);
     if found {
         best.set_within(hit, portal.id, portal.outward(surface));
     }
@@ -74,5 +74,5 @@ pub(super) fn occludes_within<F: Compiled>(
         Entry::Ray(near) => any_on::<F, _, MIXED, { LEVELS[0] }>(filters, tree, inner, ray, &near),
         Entry::Unknown => filters.any_far(tree, inner, ray),
     };
-    hit && portal.is_met(query, query.t_max)
+    hit && portal.entry(query, query.t_max).is_some()
 }
