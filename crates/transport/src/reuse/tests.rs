@@ -4,6 +4,7 @@ use crate::caustics::Aims;
 use crate::film::Film;
 use crate::plan::PathLoop;
 use crate::{Study, prepare_study};
+use etalon_scene::PathReuse;
 use std::cell::Cell;
 
 /// What may be wrong.
@@ -72,5 +73,35 @@ fn every_pixel_of_a_room_of_constant_radiance_stays_one_and_not_if_densities_are
             FAULT.set(None);
             assert!(z > 9.0, "{path_loop:?}, {fault:?}: {z} standard errors");
         }
+    }
+}
+
+/// The largest difference of two films over all pixels, in standard errors, where at most `max_depth` edges are followed: of one that shares
+/// paths and one that does not. Behind the mirror and the glass the first diffuse surface is a later vertex, and what is left to follow less.
+fn differs_without_sharing(max_depth: u32) -> f64 {
+    let film = |path_reuse| {
+        let mut scene = super::room::room(REPLICATES);
+        (scene.integrator.max_depth, scene.integrator.path_reuse) = (Some(max_depth), path_reuse);
+        let prepared = prepare_study(&scene, &Study { path_loop: Some(PathLoop::Plain), ..Study::default() }).unwrap();
+        let extent = prepared.whole(None);
+        let mut film = prepared.film();
+        let mut sums = film.tile(extent.rect);
+        film.counters = prepared.render_tile(extent.rect, extent.samples, sums.borrow());
+        film.put(extent.rect, &sums);
+        film
+    };
+    let (shared, alone) = (film(PathReuse::Block4x4), film(PathReuse::None));
+    shared.pixels().zip(alone.pixels()).fold(0.0, |z: f64, (a, b)| {
+        let [a, b] = [a, b].map(|pixel| (pixel.xyz()[1], pixel.variance(|xyz| [xyz[1]]).unwrap().0[0]));
+        z.max((a.0 - b.0).abs() / (a.1 + b.1).sqrt())
+    })
+}
+
+/// Nine standard errors as above. Where a path is cut, the mates of another length would receive what is not theirs.
+#[test]
+fn paths_are_shared_with_those_of_their_length() {
+    for max_depth in [2, 3] {
+        let z = differs_without_sharing(max_depth);
+        assert!(z < 9.0, "at most {max_depth} edges: {z} standard errors");
     }
 }
