@@ -3,6 +3,7 @@
 use crate::caustics::Aims;
 use crate::film::Film;
 use crate::plan::PathLoop;
+use crate::prepare::Prepared;
 use crate::{Study, prepare_study};
 use etalon_scene::PathReuse;
 use std::cell::Cell;
@@ -39,6 +40,10 @@ fn film(path_loop: PathLoop, aims: Aims) -> Film {
     assert_eq!(prepared.path_reuse(), Some([4, 4]));
     assert_eq!((prepared.casters.bodies.len(), prepared.casters.images.len()), (2, 16));
     (prepared.casters.aims, prepared.casters.share) = (aims, 0.4);
+    rendered(&prepared)
+}
+
+fn rendered(prepared: &Prepared) -> Film {
     let extent = prepared.whole(None);
     let mut film = prepared.film();
     let mut sums = film.tile(extent.rect);
@@ -83,12 +88,7 @@ fn differs_without_sharing(max_depth: u32) -> f64 {
         let mut scene = super::room::room(REPLICATES);
         (scene.integrator.max_depth, scene.integrator.path_reuse) = (Some(max_depth), path_reuse);
         let prepared = prepare_study(&scene, &Study { path_loop: Some(PathLoop::Plain), ..Study::default() }).unwrap();
-        let extent = prepared.whole(None);
-        let mut film = prepared.film();
-        let mut sums = film.tile(extent.rect);
-        film.counters = prepared.render_tile(extent.rect, extent.samples, sums.borrow());
-        film.put(extent.rect, &sums);
-        film
+        rendered(&prepared)
     };
     let (shared, alone) = (film(PathReuse::Block4x4), film(PathReuse::None));
     shared.pixels().zip(alone.pixels()).fold(0.0, |z: f64, (a, b)| {
