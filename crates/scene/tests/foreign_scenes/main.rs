@@ -1,13 +1,15 @@
 //! Scenes of Mitsuba and pbrt: what they say arrives in the scene, what cannot be honoured is listed with its line.
 
+mod images;
+mod relief;
+
 use etalon_scene::import::{Imported, import_bytes};
 use etalon_scene::{
-    EnvironmentProjection, LightKind, MaterialKind, NumberTexture, Projection, Scene, Shape, SpectrumTexture,
-    parse_imported,
+    EnvironmentProjection, LightKind, MaterialKind, Projection, Scene, Shape, SpectrumTexture, parse_imported,
 };
 use proptest::prelude::*;
 
-const PNG: &[u8] = include_bytes!("files/chequers.png");
+const PNG: &[u8] = include_bytes!("../files/chequers.png");
 const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
 const INCLUDED: &[u8] = br#"<scene version="3.0.0">
   <bsdf type="twosided" id="red"><bsdf type="diffuse"><rgb name="reflectance" value="0.6, 0.1, 0.05"/></bsdf></bsdf>
@@ -160,105 +162,6 @@ fn every_property_that_nobody_asks_for_is_listed() {
         let text = format!("<scene version=\"3.0.0\">\n<shape type=\"cube\"/>\n{element}{tail}\n</scene>");
         let said = said(&imported("xml", &text));
         assert!(said.iter().any(|l| l.starts_with("line 3: ")), "{element}: {said:?}");
-    }
-}
-
-#[test]
-fn surfaces_that_shine_by_an_image_arrive() {
-    let mitsuba = r#"<scene version="3.0.0"><shape type="rectangle"><emitter type="area">
-        <texture type="bitmap" name="radiance"><string name="filename" value="chequers.png"/></texture></emitter></shape></scene>"#;
-    let pbrt = "WorldBegin\nAreaLightSource \"diffuse\" \"string filename\" \"chequers.png\" \"float scale\" 3\n\
-        Shape \"disk\" \"float radius\" 1\n";
-    // v from below, while Mitsuba counts from above.
-    for (kind, text, factor, scale) in [("xml", mitsuba, 1.0, [1.0, -1.0]), ("pbrt", pbrt, 3.0, [1.0, 1.0])] {
-        let imported = imported(kind, text);
-        let scene = scene(&imported);
-        let emission = scene.placed_objects().find_map(|object| object.emission.as_ref()).expect("a lamp");
-        let image = emission.image.as_ref().unwrap_or_else(|| panic!("{kind}: an image"));
-        assert_eq!((image.factor, image.uv_scale), ([factor; 3], scale), "{kind}");
-        assert_eq!(imported.files.len(), 1);
-        assert!(!said(&imported).iter().any(|what| what.contains("image")), "{:?}", said(&imported));
-    }
-}
-
-/// What a roughness by an image becomes: the numbers at which parts of a blend stand, each with the width of its part.
-fn widths(kind: &MaterialKind) -> Vec<(f64, f64)> {
-    let MaterialKind::Blend { parts, by: NumberTexture::Image(_) } = kind else { panic!("{kind:?}") };
-    let width = |kind: &MaterialKind| match kind {
-        MaterialKind::RoughConductor { alpha, .. } | MaterialKind::Plastic { alpha, .. } => *alpha,
-        MaterialKind::Conductor { .. } => 0.0,
-        other => panic!("{other:?}"),
-    };
-    parts.iter().map(|(number, part)| (*number, width(part))).collect()
-}
-
-fn image_of(kind: &MaterialKind) -> &etalon_scene::ImageTexture {
-    let MaterialKind::Blend { by: NumberTexture::Image(image), .. } = kind else { panic!("{kind:?}") };
-    image
-}
-
-#[test]
-fn roughness_by_an_image_says_the_width_that_its_program_means() {
-    let mitsuba = |keys: &str| {
-        format!(
-            r#"<scene version="3.0.0"><shape type="rectangle"><bsdf type="roughconductor"><string name="distribution" value="ggx"/>
-            <texture type="bitmap" name="alpha"><string name="filename" value="chequers.png"/>{keys}</texture></bsdf></shape></scene>"#
-        )
-    };
-    let pbrt = |keys: &str| {
-        format!(
-            "WorldBegin\nTexture \"r\" \"float\" \"imagemap\" \"string filename\" \"chequers.png\" \"float scale\" 0.5\n\
-             Material \"coateddiffuse\" \"texture roughness\" \"r\"{keys}\n\
-             Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 ]\n"
-        )
-    };
-    // Mitsuba: α as it stands, or by sRGB; pbrt: α², or α where nothing is remapped.
-    let raw = "<boolean name=\"raw\" value=\"true\"/>";
-    let same = |v: f64| v;
-    let alpha_of: [fn(f64) -> f64; 4] = [same, same, f64::sqrt, same];
-    let cases = [
-        ("xml", mitsuba(raw), 1.0),
-        ("xml", mitsuba(""), 1.0),
-        ("pbrt", pbrt(""), 0.5),
-        ("pbrt", pbrt(" \"bool remaproughness\" false"), 0.5),
-    ];
-    let mut means = Vec::new();
-    for ((kind, text, factor), alpha_of) in cases.into_iter().zip(alpha_of) {
-        let imported = imported(kind, &text);
-        let scene = scene(&imported);
-        let material = &scene.materials[scene.objects[0].material].kind;
-        let widths = widths(material);
-        assert!(widths.len() >= 2, "{text}");
-        for (number, alpha) in widths {
-            // A node is 0, or a root taken and squared again.
-            assert!((alpha_of(number) - alpha).abs() < 1e-12, "{number} says {alpha} in {text}");
-        }
-        let image = image_of(material);
-        assert_eq!(image.factor, [factor; 3]);
-        means.push(image.image.mean()[0]);
-        assert!(said(&imported).is_empty(), "{:?}", said(&imported));
-    }
-    // The curve of sRGB makes grey darker; pbrt decodes PNG files by it.
-    assert!(means[1] < means[0], "{means:?}");
-    assert_eq!(means[2], means[3]);
-}
-
-#[test]
-fn opacity_and_weights_by_an_image_arrive() {
-    let mitsuba = r#"<scene version="3.0.0"><texture type="bitmap" id="t"><string name="filename" value="chequers.png"/></texture>
-        <shape type="rectangle"><bsdf type="mask"><ref name="opacity" id="t"/><bsdf type="blendbsdf"><ref name="weight" id="t"/>
-            <bsdf type="diffuse"/><bsdf type="conductor"/></bsdf></bsdf></shape></scene>"#;
-    let pbrt = "WorldBegin\nTexture \"t\" \"float\" \"imagemap\" \"string filename\" \"chequers.png\"\n\
-        MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"conductor\"\n\
-        Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"texture amount\" \"t\"\n\
-        Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 ] \"texture alpha\" \"t\"\n";
-    for (kind, text) in [("xml", mitsuba), ("pbrt", pbrt)] {
-        let imported = imported(kind, text);
-        let scene = scene(&imported);
-        let object = &scene.objects[0];
-        assert!(object.opacity_image.is_some(), "{kind}");
-        assert_eq!(image_of(&scene.materials[object.material].kind).image.width, 2, "{kind}");
-        assert!(said(&imported).is_empty(), "{kind}: {:?}", said(&imported));
     }
 }
 

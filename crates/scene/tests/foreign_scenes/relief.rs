@@ -1,26 +1,12 @@
 //! Normal and bump maps of Mitsuba and pbrt: what they say arrives in the scene, what cannot be honoured is listed with its line.
 
+use super::{imported, said, scene};
 use etalon_scene::import::{Imported, import_bytes};
-use etalon_scene::{Bitangent, Object, Relief, TextureFilter, Wrap, parse_imported};
-
-const PNG: &[u8] = include_bytes!("files/chequers.png");
-
-fn imported(kind: &str, text: &str) -> Imported {
-    let near = |name: &str| match name {
-        "chequers.png" => Ok(PNG.to_vec()),
-        other => Err(format!("there is no {other}")),
-    };
-    import_bytes(kind, text.as_bytes(), &near, "", "a").unwrap_or_else(|why| panic!("{why}\n{text}"))
-}
-
-fn said(imported: &Imported) -> Vec<String> {
-    imported.left_out.iter().map(|l| format!("{}: {}", l.place, l.what)).collect()
-}
+use etalon_scene::{Bitangent, Object, Relief, TextureFilter, Wrap};
 
 /// The only object.
 fn object(imported: &Imported) -> Object {
-    let loaded = parse_imported(imported, "a", None).unwrap_or_else(|errors| panic!("{errors}\n{}", imported.text));
-    loaded.scene.objects.into_iter().next().expect("an object")
+    scene(imported).objects.into_iter().next().expect("an object")
 }
 
 /// What a file says of its only object, all of which is honoured.
