@@ -57,12 +57,27 @@ fn cargo(copy: &Path) -> Command {
     command
 }
 
-/// Copies the tracked files of a tree, unchanged ones not again.
+/// Makes a folder hold the tracked files of a tree and no others; unchanged ones are not written again.
 fn copy_tree(tree: &Path, copy: &Path) -> Result<(), String> {
     let list = Command::new("git").arg("ls-files").current_dir(tree).output().map_err(|e| e.to_string())?;
+    let mut kept = BTreeSet::new();
     for name in String::from_utf8_lossy(&list.stdout).lines() {
         let Ok(new) = fs::read(tree.join(name)) else { continue };
         write(&copy.join(name), &new)?;
+        kept.insert(copy.join(name));
+    }
+    remove_others(copy, &kept).map_err(|e| format!("{}: {e}", copy.display()))
+}
+
+/// Removes the files below a folder that are not among these.
+fn remove_others(folder: &Path, kept: &BTreeSet<PathBuf>) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            remove_others(&entry.path(), kept)?;
+        } else if !kept.contains(&entry.path()) {
+            fs::remove_file(entry.path())?;
+        }
     }
     Ok(())
 }
