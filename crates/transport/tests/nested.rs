@@ -156,11 +156,20 @@ fn a_solid_that_is_open_is_refused_by_name() {
         let error = prepare(&with(shape)).err().expect("it bounds no solid");
         assert!(matches!(&error, PrepareError::OpenSolid { object, .. } if object == "pane"), "{error}");
     }
-    let closed = json!({
-        "type": "mesh", "vertices_m": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
-        "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
-    });
-    assert!(prepare(&with(closed)).is_ok());
+    // The second has its first corner twice, with a zero of the other sign: the place is the same.
+    let closed = [
+        json!({
+            "type": "mesh", "vertices_m": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+            "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+        }),
+        json!({
+            "type": "mesh", "vertices_m": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [-0.0, 0, -0.0]],
+            "triangles": [[0, 2, 1], [4, 1, 3], [1, 2, 3], [4, 3, 2]]
+        }),
+    ];
+    for shape in closed {
+        assert!(prepare(&with(shape)).is_ok());
+    }
 }
 
 /// A rough ball of glass in a bath of water, and a rough block of glass that stands on the water's face: `ball` and `block` are
