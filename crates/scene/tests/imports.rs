@@ -113,11 +113,33 @@ fn imported(model: &Value) -> Result<Imported, String> {
 fn widths(kind: &MaterialKind) -> Vec<(f64, f64)> {
     let MaterialKind::Blend { parts, by: NumberTexture::Image(_) } = kind else { panic!("{kind:?}") };
     let alpha = |kind: &MaterialKind| match kind {
-        MaterialKind::Plastic { alpha, .. } | MaterialKind::RoughConductor { alpha, .. } => *alpha,
-        MaterialKind::Conductor { .. } => 0.0,
+        MaterialKind::Plastic { alpha, .. }
+        | MaterialKind::RoughConductor { alpha, .. }
+        | MaterialKind::RoughDielectric { alpha, .. } => *alpha,
+        MaterialKind::Conductor { .. } | MaterialKind::Dielectric { .. } => 0.0,
         other => panic!("{other:?}"),
     };
     parts.iter().map(|(place, part)| (*place, alpha(part))).collect()
+}
+
+#[test]
+fn the_roughness_of_glass_comes_from_the_image_of_its_material() {
+    let mut model = model();
+    model["meshes"][0]["primitives"][1]["attributes"]["TEXCOORD_0"] = json!(2);
+    let glass = &mut model["materials"][1];
+    glass["pbrMetallicRoughness"] = json!({ "metallicRoughnessTexture": { "index": 0 }, "roughnessFactor": 0.5 });
+    glass["extensions"]["KHR_materials_volume"] =
+        json!({ "attenuationDistance": 0.5, "attenuationColor": [0.5, 0.6, 0.7] });
+    let imported = imported(&model).unwrap();
+    let scene = scene(&imported);
+    let material = scene.materials.iter().find(|material| material.name == "glass").expect("the glass");
+    let widths = widths(&material.kind);
+    assert!(widths.iter().all(|(place, alpha)| (place * place - alpha).abs() < 1e-15), "{widths:?}");
+    let image = Image::decode(PNG, Encoding::Linear).unwrap().0;
+    let greens = || image.linear_texels().map(|texel| 0.5 * texel[1]);
+    assert!(widths[0].0 <= greens().fold(1.0, f64::min) && widths[widths.len() - 1].0 >= greens().fold(0.0, f64::max));
+    assert!(material.absorption.is_some());
+    assert!(!imported.left_out.iter().any(|left| left.what.contains("image")), "{:?}", imported.left_out);
 }
 
 #[test]

@@ -224,6 +224,12 @@ fn what_is_wrong_with_an_image_of_numbers_is_said() {
         (rough.replace("chequers", "no"), SQUARE, Code::File),
         (rough.replace(".png\"", ".png\", \"factor\": 2"), SQUARE, Code::OutOfRange),
         (rough.replace("0.5,", "0.5, \"alpha\": 0.1,"), SQUARE, Code::KeyConflict),
+        (
+            r#"{"type": "dielectric", "interior": 1.5, "priority": 1, "roughness_image": {"file": "files/chequers.png"}}"#
+                .to_owned(),
+            SQUARE,
+            Code::KeyConflict,
+        ),
         (blend(""), SQUARE, Code::MissingKey),
         (blend(r#", "weight": 0.5, "weight_image": {"file": "files/chequers.png"}"#), SQUARE, Code::KeyConflict),
         (r#"{"type": "conductor", "reflectance": 1.5}"#.to_owned(), SQUARE, Code::Reflectance),

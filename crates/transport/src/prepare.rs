@@ -179,13 +179,11 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         interiors: scene
             .materials
             .iter()
-            .map(|material| match material.kind {
-                MaterialKind::Dielectric { priority: None, .. }
-                | MaterialKind::RoughDielectric { priority: None, .. } => {
+            .map(|material| {
+                material.kind.media().map(|_| {
                     let absorption = material.absorption.as_ref().filter(|absorption| !absorption.is_zero());
-                    Some(Interior { absorption: absorption.map(spectrum) })
-                }
-                _ => None,
+                    Interior { absorption: absorption.map(spectrum) }
+                })
             })
             .collect(),
         objects: shapes::objects(scene)

@@ -1,10 +1,12 @@
 //! Media that absorb, against closed forms and against each other.
 
+use etalon_optics::RefractiveIndex;
 use etalon_oracle::truths::{Claim, truths};
-use etalon_scene::{Precision, Scene};
+use etalon_scene::{Image, ImageTexture, MaterialKind, NumberTexture, Precision, Scene, Texels, TextureFilter, Wrap};
 use etalon_transport::{EffectName, Study};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 #[path = "common/rendering.rs"]
 mod rendering;
@@ -63,6 +65,48 @@ fn each_wavelength_is_absorbed_by_its_own_coefficient() {
     let bare = render(&slab(&clear, 0.8, [400.0, 700.0]), &study);
     let (got, white) = (mean_y(&whole), mean_y(&bare));
     assert!(got / white > (-0.8_f64 * 1.5).exp() && got / white < 1.0, "{got} of {white}");
+}
+
+/// A material whose roughness an image says, 0.5 everywhere, among others of which none has a share.
+fn at_one_half(of: impl Fn(f64) -> MaterialKind) -> MaterialKind {
+    let image = ImageTexture {
+        image: Arc::new(Image::new(1, 1, Texels::F32(vec![[0.5; 3]]))),
+        name: String::new(),
+        wrap: [Wrap::Repeat; 2],
+        filter: TextureFilter::Bilinear,
+        uv_scale: [1.0; 2],
+        uv_offset: [0.0; 2],
+        factor: [1.0; 3],
+    };
+    let parts = [0.25, 0.5, 1.0].map(|roughness| (roughness, of(roughness * roughness)));
+    MaterialKind::Blend { parts: parts.to_vec(), by: NumberTexture::Image(image) }
+}
+
+#[test]
+fn glass_whose_roughness_an_image_says_absorbs_as_glass_of_that_roughness() {
+    let glass = |index: f64| {
+        move |alpha| MaterialKind::RoughDielectric {
+            interior: RefractiveIndex::Constant(index),
+            exterior: RefractiveIndex::VACUUM,
+            alpha,
+            compensated: true,
+            priority: None,
+        }
+    };
+    let material = json!({"type": "dielectric", "interior": 1, "absorption_per_m": 2});
+    let mut scene = slab(&material, 0.4, [400.0, 700.0]);
+    let clear =
+        mean_y(&render(&slab(&json!({"type": "dielectric", "interior": 1}), 0.4, [400.0, 700.0]), &Study::default()));
+    // Facets between equal media let everything pass straight on: e^(−2·0.4) is left.
+    scene.materials[0].kind = at_one_half(glass(1.0));
+    assert!((mean_y(&render(&scene, &Study::default())) / clear / (-0.8_f64).exp() - 1.0).abs() < 1e-9);
+    // Rough glass that bends light, seen and lit from within and without: the very same paths.
+    scene.materials[0].kind = glass(1.5)(0.25);
+    let own = render(&scene, &Study::default());
+    scene.materials[0].kind = at_one_half(glass(1.5));
+    assert_eq!(render(&scene, &Study::default()).linear_rec709(), own.linear_rec709());
+    scene.materials[0].absorption = None;
+    assert!(mean_y(&render(&scene, &Study::default())) > 1.2 * mean_y(&own));
 }
 
 #[test]

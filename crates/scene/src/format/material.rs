@@ -95,6 +95,8 @@ crate::record! {
         exterior: Required<IndexForm> = "1",
         /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
+        /// Instead: an image that says the width at each place.
+        roughness_image: Optional<RoughnessImageForm>,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
         multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
         /// For a closed solid that touches, overlaps or holds other solids: where several overlap, the one of the highest
@@ -107,7 +109,9 @@ crate::record! {
         /// The depth at which `transmittance` holds, m.
         transmittance_depth_m: Optional<Positive>,
     } with [
+        Rule::NotBoth("alpha", "roughness_image"),
         Rule::NotBoth("exterior", "priority"),
+        Rule::NotBoth("roughness_image", "priority"),
         Rule::NotBoth("absorption_per_m", "transmittance"),
         Rule::Needs("transmittance", &["transmittance_depth_m"]),
         Rule::Needs("transmittance_depth_m", &["transmittance"]),
@@ -331,15 +335,18 @@ pub(crate) fn material<'f>(
         MaterialForm::Dielectric(dielectric) => {
             let interior = dielectric.interior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let exterior = dielectric.exterior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
-            let alpha = roughness::width(dielectric.alpha.as_ref(), reader);
+            let roughness = roughness(dielectric.alpha.as_ref(), &dielectric.roughness_image, files, reader);
             let compensated = dielectric.multiple_scattering? == MultipleScattering::Compensated;
             let priority = dielectric.priority.clone().checked()?.map(|priority| priority.0 as u32);
             let absorption = absorption(dielectric, spectra, reader);
             let (interior, exterior) = (interior?, exterior?);
-            let kind = match alpha? {
-                0.0 => MaterialKind::Dielectric { interior, exterior, priority },
-                alpha => MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority },
-            };
+            let kind = roughness?.material(|alpha| {
+                let (interior, exterior) = (interior.clone(), exterior.clone());
+                match alpha {
+                    0.0 => MaterialKind::Dielectric { interior, exterior, priority },
+                    alpha => MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority },
+                }
+            });
             return Some(Made { kind, absorption: absorption? });
         }
         MaterialForm::OrenNayar(rough) => {

@@ -74,7 +74,7 @@ impl Materials {
         list_unhonoured(material, place, builder);
         let [r, g, b, _] = surface.base_color_factor().map(decimal);
         let base = [r, g, b].map(|v| v.clamp(0.0, 1.0));
-        let (metallic, mut roughness) = (surface.metallic_factor(), surface.roughness_factor());
+        let (metallic, roughness) = (surface.metallic_factor(), surface.roughness_factor());
         if let Some(transmission) = material.transmission()
             && transmission.transmission_factor() >= 0.5
         {
@@ -85,15 +85,14 @@ impl Materials {
             if base != [1.0; 3] || surface.base_color_texture().is_some() {
                 builder.leave_out(format!("{place}.pbrMetallicRoughness"), "clear glass has no base colour");
             }
-            if let Some(info) = surface.metallic_roughness_texture() {
-                let at = format!("{place}.pbrMetallicRoughness.metallicRoughnessTexture");
-                builder.leave_out(at, "glass has the mean of the image everywhere");
-                if let Some(image) = linear(&info.texture(), buffers, builder) {
-                    roughness *= image.mean()[1] as f32;
-                }
-            }
             let interior = index(material, place, builder);
-            let mut glass = json!({ "type": "dielectric", "interior": interior, "alpha": alpha(roughness) });
+            let mut glass = json!({ "type": "dielectric", "interior": interior });
+            let mut uv_set = None;
+            let numbers = self.numbers(&surface, place, &mut uv_set, buffers, builder);
+            let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
+            if !roughness.put_as_roughness(&mut glass) {
+                uv_set = None;
+            }
             if let Some(volume) = material.volume()
                 && volume.attenuation_distance().is_finite()
                 && volume.attenuation_distance() > 0.0
@@ -103,7 +102,7 @@ impl Materials {
                 glass["transmittance"] = reflectance(colour);
                 glass["transmittance_depth_m"] = json!(decimal(volume.attenuation_distance()));
             }
-            return (glass, None);
+            return (glass, uv_set);
         }
         let at = format!("{place}.pbrMetallicRoughness");
         let texture = surface.base_color_texture();
@@ -117,25 +116,10 @@ impl Materials {
             }
             None => (reflectance(base), None),
         };
-        let numbers = surface.metallic_roughness_texture().and_then(|info| {
-            let at = format!("{at}.metallicRoughnessTexture");
-            let (image, set) = self.image(&info, &at, buffers, builder)?;
-            let texels = linear(&info.texture(), buffers, builder)?;
-            if *uv_set.get_or_insert(set) != set {
-                builder.leave_out(
-                    at,
-                    "it uses another set of texture coordinates than the colour, and counts by its mean",
-                );
-                return Some((None, texels));
-            }
-            Some((Some(data_image(image)), texels))
-        });
+        let numbers = self.numbers(&surface, place, &mut uv_set, buffers, builder);
         let part = |kind: &str, roughness: &Number| {
             let mut part = json!({ "type": kind, "reflectance": colour });
-            match roughness {
-                Number::Value(roughness) => part["alpha"] = json!(alpha(*roughness as f32)),
-                Number::Image(image) => part["roughness_image"] = image.clone(),
-            }
+            roughness.put_as_roughness(&mut part);
             part
         };
         let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
@@ -157,6 +141,27 @@ impl Materials {
             }
         };
         (value, uv_set)
+    }
+
+    /// The image of roughness and metalness: as it is laid over a surface, unless it has other texture coordinates than what else is
+    /// laid, and its texels.
+    fn numbers(
+        &mut self,
+        surface: &gltf::material::PbrMetallicRoughness<'_>,
+        place: &str,
+        uv_set: &mut Option<u32>,
+        buffers: &[Vec<u8>],
+        builder: &mut Builder<'_>,
+    ) -> Option<(Option<Value>, Image)> {
+        let info = surface.metallic_roughness_texture()?;
+        let at = format!("{place}.pbrMetallicRoughness.metallicRoughnessTexture");
+        let (image, set) = self.image(&info, &at, buffers, builder)?;
+        let texels = linear(&info.texture(), buffers, builder)?;
+        if *uv_set.get_or_insert(set) != set {
+            builder.leave_out(at, "it uses another set of texture coordinates than the colour, and counts by its mean");
+            return Some((None, texels));
+        }
+        Some((Some(data_image(image)), texels))
     }
 
     /// Opacity and normals, which are the objects' in the format. All images of a material share one set of texture
@@ -296,6 +301,15 @@ impl Number {
                 Self::Image(laid)
             }
         }
+    }
+
+    /// Says it of a material as its roughness; returns whether by an image.
+    fn put_as_roughness(&self, material: &mut Value) -> bool {
+        match self {
+            Self::Value(roughness) => material["alpha"] = json!(alpha(*roughness as f32)),
+            Self::Image(image) => material["roughness_image"] = image.clone(),
+        }
+        matches!(self, Self::Image(_))
     }
 }
 

@@ -39,8 +39,8 @@ impl Number {
 pub(super) enum Rough {
     /// The width α.
     Alpha(f64),
-    /// An image of the format, and the α of its mean.
-    Image(Value, f64),
+    /// An image of the format.
+    Image(Value),
 }
 
 impl Rough {
@@ -50,27 +50,16 @@ impl Rough {
     }
 
     /// Of an image whose numbers are a quantity of the format.
-    pub(super) fn image(mut image: Value, quantity: &str, mean_alpha: f64) -> Self {
+    pub(super) fn image(mut image: Value, quantity: &str) -> Self {
         image["quantity"] = json!(quantity);
-        Self::Image(image, within(mean_alpha))
+        Self::Image(image)
     }
 
-    /// Says it of a material that may have an image of it.
+    /// Says it of a material.
     pub(super) fn put(self, material: &mut Value) {
         match self {
             Self::Alpha(alpha) => material["alpha"] = json!(alpha),
-            Self::Image(image, _) => material["roughness_image"] = image,
-        }
-    }
-
-    /// The width everywhere, of a material that may have no image of it, which is listed.
-    pub(super) fn everywhere(self, place: &str, builder: &mut Builder<'_>) -> f64 {
-        match self {
-            Self::Alpha(alpha) => alpha,
-            Self::Image(_, alpha) => {
-                builder.leave_out(place, "the mean of the image of its roughness stands for it everywhere");
-                alpha
-            }
+            Self::Image(image) => material["roughness_image"] = image,
         }
     }
 }

@@ -157,6 +157,21 @@ impl MaterialKind {
         }
     }
 
+    /// The media before and behind an interface that has no priority; of materials side by side those of all, if they are
+    /// interfaces of the same.
+    pub fn media(&self) -> Option<[&RefractiveIndex; 2]> {
+        match self {
+            Self::Dielectric { interior, exterior, priority: None }
+            | Self::RoughDielectric { interior, exterior, priority: None, .. } => Some([exterior, interior]),
+            Self::Blend { parts, .. } => {
+                let (_, first) = parts.first()?;
+                let media = first.media()?;
+                parts.iter().all(|(_, part)| part.media() == Some(media)).then_some(media)
+            }
+            _ => None,
+        }
+    }
+
     /// Two materials side by side, the second with the share `weight` of the surface.
     pub fn blend(first: Self, second: Self, weight: impl Into<NumberTexture>) -> Self {
         Self::Blend { parts: vec![(0.0, first), (1.0, second)], by: weight.into() }

@@ -25,8 +25,10 @@ fn surfaces_that_shine_by_an_image_arrive() {
 fn widths(kind: &MaterialKind) -> Vec<(f64, f64)> {
     let MaterialKind::Blend { parts, by: NumberTexture::Image(_) } = kind else { panic!("{kind:?}") };
     let width = |kind: &MaterialKind| match kind {
-        MaterialKind::RoughConductor { alpha, .. } | MaterialKind::Plastic { alpha, .. } => *alpha,
-        MaterialKind::Conductor { .. } => 0.0,
+        MaterialKind::RoughConductor { alpha, .. }
+        | MaterialKind::RoughDielectric { alpha, .. }
+        | MaterialKind::Plastic { alpha, .. } => *alpha,
+        MaterialKind::Conductor { .. } | MaterialKind::Dielectric { .. } => 0.0,
         other => panic!("{other:?}"),
     };
     parts.iter().map(|(number, part)| (*number, width(part))).collect()
@@ -39,28 +41,30 @@ fn image_of(kind: &MaterialKind) -> &etalon_scene::ImageTexture {
 
 #[test]
 fn roughness_by_an_image_says_the_width_that_its_program_means() {
-    let mitsuba = |keys: &str| {
+    let mitsuba = |plugin: &str, keys: &str| {
         format!(
-            r#"<scene version="3.0.0"><shape type="rectangle"><bsdf type="roughconductor"><string name="distribution" value="ggx"/>
+            r#"<scene version="3.0.0"><shape type="rectangle"><bsdf type="{plugin}"><string name="distribution" value="ggx"/>
             <texture type="bitmap" name="alpha"><string name="filename" value="chequers.png"/>{keys}</texture></bsdf></shape></scene>"#
         )
     };
-    let pbrt = |keys: &str| {
+    let pbrt = |material: &str, keys: &str| {
         format!(
             "WorldBegin\nTexture \"r\" \"float\" \"imagemap\" \"string filename\" \"chequers.png\" \"float scale\" 0.5\n\
-             Material \"coateddiffuse\" \"texture roughness\" \"r\"{keys}\n\
+             Material \"{material}\" \"texture roughness\" \"r\"{keys}\n\
              Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 ]\n"
         )
     };
     // Mitsuba: α as it stands, or by sRGB; pbrt: α², or α where nothing is remapped.
     let raw = "<boolean name=\"raw\" value=\"true\"/>";
     let same = |v: f64| v;
-    let alpha_of: [fn(f64) -> f64; 4] = [same, same, f64::sqrt, same];
+    let alpha_of: [fn(f64) -> f64; 6] = [same, same, f64::sqrt, same, same, f64::sqrt];
     let cases = [
-        ("xml", mitsuba(raw), 1.0),
-        ("xml", mitsuba(""), 1.0),
-        ("pbrt", pbrt(""), 0.5),
-        ("pbrt", pbrt(" \"bool remaproughness\" false"), 0.5),
+        ("xml", mitsuba("roughconductor", raw), 1.0),
+        ("xml", mitsuba("roughconductor", ""), 1.0),
+        ("pbrt", pbrt("coateddiffuse", ""), 0.5),
+        ("pbrt", pbrt("coateddiffuse", " \"bool remaproughness\" false"), 0.5),
+        ("xml", mitsuba("roughdielectric", raw), 1.0),
+        ("pbrt", pbrt("dielectric", ""), 0.5),
     ];
     let mut means = Vec::new();
     for ((kind, text, factor), alpha_of) in cases.into_iter().zip(alpha_of) {
@@ -81,6 +85,7 @@ fn roughness_by_an_image_says_the_width_that_its_program_means() {
     // The curve of sRGB makes grey darker; pbrt decodes PNG files by it.
     assert!(means[1] < means[0], "{means:?}");
     assert_eq!(means[2], means[3]);
+    assert_eq!([means[4], means[5]], [means[0], means[2]]);
 }
 
 #[test]

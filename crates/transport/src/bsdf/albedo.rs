@@ -35,6 +35,10 @@ pub(crate) enum Tabulated {
     Mirrors,
     /// What facets of a coat let in.
     Coat,
+    /// What facets between two media lose of light from before them.
+    Outside,
+    /// What they lose of light from behind them.
+    Inside,
 }
 
 /// A table that is a function of a width and a range of indices alone, made once: images of roughness ask for many, and the

@@ -19,6 +19,11 @@ impl Ggx {
         Self { alpha }
     }
 
+    /// Their width.
+    pub(crate) fn alpha(&self) -> f64 {
+        self.alpha
+    }
+
     /// Density D of facet normals, sr⁻¹ of normals per unit of surface: 1/(π α² e²), e = sin²θ/α² + cos²θ.
     pub(crate) fn density(&self, h: Vec3<f64>) -> f64 {
         let a2 = self.alpha * self.alpha;

@@ -15,7 +15,7 @@
 //! along the hero's direction, each with its own value and its own density of that direction.
 
 use super::BsdfSample;
-use super::albedo::{self, LossTable};
+use super::albedo::{self, LossTable, Tabulated};
 use super::microfacet::{Facet, Facing, Ggx, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use crate::media::Interface;
@@ -24,6 +24,7 @@ use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
 use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel, snell};
 use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
 
 /// Rough interface of two transparent media.
 #[derive(Clone, Debug)]
@@ -48,8 +49,8 @@ struct Boundary {
 /// Losses from outside and from inside, over η = n_interior/n_exterior.
 #[derive(Clone, Debug)]
 struct Compensation {
-    outside: LossTable,
-    inside: LossTable,
+    outside: Arc<LossTable>,
+    inside: Arc<LossTable>,
     /// Mean of Fresnel's T over diffuse light from outside, at each wavelength.
     transmittance: PathSpectrum,
     /// The least and the largest η.
@@ -107,9 +108,14 @@ impl Boundary {
         let compensation = compensated.then(|| {
             let ratio = |nm: f64| interior.eval(nm) / exterior.eval(nm);
             let eta = albedo::extremes(range_nm, ratio);
+            let table = |of, eta_of: fn(f64) -> f64| {
+                albedo::shared(of, ggx.alpha(), eta, || {
+                    LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, eta_of(eta)))
+                })
+            };
             Box::new(Compensation {
-                outside: LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, eta)),
-                inside: LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, 1.0 / eta)),
+                outside: table(Tabulated::Outside, |eta| eta),
+                inside: table(Tabulated::Inside, f64::recip),
                 transmittance: PathSpectrum::tabulate(range_nm, |nm| mean_transmittance(ratio(nm))),
                 eta,
                 polarised: None,
@@ -125,8 +131,8 @@ impl Boundary {
             return Sides { n, tables: None, loss_o: 0.0, mean_loss: [0.0; 2], crossing: 0.0 };
         };
         let eta = inside / outside;
-        let (near, far) =
-            if from_outside { (&tables.outside, &tables.inside) } else { (&tables.inside, &tables.outside) };
+        let (outside, inside): (&LossTable, &LossTable) = (&tables.outside, &tables.inside);
+        let (near, far) = if from_outside { (outside, inside) } else { (inside, outside) };
         let mean_loss = [near.average(eta), far.average(eta)];
         let larger = mean_loss[0].max(mean_loss[1]);
         let from_above = tables.transmittance.eval(wavelength_nm);

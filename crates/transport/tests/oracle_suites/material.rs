@@ -193,6 +193,7 @@ fn index(kind: &MaterialKind, above: bool, wavelength_nm: f64) -> f64 {
         | MaterialKind::RoughDielectric { interior, exterior, .. } => {
             if above { exterior } else { interior }.eval(wavelength_nm)
         }
+        MaterialKind::Blend { parts, .. } => index(&parts[0].1, above, wavelength_nm),
         _ => 1.0,
     }
 }

@@ -90,6 +90,18 @@ fn metal_of_varied_roughness() -> Material<f64> {
     Material::new(MaterialKind::Blend { parts, by: NumberTexture::Image(texel([0.7; 3])) })
 }
 
+/// Glass in water, as smooth as an image says: between a smooth interface and a rough one.
+fn glass_of_varied_roughness() -> Material<f64> {
+    let index = |name: &str| RefractiveIndex::named(name).unwrap();
+    let (interior, exterior) = (index("N-BK7"), index("water"));
+    let smooth = MaterialKind::Dielectric { interior: interior.clone(), exterior: exterior.clone(), priority: None };
+    let rough = MaterialKind::RoughDielectric { interior, exterior, alpha: 0.5, compensated: true, priority: None };
+    Material::new(MaterialKind::Blend {
+        parts: vec![(0.0, smooth), (0.7, rough)],
+        by: NumberTexture::Image(texel([0.5; 3])),
+    })
+}
+
 /// A ground and a coat by images.
 fn painted_plastic() -> Material<f64> {
     let reflectance = SpectrumTexture::Image(texel([0.9, 0.2, 0.4]));
@@ -103,6 +115,7 @@ fn white_metal(alpha: f64) -> Material<f64> {
 }
 
 scatters_suite!(varied_metal_f64, metal_of_varied_roughness());
+scatters_suite!(varied_glass_f64, glass_of_varied_roughness());
 scatters_suite!(painted_plastic_f64, painted_plastic());
 scatters_suite!(white_metal_f64, white_metal(0.7));
 

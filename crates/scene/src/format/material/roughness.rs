@@ -80,7 +80,7 @@ pub(super) fn roughness(
 }
 
 /// A width of facets that can be rendered.
-pub(super) fn width(alpha: Option<&Spanned<Alpha>>, reader: &mut Reader<'_>) -> Option<f64> {
+fn width(alpha: Option<&Spanned<Alpha>>, reader: &mut Reader<'_>) -> Option<f64> {
     let (alpha, at) = alpha.map(|alpha| (alpha.value.0, alpha.at))?;
     if alpha > 0.0 && alpha < LEAST_ALPHA {
         let message = format!("a width of {alpha} is narrower than {LEAST_ALPHA}, the least that is rendered");

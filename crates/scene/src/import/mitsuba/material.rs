@@ -147,12 +147,11 @@ impl Walk<'_, '_, '_> {
                 let (interior, exterior) =
                     (self.index(element, "int_ior", 1.5046)?, self.index(element, "ext_ior", 1.000_277)?);
                 self.untinted(element, &["specular_reflectance", "specular_transmittance"])?;
-                let alpha = match plugin {
-                    "dielectric" => 0.0,
-                    _ => self.alpha(element)?.everywhere(place, self.builder),
-                };
-                json!({ "type": "dielectric", "interior": interior, "exterior": exterior, "alpha": alpha,
-                    "multiple_scattering": "lost" })
+                let mut glass = json!({ "type": "dielectric", "interior": interior, "exterior": exterior,
+                    "multiple_scattering": "lost" });
+                let rough = if plugin == "dielectric" { Rough::Alpha(0.0) } else { self.alpha(element)? };
+                rough.put(&mut glass);
+                glass
             }
             "thindielectric" => {
                 let ratio = self.index(element, "int_ior", 1.5046)? / self.index(element, "ext_ior", 1.000_277)?;
@@ -265,7 +264,7 @@ impl Walk<'_, '_, '_> {
         };
         Ok(match alpha {
             Number::Value(alpha) => Rough::width(alpha),
-            Number::Image(image, mean) => Rough::image(image, "alpha", mean),
+            Number::Image(image, _) => Rough::image(image, "alpha"),
         })
     }
 }

@@ -35,11 +35,12 @@ impl Reading<'_, '_> {
                 }
                 self.conductor(list, place)?
             }
-            "dielectric" => json!({
-                "type": "dielectric", "interior": self.index(list, 1.5)?,
-                "alpha": self.rough(list, place)?.everywhere(place, self.builder),
-                "multiple_scattering": "lost",
-            }),
+            "dielectric" => {
+                let mut glass =
+                    json!({ "type": "dielectric", "interior": self.index(list, 1.5)?, "multiple_scattering": "lost" });
+                self.rough(list, place)?.put(&mut glass);
+                glass
+            }
             "thindielectric" => json!({ "type": "thin-dielectric", "index": self.index(list, 1.5)? }),
             "mix" => {
                 let names: Vec<String> = list.get("materials").map_or(&[][..], |p| p.strings()).to_vec();
@@ -157,8 +158,8 @@ impl Reading<'_, '_> {
         let squared = list.flag("remaproughness").unwrap_or(true);
         let alpha = |roughness: f64| if squared { roughness.max(0.0).sqrt() } else { roughness };
         Ok(match (u.unwrap_or(Number::Value(0.0)), v.unwrap_or(Number::Value(0.0))) {
-            (Number::Image(u, mean), Number::Image(v, _)) if u == v => {
-                Rough::image(u, if squared { "alpha-squared" } else { "alpha" }, alpha(mean))
+            (Number::Image(u, _), Number::Image(v, _)) if u == v => {
+                Rough::image(u, if squared { "alpha-squared" } else { "alpha" })
             }
             (u, v) => {
                 let (u, v) = (u.mean("uroughness", place, self.builder), v.mean("vroughness", place, self.builder));
