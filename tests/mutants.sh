@@ -3,7 +3,8 @@
 # Names those that tests reach and do not notice, and those that none reaches; exit status 1 if there are any of the first kind.
 # What follows `--` are the tests, as `cargo test --workspace` takes them.
 #   tests/mutants.sh [--limit N] [--quick SECONDS] FILE … -- TESTS
-# --limit tries only so many mutants, evenly; --quick leaves out tests that take longer.
+# --limit tries only so many mutants, evenly; --quick leaves out tests that take longer. What they would have noticed is asked of them with
+# the mutant's number: MUTANT=7 target/mutants/build/release/deps/PROGRAM --exact TEST.
 #   tests/mutants.sh crates/transport/src/caustics/hull.rs -- --lib --test many_paths
 set -eu
 

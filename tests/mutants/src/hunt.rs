@@ -58,7 +58,7 @@ pub fn hunt(tree: &Path, files: &[String], tests: &[String], limit: usize, quick
             Fate::Unreached => "is not reached",
         };
         let to = if mutant.to.is_empty() { "nothing" } else { mutant.to };
-        println!("{file}:{}:{}: {} for {to} {what}", mutant.line, mutant.column, mutant.from);
+        println!("{file}:{}:{}: mutant {number}, {} for {to}, {what}", mutant.line, mutant.column, mutant.from);
         let _ = std::io::stdout().flush();
         fate
     });
