@@ -260,6 +260,13 @@ mod tests {
     }
 
     #[test]
+    fn as_many_pixels_have_errors_in_common_as_a_block_has() {
+        let film = || Film::new(8, 8, 2);
+        assert_eq!(film().sharing(Some([4, 2])).correlated_pixels(), 8);
+        assert_eq!(film().sharing(None).correlated_pixels(), 1);
+    }
+
+    #[test]
     fn tiles_cover_every_pixel_once() {
         let rect = PixelRect { x0: 3, y0: 1, x1: 40, y1: 38 };
         let mut seen: Vec<_> = rect.tiles(16).iter().flat_map(PixelRect::pixels).collect();

@@ -72,6 +72,7 @@ mod tests {
         for (filter, variance) in [
             (Filter::Box, 1.0 / 12.0),
             (Filter::Tent { radius_px: 1.0 }, 1.0 / 6.0),
+            (Filter::Tent { radius_px: 2.0 }, 4.0 / 6.0),
             (Filter::Gaussian { sigma_px: 0.5 }, 0.25 * 0.973_335_6),
         ] {
             let sampler = FilterSampler::new(&filter);

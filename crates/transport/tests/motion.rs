@@ -113,6 +113,53 @@ fn without_motion_everything_stands_as_in_the_middle_of_the_time() {
     assert!(plan(&Study::default()).runs(EffectName::Motion));
 }
 
+/// Things that shine move and turn, and a camera goes with them.
+#[test]
+fn a_camera_that_moves_with_all_that_it_sees_sees_it_stand_still() {
+    let cameras = [
+        json!({"type": "orthographic", "position_m": [1, 2, 5], "look_at_m": [0, 0.3, 0], "height_m": 2}),
+        json!({"type": "perspective", "position_m": [1, 2, 5], "look_at_m": [0, 0.3, 0], "vertical_fov_deg": 30,
+            "lens": {"radius_m": 0.1, "focus_distance_m": 5}}),
+    ];
+    let key = |time_s: f64, angle_deg: f64, to_m: [f64; 3]| {
+        let steps = json!([{"rotate": {"axis": [1, 2, 3], "angle_deg": angle_deg}}, {"translate_m": to_m}]);
+        json!({"time_s": time_s, "transform": steps})
+    };
+    let keyframes = json!([key(0.0, 10.0, [0.5, -0.25, 1.0]), key(1.0, 70.0, [-1.0, 2.0, 0.5])]);
+    for camera in cameras {
+        let scene = |moves: bool| {
+            let (mut camera, mut all) = (camera.clone(), json!({"name": "all", "group": "all"}));
+            camera["shutter_s"] = json!([0, 1]);
+            if moves {
+                (camera["keyframes"], all["keyframes"]) = (keyframes.clone(), keyframes.clone());
+            }
+            let shines = |shape: Value, radiance: f64| json!({"shape": shape, "material": {"type": "black"}, "emission": {"radiance": radiance, "sides": "both"}});
+            parse(
+                &json!({
+                    "etalon": 1, "camera": camera, "film": {"width": 24, "height": 24},
+                    "groups": {"all": {"objects": [
+                        shines(json!({"type": "parallelogram", "origin_m": [-0.5, 0.1, 0], "u_m": [1, 0, 0], "v_m": [0, 0.8, 0.3]}), 1.0),
+                        shines(json!({"type": "disk", "normal": [0, 1, 0], "radius_m": 0.9}), 3.0),
+                        shines(json!({"type": "sphere", "center_m": [0.6, 0.5, 0.4], "radius_m": 0.2}), 10.0)
+                    ]}},
+                    "instances": [all],
+                    "integrator": {"spp": 16}
+                })
+                .to_string(),
+            )
+        };
+        let film = |moves: bool| render(&scene(moves), &Study::default());
+        let (moving, still) = (film(true), film(false));
+        assert!(moving.counters.time_draws > 0);
+        // Rays of the same random numbers see the same, but for those that rounding leads past an edge.
+        let pairs: Vec<_> = moving.xyz().zip(still.xyz()).map(|(a, b)| (a[1], b[1])).collect();
+        let same = pairs.iter().filter(|(a, b)| (a - b).abs() <= 1e-6 * b).count();
+        assert!(same as f64 > 0.97 * pairs.len() as f64, "{same} of {}", pairs.len());
+        let [a, b] = [pairs.iter().map(|pair| pair.0).sum::<f64>(), pairs.iter().map(|pair| pair.1).sum()];
+        assert!((a / b - 1.0).abs() < 1e-3 && b > 0.0, "{a} is not {b}");
+    }
+}
+
 /// The whole picture is bright until 0.37 s, when a shutter of our own closes before it.
 fn curtain(spp: u32, sampler: SamplerKind) -> Scene {
     let at = |time_s: f64, y: f64| json!({"time_s": time_s, "transform": [{"translate_m": [0, y, 0]}]});
