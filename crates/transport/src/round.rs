@@ -116,6 +116,7 @@ impl RoundCoordinates {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use etalon_geometry::Aabb;
     use etalon_scene::Transform;
 
     /// Places that turn, stretch and mirror.
@@ -176,6 +177,25 @@ mod tests {
                         }
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn in_another_frame_places_and_tangents_go_with_the_surface() {
+        // Centred at (12, 23, 0), a unit of it some metres.
+        let bounds = Aabb { min: Vec3::new(10.0, 20.0, -5.0), max: Vec3::new(14.0, 26.0, -1.0) };
+        let frame = SceneFrame::around(bounds);
+        assert!(frame.per_m() != 1.0 && frame.to_world_m(Vec3::ZERO) == Vec3::new(12.0, 23.0, 0.0));
+        let [_, place, _] = placements();
+        for (name, shape, point) in cases(&place) {
+            let (p, framed) = (point(0.3, 0.6), shape.framed(&frame));
+            let (got, want) = (framed.uv(frame.point(p)), shape.uv(p));
+            // Coordinates of some tens are rounded on the way.
+            assert!((got[0] - want[0]).abs().max((got[1] - want[1]).abs()) < 1e-13, "{name}: {got:?} is not {want:?}");
+            let (got, want) = (framed.tangents(frame.point(p)).unwrap(), shape.tangents(p).unwrap());
+            for (got, want) in got.into_iter().zip(want) {
+                assert!((got - want * frame.per_m()).length() < 1e-12, "{name}: {got:?} is not {want:?} scaled");
             }
         }
     }

@@ -120,6 +120,22 @@ fn flat_lights_fill_their_solid_angle() {
 }
 
 #[test]
+fn closed_tubes_fill_their_solid_angle_from_before_a_cap_and_from_within() {
+    let up = Vec3::new(0.0, 0.0, 1.0);
+    for (length, radius) in [(3.0, 0.7), (5.0, 0.5), (0.9, 1.1)] {
+        let tube = |from: f64| {
+            let shape = Cylinder::new(up * from, up * (from + length), radius, true).unwrap();
+            Light::Cylinder(CylinderLight::new(shape, emitter()).unwrap())
+        };
+        // The midpoint rule loses an order where walls end and caps begin, and its cells are skew on both: errors as of so many
+        // random points, 1/n times a few. The walls are hidden by the near cap.
+        let cap = 2.0 * PI * (1.0 - 1.0 / (1.0 + radius * radius).sqrt());
+        close(integral(&tube(1.0), 512, |_| 1.0), cap, 1e-2, "a cap");
+        close(integral(&tube(-0.45 * length), 512, |_| 1.0), 4.0 * PI, 1e-2, "from within");
+    }
+}
+
+#[test]
 fn a_surface_shines_only_from_the_sides_that_emit_and_not_along_itself() {
     let (x, y, up) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0));
     let tube = Cylinder::new(-up, up, 1.0, false).unwrap();

@@ -290,6 +290,48 @@ mod tests {
         }
     }
 
+    /// Suns and a sky have no place in a tree.
+    #[test]
+    fn lights_within_a_tree_and_beyond_it_are_chosen_as_often_as_is_said() {
+        let shines = |radiance: f64| Emitter {
+            radiance: PathSpectrum::Constant(radiance).into(),
+            front: true,
+            back: false,
+            surface: PrimitiveId(0).into(),
+            image: None,
+        };
+        let ball = |x: f64, radius: f64| Sphere::new(Vec3::new(x, 0.5, -0.25), radius).unwrap();
+        let sun = |irradiance: f64| {
+            let (toward, irradiance) = (Vec3::new(0.0, 0.0, 1.0), PathSpectrum::Constant(irradiance));
+            Light::Directional(DirectionalLight { toward, irradiance })
+        };
+        let lights = vec![
+            sun(0.5),
+            Light::Sphere(SphereLight::new(ball(-3.0, 0.5), shines(10.0))),
+            Light::Sphere(SphereLight::new(ball(0.0, 0.25), shines(20.0))),
+            Light::Environment(Arc::new(EnvironmentLight::new(&white_sky(), [360.0, 830.0]))),
+            Light::Sphere(SphereLight::new(ball(4.0, 1.0), shines(5.0))),
+            sun(3.0),
+        ];
+        let count = lights.len();
+        let table = LightTable::new(lights, 5.0, [360.0, 830.0], LightSelection::Tree);
+        assert!(table.chooses_by_place());
+        for from in [Vec3::new(0.0, 2.0, 0.0), Vec3::new(-2.0, 0.5, 0.0), Vec3::new(30.0, -4.0, 2.0)] {
+            const STEPS: u32 = 100_000;
+            let mut chosen = vec![0_u32; count];
+            for i in 0..STEPS {
+                let (index, probability) = table.choose(from, (f64::from(i) + 0.5) / f64::from(STEPS)).unwrap();
+                chosen[index] += 1;
+                assert!((probability / table.probability(index, from) - 1.0).abs() < 1e-12, "{index}");
+            }
+            for (index, chosen) in chosen.into_iter().enumerate() {
+                let (found, told) = (f64::from(chosen) / f64::from(STEPS), table.probability(index, from));
+                // What chooses a light are two intervals, of which each end is off by a step at most.
+                assert!(told > 0.0 && (found - told).abs() < 4.0 / f64::from(STEPS), "{index}: {found} is not {told}");
+            }
+        }
+    }
+
     #[test]
     fn a_spectrum_counts_by_what_an_observer_makes_of_it() {
         // x̄, ȳ and z̄ have the same integral, 106.857 nm; the floor adds 0.47.
