@@ -46,6 +46,19 @@ pub struct ImageTexture {
 }
 
 impl ImageTexture {
+    /// An image as it is, once a unit of the texture coordinates, repeated, bilinear between texels.
+    pub fn new(image: Image) -> Self {
+        Self {
+            image: Arc::new(image),
+            name: String::new(),
+            wrap: [Wrap::Repeat; 2],
+            filter: TextureFilter::Bilinear,
+            uv_scale: [1.0; 2],
+            uv_offset: [0.0; 2],
+            factor: [1.0; 3],
+        }
+    }
+
     /// Whether it is black.
     pub fn is_zero(&self) -> bool {
         self.image.linear_texels().all(|texel| (0..3).all(|c| texel[c] * self.factor[c] == 0.0))

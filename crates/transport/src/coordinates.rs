@@ -207,20 +207,16 @@ impl MeshCoordinates {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etalon_scene::{Image, Texels, TextureFilter, Wrap};
+    use etalon_scene::{Image, Texels, TextureFilter};
 
     const UNTURNED: [Vec3<f64>; 3] = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
 
     fn image(width: u32, height: u32, uv_scale: [f64; 2], of: impl Fn(u32, u32) -> [f32; 3]) -> ImageTexture {
         let texels = (0..width * height).map(|i| of(i % width, i / width)).collect();
         ImageTexture {
-            image: Arc::new(Image::new(width, height, Texels::F32(texels))),
-            name: "texels".to_owned(),
-            wrap: [Wrap::Repeat; 2],
             filter: TextureFilter::Nearest,
             uv_scale,
-            uv_offset: [0.0; 2],
-            factor: [1.0; 3],
+            ..ImageTexture::new(Image::new(width, height, Texels::F32(texels)))
         }
     }
 

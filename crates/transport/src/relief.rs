@@ -57,20 +57,17 @@ fn slopes(texture: &ImageTexture, [u, v]: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etalon_scene::{Image, Texels, TextureFilter, Wrap};
+    use etalon_scene::{Image, Texels, Wrap};
     use std::sync::Arc;
 
     /// Eight columns and four rows, whose heights are told by column and row, both from zero and rows from the top.
     fn heights(of: impl Fn(f64, f64) -> f64, uv_scale: [f64; 2], uv_offset: [f64; 2]) -> ImageTexture {
         let texels = (0..32).map(|i| [of(f64::from(i % 8), f64::from(i / 8)) as f32; 3]).collect();
         ImageTexture {
-            image: Arc::new(Image::new(8, 4, Texels::F32(texels))),
-            name: "heights".to_owned(),
             wrap: [Wrap::Clamp; 2],
-            filter: TextureFilter::Bilinear,
             uv_scale,
             uv_offset,
-            factor: [1.0; 3],
+            ..ImageTexture::new(Image::new(8, 4, Texels::F32(texels)))
         }
     }
 

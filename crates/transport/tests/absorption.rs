@@ -2,11 +2,10 @@
 
 use etalon_optics::RefractiveIndex;
 use etalon_oracle::truths::{Claim, truths};
-use etalon_scene::{Image, ImageTexture, MaterialKind, NumberTexture, Precision, Scene, Texels, TextureFilter, Wrap};
+use etalon_scene::{Image, ImageTexture, MaterialKind, NumberTexture, Precision, Scene, Texels};
 use etalon_transport::{EffectName, Study};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 #[path = "common/rendering.rs"]
 mod rendering;
@@ -69,15 +68,7 @@ fn each_wavelength_is_absorbed_by_its_own_coefficient() {
 
 /// A material whose roughness an image says, 0.5 everywhere, among others of which none has a share.
 fn at_one_half(of: impl Fn(f64) -> MaterialKind) -> MaterialKind {
-    let image = ImageTexture {
-        image: Arc::new(Image::new(1, 1, Texels::F32(vec![[0.5; 3]]))),
-        name: String::new(),
-        wrap: [Wrap::Repeat; 2],
-        filter: TextureFilter::Bilinear,
-        uv_scale: [1.0; 2],
-        uv_offset: [0.0; 2],
-        factor: [1.0; 3],
-    };
+    let image = ImageTexture::new(Image::new(1, 1, Texels::F32(vec![[0.5; 3]])));
     let parts = [0.25, 0.5, 1.0].map(|roughness| (roughness, of(roughness * roughness)));
     MaterialKind::Blend { parts: parts.to_vec(), by: NumberTexture::Image(image) }
 }

@@ -7,18 +7,9 @@ use etalon_scene::{
 use etalon_transport::{Control, EffectName, Film, Study, prepare, prepare_study};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 fn texture(width: u32, height: u32, texels: Vec<[f32; 3]>, filter: TextureFilter) -> ImageTexture {
-    ImageTexture {
-        image: Arc::new(Image::new(width, height, Texels::F32(texels))),
-        name: "texels".to_owned(),
-        wrap: [Wrap::Clamp; 2],
-        filter,
-        uv_scale: [1.0; 2],
-        uv_offset: [0.0; 2],
-        factor: [1.0; 3],
-    }
+    ImageTexture { wrap: [Wrap::Clamp; 2], filter, ..ImageTexture::new(Image::new(width, height, Texels::F32(texels))) }
 }
 
 /// A map of one normal.

@@ -3,18 +3,13 @@
 use etalon_scene::{Image, ImageTexture, LightSampling, Scene, Texels, TextureFilter, Wrap, parse};
 use etalon_transport::{Control, EffectName, prepare};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 /// Columns from the left, all one row high.
 fn columns(texels: &[[f32; 3]]) -> ImageTexture {
     ImageTexture {
-        image: Arc::new(Image::new(texels.len() as u32, 1, Texels::F32(texels.to_vec()))),
-        name: "columns".to_owned(),
         wrap: [Wrap::Clamp; 2],
         filter: TextureFilter::Nearest,
-        uv_scale: [1.0; 2],
-        uv_offset: [0.0; 2],
-        factor: [1.0; 3],
+        ..ImageTexture::new(Image::new(texels.len() as u32, 1, Texels::F32(texels.to_vec())))
     }
 }
 

@@ -4,16 +4,13 @@ use etalon_optics::{ComplexIndex, Lanes, RefractiveIndex, Spectrum, Vec3};
 use etalon_oracle::laws::fresnel_exact;
 use etalon_oracle::statistics::Welford;
 use etalon_oracle::truths::walsh_reflectance;
-use etalon_scene::{
-    Image, ImageTexture, MaterialKind, Metal, NumberTexture, SpectrumTexture, Texels, TextureFilter, Wrap,
-};
+use etalon_scene::{Image, ImageTexture, MaterialKind, Metal, NumberTexture, SpectrumTexture, Texels};
 use etalon_transport::bsdf::{Bsdf, Shading};
 use etalon_transport::light::{Light, PointLight, SpotLight};
 use etalon_transport::spectral::PathSpectrum;
 use etalon_transport::{Control, prepare};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
 
@@ -219,15 +216,7 @@ fn every_strategy_finds_the_same_light_through_rough_flint() {
 
 /// An image of one texel.
 fn texel(value: f32) -> ImageTexture {
-    ImageTexture {
-        image: Arc::new(Image::new(1, 1, Texels::F32(vec![[value; 3]]))),
-        name: String::new(),
-        wrap: [Wrap::Repeat; 2],
-        filter: TextureFilter::Bilinear,
-        uv_scale: [1.0; 2],
-        uv_offset: [0.0; 2],
-        factor: [1.0; 3],
-    }
+    ImageTexture::new(Image::new(1, 1, Texels::F32(vec![[value; 3]])))
 }
 
 /// What an image says of a material is what the material is where the image says it, to the bit where no neighbour has a share.

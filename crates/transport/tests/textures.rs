@@ -17,15 +17,7 @@ const TEXELS: [[f32; 3]; 8] = [
 ];
 
 fn texture(filter: TextureFilter) -> ImageTexture {
-    ImageTexture {
-        image: Arc::new(Image::new(4, 2, Texels::F32(TEXELS.to_vec()))),
-        name: "texels".to_owned(),
-        wrap: [Wrap::Clamp; 2],
-        filter,
-        uv_scale: [1.0; 2],
-        uv_offset: [0.0; 2],
-        factor: [1.0; 3],
-    }
+    ImageTexture { wrap: [Wrap::Clamp; 2], filter, ..ImageTexture::new(Image::new(4, 2, Texels::F32(TEXELS.to_vec()))) }
 }
 
 /// A square of 4 × 2 m that fills the picture, under a sky of D65: each pixel shows what the surface reflects.

@@ -1,13 +1,8 @@
 //! Every material, held to every law of a BSDF.
 
-use std::sync::Arc;
-
 use etalon_optics::{ComplexIndex, Real, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
-use etalon_scene::{
-    Image, ImageTexture, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture, Texels, TextureFilter,
-    Wrap,
-};
+use etalon_scene::{Image, ImageTexture, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture, Texels};
 
 use crate::material::Material;
 
@@ -71,15 +66,7 @@ fn mixture() -> Material<f64> {
 
 /// An image of one texel.
 fn texel(rgb: [f32; 3]) -> ImageTexture {
-    ImageTexture {
-        image: Arc::new(Image::new(1, 1, Texels::F32(vec![rgb]))),
-        name: String::new(),
-        wrap: [Wrap::Repeat; 2],
-        filter: TextureFilter::Bilinear,
-        uv_scale: [1.0; 2],
-        uv_offset: [0.0; 2],
-        factor: [1.0; 3],
-    }
+    ImageTexture::new(Image::new(1, 1, Texels::F32(vec![rgb])))
 }
 
 /// Smooth below a roughness of 0.2, rougher from there on; at 0.7 now, between two rough ones.

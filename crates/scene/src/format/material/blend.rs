@@ -1,0 +1,93 @@
+//! Materials side by side.
+
+use super::super::detail::number_image;
+use super::super::names::Names;
+use super::super::scene::MaterialUse;
+use super::super::spectra::Spectra;
+use super::roughness::MOST_WIDTHS;
+use super::{BlendMaterial, Made, material};
+use crate::files::Files;
+use crate::json::{Code, Optional, Reader, Spanned};
+use crate::model::{MaterialKind, NumberTexture};
+
+/// The most materials that a blend may come down to: names can double them line by line, and an image of roughness makes up to
+/// [`MOST_WIDTHS`].
+const MOST_PARTS: usize = 8 * MOST_WIDTHS;
+
+/// Materials that are no blends in a material.
+fn parts(kind: &MaterialKind) -> usize {
+    match kind {
+        MaterialKind::Blend { parts: several, .. } => several.iter().map(|(_, part)| parts(part)).sum(),
+        _ => 1,
+    }
+}
+
+/// Named materials that a blend may be made of: those that stand before it, so that none is made of itself.
+#[derive(Debug)]
+pub(crate) struct Before<'m> {
+    /// All of the file's names.
+    pub(crate) names: &'m Names<'m>,
+    /// The materials read so far, by their place in the file; `None` is wrong, which has been reported.
+    pub(crate) made: &'m [Option<Made>],
+}
+
+impl Before<'_> {
+    fn find(&self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Made> {
+        let place = self.names.find(name, reader)?;
+        match self.made.get(place) {
+            Some(made) => made.clone(),
+            None => {
+                let message =
+                    format!("the material \"{}\" does not stand before the blend that is made of it", name.value);
+                reader.error_hint(Code::Circular, name.at, message, "move it up");
+                None
+            }
+        }
+    }
+}
+
+/// The material of the form of a blend.
+pub(super) fn blend<'f>(
+    blend: &'f BlendMaterial,
+    before: &Before<'_>,
+    spectra: &mut Spectra<'f>,
+    files: &mut Files,
+    reader: &mut Reader<'_>,
+) -> Option<MaterialKind> {
+    let mut part = |part: &'f Option<Box<MaterialUse>>| match part.as_deref()? {
+        MaterialUse::Own(own) => material(own, before, spectra, files, reader),
+        MaterialUse::Named(name) => before.find(name, reader),
+    };
+    let (first, second) = (part(&blend.first), part(&blend.second));
+    let by = match (&blend.weight, &blend.weight_image) {
+        (Optional::Given(weight), _) => Some(NumberTexture::Uniform(weight.0)),
+        (_, Optional::Given(image)) => number_image(image, files, reader).map(NumberTexture::Image),
+        _ => None,
+    };
+    let (first, second, by) = (first?, second?, by?);
+    if first.absorption.is_some() || second.absorption.is_some() {
+        let message = "a part of a blend bounds no medium: its dielectric cannot absorb";
+        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "let the dielectric stand alone");
+        return None;
+    }
+    let (first, second) = (first.kind, second.kind);
+    if [&first, &second].iter().any(|part| part.solid().is_some()) {
+        let message = "a part of a blend bounds no solid: its dielectric cannot have a priority";
+        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "say its exterior instead");
+        return None;
+    }
+    if [&first, &second].iter().any(|part| matches!(part, MaterialKind::PolarisingSheet { .. })) {
+        let message = "a part of a blend has no axis of its own: it cannot be a polariser or a retarder";
+        let hint = "give the sheet an object of its own, perhaps with an \"opacity\"";
+        reader.error_hint(Code::KeyConflict, blend.at.head(), message, hint);
+        return None;
+    }
+    let kind = MaterialKind::blend(first, second, by);
+    let count = parts(&kind);
+    if count > MOST_PARTS {
+        let message = format!("a blend of {count} materials, blends in blends counted");
+        reader.error_hint(Code::OutOfRange, blend.at.head(), message, format!("at most {MOST_PARTS}"));
+        return None;
+    }
+    Some(kind)
+}
