@@ -7,12 +7,15 @@ mod split;
 
 use crate::frame::Box32;
 use crate::traverse::{Level, vectorised};
-use crate::wide::LEAF_WIDTH;
 use span::Extent;
 pub(crate) use span::{Item, Span};
 pub(crate) use split::Costs;
 use split::{Bins, Partition, SWEEP_LIMIT, Sweep};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
+/// Primitives of a leaf, at most. Which of these become one leaf of the tree that rays traverse is found when that is made.
+pub(crate) const LEAF_LIMIT: usize = 8;
 /// Above this many primitives the two halves of a node are built in parallel.
 const PARALLEL_LIMIT: usize = 16_384;
 /// Below this depth nodes are halved by count, whatever their areas.
@@ -37,6 +40,38 @@ pub(crate) struct BinaryTree {
     pub(crate) nodes: Vec<Node>,
     /// Primitive indices, leaf by leaf.
     pub(crate) order: Vec<u32>,
+}
+
+impl BinaryTree {
+    /// Up to `limit` boxes that hold all primitives: the largest are opened first.
+    pub(crate) fn outline(&self, limit: usize) -> Vec<Box32> {
+        let entry = |node: u32| (self.nodes[node as usize].bounds.half_area().to_bits(), Reverse(node));
+        let (mut open, mut leaves) = (BinaryHeap::from([entry(0)]), Vec::new());
+        while let Some((_, Reverse(index))) = open.pop() {
+            let node = &self.nodes[index as usize];
+            if node.count > 0 || leaves.len() + open.len() + 2 > limit {
+                leaves.push(node.bounds);
+            } else {
+                open.extend([entry(index + 1), entry(node.first)]);
+            }
+        }
+        leaves
+    }
+
+    /// The primitives in a subtree, leaf by leaf.
+    pub(crate) fn primitives(&self, root: u32) -> impl Iterator<Item = u32> {
+        // It ends where no child is to come any more.
+        let mut to_come = 1;
+        let within = move |node: &&Node| {
+            if to_come == 0 {
+                return false;
+            }
+            to_come = if node.count == 0 { to_come + 1 } else { to_come - 1 };
+            true
+        };
+        let leaves = self.nodes[root as usize..].iter().take_while(within).filter(|node| node.count > 0);
+        leaves.flat_map(|leaf| self.order[leaf.first as usize..][..leaf.count as usize].iter().copied())
+    }
 }
 
 /// Builds a tree over at least one primitive. The result does not depend on the number of threads.
@@ -72,7 +107,7 @@ impl Builder {
         } else {
             vectorised(self.level, Bins(self.costs, items, &extent))
         };
-        if count <= LEAF_WIDTH && !extent.bounds.is_lone() {
+        if count <= LEAF_LIMIT && !extent.bounds.is_lone() {
             let area = extent.bounds.half_area();
             let leaf_cost = self.costs.leaf(extent.bounds, count) * area;
             if !split.as_ref().is_some_and(|s| s.cost + self.costs.node * area < leaf_cost) {
@@ -135,6 +170,36 @@ mod tests {
             };
             let portable = tree(Level::Portable);
             assert!(Level::all().into_iter().all(|level| tree(level) == portable));
+        }
+    }
+
+    #[test]
+    fn an_outline_holds_all_and_opens_the_largest_boxes() {
+        let mut random = Random::new(10);
+        for count in [1, 7, 200, 5_000] {
+            let boxes: Vec<Box32> = (0..count)
+                .map(|_| {
+                    let min: [f32; 3] = std::array::from_fn(|_| random.unit() as f32);
+                    Box32 { min, max: min.map(|c| c + 0.01 * random.unit() as f32) }
+                })
+                .collect();
+            let items = boxes.iter().enumerate().map(|(id, b)| Item::new(b, id as u32, false)).collect();
+            let tree = build(items, Costs { block: 8, node: 0.35 }, Level::detect());
+            for limit in [1, 2, 3, 50, 96] {
+                let outline = tree.outline(limit);
+                assert!(outline.len() <= limit);
+                let holds =
+                    |outer: &Box32, b: &Box32| (0..3).all(|k| outer.min[k] <= b.min[k] && b.max[k] <= outer.max[k]);
+                assert!(boxes.iter().all(|b| outline.iter().any(|outer| holds(outer, b))));
+                // Boxes are as many as may be, unless all are leaves; what stays closed is no larger than what was opened.
+                let is_in = |node: &&&Node| outline.contains(&node.bounds);
+                let inner: Vec<&Node> = tree.nodes.iter().filter(|node| node.count == 0).collect();
+                let area = |node: &&Node| node.bounds.half_area();
+                let closed = inner.iter().filter(is_in).map(area).fold(0.0, f32::max);
+                assert!(outline.len() == limit || closed == 0.0);
+                let opened = inner.iter().filter(|node| outline.iter().any(|b| holds(&node.bounds, b)) && !is_in(node));
+                assert!(opened.map(area).all(|area| area >= closed));
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The door: a set of primitives that answers ray queries.
 
 use crate::best::{Best, Found};
-use crate::build::{Costs, Item, build};
+use crate::build::{Costs, Item, LEAF_LIMIT, build};
 use crate::census::Census;
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
@@ -12,7 +12,6 @@ use crate::wide::WideTree;
 use crate::{Aabb, Hit, Instance, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Real, Vec3};
 use rayon::prelude::*;
-use std::sync::OnceLock;
 
 /// Up to this many primitives, instances among them, are tested one by one, without a tree.
 const TREELESS_LIMIT: usize = 8;
@@ -54,7 +53,7 @@ pub struct Geometry {
     /// Instances within each other.
     nesting: u32,
     /// See [`Geometry::outline`].
-    outline: OnceLock<Vec<Aabb>>,
+    outline: Vec<Aabb>,
     label: u32,
 }
 
@@ -99,27 +98,26 @@ impl Geometry {
         let level = Level::detect();
         let is_flat = instances.is_empty() && primitives.len() <= flat_limit;
         let flat = bounds.filter(|_| is_flat).map(|bounds| Flat::new(&primitives, bounds));
+        let mut outline = Vec::new();
         let tree = bounds.filter(|_| !is_flat && primitives.len() > TREELESS_LIMIT).map(|bounds| {
             let frame = Frame::around(bounds);
             // What is within an instance costs far more than a node.
             let lone = |p: &Primitive| matches!(p, Primitive::Instance(_));
             let item = |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32, lone(p));
             let items = primitives.par_iter().enumerate().map(item).collect();
-            let binary = improved(build(items, costs(&census), level));
-            WideTree::collapse(frame, &binary, &primitives, &census)
+            let costs = costs(&census);
+            let binary = improved(build(items, costs, level));
+            outline = binary.outline(OUTLINE_LIMIT).into_iter().map(|b| frame.unscaled_box(b)).collect();
+            WideTree::collapse(frame, &binary, &primitives, &census, costs, level.lanes())
         });
-        Ok(Self {
-            primitives,
-            bounds,
-            tree,
-            flat,
-            level,
-            instances,
-            instance_count,
-            nesting,
-            outline: OnceLock::new(),
-            label: 0,
-        })
+        if tree.is_none() {
+            outline = if primitives.len() <= OUTLINE_LIMIT {
+                primitives.iter().map(Primitive::bounds).collect()
+            } else {
+                bounds.into_iter().collect()
+            };
+        }
+        Ok(Self { primitives, bounds, tree, flat, level, instances, instance_count, nesting, outline, label: 0 })
     }
 
     /// The same geometry with a number of the caller's, by which points on its surfaces tell that they are its.
@@ -160,11 +158,7 @@ impl Geometry {
     /// Some boxes that together hold all primitives: fewer than a hundred, but closer to their shape than one. An instance's box
     /// is made of them, lest it be as large as that of a turned box.
     pub(crate) fn outline(&self) -> &[Aabb] {
-        self.outline.get_or_init(|| match &self.tree {
-            Some(tree) => tree.outline(OUTLINE_LIMIT),
-            None if self.primitives.len() <= OUTLINE_LIMIT => self.primitives.iter().map(Primitive::bounds).collect(),
-            None => self.bounds.into_iter().collect(),
-        })
+        &self.outline
     }
 
     /// Memory held, bytes: the primitives, the accelerator and every shared geometry, each once.
@@ -409,8 +403,9 @@ impl Geometry {
     }
 }
 
-/// What the tree's builder weighs: a leaf tests eight flat shapes or spheres at once, but cylinders one by one.
+/// What the tree's builder weighs: a leaf tests flat shapes or spheres at once, but cylinders one by one. As many at once, whatever
+/// the instruction set: what a ray meets of an instance must not depend on that, nor does the tree of which its box is made.
 fn costs(census: &Census) -> Costs {
     let most = 2 * census.cylinders < census.count - census.instances;
-    Costs { block: if most { 8 } else { 1 }, node: 0.35 }
+    Costs { block: if most { LEAF_LIMIT as u32 } else { 1 }, node: 0.35 }
 }

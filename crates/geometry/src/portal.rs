@@ -20,13 +20,14 @@ pub(crate) struct Portal {
     count: u32,
     /// The instance among the primitives of the geometry that it is part of.
     pub(crate) id: PrimitiveId,
-    /// Whether it stands still and what it places has a tree.
+    /// Whether it stands still and what it places has a tree, of the same instruction set.
     direct: bool,
     bounds: Aabb,
 }
 
 impl Portal {
-    pub(crate) fn new(instance: &Instance, id: PrimitiveId) -> Self {
+    /// For a tree whose leaves have so many lanes.
+    pub(crate) fn new(instance: &Instance, id: PrimitiveId, lanes: usize) -> Self {
         let [x, y, z] = instance.placement().inverse();
         let column = |k: usize| [x[k], y[k], z[k], 0.0];
         Self {
@@ -37,7 +38,7 @@ impl Portal {
             // 2³¹ at most.
             count: instance.count() as u32,
             id,
-            direct: instance.motion().is_none() && instance.geometry().tree().is_some(),
+            direct: instance.motion().is_none() && instance.geometry().tree().is_some_and(|tree| tree.lanes() == lanes),
             bounds: instance.bounds(),
         }
     }

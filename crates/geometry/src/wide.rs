@@ -1,23 +1,23 @@
-//! The tree that rays traverse: sixteen children a node, leaves of up to eight primitives, both in SoA order.
+//! The tree that rays traverse: sixteen children a node, leaves of up to eight or sixteen primitives, both in SoA order.
 
+mod choices;
 mod leaf;
 
-use crate::build::{BinaryTree, Node};
+use crate::build::{BinaryTree, Costs};
 use crate::census::Census;
 use crate::frame::{Box32, Frame};
 use crate::pages::Pages;
 use crate::portal::Portal;
-use crate::{Aabb, Instance, Primitive, PrimitiveId};
+use crate::{Primitive, PrimitiveId};
 use bytemuck::{Pod, Zeroable};
-pub(crate) use leaf::{LEAF_WIDTH, Leaf8};
+use choices::Choices;
+pub(crate) use leaf::{Leaf, NO_ID};
 use rayon::prelude::*;
 
 /// Children of a node. A ray waits for each node's answer before it knows where to go next: sixteen at once shorten the way.
 pub(crate) const NODE_WIDTH: usize = 16;
 /// Trees up to this size, bytes, are mostly in caches from which prefetching gains nothing.
 const NEAR_CACHE: usize = 16 << 20;
-/// Above this many binary nodes the two halves of a tree are taken in parallel.
-const PARALLEL_LIMIT: usize = 16_384;
 /// Marks a child that is a leaf.
 pub(crate) const LEAF: u32 = 1 << 31;
 /// Marks, together with [`LEAF`], a leaf that holds but an instance: the rest is the index of its portal. What a leaf tells of
@@ -68,12 +68,28 @@ impl<'a> Nodes<'a> {
 #[repr(C, align(64))]
 pub(crate) struct Children(pub(crate) [u32; NODE_WIDTH]);
 
+/// The leaves of a tree, as wide as the vectors of the instruction set that it was made for.
+#[derive(Debug)]
+enum LeafPages {
+    Eight(Pages<Leaf<8>>),
+    Sixteen(Pages<Leaf<16>>),
+}
+
+/// [`LeafPages`] for a walk.
+#[derive(Clone, Copy)]
+pub(crate) enum Leaves<'a> {
+    /// Of eight lanes each.
+    Eight(&'a [Leaf<8>]),
+    /// Of sixteen.
+    Sixteen(&'a [Leaf<16>]),
+}
+
 /// The tree.
 #[derive(Debug)]
 pub(crate) struct WideTree {
     pub(crate) frame: Frame,
     nodes: Pages<Node16>,
-    leaves: Pages<Leaf8>,
+    leaves: LeafPages,
     /// Of the instances that have a leaf of their own, in the order of the tree.
     portals: Vec<Portal>,
     /// Levels of nodes.
@@ -87,15 +103,25 @@ pub(crate) struct WideTree {
 }
 
 impl WideTree {
-    /// Collapses a binary tree.
-    pub(crate) fn collapse(frame: Frame, tree: &BinaryTree, primitives: &[Primitive], census: &Census) -> Self {
+    /// Collapses a binary tree, to leaves of `lanes` primitives, eight or sixteen.
+    pub(crate) fn collapse(
+        frame: Frame,
+        tree: &BinaryTree,
+        primitives: &[Primitive],
+        census: &Census,
+        costs: Costs,
+        lanes: usize,
+    ) -> Self {
         let mut size = Size::default();
-        let choices = Choices::new(tree, primitives);
+        let choices = Choices::new(tree, primitives, costs, lanes);
         size.count(&choices, 0, 1);
         let mut wide = Self {
             frame,
             nodes: Pages::new(size.nodes),
-            leaves: Pages::new(size.leaves),
+            leaves: match lanes {
+                16 => LeafPages::Sixteen(Pages::new(size.leaves)),
+                _ => LeafPages::Eight(Pages::new(size.leaves)),
+            },
             portals: Vec::new(),
             depth: size.depth,
             spheres: census.spheres > 0,
@@ -104,11 +130,13 @@ impl WideTree {
                 c if c.spheres == c.count => BALLS,
                 _ => MIXED,
             },
-            prefetch: size.nodes * size_of::<Node16>() + size.leaves * size_of::<Leaf8>() > NEAR_CACHE,
+            prefetch: false,
         };
+        wide.prefetch = wide.memory_bytes() > NEAR_CACHE;
         let mut filler = Filler {
             choices: &choices,
             tree,
+            lanes,
             nodes: wide.nodes.as_mut_slice(),
             node_count: 0,
             leaves: Vec::with_capacity(size.leaves),
@@ -117,9 +145,10 @@ impl WideTree {
         filler.node(0);
         let roots = filler.leaves;
         wide.portals = filler.portals;
-        wide.leaves.as_mut_slice().par_iter_mut().zip(roots).with_min_len(256).for_each(|(leaf, root)| {
-            *leaf = Leaf8::new(&frame, tree, root, primitives);
-        });
+        match &mut wide.leaves {
+            LeafPages::Eight(leaves) => fill(leaves.as_mut_slice(), &frame, tree, &roots, primitives),
+            LeafPages::Sixteen(leaves) => fill(leaves.as_mut_slice(), &frame, tree, &roots, primitives),
+        }
         wide
     }
 
@@ -131,8 +160,19 @@ impl WideTree {
 
     /// The leaves.
     #[inline(always)]
-    pub(crate) fn leaves(&self) -> &[Leaf8] {
-        self.leaves.as_slice()
+    pub(crate) fn leaves(&self) -> Leaves<'_> {
+        match &self.leaves {
+            LeafPages::Eight(leaves) => Leaves::Eight(leaves.as_slice()),
+            LeafPages::Sixteen(leaves) => Leaves::Sixteen(leaves.as_slice()),
+        }
+    }
+
+    /// Lanes of a leaf.
+    pub(crate) fn lanes(&self) -> usize {
+        match self.leaves {
+            LeafPages::Eight(_) => 8,
+            LeafPages::Sixteen(_) => 16,
+        }
     }
 
     /// The portals.
@@ -141,114 +181,27 @@ impl WideTree {
         &self.portals
     }
 
-    /// Up to `limit` boxes that hold all primitives, as small as the upper nodes of the tree are.
-    pub(crate) fn outline(&self, limit: usize) -> Vec<Aabb> {
-        let children = |node: u32| {
-            let Node16 { planes, children } = self.nodes().at(node);
-            let of = move |lane: usize| {
-                let corner = |side: usize| [0, 1, 2].map(|k| planes[k][side][lane]);
-                (Box32 { min: corner(0), max: corner(1) }, children.0[lane])
-            };
-            (0..NODE_WIDTH).map(of).filter(|(bounds, _)| bounds.min[0] <= bounds.max[0])
-        };
-        let mut boxes: Vec<(Box32, u32)> = children(0).collect();
-        while boxes.len() + NODE_WIDTH <= limit {
-            let inner = boxes.iter().enumerate().filter(|(_, (_, child))| child & LEAF == 0);
-            let largest = inner.max_by(|(_, (a, _)), (_, (b, _))| a.half_area().total_cmp(&b.half_area()));
-            let Some((place, &(_, node))) = largest else { break };
-            boxes.swap_remove(place);
-            boxes.extend(children(node));
-        }
-        boxes.into_iter().map(|(bounds, _)| self.frame.unscaled_box(bounds)).collect()
-    }
-
     /// Memory held beside the struct itself, bytes.
     pub(crate) fn memory_bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves()) + size_of_val(self.portals())
+        let leaves = match self.leaves() {
+            Leaves::Eight(leaves) => size_of_val(leaves),
+            Leaves::Sixteen(leaves) => size_of_val(leaves),
+        };
+        size_of_val(self.nodes.as_slice()) + leaves + size_of_val(self.portals())
     }
 }
 
-/// Which binary nodes become the children of which node: the choice of least surface area of all nodes, as a ray meets a
-/// node about as often as it is large (Ylitie, Karras & Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed
-/// Wide BVHs*, HPG 2017, §3.1).
-struct Choices<'a> {
-    tree: &'a BinaryTree,
-    primitives: &'a [Primitive],
-    /// For each inner binary node and each number i of children that it may become, 2 to 16, in four bits: how many of them
-    /// its left child becomes, zero if it stays one.
-    splits: Vec<u64>,
-}
-
-impl<'a> Choices<'a> {
-    fn new(tree: &'a BinaryTree, primitives: &'a [Primitive]) -> Self {
-        let mut splits = vec![0; tree.nodes.len()];
-        Self::costs(tree, 0, &mut splits);
-        Self { tree, primitives, splits }
-    }
-
-    /// The instance that a leaf is, if it is one, and its id.
-    fn lone(&self, leaf: u32) -> Option<(&'a Instance, u32)> {
-        let Node { first, count, .. } = self.tree.nodes[leaf as usize];
-        let id = self.tree.order[first as usize];
-        match &self.primitives[id as usize] {
-            Primitive::Instance(instance) if count == 1 => Some((instance, id)),
-            _ => None,
-        }
-    }
-
-    /// The least area of the nodes below a binary node if it becomes up to 1, 2, … 16 children. Itself counts if it stays
-    /// one and is no leaf. `below` are the splits of the node and of all below it.
-    fn costs(tree: &BinaryTree, node: u32, below: &mut [u64]) -> [f32; NODE_WIDTH] {
-        let Node { bounds, first, count } = tree.nodes[node as usize];
-        if count > 0 {
-            return [0.0; NODE_WIDTH];
-        }
-        let (own, below) = below.split_first_mut().expect("a node's own split");
-        let parallel = below.len() > PARALLEL_LIMIT;
-        let (below_left, below_right) = below.split_at_mut((first - node - 1) as usize);
-        let mut left = || Self::costs(tree, node + 1, below_left);
-        let mut right = || Self::costs(tree, first, below_right);
-        let (left, right) = if parallel { rayon::join(left, right) } else { (left(), right()) };
-        let mut costs = [0.0; NODE_WIDTH];
-        let mut splits = [0_u64; NODE_WIDTH];
-        for i in 2..=NODE_WIDTH {
-            let split = |k: usize| left[k - 1] + right[i - k - 1];
-            let best = (2..i).fold(1, |best, k| if split(k) < split(best) { k } else { best });
-            (costs[i - 1], splits[i - 1]) = (split(best), best as u64);
-        }
-        costs[0] = bounds.half_area() + costs[NODE_WIDTH - 1];
-        // As the root of a node it is split, whatever its area.
-        for i in 2..NODE_WIDTH {
-            if costs[0] <= costs[i - 1] {
-                (costs[i - 1], splits[i - 1]) = (costs[0], 0);
-            }
-        }
-        *own = splits.iter().rev().fold(0, |bits, &k| bits << 4 | k);
-        costs[NODE_WIDTH - 1] = costs[NODE_WIDTH - 1].min(costs[0]);
-        costs
-    }
-
-    /// The children of the node whose root is a binary node.
-    fn children(&self, root: u32) -> ([u32; NODE_WIDTH], usize) {
-        let mut out = ([0; NODE_WIDTH], 0);
-        if self.tree.nodes[root as usize].count > 0 {
-            out = ([root; NODE_WIDTH], 1);
-        } else {
-            self.split(root, NODE_WIDTH, &mut out);
-        }
-        out
-    }
-
-    fn split(&self, node: u32, i: usize, out: &mut ([u32; NODE_WIDTH], usize)) {
-        let left = (self.splits[node as usize] >> (4 * (i - 1)) & 15) as usize;
-        if i == 1 || left == 0 || self.tree.nodes[node as usize].count > 0 {
-            out.0[out.1] = node;
-            out.1 += 1;
-        } else {
-            self.split(node + 1, left, out);
-            self.split(self.tree.nodes[node as usize].first, i - left, out);
-        }
-    }
+/// Makes leaves of subtrees.
+fn fill<const W: usize>(
+    leaves: &mut [Leaf<W>],
+    frame: &Frame,
+    tree: &BinaryTree,
+    roots: &[u32],
+    primitives: &[Primitive],
+) {
+    leaves.par_iter_mut().zip(roots).with_min_len(256).for_each(|(leaf, &root)| {
+        *leaf = Leaf::new(frame, tree, root, primitives);
+    });
 }
 
 /// What a tree will need.
@@ -265,7 +218,7 @@ impl Size {
         self.depth = self.depth.max(depth);
         let (children, count) = choices.children(root);
         for &child in &children[..count] {
-            if choices.tree.nodes[child as usize].count > 0 {
+            if choices.is_leaf(child) {
                 self.leaves += usize::from(choices.lone(child).is_none());
             } else {
                 self.count(choices, child, depth + 1);
@@ -278,9 +231,10 @@ impl Size {
 struct Filler<'a> {
     choices: &'a Choices<'a>,
     tree: &'a BinaryTree,
+    lanes: usize,
     nodes: &'a mut [Node16],
     node_count: usize,
-    /// The binary nodes that become leaves, in turn.
+    /// The binary nodes whose primitives become leaves, in turn.
     leaves: Vec<u32>,
     portals: Vec<Portal>,
 }
@@ -296,16 +250,15 @@ impl Filler<'_> {
             children: Children([0; NODE_WIDTH]),
         };
         for (lane, &child) in children[..count].iter().enumerate() {
-            let child_node = &self.tree.nodes[child as usize];
-            let Box32 { min, max } = child_node.bounds;
+            let Box32 { min, max } = self.tree.nodes[child as usize].bounds;
             for k in 0..3 {
                 node.planes[k][0][lane] = min[k];
                 node.planes[k][1][lane] = max[k];
             }
-            node.children.0[lane] = if child_node.count > 0 {
+            node.children.0[lane] = if self.choices.is_leaf(child) {
                 if let Some((instance, id)) = self.choices.lone(child) {
                     node.children.0[lane] = self.portals.len() as u32 | LEAF | LONE;
-                    self.portals.push(Portal::new(instance, PrimitiveId(id)));
+                    self.portals.push(Portal::new(instance, PrimitiveId(id), self.lanes));
                     continue;
                 }
                 self.leaves.push(child);

@@ -2,6 +2,7 @@
 
 use super::tree;
 use crate::test_support::*;
+use crate::traverse::Level;
 use crate::{Cylinder, Disk, Triangle};
 use crate::{Geometry, Instance, Parallelogram, Placement, Primitive, PrimitiveId, Ray, ShapeError, Sphere, SurfaceId};
 use etalon_optics::{Real, Vec3};
@@ -87,8 +88,9 @@ fn placed_soup(random: &mut Random, count: usize) -> Vec<Primitive> {
 fn tree_equals_brute_force_on_instances_within_instances() {
     for seed in 0..3 {
         for count in [2, 40] {
-            let primitives = placed_soup(&mut Random::new(50 + seed), count);
-            let hits = tree::check(primitives, 4_000, 150 + seed, |l| l);
+            let hits = tree::at_each_level(|_| {
+                tree::check(placed_soup(&mut Random::new(50 + seed), count), 4_000, 150 + seed, |l| l)
+            });
             assert!(hits > 0.15, "only {hits} of the rays hit anything");
         }
     }
@@ -97,7 +99,7 @@ fn tree_equals_brute_force_on_instances_within_instances() {
 #[test]
 fn tree_equals_brute_force_on_placed_meshes() {
     // What is placed has a tree, of triangles alone or of others too, and is small beside the ways that rays take to it.
-    for seed in 0..3 {
+    let hits = |seed: u64| {
         let mut random = Random::new(80 + seed);
         let mesh = Mesh::sphere(9, 12, |p| 1.0 + 0.3 * (7.0 * p.x).sin() * (5.0 * p.y).cos()).primitives();
         let others = soup(&mut random, 40, -2.0..0.0);
@@ -123,7 +125,10 @@ fn tree_equals_brute_force_on_placed_meshes() {
                 place(&placed[i * 7 / 4 % 4], rows, by)
             })
             .collect();
-        let hits = tree::check(primitives, 6_000, 180 + seed, |l| l);
+        tree::check(primitives, 6_000, 180 + seed, |l| l)
+    };
+    for seed in 0..3 {
+        let hits = tree::at_each_level(|_| hits(seed));
         assert!(hits > 0.3, "only {hits} of the rays hit anything");
     }
 }
@@ -429,4 +434,22 @@ fn which_of_two_instances_is_nearer_does_not_depend_on_the_order_however_near_bo
         }
     }
     assert!(differ > 100, "{differ}");
+}
+
+#[test]
+fn the_box_of_an_instance_is_the_same_in_all_instruction_sets() {
+    for seed in 0..4 {
+        let bounds = |level: Level| {
+            level.forced(|| {
+                let mut random = Random::new(64 + seed);
+                let mesh = Mesh::sphere(30, 40, |p| 1.0 + 0.3 * (7.0 * p.x).sin() * (5.0 * p.y).cos()).primitives();
+                let placed = [build(mesh), build(soup(&mut random, 1_000, -3.0..0.0))];
+                let place =
+                    |geometry| Geometry::build(vec![place(geometry, affine(&mut random, -1.0..1.0), Vec3::ZERO)]);
+                placed.each_ref().map(place).map(|geometry| geometry.unwrap().bounds())
+            })
+        };
+        let portable = bounds(Level::Portable);
+        assert!(Level::all().into_iter().all(|level| bounds(level) == portable));
+    }
 }

@@ -20,23 +20,16 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
         assert_eq!(geometry.occluded(&ray), occluded, "{ray:?}");
         if let Some(tree) = geometry.tree() {
             let primitives = geometry.primitives();
-            assert_eq!(traverse::closest_portable(tree, primitives, &query), flat, "{ray:?}");
-            assert_eq!(traverse::any_portable(tree, primitives, &query), occluded, "{ray:?}");
-            #[cfg(target_arch = "x86_64")]
-            if let Some(found) = traverse::closest_avx2(tree, primitives, &query) {
-                assert_eq!(found, flat, "{ray:?}");
-                assert_eq!(traverse::any_avx2(tree, primitives, &query), Some(occluded), "{ray:?}");
-            }
             let scaled = flat.map(|(hit, id)| (R::from_f64(hit.t * query.scale), id));
             assert_eq!(geometry.closest_hit(&ray).map(|hit| (hit.t, hit.surface)), scaled, "{ray:?}");
             // Rays, too, not queries made of them.
             let start = flat.map(|(hit, id)| (crate::query::RawHit { t: hit.t * query.scale, ..hit }, id));
-            assert_eq!(traverse::closest_portable(tree, primitives, &ray), start, "{ray:?}");
-            assert_eq!(traverse::any_portable(tree, primitives, &ray), occluded, "{ray:?}");
-            #[cfg(target_arch = "x86_64")]
-            if let Some(found) = traverse::closest_avx2(tree, primitives, &ray) {
-                assert_eq!(found, start, "{ray:?}");
-                assert_eq!(traverse::any_avx2(tree, primitives, &ray), Some(occluded), "{ray:?}");
+            // Whatever instruction set the tree is made for.
+            for level in Level::all() {
+                assert_eq!(traverse::closest(level, tree, primitives, &query), flat, "{level:?} {ray:?}");
+                assert_eq!(traverse::any(level, tree, primitives, &query), occluded, "{level:?} {ray:?}");
+                assert_eq!(traverse::closest(level, tree, primitives, &ray), start, "{level:?} {ray:?}");
+                assert_eq!(traverse::any(level, tree, primitives, &ray), occluded, "{level:?} {ray:?}");
             }
             assert_eq!(traverse::closest_deep(tree, primitives, &query), flat, "{ray:?}");
             assert_eq!(traverse::any_deep(tree, primitives, &query), occluded, "{ray:?}");
@@ -63,9 +56,19 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
     one::<f64>(geometry, line, t_max, leaves, time) + one::<f32>(geometry, line, t_max, leaves, time)
 }
 
-/// Holds the tree of some primitives against brute force on `rays` adversarial rays; returns the fraction of hits.
+/// Holds the trees of some primitives, one for each instruction set, against brute force on `rays` adversarial rays each; returns the
+/// least fraction of hits.
 pub(super) fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
-    check_geometry(&Geometry::build_with(primitives, 0).unwrap(), rays, seed, place)
+    at_each_level(|level| {
+        let geometry = Geometry::build_with(primitives.clone(), 0).unwrap();
+        assert!(geometry.tree().is_none_or(|tree| tree.lanes() == level.lanes()));
+        check_geometry(&geometry, rays, seed, &place)
+    })
+}
+
+/// The least of what comes of some work done with each instruction set taken for the best.
+pub(super) fn at_each_level(work: impl Fn(Level) -> f64) -> f64 {
+    Level::all().into_iter().map(|level| level.forced(|| work(level))).fold(f64::INFINITY, f64::min)
 }
 
 /// The same of what serves a geometry.
@@ -329,6 +332,7 @@ fn rays_of_which_no_point_is_defined_hit_nothing() {
 fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
     let mut random = Random::new(40);
     let (mut shapes, mut hits) = (0, 0);
+    let levels = Level::all();
     for round in 0..3_000 {
         let primitives: Vec<Primitive> = (0..60)
             .filter_map(|_| {
@@ -344,7 +348,8 @@ fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
         shapes += primitives.len();
         let features = features(&primitives);
         // In turn with a tree and without.
-        let geometry = Geometry::build_with(primitives, [0, 128][round % 2]).unwrap();
+        let level = levels[round / 2 % levels.len()];
+        let geometry = level.forced(|| Geometry::build_with(primitives, [0, 128][round % 2]).unwrap());
         for _ in 0..30 {
             let mut point = || match random.below(2) {
                 0 if !features.is_empty() => features[random.below(features.len())],

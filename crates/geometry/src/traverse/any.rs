@@ -10,15 +10,15 @@ use super::{Narrow, intersect_exact};
 use crate::frame::FrameRay;
 use crate::portal::Portal;
 use crate::query::Query;
-use crate::wide::{BALLS, LEAF, LONE, Leaf8, MIXED, NODE_WIDTH, Node16, Nodes, WideTree};
+use crate::wide::{BALLS, LEAF, LONE, Leaf, MIXED, NODE_WIDTH, Node16, Nodes, WideTree};
 use crate::{Primitive, PrimitiveId};
 
 /// Whether anything is hit, in the order of the tree. A level of the stack is one entry, the children yet to be visited:
 /// that spares a loop over them whose length no branch predictor can know.
 #[inline(always)]
-pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
+pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize, const W: usize>(
     filters: F,
-    tree: &WideTree,
+    (tree, leaves): (&WideTree, &[Leaf<W>]),
     primitives: &[Primitive],
     start: S,
     frame_ray: &FrameRay<Narrow<F>>,
@@ -29,7 +29,7 @@ pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
     let (leaves_id, aims_at) = (start.leaves(), start.aims_at());
     let limit = frame_ray.limit;
     let certain_limit = frame_ray.certain_limit;
-    let (nodes, leaves) = (tree.nodes(), tree.leaves());
+    let nodes = tree.nodes();
     let mut room = Room::<(u32, u32), N>::new();
     let mut levels = Stack::new(&mut room);
     let (mut node, mut index, mut mask) = (nodes.at(0), 0, 0);
@@ -58,7 +58,8 @@ pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
                 break Open::Instance(&tree.portals()[(child & !(LEAF | LONE)) as usize]);
             }
             let leaf = &leaves[(child & !LEAF) as usize];
-            let candidates = candidates::<F, KIND>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
+            let candidates =
+                candidates::<F, KIND, W>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
             let (mut met, mut open) = (candidates.mask & !candidates.missed, 0);
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;
@@ -104,9 +105,9 @@ pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
 }
 
 /// What a walk leaves open.
-enum Open<'a> {
+enum Open<'a, const W: usize> {
     /// Whether these lanes of a leaf are hit.
-    Leaf(&'a Leaf8, u32),
+    Leaf(&'a Leaf<W>, u32),
     /// Whether anything within an instance is.
     Instance(&'a Portal),
 }
@@ -130,9 +131,9 @@ fn next<'a, const N: usize>(
 /// Whether the primitive in a lane of a leaf hides the end of a ray from its start, where `f32` does not tell.
 #[cold]
 #[inline(never)]
-fn occludes_by<S: Start>(
+fn occludes_by<S: Start, const W: usize>(
     tree: &WideTree,
-    leaf: &Leaf8,
+    leaf: &Leaf<W>,
     lane: usize,
     primitives: &[Primitive],
     query: &mut Deferred<S>,

@@ -13,7 +13,7 @@ use crate::best::{Best, Found};
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
 use crate::portal::Portal;
 use crate::query::Query;
-use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
+use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use std::arch::x86_64::*;
 
 /// Proof that the processor has AVX2: [`Avx2::detect`] alone makes one.
@@ -72,11 +72,9 @@ impl Filters for Avx2 {
         self.prefetch(&node.children);
         let mut out = Entered { mask: 0, near: Row([0.0; NODE_WIDTH]) };
         let [ex, ey, ez] = ray.entry;
-        for half in 0..2 {
-            let plane = |k: usize, side: usize| {
-                let (halves, _) = node.planes[k][side & 1].as_chunks::<LEAF_WIDTH>();
-                F8::load(self, &halves[half])
-            };
+        for half in 0..NODE_WIDTH / F8::WIDTH {
+            let at = half * F8::WIDTH;
+            let plane = |k: usize, side: usize| F8::load(self, &node.planes[k][side & 1], at);
             let near_x = (ray.origin_near[0] - plane(0, ex)) * ray.reciprocal_near[0];
             let near_y = (ray.origin_near[1] - plane(1, ey)) * ray.reciprocal_near[1];
             let near_z = (ray.origin_near[2] - plane(2, ez)) * ray.reciprocal_near[2];
@@ -85,8 +83,8 @@ impl Filters for Avx2 {
             let far_z = (ray.origin_far[2] - plane(2, 1 - ez)) * ray.reciprocal_far[2];
             let near = near_x.max_bits(near_y).max_bits(near_z.max_bits(F8::splat(self, LEAST_DISTANCE)));
             let far = far_x.min_bits(far_y).min_bits(far_z.min_bits(F8::splat(self, limit)));
-            out.mask |= near.at_most_bits(far) << (half * LEAF_WIDTH);
-            out.near.0[half * LEAF_WIDTH..][..LEAF_WIDTH].copy_from_slice(&near.to_array());
+            out.mask |= near.at_most_bits(far) << at;
+            near.store(&mut out.near.0, at);
         }
         out
     }

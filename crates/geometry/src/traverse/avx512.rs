@@ -3,9 +3,10 @@
 
 use super::avx2::{Avx2, prefetch};
 use super::compiled::{Compiled, compiled};
-use super::lanes256::{D4, F4, F8};
+use super::lanes256::{D4, F4};
+use super::lanes512::F16;
 use super::met::{Met, Row};
-use super::wide512::{D8, F16};
+use super::wide512::D8;
 use super::within::{closest_within, occludes_within};
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
@@ -120,7 +121,7 @@ fn broadcast(_: Avx512, v: F4) -> [__m512; 3] {
 impl Filters for Avx512 {
     type Ray = Ray16;
     type Met = Met16;
-    type Vector = F8;
+    type Vector = F16;
     type Wide = F16;
     type Eight = D8;
     type Four = D4;

@@ -9,14 +9,14 @@ use super::{Filters, Met, Narrow, intersect_exact};
 use crate::best::{Best, Found};
 use crate::frame::FrameRay;
 use crate::query::{Projection, RawHit};
-use crate::wide::{BALLS, LEAF, LEAF_WIDTH, LONE, MIXED, NODE_WIDTH, WideTree};
+use crate::wide::{BALLS, LEAF, LONE, Leaf, MIXED, NODE_WIDTH, WideTree};
 use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.
 #[inline(always)]
-pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
+pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, const W: usize>(
     filters: F,
-    tree: &WideTree,
+    (tree, leaves): (&WideTree, &[Leaf<W>]),
     primitives: &[Primitive],
     start: S,
     frame_ray: &FrameRay<Narrow<F>>,
@@ -32,7 +32,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
     let certain_limit = frame_ray.certain_limit;
     let nothing = Waiting { leaf: 0, lane: 0, near: 0.0 };
     let mut pending = Pending { list: [nothing; Pending::LIMIT], count: 0 };
-    let (nodes, leaves) = (tree.nodes(), tree.leaves());
+    let nodes = tree.nodes();
     let mut room = Room::<u64, N>::new();
     let mut stack = Stack::new(&mut room);
     let mut child = 0;
@@ -51,7 +51,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
                 let [mut nearest, mut last] = sorted(a, b);
                 let third = second & (second - 1);
                 if third == 0 {
-                    prefetch::<F, KIND>(filters, tree, last as u32);
+                    prefetch::<F, KIND, W>(filters, (tree, leaves), last as u32);
                     stack.push(last);
                     child = nearest as u32;
                     continue;
@@ -73,20 +73,20 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
                     stack.push(last);
                     stack.push(middle);
                     stack.push(next);
-                    prefetch::<F, KIND>(filters, tree, next as u32);
+                    prefetch::<F, KIND, W>(filters, (tree, leaves), next as u32);
                     let beyond = (fourth & (fourth - 1)).count_ones() as usize;
                     if beyond > 0 {
                         let all = met.all(node);
                         for &new in &all.0[4..4 + beyond % (NODE_WIDTH - 3)] {
-                            prefetch::<F, KIND>(filters, tree, new as u32);
+                            prefetch::<F, KIND, W>(filters, (tree, leaves), new as u32);
                             let [near, far] = sorted(nearest, new);
                             stack.insert(base, far);
                             nearest = near;
                         }
                     }
                 }
-                prefetch::<F, KIND>(filters, tree, middle as u32);
-                prefetch::<F, KIND>(filters, tree, last as u32);
+                prefetch::<F, KIND, W>(filters, (tree, leaves), middle as u32);
+                prefetch::<F, KIND, W>(filters, (tree, leaves), last as u32);
                 child = nearest as u32;
                 continue;
             }
@@ -99,12 +99,12 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
             let index = child & !LEAF;
             let leaf = &leaves[index as usize];
             let mut candidates =
-                candidates::<F, KIND>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
+                candidates::<F, KIND, W>(filters, frame_ray, &chords, leaf, limit, certain_limit, leaves_id);
             while candidates.mask != 0 {
                 let lane = candidates.mask.trailing_zeros() as usize;
                 candidates.mask &= candidates.mask - 1;
                 let id = leaf.id(lane);
-                let beyond = candidates.near.0[lane % LEAF_WIDTH] > limit && candidates.unbounded >> lane & 1 == 0;
+                let beyond = candidates.near.0[lane % W] > limit && candidates.unbounded >> lane & 1 == 0;
                 if beyond || candidates.missed >> lane & 1 == 1 {
                     continue;
                 }
@@ -114,7 +114,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
                         filters.prefetch(&primitives[id.0 as usize]);
                     }
                     if pending.count == Pending::LIMIT {
-                        pending.resolve(&mut best, tree, primitives, &mut query, &projection, limit);
+                        pending.resolve(&mut best, (tree, leaves), primitives, &mut query, &projection, limit);
                     }
                     if candidates.far.0[lane] < limit {
                         limit = candidates.far.0[lane];
@@ -126,7 +126,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
                     pending.list[pending.count] =
                         Waiting { leaf: index, lane: lane as u32, near: candidates.near.0[lane] };
                     pending.count += 1;
-                } else if decide(&mut best, tree, (index, lane as u32), primitives, &mut query, &projection) {
+                } else if decide(&mut best, tree, (leaf, lane), primitives, &mut query, &projection) {
                     limit = limit.min(tree.frame.distance(frame_ray.start, best.t_max));
                 }
             }
@@ -135,11 +135,12 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
             let Some(next) = stack.pop() else {
                 if pending.count == 1 {
                     let Waiting { leaf, lane, .. } = pending.list[0];
+                    let leaf = &leaves[leaf as usize];
                     let last = decide_last(
                         filters,
                         &best,
                         tree,
-                        (leaf, lane),
+                        (leaf, lane as usize),
                         primitives,
                         &mut query,
                         (&projection, frame_ray.t_scale),
@@ -149,7 +150,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize>(
                         return Some((RawHit { t, ..hit }, SurfaceId::from(id)));
                     }
                 } else if pending.count > 1 {
-                    pending.resolve(&mut best, tree, primitives, &mut query, &projection, limit);
+                    pending.resolve(&mut best, (tree, leaves), primitives, &mut query, &projection, limit);
                 }
                 return best
                     .found()
@@ -192,10 +193,10 @@ impl Pending {
     /// Decides those that are not beyond `limit`.
     #[cold]
     #[inline(never)]
-    fn resolve<S: Start>(
+    fn resolve<S: Start, const W: usize>(
         &mut self,
         best: &mut Best,
-        tree: &WideTree,
+        (tree, leaves): (&WideTree, &[Leaf<W>]),
         primitives: &[Primitive],
         query: &mut Deferred<S>,
         projection: &Projection,
@@ -203,7 +204,8 @@ impl Pending {
     ) {
         for waiting in &self.list[..self.count] {
             if waiting.near <= limit {
-                decide(best, tree, (waiting.leaf, waiting.lane), primitives, query, projection);
+                let lane = (&leaves[waiting.leaf as usize], waiting.lane as usize);
+                decide(best, tree, lane, primitives, query, projection);
             }
         }
         self.count = 0;
@@ -213,15 +215,14 @@ impl Pending {
 /// Decides in `f64` whether a lane of a leaf holds the closest hit so far.
 #[cold]
 #[inline(never)]
-fn decide<S: Start>(
+fn decide<S: Start, const W: usize>(
     best: &mut Best,
     tree: &WideTree,
-    (leaf, lane): (u32, u32),
+    (leaf, lane): (&Leaf<W>, usize),
     primitives: &[Primitive],
     query: &mut Deferred<S>,
     projection: &Projection,
 ) -> bool {
-    let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
     if !leaf.is_exact(lane) {
         return best.test(primitives, query.get(), id);
@@ -236,16 +237,15 @@ fn decide<S: Start>(
 
 /// [`decide`] for what is most often the only one to be decided: without a query, where its projection is enough.
 #[inline(always)]
-fn decide_last<F: Filters, S: Start>(
+fn decide_last<F: Filters, S: Start, const W: usize>(
     filters: F,
     best: &Best,
     tree: &WideTree,
-    (leaf, lane): (u32, u32),
+    (leaf, lane): (&Leaf<W>, usize),
     primitives: &[Primitive],
     query: &mut Deferred<S>,
     (projection, t_scale): (&Projection, f64),
 ) -> Option<(RawHit, PrimitiveId)> {
-    let (leaf, lane) = (&tree.leaves()[leaf as usize], lane as usize);
     let id = leaf.id(lane);
     let (limit, token) = (best.limit(id), filters.into());
     let found = if leaf.is_exact(lane) {
@@ -273,13 +273,17 @@ fn decide_last<F: Filters, S: Start>(
 /// Announces that a child that waits on the stack will be visited. Without it rays that share nothing are a tenth slower in
 /// trees that no cache holds.
 #[inline(always)]
-fn prefetch<F: Filters, const KIND: u8>(filters: F, tree: &WideTree, child: u32) {
+fn prefetch<F: Filters, const KIND: u8, const W: usize>(
+    filters: F,
+    (tree, leaves): (&WideTree, &[Leaf<W>]),
+    child: u32,
+) {
     if !tree.prefetch {
         return;
     }
     if child & LEAF == 0 {
         filters.prefetch(tree.nodes().at(child));
     } else if KIND != MIXED || child & LONE == 0 {
-        filters.prefetch(&tree.leaves()[(child & !LEAF) as usize]);
+        filters.prefetch(&leaves[(child & !LEAF) as usize]);
     }
 }

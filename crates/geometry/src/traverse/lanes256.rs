@@ -5,7 +5,6 @@ use super::avx2::Avx2;
 use super::vector::Vector;
 use crate::frame::Lanes4;
 use crate::query::Four;
-use crate::wide::LEAF_WIDTH;
 use std::arch::x86_64::*;
 
 /// Eight floats. Its operations, and whatever else here uses vector instructions, are inlined by force into functions that
@@ -31,6 +30,14 @@ operator!(Mul, mul, _mm256_mul_ps);
 operator!(Div, div, _mm256_div_ps);
 
 impl F8 {
+    /// Into a row from `at` on, a multiple of eight.
+    #[inline(always)]
+    pub(super) fn store<const W: usize>(self, row: &mut [f32; W], at: usize) {
+        let half = &mut row.as_chunks_mut::<8>().0[at / 8 % (W / 8)];
+        // SAFETY: as for the operators; eight floats are writable at the reference, aligned or not.
+        unsafe { _mm256_storeu_ps(half.as_mut_ptr(), self.0) };
+    }
+
     /// The larger of each pair of numbers as integers, in a cycle instead of four: numbers that are not negative are ordered as
     /// they are, one that is negative is below them all.
     #[inline(always)]
@@ -64,6 +71,7 @@ impl F8 {
 
 impl Vector for F8 {
     type Token = Avx2;
+    const WIDTH: usize = 8;
 
     #[inline(always)]
     fn splat(_: Avx2, v: f32) -> Self {
@@ -72,25 +80,26 @@ impl Vector for F8 {
     }
 
     #[inline(always)]
-    fn load(_: Avx2, row: &[f32; LEAF_WIDTH]) -> Self {
+    fn load<const W: usize>(_: Avx2, row: &[f32; W], at: usize) -> Self {
+        let half = &row.as_chunks::<8>().0[at / 8 % (W / 8)];
         // SAFETY: the token proves AVX2; eight floats are readable at the reference, aligned or not.
-        Self(unsafe { _mm256_loadu_ps(row.as_ptr()) })
+        Self(unsafe { _mm256_loadu_ps(half.as_ptr()) })
     }
 
     #[inline(always)]
-    fn lanes_with(_: Avx2, row: &[u32; LEAF_WIDTH], v: u32) -> u32 {
+    fn lanes_with<const W: usize>(_: Avx2, row: &[u32; W], at: usize, v: u32) -> u32 {
+        let half = &row.as_chunks::<8>().0[at / 8 % (W / 8)];
         // SAFETY: the token proves AVX2; eight numbers are readable at the reference, aligned or not.
-        let same = unsafe { _mm256_cmpeq_epi32(_mm256_loadu_si256(row.as_ptr().cast()), _mm256_set1_epi32(v as i32)) };
+        let same = unsafe { _mm256_cmpeq_epi32(_mm256_loadu_si256(half.as_ptr().cast()), _mm256_set1_epi32(v as i32)) };
         // SAFETY: as above.
         Self::mask(unsafe { _mm256_castsi256_ps(same) })
     }
 
     #[inline(always)]
-    fn to_array(self) -> [f32; LEAF_WIDTH] {
-        let mut out = [0.0; LEAF_WIDTH];
-        // SAFETY: as for the operators; eight floats are writable at the reference, aligned or not.
-        unsafe { _mm256_storeu_ps(out.as_mut_ptr(), self.0) };
-        out
+    fn to_row<const W: usize>(self, at: usize) -> [f32; W] {
+        let mut row = [0.0; W];
+        self.store(&mut row, at);
+        row
     }
 
     #[inline(always)]
@@ -106,11 +115,11 @@ impl Vector for F8 {
     }
 
     #[inline(always)]
-    fn only(self, lanes: u8) -> Self {
+    fn only(self, lanes: u32) -> Self {
         // SAFETY: as for the operators.
         Self(unsafe {
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-            let chosen = _mm256_and_si256(_mm256_set1_epi32(i32::from(lanes)), bits);
+            let chosen = _mm256_and_si256(_mm256_set1_epi32(lanes as i32), bits);
             _mm256_and_ps(self.0, _mm256_castsi256_ps(_mm256_cmpeq_epi32(chosen, bits)))
         })
     }

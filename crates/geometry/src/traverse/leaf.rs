@@ -5,40 +5,70 @@ use super::{Candidates, Filters, Narrow, Row};
 use crate::PrimitiveId;
 use crate::frame::{FrameRay, Lanes4};
 use crate::query::AXES;
-use crate::wide::{BALLS, LEAF_WIDTH, Leaf8, MESH};
+use crate::wide::{BALLS, Leaf, MESH, NO_ID};
 
 /// The primitives of a leaf that the ray may hit in [0, `limit`], and the flat shapes and spheres that it certainly hits in
 /// (0, `certain_limit`). The primitive that the ray leaves is not among them unless it may be hit again, and never certain.
 #[inline(always)]
-pub(super) fn candidates<F: Filters, const KIND: u8>(
+pub(super) fn candidates<F: Filters, const KIND: u8, const W: usize>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
     chords: &Chords,
-    leaf: &Leaf8,
+    leaf: &Leaf<W>,
     limit: f32,
     certain_limit: f32,
     leaves: PrimitiveId,
-) -> Candidates {
+) -> Candidates<W> {
+    let width = F::Vector::WIDTH;
+    if width == W {
+        return candidates_at::<F, KIND, W>(filters, ray, chords, (leaf, 0), limit, certain_limit, leaves);
+    }
+    let mut found = candidates_at::<F, KIND, W>(filters, ray, chords, (leaf, 0), limit, certain_limit, leaves);
+    // Lanes are filled from the first on.
+    if leaf.ids()[width % W] != NO_ID {
+        let rest = candidates_at::<F, KIND, W>(filters, ray, chords, (leaf, width), limit, certain_limit, leaves);
+        found.mask |= rest.mask << width;
+        found.missed |= rest.missed << width;
+        found.unbounded = found.unbounded & ((1 << width) - 1) | rest.unbounded << width;
+        found.certain |= rest.certain << width;
+        found.near.0[width..].copy_from_slice(&rest.near.0[width..]);
+        found.far.0[width..].copy_from_slice(&rest.far.0[width..]);
+    }
+    found
+}
+
+/// [`candidates`] in the lanes of a leaf from `at` on, as many as a vector has. The first bit of its masks stands for the lane `at`; in its
+/// rows each lane has its own place.
+#[inline(always)]
+fn candidates_at<F: Filters, const KIND: u8, const W: usize>(
+    filters: F,
+    ray: &FrameRay<Narrow<F>>,
+    chords: &Chords,
+    (leaf, at): (&Leaf<W>, usize),
+    limit: f32,
+    certain_limit: f32,
+    leaves: PrimitiveId,
+) -> Candidates<W> {
     // By lanes: a ray that leaves a primitive comes by it most often, at no time that could be foretold.
-    let own = F::Vector::lanes_with(filters.into(), &leaf.ids, leaves.0);
+    let own = F::Vector::lanes_with(filters.into(), leaf.ids(), at, leaves.0);
     if KIND == MESH {
-        let mut found = flats::<F, true>(filters, ray, leaf, limit, certain_limit);
+        let mut found = flats::<F, true, W>(filters, ray, (leaf, at), limit, certain_limit);
         found.mask &= !own;
         return found;
     }
     if KIND == BALLS {
-        return spheres(filters, ray, chords, leaf, own, limit, certain_limit);
+        return spheres(filters, ray, chords, (leaf, at), own, limit, certain_limit);
     }
-    let others = u32::from(leaf.others);
-    let mut found = if leaf.flats != 0 {
-        flats::<F, false>(filters, ray, leaf, limit, certain_limit)
+    let others = lanes::<F>(leaf.others(), at);
+    let mut found = if leaf.flats() != 0 {
+        flats::<F, false, W>(filters, ray, (leaf, at), limit, certain_limit)
     } else {
-        spheres(filters, ray, chords, leaf, own, limit, certain_limit)
+        spheres(filters, ray, chords, (leaf, at), own, limit, certain_limit)
     };
-    if leaf.flats != 0 && leaf.spheres != 0 {
+    if leaf.flats() != 0 && leaf.spheres() != 0 {
         // Mixed leaves are rare: of their spheres no distance is known.
-        let balls = spheres(filters, ray, chords, leaf, own, limit, certain_limit);
-        let met = balls.mask & u32::from(leaf.spheres);
+        let balls = spheres(filters, ray, chords, (leaf, at), own, limit, certain_limit);
+        let met = balls.mask & lanes::<F>(leaf.spheres(), at);
         found.mask |= met;
         found.missed &= !met;
         found.certain &= !met;
@@ -48,9 +78,15 @@ pub(super) fn candidates<F: Filters, const KIND: u8>(
     found.missed &= !others;
     found.certain &= !others;
     found.unbounded |= others;
-    found.mask &= !(own & u32::from(leaf.flats));
+    found.mask &= !(own & lanes::<F>(leaf.flats(), at));
     found.certain &= !own;
     found
+}
+
+/// The lanes of a vector among those of a leaf.
+#[inline(always)]
+fn lanes<F: Filters>(mask: u32, at: usize) -> u32 {
+    mask >> at & ((1 << F::Vector::WIDTH) - 1)
 }
 
 /// [`candidates`] among the flat shapes: Woop's projection in `f32` with error bounds.
@@ -63,27 +99,28 @@ pub(super) fn candidates<F: Filters, const KIND: u8>(
 /// most three times that times their spread, over the determinant, and by less than 3δ for the rounding of distances, sum and
 /// quotient.
 #[inline(always)]
-fn flats<F: Filters, const MESH: bool>(
+fn flats<F: Filters, const MESH: bool, const W: usize>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
-    leaf: &Leaf8,
+    (leaf, at): (&Leaf<W>, usize),
     limit: f32,
     certain_limit: f32,
-) -> Candidates {
+) -> Candidates<W> {
     let all = |v| F::Vector::splat(filters.into(), v);
-    let a = project(filters, ray, &leaf.vertices[0]);
-    let b = project(filters, ray, &leaf.vertices[1]);
-    let c = project(filters, ray, &leaf.vertices[2]);
+    let a = project(filters, ray, leaf.vertex(0), at);
+    let b = project(filters, ray, leaf.vertex(1), at);
+    let c = project(filters, ray, leaf.vertex(2), at);
     let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-    let delta = ray.error + leaf.error;
-    let mut error = leaf_error(delta, leaf.extent);
+    let delta = ray.error + leaf.error();
+    let mut error = leaf_error(delta, leaf.extent());
     let (mut least, mut most) = (v.min(w), v.max(w));
-    if MESH || leaf.quads == 0 {
+    if MESH || leaf.quads() == 0 {
         (least, most) = (least.min(u), most.max(u));
     } else {
         error *= 2.0;
-        least = least.min(u + least.only(leaf.quads));
-        most = most.max(u + most.only(leaf.quads));
+        let quads = lanes::<F>(leaf.quads(), at);
+        least = least.min(u + least.only(quads));
+        most = most.max(u + most.only(quads));
     }
     let met = all(-error).at_most(least) | most.at_most(all(error));
     if met == 0 {
@@ -93,7 +130,7 @@ fn flats<F: Filters, const MESH: bool>(
     let reciprocal = all(-ray.per_depth) / det;
     let t = (u * a[2] + v * b[2] + w * c[2]) * reciprocal;
     // Along an axis vertices are no farther apart than the extent, to rounding.
-    let t_error = all(6.0 * error * (leaf.extent + 2.0 * delta)) * reciprocal.abs() + all(3.0 * delta);
+    let t_error = all(6.0 * error * (leaf.extent() + 2.0 * delta)) * reciprocal.abs() + all(3.0 * delta);
     let determined = all(6.0 * error).below(det.abs());
     let (near, far) = (t - t_error, t + t_error);
     let missed = determined & (all(limit).below(near) | far.below(all(0.0)));
@@ -103,29 +140,34 @@ fn flats<F: Filters, const MESH: bool>(
         mask: met,
         missed,
         unbounded: !determined,
-        certain: determined & inside & ahead & if MESH { u32::MAX } else { !u32::from(leaf.disks) },
-        near: Row(near.to_array()),
-        far: Row(far.to_array()),
+        certain: determined & inside & ahead & if MESH { u32::MAX } else { !lanes::<F>(leaf.disks(), at) },
+        near: Row(near.to_row(at)),
+        far: Row(far.to_row(at)),
     }
 }
 
 /// A vertex in the projection of the ray, all its coordinates negated (an instruction subtracts what it reads from memory, not
 /// from it): z is not yet scaled.
 #[inline(always)]
-fn project<F: Filters>(filters: F, ray: &FrameRay<Narrow<F>>, vertex: &[[f32; LEAF_WIDTH]; 3]) -> [F::Vector; 3] {
+fn project<F: Filters, const W: usize>(
+    filters: F,
+    ray: &FrameRay<Narrow<F>>,
+    vertex: &[[f32; W]; 3],
+    at: usize,
+) -> [F::Vector; 3] {
     let [kx, ky, kz] = AXES[ray.axis % AXES.len()];
     let (start, slopes) = (ray.start_along.to_array(), ray.slopes.to_array());
-    let x = from_origin(filters, start[0], &vertex[kx]);
-    let y = from_origin(filters, start[1], &vertex[ky]);
-    let z = from_origin(filters, start[2], &vertex[kz]);
+    let x = from_origin(filters, start[0], &vertex[kx], at);
+    let y = from_origin(filters, start[1], &vertex[ky], at);
+    let z = from_origin(filters, start[2], &vertex[kz], at);
     let (sx, sy) = (F::Vector::splat(filters.into(), slopes[0]), F::Vector::splat(filters.into(), slopes[1]));
     [x - sx * z, y - sy * z, z]
 }
 
 /// The origin's coordinate less the vertices'. No closure, which may be called, and be compiled without vector instructions.
 #[inline(always)]
-fn from_origin<F: Filters>(filters: F, start: f32, row: &[f32; LEAF_WIDTH]) -> F::Vector {
-    F::Vector::splat(filters.into(), start) - F::Vector::load(filters.into(), row)
+fn from_origin<F: Filters, const W: usize>(filters: F, start: f32, row: &[f32; W], at: usize) -> F::Vector {
+    F::Vector::splat(filters.into(), start) - F::Vector::load(filters.into(), row, at)
 }
 
 #[inline(always)]
@@ -169,22 +211,22 @@ impl Chords {
 /// n·r², and that is computed to 8. The other 74 and more are of the square of the half chord, too, and their half pays for the 16
 /// roundoffs by which the half chord √((r² − d²)/n) errs.
 #[inline(always)]
-fn spheres<F: Filters>(
+fn spheres<F: Filters, const W: usize>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
     &Chords { n, form: [a, b, c], per_n }: &Chords,
-    leaf: &Leaf8,
+    (leaf, at): (&Leaf<W>, usize),
     own: u32,
     limit: f32,
     certain_limit: f32,
-) -> Candidates {
+) -> Candidates<W> {
     let all = |v| F::Vector::splat(filters.into(), v);
     let ([sx, sy, _, _], sz) = (ray.slopes.to_array(), -ray.per_depth);
-    let [x, y, z] = project(filters, ray, &leaf.vertices[0]);
-    let radius = F::Vector::load(filters.into(), &leaf.vertices[1][0]);
+    let [x, y, z] = project(filters, ray, leaf.vertex(0), at);
+    let radius = F::Vector::load(filters.into(), &leaf.vertex(1)[0], at);
     // n times the squares of the distance, of the radii and of the half chords.
     let squared = x * (all(a) * x - all(b) * y) + y * (all(c) * y - all(b) * x);
-    let delta = ray.error + leaf.error;
+    let delta = ray.error + leaf.error();
     let slack = all(6.0 * delta);
     let (inner, outer) = (radius - slack, radius + slack);
     let outer_squared = outer * outer * all(n);
@@ -206,8 +248,8 @@ fn spheres<F: Filters>(
     // Around the origin, where the first root is certainly behind, the second is the hit.
     let around = met & pierced & far.below(all(0.0)) & !missed;
     if around != 0 {
-        near = near.only(!around as u8) + (middle + shorter - t_error).only(around as u8);
-        far = far.only(!around as u8) + farther.only(around as u8);
+        near = near.only(!around) + (middle + shorter - t_error).only(around);
+        far = far.only(!around) + farther.only(around);
     }
     // A root is the hit only where it is certainly ahead, and not of the sphere left.
     let certain = pierced & !own & all(0.0).below(near) & far.below(all(certain_limit));
@@ -216,8 +258,8 @@ fn spheres<F: Filters>(
         missed: 0,
         unbounded: 0,
         certain,
-        near: Row(near.to_array()),
-        far: Row(far.to_array()),
+        near: Row(near.to_row(at)),
+        far: Row(far.to_row(at)),
     }
 }
 

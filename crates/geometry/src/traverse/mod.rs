@@ -14,7 +14,10 @@ mod eight;
 mod flat;
 #[cfg(target_arch = "x86_64")]
 mod lanes256;
+#[cfg(target_arch = "x86_64")]
+mod lanes512;
 mod leaf;
+mod level;
 mod met;
 mod portable;
 mod stack;
@@ -28,9 +31,9 @@ mod within;
 
 use crate::best::Found;
 use crate::build::MAX_DEPTH;
-use crate::frame::BoxRay;
+use crate::frame::{BoxRay, FrameRay};
 use crate::query::{Four, Projection, Query, RawHit};
-use crate::wide::{BALLS, LEAF_WIDTH, Leaf8, MESH, MIXED, NODE_WIDTH, Node16, WideTree};
+use crate::wide::{BALLS, Leaf, Leaves, MESH, MIXED, NODE_WIDTH, Node16, WideTree};
 use crate::{Hits, Primitive, Rays, Triangle};
 use any::any_on;
 pub(crate) use any::occludes;
@@ -38,7 +41,10 @@ use closest::closest_on;
 use compiled::Compiled;
 use flat::{Eight, Wide};
 pub(crate) use flat::{FLAT_LIMIT, Flat};
+use level::Job;
+pub(crate) use level::{Level, Loop, vectorised};
 use met::{Met, Row};
+use portable::Portable;
 use start::Start;
 use vector::Vector;
 
@@ -46,7 +52,7 @@ use vector::Vector;
 const LEVELS: [usize; 2] = [12, MAX_DEPTH];
 
 /// The primitives of a leaf that a ray may hit.
-struct Candidates {
+struct Candidates<const W: usize> {
     /// Those that the line of the ray may meet, one bit each. Of others the fields below tell nothing.
     mask: u32,
     /// Those that it certainly meets behind the origin or beyond the limit. Apart from the mask, which is known sooner.
@@ -56,20 +62,13 @@ struct Candidates {
     /// Those that are certainly hit between the origin and the certain limit.
     certain: u32,
     /// Distances not above the true ones.
-    near: Row<f32, LEAF_WIDTH>,
+    near: Row<f32, W>,
     /// Distances not below the true ones of those certainly hit.
-    far: Row<f32, LEAF_WIDTH>,
+    far: Row<f32, W>,
 }
 
-impl Candidates {
-    const NONE: Self = Self {
-        mask: 0,
-        missed: 0,
-        unbounded: 0,
-        certain: 0,
-        near: Row([0.0; LEAF_WIDTH]),
-        far: Row([0.0; LEAF_WIDTH]),
-    };
+impl<const W: usize> Candidates<W> {
+    const NONE: Self = Self { mask: 0, missed: 0, unbounded: 0, certain: 0, near: Row([0.0; W]), far: Row([0.0; W]) };
 }
 
 /// The four floats of an instruction set.
@@ -87,7 +86,7 @@ trait Filters:
     type Ray: Copy;
     /// What a ray meets of a node.
     type Met: Met;
-    /// Eight floats.
+    /// Eight floats, or sixteen.
     type Vector: Vector;
     /// Eight floats, or sixteen.
     type Wide: Wide;
@@ -103,90 +102,6 @@ trait Filters:
     fn prefetch<T>(self, item: &T);
 }
 
-/// Work that is compiled for each instruction set. Its function is inlined into one that is.
-trait Job {
-    /// What comes of it.
-    type Output;
-    /// The work.
-    fn run<F: Compiled>(self, filters: F) -> Self::Output;
-}
-
-/// An instruction set that the processor has.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Level {
-    #[cfg(target_arch = "x86_64")]
-    Avx512(avx512::Avx512),
-    #[cfg(target_arch = "x86_64")]
-    Avx2(avx2::Avx2),
-    Portable,
-}
-
-impl Level {
-    /// The best one.
-    pub(crate) fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(filters) = avx512::Avx512::detect() {
-            return Self::Avx512(filters);
-        } else if let Some(filters) = avx2::Avx2::detect() {
-            return Self::Avx2(filters);
-        }
-        Self::Portable
-    }
-
-    /// All.
-    #[cfg(test)]
-    pub(crate) fn all() -> Vec<Self> {
-        let mut all = vec![Self::Portable];
-        #[cfg(target_arch = "x86_64")]
-        all.extend(avx2::Avx2::detect().map(Self::Avx2));
-        #[cfg(target_arch = "x86_64")]
-        all.extend(avx512::Avx512::detect().map(Self::Avx512));
-        all
-    }
-
-    #[inline(always)]
-    fn run<J: Job>(self, job: J) -> J::Output {
-        match self {
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512(filters) => filters.run(job),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(filters) => filters.run(job),
-            Self::Portable => portable::Portable.run(job),
-        }
-    }
-}
-
-/// A loop that the compiler makes vectors of, as wide as an instruction set has.
-pub(crate) trait Loop {
-    /// What comes of it.
-    type Output;
-    /// The loop, marked to be inlined always, as all that it calls.
-    fn run(self) -> Self::Output;
-}
-
-/// Runs a loop in the vectors of an instruction set. Operations are the same in all of them, and so is the result.
-#[inline(always)]
-pub(crate) fn vectorised<L: Loop>(level: Level, work: L) -> L::Output {
-    let work = Vectorised(work);
-    match level {
-        // Vectors that the compiler makes of sixteen floats gain nothing, and what it stores by masks is waited for.
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx512(filters) => avx2::Avx2::from(filters).run(work),
-        level => level.run(work),
-    }
-}
-
-struct Vectorised<L>(L);
-
-impl<L: Loop> Job for Vectorised<L> {
-    type Output = L::Output;
-
-    #[inline(always)]
-    fn run<F: Compiled>(self, _: F) -> L::Output {
-        self.0.run()
-    }
-}
-
 /// The closest hit, its distance in the units of the start.
 ///
 /// The query is made within, where its numbers can stay in registers.
@@ -197,7 +112,7 @@ pub(crate) fn closest<S: Start>(level: Level, tree: &WideTree, primitives: &[Pri
         Level::Avx512(filters) => filters.closest(tree, primitives, start),
         #[cfg(target_arch = "x86_64")]
         Level::Avx2(filters) => filters.closest(tree, primitives, start),
-        Level::Portable => closest_portable(tree, primitives, start),
+        Level::Portable => Portable.closest(tree, primitives, start),
     }
 }
 
@@ -209,7 +124,7 @@ pub(crate) fn any<S: Start>(level: Level, tree: &WideTree, primitives: &[Primiti
         Level::Avx512(filters) => filters.any(tree, primitives, start),
         #[cfg(target_arch = "x86_64")]
         Level::Avx2(filters) => filters.any(tree, primitives, start),
-        Level::Portable => any_portable(tree, primitives, start),
+        Level::Portable => Portable.any(tree, primitives, start),
     }
 }
 
@@ -225,28 +140,6 @@ pub(crate) fn any_hits(level: Level, tree: &WideTree, primitives: &[Primitive], 
     level.run(eight::Any { tree, primitives, rays, active })
 }
 
-/// [`closest`] on any machine.
-pub(crate) fn closest_portable<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
-    portable::Portable.closest(tree, primitives, start)
-}
-
-/// [`any`] on any machine.
-pub(crate) fn any_portable<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
-    portable::Portable.any(tree, primitives, start)
-}
-
-/// [`closest`] with AVX2 alone; none without.
-#[cfg(all(test, target_arch = "x86_64"))]
-pub(crate) fn closest_avx2<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Option<Found>> {
-    avx2::Avx2::detect().map(|filters| filters.closest(tree, primitives, start))
-}
-
-/// [`any`] with AVX2 alone; none without.
-#[cfg(all(test, target_arch = "x86_64"))]
-pub(crate) fn any_avx2<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<bool> {
-    avx2::Avx2::detect().map(|filters| filters.any(tree, primitives, start))
-}
-
 /// The closest hit of a ray that starts near the frame, as most do: without a query until one is needed.
 #[inline(always)]
 fn closest_with<F: Compiled, S: Start>(
@@ -256,16 +149,31 @@ fn closest_with<F: Compiled, S: Start>(
     start: S,
 ) -> Option<Found> {
     let near = if tree.depth <= LEVELS[0] { start.enter_near::<F::Four>(filters.into(), &tree.frame) } else { None };
-    match near {
-        Some(ray) => {
-            const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
-            match tree.kind {
-                MESH => closest_on::<F, S, MESH, ROOM>(filters, tree, primitives, start, &ray),
-                BALLS => closest_on::<F, S, BALLS, ROOM>(filters, tree, primitives, start, &ray),
-                _ => closest_on::<F, S, MIXED, ROOM>(filters, tree, primitives, start, &ray),
-            }
+    match (near, tree.leaves()) {
+        (Some(ray), Leaves::Eight(leaves)) if const { F::Vector::WIDTH == 8 } => {
+            closest_near(filters, (tree, leaves), primitives, start, &ray)
         }
-        None => filters.closest_far(tree, primitives, start),
+        (Some(ray), Leaves::Sixteen(leaves)) if const { F::Vector::WIDTH == 16 } => {
+            closest_near(filters, (tree, leaves), primitives, start, &ray)
+        }
+        _ => filters.closest_far(tree, primitives, start),
+    }
+}
+
+/// The closest hit of a ray near the frame of a tree that is made for the filters.
+#[inline(always)]
+fn closest_near<F: Compiled, S: Start, const W: usize>(
+    filters: F,
+    tree: (&WideTree, &[Leaf<W>]),
+    primitives: &[Primitive],
+    start: S,
+    ray: &FrameRay<Narrow<F>>,
+) -> Option<Found> {
+    const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
+    match tree.0.kind {
+        MESH => closest_on::<F, S, MESH, ROOM, W>(filters, tree, primitives, start, ray),
+        BALLS => closest_on::<F, S, BALLS, ROOM, W>(filters, tree, primitives, start, ray),
+        _ => closest_on::<F, S, MIXED, ROOM, W>(filters, tree, primitives, start, ray),
     }
 }
 
@@ -278,25 +186,52 @@ fn closest_far_with<F: Compiled, S: Start>(
     start: S,
 ) -> Option<Found> {
     let query = start.query()?;
-    if tree.depth > LEVELS[0] {
-        let (hit, id) = closest_deep(tree, primitives, &query)?;
-        return Some((RawHit { t: start.distance(query.scale, hit.t), ..hit }, id));
+    const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
+    if tree.depth <= LEVELS[0] {
+        match tree.leaves() {
+            Leaves::Eight(leaves) if const { F::Vector::WIDTH == 8 } => {
+                let ray = tree.frame.enter(filters.into(), &query)?;
+                return closest_on::<F, S, MIXED, ROOM, 8>(filters, (tree, leaves), primitives, start, &ray);
+            }
+            Leaves::Sixteen(leaves) if const { F::Vector::WIDTH == 16 } => {
+                let ray = tree.frame.enter(filters.into(), &query)?;
+                return closest_on::<F, S, MIXED, ROOM, 16>(filters, (tree, leaves), primitives, start, &ray);
+            }
+            _ => {}
+        }
     }
-    let ray = tree.frame.enter(filters.into(), &query)?;
-    closest_on::<F, S, MIXED, { LEVELS[0] * (NODE_WIDTH - 1) }>(filters, tree, primitives, start, &ray)
+    let (hit, id) = closest_deep(tree, primitives, &query)?;
+    Some((RawHit { t: start.distance(query.scale, hit.t), ..hit }, id))
 }
 
 /// Whether anything is hit by a ray that starts near the frame.
 #[inline(always)]
 fn any_with<F: Compiled, S: Start>(filters: F, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
     let near = if tree.depth <= LEVELS[0] { start.enter_near::<F::Four>(filters.into(), &tree.frame) } else { None };
-    match near {
-        Some(ray) => match tree.kind {
-            MESH => any_on::<F, S, MESH, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
-            BALLS => any_on::<F, S, BALLS, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
-            _ => any_on::<F, S, MIXED, { LEVELS[0] }>(filters, tree, primitives, start, &ray),
-        },
-        None => filters.any_far(tree, primitives, start),
+    match (near, tree.leaves()) {
+        (Some(ray), Leaves::Eight(leaves)) if const { F::Vector::WIDTH == 8 } => {
+            any_near(filters, (tree, leaves), primitives, start, &ray)
+        }
+        (Some(ray), Leaves::Sixteen(leaves)) if const { F::Vector::WIDTH == 16 } => {
+            any_near(filters, (tree, leaves), primitives, start, &ray)
+        }
+        _ => filters.any_far(tree, primitives, start),
+    }
+}
+
+/// Whether anything is hit by a ray near the frame of a tree that is made for the filters.
+#[inline(always)]
+fn any_near<F: Compiled, S: Start, const W: usize>(
+    filters: F,
+    tree: (&WideTree, &[Leaf<W>]),
+    primitives: &[Primitive],
+    start: S,
+    ray: &FrameRay<Narrow<F>>,
+) -> bool {
+    match tree.0.kind {
+        MESH => any_on::<F, S, MESH, { LEVELS[0] }, W>(filters, tree, primitives, start, ray),
+        BALLS => any_on::<F, S, BALLS, { LEVELS[0] }, W>(filters, tree, primitives, start, ray),
+        _ => any_on::<F, S, MIXED, { LEVELS[0] }, W>(filters, tree, primitives, start, ray),
     }
 }
 
@@ -304,28 +239,46 @@ fn any_with<F: Compiled, S: Start>(filters: F, tree: &WideTree, primitives: &[Pr
 #[inline(always)]
 fn any_far_with<F: Compiled, S: Start>(filters: F, tree: &WideTree, primitives: &[Primitive], start: S) -> bool {
     let Some(query) = start.query() else { return false };
-    if tree.depth > LEVELS[0] {
-        return any_deep(tree, primitives, &query);
+    const N: usize = LEVELS[0];
+    if tree.depth <= N {
+        let enter = || tree.frame.enter(filters.into(), &query);
+        match tree.leaves() {
+            Leaves::Eight(leaves) if const { F::Vector::WIDTH == 8 } => {
+                let Some(ray) = enter() else { return false };
+                return any_on::<F, S, MIXED, N, 8>(filters, (tree, leaves), primitives, start, &ray);
+            }
+            Leaves::Sixteen(leaves) if const { F::Vector::WIDTH == 16 } => {
+                let Some(ray) = enter() else { return false };
+                return any_on::<F, S, MIXED, N, 16>(filters, (tree, leaves), primitives, start, &ray);
+            }
+            _ => {}
+        }
     }
-    let Some(ray) = tree.frame.enter(filters.into(), &query) else { return false };
-    any_on::<F, S, MIXED, { LEVELS[0] }>(filters, tree, primitives, start, &ray)
+    any_deep(tree, primitives, &query)
 }
 
-/// Degenerate trees, by the portable filters.
+/// Degenerate trees, and those made for another instruction set, by the portable filters.
 #[cold]
 #[inline(never)]
 pub(crate) fn closest_deep(tree: &WideTree, primitives: &[Primitive], query: &Query) -> Option<Found> {
+    const ROOM: usize = LEVELS[1] * (NODE_WIDTH - 1);
     let ray = tree.frame.enter((), query)?;
-    closest_on::<_, _, MIXED, { LEVELS[1] * (NODE_WIDTH - 1) }>(portable::Portable, tree, primitives, query, &ray)
+    match tree.leaves() {
+        Leaves::Eight(l) => closest_on::<_, _, MIXED, ROOM, 8>(Portable, (tree, l), primitives, query, &ray),
+        Leaves::Sixteen(l) => closest_on::<_, _, MIXED, ROOM, 16>(Portable, (tree, l), primitives, query, &ray),
+    }
 }
 
-/// Degenerate trees, by the portable filters.
+/// The same for [`any`].
 #[cold]
 #[inline(never)]
 pub(crate) fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query) -> bool {
-    tree.frame
-        .enter((), query)
-        .is_some_and(|ray| any_on::<_, _, MIXED, { LEVELS[1] }>(portable::Portable, tree, primitives, query, &ray))
+    const N: usize = LEVELS[1];
+    let Some(ray) = tree.frame.enter((), query) else { return false };
+    match tree.leaves() {
+        Leaves::Eight(l) => any_on::<_, _, MIXED, N, 8>(Portable, (tree, l), primitives, query, &ray),
+        Leaves::Sixteen(l) => any_on::<_, _, MIXED, N, 16>(Portable, (tree, l), primitives, query, &ray),
+    }
 }
 
 /// [`Primitive::intersect`] in the vectors of an instruction set.
@@ -352,10 +305,10 @@ fn intersect_shape<F: Filters>(
 /// The intersection with a triangle whose vertices are exact in its leaf. The triangle lies elsewhere and is not touched, as
 /// a rule, nor the query.
 #[inline(always)]
-fn intersect_exact<F: Filters>(
+fn intersect_exact<F: Filters, const W: usize>(
     filters: F,
     tree: &WideTree,
-    (leaf, lane): (&Leaf8, usize),
+    (leaf, lane): (&Leaf<W>, usize),
     primitives: &[Primitive],
     projection: &Projection,
     query: impl FnOnce() -> Query,

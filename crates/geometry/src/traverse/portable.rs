@@ -10,7 +10,7 @@ use crate::best::{Best, Found};
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
 use crate::portal::Portal;
 use crate::query::{Plain4, Query};
-use crate::wide::{LEAF_WIDTH, NODE_WIDTH, Node16, WideTree};
+use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use crate::{LANES, Primitive};
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Sub};
@@ -25,7 +25,7 @@ impl From<Portable> for () {
 
 /// Eight floats.
 #[derive(Clone, Copy)]
-pub(super) struct Floats([f32; LEAF_WIDTH]);
+pub(super) struct Floats([f32; LANES]);
 
 macro_rules! operator {
     ($trait:ident, $f:ident, $operator:tt) => {
@@ -45,25 +45,29 @@ operator!(Div, div, /);
 
 impl Vector for Floats {
     type Token = Portable;
+    const WIDTH: usize = LANES;
 
     #[inline(always)]
     fn splat(_: Portable, v: f32) -> Self {
-        Self([v; LEAF_WIDTH])
+        Self([v; LANES])
     }
 
     #[inline(always)]
-    fn load(_: Portable, row: &[f32; LEAF_WIDTH]) -> Self {
-        Self(*row)
+    fn load<const W: usize>(_: Portable, row: &[f32; W], at: usize) -> Self {
+        Self(row.as_chunks().0[at / LANES % (W / LANES)])
     }
 
     #[inline(always)]
-    fn lanes_with(_: Portable, row: &[u32; LEAF_WIDTH], v: u32) -> u32 {
-        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(row[i] == v) << i)
+    fn lanes_with<const W: usize>(_: Portable, row: &[u32; W], at: usize, v: u32) -> u32 {
+        let half = &row.as_chunks::<LANES>().0[at / LANES % (W / LANES)];
+        (0..LANES).fold(0, |mask, i| mask | u32::from(half[i] == v) << i)
     }
 
     #[inline(always)]
-    fn to_array(self) -> [f32; LEAF_WIDTH] {
-        self.0
+    fn to_row<const W: usize>(self, at: usize) -> [f32; W] {
+        let mut row = [0.0; W];
+        row.as_chunks_mut().0[at / LANES % (W / LANES)] = self.0;
+        row
     }
 
     #[inline(always)]
@@ -77,7 +81,7 @@ impl Vector for Floats {
     }
 
     #[inline(always)]
-    fn only(self, lanes: u8) -> Self {
+    fn only(self, lanes: u32) -> Self {
         Self(from_fn(|i| if lanes >> i & 1 == 1 { self.0[i] } else { 0.0 }))
     }
 
@@ -93,23 +97,23 @@ impl Vector for Floats {
 
     #[inline(always)]
     fn below(self, o: Self) -> u32 {
-        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(self.0[i] < o.0[i]) << i)
+        (0..LANES).fold(0, |mask, i| mask | u32::from(self.0[i] < o.0[i]) << i)
     }
 
     #[inline(always)]
     fn at_most(self, o: Self) -> u32 {
-        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(self.0[i] <= o.0[i]) << i)
+        (0..LANES).fold(0, |mask, i| mask | u32::from(self.0[i] <= o.0[i]) << i)
     }
 }
 
 impl Wide for Floats {
     type Token = Portable;
     type Mask = u32;
-    const WIDTH: usize = LEAF_WIDTH;
+    const WIDTH: usize = LANES;
 
     #[inline(always)]
     fn splat(_: Portable, v: f32) -> Self {
-        Self([v; LEAF_WIDTH])
+        Self([v; LANES])
     }
 
     #[inline(always)]
@@ -119,7 +123,7 @@ impl Wide for Floats {
 
     #[inline(always)]
     fn shared(_: Portable, row: &[f32; BLOCK], at: usize) -> Self {
-        Self([row[at % BLOCK]; LEAF_WIDTH])
+        Self([row[at % BLOCK]; LANES])
     }
 
     #[inline(always)]
@@ -129,7 +133,7 @@ impl Wide for Floats {
 
     #[inline(always)]
     fn store(self, row: &mut [f32; BLOCK]) {
-        row[..LEAF_WIDTH].copy_from_slice(&self.0);
+        row[..LANES].copy_from_slice(&self.0);
     }
 
     #[inline(always)]
@@ -169,12 +173,12 @@ impl Wide for Floats {
 
     #[inline(always)]
     fn equals(self, o: Self) -> u32 {
-        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(self.0[i] == o.0[i]) << i)
+        (0..LANES).fold(0, |mask, i| mask | u32::from(self.0[i] == o.0[i]) << i)
     }
 
     #[inline(always)]
     fn differs(self, o: Self) -> u32 {
-        (0..LEAF_WIDTH).fold(0, |mask, i| mask | u32::from(self.0[i] != o.0[i]) << i)
+        (0..LANES).fold(0, |mask, i| mask | u32::from(self.0[i] != o.0[i]) << i)
     }
 
     #[inline(always)]
@@ -189,7 +193,7 @@ impl Wide for Floats {
 
     #[inline(always)]
     fn bits(mask: u32) -> u32 {
-        mask & ((1 << LEAF_WIDTH) - 1)
+        mask & ((1 << LANES) - 1)
     }
 }
 

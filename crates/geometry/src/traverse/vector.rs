@@ -1,28 +1,29 @@
-//! Eight floats at once, whatever the instruction set.
+//! Eight or sixteen floats at once, whatever the instruction set.
 
-use crate::wide::LEAF_WIDTH;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Eight floats.
+/// Floats of one vector.
 pub(super) trait Vector:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The proof that the processor has the instructions.
     type Token: Copy;
-    /// Eight times the same.
+    /// How many.
+    const WIDTH: usize;
+    /// The same in all lanes.
     fn splat(token: Self::Token, v: f32) -> Self;
-    /// Eight from memory.
-    fn load(token: Self::Token, row: &[f32; LEAF_WIDTH]) -> Self;
-    /// The lanes of a row that are this number, one bit each.
-    fn lanes_with(token: Self::Token, row: &[u32; LEAF_WIDTH], v: u32) -> u32;
-    /// Into memory.
-    fn to_array(self) -> [f32; LEAF_WIDTH];
+    /// Those of a row from `at` on, a multiple of the width.
+    fn load<const W: usize>(token: Self::Token, row: &[f32; W], at: usize) -> Self;
+    /// Which numbers of a row from `at` on, a multiple of the width, are this one, a bit each.
+    fn lanes_with<const W: usize>(token: Self::Token, row: &[u32; W], at: usize, v: u32) -> u32;
+    /// Into a row from `at` on, a multiple of the width; the rest is zero.
+    fn to_row<const W: usize>(self, at: usize) -> [f32; W];
     /// The smaller of each pair; the second if one is NaN.
     fn min(self, o: Self) -> Self;
     /// The larger of each pair; the second if one is NaN.
     fn max(self, o: Self) -> Self;
     /// Zero in all lanes but these, one bit each.
-    fn only(self, lanes: u8) -> Self;
+    fn only(self, lanes: u32) -> Self;
     /// Magnitudes.
     fn abs(self) -> Self;
     /// Square roots.

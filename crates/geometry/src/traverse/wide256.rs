@@ -58,8 +58,7 @@ impl Wide for F8 {
 
     #[inline(always)]
     fn load(token: Avx2, row: &[f32; BLOCK], at: usize) -> Self {
-        let (halves, _) = row.as_chunks::<8>();
-        Vector::load(token, &halves[at / 8 % 2])
+        Vector::load(token, row, at)
     }
 
     #[inline(always)]
@@ -68,8 +67,8 @@ impl Wide for F8 {
     }
 
     #[inline(always)]
-    fn rays(token: Avx2, v: &[f32; LANES]) -> Self {
-        Vector::load(token, v)
+    fn rays(_: Avx2, v: &[f32; LANES]) -> Self {
+        Self(avx!(_mm256_loadu_ps(v.as_ptr())))
     }
 
     #[inline(always)]
@@ -128,7 +127,9 @@ impl Wide for F8 {
 
     #[inline(always)]
     fn shares(self) -> [[f32; LANES]; 2] {
-        [self.to_array(); 2]
+        let mut out = [0.0; LANES];
+        avx!(_mm256_storeu_ps(out.as_mut_ptr(), self.0));
+        [out; 2]
     }
 
     #[inline(always)]

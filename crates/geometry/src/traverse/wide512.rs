@@ -3,42 +3,15 @@
 
 use super::avx512::Avx512;
 use super::flat::{BLOCK, EXPONENT, Eight, TURN, Wide};
+use super::lanes512::{F16, avx512};
+use super::vector::Vector;
 use crate::LANES;
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
-/// Sixteen floats. They exist for a token alone.
-#[derive(Clone, Copy)]
-pub(super) struct F16(__m512);
-
 /// Sixteen truths, a bit each.
 #[derive(Clone, Copy)]
 pub(super) struct M16(__mmask16);
-
-/// An instruction on an [`F16`].
-macro_rules! avx512 {
-    ($instruction:expr) => {{
-        // SAFETY: an instruction of AVX-512 (F, DQ), whose presence is proved where an `F16` comes from; what it reads or writes is
-        // within the array named, whose length its type tells.
-        unsafe { $instruction }
-    }};
-}
-
-macro_rules! operator {
-    ($trait:ident, $f:ident, $instruction:ident) => {
-        impl $trait for F16 {
-            type Output = Self;
-            #[inline(always)]
-            fn $f(self, o: Self) -> Self {
-                Self(avx512!($instruction(self.0, o.0)))
-            }
-        }
-    };
-}
-operator!(Add, add, _mm512_add_ps);
-operator!(Sub, sub, _mm512_sub_ps);
-operator!(Mul, mul, _mm512_mul_ps);
-operator!(Div, div, _mm512_div_ps);
 
 impl BitAnd for M16 {
     type Output = Self;
@@ -70,13 +43,13 @@ impl Wide for F16 {
     const WIDTH: usize = 16;
 
     #[inline(always)]
-    fn splat(_: Avx512, v: f32) -> Self {
-        Self(avx512!(_mm512_set1_ps(v)))
+    fn splat(token: Avx512, v: f32) -> Self {
+        Vector::splat(token, v)
     }
 
     #[inline(always)]
-    fn load(_: Avx512, row: &[f32; BLOCK], _: usize) -> Self {
-        Self(avx512!(_mm512_loadu_ps(row.as_ptr())))
+    fn load(token: Avx512, row: &[f32; BLOCK], at: usize) -> Self {
+        Vector::load(token, row, at)
     }
 
     #[inline(always)]
@@ -103,17 +76,17 @@ impl Wide for F16 {
 
     #[inline(always)]
     fn min(self, o: Self) -> Self {
-        Self(avx512!(_mm512_min_ps(self.0, o.0)))
+        Vector::min(self, o)
     }
 
     #[inline(always)]
     fn max(self, o: Self) -> Self {
-        Self(avx512!(_mm512_max_ps(self.0, o.0)))
+        Vector::max(self, o)
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(avx512!(_mm512_sqrt_ps(self.0)))
+        Vector::sqrt(self)
     }
 
     #[inline(always)]

@@ -1,14 +1,15 @@
 //! From the walk of a tree into what an instance places.
 
 use super::compiled::Compiled;
-use super::{LEVELS, any_on, closest_on, occludes};
-use crate::Primitive;
-use crate::best::Best;
-use crate::frame::Entry;
+use super::vector::Vector;
+use super::{LEVELS, Narrow, any_on, closest_on, occludes};
+use crate::best::{Best, Found};
+use crate::frame::{Entry, FrameRay};
 use crate::instance::{at_least, told_end};
 use crate::portal::Portal;
 use crate::query::Query;
-use crate::wide::{MESH, MIXED, NODE_WIDTH};
+use crate::wide::{Leaf, Leaves, MESH, MIXED, NODE_WIDTH, WideTree};
+use crate::{Primitive, Ray};
 
 /// [`Best::test`] of an instance: the same, without a query where there is a tree to walk. The bounds, which cost more than what
 /// most rays that miss find out in the tree's root, are asked for only where there is a hit.
@@ -33,12 +34,18 @@ pub(super) fn closest_within<F: Compiled>(
     } else {
         Entry::Unknown
     };
-    const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
     let found = match entry {
         Entry::Misses => None,
-        Entry::Ray(near) if tree.kind == MESH => closest_on::<F, _, MESH, ROOM>(filters, tree, inner, ray, &near),
-        Entry::Ray(near) => closest_on::<F, _, MIXED, ROOM>(filters, tree, inner, ray, &near),
         Entry::Unknown => filters.closest_far(tree, inner, ray),
+        Entry::Ray(near) => match tree.leaves() {
+            Leaves::Eight(leaves) if const { F::Vector::WIDTH == 8 } => {
+                closest_in(filters, (tree, leaves), inner, ray, &near)
+            }
+            Leaves::Sixteen(leaves) if const { F::Vector::WIDTH == 16 } => {
+                closest_in(filters, (tree, leaves), inner, ray, &near)
+            }
+            _ => filters.closest_far(tree, inner, ray),
+        },
     };
     let Some((mut hit, surface)) = found else { return false };
     let Some(entry) = portal.entry(query, t_max) else { return false };
@@ -70,9 +77,48 @@ pub(super) fn occludes_within<F: Compiled>(
     };
     let hit = match entry {
         Entry::Misses => false,
-        Entry::Ray(near) if tree.kind == MESH => any_on::<F, _, MESH, { LEVELS[0] }>(filters, tree, inner, ray, &near),
-        Entry::Ray(near) => any_on::<F, _, MIXED, { LEVELS[0] }>(filters, tree, inner, ray, &near),
         Entry::Unknown => filters.any_far(tree, inner, ray),
+        Entry::Ray(near) => match tree.leaves() {
+            Leaves::Eight(leaves) if const { F::Vector::WIDTH == 8 } => {
+                any_in(filters, (tree, leaves), inner, ray, &near)
+            }
+            Leaves::Sixteen(leaves) if const { F::Vector::WIDTH == 16 } => {
+                any_in(filters, (tree, leaves), inner, ray, &near)
+            }
+            _ => filters.any_far(tree, inner, ray),
+        },
     };
     hit && portal.entry(query, query.t_max).is_some()
+}
+
+/// The closest hit in what an instance places. Spheres alone have no walk of their own here: this is one function with all that it walks,
+/// which the compiler inlines into it up to some length only.
+#[inline(always)]
+fn closest_in<F: Compiled, const W: usize>(
+    filters: F,
+    tree: (&WideTree, &[Leaf<W>]),
+    primitives: &[Primitive],
+    ray: &Ray<f64>,
+    near: &FrameRay<Narrow<F>>,
+) -> Option<Found> {
+    const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
+    match tree.0.kind {
+        MESH => closest_on::<F, _, MESH, ROOM, W>(filters, tree, primitives, ray, near),
+        _ => closest_on::<F, _, MIXED, ROOM, W>(filters, tree, primitives, ray, near),
+    }
+}
+
+/// Whether anything is hit there.
+#[inline(always)]
+fn any_in<F: Compiled, const W: usize>(
+    filters: F,
+    tree: (&WideTree, &[Leaf<W>]),
+    primitives: &[Primitive],
+    ray: &Ray<f64>,
+    near: &FrameRay<Narrow<F>>,
+) -> bool {
+    match tree.0.kind {
+        MESH => any_on::<F, _, MESH, { LEVELS[0] }, W>(filters, tree, primitives, ray, near),
+        _ => any_on::<F, _, MIXED, { LEVELS[0] }, W>(filters, tree, primitives, ray, near),
+    }
 }
