@@ -101,7 +101,7 @@ pub(crate) struct ExactPoint {
 pub struct SurfacePoint<R> {
     /// Position, m.
     pub position: Vec3<R>,
-    /// Bound on the distance between `position` and the true surface, m.
+    /// Bound on the distance between `position` and the true surface, m; infinite where `R` cannot represent the position.
     pub position_error: R,
     /// Unit geometric normal, on the shape's own outward side (not turned toward the ray).
     pub normal: Vec3<R>,
@@ -126,6 +126,8 @@ impl<R: Real> SurfacePoint<R> {
         let distance = normal.abs().dot(error) + (0.5 * curvature * squared).min(squared.sqrt());
         // 8 roundoffs cover this sum and the rounding of the normal along which rays are moved.
         let distance = distance * (1.0 + 8.0 * R::UNIT_ROUNDOFF.to_f64());
+        // A component beyond what is representable is off by infinity, which a normal at right angles to it would make NaN.
+        let distance = if rounded.is_finite() { distance } else { f64::INFINITY };
         let position_error = R::from_f64(distance).next_up();
         Self { position: rounded, position_error, normal: normal.cast(), surface, label, time }
     }

@@ -1,8 +1,9 @@
 //! Rays that leave a surface.
 
+use crate::ray::ExactPoint;
 use crate::test_support::*;
-use crate::{Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Triangle};
-use etalon_optics::Real;
+use crate::{Geometry, Parallelogram, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint, Triangle};
+use etalon_optics::{Real, Vec3};
 
 /// From hits on a scene of flat, connected primitives, leaves to the side that the ray came from and counts rays that
 /// hit what they left or a coplanar neighbour: any hit nearer than `near`.
@@ -130,6 +131,18 @@ fn a_shadow_ray_ends_before_the_neighbours_of_its_target() {
     }
     check::<f64>(&geometry);
     check::<f32>(&geometry);
+}
+
+#[test]
+fn a_position_beyond_what_is_representable_is_off_by_infinity() {
+    // At right angles to the normal, too.
+    for normal in [v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0)] {
+        let point = ExactPoint { position: v(1.0, 1e39, 0.0), error: Vec3::splat(1e20), normal, curvature: 0.0 };
+        let single = SurfacePoint::<f32>::rounded(&point, SurfaceId::NONE, 0, 0.0);
+        assert_eq!(single.position_error, f32::INFINITY);
+        let double = SurfacePoint::<f64>::rounded(&point, SurfaceId::NONE, 0, 0.0);
+        assert!((double.position_error - 1e20).abs() < 1e6, "{double:?}");
+    }
 }
 
 #[test]
