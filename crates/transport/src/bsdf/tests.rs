@@ -123,6 +123,14 @@ fn a_table_of_losses_lies_just_below_them() {
         // Beyond its indices it goes on as at their end.
         assert_eq!(table.eval(0.3, 9.0), table.eval(0.3, range[1]));
     }
+    // Nor above them in the middle of its cells where the chord between two indices is, by .004 of the loss.
+    let convex = |mu: f64, eta: f64| known_loss(mu, eta) * (1.0 + 0.1 * (eta - 1.6) * (eta - 1.6));
+    let table = LossTable::new([1.4, 1.8], 0.0, convex);
+    for i in 1..NODES {
+        let mu = 0.5 * (node(i - 1) + node(i));
+        let (read, truth) = (table.eval(mu, 1.6), convex(mu, 1.6));
+        assert!(read <= truth * (1.0 + 1e-12) && read > truth * (1.0 - 4e-3), "µ {mu}: {read} is not {truth}");
+    }
 }
 
 /// The share of directions below a cosine, from the density alone, which is a multiple of the cosine in each cell.
