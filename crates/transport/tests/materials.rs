@@ -74,6 +74,29 @@ fn rough_diffuse_reflection_has_the_mean_albedo_of_its_closed_form() {
     }
 }
 
+/// Averaged over diffuse light each facet lets the share E of what it reflects escape and the next one have the rest, and takes 1 − ρ:
+/// ρE Σ (ρ(1 − E))ᵏ = ρE/(1 − ρ(1 − E)), E as above. A white one returns all from wherever it comes.
+#[test]
+fn rough_diffuse_reflection_returns_what_meets_one_facet_after_another() {
+    for roughness in [0.5, 1.0] {
+        let single =
+            (1.0 + roughness * (2.0 / 3.0 - 28.0 / (15.0 * PI))) / (1.0 + roughness * (0.5 - 2.0 / (3.0 * PI)));
+        for rho in [0.2, 0.7, 1.0] {
+            let kind = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho).into(), roughness };
+            let bsdf = Bsdf::new(&kind, RANGE_NM);
+            let n = 24;
+            let albedos: Vec<f64> =
+                (0..n).map(|i| albedo(&bsdf, ((f64::from(i) + 0.5) / f64::from(n)).sqrt())).collect();
+            let mean = albedos.iter().sum::<f64>() / f64::from(n);
+            let truth = rho * single / (1.0 - rho * (1.0 - single));
+            // The midpoint rule over 24 angles, and what the table misses between its nodes.
+            assert!((mean - truth).abs() < 2e-3, "r {roughness}, ρ {rho}: {mean} is not {truth}");
+            let all = albedos.iter().all(|a| (a - 1.0).abs() < 1e-3);
+            assert!(rho < 1.0 || all, "r {roughness}: {albedos:?}");
+        }
+    }
+}
+
 /// With the ground too dark for a second bounce f·π/ρ = A(1 + r·s/t) for each pair of directions: s is what is left of their cosine
 /// without the heights, t the larger height where s > 0 and 1 elsewhere (Portsmouth et al. 2024, equation (5)).
 #[test]

@@ -278,7 +278,11 @@ fn sheets_pass_light_straight_on_along_their_axis() {
 
 /// f·|cos θ| and the Mueller matrix of a pair of directions; `None` where nothing is scattered.
 fn scattered(bsdf: &Bsdf, wo: Vec3<f64>, wi: Vec3<f64>) -> Option<(f64, Matrix)> {
-    let (lambda, at) = (Lanes([550.0]), Shading::flat(up()));
+    scattered_at(bsdf, 550.0, wo, wi)
+}
+
+fn scattered_at(bsdf: &Bsdf, nm: f64, wo: Vec3<f64>, wi: Vec3<f64>) -> Option<(f64, Matrix)> {
+    let (lambda, at) = (Lanes([nm]), Shading::flat(up()));
     let (f_cos, _) = bsdf.eval::<f64, 1>(&lambda, &at, wo, wi);
     (f_cos[0] > 0.0).then(|| {
         let mueller = bsdf.mueller(&lambda, &at, wo, wi, Lobe::SolidAngle);
@@ -327,6 +331,78 @@ fn a_facet_does_to_polarised_light_what_a_smooth_surface_in_its_place_does() {
         }
     }
     assert!(compared[0] > 10 && compared[1] >= 3, "{compared:?}");
+}
+
+/// Rough glass whose index varies does at each wavelength what glass of the index there does, from either side: its tables, linear
+/// between the ends of a range of .4, miss what their curvature makes of it.
+#[test]
+fn dispersive_rough_glass_polarises_as_glass_of_each_index_does() {
+    let exterior = RefractiveIndex::VACUUM;
+    let glass = |interior: RefractiveIndex| {
+        bsdf(&MaterialKind::RoughDielectric {
+            interior,
+            exterior: exterior.clone(),
+            alpha: 0.6,
+            compensated: true,
+            priority: None,
+        })
+    };
+    let dispersive = RefractiveIndex::cauchy(1.25, 0.08, 0.0, None).unwrap();
+    let varied = glass(dispersive.clone());
+    for nm in [400.0, 500.0, 700.0] {
+        let constant = glass(RefractiveIndex::Constant(dispersive.eval(nm)));
+        for (wo, wi) in pairs() {
+            let read = |bsdf: &Bsdf| scattered_at(bsdf, nm, wo, wi).map(|(_, matrix)| matrix);
+            let (Some(varied), Some(constant)) = (read(&varied), read(&constant)) else { continue };
+            // Most where light from within is reflected, between the two critical angles.
+            let tolerance = if wo.z < 0.0 && wi.z > 0.0 { 4e-3 } else { 1.2e-2 };
+            assert!(differ(&varied, &constant) < tolerance, "{nm} nm, {wo:?} {wi:?}: {varied:?} is not {constant:?}");
+        }
+    }
+}
+
+/// Around a shading normal, on whatever side of the surface it is given, frames are at right angles to both rays, and matrices stay
+/// physical; where no direction had to be turned to the side of the triangle, they are those of a surface that lies so.
+#[test]
+fn around_a_shading_normal_frames_belong_to_both_rays() {
+    let (mut compared, mut turned) = (0, 0);
+    for kind in [
+        glass(1.5, 1.0),
+        MaterialKind::Conductor { metal: metal(0.2, 3.0) },
+        rough_metal(0.2, 3.0, 0.3),
+        rough_glass(0.3, true),
+        plastic(0.5, 0.3),
+    ] {
+        let bsdf = bsdf(&kind);
+        for (i, [a, b, c]) in points(400).enumerate() {
+            let normal = direction(1.0 - 0.7 * a, b) * if i % 2 == 0 { 1.0 } else { -1.0 };
+            let (at, flat) =
+                (Shading::flat(up()).bent_to(normal), Shading::flat(normal * if i % 2 == 0 { 1.0 } else { -1.0 }));
+            assert!((at.shading_normal() - flat.normal).length() < 1e-15, "{at:?}");
+            let wo = direction(0.05 + 0.9 * c, 2.0 * a) * if i % 3 == 0 { -1.0 } else { 1.0 };
+            let lambda = Lanes([550.0]);
+            let Some(sample): Option<BsdfSample<f64, 1>> = bsdf.sample(&lambda, &at, wo, [b, c, a]) else { continue };
+            let lobe = match sample.density {
+                Density::Delta => Lobe::Delta(b),
+                Density::SolidAngle(_) => Lobe::SolidAngle,
+            };
+            let wi = sample.wi;
+            let Some(mueller) = bsdf.mueller(&lambda, &at, wo, wi, lobe) else { continue };
+            let x = mueller.x.normalized();
+            assert!(x.dot(wo).abs().max(x.dot(wi).abs()) < 1e-6, "{kind:?} {at:?} {wo:?} {wi:?}: {mueller:?}");
+            let matrix = mueller.matrix(0);
+            assert!(matrix.iter().flatten().all(|m| m.abs() < 1.0 + 1e-9), "{kind:?}: {matrix:?}");
+            let sides = |w: Vec3<f64>| at.normal.dot(w) * flat.normal.dot(w) > 0.0;
+            if sides(wo) && sides(wi) {
+                let truth = bsdf.mueller(&lambda, &flat, wo, wi, lobe).unwrap();
+                assert!(differ(&matrix, &truth.matrix(0)) < 1e-9, "{kind:?} {at:?}: {matrix:?} is not {truth:?}");
+                compared += 1;
+            } else {
+                turned += 1;
+            }
+        }
+    }
+    assert!(compared > 500 && turned > 200, "{compared} {turned}");
 }
 
 /// f times the matrix adds up over the parts of a surface: what several facets of a metal add is unpolarised, and a mixture is its parts.
