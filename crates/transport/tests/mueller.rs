@@ -405,6 +405,27 @@ fn around_a_shading_normal_frames_belong_to_both_rays() {
     assert!(compared > 500 && turned > 200, "{compared} {turned}");
 }
 
+/// A camera measures S₁ along the image's right, as far as that is across the ray: what passed an ideal polariser is cos 2φ, φ the
+/// angle between the two about a ray far from the middle of the picture.
+#[test]
+fn a_camera_measures_along_the_right_of_its_picture() {
+    let (along, right) = (Vec3::new(0.6, 0.5, -1.0).normalized(), Vec3::new(1.0, 0.0, 0.0));
+    let x = (right - along * along.dot(right)).normalized();
+    let mut polariser = [[0.0; 4]; 4];
+    (0..4).for_each(|k| polariser[k / 2][k % 2] = 1.0);
+    for turns in [0.0_f64, 0.1, 0.2, 0.35] {
+        let (sin, cos) = (turns * std::f64::consts::TAU).sin_cos();
+        let axis = x * cos + along.cross(x) * sin;
+        let mut light = Followed::<1>::at_camera(along, right);
+        light.follow(-along, along, || Some(Mueller::of([polariser], axis)));
+        let s0 = light.receive(Lanes([1.0]))[0];
+        let [s1, s2, s3] = light.received().expect("carried").map(|lanes| lanes[0]);
+        let (sin_2, cos_2) = (2.0 * turns * std::f64::consts::TAU).sin_cos();
+        assert!((s0 - 1.0).abs() < 1e-15 && s3 == 0.0);
+        assert!((s1 - cos_2).abs() < 1e-14 && (s2.abs() - sin_2.abs()).abs() < 1e-14, "{turns}: {s1} {s2}");
+    }
+}
+
 /// f times the matrix adds up over the parts of a surface: what several facets of a metal add is unpolarised, and a mixture is its parts.
 #[test]
 fn what_parts_of_a_surface_do_to_polarised_light_adds_up() {

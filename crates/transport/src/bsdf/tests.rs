@@ -235,6 +235,20 @@ fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
     }
 }
 
+/// Between two nodes, in the cosine and in the index, it is the mean of what it is at them half way.
+#[test]
+fn what_is_lost_of_polarised_light_is_linear_between_nodes() {
+    let ggx = Ggx::new(0.5);
+    let table = PolarisedLoss::new([1.4, 1.6], &ggx, |facet, eta| polarised_loss(&ggx, facet, eta));
+    for i in 1..NODES {
+        let ends = [node(i - 1), node(i)].map(|mu| table.eval(mu, 1.4));
+        let middle = table.eval(0.5 * (node(i - 1) + node(i)), 1.4);
+        assert!((middle - 0.5 * (ends[0] + ends[1])).abs() < 1e-12, "{i}: {middle} between {ends:?}");
+        let between = table.eval(node(i), 1.5);
+        assert!((between - 0.5 * (ends[1] + table.eval(node(i), 1.6))).abs() < 1e-12, "{i}");
+    }
+}
+
 /// What light that meets several facets of a metal adds is (1 − E(µ_o))(1 − E(µ_i))/(π(1 − Ē)) of the F̄²Ē/(1 − F̄(1 − Ē)) that is not absorbed on its way
 /// (Kulla & Conty 2017), with the albedos of facets by independent quadrature. The metal absorbs enough for a power of F̄ to be told from another.
 #[test]
