@@ -39,6 +39,11 @@ fn plastic(rho: f64, alpha: f64) -> MaterialKind {
     MaterialKind::Plastic { reflectance: Spectrum::Constant(rho).into(), coat: RefractiveIndex::Constant(1.5), alpha }
 }
 
+/// Plastic in a medium denser than its coat.
+fn plastic_in_glass(alpha: f64) -> MaterialKind {
+    MaterialKind::Plastic { reflectance: Spectrum::Constant(1.0).into(), coat: RefractiveIndex::Constant(0.8), alpha }
+}
+
 fn pane() -> MaterialKind {
     MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5) }
 }
@@ -206,9 +211,15 @@ fn seen(bsdf: &Bsdf, wo: Vec3<f64>, n: u32) -> [f64; 4] {
 /// the light is diffuse, and of tables that stay 0.5 % below the loss.
 #[test]
 fn a_lossless_surface_in_uniform_light_is_white_and_polarises_nothing() {
-    for kind in
-        [glass(1.5, 1.0), pane(), rough_glass(0.1, true), rough_glass(0.5, true), plastic(1.0, 0.0), plastic(1.0, 0.4)]
-    {
+    for kind in [
+        glass(1.5, 1.0),
+        pane(),
+        rough_glass(0.1, true),
+        rough_glass(0.5, true),
+        plastic(1.0, 0.0),
+        plastic(1.0, 0.4),
+        plastic_in_glass(0.4),
+    ] {
         let bsdf = bsdf(&kind);
         for mu in [0.9, 0.5, 0.2] {
             for wo in [direction(mu, 0.0), direction(mu, 0.3), -direction(mu, 0.1)] {
