@@ -266,6 +266,58 @@ mod tests {
         assert_eq!(film().sharing(None).correlated_pixels(), 1);
     }
 
+    /// Numbers that are all different, in a tile of so many sums.
+    fn tile(sums: usize, bands: usize) -> TileSums {
+        let mut number = 0.0;
+        let mut next = || {
+            number += 1.0;
+            number
+        };
+        TileSums {
+            xyz: (0..sums).map(|i| XyzSum { xyz: [next(), next(), next()], count: i as u32 }).collect(),
+            stokes: (0..sums).map(|_| [0; 3].map(|_| [0; 3].map(|_| next()))).collect(),
+            bands: (0..sums * bands).map(|i| BandSum { radiance: next(), count: i as u32 }).collect(),
+        }
+    }
+
+    #[test]
+    fn what_a_tile_keeps_goes_to_bytes_and_back_and_to_its_place() {
+        let (rect, corner) = (PixelRect { x0: 1, y0: 1, x1: 3, y1: 3 }, PixelRect { x0: 0, y0: 0, x1: 1, y1: 1 });
+        let tile = tile(8, 3);
+        let bytes = tile.to_bytes();
+        assert_eq!(TileSums::from_bytes(&bytes, 4, 2, 3).as_ref(), Some(&tile));
+        assert_eq!(TileSums::from_bytes(&bytes[1..], 4, 2, 3), None);
+        let plain = TileSums { stokes: Vec::new(), ..tile.clone() };
+        assert_eq!(TileSums::from_bytes(&plain.to_bytes(), 4, 2, 3).as_ref(), Some(&plain));
+        let mut film = Film::with_bands(4, 3, 2, 3).recording_stokes();
+        let untouched = film.tile(corner);
+        assert!(film.fits(rect, &tile) && !film.fits(rect, &plain) && !film.fits(corner, &tile));
+        film.put(rect, &tile);
+        assert_eq!(film.tile(rect), tile);
+        assert_eq!(film.tile(corner), untouched);
+    }
+
+    /// The standard error of the mean of replicates that know as much each.
+    #[test]
+    fn a_band_has_the_error_that_its_replicates_tell() {
+        let band = |sums: [(f64, u32); 4]| {
+            let mut film = Film::with_bands(1, 1, 4, 1);
+            let bands = sums.map(|(radiance, count)| BandSum { radiance, count }).to_vec();
+            film.put(PixelRect { x0: 0, y0: 0, x1: 1, y1: 1 }, &TileSums { bands, stokes: Vec::new(), ..tile(4, 0) });
+            film.band(0, 0, 0)
+        };
+        // Means of 1, 2, 4 and 5, whose variance is 10/3; then of 1, 2 and 6, whose variance is 7.
+        let all = band([(5.0, 5), (10.0, 5), (20.0, 5), (25.0, 5)]);
+        assert!(
+            all.radiance == 3.0 && all.count == 20 && (all.error - (10.0_f64 / 12.0).sqrt()).abs() < 1e-15,
+            "{all:?}"
+        );
+        let three = band([(5.0, 5), (10.0, 5), (0.0, 0), (30.0, 5)]);
+        assert!(three.radiance == 3.0 && (three.error - (7.0_f64 / 3.0).sqrt()).abs() < 1e-15, "{three:?}");
+        assert_eq!(band([(5.0, 5), (0.0, 0), (0.0, 0), (0.0, 0)]).error, f64::INFINITY);
+        assert_eq!(band([(0.0, 0); 4]), Band { error: f64::INFINITY, ..Band::default() });
+    }
+
     #[test]
     fn tiles_cover_every_pixel_once() {
         let rect = PixelRect { x0: 3, y0: 1, x1: 40, y1: 38 };
