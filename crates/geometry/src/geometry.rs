@@ -170,7 +170,10 @@ impl Geometry {
     fn memory_beside(&self, seen: &mut Vec<*const Self>) -> usize {
         let tree =
             self.tree.as_ref().map_or(0, WideTree::memory_bytes) + self.flat.as_ref().map_or(0, Flat::memory_bytes);
-        let own = size_of::<Self>() + self.primitives.capacity() * size_of::<Primitive>() + tree;
+        let own = size_of::<Self>()
+            + self.primitives.capacity() * size_of::<Primitive>()
+            + tree
+            + size_of_val(self.outline());
         let places = self.instances.len() * (size_of::<Instance>() + size_of::<u32>());
         let mut shared = 0;
         for instance in self.own_instances() {
