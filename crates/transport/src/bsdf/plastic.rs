@@ -133,12 +133,7 @@ impl Plastic {
     /// Makes the table that [`Plastic::mueller`] needs: what the facets of a rough coat do not reflect of each state they let in.
     pub(super) fn prepare_polarisation(&mut self) {
         if let Some(rough) = &mut self.rough {
-            let passed = |facet: &Facet, eta: f64| {
-                let Some(f) = fresnel::dielectric(facet.cos, eta) else { return [1.0 - facet.mirrored, 0.0] };
-                let difference = 0.5 * (f.r_s * f.r_s - f.r_p * f.r_p);
-                [1.0 - f.reflectance * facet.mirrored, -difference * facet.mirrored]
-            };
-            rough.polarised = Some(PolarisedLoss::new(rough.eta, &rough.ggx, passed));
+            rough.polarised = Some(PolarisedLoss::new(rough.eta, &rough.ggx, let_in));
         }
     }
 
@@ -214,4 +209,13 @@ impl Plastic {
         let (f_cos, density) = self.eval(lambda_nm, n, uv, wo, wi);
         BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
+}
+
+/// What a facet of a coat of index `eta` lets in: (T₀, T₁), all of unpolarised light but what leaves by reflection, and how much more
+/// of s than of p, halved.
+pub(super) fn let_in(facet: &Facet, eta: f64) -> [f64; 2] {
+    // Total reflection, at a coat of less than vacuum's index, treats both alike.
+    let Some(f) = fresnel::dielectric(facet.cos, eta) else { return [1.0 - facet.mirrored, 0.0] };
+    let difference = 0.5 * (f.r_s * f.r_s - f.r_p * f.r_p);
+    [1.0 - f.reflectance * facet.mirrored, -difference * facet.mirrored]
 }

@@ -5,6 +5,7 @@ use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Ggx, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use super::oren_nayar::albedo;
+use super::plastic::let_in;
 use super::rough_dielectric::{loss, mean_transmittance, polarised_loss};
 use super::{Bsdf, Shading};
 use etalon_optics::{ComplexIndex, Lanes, Spectrum, Vec3, fresnel};
@@ -180,13 +181,21 @@ fn a_function_of_a_metal_given_by_its_reflectance_is_found_by_it() {
     }
 }
 
-/// ℓ₁/ℓ₀ by an even grid over slopes and azimuths of facets, which no sampler knows: of each facet that light of the cosine `mu` sees, the
-/// powers that it reflects and refracts, in its own s and p, less what other facets let pass of them, turned into the surface's.
-fn diattenuation_of_the_lost(alpha: f64, mu: f64, eta: f64) -> f64 {
+/// What an interface does to light of one state: the powers that it reflects and refracts, and the shares of either that other facets let pass.
+struct OfState {
+    r: f64,
+    t: f64,
+    mirrored: f64,
+    passed: f64,
+}
+
+/// (w_s − w_p)/(w_s + w_p) of the light that `of` tells of each state, by an even grid over slopes and azimuths of facets, which no sampler
+/// knows: of each facet that light of the cosine `mu` sees, in its own s and p, turned into the surface's.
+fn diattenuation(alpha: f64, mu: f64, eta: f64, of: impl Fn(OfState) -> f64) -> f64 {
     let o = [(1.0 - mu * mu).sqrt(), 0.0, mu];
     let lambda = |cos: f64| 0.5 * ((1.0 + alpha * alpha * (1.0 - cos * cos) / (cos * cos)).sqrt() - 1.0);
     let (lambda_o, steps) = (lambda(mu), 160);
-    let mut lost = [0.0; 2];
+    let mut sums = [0.0; 2];
     for k in 0..steps * steps {
         let place = |k: usize| (k as f64 + 0.5) / steps as f64;
         let (x, phi) = (place(k % steps), PI * place(k / steps));
@@ -205,20 +214,21 @@ fn diattenuation_of_the_lost(alpha: f64, mu: f64, eta: f64) -> f64 {
         let square = 1.0 - (1.0 - c * c) / (eta * eta);
         let down = if square > 0.0 { o[2] / eta - (c / eta - square.sqrt()) * h[2] } else { 0.0 };
         let passed = if down > 0.0 { 1.0 / (1.0 + lambda(down)) } else { 0.0 };
-        let of = |r: f64, t: f64| r * (1.0 - mirrored) + t * (1.0 - passed);
-        let (s, p) = (of(powers.r_s, powers.t_s), of(powers.r_p, powers.t_p));
+        let s = of(OfState { r: powers.r_s, t: powers.t_s, mirrored, passed });
+        let p = of(OfState { r: powers.r_p, t: powers.t_p, mirrored, passed });
         // The facet's s is o × h, the surface's y.
         let across = [-o[2] * h[1], o[2] * h[0] - o[0] * h[2], o[0] * h[1]];
         let squared: f64 = across.iter().map(|a| a * a).sum();
-        lost[0] += seen * 0.5 * (s + p);
-        lost[1] += seen * 0.5 * (s - p) * (2.0 * across[1] * across[1] / squared - 1.0);
+        sums[0] += seen * 0.5 * (s + p);
+        sums[1] += seen * 0.5 * (s - p) * (2.0 * across[1] * across[1] / squared - 1.0);
     }
-    lost[1] / lost[0]
+    sums[1] / sums[0]
 }
 
 /// To 5e-3, what the rule over facets says of its sums, and a hundredth more where a table's nodes are far apart.
 #[test]
 fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
+    let lost = |of: OfState| of.r * (1.0 - of.mirrored) + of.t * (1.0 - of.passed);
     for alpha in [0.3, 1.0] {
         let ggx = Ggx::new(alpha);
         for inside in [false, true] {
@@ -227,10 +237,23 @@ fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
             let (one, two) = (of([1.5, 1.5]), of([1.4, 1.6]));
             for mu in [0.9, 0.5, 0.2] {
                 for (table, eta) in [(&one, 1.5), (&two, 1.4), (&two, 1.45), (&two, 1.6)] {
-                    let (read, truth) = (table.eval(mu, eta), diattenuation_of_the_lost(alpha, mu, side(eta)));
+                    let (read, truth) = (table.eval(mu, eta), diattenuation(alpha, mu, side(eta), lost));
                     assert!((read - truth).abs() < 1.5e-2, "α {alpha} µ {mu} η {eta} {inside}: {read} is not {truth}");
                 }
             }
+        }
+    }
+}
+
+/// All that does not leave by reflection, also where a coat of less than vacuum's index reflects totally.
+#[test]
+fn a_coat_lets_in_of_polarised_light_what_an_independent_quadrature_finds() {
+    for (alpha, eta) in [0.3, 1.0].into_iter().flat_map(|alpha| [1.5, 1.0 / 1.5].map(|eta| (alpha, eta))) {
+        let table = PolarisedLoss::new([eta, eta], &Ggx::new(alpha), let_in);
+        for mu in [0.9, 0.6, 0.4, 0.2] {
+            let (read, truth) = (table.eval(mu, eta), diattenuation(alpha, mu, eta, |of| 1.0 - of.r * of.mirrored));
+            // As for what is lost.
+            assert!((read - truth).abs() < 1e-2, "α {alpha} µ {mu} η {eta}: {read} is not {truth}");
         }
     }
 }
