@@ -1,6 +1,6 @@
 //! A copy of the tree in which every mutant that compiles is there, to be turned on.
 
-use crate::rewrite::{Mutant, mutants, rewritten};
+use crate::rewrite::{Mutant, What, mutants, rewritten};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -91,12 +91,12 @@ fn write(path: &Path, content: &[u8]) -> Result<(), String> {
 }
 
 /// Makes the copy, and leaves out what does not compile.
-pub fn prepare(tree: &Path, copy: &Path, files: &[String]) -> Result<Vec<Mutated>, String> {
+pub fn prepare(tree: &Path, copy: &Path, files: &[String], what: What) -> Result<Vec<Mutated>, String> {
     copy_tree(tree, copy)?;
     let (mut all, mut sources, mut next) = (Vec::new(), Vec::new(), 0);
     for file in files {
         let source = fs::read_to_string(tree.join(file)).map_err(|e| format!("{file}: {e}"))?;
-        let found = mutants(&source).map_err(|e| format!("{file}: {e}"))?;
+        let found = mutants(&source, what).map_err(|e| format!("{file}: {e}"))?;
         let numbered: Vec<_> = (next..).zip(found).collect();
         next += numbered.len() as u32;
         all.push(Mutated { file: file.clone(), mutants: numbered });

@@ -1,7 +1,7 @@
 //! Which mutants the tests notice.
 
 use crate::build::{Program, prepare, programs};
-use crate::rewrite::Mutant;
+use crate::rewrite::{Mutant, What};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::Write;
@@ -33,11 +33,17 @@ const LAST: usize = 6;
 /// Hunts; returns the number of mutants that are reached and that nothing notices.
 ///
 /// Of many mutants only `limit` are tried, evenly; tests that take more than `quick_s` seconds are not asked.
-pub fn hunt(tree: &Path, files: &[String], tests: &[String], limit: usize, quick_s: f64) -> Result<usize, String> {
+pub fn hunt(
+    tree: &Path,
+    (files, what): (&[String], What),
+    tests: &[String],
+    limit: usize,
+    quick_s: f64,
+) -> Result<usize, String> {
     let work = fs::canonicalize(tree).map_err(|e| e.to_string())?.join("target/mutants");
     let copy = work.join("tree");
     fs::create_dir_all(&copy).map_err(|e| e.to_string())?;
-    let mutated = prepare(tree, &copy, files)?;
+    let mutated = prepare(tree, &copy, files, what)?;
     let count: usize = mutated.iter().map(|m| m.mutants.len()).sum();
     println!("{count} mutants; building the tests");
     let programs = programs(&copy, tests)?;

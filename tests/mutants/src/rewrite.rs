@@ -1,4 +1,4 @@
-//! The places where an operator can be exchanged, and a source text in which each is.
+//! The places where an operator or the result of a function can be exchanged, and a source text in which each is.
 
 use proc_macro2::Span;
 use syn::spanned::Spanned;
@@ -10,7 +10,7 @@ use syn::{BinOp, Expr, ExprBinary, ExprUnary, UnOp};
 pub struct Mutant {
     pub line: usize,
     pub column: usize,
-    /// The operator, and what it is exchanged for; nothing for an operator that is left out.
+    /// The operator, or the result of a function, and what it is exchanged for; nothing for an operator that is left out.
     pub from: &'static str,
     pub to: &'static str,
     edits: [Edit; 3],
@@ -31,13 +31,22 @@ impl Edit {
     }
 }
 
+/// What is exchanged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum What {
+    #[default]
+    Operators,
+    /// What functions return, for what does not depend on anything.
+    Results,
+}
+
 /// All mutants of a source text.
 ///
 /// # Errors
 /// If it is no Rust.
-pub fn mutants(source: &str) -> Result<Vec<Mutant>, String> {
+pub fn mutants(source: &str, what: What) -> Result<Vec<Mutant>, String> {
     let file = syn::parse_file(source).map_err(|error| error.to_string())?;
-    let mut finder = Finder::default();
+    let mut finder = Finder { what, ..Finder::default() };
     finder.visit_file(&file);
     Ok(finder.mutants)
 }
@@ -66,10 +75,31 @@ pub fn rewritten<'a>(source: &str, mutants: impl IntoIterator<Item = (u32, &'a M
 
 #[derive(Default)]
 struct Finder {
+    what: What,
     mutants: Vec<Mutant>,
 }
 
 impl Finder {
+    /// The results of a function, each in a line of its own, for one may not compile.
+    fn results(&mut self, signature: &syn::Signature, body: &syn::Block) {
+        if self.what != What::Results {
+            return;
+        }
+        let place = signature.ident.span().start();
+        let start = body.brace_token.span.open().byte_range().end;
+        for to in constants(&signature.output) {
+            self.mutants.push(Mutant {
+                line: place.line,
+                column: place.column + 1,
+                from: "result",
+                to,
+                length: 0,
+                edits: [format!("\nif # {{ return {to}; }}\n"), String::new(), String::new()]
+                    .map(|text| Edit::insert(start, text)),
+            });
+        }
+    }
+
     fn add(&mut self, whole: Span, operator: Span, [from, to]: [&'static str; 2], texts: [String; 3]) {
         let (range, operator_range) = (whole.byte_range(), operator.byte_range());
         let [before, instead, after] = texts;
@@ -85,6 +115,26 @@ impl Finder {
                 Edit::insert(range.end, after),
             ],
         });
+    }
+}
+
+/// What a function may return of the type that it says, whatever it is asked.
+fn constants(output: &syn::ReturnType) -> &'static [&'static str] {
+    let ty = match output {
+        syn::ReturnType::Default => return &["()"],
+        syn::ReturnType::Type(_, ty) => ty,
+    };
+    let syn::Type::Path(path) = &**ty else { return &["Default::default()"] };
+    let Some(last) = path.path.segments.last() else { return &[] };
+    match last.ident.to_string().as_str() {
+        "bool" => &["true", "false"],
+        "f64" | "f32" => &["0.0", "1.0", "-1.0"],
+        "R" => &["R::from_f64(0.0)", "R::from_f64(1.0)", "R::from_f64(-1.0)"],
+        "usize" | "u64" | "u32" | "u16" | "u8" | "isize" | "i64" | "i32" => &["0", "1"],
+        "Lanes" => &["Lanes::ZERO", "Lanes::ONE"],
+        "Option" => &["None", "Some(Default::default())"],
+        "Result" => &["Ok(Default::default())"],
+        _ => &["Default::default()"],
     }
 }
 
@@ -125,14 +175,23 @@ impl<'ast> Visit<'ast> for Finder {
 
     fn visit_item_fn(&mut self, item: &'ast syn::ItemFn) {
         if item.sig.constness.is_none() && !for_tests(&item.attrs) {
+            self.results(&item.sig, &item.block);
             visit::visit_item_fn(self, item);
         }
     }
 
     fn visit_impl_item_fn(&mut self, item: &'ast syn::ImplItemFn) {
         if item.sig.constness.is_none() && !for_tests(&item.attrs) {
+            self.results(&item.sig, &item.block);
             visit::visit_impl_item_fn(self, item);
         }
+    }
+
+    fn visit_trait_item_fn(&mut self, item: &'ast syn::TraitItemFn) {
+        if let Some(body) = &item.default {
+            self.results(&item.sig, body);
+        }
+        visit::visit_trait_item_fn(self, item);
     }
 
     fn visit_expr_binary(&mut self, expr: &'ast ExprBinary) {
@@ -164,6 +223,9 @@ impl<'ast> Visit<'ast> for Finder {
             BinOp::BitOrAssign(_) => ["|=", "&="],
             _ => return,
         };
+        if self.what != What::Operators {
+            return;
+        }
         let [from, to] = pair;
         let choice = |l: &str, r: &str| format!("if # {{ {l} {to} {r} }} else {{ {l} {from} {r} }}");
         let texts = match expr.op {
@@ -197,8 +259,8 @@ impl<'ast> Visit<'ast> for Finder {
     fn visit_expr_unary(&mut self, expr: &'ast ExprUnary) {
         visit::visit_expr_unary(self, expr);
         let from = match expr.op {
-            UnOp::Neg(_) => "-",
-            UnOp::Not(_) => "!",
+            UnOp::Neg(_) if self.what == What::Operators => "-",
+            UnOp::Not(_) if self.what == What::Operators => "!",
             _ => return,
         };
         let end = format!(" {{ mutant_v => if # {{ mutant_v }} else {{ {from}mutant_v }} }})");
@@ -213,7 +275,7 @@ mod tests {
     #[test]
     fn what_is_on_changes_and_all_else_stays() {
         let source = "fn f(a: f64, b: f64) -> bool { let mut c = a + b * -a; c += 1.0; c < 2.0 && a - b - c > 0.0 }";
-        let all = mutants(source).unwrap();
+        let all = mutants(source, What::Operators).unwrap();
         let names: Vec<_> = all.iter().map(|m| (m.from, m.to)).collect();
         let wanted = [
             ("-", ""),
@@ -237,6 +299,17 @@ mod tests {
     fn nothing_is_changed_in_constants_tests_and_patterns() {
         let source = "const A: f64 = 1.0 + 2.0; #[cfg(test)] mod tests { fn f() -> i32 { 1 + 1 } } fn g(x: i32) -> [i32; 1 + 1] { \
                       match x { -1 => [0; 1 + 1], _ => [1, 2] } }";
-        assert!(mutants(source).unwrap().is_empty());
+        assert!(mutants(source, What::Operators).unwrap().is_empty());
+    }
+
+    #[test]
+    fn functions_return_what_their_types_allow() {
+        let source = "impl A { fn f(&self) -> bool { self.0 > 1 } } trait B { fn g(&self); fn h(&self) -> f64 { 2.0 + 1.0 } } const fn c() -> u8 { 3 }";
+        let all = mutants(source, What::Results).unwrap();
+        let names: Vec<_> = all.iter().map(|m| (m.from, m.to)).collect();
+        assert_eq!(names, ["true", "false", "0.0", "1.0", "-1.0"].map(|to| ("result", to)));
+        let text = rewritten(source, all.iter().enumerate().map(|(i, m)| (i as u32, m)));
+        syn::parse_file(&text).unwrap();
+        assert!(text.contains("if crate::mutant_is_on(1) { return false; }"), "{text}");
     }
 }
