@@ -276,16 +276,12 @@ impl Geometry {
     /// A ray of which no point is defined (NaN, zero direction) hits nothing, nor does one that starts beyond 2²⁰⁰ m or
     /// whose direction is outside 2^±900; nor is there a hit whose parameter `R` cannot represent.
     pub fn closest_hit<R: Real>(&self, ray: &Ray<R>) -> Option<Hit<R>> {
-        let found = match &self.tree {
-            Some(tree) => traverse::closest(self.level, tree, &self.primitives, ray),
-            None => {
-                let query = Query::new(ray)?;
-                self.closest(&query).map(|(hit, surface)| (RawHit { t: hit.t * query.scale, ..hit }, surface))
-            }
-        };
-        let (hit, surface) = found?;
-        let t = R::from_f64(hit.t);
-        (t < R::INFINITY).then(|| Hit { t, surface, uv: hit.uv.map(R::from_f64) })
+        if let Some(tree) = &self.tree {
+            return traverse::closest(self.level, tree, &self.primitives, ray);
+        }
+        let query = Query::new(ray)?;
+        let (hit, surface) = self.closest(&query)?;
+        Hit::new(RawHit { t: hit.t * query.scale, ..hit }, surface)
     }
 
     /// Whether anything but the surface aimed at lies on a ray before `t_max`.

@@ -21,8 +21,8 @@ pub(crate) trait Lanes4: Copy {
     fn signed_as(self, o: Self) -> Self;
     /// Whether no number is above a limit, or NaN.
     fn all_at_most(self, limit: f32) -> bool;
-    /// The sign bits of the first three.
-    fn negative(self) -> [usize; 3];
+    /// The sign bits of the first three, the first one lowest.
+    fn negative(self) -> usize;
     /// Those along [`AXES`] of an axis.
     fn turned(self, axis: usize) -> Self;
 }
@@ -95,13 +95,13 @@ impl Lanes4 for Plain {
     }
 
     #[inline(always)]
-    fn negative(self) -> [usize; 3] {
-        from_fn(|i| usize::from(self.0[i].is_sign_negative()))
+    fn negative(self) -> usize {
+        (0..3).map(|i| usize::from(self.0[i].is_sign_negative()) << i).sum()
     }
 
     #[inline(always)]
     fn turned(self, axis: usize) -> Self {
         let [x, y, z] = AXES[axis % AXES.len()];
-        Self([self.0[x], self.0[y], self.0[z], self.0[3]])
+        Self([self.0[x as usize], self.0[y as usize], self.0[z as usize], self.0[3]])
     }
 }

@@ -113,13 +113,20 @@ impl Projection {
     pub(crate) fn new(origin: Vec3<f64>, direction: Vec3<f64>, axis: usize) -> Self {
         let (d, o) = (direction.to_array(), origin.to_array());
         let [kx, ky, kz] = AXES[axis % AXES.len()];
-        let rz = 1.0 / d[kz];
-        Self { axis, shear: [d[kx] * rz, d[ky] * rz, rz], start: [o[kx], o[ky], o[kz]] }
+        let (kx, ky, kz) = (kx as usize, ky as usize, kz as usize);
+        Self::along(axis, [o[kx], o[ky], o[kz]], [d[kx], d[ky], d[kz]])
+    }
+
+    /// [`Projection::new`] of an origin and a direction given along the axes.
+    #[inline(always)]
+    pub(crate) fn along(axis: usize, start: [f64; 3], [dx, dy, dz]: [f64; 3]) -> Self {
+        let rz = 1.0 / dz;
+        Self { axis, shear: [dx * rz, dy * rz, rz], start }
     }
 
     /// The axes of the projection, the direction's largest component last.
     #[inline(always)]
-    pub(crate) fn axes(&self) -> [usize; 3] {
+    pub(crate) fn axes(&self) -> [Axis; 3] {
         AXES[self.axis % AXES.len()]
     }
 
@@ -173,6 +180,8 @@ pub(crate) trait Four: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Outp
     fn turned(self) -> Self;
     /// The second, the third, the fourth and the first number.
     fn next(self) -> Self;
+    /// Those along [`AXES`] of an axis.
+    fn along(self, axis: usize) -> Self;
 
     /// The largest of four numbers, none of them NaN.
     #[inline(always)]
@@ -268,6 +277,12 @@ impl Four for Plain4 {
         let [a, b, c, d] = self.0;
         Self([b, c, d, a])
     }
+
+    #[inline(always)]
+    fn along(self, axis: usize) -> Self {
+        let [x, y, z] = AXES[axis % AXES.len()];
+        Self([self.0[x as usize], self.0[y as usize], self.0[z as usize], self.0[3]])
+    }
 }
 
 /// Origins within this (2²⁰⁰, in the 1-norm) keep every product of an intersection test finite.
@@ -281,7 +296,19 @@ pub(crate) fn projection_axis<T: PartialOrd + Copy>([x, y, z, _]: [T; 4]) -> usi
 }
 
 /// The axes of the projection along each axis, that one last.
-pub(crate) const AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
+pub(crate) const AXES: [[Axis; 3]; 4] = {
+    use Axis::{X, Y, Z};
+    [[Y, Z, X], [Z, X, Y], [X, Y, Z], [X, Y, Z]]
+};
+
+/// An index of three coordinates, of which the compiler knows that it is one.
+#[derive(Clone, Copy, Debug)]
+#[repr(usize)]
+pub(crate) enum Axis {
+    X,
+    Y,
+    Z,
+}
 
 /// The edge function of two projected points where it rounds to zero: twice the signed area of the triangle that the ray and the
 /// edge span in projection, x₁·y₂ − y₁·x₂.

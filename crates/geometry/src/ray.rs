@@ -1,5 +1,6 @@
 //! Rays, hits and the points that rays leave.
 
+use crate::query::RawHit;
 use etalon_optics::{Real, Vec3};
 
 /// Index of a primitive, in the order given to [`Geometry::build`](crate::Geometry::build).
@@ -81,6 +82,15 @@ pub struct Hit<R> {
     pub surface: SurfaceId,
     /// Surface parameters (barycentric weights of b and c in a triangle; a and b of a parallelogram; else 0).
     pub uv: [R; 2],
+}
+
+impl<R: Real> Hit<R> {
+    /// A hit along a ray; none if its distance is too large for the numbers of the ray.
+    #[inline(always)]
+    pub(crate) fn new(RawHit { t, uv: [u, v] }: RawHit, surface: SurfaceId) -> Option<Self> {
+        let t = R::from_f64(t);
+        (t < R::INFINITY).then(|| Self { t, surface, uv: [R::from_f64(u), R::from_f64(v)] })
+    }
 }
 
 /// A point on a surface as computed in `f64`.

@@ -41,6 +41,15 @@ pub(crate) struct Node16 {
     pub(crate) children: Children,
 }
 
+impl Node16 {
+    /// Planes of the children along an axis: the lower ones from 0 on, the upper ones from [`NODE_WIDTH`] on. Told so, one instruction finds
+    /// and reads them.
+    #[inline(always)]
+    pub(crate) fn planes(&self, axis: usize, from: usize) -> &[f32; NODE_WIDTH] {
+        self.planes[axis].as_flattened()[from & NODE_WIDTH..].first_chunk().expect("as many as there are children")
+    }
+}
+
 /// A cache line of a node.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]

@@ -3,6 +3,7 @@
 use super::{Frame, above, below};
 use crate::narrow::Lanes4;
 use crate::query::{Four, Query, larger, projection_axis};
+use crate::wide::NODE_WIDTH;
 use etalon_optics::Vec3;
 use std::array::from_fn;
 use std::cmp::Ordering;
@@ -410,8 +411,17 @@ pub(crate) struct BoxRay<L> {
     pub(crate) reciprocal_near: L,
     /// The same, a little larger: a distance ahead comes out no smaller than it is.
     pub(crate) reciprocal_far: L,
-    /// The direction's sign bits.
-    pub(crate) negative: [usize; 3],
+    /// The direction's sign bits, that of x lowest.
+    pub(crate) negative: usize,
+}
+
+impl<L> BoxRay<L> {
+    /// The planes along each axis where the ray enters boxes, for [`Node16::planes`](crate::wide::Node16::planes).
+    #[inline(always)]
+    pub(crate) fn entry(&self) -> [usize; 3] {
+        let bits = self.negative * NODE_WIDTH;
+        [bits & NODE_WIDTH, bits >> 1 & NODE_WIDTH, bits >> 2 & NODE_WIDTH]
+    }
 }
 
 /// Where a line crosses the box [−`half`, `half`]³.

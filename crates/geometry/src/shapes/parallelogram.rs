@@ -92,7 +92,7 @@ impl Parallelogram {
     ) -> Option<RawHit> {
         let [c0, c1, c2, c3] = self.corners().map(Vec3::to_array);
         let row = |k: usize| F::new(token, [c0[k], c1[k], c2[k], c3[k]]);
-        let [kx, ky, kz] = projection.axes();
+        let [kx, ky, kz] = projection.axes().map(|k| k as usize);
         let ([x, y, z], magnitudes) = projection.project(token, [row(kx), row(ky), row(kz)]);
         let mut e = (x * y.next() - y * x.next()).to_array();
         if e.contains(&0.0) {

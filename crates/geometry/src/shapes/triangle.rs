@@ -2,7 +2,7 @@
 
 use super::{ShapeError, check_points, planar};
 use crate::Aabb;
-use crate::query::{Four, Plain4, Projection, Query, RawHit, exact_edge, larger};
+use crate::query::{Axis, Four, Plain4, Projection, Query, RawHit, exact_edge, larger};
 use crate::ray::ExactPoint;
 use etalon_optics::Vec3;
 
@@ -74,7 +74,8 @@ impl Triangle {
 
     /// Lanes of the vertices' coordinates in the order of `axes`; the fourth lane repeats the third.
     #[inline(always)]
-    pub(crate) fn lanes<F: Four>(&self, token: F::Token, [kx, ky, kz]: [usize; 3]) -> [F; 3] {
+    pub(crate) fn lanes<F: Four>(&self, token: F::Token, [kx, ky, kz]: [Axis; 3]) -> [F; 3] {
+        let (kx, ky, kz) = (kx as usize, ky as usize, kz as usize);
         let [a, b, c] = [self.a.to_array(), self.b.to_array(), self.c.to_array()];
         [
             F::new(token, [a[kx], b[kx], c[kx], c[kx]]),
@@ -120,14 +121,17 @@ impl Triangle {
         }
         let [za, zb, zc, _] = z.to_array();
         let t_det = (u * za + v * zb) + w * zc;
-        let mut hit = RawHit { t: t_det / det, uv: [v / det, w / det] };
+        // Numbers, not a hit: what a function that is called writes to lies in memory, and what is made of it.
+        let (mut t, mut uv) = (t_det / det, (v / det, w / det));
         let extent = x.abs().max(y.abs()).largest();
         let depth = larger(larger(za, zb), zc) + larger(larger(-za, -zb), -zc);
         if !planar::is_determined(magnitudes.largest(), extent, depth, t_det.abs(), det.abs()) {
             let (&Self { a, b, c }, query) = in_full();
-            hit = planar::refine(&query, a, b, c, Aabb::of_points([a, b, c]), hit, 1.0);
+            let hit = RawHit { t, uv: [uv.0, uv.1] };
+            let refined = planar::refine(&query, a, b, c, Aabb::of_points([a, b, c]), hit, 1.0);
+            (t, uv) = (refined.t, (refined.uv[0], refined.uv[1]));
         }
-        (0.0 < hit.t && hit.t < t_max).then_some(hit)
+        (0.0 < t && t < t_max).then_some(RawHit { t, uv: [uv.0, uv.1] })
     }
 
     #[inline]

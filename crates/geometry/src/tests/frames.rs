@@ -113,7 +113,7 @@ fn a_ray_from_afar_enters_a_frame_on_its_own_line() {
         assert!(start.abs().max_component() < 4.001);
         let [near, far] = [ray.boxes.origin_near, ray.boxes.origin_far].map(Lanes4::to_array);
         for k in 0..3 {
-            let side = if ray.boxes.negative[k] == 1 { -1.0 } else { 1.0 };
+            let side = if ray.boxes.negative >> k & 1 == 1 { -1.0 } else { 1.0 };
             // What the start computed here errs by, and what was moved: by so much the one that boxes are held against is displaced.
             let rounding = 8.0 * f64::EPSILON * (reach + 1.0) * if begin > 0.0 { 1.0 } else { -1.0 };
             assert!((f64::from(near[k]) - start[k]) * side >= rounding, "{k} {origin:?} {direction:?}");

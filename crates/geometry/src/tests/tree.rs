@@ -23,7 +23,8 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
             let scaled = flat.map(|(hit, id)| (R::from_f64(hit.t * query.scale), id));
             assert_eq!(geometry.closest_hit(&ray).map(|hit| (hit.t, hit.surface)), scaled, "{ray:?}");
             // Rays, too, not queries made of them.
-            let start = flat.map(|(hit, id)| (crate::query::RawHit { t: hit.t * query.scale, ..hit }, id));
+            let start =
+                flat.and_then(|(hit, id)| crate::Hit::new(crate::query::RawHit { t: hit.t * query.scale, ..hit }, id));
             // Whatever instruction set the tree is made for.
             for level in Level::all() {
                 assert_eq!(traverse::closest(level, tree, primitives, &query), flat, "{level:?} {ray:?}");

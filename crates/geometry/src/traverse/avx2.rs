@@ -9,7 +9,7 @@ use super::wide256::D8;
 use super::within::{closest_within, occludes_within};
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
-use crate::best::{Best, Found};
+use crate::best::Best;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
 use crate::portal::Portal;
 use crate::query::Query;
@@ -36,7 +36,7 @@ pub(super) struct Ray8 {
     origin_far: [F8; 3],
     reciprocal_near: [F8; 3],
     reciprocal_far: [F8; 3],
-    /// The planes where the ray enters, 0 or 1 for each axis.
+    /// [`BoxRay::entry`].
     entry: [usize; 3],
 }
 
@@ -62,7 +62,7 @@ impl Filters for Avx2 {
             origin_far: broadcast(self, ray.origin_far),
             reciprocal_near: broadcast(self, ray.reciprocal_near),
             reciprocal_far: broadcast(self, ray.reciprocal_far),
-            entry: ray.negative,
+            entry: ray.entry(),
         }
     }
 
@@ -74,13 +74,13 @@ impl Filters for Avx2 {
         let [ex, ey, ez] = ray.entry;
         for half in 0..NODE_WIDTH / F8::WIDTH {
             let at = half * F8::WIDTH;
-            let plane = |k: usize, side: usize| F8::load(self, &node.planes[k][side & 1], at);
+            let plane = |k: usize, from: usize| F8::load(self, node.planes(k, from), at);
             let near_x = (ray.origin_near[0] - plane(0, ex)) * ray.reciprocal_near[0];
             let near_y = (ray.origin_near[1] - plane(1, ey)) * ray.reciprocal_near[1];
             let near_z = (ray.origin_near[2] - plane(2, ez)) * ray.reciprocal_near[2];
-            let far_x = (ray.origin_far[0] - plane(0, 1 - ex)) * ray.reciprocal_far[0];
-            let far_y = (ray.origin_far[1] - plane(1, 1 - ey)) * ray.reciprocal_far[1];
-            let far_z = (ray.origin_far[2] - plane(2, 1 - ez)) * ray.reciprocal_far[2];
+            let far_x = (ray.origin_far[0] - plane(0, ex ^ NODE_WIDTH)) * ray.reciprocal_far[0];
+            let far_y = (ray.origin_far[1] - plane(1, ey ^ NODE_WIDTH)) * ray.reciprocal_far[1];
+            let far_z = (ray.origin_far[2] - plane(2, ez ^ NODE_WIDTH)) * ray.reciprocal_far[2];
             let near = near_x.max_bits(near_y).max_bits(near_z.max_bits(F8::splat(self, LEAST_DISTANCE)));
             let far = far_x.min_bits(far_y).min_bits(far_z.min_bits(F8::splat(self, limit)));
             out.mask |= near.at_most_bits(far) << at;

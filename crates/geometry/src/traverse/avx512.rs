@@ -10,7 +10,7 @@ use super::wide512::D8;
 use super::within::{closest_within, occludes_within};
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
-use crate::best::{Best, Found};
+use crate::best::Best;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
 use crate::portal::Portal;
 use crate::query::Query;
@@ -46,7 +46,7 @@ pub(super) struct Ray16 {
     origin_far: [__m512; 3],
     reciprocal_near: [__m512; 3],
     reciprocal_far: [__m512; 3],
-    /// The planes where the ray enters, 0 or 1 for each axis.
+    /// [`BoxRay::entry`].
     entry: [usize; 3],
 }
 
@@ -133,7 +133,7 @@ impl Filters for Avx512 {
             origin_far: broadcast(self, ray.origin_far),
             reciprocal_near: broadcast(self, ray.reciprocal_near),
             reciprocal_far: broadcast(self, ray.reciprocal_far),
-            entry: ray.negative,
+            entry: ray.entry(),
         }
     }
 
@@ -143,12 +143,12 @@ impl Filters for Avx512 {
         prefetch(&node.children);
         // SAFETY: the token proves AVX-512; sixteen floats are readable at each row of planes, aligned or not.
         unsafe {
-            let plane = |k: usize, side: usize| _mm512_loadu_ps(node.planes[k][side & 1].as_ptr());
+            let plane = |k: usize, from: usize| _mm512_loadu_ps(node.planes(k, from).as_ptr());
             let slab = |plane: __m512, origin: __m512, reciprocal: __m512| {
                 _mm512_mul_ps(_mm512_sub_ps(origin, plane), reciprocal)
             };
             let near = |k: usize| slab(plane(k, ray.entry[k]), ray.origin_near[k], ray.reciprocal_near[k]);
-            let far = |k: usize| slab(plane(k, 1 - ray.entry[k]), ray.origin_far[k], ray.reciprocal_far[k]);
+            let far = |k: usize| slab(plane(k, ray.entry[k] ^ NODE_WIDTH), ray.origin_far[k], ray.reciprocal_far[k]);
             // As integers: numbers that are not negative are ordered as they are, one that is negative is below them all, and
             // one instruction takes a cycle instead of four.
             let (near, far) = (|k| _mm512_castps_si512(near(k)), |k| _mm512_castps_si512(far(k)));

@@ -6,10 +6,10 @@ use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
 use super::{Filters, Met, Narrow, intersect_exact};
-use crate::best::{Best, Found};
+use crate::best::Best;
 use crate::frame::FrameRay;
 use crate::query::{Projection, RawHit};
-use crate::wide::{BALLS, LEAF, LONE, Leaf, MIXED, NODE_WIDTH, WideTree};
+use crate::wide::{BALLS, LEAF, LONE, Leaf, MIXED, NODE_WIDTH, Nodes, WideTree};
 use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.
@@ -20,12 +20,12 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
     primitives: &[Primitive],
     start: S,
     frame_ray: &FrameRay<Narrow<F>>,
-) -> Option<Found> {
+) -> Option<S::Hit> {
     let ray = filters.ray(&frame_ray.boxes);
     let chords = Chords::new(frame_ray, KIND == BALLS || KIND == MIXED && tree.spheres);
     let mut query = Deferred::new(start);
     // At once, for its division takes as long as two nodes and waits for nothing.
-    let projection = start.projection(frame_ray.t_scale, frame_ray.axis);
+    let projection = start.projection::<F::Four>(filters.into(), frame_ray.t_scale, frame_ray.axis);
     let leaves_id = start.leaves();
     let mut best = Best::new(frame_ray.t_max);
     let mut limit = frame_ray.limit;
@@ -51,7 +51,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
                 let [mut nearest, mut last] = sorted(a, b);
                 let third = second & (second - 1);
                 if third == 0 {
-                    prefetch::<F, KIND, W>(filters, (tree, leaves), last as u32);
+                    prefetch::<F, KIND, W>(filters, (tree, nodes, leaves), last as u32);
                     stack.push(last);
                     child = nearest as u32;
                     continue;
@@ -73,20 +73,20 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
                     stack.push(last);
                     stack.push(middle);
                     stack.push(next);
-                    prefetch::<F, KIND, W>(filters, (tree, leaves), next as u32);
+                    prefetch::<F, KIND, W>(filters, (tree, nodes, leaves), next as u32);
                     let beyond = (fourth & (fourth - 1)).count_ones() as usize;
                     if beyond > 0 {
                         let all = met.all(node);
                         for &new in &all.0[4..4 + beyond % (NODE_WIDTH - 3)] {
-                            prefetch::<F, KIND, W>(filters, (tree, leaves), new as u32);
+                            prefetch::<F, KIND, W>(filters, (tree, nodes, leaves), new as u32);
                             let [near, far] = sorted(nearest, new);
                             stack.insert(base, far);
                             nearest = near;
                         }
                     }
                 }
-                prefetch::<F, KIND, W>(filters, (tree, leaves), middle as u32);
-                prefetch::<F, KIND, W>(filters, (tree, leaves), last as u32);
+                prefetch::<F, KIND, W>(filters, (tree, nodes, leaves), middle as u32);
+                prefetch::<F, KIND, W>(filters, (tree, nodes, leaves), last as u32);
                 child = nearest as u32;
                 continue;
             }
@@ -114,7 +114,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
                         filters.prefetch(&primitives[id.0 as usize]);
                     }
                     if pending.count == Pending::LIMIT {
-                        pending.resolve(&mut best, (tree, leaves), primitives, &mut query, &projection, limit);
+                        pending.resolve(&mut best, (tree, leaves), primitives, &mut query, limit);
                     }
                     if candidates.far.0[lane] < limit {
                         limit = candidates.far.0[lane];
@@ -126,7 +126,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
                     pending.list[pending.count] =
                         Waiting { leaf: index, lane: lane as u32, near: candidates.near.0[lane] };
                     pending.count += 1;
-                } else if decide(&mut best, tree, (leaf, lane), primitives, &mut query, &projection) {
+                } else if decide(&mut best, tree, (leaf, lane), primitives, &mut query) {
                     limit = limit.min(tree.frame.distance(frame_ray.start, best.t_max));
                 }
             }
@@ -145,16 +145,15 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
                         &mut query,
                         (&projection, frame_ray.t_scale),
                     );
-                    if let Some((hit, id)) = last {
-                        let t = start.distance(frame_ray.t_scale, hit.t);
-                        return Some((RawHit { t, ..hit }, SurfaceId::from(id)));
+                    if let Some((RawHit { t, uv: [u, v] }, id)) = last {
+                        let t = start.distance(frame_ray.t_scale, t);
+                        return start.told(RawHit { t, uv: [u, v] }, SurfaceId::from(id));
                     }
                 } else if pending.count > 1 {
-                    pending.resolve(&mut best, (tree, leaves), primitives, &mut query, &projection, limit);
+                    pending.resolve(&mut best, (tree, leaves), primitives, &mut query, limit);
                 }
-                return best
-                    .found()
-                    .map(|(hit, id)| (RawHit { t: start.distance(frame_ray.t_scale, hit.t), ..hit }, id));
+                let (hit, surface) = best.found()?;
+                return start.told(RawHit { t: start.distance(frame_ray.t_scale, hit.t), ..hit }, surface);
             };
             if (next >> 32) as u32 <= limit.to_bits() {
                 child = next as u32;
@@ -199,13 +198,12 @@ impl Pending {
         (tree, leaves): (&WideTree, &[Leaf<W>]),
         primitives: &[Primitive],
         query: &mut Deferred<S>,
-        projection: &Projection,
         limit: f32,
     ) {
         for waiting in &self.list[..self.count] {
             if waiting.near <= limit {
                 let lane = (&leaves[waiting.leaf as usize], waiting.lane as usize);
-                decide(best, tree, lane, primitives, query, projection);
+                decide(best, tree, lane, primitives, query);
             }
         }
         self.count = 0;
@@ -221,14 +219,13 @@ fn decide<S: Start, const W: usize>(
     (leaf, lane): (&Leaf<W>, usize),
     primitives: &[Primitive],
     query: &mut Deferred<S>,
-    projection: &Projection,
 ) -> bool {
-    let id = leaf.id(lane);
+    let (id, query) = (leaf.id(lane), query.get());
     if !leaf.is_exact(lane) {
-        return best.test(primitives, query.get(), id);
+        return best.test(primitives, query, id);
     }
     let limit = best.limit(id);
-    let found = intersect_exact(Portable, tree, (leaf, lane), primitives, projection, || *query.get(), limit);
+    let found = intersect_exact(Portable, tree, (leaf, lane), primitives, &query.projection, || *query, limit);
     if let Some(hit) = found {
         best.set(hit, id);
     }
@@ -264,10 +261,16 @@ fn decide_last<F: Filters, S: Start, const W: usize>(
                 let [origin, direction] = query.start.line(t_scale);
                 shape.intersect_line(origin, direction, limit, false)
             }
-            shape => shape.intersect(query.get(), limit, false),
+            // Taken apart: what a function that is called writes to lies in memory, and all that is made of it.
+            shape => {
+                let RawHit { t, uv: [u, v] } = shape.intersect(query.get(), limit, false)?;
+                Some(RawHit { t, uv: [u, v] })
+            }
         }
     };
-    found.map(|hit| (hit, id))
+    // As above.
+    let RawHit { t, uv: [u, v] } = found?;
+    Some((RawHit { t, uv: [u, v] }, id))
 }
 
 /// Announces that a child that waits on the stack will be visited. Without it rays that share nothing are a tenth slower in
@@ -275,14 +278,14 @@ fn decide_last<F: Filters, S: Start, const W: usize>(
 #[inline(always)]
 fn prefetch<F: Filters, const KIND: u8, const W: usize>(
     filters: F,
-    (tree, leaves): (&WideTree, &[Leaf<W>]),
+    (tree, nodes, leaves): (&WideTree, Nodes<'_>, &[Leaf<W>]),
     child: u32,
 ) {
     if !tree.prefetch {
         return;
     }
     if child & LEAF == 0 {
-        filters.prefetch(tree.nodes().at(child));
+        filters.prefetch(nodes.at(child));
     } else if KIND != MIXED || child & LONE == 0 {
         filters.prefetch(&leaves[(child & !LEAF) as usize]);
     }

@@ -3,7 +3,7 @@
 use super::start::Start;
 use super::{Filters, Job};
 use crate::Primitive;
-use crate::best::{Best, Found};
+use crate::best::Best;
 use crate::portal::Portal;
 use crate::query::Query;
 use crate::wide::WideTree;
@@ -11,13 +11,13 @@ use crate::wide::WideTree;
 /// What is compiled once for each instruction set: functions that a walk begins with, or that are called on it.
 pub(super) trait Compiled: Filters {
     /// [`closest_with`](super::closest_with).
-    fn closest<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found>;
+    fn closest<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit>;
     /// [`any_with`](super::any_with).
     fn any<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool;
     /// Does some work.
     fn run<J: Job>(self, job: J) -> J::Output;
     /// [`closest_far_with`](super::closest_far_with).
-    fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found>;
+    fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit>;
     /// [`any_far_with`](super::any_far_with).
     fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool;
     /// [`closest_within`](super::within::closest_within).
@@ -32,11 +32,11 @@ macro_rules! compiled {
     ($token:ty, $features:literal) => {
         compiled! { $token, $features;
             #[inline]
-            fn closest<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> = closest_with;
+            fn closest<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit> = closest_with;
             #[inline]
             fn any<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> bool = any_with;
             #[inline]
-            fn closest_far<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> = closest_far_with;
+            fn closest_far<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit> = closest_far_with;
             #[inline]
             fn any_far<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> bool = any_far_with;
             #[inline(never)]

@@ -8,7 +8,7 @@ use crate::frame::{Frame, FrameRay};
 use crate::lanes::{Hits, LANES, Rays, lanes_of, vector};
 use crate::query::{Four, Query, RawHit};
 use crate::wide::WideTree;
-use crate::{Hit, Primitive, PrimitiveId};
+use crate::{Hit, Primitive, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
 
 /// A ray in a lane.
@@ -19,6 +19,13 @@ struct Lane<'a> {
 }
 
 impl Start for Lane<'_> {
+    type Hit = Hit<f64>;
+
+    #[inline(always)]
+    fn told(self, hit: RawHit, surface: SurfaceId) -> Option<Hit<f64>> {
+        Hit::new(hit, surface)
+    }
+
     #[inline(always)]
     fn query(self) -> Option<Query> {
         Query::new(&self.rays.get(self.lane))
@@ -26,10 +33,13 @@ impl Start for Lane<'_> {
 
     #[inline(always)]
     fn enter_near<F: Four>(self, token: F::Token, frame: &Frame) -> Option<FrameRay<F::Narrow>> {
+        frame.enter_near(token, self.lanes::<F>(token), |unit| self.rays.t_max[self.lane % LANES] * unit)
+    }
+
+    #[inline(always)]
+    fn lanes<F: Four>(self, token: F::Token) -> [F; 2] {
         let ([ox, oy, oz], [dx, dy, dz], lane) = (&self.rays.origin, &self.rays.direction, self.lane % LANES);
-        let lanes =
-            [F::new(token, [ox[lane], oy[lane], oz[lane], 0.0]), F::new(token, [dx[lane], dy[lane], dz[lane], 0.0])];
-        frame.enter_near(token, lanes, |unit| self.rays.t_max[lane] * unit)
+        [F::new(token, [ox[lane], oy[lane], oz[lane], 0.0]), F::new(token, [dx[lane], dy[lane], dz[lane], 0.0])]
     }
 
     #[inline(always)]
@@ -66,10 +76,8 @@ impl Job for Closest<'_> {
         let mut hits = Hits::NONE;
         for lane in lanes_of(active) {
             let found = closest_with(filters, tree, primitives, Lane { rays, lane });
-            if let Some((RawHit { t, uv }, surface)) = found
-                && t < f64::INFINITY
-            {
-                hits.set(lane, Some(&Hit { t, surface, uv }));
+            if let Some(hit) = found {
+                hits.set(lane, Some(&hit));
             }
         }
         hits

@@ -255,6 +255,19 @@ impl Four for D4 {
         // SAFETY: as for the operators.
         Self(unsafe { _mm256_permute4x64_pd::<0b00_11_10_01>(self.0) })
     }
+
+    #[inline(always)]
+    fn along(self, axis: usize) -> Self {
+        // By halves: no instruction of AVX2 moves whole numbers to where other numbers tell.
+        const ORDERS: [[i32; 8]; 4] =
+            [[2, 3, 4, 5, 0, 1, 6, 7], [4, 5, 0, 1, 2, 3, 6, 7], [0, 1, 2, 3, 4, 5, 6, 7], [0, 1, 2, 3, 4, 5, 6, 7]];
+        let order = &ORDERS[axis % ORDERS.len()];
+        // SAFETY: as for the operators; eight integers are readable at the reference, aligned or not.
+        unsafe {
+            let order = _mm256_loadu_si256(order.as_ptr().cast());
+            Self(_mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(self.0), order)))
+        }
+    }
 }
 
 /// Four floats, likewise.
@@ -343,9 +356,8 @@ impl Lanes4 for F4 {
     }
 
     #[inline(always)]
-    fn negative(self) -> [usize; 3] {
-        let bits = sse!(_mm_movemask_ps(self.0)) as usize;
-        [bits & 1, bits >> 1 & 1, bits >> 2 & 1]
+    fn negative(self) -> usize {
+        sse!(_mm_movemask_ps(self.0)) as usize & 0b111
     }
 
     #[inline(always)]

@@ -157,9 +157,9 @@ fn project<F: Filters, const W: usize>(
 ) -> [F::Vector; 3] {
     let [kx, ky, kz] = AXES[ray.axis % AXES.len()];
     let (start, slopes) = (ray.start_along.to_array(), ray.slopes.to_array());
-    let x = from_origin(filters, start[0], &vertex[kx], at);
-    let y = from_origin(filters, start[1], &vertex[ky], at);
-    let z = from_origin(filters, start[2], &vertex[kz], at);
+    let x = from_origin(filters, start[0], &vertex[kx as usize], at);
+    let y = from_origin(filters, start[1], &vertex[ky as usize], at);
+    let z = from_origin(filters, start[2], &vertex[kz as usize], at);
     let (sx, sy) = (F::Vector::splat(filters.into(), slopes[0]), F::Vector::splat(filters.into(), slopes[1]));
     [x - sx * z, y - sy * z, z]
 }

@@ -34,7 +34,7 @@ use crate::build::MAX_DEPTH;
 use crate::frame::{BoxRay, FrameRay};
 use crate::query::{Four, Projection, Query, RawHit};
 use crate::wide::{BALLS, Leaf, Leaves, MESH, MIXED, NODE_WIDTH, Node16, WideTree};
-use crate::{Hits, Primitive, Rays, Triangle};
+use crate::{Hits, Primitive, PrimitiveId, Rays, Triangle};
 use any::any_on;
 pub(crate) use any::occludes;
 use closest::closest_on;
@@ -106,7 +106,7 @@ trait Filters:
 ///
 /// The query is made within, where its numbers can stay in registers.
 #[inline]
-pub(crate) fn closest<S: Start>(level: Level, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+pub(crate) fn closest<S: Start>(level: Level, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit> {
     match level {
         #[cfg(target_arch = "x86_64")]
         Level::Avx512(filters) => filters.closest(tree, primitives, start),
@@ -147,7 +147,7 @@ fn closest_with<F: Compiled, S: Start>(
     tree: &WideTree,
     primitives: &[Primitive],
     start: S,
-) -> Option<Found> {
+) -> Option<S::Hit> {
     let near = if tree.depth <= LEVELS[0] { start.enter_near::<F::Four>(filters.into(), &tree.frame) } else { None };
     match (near, tree.leaves()) {
         (Some(ray), Leaves::Eight(leaves)) if const { F::Vector::WIDTH == 8 } => {
@@ -168,7 +168,7 @@ fn closest_near<F: Compiled, S: Start, const W: usize>(
     primitives: &[Primitive],
     start: S,
     ray: &FrameRay<Narrow<F>>,
-) -> Option<Found> {
+) -> Option<S::Hit> {
     const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
     match tree.0.kind {
         MESH => closest_on::<F, S, MESH, ROOM, W>(filters, tree, primitives, start, ray),
@@ -184,7 +184,7 @@ fn closest_far_with<F: Compiled, S: Start>(
     tree: &WideTree,
     primitives: &[Primitive],
     start: S,
-) -> Option<Found> {
+) -> Option<S::Hit> {
     let query = start.query()?;
     const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
     if tree.depth <= LEVELS[0] {
@@ -200,8 +200,8 @@ fn closest_far_with<F: Compiled, S: Start>(
             _ => {}
         }
     }
-    let (hit, id) = closest_deep(tree, primitives, &query)?;
-    Some((RawHit { t: start.distance(query.scale, hit.t), ..hit }, id))
+    let (hit, surface) = closest_deep(tree, primitives, &query)?;
+    start.told(RawHit { t: start.distance(query.scale, hit.t), ..hit }, surface)
 }
 
 /// Whether anything is hit by a ray that starts near the frame.
@@ -314,10 +314,22 @@ fn intersect_exact<F: Filters, const W: usize>(
     query: impl FnOnce() -> Query,
     t_max: f64,
 ) -> Option<RawHit> {
-    let triangle = || match &primitives[leaf.id(lane).0 as usize] {
+    let lanes = leaf.lanes::<F::Four>(filters.into(), &tree.frame, lane, projection.axes());
+    Triangle::intersect_lanes::<F::Four>(
+        filters.into(),
+        lanes,
+        projection,
+        || (triangle(primitives, leaf.id(lane)), query()),
+        t_max,
+    )
+}
+
+/// The triangle of an exact lane: apart, so that what it takes to find it is not kept for it.
+#[cold]
+#[inline(never)]
+fn triangle(primitives: &[Primitive], id: PrimitiveId) -> &Triangle {
+    match &primitives[id.0 as usize] {
         Primitive::Triangle(triangle) => triangle,
         _ => unreachable!("only triangles have exact vertices"),
-    };
-    let lanes = leaf.lanes::<F::Four>(filters.into(), &tree.frame, lane, projection.axes());
-    Triangle::intersect_lanes::<F::Four>(filters.into(), lanes, projection, || (triangle(), query()), t_max)
+    }
 }

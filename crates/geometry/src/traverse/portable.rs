@@ -6,7 +6,7 @@ use super::met::{Entered, Row};
 use super::vector::Vector;
 use super::within::{closest_within, occludes_within};
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
-use crate::best::{Best, Found};
+use crate::best::Best;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
 use crate::portal::Portal;
 use crate::query::{Plain4, Query};
@@ -217,8 +217,8 @@ impl Filters for Portable {
         let mut out = Entered { mask: 0, near: Row([LEAST_DISTANCE; NODE_WIDTH]) };
         let mut far = [limit; NODE_WIDTH];
         for k in 0..3 {
-            let entry = &node.planes[k][ray.negative[k]];
-            let exit = &node.planes[k][1 - ray.negative[k]];
+            let entry = node.planes(k, ray.entry()[k]);
+            let exit = node.planes(k, ray.entry()[k] ^ NODE_WIDTH);
             for lane in 0..NODE_WIDTH {
                 let near = (origin_near[k] - entry[lane]) * reciprocal_near[k];
                 out.near.0[lane] = if near > out.near.0[lane] { near } else { out.near.0[lane] };
@@ -237,7 +237,7 @@ impl Filters for Portable {
 }
 
 impl Compiled for Portable {
-    fn closest<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+    fn closest<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit> {
         closest_with(self, tree, primitives, start)
     }
 
@@ -249,7 +249,7 @@ impl Compiled for Portable {
         job.run(self)
     }
 
-    fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<Found> {
+    fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit> {
         closest_far_with(self, tree, primitives, start)
     }
 

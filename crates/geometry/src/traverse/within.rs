@@ -3,13 +3,13 @@
 use super::compiled::Compiled;
 use super::vector::Vector;
 use super::{LEVELS, Narrow, any_on, closest_on, occludes};
-use crate::best::{Best, Found};
+use crate::best::Best;
 use crate::frame::{Entry, FrameRay};
 use crate::instance::{at_least, told_end};
 use crate::portal::Portal;
-use crate::query::Query;
+use crate::query::{Query, RawHit};
 use crate::wide::{Leaf, Leaves, MESH, MIXED, NODE_WIDTH, WideTree};
-use crate::{Primitive, Ray};
+use crate::{Hit, Primitive, Ray};
 
 /// [`Best::test`] of an instance: the same, without a query where there is a tree to walk. The bounds, which cost more than what
 /// most rays that miss find out in the tree's root, are asked for only where there is a hit.
@@ -47,7 +47,8 @@ pub(super) fn closest_within<F: Compiled>(
             _ => filters.closest_far(tree, inner, ray),
         },
     };
-    let Some((mut hit, surface)) = found else { return false };
+    let Some(Hit { t, surface, uv }) = found else { return false };
+    let mut hit = RawHit { t, uv };
     let Some(entry) = portal.entry(query, t_max) else { return false };
     let found = at_least(&mut hit, entry, t_max);
     if found {
@@ -100,7 +101,7 @@ fn closest_in<F: Compiled, const W: usize>(
     primitives: &[Primitive],
     ray: &Ray<f64>,
     near: &FrameRay<Narrow<F>>,
-) -> Option<Found> {
+) -> Option<Hit<f64>> {
     const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
     match tree.0.kind {
         MESH => closest_on::<F, _, MESH, ROOM, W>(filters, tree, primitives, ray, near),

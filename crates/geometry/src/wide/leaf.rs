@@ -2,7 +2,7 @@
 
 use crate::build::BinaryTree;
 use crate::frame::Frame;
-use crate::query::Four;
+use crate::query::{Axis, Four};
 use crate::{Primitive, PrimitiveId};
 use bytemuck::{Pod, Zeroable};
 
@@ -190,7 +190,7 @@ impl<const W: usize> Leaf<W> {
     ///
     /// [`Triangle::lanes`]: crate::Triangle::lanes
     #[inline(always)]
-    pub(crate) fn lanes<F: Four>(&self, token: F::Token, frame: &Frame, lane: usize, axes: [usize; 3]) -> [F; 3] {
+    pub(crate) fn lanes<F: Four>(&self, token: F::Token, frame: &Frame, lane: usize, axes: [Axis; 3]) -> [F; 3] {
         let unscale = F::splat(token, frame.unscale());
         let [kx, ky, kz] = axes;
         [
@@ -202,8 +202,8 @@ impl<const W: usize> Leaf<W> {
 
     /// The coordinates of the vertices in a lane along an axis; the fourth is the third's.
     #[inline(always)]
-    fn row(&self, axis: usize, lane: usize) -> [f32; 4] {
-        let ([a, b, c], lane) = ([0, 1, 2].map(|i| self.vertex(i)), lane % W);
-        [a[axis][lane], b[axis][lane], c[axis][lane], c[axis][lane]]
+    fn row(&self, axis: Axis, lane: usize) -> [f32; 4] {
+        let at = |vertex: usize| f32::from_bits(self.0[HEAD_ROWS + 3 * vertex + axis as usize][lane % W]);
+        [at(0), at(1), at(2), at(2)]
     }
 }
