@@ -204,3 +204,55 @@ fn a_lamp_behind_rough_dispersing_glass_counts_once() {
     assert!((mis - bsdf).abs() < 5.0 * (noise + rest).sqrt(), "{mis} is not {bsdf}");
     assert_eq!(shown("mis", 0, PathLoop::Lanes), shown("mis", 0, PathLoop::Plain));
 }
+
+/// A surface that is partly a mirror is lit by shadow rays as much as the rest of it scatters: a point light, which nothing else finds.
+#[test]
+fn what_scatters_of_a_blend_is_lit_by_shadow_rays() {
+    let shown = read(&json!({
+        "etalon": 1,
+        "camera": {"type": "orthographic", "position_m": [0, 0, 3], "direction": [0, 0, -1], "height_m": 0.001},
+        "film": {"width": 2, "height": 2},
+        "materials": {"mirror": {"type": "mirror"}, "paint": {"type": "lambert", "reflectance": 0.5}},
+        "objects": [{
+            "shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 0, 1], "radius_m": 1},
+            "material": {"type": "blend", "first": "mirror", "second": "paint", "weight": 0.25}
+        }],
+        "lights": [{"type": "point", "position_m": [0, 0, 5], "intensity": 1}],
+        "integrator": {"spp": 4, "max_depth": 2, "roulette": false}
+    }));
+    let truth = 0.25 * 0.5 / PI / 25.0;
+    // As above: single precision, and the footprint's edge.
+    assert!((shown / truth - 1.0).abs() < 3e-6, "{shown} is not {truth}");
+}
+
+/// A metal under water, seen along its normal from within the water, returns the |(N − n)/(N + n)|² of its index N beside the water's n, alone
+/// and as half of a surface whose other half is black.
+#[test]
+fn metals_reflect_as_their_index_beside_that_of_what_they_stand_in_says() {
+    let (n, k, water) = (0.4_f64, 2.5_f64, 1.6_f64);
+    let shown = |metal: Value| {
+        read(&json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 3], "direction": [0, 0, -1], "height_m": 0.001},
+            "film": {"width": 16, "height": 16},
+            "materials": {
+                "metal": {"type": "conductor", "wavelengths_nm": [300, 900], "n": [n, n], "k": [k, k]}, "black": {"type": "black"}
+            },
+            "objects": [
+                {"shape": {"type": "box", "min_m": [-9, -9, -9], "max_m": [9, 9, 9]},
+                    "material": {"type": "dielectric", "interior": water, "priority": 0}},
+                {"shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 0, 1], "radius_m": 1}, "material": metal},
+                {"shape": {"type": "disk", "center_m": [0, 0, 5], "normal": [0, 0, -1], "radius_m": 1},
+                    "material": {"type": "black"}, "emission": {"radiance": 1}}
+            ],
+            "integrator": {"spp": 64, "max_depth": 2, "roulette": false}
+        }))
+    };
+    let reflectance = ((n - water).powi(2) + k * k) / ((n + water).powi(2) + k * k);
+    // In air it would be .81, not .75. Paths are in single precision.
+    let whole = shown(json!("metal"));
+    assert!((whole / reflectance - 1.0).abs() < 1e-5, "{whole} is not {reflectance}");
+    let half = shown(json!({"type": "blend", "first": "metal", "second": "black", "weight": 0.5}));
+    // Which half a path takes is chosen 16384 times: the mean scatters by .8 % at most, and may be off by five times that.
+    assert!((half / (0.5 * reflectance) - 1.0).abs() < 0.04, "{half} is not half of {reflectance}");
+}

@@ -192,6 +192,20 @@ fn through(sheets: &[Value], film: &Value) -> Scene {
     )
 }
 
+/// What a camera measures is told along the right of its picture: turned about its axis, it sees all axes turned the other way.
+#[test]
+fn a_camera_that_is_turned_sees_axes_turned_the_other_way() {
+    for roll in [0.0, 20.0, 65.0, 90.0, 130.0_f64] {
+        let (sin, cos) = roll.to_radians().sin_cos();
+        let mut scene = through(&[polariser(40.0)], &json!({"width": 8, "height": 8}));
+        scene.camera.up = [-sin, cos, 0.0];
+        let (sin_2, cos_2) = (2.0 * (40.0 - roll).to_radians()).sin_cos();
+        let read = stokes(&scene);
+        let close = |i: usize, truth: f64| (read[i] - truth).abs() < 1e-12;
+        assert!(close(0, 0.5) && close(1, 0.5 * cos_2) && close(2, 0.5 * sin_2), "turned by {roll}°: {read:?}");
+    }
+}
+
 fn polariser(degrees: f64) -> Value {
     let (sin, cos) = degrees.to_radians().sin_cos();
     json!({"type": "polariser", "axis": [cos, sin, 0]})
