@@ -4,6 +4,7 @@
 mod common;
 mod form;
 mod meaning;
+mod places;
 mod syntax;
 
 use common::{Parts, RIGHT};
