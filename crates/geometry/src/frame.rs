@@ -5,13 +5,15 @@
 //! never rejects a box that holds a primitive which the `f64` test would accept.
 
 mod ray;
+mod set_out;
 
 use crate::Aabb;
 pub(crate) use crate::narrow::{Lanes4, Plain};
 use crate::query::power_of_two;
 use etalon_optics::Vec3;
 use ray::PROJECTION_ERROR;
-pub(crate) use ray::{BoxRay, Entry, FrameRay, LEAST_DISTANCE};
+pub(crate) use ray::{Entry, LEAST_DISTANCE};
+pub(crate) use set_out::{BoxRay, FrameRay};
 use std::array::from_fn;
 
 /// A box in the accelerator's frame, rounded outward.
