@@ -103,6 +103,23 @@ fn objects_are_told_apart_by_number_and_name() {
     assert!(row[..12].iter().all(|pixel| pixel.object == 1.0 || pixel.object == 0.0));
     assert!(row[12..].iter().all(|pixel| pixel.object == 2.0 || pixel.object == 0.0));
     assert!((row[7].object, row[16].object) == (1.0, 2.0), "{row:?}");
+    // Of a pixel that sees two it is the one that more rays meet, in whichever order they are listed. The pixel on the right of the
+    // middle is 0.182 m wide.
+    for (border, seen) in [(0.04, "right"), (0.14, "left")] {
+        for order in [[0, 1], [1, 0]] {
+            let half = |x: f64, name: &str| {
+                let shape =
+                    json!({"type": "parallelogram", "origin_m": [x, -9, 0], "u_m": [9, 0, 0], "v_m": [0, 18, 0]});
+                json!({"name": name, "shape": shape, "material": {"type": "black"}})
+            };
+            let halves = [half(border - 9.0, "left"), half(border, "right")];
+            let (prepared, pixels) = features(&json!(order.map(|i| halves[i].clone())), 64);
+            let names = prepared.object_names();
+            for (x, name) in [(11, "left"), (12, seen), (13, "right")] {
+                assert_eq!(names[pixels[8 * 24 + x].object as usize - 1], name, "{x} {order:?}");
+            }
+        }
+    }
 }
 
 /// A wall seen through another.

@@ -113,6 +113,24 @@ fn without_motion_everything_stands_as_in_the_middle_of_the_time() {
     assert!(plan(&Study::default()).runs(EffectName::Motion));
 }
 
+/// Times are exact in binary, so that not a bit may differ.
+#[test]
+fn what_moves_while_the_shutter_is_open_does_not_depend_on_when_that_is() {
+    let steps = |x: f64, angle_deg: f64| json!([{"rotate": {"axis": [1, 2, 3], "angle_deg": angle_deg}}, {"translate_m": [x, 0.25, 0.5]}]);
+    let moving = |times_s: [f64; 3], shutter_s: [f64; 2]| {
+        let [first, second, third] = times_s;
+        let keyframes = json!([{"time_s": first, "transform": steps(-0.5, 0.0)}, {"time_s": second, "transform": steps(0.0, 20.0)},
+            {"time_s": third, "transform": steps(0.75, 30.0)}]);
+        render(&room(&json!({"keyframes": keyframes}), shutter_s), &Study::default())
+    };
+    let from_zero = moving([0.0, 0.25, 1.0], [0.0, 1.0]);
+    for (open_s, long_s) in [(3.0, 1.0), (0.5, 0.125), (-2.0, 8.0)] {
+        let times_s = [0.0, 0.25, 1.0].map(|t| open_s + t * long_s);
+        assert!(moving(times_s, [open_s, open_s + long_s]).pixels().eq(from_zero.pixels()), "{open_s} s, {long_s} s");
+    }
+    assert!(!moving([0.0, 0.25, 1.0], [0.25, 1.0]).pixels().eq(from_zero.pixels()));
+}
+
 /// Things that shine move and turn, and a camera goes with them.
 #[test]
 fn a_camera_that_moves_with_all_that_it_sees_sees_it_stand_still() {
