@@ -4,7 +4,7 @@
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{RefractiveIndex, Spectrum};
 use etalon_scene::{Image, ImageTexture, Scene, SpectrumTexture, Texels, TextureFilter};
-use etalon_transport::{EffectName, Study};
+use etalon_transport::{EffectName, Study, prepare};
 use serde_json::{Value, json};
 
 #[path = "common/rendering.rs"]
@@ -153,5 +153,92 @@ fn without_wavelengths_every_spectrum_is_its_mean_as_the_eye_weighs_it() {
         for c in 0..3 {
             assert!((left_out[c] - grey[c]).abs() <= 1e-4 * grey[c], "{left_out:?} is not {grey:?}");
         }
+    }
+}
+
+/// Of sheets and images, under light that is the same at all wavelengths.
+#[test]
+fn without_wavelengths_images_keep_their_luminances_and_wave_plates_the_delay_of_one() {
+    let square = |z: f64, material: Value| json!({"shape": {"type": "parallelogram", "origin_m": [-1, -1, z], "u_m": [2, 0, 0], "v_m": [0, 2, 0]}, "material": material});
+    let scene = |objects: Vec<Value>| {
+        json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 5], "direction": [0, 0, -1], "height_m": 2},
+            "film": {"width": 2, "height": 2},
+            "objects": objects,
+            "lights": [{"type": "environment", "radiance": 1}],
+            "integrator": {"spp": 4}
+        })
+    };
+    let close = |a: &Scene, b: &Scene, what: &str| {
+        let [a, b] = [a, b].map(|scene| render(scene, &without(EffectName::Wavelengths)).linear_rec709());
+        for (a, b) in a.iter().zip(&b) {
+            // The luminance of what is grey is rounded once more.
+            assert!((0..3).all(|c| (a[c] - b[c]).abs() <= 1e-6 * b[c]) && b[1] > 0.01, "{what}: {a:?} is not {b:?}");
+        }
+    };
+    let printed = |texels: [[f32; 3]; 2], factor: [f64; 3]| {
+        let floor = square(0.0, json!({"type": "lambert", "reflectance": 0.5}));
+        let mut scene = parse(&scene(vec![floor]).to_string());
+        let image = Image::new(2, 1, Texels::F32(texels.to_vec()));
+        let texture = ImageTexture { filter: TextureFilter::Nearest, factor, ..ImageTexture::new(image) };
+        *scene.materials[0].kind.reflectance_mut().unwrap() = SpectrumTexture::Image(texture);
+        scene
+    };
+    let luminances = [0.2126 * 0.25 + 0.7152 * 0.5 + 0.0722 * 0.125, 0.2126 * 0.125 + 0.7152 * 0.25 + 0.0722 * 0.5];
+    let grey = printed(luminances.map(|y: f64| [y as f32; 3]), [1.0; 3]);
+    close(&printed([[0.5, 0.5, 0.5], [0.25, 0.25, 2.0]], [0.5, 1.0, 0.25]), &grey, "image");
+
+    // Between two polarisers as one: cos²(δ/2) of the light, δ in inverse proportion to the wavelength.
+    let plates = |plate: Value| {
+        let polariser = |z: f64| square(z, json!({"type": "polariser", "axis": [0, 1, 0]}));
+        parse(&scene(vec![polariser(0.0), square(1.0, plate), polariser(2.0)]).to_string())
+    };
+    let retarder =
+        |retardance_deg: f64| json!({"type": "retarder", "axis": [1, 1, 0], "retardance_deg": retardance_deg});
+    let mut dispersive = retarder(120.0);
+    dispersive["at_nm"] = json!(500);
+    close(&plates(dispersive), &plates(retarder(120.0 * 500.0 / 587.5618)), "wave plate");
+}
+
+/// Under light that is the same at all wavelengths: each kind that treats them unlike calls for them, its like that does not calls for
+/// none, and the picture of the first has a colour.
+#[test]
+fn materials_that_treat_wavelengths_unlike_call_for_them() {
+    let red = json!({"type": "tabulated", "wavelengths_nm": [360, 830], "values": [0.1, 0.9]});
+    let pairs = [
+        (json!({"type": "lambert", "reflectance": red}), json!({"type": "lambert", "reflectance": 0.5})),
+        (
+            json!({"type": "oren-nayar", "reflectance": red, "roughness": 0.6}),
+            json!({"type": "oren-nayar", "reflectance": 0.5, "roughness": 0.6}),
+        ),
+        (json!({"type": "mirror", "reflectance": red}), json!({"type": "mirror", "reflectance": 0.5})),
+        (json!({"type": "plastic", "reflectance": red}), json!({"type": "plastic", "reflectance": 0.5})),
+        (json!({"type": "conductor", "metal": "Cu"}), json!({"type": "mirror", "reflectance": 1})),
+        (json!({"type": "conductor", "metal": "Au", "alpha": 0.3}), json!({"type": "mirror", "reflectance": 1})),
+        (
+            json!({"type": "polariser", "axis": [0, 1, 0], "transmittance": red}),
+            json!({"type": "polariser", "axis": [0, 1, 0], "transmittance": 0.5}),
+        ),
+    ];
+    for (coloured, plain) in pairs {
+        let scene =
+            |material: &Value| {
+                parse(&json!({
+                "etalon": 1,
+                "camera": {"type": "orthographic", "position_m": [0, 0, 5], "direction": [0, 0, -1], "height_m": 1},
+                "film": {"width": 2, "height": 2},
+                "objects": [{"shape": {"type": "disk", "normal": [0, 0, 1], "radius_m": 2}, "material": material}],
+                "lights": [{"type": "environment", "radiance": 1}],
+                "integrator": {"spp": 256}
+            }).to_string())
+            };
+        let runs = |material: &Value| prepare(&scene(material)).unwrap().plan().runs(EffectName::Wavelengths);
+        assert!(runs(&coloured) && !runs(&plain), "{coloured}");
+        let [x, y, z] = render(&scene(&coloured), &Study::default())
+            .xyz()
+            .fold([0.0; 3], |sum, xyz| [0, 1, 2].map(|c| sum[c] + xyz[c]));
+        // All of these are red beside the light, whose three are alike.
+        assert!(x > 1.05 * z && y > 1.05 * z, "{coloured}: {x} {y} {z}");
     }
 }
