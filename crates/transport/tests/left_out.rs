@@ -242,3 +242,27 @@ fn materials_that_treat_wavelengths_unlike_call_for_them() {
         assert!(x > 1.05 * z && y > 1.05 * z, "{coloured}: {x} {y} {z}");
     }
 }
+
+/// Alone in their scene, so that no other surface calls for shadow rays.
+#[test]
+fn whatever_scatters_is_lit_by_lights_without_a_surface() {
+    for material in [
+        json!({"type": "lambert", "reflectance": 0.5}),
+        json!({"type": "oren-nayar", "reflectance": 0.5, "roughness": 0.6}),
+        json!({"type": "plastic", "reflectance": 0.5}),
+        json!({"type": "plastic", "reflectance": 0, "alpha": 0.3}),
+        json!({"type": "conductor", "metal": "Au", "alpha": 0.3}),
+        json!({"type": "dielectric", "interior": 1.5, "alpha": 0.3}),
+        json!({"type": "blend", "first": {"type": "black"}, "second": {"type": "oren-nayar", "reflectance": 0.5, "roughness": 0.6}, "weight": 0.5}),
+    ] {
+        let scene = json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 5], "direction": [0, 0, -1], "height_m": 1},
+            "film": {"width": 2, "height": 2},
+            "objects": [{"shape": {"type": "sphere", "radius_m": 2}, "material": material}],
+            "lights": [{"type": "point", "position_m": [0, 1, 5], "intensity": 1}],
+            "integrator": {"spp": 16}
+        });
+        assert!(mean_y(&render(&parse(&scene.to_string()), &Study::default())) > 0.0, "{material}");
+    }
+}

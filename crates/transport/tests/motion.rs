@@ -131,6 +131,26 @@ fn what_moves_while_the_shutter_is_open_does_not_depend_on_when_that_is() {
     assert!(!moving([0.0, 0.25, 1.0], [0.25, 1.0]).pixels().eq(from_zero.pixels()));
 }
 
+/// Along two sides of a triangle, one by one, while it turns by a right angle; the shutter opens in the middle of the first.
+#[test]
+fn plans_tell_how_far_things_go() {
+    let steps = |x: f64, y: f64, angle_deg: f64| json!([{"rotate": {"axis": [0, 1, 0], "angle_deg": angle_deg}}, {"translate_m": [x, y, 0]}]);
+    let keyframes = json!([{"time_s": 0, "transform": steps(1.0, 2.0, 0.0)}, {"time_s": 2, "transform": steps(7.0, 10.0, 60.0)},
+        {"time_s": 3, "transform": steps(7.0, 6.0, 90.0)}]);
+    let reason = |shutter_s: [f64; 2], keyframes: &Value| {
+        let prepared = prepare_study(&room(&json!({"keyframes": keyframes}), shutter_s), &Study::default()).unwrap();
+        let effects = &prepared.plan().effects;
+        effects.iter().find(|effect| effect.name == EffectName::Motion).unwrap().because.clone()
+    };
+    assert_eq!(reason([1.0, 3.0], &keyframes), "\"thing\" turns by 60.000° and moves by 9.0000 m in 2 s");
+    assert_eq!(reason([0.0, 2.0], &keyframes), "\"thing\" turns by 60.000° and moves by 10.0000 m in 2 s");
+    let still = |x: f64, scale: f64| json!([{"scale": scale}, {"translate_m": [x, 0, 0]}]);
+    let stretched = json!([{"time_s": 0, "transform": still(1.0, 1.0)}, {"time_s": 1, "transform": still(1.0, 2.0)}]);
+    assert_eq!(reason([0.0, 1.0], &stretched), "\"thing\" is stretched in 1 s");
+    let moved = json!([{"time_s": 0, "transform": still(1.0, 1.0)}, {"time_s": 1, "transform": still(3.0, 1.0)}]);
+    assert_eq!(reason([0.0, 0.5], &moved), "\"thing\" moves by 1.0000 m in 0.5 s");
+}
+
 /// Things that shine move and turn, and a camera goes with them.
 #[test]
 fn a_camera_that_moves_with_all_that_it_sees_sees_it_stand_still() {
