@@ -8,6 +8,7 @@ mod ray;
 mod set_out;
 
 use crate::Aabb;
+use crate::measure::half_area;
 pub(crate) use crate::narrow::{Lanes4, Plain};
 use crate::query::power_of_two;
 use etalon_optics::Vec3;
@@ -27,8 +28,14 @@ impl Box32 {
     /// Half the surface area; zero for the empty box.
     #[inline]
     pub(crate) fn half_area(&self) -> f32 {
-        let [x, y, z] = from_fn(|k| self.max[k] - self.min[k]);
-        if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
+        let sides = self.sides();
+        if sides[0] < 0.0 { 0.0 } else { half_area(sides) }
+    }
+
+    /// Its sides.
+    #[inline]
+    pub(crate) fn sides(&self) -> [f32; 3] {
+        from_fn(|k| self.max[k] - self.min[k])
     }
 }
 

@@ -4,9 +4,9 @@ use crate::best::{Best, Found};
 use crate::build::{Costs, Item, LEAF_LIMIT, build};
 use crate::census::Census;
 use crate::frame::Frame;
+use crate::improve::improved;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
-use crate::reinsert::improved;
 use crate::traverse::{self, FLAT_LIMIT, Flat, Level};
 use crate::wide::WideTree;
 use crate::{Aabb, Hit, Instance, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
@@ -106,7 +106,7 @@ impl Geometry {
             let item = |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32, lone(p));
             let items = primitives.par_iter().enumerate().map(item).collect();
             let costs = costs(&census);
-            let binary = improved(build(items, costs, level));
+            let binary = improved(build(items, costs, level), costs, level);
             outline = binary.outline(OUTLINE_LIMIT).into_iter().map(|b| frame.unscaled_box(b)).collect();
             WideTree::collapse(frame, &binary, &primitives, &census, costs, level.lanes())
         });

@@ -12,6 +12,8 @@
 //! | `double_double` | the arithmetic behind `f64`, where an error bound calls for it |
 //! | `frame` | the accelerator's frame and conservative box tests in `f32` |
 //! | `build` | the builder of a binary tree |
+//! | `improve` | grouping and moving its subtrees |
+//! | `measure` | how often rays enter a box |
 //! | `wide` | the tree of sixteen children a node that it becomes |
 //! | `pages` | arrays in large pages |
 //! | `traverse` | its traversal, for each instruction set; `traverse::flat`: few primitives, without a tree |
@@ -29,15 +31,16 @@ mod census;
 mod double_double;
 mod frame;
 mod geometry;
+mod improve;
 mod instance;
 mod lanes;
+mod measure;
 mod motion;
 mod narrow;
 mod pages;
 mod portal;
 mod query;
 mod ray;
-mod reinsert;
 mod shapes;
 mod traverse;
 mod wide;

@@ -11,6 +11,7 @@ use crate::portal::Portal;
 use crate::{Primitive, PrimitiveId};
 use bytemuck::{Pod, Zeroable};
 use choices::Choices;
+pub(crate) use choices::least_cost;
 pub(crate) use leaf::{Leaf, NO_ID};
 use rayon::prelude::*;
 

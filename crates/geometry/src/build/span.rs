@@ -1,6 +1,7 @@
 //! Boxes and primitives as the builder moves them.
 
 use crate::frame::Box32;
+use crate::measure::half_area;
 use std::array::from_fn;
 
 /// A box as one vector, so that a union is one maximum: its lower corner negated, a lane for a primitive's index, its upper
@@ -55,8 +56,20 @@ impl Span {
     /// Half the surface area; zero for the empty box.
     #[inline(always)]
     pub(crate) fn half_area(self) -> f32 {
-        let [x, y, z] = from_fn(|k| self.0[k + 4] + self.0[k]);
-        if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
+        let sides = self.sides();
+        if sides[0] < 0.0 { 0.0 } else { half_area(sides) }
+    }
+
+    /// Its sides.
+    #[inline(always)]
+    pub(crate) fn sides(self) -> [f32; 3] {
+        from_fn(|k| self.0[k + 4] + self.0[k])
+    }
+
+    /// Its lower corner negated, and its upper one.
+    #[inline(always)]
+    pub(crate) fn corners(self) -> [f32; 6] {
+        from_fn(|i| self.0[if i < 3 { i } else { i + 1 }])
     }
 
     /// Whether it holds a primitive that shares its leaf with no other.

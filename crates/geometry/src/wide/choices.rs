@@ -2,6 +2,7 @@
 
 use super::NODE_WIDTH;
 use crate::build::{BinaryTree, Costs, LEAF_LIMIT, Node};
+use crate::measure::Measure;
 use crate::{Instance, Primitive};
 
 /// Above this many binary nodes the two halves of a tree are taken in parallel.
@@ -29,7 +30,8 @@ struct Weights<'a> {
     tree: &'a BinaryTree,
     primitives: &'a [Primitive],
     costs: Costs,
-    /// What a leaf costs beside its area.
+    measure: Measure,
+    /// What a leaf costs beside how often rays enter it.
     price: f32,
     /// Primitives of a leaf, at most.
     lanes: u32,
@@ -39,7 +41,7 @@ impl Weights<'_> {
     /// Cost of a leaf of some primitives, no more than lanes.
     fn leaf(&self, node: &Node, count: u32) -> f32 {
         let tests = if self.costs.block == 1 { count as f32 } else { 1.0 };
-        tests * node.bounds.half_area() + self.price
+        tests * self.measure.of(node.bounds.sides()) + self.price
     }
 
     /// The least cost of the nodes and leaves below a binary node if it becomes up to 1, 2, … 16 children, and its primitives, up to
@@ -50,7 +52,7 @@ impl Weights<'_> {
             // An instance is in no leaf.
             let lone = lone(self.tree, self.primitives, node).is_some();
             return if lone {
-                ([bounds.half_area(); NODE_WIDTH], TOO_MANY)
+                ([self.measure.of(bounds.sides()); NODE_WIDTH], TOO_MANY)
             } else {
                 ([self.leaf(binary, *count); NODE_WIDTH], *count)
             };
@@ -70,7 +72,7 @@ impl Weights<'_> {
             let best = (2..i).fold(1, |best, k| if split(k) < split(best) { k } else { best });
             (costs[i - 1], splits[i - 1]) = (split(best), best as u64);
         }
-        costs[0] = self.costs.node * bounds.half_area() + costs[NODE_WIDTH - 1];
+        costs[0] = self.costs.node * self.measure.of(bounds.sides()) + costs[NODE_WIDTH - 1];
         if count < TOO_MANY {
             let leaf = self.leaf(binary, count);
             if leaf <= costs[0] {
@@ -89,14 +91,22 @@ impl Weights<'_> {
     }
 }
 
-/// The instance that a binary leaf is, if it is one, and its id.
+/// What the nodes and leaves that a binary tree becomes cost rays, if its leaves stay what they are; relative to others of the same box.
+/// Which primitives are in its leaves is not asked for.
+pub(crate) fn least_cost(tree: &BinaryTree, costs: Costs) -> f32 {
+    let measure = Measure::within(tree.nodes[0].bounds.sides());
+    let weights = Weights { tree, primitives: &[], costs, measure, price: 0.0, lanes: 0 };
+    weights.least(0, &mut vec![0; tree.nodes.len()]).0[0]
+}
+
+/// The instance that a binary leaf is, if it is one and the tree tells, and its id.
 fn lone<'a>(tree: &BinaryTree, primitives: &'a [Primitive], leaf: u32) -> Option<(&'a Instance, u32)> {
     let Node { first, count, .. } = tree.nodes[leaf as usize];
     if count != 1 {
         return None;
     }
-    let id = tree.order[first as usize];
-    match &primitives[id as usize] {
+    let &id = tree.order.get(first as usize)?;
+    match primitives.get(id as usize)? {
         Primitive::Instance(instance) => Some((instance, id)),
         _ => None,
     }
@@ -113,7 +123,8 @@ impl<'a> Choices<'a> {
 
     fn at_price(tree: &'a BinaryTree, primitives: &'a [Primitive], costs: Costs, price: f32, lanes: usize) -> Self {
         let mut splits = vec![0; tree.nodes.len()];
-        Weights { tree, primitives, costs, price, lanes: lanes as u32 }.least(0, &mut splits);
+        let measure = Measure::within(tree.nodes[0].bounds.sides());
+        Weights { tree, primitives, costs, measure, price, lanes: lanes as u32 }.least(0, &mut splits);
         Self { tree, primitives, splits }
     }
 
@@ -180,7 +191,7 @@ mod tests {
     }
 
     fn area(tree: &BinaryTree, node: u32) -> f64 {
-        f64::from(tree.nodes[node as usize].bounds.half_area())
+        f64::from(Measure::within(tree.nodes[0].bounds.sides()).of(tree.nodes[node as usize].bounds.sides()))
     }
 
     /// What was chosen costs, by what it consists of; and how many of its leaves were joined of several.
@@ -227,7 +238,7 @@ mod tests {
         let (mut joined, mut kept) = (0, 0);
         for round in 0..60 {
             let tree = tree(&mut random, 8);
-            let price = [0.0, 0.01, 0.03][round % 3] * tree.nodes[0].bounds.half_area();
+            let price = [0.0, 0.01, 0.03][round % 3] * area(&tree, 0) as f32;
             let primitives = primitives(8);
             let choices = Choices::at_price(&tree, &primitives, COSTS, price, LANES);
             let (cost, leaves) = cost(&choices, 0, f64::from(price));
