@@ -271,4 +271,148 @@ mod tests {
         let gain = gain(&regions, &weights, 1.5);
         assert!(gain < ideal && gain > 0.9 * ideal, "{gain} of {ideal}");
     }
+
+    #[test]
+    fn what_pixels_took_adds_up_to_the_cost_of_a_path() {
+        let mut sum = Region::default();
+        assert_eq!(sum.cost(), 1.0);
+        for (pixels, variance, rays, paths) in [(1.0, 2.0, 30.0, 4.0), (5.0, 0.5, 10.0, 16.0)] {
+            sum.add(&Region { pixels, variance, rays, paths });
+        }
+        assert_eq!([sum.pixels, sum.variance, sum.rays, sum.paths], [6.0, 2.5, 40.0, 20.0]);
+        assert_eq!(sum.cost(), 3.0);
+    }
+
+    /// One noisy region among 4 × 3: its own weight counts half, that of the up to nine around a region the other half.
+    #[test]
+    fn noise_is_likely_in_the_regions_around_noise() {
+        let (columns, rows, noisy) = (4, 3, (1, 2));
+        let mut regions = vec![region(0.0, 1.0); columns * rows];
+        regions[noisy.1 * columns + noisy.0] = region(1.0, 1.0);
+        let weights = weights(&regions, columns as u32, 1.0);
+        let near = |a: usize, b: usize| a.abs_diff(b) <= 1;
+        let share = |x: usize, y: usize| -> f64 {
+            let around = (0..columns * rows).filter(|i| near(i % columns, x) && near(i / columns, y)).count() as f64;
+            let met = near(x, noisy.0) && near(y, noisy.1);
+            (f64::from(u8::from((x, y) == noisy)) * 0.5 + f64::from(u8::from(met)) * 0.5 / around).sqrt()
+        };
+        let places = || (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
+        let level = places().map(|(x, y)| share(x, y)).sum::<f64>() / (columns * rows) as f64;
+        for ((x, y), weight) in places().zip(weights) {
+            let expected = UNIT * (EVEN + (1.0 - EVEN) * share(x, y) / level);
+            assert!((f64::from(weight) - expected).abs() <= 0.5, "{weight}, not {expected}, at {x}, {y}");
+        }
+    }
+
+    /// A region of 64 pixels and one of 8, of variances 1 and 9 a pixel and costs 2 and 1, with weights of 1 and 3: by hand.
+    #[test]
+    fn small_regions_count_for_less() {
+        let regions = [
+            Region { pixels: 64.0, variance: 64.0, rays: 10.0, paths: 10.0 },
+            Region { pixels: 8.0, variance: 72.0, rays: 0.0, paths: 10.0 },
+        ];
+        let level = (128.0 + 3.0 * 8.0) / 136.0;
+        let expected = 136.0 / (64.0 * level + 72.0 * level / 3.0);
+        assert!((gain(&regions, &[1, 3], 1.0) - expected).abs() < 1e-12);
+    }
+
+    /// A ball that shines above the middle of a floor, found by chance by the right of two halves of the picture: there a sample is 0
+    /// or 1, with mean 1/25, as in the tests of `stopping`; the left half sees nothing.
+    fn half_a_lottery(width: u32, height: u32) -> Prepared {
+        let json = format!(
+            r#"{{"etalon": 1, "film": {{"width": {width}, "height": {height}}},
+                "camera": {{"type": "perspective", "position_m": [3, 3, 0], "look_at_m": [0, 0, 0], "vertical_fov_deg": 0.01}},
+                "materials": {{"white": {{"type": "lambert", "reflectance": 1}}, "black": {{"type": "black"}}}},
+                "objects": [
+                    {{"material": "white", "shape": {{"type": "parallelogram", "origin_m": [-1, 0, 0], "u_m": [2, 0, 0], "v_m": [0, 0, -1]}}}},
+                    {{"material": "black", "emission": {{"radiance": 1}},
+                      "shape": {{"type": "sphere", "center_m": [0, 5, 0], "radius_m": 1}}}}],
+                "integrator": {{"light_sampling": "bsdf", "max_depth": 2, "sampler": "independent"}}}}"#
+        );
+        crate::prepare(&etalon_scene::parse(&json, "lottery").unwrap_or_else(|e| panic!("{e:?}")).0).unwrap()
+    }
+
+    /// The rule: a layer of the picture, another one, two, then all of it again, as long as the next step and what was before take no
+    /// more than a sixteenth of the picture's paths.
+    #[test]
+    fn an_exploration_takes_its_part_of_the_paths() {
+        let prepared = half_a_lottery(32, 16);
+        let (rect, replicates) = (prepared.whole(None).rect, u64::from(prepared.scene.integrator.replicates));
+        let explore = |samples: u32, enough: &dyn Fn() -> bool| {
+            let goal = Goal { samples, relative_rmse: None };
+            super::explore(&prepared, rect, &goal, Some(1), enough, &|_| ()).unwrap().paths
+        };
+        let all = rect.area() * replicates;
+        assert_eq!(explore(1 << 20, &|| true), all / 4);
+        // A picture of less than sixteen times as many paths as all pixels take once: its pixels are seen all the same.
+        assert_eq!(explore(1, &|| false), all);
+        let rounds = |samples: u32| u64::from(samples) / replicates / 16;
+        for samples in [512, 511, 1024] {
+            let least = (1_u64..).map(|k| 1 << k).find(|took| 2 * took > rounds(samples)).unwrap();
+            assert_eq!(explore(samples, &|| false), least * all, "{samples}");
+        }
+        let seen = std::cell::Cell::new(0);
+        assert_eq!(explore(1 << 20, &|| seen.replace(seen.get() + 1) == 1), all / 2);
+    }
+
+    /// Of large pictures some layers are enough: three here, as two have less than [`MOST_PIXELS`].
+    #[test]
+    fn an_exploration_of_a_large_picture_leaves_pixels_out() {
+        let prepared = half_a_lottery(1200, 1200);
+        let rect = prepared.whole(None).rect;
+        let goal = Goal { samples: 1, relative_rmse: None };
+        let found = explore(&prepared, rect, &goal, None, &|| false, &|_| ()).unwrap();
+        assert!(2 * rect.area() / 4 < MOST_PIXELS && 3 * rect.area() / 4 >= MOST_PIXELS);
+        assert_eq!(found.paths, 3 * rect.area() / 4 * u64::from(prepared.scene.integrator.replicates));
+    }
+
+    /// In a part of the picture that begins anywhere, each region has the noise that is its own: two of three columns here.
+    #[test]
+    fn regions_get_the_noise_that_was_found_in_them() {
+        let prepared = half_a_lottery(64, 32);
+        let rect = PixelRect { x0: 24, y0: 5, x1: 48, y1: 21 };
+        let goal = Goal { samples: 1 << 14, relative_rmse: None };
+        let found = explore(&prepared, rect, &goal, Some(1), &|| false, &|_| ()).unwrap();
+        let weights = found.shares.weights();
+        let (rows, _) = weights.as_chunks::<3>();
+        assert_eq!(rows.len(), 2);
+        // What is known of noise: that of the region itself, and with the same weight the mean of it and those around it. The left
+        // column has none, and no path beyond the camera's ray; the others have one ray more.
+        let wanted =
+            [(0.5 * 2.0 / 4.0, 2.0), (0.5 + 0.5 * 4.0 / 6.0, 3.0), (1.0, 3.0)].map(|(v, c): (f64, f64)| (v / c).sqrt());
+        let level = wanted.iter().sum::<f64>() / 3.0;
+        for row in rows {
+            for (weight, wanted) in row.iter().zip(wanted) {
+                let expected = UNIT * (EVEN + (1.0 - EVEN) * wanted / level);
+                // Four replicates tell a pixel's variance to √(2/3) of it, 64 pixels that of a region to a tenth, and its root to a
+                // twentieth: two and a half times that.
+                assert!((f64::from(*weight) / expected - 1.0).abs() < 0.12, "{rows:?}, but {expected}");
+            }
+        }
+    }
+
+    /// E² is (1 − p)/(pn) where every pixel's sample is 1 with probability p, and 0 else; here p = 1/25 in half of the picture:
+    /// of the pixels' variances the mean is halved, and so is the mean.
+    #[test]
+    fn the_paths_to_an_error_are_foretold_by_the_law_of_the_variance() {
+        let prepared = half_a_lottery(128, 32);
+        let rect = prepared.whole(None).rect;
+        let mut probe = Probe::new(&prepared, Purpose::Exploration, Some(1)).unwrap();
+        probe.add(rect.pixels());
+        let samples = 64;
+        probe.trace(0, |_, _| 0..samples, &|_| ());
+        let paths = |samples: u32, relative_rmse: Option<f64>, gain: f64| {
+            foretold_paths(&probe, rect, &Goal { samples, relative_rmse }, 64, gain) / rect.area() as f64
+        };
+        // (½·p·(1 − p)/n)/(½·p)².
+        let expected = |target: f64| 2.0 * 24.0 / (target * target);
+        // 2048 pixels of 256 samples: 20,000 hits, and E² goes as one over their number: .7 %, five times that.
+        for (target, gain) in [(0.1, 1.0), (0.05, 2.0), (0.1, 0.5)] {
+            let found = paths(u32::MAX, Some(target), gain) * f64::max(gain, 1.0);
+            assert!((found / expected(target) - 1.0).abs() < 0.035, "{found} for {}", expected(target));
+        }
+        assert_eq!(paths(100, Some(0.1), 1.0), 100.0);
+        assert_eq!(paths(100, None, 1.0), 100.0);
+        assert_eq!(paths(u32::MAX, Some(1e3), 1.0), LEAST_PATHS / rect.area() as f64);
+    }
 }
