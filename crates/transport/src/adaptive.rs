@@ -338,21 +338,21 @@ mod tests {
     fn an_exploration_takes_its_part_of_the_paths() {
         let prepared = half_a_lottery(32, 16);
         let (rect, replicates) = (prepared.whole(None).rect, u64::from(prepared.scene.integrator.replicates));
-        let explore = |samples: u32, enough: &dyn Fn() -> bool| {
+        let paths = |samples: u32, enough: &dyn Fn() -> bool| {
             let goal = Goal { samples, relative_rmse: None };
-            super::explore(&prepared, rect, &goal, Some(1), enough, &|_| ()).unwrap().paths
+            explore(&prepared, rect, &goal, Some(1), enough, &|_| ()).unwrap().paths
         };
         let all = rect.area() * replicates;
-        assert_eq!(explore(1 << 20, &|| true), all / 4);
+        assert_eq!(paths(1 << 20, &|| true), all / 4);
         // A picture of less than sixteen times as many paths as all pixels take once: its pixels are seen all the same.
-        assert_eq!(explore(1, &|| false), all);
+        assert_eq!(paths(1, &|| false), all);
         let rounds = |samples: u32| u64::from(samples) / replicates / 16;
         for samples in [512, 511, 1024] {
             let least = (1_u64..).map(|k| 1 << k).find(|took| 2 * took > rounds(samples)).unwrap();
-            assert_eq!(explore(samples, &|| false), least * all, "{samples}");
+            assert_eq!(paths(samples, &|| false), least * all, "{samples}");
         }
         let seen = std::cell::Cell::new(0);
-        assert_eq!(explore(1 << 20, &|| seen.replace(seen.get() + 1) == 1), all / 2);
+        assert_eq!(paths(1 << 20, &|| seen.replace(seen.get() + 1) == 1), all / 2);
     }
 
     /// Of large pictures some layers are enough: three here, as two have less than [`MOST_PIXELS`].
