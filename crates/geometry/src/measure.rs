@@ -53,13 +53,14 @@ mod tests {
     /// and cubes.
     #[test]
     fn rays_that_begin_in_a_scene_enter_boxes_as_often_as_measured() {
-        const RAYS: u32 = 100_000;
+        const RAYS: u32 = 1_000_000;
+        const SCENE: f64 = 2.0;
         let mut random = Random::new(71);
-        let length = 4.0 / 6.0 / f64::from(CHORD);
-        let measure = Measure::within([1.0; 3]);
-        for sides in [[0.4, 0.4, 0.0], [0.4, 0.1, 0.05], [0.3, 0.3, 0.3], [0.01, 0.01, 0.5], [0.6, 0.4, 0.2]] {
+        let length = SCENE * 4.0 / 6.0 / f64::from(CHORD);
+        let measure = Measure::within([SCENE as f32; 3]);
+        for sides in [[0.8, 0.8, 0.0], [0.8, 0.2, 0.1], [0.6, 0.6, 0.6], [0.02, 0.02, 1.0], [1.2, 0.8, 0.4]] {
             let met = (0..RAYS).filter(|_| {
-                let origin: [f64; 3] = std::array::from_fn(|_| random.unit() - 0.5);
+                let origin: [f64; 3] = std::array::from_fn(|_| SCENE * (random.unit() - 0.5));
                 let direction = random.direction().to_array();
                 let (mut near, mut far) = (0.0_f64, length);
                 for k in 0..3 {
@@ -69,10 +70,10 @@ mod tests {
                 near <= far
             });
             // v + ℓ s/4 is ℓ/2 of the measure.
-            let expected = 0.5 * length * f64::from(measure.of(sides));
+            let expected = 0.5 * length * f64::from(measure.of(sides)) / SCENE.powi(3);
             let found = met.count() as f64 / f64::from(RAYS);
             let error = (expected * (1.0 - expected) / f64::from(RAYS)).sqrt();
-            // By chance once in a hundred thousand runs for one of them; a volume or a surface wrong by 5 % is more.
+            // By chance once in a hundred thousand runs for one of them. A volume or a surface wrong by 5 % is more for the cube.
             assert!((found - expected).abs() < 4.75 * error, "{found} of {sides:?}, not {expected}");
         }
     }
