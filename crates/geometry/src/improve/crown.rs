@@ -9,8 +9,8 @@ use std::collections::BinaryHeap;
 
 /// Subtrees below a crown, at most.
 const SUBTREES: usize = 512;
-/// A crown that was grouped from below is taken if rays in it cost less than this, as a part of what they cost in one that was split
-/// from above. What either foretells of the other's time is right to a few hundredths.
+/// A crown that was grouped from below is taken if it costs rays less than this part of what the one that was split from above costs. In
+/// the bench's rooms that is .78 to .9, in its other scenes 1 to 1.09.
 const CLEARLY: f32 = 0.97;
 
 /// The crown of a tree, whose leaves are subtrees of the tree.
@@ -56,11 +56,9 @@ impl Crown {
             };
             Some(least_cost(&BinaryTree { nodes: links.nodes(node)?, order: Vec::new() }, costs))
         };
-        let mut split = self.links.clone();
-        split.reinsert_largest();
+        let split = cost(&self.links)?;
         self.links.group(level);
-        self.links.reinsert_largest();
-        let is_better = cost(&self.links)? < CLEARLY * cost(&split)?;
+        let is_better = cost(&self.links)? < CLEARLY * split;
         is_better.then_some(self)
     }
 
