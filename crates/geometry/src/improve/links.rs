@@ -10,7 +10,7 @@ pub(super) const NONE: u32 = u32::MAX;
 #[derive(Clone)]
 pub(super) struct Links {
     pub(super) bounds: Vec<Span>,
-    /// How often rays enter them, by the measure.
+    /// How often rays enter them, by the measure: areas to which the inside adds.
     pub(super) areas: Vec<f32>,
     pub(super) measure: Measure,
     /// [`NONE`] for the root, which is node 0.

@@ -171,7 +171,7 @@ mod tests {
                     before - inner_area(&other, 0).1
                 };
                 let best = (1..count).filter(possible).map(gain_at).fold(0.0, f64::max);
-                // Sums of some twenty areas below 3, each rounded.
+                // Sums of some twenty areas below 3, with an inside below 12 each, rounded.
                 assert!((f64::from(gain) - best).abs() < 1e-4, "{gain} for {best}");
                 assert!(place.is_none_or(|at| (gain_at(at) - best).abs() < 1e-4));
                 moved += u32::from(place.is_some());
