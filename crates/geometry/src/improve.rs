@@ -38,6 +38,9 @@ pub(crate) fn improved(tree: BinaryTree, costs: Costs, level: Level) -> BinaryTr
 }
 
 #[cfg(test)]
+pub(crate) use tests::scattered;
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::build::{Item, Span, build};
@@ -53,8 +56,8 @@ mod tests {
         build(items, Costs { block: 1, node: 0.0 }, Level::detect())
     }
 
-    /// The tree of boxes of a thousandth to one, anywhere in a cube.
-    pub(super) fn scattered(random: &mut Random, count: usize) -> BinaryTree {
+    /// The tree of boxes of a thousandth to one, anywhere in a cube, each a leaf.
+    pub(crate) fn scattered(random: &mut Random, count: usize) -> BinaryTree {
         let boxes = (0..count).map(|_| {
             let min = from_fn(|_| random.unit() as f32);
             let size = 10_f64.powf(-3.0 * random.unit()) as f32;
@@ -63,7 +66,7 @@ mod tests {
         split(&boxes.collect::<Vec<_>>())
     }
 
-    /// The tree of the tiles of a room, some on each side of each wall.
+    /// The tree of the tiles of a cubic room, so many along each edge of each wall.
     fn room(tiles: u32) -> BinaryTree {
         let at = |i: u32| i as f32 / tiles as f32 - 0.5;
         let mut boxes = Vec::new();

@@ -159,7 +159,12 @@ fn without_wavelengths_every_spectrum_is_its_mean_as_the_eye_weighs_it() {
 /// Of sheets and images, under light that is the same at all wavelengths.
 #[test]
 fn without_wavelengths_images_keep_their_luminances_and_wave_plates_the_delay_of_one() {
-    let square = |z: f64, material: Value| json!({"shape": {"type": "parallelogram", "origin_m": [-1, -1, z], "u_m": [2, 0, 0], "v_m": [0, 2, 0]}, "material": material});
+    let square = |z: f64, material: Value| {
+        json!({
+            "shape": {"type": "parallelogram", "origin_m": [-1, -1, z], "u_m": [2, 0, 0], "v_m": [0, 2, 0]},
+            "material": material
+        })
+    };
     let scene = |objects: Vec<Value>| {
         json!({
             "etalon": 1,
@@ -222,17 +227,17 @@ fn materials_that_treat_wavelengths_unlike_call_for_them() {
         ),
     ];
     for (coloured, plain) in pairs {
-        let scene =
-            |material: &Value| {
-                parse(&json!({
+        let scene = |material: &Value| {
+            let json = json!({
                 "etalon": 1,
                 "camera": {"type": "orthographic", "position_m": [0, 0, 5], "direction": [0, 0, -1], "height_m": 1},
                 "film": {"width": 2, "height": 2},
                 "objects": [{"shape": {"type": "disk", "normal": [0, 0, 1], "radius_m": 2}, "material": material}],
                 "lights": [{"type": "environment", "radiance": 1}],
                 "integrator": {"spp": 256}
-            }).to_string())
-            };
+            });
+            parse(&json.to_string())
+        };
         let runs = |material: &Value| prepare(&scene(material)).unwrap().plan().runs(EffectName::Wavelengths);
         assert!(runs(&coloured) && !runs(&plain), "{coloured}");
         let [x, y, z] = render(&scene(&coloured), &Study::default())

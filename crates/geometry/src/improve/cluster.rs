@@ -161,7 +161,7 @@ impl Slots {
 mod tests {
     use super::*;
     use crate::build::BinaryTree;
-    use crate::improve::tests::scattered;
+    use crate::improve::scattered;
     use crate::test_support::Random;
 
     fn leaves(tree: &BinaryTree) -> Vec<Span> {

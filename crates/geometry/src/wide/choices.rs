@@ -28,7 +28,8 @@ pub(super) struct Choices<'a> {
 /// What the choice weighs.
 struct Weights<'a> {
     tree: &'a BinaryTree,
-    primitives: &'a [Primitive],
+    /// None where leaves stay what they are, whatever is in them.
+    primitives: Option<&'a [Primitive]>,
     costs: Costs,
     measure: Measure,
     /// What a leaf costs beside how often rays enter it.
@@ -50,7 +51,7 @@ impl Weights<'_> {
         let binary @ Node { bounds, first, count } = &self.tree.nodes[node as usize];
         if *count > 0 {
             // An instance is in no leaf.
-            let lone = lone(self.tree, self.primitives, node).is_some();
+            let lone = self.primitives.is_some_and(|primitives| lone(self.tree, primitives, node).is_some());
             return if lone {
                 ([self.measure.of(bounds.sides()); NODE_WIDTH], TOO_MANY)
             } else {
@@ -92,21 +93,20 @@ impl Weights<'_> {
 }
 
 /// What the nodes and leaves that a binary tree becomes cost rays, if its leaves stay what they are; relative to others of the same box.
-/// Which primitives are in its leaves is not asked for.
 pub(crate) fn least_cost(tree: &BinaryTree, costs: Costs) -> f32 {
     let measure = Measure::within(tree.nodes[0].bounds.sides());
-    let weights = Weights { tree, primitives: &[], costs, measure, price: 0.0, lanes: 0 };
+    let weights = Weights { tree, primitives: None, costs, measure, price: 0.0, lanes: 0 };
     weights.least(0, &mut vec![0; tree.nodes.len()]).0[0]
 }
 
-/// The instance that a binary leaf is, if it is one and the tree tells, and its id.
+/// The instance that a binary leaf is, if it is one, and its id.
 fn lone<'a>(tree: &BinaryTree, primitives: &'a [Primitive], leaf: u32) -> Option<(&'a Instance, u32)> {
     let Node { first, count, .. } = tree.nodes[leaf as usize];
     if count != 1 {
         return None;
     }
-    let &id = tree.order.get(first as usize)?;
-    match primitives.get(id as usize)? {
+    let id = tree.order[first as usize];
+    match &primitives[id as usize] {
         Primitive::Instance(instance) => Some((instance, id)),
         _ => None,
     }
@@ -124,7 +124,8 @@ impl<'a> Choices<'a> {
     fn at_price(tree: &'a BinaryTree, primitives: &'a [Primitive], costs: Costs, price: f32, lanes: usize) -> Self {
         let mut splits = vec![0; tree.nodes.len()];
         let measure = Measure::within(tree.nodes[0].bounds.sides());
-        Weights { tree, primitives, costs, measure, price, lanes: lanes as u32 }.least(0, &mut splits);
+        Weights { tree, primitives: Some(primitives), costs, measure, price, lanes: lanes as u32 }
+            .least(0, &mut splits);
         Self { tree, primitives, splits }
     }
 
@@ -165,25 +166,12 @@ impl<'a> Choices<'a> {
 mod tests {
     use super::*;
     use crate::Sphere;
-    use crate::build::{Item, build};
-    use crate::frame::Box32;
+    use crate::improve::scattered;
     use crate::test_support::Random;
-    use crate::traverse::Level;
     use etalon_optics::Vec3;
 
     const LANES: usize = 16;
     const COSTS: Costs = Costs { block: LANES as u32, node: 0.35 };
-
-    /// A tree of leaves of one primitive each.
-    fn tree(random: &mut Random, count: usize) -> BinaryTree {
-        let items = (0..count as u32).map(|id| {
-            let min = std::array::from_fn(|_| random.unit() as f32);
-            let size = 10_f64.powf(-2.0 * random.unit()) as f32;
-            let max = std::array::from_fn(|k: usize| min[k] + size * random.unit() as f32);
-            Item::new(&Box32 { min, max }, id, false)
-        });
-        build(items.collect(), Costs { block: 1, node: 0.0 }, Level::detect())
-    }
 
     /// As many primitives that are no instances.
     fn primitives(count: usize) -> Vec<Primitive> {
@@ -237,7 +225,7 @@ mod tests {
         let mut random = Random::new(41);
         let (mut joined, mut kept) = (0, 0);
         for round in 0..60 {
-            let tree = tree(&mut random, 8);
+            let tree = scattered(&mut random, 8);
             let price = [0.0, 0.01, 0.03][round % 3] * area(&tree, 0) as f32;
             let primitives = primitives(8);
             let choices = Choices::at_price(&tree, &primitives, COSTS, price, LANES);
@@ -253,7 +241,7 @@ mod tests {
     #[test]
     fn a_price_fills_leaves() {
         let mut random = Random::new(42);
-        let tree = tree(&mut random, 3000);
+        let tree = scattered(&mut random, 3000);
         let primitives = primitives(3000);
         let leaves = |price: f32| {
             let choices = Choices::at_price(&tree, &primitives, COSTS, price, LANES);
