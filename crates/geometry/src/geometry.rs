@@ -7,9 +7,9 @@ use crate::frame::Frame;
 use crate::improve::improved;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
-use crate::traverse::{self, FLAT_LIMIT, Flat, Level};
+use crate::traverse::{self, FLAT_LIMIT, Flat, Level, Visit};
 use crate::wide::WideTree;
-use crate::{Aabb, Hit, Instance, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
+use crate::{Aabb, Hit, Instance, Passed, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Real, Vec3};
 use rayon::prelude::*;
 
@@ -284,6 +284,41 @@ impl Geometry {
         Hit::new(RawHit { t: hit.t * query.scale, ..hit }, surface)
     }
 
+    /// Calls `visit` for every hit with `from` ≤ t < `t_max`, in no particular order. `visit` returns the end of the distances
+    /// that still matter, which becomes the new `t_max`: that of the ray to see all hits, 0 to see no more.
+    ///
+    /// A sphere or a cylinder may be hit twice. Distances are those that [`Geometry::closest_hit`] finds, bit for bit.
+    pub fn all_hits(&self, ray: &Ray<f64>, from: f64, mut visit: impl FnMut(Hit<f64>) -> f64) {
+        let Some(query) = Query::new(ray) else { return };
+        let mut end = query.t_max;
+        self.all(&query, from / query.scale, &mut |hit, surface| {
+            if let Some(hit) = Hit::new(RawHit { t: hit.t * query.scale, ..hit }, surface) {
+                end = visit(hit) / query.scale;
+            }
+            end
+        });
+    }
+
+    /// The closest hit that a walk along a ray has not yet passed; of several at the same distance, that of the lowest
+    /// [`SurfaceId`].
+    ///
+    /// The ray stays as it is, so what lies at the same distance as a surface that the walk passes is still ahead of it: each
+    /// surface is met exactly once, however many coincide.
+    pub fn next_hit(&self, ray: &Ray<f64>, passed: &Passed) -> Option<Hit<f64>> {
+        if passed.is_nothing() {
+            return self.closest_hit(ray);
+        }
+        let mut next: Option<Hit<f64>> = None;
+        self.all_hits(ray, passed.from(), |hit| {
+            let closer = next.is_none_or(|next| (hit.t, hit.surface) < (next.t, next.surface));
+            if closer && !passed.holds(&hit) {
+                next = Some(hit);
+            }
+            next.map_or(ray.t_max, |next| next.t.next_up())
+        });
+        next
+    }
+
     /// Whether anything but the surface aimed at lies on a ray before `t_max`.
     pub fn occluded<R: Real>(&self, ray: &Ray<R>) -> bool {
         match &self.tree {
@@ -364,6 +399,15 @@ impl Geometry {
             (_, Some(flat)) => flat.closest(self.level, &self.primitives, query),
             _ => self.closest_flat(query),
         }
+    }
+
+    /// See [`traverse::all`].
+    pub(crate) fn all(&self, query: &Query, from: f64, visit: &mut Visit<'_>) -> f64 {
+        if let Some(tree) = &self.tree {
+            return traverse::all(self.level, tree, &self.primitives, query, from, visit);
+        }
+        let ids = 0..self.primitives.len() as u32;
+        ids.fold(query.t_max, |end, id| traverse::all_of(&self.primitives, query, PrimitiveId(id), (from, end), visit))
     }
 
     /// Whether anything but the surface aimed at is hit.

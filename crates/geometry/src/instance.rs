@@ -8,6 +8,7 @@ use crate::best::Found;
 use crate::double_double::{cross, dot, widen};
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
+use crate::traverse::Visit;
 use crate::{Aabb, Geometry, MAX_COORDINATE, Motion, Ray, ShapeError, SurfaceId};
 use etalon_optics::{Real, Vec3};
 use std::borrow::Cow;
@@ -350,6 +351,24 @@ impl Instance {
         hit.t *= inner.scale;
         surface.instance += self.first;
         at_least(&mut hit, entry, t_max).then_some((hit, surface))
+    }
+
+    /// Calls `visit` for every hit at a distance from `from` on and below `t_max`, as [`all_of`](crate::traverse::all_of) does.
+    pub(crate) fn all(&self, query: &Query, (from, t_max): (f64, f64), visit: &mut Visit<'_>) -> f64 {
+        let Some(entry) = self.entry(query, t_max) else { return t_max };
+        let Some(inner) = self.enter(query, told_end(t_max)) else { return t_max };
+        let mut end = t_max;
+        // A hit before the bounds are entered counts as one where they are.
+        let inner_from = if entry < from { from / inner.scale } else { 0.0 };
+        self.geometry.all(&inner, inner_from, &mut |mut hit, mut surface| {
+            hit.t *= inner.scale;
+            surface.instance += self.first;
+            if at_least(&mut hit, entry, end) && hit.t >= from {
+                end = visit(hit, surface);
+            }
+            told_end(end) / inner.scale
+        });
+        end
     }
 
     /// Whether anything but the surface aimed at is hit.

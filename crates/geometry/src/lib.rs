@@ -20,6 +20,7 @@
 //! | `geometry` | [`Geometry`]: the queries |
 //! | `portal` | what a ray needs to go into an instance |
 //! | `best` | the closest hit so far |
+//! | `passed` | [`Passed`]: the hits that a walk along a ray leaves behind |
 //! | `lanes` | [`Rays`]: eight rays at once |
 //! | `instance` | [`Instance`]: a geometry within another, placed by an affine map |
 //! | `motion` | [`Motion`]: such a map that changes while the shutter is open |
@@ -38,6 +39,7 @@ mod measure;
 mod motion;
 mod narrow;
 mod pages;
+mod passed;
 mod portal;
 mod query;
 mod ray;
@@ -50,6 +52,7 @@ pub use geometry::{Geometry, GeometryError, MAX_NESTING};
 pub use instance::{Instance, Placement};
 pub use lanes::{Hits, LANES, Rays, SurfacePoints};
 pub use motion::{Motion, Pose};
+pub use passed::Passed;
 pub use ray::{Hit, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 pub use shapes::{Cylinder, Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, Primitive, ShapeError, Sphere, Triangle};
 

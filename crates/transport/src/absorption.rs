@@ -9,7 +9,7 @@
 use crate::media::{Inside, Media};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Surface, Surfaces};
-use etalon_geometry::{Geometry, Ray};
+use etalon_geometry::{Geometry, Passed, Ray};
 use etalon_optics::{Lanes, Real, exp_neg};
 
 /// The absorption of the body that a path is in, where no priority says it: the coefficient in m⁻¹, if it absorbs.
@@ -20,14 +20,14 @@ impl<'a> Body<'a> {
     /// The body that holds the origin of a ray: that of the first surface along it, whatever stands before that, which says
     /// what it holds, if the ray comes to it from within.
     pub(crate) fn around(geometry: &Geometry, surfaces: &'a Surfaces, ray: &Ray<f64>) -> Self {
-        let mut ray = *ray;
-        while let Some(hit) = geometry.closest_hit(&ray) {
-            let point = geometry.surface(&ray, &hit);
+        let mut passed = Passed::NOTHING;
+        while let Some(hit) = geometry.next_hit(ray, &passed) {
+            let point = geometry.surface(ray, &hit);
             let surface = surfaces.of(&point);
             if surface.interior.is_some() {
                 return Self(None).before(&surface, point.normal.dot(ray.direction) < 0.0);
             }
-            ray = point.spawn(ray.direction);
+            passed.pass(&hit, hit.t);
         }
         Self(None)
     }

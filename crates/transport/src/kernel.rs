@@ -6,7 +6,8 @@ use crate::caustics::{Trial, try_casters};
 use crate::compiled;
 use crate::engine::render_spots_lanes;
 use crate::film::{Counters, NonFinite, PixelRect, Sums};
-use crate::media::{Inside, Met};
+use crate::interaction::{SurfaceInteraction, Walk};
+use crate::media::Inside;
 use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
@@ -309,26 +310,29 @@ impl<'a> Tracer<'a> {
         counters: &mut Counters,
     ) -> Option<FirstSurface<'_>> {
         let sampler = self.sampler(x, y, sample);
-        let (mut ray, mut inside) = self.camera_ray(x, y, &sampler, counters);
-        for vertex in 0..MOST_VERTICES {
-            let Met { hit, point, surface, interface, beyond } = self.world.meet(&mut ray, &mut inside, counters)?;
-            let [.., u_mask] = sampler.vertex_set(vertex, 1);
-            if self.world.masks && u_mask >= surface.opacity(&self.prepared.geometry, &point, &hit) {
-                ray = point.spawn(ray.direction);
-                if let Some(beyond) = beyond {
-                    ray.leaves = beyond.leaves;
-                    inside = beyond.inside;
+        let (ray, mut inside) = self.camera_ray(x, y, &sampler, counters);
+        let mut walk = Walk::default();
+        let [.., mut u_mask] = sampler.vertex_set(0, 1);
+        for _ in 0..MOST_VERTICES {
+            let met = self.world.meet(&ray, &mut walk, &mut inside, counters)?;
+            let SurfaceInteraction { hit, point, surface, interface, .. } = &met;
+            let opacity = if self.world.masks { surface.opacity(&self.prepared.geometry, point, hit) } else { 1.0 };
+            if u_mask >= opacity {
+                u_mask = (u_mask - opacity) / (1.0 - opacity);
+                walk.pass(&met);
+                if let Some(beyond) = met.beyond {
+                    inside = beyond;
                 }
                 continue;
             }
-            let [u_lobe, u1, u2, _] = sampler.vertex_set(vertex, 0);
+            let [u_lobe, u1, u2, _] = sampler.vertex_set(0, 0);
             let wo = -ray.direction;
             return Some(FirstSurface {
                 object: surface.object,
                 position: point.position,
                 wo,
                 geometric_cos: point.normal.dot(wo),
-                scattering: surface.scattering(self.world.geometry, &point, &hit, interface),
+                scattering: surface.scattering(self.world.geometry, point, hit, *interface),
                 u: [u_lobe, u1, u2],
             });
         }

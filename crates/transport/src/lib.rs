@@ -39,6 +39,7 @@ pub mod features;
 pub mod film;
 pub mod filter;
 pub mod frame;
+mod interaction;
 mod kernel;
 pub mod light;
 mod media;

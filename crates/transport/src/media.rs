@@ -6,13 +6,13 @@
 //! same media. A boundary that does not change the medium is no surface at all: paths and shadow rays go through it, and it
 //! is no vertex.
 //!
-//! Boundaries of two solids may coincide, as where glass holds water. They are found together, as one interface between the
-//! medium before both and the medium behind both; an opaque surface that coincides with a boundary lies before it.
+//! Boundaries of solids may coincide, as where glass holds water. They are met together
+//! ([`interaction`](crate::interaction)), as one interface between the medium before all of them and the medium behind.
 
 use crate::spectral::PathSpectrum;
-use crate::surface::{Surface, Surfaces};
-use etalon_geometry::{Geometry, Hit, Ray, SurfaceId, SurfacePoint};
-use etalon_optics::{RefractiveIndex, Vec3};
+use crate::surface::Surfaces;
+use etalon_geometry::{Geometry, Ray, SurfacePoint};
+use etalon_optics::RefractiveIndex;
 use etalon_scene::{Mesh, Shape};
 use std::collections::HashMap;
 
@@ -31,7 +31,7 @@ pub(crate) struct Solid {
 }
 
 /// A solid where it is placed: its object's number, and the instance (0 if it is in none).
-type Place = (u32, u32);
+pub(crate) type Place = (u32, u32);
 
 /// The solids that hold a point.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +45,26 @@ impl Inside {
 
     fn iter(&self) -> impl Iterator<Item = Place> + '_ {
         self.places[..self.len].iter().copied()
+    }
+
+    /// What holds a path behind boundaries that coincide: each with its solid, and whether that is entered. Counts in `lost` what
+    /// contradicts itself.
+    pub(crate) fn crossed(&self, crossings: impl Iterator<Item = (Place, bool)>, lost: &mut u64) -> Self {
+        let mut crossed: Vec<(Place, bool)> = Vec::new();
+        for crossing in crossings {
+            // Two faces of a mesh that meet in the edge that is hit are one boundary.
+            if !crossed.contains(&crossing) {
+                crossed.push(crossing);
+            }
+        }
+        let mut beyond = *self;
+        // First what is left, so that the order in which coincident boundaries are found does not matter.
+        for enters in [false, true] {
+            for &(place, _) in crossed.iter().filter(|crossing| crossing.1 == enters) {
+                *lost += u64::from(!beyond.cross(place, enters));
+            }
+        }
+        beyond
     }
 
     /// Goes through a boundary. False if that contradicts what was known: a solid is left that was never entered, or there
@@ -74,25 +94,6 @@ pub(crate) struct Interface<'a> {
     pub transmitted: &'a RefractiveIndex,
 }
 
-/// A surface that a path meets.
-pub(crate) struct Met<'a> {
-    pub hit: Hit<f64>,
-    pub point: SurfacePoint<f64>,
-    pub surface: Surface<'a>,
-    /// The media on both sides; `None` where the material itself says.
-    pub interface: Option<Interface<'a>>,
-    /// What holds the path if it goes on through a boundary.
-    pub beyond: Option<Beyond>,
-}
-
-/// The other side of a boundary.
-#[derive(Clone, Copy)]
-pub(crate) struct Beyond {
-    pub inside: Inside,
-    /// The primitive of the boundary that a ray from here must not meet again.
-    pub leaves: SurfaceId,
-}
-
 /// The solids of a scene that carry priorities.
 #[derive(Clone, Debug)]
 pub(crate) struct Media {
@@ -116,7 +117,7 @@ impl Media {
     }
 
     /// The medium that fills a place.
-    fn medium(&self, inside: &Inside) -> &RefractiveIndex {
+    pub(crate) fn medium(&self, inside: &Inside) -> &RefractiveIndex {
         self.filling(inside).and_then(|place| self.solid(place.0)).map_or(&VACUUM, |solid| &solid.index)
     }
 
@@ -125,173 +126,51 @@ impl Media {
         self.filling(inside).and_then(|place| self.solid(place.0))?.absorption.as_ref()
     }
 
-    /// What a path meets next, and `ray` and `inside` brought before it. Counts in `lost` what contradicts itself.
-    pub(crate) fn meet<'a>(
-        &'a self,
-        geometry: &Geometry,
-        surfaces: &'a Surfaces,
-        ray: &mut Ray<f64>,
-        inside: &mut Inside,
-        lost: &mut u64,
-    ) -> Option<Met<'a>> {
-        loop {
-            let hit = geometry.closest_hit(ray)?;
-            let point = geometry.surface(ray, &hit);
-            let surface = surfaces.of(&point);
-            if self.solid(surface.object).is_none() {
-                let around = self.medium(inside);
-                let interface = surface.takes_medium().then_some(Interface { incident: around, transmitted: around });
-                return Some(Met { hit, point, surface, interface, beyond: None });
-            }
-            let boundary = self.boundary(geometry, surfaces, (&hit, &point), ray.direction, inside, lost);
-            let beyond = match boundary {
-                Boundary::Opaque(hit, point) => {
-                    let around = self.medium(inside);
-                    let surface = surfaces.of(&point);
-                    let interface =
-                        surface.takes_medium().then_some(Interface { incident: around, transmitted: around });
-                    return Some(Met { hit, point, surface, interface, beyond: None });
-                }
-                Boundary::Solid(beyond) => beyond,
-            };
-            let (before, behind) = (self.filling(inside), self.filling(&beyond.inside));
-            if before != behind {
-                // Where boundaries coincide, the solid of the highest priority that has its medium on either side decides what
-                // its surface does: of the one before if it is left here, and of the one behind if it is entered.
-                let left = before.filter(|&place| !beyond.inside.iter().any(|other| other == place));
-                let entered = behind.filter(|&place| !inside.iter().any(|other| other == place));
-                let deciding = left.into_iter().chain(entered).max_by_key(|&place| self.rank(place));
-                let mut surface = surface;
-                if let Some((object, _)) = deciding {
-                    surface.bsdf = surfaces.bsdf_of(object);
-                }
-                let interface = Interface { incident: self.medium(inside), transmitted: self.medium(&beyond.inside) };
-                return Some(Met { hit, point, surface, interface: Some(interface), beyond: Some(beyond) });
-            }
-            *inside = beyond.inside;
-            let t_max = ray.t_max - hit.t;
-            let aims_at = ray.aims_at;
-            *ray = Ray { leaves: beyond.leaves, aims_at, t_max, ..point.spawn(ray.direction) };
-        }
+    /// Whether an object is the boundary of a solid.
+    pub(crate) fn is_boundary(&self, object: u32) -> bool {
+        self.solid(object).is_some()
     }
 
-    /// Whether a shadow ray is stopped by anything but boundaries that change no medium.
-    pub(crate) fn occluded(
-        &self,
-        geometry: &Geometry,
-        surfaces: &Surfaces,
-        mut ray: Ray<f64>,
-        mut inside: Inside,
-        lost: &mut u64,
-    ) -> bool {
-        let aims_at = ray.aims_at;
-        let met = self.meet(geometry, surfaces, &mut ray, &mut inside, lost);
-        met.is_some_and(|met| met.point.surface != aims_at)
+    /// The solid that a point bounds, if its object is one.
+    pub(crate) fn place(&self, surfaces: &Surfaces, point: &SurfacePoint<f64>) -> Place {
+        (surfaces.of(point).object, point.surface.instance)
+    }
+
+    /// The object whose material decides what an interface does, between what holds the path before it and behind it: of the
+    /// solids whose medium lies on either side, and that begin or end here, the one of the highest priority. `None` if the
+    /// medium does not change: there is no interface.
+    pub(crate) fn deciding(&self, before: &Inside, behind: &Inside) -> Option<Option<u32>> {
+        let (near, far) = (self.filling(before), self.filling(behind));
+        if near == far {
+            return None;
+        }
+        let left = near.filter(|&place| !behind.iter().any(|other| other == place));
+        let entered = far.filter(|&place| !before.iter().any(|other| other == place));
+        let deciding = left.into_iter().chain(entered).max_by_key(|&place| self.rank(place));
+        Some(deciding.map(|(object, _)| object))
     }
 
     /// The solids that hold the origin of a ray: those whose first boundary along it is left, not entered.
     pub(crate) fn around(&self, geometry: &Geometry, surfaces: &Surfaces, ray: &Ray<f64>, lost: &mut u64) -> Inside {
+        let mut hits = Vec::new();
+        geometry.all_hits(ray, 0.0, |hit| {
+            hits.push(hit);
+            ray.t_max
+        });
+        hits.sort_by(|a, b| (a.t, a.surface).partial_cmp(&(b.t, b.surface)).expect("distances are numbers"));
         let mut inside = Inside::NOTHING;
         let mut known = Inside::NOTHING;
-        let mut ray = *ray;
-        while let Some(hit) = geometry.closest_hit(&ray) {
-            let point = geometry.surface(&ray, &hit);
-            let primitives = self.coincident(geometry, surfaces, (&hit, &point), ray.direction);
-            for (_, point) in primitives.iter().flatten() {
-                let place = place(surfaces, point);
-                if self.solid(place.0).is_some() && !known.iter().any(|other| other == place) {
-                    let leaves = point.normal.dot(ray.direction) > 0.0;
-                    let counted = known.cross(place, true) && (!leaves || inside.cross(place, true));
-                    *lost += u64::from(!counted);
-                }
+        for hit in hits {
+            let point = geometry.surface(ray, &hit);
+            let place = self.place(surfaces, &point);
+            if self.solid(place.0).is_some() && !known.iter().any(|other| other == place) {
+                let leaves = point.normal.dot(ray.direction) > 0.0;
+                let counted = known.cross(place, true) && (!leaves || inside.cross(place, true));
+                *lost += u64::from(!counted);
             }
-            let leaves = primitives[1].map_or(point.surface, |(_, other)| other.surface);
-            ray = Ray { leaves, ..point.spawn(ray.direction) };
         }
         inside
     }
-
-    /// What lies at a boundary of a solid.
-    fn boundary(
-        &self,
-        geometry: &Geometry,
-        surfaces: &Surfaces,
-        (hit, point): (&Hit<f64>, &SurfacePoint<f64>),
-        direction: Vec3<f64>,
-        inside: &Inside,
-        lost: &mut u64,
-    ) -> Boundary {
-        let enters = |point: &SurfacePoint<f64>| point.normal.dot(direction) < 0.0;
-        let mut beyond = Beyond { inside: *inside, leaves: point.surface };
-        let mut crossed = [(place(surfaces, point), enters(point)); MOST_COINCIDENT];
-        let mut count = 1;
-        let points = self.coincident(geometry, surfaces, (hit, point), direction);
-        for (hit, other) in points[1..].iter().flatten() {
-            let place = place(surfaces, other);
-            if self.solid(place.0).is_none() {
-                return Boundary::Opaque(*hit, *other);
-            }
-            beyond.leaves = other.surface;
-            // Two faces of a mesh that meet in the edge that is hit are one boundary.
-            let crossing = (place, enters(other));
-            if !crossed[..count].contains(&crossing) {
-                crossed[count] = crossing;
-                count += 1;
-            }
-        }
-        // First what is left, so that the order in which coincident boundaries are found does not matter.
-        for enters in [false, true] {
-            for &(place, _) in crossed[..count].iter().filter(|crossing| crossing.1 == enters) {
-                if !beyond.inside.cross(place, enters) {
-                    *lost += 1;
-                }
-            }
-        }
-        Boundary::Solid(beyond)
-    }
-
-    /// The points of all surfaces that coincide with `point` up to the errors of their positions, itself first.
-    ///
-    /// They are looked for on a short ray through the point. Each look leaves one primitive out by name, so three that
-    /// coincide are found for certain, more (where a line is shared by four solids) perhaps not.
-    fn coincident(
-        &self,
-        geometry: &Geometry,
-        surfaces: &Surfaces,
-        (hit, point): (&Hit<f64>, &SurfacePoint<f64>),
-        direction: Vec3<f64>,
-    ) -> [Option<(Hit<f64>, SurfacePoint<f64>)>; MOST_COINCIDENT] {
-        let mut found = [None; MOST_COINCIDENT];
-        found[0] = Some((*hit, *point));
-        let cos = point.normal.dot(direction).abs();
-        if self.solid(place(surfaces, point).0).is_none() || cos == 0.0 {
-            return found;
-        }
-        // Each of two positions may be off by its bound; half as much again for the rounding of this ray.
-        let reach = 4.0 * point.position_error / cos;
-        // Rounded away from the surface: where coordinates are exact, the bound is below their spacing.
-        let origin = point.spawn(-direction).origin - direction * reach;
-        let t_max = 2.0 * (point.position - origin).dot(direction);
-        let mut leaves = point.surface;
-        for next in 1..MOST_COINCIDENT {
-            let probe = Ray { origin, direction, t_max, leaves, aims_at: SurfaceId::NONE, time: point.time };
-            let Some(hit) = geometry.closest_hit(&probe) else { break };
-            let other = geometry.surface(&probe, &hit);
-            let apart = (other.position - point.position).dot(point.normal).abs();
-            let seen = found.iter().flatten().any(|(_, seen)| seen.surface == other.surface);
-            if seen || apart > 2.0 * (point.position_error + other.position_error) {
-                break;
-            }
-            leaves = other.surface;
-            found[next] = Some((hit, other));
-        }
-        found
-    }
-}
-
-/// The solid that a point bounds, if its object is one.
-fn place(surfaces: &Surfaces, point: &SurfacePoint<f64>) -> Place {
-    (surfaces.of(point).object, point.surface.instance)
 }
 
 /// Where a shape is open, so that it bounds no solid; `None` if it is closed.
@@ -319,14 +198,4 @@ pub(crate) fn open_edges(shape: &Shape) -> Option<String> {
             (count > 0).then(|| format!("{count} edges of its mesh are open"))
         }
     }
-}
-
-/// Surfaces that may be found at one place.
-const MOST_COINCIDENT: usize = 4;
-
-enum Boundary {
-    /// An opaque surface coincides with it.
-    Opaque(Hit<f64>, SurfacePoint<f64>),
-    /// Boundaries of solids alone, and what is behind them.
-    Solid(Beyond),
 }

@@ -22,8 +22,9 @@ use crate::caustics::Casters;
 use crate::compiled;
 use crate::engine::Tables;
 use crate::film::Counters;
+use crate::interaction::{SurfaceInteraction, Walk};
 use crate::light::{Environment, LightTable};
-use crate::media::{Inside, Media, Met};
+use crate::media::{Inside, Media};
 use crate::mis::{Density, power_heuristic};
 use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
@@ -116,16 +117,19 @@ impl World<'_> {
             Some(_) => Body::around(self.geometry, self.surfaces, &ray),
             None => Body::default(),
         };
-        // Surfaces passed as if they were not there, which are no vertices of the path.
-        let mut passed = 0;
+        let mut walk = Walk::default();
+        // Surfaces passed as if they were not there, which are no vertices of the path, and where the last one was.
+        let mut passes = 0;
+        let mut start = ray.origin;
+        // The number that decides whether the next surface is passed.
+        let mut u_mask = None;
+        let mut vertex = 0;
 
-        for vertex in 0_u32.. {
+        loop {
             let lane_weight = lanes.weight();
             counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
             counters.rays += 1;
-            let start = ray.origin;
-            let Some(Met { hit, point, surface, interface, beyond }) = self.meet(&mut ray, &mut inside, counters)
-            else {
+            let Some(met) = self.meet(&ray, &mut walk, &mut inside, counters) else {
                 if let Some(absorption) = &self.absorption {
                     beta *= absorption.transmittance(body, self.media, &inside, lambda_nm, f64::INFINITY);
                 }
@@ -148,16 +152,17 @@ impl World<'_> {
                 observer.end(End::Escaped);
                 break;
             };
+            let SurfaceInteraction { hit, point, surface, interface, .. } = &met;
             let wo = -ray.direction;
             let from_front = point.normal.dot(wo) > 0.0;
             if let Some(absorption) = &self.absorption {
-                body = body.before(&surface, from_front);
+                body = body.before(surface, from_front);
                 let length = (point.position - start).length();
                 beta *= absorption.transmittance(body, self.media, &inside, lambda_nm, length);
             }
             observer.vertex(vertex, point.position, surface.object, beta);
 
-            if let Some(emitter) = surface.emission_along(self.geometry, &point, &hit, wo) {
+            if let Some(emitter) = surface.emission_along(self.geometry, point, hit, wo) {
                 let mis = if compiled::MIS && self.weigh_hits {
                     self.weight_of_hit(step, point.surface, surface.light, ray.direction, ray.time)
                 } else {
@@ -168,24 +173,25 @@ impl World<'_> {
                 radiance += light;
             }
             if let Some(gathered) = observer.gathers().filter(|gathered| gathered.has_left()) {
-                gathered.arrive(&point, wo, self.tables.is_diffuse(surface.object), &mut radiance);
+                gathered.arrive(point, wo, self.tables.is_diffuse(surface.object), &mut radiance);
             }
-            let opacity =
-                if compiled::MASKS && self.masks { surface.opacity(self.geometry, &point, &hit) } else { 1.0 };
-            if opacity < 1.0 {
-                let [.., u_mask] = sampler.vertex_set(vertex, 1);
-                if u_mask >= opacity && vertex + 1 < MOST_VERTICES {
-                    // The last step goes on, and with it what MIS knows of it: the shadow ray passed here too.
-                    passed += 1;
-                    ray = point.spawn(ray.direction);
-                    if let Some(beyond) = beyond {
-                        ray.leaves = beyond.leaves;
-                        inside = beyond.inside;
+            let opacity = if compiled::MASKS && self.masks { surface.opacity(self.geometry, point, hit) } else { 1.0 };
+            if opacity < 1.0 && passes < MOST_VERTICES {
+                let u = u_mask.unwrap_or_else(|| sampler.vertex_set(vertex, 1)[3]);
+                if u >= opacity {
+                    // The last step goes on, and with it what MIS knows of it: the shadow ray passed here too. What is left of
+                    // the number is uniform again.
+                    u_mask = Some((u - opacity) / (1.0 - opacity));
+                    passes += 1;
+                    start = point.position;
+                    walk.pass(&met);
+                    if let Some(beyond) = met.beyond {
+                        inside = beyond;
                     }
                     continue;
                 }
             }
-            if vertex + 1 - passed >= self.max_depth || vertex + 1 == MOST_VERTICES {
+            if vertex + 1 >= self.max_depth || vertex + 1 == MOST_VERTICES {
                 if vertex + 1 == MOST_VERTICES {
                     counters.record_cut((beta.max_lane() * lane_weight).to_f64());
                 }
@@ -193,7 +199,7 @@ impl World<'_> {
                 break;
             }
 
-            let scattering = surface.scattering(self.geometry, &point, &hit, interface);
+            let scattering = surface.scattering(self.geometry, point, hit, *interface);
             let shared = match self.shadow_rays {
                 _ if !compiled::SHADOW_RAYS => false,
                 ShadowRays::Never => false,
@@ -202,9 +208,9 @@ impl World<'_> {
             };
             if shared {
                 let u = sampler.vertex_set(vertex, 1);
-                let around = Around { inside: &inside, body, beyond: body.beyond(&surface, from_front) };
+                let around = Around { inside: &inside, body, beyond: body.beyond(surface, from_front) };
                 if let Some(Direct { light: index, wi, radiance: direct }) =
-                    self.direct_light(&point, &scattering, wo, (lambda_nm, &lanes), u, &around, counters)
+                    self.direct_light(point, &scattering, wo, (lambda_nm, &lanes), u, &around, counters)
                 {
                     let mueller = || scattering.mueller(lambda_nm, wo, wi, Lobe::SolidAngle);
                     let light = polarisation.receive_scattered(wo, wi, mueller, beta * direct * lane_weight);
@@ -214,8 +220,7 @@ impl World<'_> {
             }
 
             let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(vertex, 0);
-            let Some((next, mixture)) = self.casters.sample(&point, &scattering, lambda_nm, wo, [u_lobe, u1, u2])
-            else {
+            let Some((next, mixture)) = self.casters.sample(point, &scattering, lambda_nm, wo, [u_lobe, u1, u2]) else {
                 observer.end(End::Absorbed);
                 break;
             };
@@ -241,15 +246,14 @@ impl World<'_> {
                 Density::SolidAngle(_) | Density::Delta => Step::Unshared,
             };
             ray = point.spawn(next.wi);
+            walk.restart();
+            (start, u_mask) = (ray.origin, None);
             let goes_through = point.normal.dot(next.wi) * point.normal.dot(wo) < 0.0;
             if goes_through {
-                body = body.beyond(&surface, from_front);
+                body = body.beyond(surface, from_front);
             }
-            if let Some(beyond) = beyond {
-                ray.leaves = beyond.leaves;
-                if goes_through {
-                    inside = beyond.inside;
-                }
+            if let Some(beyond) = met.beyond.filter(|_| goes_through) {
+                inside = beyond;
             }
 
             if !beta.is_finite() {
@@ -263,7 +267,7 @@ impl World<'_> {
                 let diffuse = self.tables.is_diffuse(surface.object) && lanes.together();
                 gathered.leave(
                     vertex,
-                    &point,
+                    point,
                     wo,
                     diffuse,
                     (&unaimed, aim),
@@ -284,23 +288,9 @@ impl World<'_> {
                 }
                 beta /= R::from_f64(survival);
             }
+            vertex += 1;
         }
         radiance
-    }
-
-    /// What the walk meets next: the closest surface, or the closest that is one where media are nested.
-    #[inline(always)]
-    pub(crate) fn meet(&self, ray: &mut Ray<f64>, inside: &mut Inside, counters: &mut Counters) -> Option<Met<'_>> {
-        match self.media {
-            Some(media) if compiled::NESTED_DIELECTRICS => {
-                media.meet(self.geometry, self.surfaces, ray, inside, &mut counters.lost_media)
-            }
-            _ => {
-                let hit = self.geometry.closest_hit(ray)?;
-                let point = self.geometry.surface(ray, &hit);
-                Some(Met { hit, point, surface: self.surfaces.of(&point), interface: None, beyond: None })
-            }
-        }
     }
 
     /// The MIS weight of light that the walk ran into `on` a surface whose light, if any, is number `light`.

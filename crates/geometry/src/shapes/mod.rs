@@ -154,6 +154,20 @@ impl Primitive {
         }
     }
 
+    /// All crossings of the ray with the shape, at most two, the nearer first. `leaves`: the ray leaves this very primitive.
+    ///
+    /// The second crossing of a curved shape is the one that a ray meets which leaves the shape at the first.
+    pub(crate) fn crossings(&self, query: &Query, leaves: bool) -> [Option<RawHit>; 2] {
+        let first = self.intersect(query, f64::INFINITY, leaves);
+        let second = match first {
+            Some(first) if self.is_curved() => {
+                self.intersect(query, f64::INFINITY, true).filter(|second| second.t > first.t)
+            }
+            _ => None,
+        };
+        [first, second]
+    }
+
     /// The parameters that a hit at the point `p` of it carries, to rounding; 0 of shapes whose hits carry none.
     pub(crate) fn parameters(&self, p: Vec3<f64>) -> [f64; 2] {
         let (corner, [a, b]) = match self {

@@ -67,7 +67,7 @@ fn baked(primitive: &Primitive, rows: &Rows, by: V) -> Primitive {
 }
 
 /// Primitives, placed groups of them and groups of groups.
-fn placed_soup(random: &mut Random, count: usize) -> Vec<Primitive> {
+pub(super) fn placed_soup(random: &mut Random, count: usize) -> Vec<Primitive> {
     let inner = build(soup(random, 30, -3.0..0.0));
     let mut middle = soup(random, 5, -2.0..0.0);
     middle.extend((0..12).map(|_| {

@@ -7,6 +7,7 @@ mod frames;
 mod instances;
 mod motion;
 mod oracle;
+mod passed;
 mod placements;
 mod portals;
 mod spawn;

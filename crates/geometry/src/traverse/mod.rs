@@ -3,6 +3,7 @@
 //! Boxes and triangles are only *filtered* in `f32`: a filter errs on the side of keeping, by derived bounds, and what it
 //! keeps is decided in `f64`. Filters may therefore differ between instruction sets, hits cannot.
 
+mod all;
 mod any;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -35,6 +36,7 @@ use crate::frame::{BoxRay, FrameRay};
 use crate::query::{Four, Projection, Query, RawHit};
 use crate::wide::{BALLS, Leaf, Leaves, MESH, MIXED, NODE_WIDTH, Node16, WideTree};
 use crate::{Hits, Primitive, PrimitiveId, Rays, Triangle};
+pub(crate) use all::{Visit, all, all_of};
 use any::any_on;
 pub(crate) use any::occludes;
 use closest::closest_on;

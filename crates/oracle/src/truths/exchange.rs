@@ -83,6 +83,7 @@ impl Claim {
             Self::Priorities => "priorities",
             Self::Absorption => "absorption",
             Self::Motion => "motion",
+            Self::Masks => "masks",
         }
     }
 }

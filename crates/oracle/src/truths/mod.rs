@@ -18,6 +18,7 @@ mod illumination;
 mod irradiance;
 mod judge;
 mod lamps;
+mod masks;
 mod motion;
 mod polarised;
 mod prisms;
@@ -66,11 +67,13 @@ pub enum Claim {
     Absorption,
     /// Things move while the shutter is open.
     Motion,
+    /// Surfaces let a part of the light pass, also where they coincide with others.
+    Masks,
 }
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 10] = [
+    pub const UNPOLARISED: [Self; 11] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -81,6 +84,7 @@ impl Claim {
         Self::Priorities,
         Self::Absorption,
         Self::Motion,
+        Self::Masks,
     ];
 }
 
@@ -285,6 +289,7 @@ pub fn truths() -> Vec<Truth> {
         prisms::truths(),
         cameras::truths(),
         motion::truths(),
+        masks::truths(),
     ]
     .into_iter()
     .flatten()

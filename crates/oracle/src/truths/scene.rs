@@ -100,6 +100,12 @@ impl Scene {
         self
     }
 
+    /// An object that lets the share 1 − `opacity` of the light pass.
+    pub(super) fn mask(mut self, shape: Value, material: Value, opacity: f64) -> Self {
+        self.objects.push(json!({ "shape": shape, "material": material, "opacity": opacity }));
+        self
+    }
+
     /// An object that emits from its "front", "back" or "both" sides.
     pub(super) fn lamp(mut self, shape: Value, material: Value, radiance: f64, sides: &str) -> Self {
         let emission = json!({ "radiance": radiance, "sides": sides });

@@ -107,6 +107,11 @@ fn every_wrong_renderer_is_rejected() {
         ("rays offset by 1e-3", "plate-at-45-degrees-thin"),
         ("rays offset by 1e-3", "room-cube-of-ten-micrometres"),
         ("hits nearer than 1e-4 lost", "room-cube-of-ten-micrometres"),
+        ("what coincides with a mask that is passed is passed too", "mask-in-a-floor-listed-first"),
+        ("what coincides with a mask that is passed is passed too", "mask-of-a-box-on-a-floor"),
+        ("masks are opaque", "mask-in-the-plane-of-a-lamp-light"),
+        ("masks are opaque", "mask-of-half-in-a-tilted-floor"),
+        ("masks are opaque", "masks-of-two-sheets-in-a-floor"),
         ("0/0 in one of a thousand", "furnace-lambert-sphere"),
     ] {
         let truth = list.iter().find(|truth| truth.name == name).unwrap_or_else(|| panic!("no truth is named {name}"));

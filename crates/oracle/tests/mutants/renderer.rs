@@ -27,18 +27,45 @@ pub(crate) struct Tracer {
     pub(crate) seed: u64,
 }
 
+/// Surfaces nearer to each other than this along a ray are at one place, m: in scenes with masks only.
+const COINCIDENT: f64 = 1e-9;
+
 impl World {
-    /// Nearest hit beyond the primitive left.
-    fn hit(&self, origin: Vec3, d: Vec3, leaving: Option<usize>) -> Option<Hit> {
+    /// Nearest hit beyond the primitive left. A mask is there for a ray with the probability of its opacity; what coincides with
+    /// the surface left is left with it.
+    fn hit(&self, origin: Vec3, d: Vec3, leaving: Option<usize>, numbers: &mut Uniform) -> Option<Hit> {
         let least = if self.fault == "hits nearer than 1e-4 lost" { 1e-4 } else { 0.0 };
+        let masked = self.objects.iter().any(|object| object.opacity < 1.0);
+        let least = if masked { COINCIDENT } else { least };
+        let mut passed = Vec::new();
         let mut nearest: Option<Hit> = None;
         for (i, primitive) in self.primitives.iter().enumerate() {
             let Some((t, normal)) = primitive.shape.hit(origin, d, leaving == Some(i)) else { continue };
-            if t > least && nearest.as_ref().is_none_or(|hit| t < hit.t) {
+            let opacity = self.opacity(i);
+            if opacity < 1.0 && numbers.number() >= opacity {
+                passed.push(t);
+                continue;
+            }
+            let lies_before = |hit: &Hit| match (t - hit.t).abs() < COINCIDENT {
+                // Of coincident surfaces a mask comes first, a later one before an earlier.
+                true if masked => opacity < 1.0 || self.opacity(hit.primitive) == 1.0 && t < hit.t,
+                _ => t < hit.t,
+            };
+            if t > least && nearest.as_ref().is_none_or(lies_before) {
                 nearest = Some(Hit { t, normal, primitive: i });
             }
         }
+        if self.fault == "what coincides with a mask that is passed is passed too" {
+            nearest = nearest.filter(|hit| passed.iter().all(|t| (t - hit.t).abs() > COINCIDENT));
+        }
         nearest
+    }
+
+    fn opacity(&self, primitive: usize) -> f64 {
+        if self.fault == "masks are opaque" {
+            return 1.0;
+        }
+        self.objects[self.primitives[primitive].object].opacity
     }
 
     fn radiance(&self, mut origin: Vec3, mut d: Vec3, numbers: &mut Uniform) -> f64 {
@@ -47,7 +74,7 @@ impl World {
         let (mut leaving, mut diffuse, mut medium) = (None, None::<Vec3>, 1.0_f64);
         loop {
             edges += 1;
-            let Some(hit) = self.hit(origin, d, leaving) else { return sum + weight * self.sky };
+            let Some(hit) = self.hit(origin, d, leaving, numbers) else { return sum + weight * self.sky };
             let object = &self.objects[self.primitives[hit.primitive].object];
             let front = dot(hit.normal, d) < 0.0;
             let shape = &self.primitives[hit.primitive].shape;
@@ -167,8 +194,8 @@ impl World {
         }
         let choice = ((numbers.number() * self.lights.len() as f64) as usize).min(self.lights.len() - 1);
         let many = if self.fault == "a light's choice not weighed" { 1.0 } else { self.lights.len() as f64 };
-        let visible = |d: Vec3, t: f64, target: Option<usize>| {
-            let hit = self.hit(point, d, Some(leaving));
+        let visible = |d: Vec3, t: f64, target: Option<usize>, numbers: &mut Uniform| {
+            let hit = self.hit(point, d, Some(leaving), numbers);
             let clear = match (hit, target) {
                 (None, _) => true,
                 (Some(hit), Some(target)) => hit.primitive == target,
@@ -183,12 +210,12 @@ impl World {
                 let d = unit(to);
                 let cosine = if self.fault == "cosine of the receiver dropped" { 1.0 } else { dot(d, n) };
                 let falls = if self.fault == "falling with the distance" { d2.sqrt() } else { d2 };
-                if cosine > 0.0 && visible(d, d2.sqrt(), None) { intensity * cosine / falls } else { 0.0 }
+                if cosine > 0.0 && visible(d, d2.sqrt(), None, numbers) { intensity * cosine / falls } else { 0.0 }
             }
             Light::Directional { along, irradiance } => {
                 let d = times(-1.0, along);
                 let cosine = if self.fault == "cosine of the receiver dropped" { 1.0 } else { dot(d, n) };
-                if cosine > 0.0 && visible(d, f64::INFINITY, None) { irradiance * cosine } else { 0.0 }
+                if cosine > 0.0 && visible(d, f64::INFINITY, None, numbers) { irradiance * cosine } else { 0.0 }
             }
             Light::Primitive(target) => {
                 let object = &self.objects[self.primitives[target].object];
@@ -201,7 +228,7 @@ impl World {
                 };
                 let shines = if facing { object.front } else { object.back };
                 let cosine = dot(d, n);
-                let lit = shines && cosine > 0.0 && visible(d, f64::INFINITY, Some(target));
+                let lit = shines && cosine > 0.0 && visible(d, f64::INFINITY, Some(target), numbers);
                 if lit { object.radiance * cosine * inverse } else { 0.0 }
             }
         };

@@ -24,6 +24,8 @@ pub(crate) struct Primitive {
 
 pub(crate) struct Object {
     pub(crate) material: Material,
+    /// Share of the light that meets it.
+    pub(crate) opacity: f64,
     pub(crate) radiance: f64,
     pub(crate) front: bool,
     pub(crate) back: bool,
@@ -141,7 +143,8 @@ impl World {
         let both = self.fault == "lights shine on both sides" || back;
         let sampled = radiance > 0.0 && matches!(material, Material::Black) && sides != "back";
         let index = self.objects.len();
-        self.objects.push(Object { material, radiance, front, back: both, sampled });
+        let opacity = object["opacity"].as_f64().unwrap_or(1.0);
+        self.objects.push(Object { material, opacity, radiance, front, back: both, sampled });
         let shape = &object["shape"];
         let mut shapes = Vec::new();
         match shape["type"].as_str() {

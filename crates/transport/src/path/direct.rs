@@ -4,6 +4,7 @@ use super::{MOST_VERTICES, World};
 use crate::absorption::Body;
 use crate::compiled;
 use crate::film::Counters;
+use crate::interaction::Walk;
 use crate::light::{LightSample, Target};
 use crate::media::Inside;
 use crate::mis::{Density, power_heuristic};
@@ -68,20 +69,14 @@ impl World<'_> {
         let goes_through = point.normal.dot(sample.wi) * point.normal.dot(wo) < 0.0;
         let body = if goes_through { around.beyond } else { around.body };
         let mut transmittance = Lanes::ONE;
-        let arriving = if compiled::MASKS && self.masks {
+        let arriving = if (compiled::MASKS && self.masks) || (compiled::NESTED_DIELECTRICS && self.media.is_some()) {
             self.passing(shadow_ray, (*around.inside, body), &sample, lambda_nm, &mut transmittance, counters)
         } else {
             if let Some(absorption) = &self.absorption {
                 let length = sample.target.distance(point.position);
                 transmittance = absorption.transmittance(body, self.media, around.inside, lambda_nm, length);
             }
-            let occluded = match self.media {
-                Some(media) if compiled::NESTED_DIELECTRICS => {
-                    media.occluded(self.geometry, self.surfaces, shadow_ray, *around.inside, &mut counters.lost_media)
-                }
-                _ => self.geometry.occluded(&shadow_ray),
-            };
-            if occluded { 0.0 } else { 1.0 }
+            if self.geometry.occluded(&shadow_ray) { 0.0 } else { 1.0 }
         };
         if arriving == 0.0 {
             return None;
@@ -124,48 +119,70 @@ impl World<'_> {
         light.lanes(lambda_nm, wi)
     }
 
-    /// The share of light from a sampled light that reaches the start of the shadow ray: masks let their part through, and
-    /// media what they do not absorb.
+    /// The share of light from a sampled light that reaches the start of the shadow ray: masks let their part through, media
+    /// what they do not absorb, and boundaries of solids all, where they change no medium.
     fn passing<R: Real, const N: usize>(
         &self,
-        mut shadow_ray: Ray<f64>,
+        shadow_ray: Ray<f64>,
         (mut inside, body): (Inside, Body<'_>),
         sample: &LightSample,
         lambda_nm: &Lanes<f64, N>,
         transmittance: &mut Lanes<R, N>,
         counters: &mut Counters,
     ) -> f64 {
-        let mut share = 1.0;
+        let ray = Ray { t_max: beyond_target(shadow_ray.t_max), ..shadow_ray };
+        if self.media.is_none() && self.absorption.is_none() {
+            return self.passing_masks(&ray, shadow_ray.t_max, counters);
+        }
+        let (mut walk, mut share, mut start) = (Walk::default(), 1.0, ray.origin);
         let mut absorb = |inside: &Inside, length: f64| {
             if let Some(absorption) = &self.absorption {
                 *transmittance *= absorption.transmittance(body, self.media, inside, lambda_nm, length);
             }
         };
         for _ in 0..MOST_VERTICES {
-            let start = shadow_ray.origin;
-            let Some(met) = self.meet(&mut shadow_ray, &mut inside, counters) else {
+            let Some(met) = self.meet(&ray, &mut walk, &mut inside, counters) else {
                 absorb(&inside, sample.target.distance(start));
                 return share;
             };
             absorb(&inside, (met.point.position - start).length());
-            let aims_at = shadow_ray.aims_at;
-            if self.media.is_some() && met.point.surface == aims_at {
+            let opacity = met.surface.opacity(self.geometry, &met.point, &met.hit);
+            if met.point.surface == ray.aims_at || met.hit.t >= shadow_ray.t_max && opacity == 1.0 {
                 return share;
             }
-            share *= 1.0 - met.surface.opacity(self.geometry, &met.point, &met.hit);
+            share *= 1.0 - opacity;
             if share == 0.0 {
                 return 0.0;
             }
-            shadow_ray = match sample.target {
-                Target::Point(target) => met.point.spawn_to(target, sample.surface),
-                Target::Infinity => met.point.spawn(shadow_ray.direction),
-            };
-            if let Some(beyond) = met.beyond {
-                shadow_ray.leaves = beyond.leaves;
-                inside = beyond.inside;
-            }
+            start = met.point.position;
+            walk.pass(&met);
+            inside = met.beyond.unwrap_or(inside);
         }
         counters.record_cut(f64::MAX);
         0.0
     }
+
+    /// [`World::passing`] where masks are all that a shadow ray may pass: in any order.
+    fn passing_masks(&self, ray: &Ray<f64>, arrives: f64, counters: &mut Counters) -> f64 {
+        let mut share = 1.0;
+        self.geometry.all_hits(ray, 0.0, |hit| {
+            counters.rays += 1;
+            if hit.surface == ray.aims_at {
+                return ray.t_max;
+            }
+            let point = self.geometry.surface(ray, &hit);
+            let opacity = self.surfaces.of(&point).opacity(self.geometry, &point, &hit);
+            if hit.t < arrives || opacity < 1.0 {
+                share *= 1.0 - opacity;
+            }
+            if share == 0.0 { 0.0 } else { ray.t_max }
+        });
+        share
+    }
+}
+
+/// Where the search for masks along a shadow ray ends: beyond its target by some times as much as the ray itself ends short of it,
+/// for rounding. A mask that coincides with a light lies before it.
+fn beyond_target(t_max: f64) -> f64 {
+    if t_max < 1.0 { 1.0 + 16.0 * (1.0 - t_max) } else { t_max }
 }

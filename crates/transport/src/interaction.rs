@@ -1,0 +1,203 @@
+//! What a path meets next.
+//!
+//! Where no surface lets light pass and no solids are nested, that is the closest hit. Elsewhere surfaces may coincide: a decal
+//! on a table, glass that holds water. All surfaces at one place, up to the errors of their positions, are one **group**, and
+//! a path meets its members in this order, whatever order rounding finds them in:
+//!
+//! 1. surfaces that bound no solid and let a part of the light pass; of several, the object that comes later in the scene first;
+//! 2. then an opaque surface that bounds no solid;
+//! 3. then the boundaries of solids, all of them as one interface (see [`media`](crate::media)).
+//!
+//! A path that goes on through a member keeps its ray and meets the rest of the group, each member once. A ray that leaves a
+//! member after scattering leaves the whole group: it starts beyond all of them.
+
+use crate::compiled;
+use crate::film::Counters;
+use crate::media::{Inside, Interface, Media};
+use crate::path::World;
+use crate::surface::Surface;
+use etalon_geometry::{Hit, Passed, Ray, SurfacePoint};
+
+/// A surface that a path meets.
+pub(crate) struct SurfaceInteraction<'a> {
+    pub hit: Hit<f64>,
+    pub point: SurfacePoint<f64>,
+    pub surface: Surface<'a>,
+    /// The media on both sides; `None` where the material itself says.
+    pub interface: Option<Interface<'a>>,
+    /// The solids that hold the path if it goes on through a boundary.
+    pub beyond: Option<Inside>,
+}
+
+/// How far a path has come along its ray.
+#[derive(Default)]
+pub(crate) struct Walk {
+    passed: Passed,
+    /// The surfaces of the group that was met last, those already passed among them.
+    group: Vec<Member>,
+}
+
+/// A surface of a group.
+struct Member {
+    hit: Hit<f64>,
+    point: SurfacePoint<f64>,
+    passed: bool,
+}
+
+impl Walk {
+    /// Begins a new ray.
+    #[inline(always)]
+    pub(crate) fn restart(&mut self) {
+        if !self.passed.is_nothing() {
+            self.passed.clear();
+        }
+    }
+
+    /// Passes a surface as if it were not there; a boundary together with those that coincide with it.
+    pub(crate) fn pass(&mut self, met: &SurfaceInteraction<'_>) {
+        match met.beyond {
+            Some(_) => self.pass_group(),
+            None => self.passed.pass(&met.hit, self.first_distance()),
+        }
+    }
+
+    fn pass_group(&mut self) {
+        let from = self.first_distance();
+        for member in self.group.iter().filter(|member| !member.passed) {
+            self.passed.pass(&member.hit, from);
+        }
+    }
+
+    /// The distance of the closest member that is not passed.
+    fn first_distance(&self) -> f64 {
+        let ahead = self.group.iter().filter(|member| !member.passed);
+        ahead.map(|member| member.hit.t).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl World<'_> {
+    /// What the walk along a ray meets next; `inside` is brought before it.
+    #[inline(always)]
+    pub(crate) fn meet(
+        &self,
+        ray: &Ray<f64>,
+        walk: &mut Walk,
+        inside: &mut Inside,
+        counters: &mut Counters,
+    ) -> Option<SurfaceInteraction<'_>> {
+        let masks = compiled::MASKS && self.masks;
+        let media = self.media.filter(|_| compiled::NESTED_DIELECTRICS);
+        if masks || media.is_some() {
+            return self.meet_in_group(ray, walk, media, inside, &mut counters.lost_media);
+        }
+        let hit = self.geometry.closest_hit(ray)?;
+        let point = self.geometry.surface(ray, &hit);
+        Some(SurfaceInteraction { hit, point, surface: self.surfaces.of(&point), interface: None, beyond: None })
+    }
+
+    fn meet_in_group<'a>(
+        &'a self,
+        ray: &Ray<f64>,
+        walk: &mut Walk,
+        media: Option<&'a Media>,
+        inside: &mut Inside,
+        lost: &mut u64,
+    ) -> Option<SurfaceInteraction<'a>> {
+        loop {
+            let first = self.geometry.next_hit(ray, &walk.passed)?;
+            self.gather(ray, walk, first);
+            if let Some(number) = self.first_of_group(&walk.group, media) {
+                let (hit, point) = leaving_group(&walk.group, number);
+                let surface = self.surfaces.of(&point);
+                let around = media.filter(|_| surface.takes_medium()).map(|media| media.medium(inside));
+                let interface = around.map(|around| Interface { incident: around, transmitted: around });
+                return Some(SurfaceInteraction { hit, point, surface, interface, beyond: None });
+            }
+            let media = media.expect("what is no boundary was met above");
+            let ahead = walk.group.iter().filter(|member| !member.passed);
+            let crossings = ahead.map(|member| {
+                (media.place(self.surfaces, &member.point), member.point.normal.dot(ray.direction) < 0.0)
+            });
+            let beyond = inside.crossed(crossings, lost);
+            if let Some(deciding) = media.deciding(inside, &beyond) {
+                let number = walk.group.iter().position(|member| member.hit == first).expect("it is of its group");
+                let (hit, point) = leaving_group(&walk.group, number);
+                let mut surface = self.surfaces.of(&point);
+                if let Some(object) = deciding {
+                    surface.bsdf = self.surfaces.bsdf_of(object);
+                }
+                let interface = Interface { incident: media.medium(inside), transmitted: media.medium(&beyond) };
+                return Some(SurfaceInteraction {
+                    hit,
+                    point,
+                    surface,
+                    interface: Some(interface),
+                    beyond: Some(beyond),
+                });
+            }
+            *inside = beyond;
+            walk.pass_group();
+        }
+    }
+
+    /// Finds the group of a hit.
+    fn gather(&self, ray: &Ray<f64>, walk: &mut Walk, first: Hit<f64>) {
+        let Walk { passed, group } = walk;
+        let point = self.geometry.surface(ray, &first);
+        group.clear();
+        group.push(Member { hit: first, point, passed: false });
+        // Each of two positions may be off by its bound. The other's is not known yet: it may be larger, as of what is placed
+        // by a transform.
+        let reach = 32.0 * point.position_error / point.normal.dot(ray.direction).abs();
+        let (from, to) = (first.t - reach, (first.t + reach).min(ray.t_max));
+        if !(reach > 0.0 && reach < f64::INFINITY) {
+            return;
+        }
+        self.geometry.all_hits(&Ray { t_max: to, ..*ray }, from.max(0.0), |hit| {
+            // A curved surface that is hit twice is two places.
+            if group.iter().all(|member| member.hit.surface != hit.surface) {
+                let other = self.geometry.surface(ray, &hit);
+                if distance(&point, &other) <= 2.0 * (point.position_error + other.position_error) {
+                    group.push(Member { hit, point: other, passed: passed.holds(&hit) });
+                }
+            }
+            to
+        });
+    }
+
+    /// The member of a group that a path meets before the boundaries of solids, if there is one.
+    fn first_of_group(&self, group: &[Member], media: Option<&Media>) -> Option<usize> {
+        let is_boundary =
+            |member: &Member| media.is_some_and(|media| media.is_boundary(self.surfaces.of(&member.point).object));
+        let ahead = || group.iter().enumerate().filter(|(_, member)| !member.passed && !is_boundary(member));
+        if group.len() == 1 {
+            return ahead().next().map(|(number, _)| number);
+        }
+        let rank = |member: &Member| {
+            let surface = self.surfaces.of(&member.point);
+            let lets_pass = surface.opacity(self.geometry, &member.point, &member.hit) < 1.0;
+            // Of opaque surfaces the closest, of others the last object.
+            (lets_pass, if lets_pass { f64::from(surface.object) } else { -member.hit.t }, member.hit.surface)
+        };
+        let best = ahead().max_by(|(_, a), (_, b)| rank(a).partial_cmp(&rank(b)).expect("distances are numbers"));
+        best.map(|(number, _)| number)
+    }
+}
+
+/// A member of a group, its bound of errors so wide that a ray which leaves its point leaves the group.
+fn leaving_group(group: &[Member], number: usize) -> (Hit<f64>, SurfacePoint<f64>) {
+    let Member { hit, mut point, .. } = group[number];
+    let own = point.position_error;
+    for other in group {
+        if other.hit.surface != hit.surface {
+            point.position_error =
+                point.position_error.max(distance(&point, &other.point) + other.point.position_error + own);
+        }
+    }
+    (hit, point)
+}
+
+/// How far the plane of one point is from another.
+fn distance(point: &SurfacePoint<f64>, other: &SurfacePoint<f64>) -> f64 {
+    (other.position - point.position).dot(point.normal).abs()
+}
