@@ -28,6 +28,14 @@ pub enum OpticsError {
         /// Its value.
         value: f64,
     },
+    /// An index of refraction beyond what Fresnel's equations can be computed with.
+    #[error("{what} of {value:e} is beyond what can be computed with ({0:e} to {1:e})", INDEX_RANGE[0], INDEX_RANGE[1])]
+    Extreme {
+        /// The quantity.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// Above one where a share is meant.
     #[error("{what} must be at most 1, but is {value}")]
     AboveOne {
@@ -99,6 +107,17 @@ pub enum OpticsError {
         /// The white asked for.
         white: &'static str,
     },
+}
+
+/// Smallest and largest index of refraction. The square of the ratio of two of them is still a finite number, and so is its
+/// inverse.
+pub const INDEX_RANGE: [f64; 2] = [1e-50, 1e50];
+
+/// `value` if it can be an index of refraction.
+pub(crate) fn index(what: &'static str, value: f64) -> Result<f64, OpticsError> {
+    let [least, most] = INDEX_RANGE;
+    let value = positive(what, value)?;
+    if (least..=most).contains(&value) { Ok(value) } else { Err(OpticsError::Extreme { what, value }) }
 }
 
 /// `value` if it is finite.

@@ -33,7 +33,7 @@ mod table;
 pub mod vec3;
 
 pub use angle::atan2_turns;
-pub use error::OpticsError;
+pub use error::{INDEX_RANGE, OpticsError};
 pub use exponential::exp_neg;
 pub use index::{ComplexIndex, OutsideFit, RefractiveIndex};
 pub use lanes::Lanes;

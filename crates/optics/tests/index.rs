@@ -2,7 +2,7 @@
 
 use etalon_optics::fresnel::conductor;
 use etalon_optics::index::{ComplexIndex, OutsideFit, RefractiveIndex, SellmeierTerm};
-use etalon_optics::{OpticsError, Real};
+use etalon_optics::{INDEX_RANGE, OpticsError, Real};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -99,6 +99,12 @@ fn formulas_without_a_real_index_are_refused() {
     assert!(matches!(RefractiveIndex::sellmeier(vec![term(f64::NAN, 0.1)], None), Err(OpticsError::NotFinite { .. })));
     assert!(matches!(RefractiveIndex::constant(0.0), Err(OpticsError::NotPositive { .. })));
     assert!(matches!(RefractiveIndex::constant(f64::INFINITY), Err(OpticsError::NotFinite { .. })));
+    for extreme in [1e308, 1e51, 1e-51] {
+        assert!(matches!(RefractiveIndex::constant(extreme), Err(OpticsError::Extreme { .. })));
+    }
+    let [least, most] = INDEX_RANGE;
+    assert!(RefractiveIndex::constant(least).is_ok() && RefractiveIndex::constant(most).is_ok());
+    assert!(matches!(RefractiveIndex::cauchy(1.5, 1e60, 0.0, Some([400.0, 700.0])), Err(OpticsError::Extreme { .. })));
 }
 
 #[test]
@@ -176,6 +182,8 @@ fn bad_tables_of_metals_are_refused() {
     assert!(matches!(table(&[400.0, 700.0], &[0.0, 0.1], &[3.0, 4.0]), Err(OpticsError::NotPositive { .. })));
     assert!(matches!(table(&[400.0, 700.0], &[0.2, 0.1], &[3.0, -4.0]), Err(OpticsError::Negative { .. })));
     assert!(matches!(table(&[400.0, 700.0], &[0.2, 0.1], &[f64::NAN, 4.0]), Err(OpticsError::NotFinite { .. })));
+    assert!(matches!(table(&[400.0, 700.0], &[0.2, 1e60], &[3.0, 4.0]), Err(OpticsError::Extreme { .. })));
+    assert!(matches!(table(&[400.0, 700.0], &[0.2, 0.1], &[3.0, 1e60]), Err(OpticsError::Extreme { .. })));
 }
 
 proptest! {

@@ -32,6 +32,7 @@ pub mod camera;
 pub mod canvas;
 mod caustics;
 mod cells;
+mod coincidence;
 mod compiled;
 mod coordinates;
 mod engine;

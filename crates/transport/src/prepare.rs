@@ -4,6 +4,7 @@ use crate::absorption::{Absorption, Interior};
 use crate::bsdf::Bsdf;
 use crate::camera::{Camera, Moving};
 use crate::caustics::Casters;
+use crate::coincidence;
 use crate::compiled;
 use crate::engine::Tables;
 use crate::filter::FilterSampler;
@@ -246,6 +247,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
     if !study.by_cosine_alone {
         prepared.choose_casters();
     }
+    prepared.warnings.extend(coincidence::warnings(&prepared));
     Ok(prepared)
 }
 

@@ -138,3 +138,64 @@ fn dispersive_glass_cannot_be_seen_in_uniform_light() {
     // The range leaves out 3e-6 of ȳ.
     assert!((means.mean() - 1.0).abs() < 6.0 * means.standard_error() + 1e-5, "{}", means.mean());
 }
+
+/// A ball of some dielectrics under a sky of radiance 1, seen whole; and what prepares it warns of.
+fn balls(balls: &[(f64, Value)]) -> (f64, Vec<String>) {
+    let names: Vec<_> = (0..balls.len()).map(|i| format!("ball {i}")).collect();
+    let materials: serde_json::Map<_, _> = names.iter().cloned().zip(balls.iter().map(|(_, m)| m.clone())).collect();
+    let objects: Vec<_> = names
+        .iter()
+        .zip(balls)
+        .map(|(name, (radius, _))| {
+            json!({"name": name, "material": name,
+                   "shape": {"type": "sphere", "center_m": [0, 0, 0], "radius_m": radius}})
+        })
+        .collect();
+    let scene = json!({
+        "etalon": 1,
+        "camera": {"type": "perspective", "position_m": [0, 0, 5], "look_at_m": [0, 0, 0], "vertical_fov_deg": 20},
+        "film": {"width": 16, "height": 16}, "materials": materials, "objects": objects,
+        "lights": [{"type": "environment", "radiance": 1}], "integrator": {"spp": 64}
+    });
+    let scene = etalon_scene::parse(&scene.to_string(), "test").unwrap_or_else(|errors| panic!("{errors}")).0;
+    let prepared = prepare(&scene).unwrap();
+    let film: Film = prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap();
+    assert_eq!(film.counters.nonfinite, 0);
+    let mean = film.xyz().map(|xyz| xyz[1]).sum::<f64>() / f64::from(film.width() * film.height());
+    (mean, prepared.warnings().to_vec())
+}
+
+/// A lossless ball in a furnace shows the furnace (case 4), whatever its index is of all that may be given.
+#[test]
+fn the_furnace_holds_to_the_ends_of_the_range_of_indices() {
+    let [least, most] = etalon_optics::INDEX_RANGE;
+    for (interior, exterior) in [(most, 1.0), (least, 1.0), (most, least), (least, most), (1.5, 1.0)] {
+        let glass = json!({"type": "dielectric", "interior": interior, "exterior": exterior});
+        // The sky lies in vacuum: seen from within another medium its radiance is what it is.
+        let (mean, warnings) = balls(&[(1.0, glass)]);
+        assert!((mean - 1.0).abs() < 1e-6, "{interior} in {exterior}: {mean}");
+        assert!(warnings.is_empty(), "{warnings:?}");
+    }
+}
+
+/// Case 6 beyond what positions can tell apart: a shell that is thinner than that is named, one that is thicker is right.
+#[test]
+fn a_shell_too_thin_to_be_met_is_named() {
+    let shell = |thickness: f64| {
+        let (glass, hollow) = (
+            json!({"type": "dielectric", "interior": 1.5}),
+            json!({"type": "dielectric", "interior": 1.0, "exterior": 1.5}),
+        );
+        balls(&[(1.0, glass), (1.0 - thickness, hollow)])
+    };
+    for thickness in [1e-3, 1e-9, 1e-12] {
+        let (mean, warnings) = shell(thickness);
+        assert!((mean - 1.0).abs() < 1e-6, "{thickness:e}: {mean}");
+        assert!(warnings.is_empty(), "{warnings:?}");
+    }
+    for thickness in [1e-15, 2e-16, 0.0] {
+        let (_, warnings) = shell(thickness);
+        assert_eq!(warnings.len(), 1, "{thickness:e}: {warnings:?}");
+        assert!(warnings[0].contains("\"ball 0\" and \"ball 1\" coincide"), "{}", warnings[0]);
+    }
+}

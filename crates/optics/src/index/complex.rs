@@ -1,7 +1,7 @@
 //! Complex refractive indices of metals.
 
 use super::{Fit, OutsideFit, same_name};
-use crate::error::{OpticsError, increasing, non_negative, positive};
+use crate::error::{INDEX_RANGE, OpticsError, increasing, index, non_negative};
 use crate::table::{lerp, locate, parse_csv};
 
 /// Published tables: name, symbol, file.
@@ -24,16 +24,19 @@ pub struct ComplexIndex {
 }
 
 impl ComplexIndex {
-    /// A table of at least two rows at increasing wavelengths in nm, n above 0 and k not negative.
+    /// A table of at least two rows at increasing wavelengths in nm, n within [`INDEX_RANGE`], k from 0 to its end.
     ///
     /// Fails if anything of that does not hold.
     pub fn tabulated(wavelengths_nm: Vec<f64>, n: Vec<f64>, k: Vec<f64>) -> Result<Self, OpticsError> {
         increasing("a complex index of refraction", &wavelengths_nm, &[n.len(), k.len()])?;
         for &v in &n {
-            positive("the real part of an index of refraction", v)?;
+            index("the real part of an index of refraction", v)?;
         }
         for &v in &k {
-            non_negative("the extinction coefficient", v)?;
+            let extinction = "an extinction coefficient";
+            if non_negative(extinction, v)? > INDEX_RANGE[1] {
+                return Err(OpticsError::Extreme { what: extinction, value: v });
+            }
         }
         let fit = Fit::new([wavelengths_nm[0], wavelengths_nm[wavelengths_nm.len() - 1]])?;
         Ok(Self { name: None, wavelengths_nm, n, k, fit })

@@ -2,7 +2,7 @@
 
 use super::glasses::GLASSES;
 use super::{Fit, OutsideFit, check_order, same_name};
-use crate::error::{OpticsError, finite, non_negative, positive};
+use crate::error::{OpticsError, finite, index, non_negative};
 
 /// Fraunhofer lines d (He), F and C (H), nm: the Abbe number is (n_d − 1)/(n_F − n_C).
 const LINE_D_NM: f64 = 587.5618;
@@ -70,9 +70,9 @@ impl RefractiveIndex {
 
     /// The same at every wavelength.
     ///
-    /// Fails if the index is not above 0 and finite.
+    /// Fails if the index is not within [`INDEX_RANGE`](crate::INDEX_RANGE).
     pub fn constant(n: f64) -> Result<Self, OpticsError> {
-        positive("an index of refraction", n).map(Self::Constant)
+        index("an index of refraction", n).map(Self::Constant)
     }
 
     /// Sellmeier's formula with any number of terms, and the range of its fit in nm if that is known.
@@ -206,6 +206,7 @@ impl RefractiveIndex {
             if !(n > 0.0 && n.is_finite()) {
                 return Err(OpticsError::NoRealIndex { wavelength_nm });
             }
+            index("an index of refraction", n)?;
         }
         Ok(())
     }
