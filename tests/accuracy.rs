@@ -144,9 +144,62 @@ fn two_seeds_of_a_scene_are_the_same_and_a_planted_bias_is_found() {
     assert!(diff.exists());
     // Pictures without error bars are measured, not tested.
     let (c, _) = render(folder.path(), "e.exr", "--size 48x48 --spp 4 --replicates 1");
-    let json = etalon_line("compare {} {} --json", [&c, &a]).expect(0).json();
-    assert_eq!(json["test"], Value::Null);
+    let json = etalon_line("compare {} {} --json", [&c, &a]).expect(3).says(["errors are not known"]).json();
+    assert_eq!((&json["test"], json["verdict"].as_str()), (&Value::Null, Some("untested")));
     assert!(json["note"].as_str().unwrap().contains("Error.R") && json["rmse"].as_f64().unwrap() > 0.0);
+}
+
+/// A picture with some of its pixels changed in one channel.
+fn spoilt(from: &Path, to: &Path, channel: &str, pixels: std::ops::Range<usize>, value: f32) {
+    let file = read_exr(from).unwrap();
+    let mut picture = etalon_picture::Picture::new(file.picture.width(), file.picture.height()).unwrap();
+    for other in file.picture.channels() {
+        let mut samples = other.samples.clone();
+        if other.name == channel {
+            samples[pixels.clone()].fill(value);
+        }
+        picture.insert(&other.name, samples).unwrap();
+    }
+    write_exr(to, &picture, &file.attributes).unwrap();
+}
+
+#[test]
+fn values_that_are_not_finite_differ_and_what_was_not_tested_has_a_status_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let (a, _) = render(folder.path(), "a.exr", "--size 40x24 --spp 8 --seed 1");
+    let (b, _) = render(folder.path(), "b.exr", "--size 40x24 --spp 8 --seed 2");
+    let c = folder.path().join("c.exr");
+    let verdict = |a: &Path, b: &Path, status: i32| {
+        let json = etalon_line("compare {} {} --json", [a, b]).expect(status).json();
+        json["verdict"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(verdict(&a, &b, 0), "within-noise");
+    assert_eq!(verdict(&a, &a, 0), "equal");
+    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for pixels in [0..40 * 24, 85..86] {
+            spoilt(&b, &c, "G", pixels.clone(), value);
+            assert_eq!(verdict(&a, &c, 1), "differ");
+            assert_eq!(verdict(&c, &a, 1), "differ");
+            assert_eq!(verdict(&c, &c, 1), "differ");
+            let json = etalon_line("compare {} {} --json", [&a, &c]).json();
+            let first = [pixels.start % 40, pixels.start / 40];
+            assert_eq!(json["non_finite"], serde_json::json!({ "pixels": pixels.len(), "first": first }));
+        }
+    }
+    // Errors that are not finite hide any difference, also in one tile alone.
+    for value in [f32::INFINITY, f32::NAN] {
+        for pixels in [0..40 * 24, 85..86] {
+            spoilt(&b, &c, "Error.R", pixels, value);
+            assert_eq!(verdict(&a, &c, 3), "untested");
+            etalon_line("compare {} {}", [&a, &c]).expect(3).says(["not known"]);
+        }
+    }
+    // Without errors: equal values are equal, and NaN differs all the same.
+    let (single, _) = render(folder.path(), "d.exr", "--size 40x24 --spp 4 --replicates 1");
+    assert_eq!(verdict(&single, &single, 0), "equal");
+    assert_eq!(verdict(&a, &single, 3), "untested");
+    spoilt(&single, &c, "B", 7..8, f32::NAN);
+    assert_eq!(verdict(&a, &c, 1), "differ");
 }
 
 /// 24 pairs of pictures whose pixels share paths, and 24 of one such and one whose pixels do not, in tiles of one block each. At a

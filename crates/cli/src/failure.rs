@@ -13,6 +13,8 @@ pub(crate) type Outcome = Result<(), Failure>;
 pub(crate) enum Blame {
     /// Nobody's: a signal ended the work, and what there was is kept. Exit status 128 and the signal's number.
     Signal(u8),
+    /// Nobody's: a question could not be decided. Exit status 3.
+    Undecided,
     /// The machine's, or ours: files that cannot be written, a result that is wrong. Exit status 1.
     Run,
     /// The input's: arguments that make no sense, a scene with errors. Exit status 2.
@@ -65,6 +67,11 @@ impl Failure {
         Self { problems: vec![(Blame::Input, report.into())] }
     }
 
+    /// A question that could not be decided.
+    pub(crate) fn undecided(report: impl Into<Report>) -> Self {
+        Self { problems: vec![(Blame::Undecided, report.into())] }
+    }
+
     /// An end by a signal.
     pub(crate) fn signal(number: u8, report: impl Into<Report>) -> Self {
         Self { problems: vec![(Blame::Signal(number), report.into())] }
@@ -96,6 +103,7 @@ impl Failure {
         match self.problems.iter().map(|(blame, _)| *blame).max() {
             None => ExitCode::SUCCESS,
             Some(Blame::Signal(number)) => ExitCode::from(128 | number),
+            Some(Blame::Undecided) => ExitCode::from(3),
             Some(Blame::Run) => ExitCode::from(1),
             Some(Blame::Input) => ExitCode::from(2),
         }

@@ -1,6 +1,7 @@
 //! The program `etalon`.
 //!
-//! Exit status: 0 done, 1 failed, 2 bad usage or a bad scene, 130 ended by SIGINT and 143 by SIGTERM.
+//! Exit status: 0 done, 1 failed, 2 bad usage or a bad scene, 3 a comparison that could not be decided, 130 ended by SIGINT and
+//! 143 by SIGTERM.
 
 mod args;
 mod channels;

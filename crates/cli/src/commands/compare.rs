@@ -13,7 +13,10 @@ use serde::Serialize;
 use crate::failure::{Failure, Outcome};
 use crate::print;
 
-/// Compares two EXR pictures; exit status 1 if they differ by more than their noise explains.
+/// Compares two EXR pictures.
+///
+/// Exit status 1 if they differ by more than their noise explains, or if a value is not finite; 3 if that could not be tested
+/// everywhere, because errors are not known.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// A picture.
@@ -56,6 +59,28 @@ struct Test {
     channels: Vec<tiles::Channel>,
 }
 
+/// What the comparison comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Verdict {
+    /// All values are equal.
+    Equal,
+    /// No difference beyond the noise.
+    WithinNoise,
+    /// A difference beyond the noise, or a value that is not finite.
+    Differ,
+    /// There are differences, and at least one tile's errors are not known.
+    Untested,
+}
+
+/// Pixels with a value that is not finite in either picture.
+#[derive(Serialize)]
+struct NonFinite {
+    pixels: usize,
+    /// Column and row of the first.
+    first: [usize; 2],
+}
+
 #[derive(Serialize)]
 struct Comparison {
     image: String,
@@ -65,6 +90,9 @@ struct Comparison {
     rmse: f64,
     rel_mse: f64,
     flip: f64,
+    verdict: Verdict,
+    /// `null` where all values are finite.
+    non_finite: Option<NonFinite>,
     /// `null` where a picture does not know its errors.
     test: Option<Test>,
     /// Why there is no test, or why it must not be believed.
@@ -82,6 +110,8 @@ pub(crate) fn run(args: Args) -> Outcome {
     let scale = args.exposure.exp2();
     let map = flip(&image.picture, &reference.picture, scale, PIXELS_PER_DEGREE).map_err(input)?;
     let (test, note) = test(&args, &image, &reference);
+    let non_finite = non_finite(&image, &reference);
+    let verdict = verdict(test.as_ref(), non_finite.is_some(), metrics.rmse == 0.0);
     let comparison = Comparison {
         image: args.image.display().to_string(),
         reference: args.reference.display().to_string(),
@@ -90,6 +120,8 @@ pub(crate) fn run(args: Args) -> Outcome {
         rmse: metrics.rmse,
         rel_mse: metrics.rel_mse,
         flip: map.iter().sum::<f64>() / map.len() as f64,
+        verdict,
+        non_finite,
         test,
         note,
     };
@@ -101,13 +133,44 @@ pub(crate) fn run(args: Args) -> Outcome {
     } else {
         print::line(&describe(&comparison));
     }
-    match &comparison.test {
-        Some(test) if test.differ => Err(Failure::run(miette!(
+    match (verdict, &comparison.non_finite) {
+        (Verdict::Equal | Verdict::WithinNoise, _) => Ok(()),
+        (Verdict::Differ, Some(_)) => {
+            Err(Failure::run(miette!(code = "pictures-differ", "the pictures have values that are not finite")))
+        }
+        (Verdict::Differ, None) => Err(Failure::run(miette!(
             code = "pictures-differ",
             "the pictures differ by more than their noise explains"
         ))),
-        _ => Ok(()),
+        (Verdict::Untested, _) => Err(Failure::undecided(miette!(
+            code = "not-tested",
+            help = "render both pictures with at least two replicates, and with a sample in each",
+            "the pictures are not equal, and their errors are not known everywhere: the difference may be noise or not"
+        ))),
     }
+}
+
+fn verdict(test: Option<&Test>, non_finite: bool, equal: bool) -> Verdict {
+    let tested = test.is_some_and(|test| test.channels.iter().all(|channel| channel.untested_tiles == 0));
+    if non_finite || test.is_some_and(|test| test.differ) {
+        Verdict::Differ
+    } else if equal {
+        Verdict::Equal
+    } else if tested {
+        Verdict::WithinNoise
+    } else {
+        Verdict::Untested
+    }
+}
+
+/// Where the values of one of the compared channels are not finite.
+fn non_finite(image: &ExrFile, reference: &ExrFile) -> Option<NonFinite> {
+    let channels = || [image, reference].into_iter().flat_map(|file| CHANNELS.map(|name| file.picture.channel(name)));
+    let (width, height) = (image.picture.width(), image.picture.height());
+    let wrong = |pixel: &usize| channels().flatten().any(|values| !values[*pixel].is_finite());
+    let mut pixels = (0..width * height).filter(wrong);
+    let first = pixels.next()?;
+    Some(NonFinite { pixels: 1 + pixels.count(), first: [first % width, first / width] })
 }
 
 fn test(args: &Args, image: &ExrFile, reference: &ExrFile) -> (Option<Test>, Option<String>) {
@@ -138,6 +201,11 @@ fn describe(comparison: &Comparison) -> String {
     let mut text = format!(
         "{width} × {height} pixels: RMSE {rmse:.6e}, relative MSE {rel_mse:.6e}, FLIP {flip:.6} (0 looks alike, 1 does not)"
     );
+    if let Some(NonFinite { pixels, first: [x, y] }) = comparison.non_finite {
+        text.push_str(&format!(
+            "\n  {pixels} pixels have values that are not finite, the first in column {x}, row {y}"
+        ));
+    }
     if let Some(test) = &comparison.test {
         for channel in &test.channels {
             text.push_str(&format!("\n  {}: ", channel.channel));
@@ -158,12 +226,17 @@ fn describe(comparison: &Comparison) -> String {
                 text.push_str(&format!("; {} tiles without known errors", channel.untested_tiles));
             }
         }
-        let verdict = if test.differ { "they differ beyond their noise" } else { "no difference beyond their noise" };
         text.push_str(&format!(
-            "\n  {verdict} (pictures of the same thing are called different with probability {})",
+            "\n  pictures of the same thing are called different with probability {}",
             test.significance
         ));
     }
+    text.push_str(match comparison.verdict {
+        Verdict::Equal => "\n  all values are equal",
+        Verdict::WithinNoise => "\n  no difference beyond their noise",
+        Verdict::Differ => "\n  they differ beyond their noise",
+        Verdict::Untested => "\n  not tested: some errors are not known",
+    });
     if let Some(note) = &comparison.note {
         text.push_str(&format!("\n  {note}"));
     }

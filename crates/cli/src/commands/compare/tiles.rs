@@ -56,7 +56,7 @@ pub(super) struct Tile {
     pub crop: [usize; 4],
     /// Mean of the first and of the second picture.
     pub means: [f64; 2],
-    /// Difference over its standard error.
+    /// Difference over its standard error; infinite where a value is not finite.
     pub t: f64,
     /// Two-sided p-value.
     pub p: f64,
@@ -120,7 +120,7 @@ pub(super) fn test(channel: &str, a: &Measured<'_>, b: &Measured<'_>, width: usi
     }
 }
 
-/// `None` where a value is not finite or an error not known.
+/// `None` where an error is not known. A value that is not finite equals nothing: its tile differs with certainty.
 fn welch(a: &Measured<'_>, b: &Measured<'_>, pixels: &[usize], crop: [usize; 4]) -> Option<Tile> {
     let sum = |values: &[f32]| pixels.iter().map(|&pixel| f64::from(values[pixel])).sum::<f64>();
     let rounding: f64 = pixels
@@ -130,7 +130,11 @@ fn welch(a: &Measured<'_>, b: &Measured<'_>, pixels: &[usize], crop: [usize; 4])
     let (sum_a, sum_b) = (sum(a.values), sum(b.values));
     let ((variance_a, squares_a), (variance_b, squares_b)) = (a.spread(pixels), b.spread(pixels));
     let variance = variance_a + variance_b;
-    if !(sum_a.is_finite() && sum_b.is_finite() && variance.is_finite()) {
+    let n = pixels.len() as f64;
+    if !(sum_a.is_finite() && sum_b.is_finite()) {
+        return Some(Tile { crop, means: [sum_a / n, sum_b / n], t: f64::INFINITY, p: 0.0, noisy: false });
+    }
+    if !variance.is_finite() {
         return None;
     }
     let difference = sum_a - sum_b;
@@ -143,7 +147,6 @@ fn welch(a: &Measured<'_>, b: &Measured<'_>, pixels: &[usize], crop: [usize; 4])
     } else {
         student_two_sided_tail(t, freedom([a, b], variance, squares_a + squares_b))
     };
-    let n = pixels.len() as f64;
     Some(Tile { crop, means: [sum_a / n, sum_b / n], t, p, noisy: variance > 0.0 })
 }
 
@@ -280,5 +283,22 @@ mod tests {
         let unknown = vec![f32::INFINITY; 256];
         let outcome = test("R", &measured(&a, &unknown), &measured(&far, &exact), 16, 16);
         assert_eq!((outcome.tiles, outcome.untested_tiles, outcome.p()), (0, 1, 1.0));
+    }
+
+    /// Whatever its error is said to be, also in both pictures alike.
+    #[test]
+    fn a_value_that_is_not_finite_differs_from_all_values() {
+        let plain = vec![0.1_f32; 256];
+        for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let with = (0..256).map(|pixel| if pixel == 77 { value } else { 0.1 }).collect::<Vec<_>>();
+            for error in [0.0, 0.1, f32::INFINITY, f32::NAN] {
+                let errors = vec![error; 256];
+                let measured = |values| Measured { values, errors: &errors, freedom: Some(3.0), correlated: 1.0 };
+                for (a, b) in [(&with, &plain), (&plain, &with), (&with, &with)] {
+                    let outcome = test("R", &measured(a), &measured(b), 16, 16);
+                    assert_eq!((outcome.untested_tiles, outcome.p()), (0, 0.0), "{value} ± {error}");
+                }
+            }
+        }
     }
 }
