@@ -156,6 +156,44 @@ fn parts_merge_to_the_bytes_of_the_whole_and_wrong_ones_are_refused_by_name() {
     etalon_line("merge {} {} -o {}", [&a, &c, &none]).expect(2).says(["share 2/3", "missing"]);
 }
 
+/// A file of sums as another build of this version would have written it.
+fn of_another_build(from: &Path, to: &Path) {
+    use sha2::{Digest, Sha256};
+    let bytes = fs::read(from).unwrap();
+    let length = u32::from_le_bytes(bytes[8..12].try_into().unwrap()) as usize;
+    let (header, rest) = bytes[12..].split_at(length);
+    let mut header: serde_json::Value = serde_json::from_slice(header).unwrap();
+    let sources = header["subject"]["sources_sha256"].take();
+    assert_eq!(sources, etalon_transport::SOURCES_SHA256);
+    header["subject"]["sources_sha256"] = "another".into();
+    let header = serde_json::to_vec(&header).unwrap();
+    let mut changed = bytes[..8].to_vec();
+    changed.extend(u32::try_from(header.len()).unwrap().to_le_bytes());
+    changed.extend(header);
+    changed.extend(&rest[..rest.len() - 32]);
+    let hash = Sha256::digest(&changed);
+    changed.extend(hash);
+    fs::write(to, changed).unwrap();
+}
+
+#[test]
+fn parts_and_checkpoints_of_another_build_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let [one, two, other] = ["1.part", "2.part", "other.part"].map(|name| folder.path().join(name));
+    let (size, cornell) = ("--size 64x48 --spp 4 --quiet", scene("cornell.json"));
+    for (k, part) in [(1, &one), (2, &two)] {
+        etalon_line(&format!("render {{}} -o {{}} {size} --shard {k}/2"), [&cornell, part]).expect(0);
+    }
+    of_another_build(&two, &other);
+    let exr = folder.path().join("x.exr");
+    let ran = etalon_line("merge {} {} -o {}", [&one, &other, &exr]).expect(2);
+    ran.says(["other.part", "sources of the program", "another", etalon_transport::SOURCES_SHA256]);
+    etalon_line("merge {} {} -o {} --quiet", [&one, &two, &exr]).expect(0);
+    of_another_build(&one, &folder.path().join("1.part.checkpoint"));
+    let line = format!("render {{}} -o {{}} {size} --shard 1/2 --resume");
+    etalon_line(&line, [&cornell, &one]).expect(2).says(["cannot be resumed", "sources of the program"]);
+}
+
 #[test]
 fn a_share_is_useful_by_itself_and_says_that_it_is_one() {
     let folder = tempfile::tempdir().unwrap();

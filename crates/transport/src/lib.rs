@@ -24,6 +24,10 @@
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
 //! into stages can change a film.
 
+/// SHA-256, in hex, of all that decides a film beside the scene: the sources of this crate and of those of ours that it uses, and the
+/// locked versions of the other packages. It is the same on every platform.
+pub const SOURCES_SHA256: &str = env!("ETALON_SOURCES_SHA256");
+
 mod absorption;
 pub mod accuracy;
 pub mod adaptive;

@@ -13,7 +13,7 @@ use super::Subject;
 use crate::channels::Channels;
 use crate::commands::render::Adaptive;
 
-const MAGIC: [u8; 8] = *b"ETALON\0\x02";
+const MAGIC: [u8; 8] = *b"ETALON\0\x03";
 /// A header is a page of JSON and, with shares, a number for each region; a file that claims more is damaged.
 const LARGEST_HEADER: u32 = 1 << 28;
 /// The most a tile's own JSON can have: sixteen places of samples that were not finite, and a dozen numbers.

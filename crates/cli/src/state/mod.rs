@@ -1,7 +1,7 @@
 //! Pictures under way in files: checkpoints, and the parts of a picture that several machines share.
 //!
 //! ```text
-//! magic  8 bytes   "ETALON\0\2", the last byte is the version
+//! magic  8 bytes   "ETALON\0\3", the last byte is the version
 //! header u32 n, n bytes of JSON: see `Header`
 //! tiles  each: u32 n (> 0), n bytes of JSON (its pixels, its samples, what was counted), u32 m, m bytes of sums
 //! end    u32 0, SHA-256 of all bytes before

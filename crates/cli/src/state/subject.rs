@@ -12,6 +12,8 @@ use std::collections::BTreeMap;
 pub(crate) struct Subject {
     /// Program and version: another version may trace other paths.
     pub software: String,
+    /// SHA-256 of the sources of the program: two builds of one version may trace other paths, too.
+    pub sources_sha256: String,
     /// SHA-256 of the scene and of all files that it refers to.
     pub scene_sha256: String,
     /// Width and height of the frame, pixels.
@@ -79,6 +81,7 @@ impl Subject {
         let scene = prepared.scene();
         Self {
             software: SOFTWARE.to_owned(),
+            sources_sha256: etalon_transport::SOURCES_SHA256.to_owned(),
             scene_sha256: scene_sha256.to_owned(),
             size: [scene.film.width, scene.film.height],
             crop,
@@ -130,7 +133,17 @@ impl Subject {
             let mut value = serde_json::to_value(subject).expect("plain data");
             let plan = value["plan"].take().as_object().cloned().unwrap_or_default();
             // A picture of another size has another crop too, and another seed is no surprise where the scene is another.
-            let first = ["software", "scene_sha256", "size", "crop", "seed", "replicates", "bands", "casters"];
+            let first = [
+                "software",
+                "sources_sha256",
+                "scene_sha256",
+                "size",
+                "crop",
+                "seed",
+                "replicates",
+                "bands",
+                "casters",
+            ];
             let first: Vec<_> = first.iter().map(|&key| (key.to_owned(), value[key].take())).collect();
             first.into_iter().chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value))).collect()
         };
@@ -138,6 +151,7 @@ impl Subject {
             (parts(self), parts(other).into_iter().collect());
         let name = |key: &str| match key {
             "software" => "the program that rendered it".to_owned(),
+            "sources_sha256" => "the SHA-256 of the sources of the program that rendered it".to_owned(),
             "scene_sha256" => "the SHA-256 of its scene".to_owned(),
             "size" => "its size".to_owned(),
             "crop" => "its crop".to_owned(),
@@ -165,6 +179,7 @@ mod tests {
     fn the_first_difference_is_named() {
         let subject = Subject {
             software: SOFTWARE.to_owned(),
+            sources_sha256: "01".to_owned(),
             scene_sha256: "ab".to_owned(),
             size: [4, 3],
             crop: PixelRect { x0: 0, y0: 0, x1: 4, y1: 3 },
@@ -188,6 +203,10 @@ mod tests {
             "its directions are drawn toward other casters (see `etalon explain`)"
         );
         assert_eq!(with(&|s| s.scene_sha256 = "cd".to_owned()), "the SHA-256 of its scene is \"ab\", not \"cd\"");
+        assert_eq!(
+            with(&|s| s.sources_sha256 = "02".to_owned()),
+            "the SHA-256 of the sources of the program that rendered it is \"01\", not \"02\""
+        );
         assert_eq!(
             with(&|s| s.plan["sampler"] = "independent".into()),
             "its sampler is \"sobol\", not \"independent\""
