@@ -146,3 +146,24 @@ fn a_size_from_the_command_line_is_the_size_in_the_file() {
     let said = pixels_of(serde_json::json!({ "width": 24, "height": 36 }), "");
     assert_eq!(pixels_of(serde_json::json!({ "width": 40, "height": 10 }), "--size 24x36"), said);
 }
+
+#[test]
+fn more_solids_in_one_place_than_are_tracked_are_warned_of_with_the_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, output) = (folder.path().join("onion.json"), folder.path().join("x.exr"));
+    let shells = |count: u32| {
+        changed_scene("furnace.json", &file, |scene| {
+            let shell = |k: u32| {
+                serde_json::json!({
+                    "shape": { "type": "sphere", "radius_m": 1.0 - 0.01 * f64::from(k) },
+                    "material": { "type": "dielectric", "interior": 1.0 + 0.01 * f64::from(k), "priority": k }
+                })
+            };
+            scene["objects"] = (1..=count).map(shell).collect();
+        });
+        etalon_line("render {} -o {} --size 16x12 --spp 4", [&file, &output]).expect(0).stderr
+    };
+    assert!(!shells(16).contains("lost-media"));
+    let said = shells(17);
+    assert!(said.contains("lost-media") && said.contains("more than 16 solids at once"), "{said}");
+}

@@ -79,6 +79,7 @@ pub use adaptive::{Adaptivity, Exploration};
 pub use canvas::{Canvas, Shard, Tile};
 pub use features::Features;
 pub use film::{Band, Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
+pub use media::DEPTH as MOST_SOLIDS_AT_ONCE;
 pub use pilot::Pilot;
 pub use plan::{Carried, Effect, EffectName, PathLoop, Plan, Study, StudyError};
 pub use prepare::{PrepareError, Prepared, prepare, prepare_study};

@@ -19,7 +19,7 @@ use std::collections::HashMap;
 static VACUUM: RefractiveIndex = RefractiveIndex::VACUUM;
 
 /// Solids that a path can be in at once; more are counted as lost.
-const DEPTH: usize = 16;
+pub const DEPTH: usize = 16;
 
 /// A solid that carries a priority.
 #[derive(Clone, Debug)]

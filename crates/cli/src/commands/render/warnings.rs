@@ -1,6 +1,6 @@
 //! What a picture does not show: light that is missing from it.
 
-use etalon_transport::Counters;
+use etalon_transport::{Counters, MOST_SOLIDS_AT_ONCE};
 use miette::{Report, miette};
 
 use super::Args;
@@ -53,8 +53,12 @@ fn lost_media(counters: &Counters) -> Option<Report> {
         miette!(
             severity = miette::Severity::Warning,
             code = "lost-media",
-            help = "solids with a priority must be closed, and their normals point outward",
-            "{} times a path left a solid that it had not entered, or entered too many ({} paths in all)",
+            help = format!(
+                "solids with a priority must be closed, their normals must point outward, and at most {MOST_SOLIDS_AT_ONCE} of them \
+                 may overlap in one place"
+            ),
+            "{} times a path left a solid that it had not entered, or was in more than {MOST_SOLIDS_AT_ONCE} solids at once \
+             ({} paths in all)",
             counters.lost_media,
             counters.paths
         )
