@@ -3,7 +3,7 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use crate::support::{command, entries, etalon_line, scene, words};
+use crate::support::{command, ends, entries, etalon_line, etalon_that_ends, scene, words};
 
 /// A render that would take minutes, so that a test that waits for it fails by its time.
 const LONG: &str = "--spp 1000000 --size 256x256 --threads 1";
@@ -76,4 +76,71 @@ fn a_render_that_is_killed_leaves_nothing_under_the_outputs_name() {
     child.wait().unwrap();
     assert_eq!(entries(folder.path()), ["old.png"]);
     assert_eq!(fs::read_to_string(&old).unwrap(), "the picture of yesterday");
+}
+
+#[test]
+#[cfg(unix)]
+fn named_pipes_are_refused_and_nothing_waits_for_their_other_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let cornell = scene("cornell.json");
+    let pipe = |name: &str| {
+        let path = folder.path().join(name);
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+        path
+    };
+    let (exr, png, part) = (pipe("x.exr"), pipe("x.png"), pipe("x.part"));
+    let (json, glb, checkpoint) = (pipe("x.json"), pipe("x.glb"), pipe("y.exr.checkpoint"));
+    let output = folder.path().join("y.exr");
+    for path in [&exr, &png, &part] {
+        let line = "render {} -o {} --spp 1 --size 16x12";
+        etalon_that_ends(line, [&cornell, path]).expect(1).says(["named pipe"]);
+    }
+    let model = folder.path().join("model.obj");
+    fs::write(&model, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    etalon_that_ends("farm {} --shards 2 --slurm -o {}", [&cornell, &json]).expect(1).says(["named pipe"]);
+    etalon_that_ends("import {} -o {}", [&model, &json]).expect(1).says(["named pipe"]);
+    etalon_that_ends("explain {}", [&json]).expect(2).says(["not a plain file"]);
+    for (line, paths, status) in [
+        ("render {} -o {}", [&json, &output], 2),
+        ("render {} -o {}", [&glb, &output], 2),
+        ("whitted {} -o {}", [&json, &output], 2),
+        ("compare {} {}", [&exr, &exr], 2),
+        ("merge {} -o {}", [&part, &output], 2),
+    ] {
+        let ran = etalon_that_ends(line, paths.map(|path| path.as_path()));
+        assert_eq!(ran.status, status, "{line}: {}", ran.stderr);
+        assert!(ran.stderr.contains("not a plain file"), "{line}: {}", ran.stderr);
+    }
+    let line = "render {} -o {} --spp 1 --size 16x12 --resume";
+    let ran = etalon_that_ends(line, [&cornell, &output]).expect(1);
+    assert!(ran.stderr.contains(checkpoint.to_str().unwrap()), "{}", ran.stderr);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_render_that_nobody_listens_to_any_more_is_finished() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("x.exr");
+    let line = "render {} -o {} --spp 64 --size 64x48 --progress openjd";
+    let mut child = command(words(line, [&scene("cornell.json"), &output])).spawn().unwrap();
+    drop(child.stdout.take());
+    let ended = child.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(0), "{}", String::from_utf8_lossy(&ended.stderr));
+    assert_eq!(entries(folder.path()), ["x.exr"]);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_picture_that_the_limits_of_the_process_do_not_hold_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    // Some 3.2 GB, of which the limits leave 0.6 GB; the machine itself may have them.
+    let line =
+        words("render {} -o {} --size 5000x4000 --spp 1", [&scene("cornell.json"), &folder.path().join("x.exr")]);
+    for limit in ["-v", "-d"] {
+        let mut limited = std::process::Command::new("sh");
+        let program = env!("CARGO_BIN_EXE_etalon");
+        limited.args(["-c", &format!("ulimit {limit} 600000 && exec \"$@\""), "sh", program]).args(&line);
+        limited.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped());
+        ends(limited).expect(2).says(["of memory, and", "too-large"]);
+    }
 }

@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
 use etalon_picture::{ExrFile, read_exr};
 use serde_json::Value;
@@ -68,6 +69,32 @@ pub(crate) fn etalon<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) ->
 #[track_caller]
 pub(crate) fn etalon_line<const N: usize>(line: &str, paths: [&Path; N]) -> Ran {
     etalon(words(line, paths))
+}
+
+/// Runs the program to its end, which it must reach within half a minute whatever the machine.
+#[track_caller]
+pub(crate) fn etalon_that_ends<const N: usize>(line: &str, paths: [&Path; N]) -> Ran {
+    ends(command(words(line, paths)))
+}
+
+/// Runs a command to its end, which it must reach within half a minute whatever the machine.
+#[track_caller]
+pub(crate) fn ends(mut command: Command) -> Ran {
+    let mut child = command.spawn().expect("the program starts");
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > Duration::from_secs(30) {
+            child.kill().unwrap();
+            panic!("it does not end: {command:?}");
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let output = child.wait_with_output().unwrap();
+    Ran {
+        status: output.status.code().expect("the program ends by itself"),
+        stdout: String::from_utf8(output.stdout).expect("standard output is UTF-8"),
+        stderr: String::from_utf8(output.stderr).expect("standard error is UTF-8"),
+    }
 }
 
 /// Sends a signal, `INT` or `TERM`.

@@ -44,6 +44,8 @@ fn values_out_of_range_exit_2_and_name_their_option() {
         ("--precision", "f16"),
         ("--sampler", "halton"),
         ("--max-depth", "0"),
+        ("--checkpoint", "20000000000000000000s"),
+        ("--time", "99999999999h"),
     ] {
         let ran =
             etalon_line(&format!("render {{}} -o x.exr --quiet {option}={value}"), [&scene("cornell.json")]).expect(2);

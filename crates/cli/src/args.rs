@@ -7,6 +7,9 @@ use etalon_transport::{PixelRect, Shard};
 /// Largest side of a picture, pixels.
 const LARGEST_SIDE: u32 = 65_536;
 
+/// Longest time, s: some thirty years, which every clock and timer can count.
+const LONGEST_SECONDS: f64 = 1e9;
+
 /// `WxH`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Size {
@@ -135,7 +138,11 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
         total += unit * number;
         rest = rest.get(1..).unwrap_or("").trim_start();
     }
-    if total > 0.0 && f64::is_finite(total) { Ok(total) } else { Err(bad()) }
+    match total {
+        _ if total > LONGEST_SECONDS => Err(format!("a time of at most {LONGEST_SECONDS:e} s")),
+        _ if total > 0.0 => Ok(total),
+        _ => Err(bad()),
+    }
 }
 
 fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
@@ -165,6 +172,10 @@ mod tests {
         }
         for (text, expected) in [("90", 90.0), ("90s", 90.0), ("1.5m", 90.0), ("1h30m", 5400.0), ("2h 5s", 7205.0)] {
             assert_eq!(seconds(text), Ok(expected), "{text}");
+        }
+        assert_eq!(seconds("1000000000s"), Ok(1e9));
+        for text in ["1000000001s", "20000000000000000000s", &format!("{}h", "9".repeat(400))] {
+            assert!(seconds(text).unwrap_err().contains("at most"), "{text}");
         }
         for text in ["", "s", "0s", "1d", "-3s", "1m!", "5é"] {
             assert!(seconds(text).is_err(), "{text}");

@@ -1,28 +1,41 @@
 //! What a machine has left: memory and room on a disk, asked before the work.
 
+mod control_groups;
+
 use std::path::Path;
 
-/// Bytes of memory that this process may still have: what the system says is available, and what a control group leaves.
-#[cfg(target_os = "linux")]
+/// Bytes of memory that this process may still have: the least of what the system says is available, what its control groups leave, and
+/// what its own limit on data leaves (`ulimit -d`). Not known but on Linux.
 pub(crate) fn memory_available() -> Option<u64> {
-    let read = |path: &str| std::fs::read_to_string(path).ok();
-    let line = |text: String, name: &str| {
-        let line =
-            text.lines().find_map(|line| line.strip_prefix(name))?.trim().trim_end_matches("kB").trim().to_owned();
-        line.parse::<u64>().ok()
-    };
-    let system = read("/proc/meminfo").and_then(|text| line(text, "MemAvailable:")).map(|kb| kb * 1024);
-    // "max" where there is no limit, which is no number.
-    let number = |path: &str| read(path).and_then(|text| text.trim().parse::<u64>().ok());
-    let group = number("/sys/fs/cgroup/memory.max")
-        .map(|most| most.saturating_sub(number("/sys/fs/cgroup/memory.current").unwrap_or(0)));
-    system.into_iter().chain(group).min()
+    let system = kibibytes("/proc/meminfo", "MemAvailable:");
+    let groups = text("/proc/self/cgroup").zip(text("/proc/self/mountinfo"));
+    let group = groups.and_then(|(groups, mounts)| control_groups::memory_left(&groups, &mounts, |path| text(path)));
+    system.into_iter().chain(left_of("Max data size", "VmData:")).chain(group).min()
 }
 
-/// Not known on other systems.
-#[cfg(not(target_os = "linux"))]
-pub(crate) fn memory_available() -> Option<u64> {
-    None
+/// Bytes that the process's own limit on its address space leaves (`ulimit -v`); `None` without such a limit.
+pub(crate) fn address_space_left() -> Option<u64> {
+    left_of("Max address space", "VmSize:")
+}
+
+/// What a limit of the process leaves beside what it uses, bytes.
+fn left_of(limit: &str, used: &str) -> Option<u64> {
+    let limits = text("/proc/self/limits")?;
+    // The word "unlimited" is no number.
+    let line = limits.lines().find_map(|line| line.strip_prefix(limit))?;
+    let most: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(most.saturating_sub(kibibytes("/proc/self/status", used).unwrap_or(0)))
+}
+
+/// The bytes of a line `name 12 kB`.
+fn kibibytes(path: &str, name: &str) -> Option<u64> {
+    let text = text(path)?;
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    Some(line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()? * 1024)
+}
+
+fn text(path: impl AsRef<Path>) -> Option<String> {
+    std::fs::read_to_string(path).ok()
 }
 
 /// Bytes that may still be written where this file is to be, if the system tells.

@@ -21,6 +21,11 @@ pub(crate) fn line(text: &str) {
     }
 }
 
+/// Prints a line on standard output for whoever reads it; false if nobody can.
+pub(crate) fn line_if_read(text: &str) -> bool {
+    writeln!(std::io::stdout().lock(), "{text}").is_ok()
+}
+
 /// Prints a line on standard error.
 pub(crate) fn note(text: &str) {
     // Where standard error has gone there is nobody left to tell.

@@ -11,8 +11,8 @@ use crate::PictureError;
 /// killed or the machine stops: the content goes to a temporary file in the same folder, is flushed to the disk, and
 /// takes the name by a rename. After an error nothing is left behind.
 ///
-/// A symbolic link is followed, not replaced. What is neither a file nor a folder (a pipe, `/dev/null`) cannot be
-/// renamed over and is written directly.
+/// A symbolic link is followed, not replaced. A device such as `/dev/null` cannot be renamed over and is written directly. A
+/// named pipe is refused: opening it would wait until somebody reads from it.
 ///
 /// # Errors
 /// [`PictureError::Io`] (also for an error that `content` returns), [`PictureError::NoFolder`],
@@ -114,11 +114,25 @@ fn target(path: &Path) -> Result<Target, PictureError> {
     }
     let stream = match fs::metadata(&file) {
         Ok(metadata) if metadata.is_dir() => return Err(PictureError::IsFolder { path: path.to_owned() }),
+        Ok(metadata) if is_pipe(&metadata) => {
+            let why = io::Error::new(io::ErrorKind::InvalidInput, "it is a named pipe, not a plain file");
+            return Err(PictureError::io("write", path, why));
+        }
         Ok(metadata) => !metadata.is_file(),
         Err(error) if error.kind() == io::ErrorKind::NotFound => false,
         Err(error) => return Err(PictureError::io("write", path, error)),
     };
     Ok(Target { file, folder, stream })
+}
+
+#[cfg(unix)]
+fn is_pipe(metadata: &fs::Metadata) -> bool {
+    std::os::unix::fs::FileTypeExt::is_fifo(&metadata.file_type())
+}
+
+#[cfg(not(unix))]
+fn is_pipe(_: &fs::Metadata) -> bool {
+    false
 }
 
 fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
@@ -267,6 +281,24 @@ mod tests {
             check_writable(null).unwrap();
             write_atomically(null, |out| out.write_all(b"gone")).unwrap();
             assert!(!fs::metadata(null).unwrap().is_file());
+        }
+
+        #[test]
+        fn a_named_pipe_is_refused_for_reading_and_writing_and_nothing_waits_for_its_other_end() {
+            let folder = tempfile::tempdir().unwrap();
+            let (pipe, link) = (folder.path().join("pipe"), folder.path().join("link"));
+            assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+            symlink("pipe", &link).unwrap();
+            for path in [&pipe, &link] {
+                for error in [check_writable(path).unwrap_err(), write_atomically(path, |_| Ok(())).unwrap_err()] {
+                    assert!(error.with_causes().contains("named pipe"), "{}", error.with_causes());
+                }
+                for error in
+                    [crate::read_plain(path).unwrap_err(), crate::open_plain(Path::new("/dev/zero")).unwrap_err()]
+                {
+                    assert_eq!(error.to_string(), "it is a pipe or a device, not a plain file");
+                }
+            }
         }
 
         #[test]

@@ -25,7 +25,7 @@ pub struct ExrFile {
 /// A file that cannot be opened or is no EXR file that we can read (deep or subsampled channels), or says that it holds more than
 /// [`most_exr_bytes`](crate::most_exr_bytes).
 pub fn read_exr(path: &Path) -> Result<ExrFile, PictureError> {
-    let bytes = std::fs::read(path).map_err(|source| PictureError::io("read", path, source))?;
+    let bytes = crate::read_plain(path).map_err(|source| PictureError::io("read", path, source))?;
     decode_exr(&bytes, path)
 }
 

@@ -21,6 +21,7 @@ mod exr_write;
 mod flip;
 mod metrics;
 mod picture;
+mod plain_file;
 mod png_file;
 mod srgb;
 
@@ -34,5 +35,6 @@ pub use exr_write::{encode_exr, write_exr};
 pub use flip::{PIXELS_PER_DEGREE, flip};
 pub use metrics::{Metrics, RELMSE_FLOOR, compare, rel_mse, rmse};
 pub use picture::{Channel, Picture, Sample, Window};
+pub use plain_file::{open_plain, read_plain};
 pub use png_file::{Rgb8, read_png, read_png8, write_png};
 pub use srgb::{Clipping, decode_srgb, encode_srgb, encode_srgb8};

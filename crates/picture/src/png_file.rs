@@ -91,7 +91,7 @@ pub fn read_png8(path: &Path) -> Result<Rgb8, PictureError> {
 }
 
 fn decode(path: &Path) -> Result<DynamicImage, PictureError> {
-    let bytes = std::fs::read(path).map_err(|source| PictureError::io("read", path, source))?;
+    let bytes = crate::read_plain(path).map_err(|source| PictureError::io("read", path, source))?;
     let read = || {
         let mut decoder = image::codecs::png::PngDecoder::new(BufReader::new(Cursor::new(bytes)))?;
         // A header that promises more than 16 GiB is taken for a lie before memory is asked for.

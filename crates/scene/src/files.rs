@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -189,11 +188,8 @@ impl Files {
 
 /// The bytes of a file of at most [`MAX_FILE_BYTES`].
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
+    let file = etalon_picture::open_plain(path).map_err(|error| error.to_string())?;
     let kind = file.metadata().map_err(|error| error.to_string())?;
-    if !kind.is_file() {
-        return Err("it is not a plain file".to_owned());
-    }
     if kind.len() > MAX_FILE_BYTES {
         return Err(format!("it has {} bytes, and {MAX_FILE_BYTES} is the most that is read", kind.len()));
     }

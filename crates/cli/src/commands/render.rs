@@ -237,7 +237,8 @@ fn render(args: &Args) -> Result<(), Stop> {
     if args.json {
         print::json(&report::json(args, &job, &done, &written, &failure));
     } else if !args.quiet && begun {
-        print::line(&report::summary(&job, &done, &written));
+        // The picture is written, whether anybody reads about it or not.
+        print::line_if_read(&report::summary(&job, &done, &written));
     }
     failure.into_outcome().map_err(Stop::Reported)
 }

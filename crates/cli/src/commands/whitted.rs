@@ -129,7 +129,7 @@ fn load(args: &Args) -> Result<(Scene, Vec<Report>), Failure> {
     let name = args.scene.display().to_string();
     let unreadable =
         |error: Report| Failure::input(error.wrap_err(format!("cannot read the scene `{}`", args.scene.display())));
-    let bytes = std::fs::read(&args.scene).map_err(|error| unreadable(Report::from_err(error)))?;
+    let bytes = etalon_picture::read_plain(&args.scene).map_err(|error| unreadable(Report::from_err(error)))?;
     let text = String::from_utf8(bytes).map_err(|error| unreadable(Report::from_err(error.utf8_error())))?;
     let (mut scene, warnings) = format::parse(&text, &name).map_err(scene_failure)?;
     if let Some(lens_radius) = args.lens_radius {

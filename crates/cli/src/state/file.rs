@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
-use etalon_picture::{PictureError, write_atomically};
+use etalon_picture::{PictureError, open_plain, write_atomically};
 use etalon_transport::{Canvas, Features, Shard, Tile, TileSums};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -121,7 +121,7 @@ pub(crate) fn write(
 
 /// Reads a file and checks it as a whole.
 pub(crate) fn read(path: &Path) -> Result<Kept, StateError> {
-    let file = File::open(path).map_err(|source| StateError::Io { path: path.to_owned(), source })?;
+    let file = open_plain(path).map_err(|source| StateError::Io { path: path.to_owned(), source })?;
     let mut input = Input { input: BufReader::new(file), hash: Sha256::new(), path };
     let mut magic = [0; 8];
     match input.take(&mut magic) {

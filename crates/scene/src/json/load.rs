@@ -1,6 +1,5 @@
 //! Reading the text of a file.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -14,8 +13,8 @@ use crate::problem::LoadError;
 pub fn load_text(path: &Path) -> Result<String, LoadError> {
     let io = |source| LoadError::Io { path: path.to_owned(), source };
     let mut bytes = Vec::new();
-    // One byte more than is allowed tells a file that is too large, also a pipe or a growing one.
-    File::open(path).map_err(io)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(io)?;
+    // One byte more than is allowed tells a file that is too large, also a growing one.
+    etalon_picture::open_plain(path).map_err(io)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(io)?;
     let refuse = |text: String, code: Code, at: Span, line: usize, column: usize, message: String| {
         LoadError::Invalid(SceneErrors {
             file_name: path.display().to_string(),

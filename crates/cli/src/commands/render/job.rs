@@ -42,7 +42,8 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
         failure.add(wrong);
         return Err(failure);
     }
-    room::check_memory(&loaded.scene, loaded.scene.film.stokes || args.overrides.polarised(), &mut failure);
+    let stokes = loaded.scene.film.stokes || args.overrides.polarised();
+    room::check_memory(&loaded.scene, stokes, args.threads.unwrap_or(1) as usize, &mut failure);
     let film = &loaded.scene.film;
     let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let rect = args.crop.map_or(whole, |crop| crop.0);

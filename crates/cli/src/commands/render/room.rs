@@ -6,7 +6,7 @@ use miette::{Report, Severity, miette};
 
 use crate::channels::Channels;
 use crate::failure::Failure;
-use crate::machine_limits::{bytes, memory_available, room_for};
+use crate::machine_limits::{address_space_left, bytes, memory_available, room_for};
 use crate::output::{Format, Output};
 use crate::state::Subject;
 
@@ -16,8 +16,12 @@ const OF_PICTURE: u64 = 2 * 7 * 4;
 /// The same for a band: three channels.
 const OF_BAND: u64 = 2 * 3 * 4;
 
-/// Refuses a picture that cannot be held, with or without Stokes parameters.
-pub(super) fn check_memory(scene: &Scene, stokes: bool, failure: &mut Failure) {
+/// Address space that a thread may reserve and never use: its stack, and twice the 64 MiB heap that the C library gives it. Where this
+/// is not to be had the threads share a heap, so that a small picture needs less.
+const OF_THREAD: u64 = 130 << 20;
+
+/// Refuses a picture that cannot be held, with or without Stokes parameters, by so many threads.
+pub(super) fn check_memory(scene: &Scene, stokes: bool, threads: usize, failure: &mut Failure) {
     let (width, height) = (scene.film.width, scene.film.height);
     // Where one lane stands for all wavelengths it is less; that is known after the scene is prepared.
     let bands = scene.film.bands.map_or(0, |bands| bands.count * if stokes { 4 } else { 1 });
@@ -25,10 +29,15 @@ pub(super) fn check_memory(scene: &Scene, stokes: bool, failure: &mut Failure) {
     let stokes = if stokes { Film::stokes_bytes(width, height, scene.integrator.replicates) } else { 0 };
     let picture = (OF_PICTURE + u64::from(bands) * OF_BAND) * u64::from(width) * u64::from(height);
     let needed = film + stokes + picture;
-    if let Some(available) = memory_available().filter(|&available| needed > available) {
+    let threads = threads.max(std::thread::available_parallelism().map_or(1, usize::from)) as u64;
+    let reserved = (threads * OF_THREAD).min(4 * needed);
+    let available =
+        memory_available().into_iter().chain(address_space_left().map(|left| left.saturating_sub(reserved))).min();
+    if let Some(available) = available.filter(|&available| needed > available) {
         failure.add(Failure::input(miette!(
             code = "too-large",
-            help = "make it smaller, or keep fewer bands or replicates",
+            help =
+                "make it smaller, keep fewer bands or replicates, use fewer threads, or raise the limits (`ulimit -v`)",
             "a picture of {width} × {height} pixels with {} replicates takes {} of memory, and {} are left",
             scene.integrator.replicates,
             bytes(needed),

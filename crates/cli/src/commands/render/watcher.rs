@@ -45,8 +45,10 @@ impl<'a> Watcher<'a> {
     fn tell(&self) {
         if let (Some(told), Some(share)) = (&self.told, self.bar.share()) {
             let permille = (1000.0 * share) as u64;
-            if told.fetch_max(permille, Ordering::Relaxed) < permille {
-                crate::print::line(&format!("openjd_progress: {:.1}", 0.1 * permille as f64));
+            let new = told.fetch_max(permille, Ordering::Relaxed) < permille;
+            if new && !crate::print::line_if_read(&format!("openjd_progress: {:.1}", 0.1 * permille as f64)) {
+                // Nobody reads it any more; the render is worth finishing all the same.
+                told.store(u64::MAX, Ordering::Relaxed);
             }
         }
     }
