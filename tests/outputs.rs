@@ -106,6 +106,7 @@ fn named_pipes_are_refused_and_nothing_waits_for_their_other_end() {
         ("whitted {} -o {}", [&json, &output], 2),
         ("compare {} {}", [&exr, &exr], 2),
         ("merge {} -o {}", [&part, &output], 2),
+        ("merge --list {} -o {}", [&part, &output], 2),
     ] {
         let ran = etalon_that_ends(line, paths.map(|path| path.as_path()));
         assert_eq!(ran.status, status, "{line}: {}", ran.stderr);

@@ -156,6 +156,41 @@ fn parts_merge_to_the_bytes_of_the_whole_and_wrong_ones_are_refused_by_name() {
     etalon_line("merge {} {} -o {}", [&a, &c, &none]).expect(2).says(["share 2/3", "missing"]);
 }
 
+#[test]
+fn parts_are_named_one_by_one_by_folders_or_by_a_list() {
+    let folder = tempfile::tempdir().unwrap();
+    let parts = folder.path().join("parts");
+    fs::create_dir(&parts).unwrap();
+    let part = |k: u32| parts.join(format!("{k}.part"));
+    let (size, cornell) = ("--size 64x48 --spp 4 --quiet", scene("cornell.json"));
+    for k in 1..=3 {
+        etalon_line(&format!("render {{}} -o {{}} {size} --shard {k}/3"), [&cornell, &part(k)]).expect(0);
+    }
+    fs::write(parts.join("notes.txt"), "no part").unwrap();
+    let merged = |name: &str| folder.path().join(name);
+    etalon_line("merge {} {} {} -o {} --quiet", [&part(1), &part(2), &part(3), &merged("a.exr")]).expect(0);
+    etalon_line("merge {} -o {} --quiet", [&parts, &merged("b.exr")]).expect(0);
+    let list = folder.path().join("list");
+    fs::write(&list, format!("{}\n\n{}\r\n", part(3).display(), part(1).display())).unwrap();
+    etalon_line("merge {} --list {} -o {} --quiet", [&part(2), &list, &merged("c.exr")]).expect(0);
+    let mut command = command(words("merge --list - -o {} --quiet", [&merged("d.exr")]));
+    fs::write(&list, parts.display().to_string()).unwrap();
+    assert!(command.stdin(fs::File::open(&list).unwrap()).status().unwrap().success());
+    for name in ["b.exr", "c.exr", "d.exr"] {
+        assert_eq!(picture(&merged(name)), picture(&merged("a.exr")), "{name}");
+    }
+    // A part that is named twice is there twice.
+    etalon_line("merge {} {} -o {}", [&parts, &part(1), &merged("e.exr")]).expect(2).says(["both share 1/3"]);
+    let empty = folder.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    etalon_line("merge {} -o {}", [&empty, &merged("e.exr")]).expect(2).says(["no .part file"]);
+    fs::write(&list, "\n").unwrap();
+    etalon_line("merge --list {} -o {}", [&list, &merged("e.exr")]).expect(2).says(["no part"]);
+    etalon_line("merge --list {} -o {}", [&empty.join("x"), &merged("e.exr")]).expect(2).says(["No such file"]);
+    etalon_line("merge -o {}", [&merged("e.exr")]).expect(2).says(["PART"]);
+    assert!(!merged("e.exr").exists());
+}
+
 /// A file of sums as another build of this version would have written it.
 fn of_another_build(from: &Path, to: &Path) {
     use sha2::{Digest, Sha256};

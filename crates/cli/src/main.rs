@@ -20,6 +20,7 @@ mod print;
 mod progress;
 mod replay_text;
 mod scene_report;
+mod shell;
 mod state;
 mod stokes;
 

@@ -20,6 +20,24 @@ pub(crate) enum Format {
     Part,
 }
 
+impl Format {
+    /// The format that a name asks for.
+    pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("exr") => Ok(Self::Exr),
+            Some("png") => Ok(Self::Png),
+            Some("part") => Ok(Self::Part),
+            _ => Err(Failure::input(miette!(
+                code = "output-format",
+                help = "name it .exr for the linear picture with all its data, .png for 8-bit sRGB, .part for `etalon merge`",
+                "`{}` is not a kind of picture that can be written",
+                path.display()
+            ))),
+        }
+    }
+}
+
 /// A file to be written.
 #[derive(Clone, Debug)]
 pub(crate) struct Output {
@@ -60,18 +78,10 @@ impl Written {
 pub(crate) fn plan(paths: &[PathBuf], failure: &mut Failure) -> Vec<Output> {
     let mut outputs: Vec<Output> = Vec::new();
     for path in paths {
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        let format = match extension.as_deref() {
-            Some("exr") => Format::Exr,
-            Some("png") => Format::Png,
-            Some("part") => Format::Part,
-            _ => {
-                failure.add(Failure::input(miette!(
-                    code = "output-format",
-                    help = "name it .exr for the linear picture with all its data, .png for 8-bit sRGB, .part for `etalon merge`",
-                    "`{}` is not a kind of picture that can be written",
-                    path.display()
-                )));
+        let format = match Format::of(path) {
+            Ok(format) => format,
+            Err(unknown) => {
+                failure.add(unknown);
                 continue;
             }
         };

@@ -1,6 +1,9 @@
 //! Settings of a scene that the command line may override.
 
-use clap::ValueEnum;
+use std::ops::Deref;
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use etalon_scene::{Bands, LightSampling, MOST_REPLICATES, PathReuse, Precision, SamplerKind, Scene};
 use etalon_transport::{Carried, EffectName, PathLoop, Study};
 use miette::miette;
@@ -8,9 +11,15 @@ use miette::miette;
 use crate::args::{BandsArg, Size};
 use crate::failure::Failure;
 
-/// What the command line may decide instead of the scene.
-#[derive(clap::Args)]
+/// What the command line decides instead of the scene, and how it was said.
 pub(crate) struct Overrides {
+    settings: Settings,
+    words: Vec<String>,
+}
+
+/// The list of all options that may decide something instead of the scene. Farm jobs and hints repeat those that were given.
+#[derive(Args)]
+pub(crate) struct Settings {
     /// Samples a pixel.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(i32::MAX)))]
     spp: Option<u32>,
@@ -151,7 +160,7 @@ impl From<CarryArg> for Carried {
     }
 }
 
-impl Overrides {
+impl Settings {
     /// Whether polarisation is asked for.
     pub(crate) fn polarised(&self) -> bool {
         self.polarised
@@ -222,35 +231,98 @@ impl Overrides {
     pub(crate) fn film_size(&self) -> Option<[u32; 2]> {
         self.size.map(|size| [size.width, size.height])
     }
+}
 
-    /// The same again for a command line, with a space before each.
-    pub(crate) fn as_flags(&self) -> String {
-        fn word(value: impl ValueEnum) -> Option<String> {
-            value.to_possible_value().map(|value| value.get_name().to_owned())
+impl Overrides {
+    /// The options that were given, as words of a command line.
+    pub(crate) fn as_words(&self) -> &[String] {
+        &self.words
+    }
+
+    /// The words of all options of the list that a command line gives.
+    fn words_of(matches: &ArgMatches) -> Vec<String> {
+        let list = Settings::augment_args(Command::new("list"));
+        let mut words = Vec::new();
+        for option in list.get_arguments() {
+            let name = option.get_id().as_str();
+            let given = matches.value_source(name) == Some(ValueSource::CommandLine);
+            let (Some(long), true) = (option.get_long(), given) else { continue };
+            words.push(format!("--{long}"));
+            if option.get_action().takes_values() {
+                let values = matches.get_raw(name).into_iter().flatten().map(|value| value.to_string_lossy());
+                words.push(values.collect::<Vec<_>>().join(","));
+            }
         }
-        let names = |effects: &[EffectName]| {
-            let names: Vec<_> = effects.iter().map(|effect| effect.as_str()).collect();
-            (!names.is_empty()).then(|| names.join(","))
-        };
-        [
-            ("spp", self.spp.map(|spp| spp.to_string())),
-            ("replicates", self.replicates.map(|replicates| replicates.to_string())),
-            ("seed", self.seed.map(|seed| seed.to_string())),
-            ("size", self.size.map(|size| format!("{}x{}", size.width, size.height))),
-            ("precision", self.precision.and_then(word)),
-            ("sampler", self.sampler.and_then(word)),
-            ("light-sampling", self.light_sampling.and_then(word)),
-            ("path-reuse", self.path_reuse.and_then(word)),
-            ("max-depth", self.max_depth.map(|depth| depth.to_string())),
-            ("bands", self.bands.map(|BandsArg([first, last, step])| format!("{first}:{last}:{step}"))),
-            ("force", names(&self.force)),
-            ("without", names(&self.without)),
-            ("carry", self.carry.and_then(word)),
-        ]
-        .into_iter()
-        .filter_map(|(name, value)| value.map(|value| format!(" --{name} {value}")))
-        .chain(self.polarised.then(|| " --polarised".to_owned()))
-        .chain(self.by_cosine.then(|| " --by-cosine".to_owned()))
-        .collect()
+        words
+    }
+}
+
+impl FromArgMatches for Overrides {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        Ok(Self { settings: Settings::from_arg_matches(matches)?, words: Self::words_of(matches) })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for Overrides {
+    fn augment_args(command: Command) -> Command {
+        Settings::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Settings::augment_args_for_update(command)
+    }
+}
+
+impl Deref for Overrides {
+    type Target = Settings;
+
+    fn deref(&self) -> &Settings {
+        &self.settings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        overrides: Overrides,
+    }
+
+    fn words(line: &[String]) -> Option<Vec<String>> {
+        let line = Line::try_parse_from(std::iter::once(&"line".to_owned()).chain(line)).ok()?;
+        Some(line.overrides.as_words().to_vec())
+    }
+
+    /// A new option is tried without a change here, as long as it takes one of these values.
+    #[test]
+    fn every_option_of_the_list_is_repeated_as_it_was_given() {
+        let list = Settings::augment_args(Command::new("list"));
+        let mut all = Vec::new();
+        for option in list.get_arguments() {
+            let long = format!("--{}", option.get_long().unwrap());
+            let choices: Vec<String> =
+                option.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
+            let values = choices.into_iter().chain(["7", "64x48", "400:700:10", "lens,masks"].map(str::to_owned));
+            let lines = std::iter::once(vec![long.clone()]).chain(values.map(|value| vec![long.clone(), value]));
+            let line = lines.into_iter().find(|line| words(line).is_some());
+            let line = line.unwrap_or_else(|| panic!("no value for {long}"));
+            assert_eq!(words(&line).unwrap(), line);
+            all.extend(line);
+        }
+        assert_eq!(words(&all).unwrap(), all);
+        assert!(all.join(" ").contains("--loop plain"), "{all:?}");
+        assert_eq!(words(&[]).unwrap(), [""; 0]);
+        // A value keeps its spaces, and a list of values its order.
+        let line = ["--bands", "400: 700:10", "--without", "lens", "--without", "masks"].map(str::to_owned);
+        assert_eq!(words(&line).unwrap(), ["--bands", "400: 700:10", "--without", "lens,masks"]);
     }
 }

@@ -6,12 +6,17 @@ mod slurm;
 use std::path::{Path, PathBuf};
 
 use etalon_picture::write_atomically;
+use etalon_scene::Scene;
+use etalon_transport::PixelRect;
 use miette::{Report, miette};
 
+use crate::commands::render::check_shares;
 use crate::failure::{Failure, Outcome};
 use crate::load::load;
+use crate::output;
 use crate::overrides::Overrides;
 use crate::print;
+use crate::state;
 
 /// Writes a job that renders a scene in shares on many machines and merges them into one picture, byte for byte that of one
 /// machine.
@@ -55,14 +60,19 @@ struct Job {
     picture: PathBuf,
     shards: u32,
     threads: Option<u32>,
-    /// Options of every render, each with a space before it.
-    flags: String,
+    /// Options of every render, as words of a command line.
+    options: Vec<String>,
 }
 
 impl Job {
     /// What follows a part's number in its name; before it stand the picture's name and a point.
     fn part_suffix(&self) -> String {
         format!("-of-{}.part", self.shards)
+    }
+
+    /// The part of a share, counted from 1.
+    fn part(&self, share: u32) -> PathBuf {
+        PathBuf::from(format!("{}.{share}{}", self.picture.display(), self.part_suffix()))
     }
 }
 
@@ -77,25 +87,18 @@ pub(crate) fn run(args: Args) -> Outcome {
     let stem = args.scene.file_stem().map_or_else(|| "picture".into(), |stem| stem.to_string_lossy().into_owned());
     let absolute = |path: &Path| std::path::absolute(path).map_err(|error| Failure::run(Report::from_err(error)));
     let picture = args.picture.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.exr")));
-    let mut flags = args.overrides.as_flags();
-    if let Some(error) = args.error {
-        flags += &format!(" --error {error}");
-    }
+    let mut options = args.overrides.as_words().to_vec();
+    options.extend(args.error.iter().flat_map(|error| ["--error".to_owned(), error.to_string()]));
     let job = Job {
-        name: format!("etalon-{stem}"),
+        name: label(&stem),
         program: std::env::current_exe().map_err(|error| Failure::run(Report::from_err(error)))?,
         scene: absolute(&args.scene)?,
         picture: absolute(&picture)?,
         shards: args.shards,
         threads: args.threads,
-        flags,
+        options,
     };
-    for path in [&job.program, &job.scene, &job.picture] {
-        if path.to_str().is_none_or(|path| path.contains(['\n', '\0'])) {
-            let text = format!("a job cannot name the path `{}`", path.display());
-            return Err(Failure::input(miette!(code = "path", "{text}")));
-        }
-    }
+    check(&job, &loaded.scene, args.openjd).into_outcome()?;
     let text = if args.slurm { slurm::script(&job) } else { openjd::template(&job) };
     match &args.output {
         None => print::line(text.trim_end()),
@@ -103,4 +106,66 @@ pub(crate) fn run(args: Args) -> Outcome {
             .map_err(|error| Failure::run(Report::from_err(error)))?,
     }
     Ok(())
+}
+
+/// A name for the job that every farm takes: Open Job Description refuses control characters and more than 128 characters, and
+/// takes what stands between double braces for an expression.
+fn label(stem: &str) -> String {
+    let plain = |c: char| if c.is_control() || c == '{' || c == '}' { '_' } else { c };
+    format!("etalon-{stem}").chars().map(plain).take(128).collect()
+}
+
+/// Longest value of a parameter of Open Job Description, characters.
+const LONGEST_VALUE: usize = 1024;
+/// Longest name of a file on the usual file systems, bytes.
+const LONGEST_NAME: usize = 255;
+
+/// All that would make the job fail when it runs.
+fn check(job: &Job, scene: &Scene, openjd: bool) -> Failure {
+    let mut failure = Failure::default();
+    let mut refuse = |code: &str, text: String| failure.add(Failure::input(miette!(code = code.to_owned(), "{text}")));
+    for path in [&job.program, &job.scene, &job.picture] {
+        let shown = path.display();
+        match path.to_str() {
+            None => refuse("path", format!("a job cannot name the path `{shown}`: it is not UTF-8")),
+            Some(text) if text.contains(char::is_control) => {
+                refuse("path", format!("a job cannot name the path {text:?}: it has control characters"));
+            }
+            Some(text) if openjd && text.chars().count() > LONGEST_VALUE => {
+                refuse(
+                    "path",
+                    format!("a job cannot name the path `{shown}`: it has more than {LONGEST_VALUE} characters"),
+                );
+            }
+            Some(_) => {}
+        }
+    }
+    let checkpoint = state::checkpoint_path(&job.part(job.shards));
+    let length = checkpoint.file_name().map_or(0, |name| name.len());
+    if length > LONGEST_NAME {
+        let text = format!(
+            "the picture's name is too long: its parts' checkpoints would have names of {length} bytes, such as"
+        );
+        refuse("path", format!("{text} `{}`", checkpoint.display()));
+    }
+    let film = PixelRect { x0: 0, y0: 0, x1: scene.film.width, y1: scene.film.height };
+    if let Err(unknown) = output::Format::of(&job.picture) {
+        failure.add(unknown);
+    }
+    if let Err(too_many) = check_shares(film, job.shards) {
+        failure.add(too_many);
+    }
+    failure
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_jobs_are_such_as_every_farm_takes() {
+        assert_eq!(label("it's a box"), "etalon-it's a box");
+        assert_eq!(label("{{x}}\n\u{9f}"), "etalon-__x____");
+        assert_eq!(label(&"é".repeat(200)).chars().count(), 128);
+    }
 }

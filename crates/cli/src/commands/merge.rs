@@ -1,8 +1,9 @@
 //! `etalon merge`: the parts of a picture that several machines have rendered, into one.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use etalon_picture::open_plain;
 use etalon_transport::{Canvas, Features, Shard};
 use miette::{Report, miette};
 use serde::Serialize;
@@ -17,9 +18,12 @@ use crate::state::{self, Header, Kept};
 /// Puts the parts of a picture together that `etalon render --shard` has written: byte for byte the whole picture.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The parts, in any order.
-    #[arg(required = true, value_name = "PART")]
+    /// The parts, in any order; of a folder, all files in it whose names end in .part.
+    #[arg(required_unless_present = "list", value_name = "PART")]
     parts: Vec<PathBuf>,
+    /// A file with the name of a part, or of a folder, in each line: for more parts than a command line holds. Standard input if it is -.
+    #[arg(long, value_name = "FILE")]
+    list: Option<PathBuf>,
     /// Picture to write, as for `etalon render`: .exr, .png or .part. Give it twice to write both.
     #[arg(short, long, alias = "outfile", value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
@@ -48,13 +52,14 @@ struct MergeJson {
 pub(crate) fn run(args: Args) -> Outcome {
     let mut failure = Failure::default();
     let outputs = output::plan(&args.output, &mut failure);
-    let parts = read(&args.parts, &mut failure);
+    let paths = named(&args, &mut failure);
+    let parts = read(&paths, &mut failure);
     if let Some(parts) = &parts {
         check(parts, &mut failure);
     }
     let Some(parts) = parts.filter(|_| failure.is_empty()) else {
         if args.json {
-            let (parts, errors) = (args.parts.len(), failure.to_json());
+            let (parts, errors) = (paths.len(), failure.to_json());
             print::json(&MergeJson { parts, outputs: vec![], samples: 0, seconds: 0.0, relative_rmse: None, errors });
         }
         return failure.into_outcome();
@@ -68,10 +73,10 @@ pub(crate) fn run(args: Args) -> Outcome {
     let (written, failure) = delivery.write(&outputs);
     let relative_rmse = error.map(|error| error.relative_rmse);
     if args.json {
-        let (parts, errors) = (args.parts.len(), failure.to_json());
+        let (parts, errors) = (paths.len(), failure.to_json());
         print::json(&MergeJson { parts, outputs: written, samples, seconds: header.seconds, relative_rmse, errors });
     } else if !args.quiet {
-        let mut text = format!("{} parts merged, {samples} samples a pixel", args.parts.len());
+        let mut text = format!("{} parts merged, {samples} samples a pixel", paths.len());
         if let Some(error) = relative_rmse {
             text += &format!(", relative error {}", percent(error));
         }
@@ -79,6 +84,48 @@ pub(crate) fn run(args: Args) -> Outcome {
         print::line(&text);
     }
     failure.into_outcome()
+}
+
+/// The parts that the command line names, one by one, by folders or by a list.
+fn named(args: &Args, failure: &mut Failure) -> Vec<PathBuf> {
+    let mut refuse = |path: &Path, why: String| {
+        failure.add(Failure::input(miette!(code = "parts", "cannot read `{}`: {why}", path.display())));
+    };
+    let mut given = args.parts.clone();
+    if let Some(list) = &args.list {
+        let text = if list.as_os_str() == "-" {
+            std::io::read_to_string(std::io::stdin())
+        } else {
+            open_plain(list).and_then(std::io::read_to_string)
+        };
+        match text {
+            Ok(text) => given.extend(text.lines().filter(|line| !line.trim().is_empty()).map(PathBuf::from)),
+            Err(error) => refuse(list, error.to_string()),
+        }
+    }
+    let mut parts = Vec::new();
+    for path in given {
+        if !path.is_dir() {
+            parts.push(path);
+            continue;
+        }
+        let entries = std::fs::read_dir(&path).and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect());
+        let entries: Vec<PathBuf> = entries.unwrap_or_else(|error: std::io::Error| {
+            refuse(&path, error.to_string());
+            Vec::new()
+        });
+        let mut inside: Vec<PathBuf> =
+            entries.into_iter().filter(|path| path.extension().is_some_and(|extension| extension == "part")).collect();
+        inside.sort();
+        if inside.is_empty() {
+            refuse(&path, "there is no .part file in this folder".to_owned());
+        }
+        parts.extend(inside);
+    }
+    if parts.is_empty() && failure.is_empty() {
+        failure.add(Failure::input(miette!(code = "parts", "no part is named")));
+    }
+    parts
 }
 
 /// Reads all parts; what is wrong with each goes into `failure`.

@@ -26,6 +26,7 @@ use crate::overrides::Overrides;
 use crate::print;
 use crate::progress::RenderBar;
 use crate::state::Header;
+pub(crate) use job::check_shares;
 use job::{Job, set_up};
 use keep::{interrupted, keep, moved};
 use run::Run;

@@ -15,10 +15,10 @@ pub(super) fn template(job: &Job) -> String {
     render.extend([format!("{{{{Task.Param.Share}}}}/{shards}"), "-o".to_owned(), part("{{Task.Param.Share}}")]);
     render.extend(["--checkpoint", CHECKPOINT, "--resume", "--progress", "openjd"].map(str::to_owned));
     render.extend(job.threads.into_iter().flat_map(|threads| ["--threads".to_owned(), threads.to_string()]));
-    render.extend(job.flags.split_whitespace().map(str::to_owned));
-    let mut merge = vec!["merge".to_owned()];
-    merge.extend((1..=shards).map(|share| part(&share.to_string())));
-    merge.extend(["-o".to_owned(), "{{Param.Picture}}".to_owned()]);
+    render.extend(job.options.iter().cloned());
+    // Thousands of parts are more than a command line holds.
+    let merge = ["merge", "--list", "{{Task.File.Parts}}", "-o", "{{Param.Picture}}"].map(str::to_owned).to_vec();
+    let list: String = (1..=shards).map(|share| part(&share.to_string()) + "\n").collect();
     let action = |arguments: Vec<String>| {
         json!({
             "actions": {
@@ -31,6 +31,8 @@ pub(super) fn template(job: &Job) -> String {
             }
         })
     };
+    let mut merge = action(merge);
+    merge["embeddedFiles"] = json!([{ "name": "Parts", "type": "TEXT", "data": list }]);
     // PATH parameters may not have absolute defaults; strings may, and all machines see the same paths.
     let template: Value = json!({
         "specificationVersion": "jobtemplate-2023-09",
@@ -67,7 +69,7 @@ pub(super) fn template(job: &Job) -> String {
             {
                 "name": "Merge",
                 "dependencies": [{ "dependsOn": "Render" }],
-                "script": action(merge)
+                "script": merge
             }
         ]
     });

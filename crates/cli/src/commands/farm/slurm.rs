@@ -1,13 +1,14 @@
 //! The script for Slurm: it submits itself, once as an array of renders and once as the merge that waits for them.
 
-use std::path::Path;
-
 use super::{CHECKPOINT, Job};
+use crate::shell::{self, quoted};
 
 /// The script.
 pub(super) fn script(job: &Job) -> String {
-    let Job { name, shards, flags, .. } = job;
-    let (program, scene, picture) = (quoted(&job.program), quoted(&job.scene), quoted(&job.picture));
+    let Job { name, shards, .. } = job;
+    let [program, scene, picture] =
+        [&job.program, &job.scene, &job.picture].map(|path| quoted(&path.display().to_string()));
+    let options = shell::words(job.options.iter().cloned());
     let comment_name: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
     let cpus = job.threads.map_or_else(String::new, |threads| format!("#SBATCH --cpus-per-task={threads}\n"));
@@ -39,15 +40,14 @@ part() {{ printf '%s.%s-of-%s.part' "$picture" "$1" "$shares"; }}
 if [ -n "${{SLURM_ARRAY_TASK_ID:-}}" ]; then
     # The render takes the shell's place, so that signals reach it.
     exec "$etalon" render "$scene" --shard "$SLURM_ARRAY_TASK_ID/$shares" -o "$(part "$SLURM_ARRAY_TASK_ID")" \
-        --checkpoint {CHECKPOINT} --resume {threads}{flags}
+        --checkpoint {CHECKPOINT} --resume {threads} {options}
 elif [ "${{1:-}}" = merge ]; then
-    set --
+    # Thousands of parts are more than a command line holds.
     share=1
     while [ "$share" -le "$shares" ]; do
-        set -- "$@" "$(part "$share")"
+        part "$share" && echo
         share=$((share + 1))
-    done
-    exec "$etalon" merge "$@" -o "$picture"
+    done | "$etalon" merge --list - -o "$picture"
 else
     array=$(sbatch --parsable --array=1-"$shares" --output="$picture.%a-of-$shares.log" "$@" "$0")
     merge=$(sbatch --parsable --dependency=afterok:"${{array%%;*}}" --kill-on-invalid-dep=yes --output="$picture.merge.log" \
@@ -56,25 +56,4 @@ else
 fi
 "#
     )
-}
-
-/// A path as one word of a shell.
-fn quoted(path: &Path) -> String {
-    format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn paths_stay_one_word_whatever_they_hold() {
-        for path in ["/a b/c.json", "/it's/$(x)`y`\"z\"\\.json"] {
-            let echoed = std::process::Command::new("sh")
-                .args(["-c", &format!("printf %s {}", quoted(Path::new(path)))])
-                .output()
-                .expect("a shell");
-            assert_eq!(String::from_utf8(echoed.stdout).unwrap(), path);
-        }
-    }
 }

@@ -123,15 +123,22 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
     Ok(Job { loaded, prepared, prepare_seconds, warnings, rect, threads, subject, resumed })
 }
 
+/// Every share must have tiles.
+pub(crate) fn check_shares(rect: PixelRect, shares: u32) -> Result<(), Failure> {
+    let tiles = tiles_of(rect, Shard::WHOLE).len();
+    if shares as usize <= tiles {
+        return Ok(());
+    }
+    Err(Failure::input(miette!(
+        code = "shard-empty",
+        "the picture has {tiles} tiles of 16 × 16 pixels and cannot be divided into {shares} shares"
+    )))
+}
+
 /// A share must have tiles, and something must come of it.
 fn check_shard(args: &Args, rect: PixelRect, shard: Shard, outputs: &[Output], failure: &mut Failure) {
-    let tiles = tiles_of(rect, Shard::WHOLE).len();
-    if shard.of as usize > tiles {
-        failure.add(Failure::input(miette!(
-            code = "shard-empty",
-            "the picture has {tiles} tiles of 16 × 16 pixels and cannot be divided into {} shares",
-            shard.of
-        )));
+    if let Err(too_many) = check_shares(rect, shard.of) {
+        failure.add(too_many);
     }
     if args.shard.is_some()
         && !outputs.is_empty()

@@ -4,6 +4,7 @@ use etalon_transport::{Counters, MOST_SOLIDS_AT_ONCE};
 use miette::{Report, miette};
 
 use super::Args;
+use crate::shell;
 
 /// Everything that the counters give reason to warn of.
 pub(super) fn of(args: &Args, counters: &Counters) -> Vec<Report> {
@@ -20,9 +21,8 @@ fn nonfinite(args: &Args, counters: &Counters) -> Option<Report> {
         severity = miette::Severity::Warning,
         code = "nonfinite",
         help = format!(
-            "replay the first: etalon render {}{} --pixel {},{} --sample {}",
-            args.scene.display(),
-            args.overrides.as_flags(),
+            "replay the first: etalon render {} --pixel {},{} --sample {}",
+            shell::words(std::iter::once(args.scene.display().to_string()).chain(args.overrides.as_words().to_vec())),
             first.x,
             first.y,
             first.sample
@@ -84,7 +84,8 @@ mod tests {
 
     #[test]
     fn samples_that_are_not_finite_are_named_with_the_command_that_replays_them() {
-        let args = parse("render a.json -o a.exr --spp 9 --seed 3 --size 64x48 --sampler independent --precision f64");
+        let options = "--spp 9 --seed 3 --size 64x48 --precision f64 --sampler independent --loop plain --polarised";
+        let args = parse(&format!("render a.json -o a.exr {options}"));
         assert!(nonfinite(&args, &Counters::default()).is_none());
         let mut counters = Counters::default();
         for sample in [5, 2] {
@@ -99,8 +100,11 @@ mod tests {
         let help = warning.help().unwrap().to_string();
         let replay = parse(help.strip_prefix("replay the first: etalon ").unwrap());
         assert_eq!((replay.pixel, replay.sample), (Some(PixelAt { x: 7, y: 11 }), Some(2)));
-        assert_eq!(replay.overrides.as_flags(), args.overrides.as_flags());
-        assert_eq!(args.overrides.as_flags(), " --spp 9 --seed 3 --size 64x48 --precision f64 --sampler independent");
+        assert_eq!(replay.overrides.as_words(), args.overrides.as_words());
+        assert_eq!(args.overrides.as_words().len(), 13);
+        for option in options.split(' ') {
+            assert!(help.contains(option), "{option} is not in {help}");
+        }
     }
 
     #[test]
