@@ -102,3 +102,40 @@ fn what_lies_outside_the_picture_is_refused() {
     etalon_line("render {} --size 8x6 --pixel 0,6 --sample 0", [&scene]).expect(2).says(["0,6", "8 × 6"]);
     assert_eq!(entries(folder.path()), [""; 0]);
 }
+
+#[test]
+fn a_warning_far_along_a_line_does_not_keep_a_scene_from_being_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, output) = (folder.path().join("minified.json"), folder.path().join("x.exr"));
+    changed_scene("cornell.json", &scene, |scene| {
+        let vertices: Vec<Value> = (0..20_000).map(|i| json!([i, 0, 0])).collect();
+        // A second triangle without area is what there is to warn of.
+        let mesh = json!({ "type": "mesh", "vertices_m": vertices, "triangles": [[0, 1, 2], [0, 1, 1]] });
+        let mesh = mesh.to_string().replace("[0,0,0]", "[0,9,0]");
+        let shape: Value = serde_json::from_str(&mesh).unwrap();
+        let objects = scene["objects"].as_array_mut().unwrap();
+        let material = objects[0]["material"].clone();
+        objects.push(json!({ "name": "strip", "shape": shape, "material": material }));
+    });
+    let value: Value = serde_json::from_str(&std::fs::read_to_string(&scene).unwrap()).unwrap();
+    std::fs::write(&scene, value.to_string()).unwrap();
+    let ran = etalon_line("render {} -o {} --spp 4 --size 4x4", [&scene, &output]).expect(0);
+    assert!(ran.stderr.contains("degenerate-triangles") && ran.stderr.len() < 3000, "{}", ran.stderr);
+    assert!(output.exists());
+}
+
+#[test]
+fn many_mistakes_in_one_long_line_are_shown_briefly_and_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("minified.json");
+    changed_scene("cornell.json", &scene, |scene| {
+        let wrong = |i| json!({ "name": format!("{i}"), "shapes": 1, "note": "x".repeat(5000) });
+        scene["objects"] = (0..1000).map(wrong).collect();
+    });
+    let value: Value = serde_json::from_str(&std::fs::read_to_string(&scene).unwrap()).unwrap();
+    std::fs::write(&scene, value.to_string()).unwrap();
+    let ran = etalon_line("explain {}", [&scene]).expect(2).says(["more errors are not shown", "shapes", "…"]);
+    assert!(ran.stderr.len() < 100_000, "{} bytes", ran.stderr.len());
+    let longest = ran.stderr.lines().map(|line| line.chars().count()).max().unwrap();
+    assert!(longest < 1000, "{longest} columns");
+}

@@ -12,6 +12,9 @@ use crate::failure::Failure;
 pub(crate) use crate::scene_report::scene_failure as refused_scene;
 use crate::scene_report::{scene_failure, scene_warnings};
 
+/// Most things that a model says and a scene cannot, shown by commands that render.
+const MAX_NOTES: usize = 50;
+
 /// A scene and the file it came from.
 pub(crate) struct LoadedScene {
     /// The scene.
@@ -39,7 +42,7 @@ pub(crate) fn load(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedSce
     let folder = path.parent().unwrap_or(Path::new(""));
     let loaded = etalon_scene::parse_in(&text, &name, Some(folder), film_size).map_err(scene_failure)?;
     let sha256 = scene_sha256(&text, &loaded.files);
-    Ok(LoadedScene { scene: loaded.scene, warnings: scene_warnings(&name, text, loaded.warnings), sha256 })
+    Ok(LoadedScene { scene: loaded.scene, warnings: scene_warnings(&name, &text, loaded.warnings), sha256 })
 }
 
 /// A model as a scene, as it is at a moment, with a folder's name before the names of its files.
@@ -55,9 +58,13 @@ fn load_model(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedScene, F
     let sha256 = scene_sha256(&imported.text, &loaded.files);
     let note = |code: &str, text: String| miette!(severity = Severity::Warning, code = code.to_owned(), "{text}");
     let mut warnings: Vec<Report> = imported.added.into_iter().map(|added| note("added", added)).collect();
-    let left_out = imported.left_out.into_iter().map(|l| note("not-honoured", format!("{}: {}", l.place, l.what)));
-    warnings.extend(left_out);
-    warnings.extend(scene_warnings(&name, imported.text, loaded.warnings));
+    let more = imported.left_out.len().saturating_sub(MAX_NOTES);
+    let left_out = imported.left_out.into_iter().take(MAX_NOTES);
+    warnings.extend(left_out.map(|l| note("not-honoured", format!("{}: {}", l.place, l.what))));
+    if more > 0 {
+        warnings.push(note("not-honoured", format!("{more} more are not shown; `etalon import` lists them")));
+    }
+    warnings.extend(scene_warnings(&name, &imported.text, loaded.warnings));
     Ok(LoadedScene { scene: loaded.scene, warnings, sha256 })
 }
 

@@ -8,6 +8,7 @@ mod channels;
 mod commands;
 mod deliver;
 mod display;
+mod excerpt;
 mod failure;
 mod interrupt;
 mod load;

@@ -4,34 +4,48 @@ use std::fmt;
 use std::sync::Arc;
 
 use etalon_scene::{Problem, SceneErrors, Severity};
-use miette::{Diagnostic, LabeledSpan, NamedSource, Report, SourceCode};
+use miette::{Diagnostic, LabeledSpan, Report, SourceCode};
 
+use crate::excerpt::Excerpts;
 use crate::failure::{Failure, Place};
 
 /// One problem of a scene file.
 #[derive(Debug)]
 pub(crate) struct SceneProblem {
     problem: Problem,
-    file: Arc<NamedSource<String>>,
+    excerpts: Excerpts,
+    /// The places of the problem and of what has to do with it, in the excerpts.
+    marks: Vec<LabeledSpan>,
 }
 
 /// All errors of a refused scene, and its warnings with them: they may be why.
 pub(crate) fn scene_failure(errors: SceneErrors) -> Failure {
-    let file = Arc::new(NamedSource::new(&errors.file_name, errors.text));
+    let name: Arc<str> = errors.file_name.into();
     let mut failure = Failure::default();
     for problem in errors.problems {
-        failure.add(Failure::input(SceneProblem { problem, file: Arc::clone(&file) }));
+        failure.add(Failure::input(SceneProblem::new(problem, &name, &errors.text)));
     }
     failure
 }
 
 /// The warnings of an accepted scene.
-pub(crate) fn scene_warnings(file_name: &str, text: String, warnings: Vec<Problem>) -> Vec<Report> {
-    let file = Arc::new(NamedSource::new(file_name, text));
-    warnings.into_iter().map(|problem| SceneProblem { problem, file: Arc::clone(&file) }.into()).collect()
+pub(crate) fn scene_warnings(file_name: &str, text: &str, warnings: Vec<Problem>) -> Vec<Report> {
+    let name: Arc<str> = file_name.into();
+    warnings.into_iter().map(|problem| SceneProblem::new(problem, &name, text).into()).collect()
 }
 
 impl SceneProblem {
+    fn new(problem: Problem, file_name: &Arc<str>, text: &str) -> Self {
+        let mut excerpts = Excerpts::new(Arc::clone(file_name));
+        let here = excerpts.show(text, problem.span, problem.line, problem.column);
+        let mut marks = vec![LabeledSpan::new_primary_with_span(Some("here".to_owned()), (here.start, here.len()))];
+        if let Some(related) = &problem.related {
+            let there = excerpts.show(text, related.span, related.line, related.column);
+            marks.push(LabeledSpan::new_with_span(Some(related.label.clone()), (there.start, there.len())));
+        }
+        Self { problem, excerpts, marks }
+    }
+
     /// What is wrong, without where.
     pub(crate) fn message(&self) -> &str {
         &self.problem.message
@@ -40,7 +54,7 @@ impl SceneProblem {
     /// Where it is.
     pub(crate) fn place(&self) -> Place {
         Place {
-            file: self.file.name().to_owned(),
+            file: self.excerpts.file_name().to_owned(),
             line: self.problem.line,
             column: self.problem.column,
             json_path: self.problem.json_path.clone(),
@@ -51,7 +65,7 @@ impl SceneProblem {
 impl fmt::Display for SceneProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Problem { line, column, json_path, message, .. } = &self.problem;
-        write!(f, "{}:{line}:{column}: {json_path}: {message}", self.file.name())
+        write!(f, "{}:{line}:{column}: {json_path}: {message}", self.excerpts.file_name())
     }
 }
 
@@ -74,17 +88,10 @@ impl Diagnostic for SceneProblem {
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&*self.file)
+        Some(&self.excerpts)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = |span: etalon_scene::Span| (span.start, span.len());
-        let main = LabeledSpan::new_primary_with_span(Some("here".to_owned()), span(self.problem.span));
-        let related = self
-            .problem
-            .related
-            .as_ref()
-            .map(|related| LabeledSpan::new_with_span(Some(related.label.clone()), span(related.span)));
-        Some(Box::new(std::iter::once(main).chain(related)))
+        Some(Box::new(self.marks.iter().cloned()))
     }
 }

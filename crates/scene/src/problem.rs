@@ -165,6 +165,20 @@ impl fmt::Display for Code {
     }
 }
 
+/// Most characters of a message, a path or a hint; names in a file may be of any length.
+const MAX_CHARACTERS: usize = 400;
+
+/// A text, without its middle if it is longer than a message should be.
+pub(crate) fn shortened(text: String) -> String {
+    let end_of = |count: usize| text.char_indices().nth(count).map(|(at, _)| at);
+    if end_of(MAX_CHARACTERS).is_none() {
+        return text;
+    }
+    let head = &text[..end_of(MAX_CHARACTERS * 3 / 4).unwrap_or(0)];
+    let tail = text.char_indices().rev().nth(MAX_CHARACTERS / 4 - 2).map_or("", |(at, _)| &text[at..]);
+    format!("{head}…{tail}")
+}
+
 /// One thing that is wrong, or odd, at one place of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {

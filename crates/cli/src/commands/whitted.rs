@@ -135,7 +135,7 @@ fn load(args: &Args) -> Result<(Scene, Vec<Report>), Failure> {
     if let Some(lens_radius) = args.lens_radius {
         scene.camera.lens_radius = lens_radius;
     }
-    Ok((scene, scene_warnings(&name, text, warnings)))
+    Ok((scene, scene_warnings(&name, &text, warnings)))
 }
 
 fn render_and_write(args: &Args, name: &str, scene: &Scene, mut warnings: Vec<Report>) -> Outcome {

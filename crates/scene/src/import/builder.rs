@@ -10,8 +10,12 @@ use super::relief::turn_over;
 use super::{Imported, ImportedFile, LeftOut, extension};
 use crate::mesh::write_ply;
 use crate::model::Mesh;
+use crate::problem::shortened;
 use crate::texture::{Encoding, Image};
 use crate::vector::{dot, length, sub};
+
+/// Most things that are listed as not honoured; the rest is counted.
+const MAX_LEFT_OUT: usize = 1000;
 
 /// A scene that is being made.
 pub(super) struct Builder<'a> {
@@ -34,7 +38,9 @@ pub(super) struct Builder<'a> {
     pub(super) known: HashMap<String, Option<String>>,
     pub(super) left_out: Vec<LeftOut>,
     pub(super) added: Vec<String>,
-    pub(super) said: HashSet<(String, String)>,
+    said: HashSet<LeftOut>,
+    /// What was left out beyond [`MAX_LEFT_OUT`]; the same thing may count more than once.
+    uncounted: usize,
     pub(super) emits: bool,
     /// Of everything, in the world, or in the group that is being made.
     pub(super) bounds: Bounds,
@@ -64,10 +70,10 @@ pub(super) struct Placed {
 }
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>) -> Self {
+    pub(super) fn new(near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>, prefix: &str) -> Self {
         Self {
             near,
-            prefix: String::new(),
+            prefix: prefix.to_owned(),
             materials: Map::new(),
             objects: Vec::new(),
             lights: Vec::new(),
@@ -83,16 +89,23 @@ impl<'a> Builder<'a> {
             left_out: Vec::new(),
             added: Vec::new(),
             said: HashSet::new(),
+            uncounted: 0,
             emits: false,
             bounds: None,
         }
     }
 
     pub(super) fn leave_out(&mut self, place: impl Into<String>, what: impl Into<String>) {
-        let (place, what) = (place.into(), what.into());
-        if self.said.insert((place.clone(), what.clone())) {
-            self.left_out.push(LeftOut { place, what });
+        let left_out = LeftOut { place: shortened(place.into()), what: shortened(what.into()) };
+        if self.said.contains(&left_out) {
+            return;
         }
+        if self.left_out.len() == MAX_LEFT_OUT {
+            self.uncounted += 1;
+            return;
+        }
+        self.said.insert(left_out.clone());
+        self.left_out.push(left_out);
     }
 
     /// Adds a file, and gives the name that the scene has for it.
@@ -325,6 +338,10 @@ impl<'a> Builder<'a> {
     pub(super) fn finish(mut self, source: &str) -> Result<Imported, String> {
         let Some([low, high]) = self.bounds else { return Err("there is nothing in it to see".to_owned()) };
         let mut added = std::mem::take(&mut self.added);
+        if self.uncounted > 0 {
+            let what = format!("{} more things are not listed", self.uncounted);
+            self.left_out.push(LeftOut { place: source.to_owned(), what });
+        }
         let mut camera = self.camera.take().unwrap_or_else(|| {
             let center: [f64; 3] = std::array::from_fn(|k| 0.5 * low[k] + 0.5 * high[k]);
             // So far that the ball around the bounds fits into the height of the picture.

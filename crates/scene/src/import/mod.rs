@@ -25,6 +25,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use crate::mesh::read_ply;
+use crate::problem::shortened;
 use builder::{Builder, Outside, Placed};
 
 /// Largest file that is imported, bytes.
@@ -37,7 +38,7 @@ pub struct Imported {
     pub text: String,
     /// The files that it names.
     pub files: Vec<ImportedFile>,
-    /// What the model says and the scene does not.
+    /// What the model says and the scene does not: at most 1000 things, and a last one that counts the rest.
     pub left_out: Vec<LeftOut>,
     /// What the scene has that the model does not say: a camera, a light.
     pub added: Vec<String>,
@@ -53,7 +54,7 @@ pub struct ImportedFile {
 }
 
 /// Something that is not honoured.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LeftOut {
     /// Where the model says it: a JSON path in glTF, the name of a material in MTL, a line elsewhere.
     pub place: String,
@@ -136,21 +137,25 @@ pub fn import_bytes_at(
     if moment.is_some() && !matches!(kind, "gltf" | "glb") {
         return Err("a time is asked for, and only animations of glTF are read".to_owned());
     }
-    let mut builder = Builder { near, prefix: prefix.to_owned(), ..Builder::new(near) };
+    let mut builder = Builder::new(near, prefix);
+    let read = read(kind, bytes, moment, &mut builder);
+    read.and_then(|()| builder.finish(source)).map_err(shortened)
+}
+
+fn read(kind: &str, bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder<'_>) -> Result<(), String> {
     match kind {
         "ply" => {
             let part = read_ply(bytes).map_err(|error| error.to_string())?;
             part.left_out.iter().for_each(|what| builder.leave_out("vertices and faces", what.clone()));
             builder.materials.insert("grey".to_owned(), json!({ "type": "lambert", "reflectance": 0.8 }));
-            builder.add_mesh("mesh", part.mesh, &json!("grey"), None, Value::Null)?;
+            builder.add_mesh("mesh", part.mesh, &json!("grey"), None, Value::Null)
         }
-        "obj" => obj::import(bytes, &mut builder)?,
-        "gltf" | "glb" => gltf::import(bytes, moment, &mut builder)?,
-        "xml" => mitsuba::import(bytes, &mut builder)?,
-        "pbrt" => pbrt::import(bytes, &mut builder)?,
-        other => return Err(format!("\"{other}\" is no kind of model that is imported")),
+        "obj" => obj::import(bytes, builder),
+        "gltf" | "glb" => gltf::import(bytes, moment, builder),
+        "xml" => mitsuba::import(bytes, builder),
+        "pbrt" => pbrt::import(bytes, builder),
+        other => Err(format!("\"{other}\" is no kind of model that is imported")),
     }
-    builder.finish(source)
 }
 
 /// A colour as a reflectance of the format: a number if it is grey. Channels are brought into [0, 1].

@@ -36,7 +36,7 @@
 //! # Limits
 //!
 //! So that no text can exhaust stack or memory: at most [`MAX_BYTES`] of text, [`MAX_VALUES`] values and [`MAX_DEPTH`]
-//! levels of nesting, and at most [`MAX_PROBLEMS`] problems kept (a last one says how many more there were).
+//! levels of nesting, and at most [`MAX_PROBLEMS`] errors and as many warnings kept (a last one says how many more there were).
 
 mod decode;
 mod load;
@@ -69,4 +69,4 @@ pub const MAX_VALUES: usize = 10_000_000;
 /// The deepest nesting of arrays and objects that is read.
 pub const MAX_DEPTH: usize = 64;
 /// The most problems that are kept of one file.
-pub const MAX_PROBLEMS: usize = 1000;
+pub const MAX_PROBLEMS: usize = 50;

@@ -4,6 +4,7 @@ use jsonc_parser::ast::Value;
 use jsonc_parser::common::Ranged;
 
 use super::{Code, Decode, MAX_PROBLEMS, Problem, Related, SceneErrors, Severity, Span, path, syntax};
+use crate::problem::shortened;
 
 /// A value of the parsed text.
 #[derive(Clone, Copy, Debug)]
@@ -86,16 +87,15 @@ impl<'a> Node<'a> {
 pub struct Reader<'a> {
     root: Option<&'a Value<'a>>,
     problems: Vec<Problem>,
-    /// Problems beyond [`MAX_PROBLEMS`]: errors and warnings.
-    uncounted: [usize; 2],
-    errors: usize,
+    /// Errors and warnings so far, of which at most [`MAX_PROBLEMS`] each are kept.
+    counts: [usize; 2],
     /// While a default is decoded: the object that lacks the key.
     instead: Option<Span>,
 }
 
 impl<'a> Reader<'a> {
     fn new(root: Option<&'a Value<'a>>) -> Self {
-        Self { root, problems: Vec::new(), uncounted: [0; 2], errors: 0, instead: None }
+        Self { root, problems: Vec::new(), counts: [0; 2], instead: None }
     }
 
     /// The place of a value.
@@ -131,14 +131,14 @@ impl<'a> Reader<'a> {
         self.report(Severity::Warning, code, at, message.into(), hint, None);
     }
 
-    /// Whether further problems are only counted ([`MAX_PROBLEMS`]).
+    /// Whether further errors are only counted ([`MAX_PROBLEMS`]).
     pub fn is_full(&self) -> bool {
-        self.problems.len() >= MAX_PROBLEMS
+        self.error_count() >= MAX_PROBLEMS
     }
 
     /// Errors so far.
     pub fn error_count(&self) -> usize {
-        self.errors
+        self.counts[0]
     }
 
     fn report(
@@ -150,13 +150,14 @@ impl<'a> Reader<'a> {
         hint: Option<String>,
         related: Option<Related>,
     ) {
-        self.errors += usize::from(severity == Severity::Error);
-        if self.is_full() {
-            self.uncounted[usize::from(severity == Severity::Warning)] += 1;
+        let count = &mut self.counts[usize::from(severity == Severity::Warning)];
+        *count += 1;
+        if *count > MAX_PROBLEMS {
             return;
         }
-        let json_path = self.root.map_or_else(|| "$".to_owned(), |root| path::json_path(root, at));
-        let hint = hint.filter(|hint| !hint.is_empty());
+        let json_path = self.root.map_or_else(|| "$".to_owned(), |root| shortened(path::json_path(root, at)));
+        let message = shortened(message);
+        let hint = hint.filter(|hint| !hint.is_empty()).map(shortened);
         // Line and column follow when all problems are sorted.
         self.problems.push(Problem { severity, code, message, json_path, line: 0, column: 0, span: at, hint, related });
     }
@@ -190,12 +191,12 @@ impl<'a> Reader<'a> {
                 (related.line, related.column) = place(related.span);
             }
         }
-        for (count, severity) in self.uncounted.into_iter().zip([Severity::Error, Severity::Warning]) {
-            if count > 0 {
+        for (count, severity) in self.counts.into_iter().zip([Severity::Error, Severity::Warning]) {
+            if let Some(more) = count.checked_sub(MAX_PROBLEMS).filter(|more| *more > 0) {
                 self.problems.push(Problem {
                     severity,
                     code: Code::Limit,
-                    message: format!("{count} more {severity}s are not shown"),
+                    message: format!("{more} more {severity}{} not shown", if more == 1 { " is" } else { "s are" }),
                     json_path: "$".to_owned(),
                     line: 1,
                     column: 1,

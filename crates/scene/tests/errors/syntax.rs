@@ -101,12 +101,24 @@ fn length_is_limited() {
 }
 
 #[test]
-fn at_most_a_thousand_problems_are_kept_and_the_rest_counted() {
+fn some_dozens_of_problems_are_kept_and_the_rest_counted() {
+    use etalon_scene::json::MAX_PROBLEMS;
     let many = format!("[{}0]", "1, ".repeat(4999));
     let found = problems(&Parts { objects: &many, ..RIGHT }.text());
-    assert_eq!(found.len(), etalon_scene::json::MAX_PROBLEMS + 1);
+    assert_eq!(found.len(), MAX_PROBLEMS + 1);
     let last = found.last().expect("one");
-    assert_eq!((last.code, last.message.as_str()), (Code::Limit, "4000 more errors are not shown"));
+    let message = format!("{} more errors are not shown", 5000 - MAX_PROBLEMS);
+    assert_eq!((last.code, last.message.as_str()), (Code::Limit, message.as_str()));
+}
+
+#[test]
+fn messages_are_short_however_long_the_names_are() {
+    let long = "ä".repeat(1_000_000);
+    let text = Parts { objects: &format!("[{{\"{long}\": 1, \"material\": \"{long}\"}}]"), ..RIGHT }.text();
+    for problem in problems(&text) {
+        let words = problem.to_string();
+        assert!(words.chars().count() < 2000, "{} characters", words.chars().count());
+    }
 }
 
 #[test]
