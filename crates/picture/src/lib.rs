@@ -30,7 +30,7 @@ pub use attribute::{Attribute, Attributes, Chromaticities, RenderInfo};
 pub use error::PictureError;
 pub use error_info::{ERROR_PREFIX, ErrorInfo};
 pub use exr_read::{ExrFile, decode_exr, read_exr};
-pub use exr_size::{check_exr_size, most_exr_bytes};
+pub use exr_size::{MAX_PNG_METADATA_BYTES, check_exr_size, most_exr_bytes, most_image_bytes};
 pub use exr_write::{encode_exr, write_exr};
 pub use flip::{PIXELS_PER_DEGREE, flip};
 pub use metrics::{Metrics, RELMSE_FLOOR, compare, rel_mse, rmse};

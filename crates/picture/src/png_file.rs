@@ -1,10 +1,12 @@
 //! PNG files.
 
-use std::io::{BufReader, Cursor};
+use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ImageDecoder};
+use image::codecs::png::PngDecoder;
+use image::{DynamicImage, ImageDecoder, ImageError};
 
+use crate::exr_size::{MAX_PNG_METADATA_BYTES, most_image_bytes};
 use crate::{Picture, PictureError, decode_srgb, write_atomically};
 
 /// A picture of 8-bit RGB pixels.
@@ -56,19 +58,29 @@ fn encode_png(picture: &Rgb8, texts: &[(&str, &str)]) -> Result<Vec<u8>, png::En
 /// # Errors
 /// A file that cannot be read or is no PNG.
 pub fn read_png(path: &Path) -> Result<Picture<f32>, PictureError> {
-    let image = decode(path)?;
+    // For each pixel up to four channels of 32-bit floats.
+    let image = decode(path, 16)?;
     let (width, height) = (image.width() as usize, image.height() as usize);
-    let has_alpha = image.color().has_alpha();
-    let samples = image.into_rgba32f().into_raw();
-    let channel = |offset: usize| samples.iter().skip(offset).step_by(4).copied();
+    let (count, has_alpha) = (usize::from(image.color().channel_count()), image.color().has_alpha());
+    let colours = count - usize::from(has_alpha);
     let mut picture = Picture::new(width, height)?;
-    for (offset, name) in ["R", "G", "B"].into_iter().enumerate() {
-        picture.insert(name, channel(offset).map(|value| decode_srgb(f64::from(value)) as f32).collect())?;
+    for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
+        let samples = channel(&image, i.min(colours - 1), count);
+        picture.insert(name, samples.map(|value| decode_srgb(f64::from(value)) as f32).collect())?;
     }
     if has_alpha {
-        picture.insert("A", channel(3).collect())?;
+        picture.insert("A", channel(&image, count - 1, count).collect())?;
     }
     Ok(picture)
+}
+
+/// The samples of one channel out of `count`, from 0 to 1.
+fn channel(image: &DynamicImage, offset: usize, count: usize) -> Box<dyn Iterator<Item = f32> + '_> {
+    match image.as_flat_samples_u16() {
+        Some(flat) => Box::new(flat.samples.iter().skip(offset).step_by(count).map(|v| f32::from(*v) / 65535.0)),
+        // PNG has no others.
+        None => Box::new(image.as_bytes().iter().skip(offset).step_by(count).map(|v| f32::from(*v) / 255.0)),
+    }
 }
 
 /// Reads the 8-bit RGB pixels of a PNG file as they are. An alpha channel is dropped, and must be opaque.
@@ -77,7 +89,7 @@ pub fn read_png(path: &Path) -> Result<Picture<f32>, PictureError> {
 /// A file that cannot be read or is no PNG; 16 bits, grey, or an alpha that is not 255 everywhere.
 pub fn read_png8(path: &Path) -> Result<Rgb8, PictureError> {
     let not_rgb8 = |found: &str| PictureError::NotRgb8 { path: path.to_owned(), found: found.to_owned() };
-    let image = decode(path)?;
+    let image = decode(path, 3)?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let pixels = match image {
         DynamicImage::ImageRgb8(image) => image.into_raw(),
@@ -90,17 +102,24 @@ pub fn read_png8(path: &Path) -> Result<Rgb8, PictureError> {
     Ok(Rgb8 { width, height, pixels })
 }
 
-fn decode(path: &Path) -> Result<DynamicImage, PictureError> {
+/// The pixels of a file, of which something is made that takes `made_bytes` bytes each.
+fn decode(path: &Path, made_bytes: u64) -> Result<DynamicImage, PictureError> {
     let bytes = crate::read_plain(path).map_err(|source| PictureError::io("read", path, source))?;
+    let most_bytes = most_image_bytes(bytes.len() as u64);
     let read = || {
-        let mut decoder = image::codecs::png::PngDecoder::new(BufReader::new(Cursor::new(bytes)))?;
-        // A header that promises more than 16 GiB is taken for a lie before memory is asked for.
         let mut limits = image::Limits::no_limits();
-        limits.max_alloc = Some(16 << 30);
-        decoder.set_limits(limits)?;
+        limits.max_alloc = Some(MAX_PNG_METADATA_BYTES);
+        let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits)?;
+        let (width, height) = decoder.dimensions();
+        let pixels = u128::from(width) * u128::from(height);
+        if pixels * u128::from(u64::from(decoder.color_type().bytes_per_pixel()) + made_bytes) > u128::from(most_bytes)
+        {
+            let kind = image::error::LimitErrorKind::InsufficientMemory;
+            return Err(ImageError::Limits(image::error::LimitError::from_kind(kind)));
+        }
         DynamicImage::from_decoder(decoder)
     };
-    read().map_err(|source: image::ImageError| PictureError::Png {
+    read().map_err(|source: ImageError| PictureError::Png {
         action: "read",
         path: path.to_owned(),
         source: Box::new(source),

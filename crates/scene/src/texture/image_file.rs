@@ -3,12 +3,13 @@
 use std::io::Cursor;
 use std::sync::LazyLock;
 
-use etalon_picture::{check_exr_size, most_exr_bytes};
-use image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use etalon_picture::{MAX_PNG_METADATA_BYTES, check_exr_size, most_exr_bytes, most_image_bytes};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 /// Largest side of an image, pixels.
 pub const MAX_IMAGE_SIDE: u32 = 65_536;
-/// Most memory that an image may take, bytes: 4 GiB, and for a small file no more than 2000 times its size and 64 MiB.
+/// Most memory that an image may take with all its conversions, bytes: 4 GiB, and for a small file no more than
+/// [`etalon_picture::most_image_bytes`].
 pub const MAX_IMAGE_BYTES: u64 = 4 << 30;
 
 /// An image of three channels, rows from the top.
@@ -105,7 +106,7 @@ impl Image {
     /// # Errors
     /// A sentence that says what is wrong: no such file, too large, damaged, or texels that are not finite.
     pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<(Self, Option<String>), String> {
-        let decoded = Self::read(bytes)?;
+        let decoded = Self::read(bytes, 3)?;
         let left_out = match &decoded {
             d if !d.color().has_alpha() => None,
             d if is_opaque(d) => None,
@@ -120,7 +121,7 @@ impl Image {
     /// # Errors
     /// As [`Image::decode`].
     pub fn decode_data(bytes: &[u8], channel: Channel, encoding: Encoding) -> Result<Self, String> {
-        let decoded = Self::read(bytes)?;
+        let decoded = Self::read(bytes, 12)?;
         let channel = match channel {
             Channel::Auto if decoded.color().has_alpha() => Channel::Alpha,
             Channel::Auto => Channel::Luminance,
@@ -128,9 +129,7 @@ impl Image {
         };
         let (width, height) = (decoded.width(), decoded.height());
         if channel == Channel::Alpha {
-            let texels = decoded.into_rgba32f().pixels().flat_map(|p| [p.0[3]; 3]).collect();
-            let alpha = image::Rgb32FImage::from_raw(width, height, texels).ok_or("it has no texels")?;
-            return Self::of(DynamicImage::ImageRgb32F(alpha), Encoding::Linear);
+            return Self::of_numbers(width, height, alpha(&decoded));
         }
         let image = Self::of(decoded, encoding)?;
         let pick = |[r, g, b]: [f64; 3]| match channel {
@@ -148,22 +147,42 @@ impl Image {
         Ok(Self::new(width, height, Texels::F32(texels)))
     }
 
-    fn read(bytes: &[u8]) -> Result<DynamicImage, String> {
+    /// The pixels of a file. What becomes of each takes `made_bytes` bytes, or 12 where its samples are more than bytes.
+    fn read(bytes: &[u8], made_bytes: u64) -> Result<DynamicImage, String> {
+        let failed = |error: image::ImageError| error.to_string();
         let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
-        if reader.format().is_none() {
+        let Some(format) = reader.format() else {
             return Err("it is no PNG, JPEG, EXR or HDR file".to_owned());
-        }
-        let most_bytes = MAX_IMAGE_BYTES.min(most_exr_bytes(bytes.len() as u64));
-        if reader.format() == Some(ImageFormat::OpenExr) {
-            // The decoder's own limits are of the window that is shown, not of the one that is stored.
-            check_exr_size(bytes, most_bytes, u64::from(MAX_IMAGE_SIDE))?;
-        }
+        };
+        let length = bytes.len() as u64;
         let mut limits = Limits::default();
         limits.max_image_width = Some(MAX_IMAGE_SIDE);
         limits.max_image_height = Some(MAX_IMAGE_SIDE);
-        limits.max_alloc = Some(most_bytes);
+        // Beside the pixels, which are counted below.
+        limits.max_alloc = Some(MAX_PNG_METADATA_BYTES);
+        if format == ImageFormat::OpenExr {
+            // The decoder's own limits are of the window that is shown, not of the one that is stored.
+            check_exr_size(bytes, MAX_IMAGE_BYTES.min(most_exr_bytes(length)), u64::from(MAX_IMAGE_SIDE))?;
+        }
         reader.limits(limits);
-        reader.decode().map_err(|e| e.to_string())
+        let decoder = reader.into_decoder().map_err(failed)?;
+        let (width, height) = decoder.dimensions();
+        let decoded = u64::from(decoder.color_type().bytes_per_pixel());
+        let samples = decoded / u64::from(decoder.color_type().channel_count());
+        let (texel, made) = if samples == 1 { (3, made_bytes) } else { (12, 12) };
+        // A progressive JPEG is put together from two bytes a coefficient.
+        let coefficients = if format == ImageFormat::Jpeg { 6 } else { 0 };
+        // Each step holds what it reads and what it makes.
+        let peak = (coefficients + decoded).max(decoded + made).max(made + texel);
+        let asked = u128::from(width) * u128::from(height) * u128::from(peak);
+        let most = MAX_IMAGE_BYTES.min(most_image_bytes(length));
+        if asked > u128::from(most) {
+            return Err(format!(
+                "its {length} bytes claim {width} × {height} pixels, {asked} bytes of memory with their conversions, of at most \
+                 {most}"
+            ));
+        }
+        DynamicImage::from_decoder(decoder).map_err(failed)
     }
 
     fn of(decoded: DynamicImage, encoding: Encoding) -> Result<Self, String> {
@@ -191,17 +210,21 @@ impl Image {
             };
             Texels::F32(decoded.into_rgb32f().pixels().map(|p| p.0.map(linear)).collect())
         };
-        if let Texels::F32(texels) = &texels
-            && let Some(i) = texels.iter().position(|t| t.iter().any(|v| !v.is_finite()))
-        {
-            return Err(format!(
-                "its texel in column {}, row {} is {:?}",
-                i % width as usize,
-                i / width as usize,
-                texels[i]
-            ));
+        match texels {
+            Texels::F32(texels) => Self::of_numbers(width, height, texels),
+            levels => Ok(Self::new(width, height, levels)),
         }
-        Ok(Self::new(width, height, texels))
+    }
+
+    fn of_numbers(width: u32, height: u32, texels: Vec<[f32; 3]>) -> Result<Self, String> {
+        if width == 0 || height == 0 {
+            return Err("it has no texels".to_owned());
+        }
+        if let Some(i) = texels.iter().position(|t| t.iter().any(|v| !v.is_finite())) {
+            let (column, row) = (i % width as usize, i / width as usize);
+            return Err(format!("its texel in column {column}, row {row} is {:?}", texels[i]));
+        }
+        Ok(Self::new(width, height, Texels::F32(texels)))
     }
 
     /// The texel in a column and a row, counted from 0 at the top left, in linear numbers.
@@ -229,6 +252,20 @@ impl Image {
     /// Whether every texel has three equal channels.
     pub fn is_grey(&self) -> bool {
         self.grey
+    }
+}
+
+/// Alpha as three equal numbers, 1 in an image without.
+fn alpha(image: &DynamicImage) -> Vec<[f32; 3]> {
+    let byte = |v: u8| [f32::from(v) / 255.0; 3];
+    let word = |v: u16| [f32::from(v) / 65535.0; 3];
+    match image {
+        DynamicImage::ImageLumaA8(i) => i.pixels().map(|p| byte(p.0[1])).collect(),
+        DynamicImage::ImageRgba8(i) => i.pixels().map(|p| byte(p.0[3])).collect(),
+        DynamicImage::ImageLumaA16(i) => i.pixels().map(|p| word(p.0[1])).collect(),
+        DynamicImage::ImageRgba16(i) => i.pixels().map(|p| word(p.0[3])).collect(),
+        DynamicImage::ImageRgba32F(i) => i.pixels().map(|p| [p.0[3]; 3]).collect(),
+        other => vec![[1.0; 3]; other.width() as usize * other.height() as usize],
     }
 }
 
@@ -276,6 +313,20 @@ mod tests {
         assert!((image.texel(1, 1)[0] - 188.0 / 255.0).abs() < 0.02);
         let rgba = DynamicImage::ImageRgba8(image::RgbaImage::from_pixel(1, 1, image::Rgba([1, 2, 3, 4])));
         assert!(Image::decode(&encoded(&rgba, ImageFormat::Png), Encoding::Auto).unwrap().1.is_some());
+    }
+
+    #[test]
+    fn conversions_count_toward_the_memory_of_an_image() {
+        // A byte a pixel when it is decoded, fifteen while it becomes data.
+        let grey = DynamicImage::ImageLuma8(image::GrayImage::new(8000, 8000));
+        let mut png = Vec::new();
+        let (compression, filter) =
+            (image::codecs::png::CompressionType::Best, image::codecs::png::FilterType::NoFilter);
+        let encoder = image::codecs::png::PngEncoder::new_with_quality(&mut png, compression, filter);
+        grey.write_with_encoder(encoder).unwrap();
+        assert!(Image::decode(&png, Encoding::Linear).is_ok());
+        let error = Image::decode_data(&png, Channel::Mean, Encoding::Linear).unwrap_err();
+        assert!(error.contains("with their conversions"), "{error}");
     }
 
     #[test]
