@@ -1,6 +1,6 @@
 //! Files that a scene refers to: each read once, and remembered by its hash.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -46,6 +46,8 @@ pub(crate) struct Files {
     /// What of images is not used as colours.
     left_out: Vec<(Spanned<String>, String)>,
     used: Vec<FileUse>,
+    /// Their names.
+    noted: HashSet<String>,
 }
 
 impl Files {
@@ -58,6 +60,7 @@ impl Files {
             data: HashMap::new(),
             left_out: Vec::new(),
             used: Vec::new(),
+            noted: HashSet::new(),
         }
     }
 
@@ -98,7 +101,7 @@ impl Files {
     }
 
     fn note(&mut self, name: &Spanned<String>, bytes: &[u8]) {
-        if !self.used.iter().any(|file| file.name == name.value) {
+        if self.noted.insert(name.value.clone()) {
             self.used.push(FileUse { name: name.value.clone(), sha256: sha256(bytes) });
         }
     }

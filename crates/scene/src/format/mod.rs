@@ -18,4 +18,5 @@ mod spectra;
 mod spectrum;
 
 pub(crate) use geometry::Shading;
+pub(crate) use material::MOST_PARTS;
 pub(crate) use scene::{SceneForm, scene};

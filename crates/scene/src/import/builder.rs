@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
+use super::budget::{Budget, FreshNames};
 use super::matrix::{Rows, determinant, is_similarity, point, steps};
 use super::relief::turn_over;
 use super::{Imported, ImportedFile, LeftOut, extension};
@@ -36,6 +37,11 @@ pub(super) struct Builder<'a> {
     pub(super) files: Vec<ImportedFile>,
     /// Names of files by what they were made from.
     pub(super) known: HashMap<String, Option<String>>,
+    /// Images by their file and how its numbers stand: what is known of each, or why there is none.
+    images: HashMap<(String, Encoding), Result<KnownImage, String>>,
+    budget: Budget,
+    material_names: FreshNames,
+    group_names: FreshNames,
     pub(super) left_out: Vec<LeftOut>,
     pub(super) added: Vec<String>,
     said: HashSet<LeftOut>,
@@ -44,6 +50,17 @@ pub(super) struct Builder<'a> {
     pub(super) emits: bool,
     /// Of everything, in the world, or in the group that is being made.
     pub(super) bounds: Bounds,
+}
+
+/// An image that has been decoded.
+#[derive(Clone, Debug)]
+struct KnownImage {
+    /// Its file in the scene.
+    file: String,
+    /// The mean of its texels.
+    mean: [f64; 3],
+    /// What of it is not used.
+    left_out: Option<String>,
 }
 
 /// The objects, instances and bounds of what is outside of a group that is being made.
@@ -86,6 +103,10 @@ impl<'a> Builder<'a> {
             integrator: Map::new(),
             files: Vec::new(),
             known: HashMap::new(),
+            images: HashMap::new(),
+            budget: Budget::default(),
+            material_names: FreshNames::default(),
+            group_names: FreshNames::default(),
             left_out: Vec::new(),
             added: Vec::new(),
             said: HashSet::new(),
@@ -177,11 +198,14 @@ impl<'a> Builder<'a> {
 
     /// Adds an object. One whose transform flattens it is left out; a round one that is stretched becomes an instance, which
     /// may be, unless it emits.
-    pub(super) fn place(&mut self, placed: &Placed, place: &str) {
+    ///
+    /// # Errors
+    /// If there are more objects than a scene can hold.
+    pub(super) fn place(&mut self, placed: &Placed, place: &str) -> Result<(), String> {
         let determinant = determinant(&placed.rows);
         if determinant == 0.0 || !determinant.is_finite() {
             self.leave_out(place, "it is flattened by its transform, and left out");
-            return;
+            return Ok(());
         }
         let mut material = placed.material.clone();
         let mut emission = placed.emission.clone();
@@ -209,10 +233,12 @@ impl<'a> Builder<'a> {
             object[key] = value;
         }
         let round = matches!(placed.shape["type"].as_str(), Some("sphere" | "disk" | "cylinder"));
+        self.spend(&object, place)?;
         let stretched = round && !is_similarity(&placed.rows);
         if stretched && emission.is_some() {
             self.leave_out(place, "its light is left out: what emits may not be stretched");
         } else if let Some(emission) = emission {
+            self.spend(&emission, place)?;
             object["emission"] = emission;
             self.emits = true;
         }
@@ -228,6 +254,15 @@ impl<'a> Builder<'a> {
             self.objects.push(object);
         }
         self.enclose(placed.reach, &placed.rows);
+        Ok(())
+    }
+
+    /// Counts a copy of something toward what a scene can hold.
+    ///
+    /// # Errors
+    /// If that is too much.
+    pub(super) fn spend(&mut self, value: &Value, place: &str) -> Result<(), String> {
+        self.budget.spend(value, place)
     }
 
     /// Widens the bounds by a box that is moved.
@@ -242,14 +277,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    pub(super) fn group_name(&self, wanted: &str) -> String {
-        let mut name = wanted.to_owned();
-        let mut number = 2;
-        while self.groups.contains_key(&name) {
-            name = format!("{wanted} {number}");
-            number += 1;
-        }
-        name
+    pub(super) fn group_name(&mut self, wanted: &str) -> String {
+        self.group_names.name(wanted, &self.groups)
     }
 
     /// From here on objects belong to a group. Gives what is outside of it.
@@ -302,36 +331,52 @@ impl<'a> Builder<'a> {
         keyframes.iter().for_each(|(_, rows)| self.enclose(bounds, rows));
     }
 
+    /// The bytes of a file that the model names.
+    pub(super) fn bytes_of(&self, name: &str, place: &str) -> Result<Vec<u8>, String> {
+        let name = name.replace('\\', "/");
+        (self.near)(&name).map_err(|why| format!("{place}: \"{name}\" cannot be read: {why}"))
+    }
+
     /// Adds the file of an image, once, and gives its name in the scene and the mean of its texels.
     pub(super) fn image_file(
         &mut self,
         name: &str,
-        bytes: Vec<u8>,
         encoding: Encoding,
         place: &str,
     ) -> Result<(String, [f64; 3]), String> {
-        let (image, left_out) = Image::decode(&bytes, encoding)?;
+        let key = (name.to_owned(), encoding);
+        let known = match self.images.get(&key) {
+            Some(known) => known.clone(),
+            None => {
+                let read = self.read_image(name, encoding, place);
+                self.images.insert(key, read.clone());
+                read
+            }
+        };
+        let KnownImage { file, mean, left_out } = known?;
         if let Some(what) = left_out {
             self.leave_out(place, what);
         }
-        if let Some(Some(file)) = self.known.get(name) {
-            return Ok((file.clone(), image.mean()));
-        }
-        let file = self.add_file("image", &extension(Path::new(name)), bytes);
-        self.known.insert(name.to_owned(), Some(file.clone()));
-        Ok((file, image.mean()))
+        Ok((file, mean))
+    }
+
+    fn read_image(&mut self, name: &str, encoding: Encoding, place: &str) -> Result<KnownImage, String> {
+        let bytes = self.bytes_of(name, place)?;
+        let (image, left_out) = Image::decode(&bytes, encoding)?;
+        let file = match self.known.get(name) {
+            Some(Some(file)) => file.clone(),
+            _ => {
+                let file = self.add_file("image", &extension(Path::new(name)), bytes);
+                self.known.insert(name.to_owned(), Some(file.clone()));
+                file
+            }
+        };
+        Ok(KnownImage { file, mean: image.mean(), left_out })
     }
 
     /// A name for a material that none has yet.
-    pub(super) fn material_name(&self, wanted: &str) -> String {
-        let base = if wanted.is_empty() { "material" } else { wanted };
-        let mut name = base.to_owned();
-        let mut number = 2;
-        while self.materials.contains_key(&name) {
-            name = format!("{base} {number}");
-            number += 1;
-        }
-        name
+    pub(super) fn material_name(&mut self, wanted: &str) -> String {
+        self.material_names.name(if wanted.is_empty() { "material" } else { wanted }, &self.materials)
     }
 
     /// The scene, with a camera and a light if the model has none.

@@ -5,6 +5,7 @@
 //! for editing are the same. What a model says and a scene cannot is listed in [`Imported::left_out`], each with its place.
 
 mod accessor;
+mod budget;
 mod builder;
 mod gltf;
 mod gltf_animation;

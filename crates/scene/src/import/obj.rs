@@ -1,5 +1,6 @@
 //! OBJ and MTL.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -22,6 +23,9 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         builder.materials.entry(material.name.clone()).or_insert(value);
     }
     let plain = builder.material_name("grey");
+    // Of those with the same name the first counts.
+    let glows: HashMap<&str, Option<[f32; 3]>> =
+        file.materials.iter().rev().map(|material| (material.name.as_str(), material.emissive)).collect();
     for (i, part) in file.parts.into_iter().enumerate() {
         let name = part.name.unwrap_or_else(|| format!("faces {i}"));
         let named = part.material.filter(|name| builder.materials.contains_key(name));
@@ -36,7 +40,7 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
                 .leave_out(format!("group \"{name}\""), "it has no texture coordinates for the image of its material");
             material = json!({ "type": "lambert", "reflectance": 0.8 });
         }
-        let glow = file.materials.iter().find(|m| Some(&m.name) == named.as_ref()).and_then(|m| m.emissive);
+        let glow = named.as_ref().and_then(|name| *glows.get(name.as_str())?);
         let emission = glow.map(|rgb| rgb.map(f64::from)).filter(|rgb| rgb.iter().any(|v| *v > 0.0)).map(emission);
         builder.add_mesh(&name, part.mesh, &material, emission, Value::Null)?;
     }

@@ -1,5 +1,6 @@
 //! Scenes of Mitsuba and pbrt: what they say arrives in the scene, what cannot be honoured is listed with its line.
 
+mod bounds;
 mod images;
 mod relief;
 

@@ -12,7 +12,7 @@ use crate::model::{MaterialKind, NumberTexture};
 
 /// The most materials that a blend may come down to: names can double them line by line, and an image of roughness makes up to
 /// [`MOST_WIDTHS`].
-const MOST_PARTS: usize = 8 * MOST_WIDTHS;
+pub(crate) const MOST_PARTS: usize = 8 * MOST_WIDTHS;
 
 /// Materials that are no blends in a material.
 fn parts(kind: &MaterialKind) -> usize {

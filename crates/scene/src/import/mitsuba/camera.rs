@@ -12,6 +12,10 @@ const DIAGONAL_35_MM: f64 = 43.266_615_305_567_87;
 
 impl Walk<'_, '_, '_> {
     pub(super) fn integrator(&mut self, element: &Element) -> Result<(), String> {
+        self.within(element, |walk| walk.read_integrator(element))
+    }
+
+    fn read_integrator(&mut self, element: &Element) -> Result<(), String> {
         let plugin = element.plugin();
         match plugin {
             "path" | "volpath" | "volpathmis" | "prbvolpath" | "prb" => {}

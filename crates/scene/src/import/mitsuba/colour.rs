@@ -70,10 +70,12 @@ impl Walk<'_, '_, '_> {
             "ref" => {
                 let target = self.ids.of(element)?;
                 target.mark();
-                return match target.tag.as_str() {
-                    "texture" | "spectrum" | "rgb" => self.colour_of(target, of),
-                    other => Err(format!("{place}: a <{other}> stands where a colour should")),
+                let value = match target.tag.as_str() {
+                    "texture" | "spectrum" | "rgb" => self.colour_of(target, of)?,
+                    other => return Err(format!("{place}: a <{other}> stands where a colour should")),
                 };
+                self.builder.spend(&value, place)?;
+                return Ok(value);
             }
             "rgb" => self.rgb(element.attribute("value").unwrap_or(""), place, of)?,
             "float" | "integer" => {
@@ -188,11 +190,13 @@ impl Walk<'_, '_, '_> {
 
     /// A file of wavelengths and values.
     fn file(&mut self, name: &str, place: &str, of: Of) -> Result<Value, String> {
-        let bytes = self.near(name, place)?;
+        let bytes = self.builder.bytes_of(name, place)?;
         let text = String::from_utf8_lossy(&bytes);
         let without_comments: Vec<&str> = text.lines().map(|line| line.split('#').next().unwrap_or("")).collect();
         let list = numbers(&without_comments.join(" ")).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
-        self.table(&list, place, of)
+        let table = self.table(&list, place, of)?;
+        self.builder.spend(&table, place)?;
+        Ok(table)
     }
 
     /// Wavelengths, nm, and values in turn; nothing outside of them, as in the program.
@@ -262,7 +266,7 @@ impl Walk<'_, '_, '_> {
     /// The file of an image in the scene, and the mean of its texels; `None`, and a note, if it cannot be read.
     pub(super) fn image(&mut self, name: &str, raw: bool, place: &str) -> Option<(String, [f64; 3])> {
         let encoding = if raw { crate::texture::Encoding::Linear } else { crate::texture::Encoding::Auto };
-        let found = self.near(name, place).and_then(|bytes| self.builder.image_file(name, bytes, encoding, place));
+        let found = self.builder.image_file(name, encoding, place);
         match found {
             Ok(found) => Some(found),
             Err(why) => {
@@ -270,12 +274,6 @@ impl Walk<'_, '_, '_> {
                 None
             }
         }
-    }
-
-    /// The bytes of a file that the scene names.
-    pub(super) fn near(&self, name: &str, place: &str) -> Result<Vec<u8>, String> {
-        let name = name.replace('\\', "/");
-        (self.builder.near)(&name).map_err(|why| format!("{place}: \"{name}\" cannot be read: {why}"))
     }
 }
 

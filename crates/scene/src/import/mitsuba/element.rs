@@ -8,9 +8,11 @@ use roxmltree::{Document, ParsingOptions};
 use super::super::Builder;
 
 /// Deepest nesting of elements, and of files that include files.
-const MAX_DEPTH: usize = 64;
+pub(super) const MAX_DEPTH: usize = 64;
 /// Most elements of a scene, files that it includes counted as often as they are: those of any scene that people write.
-const MAX_ELEMENTS: usize = 4_000_000;
+pub(super) const MAX_ELEMENTS: usize = 4_000_000;
+/// Most bytes that `$names` are replaced by, in the whole scene.
+const MAX_SUBSTITUTED: usize = 16 << 20;
 /// Most files that are included, each counted as often as it is.
 const MAX_INCLUDES: usize = 1000;
 
@@ -186,7 +188,7 @@ impl<'a> Ids<'a> {
 
 /// Reads a file into a tree.
 pub(super) fn read(bytes: &[u8], near: &dyn Fn(&str) -> Result<Vec<u8>, String>) -> Result<Element, String> {
-    let mut reading = Reading { near, parameters: HashMap::new(), count: 0, includes: 0 };
+    let mut reading = Reading { near, parameters: HashMap::new(), count: 0, includes: 0, substituted: 0 };
     let mut root = reading.file(bytes, None, 0)?;
     match root.len() {
         1 => Ok(root.remove(0)),
@@ -200,6 +202,8 @@ struct Reading<'a> {
     parameters: HashMap<String, String>,
     count: usize,
     includes: usize,
+    /// Bytes that parameters have been replaced by.
+    substituted: usize,
 }
 
 impl Reading<'_> {
@@ -227,7 +231,7 @@ impl Reading<'_> {
         }
         let mut attributes = HashMap::new();
         for attribute in node.attributes() {
-            let value = self.substituted(attribute.value()).map_err(|why| format!("{place}: {why}"))?;
+            let value = self.replaced(attribute.value()).map_err(|why| format!("{place}: {why}"))?;
             attributes.insert(attribute.name().to_owned(), value);
         }
         let tag = node.tag_name().name().to_owned();
@@ -257,7 +261,8 @@ impl Reading<'_> {
         Ok(vec![Element { tag, attributes, children, place, used: Cell::new(false) }])
     }
 
-    fn substituted(&self, text: &str) -> Result<String, String> {
+    /// A text with the values of its parameters in the place of their names.
+    fn replaced(&mut self, text: &str) -> Result<String, String> {
         let mut result = String::with_capacity(text.len());
         let mut rest = text;
         while let Some(at) = rest.find('$') {
@@ -266,6 +271,10 @@ impl Reading<'_> {
             let end = tail.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(tail.len());
             let name = &tail[..end];
             let value = self.parameters.get(name).ok_or_else(|| format!("no <default> gives ${name} a value"))?;
+            self.substituted += value.len();
+            if self.substituted > MAX_SUBSTITUTED {
+                return Err(format!("with ${name} the values of parameters make more than {MAX_SUBSTITUTED} bytes"));
+            }
             result.push_str(value);
             rest = &tail[end..];
         }

@@ -85,6 +85,7 @@ impl Walk<'_, '_, '_> {
         let one = json!({ "type": "illuminant", "name": "D65", "scale": 1 });
         let radiance = self.colour(emitter, "radiance", Of::Shining)?.unwrap_or(one);
         emitter.list_unused(self.builder);
+        self.builder.spend(&radiance, &emitter.place)?;
         Ok(Some(json!({ "radiance": radiance, "sides": "front" })))
     }
 }

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::Walk;
 use super::colour::Of;
 use super::element::Element;
+use crate::import::budget::BlendSize;
 use crate::import::number::{Number, Rough};
 use crate::import::relief::{has_map, without_map};
 use crate::import::table::{Table, metal};
@@ -43,11 +44,13 @@ pub(super) struct Look {
     pub opacity: f64,
     /// Further keys of its objects: an image of that share, a map of normals or heights.
     pub detail: Map<String, Value>,
+    /// How many materials it is a blend of.
+    pub size: BlendSize,
 }
 
 impl Look {
     pub(super) fn of(material: Value) -> Self {
-        Self { material, opacity: 1.0, detail: Map::new() }
+        Self { material, opacity: 1.0, detail: Map::new(), size: BlendSize::ONE }
     }
 
     pub(super) fn plain(material: Value, opacity: f64) -> Self {
@@ -61,7 +64,20 @@ pub(super) fn grey() -> Value {
 }
 
 impl Walk<'_, '_, '_> {
+    /// The material that an element is. One that others can refer to is read once.
     pub(super) fn look(&mut self, element: &Element) -> Result<Look, String> {
+        let key = std::ptr::from_ref(element);
+        if let Some(look) = self.looks.get(&key) {
+            return Ok(look.clone());
+        }
+        let look = self.within(element, |walk| walk.read_look(element))?;
+        if element.attribute("id").is_some() {
+            self.looks.insert(key, look.clone());
+        }
+        Ok(look)
+    }
+
+    fn read_look(&mut self, element: &Element) -> Result<Look, String> {
         let place = element.place.clone();
         let look = match element.plugin() {
             "twosided" => {
@@ -117,7 +133,10 @@ impl Walk<'_, '_, '_> {
                 }
                 let mut material = json!({ "type": "blend", "first": first.material, "second": second.material });
                 weight.put_weight(&mut material);
-                Look::plain(material, (1.0 - mean) * first.opacity + mean * second.opacity)
+                // Each blend holds its parts in full.
+                let size = first.size.blend(second.size, &place)?;
+                self.builder.spend(&material, &place)?;
+                Look { size, ..Look::plain(material, (1.0 - mean) * first.opacity + mean * second.opacity) }
             }
             plugin => Look::of(self.material(element, plugin, &place)?),
         };

@@ -14,7 +14,7 @@ mod transform;
 use std::collections::HashMap;
 
 use super::Builder;
-use element::{Element, Ids};
+use element::{Element, Ids, MAX_DEPTH, MAX_ELEMENTS};
 use material::Look;
 
 pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
@@ -27,20 +27,57 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         builder.leave_out(&root.place, format!("its version is \"{version}\": names of version 3 are expected"));
     }
     let ids = Ids::new(&root);
-    Walk { ids: &ids, builder, looks: HashMap::new(), meshes: HashMap::new() }.scene(&root)
+    let mut walk = Walk {
+        ids: &ids,
+        builder,
+        looks: HashMap::new(),
+        named_looks: HashMap::new(),
+        meshes: HashMap::new(),
+        open: Vec::new(),
+        entered: 0,
+    };
+    walk.scene(&root)
 }
 
 /// The way through a scene.
 struct Walk<'a, 'w, 'b> {
     ids: &'a Ids<'a>,
     builder: &'w mut Builder<'b>,
-    /// Materials by the address of their element, each with its name in the scene.
+    /// Materials that can be referred to, by the address of their element.
     looks: HashMap<*const Element, Look>,
+    /// Those of shapes, each with its name in the scene.
+    named_looks: HashMap<*const Element, Look>,
     /// Mesh files that have been read, by what was asked of them.
     meshes: HashMap<String, std::rc::Rc<shape::Mesh>>,
+    /// The elements that are being read, each within the one before.
+    open: Vec<*const Element>,
+    /// How many elements have been entered, each as often as it is.
+    entered: usize,
 }
 
 impl<'a> Walk<'a, '_, '_> {
+    /// Reads an element that may hold others of its kind, in it or by reference.
+    ///
+    /// # Errors
+    /// Those of `read`; an element within itself; too many within each other, or in all.
+    fn within<T>(&mut self, element: &Element, read: impl FnOnce(&mut Self) -> Result<T, String>) -> Result<T, String> {
+        let (place, tag, key) = (&element.place, &element.tag, std::ptr::from_ref(element));
+        if self.open.contains(&key) {
+            return Err(format!("{place}: by its references this <{tag}> is within itself"));
+        }
+        if self.open.len() == MAX_DEPTH {
+            return Err(format!("{place}: <{tag}> within <{tag}>, by references, in more than {MAX_DEPTH} levels"));
+        }
+        self.entered += 1;
+        if self.entered > MAX_ELEMENTS {
+            return Err(format!("{place}: references ask for more than {MAX_ELEMENTS} elements"));
+        }
+        self.open.push(key);
+        let made = read(self);
+        self.open.pop();
+        made
+    }
+
     fn scene(&mut self, root: &'a Element) -> Result<(), String> {
         // Materials that shapes refer to are read where they are first used, so that the unused ones are named as such.
         for child in &root.children {

@@ -46,6 +46,10 @@ impl<'a> Walk<'a, '_, '_> {
     }
 
     pub(super) fn shape(&mut self, element: &'a Element) -> Result<(), String> {
+        self.within(element, |walk| walk.read_shape(element))
+    }
+
+    fn read_shape(&mut self, element: &'a Element) -> Result<(), String> {
         let place = &element.place;
         let name = element.attribute("id").map_or_else(|| format!("{}, {place}", element.plugin()), str::to_owned);
         if element.plugin() == "merge" {
@@ -83,20 +87,20 @@ impl<'a> Walk<'a, '_, '_> {
                     json!({ "type": "sphere", "center_m": center, "radius_m": radius }),
                     reach,
                     place,
-                );
+                )?;
             }
             "rectangle" => {
                 let shape =
                     json!({ "type": "parallelogram", "origin_m": [-1, -1, 0], "u_m": [2, 0, 0], "v_m": [0, 2, 0] });
-                self.analytic(dressed, shape, [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]], place);
+                self.analytic(dressed, shape, [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]], place)?;
             }
             "disk" => {
                 let shape = json!({ "type": "disk", "normal": [0, 0, 1], "radius_m": 1 });
-                self.analytic(dressed, shape, [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]], place);
+                self.analytic(dressed, shape, [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]], place)?;
             }
             "cube" => {
                 let shape = json!({ "type": "box", "min_m": [-1, -1, -1], "max_m": [1, 1, 1] });
-                self.analytic(dressed, shape, [[-1.0; 3], [1.0; 3]], place);
+                self.analytic(dressed, shape, [[-1.0; 3], [1.0; 3]], place)?;
             }
             "cylinder" => {
                 let (start, end) =
@@ -108,7 +112,7 @@ impl<'a> Walk<'a, '_, '_> {
                     std::array::from_fn(|k| start[k].min(end[k]) - radius),
                     std::array::from_fn(|k| start[k].max(end[k]) + radius),
                 ];
-                self.analytic(dressed, shape, reach, place);
+                self.analytic(dressed, shape, reach, place)?;
             }
             "obj" | "ply" => self.mesh(element, &mut dressed)?,
             other => {
@@ -123,7 +127,7 @@ impl<'a> Walk<'a, '_, '_> {
     /// A material; one with an id is named once.
     fn known_look(&mut self, element: &Element) -> Result<Look, String> {
         let key = std::ptr::from_ref(element);
-        if let Some(look) = self.looks.get(&key) {
+        if let Some(look) = self.named_looks.get(&key) {
             return Ok(look.clone());
         }
         let mut look = self.look(element)?;
@@ -132,17 +136,23 @@ impl<'a> Walk<'a, '_, '_> {
             self.builder.materials.insert(name.clone(), look.material);
             look.material = json!(name);
         }
-        self.looks.insert(key, look.clone());
+        self.named_looks.insert(key, look.clone());
         Ok(look)
     }
 
-    fn analytic(&mut self, mut dressed: Dressed, shape: Value, reach: [[f64; 3]; 2], place: &str) {
+    fn analytic(
+        &mut self,
+        mut dressed: Dressed,
+        shape: Value,
+        reach: [[f64; 3]; 2],
+        place: &str,
+    ) -> Result<(), String> {
         let has_uvs = shape["type"] == "parallelogram";
         self.without_images(&mut dressed, has_uvs, place);
         if !has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
             self.builder.leave_out(place, "what it shines by is laid over texture coordinates of another kind");
         }
-        self.builder.place(&dressed.placed(shape, Some(reach)), place);
+        self.builder.place(&dressed.placed(shape, Some(reach)), place)
     }
 
     fn mesh(&mut self, element: &Element, dressed: &mut Dressed) -> Result<(), String> {
@@ -173,7 +183,7 @@ impl<'a> Walk<'a, '_, '_> {
             } else if !part.has_normals {
                 shape["shading"] = json!("smooth");
             }
-            self.builder.place(&dressed.placed(shape, part.bounds), place);
+            self.builder.place(&dressed.placed(shape, part.bounds), place)?;
         }
         Ok(())
     }
@@ -183,7 +193,7 @@ impl<'a> Walk<'a, '_, '_> {
         if let Some(mesh) = self.meshes.get(&key) {
             return Ok(mesh.clone());
         }
-        let bytes = self.near(file, place)?;
+        let bytes = self.builder.bytes_of(file, place)?;
         let refused = |why: &dyn std::fmt::Display| format!("{place}: \"{file}\": {why}");
         let parts: Vec<Part> = if is_obj {
             // Materials of MTL are not asked for: the scene has its own.

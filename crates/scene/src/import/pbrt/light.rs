@@ -60,8 +60,7 @@ impl Reading<'_, '_> {
         rows: &Rows,
         place: &str,
     ) -> Result<Option<Value>, String> {
-        let found =
-            self.near(file, place).and_then(|bytes| self.builder.image_file(file, bytes, Encoding::Auto, place));
+        let found = self.builder.image_file(file, Encoding::Auto, place);
         let name = match found {
             Ok((name, _)) => name,
             Err(why) => {
@@ -93,9 +92,7 @@ impl Reading<'_, '_> {
         let radiance = match list.string("filename").map(str::to_owned) {
             None => self.emitted(list, "L", scale)?,
             Some(file) => {
-                let found = self
-                    .near(&file, place)
-                    .and_then(|bytes| self.builder.image_file(&file, bytes, Encoding::Auto, place));
+                let found = self.builder.image_file(&file, Encoding::Auto, place);
                 match found {
                     Ok((name, _)) => {
                         json!({ "type": "image", "file": name, "wrap": "clamp", "factor": [scale, scale, scale] })

@@ -4,13 +4,14 @@ use serde_json::{Map, Value, json};
 
 use super::parameters::Parameters;
 use super::{Look, Reading};
+use crate::import::budget::BlendSize;
 use crate::import::number::{Number, Rough};
 use crate::import::relief::has_map;
 use crate::import::table::{Table, metal};
 
 impl Reading<'_, '_> {
     pub(super) fn material(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Look, String> {
-        let mut opacity = 1.0;
+        let (mut opacity, mut size) = (1.0, BlendSize::ONE);
         // What is chosen between has maps of its own, and what is not there has none.
         let detail = if matches!(kind, "mix" | "interface" | "") { Map::new() } else { self.relief(list)? };
         let value = match kind {
@@ -56,15 +57,14 @@ impl Reading<'_, '_> {
                         self.builder.leave_out(place, what);
                     }
                     // In full, since a blend may only name what stands before it.
-                    let value = match look.value.as_str().and_then(|name| self.builder.materials.get(name)) {
-                        Some(value) => value.clone(),
-                        None => look.value,
-                    };
-                    Ok::<Value, String>(value)
+                    let named = look.value.as_str().and_then(|name| self.builder.materials.get(name));
+                    Ok::<_, String>((named.unwrap_or(&look.value).clone(), look.size))
                 };
-                let (first, second) = (known(first)?, known(second)?);
+                let ((first, first_size), (second, second_size)) = (known(first)?, known(second)?);
+                size = first_size.blend(second_size, place)?;
                 let mut blend = json!({ "type": "blend", "first": first, "second": second });
                 self.share(list, "amount")?.unwrap_or(Number::Value(0.5)).put_weight(&mut blend);
+                self.builder.spend(&blend, place)?;
                 blend
             }
             "interface" | "" => {
@@ -79,7 +79,7 @@ impl Reading<'_, '_> {
         };
         list.get("type");
         list.list_unused(self.builder);
-        Ok(Look { value, opacity, detail })
+        Ok(Look { value, opacity, detail, size })
     }
 
     fn conductor(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {

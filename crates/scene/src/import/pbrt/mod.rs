@@ -12,9 +12,11 @@ mod spectrum;
 mod tokens;
 
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use serde_json::{Map, Value};
 
+use super::budget::BlendSize;
 use super::matrix::{IDENTITY, Rows, inverse, looking, product, rotation, scaling, translation};
 use super::{Builder, Outside};
 use parameters::Parameters;
@@ -35,6 +37,7 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         systems: HashMap::new(),
         materials: HashMap::new(),
         textures: HashMap::new(),
+        meshes: HashMap::new(),
         object: None,
         includes: 0,
         shapes: 0,
@@ -50,14 +53,16 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
 }
 
 /// What attributes save and restore.
+///
+/// Copies share what may be large.
 #[derive(Clone, Debug)]
 struct State {
     /// From the coordinates in force to the world.
     transform: Rows,
     /// A material of the format, or the name of one, and how opaque it is.
-    material: Look,
+    material: Rc<Look>,
     /// What the shapes from here on emit.
-    emission: Option<Value>,
+    emission: Option<Rc<Value>>,
     reversed: bool,
 }
 
@@ -68,13 +73,15 @@ struct Look {
     opacity: f64,
     /// Further keys of its objects: a map of normals or heights.
     detail: Map<String, Value>,
+    /// How many materials it is a blend of.
+    size: BlendSize,
 }
 
 impl Default for State {
     fn default() -> Self {
         let value = serde_json::json!({ "type": "lambert", "reflectance": 0.5 });
-        let material = Look { value, opacity: 1.0, detail: Map::new() };
-        Self { transform: IDENTITY, material, emission: None, reversed: false }
+        let material = Look { value, opacity: 1.0, detail: Map::new(), size: BlendSize::ONE };
+        Self { transform: IDENTITY, material: Rc::new(material), emission: None, reversed: false }
     }
 }
 
@@ -86,8 +93,10 @@ struct Reading<'r, 'b> {
     world: Rows,
     in_world: bool,
     systems: HashMap<String, Rows>,
-    materials: HashMap<String, Look>,
+    materials: HashMap<String, Rc<Look>>,
     textures: HashMap<String, Value>,
+    /// Mesh files that have been read: what is placed of each, the box around it, and whether it has texture coordinates.
+    meshes: HashMap<String, shape::Placeable>,
     /// The object that is being defined, and what is outside of it.
     object: Option<(String, Outside)>,
     includes: usize,
@@ -115,7 +124,7 @@ impl Reading<'_, '_> {
                 if self.includes > MAX_INCLUDES {
                     return Err(format!("{place}: more than {MAX_INCLUDES} files are included"));
                 }
-                let bytes = self.near(&name, &place)?;
+                let bytes = self.builder.bytes_of(&name, &place)?;
                 self.file(&bytes, &format!("{name}, "), depth + 1)?;
             } else {
                 self.directive(directive, &mut arguments)?;
@@ -181,7 +190,7 @@ impl Reading<'_, '_> {
             "PixelFilter" => self.filter(&arguments.quoted()?, &arguments.parameters()?, &place)?,
             "Material" => {
                 let (kind, list) = (arguments.quoted()?, arguments.parameters()?);
-                self.state.material = self.material(&kind, &list, &place)?;
+                self.state.material = Rc::new(self.material(&kind, &list, &place)?);
             }
             "MakeNamedMaterial" => {
                 let (name, list) = (arguments.quoted()?, arguments.parameters()?);
@@ -190,7 +199,7 @@ impl Reading<'_, '_> {
                 let known = self.builder.material_name(&name);
                 self.builder.materials.insert(known.clone(), look.value);
                 look.value = Value::String(known);
-                self.materials.insert(name, look);
+                self.materials.insert(name, Rc::new(look));
             }
             "NamedMaterial" => {
                 let name = arguments.quoted()?;
@@ -206,7 +215,7 @@ impl Reading<'_, '_> {
             "LightSource" => self.light(&arguments.quoted()?, &arguments.parameters()?, &place)?,
             "AreaLightSource" => {
                 let (kind, list) = (arguments.quoted()?, arguments.parameters()?);
-                self.state.emission = self.area_light(&kind, &list, &place)?;
+                self.state.emission = self.area_light(&kind, &list, &place)?.map(Rc::new);
             }
             "Shape" => self.shape(&arguments.quoted()?, &arguments.parameters()?, &place)?,
             "ObjectBegin" => {
@@ -242,12 +251,6 @@ impl Reading<'_, '_> {
     /// From the coordinates in force to those of the scene, or of the object that is being defined.
     fn to_world(&self) -> Rows {
         if self.object.is_some() { self.state.transform } else { product(&self.world, &self.state.transform) }
-    }
-
-    /// The bytes of a file that the scene names.
-    fn near(&self, name: &str, place: &str) -> Result<Vec<u8>, String> {
-        let name = name.replace('\\', "/");
-        (self.builder.near)(&name).map_err(|why| format!("{place}: \"{name}\" cannot be read: {why}"))
     }
 }
 

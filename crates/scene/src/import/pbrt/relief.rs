@@ -15,8 +15,7 @@ impl Reading<'_, '_> {
         let mut detail = Map::new();
         if let Some(parameter) = list.get("normalmap") {
             let (place, file) = (parameter.place.clone(), parameter.strings().first().cloned().unwrap_or_default());
-            let found = self.near(&file, &place);
-            match found.and_then(|bytes| self.builder.image_file(&file, bytes, Encoding::Linear, &place)) {
+            match self.builder.image_file(&file, Encoding::Linear, &place) {
                 Ok((name, _)) => {
                     // Green is normal × tangent in the axes of pbrt, which points the other way in a mirrored world.
                     let mut map = json!({ "file": name, "bitangent": "across-u" });

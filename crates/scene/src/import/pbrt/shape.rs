@@ -12,6 +12,9 @@ use crate::mesh::{MAX_ELEMENTS, read_ply};
 use crate::model::Mesh;
 use crate::vector::unit;
 
+/// A shape of the format, the box around it, and whether it has texture coordinates.
+pub(super) type Placeable = (Value, [[f64; 3]; 2], bool);
+
 impl Reading<'_, '_> {
     pub(super) fn shape(&mut self, shape: &str, list: &Parameters, place: &str) -> Result<(), String> {
         self.shapes += 1;
@@ -47,11 +50,7 @@ impl Reading<'_, '_> {
                     self.builder.leave_out(place, format!("\"{file}\" is compressed, and is left out"));
                     return Ok(());
                 }
-                let part = read_ply(&self.near(&file, place)?).map_err(|e| format!("{place}: \"{file}\": {e}"))?;
-                for what in &part.left_out {
-                    self.builder.leave_out(place, format!("\"{file}\": {what}"));
-                }
-                self.file_of(&part.mesh)
+                self.mesh(&file, place)?
             }
             other => {
                 self.builder.leave_out(place, format!("the shape \"{other}\" is not known, and is left out"));
@@ -81,7 +80,7 @@ impl Reading<'_, '_> {
         }
         list.list_unused(self.builder);
         let material = self.untextured(has_uvs, place);
-        let mut emission = self.state.emission.clone();
+        let mut emission = self.state.emission.as_deref().cloned();
         if !has_uvs && emission.as_ref().is_some_and(has_image) {
             if matches!(shape, "disk" | "sphere" | "cylinder") {
                 self.builder.leave_out(place, "what it shines by is laid over texture coordinates of another kind");
@@ -102,8 +101,7 @@ impl Reading<'_, '_> {
             rows: self.to_world(),
             flipped: self.state.reversed,
         };
-        self.builder.place(&placed, place);
-        Ok(())
+        self.builder.place(&placed, place)
     }
 
     /// The material in force, or grey where it would show an image and there are no texture coordinates.
@@ -117,8 +115,23 @@ impl Reading<'_, '_> {
         value.clone()
     }
 
+    /// What is placed of a mesh file, which is read once.
+    fn mesh(&mut self, file: &str, place: &str) -> Result<Placeable, String> {
+        if let Some(known) = self.meshes.get(file) {
+            return Ok(known.clone());
+        }
+        let bytes = self.builder.bytes_of(file, place)?;
+        let part = read_ply(&bytes).map_err(|e| format!("{place}: \"{file}\": {e}"))?;
+        for what in &part.left_out {
+            self.builder.leave_out(place, format!("\"{file}\": {what}"));
+        }
+        let made = self.file_of(&part.mesh);
+        self.meshes.insert(file.to_owned(), made.clone());
+        Ok(made)
+    }
+
     /// A mesh as a file, the box around it, and whether it has texture coordinates.
-    fn file_of(&mut self, mesh: &Mesh) -> (Value, [[f64; 3]; 2], bool) {
+    fn file_of(&mut self, mesh: &Mesh) -> Placeable {
         let first = mesh.vertices.first().copied().unwrap_or([0.0; 3]);
         let reach = mesh.vertices.iter().fold([first, first], |[low, high], v| {
             [std::array::from_fn(|k| low[k].min(v[k])), std::array::from_fn(|k| high[k].max(v[k]))]

@@ -54,6 +54,7 @@ impl Reading<'_, '_> {
                 let name = parameter.strings().first().cloned().unwrap_or_default();
                 let known = self.textures.get(&name).cloned();
                 let value = known.ok_or_else(|| format!("{place}: there is no texture \"{name}\""))?;
+                self.builder.spend(&value, &place)?;
                 if !textured && value["type"] == "image" {
                     self.builder.leave_out(&place, "the mean of the image stands for it everywhere");
                     value["mean"].clone()
@@ -151,11 +152,13 @@ impl Reading<'_, '_> {
                 if !name.ends_with(".spd") {
                     return Ok(None);
                 }
-                let bytes = self.near(name, place)?;
+                let bytes = self.builder.bytes_of(name, place)?;
                 let text = String::from_utf8_lossy(&bytes).into_owned();
                 let words = text.lines().flat_map(|line| line.split('#').next().unwrap_or("").split_whitespace());
                 let parsed: Result<Vec<f64>, _> = words.map(str::parse).collect();
-                parsed.map_err(|_| format!("{place}: \"{name}\" does not consist of numbers"))?
+                let numbers = parsed.map_err(|_| format!("{place}: \"{name}\" does not consist of numbers"))?;
+                self.builder.spend(&json!(numbers), place)?;
+                numbers
             }
             Values::Flags(_) => return Err(format!("{place}: it is no spectrum")),
         };
@@ -219,7 +222,7 @@ impl Reading<'_, '_> {
                 Encoding::Auto
             }
         };
-        let found = self.near(&file, place).and_then(|bytes| self.builder.image_file(&file, bytes, encoding, place));
+        let found = self.builder.image_file(&file, encoding, place);
         let (name, mean) = match found {
             Ok(found) => found,
             Err(why) => {
