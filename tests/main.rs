@@ -8,6 +8,7 @@ mod denoise;
 mod display;
 mod explain;
 mod farm;
+mod hostile;
 mod outputs;
 mod refusals;
 mod renders;
