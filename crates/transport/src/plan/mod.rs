@@ -6,9 +6,11 @@
 mod directions;
 mod evidence;
 mod grey;
+mod missing_light;
 mod study;
 mod three_channels;
 
+pub use missing_light::{Lost, MissingLight, MissingPair};
 pub use study::{Carried, Study, StudyError};
 
 pub(crate) use grey::OneLaneFilm;
@@ -282,6 +284,8 @@ pub struct Plan {
     pub effects: Vec<Effect>,
     /// What a study left out although the scene calls for it, with what the picture lacks: it is an approximation.
     pub approximations: Vec<String>,
+    /// Light of the scene that no path finds.
+    pub missing_light: MissingLight,
 }
 
 /// Why neither the loop over many paths at once nor what it has in common with the reuse of paths covers a scene; `None` if they do.
@@ -393,6 +397,11 @@ impl Plan {
             stokes: runs(EffectName::Polarisation) && (study.polarised || scene.film.stokes),
             effects,
             approximations,
+            missing_light: match study.without.as_slice() {
+                [] => missing_light::of(scene),
+                // What is left out is missing for that reason.
+                _ => missing_light::of(&simulated(scene, study)),
+            },
         })
     }
 

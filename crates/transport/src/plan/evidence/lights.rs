@@ -13,7 +13,7 @@ pub(super) fn is_environment(kind: &LightKind) -> bool {
 }
 
 /// Whether only a shadow ray finds the light.
-fn is_target(kind: &LightKind) -> bool {
+pub(in crate::plan) fn is_target(kind: &LightKind) -> bool {
     match kind {
         LightKind::Point { intensity: spectrum, .. }
         | LightKind::Spot { intensity: spectrum, .. }

@@ -105,7 +105,7 @@ pub(super) fn specular(kind: &MaterialKind) -> Option<String> {
     }
 }
 
-pub(super) fn sheet_name(sheet: &PolarisingSheet) -> &'static str {
+pub(in crate::plan) fn sheet_name(sheet: &PolarisingSheet) -> &'static str {
     match sheet {
         PolarisingSheet::Polariser { .. } => "a polariser",
         PolarisingSheet::Retarder { .. } => "a retarder",

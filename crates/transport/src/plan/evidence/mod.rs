@@ -5,7 +5,8 @@ mod materials;
 mod motion;
 mod polarisation;
 
-pub(super) use lights::sources;
+pub(super) use lights::{is_target, sources};
+pub(super) use materials::sheet_name;
 pub(super) use polarisation::{UNPOLARISED, polarisation};
 
 use super::EffectName;

@@ -1,0 +1,202 @@
+//! Light that no path finds: what a lamp without area sends straight to a smooth surface.
+//!
+//! A path from the camera never meets a point, and never has the one direction of parallel light by chance. Only a shadow ray finds such
+//! lamps: from a surface that scatters into every direction, along a straight line that nothing blocks. A mirror or a smooth
+//! interface does not scatter into every direction, and blocks the shadow rays of what is behind it. So whatever such a surface
+//! reflects, refracts or lets pass of such a lamp is missing: the lamp and the surface are a pair of the plan.
+//!
+//! A pair is listed unless it is certain that no light of the lamp reaches the surface: outside the cone of a spot. What stands
+//! between the two is not asked.
+
+use super::evidence::{is_target, sheet_name};
+use crate::frame::Affine;
+use etalon_geometry::Aabb;
+use etalon_optics::Vec3;
+use etalon_scene::{LightKind, MaterialKind, Mesh, Metal, Object, PolarisingSheet, Scene, Shape};
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// Pairs that a plan lists; the others are counted.
+const MOST_LISTED: usize = 64;
+/// Fewest edges of a path from a lamp by a smooth surface and another one to the camera.
+const FEWEST_EDGES: u32 = 3;
+/// Pairs of spots and surfaces of which it is asked whether the one shines on the other; of more, each counts.
+const MOST_ASKED: usize = 1 << 22;
+
+/// Pairs of a lamp without area and a smooth surface, whose light is missing from the picture.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct MissingLight {
+    /// All pairs, by the order of the lamps, then of the objects.
+    pub pairs: u64,
+    /// The first of them, 64 at most.
+    pub listed: Vec<MissingPair>,
+}
+
+/// A lamp without area and a smooth surface.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct MissingPair {
+    /// Name of the light.
+    pub light: String,
+    /// Name of the object that has the surface.
+    pub object: String,
+    /// Name of its material.
+    pub material: String,
+    /// What is smooth about it, such as "a mirror".
+    pub surface: &'static str,
+    /// What it does to the light that is missing.
+    pub lost: Lost,
+}
+
+/// What a smooth surface does to light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Lost {
+    /// It reflects some.
+    Reflected,
+    /// It lets some pass, bent or straight.
+    Transmitted,
+    /// Both.
+    ReflectedAndTransmitted,
+}
+
+/// What a scene asks for that no path finds.
+pub(super) fn of(scene: &Scene) -> MissingLight {
+    let mut missing = MissingLight::default();
+    if scene.integrator.max_depth.is_some_and(|depth| depth < FEWEST_EDGES) {
+        // No picture of so few edges shows it.
+        return missing;
+    }
+    let lamps: Vec<_> = scene.lights.iter().filter(|light| is_target(&light.kind)).collect();
+    if lamps.is_empty() {
+        return missing;
+    }
+    let smooth = smooth_objects(scene);
+    let spots = lamps.iter().filter(|lamp| matches!(lamp.kind, LightKind::Spot { .. })).count();
+    let asks = spots > 0 && spots.saturating_mul(smooth.len()) <= MOST_ASKED;
+    let mut boxes = HashMap::new();
+    // What a group holds is anywhere.
+    let balls: Vec<Option<Ball>> = match asks {
+        true => smooth.iter().map(|one| one.stands.then(|| Ball::around(one.object, &mut boxes))).collect(),
+        false => vec![None; smooth.len()],
+    };
+    for lamp in lamps {
+        let lit = |ball: &Option<Ball>| ball.is_none_or(|ball| may_light(&lamp.kind, ball));
+        let reached = smooth.iter().zip(&balls).filter(|(_, ball)| lit(ball));
+        for (Smooth { object, surface, lost, .. }, _) in reached {
+            missing.pairs += 1;
+            if missing.listed.len() < MOST_LISTED {
+                missing.listed.push(MissingPair {
+                    light: lamp.name.clone(),
+                    object: object.name.clone(),
+                    material: scene.materials[object.material].name.clone(),
+                    surface,
+                    lost: *lost,
+                });
+            }
+        }
+    }
+    missing
+}
+
+/// An object with a smooth surface.
+struct Smooth<'a> {
+    object: &'a Object,
+    /// Whether it stands in the scene itself, and only there.
+    stands: bool,
+    surface: &'static str,
+    lost: Lost,
+}
+
+fn smooth_objects(scene: &Scene) -> Vec<Smooth<'_>> {
+    let of_materials: Vec<_> = scene.materials.iter().map(|material| smooth_part(&material.kind)).collect();
+    let objects = scene.placed_objects().enumerate().filter(|(_, object)| object.opacity > 0.0);
+    objects
+        .filter_map(|(index, object)| {
+            let (surface, lost) = of_materials[object.material]?;
+            Some(Smooth { object, stands: index < scene.objects.len(), surface, lost })
+        })
+        .collect()
+}
+
+/// The part of a material that sends light on in single directions, if it has one.
+fn smooth_part(kind: &MaterialKind) -> Option<(&'static str, Lost)> {
+    match kind {
+        MaterialKind::Mirror { reflectance } => (!reflectance.is_zero()).then_some(("a mirror", Lost::Reflected)),
+        MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) } => {
+            (!reflectance.is_zero()).then_some(("smooth metal", Lost::Reflected))
+        }
+        MaterialKind::Conductor { metal: Metal::Index(_) } => Some(("smooth metal", Lost::Reflected)),
+        MaterialKind::Dielectric { .. } => Some(("a smooth interface of two media", Lost::ReflectedAndTransmitted)),
+        MaterialKind::ThinDielectric { .. } => Some(("a thin pane", Lost::ReflectedAndTransmitted)),
+        MaterialKind::Plastic { alpha, .. } => (*alpha == 0.0).then_some(("a smooth coat", Lost::Reflected)),
+        MaterialKind::PolarisingSheet { sheet: PolarisingSheet::Polariser { transmittance, .. }, .. }
+            if transmittance.is_zero() =>
+        {
+            None
+        }
+        MaterialKind::PolarisingSheet { sheet, .. } => Some((sheet_name(sheet), Lost::Transmitted)),
+        MaterialKind::Blend { parts, .. } => {
+            let parts: Vec<_> = parts.iter().filter_map(|(_, part)| smooth_part(part)).collect();
+            let (surface, first) = *parts.first()?;
+            let alike = parts.iter().all(|(_, lost)| *lost == first);
+            Some((surface, if alike { first } else { Lost::ReflectedAndTransmitted }))
+        }
+        MaterialKind::Lambert { .. }
+        | MaterialKind::RoughConductor { .. }
+        | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Black => None,
+    }
+}
+
+/// A ball around an object in the world.
+#[derive(Clone, Copy)]
+struct Ball {
+    centre: Vec3<f64>,
+    radius: f64,
+}
+
+impl Ball {
+    /// `boxes` are those of meshes, each found once.
+    fn around(object: &Object, boxes: &mut HashMap<*const Mesh, Aabb>) -> Self {
+        let placed = Affine::new(&object.transform);
+        let of_points = |points: &[[f64; 3]], beyond: f64| {
+            let points = || points.iter().map(|point| placed.point(*point));
+            let centre = Aabb::of_points(points()).centre();
+            let reach = points().map(|point| (point - centre).length()).fold(0.0, f64::max);
+            // Shapes with a radius are scaled alike in every direction.
+            Self { centre, radius: reach + beyond * placed.uniform_scale() }
+        };
+        match &object.shape {
+            Shape::Sphere { center, radius_m } | Shape::Disk { center, radius_m, .. } => {
+                of_points(&[*center], *radius_m)
+            }
+            Shape::Cylinder { start, end, radius_m, .. } => of_points(&[*start, *end], *radius_m),
+            Shape::Parallelogram { origin, u, v } => {
+                let corner = |a: f64, b: f64| [0, 1, 2].map(|k| origin[k] + a * u[k] + b * v[k]);
+                of_points(&[corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0), corner(1.0, 1.0)], 0.0)
+            }
+            Shape::Mesh(mesh) => {
+                let vertices = || mesh.vertices.iter().map(|vertex| Vec3::from_array(*vertex));
+                let around = *boxes.entry(std::sync::Arc::as_ptr(mesh)).or_insert_with(|| Aabb::of_points(vertices()));
+                let side = |number: usize, k: usize| if number >> k & 1 == 0 { around.min[k] } else { around.max[k] };
+                let corners: [_; 8] = std::array::from_fn(|number| [0, 1, 2].map(|k| side(number, k)));
+                of_points(&corners, 0.0)
+            }
+        }
+    }
+}
+
+/// Whether light of a lamp may reach a ball.
+fn may_light(lamp: &LightKind, ball: Ball) -> bool {
+    let LightKind::Spot { position_m, axis, half_angles_rad: [_, outer], .. } = lamp else { return true };
+    let toward = ball.centre - Vec3::from_array(*position_m);
+    let distance = toward.length();
+    if distance <= ball.radius {
+        return true;
+    }
+    let off_axis = (toward.dot(Vec3::from_array(*axis)) / distance).clamp(-1.0, 1.0).acos();
+    // What cannot be computed is not certain; nor is what rounding decides.
+    let beyond = off_axis - (ball.radius / distance).asin() - outer;
+    beyond.is_nan() || beyond < 1e-9
+}
