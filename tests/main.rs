@@ -9,6 +9,7 @@ mod display;
 mod explain;
 mod farm;
 mod hostile;
+mod missing_light;
 mod outputs;
 mod refusals;
 mod renders;

@@ -2,6 +2,7 @@
 
 use etalon_optics::colour;
 use etalon_picture::{Attribute, Attributes, ERROR_PREFIX, ErrorInfo, Picture, PictureError, RenderInfo, Window};
+use etalon_transport::accuracy::Region;
 use etalon_transport::{Band, Canvas, Features, Film, ImageError, Pixel, PixelRect};
 use miette::Report;
 
@@ -290,14 +291,13 @@ const SAMPLES: &str = "samples";
 
 /// What the file says about the error of its picture.
 fn error_info(film: &Film, error: &ImageError) -> ErrorInfo {
-    let tile = error.noisiest.rect;
     ErrorInfo {
         replicates: film.replicates(),
         correlated_pixels: film.correlated_pixels(),
         relative_rmse: error.relative_rmse,
         interval: error.interval,
         tail_index: error.tail_index,
-        noisiest_tile: [tile.x0, tile.x1, tile.y0, tile.y1],
+        noisiest_tile: error.noisiest.map(|Region { rect, .. }| [rect.x0, rect.x1, rect.y0, rect.y1]),
     }
 }
 

@@ -11,6 +11,7 @@ mod display;
 mod excerpt;
 mod failure;
 mod interrupt;
+mod light;
 mod load;
 mod machine;
 mod machine_limits;

@@ -120,7 +120,8 @@ impl Watch for RenderBar {
         }
         if let Some(error) = film.error(self.rect) {
             let target = self.target.map(|target| format!(" of {}", percent(target))).unwrap_or_default();
-            self.bar.set_message(format!("error {}{target}", percent(error.relative_rmse)));
+            let error = if error.is_known() { percent(error.relative_rmse) } else { "unknown".to_owned() };
+            self.bar.set_message(format!("error {error}{target}"));
         }
     }
 }

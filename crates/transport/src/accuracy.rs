@@ -3,6 +3,9 @@
 //! The relative error of a picture is E = √(mean over pixels of Var(Y)) / mean Y: the root mean square over all pixels of
 //! the standard error of luminance, in units of the picture's own mean luminance. Pixels are independent of each other (or in blocks, where
 //! they share paths), so the mean of many poorly known variances is well known.
+//!
+//! A picture in which no sample found light has an unknown error, not none: its samples cannot tell whether there is light that they
+//! missed.
 
 use crate::film::{Film, Pixel, PixelRect, XyzSum};
 use std::f64::consts::PI;
@@ -21,12 +24,19 @@ pub const HEAVY_TAIL: f64 = 0.15;
 /// hold the truth in 93 to 97 % of all pixels; with caustics found by chance, above, in 31 to 79 %.
 pub const HEAVY_PIXEL_TAIL: f64 = 0.05;
 
+/// Where chance finds light: replicates of pixels that must have found some before the interval of the error is stated. After k finds
+/// the interval of their true number is about k·exp(±2/√k). That holds for many. After one find the interval of the error would end at
+/// 2.7 times the error; the exact one ends at 6.3 times.
+pub const FEWEST_LIT: u64 = 16;
+
 /// The error of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageError {
-    /// E, the relative root mean square error.
+    /// E, the relative root mean square error. Infinite where it is unknown: no sample found light, or only so little or so much that
+    /// squares are beyond the range of `f64`.
     pub relative_rmse: f64,
-    /// 95 % confidence interval of E.
+    /// 95 % confidence interval of E; 0 to infinity where it is unknown: E itself is, or light was found by chance in fewer than
+    /// [`FEWEST_LIT`] replicates of pixels.
     pub interval: [f64; 2],
     /// The picture's level: its mean Y.
     pub mean_y: f64,
@@ -40,13 +50,28 @@ pub struct ImageError {
     pub pixel_tail_index: Option<f64>,
     /// Pixels with noise, over which that is a mean: it scatters by ½/√pixels.
     pub noisy_pixels: u64,
-    /// The noisiest tile.
-    pub noisiest: Region,
+    /// The noisiest tile; `None` where E is unknown.
+    pub noisiest: Option<Region>,
     /// Pixels of which nothing is known, having fewer than two replicates with samples; not counted in E.
     pub unknown_pixels: u64,
 }
 
 impl ImageError {
+    /// Whether anything is known of E.
+    pub fn is_known(&self) -> bool {
+        self.relative_rmse.is_finite()
+    }
+
+    /// Whether any sample found light.
+    pub fn found_light(&self) -> bool {
+        self.mean_y != 0.0
+    }
+
+    /// Whether the interval of E says something.
+    pub fn has_interval(&self) -> bool {
+        self.interval[1].is_finite()
+    }
+
     /// Whether rare bright paths make the picture's interval unreliable.
     pub fn is_heavy_tailed(&self) -> bool {
         self.tail_index.is_some_and(|index| index > HEAVY_TAIL)
@@ -91,6 +116,9 @@ pub struct ErrorSum {
     /// Σ of those shares, and pixels that have one.
     outlier_of_pixels: f64,
     grouped: u64,
+    /// Replicates of pixels that found light, and all replicates of the pixels where at least one did.
+    lit: u64,
+    tried: u64,
 }
 
 impl ErrorSum {
@@ -101,6 +129,11 @@ impl ErrorSum {
             return;
         };
         let y = pixel.xyz()[1];
+        let lit = pixel.sums().iter().filter(|sum| sum.xyz[1] > 0.0).count() as u64;
+        if lit > 0 {
+            self.lit += lit;
+            self.tried += u64::from(freedom) + 1;
+        }
         self.pixels += 1;
         self.y += y;
         self.y_y += y * y;
@@ -119,12 +152,21 @@ impl ErrorSum {
         }
     }
 
-    /// E; `None` if nothing is known. A black picture without any error has E = 0.
+    /// E; `None` if nothing is known of it.
     pub fn relative_rmse(&self) -> Option<f64> {
-        (self.pixels > 0).then(|| if self.variance == 0.0 { 0.0 } else { self.mean_variance().sqrt() / self.mean_y() })
+        // A sum of squares that is 0 has no pixel, or no light; one that is subnormal or infinite says nothing of variances.
+        let known = self.y_y.is_normal().then(|| self.mean_variance().sqrt() / self.mean_y());
+        known.filter(|relative_rmse| relative_rmse.is_finite())
     }
 
-    /// Relative standard error of E where these are all pixels of the picture: only the scatter of replicates is chance.
+    /// Whether light was found so rarely, and by so few replicates of the pixels that found any, that the law of large numbers says
+    /// nothing of E yet.
+    fn is_found_by_few(&self) -> bool {
+        self.lit < FEWEST_LIT && 2 * self.lit <= self.tried
+    }
+
+    /// Relative standard error of E where these are all pixels of the picture: only the scatter of replicates is chance. Infinite
+    /// where it is unknown.
     pub fn uncertainty(&self) -> f64 {
         self.relative(self.variance, self.uncertainty, self.skew)
     }
@@ -142,6 +184,9 @@ impl ErrorSum {
 
     /// To first order, from the variances of Σy and of Σvariance and their covariance: ln E = ½ ln Σvariance − ln Σy + ….
     fn relative(&self, of_y: f64, of_variance: f64, covariance: f64) -> f64 {
+        if self.relative_rmse().is_none() || self.is_found_by_few() {
+            return f64::INFINITY;
+        }
         if self.variance == 0.0 {
             return 0.0;
         }
@@ -235,7 +280,11 @@ impl Film {
                 noisiest = (variance, tile, sum);
             }
         }
-        let relative_rmse = all.relative_rmse()?;
+        if all.pixels == 0 {
+            return None;
+        }
+        let known = all.relative_rmse();
+        let relative_rmse = known.unwrap_or(f64::INFINITY);
         let (variance, rect, sum) = noisiest;
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         Some(ImageError {
@@ -247,128 +296,22 @@ impl Film {
             tail_index: all.tail_index(),
             pixel_tail_index: all.pixel_tail_index(),
             noisy_pixels: all.grouped,
-            noisiest: Region {
+            noisiest: known.map(|_| Region {
                 rect,
                 relative_rmse: share(variance.sqrt(), all.mean_y()),
                 share: share(sum.variance, all.variance),
-            },
+            }),
             unknown_pixels: all.unknown,
         })
     }
 }
 
-/// The 95 % interval of a positive quantity that is known to a relative standard error: normal in its logarithm.
+/// The 95 % interval of a positive quantity that is known to a relative standard error: normal in its logarithm. 0 to infinity where
+/// either is infinite, which stands for unknown.
 pub fn interval(value: f64, relative_error: f64) -> [f64; 2] {
     let factor = (Z_95 * relative_error).exp();
-    [value / factor, value * factor]
+    if value.is_finite() && factor.is_finite() { [value / factor, value * factor] } else { [0.0, f64::INFINITY] }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::film::TileSums;
-    use etalon_oracle::Uniform;
-    use etalon_oracle::statistics::Welford;
-
-    /// A film whose replicates hold one sample of Y each.
-    fn film(width: u32, replicates: u32, mut y: impl FnMut(u32) -> f64) -> Film {
-        let mut film = Film::new(width, width, replicates);
-        let rect = PixelRect { x0: 0, y0: 0, x1: width, y1: width };
-        for (index, (x, y_px)) in rect.pixels().enumerate() {
-            let sums: Vec<XyzSum> =
-                (0..replicates).map(|_| XyzSum { xyz: [0.0, y(index as u32), 0.0], count: 1 }).collect();
-            film.put(
-                PixelRect { x0: x, y0: y_px, x1: x + 1, y1: y_px + 1 },
-                &TileSums { xyz: sums, ..Default::default() },
-            );
-        }
-        film
-    }
-
-    fn whole(film: &Film) -> PixelRect {
-        PixelRect { x0: 0, y0: 0, x1: film.width(), y1: film.height() }
-    }
-
-    #[test]
-    fn the_variance_of_the_mean_is_the_textbook_one_and_knows_covariance() {
-        let sums = [[1.0, 2.0], [2.0, 3.0], [3.0, 7.0]].map(|[x, y]| XyzSum { xyz: [2.0 * x, 2.0 * y, 0.0], count: 2 });
-        let film = {
-            let mut film = Film::new(1, 1, 3);
-            film.put(PixelRect { x0: 0, y0: 0, x1: 1, y1: 1 }, &TileSums { xyz: sums.to_vec(), ..Default::default() });
-            film
-        };
-        let pixel = film.pixel(0, 0);
-        assert_eq!(pixel.xyz(), [2.0, 4.0, 0.0]);
-        let (variance, freedom) = pixel.variance(|[x, y, _]| [x, y, x + y, x - y]).unwrap();
-        // Sample variances 1 and 7, covariance 2.5; over three.
-        let expected = [1.0, 7.0, 13.0, 3.0].map(|v| v / 3.0);
-        assert!(variance.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{variance:?}");
-        assert_eq!(freedom, 2);
-    }
-
-    #[test]
-    fn one_replicate_knows_nothing_and_two_are_enough() {
-        assert_eq!(film(2, 1, |_| 1.0).error(PixelRect { x0: 0, y0: 0, x1: 2, y1: 2 }), None);
-        let mut values = [1.0, 3.0].into_iter().cycle();
-        let film = film(2, 2, |_| values.next().unwrap());
-        let error = film.error(whole(&film)).unwrap();
-        // Means 2, standard errors 1.
-        assert_eq!((error.relative_rmse, error.mean_y, error.tail_index), (0.5, 2.0, None));
-        assert_eq!(film.linear_rec709_error().len(), 4);
-    }
-
-    /// Normal and rare contributions of known variance: in 400 trials each, the interval of E must hold it in 95 % ± 4 %
-    /// (3.7 standard deviations of the binomial).
-    #[test]
-    fn the_interval_of_the_error_holds_the_truth_whatever_the_distribution() {
-        let mut numbers = Uniform::new(5);
-        for (name, rare) in [("normal", false), ("rare", true)] {
-            let mut held = 0;
-            let mut index = Welford::new();
-            for _ in 0..400 {
-                let film = film(32, 4, |_| {
-                    let u = numbers.number();
-                    if rare {
-                        if u < 0.1 { 10.0 } else { 0.0 }
-                    } else {
-                        1.0 + 0.3 * (-2.0 * (1.0 - u).ln()).sqrt() * (2.0 * PI * numbers.number()).cos()
-                    }
-                });
-                let error = film.error(whole(&film)).unwrap();
-                let truth = if rare { (10.0_f64 - 1.0).sqrt() / 2.0 } else { 0.15 };
-                held += u32::from(error.interval[0] <= truth && truth <= error.interval[1]);
-                index.push(error.tail_index.unwrap());
-            }
-            assert!((365..=395).contains(&held), "{name}: {held} of 400");
-            // 1024 pixels of normal replicates scatter by 0.01 about zero; one in ten is an outlier where it falls alone.
-            let error = index.standard_error();
-            assert!(
-                if rare { index.mean() > 0.5 } else { index.mean().abs() < 5.0 * error },
-                "{name}: {} ± {error}",
-                index.mean()
-            );
-        }
-    }
-
-    #[test]
-    fn the_noisiest_tile_is_found() {
-        let mut numbers = Uniform::new(7);
-        let film = film(64, 4, |pixel| {
-            let (x, y) = (pixel % 64, pixel / 64);
-            let noise = if (32..48).contains(&x) && (16..32).contains(&y) { 0.5 } else { 0.1 };
-            1.0 + noise * (numbers.number() - 0.5)
-        });
-        let error = film.error(whole(&film)).unwrap();
-        assert_eq!(error.noisiest.rect, PixelRect { x0: 32, y0: 16, x1: 48, y1: 32 });
-        // 25 against 15 tiles of 1.
-        assert!((error.noisiest.share - 25.0 / 40.0).abs() < 0.03, "{error:?}");
-    }
-
-    #[test]
-    fn a_picture_without_noise_has_no_error() {
-        let film = film(8, 4, |_| 0.25);
-        let error = film.error(whole(&film)).unwrap();
-        assert_eq!((error.relative_rmse, error.interval), (0.0, [0.0, 0.0]));
-        assert!(!error.is_heavy_tailed());
-    }
-}
+mod tests;

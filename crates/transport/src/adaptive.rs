@@ -127,8 +127,14 @@ fn foretold_paths(probe: &Probe<'_>, rect: PixelRect, goal: &Goal, samples: u32,
     let by_error = goal.relative_rmse.and_then(|target| {
         let mut error = ErrorSum::default();
         probe.seen().for_each(|seen| error.push(seen.pixel));
-        let ratio = error.relative_rmse()? * f64::from(probe.copies()).sqrt() / target;
-        let foretold = ratio.is_finite().then(|| f64::from(samples) * ratio.powf(2.0 / power) / gain.max(1.0))?;
+        let foretold = match error.relative_rmse() {
+            // Where no light was found yet it is the pilot that goes on to look for some.
+            None => 0.0,
+            Some(relative_rmse) => {
+                let ratio = relative_rmse * f64::from(probe.copies()).sqrt() / target;
+                ratio.is_finite().then(|| f64::from(samples) * ratio.powf(2.0 / power) / gain.max(1.0))?
+            }
+        };
         Some(foretold.max(LEAST_PATHS / rect.area() as f64))
     });
     by_error.unwrap_or(f64::INFINITY).min(f64::from(goal.samples)) * rect.area() as f64

@@ -86,4 +86,4 @@ pub use prepare::{PrepareError, Prepared, prepare, prepare_study};
 pub use price::Price;
 pub use render::{Control, Extent, ThreadError};
 pub use shares::Shares;
-pub use stop::{Ended, Explored, Finished, Foretold, Limits, Reached, Settled, Watch};
+pub use stop::{Ended, Explored, Finished, Foretold, Limits, Reached, SettleError, Settled, Watch};

@@ -24,18 +24,28 @@ const KNOWN_WELL: f64 = 0.05;
 const MOST_OF_PICTURE: f64 = 0.25;
 /// Samples a pixel before the error of a pilot's error is believed.
 const BELIEVED_FROM: u32 = 16;
+/// Camera paths after which a pilot that has found no light looks no further. Light that one path in a million finds would take a
+/// million million paths to an error of 1 % in ten thousand pixels.
+const PATHS_WITHOUT_LIGHT: u64 = 1 << 22;
 
 /// The error of the picture at a number of samples, as the pilot saw it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PilotPoint {
     /// Samples a pixel, in the mean over the picture.
     pub samples: u32,
-    /// Relative error of the picture: see [`crate::accuracy`].
+    /// Relative error of the picture: see [`crate::accuracy`]. Infinite where it is unknown, since no light was found.
     pub relative_rmse: f64,
-    /// Relative standard error of that, by the choice of pixels and by chance.
+    /// Relative standard error of that, by the choice of pixels and by chance. Infinite where it is unknown.
     pub uncertainty: f64,
     /// Seconds that the whole picture takes for so many samples, by the pilot's rate.
     pub seconds: f64,
+}
+
+impl PilotPoint {
+    /// Whether the error is known to be so small.
+    pub fn reaches(&self, relative_rmse: f64) -> bool {
+        self.relative_rmse <= relative_rmse && self.uncertainty.is_finite()
+    }
 }
 
 /// A pilot under way.
@@ -101,6 +111,20 @@ impl<'a> Pilot<'a> {
         self.probe.replicates()
     }
 
+    /// Whether it has traced so many paths without finding light that it looks no further.
+    pub fn found_no_light(&self) -> bool {
+        self.gave_up(&self.error())
+    }
+
+    fn gave_up(&self, error: &ErrorSum) -> bool {
+        error.relative_rmse().is_none() && self.probe.paths() >= PATHS_WITHOUT_LIGHT
+    }
+
+    /// Camera paths traced.
+    pub fn paths(&self) -> u64 {
+        self.probe.paths()
+    }
+
     /// Goes on to `samples` a pixel, and takes more pixels where the error is not known well. `clock` tells seconds.
     pub fn advance(&mut self, samples: u32, clock: &(dyn Fn() -> f64 + Sync), on_work: &(dyn Fn(&Counters) + Sync)) {
         let start = clock();
@@ -108,7 +132,10 @@ impl<'a> Pilot<'a> {
         self.samples = samples;
         let mut error = self.error();
         let most = MOST_OF_PICTURE * self.rect.area() as f64;
-        while samples >= BELIEVED_FROM && self.uncertainty(&error) > KNOWN_WELL && 2.0 * self.probe.len() as f64 <= most
+        while samples >= BELIEVED_FROM
+            && self.uncertainty(&error) > KNOWN_WELL
+            && 2.0 * self.probe.len() as f64 <= most
+            && !self.gave_up(&error)
         {
             let first = self.probe.len();
             // Twice the pixels: what they cost is bounded by what was spent already.
@@ -136,6 +163,9 @@ impl<'a> Pilot<'a> {
     /// Relative standard error of the picture's error: the scatter of replicates, and what the pixels left out may hide.
     fn uncertainty(&self, error: &ErrorSum) -> f64 {
         let (chance, both) = (error.uncertainty().powi(2), error.uncertainty_of_choice().powi(2));
+        if !chance.is_finite() {
+            return f64::INFINITY;
+        }
         let left_out = 1.0 - (self.probe.len() as f64 / self.rect.area() as f64).min(1.0);
         (chance + (both - chance).max(0.0) * left_out).sqrt()
     }

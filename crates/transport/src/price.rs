@@ -3,7 +3,7 @@
 use crate::pilot::PilotPoint;
 use etalon_scene::SamplerKind;
 
-/// What a relative error costs.
+/// What a relative error costs; not a number, with intervals that end at infinity, where no error is known yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Price {
     /// The relative error.
@@ -26,6 +26,9 @@ const EXPONENTS: [f64; 3] = [1.0, 1.5, 3.0];
 const Z_95: f64 = 1.959_963_984_540_054;
 
 pub(crate) fn price(points: &[PilotPoint], target: f64, sampler: SamplerKind, fewest: u32) -> Price {
+    // What found no light knows no error.
+    let known: Vec<PilotPoint> = points.iter().filter(|point| point.relative_rmse.is_finite()).copied().collect();
+    let points = known.as_slice();
     let Some(last) = points.last() else {
         let unknown = [f64::from(fewest), f64::INFINITY];
         return Price {
@@ -69,7 +72,7 @@ pub(crate) fn price(points: &[PilotPoint], target: f64, sampler: SamplerKind, fe
 /// Where the error passed `target`, as a power of the number of samples between the two points about it; `None` if it is
 /// smaller or larger than all of them.
 pub(crate) fn between(points: &[PilotPoint], target: f64) -> Option<f64> {
-    let after = points.iter().position(|point| point.relative_rmse <= target)?;
+    let after = points.iter().position(|point| point.reaches(target))?;
     let pair = |point: PilotPoint| (f64::from(point.samples), point.relative_rmse);
     Some(crossing(pair(points[after.checked_sub(1)?]), pair(points[after]), target))
 }
@@ -78,8 +81,8 @@ pub(crate) fn between(points: &[PilotPoint], target: f64) -> Option<f64> {
 fn crossing(before: (f64, f64), after: (f64, f64), target: f64) -> f64 {
     let share = (before.1 / target).ln() / (before.1 / after.1).ln();
     let samples = before.0 * (share * (after.0 / before.0).ln()).exp();
-    // Not a number where there is no error left.
-    if samples.is_finite() { samples } else { after.0 }
+    // Not a number where there is no error left, or none was known before.
+    if samples.is_finite() && before.1 > target { samples } else { after.0 }
 }
 
 /// Steps of an octave of samples at which a law tells apart how the variance falls within it.
@@ -294,5 +297,25 @@ mod tests {
     fn a_picture_without_noise_costs_the_fewest_samples() {
         let price = price(&points(|_| 0.0), 0.01, SamplerKind::Sobol, 4);
         assert_eq!((price.samples, price.samples_interval), (4.0, [4.0, 4.0]));
+    }
+
+    /// Points that found no light are none: with them the price is that of the others, and without any it is unknown.
+    #[test]
+    fn points_that_found_no_light_have_no_price() {
+        let seen = points(|n| 1.0 / n);
+        let dark = |points: &[PilotPoint]| -> Vec<PilotPoint> {
+            let unknown =
+                |point: &PilotPoint| PilotPoint { relative_rmse: f64::INFINITY, uncertainty: f64::INFINITY, ..*point };
+            points.iter().map(unknown).collect()
+        };
+        let late = [dark(&seen[..3]), seen[3..].to_vec()].concat();
+        assert_eq!(price(&late, 0.01, SamplerKind::Sobol, 4), price(&seen[3..], 0.01, SamplerKind::Sobol, 4));
+        assert_eq!(between(&late, seen[3].relative_rmse), Some(f64::from(seen[3].samples)));
+        let price = price(&dark(&seen), 0.01, SamplerKind::Sobol, 4);
+        assert!(price.samples.is_nan() && price.seconds.is_nan());
+        assert_eq!((price.samples_interval, price.seconds_interval[1]), ([4.0, f64::INFINITY], f64::INFINITY));
+        // Nor is an error reached that is not known to be.
+        let lucky = PilotPoint { uncertainty: f64::INFINITY, ..seen[0] };
+        assert!(seen[0].reaches(0.9) && !lucky.reaches(0.9) && !dark(&seen)[0].reaches(f64::INFINITY));
     }
 }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// What a render may cost, or must reach. Without any limit it would not end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Most samples a pixel, in the mean.
+    /// Most samples a pixel, in the mean; [`Limits::ANY_SAMPLES`] is no limit.
     pub samples: u32,
     /// The relative error at which it is good enough: see [`crate::accuracy`].
     pub relative_rmse: Option<f64>,
@@ -24,6 +24,30 @@ pub struct Limits {
     pub seconds: Option<f64>,
     /// Whether regions take different numbers of samples.
     pub adaptivity: Adaptivity,
+}
+
+impl Limits {
+    /// More samples a pixel than any render takes.
+    pub const ANY_SAMPLES: u32 = i32::MAX as u32;
+
+    /// Whether the render ends although its error is never reached.
+    fn end_without_error(&self) -> bool {
+        self.samples < Self::ANY_SAMPLES || self.seconds.is_some()
+    }
+}
+
+/// Why it cannot be settled how many samples a picture takes.
+#[derive(Debug, thiserror::Error)]
+pub enum SettleError {
+    /// See [`ThreadError`].
+    #[error(transparent)]
+    Threads(#[from] ThreadError),
+    /// The render is to end by its error alone, which is unknown as long as no light is found.
+    #[error("the pilot found no light in {paths} paths: the error of the picture is unknown, and cannot be reached")]
+    NoLight {
+        /// Camera paths that the pilot traced.
+        paths: u64,
+    },
 }
 
 /// Which limit ended a render.
@@ -167,7 +191,7 @@ impl Prepared {
         threads: Option<usize>,
         clock: &(dyn Fn() -> f64 + Sync),
         watch: &dyn Watch,
-    ) -> Result<Finished, ThreadError> {
+    ) -> Result<Finished, SettleError> {
         let settled = self.settle(rect, limits, threads, clock, watch)?;
         let canvas = Canvas::new(self, rect, Shard::WHOLE, settled.shares.as_deref());
         let Ended { samples, reached, seconds, foretold } =
@@ -178,6 +202,9 @@ impl Prepared {
 
     /// Settles how many samples a picture takes, and where: the most that are allowed, or those that a pilot says its error
     /// takes, spread as an exploration says.
+    ///
+    /// # Errors
+    /// If there are no threads, and if the pilot finds no light where nothing but the error is to end the render.
     pub fn settle(
         &self,
         rect: PixelRect,
@@ -185,7 +212,7 @@ impl Prepared {
         threads: Option<usize>,
         clock: &(dyn Fn() -> f64 + Sync),
         watch: &dyn Watch,
-    ) -> Result<Settled, ThreadError> {
+    ) -> Result<Settled, SettleError> {
         let explored = self.explored(rect, limits, threads, clock, watch)?;
         let shares = explored.as_ref().filter(|explored| explored.used).map(|e| Arc::clone(&e.exploration.shares));
         let most = match &shares {
@@ -196,6 +223,9 @@ impl Prepared {
         let Some(target) = limits.relative_rmse else { return Ok(settled) };
         let mut pilot = Pilot::new(self, rect, settled.shares.clone(), threads)?;
         let needed = pilot.samples_for(target, most, limits, clock, watch);
+        if pilot.found_no_light() && !limits.end_without_error() && watch.control() == Control::Continue {
+            return Err(SettleError::NoLight { paths: pilot.paths() });
+        }
         let price = pilot.price(target);
         let point = pilot.points().last().expect("a pilot takes a step at least");
         let foretold = Some(Foretold {
@@ -294,7 +324,7 @@ impl Prepared {
 
 impl Pilot<'_> {
     /// Goes on until the error is `target` and returns the number of samples a pixel for it; `None` as soon as that is
-    /// certain to exceed `most` samples or the other limits.
+    /// certain to exceed `most` samples or the other limits, and if no light is found. An unknown error is never reached.
     fn samples_for(
         &mut self,
         target: f64,
@@ -308,13 +338,14 @@ impl Pilot<'_> {
         loop {
             self.advance(next, clock, &|counters| watch.work(counters));
             let &point = self.points().last().expect("it has just advanced");
-            if point.relative_rmse <= target {
+            if point.reaches(target) {
                 // Whole rounds of replicates, so that all weigh alike.
                 let samples = between(self.points(), target).unwrap_or(f64::from(point.samples));
                 return Some((samples / f64::from(replicates)).ceil() as u32 * replicates);
             }
             if watch.control() == Control::Stop
                 || point.samples >= most
+                || self.found_no_light()
                 || limits.seconds.is_some_and(|s| clock() + point.seconds > s)
             {
                 return None;

@@ -114,7 +114,9 @@ fn a_picture_whose_shares_follow_its_own_samples_would_be_seen_to_be_biased() {
         let first = Extent { samples: 0..4, ..whole.clone() };
         let mut film = prepared.render(&first, &|_| Control::Continue).unwrap();
         let regions = Shares::regions(whole.rect);
-        let noise = regions.iter().map(|&region| film.error(region).map_or(0.0, |e| e.relative_rmse * e.mean_y));
+        let noise = regions
+            .iter()
+            .map(|&region| film.error(region).filter(|e| e.is_known()).map_or(0.0, |e| e.relative_rmse * e.mean_y));
         let noise: Vec<f64> = noise.collect();
         for (index, rect) in regions.into_iter().enumerate() {
             let samples = 4..if noise[index] > noise[1 - index] { 20 } else { 8 };

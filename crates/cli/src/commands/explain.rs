@@ -10,6 +10,7 @@ use miette::Report;
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
+use crate::light;
 use crate::load::load;
 use crate::overrides::Overrides;
 use crate::print;
@@ -68,6 +69,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     let study = args.overrides.study();
     let prepared = prepared(&loaded.scene, &study)?;
     let plan = prepared.plan();
+    print::warnings(&light::missing(&plan.missing_light));
     let costs = if args.measure { measure(&loaded.scene, &study, &prepared)? } else { Vec::new() };
     if args.json {
         let scene = args.scene.display().to_string();
@@ -107,6 +109,9 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     if let (share, images @ 1..) = prepared.images_of_lamps() {
         let share = format!("up to {:.0} % of what diffuse surfaces scatter is drawn toward", 100.0 * share);
         lines.push(format!("{:<18} {share} {images} images of lamps in balls: a trial found less noise", "caustics"));
+    }
+    for pair in light::missing_pairs(&plan.missing_light) {
+        lines.push(format!("{:<18} {pair}", "missing light"));
     }
     for lost in &plan.approximations {
         lines.push(format!("{:<18} without {lost}", "approximation"));

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use etalon_picture::open_plain;
-use etalon_transport::{Canvas, Features, Shard};
+use etalon_transport::{Canvas, Features, ImageError, Shard};
 use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::deliver::Delivery;
-use crate::failure::{Failure, Outcome, ProblemJson};
+use crate::failure::{Failure, Outcome, ProblemJson, problem_json};
+use crate::light::without_light;
 use crate::output::{self, Written};
 use crate::print;
 use crate::progress::percent;
@@ -45,7 +46,9 @@ struct MergeJson {
     samples: u32,
     /// Seconds that all parts took together.
     seconds: f64,
+    /// `null` if it is unknown: with a single replicate, and if no sample found light.
     relative_rmse: Option<f64>,
+    warnings: Vec<ProblemJson>,
     errors: Vec<ProblemJson>,
 }
 
@@ -60,7 +63,8 @@ pub(crate) fn run(args: Args) -> Outcome {
     let Some(parts) = parts.filter(|_| failure.is_empty()) else {
         if args.json {
             let (parts, errors) = (paths.len(), failure.to_json());
-            print::json(&MergeJson { parts, outputs: vec![], samples: 0, seconds: 0.0, relative_rmse: None, errors });
+            let (outputs, warnings) = (Vec::new(), Vec::new());
+            print::json(&MergeJson { parts, outputs, samples: 0, seconds: 0.0, relative_rmse: None, warnings, errors });
         }
         return failure.into_outcome();
     };
@@ -70,15 +74,18 @@ pub(crate) fn run(args: Args) -> Outcome {
     let samples = header.samples;
     let delivery =
         Delivery { header: &header, canvas: &canvas, features: &features, samples, error, exposure_ev: args.exposure };
+    let warning = canvas.with_film(|film| without_light(film, header.subject.crop));
+    print::warnings(&warning);
     let (written, failure) = delivery.write(&outputs);
-    let relative_rmse = error.map(|error| error.relative_rmse);
+    let relative_rmse = error.filter(ImageError::is_known).map(|error| error.relative_rmse);
     if args.json {
         let (parts, errors) = (paths.len(), failure.to_json());
-        print::json(&MergeJson { parts, outputs: written, samples, seconds: header.seconds, relative_rmse, errors });
+        let (seconds, warnings) = (header.seconds, warning.iter().map(problem_json).collect());
+        print::json(&MergeJson { parts, outputs: written, samples, seconds, relative_rmse, warnings, errors });
     } else if !args.quiet {
         let mut text = format!("{} parts merged, {samples} samples a pixel", paths.len());
-        if let Some(error) = relative_rmse {
-            text += &format!(", relative error {}", percent(error));
+        if error.is_some() {
+            text += &format!(", relative error {}", relative_rmse.map_or_else(|| "unknown".to_owned(), percent));
         }
         written.iter().for_each(|written| text += &format!("\n  {}", written.path));
         print::line(&text);

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 
 use etalon_transport::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
 use etalon_transport::price::next_step;
-use etalon_transport::{Pilot, PixelRect, Price, prepare_study};
+use etalon_transport::{Limits, Pilot, PixelRect, Price, prepare_study};
 use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::args::percentage;
 use crate::commands::render::Adaptive;
 use crate::failure::{Failure, Outcome};
+use crate::light::{self, NO_LIGHT_HELP};
 use crate::load::load;
 use crate::machine::{Clock, ClockKind, Machine};
 use crate::overrides::Overrides;
@@ -85,8 +86,9 @@ struct AdaptiveJson {
 #[derive(Serialize)]
 struct PointJson {
     samples: u32,
+    /// `null` as long as no light was found.
     relative_rmse: f64,
-    /// Relative standard error of `relative_rmse`.
+    /// Relative standard error of `relative_rmse`; `null` if it is unknown.
     uncertainty: f64,
     seconds: f64,
 }
@@ -109,6 +111,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     let prepared = prepare_study(&loaded.scene, &args.overrides.study())
         .map_err(|error| Failure::input(Report::from_err(error)))?;
     let prepare_seconds = clock.seconds();
+    print::warnings(&light::missing(&prepared.plan().missing_light));
     if prepared.path_reuse().is_some() {
         return Err(Failure::input(miette!(
             code = "path-reuse",
@@ -124,7 +127,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     let mut shares = None;
     let mut adaptive = None;
     if args.adaptive != Adaptive::Never {
-        let goal = Goal { samples: i32::MAX as u32, relative_rmse: Some(finest) };
+        let goal = Goal { samples: Limits::ANY_SAMPLES, relative_rmse: Some(finest) };
         let start = clock.seconds();
         let enough = || clock.seconds() - start > EXPLORING * args.pilot;
         let found = explore(&prepared, whole, &goal, Some(threads), &enough, &|_| ()).map_err(started)?;
@@ -136,13 +139,21 @@ pub(crate) fn run(args: Args) -> Outcome {
     let mut rounds = 1;
     loop {
         pilot.advance(rounds * pilot.first_step(), &|| clock.seconds(), &|_| ());
-        let reached = pilot.points().last().is_some_and(|point| point.relative_rmse <= finest);
+        let reached = pilot.points().last().is_some_and(|point| point.reaches(finest));
         let next = next_step(rounds);
         let seconds = pilot.seconds() * f64::from(next) / f64::from(rounds);
-        if reached || seconds > args.pilot || next > i32::MAX as u32 / pilot.first_step() {
+        if reached || seconds > args.pilot || next > Limits::ANY_SAMPLES / pilot.first_step() {
             break;
         }
         rounds = next;
+    }
+    if pilot.points().iter().all(|point| point.relative_rmse.is_infinite()) {
+        return Err(Failure::run(miette!(
+            code = "no-light",
+            help = format!("a longer pilot may find some (--pilot); {NO_LIGHT_HELP}"),
+            "the pilot found no light in {} paths: what an error of the picture costs is unknown",
+            pilot.paths()
+        )));
     }
     let quote = QuoteJson {
         scene: args.scene.display().to_string(),

@@ -11,7 +11,7 @@ mod watcher;
 
 use std::path::PathBuf;
 
-use etalon_transport::{Adaptivity, Canvas, Ended, Explored, Features, ImageError, Limits};
+use etalon_transport::{Adaptivity, Canvas, Ended, Explored, Features, ImageError, Limits, SettleError};
 use miette::{Report, miette};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,7 @@ use crate::deliver::Delivery;
 use crate::display::{self, Display};
 use crate::failure::{Failure, Outcome, ProblemJson};
 use crate::interrupt::Interrupt;
+use crate::light::NO_LIGHT_HELP;
 use crate::machine::ClockKind;
 use crate::overrides::Overrides;
 use crate::print;
@@ -199,12 +200,12 @@ fn render(args: &Args) -> Result<(), Stop> {
     };
     let done = run.and_then(|run| run.finish(args, &job, &watch));
     bar.clear();
-    let mut done = done.map_err(|error| Stop::Refused(Failure::run(Report::from_err(error))))?;
+    let mut done = done.map_err(|error| Stop::Refused(not_rendered(error)))?;
     if let Some(display) = display {
         done.canvas.with_film(|film| display.finish(film, job.rect));
     }
 
-    let noticed = done.canvas.with_film(|film| warnings::of(args, &film.counters));
+    let noticed = done.canvas.with_film(|film| warnings::of(args, film, job.rect));
     print::warnings(&noticed);
     job.warnings.extend(noticed);
     done.error = done.canvas.with_film(|film| film.error(job.rect));
@@ -244,6 +245,18 @@ fn render(args: &Args) -> Result<(), Stop> {
     failure.into_outcome().map_err(Stop::Reported)
 }
 
+/// Why there is no picture.
+fn not_rendered(error: SettleError) -> Failure {
+    Failure::run(match error {
+        SettleError::Threads(error) => Report::from_err(error),
+        SettleError::NoLight { .. } => miette!(
+            code = "no-light",
+            help = format!("with --spp or --time beside --error the picture is rendered all the same; {NO_LIGHT_HELP}"),
+            "{error}"
+        ),
+    })
+}
+
 /// A render that is done, and how wrong it is.
 struct Done {
     ended: Ended,
@@ -261,7 +274,7 @@ fn limits(args: &Args, job: &Job) -> Limits {
     let otherwise = args.error.is_some() || args.time.is_some();
     let samples = match args.overrides.spp() {
         Some(spp) => spp,
-        None if otherwise => i32::MAX as u32,
+        None if otherwise => Limits::ANY_SAMPLES,
         None => job.loaded.scene.integrator.spp,
     };
     Limits { samples, relative_rmse: args.error, seconds: args.time, adaptivity: args.adaptive.into() }

@@ -10,6 +10,7 @@ use super::{Adaptive, Args, resume, room};
 use crate::args::PixelAt;
 use crate::channels::Channels;
 use crate::failure::Failure;
+use crate::light;
 use crate::load::{LoadedScene, load};
 use crate::output::{self, Output};
 use crate::state::{Kept, Subject};
@@ -90,6 +91,7 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
             .iter()
             .map(|warning| miette!(severity = miette::Severity::Warning, code = "prepare", "{warning}")),
     );
+    warnings.extend(light::missing(&prepared.plan().missing_light));
     warnings.extend(prepared.plan().approximations.iter().map(|lost| {
         miette!(
             severity = miette::Severity::Warning,

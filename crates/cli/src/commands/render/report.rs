@@ -1,5 +1,6 @@
 //! What is said about a render that is done.
 
+use etalon_transport::accuracy::{FEWEST_LIT, Region};
 use etalon_transport::{Counters, Explored, Foretold, ImageError, Plan, Reached};
 use serde::Serialize;
 
@@ -47,7 +48,8 @@ pub(super) struct RenderJson<'a> {
     nonfinite: u64,
     /// The first of them: column, row, number of the sample.
     nonfinite_at: Vec<[u32; 3]>,
-    /// `null` with a single replicate, of whose error nothing is known.
+    /// `null` with a single replicate, of whose error nothing is known. Where no sample found light, the numbers in it that are
+    /// unknown are `null`.
     error: Option<ErrorJson>,
     warnings: Vec<ProblemJson>,
     errors: Vec<ProblemJson>,
@@ -57,9 +59,10 @@ pub(super) struct RenderJson<'a> {
 /// The error of the picture.
 #[derive(Serialize)]
 pub(super) struct ErrorJson {
-    /// Root mean square over all pixels of the standard error of Y, in units of the mean Y.
-    relative_rmse: f64,
-    interval_95: [f64; 2],
+    /// Root mean square over all pixels of the standard error of Y, in units of the mean Y; `null` if no sample found light.
+    relative_rmse: Option<f64>,
+    /// `null` if that is unknown, or if too few samples found light.
+    interval_95: Option<[f64; 2]>,
     mean_y: f64,
     replicates: u32,
     /// 0: normal replicates, 1: each pixel's error is one outlier.
@@ -68,7 +71,8 @@ pub(super) struct ErrorJson {
     /// The same, every noisy pixel counted alike.
     pixel_tail_index: Option<f64>,
     heavy_tailed_pixels: bool,
-    noisiest: NoisiestJson,
+    /// `null` if the error is unknown.
+    noisiest: Option<NoisiestJson>,
     unknown_pixels: u64,
 }
 
@@ -83,21 +87,20 @@ struct NoisiestJson {
 }
 
 fn error_json(replicates: u32, error: &ImageError) -> ErrorJson {
-    let tile = error.noisiest.rect;
     ErrorJson {
-        relative_rmse: error.relative_rmse,
-        interval_95: error.interval,
+        relative_rmse: error.is_known().then_some(error.relative_rmse),
+        interval_95: error.has_interval().then_some(error.interval),
         mean_y: error.mean_y,
         replicates,
         tail_index: error.tail_index,
         heavy_tailed: error.is_heavy_tailed(),
         pixel_tail_index: error.pixel_tail_index,
         heavy_tailed_pixels: error.has_heavy_tailed_pixels(),
-        noisiest: NoisiestJson {
-            crop: [tile.x0, tile.x1, tile.y0, tile.y1],
-            relative_rmse: error.noisiest.relative_rmse,
-            share: error.noisiest.share,
-        },
+        noisiest: error.noisiest.map(|Region { rect, relative_rmse, share }| NoisiestJson {
+            crop: [rect.x0, rect.x1, rect.y0, rect.y1],
+            relative_rmse,
+            share,
+        }),
         unknown_pixels: error.unknown_pixels,
     }
 }
@@ -106,6 +109,7 @@ fn error_json(replicates: u32, error: &ImageError) -> ErrorJson {
 #[derive(Serialize)]
 pub(super) struct ForetoldJson {
     relative_rmse: f64,
+    /// `null`, as the seconds, if the pilot found no light.
     samples: f64,
     seconds: f64,
     pilot_seconds: f64,
@@ -186,6 +190,10 @@ fn pilot_seconds(done: &Done) -> f64 {
 /// What was foretold beside what came.
 fn describe_foretold(done: &Done, foretold: &Foretold) -> String {
     let took = done.ended.seconds - pilot_seconds(done);
+    if foretold.price.samples.is_nan() {
+        let [pilot, asked] = [duration(foretold.pilot_seconds), percent(foretold.price.relative_rmse)];
+        return format!("the pilot ({pilot}) found no light, so what {asked} takes is unknown");
+    }
     let mut text = format!(
         "the pilot ({}) foretold {} for {}, with {} samples",
         duration(foretold.pilot_seconds),
@@ -204,18 +212,28 @@ fn describe_foretold(done: &Done, foretold: &Foretold) -> String {
 
 /// The error in words.
 fn describe_error(error: &ImageError) -> String {
-    let tile = error.noisiest.rect;
+    let Some(Region { rect, relative_rmse, share }) = &error.noisiest else {
+        let why = if error.found_light() {
+            "the picture's values are too small or too large to be squared"
+        } else {
+            "no sample found light"
+        };
+        return format!("relative error unknown: {why}");
+    };
+    let interval = if error.has_interval() {
+        format!("95 % sure: {} to {}", percent(error.interval[0]), percent(error.interval[1]))
+    } else {
+        format!("no interval: fewer than {FEWEST_LIT} replicates of pixels found light")
+    };
     let mut text = format!(
-        "relative error {} (95 % sure: {} to {}); noisiest in columns {} to {}, rows {} to {}: {}, {:.0} % of the squared error",
+        "relative error {} ({interval}); noisiest in columns {} to {}, rows {} to {}: {}, {:.0} % of the squared error",
         percent(error.relative_rmse),
-        percent(error.interval[0]),
-        percent(error.interval[1]),
-        tile.x0,
-        tile.x1 - 1,
-        tile.y0,
-        tile.y1 - 1,
-        percent(error.noisiest.relative_rmse),
-        100.0 * error.noisiest.share,
+        rect.x0,
+        rect.x1 - 1,
+        rect.y0,
+        rect.y1 - 1,
+        percent(*relative_rmse),
+        100.0 * share,
     );
     if error.is_heavy_tailed() {
         text.push_str(

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use etalon_transport::shares::Shares;
 use etalon_transport::stop::Settled;
-use etalon_transport::{Canvas, Limits, Reached, Shard, ThreadError};
+use etalon_transport::{Canvas, Limits, Reached, SettleError, Shard};
 use miette::{Report, miette};
 
 use super::watcher::Watcher;
@@ -29,7 +29,7 @@ pub(super) struct Run {
 
 impl Run {
     /// Settles how many samples are to be taken, and begins.
-    pub(super) fn new(args: &Args, job: &Job, limits: Limits, watch: &Watcher<'_>) -> Result<Self, ThreadError> {
+    pub(super) fn new(args: &Args, job: &Job, limits: Limits, watch: &Watcher<'_>) -> Result<Self, SettleError> {
         let clock = Clock::start(args.clock, job.threads);
         let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
         let settled = job.prepared.settle(job.rect, &limits, Some(job.threads), &|| clock.seconds(), watch)?;
@@ -38,7 +38,7 @@ impl Run {
     }
 
     /// Goes on from what was kept.
-    pub(super) fn taken_up(args: &Args, job: &Job, kept: Kept, limits: Limits) -> Result<Self, ThreadError> {
+    pub(super) fn taken_up(args: &Args, job: &Job, kept: Kept, limits: Limits) -> Result<Self, SettleError> {
         let clock = Clock::start(args.clock, job.threads);
         let Header { shard, samples, shares, reaches, seconds, .. } = kept.header;
         let shares = shares.map(|weights| Arc::new(Shares::new(job.rect, weights)));
@@ -78,7 +78,7 @@ impl Run {
     }
 
     /// Renders to the end, keeping what there is from time to time if that is wanted.
-    pub(super) fn finish(self, args: &Args, job: &Job, watch: &Watcher<'_>) -> Result<Done, ThreadError> {
+    pub(super) fn finish(self, args: &Args, job: &Job, watch: &Watcher<'_>) -> Result<Done, SettleError> {
         watch.goes_on_from(self.canvas.with_film(|film| film.counters.paths));
         let path = args.output.first().map(|output| state::checkpoint_path(output));
         let ended = std::thread::scope(|scope| {

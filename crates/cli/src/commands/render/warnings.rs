@@ -1,13 +1,18 @@
 //! What a picture does not show: light that is missing from it.
 
-use etalon_transport::{Counters, MOST_SOLIDS_AT_ONCE};
+use etalon_transport::{Counters, Film, MOST_SOLIDS_AT_ONCE, PixelRect};
 use miette::{Report, miette};
 
 use super::Args;
+use crate::light::without_light;
 use crate::shell;
 
-/// Everything that the counters give reason to warn of.
-pub(super) fn of(args: &Args, counters: &Counters) -> Vec<Report> {
+/// Everything that the film and its counters give reason to warn of.
+pub(super) fn of(args: &Args, film: &Film, rect: PixelRect) -> Vec<Report> {
+    counted(args, &film.counters).into_iter().chain(without_light(film, rect)).collect()
+}
+
+fn counted(args: &Args, counters: &Counters) -> Vec<Report> {
     nonfinite(args, counters).into_iter().chain(cut_paths(counters)).chain(lost_media(counters)).collect()
 }
 
@@ -122,9 +127,9 @@ mod tests {
     fn paths_that_were_cut_are_counted_in_a_warning_and_none_is_none() {
         let args = parse("render a.json -o a.exr");
         let counters = Counters { paths: 10, cut_paths: 3, ..Counters::default() };
-        let warnings = of(&args, &counters);
+        let warnings = counted(&args, &counters);
         assert_eq!(warnings.len(), 1);
         assert!(warnings[0].to_string().starts_with("3 of 10 paths were cut"), "{}", warnings[0]);
-        assert!(of(&args, &Counters { paths: 10, ..Counters::default() }).is_empty());
+        assert!(counted(&args, &Counters { paths: 10, ..Counters::default() }).is_empty());
     }
 }

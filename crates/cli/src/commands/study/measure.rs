@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use etalon_scene::Scene;
 use etalon_transport::adaptive::{Goal, explore};
-use etalon_transport::{Control, Counters, Extent, Film, Prepared, Shares, prepare_study};
+use etalon_transport::{Control, Counters, Extent, Film, ImageError, Prepared, Shares, prepare_study};
 use serde::Serialize;
 
 use super::choices::{self, BASELINE, Choice};
@@ -40,8 +40,8 @@ pub(super) struct Reference {
     pub samples: u32,
     pub seconds: f64,
     pub mean_y: f64,
-    /// Its own relative error.
-    pub relative_rmse: f64,
+    /// Its own relative error; `null` if no light was found.
+    pub relative_rmse: Option<f64>,
     /// Whether rare bright paths carry its error, so that neither it nor the errors held against it are known well.
     pub heavy_tailed: bool,
 }
@@ -65,7 +65,8 @@ pub(super) struct Row {
     /// Time a sample over that of the baseline.
     pub relative_cost: f64,
     /// Mean of the difference to the reference (or to the truth, where it is known), in units of its mean.
-    pub bias: f64,
+    /// `null` if that is 0.
+    pub bias: Option<f64>,
     /// That over its standard error.
     pub z: Option<f64>,
     /// −d ln error / d ln samples over the points measured.
@@ -130,7 +131,8 @@ impl Runner {
     }
 
     fn scatter(&self) -> Option<f64> {
-        self.film.error(self.prepared.whole(None).rect).map(|error| error.relative_rmse)
+        let error = self.film.error(self.prepared.whole(None).rect).filter(ImageError::is_known)?;
+        Some(error.relative_rmse)
     }
 }
 
@@ -177,7 +179,8 @@ pub(super) fn study(
     }
     let truth_picture: Vec<f64> = reference.film.xyz().map(|xyz| xyz[1]).collect();
     let mean_y = truth_picture.iter().sum::<f64>() / truth_picture.len() as f64;
-    let own = reference.scatter().unwrap_or(0.0);
+    let known = reference.scatter();
+    let own = known.unwrap_or(0.0);
     let heavy_tailed = reference.film.error(reference.prepared.whole(None).rect).is_some_and(|e| e.is_heavy_tailed());
 
     // All choices at one number of samples, then all at the next: what disturbs the machine disturbs all alike.
@@ -212,7 +215,7 @@ pub(super) fn study(
             samples: reference.samples,
             seconds: reference.seconds,
             mean_y,
-            relative_rmse: own,
+            relative_rmse: known,
             heavy_tailed,
         },
         rows,
@@ -232,9 +235,9 @@ fn row(runner: &Runner, baseline: f64, truth: Option<f64>, reference_y: f64, own
     let whole = runner.prepared.whole(None).rect;
     let pixels = whole.area() as f64;
     let (level, own) = truth.map_or((reference_y, own), |truth| (truth, 0.0));
-    let bias = (runner.film.mean_y(whole) - level) / level;
+    let bias = Some((runner.film.mean_y(whole) - level) / level).filter(|bias| bias.is_finite());
     // Pixels are independent, so the mean of all has the error of one over the root of their number.
-    let z = last.scatter.or(last.error).map(|scatter| bias / (scatter.hypot(own) / pixels.sqrt()));
+    let z = last.scatter.or(last.error).zip(bias).map(|(scatter, bias)| bias / (scatter.hypot(own) / pixels.sqrt()));
     let counters = &runner.film.counters;
     let error = last.error.or(last.scatter);
     Row {

@@ -45,7 +45,7 @@ pub(super) fn cells(row: &Row, study: &SceneStudy) -> [String; 11] {
         or_dash(row.slope.map(|slope| format!("{slope:.2}"))),
         format!("{:.2}", row.relative_cost),
         or_dash(row.efficiency.zip(unit).map(|(own, unit)| two_digits(own / unit))),
-        format!("{:+.2} %", 100.0 * row.bias),
+        or_dash(row.bias.map(|bias| format!("{:+.2} %", 100.0 * bias))),
         or_dash(row.z.map(|z| format!("{z:+.1}"))),
     ]
 }
@@ -67,7 +67,7 @@ pub(super) fn about(study: &SceneStudy) -> String {
         study.width,
         study.height,
         reference.samples,
-        percent(reference.relative_rmse),
+        reference.relative_rmse.map_or_else(|| "unknown (no sample found light)".to_owned(), percent),
         reference.mean_y
     )
 }
