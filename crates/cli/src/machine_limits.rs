@@ -4,8 +4,8 @@ mod control_groups;
 
 use std::path::Path;
 
-/// Bytes of memory that this process may still have: the least of what the system says is available, what its control groups leave, and
-/// what its own limit on data leaves (`ulimit -d`). Not known but on Linux.
+/// Bytes of memory that this process may still have. Three limits count, and the least of them decides: the free memory of the system,
+/// the limits of the process's control groups, and its own limit on data (`ulimit -d`). Known on Linux only.
 pub(crate) fn memory_available() -> Option<u64> {
     let system = kibibytes("/proc/meminfo", "MemAvailable:");
     let groups = text("/proc/self/cgroup").zip(text("/proc/self/mountinfo"));

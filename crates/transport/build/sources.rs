@@ -1,5 +1,5 @@
-//! The hash of the sources that decide a film: those of this crate and of our crates that it uses, and what `Cargo.lock` says of the
-//! other packages that they use. It is the same on every platform and in every folder, and asks nothing of git.
+//! The hash of the sources that decide a film. It covers this crate, our crates below it, and the entries of `Cargo.lock` of all other
+//! packages below them. It is the same on every platform and in every folder, and needs no git.
 //!
 //! Our crates are found by the names in the manifests of the folders beside this one, so that the folders may have any names.
 //! Packages that only tests and build scripts use do not count.

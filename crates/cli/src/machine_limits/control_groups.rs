@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-/// The files of one version: the most that a group may have, what it has, and the key in `memory.stat` of what it has of files, which the
-/// kernel takes back when memory is short.
+/// The files of one version: the limit of a group, and its use. `of_files` are the keys in `memory.stat` of cached files, whose memory
+/// the kernel takes back when it is short.
 struct Version {
     most: &'static str,
     used: &'static str,

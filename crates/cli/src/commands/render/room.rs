@@ -20,7 +20,7 @@ const OF_BAND: u64 = 2 * 3 * 4;
 /// is not to be had the threads share a heap, so that a small picture needs less.
 const OF_THREAD: u64 = 130 << 20;
 
-/// Refuses a picture that cannot be held, with or without Stokes parameters, by so many threads.
+/// Refuses a picture that memory cannot hold. `stokes` counts Stokes parameters in, `threads` is the number of threads.
 pub(super) fn check_memory(scene: &Scene, stokes: bool, threads: usize, failure: &mut Failure) {
     let (width, height) = (scene.film.width, scene.film.height);
     // Where one lane stands for all wavelengths it is less; that is known after the scene is prepared.
