@@ -9,6 +9,7 @@ mod display;
 mod explain;
 mod farm;
 mod hostile;
+mod instruction_sets;
 mod missing_light;
 mod outputs;
 mod refusals;

@@ -30,11 +30,16 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
+
+/// What the environment may say, for `--help`.
+const ENVIRONMENT: &str = "Environment:
+  ETALON_SIMD  Instruction set: baseline, avx2 or avx512; the widest that the processor has if not set. \
+Pictures have the same bytes on each";
 
 /// A physically based spectral path tracer with a test oracle.
 #[derive(Parser)]
-#[command(name = "etalon", version, arg_required_else_help = true)]
+#[command(name = "etalon", version, arg_required_else_help = true, after_help = ENVIRONMENT)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -62,6 +67,10 @@ enum Command {
 fn main() -> ExitCode {
     let cli = Cli::parse();
     print::set_up_reports();
+    // Where nothing is rendered too: a wrong value is never passed over.
+    if let Err(error) = etalon_simd::Level::chosen() {
+        return Failure::input(miette::miette!("{error}")).report();
+    }
     let outcome: Outcome = match cli.command {
         Command::Render(args) => commands::render::run(args),
         Command::Merge(args) => commands::merge::run(args),

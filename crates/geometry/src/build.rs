@@ -6,7 +6,8 @@ mod span;
 mod split;
 
 use crate::frame::Box32;
-use crate::traverse::{Level, vectorised};
+use crate::traverse::vectorised;
+use etalon_simd::Level;
 use span::Extent;
 pub(crate) use span::{Item, Span};
 pub(crate) use split::Costs;
@@ -151,6 +152,7 @@ fn append(nodes: &mut Vec<Node>, subtree: &[Node]) {
 mod tests {
     use super::*;
     use crate::test_support::Random;
+    use crate::traverse::level;
 
     #[test]
     fn a_tree_is_the_same_for_every_instruction_set() {
@@ -168,8 +170,8 @@ mod tests {
                 // Everything, bit for bit.
                 format!("{tree:?}")
             };
-            let portable = tree(Level::Portable);
-            assert!(Level::all().into_iter().all(|level| tree(level) == portable));
+            let portable = tree(Level::Baseline);
+            assert!(level::all().into_iter().all(|level| tree(level) == portable));
         }
     }
 
@@ -184,7 +186,7 @@ mod tests {
                 })
                 .collect();
             let items = boxes.iter().enumerate().map(|(id, b)| Item::new(b, id as u32, false)).collect();
-            let tree = build(items, Costs { block: 8, node: 0.35 }, Level::detect());
+            let tree = build(items, Costs { block: 8, node: 0.35 }, level::best());
             for limit in [1, 2, 3, 50, 96] {
                 let outline = tree.outline(limit);
                 assert!(outline.len() <= limit);

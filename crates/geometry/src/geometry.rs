@@ -7,10 +7,11 @@ use crate::frame::Frame;
 use crate::improve::improved;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
-use crate::traverse::{self, FLAT_LIMIT, Flat, Level, Visit};
+use crate::traverse::{self, FLAT_LIMIT, Flat, Visit, level};
 use crate::wide::WideTree;
 use crate::{Aabb, Hit, Instance, Passed, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Real, Vec3};
+use etalon_simd::Level;
 use rayon::prelude::*;
 
 /// Up to this many primitives, instances among them, are tested one by one, without a tree.
@@ -95,7 +96,7 @@ impl Geometry {
             return Err(GeometryError::TooDeep(nesting));
         }
         let bounds = census.bounds;
-        let level = Level::detect();
+        let level = level::best();
         let is_flat = instances.is_empty() && primitives.len() <= flat_limit;
         let flat = bounds.filter(|_| is_flat).map(|bounds| Flat::new(&primitives, bounds));
         let mut outline = Vec::new();
@@ -108,7 +109,7 @@ impl Geometry {
             let costs = costs(&census);
             let binary = improved(build(items, costs, level), costs, level);
             outline = binary.outline(OUTLINE_LIMIT).into_iter().map(|b| frame.unscaled_box(b)).collect();
-            WideTree::collapse(frame, &binary, &primitives, &census, costs, level.lanes())
+            WideTree::collapse(frame, &binary, &primitives, &census, costs, level::lanes(level))
         });
         if tree.is_none() {
             outline = if primitives.len() <= OUTLINE_LIMIT {

@@ -12,8 +12,8 @@ mod links;
 mod reinsert;
 
 use crate::build::{BinaryTree, Costs};
-use crate::traverse::Level;
 use crown::Crown;
+use etalon_simd::Level;
 use links::Links;
 
 /// The same leaves in a better tree. The result does not depend on the instruction set.
@@ -46,6 +46,7 @@ mod tests {
     use crate::build::{Item, Span, build};
     use crate::frame::Box32;
     use crate::test_support::Random;
+    use crate::traverse::level;
     use crate::wide::least_cost;
     use std::array::from_fn;
 
@@ -53,7 +54,7 @@ mod tests {
 
     fn split(boxes: &[Box32]) -> BinaryTree {
         let items = boxes.iter().enumerate().map(|(id, b)| Item::new(b, id as u32, false)).collect();
-        build(items, Costs { block: 1, node: 0.0 }, Level::detect())
+        build(items, Costs { block: 1, node: 0.0 }, level::best())
     }
 
     /// The tree of boxes of a thousandth to one, anywhere in a cube, each a leaf.
@@ -95,7 +96,7 @@ mod tests {
         let trees = [1, 2, 3, 9, 100, 3000].map(|count| scattered(&mut random, count));
         for before in trees.into_iter().chain([room(1), room(4), room(30)]) {
             let (cost, leaves_before, count) = (least_cost(&before, COSTS), leaves(&before), before.order.len());
-            let after = improved(before, COSTS, Level::detect());
+            let after = improved(before, COSTS, level::best());
             assert_eq!(leaves(&after), leaves_before);
             assert_eq!(after.order.len(), count);
             for (index, node) in after.nodes.iter().enumerate().filter(|(_, node)| node.count == 0) {
@@ -119,7 +120,7 @@ mod tests {
         for tiles in [4, 8] {
             let before = room(tiles);
             assert_eq!(walls(&before), 0, "split from above they are in pieces");
-            assert_eq!(walls(&improved(before, COSTS, Level::detect())), 6);
+            assert_eq!(walls(&improved(before, COSTS, level::best())), 6);
         }
     }
 
@@ -130,8 +131,8 @@ mod tests {
             (0..400).map(|i| 0.5 * 0.97_f32.powi(i)).map(|r| Box32 { min: [-r; 3], max: [r; 3] }).collect();
         let before = split(&shells);
         let leaves_before = leaves(&before);
-        assert!(Crown::new(&Links::new(&before)).grouped(COSTS, Level::detect()).is_none());
-        let after = improved(before, COSTS, Level::detect());
+        assert!(Crown::new(&Links::new(&before)).grouped(COSTS, level::best()).is_none());
+        let after = improved(before, COSTS, level::best());
         assert_eq!(leaves(&after), leaves_before);
         assert!(Links::new(&after).nodes(|node| after.nodes[node as usize]).is_some());
     }
@@ -143,7 +144,7 @@ mod tests {
             // Everything, bit for bit.
             [scattered(&mut random, 2000), room(12)].map(|tree| format!("{:?}", improved(tree, COSTS, level)))
         };
-        let portable = trees(Level::Portable);
-        assert!(Level::all().into_iter().all(|level| trees(level) == portable));
+        let portable = trees(Level::Baseline);
+        assert!(level::all().into_iter().all(|level| trees(level) == portable));
     }
 }

@@ -25,6 +25,7 @@ use etalon_geometry::{Geometry, GeometryError, ShapeError, SurfaceId};
 use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
 use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, Scene};
+use etalon_simd::{Level, LevelError};
 use std::sync::Arc;
 
 /// A scene that is ready to be rendered.
@@ -83,6 +84,9 @@ pub enum PrepareError {
         /// Where it is open.
         why: String,
     },
+    /// The instruction set that the environment names cannot be used.
+    #[error(transparent)]
+    Level(#[from] LevelError),
     /// What the study asks for makes no sense.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -95,6 +99,7 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
 
 /// As [`prepare`], with effects that the scene does not call for, or without some that it does.
 pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareError> {
+    Level::chosen()?;
     let plan = Plan::new(scene, study)?;
     let simulated = simulated(scene, study);
     let scene = &simulated;

@@ -9,7 +9,8 @@
 use super::links::{Links, NONE};
 use crate::build::Span;
 use crate::measure::Measure;
-use crate::traverse::{Level, Loop, vectorised};
+use crate::traverse::{Loop, vectorised};
+use etalon_simd::Level;
 use std::array::from_fn;
 
 /// Boxes that are compared at once.
@@ -163,6 +164,7 @@ mod tests {
     use crate::build::BinaryTree;
     use crate::improve::scattered;
     use crate::test_support::Random;
+    use crate::traverse::level;
 
     fn leaves(tree: &BinaryTree) -> Vec<Span> {
         tree.nodes.iter().filter(|node| node.count > 0).map(|node| Span::of(&node.bounds)).collect()
@@ -203,7 +205,7 @@ mod tests {
             let boxes = leaves(&scattered(&mut random, count));
             let measure = Measure::within([1.0, 1.0, 1.0]);
             let expected = members(&nearest_first(&boxes, measure), count);
-            for level in Level::all() {
+            for level in level::all() {
                 let pairs = vectorised(level, Clustering { boxes: &boxes, measure });
                 assert_eq!(pairs.len(), count - 1);
                 assert_eq!(members(&pairs, count), expected);
@@ -215,7 +217,7 @@ mod tests {
     fn boxes_that_are_all_alike_are_joined_too() {
         for count in [2, 7, 8, 300] {
             let boxes = vec![leaves(&scattered(&mut Random::new(34), 1))[0]; count];
-            let pairs = vectorised(Level::Portable, Clustering { boxes: &boxes, measure: Measure::within([1.0; 3]) });
+            let pairs = vectorised(Level::Baseline, Clustering { boxes: &boxes, measure: Measure::within([1.0; 3]) });
             let all = members(&pairs, count);
             assert_eq!(all.len(), count - 1);
             assert!(all.contains(&(0..count).collect()));

@@ -2,8 +2,8 @@
 
 use super::links::{Links, NONE};
 use crate::build::{BinaryTree, Costs, Node};
-use crate::traverse::Level;
 use crate::wide::least_cost;
+use etalon_simd::Level;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 

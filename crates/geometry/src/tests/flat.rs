@@ -2,7 +2,7 @@
 
 use super::tree::check_geometry;
 use crate::test_support::*;
-use crate::traverse::Level;
+use crate::traverse::level;
 use crate::{Geometry, LANES, Primitive, PrimitiveId, Ray, Rays, SurfaceId, SurfacePoint, Triangle};
 use etalon_optics::Vec3;
 
@@ -63,7 +63,7 @@ fn bits(p: &SurfacePoint<f64>) -> [u64; 7] {
 fn compare(geometry: &Geometry, rays: &Rays, active: u8) -> [usize; 2] {
     let (flat, _) = geometry.flat().expect("few primitives");
     let mut decided = [0, 0];
-    for level in Level::all() {
+    for level in level::all() {
         let (hits, open) = flat.closest_hits(level, geometry.primitives(), rays, active);
         let (shadows, open_shadows) = flat.any_hits(level, rays, active);
         assert_eq!((hits.mask & (open | !active), shadows & (open_shadows | !active)), (0, 0));
@@ -124,7 +124,7 @@ fn eight_rays_at_once_are_answered_as_each_alone() {
                 rays.set(lane, &ray(&mut random, &geometry, &features));
             }
             let active = random.below(256) as u8;
-            asked += active.count_ones() as usize * Level::all().len();
+            asked += active.count_ones() as usize * level::all().len();
             let [closest, any] = compare(&geometry, &rays, active);
             decided = [decided[0] + closest, decided[1] + any];
         }

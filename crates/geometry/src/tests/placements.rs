@@ -2,9 +2,10 @@
 
 use super::instances::{affine, build, place, scaling, similarity};
 use crate::test_support::*;
-use crate::traverse::Level;
+use crate::traverse::level;
 use crate::{Geometry, Instance, Placement, Primitive, Ray, ShapeError, Sphere};
 use etalon_optics::Vec3;
+use etalon_simd::Level;
 use std::sync::Arc;
 #[test]
 fn placements_that_flatten_and_instances_of_nothing_are_refused() {
@@ -64,7 +65,7 @@ fn what_is_shared_is_held_once() {
 fn the_box_of_an_instance_is_the_same_in_all_instruction_sets() {
     for seed in 0..4 {
         let bounds = |level: Level| {
-            level.forced(|| {
+            level::forced(level, || {
                 let mut random = Random::new(64 + seed);
                 let mesh = Mesh::sphere(30, 40, |p| 1.0 + 0.3 * (7.0 * p.x).sin() * (5.0 * p.y).cos()).primitives();
                 let placed = [build(mesh), build(soup(&mut random, 1_000, -3.0..0.0))];
@@ -73,7 +74,7 @@ fn the_box_of_an_instance_is_the_same_in_all_instruction_sets() {
                 placed.each_ref().map(place).map(|geometry| geometry.unwrap().bounds())
             })
         };
-        let portable = bounds(Level::Portable);
-        assert!(Level::all().into_iter().all(|level| bounds(level) == portable));
+        let portable = bounds(Level::Baseline);
+        assert!(level::all().into_iter().all(|level| bounds(level) == portable));
     }
 }

@@ -1,7 +1,7 @@
 //! The walk into an instance decides as the instance itself does.
 
 use crate::test_support::*;
-use crate::traverse::Level;
+use crate::traverse::level;
 use crate::{Geometry, Instance, Placement, Primitive, Ray, Triangle};
 use std::sync::Arc;
 
@@ -9,9 +9,9 @@ use std::sync::Arc;
 /// boxes in `f32`, is too wide: it may hit what it passes by outside. The box decides that it does not, however the instance is asked.
 #[test]
 fn what_a_ray_from_afar_passes_by_outside_is_not_hit() {
-    for level in Level::all() {
+    for level in level::all() {
         // Without them the test would say nothing.
-        let passed_by = level.forced(passed_by);
+        let passed_by = level::forced(level, passed_by);
         assert!(passed_by > 100, "{passed_by} of the rays passed by what they hit within");
     }
 }

@@ -1,9 +1,10 @@
 //! The tree finds what brute force finds.
 
 use crate::test_support::*;
-use crate::traverse::{self, Level};
+use crate::traverse::{self, level};
 use crate::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, SurfaceId, Triangle};
 use etalon_optics::{Real, Vec3};
+use etalon_simd::Level;
 
 /// Compares closest hits (bit for bit) and occlusion for one ray in both scalar types; counts hits.
 pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId, time: f64) -> usize {
@@ -26,7 +27,7 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
             let start =
                 flat.and_then(|(hit, id)| crate::Hit::new(crate::query::RawHit { t: hit.t * query.scale, ..hit }, id));
             // Whatever instruction set the tree is made for.
-            for level in Level::all() {
+            for level in level::all() {
                 assert_eq!(traverse::closest(level, tree, primitives, &query), flat, "{level:?} {ray:?}");
                 assert_eq!(traverse::any(level, tree, primitives, &query), occluded, "{level:?} {ray:?}");
                 assert_eq!(traverse::closest(level, tree, primitives, &ray), start, "{level:?} {ray:?}");
@@ -36,7 +37,7 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
             assert_eq!(traverse::any_deep(tree, primitives, &query), occluded, "{ray:?}");
         }
         if let Some((few, _)) = geometry.flat() {
-            for level in Level::all() {
+            for level in level::all() {
                 assert_eq!(few.closest(level, geometry.primitives(), &query), flat, "{level:?} {ray:?}");
                 assert_eq!(few.any(level, geometry.primitives(), &query), occluded, "{level:?} {ray:?}");
             }
@@ -62,14 +63,14 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
 pub(super) fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
     at_each_level(|level| {
         let geometry = Geometry::build_with(primitives.clone(), 0).unwrap();
-        assert!(geometry.tree().is_none_or(|tree| tree.lanes() == level.lanes()));
+        assert!(geometry.tree().is_none_or(|tree| tree.lanes() == level::lanes(level)));
         check_geometry(&geometry, rays, seed, &place)
     })
 }
 
 /// The least of what comes of some work done with each instruction set taken for the best.
 pub(super) fn at_each_level(work: impl Fn(Level) -> f64) -> f64 {
-    Level::all().into_iter().map(|level| level.forced(|| work(level))).fold(f64::INFINITY, f64::min)
+    level::all().into_iter().map(|level| level::forced(level, || work(level))).fold(f64::INFINITY, f64::min)
 }
 
 /// The same of what serves a geometry.
@@ -333,7 +334,7 @@ fn rays_of_which_no_point_is_defined_hit_nothing() {
 fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
     let mut random = Random::new(40);
     let (mut shapes, mut hits) = (0, 0);
-    let levels = Level::all();
+    let levels = level::all();
     for round in 0..3_000 {
         let primitives: Vec<Primitive> = (0..60)
             .filter_map(|_| {
@@ -350,7 +351,7 @@ fn whatever_the_numbers_nothing_panics_and_the_tree_equals_brute_force() {
         let features = features(&primitives);
         // In turn with a tree and without.
         let level = levels[round / 2 % levels.len()];
-        let geometry = level.forced(|| Geometry::build_with(primitives, [0, 128][round % 2]).unwrap());
+        let geometry = level::forced(level, || Geometry::build_with(primitives, [0, 128][round % 2]).unwrap());
         for _ in 0..30 {
             let mut point = || match random.below(2) {
                 0 if !features.is_empty() => features[random.below(features.len())],

@@ -4,11 +4,12 @@ use super::compiled::Compiled;
 use super::leaf::{Chords, candidates};
 use super::met::Met;
 use super::portable::Portable;
-use super::{Filters, Job, Level};
+use super::{Filters, Job, level};
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
 use crate::wide::{LEAF, LONE, Leaf, Leaves, MIXED, WideTree};
 use crate::{Primitive, PrimitiveId, SurfaceId};
+use etalon_simd::Level;
 
 /// Takes a hit and returns the end, exclusive, of the distances that still matter.
 pub(crate) type Visit<'a> = dyn FnMut(RawHit, SurfaceId) -> f64 + 'a;
@@ -23,7 +24,7 @@ pub(crate) fn all(
     from: f64,
     visit: &mut Visit<'_>,
 ) -> f64 {
-    level.run(All { tree, primitives, query, from, visit })
+    level::run(level, All { tree, primitives, query, from, visit })
 }
 
 struct All<'a, 'v> {

@@ -1,5 +1,4 @@
 //! The filters in AVX2.
-#![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
 use super::compiled::{Compiled, compiled};
 use super::lanes256::{D4, F4, F8};
@@ -14,20 +13,9 @@ use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
 use crate::portal::Portal;
 use crate::query::Query;
 use crate::wide::{NODE_WIDTH, Node16, WideTree};
-use std::arch::x86_64::*;
+use etalon_simd::Avx2;
 
-/// Proof that the processor has AVX2: [`Avx2::detect`] alone makes one.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Avx2(());
-
-impl Avx2 {
-    #[inline(always)]
-    pub(super) fn detect() -> Option<Self> {
-        std::arch::is_x86_feature_detected!("avx2").then_some(Self(()))
-    }
-}
-
-compiled!(Avx2, "avx2,bmi1");
+compiled!(Avx2);
 
 /// A ray broadcast to all lanes.
 #[derive(Clone, Copy)]
@@ -69,7 +57,7 @@ impl Filters for Avx2 {
     #[inline(always)]
     fn enter(self, ray: &Ray8, node: &Node16, limit: f32) -> Entered {
         // The children's numbers lie in a cache line of their own, which would be asked for only once the mask is known.
-        self.prefetch(&node.children);
+        Avx2::prefetch(self, &node.children);
         let mut out = Entered { mask: 0, near: Row([0.0; NODE_WIDTH]) };
         let [ex, ey, ez] = ray.entry;
         for half in 0..NODE_WIDTH / F8::WIDTH {
@@ -91,23 +79,6 @@ impl Filters for Avx2 {
 
     #[inline(always)]
     fn prefetch<T>(self, item: &T) {
-        prefetch(item);
-    }
-}
-
-/// Announces that an item will be read.
-#[inline(always)]
-pub(super) fn prefetch<T>(item: &T) {
-    let address = std::ptr::from_ref(item).cast::<i8>();
-    // The first and the last byte, and one in each line between.
-    let mut at = 0;
-    while at < size_of::<T>() {
-        // SAFETY: a hint, which reads nothing; the address is within the item.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.add(at)) };
-        at += 64;
-    }
-    if align_of::<T>() < 64 {
-        // SAFETY: as above.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.add(size_of::<T>().saturating_sub(1))) };
+        Avx2::prefetch(self, item);
     }
 }

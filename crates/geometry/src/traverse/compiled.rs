@@ -26,51 +26,48 @@ pub(super) trait Compiled: Filters {
     fn occludes_within(self, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool;
 }
 
-/// [`Compiled`] for a token that proves that the processor has some features.
+/// [`Compiled`] for the token of an instruction set.
 #[cfg(target_arch = "x86_64")]
 macro_rules! compiled {
-    ($token:ty, $features:literal) => {
-        compiled! { $token, $features;
+    ($set:ident) => {
+        compiled! { $set;
             #[inline]
-            fn closest<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit> = closest_with;
+            fn closest[S: Start][S](tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit> = closest_with;
             #[inline]
-            fn any<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> bool = any_with;
+            fn any[S: Start][S](tree: &WideTree, primitives: &[Primitive], start: S) -> bool = any_with;
             #[inline]
-            fn closest_far<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit> = closest_far_with;
+            fn closest_far[S: Start][S](tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit> = closest_far_with;
             #[inline]
-            fn any_far<S: Start>(tree: &WideTree, primitives: &[Primitive], start: S) -> bool = any_far_with;
+            fn any_far[S: Start][S](tree: &WideTree, primitives: &[Primitive], start: S) -> bool = any_far_with;
             #[inline(never)]
-            fn closest_within<>(best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool = closest_within;
+            fn closest_within[][](best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool = closest_within;
             #[inline(never)]
-            fn occludes_within<>(portal: &Portal, primitives: &[Primitive], query: &Query) -> bool = occludes_within;
+            fn occludes_within[][](portal: &Portal, primitives: &[Primitive], query: &Query) -> bool = occludes_within;
         }
     };
-    ($token:ty, $features:literal; $(
-        #[$inline:meta]
-        fn $f:ident<$($s:ident: $bound:ident)?>($($x:ident: $t:ty),*) -> $out:ty = $with:ident;
+    ($set:ident; $(
+        #[inline $(($how:ident))?]
+        fn $f:ident[$($parameters:tt)*][$($arguments:tt)*]($($x:ident: $t:ty),*) -> $out:ty = $with:ident;
     )*) => {
-        impl Compiled for $token {
+        impl Compiled for $set {
             $(
                 #[inline(always)]
-                fn $f<$($s: $bound)?>(self, $($x: $t),*) -> $out {
-                    #[target_feature(enable = $features)]
-                    #[$inline]
-                    fn compiled<$($s: $bound)?>(filters: $token, $($x: $t),*) -> $out {
-                        $with(filters, $($x),*)
-                    }
-                    // SAFETY: the token proves that the processor has these features.
-                    unsafe { compiled(self, $($x),*) }
+                fn $f<$($parameters)*>(self, $($x: $t),*) -> $out {
+                    let filters = self;
+                    etalon_simd::call_compiled!($set, self;
+                        #[inline $(($how))?] fn compiled[$($parameters)*][$($arguments)*](filters: $set, $($x: $t),*) -> $out {
+                            $with(filters, $($x),*)
+                        }
+                    )
                 }
             )*
 
             #[inline(always)]
             fn run<J: Job>(self, job: J) -> J::Output {
-                #[target_feature(enable = $features)]
-                fn compiled<J: Job>(filters: $token, job: J) -> J::Output {
-                    job.run(filters)
-                }
-                // SAFETY: as above.
-                unsafe { compiled(self, job) }
+                let filters = self;
+                etalon_simd::call_compiled!($set, self;
+                    fn compiled[J: Job][J](filters: $set, job: J) -> J::Output { job.run(filters) }
+                )
             }
         }
     };

@@ -4,8 +4,7 @@ use super::Filters;
 use super::compiled::Compiled;
 use super::portable::Portable;
 use super::vector::Vector;
-#[cfg(target_arch = "x86_64")]
-use super::{avx2, avx512};
+use etalon_simd::Level;
 
 /// Lanes of a vector of an instruction set, and of the leaves of a tree that is made for it.
 fn lanes_of<F: Filters>(_: F) -> usize {
@@ -26,76 +25,50 @@ thread_local! {
     static FORCED: std::cell::Cell<Option<Level>> = const { std::cell::Cell::new(None) };
 }
 
-/// An instruction set that the processor has.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Level {
-    #[cfg(target_arch = "x86_64")]
-    Avx512(avx512::Avx512),
-    #[cfg(target_arch = "x86_64")]
-    Avx2(avx2::Avx2),
-    Portable,
+/// The instruction set that geometries are built for.
+pub(crate) fn best() -> Level {
+    #[cfg(test)]
+    if let Some(level) = FORCED.get() {
+        return level;
+    }
+    Level::best()
 }
 
-impl Level {
-    /// The best one.
-    pub(crate) fn detect() -> Self {
-        #[cfg(test)]
-        if let Some(level) = FORCED.get() {
-            return level;
-        }
+/// All instruction sets; the one that is taken for the best, if one is.
+#[cfg(test)]
+pub(crate) fn all() -> Vec<Level> {
+    FORCED.get().map_or_else(Level::available, |level| vec![level])
+}
+
+/// What comes of some work if an instruction set is taken for the best.
+#[cfg(test)]
+pub(crate) fn forced<T>(level: Level, work: impl FnOnce() -> T) -> T {
+    let before = FORCED.replace(Some(level));
+    let out = work();
+    FORCED.set(before);
+    out
+}
+
+/// Lanes of the leaves of a tree that is made for an instruction set.
+pub(crate) fn lanes(level: Level) -> usize {
+    match level {
         #[cfg(target_arch = "x86_64")]
-        if let Some(filters) = avx512::Avx512::detect() {
-            return Self::Avx512(filters);
-        } else if let Some(filters) = avx2::Avx2::detect() {
-            return Self::Avx2(filters);
-        }
-        Self::Portable
-    }
-
-    /// All; the one that is taken for the best, if one is.
-    #[cfg(test)]
-    pub(crate) fn all() -> Vec<Self> {
-        if let Some(level) = FORCED.get() {
-            return vec![level];
-        }
-        let mut all = vec![Self::Portable];
+        Level::Avx512(filters) => lanes_of(filters),
         #[cfg(target_arch = "x86_64")]
-        all.extend(avx2::Avx2::detect().map(Self::Avx2));
+        Level::Avx2(filters) => lanes_of(filters),
+        Level::Baseline => lanes_of(Portable),
+    }
+}
+
+/// Does some work on an instruction set.
+#[inline(always)]
+pub(super) fn run<J: Job>(level: Level, job: J) -> J::Output {
+    match level {
         #[cfg(target_arch = "x86_64")]
-        all.extend(avx512::Avx512::detect().map(Self::Avx512));
-        all
-    }
-
-    /// What comes of some work if this is taken for the best.
-    #[cfg(test)]
-    pub(crate) fn forced<T>(self, work: impl FnOnce() -> T) -> T {
-        let before = FORCED.replace(Some(self));
-        let out = work();
-        FORCED.set(before);
-        out
-    }
-
-    /// Lanes of the leaves of a tree.
-    pub(crate) fn lanes(self) -> usize {
-        match self {
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512(filters) => lanes_of(filters),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(filters) => lanes_of(filters),
-            Self::Portable => lanes_of(Portable),
-        }
-    }
-
-    /// Does some work.
-    #[inline(always)]
-    pub(super) fn run<J: Job>(self, job: J) -> J::Output {
-        match self {
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512(filters) => filters.run(job),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(filters) => filters.run(job),
-            Self::Portable => Portable.run(job),
-        }
+        Level::Avx512(filters) => filters.run(job),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(filters) => filters.run(job),
+        Level::Baseline => Portable.run(job),
     }
 }
 
@@ -114,8 +87,8 @@ pub(crate) fn vectorised<L: Loop>(level: Level, work: L) -> L::Output {
     match level {
         // Vectors that the compiler makes of sixteen floats gain nothing, and what it stores by masks is waited for.
         #[cfg(target_arch = "x86_64")]
-        Level::Avx512(filters) => avx2::Avx2::from(filters).run(work),
-        level => level.run(work),
+        Level::Avx512(filters) => filters.avx2().run(work),
+        level => run(level, work),
     }
 }
 

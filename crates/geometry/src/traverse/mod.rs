@@ -18,7 +18,7 @@ mod lanes256;
 #[cfg(target_arch = "x86_64")]
 mod lanes512;
 mod leaf;
-mod level;
+pub(crate) mod level;
 mod met;
 mod portable;
 mod stack;
@@ -41,10 +41,11 @@ use any::any_on;
 pub(crate) use any::occludes;
 use closest::closest_on;
 use compiled::Compiled;
+use etalon_simd::Level;
 use flat::{Eight, Wide};
 pub(crate) use flat::{FLAT_LIMIT, Flat};
 use level::Job;
-pub(crate) use level::{Level, Loop, vectorised};
+pub(crate) use level::{Loop, vectorised};
 use met::{Met, Row};
 use portable::Portable;
 use start::Start;
@@ -114,7 +115,7 @@ pub(crate) fn closest<S: Start>(level: Level, tree: &WideTree, primitives: &[Pri
         Level::Avx512(filters) => filters.closest(tree, primitives, start),
         #[cfg(target_arch = "x86_64")]
         Level::Avx2(filters) => filters.closest(tree, primitives, start),
-        Level::Portable => Portable.closest(tree, primitives, start),
+        Level::Baseline => Portable.closest(tree, primitives, start),
     }
 }
 
@@ -126,20 +127,20 @@ pub(crate) fn any<S: Start>(level: Level, tree: &WideTree, primitives: &[Primiti
         Level::Avx512(filters) => filters.any(tree, primitives, start),
         #[cfg(target_arch = "x86_64")]
         Level::Avx2(filters) => filters.any(tree, primitives, start),
-        Level::Portable => Portable.any(tree, primitives, start),
+        Level::Baseline => Portable.any(tree, primitives, start),
     }
 }
 
 /// [`closest`] of the rays in the lanes of `active`, one bit each.
 #[inline]
 pub(crate) fn closest_hits(level: Level, tree: &WideTree, primitives: &[Primitive], rays: &Rays, active: u8) -> Hits {
-    level.run(eight::Closest { tree, primitives, rays, active })
+    level::run(level, eight::Closest { tree, primitives, rays, active })
 }
 
 /// [`any`] of the rays in the lanes of `active`: one bit for each lane, zero in the others.
 #[inline]
 pub(crate) fn any_hits(level: Level, tree: &WideTree, primitives: &[Primitive], rays: &Rays, active: u8) -> u8 {
-    level.run(eight::Any { tree, primitives, rays, active })
+    level::run(level, eight::Any { tree, primitives, rays, active })
 }
 
 /// The closest hit of a ray that starts near the frame, as most do: without a query until one is needed.

@@ -1,32 +1,22 @@
 //! Eight floats of AVX2 as the filters of flat geometries want them.
-#![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
-use super::avx2::Avx2;
 use super::flat::{BLOCK, EXPONENT, Eight, TURN, Wide};
 use super::lanes256::F8;
 use super::vector::Vector;
 use crate::LANES;
+use etalon_simd::Avx2;
 use std::arch::x86_64::*;
 use std::ops::{BitAnd, BitOr, Not};
 
 /// Eight truths, all bits of a number each.
 #[derive(Clone, Copy)]
-pub(super) struct M8(__m256);
-
-/// An instruction on an [`F8`] or an [`M8`].
-macro_rules! avx {
-    ($instruction:expr) => {{
-        // SAFETY: an instruction of AVX, whose presence is proved where an `F8` comes from; what it reads or writes is within the
-        // array named, whose length its type tells.
-        unsafe { $instruction }
-    }};
-}
+pub(super) struct M8(__m256, Avx2);
 
 impl BitAnd for M8 {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, o: Self) -> Self {
-        Self(avx!(_mm256_and_ps(self.0, o.0)))
+        Self(self.1._mm256_and_ps(self.0, o.0), self.1)
     }
 }
 
@@ -34,7 +24,7 @@ impl BitOr for M8 {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, o: Self) -> Self {
-        Self(avx!(_mm256_or_ps(self.0, o.0)))
+        Self(self.1._mm256_or_ps(self.0, o.0), self.1)
     }
 }
 
@@ -42,7 +32,8 @@ impl Not for M8 {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Self(avx!(_mm256_xor_ps(self.0, _mm256_castsi256_ps(_mm256_set1_epi32(-1)))))
+        let t = self.1;
+        Self(t._mm256_xor_ps(self.0, t._mm256_castsi256_ps(t._mm256_set1_epi32(-1))), t)
     }
 }
 
@@ -67,13 +58,13 @@ impl Wide for F8 {
     }
 
     #[inline(always)]
-    fn rays(_: Avx2, v: &[f32; LANES]) -> Self {
-        Self(avx!(_mm256_loadu_ps(v.as_ptr())))
+    fn rays(t: Avx2, v: &[f32; LANES]) -> Self {
+        Self(t._mm256_loadu_ps(v), t)
     }
 
     #[inline(always)]
     fn store(self, row: &mut [f32; BLOCK]) {
-        avx!(_mm256_storeu_ps(row.as_mut_ptr(), self.0));
+        F8::store(self, row, 0);
     }
 
     #[inline(always)]
@@ -93,59 +84,59 @@ impl Wide for F8 {
 
     #[inline(always)]
     fn least(self) -> f32 {
-        avx!({
-            let four = _mm_min_ps(_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0));
-            let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
-            _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
-        })
+        let t = self.1;
+        let four = t._mm_min_ps(t._mm256_castps256_ps128(self.0), t._mm256_extractf128_ps::<1>(self.0));
+        let two = t._mm_min_ps(four, t._mm_movehl_ps(four, four));
+        t._mm_cvtss_f32(t._mm_min_ss(two, t._mm_movehdup_ps(two)))
     }
 
     #[inline(always)]
     fn flipped(self, sign: Self) -> Self {
-        Self(avx!(_mm256_xor_ps(self.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0)))))
+        let t = self.1;
+        Self(t._mm256_xor_ps(self.0, t._mm256_and_ps(sign.0, t._mm256_set1_ps(-0.0))), t)
     }
 
     #[inline(always)]
     fn below(self, o: Self) -> M8 {
-        M8(avx!(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, o.0)))
+        M8(self.1._mm256_cmp_ps::<_CMP_LT_OQ>(self.0, o.0), self.1)
     }
 
     #[inline(always)]
     fn at_most(self, o: Self) -> M8 {
-        M8(avx!(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, o.0)))
+        M8(self.1._mm256_cmp_ps::<_CMP_LE_OQ>(self.0, o.0), self.1)
     }
 
     #[inline(always)]
     fn equals(self, o: Self) -> M8 {
-        M8(avx!(_mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, o.0)))
+        M8(self.1._mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, o.0), self.1)
     }
 
     #[inline(always)]
     fn differs(self, o: Self) -> M8 {
-        M8(avx!(_mm256_cmp_ps::<_CMP_NEQ_OQ>(self.0, o.0)))
+        M8(self.1._mm256_cmp_ps::<_CMP_NEQ_OQ>(self.0, o.0), self.1)
     }
 
     #[inline(always)]
     fn shares(self) -> [[f32; LANES]; 2] {
         let mut out = [0.0; LANES];
-        avx!(_mm256_storeu_ps(out.as_mut_ptr(), self.0));
+        self.1._mm256_storeu_ps(&mut out, self.0);
         [out; 2]
     }
 
     #[inline(always)]
     fn or_else(self, mask: M8, other: Self) -> Self {
-        Self(avx!(_mm256_blendv_ps(other.0, self.0, mask.0)))
+        Self(self.1._mm256_blendv_ps(other.0, self.0, mask.0), self.1)
     }
 
     #[inline(always)]
     fn bits(mask: M8) -> u32 {
-        avx!(_mm256_movemask_ps(mask.0)) as u32
+        mask.1._mm256_movemask_ps(mask.0) as u32
     }
 }
 
 /// Eight numbers in two halves.
 #[derive(Clone, Copy)]
-pub(super) struct D8([__m256d; 2]);
+pub(super) struct D8([__m256d; 2], Avx2);
 
 macro_rules! operator8 {
     ($trait:ident, $f:ident, $instruction:ident) => {
@@ -153,7 +144,7 @@ macro_rules! operator8 {
             type Output = Self;
             #[inline(always)]
             fn $f(self, o: Self) -> Self {
-                Self(avx!([$instruction(self.0[0], o.0[0]), $instruction(self.0[1], o.0[1])]))
+                Self([self.1.$instruction(self.0[0], o.0[0]), self.1.$instruction(self.0[1], o.0[1])], self.1)
             }
         }
     };
@@ -170,15 +161,15 @@ operator8!(BitOr, bitor, _mm256_or_pd);
 macro_rules! halves {
     ($v:expr, $half:ident => $instruction:expr) => {{
         let [$half, second] = $v.0;
-        let first = avx!($instruction);
+        let first = $instruction;
         let $half = second;
-        D8([first, avx!($instruction)])
+        D8([first, $instruction], $v.1)
     }};
     ($v:expr, $o:expr, $half:ident, $other:ident => $instruction:expr) => {{
         let ([$half, second], [$other, second_other]) = ($v.0, $o.0);
-        let first = avx!($instruction);
+        let first = $instruction;
         let ($half, $other) = (second, second_other);
-        D8([first, avx!($instruction)])
+        D8([first, $instruction], $v.1)
     }};
 }
 
@@ -187,14 +178,14 @@ impl Eight for D8 {
     type Mask = Self;
 
     #[inline(always)]
-    fn splat(_: Avx2, v: f64) -> Self {
-        Self([avx!(_mm256_set1_pd(v)); 2])
+    fn splat(t: Avx2, v: f64) -> Self {
+        Self([t._mm256_set1_pd(v); 2], t)
     }
 
     #[inline(always)]
-    fn new(_: Avx2, v: &[f64; LANES]) -> Self {
+    fn new(t: Avx2, v: &[f64; LANES]) -> Self {
         let (halves, _) = v.as_chunks::<4>();
-        Self(avx!([_mm256_loadu_pd(halves[0].as_ptr()), _mm256_loadu_pd(halves[1].as_ptr())]))
+        Self([t._mm256_loadu_pd(&halves[0]), t._mm256_loadu_pd(&halves[1])], t)
     }
 
     #[inline(always)]
@@ -202,7 +193,7 @@ impl Eight for D8 {
         let mut out = [0.0; LANES];
         let (halves, _) = out.as_chunks_mut::<4>();
         for (half, v) in halves.iter_mut().zip(self.0) {
-            avx!(_mm256_storeu_pd(half.as_mut_ptr(), v));
+            self.1._mm256_storeu_pd(half, v);
         }
         out
     }
@@ -212,7 +203,7 @@ impl Eight for D8 {
         let mut out = [0.0; LANES];
         let (halves, _) = out.as_chunks_mut::<4>();
         for (half, v) in halves.iter_mut().zip(self.0) {
-            avx!(_mm_storeu_ps(half.as_mut_ptr(), _mm256_cvtpd_ps(v)));
+            self.1._mm_storeu_ps(half, self.1._mm256_cvtpd_ps(v));
         }
         out
     }
@@ -224,49 +215,51 @@ impl Eight for D8 {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        halves!(self, v => _mm256_andnot_pd(_mm256_set1_pd(-0.0), v))
+        halves!(self, v => self.1._mm256_andnot_pd(self.1._mm256_set1_pd(-0.0), v))
     }
 
     #[inline(always)]
     fn negated(self) -> Self {
-        halves!(self, v => _mm256_xor_pd(_mm256_set1_pd(-0.0), v))
+        halves!(self, v => self.1._mm256_xor_pd(self.1._mm256_set1_pd(-0.0), v))
     }
 
     #[inline(always)]
     fn max(self, o: Self) -> Self {
-        halves!(self, o, v, w => _mm256_max_pd(v, w))
+        halves!(self, o, v, w => self.1._mm256_max_pd(v, w))
     }
 
     #[inline(always)]
     fn below(self, o: Self) -> Self {
-        halves!(self, o, v, w => _mm256_cmp_pd::<_CMP_LT_OQ>(v, w))
+        halves!(self, o, v, w => self.1._mm256_cmp_pd::<_CMP_LT_OQ>(v, w))
     }
 
     #[inline(always)]
     fn at_most(self, o: Self) -> Self {
-        halves!(self, o, v, w => _mm256_cmp_pd::<_CMP_LE_OQ>(v, w))
+        halves!(self, o, v, w => self.1._mm256_cmp_pd::<_CMP_LE_OQ>(v, w))
     }
 
     #[inline(always)]
     fn or_else(self, mask: Self, o: Self) -> Self {
-        let blend = |i: usize| avx!(_mm256_blendv_pd(o.0[i], self.0[i], mask.0[i]));
-        Self([blend(0), blend(1)])
+        let blend = |i: usize| self.1._mm256_blendv_pd(o.0[i], self.0[i], mask.0[i]);
+        Self([blend(0), blend(1)], self.1)
     }
 
     #[inline(always)]
     fn exponents(self) -> Self {
-        halves!(self, v => _mm256_and_pd(v, _mm256_castsi256_pd(_mm256_set1_epi64x(EXPONENT as i64))))
+        let t = self.1;
+        halves!(self, v => t._mm256_and_pd(v, t._mm256_castsi256_pd(t._mm256_set1_epi64x(EXPONENT as i64))))
     }
 
     #[inline(always)]
     fn inverse_powers(self) -> Self {
+        let t = self.1;
         halves!(self, v => {
-            _mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(TURN as i64), _mm256_castpd_si256(v)))
+            t._mm256_castsi256_pd(t._mm256_sub_epi64(t._mm256_set1_epi64x(TURN as i64), t._mm256_castpd_si256(v)))
         })
     }
 
     #[inline(always)]
     fn bits(mask: Self) -> u8 {
-        avx!(_mm256_movemask_pd(mask.0[0]) | _mm256_movemask_pd(mask.0[1]) << 4) as u8
+        (mask.1._mm256_movemask_pd(mask.0[0]) | mask.1._mm256_movemask_pd(mask.0[1]) << 4) as u8
     }
 }

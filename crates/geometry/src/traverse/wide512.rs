@@ -1,11 +1,10 @@
 //! Sixteen floats of AVX-512 as the filters of flat geometries want them.
-#![allow(unsafe_code)] // Vector instructions behind a token that proves their presence; see each block.
 
-use super::avx512::Avx512;
 use super::flat::{BLOCK, EXPONENT, Eight, TURN, Wide};
-use super::lanes512::{F16, avx512};
+use super::lanes512::F16;
 use super::vector::Vector;
 use crate::LANES;
+use etalon_simd::Avx512;
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
@@ -53,25 +52,23 @@ impl Wide for F16 {
     }
 
     #[inline(always)]
-    fn shared(_: Avx512, row: &[f32; BLOCK], at: usize) -> Self {
+    fn shared(t: Avx512, row: &[f32; BLOCK], at: usize) -> Self {
         let (pairs, _) = row.as_chunks::<2>();
         let [a, b] = pairs[at / 2 % LANES];
         let both = f64::from_bits(u64::from(b.to_bits()) << 32 | u64::from(a.to_bits()));
-        Self(avx512!(_mm512_castpd_ps(_mm512_set1_pd(both))))
+        Self(t._mm512_castpd_ps(t._mm512_set1_pd(both)), t)
     }
 
     #[inline(always)]
-    fn rays(_: Avx512, v: &[f32; LANES]) -> Self {
-        Self(avx512!({
-            let eight = _mm256_loadu_ps(v.as_ptr());
-            let twice = _mm512_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
-            _mm512_permutexvar_ps(twice, _mm512_castps256_ps512(eight))
-        }))
+    fn rays(t: Avx512, v: &[f32; LANES]) -> Self {
+        let eight = t.avx2()._mm256_loadu_ps(v);
+        let twice = t._mm512_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
+        Self(t._mm512_permutexvar_ps(twice, t._mm512_castps256_ps512(eight)), t)
     }
 
     #[inline(always)]
     fn store(self, row: &mut [f32; BLOCK]) {
-        avx512!(_mm512_storeu_ps(row.as_mut_ptr(), self.0));
+        self.1._mm512_storeu_ps(row, self.0);
     }
 
     #[inline(always)]
@@ -91,62 +88,63 @@ impl Wide for F16 {
 
     #[inline(always)]
     fn least(self) -> f32 {
-        avx512!(_mm512_reduce_min_ps(self.0))
+        self.1._mm512_reduce_min_ps(self.0)
     }
 
     #[inline(always)]
     fn flipped(self, sign: Self) -> Self {
-        Self(avx512!(_mm512_xor_ps(self.0, _mm512_and_ps(sign.0, _mm512_set1_ps(-0.0)))))
+        let t = self.1;
+        Self(t._mm512_xor_ps(self.0, t._mm512_and_ps(sign.0, t._mm512_set1_ps(-0.0))), t)
     }
 
     #[inline(always)]
     fn below(self, o: Self) -> M16 {
-        M16(avx512!(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, o.0)))
+        M16(self.1._mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, o.0))
     }
 
     #[inline(always)]
     fn at_most(self, o: Self) -> M16 {
-        M16(avx512!(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, o.0)))
+        M16(self.1._mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, o.0))
     }
 
     #[inline(always)]
     fn equals(self, o: Self) -> M16 {
-        M16(avx512!(_mm512_cmp_ps_mask::<_CMP_EQ_OQ>(self.0, o.0)))
+        M16(self.1._mm512_cmp_ps_mask::<_CMP_EQ_OQ>(self.0, o.0))
     }
 
     #[inline(always)]
     fn differs(self, o: Self) -> M16 {
-        M16(avx512!(_mm512_cmp_ps_mask::<_CMP_NEQ_OQ>(self.0, o.0)))
+        M16(self.1._mm512_cmp_ps_mask::<_CMP_NEQ_OQ>(self.0, o.0))
     }
 
     #[inline(always)]
     fn below_where(self, mask: M16, o: Self) -> M16 {
-        M16(avx512!(_mm512_mask_cmp_ps_mask::<_CMP_LT_OQ>(mask.0, self.0, o.0)))
+        M16(self.1._mm512_mask_cmp_ps_mask::<_CMP_LT_OQ>(mask.0, self.0, o.0))
     }
 
     #[inline(always)]
     fn at_most_where(self, mask: M16, o: Self) -> M16 {
-        M16(avx512!(_mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(mask.0, self.0, o.0)))
+        M16(self.1._mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(mask.0, self.0, o.0))
     }
 
     #[inline(always)]
     fn min_where(self, mask: M16, o: Self) -> Self {
-        Self(avx512!(_mm512_mask_min_ps(self.0, mask.0, self.0, o.0)))
+        Self(self.1._mm512_mask_min_ps(self.0, mask.0, self.0, o.0), self.1)
     }
 
     #[inline(always)]
     fn shares(self) -> [[f32; LANES]; 2] {
-        let mut out = [[0.0; LANES]; 2];
-        avx512!({
-            let turn = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 1, 3, 5, 7, 9, 11, 13, 15);
-            _mm512_storeu_ps(out.as_mut_ptr().cast(), _mm512_permutexvar_ps(turn, self.0));
-        });
-        out
+        let t = self.1;
+        let mut out = [0.0; 2 * LANES];
+        let turn = t._mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 1, 3, 5, 7, 9, 11, 13, 15);
+        t._mm512_storeu_ps(&mut out, t._mm512_permutexvar_ps(turn, self.0));
+        let (halves, _) = out.as_chunks();
+        [halves[0], halves[1]]
     }
 
     #[inline(always)]
     fn or_else(self, mask: M16, other: Self) -> Self {
-        Self(avx512!(_mm512_mask_blend_ps(mask.0, other.0, self.0)))
+        Self(self.1._mm512_mask_blend_ps(mask.0, other.0, self.0), self.1)
     }
 
     #[inline(always)]
@@ -157,7 +155,7 @@ impl Wide for F16 {
 
 /// Eight numbers. They exist for a token alone.
 #[derive(Clone, Copy)]
-pub(super) struct D8(__m512d);
+pub(super) struct D8(__m512d, Avx512);
 
 /// Eight truths, a bit each.
 #[derive(Clone, Copy)]
@@ -169,7 +167,7 @@ macro_rules! operator8 {
             type Output = Self;
             #[inline(always)]
             fn $f(self, o: Self) -> Self {
-                Self(avx512!($instruction(self.0, o.0)))
+                Self(self.1.$instruction(self.0, o.0), self.1)
             }
         }
     };
@@ -198,12 +196,12 @@ impl BitOr for Q8 {
 impl D8 {
     #[inline(always)]
     fn bits_of(self) -> __m512i {
-        avx512!(_mm512_castpd_si512(self.0))
+        self.1._mm512_castpd_si512(self.0)
     }
 
     #[inline(always)]
-    fn of_bits(bits: __m512i) -> Self {
-        Self(avx512!(_mm512_castsi512_pd(bits)))
+    fn of_bits(t: Avx512, bits: __m512i) -> Self {
+        Self(t._mm512_castsi512_pd(bits), t)
     }
 }
 
@@ -212,26 +210,26 @@ impl Eight for D8 {
     type Mask = Q8;
 
     #[inline(always)]
-    fn splat(_: Avx512, v: f64) -> Self {
-        Self(avx512!(_mm512_set1_pd(v)))
+    fn splat(t: Avx512, v: f64) -> Self {
+        Self(t._mm512_set1_pd(v), t)
     }
 
     #[inline(always)]
-    fn new(_: Avx512, v: &[f64; LANES]) -> Self {
-        Self(avx512!(_mm512_loadu_pd(v.as_ptr())))
+    fn new(t: Avx512, v: &[f64; LANES]) -> Self {
+        Self(t._mm512_loadu_pd(v), t)
     }
 
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {
         let mut out = [0.0; LANES];
-        avx512!(_mm512_storeu_pd(out.as_mut_ptr(), self.0));
+        self.1._mm512_storeu_pd(&mut out, self.0);
         out
     }
 
     #[inline(always)]
     fn narrowed(self) -> [f32; LANES] {
         let mut out = [0.0; LANES];
-        avx512!(_mm256_storeu_ps(out.as_mut_ptr(), _mm512_cvtpd_ps(self.0)));
+        self.1.avx2()._mm256_storeu_ps(&mut out, self.1._mm512_cvtpd_ps(self.0));
         out
     }
 
@@ -243,42 +241,45 @@ impl Eight for D8 {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(avx512!(_mm512_abs_pd(self.0)))
+        Self(self.1._mm512_abs_pd(self.0), self.1)
     }
 
     #[inline(always)]
     fn negated(self) -> Self {
-        Self(avx512!(_mm512_xor_pd(self.0, _mm512_set1_pd(-0.0))))
+        let t = self.1;
+        Self(t._mm512_xor_pd(self.0, t._mm512_set1_pd(-0.0)), t)
     }
 
     #[inline(always)]
     fn max(self, o: Self) -> Self {
-        Self(avx512!(_mm512_max_pd(self.0, o.0)))
+        Self(self.1._mm512_max_pd(self.0, o.0), self.1)
     }
 
     #[inline(always)]
     fn below(self, o: Self) -> Q8 {
-        Q8(avx512!(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, o.0)))
+        Q8(self.1._mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, o.0))
     }
 
     #[inline(always)]
     fn at_most(self, o: Self) -> Q8 {
-        Q8(avx512!(_mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, o.0)))
+        Q8(self.1._mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, o.0))
     }
 
     #[inline(always)]
     fn or_else(self, mask: Q8, o: Self) -> Self {
-        Self(avx512!(_mm512_mask_blend_pd(mask.0, o.0, self.0)))
+        Self(self.1._mm512_mask_blend_pd(mask.0, o.0, self.0), self.1)
     }
 
     #[inline(always)]
     fn exponents(self) -> Self {
-        Self::of_bits(avx512!(_mm512_and_si512(self.bits_of(), _mm512_set1_epi64(EXPONENT as i64))))
+        let t = self.1;
+        Self::of_bits(t, t._mm512_and_si512(self.bits_of(), t._mm512_set1_epi64(EXPONENT as i64)))
     }
 
     #[inline(always)]
     fn inverse_powers(self) -> Self {
-        Self::of_bits(avx512!(_mm512_sub_epi64(_mm512_set1_epi64(TURN as i64), self.bits_of())))
+        let t = self.1;
+        Self::of_bits(t, t._mm512_sub_epi64(t._mm512_set1_epi64(TURN as i64), self.bits_of()))
     }
 
     #[inline(always)]

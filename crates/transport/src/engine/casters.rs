@@ -1,6 +1,6 @@
 //! Directions toward casters of caustics, for the paths that are at diffuse surfaces.
 
-use super::level::{Level, Set, stages};
+use super::level::{Level, stages};
 use super::rows::{Mask, Row, Rows3, W, lanes};
 use crate::bsdf::lambert;
 use crate::caustics::{

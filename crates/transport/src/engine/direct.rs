@@ -2,7 +2,7 @@
 
 use super::Engine;
 use super::lamps::{Aims, Flats, Rounds, aim, aim_at_disks, aim_at_rounds};
-use super::level::{Level, Set, stages};
+use super::level::{Level, stages};
 use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes};
 use super::surface::of_group;
 use super::tables::Form;

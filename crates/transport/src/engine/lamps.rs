@@ -1,6 +1,6 @@
 //! Lights with a row form, one for each path, and what paths see of them.
 
-use super::level::{Level, Set, stages};
+use super::level::{Level, stages};
 use super::rows::{Mask, Row, Rows3, W};
 use crate::light::{Aim, Flat, Light, Round};
 use etalon_optics::Vec3;

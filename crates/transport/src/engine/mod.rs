@@ -36,7 +36,7 @@ use casters::Casting;
 use direct::Sight;
 use etalon_optics::Lanes;
 use etalon_scene::Precision;
-use level::{Level, Set, stages};
+use level::{Level, stages};
 use paths::Paths;
 use rows::{Mask, W, lanes};
 use starts::Starts;
@@ -64,7 +64,7 @@ pub(crate) fn render_spots_lanes<M: WavelengthModel<f64, N>, const N: usize>(
     sums: Sums<'_>,
     rays: &mut [u64],
 ) -> Counters {
-    render_on::<M, N>(Level::detect(), prepared, spots, sums, rays)
+    render_on::<M, N>(Level::best(), prepared, spots, sums, rays)
 }
 
 fn render_on<M: WavelengthModel<f64, N>, const N: usize>(

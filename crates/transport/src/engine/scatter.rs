@@ -2,7 +2,7 @@
 
 use super::Engine;
 use super::direct::vertex_numbers;
-use super::level::{Level, Set, stages};
+use super::level::{Level, stages};
 use super::rows::{Mask, Row, Rows3, W, lanes};
 use super::tables::Form;
 #[cfg(test)]

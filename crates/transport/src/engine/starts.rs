@@ -1,6 +1,6 @@
 //! Camera rays and wavelengths of the samples to come, a set at a time.
 
-use super::level::{Level, Set, stages};
+use super::level::{Level, stages};
 use super::paths::Paths;
 use super::rows::{Row, Rows3, W};
 use super::stream::Cursor;

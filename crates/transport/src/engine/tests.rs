@@ -1,6 +1,5 @@
 //! Every instruction set of this machine leaves the film of the plain loop, and engines that are wrong on purpose do not.
 
-use super::level::Level;
 use super::{Engine, render_on};
 use crate::caustics::Aims;
 use crate::film::{Counters, Film, PixelRect, TileSums};
@@ -9,6 +8,7 @@ use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::plan::{EffectName, LaneModel, PathLoop};
 use crate::prepare::Prepared;
 use crate::{Control, Study, prepare_study};
+use etalon_simd::Level;
 use std::cell::Cell;
 
 /// What may be wrong with an engine.
@@ -113,7 +113,7 @@ fn is_that_of(film: &Film, (sums, counters): &(TileSums, Counters)) -> bool {
 
 #[test]
 fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_plain_loop() {
-    for level in Level::all() {
+    for level in Level::available() {
         let shared = prepared(&[], PathLoop::Lanes);
         assert_eq!(shared.plan().lane_model, LaneModel::Shared);
         assert!(is_that_of(&plain(&[]), &lanes::<Shared, 8>(level, &shared)), "{level:?}");
@@ -122,7 +122,7 @@ fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_plain_l
         assert!(is_that_of(&film, &lanes::<Hero<f64, 8>, 8>(level, &hero)), "{level:?}");
         // One lane of the same scene: not its picture, but the same paths on every instruction set.
         let one = lanes::<OneLane, 1>(level, &shared);
-        let baseline = lanes::<OneLane, 1>(*Level::all().last().unwrap(), &shared);
+        let baseline = lanes::<OneLane, 1>(Level::Baseline, &shared);
         assert!(one.0.to_bytes() == baseline.0.to_bytes() && one.1 == baseline.1, "{level:?}");
     }
 }
@@ -139,12 +139,12 @@ fn directions_toward_casters_and_images_of_lamps_leave_the_film_of_the_plain_loo
         };
         let plain = aiming(PathLoop::Plain, 0.5);
         let film = plain.render(&plain.whole(Some(1)), &|_| Control::Continue).unwrap();
-        for level in Level::all() {
+        for level in Level::available() {
             let lanes_of = aiming(PathLoop::Lanes, 0.5);
             assert!(is_that_of(&film, &lanes::<Shared, 8>(level, &lanes_of)), "{aims:?}, {level:?}");
         }
         let other = aiming(PathLoop::Lanes, 0.4);
-        assert!(!is_that_of(&film, &lanes::<Shared, 8>(Level::detect(), &other)), "{aims:?}");
+        assert!(!is_that_of(&film, &lanes::<Shared, 8>(Level::best(), &other)), "{aims:?}");
     }
 }
 
@@ -162,11 +162,11 @@ fn engines_that_are_wrong_on_purpose_are_told_from_the_plain_loop() {
         Fault::StaleLamp,
     ] {
         FAULT.set(Some(fault));
-        let wrong = lanes::<Shared, 8>(Level::detect(), &shared);
+        let wrong = lanes::<Shared, 8>(Level::best(), &shared);
         FAULT.set(None);
         assert!(!is_that_of(&film, &wrong), "{fault:?} is not noticed");
     }
-    assert!(is_that_of(&film, &lanes::<Shared, 8>(Level::detect(), &shared)));
+    assert!(is_that_of(&film, &lanes::<Shared, 8>(Level::best(), &shared)));
 }
 
 impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {

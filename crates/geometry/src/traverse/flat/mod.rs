@@ -13,7 +13,7 @@ mod single;
 mod surface;
 mod wide;
 
-use super::Level;
+use super::level;
 use crate::best::Found;
 use crate::frame::{Frame, above, below};
 use crate::query::Query;
@@ -23,6 +23,7 @@ pub(super) use block::BLOCK;
 use block::{Flats, Kind, NO_ID, Spheres};
 pub(in crate::traverse) use eight::{EXPONENT, Eight, PlainEight, TURN};
 use etalon_optics::Vec3;
+use etalon_simd::Level;
 use exact::Corners;
 use filter::Beam;
 use std::sync::OnceLock;
@@ -146,12 +147,12 @@ impl Flat {
 
     /// The closest hit, in the units of the query.
     pub(crate) fn closest(&self, level: Level, primitives: &[Primitive], query: &Query) -> Option<Found> {
-        level.run(single::Closest { flat: self, primitives, query })
+        level::run(level, single::Closest { flat: self, primitives, query })
     }
 
     /// Whether anything but the primitive aimed at is hit.
     pub(crate) fn any(&self, level: Level, primitives: &[Primitive], query: &Query) -> bool {
-        level.run(single::Any { flat: self, primitives, query })
+        level::run(level, single::Any { flat: self, primitives, query })
     }
 
     /// The closest hits of the rays in the lanes of `active`, and the lanes that were not decided.
@@ -160,12 +161,12 @@ impl Flat {
             return (Hits::NONE, active);
         }
         let corners = &self.tables(primitives).corners;
-        level.run(lanes::Closest { flat: self, corners, primitives, rays, active })
+        level::run(level, lanes::Closest { flat: self, corners, primitives, rays, active })
     }
 
     /// The lanes of `active` where anything but the primitive aimed at is hit, and those that were not decided.
     pub(crate) fn any_hits(&self, level: Level, rays: &Rays, active: u8) -> (u8, u8) {
-        if self.others.is_empty() { level.run(lanes::Any { flat: self, rays, active }) } else { (0, active) }
+        if self.others.is_empty() { level::run(level, lanes::Any { flat: self, rays, active }) } else { (0, active) }
     }
 
     /// The surfaces at the hits in the lanes of `active`.
@@ -179,7 +180,7 @@ impl Flat {
         label: u32,
     ) -> SurfacePoints {
         let table = &self.tables(primitives).surfaces;
-        level.run(surface::Surfaces { table, primitives, rays, hits, active, label })
+        level::run(level, surface::Surfaces { table, primitives, rays, hits, active, label })
     }
 
     /// The surface of a primitive near a point.
