@@ -66,3 +66,41 @@ impl<T: Copy + Ord, const N: usize> Stack<'_, T, N> {
         self.entries[at].write(entry);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Room, Stack};
+
+    #[test]
+    fn entries_come_back_last_first() {
+        let mut room = Room::<u64, 4>::new();
+        let mut stack = Stack::new(&mut room);
+        assert_eq!(stack.pop(), None);
+        for round in 0..3 {
+            (0..4).for_each(|i| stack.push(10 * round + i));
+            assert_eq!(stack.len(), 4);
+            (0..4).rev().for_each(|i| assert_eq!(stack.pop(), Some(10 * round + i)));
+            assert_eq!(stack.pop(), None);
+        }
+    }
+
+    #[test]
+    fn inserted_entries_lie_in_order_above_the_base() {
+        let mut room = Room::<u32, 8>::new();
+        let mut stack = Stack::new(&mut room);
+        // The base is below all that is inserted, whatever it is.
+        [5, 0].into_iter().for_each(|entry| stack.push(entry));
+        [3, 9, 1, 9, 4, 2].into_iter().for_each(|entry| stack.insert(2, entry));
+        let popped: Vec<u32> = std::iter::from_fn(|| stack.pop()).collect();
+        assert_eq!(popped, [1, 2, 3, 4, 9, 9, 0, 5]);
+    }
+
+    #[test]
+    #[should_panic(expected = "index out of bounds")]
+    fn a_full_stack_panics() {
+        let mut room = Room::<u8, 1>::new();
+        let mut stack = Stack::new(&mut room);
+        stack.push(1);
+        stack.push(2);
+    }
+}
