@@ -10,6 +10,7 @@ mod film;
 mod integrator;
 mod material;
 mod motion;
+mod references;
 
 pub use detail::{Bitangent, OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
@@ -18,6 +19,7 @@ pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
 pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, Precision, SamplerKind};
 pub use material::{LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture};
 pub use motion::{CameraMotion, Keyframe, Motion};
+pub use references::ReferenceError;
 
 use std::sync::Arc;
 

@@ -24,7 +24,7 @@ use crate::wavelength::WavelengthDistribution;
 use etalon_geometry::{Geometry, GeometryError, ShapeError, SurfaceId};
 use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
-use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, Scene};
+use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, ReferenceError, Scene};
 use etalon_simd::{Level, LevelError};
 use std::sync::Arc;
 
@@ -84,6 +84,9 @@ pub enum PrepareError {
         /// Where it is open.
         why: String,
     },
+    /// A reference to something that is not in the scene.
+    #[error(transparent)]
+    Reference(#[from] ReferenceError),
     /// The instruction set that the environment names cannot be used.
     #[error(transparent)]
     Level(#[from] LevelError),
@@ -100,6 +103,7 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
 /// As [`prepare`], with effects that the scene does not call for, or without some that it does.
 pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareError> {
     Level::chosen()?;
+    scene.check_references()?;
     let plan = Plan::new(scene, study)?;
     let simulated = simulated(scene, study);
     let scene = &simulated;
