@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 #[path = "common/rendering.rs"]
 mod rendering;
-use rendering::{parse, render};
+use rendering::{mean_y, parse, render};
 
 /// A glass with water on a table, under a lamp and a sky: nested solids, mirrors, rough and diffuse surfaces, absorption.
 fn scene(ghosts: &[Value]) -> Value {
@@ -40,6 +40,7 @@ fn scene(ghosts: &[Value]) -> Value {
 fn film(ghosts: &[Value]) -> Film {
     let film = render(&parse(&scene(ghosts).to_string()), &Study::default());
     assert_eq!((film.counters.lost_media, film.counters.nonfinite), (0, 0));
+    assert!(mean_y(&film) > 0.1, "a black picture would show nothing");
     film
 }
 
