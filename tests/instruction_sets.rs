@@ -54,6 +54,7 @@ fn on(level: &str) -> Command {
 }
 
 #[test]
+#[allow(clippy::print_stdout, reason = "says what was compared, and what this machine cannot run")]
 fn films_have_the_same_bytes_on_every_instruction_set() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("x.exr");
@@ -72,6 +73,7 @@ fn films_have_the_same_bytes_on_every_instruction_set() {
 
 /// `tests/aarch64.sh` sets the variable.
 #[test]
+#[allow(clippy::print_stdout, reason = "says what was compared, and what this machine cannot run")]
 fn another_program_renders_the_same_bytes() {
     let Ok(other) = std::env::var(OTHER) else {
         println!("skipped: {OTHER} names no program");
