@@ -21,7 +21,9 @@ use crate::ray::ExactPoint;
 use crate::{Aabb, Hits, Primitive, PrimitiveId, Rays, SurfacePoints};
 pub(super) use block::BLOCK;
 use block::{Flats, Kind, NO_ID, Spheres};
-pub(in crate::traverse) use eight::{EXPONENT, Eight, PlainEight, TURN};
+#[cfg(target_arch = "x86_64")]
+pub(in crate::traverse) use eight::{EXPONENT, TURN};
+pub(in crate::traverse) use eight::{Eight, PlainEight};
 use etalon_optics::Vec3;
 use etalon_simd::Level;
 use exact::Corners;
