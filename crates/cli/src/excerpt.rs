@@ -77,8 +77,12 @@ impl Excerpt {
     /// Where the excerpt shows the beginning of `span`, up to the end of its first line.
     fn mark(&self, span: Span) -> Option<Span> {
         let line = self.lines.iter().find(|line| (line.shown.start..=line.shown.end).contains(&span.start))?;
-        let start = line.at + (span.start - line.shown.start);
-        Some(Span::new(start, start + (span.end.clamp(span.start, line.shown.end) - span.start)))
+        let place = |at: usize| {
+            let at = line.at + (at - line.shown.start);
+            // From the midst of a character to its beginning.
+            (0..=at).rev().find(|at| self.text.is_char_boundary(*at)).unwrap_or(0)
+        };
+        Some(Span::new(place(span.start), place(span.end.clamp(span.start, line.shown.end))))
     }
 }
 

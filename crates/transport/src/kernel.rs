@@ -241,7 +241,8 @@ impl<'a> Tracer<'a> {
                 surfaces: &prepared.surfaces,
                 lights: &prepared.lights,
                 environments: &prepared.environments,
-                media: prepared.media.as_ref(),
+                // Forced on a scene without solids, they are nothing to walk through.
+                media: prepared.media.as_ref().filter(|media| media.solids.iter().any(Option::is_some)),
                 absorption: prepared.absorption().filter(|_| compiled::ABSORPTION),
                 light_sampling: integrator.light_sampling,
                 shadow_rays: prepared.shadow_rays(),
