@@ -43,7 +43,7 @@ fn the_plan_for_machines_is_the_one_that_the_picture_carries() {
     let Attribute::Text(carried) = &pixel_bits(&output).1.attributes["plan"] else { panic!("the plan is no text") };
     let carried: Value = serde_json::from_str(carried).unwrap();
     assert_eq!(explained["plan"], carried);
-    assert_eq!(carried["kernel"], "hero-8-f64");
+    assert_eq!(carried["kernel"], "hero-8");
     let effects = carried["effects"].as_array().unwrap();
     let dispersion = effects.iter().find(|effect| effect["name"] == "dispersion").unwrap();
     assert_eq!(dispersion["on"], true);
@@ -121,7 +121,7 @@ fn polarisation_is_followed_where_it_is_asked_for_and_what_it_would_change_is_sa
     };
     assert_eq!((&effect(&plain)["on"], &effect(&polarised)["on"]), (&Value::Bool(false), &Value::Bool(true)));
     assert!(effect(&plain)["because"].as_str().unwrap().contains("factor of 2"));
-    assert_eq!(polarised["plan"]["kernel"], "polarised-hero-8-f64");
+    assert_eq!(polarised["plan"]["kernel"], "polarised-hero-8");
     let path = etalon_line("render {} --pixel 300,300 --sample 0 --polarised --json", [&glass]).expect(0).json();
     assert_eq!(path["stokes"].as_array().unwrap().len(), 3);
     let path = etalon_line("render {} --pixel 300,300 --sample 0 --json", [&glass]).expect(0).json();

@@ -14,7 +14,7 @@ use crate::support::{command, pixel_bits, scene, words};
 const FILMS: [(&str, &str); 9] = [
     ("cornell.json", ""),
     ("cornell.json", "--path-reuse 4x2"),
-    ("cornell.json", "--precision f64 --sampler independent"),
+    ("cornell.json", "--sampler independent"),
     ("cornell-glass.json", ""),
     ("prism.json", "--bands 420:680:20"),
     ("vase.json", ""),

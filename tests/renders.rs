@@ -33,7 +33,7 @@ fn json_is_one_object_with_what_a_machine_wants_to_know() {
 fn a_picture_says_how_it_was_made() {
     let folder = tempfile::tempdir().unwrap();
     let (scene, output) = (scene("cornell.json"), folder.path().join("x.exr"));
-    let line = "render {} -o {} --spp 3 --seed 18446744073709551615 --size 9x5 --precision f64 --json";
+    let line = "render {} -o {} --spp 3 --seed 18446744073709551615 --size 9x5 --json";
     let report = etalon_line(line, [&scene, &output]).expect(0).json();
     let (bits, file) = pixel_bits(&output);
     let names: Vec<&str> = bits.iter().map(|(name, _)| name.as_str()).collect();
@@ -47,7 +47,7 @@ fn a_picture_says_how_it_was_made() {
     assert_eq!(info.render_time_s, f64::from(report["seconds"].as_f64().unwrap() as f32));
     let plan: Value = serde_json::from_str(&info.plan_json).unwrap();
     assert_eq!(plan, report["plan"]);
-    assert_eq!(plan["precision"], "f64");
+    assert_eq!(plan["kernel"], "shared-8");
     assert!(matches!(file.attributes["chromaticities"], Attribute::Chromaticities(_)));
 }
 
@@ -55,7 +55,7 @@ fn a_picture_says_how_it_was_made() {
 fn any_number_of_threads_gives_the_same_pixels_to_the_bit() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["cornell.json", "cornell-glass.json"] {
-        for more in ["", "--precision f64", "--sampler independent"] {
+        for more in ["", "--sampler independent"] {
             let render = |threads: u32, seed: u32| {
                 let output = folder.path().join("x.exr");
                 let line = format!("render {{}} -o {{}} --spp 4 --size 50x37 --threads {threads} --seed {seed} {more}");

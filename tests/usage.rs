@@ -41,7 +41,6 @@ fn values_out_of_range_exit_2_and_name_their_option() {
         ("--exposure", "inf"),
         ("--crop", "5,5,0,1"),
         ("--crop", "1,2,3"),
-        ("--precision", "f16"),
         ("--sampler", "halton"),
         ("--max-depth", "0"),
         ("--checkpoint", "20000000000000000000s"),

@@ -118,7 +118,7 @@ class Peer:
         out = os.path.join(self.folder.name, "out.exr")
         command = [self.program, "render", self.scene, "-o", out, "--spp", str(spp), "--seed", str(seed), "--json",
                    "--replicates", str(self.replicates), "--threads", str(self.threads), "--clock", "cpu"]
-        for option in ("sampler", "precision", "size", "path-reuse"):
+        for option in ("sampler", "size", "path-reuse"):
             if option in self.opts:
                 command += ["--" + option, self.opts[option]]
         t = time.perf_counter()

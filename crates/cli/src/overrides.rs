@@ -4,7 +4,7 @@ use std::ops::Deref;
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
-use etalon_scene::{Bands, LightSampling, MOST_REPLICATES, PathReuse, Precision, SamplerKind, Scene};
+use etalon_scene::{Bands, LightSampling, MOST_REPLICATES, PathReuse, SamplerKind, Scene};
 use etalon_transport::{Carried, EffectName, PathLoop, Study};
 use miette::miette;
 
@@ -32,9 +32,6 @@ pub(crate) struct Settings {
     /// Size of the picture in pixels.
     #[arg(long, value_name = "WxH")]
     size: Option<Size>,
-    /// Scalar type of what each wavelength carries.
-    #[arg(long, value_enum)]
-    precision: Option<PrecisionArg>,
     /// Number sequence.
     #[arg(long, value_enum)]
     sampler: Option<SamplerArg>,
@@ -86,14 +83,6 @@ impl From<PathLoopArg> for PathLoop {
             PathLoopArg::Lanes => Self::Lanes,
         }
     }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum PrecisionArg {
-    /// 32-bit floating point.
-    F32,
-    /// 64-bit floating point.
-    F64,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -182,12 +171,6 @@ impl Settings {
         }
         if let Some(seed) = self.seed {
             integrator.seed = seed;
-        }
-        if let Some(precision) = self.precision {
-            integrator.precision = match precision {
-                PrecisionArg::F32 => Precision::F32,
-                PrecisionArg::F64 => Precision::F64,
-            };
         }
         if let Some(sampler) = self.sampler {
             integrator.sampler = match sampler {

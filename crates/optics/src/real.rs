@@ -1,4 +1,4 @@
-//! The scalar type a kernel computes in.
+//! The scalar type that a formula computes in.
 
 use std::fmt::{Debug, Display};
 use std::iter::Sum;
@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 /// A floating-point scalar: `f32` or `f64`.
 ///
-/// Transport, geometry and optics are written once over `Real`; the kernel table instantiates them for both.
+/// Optics and geometry are written once over `Real`. Paths are computed in `f64`.
 pub trait Real:
     Copy
     + Debug

@@ -45,7 +45,6 @@ fn camera_film_and_integrator() {
             light_selection: LightSelection::Power,
             wavelength_range_nm: [380.0, 780.0],
             path_reuse: PathReuse::Block4x2,
-            precision: Precision::F32,
         }
     );
 }
@@ -66,7 +65,6 @@ fn defaults() {
             light_selection: LightSelection::Auto,
             wavelength_range_nm: [360.0, 830.0],
             path_reuse: PathReuse::None,
-            precision: Precision::F64,
         }
     );
     assert_eq!(scene.film.filter, Filter::Box);

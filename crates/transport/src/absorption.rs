@@ -10,7 +10,7 @@ use crate::media::{Inside, Media};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Surface, Surfaces};
 use etalon_geometry::{Geometry, Passed, Ray};
-use etalon_optics::{Lanes, Real, exp_neg};
+use etalon_optics::{Lanes, exp_neg};
 
 /// The absorption of the body that a path is in, where no priority says it: the coefficient in m⁻¹, if it absorbs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,14 +67,14 @@ pub(crate) struct Absorption {
 impl Absorption {
     /// The share of light that comes through a stretch of this `length`, in units of the frame, in each lane.
     #[inline]
-    pub(crate) fn transmittance<R: Real, const N: usize>(
+    pub(crate) fn transmittance<const N: usize>(
         &self,
         body: Body<'_>,
         media: Option<&Media>,
         inside: &Inside,
         lambda_nm: &Lanes<f64, N>,
         length: f64,
-    ) -> Lanes<R, N> {
+    ) -> Lanes<f64, N> {
         let Some(coefficient) = body.0.or_else(|| media.and_then(|media| media.absorption(inside))) else {
             return Lanes::ONE;
         };
@@ -82,7 +82,7 @@ impl Absorption {
         Lanes::from_fn(|lane| {
             let per_m = coefficient.eval(lambda_nm[lane]);
             // Nothing is lost on an endless way through what is clear.
-            R::from_f64(if per_m > 0.0 { exp_neg(per_m * length_m) } else { 1.0 })
+            if per_m > 0.0 { exp_neg(per_m * length_m) } else { 1.0 }
         })
     }
 }

@@ -3,7 +3,6 @@
 //! A camera records the radiance along its rays, averaged over the pixel's filter and the lens; there is no cos⁴ fall-off
 //! and no exposure. The ray that belongs to the centre of the lens is the pinhole's ray.
 
-use crate::compiled;
 use crate::frame::SceneFrame;
 use crate::warp::concentric_disk;
 use etalon_geometry::{Motion, Ray};
@@ -114,10 +113,10 @@ impl Camera {
     /// Its direction is a unit vector.
     pub fn ray(&self, film: [f64; 2], lens_u: [f64; 2]) -> Ray<f64> {
         match &self.kind {
-            Kind::ThinLens { right, up, focus_distance } if compiled::LENS => {
+            Kind::ThinLens { right, up, focus_distance } => {
                 self.through_lens(film, lens_u, (*right, *up, *focus_distance))
             }
-            Kind::Pinhole | Kind::ThinLens { .. } => self.through_pinhole(film),
+            Kind::Pinhole => self.through_pinhole(film),
             Kind::Orthographic => self.parallel(film),
         }
     }
@@ -132,13 +131,13 @@ impl Camera {
     ) {
         let at = |rows: [&[f64; W]; 2], i: usize| [rows[0][i], rows[1][i]];
         match &self.kind {
-            Kind::ThinLens { right, up, focus_distance } if compiled::LENS => {
+            Kind::ThinLens { right, up, focus_distance } => {
                 let lens = (*right, *up, *focus_distance);
                 for i in 0..W {
                     put(i, self.through_lens(at(film, i), at(lens_u, i), lens));
                 }
             }
-            Kind::Pinhole | Kind::ThinLens { .. } => {
+            Kind::Pinhole => {
                 for i in 0..W {
                     put(i, self.through_pinhole(at(film, i)));
                 }

@@ -184,7 +184,7 @@ impl Prepared {
             sums.count(first.object + 1);
             // The mean over directions of what is scattered is the share that is: drawn as the path draws it. Radiance grows with
             // the square of the index where light enters; the share does not.
-            if let Some(next) = first.scattering.sample::<f64, WAVELENGTHS>(&observer.lambda_nm, first.wo, first.u) {
+            if let Some(next) = first.scattering.sample::<WAVELENGTHS>(&observer.lambda_nm, first.wo, first.u) {
                 let scattered = next.weight * (next.eta * next.eta);
                 add(&mut sums.albedo, observer.rec709(&scattered));
             }

@@ -1,7 +1,6 @@
 //! Pixel filters, sampled by importance: a sample belongs to one pixel and its weight is one (Ernst et al. 2006), so
 //! every pixel is a plain mean with an honest error.
 
-use crate::compiled;
 use etalon_scene::Filter;
 
 /// Cells of the tabulated inverse distribution.
@@ -50,12 +49,12 @@ impl FilterSampler {
     /// The offset in pixels for `u` in [0, 1).
     pub fn offset(&self, u: f64) -> f64 {
         match self {
-            Self::Table(offsets) if compiled::WIDE_FILTER => {
+            Self::Table(offsets) => {
                 let x = u * CELLS as f64;
                 let i = x as usize;
                 offsets[i] + (x - i as f64) * (offsets[i + 1] - offsets[i])
             }
-            Self::Box | Self::Table(_) => u - 0.5,
+            Self::Box => u - 0.5,
         }
     }
 }

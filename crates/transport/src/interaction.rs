@@ -11,7 +11,6 @@
 //! A path that goes on through a member keeps its ray and meets the rest of the group, each member once. A ray that leaves a
 //! member after scattering leaves the whole group: it starts beyond all of them.
 
-use crate::compiled;
 use crate::film::Counters;
 use crate::media::{Inside, Interface, Media};
 use crate::path::World;
@@ -85,8 +84,8 @@ impl World<'_> {
         inside: &mut Inside,
         counters: &mut Counters,
     ) -> Option<SurfaceInteraction<'_>> {
-        let masks = compiled::MASKS && self.masks;
-        let media = self.media.filter(|_| compiled::NESTED_DIELECTRICS);
+        let masks = self.masks;
+        let media = self.media;
         if masks || media.is_some() {
             return self.meet_in_group(ray, walk, media, inside, &mut counters.lost_media);
         }

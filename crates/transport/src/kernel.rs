@@ -1,9 +1,7 @@
-//! The kernels: the path loop instantiated for a scalar type of its lanes and a model of wavelengths, and the table that
-//! names them. Positions, directions and densities are `f64` in all of them.
+//! The kernels: the path loop instantiated for a model of wavelengths and of polarisation, and the table that names them.
 
 use crate::camera::Camera;
 use crate::caustics::{Trial, try_casters};
-use crate::compiled;
 use crate::engine::render_spots_lanes;
 use crate::film::{Counters, NonFinite, PixelRect, Sums};
 use crate::interaction::{SurfaceInteraction, Walk};
@@ -12,9 +10,7 @@ use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
 use crate::observer::Observer;
 use crate::path::{MOST_VERTICES, World};
 use crate::plan::{Carried, EffectName, LaneModel};
-#[cfg(not(feature = "without-polarisation"))]
-use crate::polarisation::Followed;
-use crate::polarisation::{Averaged, Polarisation};
+use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::prepare::Prepared;
 use crate::replay::{Replay, replay};
 use crate::reuse;
@@ -22,8 +18,7 @@ use crate::sampler::Sampler;
 use crate::surface::Scattering;
 use crate::wavelength::Wavelengths;
 use etalon_geometry::Ray;
-use etalon_optics::{Lanes, Real, Vec3};
-use etalon_scene::Precision;
+use etalon_optics::{Lanes, Vec3};
 use std::ops::Range;
 
 /// Wavelengths that a path carries where they differ.
@@ -57,15 +52,14 @@ impl Spot {
     }
 }
 
-/// The path loop for one scalar type and one model of wavelengths.
+/// The path loop for one model of wavelengths.
 pub(crate) struct Kernel {
-    pub precision: Precision,
     pub lanes: LaneModel,
     /// Lanes of a path.
     pub lane_count: usize,
     /// Whether it carries Stokes vectors.
     pub polarised: bool,
-    /// Its name: the model, the number of lanes, the scalar.
+    /// Its name: the model and the number of lanes.
     pub name: &'static str,
     pub render: RenderTile,
     /// The same, bit for bit, by many paths at once, where there is that.
@@ -80,36 +74,18 @@ pub(crate) struct Kernel {
 
 /// The whole table. What is no type parameter is decided by the plan, at run time: a branch costs nothing, work does.
 static KERNELS: &[Kernel] = &[
-    entry::<f32, OneLane, Averaged, 1>(Precision::F32, LaneModel::One, "one-lane-f32"),
-    with_lanes::<OneLane, 1>(LaneModel::One, "one-lane-f64"),
-    entry::<f32, Shared, Averaged, LANES>(Precision::F32, LaneModel::Shared, "shared-8-f32"),
-    with_lanes::<Shared, LANES>(LaneModel::Shared, "shared-8-f64"),
-    entry::<f32, Hero<f32, LANES>, Averaged, LANES>(Precision::F32, LaneModel::Hero, "hero-8-f32"),
-    with_lanes::<Hero<f64, LANES>, LANES>(LaneModel::Hero, "hero-8-f64"),
-    #[cfg(not(feature = "without-polarisation"))]
-    Kernel {
-        polarised: true,
-        ..entry::<f64, Shared, Followed<LANES>, LANES>(Precision::F64, LaneModel::Shared, "polarised-shared-8-f64")
-    },
-    #[cfg(not(feature = "without-polarisation"))]
-    Kernel {
-        polarised: true,
-        ..entry::<f64, Hero<f64, LANES>, Followed<LANES>, LANES>(
-            Precision::F64,
-            LaneModel::Hero,
-            "polarised-hero-8-f64",
-        )
-    },
+    with_lanes::<OneLane, 1>(LaneModel::One, "one-lane"),
+    with_lanes::<Shared, LANES>(LaneModel::Shared, "shared-8"),
+    with_lanes::<Hero<LANES>, LANES>(LaneModel::Hero, "hero-8"),
+    Kernel { polarised: true, ..entry::<Shared, Followed<LANES>, LANES>(LaneModel::Shared, "polarised-shared-8") },
+    Kernel { polarised: true, ..entry::<Hero<LANES>, Followed<LANES>, LANES>(LaneModel::Hero, "polarised-hero-8") },
 ];
 
 /// What no plan chooses, for comparison.
 static STUDY_KERNELS: [(Carried, Kernel); 3] = [
-    (Carried::OneWavelength, entry::<f64, Hero<f64, 1>, Averaged, 1>(Precision::F64, LaneModel::Hero, "hero-1-f64")),
-    (Carried::FourWavelengths, entry::<f64, Hero<f64, 4>, Averaged, 4>(Precision::F64, LaneModel::Hero, "hero-4-f64")),
-    (
-        Carried::ThreeChannels,
-        entry::<f64, ThreeChannels, Averaged, 3>(Precision::F64, LaneModel::ThreeChannels, "three-channels-f64"),
-    ),
+    (Carried::OneWavelength, entry::<Hero<1>, Averaged, 1>(LaneModel::Hero, "hero-1")),
+    (Carried::FourWavelengths, entry::<Hero<4>, Averaged, 4>(LaneModel::Hero, "hero-4")),
+    (Carried::ThreeChannels, entry::<ThreeChannels, Averaged, 3>(LaneModel::ThreeChannels, "three-channels")),
 ];
 
 /// The kernel whose paths carry what a study wants.
@@ -118,15 +94,13 @@ pub(crate) fn study_kernel(carried: Carried) -> &'static Kernel {
     kernel
 }
 
-const fn entry<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
-    precision: Precision,
+const fn entry<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     lanes: LaneModel,
     name: &'static str,
 ) -> Kernel {
-    let (render, replay) = (render_tile::<R, M, P, N>, replay::<R, M, P, N>);
-    let try_casters = try_casters::<R, M, P, N>;
+    let (render, replay) = (render_tile::<M, P, N>, replay::<M, P, N>);
+    let try_casters = try_casters::<M, P, N>;
     Kernel {
-        precision,
         lanes,
         lane_count: N,
         polarised: false,
@@ -140,33 +114,28 @@ const fn entry<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
 }
 
 /// One that can also follow many paths at once.
-const fn with_lanes<M: WavelengthModel<f64, N>, const N: usize>(lanes: LaneModel, name: &'static str) -> Kernel {
+const fn with_lanes<M: WavelengthModel<N>, const N: usize>(lanes: LaneModel, name: &'static str) -> Kernel {
     Kernel {
         render_lanes: Some(render_spots_lanes::<M, N>),
         render_reused: Some(reuse::render_spots::<M, N>),
-        ..entry::<f64, M, Averaged, N>(Precision::F64, lanes, name)
+        ..entry::<M, Averaged, N>(lanes, name)
     }
 }
 
-/// The kernel of a scalar type and a model of wavelengths; those for polarised light are in double precision.
-pub(crate) fn kernel(precision: Precision, lanes: LaneModel, polarised: bool) -> &'static Kernel {
-    KERNELS
-        .iter()
-        .find(|kernel| {
-            let fits = kernel.lanes == lanes && kernel.polarised == polarised;
-            fits && (polarised || kernel.precision == precision)
-        })
-        .expect("the table has every pair")
+/// The kernel of a model of wavelengths.
+pub(crate) fn kernel(lanes: LaneModel, polarised: bool) -> &'static Kernel {
+    let mut kernels = KERNELS.iter();
+    kernels.find(|kernel| kernel.lanes == lanes && kernel.polarised == polarised).expect("the table has every pair")
 }
 
 /// The samples `samples` of every pixel of `tile`, added to `sums` in the order of their numbers.
-fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
+fn render_tile<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
     tile: PixelRect,
     samples: Range<u32>,
     sums: Sums<'_>,
 ) -> Counters {
-    let bands = prepared.scene.film.bands.as_ref().filter(|_| compiled::BANDS && !sums.bands.is_empty());
+    let bands = prepared.scene.film.bands.as_ref().filter(|_| !sums.bands.is_empty());
     let per_replicate = sums.bands.len() / sums.xyz.len();
     let per_parameter = per_replicate / prepared.band_parameters() as usize;
     let tracer = Tracer::new(prepared);
@@ -174,8 +143,7 @@ fn render_tile<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N
     let replicates = prepared.scene.integrator.replicates as usize;
     for (at, (x, y)) in tile.pixels().enumerate() {
         for sample in samples.clone() {
-            let (wavelengths, radiance, polarisation) =
-                tracer.sample::<R, M, P, N>(x, y, sample, &mut counters, &mut ());
+            let (wavelengths, radiance, polarisation) = tracer.sample::<M, P, N>(x, y, sample, &mut counters, &mut ());
             let xyz = M::to_xyz(prepared, &wavelengths, radiance);
             let received = polarisation.received();
             let stokes = received.map(|s| s.map(|s| M::to_xyz(prepared, &wavelengths, s)));
@@ -243,7 +211,7 @@ impl<'a> Tracer<'a> {
                 environments: &prepared.environments,
                 // Forced on a scene without solids, they are nothing to walk through.
                 media: prepared.media.as_ref().filter(|media| media.solids.iter().any(Option::is_some)),
-                absorption: prepared.absorption().filter(|_| compiled::ABSORPTION),
+                absorption: prepared.absorption(),
                 light_sampling: integrator.light_sampling,
                 shadow_rays: prepared.shadow_rays(),
                 masks: plan.runs(EffectName::Masks),
@@ -284,8 +252,8 @@ impl<'a> Tracer<'a> {
     fn camera_ray(&self, x: u32, y: u32, sampler: &Sampler, counters: &mut Counters) -> (Ray<f64>, Inside) {
         let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
         let film = self.film_point(x, y, [film_x, film_y]);
-        counters.lens_draws += u64::from(compiled::LENS && self.camera.has_lens());
-        let time = if compiled::MOTION && self.moves {
+        counters.lens_draws += u64::from(self.camera.has_lens());
+        let time = if self.moves {
             counters.time_draws += 1;
             let [_, time, ..] = sampler.set(1);
             time
@@ -294,7 +262,7 @@ impl<'a> Tracer<'a> {
         };
         let ray = self.camera.ray_at(film, [lens_1, lens_2], time);
         let inside = match self.world.media {
-            Some(media) if compiled::NESTED_DIELECTRICS => {
+            Some(media) => {
                 media.around(&self.prepared.geometry, &self.prepared.surfaces, &ray, &mut counters.lost_media)
             }
             _ => Inside::NOTHING,
@@ -341,14 +309,14 @@ impl<'a> Tracer<'a> {
     }
 
     /// One camera path: a pure function of the scene, its seed, the pixel and the number of the sample.
-    pub(crate) fn sample<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
+    pub(crate) fn sample<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         &self,
         x: u32,
         y: u32,
         sample: u32,
         counters: &mut Counters,
-        observer: &mut impl Observer<R, N>,
-    ) -> (Wavelengths<N>, Lanes<R, N>, P) {
+        observer: &mut impl Observer<N>,
+    ) -> (Wavelengths<N>, Lanes<f64, N>, P) {
         let sampler = self.sampler(x, y, sample);
 
         let wavelengths = M::wavelengths(self.prepared, || {
@@ -357,7 +325,7 @@ impl<'a> Tracer<'a> {
         });
         let (ray, inside) = self.camera_ray(x, y, &sampler, counters);
         let mut polarisation = P::at_camera(ray.direction, self.camera.right(ray.time));
-        let radiance = self.world.radiance::<R, M, P, N>(
+        let radiance = self.world.radiance::<M, P, N>(
             ray,
             inside,
             &mut polarisation,
@@ -382,13 +350,11 @@ mod tests {
         assert!(KERNELS.len() <= MOST);
         let names: HashSet<_> = KERNELS.iter().map(|kernel| kernel.name).collect();
         assert_eq!(names.len(), KERNELS.len());
-        for precision in [Precision::F32, Precision::F64] {
-            for lanes in [LaneModel::One, LaneModel::Shared, LaneModel::Hero] {
-                kernel(precision, lanes, false);
-            }
-            for lanes in [LaneModel::Shared, LaneModel::Hero] {
-                kernel(precision, lanes, true);
-            }
+        for lanes in [LaneModel::One, LaneModel::Shared, LaneModel::Hero] {
+            kernel(lanes, false);
+        }
+        for lanes in [LaneModel::Shared, LaneModel::Hero] {
+            kernel(lanes, true);
         }
     }
 }

@@ -37,7 +37,6 @@ pub mod canvas;
 mod caustics;
 mod cells;
 mod coincidence;
-mod compiled;
 mod coordinates;
 mod engine;
 pub mod features;

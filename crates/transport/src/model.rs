@@ -1,4 +1,4 @@
-//! What the lanes of a path stand for: the type parameter that tells the kernels apart, beside the scalar.
+//! What the lanes of a path stand for: the type parameter that tells the kernels apart, beside polarisation.
 //!
 //! | model | lanes | when |
 //! |---|---|---|
@@ -14,12 +14,12 @@ use crate::film::BandSum;
 use crate::plan::CHANNELS_NM;
 use crate::prepare::Prepared;
 use crate::wavelength::Wavelengths;
+use etalon_optics::Lanes;
 use etalon_optics::colour::rec709_to_xyz;
-use etalon_optics::{Lanes, Real};
 use etalon_scene::Bands;
 
 /// How the lanes of one path relate to each other and to the film.
-pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
+pub(crate) trait WavelengthModel<const N: usize>: Copy {
     /// Whether weights of lanes are carried at all; counted once a vertex.
     const CARRIES_WEIGHTS: bool;
 
@@ -28,10 +28,10 @@ pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
 
     /// The path takes a step whose density in each lane, relative to the hero's, is `lane_density`. Returns the mean of
     /// those over the lanes, each weighed by its density of the path before the step.
-    fn follow(&mut self, lane_density: Lanes<R, N>) -> f64;
+    fn follow(&mut self, lane_density: Lanes<f64, N>) -> f64;
 
     /// The mean of the lanes' own densities of a step, each weighed by its density of the path so far.
-    fn mean_density(&self, density: Lanes<R, N>) -> f64;
+    fn mean_density(&self, density: Lanes<f64, N>) -> f64;
 
     /// Whether all lanes have had the hero's densities so far.
     #[inline(always)]
@@ -40,25 +40,25 @@ pub(crate) trait WavelengthModel<R: Real, const N: usize>: Copy {
     }
 
     /// The balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5): N / Σ densities.
-    fn weight(&self) -> R;
+    fn weight(&self) -> f64;
 
     /// The wavelengths of a path; `u` gives the hero's number, if one is to be drawn.
     fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N>;
 
     /// What each lane of the path's radiance adds to the film, in each of CIE XYZ.
-    fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [Lanes<f64, N>; 3];
+    fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) -> [Lanes<f64, N>; 3];
 
     /// What the path's radiance adds to the film, CIE XYZ.
     #[inline(always)]
-    fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
+    fn to_xyz(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) -> [f64; 3] {
         Self::seen(prepared, wavelengths, radiance).map(Lanes::sum)
     }
 
     /// Adds the path's radiance to the sums of the bands that its wavelengths fall into.
-    fn to_bands(bands: &Bands, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>, sums: &mut [BandSum]) {
+    fn to_bands(bands: &Bands, wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>, sums: &mut [BandSum]) {
         for lane in 0..N {
             if let Some(band) = bands.at(wavelengths.lambda_nm[lane]) {
-                sums[band as usize].add(radiance[lane].to_f64());
+                sums[band as usize].add(radiance[lane]);
             }
         }
     }
@@ -78,9 +78,9 @@ pub(crate) struct ThreeChannels;
 
 /// Lanes that dispersion may part from the hero's path: their densities relative to it.
 #[derive(Clone, Copy)]
-pub(crate) struct Hero<R, const N: usize>(Lanes<R, N>);
+pub(crate) struct Hero<const N: usize>(Lanes<f64, N>);
 
-impl<R: Real> WavelengthModel<R, 1> for OneLane {
+impl WavelengthModel<1> for OneLane {
     const CARRIES_WEIGHTS: bool = false;
 
     #[inline(always)]
@@ -89,18 +89,18 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
     }
 
     #[inline(always)]
-    fn follow(&mut self, _: Lanes<R, 1>) -> f64 {
+    fn follow(&mut self, _: Lanes<f64, 1>) -> f64 {
         1.0
     }
 
     #[inline(always)]
-    fn mean_density(&self, density: Lanes<R, 1>) -> f64 {
-        density[0].to_f64()
+    fn mean_density(&self, density: Lanes<f64, 1>) -> f64 {
+        density[0]
     }
 
     #[inline(always)]
-    fn weight(&self) -> R {
-        R::ONE
+    fn weight(&self) -> f64 {
+        1.0
     }
 
     #[inline(always)]
@@ -109,17 +109,17 @@ impl<R: Real> WavelengthModel<R, 1> for OneLane {
     }
 
     #[inline(always)]
-    fn seen(prepared: &Prepared, _: &Wavelengths<1>, radiance: Lanes<R, 1>) -> [Lanes<f64, 1>; 3] {
-        prepared.one_lane.xyz_of_unit.map(|v| Lanes([v * radiance[0].to_f64()]))
+    fn seen(prepared: &Prepared, _: &Wavelengths<1>, radiance: Lanes<f64, 1>) -> [Lanes<f64, 1>; 3] {
+        prepared.one_lane.xyz_of_unit.map(|v| Lanes([v * radiance[0]]))
     }
 
     /// One sum stands for all bands: each is it times a known number.
-    fn to_bands(_: &Bands, _: &Wavelengths<1>, radiance: Lanes<R, 1>, sums: &mut [BandSum]) {
-        sums[0].add(radiance[0].to_f64());
+    fn to_bands(_: &Bands, _: &Wavelengths<1>, radiance: Lanes<f64, 1>, sums: &mut [BandSum]) {
+        sums[0].add(radiance[0]);
     }
 }
 
-impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
+impl<const N: usize> WavelengthModel<N> for Shared {
     const CARRIES_WEIGHTS: bool = false;
 
     #[inline(always)]
@@ -128,18 +128,18 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
     }
 
     #[inline(always)]
-    fn follow(&mut self, _: Lanes<R, N>) -> f64 {
+    fn follow(&mut self, _: Lanes<f64, N>) -> f64 {
         1.0
     }
 
     #[inline(always)]
-    fn mean_density(&self, density: Lanes<R, N>) -> f64 {
-        density[0].to_f64()
+    fn mean_density(&self, density: Lanes<f64, N>) -> f64 {
+        density[0]
     }
 
     #[inline(always)]
-    fn weight(&self) -> R {
-        R::ONE
+    fn weight(&self) -> f64 {
+        1.0
     }
 
     #[inline(always)]
@@ -148,12 +148,12 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Shared {
     }
 
     #[inline(always)]
-    fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [Lanes<f64, N>; 3] {
+    fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) -> [Lanes<f64, N>; 3] {
         prepared.wavelengths.seen(wavelengths, radiance)
     }
 }
 
-impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
+impl<const N: usize> WavelengthModel<N> for Hero<N> {
     const CARRIES_WEIGHTS: bool = true;
 
     #[inline(always)]
@@ -167,22 +167,22 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
     }
 
     #[inline(always)]
-    fn follow(&mut self, lane_density: Lanes<R, N>) -> f64 {
+    fn follow(&mut self, lane_density: Lanes<f64, N>) -> f64 {
         let before = self.0.sum();
         self.0 *= lane_density;
-        (self.0.sum() / before).to_f64()
+        self.0.sum() / before
     }
 
     #[inline(always)]
-    fn mean_density(&self, density: Lanes<R, N>) -> f64 {
+    fn mean_density(&self, density: Lanes<f64, N>) -> f64 {
         // In differences from the hero's, so that equal densities give exactly that.
         let difference = density - Lanes::splat(density[0]);
-        (density[0] + (self.0 * difference).sum() / self.0.sum()).to_f64()
+        density[0] + (self.0 * difference).sum() / self.0.sum()
     }
 
     #[inline(always)]
-    fn weight(&self) -> R {
-        R::from_f64(N as f64) / self.0.sum()
+    fn weight(&self) -> f64 {
+        N as f64 / self.0.sum()
     }
 
     #[inline(always)]
@@ -191,12 +191,12 @@ impl<R: Real, const N: usize> WavelengthModel<R, N> for Hero<R, N> {
     }
 
     #[inline(always)]
-    fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [Lanes<f64, N>; 3] {
+    fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) -> [Lanes<f64, N>; 3] {
         prepared.wavelengths.seen(wavelengths, radiance)
     }
 }
 
-impl<R: Real> WavelengthModel<R, 3> for ThreeChannels {
+impl WavelengthModel<3> for ThreeChannels {
     const CARRIES_WEIGHTS: bool = false;
 
     #[inline(always)]
@@ -205,26 +205,26 @@ impl<R: Real> WavelengthModel<R, 3> for ThreeChannels {
     }
 
     #[inline(always)]
-    fn follow(&mut self, _: Lanes<R, 3>) -> f64 {
+    fn follow(&mut self, _: Lanes<f64, 3>) -> f64 {
         1.0
     }
 
     #[inline(always)]
-    fn mean_density(&self, density: Lanes<R, 3>) -> f64 {
-        density[0].to_f64()
+    fn mean_density(&self, density: Lanes<f64, 3>) -> f64 {
+        density[0]
     }
 
     #[inline(always)]
-    fn weight(&self) -> R {
-        R::ONE
+    fn weight(&self) -> f64 {
+        1.0
     }
 
     fn wavelengths(_: &Prepared, _: impl FnOnce() -> f64) -> Wavelengths<3> {
         Wavelengths::fixed(CHANNELS_NM)
     }
 
-    fn seen(_: &Prepared, _: &Wavelengths<3>, radiance: Lanes<R, 3>) -> [Lanes<f64, 3>; 3] {
+    fn seen(_: &Prepared, _: &Wavelengths<3>, radiance: Lanes<f64, 3>) -> [Lanes<f64, 3>; 3] {
         let [red, green, blue] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(rec709_to_xyz);
-        [0, 1, 2].map(|c: usize| Lanes::from_fn(|lane| [blue, green, red][lane][c] * radiance[lane].to_f64()))
+        [0, 1, 2].map(|c: usize| Lanes::from_fn(|lane| [blue, green, red][lane][c] * radiance[lane]))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::caustics::Mixture;
 use crate::reuse::Gathered;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 
 /// What ended a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,16 +22,16 @@ pub(crate) enum End {
 }
 
 /// A watcher of a path. Every method does nothing unless it is implemented.
-pub(crate) trait Observer<R: Real, const N: usize> {
+pub(crate) trait Observer<const N: usize> {
     /// The path meets a surface: vertex number `vertex` (0 is the first), where, which object, and its throughput so far.
-    fn vertex(&mut self, _vertex: u32, _position: Vec3<f64>, _object: u32, _beta: Lanes<R, N>) {}
+    fn vertex(&mut self, _vertex: u32, _position: Vec3<f64>, _object: u32, _beta: Lanes<f64, N>) {}
     /// Light is added: at which vertex, how, and how much in each lane.
-    fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<R, N>) {}
+    fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<f64, N>) {}
     /// A direction is drawn from a mixture.
     fn direction(&mut self, _mixture: &Mixture) {}
     /// What the path brings into its block, where neighbouring pixels share paths.
     #[inline(always)]
-    fn gathers(&mut self) -> Option<&mut Gathered<R, N>> {
+    fn gathers(&mut self) -> Option<&mut Gathered<N>> {
         None
     }
     /// The path ends.
@@ -52,4 +52,4 @@ pub(crate) enum Found {
     },
 }
 
-impl<R: Real, const N: usize> Observer<R, N> for () {}
+impl<const N: usize> Observer<N> for () {}

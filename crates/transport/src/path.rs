@@ -19,7 +19,6 @@ mod direct;
 use crate::absorption::{Absorption, Body};
 use crate::bsdf::Lobe;
 use crate::caustics::Casters;
-use crate::compiled;
 use crate::engine::Tables;
 use crate::film::Counters;
 use crate::interaction::{SurfaceInteraction, Walk};
@@ -33,7 +32,7 @@ use crate::sampler::Sampler;
 use crate::surface::Surfaces;
 use direct::{Around, Direct};
 use etalon_geometry::{Geometry, Ray, SurfaceId};
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 use etalon_scene::LightSampling;
 
 /// Below this throughput a path is ended even without roulette: no film value could change (hard case 30).
@@ -95,7 +94,7 @@ pub(crate) enum Step {
 impl World<'_> {
     /// Radiance that arrives along `ray` at each wavelength.
     #[allow(clippy::too_many_arguments, reason = "what a path starts with, draws from, and tells")]
-    pub(crate) fn radiance<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
+    pub(crate) fn radiance<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         &self,
         mut ray: Ray<f64>,
         mut inside: Inside,
@@ -103,10 +102,10 @@ impl World<'_> {
         lambda_nm: &Lanes<f64, N>,
         sampler: &Sampler,
         counters: &mut Counters,
-        observer: &mut impl Observer<R, N>,
-    ) -> Lanes<R, N> {
+        observer: &mut impl Observer<N>,
+    ) -> Lanes<f64, N> {
         let mut radiance = Lanes::ZERO;
-        let mut beta = Lanes::<R, N>::ONE;
+        let mut beta = Lanes::<f64, N>::ONE;
         let mut lanes = M::start();
         // ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
         let mut eta_squared = 1.0;
@@ -136,16 +135,16 @@ impl World<'_> {
                 if let Some(gathered) = observer.gathers().filter(|gathered| gathered.has_left()) {
                     gathered.escape(ray.direction, self.plain_skies);
                 }
-                let environments = if compiled::ENVIRONMENT { self.environments } else { &[] };
+                let environments = self.environments;
                 for sky in environments {
                     counters.environment_lookups += 1;
-                    let mis = if compiled::MIS && self.weigh_hits {
+                    let mis = if self.weigh_hits {
                         self.weight_of_hit(step, SurfaceId::NONE, sky.light, ray.direction, ray.time)
                     } else {
                         1.0
                     };
                     let radiance_of_sky = sky.radiance.lanes(lambda_nm, ray.direction);
-                    let light = polarisation.receive(beta * radiance_of_sky * (lane_weight * R::from_f64(mis)));
+                    let light = polarisation.receive(beta * radiance_of_sky * (lane_weight * mis));
                     observer.light(vertex, Found::Environment, light);
                     radiance += light;
                 }
@@ -163,19 +162,19 @@ impl World<'_> {
             observer.vertex(vertex, point.position, surface.object, beta);
 
             if let Some(emitter) = surface.emission_along(self.geometry, point, hit, wo) {
-                let mis = if compiled::MIS && self.weigh_hits {
+                let mis = if self.weigh_hits {
                     self.weight_of_hit(step, point.surface, surface.light, ray.direction, ray.time)
                 } else {
                     1.0
                 };
-                let light = polarisation.receive(beta * emitter.lanes(lambda_nm) * (lane_weight * R::from_f64(mis)));
+                let light = polarisation.receive(beta * emitter.lanes(lambda_nm) * (lane_weight * mis));
                 observer.light(vertex, Found::Emitter, light);
                 radiance += light;
             }
             if let Some(gathered) = observer.gathers().filter(|gathered| gathered.has_left()) {
                 gathered.arrive(point, wo, self.tables.is_diffuse(surface.object), &mut radiance);
             }
-            let opacity = if compiled::MASKS && self.masks { surface.opacity(self.geometry, point, hit) } else { 1.0 };
+            let opacity = if self.masks { surface.opacity(self.geometry, point, hit) } else { 1.0 };
             if opacity < 1.0 && passes < MOST_VERTICES {
                 let u = u_mask.unwrap_or_else(|| sampler.vertex_set(vertex, 1)[3]);
                 if u >= opacity {
@@ -193,7 +192,7 @@ impl World<'_> {
             }
             if vertex + 1 >= self.max_depth || vertex + 1 == MOST_VERTICES {
                 if vertex + 1 == MOST_VERTICES {
-                    counters.record_cut((beta.max_lane() * lane_weight).to_f64());
+                    counters.record_cut(beta.max_lane() * lane_weight);
                 }
                 observer.end(End::Depth);
                 break;
@@ -201,7 +200,6 @@ impl World<'_> {
 
             let scattering = surface.scattering(self.geometry, point, hit, *interface);
             let shared = match self.shadow_rays {
-                _ if !compiled::SHADOW_RAYS => false,
                 ShadowRays::Never => false,
                 ShadowRays::WhereUseful => surface.bsdf.has_solid_angle_part(),
                 ShadowRays::Everywhere => true,
@@ -226,7 +224,7 @@ impl World<'_> {
             };
             beta *= next.weight;
             let (unaimed, aim) = (beta, mixture.factor(1.0));
-            beta *= R::from_f64(aim);
+            beta *= aim;
             observer.direction(&mixture);
             if let Density::SolidAngle(_) = next.density {
                 aim_factor = mixture.aim_factor();
@@ -274,7 +272,7 @@ impl World<'_> {
                     (&mut radiance, &mut beta, &mut eta_squared),
                 );
             }
-            let throughput = (beta.max_lane() * lanes.weight()).to_f64() * eta_squared;
+            let throughput = (beta.max_lane() * lanes.weight()) * eta_squared;
             if throughput < THROUGHPUT_FLOOR {
                 observer.end(End::Vanished);
                 break;
@@ -286,7 +284,7 @@ impl World<'_> {
                     observer.end(End::Roulette);
                     break;
                 }
-                beta /= R::from_f64(survival);
+                beta /= survival;
             }
             vertex += 1;
         }

@@ -5,7 +5,6 @@ use crate::bsdf::Bsdf;
 use crate::camera::{Camera, Moving};
 use crate::caustics::Casters;
 use crate::coincidence;
-use crate::compiled;
 use crate::engine::Tables;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
@@ -224,7 +223,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         }),
     };
     let casters = match study.carried {
-        None if compiled::SPECULAR_CHAINS => Casters::new(&surfaces, &geometry, &lights, range_nm),
+        None => Casters::new(&surfaces, &geometry, &lights, range_nm),
         _ => Casters::default(),
     };
     let wavelengths = match &scene.film.bands {
@@ -326,9 +325,7 @@ impl Prepared {
     /// The kernel that the plan chose.
     pub(crate) fn kernel(&self) -> &'static Kernel {
         match self.carried {
-            None => {
-                kernel(self.scene.integrator.precision, self.plan.lane_model, self.plan.runs(EffectName::Polarisation))
-            }
+            None => kernel(self.plan.lane_model, self.plan.runs(EffectName::Polarisation)),
             Some(carried) => study_kernel(carried),
         }
     }

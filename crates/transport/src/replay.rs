@@ -6,7 +6,7 @@ use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 use serde::Serialize;
 
 /// All that happened on one path.
@@ -65,7 +65,7 @@ impl Prepared {
 }
 
 /// [`Prepared::replay`] by one kernel.
-pub(crate) fn replay<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
+pub(crate) fn replay<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
     x: u32,
     y: u32,
@@ -74,7 +74,7 @@ pub(crate) fn replay<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, c
     let mut recorder = Recorder { prepared, events: Vec::new() };
     let tracer = Tracer::new(prepared);
     let (wavelengths, radiance, polarisation) =
-        tracer.sample::<R, M, P, N>(x, y, sample, &mut Counters::default(), &mut recorder);
+        tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut recorder);
     Replay {
         wavelengths_nm: wavelengths.lambda_nm.0.to_vec(),
         events: recorder.events,
@@ -89,12 +89,12 @@ struct Recorder<'a> {
     events: Vec<Event>,
 }
 
-fn widen<R: Real, const N: usize>(lanes: Lanes<R, N>) -> Vec<f64> {
-    lanes.0.iter().map(|v| v.to_f64()).collect()
+fn widen<const N: usize>(lanes: Lanes<f64, N>) -> Vec<f64> {
+    lanes.0.to_vec()
 }
 
-impl<R: Real, const N: usize> Observer<R, N> for Recorder<'_> {
-    fn vertex(&mut self, vertex: u32, position: Vec3<f64>, object: u32, beta: Lanes<R, N>) {
+impl<const N: usize> Observer<N> for Recorder<'_> {
+    fn vertex(&mut self, vertex: u32, position: Vec3<f64>, object: u32, beta: Lanes<f64, N>) {
         self.events.push(Event::Vertex {
             vertex,
             object: self.prepared.object(object).map_or_else(String::new, |object| object.name.clone()),
@@ -103,7 +103,7 @@ impl<R: Real, const N: usize> Observer<R, N> for Recorder<'_> {
         });
     }
 
-    fn light(&mut self, vertex: u32, how: Found, radiance: Lanes<R, N>) {
+    fn light(&mut self, vertex: u32, how: Found, radiance: Lanes<f64, N>) {
         let found = match how {
             Found::Emitter => "emitter".to_owned(),
             Found::Environment => "environment".to_owned(),

@@ -31,7 +31,7 @@ use crate::polarisation::Averaged;
 use crate::prepare::Prepared;
 use crate::wavelength::Wavelengths;
 use etalon_geometry::{Ray, SurfaceId, SurfacePoint};
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 use std::collections::BTreeMap;
 #[cfg(test)]
 use tests::{Fault, is_wrong};
@@ -56,13 +56,13 @@ enum Stage {
 
 /// Where a path leaves its first diffuse surface.
 #[derive(Clone, Copy, Debug)]
-struct Start<R, const N: usize> {
+struct Start<const N: usize> {
     vertex: u32,
     point: SurfacePoint<f64>,
     /// The normal on the side that the path came from.
     normal: Vec3<f64>,
     /// Throughput from the camera up to here, the reflectance here included.
-    beta: Lanes<R, N>,
+    beta: Lanes<f64, N>,
 }
 
 /// What it finds from there.
@@ -76,20 +76,20 @@ enum Target {
 
 /// What one path brings into its block.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Gathered<R, const N: usize> {
+pub(crate) struct Gathered<const N: usize> {
     stage: Stage,
-    start: Start<R, N>,
+    start: Start<N>,
     target: Target,
     /// Radiance that is its pixel's alone.
-    own: Lanes<R, N>,
+    own: Lanes<f64, N>,
     /// Radiance that leaves y toward x.
-    shared: Lanes<R, N>,
+    shared: Lanes<f64, N>,
 }
 
 /// The state of a path that sharing touches: what it has gathered, its throughput, and what of that roulette counts besides.
-pub(crate) type State<'a, R, const N: usize> = (&'a mut Lanes<R, N>, &'a mut Lanes<R, N>, &'a mut f64);
+pub(crate) type State<'a, const N: usize> = (&'a mut Lanes<f64, N>, &'a mut Lanes<f64, N>, &'a mut f64);
 
-impl<R: Real, const N: usize> Gathered<R, N> {
+impl<const N: usize> Gathered<N> {
     /// Of a path that begins.
     pub(crate) const NOTHING: Self = Self {
         stage: Stage::Begins,
@@ -133,8 +133,8 @@ impl<R: Real, const N: usize> Gathered<R, N> {
         point: &SurfacePoint<f64>,
         wo: Vec3<f64>,
         diffuse: bool,
-        (unaimed, aim): (&Lanes<R, N>, f64),
-        (radiance, beta, eta_squared): State<'_, R, N>,
+        (unaimed, aim): (&Lanes<f64, N>, f64),
+        (radiance, beta, eta_squared): State<'_, N>,
     ) {
         if !diffuse {
             self.stage = Stage::Alone;
@@ -145,7 +145,7 @@ impl<R: Real, const N: usize> Gathered<R, N> {
         self.stage = Stage::Left;
         self.own = *radiance;
         *radiance = Lanes::ZERO;
-        *eta_squared *= unaimed.max_lane().to_f64();
+        *eta_squared *= unaimed.max_lane();
         #[cfg(test)]
         let aim = if is_wrong(Fault::AimStays) {
             self.start.beta = *beta;
@@ -153,7 +153,7 @@ impl<R: Real, const N: usize> Gathered<R, N> {
         } else {
             aim
         };
-        *beta = Lanes::splat(R::from_f64(aim));
+        *beta = Lanes::splat(aim);
     }
 
     /// The path, having left x, has met a surface and taken what that emits.
@@ -163,7 +163,7 @@ impl<R: Real, const N: usize> Gathered<R, N> {
         point: &SurfacePoint<f64>,
         wo: Vec3<f64>,
         diffuse: bool,
-        radiance: &mut Lanes<R, N>,
+        radiance: &mut Lanes<f64, N>,
     ) {
         if !diffuse {
             self.stage = Stage::Receives;
@@ -183,14 +183,14 @@ impl<R: Real, const N: usize> Gathered<R, N> {
     }
 
     #[inline(always)]
-    fn take(&mut self, radiance: &mut Lanes<R, N>) {
+    fn take(&mut self, radiance: &mut Lanes<f64, N>) {
         self.own += self.start.beta * *radiance;
         *radiance = Lanes::ZERO;
     }
 
     /// The path has ended with this radiance.
     #[inline(always)]
-    pub(crate) fn end(&mut self, mut radiance: Lanes<R, N>) {
+    pub(crate) fn end(&mut self, mut radiance: Lanes<f64, N>) {
         match self.stage {
             Stage::Begins | Stage::Alone => self.own = radiance,
             Stage::Left | Stage::Receives => self.take(&mut radiance),
@@ -207,7 +207,7 @@ impl<R: Real, const N: usize> Gathered<R, N> {
 /// q of one first surface and one target, but for the visibility, and the shadow ray that tells that; 0 where the surfaces are
 /// turned away from each other.
 #[inline(always)]
-fn facing<const N: usize>(x: &Start<f64, N>, target: &Target) -> f64 {
+fn facing<const N: usize>(x: &Start<N>, target: &Target) -> f64 {
     match target {
         Target::Surface { position, normal, .. } => {
             let d = *position - x.point.position;
@@ -226,7 +226,7 @@ fn facing<const N: usize>(x: &Start<f64, N>, target: &Target) -> f64 {
 
 /// The ray that tells whether a first surface sees a target.
 #[inline(always)]
-fn shadow_ray<const N: usize>(x: &Start<f64, N>, target: &Target) -> Ray<f64> {
+fn shadow_ray<const N: usize>(x: &Start<N>, target: &Target) -> Ray<f64> {
     match *target {
         Target::Surface { position, surface, .. } => x.point.spawn_to(position, surface),
         Target::Sky(direction) => x.point.spawn(direction),
@@ -237,7 +237,7 @@ fn shadow_ray<const N: usize>(x: &Start<f64, N>, target: &Target) -> Ray<f64> {
 /// of them are cut off, one bit each. Returns the number of shadow rays.
 #[inline(always)]
 pub(crate) fn deal<const N: usize>(
-    paths: &[Gathered<f64, N>],
+    paths: &[Gathered<N>],
     radiance: &mut [Lanes<f64, N>; MOST_MATES],
     mut occluded: impl FnMut(&[Ray<f64>]) -> u64,
 ) -> u64 {
@@ -330,16 +330,16 @@ impl Blocks {
 }
 
 /// Watches a path of the plain loop.
-struct Watch<const N: usize>(Gathered<f64, N>);
+struct Watch<const N: usize>(Gathered<N>);
 
-impl<const N: usize> Observer<f64, N> for Watch<N> {
-    fn gathers(&mut self) -> Option<&mut Gathered<f64, N>> {
+impl<const N: usize> Observer<N> for Watch<N> {
+    fn gathers(&mut self) -> Option<&mut Gathered<N>> {
         Some(&mut self.0)
     }
 }
 
 /// The samples of spots by the plain loop, as the engine's `render_spots_lanes` has it.
-pub(crate) fn render_spots<M: WavelengthModel<f64, N>, const N: usize>(
+pub(crate) fn render_spots<M: WavelengthModel<N>, const N: usize>(
     prepared: &Prepared,
     spots: &[Spot],
     sums: Sums<'_>,
@@ -361,7 +361,7 @@ pub(crate) fn render_spots<M: WavelengthModel<f64, N>, const N: usize>(
                 let before = counters.rays + counters.shadow_rays;
                 let mut watch = Watch(Gathered::NOTHING);
                 let (wavelengths, radiance, _) =
-                    tracer.sample::<f64, M, Averaged, N>(pixel.x, pixel.y, sample, &mut counters, &mut watch);
+                    tracer.sample::<M, Averaged, N>(pixel.x, pixel.y, sample, &mut counters, &mut watch);
                 watch.0.end(radiance);
                 gathered[mate] = watch.0;
                 rays_of[mate] = counters.rays + counters.shadow_rays - before;
@@ -405,7 +405,7 @@ impl<'a> Adding<'a> {
 
     /// A sample of the spot number `.0`, or of a mate, at the pixel (`.1`, `.2`). What a mate's path took counts for one of the spots.
     #[inline(always)]
-    pub(crate) fn add<M: WavelengthModel<f64, N>, const N: usize>(
+    pub(crate) fn add<M: WavelengthModel<N>, const N: usize>(
         &mut self,
         (spot, x, y, sample): (Option<usize>, u32, u32, u32),
         rays: u64,

@@ -2,7 +2,7 @@
 
 use crate::cells::CellTable;
 use etalon_optics::spectrum::Outside;
-use etalon_optics::{Lanes, Real, Spectrum};
+use etalon_optics::{Lanes, Spectrum};
 
 /// A spectrum prepared for paths.
 #[derive(Clone, Debug)]
@@ -111,13 +111,11 @@ impl PathSpectrum {
 
     /// Values in every lane.
     #[inline]
-    pub fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<R, N> {
+    pub fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
         match self {
-            Self::Constant(value) => Lanes::splat(R::from_f64(*value)),
-            Self::Grid { first_nm, steps } => {
-                Lanes::from_fn(|lane| R::from_f64(interpolate(*first_nm, steps, lambda_nm[lane])))
-            }
-            Self::Band { .. } | Self::Symbolic(_) => Lanes::from_fn(|lane| R::from_f64(self.eval(lambda_nm[lane]))),
+            Self::Constant(value) => Lanes::splat(*value),
+            Self::Grid { first_nm, steps } => Lanes::from_fn(|lane| interpolate(*first_nm, steps, lambda_nm[lane])),
+            Self::Band { .. } | Self::Symbolic(_) => Lanes::from_fn(|lane| self.eval(lambda_nm[lane])),
         }
     }
 }

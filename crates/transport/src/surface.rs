@@ -2,7 +2,6 @@
 
 use crate::absorption::Interior;
 use crate::bsdf::{Bsdf, BsdfSample, Lobe, Shading};
-use crate::compiled;
 use crate::coordinates::{At, Coordinates};
 use crate::media::Interface;
 use crate::polarisation::mueller::Mueller;
@@ -10,7 +9,7 @@ use crate::relief;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
 use etalon_optics::spectrum::RgbBasis;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 use etalon_scene::{EmissionSides, ImageTexture, OpacityImage};
 
 /// What belongs to one object.
@@ -67,20 +66,16 @@ pub(crate) struct Emitted<'a> {
 impl Emitted<'_> {
     /// The radiance in each lane, where that of [`Emitted::radiance`] is `white`.
     #[inline]
-    pub(crate) fn of_white<R: Real, const N: usize>(
-        &self,
-        white: Lanes<R, N>,
-        lambda_nm: &Lanes<f64, N>,
-    ) -> Lanes<R, N> {
+    pub(crate) fn of_white<const N: usize>(&self, white: Lanes<f64, N>, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
         match self.colour {
             None => white,
-            Some((basis, rgb)) => white * Lanes::from_fn(|lane| R::from_f64(basis.reflectance(rgb, lambda_nm[lane]))),
+            Some((basis, rgb)) => white * Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane])),
         }
     }
 
     /// The radiance in each lane.
     #[inline]
-    pub(crate) fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<R, N> {
+    pub(crate) fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
         self.of_white(self.radiance.lanes(lambda_nm), lambda_nm)
     }
 }
@@ -89,7 +84,7 @@ impl Emission {
     /// What it emits at texture coordinates, which it asks for where it needs them.
     #[inline]
     fn at(&self, uv: impl FnOnce() -> [f64; 2]) -> Emitted<'_> {
-        let image = self.image.as_ref().filter(|_| compiled::TEXTURES);
+        let image = self.image.as_ref();
         let colour = image.map(|image| (&image.basis, image.texture.eval(uv())));
         Emitted { radiance: &self.radiance, colour }
     }
@@ -199,8 +194,7 @@ impl<'a> Surface<'a> {
     ) -> Scattering<'a> {
         let place = at(geometry, point, hit);
         let mut shading = self.coordinates.at(&place);
-        if compiled::SHADING_NORMALS
-            && let Some(relief) = self.relief
+        if let Some(relief) = self.relief
             && let Some(tangents) = self.coordinates.tangents(&place)
         {
             shading = relief::bend(&relief.image, shading, tangents, relief.per_m);
@@ -245,18 +239,18 @@ pub(crate) struct Scattering<'a> {
 impl Scattering<'_> {
     /// See [`Bsdf::eval`].
     #[inline]
-    pub(crate) fn eval<R: Real, const N: usize>(
+    pub(crate) fn eval<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> (Lanes<R, N>, Lanes<R, N>) {
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         self.bsdf.eval(lambda_nm, &self.at, wo, wi)
     }
 
     /// The reflectance, if it is Lambert's around the surface's own normal.
     #[inline]
-    pub(crate) fn diffuse<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Option<Lanes<R, N>> {
+    pub(crate) fn diffuse<const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Option<Lanes<f64, N>> {
         match self.bsdf {
             Bsdf::Lambert(lambert) if !self.at.is_bent() => Some(lambert.reflectance(lambda_nm, self.at.uv)),
             _ => None,
@@ -286,12 +280,12 @@ impl Scattering<'_> {
 
     /// See [`Bsdf::sample`].
     #[inline]
-    pub(crate) fn sample<R: Real, const N: usize>(
+    pub(crate) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         self.bsdf.sample(lambda_nm, &self.at, wo, u)
     }
 }

@@ -1,9 +1,8 @@
 //! Spectra that vary over a surface, as paths meet them.
 
-use crate::compiled;
 use crate::spectral::PathSpectrum;
 use etalon_optics::spectrum::RgbBasis;
-use etalon_optics::{Illuminant, Lanes, Real, Spectrum};
+use etalon_optics::{Illuminant, Lanes, Spectrum};
 use etalon_scene::{ImageTexture, SpectrumTexture};
 use std::borrow::Cow;
 
@@ -44,13 +43,12 @@ impl PathTexture {
 
     /// Values in every lane at texture coordinates.
     #[inline]
-    pub fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> Lanes<R, N> {
+    pub fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> Lanes<f64, N> {
         match self {
             Self::Uniform(spectrum) => spectrum.lanes(lambda_nm),
-            Self::Image { .. } if !compiled::TEXTURES => Lanes::ZERO,
             Self::Image { texture, basis, .. } => {
                 let rgb = texture.eval(uv);
-                Lanes::from_fn(|lane| R::from_f64(basis.reflectance(rgb, lambda_nm[lane])))
+                Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane]))
             }
         }
     }

@@ -5,8 +5,8 @@
 //! density of the distribution and the lanes together are stratified.
 
 use crate::cells::{CellTable, Place};
+use etalon_optics::Lanes;
 use etalon_optics::colour::{cie_y_integral_nm, colour_matching};
-use etalon_optics::{Lanes, Real};
 use etalon_scene::Bands;
 
 /// The wavelengths of one path.
@@ -220,18 +220,18 @@ impl WavelengthDistribution {
     /// The CIE XYZ estimate that the spectral radiance estimate `radiance` stands for, normalised so that a constant
     /// spectrum 1 over the whole visible range has Y = 1: Σ_lanes L·(x̄, ȳ, z̄)/pdf / N / ∫ȳ.
     #[inline(always)]
-    pub fn to_xyz<R: Real, const N: usize>(&self, wavelengths: &Wavelengths<N>, radiance: Lanes<R, N>) -> [f64; 3] {
+    pub fn to_xyz<const N: usize>(&self, wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) -> [f64; 3] {
         self.seen(wavelengths, radiance).map(Lanes::sum)
     }
 
     /// What each lane adds to [`WavelengthDistribution::to_xyz`].
     #[inline(always)]
-    pub(crate) fn seen<R: Real, const N: usize>(
+    pub(crate) fn seen<const N: usize>(
         &self,
         wavelengths: &Wavelengths<N>,
-        radiance: Lanes<R, N>,
+        radiance: Lanes<f64, N>,
     ) -> [Lanes<f64, N>; 3] {
-        let radiance: Lanes<f64, N> = Lanes::from_fn(|lane| radiance[lane].to_f64() * (1.0 / N as f64));
+        let radiance: Lanes<f64, N> = Lanes::from_fn(|lane| radiance[lane] * (1.0 / N as f64));
         let mut seen = [Lanes::ZERO; 3];
         for c in 0..3 {
             seen[c] = radiance * self.responses[c].along(&wavelengths.place);
@@ -262,7 +262,7 @@ mod tests {
             let length: f64 = (0..n).map(|i| 1.0 / d.sample((f64::from(i) + 0.5) / f64::from(n)).1).sum();
             let length = length / f64::from(n);
             assert!((length / (range[1] - range[0]) - 1.0).abs() < 1e-3, "{range:?}: {length}");
-            for u in [0.0, f64::MIN_POSITIVE, 0.5, 1.0 - f64::EPSILON / 2.0, f64::from(f32::ONE_MINUS_EPSILON)] {
+            for u in [0.0, f64::MIN_POSITIVE, 0.5, 1.0 - f64::EPSILON / 2.0] {
                 let (nm, pdf) = d.sample(u);
                 assert!((range[0]..=range[1]).contains(&nm) && pdf > 0.0 && pdf.is_finite(), "{u}: {nm} {pdf}");
             }

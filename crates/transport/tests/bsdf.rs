@@ -1,4 +1,4 @@
-//! Materials, held to the oracle's laws. Directions are the same in kernels of either scalar type.
+//! Materials, held to the oracle's laws.
 
 use etalon_optics::{ComplexIndex, Frame, Lanes, Real, RefractiveIndex, Spectrum, Vec3};
 use etalon_oracle::laws;
@@ -25,7 +25,7 @@ fn glass(interior: RefractiveIndex) -> Bsdf {
     Bsdf::new(&MaterialKind::Dielectric { interior, exterior, priority: None }, RANGE_NM)
 }
 
-fn sample(bsdf: &Bsdf, n: Vec3<f64>, wo: Vec3<f64>, u: [f64; 3]) -> Option<BsdfSample<f64, 4>> {
+fn sample(bsdf: &Bsdf, n: Vec3<f64>, wo: Vec3<f64>, u: [f64; 3]) -> Option<BsdfSample<4>> {
     bsdf.sample(&LAMBDA_NM, &Shading::flat(n), wo, u)
 }
 
@@ -130,7 +130,7 @@ proptest! {
                 if probability == 0.0 {
                     continue;
                 }
-                let s = bsdf.sample::<f64, 4>(&lambda, &Shading::flat(up), wo, [u, 0.5, 0.5]).unwrap();
+                let s = bsdf.sample::<4>(&lambda, &Shading::flat(up), wo, [u, 0.5, 0.5]).unwrap();
                 let mutant_density = Lanes::<f64, 4>::ONE;
                 for lane in 0..4 {
                     // Radiance without its n².
@@ -157,16 +157,16 @@ proptest! {
         let frame = Frame::from_normal(if below { -n } else { n });
         let wo = frame.to_world(direction_at(0.01 + 0.99 * v0, v1));
         let s = sample(&bsdf, n, wo, [0.3, u0, u1]).unwrap();
-        let (f_cos, density) = bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), wo, s.wi);
+        let (f_cos, density) = bsdf.eval::<4>(&LAMBDA_NM, &Shading::flat(n), wo, s.wi);
         let density = density[0];
         prop_assert_eq!(s.density, Density::SolidAngle(density));
         // weight = f·cos/p, up to the rounding of one quotient.
         prop_assert!((s.weight[0] * density - f_cos[0]).abs() <= 4.0 * f64::EPSILON * f_cos[0]);
-        let (back, _) = bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), s.wi, wo);
+        let (back, _) = bsdf.eval::<4>(&LAMBDA_NM, &Shading::flat(n), s.wi, wo);
         let (forth, reverse) = (f_cos[0] / n.dot(s.wi).abs(), back[0] / n.dot(wo).abs());
         prop_assert!((forth - reverse).abs() <= 8.0 * f64::EPSILON * forth);
         // Nothing passes through.
-        prop_assert!(bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), wo, -s.wi).0.is_zero());
+        prop_assert!(bsdf.eval::<4>(&LAMBDA_NM, &Shading::flat(n), wo, -s.wi).0.is_zero());
     }
 }
 
@@ -180,7 +180,7 @@ fn lambert_integrates_to_its_albedo_and_its_density_to_one() {
     let (mut albedo, mut total) = (0.0, 0.0);
     for i in 0..m * m {
         let wi = uniform_sphere([at(i % m), at(i / m)]);
-        let (f_cos, density) = bsdf.eval::<f64, 4>(&LAMBDA_NM, &Shading::flat(n), wo, wi);
+        let (f_cos, density) = bsdf.eval::<4>(&LAMBDA_NM, &Shading::flat(n), wo, wi);
         albedo += f_cos[0] * 4.0 * PI / (m * m) as f64;
         total += density[0] * 4.0 * PI / (m * m) as f64;
     }

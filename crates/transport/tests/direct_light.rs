@@ -29,7 +29,7 @@ fn a_lamp_within_rough_glass_is_dimmed_by_the_way_to_it_and_one_before_it_is_not
                 "material": {"type": "dielectric", "interior": 1.5, "alpha": 0.4, "absorption_per_m": absorption_per_m}
             }],
             "lights": [{"type": "point", "position_m": [0.5, 0, lamp_z_m], "intensity": 1}],
-            "integrator": {"spp": 64, "max_depth": 2, "roulette": false, "precision": "f64"}
+            "integrator": {"spp": 64, "max_depth": 2, "roulette": false}
         }))
     };
     for (lamp_z_m, length_m, footprint) in [(0.0, 1.25_f64.sqrt(), 3e-4), (4.0, 0.0, 0.0)] {
@@ -68,8 +68,8 @@ fn what_is_beyond_a_lamp_casts_no_shadow_when_the_ray_has_crossed_a_boundary_on_
         "integrator": {"spp": 4, "max_depth": 2, "roulette": false}
     }));
     let truth = 0.5 / PI / 4.0 * (-0.5_f64 * 2.25).exp();
-    // Single precision, and a footprint of a millimetre: its edge is 1e-7 farther from the lamp.
-    assert!((shown / truth - 1.0).abs() < 3e-6, "{shown} is not {truth}");
+    // A footprint of a millimetre: its edge is 1e-7 farther from the lamp.
+    assert!((shown / truth - 1.0).abs() < 1e-6, "{shown} is not {truth}");
 }
 
 /// Where two solids share a face, that of the higher priority says whether it is smooth or rough. Seen from within the upper one, a small lamp
@@ -221,8 +221,8 @@ fn what_scatters_of_a_blend_is_lit_by_shadow_rays() {
         "integrator": {"spp": 4, "max_depth": 2, "roulette": false}
     }));
     let truth = 0.25 * 0.5 / PI / 25.0;
-    // As above: single precision, and the footprint's edge.
-    assert!((shown / truth - 1.0).abs() < 3e-6, "{shown} is not {truth}");
+    // As above: the footprint's edge.
+    assert!((shown / truth - 1.0).abs() < 1e-6, "{shown} is not {truth}");
 }
 
 /// A metal under water, seen along its normal from within the water, returns the |(N − n)/(N + n)|² of its index N beside the water's n, alone
@@ -249,9 +249,9 @@ fn metals_reflect_as_their_index_beside_that_of_what_they_stand_in_says() {
         }))
     };
     let reflectance = ((n - water).powi(2) + k * k) / ((n + water).powi(2) + k * k);
-    // In air it would be .81, not .75. Paths are in single precision.
+    // In air it would be 0.81, not 0.75.
     let whole = shown(json!("metal"));
-    assert!((whole / reflectance - 1.0).abs() < 1e-5, "{whole} is not {reflectance}");
+    assert!((whole / reflectance - 1.0).abs() < 1e-6, "{whole} is not {reflectance}");
     let half = shown(json!({"type": "blend", "first": "metal", "second": "black", "weight": 0.5}));
     // Which half a path takes is chosen 16384 times: the mean scatters by .8 % at most, and may be off by five times that.
     assert!((half / (0.5 * reflectance) - 1.0).abs() < 0.04, "{half} is not half of {reflectance}");

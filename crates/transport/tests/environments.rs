@@ -57,7 +57,7 @@ impl Emits for Sky {
     }
 
     fn radiance(&self, _: [f64; 3], wi: [f64; 3]) -> f64 {
-        self.light.lanes::<f64, 1>(&Lanes([550.0]), Vec3::from_array(wi))[0]
+        self.light.lanes::<1>(&Lanes([550.0]), Vec3::from_array(wi))[0]
     }
 
     fn irradiance(&self, _: [f64; 3], normal: [f64; 3]) -> Option<f64> {
@@ -416,7 +416,7 @@ fn white_is_daylight_and_primaries_add_up_to_it() {
             white: daylight.clone(),
             ..uneven()
         };
-        EnvironmentLight::new(&image, RANGE_NM).lanes::<f64, 4>(&lambda, Vec3::new(0.0, 0.6, 0.8))
+        EnvironmentLight::new(&image, RANGE_NM).lanes::<4>(&lambda, Vec3::new(0.0, 0.6, 0.8))
     };
     let parts = of([1.0, 0.0, 0.0]) + of([0.0, 1.0, 0.0]) + of([0.0, 0.0, 1.0]);
     for lane in 0..4 {

@@ -4,7 +4,6 @@ use etalon_geometry::{Parallelogram, PrimitiveId};
 use etalon_optics::Vec3;
 use etalon_oracle::laws;
 use etalon_oracle::quadrature;
-use etalon_scene::Precision;
 use etalon_transport::light::{Emitter, Light, ParallelogramLight};
 use etalon_transport::mis::{Density, power_heuristic};
 use etalon_transport::spectral::PathSpectrum;
@@ -45,7 +44,7 @@ fn a_square_light_fills_its_solid_angle_from_ten_thousand_sides_across_to_a_hund
     }
 }
 
-/// Hard case 32, in both scalars, from 1e-25 to 1e25 and beyond.
+/// Hard case 32, from 1e-25 to 1e25 and beyond.
 #[test]
 fn the_weights_of_two_ways_of_sampling_add_up() {
     laws::mis_weights_add_up(power_heuristic, f64::EPSILON, 1).assert();
@@ -95,9 +94,8 @@ fn room(zero: f64) -> Value {
     })
 }
 
-fn film(json: &Value, precision: Precision) -> Film {
-    let (mut scene, _) = etalon_scene::parse(&json.to_string(), "test").unwrap_or_else(|e| panic!("{e:?}"));
-    scene.integrator.precision = precision;
+fn film(json: &Value) -> Film {
+    let (scene, _) = etalon_scene::parse(&json.to_string(), "test").unwrap_or_else(|e| panic!("{e:?}"));
     let prepared = prepare(&scene).unwrap();
     prepared.render(&prepared.whole(Some(1)), &|_| Control::Continue).unwrap()
 }
@@ -105,11 +103,9 @@ fn film(json: &Value, precision: Precision) -> Film {
 /// Hard case 15 for whole pictures: zeros of either sign in positions and directions.
 #[test]
 fn the_sign_of_a_zero_changes_no_bit_of_the_film() {
-    for precision in [Precision::F32, Precision::F64] {
-        let (plus, minus) = (film(&room(0.0), precision), film(&room(-0.0), precision));
-        let differing = plus.xyz().zip(minus.xyz()).filter(|(a, b)| a != b).count();
-        assert_eq!(differing, 0, "pixels that differ, {precision:?}");
-    }
+    let (plus, minus) = (film(&room(0.0)), film(&room(-0.0)));
+    let differing = plus.xyz().zip(minus.xyz()).filter(|(a, b)| a != b).count();
+    assert_eq!(differing, 0, "pixels that differ");
 }
 
 /// A ball of dispersive glass in a uniform sky cannot be seen: the hero that is left alone by dispersion counts for all
@@ -131,7 +127,7 @@ fn dispersive_glass_cannot_be_seen_in_uniform_light() {
     let mut means = etalon_oracle::statistics::Welford::new();
     for seed in 0..8 {
         scene["integrator"]["seed"] = seed.into();
-        let film = film(&scene, Precision::F64);
+        let film = film(&scene);
         means.push(film.xyz().map(|xyz| xyz[1]).sum::<f64>() / 1024.0);
     }
     assert!(means.standard_error() < 4e-3, "{}", means.standard_error());

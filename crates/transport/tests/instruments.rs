@@ -52,7 +52,7 @@ fn through_prism(wavelength_nm: f64, aperture_rad: f64, error_rad: f64) -> f64 {
             }
         ],
         "integrator": {
-            "precision": "f64", "wavelength_range_nm": [wavelength_nm, wavelength_nm + 1e-4], "sampler": "independent"
+            "wavelength_range_nm": [wavelength_nm, wavelength_nm + 1e-4], "sampler": "independent"
         }
     }));
     let paths = 10_000;

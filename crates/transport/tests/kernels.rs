@@ -2,7 +2,7 @@
 //! call for changes nothing and costs no count.
 
 use etalon_oracle::statistics::Welford;
-use etalon_scene::{Precision, Scene};
+use etalon_scene::Scene;
 use etalon_transport::plan::LaneModel;
 use etalon_transport::{Carried, Control, EffectName, Film, Prepared, Study, prepare_study};
 
@@ -49,18 +49,15 @@ fn forcing_what_a_scene_does_not_call_for_leaves_every_bit_as_it_is() {
 #[test]
 fn shared_lanes_and_hero_lanes_agree_bit_for_bit_where_nothing_disperses() {
     let mut tried = 0;
-    for (name, mut scene) in scenes() {
+    for (name, scene) in scenes() {
         if prepared(&scene, &[]).plan().runs(EffectName::Dispersion) {
             continue;
         }
-        for precision in [Precision::F32, Precision::F64] {
-            scene.integrator.precision = precision;
-            let shared = prepared(&scene, &[EffectName::Wavelengths]);
-            let hero = prepared(&scene, &[EffectName::Dispersion]);
-            assert_eq!((shared.plan().lane_model, hero.plan().lane_model), (LaneModel::Shared, LaneModel::Hero));
-            assert!(render(&shared).pixels().eq(render(&hero).pixels()), "{name} {precision:?}");
-            tried += 1;
-        }
+        let shared = prepared(&scene, &[EffectName::Wavelengths]);
+        let hero = prepared(&scene, &[EffectName::Dispersion]);
+        assert_eq!((shared.plan().lane_model, hero.plan().lane_model), (LaneModel::Shared, LaneModel::Hero));
+        assert!(render(&shared).pixels().eq(render(&hero).pixels()), "{name}");
+        tried += 1;
     }
     assert!(tried >= 10);
 }
@@ -86,20 +83,6 @@ fn assert_same_mean(name: &str, a: &dyn Fn(u64) -> Prepared, b: &dyn Fn(u64) -> 
         let rounding = 1e-6 * scale;
         assert!(error <= sees * scale, "{name}: the test sees too little, {} of Y", error / scale);
         assert!(mean.abs() <= 6.0 * error + rounding, "{name}: component {c} is off by {mean} ± {error}");
-    }
-}
-
-#[test]
-fn single_and_double_precision_agree_in_the_mean() {
-    for (name, scene) in scenes() {
-        let with = |precision, seed| {
-            let mut scene = scene.clone();
-            (scene.integrator.precision, scene.integrator.seed) = (precision, seed);
-            prepared(&scene, &[])
-        };
-        // Where a path parts from its twin by rounding, through a prism's edge, a lamp is gained or lost.
-        let sees = 0.02;
-        assert_same_mean(&name, &|seed| with(Precision::F32, seed), &|seed| with(Precision::F64, seed), sees);
     }
 }
 

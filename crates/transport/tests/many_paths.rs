@@ -58,12 +58,12 @@ fn many_paths_at_once_leave_the_film_of_the_plain_loop_on_every_ready_made_scene
 
 #[test]
 fn what_the_engine_does_not_cover_is_traced_one_path_at_a_time_unless_it_was_asked_for() {
-    let mut scene = ready_made().remove(0).1;
-    scene.integrator.precision = etalon_scene::Precision::F32;
-    let plan = prepare_study(&scene, &Study::default()).unwrap();
+    let scene = ready_made().remove(0).1;
+    let polarised = |path_loop| Study { polarised: true, path_loop, ..Study::default() };
+    let plan = prepare_study(&scene, &polarised(None)).unwrap();
     assert_eq!(plan.plan().path_loop.name, PathLoop::Plain);
-    let lanes = prepare_study(&scene, &Study { path_loop: Some(PathLoop::Lanes), ..Study::default() });
-    assert!(lanes.is_err_and(|error| error.to_string().contains("single precision")));
+    let lanes = prepare_study(&scene, &polarised(Some(PathLoop::Lanes)));
+    assert!(lanes.is_err_and(|error| error.to_string().contains("light is followed with its polarisation")));
     let _: fn(&'static str) -> StudyError = StudyError::OnePathAtATime;
 }
 

@@ -27,7 +27,7 @@ fn albedo(bsdf: &Bsdf, mu: f64) -> f64 {
     let mut sum = 0.0;
     for i in 0..n * n {
         let wi = direction(at(i % n).sqrt(), at(i / n));
-        let (f_cos, _) = bsdf.eval::<f64, 1>(&Lanes([550.0]), &up, direction(mu, 0.0), wi);
+        let (f_cos, _) = bsdf.eval::<1>(&Lanes([550.0]), &up, direction(mu, 0.0), wi);
         // dω cos = π d(cos²) d(turns).
         sum += f_cos[0] / wi.z * PI;
     }
@@ -110,7 +110,7 @@ fn rough_diffuse_reflection_is_brightest_toward_its_light() {
             let s = f64::sqrt((1.0 - mu_o * mu_o) * (1.0 - mu_i * mu_i)) * (2.0 * PI * turns).cos();
             let t = if s > 0.0 { f64::max(mu_o, mu_i) } else { 1.0 };
             let (wo, wi) = (direction(mu_o, 0.2), direction(mu_i, 0.2 + turns));
-            let (f_cos, _) = bsdf.eval::<f64, 1>(&Lanes([550.0]), &up, wo, wi);
+            let (f_cos, _) = bsdf.eval::<1>(&Lanes([550.0]), &up, wo, wi);
             let (read, truth) = (f_cos[0] * PI / (rho * mu_i), scale * (1.0 + roughness * s / t));
             // The second bounce, ρ of the first.
             assert!((read - truth).abs() < 1e-8, "{mu_o}, {mu_i}, {turns} turns: {read} is not {truth}");
@@ -258,7 +258,7 @@ fn a_material_by_images_is_the_material_that_they_say() {
     let directions = [(direction(0.9, 0.0), direction(0.8, 0.4)), (direction(0.3, 0.0), direction(0.5, 0.7))];
     let at = Shading::flat(Vec3::new(0.0, 0.0, 1.0));
     let eval = |kind: &MaterialKind, (wo, wi): (Vec3<f64>, Vec3<f64>)| {
-        Bsdf::new(kind, RANGE_NM).eval::<f64, 1>(&Lanes([550.0]), &at, wo, wi)
+        Bsdf::new(kind, RANGE_NM).eval::<1>(&Lanes([550.0]), &at, wo, wi)
     };
     for pair in directions {
         let own = places.map(|r| eval(&rough(r * r), pair));

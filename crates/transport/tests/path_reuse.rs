@@ -59,8 +59,8 @@ fn a_pixel_is_the_same_in_any_part_of_the_picture() {
 
 #[test]
 fn where_paths_cannot_be_shared_the_scene_is_refused_with_the_reason() {
-    let mut scene = room::room(REPLICATES);
-    scene.integrator.precision = etalon_scene::Precision::F32;
-    let refused = prepare_study(&scene, &Study::default()).map(|_| ()).unwrap_err().to_string();
-    assert_eq!(refused, "neighbouring pixels cannot share paths: wavelengths are carried in single precision");
+    let scene = room::room(REPLICATES);
+    let polarised = Study { polarised: true, ..Study::default() };
+    let refused = prepare_study(&scene, &polarised).map(|_| ()).unwrap_err().to_string();
+    assert_eq!(refused, "neighbouring pixels cannot share paths: light is followed with its polarisation");
 }

@@ -1,7 +1,7 @@
 //! Whole renders against each other: what must not change a byte, and what must not change the mean.
 
 use etalon_oracle::statistics::Welford;
-use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
+use etalon_scene::{LightSampling, SamplerKind, Scene};
 use etalon_transport::film::PixelRect;
 use etalon_transport::{
     Canvas, Control, Extent, Film, PathLoop, Prepared, Shard, Study, TileSums, prepare, prepare_study,
@@ -83,42 +83,37 @@ fn render(prepared: &Prepared, extent: &Extent) -> Film {
 
 #[test]
 fn threads_stages_and_replays_give_the_same_bytes() {
-    for precision in [Precision::F32, Precision::F64] {
-        for sampler in [SamplerKind::Sobol, SamplerKind::Independent] {
-            let mut scene = room();
-            scene.integrator.precision = precision;
-            scene.integrator.sampler = sampler;
-            let prepared = prepare(&scene).unwrap();
-            let whole = prepared.whole(Some(1));
-            let film = render(&prepared, &whole);
-            assert_eq!(film.counters.nonfinite, 0);
-            assert_eq!(film.counters.cut_paths, 0);
-            assert_eq!(film.counters.paths, 40 * 30 * 8);
-            for threads in [2, 3, 7] {
-                assert_eq!(render(&prepared, &Extent { threads: Some(threads), ..whole.clone() }), film);
+    for sampler in [SamplerKind::Sobol, SamplerKind::Independent] {
+        let mut scene = room();
+        scene.integrator.sampler = sampler;
+        let prepared = prepare(&scene).unwrap();
+        let whole = prepared.whole(Some(1));
+        let film = render(&prepared, &whole);
+        assert_eq!(film.counters.nonfinite, 0);
+        assert_eq!(film.counters.cut_paths, 0);
+        assert_eq!(film.counters.paths, 40 * 30 * 8);
+        for threads in [2, 3, 7] {
+            assert_eq!(render(&prepared, &Extent { threads: Some(threads), ..whole.clone() }), film);
+        }
+        // Two stages of samples.
+        let mut staged = render(&prepared, &Extent { samples: 0..3, ..whole.clone() });
+        prepared.render_onto(&mut staged, &Extent { samples: 3..8, ..whole.clone() }, &|_| Control::Continue).unwrap();
+        assert_eq!(staged, film);
+        // A crop that cuts through tiles.
+        let rect = PixelRect { x0: 5, y0: 9, x1: 23, y1: 28 };
+        let crop = render(&prepared, &Extent { rect, ..whole.clone() });
+        for (x, y) in rect.pixels() {
+            assert_eq!(crop.pixel(x, y), film.pixel(x, y));
+        }
+        // Each path alone.
+        for (x, y) in [(0, 0), (20, 15), (39, 29), (25, 20)] {
+            let mut sums = [[0.0; 3]; 4];
+            for sample in 0..8 {
+                let replay = prepared.replay(x, y, sample);
+                (0..3).for_each(|c| sums[sample as usize % 4][c] += replay.xyz[c]);
+                assert!(!replay.events.is_empty());
             }
-            // Two stages of samples.
-            let mut staged = render(&prepared, &Extent { samples: 0..3, ..whole.clone() });
-            prepared
-                .render_onto(&mut staged, &Extent { samples: 3..8, ..whole.clone() }, &|_| Control::Continue)
-                .unwrap();
-            assert_eq!(staged, film);
-            // A crop that cuts through tiles.
-            let rect = PixelRect { x0: 5, y0: 9, x1: 23, y1: 28 };
-            let crop = render(&prepared, &Extent { rect, ..whole.clone() });
-            for (x, y) in rect.pixels() {
-                assert_eq!(crop.pixel(x, y), film.pixel(x, y));
-            }
-            // Each path alone.
-            for (x, y) in [(0, 0), (20, 15), (39, 29), (25, 20)] {
-                let mut sums = [[0.0; 3]; 4];
-                for sample in 0..8 {
-                    let replay = prepared.replay(x, y, sample);
-                    (0..3).for_each(|c| sums[sample as usize % 4][c] += replay.xyz[c]);
-                    assert!(!replay.events.is_empty());
-                }
-                assert!(film.pixel(x, y).sums().iter().zip(sums).all(|(sum, expected)| sum.xyz == expected));
-            }
+            assert!(film.pixel(x, y).sums().iter().zip(sums).all(|(sum, expected)| sum.xyz == expected));
         }
     }
 }
@@ -198,7 +193,7 @@ fn mean_y(scene: &Scene, seeds: std::ops::Range<u64>) -> Welford {
     estimate
 }
 
-/// Ways of finding light, samplers, scalar types and roulette must agree in the mean. |z| < 5 for each of six variants
+/// Ways of finding light, samplers, filters and roulette must agree in the mean. |z| < 5 for each of five variants
 /// over 32 seeds each; the standard errors, asserted below 0.4 %, would show a bias of 3 % for sure and 2 % as a rule.
 #[test]
 fn every_strategy_has_the_same_mean() {
@@ -213,7 +208,6 @@ fn every_strategy_has_the_same_mean() {
         ("light", with(&|s| s.integrator.light_sampling = LightSampling::Light)),
         ("bsdf", with(&|s| s.integrator.light_sampling = LightSampling::Bsdf)),
         ("independent", with(&|s| s.integrator.sampler = SamplerKind::Independent)),
-        ("f64", with(&|s| s.integrator.precision = Precision::F64)),
         ("no roulette", with(&|s| (s.integrator.roulette, s.integrator.max_depth) = (false, Some(64)))),
         ("box filter", with(&|s| s.film.filter = etalon_scene::Filter::Tent { radius_px: 0.75 })),
     ];
@@ -296,7 +290,7 @@ fn a_path_that_is_cut_tells_what_its_light_would_have_been_multiplied_by() {
         "materials": {"mirror": {"type": "mirror", "reflectance": reflectance}},
         "objects": [{"material": "mirror", "shape": {"type": "sphere", "center_m": [0, 0, 0], "radius_m": 1}}],
         "lights": [{"type": "environment", "radiance": 1}],
-        "integrator": {"spp": 2, "roulette": false, "precision": "f64"}
+        "integrator": {"spp": 2, "roulette": false}
     }));
     for path_loop in [PathLoop::Plain, PathLoop::Lanes] {
         let prepared = prepare_study(&scene, &Study { path_loop: Some(path_loop), ..Study::default() }).unwrap();

@@ -1,7 +1,7 @@
 //! Truths that hold whatever the size of a scene and wherever it stands (hard cases 4 to 9).
 
 use etalon_oracle::statistics::Welford;
-use etalon_scene::{Precision, Scene};
+use etalon_scene::Scene;
 use etalon_transport::{Control, prepare};
 use serde_json::{Value, json};
 
@@ -123,44 +123,40 @@ fn rooms() -> Vec<(&'static str, Value, [f64; 3], [f64; 3])> {
 }
 
 /// |z| < 5 against the truth in every room at every place; `paths` each. Prints what a bias would have to be to be seen.
-fn check_rooms(paths: u32, precisions: &[Precision], bias: f64) {
+fn check_rooms(paths: u32, bias: f64) {
     for (name, objects, eye, at) in rooms() {
         for place in PLACES {
-            for precision in precisions {
-                // Wedges are as thin as their apex: moved farther than this, their walls touch in double precision, and in
-                // the single precision of the eye long before.
-                let thin = name.starts_with("wedge of 0.001") && (place.1 > 1e2 || *precision == Precision::F32);
-                if thin {
-                    continue;
-                }
-                let mut scene = scene(&objects, 0.0, eye, at, place, 16);
-                scene.integrator.spp = paths / 256;
-                scene.integrator.precision = *precision;
-                let prepared = prepare(&scene).unwrap();
-                let film = prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap();
-                assert_eq!(film.counters.nonfinite, 0);
-                // The room is grey and the same everywhere: pixels are independent estimates of one number.
-                let mut all = Welford::default();
-                film.pixels().for_each(|pixel| all.push(pixel.xyz()[1]));
-                let estimate = all.estimate();
-                let z = (estimate.mean - 1.0) / estimate.standard_error;
-                assert!(z.abs() < 5.0, "{name} at {place:?} in {precision:?}: {estimate:?}, z = {z}");
-                // Seen with 84 %: five standard errors for the threshold and one for the power.
-                assert!(6.0 * estimate.standard_error < bias, "{name} at {place:?}: {estimate:?} could not see {bias}");
+            // Wedges are as thin as their apex: moved farther than this, their walls touch in double precision.
+            let thin = name.starts_with("wedge of 0.001") && place.1 > 1e2;
+            if thin {
+                continue;
             }
+            let mut scene = scene(&objects, 0.0, eye, at, place, 16);
+            scene.integrator.spp = paths / 256;
+            let prepared = prepare(&scene).unwrap();
+            let film = prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap();
+            assert_eq!(film.counters.nonfinite, 0);
+            // The room is grey and the same everywhere: pixels are independent estimates of one number.
+            let mut all = Welford::default();
+            film.pixels().for_each(|pixel| all.push(pixel.xyz()[1]));
+            let estimate = all.estimate();
+            let z = (estimate.mean - 1.0) / estimate.standard_error;
+            assert!(z.abs() < 5.0, "{name} at {place:?}: {estimate:?}, z = {z}");
+            // Seen with 84 %: five standard errors for the threshold and one for the power.
+            assert!(6.0 * estimate.standard_error < bias, "{name} at {place:?}: {estimate:?} could not see {bias}");
         }
     }
 }
 
 #[test]
 fn closed_rooms_read_their_truth_whatever_their_size_and_place() {
-    check_rooms(4_096, &[Precision::F64], 0.1);
+    check_rooms(4_096, 0.1);
 }
 
 #[test]
 #[ignore = "minutes: sees a bias of 1e-3; cargo test --release -p etalon-transport --test scales -- --ignored"]
 fn closed_rooms_read_their_truth_to_a_thousandth_whatever_their_size_and_place() {
-    check_rooms(4 << 20, &[Precision::F64, Precision::F32], 1e-3);
+    check_rooms(4 << 20, 1e-3);
 }
 
 #[test]

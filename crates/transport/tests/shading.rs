@@ -37,11 +37,11 @@ proptest! {
         let unit = |v: [u16; 2]| v.map(|v| (f64::from(v) + 0.5) / 65536.0);
         let (at, wo) = (bent(tilt, turns), direction(unit(view)));
         let [u1, u2] = unit(u);
-        let s = lambert(0.7).sample::<f64, 4>(&LAMBDA_NM, &at, wo, [0.5, u1, u2]).unwrap();
+        let s = lambert(0.7).sample::<4>(&LAMBDA_NM, &at, wo, [0.5, u1, u2]).unwrap();
         prop_assert!((s.weight[0] - 0.7).abs() < 1e-12, "{}", s.weight[0]);
         // No light comes through the triangle.
         prop_assert!(at.normal.dot(s.wi) * at.normal.dot(wo) > 0.0);
-        let (f_cos, density) = lambert(0.7).eval::<f64, 4>(&LAMBDA_NM, &at, wo, s.wi);
+        let (f_cos, density) = lambert(0.7).eval::<4>(&LAMBDA_NM, &at, wo, s.wi);
         let density = density[0];
         prop_assert_eq!(Density::SolidAngle(density), s.density);
         prop_assert!((f_cos[0] - 0.7 * density).abs() <= 1e-12 * density);
@@ -55,7 +55,7 @@ proptest! {
         let at = bent(tilt, turns);
         let wi = direction(light.map(|v| (f64::from(v) + 0.5) / 65536.0));
         let wo = Vec3::new((1.0 - view * view).sqrt(), 0.0, view);
-        let (f_cos, _) = lambert(0.5).eval::<f64, 4>(&LAMBDA_NM, &at, wo, wi);
+        let (f_cos, _) = lambert(0.5).eval::<4>(&LAMBDA_NM, &at, wo, wi);
         let mirrored = Vec3::new(wi.x, wi.y, -wi.z);
         let expected = match wi.z > 0.0 {
             true => 0.5 / PI * (at.shading_normal().dot(wi).max(0.0) + at.shading_normal().dot(mirrored).max(0.0)),
@@ -75,11 +75,11 @@ proptest! {
     ) {
         let (at, wo) = (bent(tilt, turns), direction(view.map(|v| (f64::from(v) + 0.5) / 65536.0)));
         let mirror = Bsdf::new(&MaterialKind::Mirror { reflectance: Spectrum::ONE.into() }, [380.0, 780.0]);
-        let s = mirror.sample::<f64, 4>(&LAMBDA_NM, &at, wo, [u, 0.5, 0.5]).unwrap();
+        let s = mirror.sample::<4>(&LAMBDA_NM, &at, wo, [u, 0.5, 0.5]).unwrap();
         prop_assert!(s.wi.z * wo.z > 0.0 && s.weight[0] == 1.0);
         let (interior, exterior) = (RefractiveIndex::constant(1.5).unwrap(), RefractiveIndex::constant(1.0).unwrap());
         let glass = Bsdf::new(&MaterialKind::Dielectric { interior, exterior, priority: None }, [380.0, 780.0]);
-        let s = glass.sample::<f64, 4>(&LAMBDA_NM, &at, wo, [u, 0.5, 0.5]).unwrap();
+        let s = glass.sample::<4>(&LAMBDA_NM, &at, wo, [u, 0.5, 0.5]).unwrap();
         let crosses = s.wi.z * wo.z < 0.0;
         let eta = if wo.z > 0.0 { 1.5 } else { 1.0 / 1.5 };
         prop_assert_eq!(crosses, s.eta != 1.0);
@@ -96,7 +96,7 @@ fn the_density_around_a_bent_normal_integrates_to_one() {
         let mut sum = 0.0;
         for i in 0..n * n {
             let u = [(f64::from(i % n) + 0.5) / f64::from(n), (f64::from(i / n) + 0.5) / f64::from(n)];
-            sum += lambert(1.0).eval::<f64, 4>(&LAMBDA_NM, &at, wo, direction(u)).1[0];
+            sum += lambert(1.0).eval::<4>(&LAMBDA_NM, &at, wo, direction(u)).1[0];
         }
         let integral = sum * 4.0 * PI / f64::from(n * n);
         // The midpoint rule's error at the horizon, where the density is continuous, is of second order in 1/1000.
@@ -116,7 +116,7 @@ fn scattering_that_drops_or_leaks_what_crosses_the_triangle_is_told_from_ours() 
     let (tilt, wo) = (0.8, UP);
     let at = bent(tilt, 0.0);
     let around = |wi: Vec3<f64>| at.shading_normal().dot(wi).max(0.0) / PI;
-    let ours = reflected(|wi| lambert(1.0).eval::<f64, 4>(&LAMBDA_NM, &at, wo, wi).0[0]);
+    let ours = reflected(|wi| lambert(1.0).eval::<4>(&LAMBDA_NM, &at, wo, wi).0[0]);
     // The midpoint rule's error at the horizons.
     assert!((ours - 1.0).abs() < 1e-3, "{ours}");
     // Dropping what crosses loses (1 − cos δ)/2 of the light, a black rim on every ball.
@@ -126,7 +126,7 @@ fn scattering_that_drops_or_leaks_what_crosses_the_triangle_is_told_from_ours() 
     let leaking = reflected(|wi| if wi.z < 0.0 { around(wi) } else { 0.0 });
     assert!(
         leaking > 0.1
-            && reflected(|wi| if wi.z < 0.0 { lambert(1.0).eval::<f64, 4>(&LAMBDA_NM, &at, wo, wi).0[0] } else { 0.0 })
+            && reflected(|wi| if wi.z < 0.0 { lambert(1.0).eval::<4>(&LAMBDA_NM, &at, wo, wi).0[0] } else { 0.0 })
                 == 0.0
     );
 }

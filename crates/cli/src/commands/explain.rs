@@ -164,8 +164,6 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
         ("lanes", lanes),
         ("paths", paths),
         ("wavelengths", format!("{first}–{last} nm")),
-        ("precision", format!("{} of what each wavelength carries", plan.precision)),
-        ("directions", format!("{} in every kernel: {}", plan.directions.precision, plan.directions.because)),
         ("bounces", format!("{depth}, {roulette}")),
         ("light sampling", plan.light_sampling.to_owned()),
         ("choice of lights", choice),

@@ -20,7 +20,7 @@ use crate::machine::{Clock, ClockKind, Machine};
 use crate::print;
 use measure::{Effort, SceneStudy};
 
-/// Measures what samplers, path depth, roulette, light sampling, scalars and effects buy and cost.
+/// Measures what samplers, path depth, roulette, light sampling and effects buy and cost.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Scenes as JSON files, or truths of the oracle as `truth:NAME` (see `etalon verify`); all of the folder `scenes` if

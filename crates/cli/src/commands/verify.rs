@@ -8,7 +8,6 @@ mod series;
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
 use etalon_oracle::truths::{Truth, truths};
 use miette::miette;
 
@@ -20,10 +19,10 @@ pub(crate) struct Args {
     /// Only truths whose name contains one of these; all if none is given.
     names: Vec<String>,
     /// Judge the pictures in this folder (NAME.exr), which another program rendered, instead of rendering.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["seed", "thorough", "precision", "threads"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["seed", "thorough", "threads"])]
     images: Option<PathBuf>,
     /// Write the scenes with what is expected of them into this folder, for another renderer to join, and do nothing else.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["images", "json", "seed", "thorough", "precision", "threads"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["images", "json", "seed", "thorough", "threads"])]
     export: Option<PathBuf>,
     /// Print one JSON object on standard output instead of a table.
     #[arg(long)]
@@ -35,20 +34,9 @@ pub(crate) struct Args {
     /// these will do. Each film is one pixel then, whose samples are spread over the whole picture.
     #[arg(long)]
     thorough: bool,
-    /// Scalar type that paths are computed in.
-    #[arg(long, value_enum, default_value_t = PrecisionArg::F64)]
-    precision: PrecisionArg,
     /// Threads; all cores if not given.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum PrecisionArg {
-    /// 32-bit floating point.
-    F32,
-    /// 64-bit floating point.
-    F64,
 }
 
 pub(crate) fn run(args: Args) -> Outcome {

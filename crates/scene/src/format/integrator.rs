@@ -2,7 +2,7 @@
 
 use super::spectrum::Wavelength;
 use crate::json::{Code, Nullable, Reader, Required, Spanned, Whole};
-use crate::model::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, Precision, SamplerKind};
+use crate::model::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
 
 crate::record! {
     /// How to integrate. The command line may override each key.
@@ -28,8 +28,6 @@ crate::record! {
         wavelength_range_nm: Required<Spanned<[Wavelength; 2]>> = "[360, 830]",
         /// Which neighbouring pixels share paths.
         path_reuse: Required<PathReuse> = r#""none""#,
-        /// Scalar type of the kernel.
-        precision: Required<Precision> = r#""f64""#,
     }
 }
 
@@ -69,13 +67,6 @@ crate::keywords!(PathReuse {
     "4x4" => Self::Block4x4,
 });
 
-crate::keywords!(Precision {
-    /// 32-bit floating point.
-    "f32" => Self::F32,
-    /// 64-bit floating point.
-    "f64" => Self::F64,
-});
-
 /// What the CIE 1931 observer sees, nm.
 const VISIBLE_NM: [f64; 2] = [360.0, 830.0];
 
@@ -112,6 +103,5 @@ pub(crate) fn integrator(form: &IntegratorForm, wavelength_range_nm: Option<[f64
         light_selection: form.light_selection?,
         wavelength_range_nm: wavelength_range_nm?,
         path_reuse: form.path_reuse?,
-        precision: form.precision?,
     })
 }

@@ -218,7 +218,7 @@ fn environment_image(
     if let Some(i) = image.linear_texels().position(|t| t.iter().any(|v| v * brightest > BRIGHTEST)) {
         let (column, row) = texel_at(i);
         let message = format!("{}: the texel in column {column}, row {row} is more than {BRIGHTEST:e}", file.value);
-        reader.error_hint(Code::OutOfRange, file.at, message, "single precision could not carry it");
+        reader.error_hint(Code::OutOfRange, file.at, message, "pictures are in single precision and could not hold it");
         return None;
     }
     Some(EnvironmentImage { image, name: file.value.clone(), projection, forward, right, up, white })

@@ -15,7 +15,7 @@ use crate::json::{Code, List, Named, NamedEntry, Reader, Span, Spanned};
 
 pub(crate) use image::FARTHEST_UV;
 
-/// The largest emission: with the squares of distances, it stays within single precision (3·10³⁸).
+/// The largest emission: with the squares of distances, it stays within the single precision of pictures (3·10³⁸).
 pub(crate) const BRIGHTEST: f64 = 1e30;
 
 /// What a spectrum is used as.
@@ -128,7 +128,7 @@ impl<'f> Spectra<'f> {
                 Code::OutOfRange,
                 form.at().head(),
                 message,
-                "single precision could not carry it",
+                "pictures are in single precision and could not hold it",
                 used,
                 reader,
             );

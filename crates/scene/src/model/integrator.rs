@@ -23,8 +23,6 @@ pub struct Integrator {
     pub wavelength_range_nm: [f64; 2],
     /// Which neighbouring pixels share paths.
     pub path_reuse: PathReuse,
-    /// Scalar type of what each wavelength carries along a path.
-    pub precision: Precision,
 }
 
 /// Most replicates that samples can be dealt to.
@@ -84,13 +82,4 @@ pub enum LightSelection {
     Power,
     /// By a tree over where they are and where they shine, for each point anew.
     Tree,
-}
-
-/// Scalar type of what each wavelength carries along a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// 32-bit floating point.
-    F32,
-    /// 64-bit floating point.
-    F64,
 }

@@ -3,7 +3,7 @@
 use crate::texture::ImageTexture;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 
-/// The least width α of a rough surface's facets. Below it directions in single precision no longer resolve the lobe.
+/// The least width α of a rough surface's facets. Tests check lobes down to this width.
 pub const LEAST_ALPHA: f64 = 1e-4;
 
 /// A named material.

@@ -73,7 +73,7 @@ impl Blend {
             return self.parts[part].mueller_around(lambda_nm, n, at, (wo, wi, x), Lobe::Delta(rest));
         }
         let [first, second] = shares.0.map(|(i, share)| {
-            let (f_cos, _) = self.parts[i].eval_around::<f64, N>(lambda_nm, n, at, wo, wi);
+            let (f_cos, _) = self.parts[i].eval_around::<N>(lambda_nm, n, at, wo, wi);
             let matrices = self.parts[i].mueller_around(lambda_nm, n, at, (wo, wi, x), lobe);
             (f_cos * share, matrices.unwrap_or([mueller::DEPOLARISER; N]))
         });
@@ -87,31 +87,30 @@ impl Blend {
         self.parts.iter_mut().for_each(Bsdf::prepare_polarisation);
     }
 
-    pub(super) fn eval<R: Real, const N: usize>(
+    pub(super) fn eval<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> (Lanes<R, N>, Lanes<R, N>) {
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let mut sums = (Lanes::ZERO, Lanes::ZERO);
         for (part, share) in self.shares(at.uv).0 {
             let (f_cos, density) = self.parts[part].eval_around(lambda_nm, n, at, wo, wi);
-            let share = R::from_f64(share);
             sums = (sums.0 + f_cos * share, sums.1 + density * share);
         }
         sums
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         let [u_part, u1, u2] = u;
         let (part, rest) = self.shares(at.uv).choose(u_part);
         let next = self.parts[part].sample_around(lambda_nm, n, at, wo, [rest, u1, u2])?;

@@ -6,7 +6,7 @@ use super::metal::PathMetal;
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
-use etalon_optics::{Lanes, Real, Vec3, fresnel};
+use etalon_optics::{Lanes, Vec3, fresnel};
 
 /// Smooth metal.
 #[derive(Clone, Debug)]
@@ -48,14 +48,14 @@ impl Conductor {
         self.relative_index(lambda_nm, uv, interface).map(|(n, k)| mueller::conductor_reflection(cos, n, k))
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
         interface: Option<Interface<'_>>,
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         // Rounding may carry the product of two unit vectors past 1.
         let cos_o = n.dot(wo).abs().min(1.0);
         let index = self.relative_index(lambda_nm, uv, interface);
@@ -63,7 +63,7 @@ impl Conductor {
             wi: wo.reflected_about(n).renormalized(),
             weight: Lanes::from_fn(|lane| {
                 let (n, k) = index[lane];
-                R::from_f64(fresnel::conductor(cos_o, n, k).reflectance)
+                fresnel::conductor(cos_o, n, k).reflectance
             }),
             density: Density::Delta,
             lane_density: Lanes::ONE,

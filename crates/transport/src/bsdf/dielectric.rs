@@ -5,11 +5,10 @@
 //! balance heuristic over lanes needs (Wilkie et al. 2014, eq. 5).
 
 use super::BsdfSample;
-use crate::compiled;
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
-use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel, snell};
+use etalon_optics::{Lanes, RefractiveIndex, Vec3, fresnel, snell};
 
 /// Smooth interface of two transparent media.
 #[derive(Clone, Debug)]
@@ -41,7 +40,7 @@ impl Dielectric {
 
     /// Whether wavelengths part.
     pub(crate) fn is_dispersive(&self) -> bool {
-        compiled::DISPERSION && self.dispersive
+        self.dispersive
     }
 
     /// How likely each lane is to be reflected, relative to the hero, whose `reflectance` is known.
@@ -54,17 +53,17 @@ impl Dielectric {
         self.relative(lambda_nm, (cos, from_outside, None), reflectance)
     }
 
-    fn relative<R: Real, const N: usize>(
+    fn relative<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         (cos, from_outside, interface): (f64, bool, Option<Interface<'_>>),
         reflectance: f64,
-    ) -> Lanes<R, N> {
+    ) -> Lanes<f64, N> {
         Lanes::from_fn(|lane| match lane {
-            0 => R::ONE,
+            0 => 1.0,
             _ => {
                 let eta = self.eta(lambda_nm[lane], from_outside, interface);
-                R::from_f64(fresnel::dielectric_reflectance(cos, eta).0 / reflectance)
+                fresnel::dielectric_reflectance(cos, eta).0 / reflectance
             }
         })
     }
@@ -93,20 +92,19 @@ impl Dielectric {
         }
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         wo: Vec3<f64>,
         u: f64,
         interface: Option<Interface<'_>>,
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         let from_outside = n.dot(wo) > 0.0;
-        let dispersive = compiled::DISPERSION
-            && match interface {
-                Some(media) => media.incident.is_dispersive() || media.transmitted.is_dispersive(),
-                None => self.dispersive,
-            };
+        let dispersive = match interface {
+            Some(media) => media.incident.is_dispersive() || media.transmitted.is_dispersive(),
+            None => self.dispersive,
+        };
         let eta = self.eta(lambda_nm[0], from_outside, interface);
         let Turn { wi, reflects, reflectance, cos } = turn(n, wo, eta, u);
         if reflects {
@@ -120,7 +118,7 @@ impl Dielectric {
         Some(BsdfSample {
             wi,
             // T/(1 − R) = 1 in exact arithmetic; radiance is compressed into the denser medium, or spread from it.
-            weight: lane_density / R::from_f64(eta * eta),
+            weight: lane_density / (eta * eta),
             density: Density::Delta,
             lane_density,
             eta,

@@ -5,7 +5,7 @@ use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
-use etalon_optics::{Frame, Lanes, Real, Vec3};
+use etalon_optics::{Frame, Lanes, Vec3};
 use std::f64::consts::FRAC_1_PI;
 
 /// Ideal diffuse reflection.
@@ -30,34 +30,34 @@ impl Lambert {
 
     /// At these texture coordinates.
     #[inline]
-    pub(crate) fn reflectance<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> Lanes<R, N> {
+    pub(crate) fn reflectance<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> Lanes<f64, N> {
         self.reflectance.lanes(lambda_nm, uv)
     }
 
-    pub(super) fn eval<R: Real, const N: usize>(
+    pub(super) fn eval<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> (Lanes<R, N>, Lanes<R, N>) {
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let cos = common_cosine(n, wo, wi);
         if cos == 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
         }
-        let pdf = R::from_f64(density(cos));
-        (self.reflectance.lanes::<R, N>(lambda_nm, uv) * pdf, Lanes::splat(pdf))
+        let pdf = density(cos);
+        (self.reflectance.lanes::<N>(lambda_nm, uv) * pdf, Lanes::splat(pdf))
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
         u: [f64; 2],
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         let (wi, cos_i) = direction(n, wo, u);
         (cos_i > 0.0).then(|| BsdfSample {
             wi,

@@ -28,9 +28,7 @@ impl PathMetal {
     pub(super) fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> [(f64, f64); N] {
         match self {
             Self::Index(index) => lambda_nm.0.map(|nm| index.eval(nm)),
-            Self::Reflectance(reflectance) => {
-                reflectance.lanes::<f64, N>(lambda_nm, uv).0.map(|r| (1.0, Metal::k_of(r)))
-            }
+            Self::Reflectance(reflectance) => reflectance.lanes::<N>(lambda_nm, uv).0.map(|r| (1.0, Metal::k_of(r))),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::BsdfSample;
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 
 /// Ideal mirror.
 #[derive(Clone, Debug)]
@@ -26,13 +26,13 @@ impl Mirror {
         }
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         Some(BsdfSample {
             // Kept at unit length, so that ten thousand reflections do not drift (hard case 33).
             wi: wo.reflected_about(n).renormalized(),

@@ -39,36 +39,35 @@ pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
 pub use thin_dielectric::ThinDielectric;
 
-use crate::compiled;
 use crate::mis::Density;
 use crate::texture::PathTexture;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 use etalon_scene::MaterialKind;
 
 /// A direction drawn from a BSDF.
 #[derive(Clone, Copy, Debug)]
-pub struct BsdfSample<R, const N: usize> {
+pub struct BsdfSample<const N: usize> {
     /// Toward the light; a unit vector.
     pub wi: Vec3<f64>,
     /// f·|cos θ|/p in each lane, where p is the **hero's** density (or probability) of this direction.
-    pub weight: Lanes<R, N>,
+    pub weight: Lanes<f64, N>,
     /// Density of `wi` for the hero wavelength.
     pub density: Density,
     /// Each lane's own density of this direction relative to the hero's: 0 for a lane that cannot take it.
-    pub lane_density: Lanes<R, N>,
+    pub lane_density: Lanes<f64, N>,
     /// n_transmitted / n_incident if the path crossed an interface, else 1.
     pub eta: f64,
 }
 
-impl<R: Real, const N: usize> BsdfSample<R, N> {
+impl<const N: usize> BsdfSample<N> {
     /// The sample of a direction drawn with each lane's own `density` as if it were the hero, from what [`Bsdf::eval`] says
     /// of it; `None` where the hero's density is 0, which rounding may have made of the edge of a lobe.
-    fn scattered(wi: Vec3<f64>, f_cos: Lanes<R, N>, density: Lanes<R, N>, eta: f64) -> Option<Self> {
+    fn scattered(wi: Vec3<f64>, f_cos: Lanes<f64, N>, density: Lanes<f64, N>, eta: f64) -> Option<Self> {
         let hero = density[0];
-        (hero > R::ZERO).then(|| Self {
+        (hero > 0.0).then(|| Self {
             wi,
             weight: f_cos / hero,
-            density: Density::SolidAngle(hero.to_f64()),
+            density: Density::SolidAngle(hero),
             lane_density: density / hero,
             eta,
         })
@@ -165,13 +164,13 @@ impl Bsdf {
     /// The BSDF's part without deltas, f(wo, wi)·|cos θ_i| in sr⁻¹, and the density in sr⁻¹ with which
     /// [`Bsdf::sample`] would draw `wi` if that lane's wavelength were the hero.
     #[inline]
-    pub fn eval<R: Real, const N: usize>(
+    pub fn eval<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> (Lanes<R, N>, Lanes<R, N>) {
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         match at.is_bent() {
             false => self.eval_around(lambda_nm, at.normal, at, wo, wi),
             true => shading::eval(self, lambda_nm, at, wo, wi),
@@ -180,13 +179,13 @@ impl Bsdf {
 
     /// Draws a direction, with `u` = (choice of lobe, two numbers for the direction) in [0, 1)³. `None` absorbs.
     #[inline]
-    pub fn sample<R: Real, const N: usize>(
+    pub fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         match at.is_bent() {
             false => self.sample_around(lambda_nm, at.normal, at, wo, u),
             true => shading::sample(self, lambda_nm, at, wo, u),
@@ -195,14 +194,14 @@ impl Bsdf {
 
     /// [`Bsdf::eval`] with `n` for the only normal.
     #[inline]
-    fn eval_around<R: Real, const N: usize>(
+    fn eval_around<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> (Lanes<R, N>, Lanes<R, N>) {
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         match self {
             Self::Lambert(lambert) => lambert.eval(lambda_nm, n, at.uv, wo, wi),
             Self::RoughConductor(metal) => metal.eval(lambda_nm, n, at.uv, wo, wi),
@@ -221,32 +220,27 @@ impl Bsdf {
 
     /// [`Bsdf::sample`] with `n` for the only normal.
     #[inline]
-    fn sample_around<R: Real, const N: usize>(
+    fn sample_around<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         match self {
             Self::Lambert(lambert) => lambert.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
-            Self::Mirror(mirror) if compiled::SPECULAR_CHAINS => mirror.sample(lambda_nm, n, at.uv, wo),
-            Self::Conductor(conductor) if compiled::SPECULAR_CHAINS => {
-                conductor.sample(lambda_nm, n, at.uv, wo, at.media())
-            }
-            Self::Dielectric(dielectric) if compiled::SPECULAR_CHAINS => {
-                dielectric.sample(lambda_nm, n, wo, u[0], at.media())
-            }
+            Self::Mirror(mirror) => mirror.sample(lambda_nm, n, at.uv, wo),
+            Self::Conductor(conductor) => conductor.sample(lambda_nm, n, at.uv, wo, at.media()),
+            Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, n, wo, u[0], at.media()),
             Self::RoughConductor(metal) => metal.sample(lambda_nm, n, at.uv, wo, u),
             Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at.media(), wo, u),
             Self::OrenNayar(rough) => rough.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
             Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at.uv, wo, u),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, n, wo, u[0]),
-            Self::PolarisingSheet(sheet) if compiled::SPECULAR_CHAINS => sheet.sample(lambda_nm, wo),
+            Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
-            // Left out of this build.
-            Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::PolarisingSheet(_) | Self::Black => None,
+            Self::Black => None,
         }
     }
 

@@ -10,7 +10,7 @@ use super::albedo::LossTable;
 use super::microfacet::Facing;
 use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Rough diffuse reflection.
@@ -30,14 +30,14 @@ impl OrenNayar {
         Self { reflectance, roughness, scale, loss }
     }
 
-    pub(super) fn eval<R: Real, const N: usize>(
+    pub(super) fn eval<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> (Lanes<R, N>, Lanes<R, N>) {
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let (wo, wi) = (facing.wo, facing.local(wi));
         if wi.z <= 0.0 {
@@ -54,19 +54,19 @@ impl OrenNayar {
         let f_cos = Lanes::from_fn(|lane| {
             let rho = reflectance[lane];
             let again = rho * rho * (1.0 - mean_loss) / (1.0 - rho * mean_loss);
-            R::from_f64((rho * single + again * several) * pdf)
+            (rho * single + again * several) * pdf
         });
-        (f_cos, Lanes::splat(R::from_f64(pdf)))
+        (f_cos, Lanes::splat(pdf))
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
         u: [f64; 2],
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         let wi = Facing::new(n, wo)?.world(cosine_hemisphere(u));
         let (f_cos, density) = self.eval(lambda_nm, n, uv, wo, wi);
         BsdfSample::scattered(wi, f_cos, density, 1.0)

@@ -16,7 +16,7 @@ use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
-use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel};
+use etalon_optics::{Lanes, RefractiveIndex, Vec3, fresnel};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
@@ -145,14 +145,14 @@ impl Plastic {
         coat / (coat + ground)
     }
 
-    pub(super) fn eval<R: Real, const N: usize>(
+    pub(super) fn eval<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> (Lanes<R, N>, Lanes<R, N>) {
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let (wo, wi) = (facing.wo, facing.local(wi));
         if wi.z <= 0.0 {
@@ -171,23 +171,23 @@ impl Plastic {
                 let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
                 f += reflectance * facets.term * wi.z;
             }
-            R::from_f64(f)
+            f
         });
         let mut density = (1.0 - share) * diffuse;
         if let Some(facets) = &facets {
             density += share * facets.density;
         }
-        (f_cos, Lanes::splat(R::from_f64(density)))
+        (f_cos, Lanes::splat(density))
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         let facing = Facing::new(n, wo)?;
         let [u_lobe, u1, u2] = u;
         let mu = facing.wo.z.min(1.0);
@@ -199,7 +199,7 @@ impl Plastic {
                 let reflected = |nm: f64| fresnel::dielectric(mu, self.coat.eval(nm)).map_or(1.0, |f| f.reflectance);
                 return Some(BsdfSample {
                     wi: wo.reflected_about(n).renormalized(),
-                    weight: Lanes::from_fn(|lane| R::from_f64(reflected(lambda_nm[lane]) / share)),
+                    weight: Lanes::from_fn(|lane| reflected(lambda_nm[lane]) / share),
                     density: Density::Delta,
                     lane_density: Lanes::ONE,
                     eta: 1.0,

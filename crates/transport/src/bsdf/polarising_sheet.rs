@@ -10,7 +10,7 @@ use crate::mis::Density;
 use crate::polarisation::across;
 use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 use etalon_scene::PolarisingSheet as Sheet;
 
 /// A polariser or a retarder.
@@ -50,15 +50,11 @@ impl PolarisingSheet {
         Self { effect }
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
-        &self,
-        lambda_nm: &Lanes<f64, N>,
-        wo: Vec3<f64>,
-    ) -> Option<BsdfSample<R, N>> {
+    pub(super) fn sample<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wo: Vec3<f64>) -> Option<BsdfSample<N>> {
         let weight = match &self.effect {
             // Of unpolarised light.
             Effect::Polariser { transmittance, extinction } => {
-                transmittance.lanes(lambda_nm) * R::from_f64(0.5 * (1.0 + extinction))
+                transmittance.lanes(lambda_nm) * (0.5 * (1.0 + extinction))
             }
             Effect::Retarder { .. } => Lanes::ONE,
         };

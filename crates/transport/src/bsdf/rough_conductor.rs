@@ -9,7 +9,7 @@ use super::albedo::{self, LossTable, Tabulated};
 use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Facing, Ggx, gauss_rule, mean_over_facets};
 use crate::polarisation::mueller::{self, Matrix};
-use etalon_optics::{Lanes, Real, Vec3, fresnel};
+use etalon_optics::{Lanes, Vec3, fresnel};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
@@ -53,14 +53,14 @@ impl RoughConductor {
         self.compensation.as_ref().map_or(0.0, |c| c.loss.eval(mu, 1.0))
     }
 
-    pub(super) fn eval<R: Real, const N: usize>(
+    pub(super) fn eval<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> (Lanes<R, N>, Lanes<R, N>) {
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let (wo, wi) = (facing.wo, facing.local(wi));
         if wi.z <= 0.0 {
@@ -76,11 +76,11 @@ impl RoughConductor {
             if let Some(compensation) = &self.compensation {
                 f += several * compensation.factor.eval(lambda_nm[lane], k);
             }
-            R::from_f64(f * wi.z)
+            f * wi.z
         });
         let diffuse = self.compensation.as_ref().map_or(0.0, |c| c.loss.density(wi.z));
         let density = (1.0 - loss) * single.density + loss * diffuse;
-        (f_cos, Lanes::splat(R::from_f64(density)))
+        (f_cos, Lanes::splat(density))
     }
 
     /// What it does to polarised light: its facets reflect as smooth metal does, light that meets several forgets.
@@ -108,14 +108,14 @@ impl RoughConductor {
         }))
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         uv: [f64; 2],
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         let facing = Facing::new(n, wo)?;
         let [u_lobe, u1, u2] = u;
         let wi = match &self.compensation {

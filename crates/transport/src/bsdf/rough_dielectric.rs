@@ -22,7 +22,7 @@ use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
-use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3, fresnel, snell};
+use etalon_optics::{Lanes, RefractiveIndex, Vec3, fresnel, snell};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
@@ -300,14 +300,14 @@ impl RoughDielectric {
         self.others.iter_mut().for_each(|boundary| boundary.prepare_polarisation(&ggx));
     }
 
-    pub(super) fn eval<R: Real, const N: usize>(
+    pub(super) fn eval<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         interface: Option<Interface<'_>>,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
-    ) -> (Lanes<R, N>, Lanes<R, N>) {
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let Some(boundary) = self.boundary(interface, n.dot(wo) > 0.0) else { return (Lanes::ZERO, Lanes::ZERO) };
         let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let wi = facing.local(wi);
@@ -317,21 +317,21 @@ impl RoughDielectric {
         let at = |lane: usize| self.at(boundary, lambda_nm[lane], facing.wo, wi);
         if !boundary.0.dispersive {
             let (f_cos, density) = at(0);
-            return (Lanes::splat(R::from_f64(f_cos)), Lanes::splat(R::from_f64(density)));
+            return (Lanes::splat(f_cos), Lanes::splat(density));
         }
         let both: [(f64, f64); N] = std::array::from_fn(at);
-        (Lanes::from_fn(|lane| R::from_f64(both[lane].0)), Lanes::from_fn(|lane| R::from_f64(both[lane].1)))
+        (Lanes::from_fn(|lane| both[lane].0), Lanes::from_fn(|lane| both[lane].1))
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         interface: Option<Interface<'_>>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<R, N>> {
-        let straight_on = |lanes: Lanes<R, N>| {
+    ) -> Option<BsdfSample<N>> {
+        let straight_on = |lanes: Lanes<f64, N>| {
             Some(BsdfSample { wi: -wo, weight: lanes, density: Density::Delta, lane_density: lanes, eta: 1.0 })
         };
         let Some((boundary, from_outside)) = self.boundary(interface, n.dot(wo) > 0.0) else {

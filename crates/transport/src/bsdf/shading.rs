@@ -19,10 +19,9 @@
 //! Algorithms*): paths from the camera are estimated rightly, paths from lights would need a correction.
 
 use super::{Bsdf, BsdfSample};
-use crate::compiled;
 use crate::media::Interface;
 use crate::mis::Density;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 
 /// A surface point as scattering sees it.
 #[derive(Clone, Copy, Debug)]
@@ -79,11 +78,11 @@ impl<'a> Shading<'a> {
 
     /// The unit normal to scatter around.
     pub fn shading_normal(&self) -> Vec3<f64> {
-        self.bent.filter(|_| compiled::SHADING_NORMALS).unwrap_or(self.normal)
+        self.bent.unwrap_or(self.normal)
     }
 
     pub(crate) fn is_bent(&self) -> bool {
-        compiled::SHADING_NORMALS && self.bent.is_some()
+        self.bent.is_some()
     }
 
     /// The mirror image of a direction in the surface.
@@ -105,13 +104,13 @@ impl<'a> Shading<'a> {
 }
 
 /// [`Bsdf::eval`] around a bent normal.
-pub(super) fn eval<R: Real, const N: usize>(
+pub(super) fn eval<const N: usize>(
     bsdf: &Bsdf,
     lambda_nm: &Lanes<f64, N>,
     at: &Shading<'_>,
     wo: Vec3<f64>,
     wi: Vec3<f64>,
-) -> (Lanes<R, N>, Lanes<R, N>) {
+) -> (Lanes<f64, N>, Lanes<f64, N>) {
     let (n, viewer) = (at.shading_normal(), at.viewer(wo));
     let mut sum = (Lanes::ZERO, Lanes::ZERO);
     for direction in [wi, at.mirrored(wi)] {
@@ -129,13 +128,13 @@ pub(super) fn as_scattered(at: &Shading<'_>, wo: Vec3<f64>, wi: Vec3<f64>) -> (V
 }
 
 /// [`Bsdf::sample`] around a bent normal.
-pub(super) fn sample<R: Real, const N: usize>(
+pub(super) fn sample<const N: usize>(
     bsdf: &Bsdf,
     lambda_nm: &Lanes<f64, N>,
     at: &Shading<'_>,
     wo: Vec3<f64>,
     u: [f64; 3],
-) -> Option<BsdfSample<R, N>> {
+) -> Option<BsdfSample<N>> {
     let (n, viewer) = (at.shading_normal(), at.viewer(wo));
     let mut next = bsdf.sample_around(lambda_nm, n, at, viewer, u)?;
     // The side that the BSDF meant is the one that the triangle gives it.

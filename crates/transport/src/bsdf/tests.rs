@@ -293,7 +293,7 @@ fn what_several_facets_of_a_metal_add_is_coloured_by_as_many_reflections() {
         let direction = |mu: f64, sign: f64| Vec3::new(sign * (1.0 - mu * mu).sqrt(), 0.0, mu);
         let eval = |bsdf: &Bsdf| {
             let up = Shading::flat(Vec3::new(0.0, 0.0, 1.0));
-            bsdf.eval::<f64, 1>(&Lanes([550.0]), &up, direction(mu_o, 1.0), direction(mu_i, -1.0)).0[0]
+            bsdf.eval::<1>(&Lanes([550.0]), &up, direction(mu_o, 1.0), direction(mu_i, -1.0)).0[0]
         };
         let read = eval(&whole) - eval(&single);
         let truth = mu_i * (1.0 - albedo(mu_o)) * (1.0 - albedo(mu_i)) / (PI * (1.0 - mean_albedo)) * colour;

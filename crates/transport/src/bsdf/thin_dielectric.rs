@@ -5,7 +5,7 @@
 use super::BsdfSample;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
-use etalon_optics::{Lanes, Real, RefractiveIndex, Vec3};
+use etalon_optics::{Lanes, RefractiveIndex, Vec3};
 
 /// A thin pane.
 #[derive(Clone, Debug)]
@@ -28,13 +28,13 @@ impl ThinDielectric {
         if reflects { pane.reflection } else { pane.transmission }
     }
 
-    pub(super) fn sample<R: Real, const N: usize>(
+    pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         wo: Vec3<f64>,
         u: f64,
-    ) -> Option<BsdfSample<R, N>> {
+    ) -> Option<BsdfSample<N>> {
         // Rounding may carry the product of two unit vectors past 1.
         let cos = n.dot(wo).abs().min(1.0);
         let reflects = u < mueller::pane(cos, self.reference).reflectance;
@@ -45,7 +45,7 @@ impl ThinDielectric {
         let probability = share(self.reference);
         Some(BsdfSample {
             wi: if reflects { wo.reflected_about(n).renormalized() } else { -wo },
-            weight: Lanes::from_fn(|lane| R::from_f64(share(self.index.eval(lambda_nm[lane])) / probability)),
+            weight: Lanes::from_fn(|lane| share(self.index.eval(lambda_nm[lane])) / probability),
             density: Density::Delta,
             lane_density: Lanes::ONE,
             eta: 1.0,

@@ -6,7 +6,7 @@ use crate::bsdf::{BsdfSample, lambert};
 use crate::mis::Density;
 use crate::surface::Scattering;
 use etalon_geometry::SurfacePoint;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 
 /// The share of the directions that a body has at a point of a surface of normal `n`.
 #[inline(always)]
@@ -157,14 +157,14 @@ impl Casters {
     /// [`Scattering::sample`], with a share of the directions of diffuse surfaces drawn toward casters: what is drawn as if by the
     /// BSDF alone, and the densities that tell what it is worth.
     #[inline]
-    pub(crate) fn sample<R: Real, const N: usize>(
+    pub(crate) fn sample<const N: usize>(
         &self,
         point: &SurfacePoint<f64>,
         scattering: &Scattering<'_>,
         lambda_nm: &Lanes<f64, N>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<(BsdfSample<R, N>, Mixture)> {
+    ) -> Option<(BsdfSample<N>, Mixture)> {
         let alone = || scattering.sample(lambda_nm, wo, u).map(|drawn| (drawn, Mixture::NONE));
         if !self.aim() {
             return alone();

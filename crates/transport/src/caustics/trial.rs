@@ -8,7 +8,7 @@ use crate::observer::{Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
 use crate::sampler::mix;
-use etalon_optics::{Lanes, Real};
+use etalon_optics::Lanes;
 use rayon::prelude::*;
 
 /// The share of all casters together that is tried, and those that the trial decides between.
@@ -89,9 +89,9 @@ struct Weighed {
     found: [f64; 1 + SHARES.len()],
 }
 
-impl<R: Real, const N: usize> Observer<R, N> for Weighed {
-    fn light(&mut self, _: u32, _: Found, radiance: Lanes<R, N>) {
-        let light = radiance.sum().to_f64() / N as f64;
+impl<const N: usize> Observer<N> for Weighed {
+    fn light(&mut self, _: u32, _: Found, radiance: Lanes<f64, N>) {
+        let light = radiance.sum() / N as f64;
         for (found, factor) in self.found.iter_mut().zip(self.factors) {
             *found += light * (factor / self.tried);
         }
@@ -106,9 +106,7 @@ impl<R: Real, const N: usize> Observer<R, N> for Weighed {
 }
 
 /// A trial by one kernel, in some pixels of the picture, evenly spread.
-pub(crate) fn try_casters<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, N>, const N: usize>(
-    prepared: &Prepared,
-) -> Trial {
+pub(crate) fn try_casters<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(prepared: &Prepared) -> Trial {
     let film = &prepared.scene.film;
     let pixels = u64::from(film.width) * u64::from(film.height);
     // Of a small picture a quarter, lest the trial cost more than it.
@@ -120,7 +118,7 @@ pub(crate) fn try_casters<R: Real, M: WavelengthModel<R, N>, P: Polarisation<R, 
         let (mut mean, mut squares) = (0.0, [0.0; 1 + SHARES.len()]);
         for sample in 0..SAMPLES {
             let mut path = Weighed { factors: [1.0; _], tried: 1.0, found: [0.0; _] };
-            tracer.sample::<R, M, P, N>(x, y, sample, &mut Counters::default(), &mut path);
+            tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut path);
             // What is not finite the picture reports.
             if !path.found.iter().all(|found| found.is_finite()) {
                 continue;

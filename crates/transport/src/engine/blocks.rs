@@ -16,9 +16,9 @@ pub(super) struct Dealing<'a, const N: usize> {
     blocks: &'a Blocks,
     adding: Adding<'a>,
     /// By their places in the window.
-    waiting: Vec<(Gathered<f64, N>, Wavelengths<N>)>,
+    waiting: Vec<(Gathered<N>, Wavelengths<N>)>,
     /// Those of a block whose turn has come, and their rays.
-    gathered: [Gathered<f64, N>; MOST_MATES],
+    gathered: [Gathered<N>; MOST_MATES],
     rays: [u64; MOST_MATES],
     count: usize,
 }
@@ -44,7 +44,7 @@ impl<'a, const N: usize> Dealing<'a, N> {
 
     /// Deals out the light of each block that is complete.
     #[inline(always)]
-    fn add<M: WavelengthModel<f64, N>>(
+    fn add<M: WavelengthModel<N>>(
         &mut self,
         window: &mut Window<([f64; 3], u32)>,
         cursor: &mut Cursor<'_>,
@@ -102,7 +102,7 @@ fn occluded(geometry: &Geometry, rays: &[Ray<f64>]) -> u64 {
     hidden
 }
 
-impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
     /// Takes what ended paths have gathered.
     #[inline(always)]
     pub(super) fn end_shared(&mut self, ended: super::rows::Mask) {

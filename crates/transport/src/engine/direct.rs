@@ -81,7 +81,7 @@ impl<const N: usize> Sight<N> {
     }
 }
 
-impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
     /// Sends a shadow ray from each of `shared`, and adds what it finds.
     #[inline(always)]
     pub(super) fn direct_light(&mut self, shared: Mask) {

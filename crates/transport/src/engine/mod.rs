@@ -22,7 +22,6 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-use crate::compiled;
 use crate::film::{Counters, NonFinite, Sums};
 use crate::kernel::{Spot, Tracer};
 use crate::model::WavelengthModel;
@@ -35,7 +34,6 @@ use blocks::Dealing;
 use casters::Casting;
 use direct::Sight;
 use etalon_optics::Lanes;
-use etalon_scene::Precision;
 use level::{Level, stages};
 use paths::Paths;
 use rows::{Mask, W, lanes};
@@ -43,10 +41,9 @@ use starts::Starts;
 use stream::{Cursor, Window};
 pub(crate) use tables::Tables;
 
-/// Why the engine does not cover a scene with these effects and this precision of what wavelengths carry; `None` if it does.
-pub(crate) fn hindrance(runs: impl Fn(EffectName) -> bool, precision: Precision) -> Option<&'static str> {
+/// Why the engine does not cover a scene with these effects; `None` if it does.
+pub(crate) fn hindrance(runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
     match () {
-        () if precision == Precision::F32 => Some("wavelengths are carried in single precision"),
         () if runs(EffectName::Polarisation) => Some("light is followed with its polarisation"),
         () if runs(EffectName::NestedDielectrics) => Some("dielectrics are nested"),
         () if runs(EffectName::Absorption) => Some("media absorb"),
@@ -58,7 +55,7 @@ pub(crate) fn hindrance(runs: impl Fn(EffectName) -> bool, precision: Precision)
 
 /// The samples of spots, added to `sums` spot by spot in the order of their numbers, and the rays that each spot took to `rays`,
 /// unless that is empty.
-pub(crate) fn render_spots_lanes<M: WavelengthModel<f64, N>, const N: usize>(
+pub(crate) fn render_spots_lanes<M: WavelengthModel<N>, const N: usize>(
     prepared: &Prepared,
     spots: &[Spot],
     sums: Sums<'_>,
@@ -67,7 +64,7 @@ pub(crate) fn render_spots_lanes<M: WavelengthModel<f64, N>, const N: usize>(
     render_on::<M, N>(Level::best(), prepared, spots, sums, rays)
 }
 
-fn render_on<M: WavelengthModel<f64, N>, const N: usize>(
+fn render_on<M: WavelengthModel<N>, const N: usize>(
     level: Level,
     prepared: &Prepared,
     spots: &[Spot],
@@ -110,7 +107,7 @@ fn render_on<M: WavelengthModel<f64, N>, const N: usize>(
 
 stages! {
     /// All samples.
-    fn trace [M: WavelengthModel<f64, N>, const N: usize][M, N] (engine: &mut Engine<'_, M, N>, starts: &mut Starts<'_, N>) {
+    fn trace [M: WavelengthModel<N>, const N: usize][M, N] (engine: &mut Engine<'_, M, N>, starts: &mut Starts<'_, N>) {
         loop {
             engine.begin(starts);
             if engine.paths.alive == 0 {
@@ -139,7 +136,7 @@ struct Engine<'a, M, const N: usize> {
     dealing: Option<Dealing<'a, N>>,
 }
 
-impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
     /// Puts the next samples where no path is.
     #[inline(always)]
     fn begin(&mut self, starts: &mut Starts<'_, N>) {
@@ -207,7 +204,7 @@ impl<'a, const N: usize> Finished<'a, N> {
     fn new(cursor: Cursor<'a>, prepared: &Prepared, sums: Sums<'a>, rays: &'a mut [u64]) -> Self {
         let nothing = (Wavelengths::fixed([0.0; N]), Lanes::ZERO);
         let size = cursor.window();
-        let spectral = if !compiled::BANDS || sums.bands.is_empty() { Vec::new() } else { vec![nothing; size] };
+        let spectral = if sums.bands.is_empty() { Vec::new() } else { vec![nothing; size] };
         let replicates = prepared.scene.integrator.replicates;
         Self { cursor, window: Window::new(size), spectral, replicates, sums, rays }
     }
@@ -222,7 +219,7 @@ impl<'a, const N: usize> Finished<'a, N> {
 
     /// Adds those whose turn it is.
     #[inline(always)]
-    fn add<M: WavelengthModel<f64, N>>(&mut self, prepared: &Prepared, counters: &mut Counters) {
+    fn add<M: WavelengthModel<N>>(&mut self, prepared: &Prepared, counters: &mut Counters) {
         let bands = prepared.scene.film.bands.as_ref().filter(|_| !self.spectral.is_empty());
         let per_replicate = self.sums.bands.len() / self.sums.xyz.len();
         while let Some((number, (xyz, rays))) = self.window.take() {

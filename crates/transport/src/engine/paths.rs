@@ -45,7 +45,7 @@ pub(super) struct Paths<'a, M, const N: usize> {
     pub known: Known<N>,
     /// Whether neighbouring pixels share paths, and then what each path brings in.
     pub shares: bool,
-    pub gathered: [Gathered<f64, N>; W],
+    pub gathered: [Gathered<N>; W],
     /// The vertex that each path is at.
     pub at: Vertices<'a>,
 }
@@ -90,7 +90,7 @@ impl Vertices<'_> {
     }
 }
 
-impl<M: WavelengthModel<f64, N>, const N: usize> Paths<'_, M, N> {
+impl<M: WavelengthModel<N>, const N: usize> Paths<'_, M, N> {
     /// None yet; numbers will be drawn by samplers of the kind of this one.
     pub(super) fn new(sampler: Sampler, shares: bool) -> Self {
         let nowhere = SurfaceId::from(PrimitiveId::NONE);

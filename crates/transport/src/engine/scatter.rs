@@ -15,7 +15,7 @@ use crate::path::{ROULETTE_FROM_VERTEX, ROULETTE_THROUGHPUT, THROUGHPUT_FLOOR};
 use etalon_geometry::{SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Vec3};
 
-impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
     /// Takes the next step of each of `scatters`; a shadow ray was sent from those that are also `shared`.
     #[inline(always)]
     pub(super) fn scatter(&mut self, scatters: Mask, shared: Mask) {

@@ -5,7 +5,6 @@ use super::paths::Paths;
 use super::rows::{Row, Rows3, W};
 use super::stream::Cursor;
 use crate::camera::Camera;
-use crate::compiled;
 use crate::film::Counters;
 use crate::kernel::Tracer;
 use crate::model::WavelengthModel;
@@ -53,7 +52,7 @@ impl<'a, const N: usize> Starts<'a, N> {
 
     /// Sees to it that there is a next sample, unless there is none left.
     #[inline(always)]
-    pub(super) fn ready<M: WavelengthModel<f64, N>>(&mut self, level: Level, counters: &mut Counters) -> bool {
+    pub(super) fn ready<M: WavelengthModel<N>>(&mut self, level: Level, counters: &mut Counters) -> bool {
         if self.next == self.count {
             self.fill::<M>(level, counters);
         }
@@ -62,7 +61,7 @@ impl<'a, const N: usize> Starts<'a, N> {
 
     /// Draws what the camera draws for the next samples.
     #[inline(always)]
-    fn fill<M: WavelengthModel<f64, N>>(&mut self, level: Level, counters: &mut Counters) {
+    fn fill<M: WavelengthModel<N>>(&mut self, level: Level, counters: &mut Counters) {
         (self.count, self.next) = (0, 0);
         let (mut x, mut y, mut samples) = ([0; W], [0; W], [0; W]);
         for (lane, place) in self.cursor.by_ref().take(W).enumerate() {
@@ -87,7 +86,7 @@ impl<'a, const N: usize> Starts<'a, N> {
             self.wavelengths[lane] = M::wavelengths(self.tracer.prepared, || numbers[0][lane]);
         }
         let camera = &self.tracer.camera;
-        let lens = compiled::LENS && camera.has_lens();
+        let lens = camera.has_lens();
         camera_numbers(level, &self.samplers, 0, [true, true, lens, lens], &mut numbers);
         counters.lens_draws += self.count as u64 * u64::from(lens);
         let mut film = [Row::ZERO; 2];
@@ -101,7 +100,7 @@ impl<'a, const N: usize> Starts<'a, N> {
 
     /// Begins the next sample in the place of a path.
     #[inline(always)]
-    pub(super) fn put<M: WavelengthModel<f64, N>>(&mut self, lane: usize, paths: &mut Paths<'_, M, N>) {
+    pub(super) fn put<M: WavelengthModel<N>>(&mut self, lane: usize, paths: &mut Paths<'_, M, N>) {
         let start = self.next % W;
         self.next += 1;
         paths.alive |= 1 << lane;

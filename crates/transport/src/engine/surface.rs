@@ -5,12 +5,11 @@ use super::rows::{GROUPS, Mask, W, group_of, lanes};
 use super::tables::Form;
 #[cfg(test)]
 use super::tests::{Fault, is_wrong};
-use crate::compiled;
 use crate::model::WavelengthModel;
 use crate::path::{MOST_VERTICES, ShadowRays, Step};
 use etalon_geometry::{LANES, Rays, SurfaceId};
 
-impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
     /// Finds what each path meets, and tells which meet nothing.
     #[inline(always)]
     pub(super) fn meet(&mut self) -> Mask {
@@ -51,7 +50,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
     #[inline(always)]
     pub(super) fn escape(&mut self, escaped: Mask) {
         let paths = &mut self.paths;
-        let environments = if compiled::ENVIRONMENT { self.world.environments } else { &[] };
+        let environments = self.world.environments;
         for lane in lanes(escaped) {
             if paths.shares && paths.gathered[lane].has_left() {
                 paths.gathered[lane].escape(paths.direction.at(lane), self.world.plain_skies);
@@ -60,7 +59,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 self.counters.environment_lookups += 1;
                 let direction = paths.direction.at(lane);
                 // No shadow ray could have found a sky that is no light.
-                let mis = if compiled::MIS && self.world.weigh_hits && sky.light.is_some() {
+                let mis = if self.world.weigh_hits && sky.light.is_some() {
                     self.world.weight_of_hit(paths.step(lane), SurfaceId::NONE, sky.light, direction, 0.0)
                 } else {
                     1.0
@@ -91,7 +90,7 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
                 let surface = world.surfaces.of(&point);
                 let direction = paths.direction.at(lane);
                 if let Some(emitter) = surface.emission_along(world.geometry, &point, &paths.at.hit(lane), -direction) {
-                    let mis = if compiled::MIS && world.weigh_hits {
+                    let mis = if world.weigh_hits {
                         world.weight_of_hit(paths.step(lane), point.surface, surface.light, direction, 0.0)
                     } else {
                         1.0
@@ -118,7 +117,6 @@ impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
             }
             scatters |= 1 << lane;
             let useful = match world.shadow_rays {
-                _ if !compiled::SHADOW_RAYS => false,
                 ShadowRays::Never => false,
                 ShadowRays::WhereUseful => record.solid_angle_part,
                 ShadowRays::Everywhere => true,

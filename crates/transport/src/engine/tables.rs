@@ -2,7 +2,6 @@
 
 use crate::bsdf::{Bsdf, Dielectric};
 use crate::cells::CellTable;
-use crate::compiled;
 use crate::coordinates::Coordinates;
 use crate::light::{Environment, EnvironmentRadiance, Light, LightTable};
 use crate::spectral::PathSpectrum;
@@ -123,10 +122,8 @@ fn form(bsdf: &Bsdf, spectra: &mut Vec<PathSpectrum>, interfaces: &mut Vec<Smoot
     let of = |known: Slot, form: fn(u8) -> Form| known.map_or(Form::Other, form);
     match bsdf {
         Bsdf::Lambert(lambert) => of(lambert.uniform().and_then(|spectrum| slot(spectrum, spectra)), Form::Lambert),
-        Bsdf::Mirror(mirror) if compiled::SPECULAR_CHAINS => {
-            of(mirror.uniform().and_then(|spectrum| slot(spectrum, spectra)), Form::Mirror)
-        }
-        Bsdf::Dielectric(glass) if compiled::SPECULAR_CHAINS && interfaces.len() < INTERFACES => {
+        Bsdf::Mirror(mirror) => of(mirror.uniform().and_then(|spectrum| slot(spectrum, spectra)), Form::Mirror),
+        Bsdf::Dielectric(glass) if interfaces.len() < INTERFACES => {
             interfaces.push(SmoothInterface { glass: glass.clone(), constant: glass.constant_indices() });
             Form::Dielectric((interfaces.len() - 1) as u8)
         }

@@ -92,7 +92,7 @@ fn plain(force: &[EffectName]) -> Film {
 }
 
 /// The sums of the whole room and what was counted, on one instruction set.
-fn lanes<M: WavelengthModel<f64, N>, const N: usize>(level: Level, prepared: &Prepared) -> (TileSums, Counters) {
+fn lanes<M: WavelengthModel<N>, const N: usize>(level: Level, prepared: &Prepared) -> (TileSums, Counters) {
     let film = &prepared.scene.film;
     let tile = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let mut sums = prepared.film().tile(tile);
@@ -119,7 +119,7 @@ fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_plain_l
         assert!(is_that_of(&plain(&[]), &lanes::<Shared, 8>(level, &shared)), "{level:?}");
         let hero = prepared(&[EffectName::Dispersion], PathLoop::Lanes);
         let film = plain(&[EffectName::Dispersion]);
-        assert!(is_that_of(&film, &lanes::<Hero<f64, 8>, 8>(level, &hero)), "{level:?}");
+        assert!(is_that_of(&film, &lanes::<Hero<8>, 8>(level, &hero)), "{level:?}");
         // One lane of the same scene: not its picture, but the same paths on every instruction set.
         let one = lanes::<OneLane, 1>(level, &shared);
         let baseline = lanes::<OneLane, 1>(Level::Baseline, &shared);
@@ -169,7 +169,7 @@ fn engines_that_are_wrong_on_purpose_are_told_from_the_plain_loop() {
     assert!(is_that_of(&film, &lanes::<Shared, 8>(Level::best(), &shared)));
 }
 
-impl<M: WavelengthModel<f64, N>, const N: usize> Engine<'_, M, N> {
+impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
     /// Spoils what the next step begins with.
     pub(super) fn spoil(&mut self) {
         if is_wrong(Fault::NeighboursNumbers) {

@@ -76,14 +76,14 @@ impl EnvironmentLight {
 
     /// Radiance that arrives from the direction `wi`, in each lane.
     #[inline]
-    pub fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<R, N> {
+    pub fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<f64, N> {
         let rgb = match &self.map {
             Map::Meridians(map) => map.rgb(&self.image, self.along(wi)),
             Map::EqualArea(map) => map.rgb(&self.image, self.along(wi)),
         };
         Lanes::from_fn(|lane| {
             let nm = lambda_nm[lane];
-            R::from_f64(self.basis.reflectance(rgb, nm) * self.white.eval(nm))
+            self.basis.reflectance(rgb, nm) * self.white.eval(nm)
         })
     }
 

@@ -1,7 +1,6 @@
 //! Lights that shadow rays aim at: one kind a file, one door, [`Light`].
 //!
-//! Everything here is computed in `f64` whatever the kernel's scalar: solid angles of near, far and enclosing lights need
-//! it, and it costs no more than scalar `f32`. A density is always a function of the reference point and the direction
+//! Everything here is computed in `f64`, which solid angles of near, far and enclosing lights need. A density is always a function of the reference point and the direction
 //! alone, the same function for a sampled direction and for one that the BSDF found: the two can not disagree.
 
 mod cylinder;
@@ -38,7 +37,7 @@ pub(crate) use table::visible_sum;
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Aabb, SurfaceId};
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 use std::sync::Arc;
 use tree::LightBounds;
 
@@ -163,7 +162,7 @@ impl Light {
 
     /// What [`LightSample::scale`] multiplies of a sample in the direction `wi`, in each lane.
     #[inline]
-    pub fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<R, N> {
+    pub fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<f64, N> {
         match self {
             Self::Environment(light) => light.lanes(lambda_nm, wi),
             _ => self.spectrum().lanes(lambda_nm),
@@ -282,7 +281,7 @@ pub(crate) enum EnvironmentRadiance {
 impl EnvironmentRadiance {
     /// From the direction `wi`, in each lane.
     #[inline]
-    pub(crate) fn lanes<R: Real, const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<R, N> {
+    pub(crate) fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<f64, N> {
         match self {
             Self::Uniform(spectrum) => spectrum.lanes(lambda_nm),
             Self::Image(light) => light.lanes(lambda_nm, wi),

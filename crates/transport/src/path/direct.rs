@@ -2,7 +2,6 @@
 
 use super::{MOST_VERTICES, World};
 use crate::absorption::Body;
-use crate::compiled;
 use crate::film::Counters;
 use crate::interaction::Walk;
 use crate::light::{LightSample, Target};
@@ -11,7 +10,7 @@ use crate::mis::{Density, power_heuristic};
 use crate::model::WavelengthModel;
 use crate::surface::Scattering;
 use etalon_geometry::{Ray, SurfacePoint};
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Lanes, Vec3};
 use etalon_scene::LightSampling;
 
 /// What surrounds a point of a surface.
@@ -24,19 +23,19 @@ pub(super) struct Around<'a> {
 }
 
 /// What one shadow ray found.
-pub(super) struct Direct<R, const N: usize> {
+pub(super) struct Direct<const N: usize> {
     /// Number of the light.
     pub light: u32,
     /// Direction toward it.
     pub wi: Vec3<f64>,
     /// Radiance that it adds along the path, for light that is unpolarised.
-    pub radiance: Lanes<R, N>,
+    pub radiance: Lanes<f64, N>,
 }
 
 impl World<'_> {
     /// One shadow ray: ∫ f Le |cos θ| dω over the lights, estimated by one direction toward one of them.
     #[allow(clippy::too_many_arguments, reason = "the arguments of the rendering equation, and what counts them")]
-    pub(super) fn direct_light<R: Real, M: WavelengthModel<R, N>, const N: usize>(
+    pub(super) fn direct_light<M: WavelengthModel<N>, const N: usize>(
         &self,
         point: &SurfacePoint<f64>,
         scattering: &Scattering<'_>,
@@ -45,7 +44,7 @@ impl World<'_> {
         [u_light, u1, u2, _]: [f64; 4],
         around: &Around<'_>,
         counters: &mut Counters,
-    ) -> Option<Direct<R, N>> {
+    ) -> Option<Direct<N>> {
         if self.lights.is_empty() {
             return None;
         }
@@ -69,7 +68,7 @@ impl World<'_> {
         let goes_through = point.normal.dot(sample.wi) * point.normal.dot(wo) < 0.0;
         let body = if goes_through { around.beyond } else { around.body };
         let mut transmittance = Lanes::ONE;
-        let arriving = if (compiled::MASKS && self.masks) || (compiled::NESTED_DIELECTRICS && self.media.is_some()) {
+        let arriving = if self.masks || self.media.is_some() {
             self.passing(shadow_ray, (*around.inside, body), &sample, lambda_nm, &mut transmittance, counters)
         } else {
             if let Some(absorption) = &self.absorption {
@@ -94,23 +93,22 @@ impl World<'_> {
             }
         };
         let shines = self.light_arriving(index, sample.wi, sample.target, point.time, lambda_nm);
-        let direct = f_cos * shines * R::from_f64(weight * arriving);
+        let direct = f_cos * shines * (weight * arriving);
         Some(Direct { light: index as u32, wi: sample.wi, radiance: direct * transmittance })
     }
 
     /// What a light sends along `wi` from the point that a shadow ray aims at, but for the scale of its sample.
     #[inline]
-    pub(crate) fn light_arriving<R: Real, const N: usize>(
+    pub(crate) fn light_arriving<const N: usize>(
         &self,
         light: usize,
         wi: Vec3<f64>,
         target: Target,
         time: f64,
         lambda_nm: &Lanes<f64, N>,
-    ) -> Lanes<R, N> {
+    ) -> Lanes<f64, N> {
         let light = &self.lights.lights()[light];
-        if compiled::TEXTURES
-            && let (Some(emitter), Target::Point(position)) = (light.emitter(), target)
+        if let (Some(emitter), Target::Point(position)) = (light.emitter(), target)
             && let Some(image) = emitter.image
             && let Some(emitted) = self.surfaces.emitted(image.object, self.geometry, (emitter.surface, position), time)
         {
@@ -121,13 +119,13 @@ impl World<'_> {
 
     /// The share of light from a sampled light that reaches the start of the shadow ray: masks let their part through, media
     /// what they do not absorb, and boundaries of solids all, where they change no medium.
-    fn passing<R: Real, const N: usize>(
+    fn passing<const N: usize>(
         &self,
         shadow_ray: Ray<f64>,
         (mut inside, body): (Inside, Body<'_>),
         sample: &LightSample,
         lambda_nm: &Lanes<f64, N>,
-        transmittance: &mut Lanes<R, N>,
+        transmittance: &mut Lanes<f64, N>,
         counters: &mut Counters,
     ) -> f64 {
         let ray = Ray { t_max: beyond_target(shadow_ray.t_max), ..shadow_ray };

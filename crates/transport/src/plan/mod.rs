@@ -3,7 +3,6 @@
 //! Effects are derived, never declared: each material, light, camera and film says in an exhaustive `match` what it calls
 //! for ([`evidence`](self)), and what nothing calls for is not done. A [`Study`] may have it otherwise.
 
-mod directions;
 mod evidence;
 mod grey;
 mod missing_light;
@@ -19,7 +18,7 @@ pub(crate) use three_channels::CHANNELS_NM;
 
 use crate::engine::hindrance;
 use crate::kernel::{Kernel, kernel, study_kernel};
-use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
+use etalon_scene::{LightSampling, SamplerKind, Scene};
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
@@ -242,15 +241,6 @@ pub struct ChosenLoop {
     pub because: &'static str,
 }
 
-/// The scalar type of all that is geometry, the same in every kernel.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Directions {
-    /// `f64`.
-    pub precision: &'static str,
-    /// The object and the number that need it, or that nothing does.
-    pub because: String,
-}
-
 /// What will be simulated, why, and with what.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plan {
@@ -258,10 +248,6 @@ pub struct Plan {
     pub kernel: &'static str,
     /// What its lanes stand for.
     pub lane_model: LaneModel,
-    /// Scalar type of what each wavelength carries.
-    pub precision: &'static str,
-    /// Scalar type of positions, directions and their densities.
-    pub directions: Directions,
     /// Lanes that a path carries.
     pub lanes: usize,
     /// How paths are traced.
@@ -291,12 +277,9 @@ pub struct Plan {
 /// Why neither the loop over many paths at once nor what it has in common with the reuse of paths covers a scene; `None` if they do.
 fn hindrance_of(kernel: &Kernel, runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
     match kernel.render_lanes {
-        Some(_) => hindrance(runs, kernel.precision),
-        None if kernel.precision == Precision::F64 && kernel.polarised => {
-            Some("light is followed with its polarisation")
-        }
-        None if kernel.precision == Precision::F64 => Some("a study decides what paths carry"),
-        None => hindrance(runs, kernel.precision),
+        Some(_) => hindrance(runs),
+        None if kernel.polarised => Some("light is followed with its polarisation"),
+        None => Some("a study decides what paths carry"),
     }
 }
 
@@ -356,7 +339,7 @@ impl Plan {
                 let because = "only its own kernel carries it".to_owned();
                 return Err(StudyError::Contradicted { effect: EffectName::Polarisation, because });
             }
-            None => kernel(i.precision, lane_model, runs(EffectName::Polarisation)),
+            None => kernel(lane_model, runs(EffectName::Polarisation)),
             Some(carried) => study_kernel(carried),
         };
         if kernel.lanes == LaneModel::ThreeChannels {
@@ -367,18 +350,10 @@ impl Plan {
         if let (Some(_), Some(because)) = (path_reuse, hindrance_of(kernel, runs)) {
             return Err(StudyError::PathReuse(because));
         }
-        let &Kernel { name, lanes, precision, lane_count, .. } = kernel;
+        let &Kernel { name, lanes, lane_count, .. } = kernel;
         Ok(Self {
             kernel: name,
             lane_model: lanes,
-            precision: match precision {
-                Precision::F32 => "f32",
-                Precision::F64 => "f64",
-            },
-            directions: Directions {
-                precision: "f64",
-                because: directions::evidence(scene).unwrap_or_else(|otherwise| otherwise),
-            },
             lanes: lane_count,
             path_loop,
             path_reuse,

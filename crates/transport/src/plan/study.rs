@@ -30,7 +30,7 @@ pub struct Study {
     pub by_cosine_alone: bool,
 }
 
-/// What a path may carry for comparison with the wavelengths that a plan gives it. Double precision only.
+/// What a path may carry for comparison with the wavelengths that a plan gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     /// A single wavelength.

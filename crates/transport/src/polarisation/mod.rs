@@ -17,13 +17,13 @@ use etalon_optics::{Frame, Lanes, Real, Vec3};
 use mueller::Mueller;
 
 /// Whether and how a path carries polarisation.
-pub trait Polarisation<R: Real, const N: usize>: Copy {
+pub trait Polarisation<const N: usize>: Copy {
     /// At the camera, whose picture's right is along `right`.
     fn at_camera(direction: Vec3<f64>, right: Vec3<f64>) -> Self;
 
     /// Unpolarised light comes in at the path's end and would be worth `light` if nothing polarised. Returns what it is
     /// worth in S₀.
-    fn receive(&mut self, light: Lanes<R, N>) -> Lanes<R, N>;
+    fn receive(&mut self, light: Lanes<f64, N>) -> Lanes<f64, N>;
 
     /// The path goes on from a surface that light leaves along `wo` and meets along −`wi`; `mueller` is what it does, `None`
     /// if it depolarises.
@@ -35,25 +35,25 @@ pub trait Polarisation<R: Real, const N: usize>: Copy {
         wo: Vec3<f64>,
         wi: Vec3<f64>,
         mueller: impl FnOnce() -> Option<Mueller<N>>,
-        light: Lanes<R, N>,
-    ) -> Lanes<R, N>;
+        light: Lanes<f64, N>,
+    ) -> Lanes<f64, N>;
 
     /// S₁, S₂ and S₃ received so far, W·m⁻²·sr⁻¹·nm⁻¹; `None` if polarisation is not carried.
-    fn received(&self) -> Option<[Lanes<R, N>; 3]>;
+    fn received(&self) -> Option<[Lanes<f64, N>; 3]>;
 }
 
 /// Light is taken for unpolarised at every surface.
 #[derive(Clone, Copy)]
 pub struct Averaged;
 
-impl<R: Real, const N: usize> Polarisation<R, N> for Averaged {
+impl<const N: usize> Polarisation<N> for Averaged {
     #[inline(always)]
     fn at_camera(_: Vec3<f64>, _: Vec3<f64>) -> Self {
         Self
     }
 
     #[inline(always)]
-    fn receive(&mut self, light: Lanes<R, N>) -> Lanes<R, N> {
+    fn receive(&mut self, light: Lanes<f64, N>) -> Lanes<f64, N> {
         light
     }
 
@@ -66,12 +66,12 @@ impl<R: Real, const N: usize> Polarisation<R, N> for Averaged {
         _: Vec3<f64>,
         _: Vec3<f64>,
         _: impl FnOnce() -> Option<Mueller<N>>,
-        light: Lanes<R, N>,
-    ) -> Lanes<R, N> {
+        light: Lanes<f64, N>,
+    ) -> Lanes<f64, N> {
         light
     }
 
-    fn received(&self) -> Option<[Lanes<R, N>; 3]> {
+    fn received(&self) -> Option<[Lanes<f64, N>; 3]> {
         None
     }
 }
@@ -86,7 +86,7 @@ pub struct Followed<const N: usize> {
     received: [Lanes<f64, N>; 3],
 }
 
-impl<const N: usize> Polarisation<f64, N> for Followed<N> {
+impl<const N: usize> Polarisation<N> for Followed<N> {
     fn at_camera(direction: Vec3<f64>, right: Vec3<f64>) -> Self {
         let columns = std::array::from_fn(|j| std::array::from_fn(|i| if i == j { Lanes::ONE } else { Lanes::ZERO }));
         Self { columns, x: across(right, direction), received: [Lanes::ZERO; 3] }

@@ -66,7 +66,7 @@ impl Polarises for Scattering {
     fn mueller(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> Option<(Matrix, [f64; 3])> {
         let (at, wo, wi) = (Shading::flat(up()), Vec3::from_array(wo), Vec3::from_array(wi));
         let lambda = Lanes([wavelength_nm]);
-        let (f_cos, _) = self.0.eval::<f64, 1>(&lambda, &at, wo, wi);
+        let (f_cos, _) = self.0.eval::<1>(&lambda, &at, wo, wi);
         if f_cos[0] <= 0.0 {
             return None;
         }
@@ -115,7 +115,7 @@ fn seen(bsdf: &Bsdf, wo: Vec3<f64>, n: u32) -> [f64; 4] {
     let (lambda, at) = (Lanes([550.0]), Shading::flat(up()));
     let mut sum = [0.0; 4];
     for u in points(n) {
-        let Some(sample): Option<BsdfSample<f64, 1>> = bsdf.sample(&lambda, &at, wo, u) else { continue };
+        let Some(sample): Option<BsdfSample<1>> = bsdf.sample(&lambda, &at, wo, u) else { continue };
         let lobe = match sample.density {
             Density::Delta => Lobe::Delta(u[0]),
             Density::SolidAngle(_) => Lobe::SolidAngle,
@@ -176,7 +176,7 @@ fn rough_surfaces_join_smooth_ones() {
         for wo in [direction(0.6, 0.2), direction(0.3, 0.0), -direction(0.9, 0.6)] {
             for u in [[0.01, 0.4, 0.3], [0.99, 0.1, 0.6]] {
                 let sample = |bsdf: &Bsdf| -> Option<Mueller<1>> {
-                    let sample: BsdfSample<f64, 1> = bsdf.sample(&lambda, &at, wo, u)?;
+                    let sample: BsdfSample<1> = bsdf.sample(&lambda, &at, wo, u)?;
                     let lobe = match sample.density {
                         Density::Delta => Lobe::Delta(u[0]),
                         Density::SolidAngle(_) => Lobe::SolidAngle,
@@ -202,7 +202,7 @@ fn sheets_pass_light_straight_on_along_their_axis() {
     let at = Shading::flat(up()).with_axis(Vec3::from_array(axis));
     for wo in [direction(1.0, 0.0), direction(0.3, 0.1), -direction(0.6, 0.4)] {
         let lambda = Lanes([550.0]);
-        let sample: BsdfSample<f64, 1> = bsdf.sample(&lambda, &at, wo, [0.5; 3]).unwrap();
+        let sample: BsdfSample<1> = bsdf.sample(&lambda, &at, wo, [0.5; 3]).unwrap();
         assert!((sample.weight[0] - 0.4).abs() < 1e-15 && (sample.wi + wo).length() < 1e-15);
         let mueller = bsdf.mueller(&lambda, &at, wo, sample.wi, Lobe::Delta(0.5)).unwrap();
         let wires = Vec3::new(0.0, 1.0, 0.0);
@@ -219,7 +219,7 @@ fn scattered(bsdf: &Bsdf, wo: Vec3<f64>, wi: Vec3<f64>) -> Option<(f64, Matrix)>
 
 fn scattered_at(bsdf: &Bsdf, nm: f64, wo: Vec3<f64>, wi: Vec3<f64>) -> Option<(f64, Matrix)> {
     let (lambda, at) = (Lanes([nm]), Shading::flat(up()));
-    let (f_cos, _) = bsdf.eval::<f64, 1>(&lambda, &at, wo, wi);
+    let (f_cos, _) = bsdf.eval::<1>(&lambda, &at, wo, wi);
     (f_cos[0] > 0.0).then(|| {
         let mueller = bsdf.mueller(&lambda, &at, wo, wi, Lobe::SolidAngle);
         (f_cos[0], mueller.map_or(DEPOLARISER, |mueller| mueller.matrix(0)))
@@ -317,7 +317,7 @@ fn around_a_shading_normal_frames_belong_to_both_rays() {
             assert!((at.shading_normal() - flat.normal).length() < 1e-15, "{at:?}");
             let wo = direction(0.05 + 0.9 * c, 2.0 * a) * if i % 3 == 0 { -1.0 } else { 1.0 };
             let lambda = Lanes([550.0]);
-            let Some(sample): Option<BsdfSample<f64, 1>> = bsdf.sample(&lambda, &at, wo, [b, c, a]) else { continue };
+            let Some(sample): Option<BsdfSample<1>> = bsdf.sample(&lambda, &at, wo, [b, c, a]) else { continue };
             let lobe = match sample.density {
                 Density::Delta => Lobe::Delta(b),
                 Density::SolidAngle(_) => Lobe::SolidAngle,

@@ -1,10 +1,8 @@
 //! A material of ours as the oracle sees one.
 
-use std::marker::PhantomData;
-
-use etalon_optics::{Lanes, Real, Spectrum, Vec3, fresnel};
+use etalon_optics::{Lanes, Spectrum, Vec3, fresnel};
 use etalon_oracle::{
-    laws::{self, SINGLE},
+    laws,
     subjects::{DeltaLobe, Density, Scattered, Scatters},
 };
 use etalon_scene::{MaterialKind, Metal, PolarisingSheet, SpectrumTexture};
@@ -16,11 +14,10 @@ use etalon_transport::{
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// One of our materials in scalar type `R`, with what the oracle cannot ask a [`Bsdf`] for.
-pub(crate) struct Material<R> {
+/// One of our materials, with what the oracle cannot ask a [`Bsdf`] for.
+pub(crate) struct Material {
     kind: MaterialKind,
     bsdf: Bsdf,
-    scalar: PhantomData<R>,
 }
 
 fn uniform(texture: &SpectrumTexture) -> &Spectrum {
@@ -30,22 +27,22 @@ fn uniform(texture: &SpectrumTexture) -> &Spectrum {
     }
 }
 
-impl<R: Real> Material<R> {
+impl Material {
     pub(crate) fn new(kind: MaterialKind) -> Self {
-        Self { bsdf: Bsdf::new(&kind, RANGE_NM), kind, scalar: PhantomData }
+        Self { bsdf: Bsdf::new(&kind, RANGE_NM), kind }
     }
 
     fn eval(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> (f64, f64) {
         let lambda = Lanes([wavelength_nm]);
         let (f_cos, pdf) =
-            self.bsdf.eval::<R, 1>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), Vec3::from_f64(wi));
-        (f_cos[0].to_f64(), pdf[0].to_f64())
+            self.bsdf.eval(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), Vec3::from_f64(wi));
+        (f_cos[0], pdf[0])
     }
 }
 
-impl<R: Real> Scatters for Material<R> {
+impl Scatters for Material {
     fn f(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> f64 {
-        let cos = R::from_f64(wi[2]).to_f64().abs();
+        let cos = wi[2].abs();
         if cos == 0.0 { 0.0 } else { self.eval(wo, wi, wavelength_nm).0 / cos }
     }
 
@@ -55,8 +52,8 @@ impl<R: Real> Scatters for Material<R> {
 
     fn sample(&self, wo: [f64; 3], u: [f64; 3], wavelength_nm: f64) -> Option<Scattered> {
         let lambda = Lanes([wavelength_nm]);
-        let s = self.bsdf.sample::<R, 1>(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), u)?;
-        let wi = s.wi.to_f64().to_array();
+        let s = self.bsdf.sample(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), u)?;
+        let wi = s.wi.to_array();
         let density = match s.density {
             mis::Density::SolidAngle(pdf) => Density::SolidAngle(pdf),
             mis::Density::Delta => {
@@ -67,7 +64,7 @@ impl<R: Real> Scatters for Material<R> {
                 Density::Delta(nearest.map_or(f64::NAN, |lobe| lobe.probability))
             }
         };
-        Some(Scattered { wi, weight: s.weight[0].to_f64(), density })
+        Some(Scattered { wi, weight: s.weight[0], density })
     }
 
     fn deltas(&self, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLobe> {
@@ -90,7 +87,7 @@ impl<R: Real> Scatters for Material<R> {
     }
 
     fn epsilon(&self) -> f64 {
-        if size_of::<R>() == 4 { SINGLE } else { f64::EPSILON }
+        f64::EPSILON
     }
 }
 

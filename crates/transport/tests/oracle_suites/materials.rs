@@ -1,64 +1,64 @@
 //! Every material, held to every law of a BSDF.
 
-use etalon_optics::{ComplexIndex, Real, RefractiveIndex, Spectrum};
+use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
 use etalon_scene::{Image, ImageTexture, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture, Texels};
 
 use crate::material::Material;
 
-fn lambert<R: Real>() -> Material<R> {
+fn lambert() -> Material {
     Material::new(MaterialKind::Lambert { reflectance: Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap().into() })
 }
 
-fn metal<R: Real>(name: &str) -> Material<R> {
+fn metal(name: &str) -> Material {
     Material::new(MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named(name).unwrap()) })
 }
 
-fn glass<R: Real>(interior: &str, exterior: &str) -> Material<R> {
+fn glass(interior: &str, exterior: &str) -> Material {
     let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
     Material::new(MaterialKind::Dielectric { interior: index(interior), exterior: index(exterior), priority: None })
 }
 
-fn rough_metal<R: Real>(name: &str, alpha: f64, compensated: bool) -> Material<R> {
+fn rough_metal(name: &str, alpha: f64, compensated: bool) -> Material {
     let metal = Metal::Index(ComplexIndex::named(name).unwrap());
     Material::new(MaterialKind::RoughConductor { metal, alpha, compensated })
 }
 
 /// Reflects everything: n → 0 with k > 0.
-fn lossless_metal(alpha: f64) -> Material<f64> {
+fn lossless_metal(alpha: f64) -> Material {
     let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
     Material::new(MaterialKind::RoughConductor { metal: Metal::Index(index), alpha, compensated: true })
 }
 
-fn rough_glass<R: Real>(interior: &str, exterior: &str, alpha: f64, compensated: bool) -> Material<R> {
+fn rough_glass(interior: &str, exterior: &str, alpha: f64, compensated: bool) -> Material {
     let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
     let (interior, exterior) = (index(interior), index(exterior));
     Material::new(MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority: None })
 }
 
-scatters_suite!(lambert_f32, lambert::<f32>());
-scatters_suite!(gold_f64, metal::<f64>("Au"));
-scatters_suite!(glass_in_water_f64, glass::<f64>("N-BK7", "water"));
-scatters_suite!(rough_gold_f32, rough_metal::<f32>("Au", 0.3, true));
+scatters_suite!(lambert, lambert());
+scatters_suite!(gold, metal("Au"));
+scatters_suite!(glass_in_water, glass("N-BK7", "water"));
+scatters_suite!(rough_gold, rough_metal("Au", 0.3, true));
 scatters_suite!(lossless_metal_furnace, lossless_metal(1.0));
-scatters_suite!(rough_silver_without_compensation, rough_metal::<f64>("Ag", 0.3, false));
-scatters_suite!(rough_glass_f32, rough_glass::<f32>("N-BK7", "vacuum", 0.4, true));
-scatters_suite!(very_rough_diamond_in_water, rough_glass::<f64>("diamond", "water", 1.0, true));
+scatters_suite!(rough_silver_without_compensation, rough_metal("Ag", 0.3, false));
+scatters_suite!(rough_glass, rough_glass("N-BK7", "vacuum", 0.4, true));
+scatters_suite!(very_rough_diamond_in_water, rough_glass("diamond", "water", 1.0, true));
 
-fn plastic<R: Real>(rho: f64, alpha: f64) -> Material<R> {
+fn plastic(rho: f64, alpha: f64) -> Material {
     let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(1.5));
     Material::new(MaterialKind::Plastic { reflectance, coat, alpha })
 }
 
-fn oren_nayar<R: Real>(rho: f64, roughness: f64) -> Material<R> {
+fn oren_nayar(rho: f64, roughness: f64) -> Material {
     Material::new(MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho).into(), roughness })
 }
 
-fn pane<R: Real>() -> Material<R> {
+fn pane() -> Material {
     Material::new(MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5) })
 }
 
-fn mixture() -> Material<f64> {
+fn mixture() -> Material {
     let first = MaterialKind::Mirror { reflectance: Spectrum::Constant(0.8).into() };
     let second = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.6).into(), roughness: 0.5 };
     Material::new(MaterialKind::blend(first, second, 0.3))
@@ -70,7 +70,7 @@ fn texel(rgb: [f32; 3]) -> ImageTexture {
 }
 
 /// Smooth below a roughness of 0.2, rougher from there on; at 0.7 now, between two rough ones.
-fn metal_of_varied_roughness() -> Material<f64> {
+fn metal_of_varied_roughness() -> Material {
     let metal = Metal::Reflectance(Spectrum::rgb_reflectance([0.9, 0.6, 0.3]).unwrap().into());
     let rough = |alpha| MaterialKind::RoughConductor { metal: metal.clone(), alpha, compensated: true };
     let parts = vec![(0.2, MaterialKind::Conductor { metal: metal.clone() }), (0.55, rough(0.3)), (0.9, rough(0.81))];
@@ -78,7 +78,7 @@ fn metal_of_varied_roughness() -> Material<f64> {
 }
 
 /// Glass in water, as smooth as an image says: between a smooth interface and a rough one.
-fn glass_of_varied_roughness() -> Material<f64> {
+fn glass_of_varied_roughness() -> Material {
     let index = |name: &str| RefractiveIndex::named(name).unwrap();
     let (interior, exterior) = (index("N-BK7"), index("water"));
     let smooth = MaterialKind::Dielectric { interior: interior.clone(), exterior: exterior.clone(), priority: None };
@@ -90,52 +90,51 @@ fn glass_of_varied_roughness() -> Material<f64> {
 }
 
 /// A ground and a coat by images.
-fn painted_plastic() -> Material<f64> {
+fn painted_plastic() -> Material {
     let reflectance = SpectrumTexture::Image(texel([0.9, 0.2, 0.4]));
     Material::new(MaterialKind::Plastic { reflectance, coat: RefractiveIndex::Constant(1.5), alpha: 0.3 })
 }
 
 /// Metal that reflects all that a metal of a given reflectance can.
-fn white_metal(alpha: f64) -> Material<f64> {
+fn white_metal(alpha: f64) -> Material {
     let metal = Metal::Reflectance(Spectrum::Constant(1.0).into());
     Material::new(MaterialKind::RoughConductor { metal, alpha, compensated: true })
 }
 
-scatters_suite!(varied_metal_f64, metal_of_varied_roughness());
-scatters_suite!(varied_glass_f64, glass_of_varied_roughness());
-scatters_suite!(painted_plastic_f64, painted_plastic());
-scatters_suite!(white_metal_f64, white_metal(0.7));
+scatters_suite!(varied_metal, metal_of_varied_roughness());
+scatters_suite!(varied_glass, glass_of_varied_roughness());
+scatters_suite!(painted_plastic, painted_plastic());
+scatters_suite!(white_metal, white_metal(0.7));
 
-scatters_suite!(smooth_plastic_f32, plastic::<f32>(0.7, 0.0));
-scatters_suite!(white_smooth_plastic_f64, plastic::<f64>(1.0, 0.0));
-scatters_suite!(white_rough_plastic_f64, plastic::<f64>(1.0, 0.4));
-scatters_suite!(oren_nayar_f32, oren_nayar::<f32>(0.5, 0.4));
-scatters_suite!(white_oren_nayar_f64, oren_nayar::<f64>(1.0, 1.0));
-scatters_suite!(pane_f32, pane::<f32>());
-scatters_suite!(pane_f64, pane::<f64>());
+scatters_suite!(smooth_plastic, plastic(0.7, 0.0));
+scatters_suite!(white_smooth_plastic, plastic(1.0, 0.0));
+scatters_suite!(white_rough_plastic, plastic(1.0, 0.4));
+scatters_suite!(oren_nayar, oren_nayar(0.5, 0.4));
+scatters_suite!(white_oren_nayar, oren_nayar(1.0, 1.0));
+scatters_suite!(pane, pane());
 
 /// A tinted polariser that is not quite one.
-fn polariser() -> Material<f64> {
+fn polariser() -> Material {
     let transmittance = Spectrum::rgb_reflectance([0.8, 0.7, 0.9]).unwrap();
     let sheet = PolarisingSheet::Polariser { transmittance, extinction: 0.1 };
     Material::new(MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet })
 }
 
-scatters_suite!(polariser_f64, polariser());
+scatters_suite!(polariser, polariser());
 scatters_suite!(mirror_and_clay, mixture());
 
 /// None of ours has a grain but for the sheets, whose axis is in their Mueller matrices alone.
 #[test]
 fn every_material_is_the_same_turned_about_its_normal() {
     let subjects: [&dyn Scatters; 10] = [
-        &lambert::<f64>(),
-        &rough_metal::<f32>("Au", 0.3, true),
-        &rough_metal::<f64>("Ag", 0.3, false),
-        &rough_glass::<f64>("N-BK7", "vacuum", 0.4, true),
+        &lambert(),
+        &rough_metal("Au", 0.3, true),
+        &rough_metal("Ag", 0.3, false),
+        &rough_glass("N-BK7", "vacuum", 0.4, true),
         &painted_plastic(),
-        &plastic::<f32>(0.7, 0.0),
-        &oren_nayar::<f32>(0.5, 0.4),
-        &oren_nayar::<f64>(1.0, 1.0),
+        &plastic(0.7, 0.0),
+        &oren_nayar(0.5, 0.4),
+        &oren_nayar(1.0, 1.0),
         &mixture(),
         &metal_of_varied_roughness(),
     ];

@@ -1,6 +1,6 @@
 //! What a study compares: a table of choices, each a change of a scene's integrator or of its effects.
 
-use etalon_scene::{LightSampling, Precision, SamplerKind, Scene};
+use etalon_scene::{LightSampling, SamplerKind, Scene};
 use etalon_transport::plan::LaneModel;
 use etalon_transport::{Carried, EffectName, PathLoop, Plan, Study};
 
@@ -52,9 +52,6 @@ pub(super) fn of(scene: &Scene, plan: &Plan) -> Vec<Choice> {
         add("sampler", name, plain(), &|scene| scene.integrator.sampler = kind);
     }
     add("error bars", "one replicate: no error bars", plain(), &|scene| scene.integrator.replicates = 1);
-    for (name, precision) in [("f32", Precision::F32), ("f64", Precision::F64)] {
-        add("scalar", name, plain(), &|scene| scene.integrator.precision = precision);
-    }
     // A scene of one spectrum carries a number; its wavelengths are among the effects.
     if plan.lane_model != LaneModel::One {
         for (name, carried) in [

@@ -25,7 +25,7 @@ pub(super) struct Plot {
 
 /// Groups that share a plot of error against time.
 const PLOTS: [(&str, &str, &[&str]); 5] = [
-    ("numbers", "numbers and scalars", &["where samples go", "sampler", "error bars", "scalar"]),
+    ("numbers", "numbers", &["where samples go", "sampler", "error bars"]),
     ("wavelengths", "wavelengths of a path", &["wavelengths"]),
     ("light", "finding light", &["direct light"]),
     ("depth", "path depth and roulette", &["path depth", "roulette"]),

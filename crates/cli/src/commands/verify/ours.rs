@@ -5,13 +5,13 @@ use std::time::Instant;
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::Reading;
 use etalon_oracle::truths::{Claim, Truth, judge};
-use etalon_scene::{Precision, Scene};
+use etalon_scene::Scene;
 use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
 
 use super::report::{Report, Row};
 use super::series::{Series, Stop};
-use super::{Args, PrecisionArg};
+use super::Args;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 
@@ -57,10 +57,6 @@ impl<'a> Measurement<'a> {
     /// The scene as each replicate renders it.
     fn scene(json: &str, args: &Args) -> Result<Scene, String> {
         let (mut scene, _) = etalon_scene::parse(json, "truth").map_err(|errors| errors.summary())?;
-        scene.integrator.precision = match args.precision {
-            PrecisionArg::F32 => Precision::F32,
-            PrecisionArg::F64 => Precision::F64,
-        };
         // Each film is one replicate here.
         scene.integrator.replicates = 1;
         if args.thorough {
