@@ -3,7 +3,8 @@
 use crate::camera::Camera;
 use crate::caustics::{Trial, try_casters};
 use crate::engine::render_spots_lanes;
-use crate::film::{Counters, NonFinite, PixelRect, Sums};
+use crate::film::{Counters, PixelRect, Sums};
+use crate::film_entry::{FilmEntry, Received, SampleId};
 use crate::interaction::{SurfaceInteraction, Walk};
 use crate::media::Inside;
 use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
@@ -23,9 +24,6 @@ use std::ops::Range;
 
 /// Wavelengths that a path carries where they differ.
 pub(crate) const LANES: usize = 8;
-
-/// Adds samples to one tile: to the sums of its pixels, row by row, in each replicate by replicate.
-pub(crate) type RenderTile = fn(&Prepared, PixelRect, Range<u32>, Sums<'_>) -> Counters;
 
 /// Adds samples to spots: to their sums, spot by spot, in each replicate by replicate; and what rays of all kinds each spot took,
 /// unless nobody asks for that.
@@ -61,7 +59,7 @@ pub(crate) struct Kernel {
     pub polarised: bool,
     /// Its name: the model and the number of lanes.
     pub name: &'static str,
-    pub render: RenderTile,
+    pub render: RenderSpots,
     /// The same, bit for bit, by many paths at once, where there is that.
     pub render_lanes: Option<RenderSpots>,
     /// One path at a time where neighbouring pixels share paths.
@@ -98,7 +96,7 @@ const fn entry<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     lanes: LaneModel,
     name: &'static str,
 ) -> Kernel {
-    let (render, replay) = (render_tile::<M, P, N>, replay::<M, P, N>);
+    let (render, replay) = (render_scalar::<M, P, N>, replay::<M, P, N>);
     let try_casters = try_casters::<M, P, N>;
     Kernel {
         lanes,
@@ -128,43 +126,26 @@ pub(crate) fn kernel(lanes: LaneModel, polarised: bool) -> &'static Kernel {
     kernels.find(|kernel| kernel.lanes == lanes && kernel.polarised == polarised).expect("the table has every pair")
 }
 
-/// The samples `samples` of every pixel of `tile`, added to `sums` in the order of their numbers.
-fn render_tile<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+/// The samples of spots, one path at a time, added to `sums` in the order of their numbers.
+fn render_scalar<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
-    tile: PixelRect,
-    samples: Range<u32>,
+    spots: &[Spot],
     sums: Sums<'_>,
+    rays: &mut [u64],
 ) -> Counters {
-    let bands = prepared.scene.film.bands.as_ref().filter(|_| !sums.bands.is_empty());
-    let per_replicate = sums.bands.len() / sums.xyz.len();
-    let per_parameter = per_replicate / prepared.band_parameters() as usize;
     let tracer = Tracer::new(prepared);
     let mut counters = Counters::default();
-    let replicates = prepared.scene.integrator.replicates as usize;
-    for (at, (x, y)) in tile.pixels().enumerate() {
-        for sample in samples.clone() {
-            let (wavelengths, radiance, polarisation) = tracer.sample::<M, P, N>(x, y, sample, &mut counters, &mut ());
+    let mut film = FilmEntry::new(prepared, sums, rays);
+    for (number, spot) in spots.iter().enumerate() {
+        let before = counters.rays + counters.shadow_rays;
+        for sample in spot.samples.clone() {
+            let (wavelengths, radiance, polarisation) =
+                tracer.sample::<M, P, N>(spot.x, spot.y, sample, &mut counters, &mut ());
             let xyz = M::to_xyz(prepared, &wavelengths, radiance);
-            let received = polarisation.received();
-            let stokes = received.map(|s| s.map(|s| M::to_xyz(prepared, &wavelengths, s)));
-            counters.paths += 1;
-            let replicate = at * replicates + sample as usize % replicates;
-            if xyz.iter().chain(stokes.iter().flatten().flatten()).all(|v| v.is_finite()) {
-                sums.xyz[replicate].add(xyz);
-                if let (Some(stokes), Some(sum)) = (stokes, sums.stokes.get_mut(replicate)) {
-                    (0..3).for_each(|s| (0..3).for_each(|c| sum[s][c] += stokes[s][c]));
-                }
-                if let Some(bands) = bands {
-                    let sums = &mut sums.bands[replicate * per_replicate..][..per_replicate];
-                    let parameters = std::iter::once(radiance).chain(received.into_iter().flatten());
-                    for (sums, parameter) in sums.chunks_exact_mut(per_parameter).zip(parameters) {
-                        M::to_bands(bands, &wavelengths, parameter, sums);
-                    }
-                }
-            } else {
-                counters.record_nonfinite(NonFinite { y, x, sample });
-            }
+            let received = Received { wavelengths, radiance, stokes: polarisation.received() };
+            film.add::<M, N>(SampleId { spot: number, x: spot.x, y: spot.y, sample }, xyz, &received, &mut counters);
         }
+        film.count_rays(number, counters.rays + counters.shadow_rays - before);
     }
     counters
 }

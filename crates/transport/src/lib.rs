@@ -41,6 +41,7 @@ mod coordinates;
 mod engine;
 pub mod features;
 pub mod film;
+mod film_entry;
 pub mod filter;
 pub mod frame;
 mod interaction;

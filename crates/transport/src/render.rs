@@ -111,38 +111,23 @@ impl Prepared {
     /// Adds samples to a tile, by the loop that the plan chose: to the sums of its pixels, row by row, in each replicate by
     /// replicate.
     pub(crate) fn render_tile(&self, tile: PixelRect, samples: Range<u32>, sums: Sums<'_>) -> Counters {
-        match self.spots() {
-            None => (self.kernel().render)(self, tile, samples, sums),
-            Some(render) => render(self, &Spot::of_tile(tile, &samples), sums, &mut []),
-        }
+        self.renderer()(self, &Spot::of_tile(tile, &samples), sums, &mut [])
     }
 
     /// Adds samples to spots without bands, and the rays of all kinds that each took to `rays`.
     pub(crate) fn render_spots(&self, spots: &[Spot], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
-        let sums = |xyz| Sums { xyz, stokes: &mut [], bands: &mut [] };
-        if let Some(render) = self.spots() {
-            return render(self, spots, sums(xyz), rays);
-        }
-        let mut counters = Counters::default();
-        let each = xyz.chunks_exact_mut(self.scene.integrator.replicates as usize);
-        for ((spot, xyz), rays) in spots.iter().zip(each).zip(rays) {
-            let pixel = PixelRect { x0: spot.x, y0: spot.y, x1: spot.x + 1, y1: spot.y + 1 };
-            let of_spot = (self.kernel().render)(self, pixel, spot.samples.clone(), sums(xyz));
-            *rays += of_spot.rays + of_spot.shadow_rays;
-            counters.merge(&of_spot);
-        }
-        counters
+        self.renderer()(self, spots, Sums { xyz, stokes: &mut [], bands: &mut [] }, rays)
     }
 
-    /// The loop that takes spots, if the plan chose one: that over many paths at once, or the plain one where pixels share paths.
-    fn spots(&self) -> Option<RenderSpots> {
-        match self.plan().path_loop.name {
-            PathLoop::Plain if self.path_reuse().is_some() => {
-                Some(self.kernel().render_reused.expect("the plan knows which kernels have it"))
-            }
-            PathLoop::Plain => None,
-            PathLoop::Lanes => Some(self.kernel().render_lanes.expect("the plan knows which kernels have it")),
-        }
+    /// The loop that the plan chose.
+    fn renderer(&self) -> RenderSpots {
+        let kernel = self.kernel();
+        let chosen = match self.plan().path_loop.name {
+            PathLoop::Plain if self.path_reuse().is_some() => kernel.render_reused,
+            PathLoop::Plain => Some(kernel.render),
+            PathLoop::Lanes => kernel.render_lanes,
+        };
+        chosen.expect("the plan knows which loops a kernel has")
     }
 
     /// Renders `extent` onto a new film. `on_tile` hears what a finished tile took.

@@ -23,7 +23,8 @@ mod room;
 #[cfg(test)]
 mod tests;
 
-use crate::film::{Counters, NonFinite, Sums};
+use crate::film::{Counters, Sums};
+use crate::film_entry::{FilmEntry, Received, SampleId};
 use crate::kernel::{Spot, Tracer};
 use crate::model::WavelengthModel;
 use crate::observer::Observer;
@@ -350,7 +351,7 @@ pub(crate) fn render_spots<M: WavelengthModel<N>, const N: usize>(
     let blocks = Blocks::of(spots, block, [film.width, film.height]);
     let tracer = Tracer::new(prepared);
     let mut counters = Counters::default();
-    let mut adding = Adding::new(prepared, sums, rays);
+    let mut adding = BlockEntry::new(prepared, sums, rays);
     for (first, &mates) in blocks.mates.iter().enumerate().filter(|(_, mates)| **mates > 0) {
         let pixels = &blocks.spots[first..first + mates];
         let mut gathered = [Gathered::NOTHING; MOST_MATES];
@@ -386,21 +387,16 @@ pub(crate) fn render_spots<M: WavelengthModel<N>, const N: usize>(
 }
 
 /// Adds the samples of blocks to the sums of spots.
-pub(crate) struct Adding<'a> {
+pub(crate) struct BlockEntry<'a> {
     prepared: &'a Prepared,
-    sums: Sums<'a>,
-    rays: &'a mut [u64],
-    replicates: usize,
-    per_replicate: usize,
+    film: FilmEntry<'a>,
     /// The spot whose block's rays nobody else counts.
     last: usize,
 }
 
-impl<'a> Adding<'a> {
+impl<'a> BlockEntry<'a> {
     pub(crate) fn new(prepared: &'a Prepared, sums: Sums<'a>, rays: &'a mut [u64]) -> Self {
-        let replicates = prepared.scene.integrator.replicates as usize;
-        let per_replicate = sums.bands.len() / sums.xyz.len().max(1);
-        Self { prepared, sums, rays, replicates, per_replicate, last: 0 }
+        Self { prepared, film: FilmEntry::new(prepared, sums, rays), last: 0 }
     }
 
     /// A sample of the spot number `.0`, or of a mate, at the pixel (`.1`, `.2`). What a mate's path took counts for one of the spots.
@@ -414,21 +410,10 @@ impl<'a> Adding<'a> {
         counters: &mut Counters,
     ) {
         self.last = spot.unwrap_or(self.last);
-        if let Some(of_spot) = self.rays.get_mut(self.last) {
-            *of_spot += rays;
-        }
+        self.film.count_rays(self.last, rays);
         let Some(spot) = spot else { return };
-        counters.paths += 1;
         let xyz = if radiance.is_zero() { [0.0; 3] } else { M::to_xyz(self.prepared, wavelengths, radiance) };
-        if !xyz.iter().all(|v| v.is_finite()) {
-            counters.record_nonfinite(NonFinite { y, x, sample });
-            return;
-        }
-        let replicate = spot * self.replicates + sample as usize % self.replicates;
-        self.sums.xyz[replicate].add(xyz);
-        if let Some(bands) = self.prepared.scene.film.bands.as_ref().filter(|_| self.per_replicate > 0) {
-            let sums = &mut self.sums.bands[replicate * self.per_replicate..][..self.per_replicate];
-            M::to_bands(bands, wavelengths, radiance, sums);
-        }
+        let received = Received::unpolarised(*wavelengths, radiance);
+        self.film.add::<M, N>(SampleId { spot, x, y, sample }, xyz, &received, counters);
     }
 }

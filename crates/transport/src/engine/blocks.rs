@@ -6,7 +6,7 @@ use super::stream::{Cursor, Window};
 use crate::film::{Counters, Sums};
 use crate::model::WavelengthModel;
 use crate::prepare::Prepared;
-use crate::reuse::{Adding, Blocks, Gathered, MOST_MATES, deal};
+use crate::reuse::{BlockEntry, Blocks, Gathered, MOST_MATES, deal};
 use crate::wavelength::Wavelengths;
 use etalon_geometry::{Geometry, LANES, Ray, Rays};
 use etalon_optics::Lanes;
@@ -14,7 +14,7 @@ use etalon_optics::Lanes;
 /// See the module.
 pub(super) struct Dealing<'a, const N: usize> {
     blocks: &'a Blocks,
-    adding: Adding<'a>,
+    adding: BlockEntry<'a>,
     /// By their places in the window.
     waiting: Vec<(Gathered<N>, Wavelengths<N>)>,
     /// Those of a block whose turn has come, and their rays.
@@ -34,7 +34,7 @@ impl<'a, const N: usize> Dealing<'a, N> {
         let nothing = Wavelengths::fixed([0.0; N]);
         Self {
             blocks,
-            adding: Adding::new(prepared, sums, rays),
+            adding: BlockEntry::new(prepared, sums, rays),
             waiting: vec![(Gathered::NOTHING, nothing); size],
             gathered: [Gathered::NOTHING; MOST_MATES],
             rays: [0; MOST_MATES],

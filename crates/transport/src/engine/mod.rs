@@ -22,7 +22,8 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-use crate::film::{Counters, NonFinite, Sums};
+use crate::film::{Counters, Sums};
+use crate::film_entry::{FilmEntry, Received};
 use crate::kernel::{Spot, Tracer};
 use crate::model::WavelengthModel;
 use crate::path::World;
@@ -182,7 +183,7 @@ impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
             self.finished.put(self.paths.number[lane], (xyz, rays), wavelengths, radiance);
         }
         if ended != 0 {
-            self.finished.add::<M>(self.prepared, &mut self.counters);
+            self.finished.add::<M>(&mut self.counters);
         }
     }
 }
@@ -193,52 +194,33 @@ struct Finished<'a, const N: usize> {
     /// Colours, and rays of all kinds.
     window: Window<([f64; 3], u32)>,
     /// What the bands of a film ask of the samples that wait; empty without bands.
-    spectral: Vec<(Wavelengths<N>, Lanes<f64, N>)>,
-    replicates: u32,
-    sums: Sums<'a>,
-    /// Rays of all kinds that spots took; empty if nobody asks.
-    rays: &'a mut [u64],
+    spectral: Vec<Received<N>>,
+    film: FilmEntry<'a>,
 }
 
 impl<'a, const N: usize> Finished<'a, N> {
-    fn new(cursor: Cursor<'a>, prepared: &Prepared, sums: Sums<'a>, rays: &'a mut [u64]) -> Self {
-        let nothing = (Wavelengths::fixed([0.0; N]), Lanes::ZERO);
-        let size = cursor.window();
-        let spectral = if sums.bands.is_empty() { Vec::new() } else { vec![nothing; size] };
-        let replicates = prepared.scene.integrator.replicates;
-        Self { cursor, window: Window::new(size), spectral, replicates, sums, rays }
+    fn new(cursor: Cursor<'a>, prepared: &'a Prepared, sums: Sums<'a>, rays: &'a mut [u64]) -> Self {
+        let (size, film) = (cursor.window(), FilmEntry::new(prepared, sums, rays));
+        let spectral = if film.keeps_bands() { vec![Received::NOTHING; size] } else { Vec::new() };
+        Self { cursor, window: Window::new(size), spectral, film }
     }
 
     #[inline(always)]
     fn put(&mut self, number: u32, came_to: ([f64; 3], u32), wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) {
         if let Some(waiting) = self.spectral.get_mut(self.window.place(number)) {
-            *waiting = (*wavelengths, radiance);
+            *waiting = Received::unpolarised(*wavelengths, radiance);
         }
         self.window.put(number, came_to);
     }
 
     /// Adds those whose turn it is.
     #[inline(always)]
-    fn add<M: WavelengthModel<N>>(&mut self, prepared: &Prepared, counters: &mut Counters) {
-        let bands = prepared.scene.film.bands.as_ref().filter(|_| !self.spectral.is_empty());
-        let per_replicate = self.sums.bands.len() / self.sums.xyz.len();
+    fn add<M: WavelengthModel<N>>(&mut self, counters: &mut Counters) {
         while let Some((number, (xyz, rays))) = self.window.take() {
-            let place = self.cursor.next().expect("as many samples come back as went out");
-            counters.paths += 1;
-            if let Some(of_spot) = self.rays.get_mut(place.spot) {
-                *of_spot += u64::from(rays);
-            }
-            let replicate = place.spot * self.replicates as usize + (place.sample % self.replicates) as usize;
-            if xyz.iter().all(|v| v.is_finite()) {
-                self.sums.xyz[replicate].add(xyz);
-                if let Some(bands) = bands {
-                    let sums = &mut self.sums.bands[replicate * per_replicate..][..per_replicate];
-                    let (wavelengths, radiance) = &self.spectral[self.window.place(number)];
-                    M::to_bands(bands, wavelengths, *radiance, sums);
-                }
-            } else {
-                counters.record_nonfinite(NonFinite { y: place.y, x: place.x, sample: place.sample });
-            }
+            let id = self.cursor.next().expect("as many samples come back as went out");
+            self.film.count_rays(id.spot, rays.into());
+            let received = self.spectral.get(self.window.place(number)).unwrap_or(&Received::NOTHING);
+            self.film.add::<M, N>(id, xyz, received, counters);
         }
     }
 }

@@ -2,21 +2,12 @@
 //!
 //! Paths end in any order, but a pixel's sums are in the order of its samples: what is finished early waits.
 
+use crate::film_entry::SampleId;
 use crate::kernel::Spot;
 
 /// Most samples that may be under way or wait for others: many times the paths in a set, so that one long path does not hold up
 /// the rest.
 const WINDOW: u64 = 1024;
-
-/// One sample of one pixel.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    /// Number of the spot.
-    pub spot: usize,
-    pub x: u32,
-    pub y: u32,
-    pub sample: u32,
-}
 
 /// Goes through the samples of spots, one spot after the other.
 #[derive(Clone, Debug)]
@@ -26,7 +17,7 @@ pub(super) struct Cursor<'a> {
     mates: &'a [usize],
     /// Those whose turn it is: the first, and the one after the last.
     group: [usize; 2],
-    next: Place,
+    next: SampleId,
     left: u64,
 }
 
@@ -34,7 +25,7 @@ impl<'a> Cursor<'a> {
     /// Of spots of which `mates` tells who take turns: they have the same samples.
     pub(super) fn new(spots: &'a [Spot], mates: &'a [usize]) -> Self {
         let left = spots.iter().map(|spot| u64::from(spot.count())).sum();
-        let next = Place { spot: 0, x: 0, y: 0, sample: 0 };
+        let next = SampleId { spot: 0, x: 0, y: 0, sample: 0 };
         let mut cursor = Self { spots, mates, group: [0; 2], next, left };
         cursor.go_to(0);
         cursor
@@ -50,7 +41,7 @@ impl<'a> Cursor<'a> {
     fn go_to(&mut self, first: usize) {
         for (spot, Spot { x, y, samples }) in self.spots.iter().enumerate().skip(first) {
             if !samples.is_empty() {
-                self.next = Place { spot, x: *x, y: *y, sample: samples.start };
+                self.next = SampleId { spot, x: *x, y: *y, sample: samples.start };
                 self.group = [spot, spot + self.mates.get(spot).copied().unwrap_or(1)];
                 return;
             }
@@ -59,10 +50,10 @@ impl<'a> Cursor<'a> {
 }
 
 impl Iterator for Cursor<'_> {
-    type Item = Place;
+    type Item = SampleId;
 
     #[inline(always)]
-    fn next(&mut self) -> Option<Place> {
+    fn next(&mut self) -> Option<SampleId> {
         self.left = self.left.checked_sub(1)?;
         let place = self.next;
         let [first, end] = self.group;

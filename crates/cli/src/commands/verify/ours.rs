@@ -9,9 +9,9 @@ use etalon_scene::Scene;
 use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
 
+use super::Args;
 use super::report::{Report, Row};
 use super::series::{Series, Stop};
-use super::Args;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 
