@@ -1,0 +1,116 @@
+//! What a crate's `Cargo.toml` says of it. Reads the few forms that our manifests have, not all of TOML.
+
+use std::fs;
+use std::path::Path;
+
+pub(crate) struct Manifest {
+    pub(crate) description: String,
+    /// Of the library or program and its build script, for every platform; without those of tests alone. In alphabetical order.
+    pub(crate) dependencies: Vec<Dependency>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Dependency {
+    pub(crate) name: String,
+    /// Only with a feature that is off unless asked for.
+    pub(crate) optional: bool,
+}
+
+pub(crate) fn read(root: &Path, name: &str) -> Result<Manifest, String> {
+    let path = root.join("crates").join(name).join("Cargo.toml");
+    fs::read_to_string(&path).map(|text| parse(&text)).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// `rust-version` of the workspace.
+pub(crate) fn rust_version(root: &Path) -> Result<String, String> {
+    let path = root.join("Cargo.toml");
+    let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let version = text.lines().find_map(|line| value(line, "rust-version"));
+    version.ok_or_else(|| format!("{}: no rust-version", path.display()))
+}
+
+/// The text of `key = "text"`.
+fn value(line: &str, key: &str) -> Option<String> {
+    let rest = line.strip_prefix(key)?.trim_start().strip_prefix('=')?;
+    Some(rest.trim().trim_matches('"').to_owned())
+}
+
+fn parse(text: &str) -> Manifest {
+    let mut manifest = Manifest { description: String::new(), dependencies: Vec::new() };
+    let (mut section, mut depth) = (String::new(), 0_usize);
+    for line in text.lines() {
+        let line = line.split('#').next().unwrap_or_default().trim_end();
+        if depth == 0 && line.starts_with('[') {
+            section = line.trim_matches(['[', ']']).to_owned();
+            // `[dependencies.name]`
+            if let Some((table, name)) = section.rsplit_once('.').filter(|(table, _)| is_dependencies(table)) {
+                let (table, name) = (table.to_owned(), name.to_owned());
+                note(&mut manifest, &table, &name, line);
+            }
+            continue;
+        }
+        if depth == 0 {
+            if let Some(description) = value(line, "description").filter(|_| section == "package") {
+                manifest.description = description;
+            }
+            if let Some((name, rest)) = line.split_once(['=', '.']) {
+                let section = section.clone();
+                note(&mut manifest, &section, name.trim(), rest);
+            }
+        }
+        let count = |what: [char; 2]| line.matches(what).count();
+        depth = (depth + count(['[', '{'])).saturating_sub(count([']', '}']));
+    }
+    manifest.dependencies.sort();
+    manifest.dependencies.dedup();
+    manifest
+}
+
+fn is_dependencies(section: &str) -> bool {
+    let section = section.rsplit('.').next().unwrap_or_default();
+    section == "dependencies" || section == "build-dependencies"
+}
+
+fn note(manifest: &mut Manifest, section: &str, name: &str, rest: &str) {
+    if is_dependencies(section) {
+        let optional = rest.contains("optional = true");
+        manifest.dependencies.push(Dependency { name: name.trim_matches('"').to_owned(), optional });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_form_of_a_dependency_is_read() {
+        let manifest = parse(
+            r#"
+[package]
+name = "x"
+description = "Some words"
+[features]
+a = ["dep:h"]
+[dependencies]
+b.workspace = true
+a = "1" # a comment = with signs
+c = { version = "1", features = [
+    "d", "e",
+] }
+h = { version = "2", optional = true }
+[target.'cfg(unix)'.dependencies]
+f = { version = "1" }
+[build-dependencies]
+g.workspace = true
+[dependencies.i]
+version = "1"
+[dev-dependencies]
+j = "1"
+"#,
+        );
+        let names: Vec<_> = manifest.dependencies.iter().map(|d| (d.name.as_str(), d.optional)).collect();
+        let plain = ["a", "b", "c", "f", "g"].map(|name| (name, false));
+        assert_eq!(names, [&plain[..], &[("h", true), ("i", false)]].concat());
+        assert_eq!(manifest.description, "Some words");
+    }
+}
