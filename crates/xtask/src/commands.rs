@@ -284,6 +284,13 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 Cargo(&["bench", "-p", "etalon-geometry", "--bench", "traversal"]),
             ),
             named(
+                "films",
+                "[OPTIONS]",
+                "hashes of fifty films, to hold changes of code to the same bits",
+                "20 s",
+                Script("bench/films.py"),
+            ),
+            named(
                 "instructions",
                 "[OPTIONS]",
                 "instructions a path, against those recorded; needs valgrind",
@@ -296,13 +303,6 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 "how cost grows with triangles, depth, pixels, lights and bands",
                 "an hour",
                 Script("bench/scale.py"),
-            ),
-            named(
-                "cost-of-not-needing",
-                "",
-                "what an effect costs scenes without it; needs valgrind",
-                "minutes",
-                Script("docs/cost-of-not-needing.sh"),
             ),
         ],
     ),
