@@ -94,6 +94,9 @@ class Translator:
             raise Unsupported("solids that share a place")
         if "absorption_per_m" in m:
             raise Unsupported("absorption")
+        if "alpha" in m:
+            # Mitsuba's rough dielectric loses the light that meets several facets.
+            raise Unsupported("rough glass without loss")
         if kind == "dielectric":
             return {"type": "dielectric", "int_ior": self.index(m["interior"]), "ext_ior": self.index(m.get("exterior", 1.0))}
         if kind in ("black", "lambert"):

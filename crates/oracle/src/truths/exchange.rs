@@ -84,6 +84,7 @@ impl Claim {
             Self::Absorption => "absorption",
             Self::Motion => "motion",
             Self::Masks => "masks",
+            Self::LosslessRoughGlass => "lossless-rough-glass",
         }
     }
 }

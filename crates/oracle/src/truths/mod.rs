@@ -69,11 +69,13 @@ pub enum Claim {
     Motion,
     /// Surfaces let a part of the light pass, also where they coincide with others.
     Masks,
+    /// Rough dielectrics give back the light that meets several facets.
+    LosslessRoughGlass,
 }
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 11] = [
+    pub const UNPOLARISED: [Self; 12] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -85,6 +87,7 @@ impl Claim {
         Self::Absorption,
         Self::Motion,
         Self::Masks,
+        Self::LosslessRoughGlass,
     ];
 }
 

@@ -261,6 +261,11 @@ pub(super) fn glass(interior: f64) -> Value {
     json!({ "type": "dielectric", "interior": interior })
 }
 
+/// Glass whose facets have the GGX distribution of width `alpha`.
+pub(super) fn rough_glass(interior: f64, alpha: f64) -> Value {
+    json!({ "type": "dielectric", "interior": interior, "alpha": alpha })
+}
+
 pub(super) fn glass_in(interior: f64, exterior: f64) -> Value {
     json!({ "type": "dielectric", "interior": interior, "exterior": exterior })
 }

@@ -109,6 +109,8 @@ fn every_wrong_renderer_is_rejected() {
         ("hits nearer than 1e-4 lost", "room-cube-of-ten-micrometres"),
         ("what coincides with a mask that is passed is passed too", "mask-in-a-floor-listed-first"),
         ("what coincides with a mask that is passed is passed too", "mask-of-a-box-on-a-floor"),
+        ("light that meets several facets lost", "furnace-rough-glass-of-a-half"),
+        ("light that meets several facets lost", "furnace-rough-diamond-of-one"),
         ("masks are opaque", "mask-in-the-plane-of-a-lamp-light"),
         ("masks are opaque", "mask-of-half-in-a-tilted-floor"),
         ("masks are opaque", "masks-of-two-sheets-in-a-floor"),

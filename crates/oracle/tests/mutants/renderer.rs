@@ -122,7 +122,16 @@ impl World {
                     weight *= conductor(re, im, -dot(d, n));
                     d = unit(plus(d, -2.0 * dot(d, n), n));
                 }
-                Material::Dielectric { inside, outside } => {
+                Material::Dielectric { inside, outside, alpha } if alpha > 0.0 => {
+                    let (from, to) = if front { (outside, inside) } else { (inside, outside) };
+                    let Some((away, crossed)) = self.leave_facets(alpha, to / from, d, n, numbers) else { return sum };
+                    d = away;
+                    if crossed {
+                        weight *= (from / to).powi(2);
+                        medium *= (from / to).powi(2);
+                    }
+                }
+                Material::Dielectric { inside, outside, .. } => {
                     let (from, to) = if front { (outside, inside) } else { (inside, outside) };
                     let eta = if self.fault == "the ratio never turned round" { inside / outside } else { to / from };
                     let c = -dot(d, n);
@@ -165,6 +174,38 @@ impl World {
                 if self.fault != "roulette not weighed" {
                     weight /= q;
                 }
+            }
+        }
+    }
+
+    /// Where light along `d` goes from facets about `n` that absorb nothing, and whether it is behind them then. From a facet that sends it
+    /// where it cannot go it meets another, until it can. `None` where it is lost.
+    fn leave_facets(&self, alpha: f64, eta: f64, mut d: Vec3, n: Vec3, numbers: &mut Uniform) -> Option<(Vec3, bool)> {
+        let (s, t) = frame(n);
+        let (mut behind, mut eta) = (false, eta);
+        loop {
+            // GGX facets by D cos, of which those that face away are not met.
+            let (u, phi) = (numbers.number(), 2.0 * PI * numbers.number());
+            let z = ((1.0 - u) / (1.0 + (alpha * alpha - 1.0) * u)).sqrt();
+            let r = (1.0 - z * z).max(0.0).sqrt();
+            let h = plus(plus(times(z, n), r * phi.cos(), s), r * phi.sin(), t);
+            let h = if behind { times(-1.0, h) } else { h };
+            let c = -dot(d, h);
+            if c <= 0.0 {
+                continue;
+            }
+            if numbers.number() < self.reflectance(c, eta) {
+                d = unit(plus(d, 2.0 * c, h));
+            } else {
+                let square = 1.0 - (1.0 - c * c) / (eta * eta);
+                d = unit(plus(times(1.0 / eta, d), c / eta - square.max(0.0).sqrt(), h));
+                (behind, eta) = (!behind, 1.0 / eta);
+            }
+            if (dot(d, n) < 0.0) == behind {
+                return Some((d, behind));
+            }
+            if self.fault == "light that meets several facets lost" {
+                return None;
             }
         }
     }

@@ -13,7 +13,12 @@ pub(crate) enum Material {
     Lambert(f64),
     Mirror(f64),
     Conductor(f64, f64),
-    Dielectric { inside: f64, outside: f64 },
+    /// With the width of its facets, 0 where it is smooth.
+    Dielectric {
+        inside: f64,
+        outside: f64,
+        alpha: f64,
+    },
     Black,
 }
 
@@ -126,6 +131,7 @@ impl World {
             Some("dielectric") => Material::Dielectric {
                 inside: index(&object["material"]["interior"], wavelength_nm),
                 outside: index(&object["material"]["exterior"], wavelength_nm),
+                alpha: object["material"]["alpha"].as_f64().unwrap_or(0.0),
             },
             _ => Material::Black,
         };

@@ -145,8 +145,10 @@ impl PolarisedLoss {
             let eta = eta[0] + step * r as f64;
             let at = |i: usize| {
                 let mu = node(i).max(1e-6);
-                let lost = mean_over_facets(ggx, mu, |facet| loss(facet, eta)[0]);
-                let turned = mean_over_facets(ggx, mu, |facet| loss(facet, eta)[1] * cos_of_twice_the_turn(facet));
+                // Seen from either side, so cut for the denser one.
+                let mean = |of: &dyn Fn(&Facet) -> f64| mean_over_facets(ggx, mu, Some(eta.min(1.0 / eta)), of);
+                let lost = mean(&|facet| loss(facet, eta)[0]);
+                let turned = mean(&|facet| loss(facet, eta)[1] * cos_of_twice_the_turn(facet));
                 if lost > 0.0 { (turned / lost).clamp(-1.0, 1.0) } else { 0.0 }
             };
             let values: Vec<f64> = (0..NODES).into_par_iter().map(at).collect();

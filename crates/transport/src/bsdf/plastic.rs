@@ -8,7 +8,7 @@
 
 use super::BsdfSample;
 use super::albedo::{self, LossTable, Tabulated};
-use super::microfacet::{Facet, Facing, Ggx, mean_over_facets};
+use super::microfacet::{Facet, Facing, Ggx, MEAN_ERROR, mean_over_facets};
 use super::mueller::{Lobe, PolarisedLoss};
 use super::rough_dielectric::mean_transmittance;
 use crate::mis::Density;
@@ -55,8 +55,8 @@ impl Plastic {
             let eta = albedo::extremes(range_nm, |nm| coat.eval(nm));
             let reflected = |facet: f64, eta: f64| fresnel::dielectric(facet, eta).map_or(1.0, |f| f.reflectance);
             let transmittance = albedo::shared(Tabulated::Coat, alpha, eta, || {
-                LossTable::new(eta, 1e-3, |mu, eta| {
-                    1.0 - mean_over_facets(&ggx, mu, |facet| reflected(facet.cos, eta) * facet.mirrored)
+                LossTable::new(eta, MEAN_ERROR, |mu, eta| {
+                    1.0 - mean_over_facets(&ggx, mu, Some(eta), |facet| reflected(facet.cos, eta) * facet.mirrored)
                 })
             });
             Box::new(Rough { ggx, transmittance, eta, polarised: None })

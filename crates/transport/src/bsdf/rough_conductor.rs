@@ -7,7 +7,7 @@
 use super::BsdfSample;
 use super::albedo::{self, LossTable, Tabulated};
 use super::metal::{OfMetal, PathMetal};
-use super::microfacet::{Facing, Ggx, gauss_rule, mean_over_facets};
+use super::microfacet::{Facing, Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{Lanes, Vec3, fresnel};
 use std::f64::consts::FRAC_1_PI;
@@ -34,7 +34,7 @@ impl RoughConductor {
         let ggx = Ggx::new(alpha);
         let compensation = compensated.then(|| {
             let loss = albedo::shared(Tabulated::Mirrors, alpha, [1.0, 1.0], || {
-                LossTable::new([1.0, 1.0], 1e-3, |mu, _| mean_over_facets(&ggx, mu, |f| 1.0 - f.mirrored))
+                LossTable::new([1.0, 1.0], MEAN_ERROR, |mu, _| mean_over_facets(&ggx, mu, None, |f| 1.0 - f.mirrored))
             });
             let missing = loss.average(1.0);
             let rule = gauss_rule(24);

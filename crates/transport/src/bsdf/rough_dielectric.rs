@@ -16,7 +16,7 @@
 
 use super::BsdfSample;
 use super::albedo::{self, LossTable, Tabulated};
-use super::microfacet::{Facet, Facing, Ggx, gauss_rule, mean_over_facets};
+use super::microfacet::{Facet, Facing, Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use crate::media::Interface;
 use crate::mis::Density;
@@ -108,11 +108,8 @@ impl Boundary {
         let compensation = compensated.then(|| {
             let ratio = |nm: f64| interior.eval(nm) / exterior.eval(nm);
             let eta = albedo::extremes(range_nm, ratio);
-            let table = |of, eta_of: fn(f64) -> f64| {
-                albedo::shared(of, ggx.alpha(), eta, || {
-                    LossTable::new(eta, 5e-3, |mu, eta| loss(&ggx, mu, eta_of(eta)))
-                })
-            };
+            let table =
+                |of, eta_of: fn(f64) -> f64| albedo::shared(of, ggx.alpha(), eta, || glass_table(&ggx, eta, eta_of));
             Box::new(Compensation {
                 outside: table(Tabulated::Outside, |eta| eta),
                 inside: table(Tabulated::Inside, f64::recip),
@@ -381,12 +378,17 @@ impl RoughDielectric {
     }
 }
 
+/// The losses from the side from which the relative index is `eta_of` that of the table, for n_interior/n_exterior within `eta`.
+pub(super) fn glass_table(ggx: &Ggx, eta: [f64; 2], eta_of: fn(f64) -> f64) -> LossTable {
+    LossTable::new(eta, MEAN_ERROR, |mu, eta| loss(ggx, mu, eta_of(eta)))
+}
+
 /// What one scattering loses of light from above, for η = n_below/n_above.
 pub(super) fn loss(ggx: &Ggx, mu: f64, eta: f64) -> f64 {
     if eta == 1.0 {
         return 0.0;
     }
-    mean_over_facets(ggx, mu, |facet| {
+    mean_over_facets(ggx, mu, Some(eta), |facet| {
         let Some(f) = fresnel::dielectric(facet.cos, eta) else { return 1.0 - facet.mirrored };
         f.reflectance * (1.0 - facet.mirrored) + f.transmittance * (1.0 - passed(ggx, facet, eta, f.cos_t))
     })

@@ -2,16 +2,17 @@
 
 use super::albedo::{LossTable, NODES, extremes, node};
 use super::metal::{OfMetal, PathMetal};
-use super::microfacet::{Ggx, gauss_rule, mean_over_facets};
+use super::microfacet::{Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use super::oren_nayar::albedo;
 use super::plastic::let_in;
-use super::rough_dielectric::{loss, mean_transmittance, polarised_loss};
+use super::rough_dielectric::{glass_table, loss, mean_transmittance, polarised_loss};
 use super::{Bsdf, Shading};
 use etalon_optics::{ComplexIndex, Lanes, Spectrum, Vec3, fresnel};
 use etalon_oracle::laws::{Masking, fresnel_exact, ggx_albedo};
 use etalon_oracle::truths::walsh_reflectance;
 use etalon_scene::{MaterialKind, Metal};
+use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
@@ -35,8 +36,7 @@ fn indices_within_a_range_lie_between_their_extremes() {
     assert_eq!(extremes([400.0, 800.0], |nm| 1.0 + (nm - 600.0).powi(2)), [1.0, 40_001.0]);
 }
 
-/// Never too high by more than the 1e-3 of themselves that metals and coats take off, so that no energy is created; and too low by at most what the
-/// rule says of itself. The oracle's own error is 1e-5.
+/// To 2e-5, of which the oracle's own error is 1e-5.
 #[test]
 fn what_facets_lose_is_what_an_independent_quadrature_misses() {
     let pairs = [
@@ -49,6 +49,8 @@ fn what_facets_lose_is_what_an_independent_quadrature_misses() {
         (1.0, 0.05),
         (1.0, 0.3),
         (1.0, 0.9),
+        // Where a rule of even azimuths meets the circle of total reflection at its edge: it was off by 7e-4 here.
+        (1.0, 0.745),
     ];
     for (alpha, mu) in pairs {
         let ggx = Ggx::new(alpha);
@@ -56,14 +58,77 @@ fn what_facets_lose_is_what_an_independent_quadrature_misses() {
             let truth = ggx_albedo(alpha, mu, eta, Masking::Correlated);
             let truth = 1.0 - truth.reflected - truth.refracted;
             let read = match eta {
-                None => mean_over_facets(&ggx, mu, |facet| 1.0 - facet.mirrored),
+                None => mean_over_facets(&ggx, mu, None, |facet| 1.0 - facet.mirrored),
                 Some(eta) => loss(&ggx, mu, eta),
             };
-            let close = read - truth < 1e-3 * truth + 1e-5 && truth - read < 1.5e-3;
-            assert!(close, "η {eta:?}, α {alpha} µ {mu}: {read} is not {truth}");
+            assert!((read - truth).abs() < 2e-5, "η {eta:?}, α {alpha} µ {mu}: {read} is not {truth}");
         }
         // What is the same on both sides is no interface.
         assert_eq!(loss(&ggx, mu, 1.0), 0.0);
+    }
+}
+
+/// Every direction sees as many facets as there is light in it, whatever it is divided at: to the rule's 5e-6 of all light.
+#[test]
+fn the_facets_that_a_direction_sees_together_fill_it() {
+    for alpha in [1e-4, 1e-3, 0.03, 0.3, 1.0] {
+        for mu in [1e-6, 1e-3, 0.1, 0.7, 1.0] {
+            for eta in [None, Some(1.5), Some(1.0 / 1.5), Some(1.0 / 2.4), Some(0.999), Some(1e-9), Some(1e9)] {
+                let all = mean_over_facets(&Ggx::new(alpha), mu, eta, |_| 1.0);
+                assert!((all - 1.0).abs() < 5e-6, "η {eta:?}, α {alpha} µ {mu}: {all}");
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The tables of rough glass hold what an independent quadrature over all facets finds lost: what they give back is never more than
+    /// that by 1e-4 of all light, and never less by 1e-3 of it. Facets narrower than 0.05 are too narrow for the quadrature's grid.
+    #[test]
+    fn tables_of_rough_glass_hold_what_an_independent_quadrature_finds_lost(
+        alpha in 0.05..1.0_f64, n in 1.1..2.6_f64, mu in 0.02..1.0_f64, dispersion in 0.0..0.05_f64, inside: bool,
+    ) {
+        let of: fn(f64) -> f64 = if inside { f64::recip } else { |n| n };
+        let table = glass_table(&Ggx::new(alpha), [n, n + dispersion], of);
+        for n in [n, n + 0.4 * dispersion] {
+            let truth = ggx_albedo(alpha, mu, Some(of(n)), Masking::Correlated);
+            let truth = 1.0 - truth.reflected - truth.refracted;
+            let over = table.eval(mu, n) - truth;
+            prop_assert!(over < 1e-4 && over > -1e-3, "α {}, n {}, µ {}: {} too much of {}", alpha, n, mu, over, truth);
+        }
+    }
+}
+
+/// On the mean over diffuse light the tables give back less than is lost, by at most 1.5e-4 of all light: what the many times that light
+/// meets the surface from inside a body may add up. In no direction do they give back more than 1e-4 too much, also between their nodes.
+fn gives_back_all_but_little(what: &str, table: &LossTable, eta: f64, loss: impl Fn(f64) -> f64) {
+    // In √µ the loss of a narrow width is smooth enough for midpoints.
+    let at = |i: u32| (f64::from(i) + 0.5) / 400.0;
+    let losses: Vec<f64> = (0..400).map(|i| loss(at(i).powi(2))).collect();
+    let lost = (0..400).map(|i| at(i).powi(3) * 4.0 / 400.0 * losses[i as usize]).sum::<f64>();
+    let missing = lost - table.average(eta);
+    assert!((0.0..1.5e-4).contains(&missing), "{what}: {missing} of {lost}");
+    for i in 0..400 {
+        let over = table.eval(at(i).powi(2), eta) - losses[i as usize];
+        assert!(over < 1e-4, "{what}, µ {}: {over} too much", at(i).powi(2));
+    }
+}
+
+#[test]
+fn tables_of_rough_surfaces_give_back_all_but_little_of_diffuse_light_and_never_more() {
+    for alpha in [1e-3, 0.01, 0.1, 0.5, 1.0] {
+        let ggx = Ggx::new(alpha);
+        let mirrors = |mu: f64| mean_over_facets(&ggx, mu, None, |facet| 1.0 - facet.mirrored);
+        let table = LossTable::new([1.0, 1.0], MEAN_ERROR, |mu, _| mirrors(mu));
+        gives_back_all_but_little(&format!("mirrors, α {alpha}"), &table, 1.0, mirrors);
+        for n in [1.5, 2.4] {
+            for of in [(|n| n) as fn(f64) -> f64, f64::recip] {
+                let what = format!("α {alpha}, η {}", of(n));
+                gives_back_all_but_little(&what, &glass_table(&ggx, [n, n], of), n, |mu| loss(&ggx, mu, of(n)));
+            }
+        }
     }
 }
 
@@ -225,7 +290,7 @@ fn diattenuation(alpha: f64, mu: f64, eta: f64, of: impl Fn(OfState) -> f64) -> 
     sums[1] / sums[0]
 }
 
-/// To 5e-3, what the rule over facets says of its sums, and a hundredth more where a table's nodes are far apart.
+/// To 1.5e-2, which the grid of 160 by 160 facets and the chords between a table's nodes explain.
 #[test]
 fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
     let lost = |of: OfState| of.r * (1.0 - of.mirrored) + of.t * (1.0 - of.passed);
