@@ -76,7 +76,7 @@ pub(crate) fn nonnegative(
         }
         (value, error)
     };
-    adapt([bounds], rule, quarter, tolerance, most_cells)
+    adapt([bounds], rule, quarter, tolerance, most_cells, 0.0)
 }
 
 /// Two rules that differ by less than this part of the integral have met no jump that matters.
