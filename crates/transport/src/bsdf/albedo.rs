@@ -88,19 +88,20 @@ impl LossTable {
         };
         let rows = (0..count).map(row).collect();
         let mut table = Self { eta: eta[0], step, rows, cdf: [0.0; NODES] };
-        // In the middle between nodes the table errs most. Where it is too high there, its nodes are lowered, which cannot
-        // raise it anywhere else.
+        // Where the table is too high between nodes, these are lowered, which cannot raise it anywhere else.
         for r in 0..count {
             for half in if r + 1 < count { &[0.0, 0.5][..] } else { &[0.0] } {
                 let eta = at(r as f64 + half);
-                let mu = |i: usize| 0.5 * (node(i - 1) + node(i));
-                let exact: Vec<f64> = (1..NODES).into_par_iter().map(|i| loss(mu(i), eta).max(0.0)).collect();
-                for i in 1..NODES {
-                    let (exact, held) = (exact[i - 1], table.eval(mu(i), eta));
-                    if held > exact {
-                        let lowered = &mut table.rows[r..(r + 2).min(count)];
-                        lowered.iter_mut().flat_map(|row| &mut row.loss[i - 1..=i]).for_each(|v| *v *= exact / held);
-                    }
+                let exact = |mu: f64| loss(mu, eta).max(0.0);
+                let cells: Vec<_> = (1..NODES).into_par_iter().map(|i| table.checks(i, eta, exact)).collect();
+                for (i, checks) in (1..NODES).zip(cells) {
+                    let share = |(mu, exact): (f64, f64)| {
+                        let held = table.eval(mu, eta);
+                        if held > exact { exact / held } else { 1.0 }
+                    };
+                    let kept = checks.into_iter().map(share).fold(1.0, f64::min);
+                    let lowered = &mut table.rows[r..(r + 2).min(count)];
+                    lowered.iter_mut().flat_map(|row| &mut row.loss[i - 1..=i]).for_each(|v| *v *= kept);
                 }
             }
         }
@@ -116,6 +117,41 @@ impl LossTable {
         }
         table.cdf[NODES - 1] = 1.0;
         table
+    }
+
+    /// Cosines between nodes `i − 1` and `i`, and what `exact` says there: among them about where the table is most too high.
+    ///
+    /// A chord of a smooth curve differs from it as a parabola with its top in the middle does, so three cosines tell. Where they do not
+    /// lie on one, as at a kink, the place is searched by golden sections.
+    fn checks(&self, i: usize, eta: f64, exact: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        const SECTIONS: usize = 12;
+        // Far below what a lossless surface may return too much.
+        const ON_PARABOLA: f64 = 3e-7;
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let mut checks = Vec::with_capacity(3);
+        let mut excess = |share: f64| {
+            let mu = node(i - 1) + share * (node(i) - node(i - 1));
+            checks.push((mu, exact(mu)));
+            self.eval(mu, eta) - checks[checks.len() - 1].1
+        };
+        let found = [0.25, 0.5, 0.75].map(&mut excess);
+        if [found[0], found[2]].iter().any(|side| (side - 0.75 * found[1]).abs() > ON_PARABOLA) {
+            let highest = (0..3).max_by(|&a, &b| found[a].total_cmp(&found[b])).expect("there are three");
+            let (mut from, mut to) = (0.25 * highest as f64, 0.25 * highest as f64 + 0.5);
+            let inner = |from: f64, to: f64| [to - golden * (to - from), from + golden * (to - from)];
+            let mut at = inner(from, to);
+            let mut values = at.map(&mut excess);
+            for _ in 0..SECTIONS {
+                if values[0] > values[1] {
+                    (to, at) = (at[1], inner(from, at[1]));
+                    values = [excess(at[0]), values[0]];
+                } else {
+                    (from, at) = (at[0], inner(at[0], to));
+                    values = [values[1], excess(at[1])];
+                }
+            }
+        }
+        checks
     }
 
     /// A direction (z > 0) whose cosine follows loss·µ: uniform in µ² between two nodes.
