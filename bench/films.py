@@ -209,7 +209,7 @@ def main():
     parser.add_argument("--against", type=pathlib.Path, help="hashes printed before")
     parser.add_argument("--scenes", type=pathlib.Path, help="write the scenes there, and end")
     parser.add_argument("--only", help="films whose name has this in it")
-    parser.add_argument("--scalar", default="plain", help="what this build calls the loop that follows one path at a time")
+    parser.add_argument("--scalar", default="scalar", help="what this build calls the loop that follows one path at a time")
     args = parser.parse_args()
     if args.scenes:
         print(*write_scenes(args.scenes))

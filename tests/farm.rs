@@ -53,7 +53,7 @@ fn a_scene_with_mistakes_is_found_before_it_is_sent_to_a_farm() {
 
 #[test]
 fn every_option_of_a_render_is_in_the_job() {
-    let options = "--spp 5 --replicates 2 --seed 3 --loop plain --polarised --by-cosine --carry four-wavelengths";
+    let options = "--spp 5 --replicates 2 --seed 3 --loop scalar --polarised --by-cosine --carry four-wavelengths";
     for kind in ["--slurm", "--openjd"] {
         let line = format!("farm {{}} --shards 2 {kind} {options}");
         let job = etalon_line(&line, [&scene("cornell.json")]).expect(0).stdout;

@@ -19,7 +19,7 @@ const FILMS: [(&str, &str); 9] = [
     ("prism.json", "--bands 420:680:20"),
     ("vase.json", ""),
     ("lanterns.json", ""),
-    ("veach-mis.json", "--loop plain"),
+    ("veach-mis.json", "--loop scalar"),
     ("polarisers.json", ""),
 ];
 

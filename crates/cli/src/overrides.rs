@@ -60,7 +60,7 @@ pub(crate) struct Settings {
     /// For study: what paths carry instead of the wavelengths that the scene calls for.
     #[arg(long, value_enum, value_name = "WHAT")]
     carry: Option<CarryArg>,
-    /// For study: trace one path at a time, or many at once where that is possible. Both give the same picture, bit for bit.
+    /// For study: trace one path at a time, or many at once. Both give the same picture, bit for bit.
     #[arg(long = "loop", value_enum, value_name = "WHICH")]
     path_loop: Option<PathLoopArg>,
     /// For study: draw all directions of diffuse surfaces by the cosine, none toward what casts caustics.
@@ -71,16 +71,16 @@ pub(crate) struct Settings {
 #[derive(Clone, Copy, ValueEnum)]
 enum PathLoopArg {
     /// One path at a time.
-    Plain,
+    Scalar,
     /// Many paths at once.
-    Lanes,
+    Batch,
 }
 
 impl From<PathLoopArg> for PathLoop {
     fn from(arg: PathLoopArg) -> Self {
         match arg {
-            PathLoopArg::Plain => Self::Plain,
-            PathLoopArg::Lanes => Self::Lanes,
+            PathLoopArg::Scalar => Self::Scalar,
+            PathLoopArg::Batch => Self::Batch,
         }
     }
 }
@@ -302,7 +302,7 @@ mod tests {
             all.extend(line);
         }
         assert_eq!(words(&all).unwrap(), all);
-        assert!(all.join(" ").contains("--loop plain"), "{all:?}");
+        assert!(all.join(" ").contains("--loop scalar"), "{all:?}");
         assert_eq!(words(&[]).unwrap(), [""; 0]);
         // A value keeps its spaces, and a list of values its order.
         let line = ["--bands", "400: 700:10", "--without", "lens", "--without", "masks"].map(str::to_owned);

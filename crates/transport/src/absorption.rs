@@ -24,7 +24,7 @@ impl<'a> Body<'a> {
         while let Some(hit) = geometry.next_hit(ray, &passed) {
             let point = geometry.surface(ray, &hit);
             let surface = surfaces.of(&point);
-            if surface.interior.is_some() {
+            if surface.interior().is_some() {
                 return Self(None).before(&surface, point.normal.dot(ray.direction) < 0.0);
             }
             passed.pass(&hit, hit.t);
@@ -34,7 +34,7 @@ impl<'a> Body<'a> {
 
     /// Corrected by the surface that the path has met, from its front or from within.
     pub(crate) fn before(self, surface: &Surface<'a>, from_front: bool) -> Self {
-        match surface.interior {
+        match surface.interior() {
             Some(interior) if !from_front => Self(interior.absorption.as_ref()),
             _ => self,
         }
@@ -42,7 +42,7 @@ impl<'a> Body<'a> {
 
     /// Behind the surface, which the path has met from its front or from within.
     pub(crate) fn beyond(self, surface: &Surface<'a>, from_front: bool) -> Self {
-        match surface.interior {
+        match surface.interior() {
             Some(interior) if from_front => Self(interior.absorption.as_ref()),
             Some(_) => Self(None),
             None => self,

@@ -64,7 +64,7 @@ impl CellTable {
     /// Both numbers in the cells of a path's lanes.
     #[inline(always)]
     pub(crate) fn at<const N: usize>(&self, place: &Place) -> [Lanes<f64, N>; 2] {
-        const { assert!(TURNS.is_multiple_of(N)) };
+        assert!(TURNS.is_multiple_of(N), "tables by cells are for paths whose lanes are dealt evenly");
         let (row, turn) = (&self.rows[place.row as usize], place.turn as usize % TURNS);
         let (mut value, mut step) = (Lanes::ZERO, Lanes::ZERO);
         for lane in 0..N {

@@ -43,7 +43,7 @@ pub(crate) fn warnings(prepared: &Prepared) -> Vec<String> {
         let interfaces: Vec<(u32, SurfacePoint<f64>)> = points
             .filter_map(|point| {
                 let surface = prepared.surfaces.of(&point);
-                surface.interior.map(|_| (surface.object, point))
+                surface.interior().map(|_| (surface.object, point))
             })
             .collect();
         for neighbours in interfaces.windows(2) {

@@ -13,27 +13,113 @@
 
 use crate::film::Counters;
 use crate::media::{Inside, Interface, Media};
-use crate::path::World;
-use crate::surface::Surface;
+use crate::shading_tables::{BsdfKind, SmoothInterface};
+use crate::surface::{Scattering, Surface};
+use crate::world::{ShadowRays, World};
 use etalon_geometry::{Hit, Passed, Ray, SurfacePoint};
+use etalon_optics::Vec3;
 
-/// A surface that a path meets.
+/// A surface that a path meets, as BSDFs and lights see it.
 pub(crate) struct SurfaceInteraction<'a> {
     pub hit: Hit<f64>,
     pub point: SurfacePoint<f64>,
+    /// Toward where the path came from; a unit vector.
+    pub wo: Vec3<f64>,
     pub surface: Surface<'a>,
     /// The media on both sides; `None` where the material itself says.
     pub interface: Option<Interface<'a>>,
-    /// The solids that hold the path if it goes on through a boundary.
-    pub beyond: Option<Inside>,
+    /// Whether a path that goes on through it crosses boundaries of solids: [`Walk::beyond`] then holds it.
+    pub crosses: bool,
+    pub kind: BsdfKind,
+    /// Whether shadow rays are sent from here.
+    pub sees_lights: bool,
+    /// What it does to light, where that is general and has been prepared.
+    scattering: Option<Scattering<'a>>,
+}
+
+impl<'a> SurfaceInteraction<'a> {
+    /// Where a ray hits a surface that bounds no solid among others.
+    #[inline(always)]
+    pub(crate) fn new(ray_direction: Vec3<f64>, hit: Hit<f64>, point: SurfacePoint<f64>, surface: Surface<'a>) -> Self {
+        Self {
+            hit,
+            point,
+            wo: -ray_direction,
+            surface,
+            interface: None,
+            crosses: false,
+            kind: BsdfKind::General,
+            sees_lights: false,
+            scattering: None,
+        }
+    }
+
+    /// Becomes another one, as [`SurfaceInteraction::new`] has it.
+    #[inline(always)]
+    pub(crate) fn renew(&mut self, ray_direction: Vec3<f64>, hit: Hit<f64>, point: SurfacePoint<f64>, surface: Surface<'a>) {
+        (self.hit, self.point, self.wo, self.surface) = (hit, point, -ray_direction, surface);
+        (self.interface, self.crosses) = (None, false);
+    }
+
+    /// Whether the path met the side that the normal points into.
+    #[inline(always)]
+    pub(crate) fn from_front(&self) -> bool {
+        self.point.normal.dot(self.wo) > 0.0
+    }
+
+    /// Whether a direction leads to the other side of the surface.
+    #[inline(always)]
+    pub(crate) fn goes_through(&self, wi: Vec3<f64>) -> bool {
+        self.point.normal.dot(wi) * self.point.normal.dot(self.wo) < 0.0
+    }
+
+    /// Looks up what it does to light.
+    #[inline(always)]
+    pub(crate) fn prepare_scattering(&mut self, world: &World<'a>) {
+        let Surface { object, material, .. } = self.surface;
+        self.kind = world.tables.kind(object, material);
+        self.sees_lights = match world.shadow_rays {
+            ShadowRays::Never => false,
+            ShadowRays::WhereUseful => world.tables.has_solid_angle_part(material),
+            ShadowRays::Everywhere => true,
+        };
+        if self.kind == BsdfKind::General {
+            self.scattering = Some(self.surface.scattering(world.geometry, &self.point, &self.hit, self.interface));
+        }
+    }
+
+    /// What it does to light, where its kind is general.
+    #[inline(always)]
+    pub(crate) fn scattering(&self) -> &Scattering<'a> {
+        self.scattering.as_ref().expect("general scattering is prepared on arrival")
+    }
+
+    /// The indices behind and before the outward normal of a smooth interface, at a wavelength.
+    #[inline(always)]
+    pub(crate) fn indices(&self, of_material: &SmoothInterface, wavelength_nm: f64) -> [f64; 2] {
+        match &self.interface {
+            None => of_material.constant.unwrap_or_else(|| of_material.glass.indices(wavelength_nm)),
+            Some(media) => {
+                let [near, far] = [media.incident, media.transmitted].map(|medium| medium.eval(wavelength_nm));
+                if self.from_front() { [far, near] } else { [near, far] }
+            }
+        }
+    }
 }
 
 /// How far a path has come along its ray.
-#[derive(Default)]
 pub(crate) struct Walk {
     passed: Passed,
     /// The surfaces of the group that was met last, those already passed among them.
     group: Vec<Member>,
+    /// The solids that hold the path if it goes on through the interface that it met last.
+    pub beyond: Inside,
+}
+
+impl Default for Walk {
+    fn default() -> Self {
+        Self { passed: Passed::default(), group: Vec::new(), beyond: Inside::NOTHING }
+    }
 }
 
 /// A surface of a group.
@@ -54,9 +140,9 @@ impl Walk {
 
     /// Passes a surface as if it were not there; a boundary together with those that coincide with it.
     pub(crate) fn pass(&mut self, met: &SurfaceInteraction<'_>) {
-        match met.beyond {
-            Some(_) => self.pass_group(),
-            None => self.passed.pass(&met.hit, self.first_distance()),
+        match met.crosses {
+            true => self.pass_group(),
+            false => self.passed.pass(&met.hit, self.first_distance()),
         }
     }
 
@@ -74,34 +160,32 @@ impl Walk {
     }
 }
 
-impl World<'_> {
+impl<'w> World<'w> {
     /// What the walk along a ray meets next; `inside` is brought before it.
     #[inline(always)]
-    pub(crate) fn meet(
+    pub(crate) fn intersect(
         &self,
         ray: &Ray<f64>,
         walk: &mut Walk,
         inside: &mut Inside,
         counters: &mut Counters,
-    ) -> Option<SurfaceInteraction<'_>> {
-        let masks = self.masks;
-        let media = self.media;
-        if masks || media.is_some() {
-            return self.meet_in_group(ray, walk, media, inside, &mut counters.lost_media);
+    ) -> Option<SurfaceInteraction<'w>> {
+        if self.meets_groups {
+            return self.intersect_group(ray, walk, inside, &mut counters.lost_media);
         }
         let hit = self.geometry.closest_hit(ray)?;
         let point = self.geometry.surface(ray, &hit);
-        Some(SurfaceInteraction { hit, point, surface: self.surfaces.of(&point), interface: None, beyond: None })
+        Some(SurfaceInteraction::new(ray.direction, hit, point, self.surfaces.of(&point)))
     }
 
-    fn meet_in_group<'a>(
-        &'a self,
+    fn intersect_group(
+        &self,
         ray: &Ray<f64>,
         walk: &mut Walk,
-        media: Option<&'a Media>,
         inside: &mut Inside,
         lost: &mut u64,
-    ) -> Option<SurfaceInteraction<'a>> {
+    ) -> Option<SurfaceInteraction<'w>> {
+        let media = self.media;
         loop {
             let first = self.geometry.next_hit(ray, &walk.passed)?;
             self.gather(ray, walk, first);
@@ -110,38 +194,39 @@ impl World<'_> {
                 let surface = self.surfaces.of(&point);
                 let around = media.filter(|_| surface.takes_medium()).map(|media| media.medium(inside));
                 let interface = around.map(|around| Interface { incident: around, transmitted: around });
-                return Some(SurfaceInteraction { hit, point, surface, interface, beyond: None });
+                return Some(SurfaceInteraction {
+                    interface,
+                    ..SurfaceInteraction::new(ray.direction, hit, point, surface)
+                });
             }
             let media = media.expect("what is no boundary was met above");
             let ahead = walk.group.iter().filter(|member| !member.passed);
             let crossings = ahead.map(|member| {
                 (media.place(self.surfaces, &member.point), member.point.normal.dot(ray.direction) < 0.0)
             });
-            let beyond = inside.crossed(crossings, lost);
-            if let Some(deciding) = media.deciding(inside, &beyond) {
+            walk.beyond = inside.crossed(crossings, lost);
+            if let Some(deciding) = media.deciding(inside, &walk.beyond) {
                 let number = walk.group.iter().position(|member| member.hit == first).expect("it is of its group");
                 let (hit, point) = leaving_group(&walk.group, number);
                 let mut surface = self.surfaces.of(&point);
                 if let Some(object) = deciding {
-                    surface.bsdf = self.surfaces.bsdf_of(object);
+                    surface.material = self.surfaces.material_of(object);
                 }
-                let interface = Interface { incident: media.medium(inside), transmitted: media.medium(&beyond) };
+                let interface = Interface { incident: media.medium(inside), transmitted: media.medium(&walk.beyond) };
                 return Some(SurfaceInteraction {
-                    hit,
-                    point,
-                    surface,
                     interface: Some(interface),
-                    beyond: Some(beyond),
+                    crosses: true,
+                    ..SurfaceInteraction::new(ray.direction, hit, point, surface)
                 });
             }
-            *inside = beyond;
+            *inside = walk.beyond;
             walk.pass_group();
         }
     }
 
     /// Finds the group of a hit.
     fn gather(&self, ray: &Ray<f64>, walk: &mut Walk, first: Hit<f64>) {
-        let Walk { passed, group } = walk;
+        let Walk { passed, group, .. } = walk;
         let point = self.geometry.surface(ray, &first);
         group.clear();
         group.push(Member { hit: first, point, passed: false });

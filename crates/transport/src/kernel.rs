@@ -2,14 +2,14 @@
 
 use crate::camera::Camera;
 use crate::caustics::{Trial, try_casters};
-use crate::engine::render_spots_lanes;
+use crate::batch::render_batch;
 use crate::film::{Counters, PixelRect, Sums};
-use crate::film_entry::{FilmEntry, Received, SampleId};
-use crate::interaction::{SurfaceInteraction, Walk};
+use crate::film_entry::{FilmEntry, SampleId};
+use crate::integrator::{MOST_VERTICES, Path, Start, trace};
+use crate::interaction::Walk;
 use crate::media::Inside;
 use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
 use crate::observer::Observer;
-use crate::path::{MOST_VERTICES, World};
 use crate::plan::{Carried, EffectName, LaneModel};
 use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::prepare::Prepared;
@@ -17,9 +17,9 @@ use crate::replay::{Replay, replay};
 use crate::reuse;
 use crate::sampler::Sampler;
 use crate::surface::Scattering;
-use crate::wavelength::Wavelengths;
+use crate::world::World;
 use etalon_geometry::Ray;
-use etalon_optics::{Lanes, Vec3};
+use etalon_optics::Vec3;
 use std::ops::Range;
 
 /// Wavelengths that a path carries where they differ.
@@ -59,10 +59,11 @@ pub(crate) struct Kernel {
     pub polarised: bool,
     /// Its name: the model and the number of lanes.
     pub name: &'static str,
-    pub render: RenderSpots,
-    /// The same, bit for bit, by many paths at once, where there is that.
-    pub render_lanes: Option<RenderSpots>,
-    /// One path at a time where neighbouring pixels share paths.
+    /// One path at a time.
+    pub render_scalar: RenderSpots,
+    /// Many at once: the same, bit for bit.
+    pub render_batch: RenderSpots,
+    /// One path at a time where neighbouring pixels share paths, if they can.
     pub render_reused: Option<RenderSpots>,
     /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
@@ -72,9 +73,9 @@ pub(crate) struct Kernel {
 
 /// The whole table. What is no type parameter is decided by the plan, at run time: a branch costs nothing, work does.
 static KERNELS: &[Kernel] = &[
-    with_lanes::<OneLane, 1>(LaneModel::One, "one-lane"),
-    with_lanes::<Shared, LANES>(LaneModel::Shared, "shared-8"),
-    with_lanes::<Hero<LANES>, LANES>(LaneModel::Hero, "hero-8"),
+    with_reuse::<OneLane, 1>(LaneModel::One, "one-lane"),
+    with_reuse::<Shared, LANES>(LaneModel::Shared, "shared-8"),
+    with_reuse::<Hero<LANES>, LANES>(LaneModel::Hero, "hero-8"),
     Kernel { polarised: true, ..entry::<Shared, Followed<LANES>, LANES>(LaneModel::Shared, "polarised-shared-8") },
     Kernel { polarised: true, ..entry::<Hero<LANES>, Followed<LANES>, LANES>(LaneModel::Hero, "polarised-hero-8") },
 ];
@@ -96,28 +97,22 @@ const fn entry<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     lanes: LaneModel,
     name: &'static str,
 ) -> Kernel {
-    let (render, replay) = (render_scalar::<M, P, N>, replay::<M, P, N>);
-    let try_casters = try_casters::<M, P, N>;
     Kernel {
         lanes,
         lane_count: N,
         polarised: false,
         name,
-        render,
-        render_lanes: None,
-        replay,
-        try_casters,
+        render_scalar: render_scalar::<M, P, N>,
+        render_batch: render_batch::<M, P, N>,
         render_reused: None,
+        replay: replay::<M, P, N>,
+        try_casters: try_casters::<M, P, N>,
     }
 }
 
-/// One that can also follow many paths at once.
-const fn with_lanes<M: WavelengthModel<N>, const N: usize>(lanes: LaneModel, name: &'static str) -> Kernel {
-    Kernel {
-        render_lanes: Some(render_spots_lanes::<M, N>),
-        render_reused: Some(reuse::render_spots::<M, N>),
-        ..entry::<M, Averaged, N>(lanes, name)
-    }
+/// One whose pixels can share paths.
+const fn with_reuse<M: WavelengthModel<N>, const N: usize>(lanes: LaneModel, name: &'static str) -> Kernel {
+    Kernel { render_reused: Some(reuse::render_spots::<M, N>), ..entry::<M, Averaged, N>(lanes, name) }
 }
 
 /// The kernel of a model of wavelengths.
@@ -139,10 +134,9 @@ fn render_scalar<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     for (number, spot) in spots.iter().enumerate() {
         let before = counters.rays + counters.shadow_rays;
         for sample in spot.samples.clone() {
-            let (wavelengths, radiance, polarisation) =
-                tracer.sample::<M, P, N>(spot.x, spot.y, sample, &mut counters, &mut ());
-            let xyz = M::to_xyz(prepared, &wavelengths, radiance);
-            let received = Received { wavelengths, radiance, stokes: polarisation.received() };
+            let path = tracer.sample::<M, P, N>(spot.x, spot.y, sample, &mut counters, &mut ());
+            let received = path.received();
+            let xyz = M::to_xyz(prepared, &received.wavelengths, received.radiance);
             film.add::<M, N>(SampleId { spot: number, x: spot.x, y: spot.y, sample }, xyz, &received, &mut counters);
         }
         film.count_rays(number, counters.rays + counters.shadow_rays - before);
@@ -170,8 +164,6 @@ pub(crate) struct Tracer<'a> {
     pub(crate) prepared: &'a Prepared,
     pub(crate) camera: Camera,
     pub(crate) world: World<'a>,
-    /// Whether paths have times.
-    moves: bool,
     /// The block of pixels that share paths: alone, one.
     block: [u32; 2],
 }
@@ -180,22 +172,25 @@ impl<'a> Tracer<'a> {
     pub(crate) fn new(prepared: &'a Prepared) -> Self {
         let integrator = &prepared.scene.integrator;
         let plan = prepared.plan();
+        // Forced on a scene without solids, they are nothing to walk through.
+        let media = prepared.media.as_ref().filter(|media| media.solids.iter().any(Option::is_some));
+        let masks = plan.runs(EffectName::Masks);
         Self {
             prepared,
             camera: prepared.tracing_camera(),
-            moves: plan.runs(EffectName::Motion),
             block: prepared.path_reuse().unwrap_or([1, 1]),
             world: World {
                 geometry: &prepared.geometry,
                 surfaces: &prepared.surfaces,
                 lights: &prepared.lights,
                 environments: &prepared.environments,
-                // Forced on a scene without solids, they are nothing to walk through.
-                media: prepared.media.as_ref().filter(|media| media.solids.iter().any(Option::is_some)),
+                media,
                 absorption: prepared.absorption(),
                 light_sampling: integrator.light_sampling,
                 shadow_rays: prepared.shadow_rays(),
-                masks: plan.runs(EffectName::Masks),
+                masks,
+                meets_groups: masks || media.is_some(),
+                moves: plan.runs(EffectName::Motion),
                 weigh_hits: prepared.lights.can_be_met() || plan.runs(EffectName::Mis),
                 max_depth: integrator.max_depth.unwrap_or(MOST_VERTICES).min(MOST_VERTICES),
                 roulette: integrator.roulette,
@@ -229,26 +224,26 @@ impl<'a> Tracer<'a> {
         [2.0 * column / width - 1.0, 1.0 - 2.0 * row / height]
     }
 
-    /// The ray of a sample, and the media that it begins in.
-    fn camera_ray(&self, x: u32, y: u32, sampler: &Sampler, counters: &mut Counters) -> (Ray<f64>, Inside) {
+    /// The ray of a sample.
+    fn camera_ray(&self, x: u32, y: u32, sampler: &Sampler, counters: &mut Counters) -> Ray<f64> {
         let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
         let film = self.film_point(x, y, [film_x, film_y]);
         counters.lens_draws += u64::from(self.camera.has_lens());
-        let time = if self.moves {
+        let time = if self.world.moves {
             counters.time_draws += 1;
             let [_, time, ..] = sampler.set(1);
             time
         } else {
             0.0
         };
-        let ray = self.camera.ray_at(film, [lens_1, lens_2], time);
-        let inside = match self.world.media {
-            Some(media) => {
-                media.around(&self.prepared.geometry, &self.prepared.surfaces, &ray, &mut counters.lost_media)
-            }
-            _ => Inside::NOTHING,
-        };
-        (ray, inside)
+        self.camera.ray_at(film, [lens_1, lens_2], time)
+    }
+
+    /// The solids that hold the origin of a camera ray, where they are followed.
+    #[inline(always)]
+    pub(crate) fn inside(&self, ray: &Ray<f64>, counters: &mut Counters) -> Option<Inside> {
+        let (geometry, surfaces) = (&self.prepared.geometry, &self.prepared.surfaces);
+        self.world.media.map(|media| media.around(geometry, surfaces, ray, &mut counters.lost_media))
     }
 
     /// The first surface that the path of a sample meets, masks passed as the path passes them.
@@ -260,29 +255,30 @@ impl<'a> Tracer<'a> {
         counters: &mut Counters,
     ) -> Option<FirstSurface<'_>> {
         let sampler = self.sampler(x, y, sample);
-        let (ray, mut inside) = self.camera_ray(x, y, &sampler, counters);
+        let ray = self.camera_ray(x, y, &sampler, counters);
+        let mut inside = self.inside(&ray, counters).unwrap_or(Inside::NOTHING);
         let mut walk = Walk::default();
         let [.., mut u_mask] = sampler.vertex_set(0, 1);
         for _ in 0..MOST_VERTICES {
-            let met = self.world.meet(&ray, &mut walk, &mut inside, counters)?;
-            let SurfaceInteraction { hit, point, surface, interface, .. } = &met;
+            let met = self.world.intersect(&ray, &mut walk, &mut inside, counters)?;
+            let (hit, point, surface) = (&met.hit, &met.point, &met.surface);
             let opacity = if self.world.masks { surface.opacity(&self.prepared.geometry, point, hit) } else { 1.0 };
             if u_mask >= opacity {
                 u_mask = (u_mask - opacity) / (1.0 - opacity);
                 walk.pass(&met);
-                if let Some(beyond) = met.beyond {
-                    inside = beyond;
+                if met.crosses {
+                    inside = walk.beyond;
                 }
                 continue;
             }
             let [u_lobe, u1, u2, _] = sampler.vertex_set(0, 0);
-            let wo = -ray.direction;
+            let wo = met.wo;
             return Some(FirstSurface {
                 object: surface.object,
                 position: point.position,
                 wo,
                 geometric_cos: point.normal.dot(wo),
-                scattering: surface.scattering(self.world.geometry, point, hit, *interface),
+                scattering: surface.scattering(self.world.geometry, point, hit, met.interface),
                 u: [u_lobe, u1, u2],
             });
         }
@@ -297,25 +293,32 @@ impl<'a> Tracer<'a> {
         sample: u32,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
-    ) -> (Wavelengths<N>, Lanes<f64, N>, P) {
+    ) -> Path<'a, M, P, N> {
         let sampler = self.sampler(x, y, sample);
+        let start = self.start::<M, P, N>(x, y, sample, &sampler, counters);
+        let mut path = Path::idle();
+        path.begin(&self.world, &start);
+        trace(&self.world, &mut path, start.ray, &sampler, counters, observer);
+        path
+    }
 
+    /// Where the path of a sample begins.
+    pub(crate) fn start<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        x: u32,
+        y: u32,
+        sample: u32,
+        sampler: &Sampler,
+        counters: &mut Counters,
+    ) -> Start<P, N> {
         let wavelengths = M::wavelengths(self.prepared, || {
             let [wavelength, ..] = self.of_block(x, y, sample).set(1);
             wavelength
         });
-        let (ray, inside) = self.camera_ray(x, y, &sampler, counters);
-        let mut polarisation = P::at_camera(ray.direction, self.camera.right(ray.time));
-        let radiance = self.world.radiance::<M, P, N>(
-            ray,
-            inside,
-            &mut polarisation,
-            &wavelengths.lambda_nm,
-            &sampler,
-            counters,
-            observer,
-        );
-        (wavelengths, radiance, polarisation)
+        let ray = self.camera_ray(x, y, sampler, counters);
+        let inside = self.inside(&ray, counters);
+        let polarisation = P::at_camera(ray.direction, self.camera.right(ray.time));
+        Start { ray, inside, wavelengths, polarisation }
     }
 }
 

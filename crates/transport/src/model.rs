@@ -78,7 +78,11 @@ pub(crate) struct ThreeChannels;
 
 /// Lanes that dispersion may part from the hero's path: their densities relative to it.
 #[derive(Clone, Copy)]
-pub(crate) struct Hero<const N: usize>(Lanes<f64, N>);
+pub(crate) struct Hero<const N: usize> {
+    density: Lanes<f64, N>,
+    /// Whether lanes have had densities of their own. Until then all are exactly 1.
+    parted: bool,
+}
 
 impl WavelengthModel<1> for OneLane {
     const CARRIES_WEIGHTS: bool = false;
@@ -158,31 +162,35 @@ impl<const N: usize> WavelengthModel<N> for Hero<N> {
 
     #[inline(always)]
     fn together(&self) -> bool {
-        self.0 == Lanes::ONE
+        !self.parted || self.density == Lanes::ONE
     }
 
     #[inline(always)]
     fn start() -> Self {
-        Self(Lanes::ONE)
+        Self { density: Lanes::ONE, parted: false }
     }
 
     #[inline(always)]
     fn follow(&mut self, lane_density: Lanes<f64, N>) -> f64 {
-        let before = self.0.sum();
-        self.0 *= lane_density;
-        self.0.sum() / before
+        self.parted |= lane_density != Lanes::ONE;
+        if !self.parted {
+            return 1.0;
+        }
+        let before = self.density.sum();
+        self.density *= lane_density;
+        self.density.sum() / before
     }
 
     #[inline(always)]
     fn mean_density(&self, density: Lanes<f64, N>) -> f64 {
         // In differences from the hero's, so that equal densities give exactly that.
         let difference = density - Lanes::splat(density[0]);
-        density[0] + (self.0 * difference).sum() / self.0.sum()
+        density[0] + (self.density * difference).sum() / self.density.sum()
     }
 
     #[inline(always)]
     fn weight(&self) -> f64 {
-        N as f64 / self.0.sum()
+        if self.parted { N as f64 / self.density.sum() } else { 1.0 }
     }
 
     #[inline(always)]

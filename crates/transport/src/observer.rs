@@ -1,7 +1,6 @@
 //! Watching a single path, for replays and for counting; costs nothing when nobody watches.
 
 use crate::caustics::Mixture;
-use crate::reuse::Gathered;
 use etalon_optics::{Lanes, Vec3};
 
 /// What ended a path.
@@ -29,11 +28,6 @@ pub(crate) trait Observer<const N: usize> {
     fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<f64, N>) {}
     /// A direction is drawn from a mixture.
     fn direction(&mut self, _mixture: &Mixture) {}
-    /// What the path brings into its block, where neighbouring pixels share paths.
-    #[inline(always)]
-    fn gathers(&mut self) -> Option<&mut Gathered<N>> {
-        None
-    }
     /// The path ends.
     fn end(&mut self, _end: End) {}
 }

@@ -5,7 +5,7 @@ use crate::bsdf::Bsdf;
 use crate::camera::{Camera, Moving};
 use crate::caustics::Casters;
 use crate::coincidence;
-use crate::engine::Tables;
+use crate::shading_tables::ShadingTables;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
 use crate::kernel::{Kernel, kernel, study_kernel};
@@ -14,7 +14,7 @@ use crate::light::{
 };
 use crate::media::{Media, Solid, open_edges};
 use crate::motion::motion;
-use crate::path::ShadowRays;
+use crate::world::ShadowRays;
 use crate::plan::{Carried, EffectName, LaneModel, OneLaneFilm, Plan, Study, StudyError, simulated};
 use crate::shapes::{self, SceneShapes};
 use crate::spectral::PathSpectrum;
@@ -42,7 +42,7 @@ pub struct Prepared {
     pub(crate) wavelengths: WavelengthDistribution,
     pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
-    pub(crate) tables: Tables,
+    pub(crate) tables: ShadingTables,
     pub(crate) casters: Casters,
     plan: Plan,
     /// What paths carry for the sake of a study.
@@ -231,7 +231,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         None => WavelengthDistribution::new(range_nm),
     };
     let drawn = matches!(plan.lane_model, LaneModel::Shared | LaneModel::Hero).then_some(&wavelengths);
-    let tables = Tables::new(&surfaces, &lights, &environments, drawn);
+    let tables = ShadingTables::new(&surfaces, &lights, &environments, drawn, plan.runs(EffectName::Polarisation));
     let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene)).transpose()?;
     let mut prepared = Prepared {
         frame,

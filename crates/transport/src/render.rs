@@ -122,12 +122,11 @@ impl Prepared {
     /// The loop that the plan chose.
     fn renderer(&self) -> RenderSpots {
         let kernel = self.kernel();
-        let chosen = match self.plan().path_loop.name {
-            PathLoop::Plain if self.path_reuse().is_some() => kernel.render_reused,
-            PathLoop::Plain => Some(kernel.render),
-            PathLoop::Lanes => kernel.render_lanes,
-        };
-        chosen.expect("the plan knows which loops a kernel has")
+        match (self.plan().path_loop.name, self.path_reuse()) {
+            (PathLoop::Batch, _) => kernel.render_batch,
+            (PathLoop::Scalar, None) => kernel.render_scalar,
+            (PathLoop::Scalar, Some(_)) => kernel.render_reused.expect("the plan knows which kernels share paths"),
+        }
     }
 
     /// Renders `extent` onto a new film. `on_tile` hears what a finished tile took.

@@ -1,6 +1,7 @@
 //! One path again, vertex by vertex.
 
 use crate::film::Counters;
+use crate::film_entry::Received;
 use crate::kernel::Tracer;
 use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
@@ -73,13 +74,13 @@ pub(crate) fn replay<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
 ) -> Replay {
     let mut recorder = Recorder { prepared, events: Vec::new() };
     let tracer = Tracer::new(prepared);
-    let (wavelengths, radiance, polarisation) =
-        tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut recorder);
+    let path = tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut recorder);
+    let Received { wavelengths, radiance, stokes } = path.received();
     Replay {
         wavelengths_nm: wavelengths.lambda_nm.0.to_vec(),
         events: recorder.events,
         radiance: widen(radiance),
-        stokes: polarisation.received().map(|stokes| stokes.map(widen)),
+        stokes: stokes.map(|stokes| stokes.map(widen)),
         xyz: M::to_xyz(prepared, &wavelengths, radiance),
     }
 }

@@ -26,16 +26,18 @@ mod tests;
 use crate::film::{Counters, Sums};
 use crate::film_entry::{FilmEntry, Received, SampleId};
 use crate::kernel::{Spot, Tracer};
+use crate::bsdf::lambert::toward;
+use crate::integrator::{Arrival, Path};
+use crate::interaction::SurfaceInteraction;
 use crate::model::WavelengthModel;
-use crate::observer::Observer;
-use crate::polarisation::Averaged;
+use crate::polarisation::{Averaged, Polarisation};
 use crate::prepare::Prepared;
+use crate::sampler::Sampler;
 use crate::wavelength::Wavelengths;
+use crate::world::World;
 use etalon_geometry::{Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Vec3};
 use std::collections::BTreeMap;
-#[cfg(test)]
-use tests::{Fault, is_wrong};
 
 /// Most pixels of a block.
 pub(crate) const MOST_MATES: usize = 16;
@@ -87,9 +89,6 @@ pub(crate) struct Gathered<const N: usize> {
     shared: Lanes<f64, N>,
 }
 
-/// The state of a path that sharing touches: what it has gathered, its throughput, and what of that roulette counts besides.
-pub(crate) type State<'a, const N: usize> = (&'a mut Lanes<f64, N>, &'a mut Lanes<f64, N>, &'a mut f64);
-
 impl<const N: usize> Gathered<N> {
     /// Of a path that begins.
     pub(crate) const NOTHING: Self = Self {
@@ -112,75 +111,60 @@ impl<const N: usize> Gathered<N> {
         shared: Lanes::ZERO,
     };
 
-    /// Whether the next surface that is no delta is the first.
+    /// The path has taken a step from a vertex, but for the guiding weight of the direction. The first that is no delta is from x: its
+    /// throughput up to there, with the reflectance, is kept, and begins anew; what roulette goes by does not.
     #[inline(always)]
-    pub(crate) fn begins(&self) -> bool {
-        self.stage == Stage::Begins
-    }
-
-    /// Whether the next thing that is met is y.
-    #[inline(always)]
-    pub(crate) fn has_left(&self) -> bool {
-        self.stage == Stage::Left
-    }
-
-    /// The path has drawn its direction at its first surface that is no delta, whose throughput is in `state`; `unaimed` is that but for
-    /// what the direction is worth against one drawn by the cosine alone, `aim`. From x on throughput begins anew, with that; what roulette
-    /// goes by does not.
-    #[inline(always)]
-    pub(crate) fn leave(
+    pub(crate) fn leave<'a, M: WavelengthModel<N>, P: Polarisation<N>>(
         &mut self,
-        vertex: u32,
-        point: &SurfacePoint<f64>,
-        wo: Vec3<f64>,
-        diffuse: bool,
-        (unaimed, aim): (&Lanes<f64, N>, f64),
-        (radiance, beta, eta_squared): State<'_, N>,
+        world: &World<'a>,
+        path: &mut Path<'a, M, P, N>,
+        vertex: &SurfaceInteraction<'a>,
+        delta: bool,
     ) {
-        if !diffuse {
+        if self.stage != Stage::Begins || delta || !path.beta.is_finite() {
+            return;
+        }
+        if !(world.tables.is_diffuse(vertex.surface.object) && path.lanes.together()) {
             self.stage = Stage::Alone;
             return;
         }
-        let normal = if point.normal.dot(wo) < 0.0 { -point.normal } else { point.normal };
-        self.start = Start { vertex, point: *point, normal, beta: *unaimed };
+        let normal = toward(vertex.point.normal, vertex.wo);
+        self.start = Start { vertex: path.vertex, point: vertex.point, normal, beta: path.beta };
         self.stage = Stage::Left;
-        self.own = *radiance;
-        *radiance = Lanes::ZERO;
-        *eta_squared *= unaimed.max_lane();
-        #[cfg(test)]
-        let aim = if is_wrong(Fault::AimStays) {
-            self.start.beta = *beta;
-            1.0
-        } else {
-            aim
-        };
-        *beta = Lanes::splat(aim);
+        self.own = path.radiance;
+        path.radiance = Lanes::ZERO;
+        path.eta_squared *= path.beta.max_lane();
+        path.beta = Lanes::ONE;
     }
 
-    /// The path, having left x, has met a surface and taken what that emits.
+    /// The path has met a surface that scatters it and taken what that emits. If it has left x, this is y.
     #[inline(always)]
     pub(crate) fn arrive(
         &mut self,
-        point: &SurfacePoint<f64>,
-        wo: Vec3<f64>,
-        diffuse: bool,
+        world: &World<'_>,
+        vertex: &SurfaceInteraction<'_>,
         radiance: &mut Lanes<f64, N>,
     ) {
-        if !diffuse {
+        if self.stage != Stage::Left {
+            return;
+        }
+        if !world.tables.is_diffuse(vertex.surface.object) {
             self.stage = Stage::Receives;
             return;
         }
-        let normal = if point.normal.dot(wo) < 0.0 { -point.normal } else { point.normal };
-        self.target = Target::Surface { position: point.position, surface: point.surface, normal };
+        let SurfacePoint { position, surface, normal, .. } = vertex.point;
+        self.target = Target::Surface { position, surface, normal: toward(normal, vertex.wo) };
         self.take(radiance);
         self.stage = Stage::Shares;
     }
 
-    /// The path, having left x, meets skies only, in this direction; `plain` if no shadow ray aims at any of them.
+    /// The path has met skies only, in this direction. If it has left x, they are for all, unless a shadow ray aims at one of them.
     #[inline(always)]
-    pub(crate) fn escape(&mut self, direction: Vec3<f64>, plain: bool) {
-        self.target = Target::Sky(direction);
-        self.stage = if plain { Stage::Shares } else { Stage::Receives };
+    pub(crate) fn escape(&mut self, world: &World<'_>, direction: Vec3<f64>) {
+        if self.stage == Stage::Left {
+            self.target = Target::Sky(direction);
+            self.stage = if world.plain_skies { Stage::Shares } else { Stage::Receives };
+        }
     }
 
     #[inline(always)]
@@ -213,12 +197,6 @@ fn facing<const N: usize>(x: &Start<N>, target: &Target) -> f64 {
         Target::Surface { position, normal, .. } => {
             let d = *position - x.point.position;
             let (r_squared, at_x, at_y) = (d.dot(d), x.normal.dot(d), -normal.dot(d));
-            #[cfg(test)]
-            let (r_squared, at_y) = match () {
-                () if is_wrong(Fault::NoDistance) => (1.0, at_y),
-                () if is_wrong(Fault::NoCosine) && at_y > 0.0 => (r_squared, r_squared.sqrt()),
-                () => (r_squared, at_y),
-            };
             if at_x > 0.0 && at_y > 0.0 { (at_x / r_squared) * (at_y / r_squared) } else { 0.0 }
         }
         Target::Sky(direction) => x.normal.dot(*direction).max(0.0),
@@ -267,16 +245,12 @@ pub(crate) fn deal<const N: usize>(
         }
         shadow_rays += count as u64;
         let hidden = if count == 0 { 0 } else { occluded(&rays[..count]) };
-        #[cfg(test)]
-        let unhidden: f64 = q[..paths.len()].iter().sum();
         for (ray, &i) in of[..count].iter().enumerate() {
             if hidden >> ray & 1 == 1 {
                 q[i] = 0.0;
             }
         }
         let total: f64 = q[..paths.len()].iter().sum();
-        #[cfg(test)]
-        let total = if is_wrong(Fault::AllSeen) { unhidden } else { total };
         if q[j] > 0.0 {
             for i in 0..paths.len() {
                 if q[i] > 0.0 {
@@ -330,16 +304,54 @@ impl Blocks {
     }
 }
 
-/// Watches a path of the plain loop.
-struct Watch<const N: usize>(Gathered<N>);
-
-impl<const N: usize> Observer<N> for Watch<N> {
-    fn gathers(&mut self) -> Option<&mut Gathered<N>> {
-        Some(&mut self.0)
+/// [`trace`](crate::integrator::trace), with what the path brings into its block.
+fn trace_gathering<'a, M: WavelengthModel<N>, const N: usize>(
+    world: &World<'a>,
+    path: &mut Path<'a, M, Averaged, N>,
+    mut ray: Ray<f64>,
+    sampler: &Sampler,
+    counters: &mut Counters,
+) -> Gathered<N> {
+    let mut gathered = Gathered::NOTHING;
+    let observer = &mut ();
+    loop {
+        counters.rays += 1;
+        counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
+        let mut met = world.intersect(&ray, &mut path.walk, &mut path.inside, counters);
+        match path.arrive(world, &ray, met.as_mut(), sampler, counters, observer) {
+            Arrival::Scatters => {}
+            Arrival::Passed => continue,
+            Arrival::Ended => break,
+            Arrival::Escaped => {
+                gathered.escape(world, ray.direction);
+                break;
+            }
+        }
+        let Some(vertex) = met else { break };
+        gathered.arrive(world, &vertex, &mut path.radiance);
+        if vertex.sees_lights {
+            let [u_light, u1, u2, _] = sampler.vertex_set(path.vertex, 1);
+            if let Some(draw) = world.sample_light(&vertex, u_light, [u1, u2])
+                && let Some(next) = path.next_event(world, &vertex, &draw)
+                && let Some(visible) = path.visibility(world, &vertex, &draw.sample, counters)
+            {
+                path.add_light(world, &vertex, &draw, &next, &visible, observer);
+            }
+        }
+        let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
+        let Some(direction) = path.sample_direction(world, &vertex, [u_lobe, u1, u2], observer) else { break };
+        let taken = path.scatter(world, &vertex, direction, u_lobe);
+        gathered.leave(world, path, &vertex, taken.delta);
+        if !path.survives(world, taken.guiding, u_roulette, observer) {
+            break;
+        }
+        ray = vertex.point.spawn(taken.wi);
     }
+    gathered.end(path.radiance);
+    gathered
 }
 
-/// The samples of spots by the plain loop, as the engine's `render_spots_lanes` has it.
+/// The samples of spots, one path at a time.
 pub(crate) fn render_spots<M: WavelengthModel<N>, const N: usize>(
     prepared: &Prepared,
     spots: &[Spot],
@@ -352,6 +364,7 @@ pub(crate) fn render_spots<M: WavelengthModel<N>, const N: usize>(
     let tracer = Tracer::new(prepared);
     let mut counters = Counters::default();
     let mut adding = BlockEntry::new(prepared, sums, rays);
+    let mut path = Path::<M, Averaged, N>::idle();
     for (first, &mates) in blocks.mates.iter().enumerate().filter(|(_, mates)| **mates > 0) {
         let pixels = &blocks.spots[first..first + mates];
         let mut gathered = [Gathered::NOTHING; MOST_MATES];
@@ -360,13 +373,12 @@ pub(crate) fn render_spots<M: WavelengthModel<N>, const N: usize>(
             let mut shared = None;
             for (mate, pixel) in pixels.iter().enumerate() {
                 let before = counters.rays + counters.shadow_rays;
-                let mut watch = Watch(Gathered::NOTHING);
-                let (wavelengths, radiance, _) =
-                    tracer.sample::<M, Averaged, N>(pixel.x, pixel.y, sample, &mut counters, &mut watch);
-                watch.0.end(radiance);
-                gathered[mate] = watch.0;
+                let sampler = tracer.sampler(pixel.x, pixel.y, sample);
+                let start = tracer.start::<M, Averaged, N>(pixel.x, pixel.y, sample, &sampler, &mut counters);
+                path.begin(&tracer.world, &start);
+                gathered[mate] = trace_gathering(&tracer.world, &mut path, start.ray, &sampler, &mut counters);
                 rays_of[mate] = counters.rays + counters.shadow_rays - before;
-                shared = Some(wavelengths);
+                shared = Some(start.wavelengths);
             }
             let mut radiance = [Lanes::ZERO; MOST_MATES];
             let occluded = |rays: &[Ray<f64>]| {

@@ -114,8 +114,8 @@ impl<const W: usize> Samplers<W> {
 
     /// One of them.
     #[inline]
-    pub(crate) fn lane(&self, lane: usize) -> Sampler {
-        self.samplers[lane]
+    pub(crate) fn lane(&self, lane: usize) -> &Sampler {
+        &self.samplers[lane]
     }
 
     /// [`Sampler::set`] of each, lane `i` of set `sets[i]`: the same bits, of the numbers in `wanted`; others are left as they are.

@@ -105,18 +105,13 @@ pub(crate) struct Surfaces {
 }
 
 /// The surface at a point.
+#[derive(Clone, Copy)]
 pub(crate) struct Surface<'a> {
     pub object: u32,
-    pub bsdf: &'a Bsdf,
-    pub light: Option<u32>,
-    opacity: f64,
-    opacity_image: Option<&'a OpacityImage>,
-    relief: Option<&'a Relief>,
-    /// What it holds, where it states both its sides itself.
-    pub interior: Option<&'a Interior>,
-    emission: Option<&'a Emission>,
-    coordinates: &'a Coordinates,
-    axis: Option<Vec3<f64>>,
+    /// The material that decides how it scatters: its own, or another object's whose boundary coincides with it.
+    pub material: usize,
+    own: &'a ObjectSurface,
+    surfaces: &'a Surfaces,
 }
 
 impl Surfaces {
@@ -124,23 +119,7 @@ impl Surfaces {
     pub(crate) fn of(&self, point: &SurfacePoint<f64>) -> Surface<'_> {
         let object = self.object_of[point.label as usize][point.surface.primitive.0 as usize];
         let of_object = &self.objects[object as usize];
-        let emission = of_object.emission.as_ref();
-        let light = emission.and_then(|_| {
-            let place = self.light_of.binary_search_by_key(&point.surface, |&(surface, _)| surface).ok()?;
-            Some(self.light_of[place].1)
-        });
-        Surface {
-            object,
-            bsdf: &self.bsdfs[of_object.material],
-            light,
-            opacity: of_object.opacity,
-            opacity_image: of_object.opacity_image.as_ref(),
-            relief: of_object.relief.as_ref(),
-            interior: self.interiors[of_object.material].as_ref(),
-            emission,
-            coordinates: &of_object.coordinates,
-            axis: of_object.axis,
-        }
+        Surface { object, material: of_object.material, own: of_object, surfaces: self }
     }
 }
 
@@ -163,9 +142,9 @@ impl Surfaces {
         Some(object.emission.as_ref()?.at(uv))
     }
 
-    /// What the surface of an object does to light.
-    pub(crate) fn bsdf_of(&self, object: u32) -> &Bsdf {
-        &self.bsdfs[self.objects[object as usize].material]
+    /// The material of an object.
+    pub(crate) fn material_of(&self, object: u32) -> usize {
+        self.objects[object as usize].material
     }
 }
 
@@ -174,12 +153,30 @@ fn at<'a>(geometry: &'a Geometry, point: &SurfacePoint<f64>, hit: &Hit<f64>) -> 
 }
 
 impl<'a> Surface<'a> {
+    /// How it scatters.
+    pub(crate) fn bsdf(&self) -> &'a Bsdf {
+        &self.surfaces.bsdfs[self.material]
+    }
+
+    /// The number of the light that it is, if shadow rays aim at it.
+    #[inline]
+    pub(crate) fn light(&self, surface: SurfaceId) -> Option<u32> {
+        let light_of = &self.surfaces.light_of;
+        let place = light_of.binary_search_by_key(&surface, |&(surface, _)| surface).ok()?;
+        Some(light_of[place].1)
+    }
+
+    /// What it holds, where it states both its sides itself.
+    pub(crate) fn interior(&self) -> Option<&'a Interior> {
+        self.surfaces.interiors[self.own.material].as_ref()
+    }
+
     /// Share of light that meets the surface at all; the rest passes.
     #[inline]
     pub(crate) fn opacity(&self, geometry: &Geometry, point: &SurfacePoint<f64>, hit: &Hit<f64>) -> f64 {
-        match self.opacity_image {
-            None => self.opacity,
-            Some(image) => self.opacity * image.eval(self.coordinates.uv(&at(geometry, point, hit))),
+        match &self.own.opacity_image {
+            None => self.own.opacity,
+            Some(image) => self.own.opacity * image.eval(self.own.coordinates.uv(&at(geometry, point, hit))),
         }
     }
 
@@ -193,21 +190,21 @@ impl<'a> Surface<'a> {
         interface: Option<Interface<'a>>,
     ) -> Scattering<'a> {
         let place = at(geometry, point, hit);
-        let mut shading = self.coordinates.at(&place);
-        if let Some(relief) = self.relief
-            && let Some(tangents) = self.coordinates.tangents(&place)
+        let mut shading = self.own.coordinates.at(&place);
+        if let Some(relief) = &self.own.relief
+            && let Some(tangents) = self.own.coordinates.tangents(&place)
         {
             shading = relief::bend(&relief.image, shading, tangents, relief.per_m);
         }
-        if let Some(axis) = self.axis {
+        if let Some(axis) = self.own.axis {
             shading = shading.with_axis(geometry.placed_normal(hit.surface, axis, point.time).normalized());
         }
-        Scattering { bsdf: self.bsdf, at: shading.between(interface) }
+        Scattering { bsdf: self.bsdf(), at: shading.between(interface) }
     }
 
     /// Whether what the surface does depends on the medium that it stands in.
     pub(crate) fn takes_medium(&self) -> bool {
-        self.bsdf.takes_medium()
+        self.bsdf().takes_medium()
     }
 
     /// What is emitted along `wo` at a point of it, if that side emits.
@@ -219,14 +216,14 @@ impl<'a> Surface<'a> {
         hit: &Hit<f64>,
         wo: Vec3<f64>,
     ) -> Option<Emitted<'a>> {
-        let emission = self.emission?;
+        let emission = self.own.emission.as_ref()?;
         let front = point.normal.dot(wo) > 0.0;
         let emits = match emission.sides {
             EmissionSides::Front => front,
             EmissionSides::Back => !front,
             EmissionSides::Both => true,
         };
-        emits.then(|| emission.at(|| self.coordinates.uv(&at(geometry, point, hit))))
+        emits.then(|| emission.at(|| self.own.coordinates.uv(&at(geometry, point, hit))))
     }
 }
 

@@ -165,7 +165,7 @@ fn what_is_lit_behind_a_dispersing_pane_is_dimmed_by_its_faces_alone() {
         whole += y;
     }
     let truth = lit * passed / whole;
-    for path_loop in [PathLoop::Plain, PathLoop::Lanes] {
+    for path_loop in [PathLoop::Scalar, PathLoop::Batch] {
         let shown = mean_y(&render(&scene, &Study { path_loop: Some(path_loop), ..Study::default() }));
         // 16,384 paths, of which one in five is reflected and the others carry eight times one wavelength's ȳ or nothing.
         assert!((shown / truth - 1.0).abs() < 0.03, "{path_loop:?}: {shown} is not {truth}");
@@ -194,7 +194,7 @@ fn a_lamp_behind_rough_dispersing_glass_counts_once() {
         mean_y(&render(&parse(&scene.to_string()), &study))
     };
     let of = |sampling: &str| {
-        let means: Vec<f64> = (0..16).map(|seed| shown(sampling, seed, PathLoop::Plain)).collect();
+        let means: Vec<f64> = (0..16).map(|seed| shown(sampling, seed, PathLoop::Scalar)).collect();
         let mean = means.iter().sum::<f64>() / 16.0;
         let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / 15.0 / 16.0;
         (mean, variance)
@@ -202,7 +202,7 @@ fn a_lamp_behind_rough_dispersing_glass_counts_once() {
     let [(bsdf, noise), (mis, rest)] = ["bsdf", "mis"].map(of);
     // Five standard errors; each is .15 % of what is shown.
     assert!((mis - bsdf).abs() < 5.0 * (noise + rest).sqrt(), "{mis} is not {bsdf}");
-    assert_eq!(shown("mis", 0, PathLoop::Lanes), shown("mis", 0, PathLoop::Plain));
+    assert_eq!(shown("mis", 0, PathLoop::Batch), shown("mis", 0, PathLoop::Scalar));
 }
 
 /// A surface that is partly a mirror is lit by shadow rays as much as the rest of it scatters: a point light, which nothing else finds.

@@ -85,7 +85,7 @@ fn room(material: Value, lamp: Lamp, lights: Value, at: [f64; 3], mut objects: V
 /// On both loops, where there are two.
 fn prepared(scene: &Scene) -> Vec<Prepared> {
     let loops =
-        [PathLoop::Plain, PathLoop::Lanes].map(|path_loop| Study { path_loop: Some(path_loop), ..Study::default() });
+        [PathLoop::Scalar, PathLoop::Batch].map(|path_loop| Study { path_loop: Some(path_loop), ..Study::default() });
     let prepared: Vec<_> = loops.iter().filter_map(|study| prepare_study(scene, study).ok()).collect();
     assert!(!prepared.is_empty());
     prepared

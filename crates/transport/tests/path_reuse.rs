@@ -19,17 +19,17 @@ fn render(prepared: &Prepared, extent: &Extent) -> Film {
 
 /// The ready-made scenes, small: of an odd size, so that some blocks are cut off by the film.
 #[test]
-fn many_paths_at_once_share_as_the_plain_loop_does() {
+fn many_paths_at_once_share_as_one_at_a_time_do() {
     let mut covered = 0;
     let blocks = [PathReuse::Block2x2, PathReuse::Block4x2, PathReuse::Block4x4];
     for ((name, mut scene), reuse) in common::ready_made([13, 10], 4).into_iter().zip(blocks.into_iter().cycle()) {
         scene.integrator.path_reuse = reuse;
-        let study = Study { path_loop: Some(PathLoop::Lanes), ..Study::default() };
-        let Ok(lanes) = prepare_study(&scene, &study) else { continue };
-        let plain = prepared(&scene, PathLoop::Plain);
-        let (lanes, plain) = (render(&lanes, &lanes.whole(Some(2))), render(&plain, &plain.whole(Some(2))));
-        assert_eq!(lanes.counters, plain.counters, "{name}, {reuse:?}");
-        assert!(lanes == plain, "{name}, {reuse:?}: the films differ");
+        let study = Study { path_loop: Some(PathLoop::Batch), ..Study::default() };
+        let Ok(batch) = prepare_study(&scene, &study) else { continue };
+        let scalar = prepared(&scene, PathLoop::Scalar);
+        let (batch, scalar) = (render(&batch, &batch.whole(Some(2))), render(&scalar, &scalar.whole(Some(2))));
+        assert_eq!(batch.counters, scalar.counters, "{name}, {reuse:?}");
+        assert!(batch == scalar, "{name}, {reuse:?}: the films differ");
         covered += 1;
     }
     assert!(covered >= 5, "only {covered} were covered");
@@ -39,7 +39,7 @@ fn many_paths_at_once_share_as_the_plain_loop_does() {
 fn a_pixel_is_the_same_in_any_part_of_the_picture() {
     let mut scene = room::room(REPLICATES);
     (scene.film.width, scene.film.height, scene.integrator.spp) = (22, 19, 16);
-    for path_loop in [PathLoop::Plain, PathLoop::Lanes] {
+    for path_loop in [PathLoop::Scalar, PathLoop::Batch] {
         let prepared = prepared(&scene, path_loop);
         let whole = render(&prepared, &prepared.whole(Some(2)));
         let crop = PixelRect { x0: 3, y0: 5, x1: 21, y1: 18 };

@@ -292,7 +292,7 @@ fn a_path_that_is_cut_tells_what_its_light_would_have_been_multiplied_by() {
         "lights": [{"type": "environment", "radiance": 1}],
         "integrator": {"spp": 2, "roulette": false}
     }));
-    for path_loop in [PathLoop::Plain, PathLoop::Lanes] {
+    for path_loop in [PathLoop::Scalar, PathLoop::Batch] {
         let prepared = prepare_study(&scene, &Study { path_loop: Some(path_loop), ..Study::default() }).unwrap();
         let counters = render(&prepared, &prepared.whole(Some(1))).counters;
         assert_eq!(counters.cut_paths, 2);

@@ -152,8 +152,8 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
         LaneModel::ThreeChannels => format!("{}: red, green and blue", plan.lanes),
     };
     let paths = match plan.path_loop.name {
-        PathLoop::Plain => "one at a time",
-        PathLoop::Lanes => "many at once",
+        PathLoop::Scalar => "one at a time",
+        PathLoop::Batch => "many at once",
     };
     let paths = format!("{paths} ({}): {}", plan.path_loop.name.as_str(), plan.path_loop.because);
     let [first, last] = plan.wavelength_range_nm;

@@ -38,21 +38,6 @@ impl Dielectric {
         [self.interior.eval(wavelength_nm), self.exterior.eval(wavelength_nm)]
     }
 
-    /// Whether wavelengths part.
-    pub(crate) fn is_dispersive(&self) -> bool {
-        self.dispersive
-    }
-
-    /// How likely each lane is to be reflected, relative to the hero, whose `reflectance` is known.
-    pub(crate) fn relative_reflectances<const N: usize>(
-        &self,
-        lambda_nm: &Lanes<f64, N>,
-        (cos, from_outside): (f64, bool),
-        reflectance: f64,
-    ) -> Lanes<f64, N> {
-        self.relative(lambda_nm, (cos, from_outside, None), reflectance)
-    }
-
     fn relative<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
@@ -101,28 +86,33 @@ impl Dielectric {
         interface: Option<Interface<'_>>,
     ) -> Option<BsdfSample<N>> {
         let from_outside = n.dot(wo) > 0.0;
+        let eta = self.eta(lambda_nm[0], from_outside, interface);
+        Some(self.turned(lambda_nm, &turn(n, wo, eta, u), (eta, from_outside), interface))
+    }
+
+    /// The sample of a direction in which the interface has sent the hero, for which its relative index is `eta`.
+    #[inline(always)]
+    pub(crate) fn turned<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        turn: &Turn,
+        (eta, from_outside): (f64, bool),
+        interface: Option<Interface<'_>>,
+    ) -> BsdfSample<N> {
+        let &Turn { wi, reflects, reflectance, cos } = turn;
         let dispersive = match interface {
             Some(media) => media.incident.is_dispersive() || media.transmitted.is_dispersive(),
             None => self.dispersive,
         };
-        let eta = self.eta(lambda_nm[0], from_outside, interface);
-        let Turn { wi, reflects, reflectance, cos } = turn(n, wo, eta, u);
-        if reflects {
-            let lane_density = match dispersive {
-                true => self.relative(lambda_nm, (cos, from_outside, interface), reflectance),
-                false => Lanes::ONE,
-            };
-            return Some(BsdfSample { wi, weight: lane_density, density: Density::Delta, lane_density, eta: 1.0 });
-        }
-        let lane_density = if dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE };
-        Some(BsdfSample {
-            wi,
-            // T/(1 − R) = 1 in exact arithmetic; radiance is compressed into the denser medium, or spread from it.
-            weight: lane_density / (eta * eta),
-            density: Density::Delta,
-            lane_density,
-            eta,
-        })
+        let lane_density = match dispersive {
+            false => Lanes::ONE,
+            true if reflects => self.relative(lambda_nm, (cos, from_outside, interface), reflectance),
+            true => Lanes::ONE.hero_only(),
+        };
+        // T/(1 − R) = 1 in exact arithmetic; radiance is compressed into the denser medium, or spread from it.
+        let weight = if reflects { lane_density } else { lane_density / (eta * eta) };
+        let eta = if reflects { 1.0 } else { eta };
+        BsdfSample { wi, weight, density: Density::Delta, lane_density, eta }
     }
 }
 

@@ -52,21 +52,11 @@ pub(crate) struct Mixture {
 
 impl Mixture {
     /// Nothing is drawn toward casters.
-    const NONE: Self = Self { own: 1.0, part: 0.0, of_casters: 0.0 };
-
-    /// How much less a path is worth than the light that it was aimed at lets expect, so that roulette must not end it for that.
-    #[inline(always)]
-    pub(crate) fn aim_factor(&self) -> f64 {
-        self.factor(1.0).min(1.0)
-    }
+    pub(crate) const NONE: Self = Self { own: 1.0, part: 0.0, of_casters: 0.0 };
 
     /// What a direction is worth, against one drawn by the cosine alone, if the casters had `times` of what they have.
     #[inline(always)]
     pub(crate) fn factor(&self, times: f64) -> f64 {
-        #[cfg(test)]
-        if super::tests::is_wrong(super::tests::Fault::Unweighed) {
-            return 1.0;
-        }
         self.own / ((1.0 - times * self.part) * self.own + times * self.of_casters)
     }
 }
@@ -170,16 +160,31 @@ impl Casters {
             return alone();
         }
         let Some(reflectance) = scattering.diffuse(lambda_nm) else { return alone() };
-        let (from, n) = (point.position, lambert::toward(point.normal, wo));
-        let (wi, mixture) = self.draw(from, n, [u[1], u[2]], |u| lambert::direction(point.normal, wo, u).0)?;
+        let (wi, cos, mixture) = self.diffuse(point, wo, [u[1], u[2]])?;
         let drawn = BsdfSample {
             wi,
             weight: reflectance,
-            density: Density::SolidAngle(mixture.own),
+            density: Density::SolidAngle(lambert::density(cos)),
             lane_density: Lanes::ONE,
             eta: 1.0,
         };
         Some((drawn, mixture))
+    }
+
+    /// A direction from a diffuse surface, its cosine, and the densities that tell what it is worth; none where it was drawn in vain.
+    #[inline]
+    pub(crate) fn diffuse(
+        &self,
+        point: &SurfacePoint<f64>,
+        wo: Vec3<f64>,
+        u: [f64; 2],
+    ) -> Option<(Vec3<f64>, f64, Mixture)> {
+        let by_cosine = |u| lambert::direction(point.normal, wo, u);
+        if self.aim() {
+            return self.draw(point.position, lambert::toward(point.normal, wo), u, |u| by_cosine(u).0);
+        }
+        let (wi, cos) = by_cosine(u);
+        (cos > 0.0).then_some((wi, cos, Mixture::NONE))
     }
 
     /// A direction from a diffuse surface of normal `n`, where `by_cosine` draws those that are aimed at nothing; none where it was drawn in
@@ -191,7 +196,7 @@ impl Casters {
         n: Vec3<f64>,
         [u1, u2]: [f64; 2],
         by_cosine: impl FnOnce([f64; 2]) -> Vec3<f64>,
-    ) -> Option<(Vec3<f64>, Mixture)> {
+    ) -> Option<(Vec3<f64>, f64, Mixture)> {
         let (bodies, each) = self.bodies_aimed_at();
         let mut shares = [0.0; MOST_BODIES];
         let (mut part, mut toward) = (0.0, None);
@@ -214,10 +219,6 @@ impl Casters {
         } else if u1 < part {
             let place = place_within(u1, begin, seen.share);
             let aimed = seen.aim([place, u2]);
-            #[cfg(test)]
-            if aimed.is_none() && super::tests::is_wrong(super::tests::Fault::VainByCosine) {
-                return Some((by_cosine([place, u2]), Mixture::NONE));
-            }
             let aimed = aimed?;
             (aimed.wi, Some(aimed))
         } else {
@@ -235,7 +236,7 @@ impl Casters {
         });
         let of_images = if seen.share > 0.0 { seen.density(wi, aimed.as_ref()) } else { 0.0 };
         let own = lambert::density(cos);
-        Some((wi, Mixture { own, part, of_casters: of_bodies + of_images }))
+        Some((wi, cos, Mixture { own, part, of_casters: of_bodies + of_images }))
     }
 
     /// The images that a point of a surface of normal `n` sees.

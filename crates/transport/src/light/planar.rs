@@ -97,7 +97,8 @@ impl Flat {
 
 impl Aim {
     /// As a sample of the light of this surface.
-    pub(super) fn sample(&self, surface: SurfaceId) -> Option<LightSample> {
+    #[inline(always)]
+    pub(crate) fn sample(&self, surface: SurfaceId) -> Option<LightSample> {
         let Self { point, wi, density, lit } = *self;
         lit.then_some(LightSample {
             wi,

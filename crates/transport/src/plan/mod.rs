@@ -16,7 +16,6 @@ pub(crate) use grey::OneLaneFilm;
 pub(crate) use study::simulated;
 pub(crate) use three_channels::CHANNELS_NM;
 
-use crate::engine::hindrance;
 use crate::kernel::{Kernel, kernel, study_kernel};
 use etalon_scene::{LightSampling, SamplerKind, Scene};
 use serde::{Serialize, Serializer};
@@ -217,17 +216,17 @@ pub enum LaneModel {
 #[serde(rename_all = "kebab-case")]
 pub enum PathLoop {
     /// One path at a time: the specification.
-    Plain,
-    /// Many at once, for the scenes that it covers.
-    Lanes,
+    Scalar,
+    /// Many at once.
+    Batch,
 }
 
 impl PathLoop {
     /// Its name on the command line and in files.
     pub const fn as_str(self) -> &'static str {
         match self {
-            Self::Plain => "plain",
-            Self::Lanes => "lanes",
+            Self::Scalar => "scalar",
+            Self::Batch => "batch",
         }
     }
 }
@@ -274,22 +273,24 @@ pub struct Plan {
     pub missing_light: MissingLight,
 }
 
-/// Why neither the loop over many paths at once nor what it has in common with the reuse of paths covers a scene; `None` if they do.
-fn hindrance_of(kernel: &Kernel, runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
-    match kernel.render_lanes {
-        Some(_) => hindrance(runs),
-        None if kernel.polarised => Some("light is followed with its polarisation"),
-        None => Some("a study decides what paths carry"),
+/// Why the pixels of a scene cannot share paths; `None` if they can.
+fn reuse_unsupported(kernel: &Kernel, runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
+    match () {
+        () if kernel.polarised => Some("light is followed with its polarisation"),
+        () if kernel.render_reused.is_none() => Some("a study decides what paths carry"),
+        () if runs(EffectName::NestedDielectrics) => Some("dielectrics are nested"),
+        () if runs(EffectName::Absorption) => Some("media absorb"),
+        () if runs(EffectName::Motion) => Some("something moves while the shutter is open"),
+        () if runs(EffectName::Masks) => Some("surfaces let paths pass"),
+        () => None,
     }
 }
 
-/// Many paths at once where that is covered, unless the study wants otherwise.
-fn chosen_loop(kernel: &Kernel, runs: impl Fn(EffectName) -> bool, study: &Study) -> Result<ChosenLoop, StudyError> {
-    match (study.path_loop, hindrance_of(kernel, runs)) {
-        (Some(PathLoop::Lanes), Some(because)) => Err(StudyError::OnePathAtATime(because)),
-        (Some(PathLoop::Plain), _) => Ok(ChosenLoop { name: PathLoop::Plain, because: "the command line wants it" }),
-        (_, Some(because)) => Ok(ChosenLoop { name: PathLoop::Plain, because }),
-        (_, None) => Ok(ChosenLoop { name: PathLoop::Lanes, because: "it covers all that the scene calls for" }),
+/// Many paths at once, unless the study wants otherwise.
+fn chosen_loop(study: &Study) -> ChosenLoop {
+    match study.path_loop {
+        Some(name) => ChosenLoop { name, because: "the command line wants it" },
+        None => ChosenLoop { name: PathLoop::Batch, because: "it is the fastest" },
     }
 }
 
@@ -345,9 +346,9 @@ impl Plan {
         if kernel.lanes == LaneModel::ThreeChannels {
             approximations.push("spectra: light and surfaces have three channels instead".to_owned());
         }
-        let path_loop = chosen_loop(kernel, runs, study)?;
+        let path_loop = chosen_loop(study);
         let path_reuse = i.path_reuse.block_px();
-        if let (Some(_), Some(because)) = (path_reuse, hindrance_of(kernel, runs)) {
+        if let (Some(_), Some(because)) = (path_reuse, reuse_unsupported(kernel, runs)) {
             return Err(StudyError::PathReuse(because));
         }
         let &Kernel { name, lanes, lane_count, .. } = kernel;

@@ -53,8 +53,6 @@ pub enum StudyError {
     #[error("{0} cannot be forced: it is what surfaces and film are made of, and without them there is nothing to do")]
     NothingToForce(EffectName),
     /// Not covered by the loop over many paths.
-    #[error("many paths at once are not possible: {0}")]
-    OnePathAtATime(&'static str),
     /// Neighbouring pixels cannot share paths.
     #[error("neighbouring pixels cannot share paths: {0}")]
     PathReuse(&'static str),

@@ -18,6 +18,9 @@ use mueller::Mueller;
 
 /// Whether and how a path carries polarisation.
 pub trait Polarisation<const N: usize>: Copy {
+    /// Whether it does.
+    const FOLLOWED: bool;
+
     /// At the camera, whose picture's right is along `right`.
     fn at_camera(direction: Vec3<f64>, right: Vec3<f64>) -> Self;
 
@@ -47,6 +50,8 @@ pub trait Polarisation<const N: usize>: Copy {
 pub struct Averaged;
 
 impl<const N: usize> Polarisation<N> for Averaged {
+    const FOLLOWED: bool = false;
+
     #[inline(always)]
     fn at_camera(_: Vec3<f64>, _: Vec3<f64>) -> Self {
         Self
@@ -87,6 +92,8 @@ pub struct Followed<const N: usize> {
 }
 
 impl<const N: usize> Polarisation<N> for Followed<N> {
+    const FOLLOWED: bool = true;
+
     fn at_camera(direction: Vec3<f64>, right: Vec3<f64>) -> Self {
         let columns = std::array::from_fn(|j| std::array::from_fn(|i| if i == j { Lanes::ONE } else { Lanes::ZERO }));
         Self { columns, x: across(right, direction), received: [Lanes::ZERO; 3] }

@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn samples_that_are_not_finite_are_named_with_the_command_that_replays_them() {
-        let options = "--spp 9 --seed 3 --size 64x48 --sampler independent --loop plain --polarised";
+        let options = "--spp 9 --seed 3 --size 64x48 --sampler independent --loop scalar --polarised";
         let args = parse(&format!("render a.json -o a.exr {options}"));
         assert!(nonfinite(&args, &Counters::default()).is_none());
         let mut counters = Counters::default();

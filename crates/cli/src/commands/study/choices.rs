@@ -23,30 +23,21 @@ pub(super) const BASELINE: &str = "as it is";
 
 /// Most edges of paths without roulette, so that rooms that absorb little end.
 const DEEPEST: u32 = 64;
-/// What is said of choices that the loop over many paths does not cover: they compare with the one of this name.
-const ONE_AT_A_TIME: &str = "one path at a time";
-
 /// All choices that a scene allows and that differ from what it says, the baseline first.
 pub(super) fn of(scene: &Scene, plan: &Plan) -> Vec<Choice> {
     let mut choices = Vec::new();
-    let at_once = plan.path_loop.name == PathLoop::Lanes;
     let mut add = |group, name: &str, study: Study, change: &dyn Fn(&mut Scene)| {
         let mut changed = scene.clone();
         change(&mut changed);
         if name == BASELINE || changed != *scene || study != Study::default() {
-            // Else a choice would seem to cost what the loop that it takes does.
-            let slower = at_once
-                && study.path_loop.is_none()
-                && Plan::new(&changed, &study).is_ok_and(|plan| plan.path_loop.name == PathLoop::Plain);
-            let name = if slower { format!("{name}, {ONE_AT_A_TIME}") } else { name.to_owned() };
-            choices.push(Choice { name, group, scene: changed, study, adaptive: false });
+            choices.push(Choice { name: name.to_owned(), group, scene: changed, study, adaptive: false });
         }
     };
     let plain = Study::default;
     add("baseline", BASELINE, plain(), &|_| ());
-    if at_once {
-        let study = Study { path_loop: Some(PathLoop::Plain), ..Study::default() };
-        add("paths", ONE_AT_A_TIME, study, &|_| ());
+    if plan.path_loop.name == PathLoop::Batch {
+        let study = Study { path_loop: Some(PathLoop::Scalar), ..Study::default() };
+        add("paths", "one path at a time", study, &|_| ());
     }
     for (name, kind) in [("Owen-Sobol", SamplerKind::Sobol), ("independent numbers", SamplerKind::Independent)] {
         add("sampler", name, plain(), &|scene| scene.integrator.sampler = kind);

@@ -33,7 +33,7 @@ pub(super) struct Aims {
     pub point: Rows3,
     pub wi: Rows3,
     pub density: Row,
-    pub lit: [bool; W],
+    lit: [bool; W],
 }
 
 impl Flats {
@@ -122,7 +122,7 @@ impl Aims {
     }
 
     #[inline(always)]
-    fn at(&self, lane: usize) -> Aim {
+    pub(super) fn at(&self, lane: usize) -> Aim {
         Aim { point: self.point.at(lane), wi: self.wi.at(lane), density: self.density.0[lane], lit: self.lit[lane] }
     }
 }

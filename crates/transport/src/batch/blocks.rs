@@ -1,10 +1,11 @@
 //! Where neighbouring pixels share paths: what has been gathered waits for the rest of its block, and is dealt out.
 
-use super::Engine;
+use super::Batch;
 use super::rows::lanes;
 use super::stream::{Cursor, Window};
 use crate::film::{Counters, Sums};
 use crate::model::WavelengthModel;
+use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
 use crate::reuse::{BlockEntry, Blocks, Gathered, MOST_MATES, deal};
 use crate::wavelength::Wavelengths;
@@ -102,7 +103,7 @@ fn occluded(geometry: &Geometry, rays: &[Ray<f64>]) -> u64 {
     hidden
 }
 
-impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
+impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, N> {
     /// Takes what ended paths have gathered.
     #[inline(always)]
     pub(super) fn end_shared(&mut self, ended: super::rows::Mask) {
@@ -110,10 +111,10 @@ impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
         let finished = &mut self.finished;
         for lane in lanes(ended) {
             let number = self.paths.number[lane];
-            self.paths.gathered[lane].end(self.paths.radiance[lane]);
-            dealing.waiting[finished.window.place(number)] = (self.paths.gathered[lane], self.paths.wavelengths[lane]);
-            let rays = self.paths.vertex[lane] + 1 + self.paths.shadow_rays[lane];
-            finished.window.put(number, ([0.0; 3], rays));
+            let path = &self.paths.paths[lane];
+            self.paths.gathered[lane].end(path.radiance);
+            dealing.waiting[finished.window.place(number)] = (self.paths.gathered[lane], path.wavelengths);
+            finished.window.put(number, ([0.0; 3], self.paths.rays[lane]));
         }
         if ended != 0 {
             dealing.add::<M>(&mut finished.window, &mut finished.cursor, self.world.geometry, &mut self.counters);

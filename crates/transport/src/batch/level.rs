@@ -1,4 +1,4 @@
-//! The instruction set that stages of the engine run on, chosen once for a tile.
+//! The instruction set that stages of a batch run on, chosen once for a tile.
 //!
 //! A stage is a loop over the paths of one [`W`](super::rows::W)-wide set, without branches, which the compiler turns into vector
 //! instructions: compiled once for each instruction set from one source, it computes the same bits on all of them, since no
@@ -16,7 +16,7 @@ macro_rules! stages {
         $(#[$meta])*
         #[inline]
         #[allow(clippy::too_many_arguments, reason = "rows in and rows out")]
-        pub(in crate::engine) fn $name $(<$($generics)*>)? (level: Level, $($argument: $type),*) {
+        pub(in crate::batch) fn $name $(<$($generics)*>)? (level: Level, $($argument: $type),*) {
             etalon_simd::dispatch!(level; fn body $([$($generics)*][$($arguments)*])? ($($argument: $type),*) $body)
         }
     )*};

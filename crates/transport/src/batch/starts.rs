@@ -7,12 +7,14 @@ use super::stream::Cursor;
 use crate::camera::Camera;
 use crate::film::Counters;
 use crate::kernel::Tracer;
+use crate::integrator::Start;
 use crate::model::WavelengthModel;
+use crate::polarisation::Polarisation;
 use crate::reuse::Gathered;
 use crate::sampler::{Samplers, Wanted};
 use crate::wavelength::Wavelengths;
+use crate::world::World;
 use etalon_geometry::SurfaceId;
-use etalon_optics::Lanes;
 
 /// See the module.
 pub(super) struct Starts<'a, const N: usize> {
@@ -21,6 +23,7 @@ pub(super) struct Starts<'a, const N: usize> {
     samplers: Samplers<W>,
     origin: Rows3,
     direction: Rows3,
+    time: [f64; W],
     wavelengths: [Wavelengths<N>; W],
     /// How many of the set there are, and the next of them.
     count: usize,
@@ -37,6 +40,7 @@ impl<'a, const N: usize> Starts<'a, N> {
             samplers: Samplers::new(tracer.sampler(0, 0, 0)),
             origin: Rows3::ZERO,
             direction: Rows3::ZERO,
+            time: [0.0; W],
             wavelengths: [Wavelengths::fixed([0.0; N]); W],
             count: 0,
             next: 0,
@@ -72,18 +76,25 @@ impl<'a, const N: usize> Starts<'a, N> {
         if self.count == 0 {
             return;
         }
+        let moves = self.tracer.world.moves;
+        let wanted = [true, moves, false, false];
         let mut numbers = [[0.0; W]; 4];
         if self.tracer.prepared.path_reuse().is_some() {
             let mut of_blocks = self.samplers.clone();
             for lane in 0..self.count {
                 of_blocks.put(lane, self.tracer.of_block(x[lane], y[lane], samples[lane]));
             }
-            camera_numbers(level, &of_blocks, 1, [true, false, false, false], &mut numbers);
+            camera_numbers(level, &of_blocks, 1, wanted, &mut numbers);
         } else {
-            camera_numbers(level, &self.samplers, 1, [true, false, false, false], &mut numbers);
+            camera_numbers(level, &self.samplers, 1, wanted, &mut numbers);
         }
         for lane in 0..self.count {
             self.wavelengths[lane] = M::wavelengths(self.tracer.prepared, || numbers[0][lane]);
+        }
+        if moves {
+            // Blocks share wavelengths alone, and nothing that moves.
+            self.time = numbers[1];
+            counters.time_draws += self.count as u64;
         }
         let camera = &self.tracer.camera;
         let lens = camera.has_lens();
@@ -95,35 +106,47 @@ impl<'a, const N: usize> Starts<'a, N> {
             (film[0].0[lane], film[1].0[lane]) = (column, row);
         }
         let lens = [Row(numbers[2]), Row(numbers[3])];
-        camera_rays(level, camera, &film, &lens, &mut self.origin, &mut self.direction);
+        if moves {
+            for lane in 0..self.count {
+                let at = |rows: &[Row; 2]| [rows[0].0[lane], rows[1].0[lane]];
+                let ray = camera.ray_at(at(&film), at(&lens), self.time[lane]);
+                self.origin.set(lane, ray.origin);
+                self.direction.set(lane, ray.direction);
+            }
+        } else {
+            camera_rays(level, camera, &film, &lens, &mut self.origin, &mut self.direction);
+        }
     }
 
     /// Begins the next sample in the place of a path.
     #[inline(always)]
-    pub(super) fn put<M: WavelengthModel<N>>(&mut self, lane: usize, paths: &mut Paths<'_, M, N>) {
+    pub(super) fn put<'w, M: WavelengthModel<N>, P: Polarisation<N>>(
+        &mut self,
+        lane: usize,
+        world: &World<'w>,
+        paths: &mut Paths<'w, M, P, N>,
+        counters: &mut Counters,
+    ) {
         let start = self.next % W;
         self.next += 1;
         paths.alive |= 1 << lane;
         paths.number[lane] = self.number;
         self.number = self.number.wrapping_add(1);
-        paths.samplers.put(lane, self.samplers.lane(start));
+        paths.samplers.put(lane, *self.samplers.lane(start));
         paths.vertex[lane] = 0;
-        paths.shadow_rays[lane] = 0;
+        paths.rays[lane] = 0;
         paths.origin.set(lane, self.origin.at(start));
         paths.direction.set(lane, self.direction.at(start));
         paths.leaves[lane] = SurfaceId::NONE;
-        paths.shared &= !(1 << lane);
-        paths.eta_squared.0[lane] = 1.0;
-        paths.aim_factor.0[lane] = 1.0;
-        paths.beta[lane] = Lanes::ONE;
-        paths.radiance[lane] = Lanes::ZERO;
-        paths.model[lane] = M::start();
-        paths.parted &= !(1 << lane);
+        paths.time[lane] = self.time[start];
         if paths.shares {
             paths.gathered[lane] = Gathered::NOTHING;
         }
-        paths.wavelengths[lane] = self.wavelengths[start];
-        paths.known.forget(lane, &self.wavelengths[start].lambda_nm);
+        let ray = paths.ray(lane);
+        let inside = self.tracer.inside(&ray, counters);
+        let polarisation = P::at_camera(ray.direction, self.tracer.camera.right(ray.time));
+        let wavelengths = self.wavelengths[start];
+        paths.paths[lane].begin(world, &Start { ray, inside, wavelengths, polarisation });
     }
 }
 

@@ -1,47 +1,15 @@
-//! Every instruction set of this machine leaves the film of the plain loop, and engines that are wrong on purpose do not.
+//! Every instruction set of this machine leaves the film of the scalar driver.
 
-use super::{Engine, render_on};
+use super::render_on;
 use crate::caustics::Aims;
 use crate::film::{Counters, Film, PixelRect, TileSums};
 use crate::kernel::Spot;
 use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::plan::{EffectName, LaneModel, PathLoop};
+use crate::polarisation::Averaged;
 use crate::prepare::Prepared;
 use crate::{Control, Study, prepare_study};
 use etalon_simd::Level;
-use std::cell::Cell;
-
-/// What may be wrong with an engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Fault {
-    /// A path draws its neighbour's numbers.
-    NeighboursNumbers,
-    /// A path that should send a shadow ray does not.
-    LostShadowRay,
-    /// A path keeps the spectra at the wavelengths of the one before it.
-    StaleSpectra,
-    /// A sample is added in another's turn.
-    OutOfTurn,
-    /// A path goes on that has ended.
-    Undead,
-    /// An interface has its media on the wrong sides.
-    InsideOut,
-    /// A path goes on to look at the lamp that it looked at first.
-    StaleLamp,
-}
-
-thread_local! {
-    static FAULT: Cell<Option<Fault>> = const { Cell::new(None) };
-}
-
-/// Whether an engine of this thread is to be wrong in this way.
-pub(super) fn is_wrong(fault: Fault) -> bool {
-    FAULT.get() == Some(fault)
-}
-
-fn is_wrong_at_all() -> bool {
-    FAULT.get().is_some()
-}
 
 /// A room with lamps of three shapes, walls of three colours, one of them tabulated, a glass ball and a mirror, under a sky.
 fn room() -> etalon_scene::Scene {
@@ -86,21 +54,21 @@ fn prepared(force: &[EffectName], path_loop: PathLoop) -> Prepared {
     prepare_study(&room(), &study).unwrap()
 }
 
-fn plain(force: &[EffectName]) -> Film {
-    let prepared = prepared(force, PathLoop::Plain);
+fn scalar(force: &[EffectName]) -> Film {
+    let prepared = prepared(force, PathLoop::Scalar);
     prepared.render(&prepared.whole(Some(1)), &|_| Control::Continue).unwrap()
 }
 
 /// The sums of the whole room and what was counted, on one instruction set.
-fn lanes<M: WavelengthModel<N>, const N: usize>(level: Level, prepared: &Prepared) -> (TileSums, Counters) {
+fn batch<M: WavelengthModel<N>, const N: usize>(level: Level, prepared: &Prepared) -> (TileSums, Counters) {
     let film = &prepared.scene.film;
     let tile = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let mut sums = prepared.film().tile(tile);
     let counters = {
         let spots = Spot::of_tile(tile, &(0..prepared.scene.integrator.spp));
         let mut rays = vec![0; spots.len()];
-        let counters = render_on::<M, N>(level, prepared, &spots, sums.borrow(), &mut rays);
-        assert!(is_wrong_at_all() || rays.iter().sum::<u64>() == counters.rays + counters.shadow_rays);
+        let counters = render_on::<M, Averaged, N>(level, prepared, &spots, sums.borrow(), &mut rays);
+        assert_eq!(rays.iter().sum::<u64>(), counters.rays + counters.shadow_rays);
         counters
     };
     (sums, counters)
@@ -112,23 +80,23 @@ fn is_that_of(film: &Film, (sums, counters): &(TileSums, Counters)) -> bool {
 }
 
 #[test]
-fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_plain_loop() {
+fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_scalar_driver() {
     for level in Level::available() {
-        let shared = prepared(&[], PathLoop::Lanes);
+        let shared = prepared(&[], PathLoop::Batch);
         assert_eq!(shared.plan().lane_model, LaneModel::Shared);
-        assert!(is_that_of(&plain(&[]), &lanes::<Shared, 8>(level, &shared)), "{level:?}");
-        let hero = prepared(&[EffectName::Dispersion], PathLoop::Lanes);
-        let film = plain(&[EffectName::Dispersion]);
-        assert!(is_that_of(&film, &lanes::<Hero<8>, 8>(level, &hero)), "{level:?}");
+        assert!(is_that_of(&scalar(&[]), &batch::<Shared, 8>(level, &shared)), "{level:?}");
+        let hero = prepared(&[EffectName::Dispersion], PathLoop::Batch);
+        let film = scalar(&[EffectName::Dispersion]);
+        assert!(is_that_of(&film, &batch::<Hero<8>, 8>(level, &hero)), "{level:?}");
         // One lane of the same scene: not its picture, but the same paths on every instruction set.
-        let one = lanes::<OneLane, 1>(level, &shared);
-        let baseline = lanes::<OneLane, 1>(Level::Baseline, &shared);
+        let one = batch::<OneLane, 1>(level, &shared);
+        let baseline = batch::<OneLane, 1>(Level::Baseline, &shared);
         assert!(one.0.to_bytes() == baseline.0.to_bytes() && one.1 == baseline.1, "{level:?}");
     }
 }
 
 #[test]
-fn directions_toward_casters_and_images_of_lamps_leave_the_film_of_the_plain_loop_too() {
+fn directions_toward_casters_and_images_of_lamps_leave_the_film_of_the_scalar_driver_too() {
     for aims in [Aims::Bodies, Aims::Images, Aims::ImagesAndLenses] {
         let aiming = |path_loop, share| {
             let mut prepared = prepared(&[], path_loop);
@@ -137,47 +105,13 @@ fn directions_toward_casters_and_images_of_lamps_leave_the_film_of_the_plain_loo
             (prepared.casters.aims, prepared.casters.share) = (aims, share);
             prepared
         };
-        let plain = aiming(PathLoop::Plain, 0.5);
-        let film = plain.render(&plain.whole(Some(1)), &|_| Control::Continue).unwrap();
+        let scalar = aiming(PathLoop::Scalar, 0.5);
+        let film = scalar.render(&scalar.whole(Some(1)), &|_| Control::Continue).unwrap();
         for level in Level::available() {
-            let lanes_of = aiming(PathLoop::Lanes, 0.5);
-            assert!(is_that_of(&film, &lanes::<Shared, 8>(level, &lanes_of)), "{aims:?}, {level:?}");
+            let batch_of = aiming(PathLoop::Batch, 0.5);
+            assert!(is_that_of(&film, &batch::<Shared, 8>(level, &batch_of)), "{aims:?}, {level:?}");
         }
-        let other = aiming(PathLoop::Lanes, 0.4);
-        assert!(!is_that_of(&film, &lanes::<Shared, 8>(Level::best(), &other)), "{aims:?}");
-    }
-}
-
-#[test]
-fn engines_that_are_wrong_on_purpose_are_told_from_the_plain_loop() {
-    let film = plain(&[]);
-    let shared = prepared(&[], PathLoop::Lanes);
-    for fault in [
-        Fault::NeighboursNumbers,
-        Fault::LostShadowRay,
-        Fault::StaleSpectra,
-        Fault::OutOfTurn,
-        Fault::Undead,
-        Fault::InsideOut,
-        Fault::StaleLamp,
-    ] {
-        FAULT.set(Some(fault));
-        let wrong = lanes::<Shared, 8>(Level::best(), &shared);
-        FAULT.set(None);
-        assert!(!is_that_of(&film, &wrong), "{fault:?} is not noticed");
-    }
-    assert!(is_that_of(&film, &lanes::<Shared, 8>(Level::best(), &shared)));
-}
-
-impl<M: WavelengthModel<N>, const N: usize> Engine<'_, M, N> {
-    /// Spoils what the next step begins with.
-    pub(super) fn spoil(&mut self) {
-        if is_wrong(Fault::NeighboursNumbers) {
-            let neighbour = self.paths.samplers.lane(1);
-            self.paths.samplers.put(0, neighbour);
-        }
-        if is_wrong(Fault::OutOfTurn) {
-            self.paths.number.swap(2, 3);
-        }
+        let other = aiming(PathLoop::Batch, 0.4);
+        assert!(!is_that_of(&film, &batch::<Shared, 8>(Level::best(), &other)), "{aims:?}");
     }
 }

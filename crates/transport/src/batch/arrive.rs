@@ -1,0 +1,131 @@
+//! Where paths arrive: the surfaces that they meet.
+
+use super::Batch;
+use super::paths::vertex;
+use super::rows::{GROUPS, Mask, W, group_of, lanes};
+use crate::integrator::Arrival;
+use crate::interaction::SurfaceInteraction;
+use crate::model::WavelengthModel;
+use crate::polarisation::Polarisation;
+use etalon_geometry::{Hit, LANES, Rays, SurfaceId, SurfacePoint};
+use etalon_optics::Vec3;
+
+impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, N> {
+    /// Finds what the ray of each path meets, and lets the path arrive there. Tells which scatter.
+    #[inline(always)]
+    pub(super) fn arrive(&mut self) -> Mask {
+        let count = self.paths.alive.count_ones();
+        self.counters.rays += u64::from(count);
+        self.counters.lane_weights += u64::from(count) * u64::from(M::CARRIES_WEIGHTS);
+        // Groups of coincident surfaces and what moves are found ray by ray.
+        let one_by_one = self.world.meets_groups || self.world.moves;
+        let mut scatters = 0;
+        for group in 0..GROUPS {
+            let active = group_of(self.paths.alive, group);
+            if active == 0 {
+                continue;
+            }
+            scatters |= match one_by_one {
+                true => self.arrive_one_by_one(active, group * LANES),
+                false => self.arrive_at_once(active, group),
+            };
+        }
+        scatters
+    }
+
+    #[inline(always)]
+    fn arrive_at_once(&mut self, active: u8, group: usize) -> Mask {
+        let first = group * LANES;
+        let paths = &self.paths;
+        let rays = Rays {
+            origin: paths.origin.group(group),
+            direction: paths.direction.group(group),
+            t_max: [f64::INFINITY; LANES],
+            leaves: of_group(&paths.leaves, first),
+            aims_at: [SurfaceId::NONE; LANES],
+        };
+        let world = self.world;
+        let hits = world.geometry.closest_hits(&rays, active);
+        let found = world.geometry.surfaces(&rays, &hits, hits.mask);
+        let paths = &mut self.paths;
+        paths.position.set_group(group, &found.position);
+        paths.error.set_group(group, &found.position_error);
+        paths.normal.set_group(group, &found.normal);
+        for lane in lanes(hits.mask.into()) {
+            let at = |rows: &[[f64; LANES]; 3]| Vec3::new(rows[0][lane], rows[1][lane], rows[2][lane]);
+            let surface = hits.surface[lane];
+            let hit = Hit { t: hits.t[lane], surface, uv: [hits.uv[0][lane], hits.uv[1][lane]] };
+            let point = SurfacePoint {
+                position: at(&found.position),
+                position_error: found.position_error[lane],
+                normal: at(&found.normal),
+                surface,
+                label: found.label[lane],
+                time: 0.0,
+            };
+            let (direction, surface) = (at(&rays.direction), world.surfaces.of(&point));
+            match &mut paths.at[first + lane] {
+                Some(there) => there.renew(direction, hit, point, surface),
+                none => *none = Some(SurfaceInteraction::new(direction, hit, point, surface)),
+            }
+        }
+        let mut scatters = 0;
+        for lane in lanes(active.into()) {
+            scatters |= self.arrive_path(first + lane, hits.mask >> lane & 1 == 1);
+        }
+        scatters
+    }
+
+    #[inline(always)]
+    fn arrive_one_by_one(&mut self, active: u8, first: usize) -> Mask {
+        let mut scatters = 0;
+        for lane in lanes(Mask::from(active) << first) {
+            let paths = &mut self.paths;
+            let ray = paths.ray(lane);
+            let path = &mut paths.paths[lane];
+            paths.at[lane] = self.world.intersect(&ray, &mut path.walk, &mut path.inside, &mut self.counters);
+            if let Some(met) = &paths.at[lane] {
+                paths.position.set(lane, met.point.position);
+                paths.error.0[lane] = met.point.position_error;
+                paths.normal.set(lane, met.point.normal);
+            }
+            let meets = paths.at[lane].is_some();
+            scatters |= self.arrive_path(lane, meets);
+        }
+        scatters
+    }
+
+    /// Lets a path arrive at what it has met, if it has met something. Its bit if it scatters.
+    #[inline(always)]
+    fn arrive_path(&mut self, lane: usize, meets: bool) -> Mask {
+        let (paths, world) = (&mut self.paths, self.world);
+        paths.rays[lane] += 1;
+        let ray = paths.ray(lane);
+        let (path, sampler) = (&mut paths.paths[lane], paths.samplers.lane(lane));
+        let met = if meets { paths.at[lane].as_mut() } else { None };
+        match path.arrive(world, &ray, met, sampler, &mut self.counters, &mut ()) {
+            Arrival::Scatters => {
+                if paths.shares {
+                    paths.gathered[lane].arrive(world, vertex(&paths.at, lane), &mut path.radiance);
+                }
+                return 1 << lane;
+            }
+            Arrival::Passed => {}
+            Arrival::Ended => paths.alive &= !(1 << lane),
+            Arrival::Escaped => {
+                if paths.shares {
+                    paths.gathered[lane].escape(world, ray.direction);
+                }
+                paths.alive &= !(1 << lane);
+            }
+        }
+        0
+    }
+}
+
+/// The surfaces of the group that begins at `first`.
+#[inline(always)]
+pub(super) fn of_group(surfaces: &[SurfaceId; W], first: usize) -> [SurfaceId; LANES] {
+    // Copied at once: the library's function of an array's index is not always made part of its caller.
+    *surfaces[first..].first_chunk().expect("a group is of as many")
+}

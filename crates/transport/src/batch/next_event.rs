@@ -1,0 +1,297 @@
+//! Direct light: a shadow ray toward a light from each path whose surface can make something of it.
+
+use super::Batch;
+use super::arrive::of_group;
+use super::lamps::{Aims, Flats, Rounds, aim, aim_at_disks, aim_at_rounds};
+use super::level::{Level, stages};
+use super::paths::vertex;
+use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes};
+use crate::bsdf::lambert;
+use crate::integrator::{LambertTerms, LightDraw, NextEvent, light_weight};
+use crate::light::{LightSample, LightTable, Target};
+use crate::mis::Density;
+use crate::model::WavelengthModel;
+use crate::polarisation::Polarisation;
+use crate::sampler::{CAMERA_SETS, SETS_PER_VERTEX, Samplers, Wanted};
+use etalon_geometry::{LANES, Rays, SurfaceId, SurfacePoint};
+use etalon_optics::Lanes;
+use etalon_scene::LightSampling;
+
+/// The lights that paths look at, and how they are seen. Kept from vertex to vertex.
+pub(super) struct Lights {
+    /// Numbers of the lights, and the probabilities of having chosen them.
+    light: [u32; W],
+    probability: Row,
+    /// Their surfaces, of those that are aimed at in rows.
+    surface: [SurfaceId; W],
+    flats: Flats,
+    rounds: Rounds,
+    aims: Aims,
+    /// What Lambertian surfaces make of them.
+    cos: Row,
+    weight: Row,
+    /// The paths whose lights are aimed at in rows, and the samples of the others.
+    rows: Mask,
+    others: [Option<LightSample>; W],
+    rays: ShadowRows,
+}
+
+/// The shadow rays of paths.
+pub(super) struct ShadowRows {
+    origin: Rows3,
+    direction: Rows3,
+    t_max: Row,
+}
+
+impl Lights {
+    pub(super) fn new() -> Self {
+        Self {
+            light: [u32::MAX; W],
+            probability: Row::ZERO,
+            surface: [SurfaceId::NONE; W],
+            flats: Flats::NONE,
+            rounds: Rounds::NONE,
+            aims: Aims::NONE,
+            cos: Row::ZERO,
+            weight: Row::ZERO,
+            rows: 0,
+            others: [None; W],
+            rays: ShadowRows { origin: Rows3::ZERO, direction: Rows3::ZERO, t_max: Row::ZERO },
+        }
+    }
+
+    /// The direction toward it that was drawn for a path.
+    #[inline(always)]
+    fn draw(&self, lane: usize) -> Option<LightDraw> {
+        let (light, probability) = (self.light[lane], self.probability.0[lane]);
+        if self.rows >> lane & 1 == 1 {
+            let lambert = Some(LambertTerms { cos: self.cos.0[lane], weight: self.weight.0[lane] });
+            let sample = self.aims.at(lane).sample(self.surface[lane])?;
+            return Some(LightDraw { light, probability, sample, lambert });
+        }
+        let sample = self.others[lane]?;
+        Some(LightDraw { light, probability, sample, lambert: None })
+    }
+
+    /// The light that a path looks at.
+    #[inline(always)]
+    fn look(&mut self, lane: usize, (index, probability): (usize, f64), lights: &LightTable) {
+        self.probability.0[lane] = probability;
+        // Where there are few lights it is mostly the same again.
+        if self.light[lane] == index as u32 {
+            return;
+        }
+        self.light[lane] = index as u32;
+        let light = &lights.lights()[index];
+        self.surface[lane] = light.emitter().map_or(SurfaceId::NONE, |emitter| emitter.surface);
+        self.flats.forget(lane);
+        self.rounds.forget(lane);
+        self.flats.put(lane, light);
+        self.rounds.put(lane, light);
+    }
+}
+
+impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, N> {
+    /// Sends a shadow ray from each path that scatters and sees lights, and adds what it finds.
+    #[inline(always)]
+    pub(super) fn add_light(&mut self, scatters: Mask) {
+        let (paths, world, draws) = (&mut self.paths, self.world, &mut self.lights);
+        let mut shared = 0;
+        for lane in lanes(scatters) {
+            shared |= Mask::from(vertex(&paths.at, lane).sees_lights) << lane;
+        }
+        if shared == 0 || world.lights.is_empty() {
+            return;
+        }
+        let mut numbers = [[0.0; W]; 4];
+        let lights = world.lights.lights();
+        let chooses = lights.len() > 1;
+        vertex_numbers(self.level, &paths.samplers, &paths.vertex, 1, [true, true, chooses, false], &mut numbers);
+        let [u1, u2, u_light, _] = &numbers;
+        for lane in lanes(shared) {
+            let from = paths.position.at(lane);
+            match if chooses { world.lights.choose(from, u_light[lane]) } else { Some((0, 1.0)) } {
+                Some(chosen) => draws.look(lane, chosen, world.lights),
+                None => shared &= !(1 << lane),
+            }
+        }
+        if draws.flats.mask & shared != 0 {
+            aim(self.level, &paths.position, [u1, u2], &draws.flats, &mut draws.aims);
+        }
+        if draws.flats.disks & shared != 0 {
+            aim_at_disks(self.level, &paths.position, [u1, u2], &draws.flats, &mut draws.aims);
+        }
+        let mut rows = draws.flats.mask | draws.flats.disks;
+        if draws.rounds.mask & shared != 0 {
+            let mut outside = [false; W];
+            aim_at_rounds(self.level, &paths.position, [u1, u2], &draws.rounds, &mut draws.aims, &mut outside);
+            // Those within a sphere are asked for one by one.
+            rows |= lanes(draws.rounds.mask).fold(0, |mask, lane| mask | Mask::from(outside[lane]) << lane);
+        }
+        lambert_cosines(self.level, (&paths.normal, &paths.direction, &draws.aims.wi), &mut draws.cos);
+        let Lights { cos, aims, probability, weight, .. } = draws;
+        weights(self.level, world.light_sampling, cos, &aims.density, probability, weight);
+        let mut next = [NextEvent { f_cos: Lanes::ZERO, weight: 0.0 }; W];
+        let mut asks: Mask = 0;
+        draws.rows = rows;
+        for lane in lanes(shared) {
+            if rows >> lane & 1 == 0 {
+                let (from, u) = (paths.position.at(lane), [u1[lane], u2[lane]]);
+                draws.others[lane] = lights[draws.light[lane] as usize].sample(from, u, paths.time[lane]);
+            }
+            let Some(draw) = draws.draw(lane) else { continue };
+            if let Some(event) = paths.paths[lane].next_event(world, vertex(&paths.at, lane), &draw) {
+                next[lane] = event;
+                asks |= 1 << lane;
+            }
+        }
+        if world.meets_groups || world.moves {
+            for lane in lanes(asks) {
+                let Some(draw) = draws.draw(lane) else { continue };
+                let (path, vertex) = (&mut paths.paths[lane], vertex(&paths.at, lane));
+                let before = self.counters.rays + self.counters.shadow_rays;
+                let visible = path.visibility(world, vertex, &draw.sample, &mut self.counters);
+                paths.rays[lane] += (self.counters.rays + self.counters.shadow_rays - before) as u32;
+                if let Some(visible) = visible {
+                    path.add_light(world, vertex, &draw, &next[lane], &visible, &mut ());
+                }
+            }
+            return;
+        }
+        self.counters.shadow_rays += u64::from(asks.count_ones());
+        for lane in lanes(self.unoccluded(asks)) {
+            let Some(draw) = self.lights.draw(lane) else { continue };
+            let (path, vertex) = (&mut self.paths.paths[lane], vertex(&self.paths.at, lane));
+            let visible = path.unobstructed(world, vertex, &draw.sample);
+            path.add_light(world, vertex, &draw, &next[lane], &visible, &mut ());
+        }
+    }
+
+    /// Which shadow rays meet nothing.
+    #[inline(always)]
+    fn unoccluded(&mut self, mut asks: Mask) -> Mask {
+        if asks == 0 {
+            return 0;
+        }
+        let (paths, geometry, draws) = (&mut self.paths, self.world.geometry, &mut self.lights);
+        let (mut leaves, mut surfaces) = ([SurfaceId::NONE; W], [SurfaceId::NONE; W]);
+        let mut endless: Mask = 0;
+        for lane in lanes(asks) {
+            paths.rays[lane] += 1;
+            leaves[lane] = vertex(&paths.at, lane).point.surface;
+            surfaces[lane] = draws.surface[lane];
+            if draws.rows >> lane & 1 == 1 {
+                continue;
+            }
+            let Some(sample) = &draws.others[lane] else { continue };
+            surfaces[lane] = sample.surface;
+            match sample.target {
+                Target::Point(point) => draws.aims.point.set(lane, point),
+                Target::Infinity => endless |= 1 << lane,
+            }
+        }
+        let Lights { rays, aims, others, .. } = draws;
+        shadow_rays(self.level, (&paths.position, &paths.error, &paths.normal), &aims.point, rays);
+        for lane in lanes(endless) {
+            let Some(sample) = &others[lane] else { continue };
+            let ray = vertex(&paths.at, lane).point.spawn(sample.wi);
+            rays.origin.set(lane, ray.origin);
+            rays.direction.set(lane, ray.direction);
+            rays.t_max.0[lane] = ray.t_max;
+            surfaces[lane] = SurfaceId::NONE;
+        }
+        if asks.count_ones() as usize <= LANES {
+            // As many as are cast at once, wherever they are.
+            let mut from = [0; LANES];
+            lanes(asks).enumerate().for_each(|(place, lane)| from[place % LANES] = lane);
+            let packed = Rays {
+                origin: rays.origin.of(&from),
+                direction: rays.direction.of(&from),
+                t_max: rays.t_max.of(&from),
+                leaves: from.map(|lane| leaves[lane]),
+                aims_at: from.map(|lane| surfaces[lane]),
+            };
+            let active = ((1_u32 << asks.count_ones()) - 1) as u8;
+            for place in lanes(geometry.any_hits(&packed, active).into()) {
+                asks &= !(1 << from[place % LANES]);
+            }
+        } else {
+            for group in 0..GROUPS {
+                let first = group * LANES;
+                let packed = Rays {
+                    origin: rays.origin.group(group),
+                    direction: rays.direction.group(group),
+                    t_max: rays.t_max.group(group),
+                    leaves: of_group(&leaves, first),
+                    aims_at: of_group(&surfaces, first),
+                };
+                asks &= !(Mask::from(geometry.any_hits(&packed, group_of(asks, group))) << first);
+            }
+        }
+        asks
+    }
+}
+
+stages! {
+    /// Set number `set` of the vertex that each path is at: (point 1, point 2, choice, decision).
+    fn vertex_numbers(
+        samplers: &Samplers<W>,
+        vertex: &[u32; W],
+        set: u32,
+        wanted: Wanted,
+        numbers: &mut [[f64; W]; 4],
+    ) {
+        let mut sets = [0; W];
+        for lane in 0..W {
+            sets[lane] = CAMERA_SETS + vertex[lane] * SETS_PER_VERTEX + set;
+        }
+        samplers.sets(&sets, wanted, numbers);
+    }
+
+    /// Cosines of directions on the viewer's side of surfaces; 0 on the other.
+    fn lambert_cosines(surface: (&Rows3, &Rows3, &Rows3), cos: &mut Row) {
+        let (normal, direction, wi) = surface;
+        for lane in 0..W {
+            cos.0[lane] = lambert::common_cosine(normal.at(lane), -direction.at(lane), wi.at(lane));
+        }
+    }
+
+    /// [`light_weight`] of points of lights, against Lambert's directions.
+    fn weights(sampling: LightSampling, cos: &Row, density: &Row, probability: &Row, weights: &mut Row) {
+        // Outside of the loop, which is to have no branches.
+        match sampling {
+            LightSampling::Mis => {
+                for lane in 0..W {
+                    let of_walk = lambert::density(cos.0[lane]);
+                    let of_light = Density::SolidAngle(density.0[lane]);
+                    weights.0[lane] = light_weight(LightSampling::Mis, of_light, 1.0, probability.0[lane], of_walk);
+                }
+            }
+            LightSampling::Light | LightSampling::Bsdf => {
+                for lane in 0..W {
+                    let of_light = Density::SolidAngle(density.0[lane]);
+                    weights.0[lane] = light_weight(sampling, of_light, 1.0, probability.0[lane], 0.0);
+                }
+            }
+        }
+    }
+
+    /// Rays from surfaces to points.
+    fn shadow_rays(from: (&Rows3, &Row, &Rows3), target: &Rows3, rays: &mut ShadowRows) {
+        let (position, error, normal) = from;
+        for lane in 0..W {
+            let from = SurfacePoint {
+                position: position.at(lane),
+                position_error: error.0[lane],
+                normal: normal.at(lane),
+                surface: SurfaceId::NONE,
+                label: 0,
+                time: 0.0,
+            };
+            let ray = from.spawn_to(target.at(lane), SurfaceId::NONE);
+            rays.origin.set(lane, ray.origin);
+            rays.direction.set(lane, ray.direction);
+            rays.t_max.0[lane] = ray.t_max;
+        }
+    }
+}

@@ -1,0 +1,496 @@
+//! The state of a path between two of its steps, and the steps.
+
+use super::{MOST_VERTICES, ROULETTE_FROM_VERTEX, ROULETTE_THROUGHPUT, THROUGHPUT_FLOOR};
+use crate::absorption::Body;
+use crate::bsdf::dielectric::Turn;
+use crate::bsdf::{BsdfSample, Lobe, lambert};
+use crate::film::Counters;
+use crate::film_entry::Received;
+use crate::interaction::{SurfaceInteraction, Walk};
+use crate::media::Inside;
+use crate::mis::{Density, power_heuristic};
+use crate::model::WavelengthModel;
+use crate::observer::{End, Found, Observer};
+use crate::polarisation::Polarisation;
+use crate::sampler::Sampler;
+use crate::shading_tables::{BsdfKind, SpectrumCache};
+use crate::wavelength::Wavelengths;
+use crate::world::World;
+use etalon_geometry::{Ray, SurfaceId};
+use etalon_optics::{Lanes, Vec3};
+use etalon_scene::LightSampling;
+
+/// A path under way: what it has gathered, and what its next step depends on.
+pub(crate) struct Path<'a, M, P, const N: usize> {
+    pub wavelengths: Wavelengths<N>,
+    /// Radiance found so far.
+    pub radiance: Lanes<f64, N>,
+    /// Throughput: ∏ f·|cos θ|/p, with the hero's p.
+    pub beta: Lanes<f64, N>,
+    /// The lanes' densities of the path, relative to the hero's.
+    pub lanes: M,
+    pub polarisation: P,
+    /// Number of the vertex that it is at, or that its ray leads to.
+    pub vertex: u32,
+    /// ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
+    pub eta_squared: f64,
+    /// Product of guiding weights since the last diffuse vertex; excluded from Russian roulette.
+    guiding: f64,
+    /// The last step of the walk, as far as MIS needs it.
+    step: Step,
+    /// The solids that hold it.
+    pub inside: Inside,
+    /// The body that it is in, where no priority says it.
+    body: Body<'a>,
+    /// How far it has come along its ray.
+    pub walk: Walk,
+    /// Surfaces passed as if they were not there, which are no vertices of the path, and where the last one was on this ray.
+    passes: u32,
+    passed_at: Option<Vec3<f64>>,
+    /// The number that decides whether the next surface is passed, once one was.
+    u_mask: Option<f64>,
+    spectra: SpectrumCache<N>,
+}
+
+/// Where a path begins.
+pub(crate) struct Start<P, const N: usize> {
+    pub ray: Ray<f64>,
+    /// The solids that hold the camera, where they are followed.
+    pub inside: Option<Inside>,
+    pub wavelengths: Wavelengths<N>,
+    pub polarisation: P,
+}
+
+/// The last step of a walk.
+#[derive(Clone, Copy)]
+enum Step {
+    /// From the camera or by a delta: no shadow ray could have found what it finds.
+    Unshared,
+    /// Drawn with this density, the mean over the lanes, from this point of this primitive, where a shadow ray was sent too.
+    Shared { from: Vec3<f64>, leaves: SurfaceId, density: f64 },
+}
+
+/// What becomes of a path at the end of its ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Arrival {
+    /// It has left the scene and ended.
+    Escaped,
+    /// It ends at the surface that it has met.
+    Ended,
+    /// It passes the surface as if that were not there: its ray goes on.
+    Passed,
+    /// The surface scatters it: the next vertex of the path.
+    Scatters,
+}
+
+/// A direction that was drawn from a surface.
+pub(crate) enum Direction<const N: usize> {
+    /// From a Lambertian surface, with its cosine; `guiding` is its density by the cosine over the density that it was drawn with.
+    Diffuse { wi: Vec3<f64>, cos: f64, guiding: f64 },
+    /// By a mirror.
+    Mirrored(Vec3<f64>),
+    /// By a smooth interface, from outside or not, of this relative index for the hero.
+    Turned { turn: Turn, eta: f64, from_outside: bool },
+    /// By any BSDF.
+    General { sample: BsdfSample<N>, guiding: f64 },
+}
+
+/// A step that a path has taken, but for its guiding weight.
+pub(crate) struct Taken {
+    pub wi: Vec3<f64>,
+    /// What throughput is to be multiplied by for the direction not being drawn by the BSDF alone.
+    pub guiding: f64,
+    /// Whether no other direction was possible.
+    pub delta: bool,
+}
+
+impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
+    /// A place for paths.
+    pub(crate) fn idle() -> Self {
+        let (x, y) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0));
+        Self {
+            wavelengths: Wavelengths::fixed([0.0; N]),
+            radiance: Lanes::ZERO,
+            beta: Lanes::ONE,
+            lanes: M::start(),
+            polarisation: P::at_camera(x, y),
+            vertex: 0,
+            eta_squared: 1.0,
+            guiding: 1.0,
+            step: Step::Unshared,
+            inside: Inside::NOTHING,
+            body: Body::default(),
+            walk: Walk::default(),
+            passes: 0,
+            passed_at: None,
+            u_mask: None,
+            spectra: SpectrumCache::new(),
+        }
+    }
+
+    /// Begins a path here.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, world: &World<'a>, start: &Start<P, N>) {
+        self.wavelengths = start.wavelengths;
+        self.radiance = Lanes::ZERO;
+        self.beta = Lanes::ONE;
+        self.lanes = M::start();
+        self.polarisation = start.polarisation;
+        self.vertex = 0;
+        self.eta_squared = 1.0;
+        self.guiding = 1.0;
+        self.step = Step::Unshared;
+        if let Some(inside) = start.inside {
+            self.inside = inside;
+        }
+        if world.absorption.is_some() {
+            self.body = Body::around(world.geometry, world.surfaces, &start.ray);
+        }
+        self.passes = 0;
+        self.leave_ray(world);
+        self.spectra.forget(&self.wavelengths.lambda_nm);
+    }
+
+    /// What it brings to the camera.
+    #[inline(always)]
+    pub(crate) fn received(&self) -> Received<N> {
+        Received { wavelengths: self.wavelengths, radiance: self.radiance, stokes: self.polarisation.received() }
+    }
+
+    /// Arrives at what the ray has met: light is absorbed on the way, and found there.
+    #[inline(always)]
+    pub(crate) fn arrive(
+        &mut self,
+        world: &World<'a>,
+        ray: &Ray<f64>,
+        met: Option<&mut SurfaceInteraction<'a>>,
+        sampler: &Sampler,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) -> Arrival {
+        self.absorb(world, ray, met.as_deref());
+        let Some(vertex) = met else {
+            self.add_environments(world, ray, counters, observer);
+            observer.end(End::Escaped);
+            return Arrival::Escaped;
+        };
+        observer.vertex(self.vertex, vertex.point.position, vertex.surface.object, self.beta);
+        self.add_emission(world, ray, vertex, observer);
+        if world.masks && self.passes(world, vertex, sampler) {
+            return Arrival::Passed;
+        }
+        if self.vertex + 1 >= world.max_depth || self.vertex + 1 == MOST_VERTICES {
+            if self.vertex + 1 == MOST_VERTICES {
+                counters.record_cut(self.beta.max_lane() * self.lanes.weight());
+            }
+            observer.end(End::Depth);
+            return Arrival::Ended;
+        }
+        vertex.prepare_scattering(world);
+        Arrival::Scatters
+    }
+
+    /// Multiplies throughput by the transmittance of the way along the ray.
+    #[inline(always)]
+    fn absorb(&mut self, world: &World<'a>, ray: &Ray<f64>, met: Option<&SurfaceInteraction<'a>>) {
+        let Some(absorption) = &world.absorption else { return };
+        let mut length = f64::INFINITY;
+        if let Some(vertex) = met {
+            self.body = self.body.before(&vertex.surface, vertex.from_front());
+            length = (vertex.point.position - self.passed_at.unwrap_or(ray.origin)).length();
+        }
+        let lambda_nm = &self.wavelengths.lambda_nm;
+        self.beta *= absorption.transmittance(self.body, world.media, &self.inside, lambda_nm, length);
+    }
+
+    /// Adds the light from infinity.
+    #[inline(always)]
+    fn add_environments(
+        &mut self,
+        world: &World<'a>,
+        ray: &Ray<f64>,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) {
+        for (sky, slot) in world.environments.iter().zip(&world.tables.environments) {
+            counters.environment_lookups += 1;
+            let mis = self.weight_of_hit(world, SurfaceId::NONE, ray, || sky.light);
+            let radiance = match *slot {
+                Some(slot) => self.spectrum(world, slot),
+                None => sky.radiance.lanes(&self.wavelengths.lambda_nm, ray.direction),
+            };
+            self.add(observer, Found::Environment, radiance, mis);
+        }
+    }
+
+    /// Adds the light that the surface emits.
+    #[inline(always)]
+    fn add_emission(
+        &mut self,
+        world: &World<'a>,
+        ray: &Ray<f64>,
+        vertex: &SurfaceInteraction<'a>,
+        observer: &mut impl Observer<N>,
+    ) {
+        let SurfaceInteraction { hit, point, surface, wo, .. } = vertex;
+        let Some(emitted) = surface.emission_along(world.geometry, point, hit, *wo) else { return };
+        let mis = self.weight_of_hit(world, point.surface, ray, || surface.light(point.surface));
+        let slot = world.tables.objects[surface.object as usize].emission;
+        let white = self.spectra.of(slot, emitted.radiance, world.tables, &self.wavelengths);
+        let radiance = emitted.of_white(white, &self.wavelengths.lambda_nm);
+        self.add(observer, Found::Emitter, radiance, mis);
+    }
+
+    /// Adds light that the walk has run into.
+    #[inline(always)]
+    fn add(&mut self, observer: &mut impl Observer<N>, how: Found, radiance: Lanes<f64, N>, mis: f64) {
+        let light = self.polarisation.receive(self.beta * radiance * (self.lanes.weight() * mis));
+        observer.light(self.vertex, how, light);
+        self.radiance += light;
+    }
+
+    /// Whether the path passes a surface that lets a part of the light through. It then goes on along the same ray, as the same step: a
+    /// shadow ray would have passed here too.
+    #[inline(always)]
+    fn passes(&mut self, world: &World<'a>, vertex: &SurfaceInteraction<'a>, sampler: &Sampler) -> bool {
+        let opacity = vertex.surface.opacity(world.geometry, &vertex.point, &vertex.hit);
+        if opacity == 1.0 || self.passes == MOST_VERTICES {
+            return false;
+        }
+        let u = self.u_mask.unwrap_or_else(|| sampler.vertex_set(self.vertex, 1)[3]);
+        if u < opacity {
+            return false;
+        }
+        // What is left of the number is uniform again.
+        self.u_mask = Some((u - opacity) / (1.0 - opacity));
+        self.passes += 1;
+        self.passed_at = Some(vertex.point.position);
+        self.walk.pass(vertex);
+        if vertex.crosses {
+            self.inside = self.walk.beyond;
+        }
+        true
+    }
+
+    /// f·|cos θ| of a direction, and the mean over the lanes of the density with which the walk would draw it, sr⁻¹.
+    #[inline(always)]
+    pub(super) fn eval(
+        &mut self,
+        world: &World<'a>,
+        vertex: &SurfaceInteraction<'a>,
+        wi: Vec3<f64>,
+    ) -> (Lanes<f64, N>, f64) {
+        match vertex.kind {
+            BsdfKind::Lambert(slot) => {
+                let cos = lambert::common_cosine(vertex.point.normal, vertex.wo, wi);
+                if cos == 0.0 {
+                    return (Lanes::ZERO, 0.0);
+                }
+                let density = lambert::density(cos);
+                (self.spectrum(world, slot) * density, density)
+            }
+            BsdfKind::Mirror(_) | BsdfKind::Dielectric(_) => (Lanes::ZERO, 0.0),
+            BsdfKind::General => {
+                let (f_cos, densities) = vertex.scattering().eval(&self.wavelengths.lambda_nm, vertex.wo, wi);
+                (f_cos, self.lanes.mean_density(densities))
+            }
+        }
+    }
+
+    /// Draws a direction; `None` absorbs the path.
+    #[inline(always)]
+    pub(crate) fn sample_direction(
+        &mut self,
+        world: &World<'a>,
+        vertex: &SurfaceInteraction<'a>,
+        u: [f64; 3],
+        observer: &mut impl Observer<N>,
+    ) -> Option<Direction<N>> {
+        let SurfaceInteraction { point, wo, .. } = vertex;
+        match vertex.kind {
+            BsdfKind::Lambert(_) => {
+                let (wi, cos, mixture) = world.casters.diffuse(point, *wo, [u[1], u[2]])?;
+                observer.direction(&mixture);
+                Some(Direction::Diffuse { wi, cos, guiding: mixture.factor(1.0) })
+            }
+            BsdfKind::Mirror(_) => {
+                observer.direction(&crate::caustics::Mixture::NONE);
+                Some(Direction::Mirrored(wo.reflected_about(point.normal).renormalized()))
+            }
+            BsdfKind::Dielectric(number) => {
+                observer.direction(&crate::caustics::Mixture::NONE);
+                let [interior, exterior] = vertex.indices(&world.tables.interfaces[usize::from(number)], self.hero_nm());
+                let from_outside = vertex.from_front();
+                let eta = if from_outside { interior / exterior } else { exterior / interior };
+                let turn = crate::bsdf::dielectric::turn(point.normal, *wo, eta, u[0]);
+                Some(Direction::Turned { turn, eta, from_outside })
+            }
+            BsdfKind::General => {
+                let lambda_nm = &self.wavelengths.lambda_nm;
+                let (sample, mixture) = world.casters.sample(point, vertex.scattering(), lambda_nm, *wo, u)?;
+                observer.direction(&mixture);
+                Some(Direction::General { sample, guiding: mixture.factor(1.0) })
+            }
+        }
+    }
+
+    /// The wavelength that decides where the path goes, nm.
+    #[inline(always)]
+    pub(crate) fn hero_nm(&self) -> f64 {
+        self.wavelengths.lambda_nm[0]
+    }
+
+    /// Takes the step along a direction: throughput is multiplied by f·|cos θ|/p, but for the guiding weight. `u_lobe` is the number that
+    /// chose among deltas.
+    #[inline(always)]
+    pub(crate) fn scatter(
+        &mut self,
+        world: &World<'a>,
+        vertex: &SurfaceInteraction<'a>,
+        direction: Direction<N>,
+        u_lobe: f64,
+    ) -> Taken {
+        let lane_density = Lanes::ONE;
+        // Each kind takes the step by itself, so that what is constant for it is known to the compiler.
+        match (direction, vertex.kind) {
+            (Direction::Diffuse { wi, cos, guiding }, BsdfKind::Lambert(slot)) => {
+                let (weight, density) = (self.spectrum(world, slot), Density::SolidAngle(lambert::density(cos)));
+                let sample = BsdfSample { wi, weight, density, lane_density, eta: 1.0 };
+                self.take(world, vertex, &sample, guiding, u_lobe)
+            }
+            (Direction::Mirrored(wi), BsdfKind::Mirror(slot)) => {
+                let (weight, density) = (self.spectrum(world, slot), Density::Delta);
+                let sample = BsdfSample { wi, weight, density, lane_density, eta: 1.0 };
+                self.take(world, vertex, &sample, 1.0, u_lobe)
+            }
+            (Direction::Turned { turn, eta, from_outside }, BsdfKind::Dielectric(number)) => {
+                let glass = &world.tables.interfaces[usize::from(number)].glass;
+                let lambda_nm = &self.wavelengths.lambda_nm;
+                let sample = glass.turned(lambda_nm, &turn, (eta, from_outside), vertex.interface);
+                self.take(world, vertex, &sample, 1.0, u_lobe)
+            }
+            (Direction::General { sample, guiding }, _) => self.take(world, vertex, &sample, guiding, u_lobe),
+            _ => unreachable!("directions are drawn for the kind of surface that the path is at"),
+        }
+    }
+
+    #[inline(always)]
+    fn take(
+        &mut self,
+        world: &World<'a>,
+        vertex: &SurfaceInteraction<'a>,
+        sample: &BsdfSample<N>,
+        guiding: f64,
+        u_lobe: f64,
+    ) -> Taken {
+        let SurfaceInteraction { point, wo, surface, .. } = vertex;
+        let wi = sample.wi;
+        let delta = matches!(sample.density, Density::Delta);
+        self.beta *= sample.weight;
+        let lobe = if delta { Lobe::Delta(u_lobe) } else { Lobe::SolidAngle };
+        self.polarisation.follow(*wo, wi, || vertex.scattering().mueller(&self.wavelengths.lambda_nm, *wo, wi, lobe));
+        let mean_of_hero = self.lanes.follow(sample.lane_density);
+        self.eta_squared *= sample.eta * sample.eta;
+        self.step = Step::Unshared;
+        if let Density::SolidAngle(density) = sample.density {
+            self.guiding = guiding.min(1.0);
+            if vertex.sees_lights {
+                let density = density * mean_of_hero;
+                self.step = Step::Shared { from: point.position, leaves: point.surface, density };
+            }
+        }
+        self.leave_ray(world);
+        if (world.absorption.is_some() || world.media.is_some()) && vertex.goes_through(wi) {
+            self.body = self.body.beyond(surface, vertex.from_front());
+            if vertex.crosses {
+                self.inside = self.walk.beyond;
+            }
+        }
+        Taken { wi, guiding, delta }
+    }
+
+    /// Forgets how far the path has come along its ray.
+    #[inline(always)]
+    fn leave_ray(&mut self, world: &World<'a>) {
+        if world.meets_groups {
+            self.walk.restart();
+            (self.passed_at, self.u_mask) = (None, None);
+        }
+    }
+
+    /// The body on the side of a surface to which a direction leads.
+    #[inline(always)]
+    pub(super) fn body_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> Body<'a> {
+        match vertex.goes_through(wi) {
+            true => self.body.beyond(&vertex.surface, vertex.from_front()),
+            false => self.body,
+        }
+    }
+
+    /// Applies the guiding weight of a step, and plays Russian roulette with the throughput. False if the path ends.
+    #[inline(always)]
+    pub(crate) fn survives(
+        &mut self,
+        world: &World<'a>,
+        guiding: f64,
+        u_roulette: f64,
+        observer: &mut impl Observer<N>,
+    ) -> bool {
+        self.beta *= guiding;
+        if !self.beta.is_finite() {
+            // Shown to the film, which counts and locates it.
+            self.radiance = self.beta;
+            observer.end(End::NonFinite);
+            return false;
+        }
+        let throughput = (self.beta.max_lane() * self.lanes.weight()) * self.eta_squared;
+        if throughput < THROUGHPUT_FLOOR {
+            observer.end(End::Vanished);
+            return false;
+        }
+        if world.roulette && self.vertex + 1 >= ROULETTE_FROM_VERTEX {
+            // No cap below one: it would make the variance infinite between good mirrors (hard case 29).
+            let survival = (throughput / (self.guiding * ROULETTE_THROUGHPUT)).min(1.0);
+            if u_roulette >= survival {
+                observer.end(End::Roulette);
+                return false;
+            }
+            self.beta /= survival;
+        }
+        self.vertex += 1;
+        true
+    }
+
+    /// A spectrum of the tables at the path's wavelengths.
+    #[inline(always)]
+    pub(super) fn spectrum(&mut self, world: &World<'a>, slot: u8) -> Lanes<f64, N> {
+        self.spectra.spectrum(slot, world.tables, &self.wavelengths)
+    }
+
+    /// The radiance that a light sends toward a vertex, white where an image colours it.
+    #[inline(always)]
+    pub(super) fn spectrum_of_light(&mut self, world: &World<'a>, light: u32) -> Option<Lanes<f64, N>> {
+        let slot = world.tables.lights[light as usize]?;
+        Some(self.spectrum(world, slot))
+    }
+
+    /// The MIS weight of light that the walk ran into `on` a surface; `light` finds its number, if shadow rays aim at it.
+    #[inline(always)]
+    fn weight_of_hit(&self, world: &World<'a>, on: SurfaceId, ray: &Ray<f64>, light: impl Fn() -> Option<u32>) -> f64 {
+        let Step::Shared { from, leaves, density } = self.step else { return 1.0 };
+        // The far side of the sphere that it left: see `next_event`.
+        if !world.weigh_hits || leaves == on {
+            return 1.0;
+        }
+        let Some(light) = light() else { return 1.0 };
+        let light = light as usize;
+        let of_direction = world.lights.lights()[light].density(from, ray.direction, ray.time);
+        match world.light_sampling {
+            // No shadow ray could have found it.
+            _ if of_direction == 0.0 => 1.0,
+            LightSampling::Light => 0.0,
+            LightSampling::Bsdf => 1.0,
+            LightSampling::Mis => power_heuristic(density, world.lights.probability(light, from) * of_direction),
+        }
+    }
+}

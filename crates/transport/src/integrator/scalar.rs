@@ -1,0 +1,60 @@
+//! One path at a time: the specification of what is rendered.
+
+use super::{Arrival, Path};
+use crate::film::Counters;
+use crate::model::WavelengthModel;
+use crate::observer::{End, Observer};
+use crate::polarisation::Polarisation;
+use crate::sampler::Sampler;
+use crate::world::World;
+use etalon_geometry::Ray;
+
+/// Follows `path` from its camera ray to its end; its radiance is then what arrives at the camera.
+pub(crate) fn trace<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    world: &World<'a>,
+    path: &mut Path<'a, M, P, N>,
+    mut ray: Ray<f64>,
+    sampler: &Sampler,
+    counters: &mut Counters,
+    observer: &mut impl Observer<N>,
+) {
+    loop {
+        // Next surface: where does the ray lead?
+        counters.rays += 1;
+        counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
+        let mut met = world.intersect(&ray, &mut path.walk, &mut path.inside, counters);
+
+        // Emission: what shines there, or at infinity? Masks let the ray pass.
+        match path.arrive(world, &ray, met.as_mut(), sampler, counters, observer) {
+            Arrival::Scatters => {}
+            Arrival::Passed => continue,
+            Arrival::Escaped | Arrival::Ended => break,
+        }
+        let Some(vertex) = met else { break };
+
+        // Direct light: one shadow ray toward one light.
+        if vertex.sees_lights {
+            let [u_light, u1, u2, _] = sampler.vertex_set(path.vertex, 1);
+            if let Some(draw) = world.sample_light(&vertex, u_light, [u1, u2])
+                && let Some(next) = path.next_event(world, &vertex, &draw)
+                && let Some(visible) = path.visibility(world, &vertex, &draw.sample, counters)
+            {
+                path.add_light(world, &vertex, &draw, &next, &visible, observer);
+            }
+        }
+
+        // Scattering: in which direction does the walk go on?
+        let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
+        let Some(direction) = path.sample_direction(world, &vertex, [u_lobe, u1, u2], observer) else {
+            observer.end(End::Absorbed);
+            break;
+        };
+        let taken = path.scatter(world, &vertex, direction, u_lobe);
+
+        // Russian roulette.
+        if !path.survives(world, taken.guiding, u_roulette, observer) {
+            break;
+        }
+        ray = vertex.point.spawn(taken.wi);
+    }
+}
