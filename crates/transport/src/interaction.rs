@@ -56,7 +56,13 @@ impl<'a> SurfaceInteraction<'a> {
 
     /// Becomes another one, as [`SurfaceInteraction::new`] has it.
     #[inline(always)]
-    pub(crate) fn renew(&mut self, ray_direction: Vec3<f64>, hit: Hit<f64>, point: SurfacePoint<f64>, surface: Surface<'a>) {
+    pub(crate) fn renew(
+        &mut self,
+        ray_direction: Vec3<f64>,
+        hit: Hit<f64>,
+        point: SurfacePoint<f64>,
+        surface: Surface<'a>,
+    ) {
         (self.hit, self.point, self.wo, self.surface) = (hit, point, -ray_direction, surface);
         (self.interface, self.crosses) = (None, false);
     }
@@ -130,6 +136,12 @@ struct Member {
 }
 
 impl Walk {
+    /// Whether it has passed nothing on its ray.
+    #[inline(always)]
+    pub(crate) fn begins(&self) -> bool {
+        self.passed.is_nothing()
+    }
+
     /// Begins a new ray.
     #[inline(always)]
     pub(crate) fn restart(&mut self) {
@@ -171,23 +183,25 @@ impl<'w> World<'w> {
         counters: &mut Counters,
     ) -> Option<SurfaceInteraction<'w>> {
         if self.meets_groups {
-            return self.intersect_group(ray, walk, inside, &mut counters.lost_media);
+            let first = self.geometry.next_hit(ray, &walk.passed)?;
+            return self.intersect_group(ray, first, walk, inside, counters);
         }
         let hit = self.geometry.closest_hit(ray)?;
         let point = self.geometry.surface(ray, &hit);
         Some(SurfaceInteraction::new(ray.direction, hit, point, self.surfaces.of(&point)))
     }
 
-    fn intersect_group(
+    /// [`World::intersect`] where surfaces are met in groups; `first` is what the ray hits next.
+    pub(crate) fn intersect_group(
         &self,
         ray: &Ray<f64>,
+        mut first: Hit<f64>,
         walk: &mut Walk,
         inside: &mut Inside,
-        lost: &mut u64,
+        counters: &mut Counters,
     ) -> Option<SurfaceInteraction<'w>> {
         let media = self.media;
         loop {
-            let first = self.geometry.next_hit(ray, &walk.passed)?;
             self.gather(ray, walk, first);
             if let Some(number) = self.first_of_group(&walk.group, media) {
                 let (hit, point) = leaving_group(&walk.group, number);
@@ -204,7 +218,7 @@ impl<'w> World<'w> {
             let crossings = ahead.map(|member| {
                 (media.place(self.surfaces, &member.point), member.point.normal.dot(ray.direction) < 0.0)
             });
-            walk.beyond = inside.crossed(crossings, lost);
+            walk.beyond = inside.crossed(crossings, &mut counters.lost_media);
             if let Some(deciding) = media.deciding(inside, &walk.beyond) {
                 let number = walk.group.iter().position(|member| member.hit == first).expect("it is of its group");
                 let (hit, point) = leaving_group(&walk.group, number);
@@ -221,6 +235,7 @@ impl<'w> World<'w> {
             }
             *inside = walk.beyond;
             walk.pass_group();
+            first = self.geometry.next_hit(ray, &walk.passed)?;
         }
     }
 

@@ -1,8 +1,8 @@
 //! The kernels: the path loop instantiated for a model of wavelengths and of polarisation, and the table that names them.
 
+use crate::batch::render_batch;
 use crate::camera::Camera;
 use crate::caustics::{Trial, try_casters};
-use crate::batch::render_batch;
 use crate::film::{Counters, PixelRect, Sums};
 use crate::film_entry::{FilmEntry, SampleId};
 use crate::integrator::{MOST_VERTICES, Path, Start, trace};

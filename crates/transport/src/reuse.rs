@@ -23,12 +23,12 @@ mod room;
 #[cfg(test)]
 mod tests;
 
+use crate::bsdf::lambert::toward;
 use crate::film::{Counters, Sums};
 use crate::film_entry::{FilmEntry, Received, SampleId};
-use crate::kernel::{Spot, Tracer};
-use crate::bsdf::lambert::toward;
 use crate::integrator::{Arrival, Path};
 use crate::interaction::SurfaceInteraction;
+use crate::kernel::{Spot, Tracer};
 use crate::model::WavelengthModel;
 use crate::polarisation::{Averaged, Polarisation};
 use crate::prepare::Prepared;
@@ -139,12 +139,7 @@ impl<const N: usize> Gathered<N> {
 
     /// The path has met a surface that scatters it and taken what that emits. If it has left x, this is y.
     #[inline(always)]
-    pub(crate) fn arrive(
-        &mut self,
-        world: &World<'_>,
-        vertex: &SurfaceInteraction<'_>,
-        radiance: &mut Lanes<f64, N>,
-    ) {
+    pub(crate) fn arrive(&mut self, world: &World<'_>, vertex: &SurfaceInteraction<'_>, radiance: &mut Lanes<f64, N>) {
         if self.stage != Stage::Left {
             return;
         }

@@ -7,7 +7,8 @@ use crate::integrator::Arrival;
 use crate::interaction::SurfaceInteraction;
 use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
-use etalon_geometry::{Hit, LANES, Rays, SurfaceId, SurfacePoint};
+use crate::world::World;
+use etalon_geometry::{Hit, LANES, SurfaceId, SurfacePoint};
 use etalon_optics::Vec3;
 
 impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, N> {
@@ -17,17 +18,17 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         let count = self.paths.alive.count_ones();
         self.counters.rays += u64::from(count);
         self.counters.lane_weights += u64::from(count) * u64::from(M::CARRIES_WEIGHTS);
-        // Groups of coincident surfaces and what moves are found ray by ray.
-        let one_by_one = self.world.meets_groups || self.world.moves;
         let mut scatters = 0;
         for group in 0..GROUPS {
             let active = group_of(self.paths.alive, group);
             if active == 0 {
                 continue;
             }
-            scatters |= match one_by_one {
-                true => self.arrive_one_by_one(active, group * LANES),
-                false => self.arrive_at_once(active, group),
+            scatters |= match self.world {
+                // What moves is found ray by ray.
+                World { moves: true, .. } => self.arrive_one_by_one(active, group * LANES),
+                World { meets_groups: true, .. } => self.arrive_in_groups(active, group),
+                _ => self.arrive_at_once(active, group),
             };
         }
         scatters
@@ -35,16 +36,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
 
     #[inline(always)]
     fn arrive_at_once(&mut self, active: u8, group: usize) -> Mask {
-        let first = group * LANES;
-        let paths = &self.paths;
-        let rays = Rays {
-            origin: paths.origin.group(group),
-            direction: paths.direction.group(group),
-            t_max: [f64::INFINITY; LANES],
-            leaves: of_group(&paths.leaves, first),
-            aims_at: [SurfaceId::NONE; LANES],
-        };
-        let world = self.world;
+        let (first, rays, world) = (group * LANES, self.paths.rays(group), self.world);
         let hits = world.geometry.closest_hits(&rays, active);
         let found = world.geometry.surfaces(&rays, &hits, hits.mask);
         let paths = &mut self.paths;
@@ -76,30 +68,58 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         scatters
     }
 
+    /// As above; but hits are only the first surfaces of groups that coincide.
     #[inline(always)]
-    fn arrive_one_by_one(&mut self, active: u8, first: usize) -> Mask {
+    fn arrive_in_groups(&mut self, active: u8, group: usize) -> Mask {
+        let first = group * LANES;
+        let rays = self.paths.rays(group);
+        // Those that go on along their rays have passed surfaces.
+        let begin = lanes(active.into())
+            .filter(|lane| self.paths.paths[first + lane].walk.begins())
+            .fold(0, |mask, lane| mask | 1 << lane);
+        let hits = self.world.geometry.closest_hits(&rays, begin);
         let mut scatters = 0;
-        for lane in lanes(Mask::from(active) << first) {
-            let paths = &mut self.paths;
-            let ray = paths.ray(lane);
-            let path = &mut paths.paths[lane];
-            paths.at[lane] = self.world.intersect(&ray, &mut path.walk, &mut path.inside, &mut self.counters);
-            if let Some(met) = &paths.at[lane] {
-                paths.position.set(lane, met.point.position);
-                paths.error.0[lane] = met.point.position_error;
-                paths.normal.set(lane, met.point.normal);
-            }
-            let meets = paths.at[lane].is_some();
-            scatters |= self.arrive_path(lane, meets);
+        for lane in lanes(active.into()) {
+            let known = (begin >> lane & 1 == 1).then(|| {
+                let (t, surface, uv) = (hits.t[lane], hits.surface[lane], [hits.uv[0][lane], hits.uv[1][lane]]);
+                (hits.mask >> lane & 1 == 1).then_some(Hit { t, surface, uv })
+            });
+            scatters |= self.arrive_alone(first + lane, known);
         }
         scatters
+    }
+
+    #[inline(always)]
+    fn arrive_one_by_one(&mut self, active: u8, first: usize) -> Mask {
+        lanes(Mask::from(active) << first).fold(0, |scatters, lane| scatters | self.arrive_alone(lane, None))
+    }
+
+    /// Lets a path arrive whose ray is cast alone, unless what it hits first is known.
+    #[inline(always)]
+    fn arrive_alone(&mut self, lane: usize, first: Option<Option<Hit<f64>>>) -> Mask {
+        let (paths, world, counters) = (&mut self.paths, self.world, &mut self.counters);
+        let ray = paths.ray(lane);
+        let path = &mut paths.paths[lane];
+        let (walk, inside) = (&mut path.walk, &mut path.inside);
+        paths.at[lane] = match first {
+            None => world.intersect(&ray, walk, inside, counters),
+            Some(None) => None,
+            Some(Some(first)) => world.intersect_group(&ray, first, walk, inside, counters),
+        };
+        if let Some(met) = &paths.at[lane] {
+            paths.position.set(lane, met.point.position);
+            paths.error.0[lane] = met.point.position_error;
+            paths.normal.set(lane, met.point.normal);
+        }
+        let meets = paths.at[lane].is_some();
+        self.arrive_path(lane, meets)
     }
 
     /// Lets a path arrive at what it has met, if it has met something. Its bit if it scatters.
     #[inline(always)]
     fn arrive_path(&mut self, lane: usize, meets: bool) -> Mask {
         let (paths, world) = (&mut self.paths, self.world);
-        paths.rays[lane] += 1;
+        paths.ray_count[lane] += 1;
         let ray = paths.ray(lane);
         let (path, sampler) = (&mut paths.paths[lane], paths.samplers.lane(lane));
         let met = if meets { paths.at[lane].as_mut() } else { None };

@@ -114,7 +114,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             let path = &self.paths.paths[lane];
             self.paths.gathered[lane].end(path.radiance);
             dealing.waiting[finished.window.place(number)] = (self.paths.gathered[lane], path.wavelengths);
-            finished.window.put(number, ([0.0; 3], self.paths.rays[lane]));
+            finished.window.put(number, ([0.0; 3], self.paths.ray_count[lane]));
         }
         if ended != 0 {
             dealing.add::<M>(&mut finished.window, &mut finished.cursor, self.world.geometry, &mut self.counters);

@@ -156,7 +156,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         for lane in lanes(ended) {
             let xyz = self.seen[lane].map(Lanes::sum);
             let path = &self.paths.paths[lane];
-            self.finished.put(self.paths.number[lane], (xyz, self.paths.rays[lane]), || path.received());
+            self.finished.put(self.paths.number[lane], (xyz, self.paths.ray_count[lane]), || path.received());
         }
         if ended != 0 {
             self.finished.add::<M>(&mut self.counters);

@@ -7,7 +7,7 @@ use super::level::{Level, stages};
 use super::paths::vertex;
 use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes};
 use crate::bsdf::lambert;
-use crate::integrator::{LambertTerms, LightDraw, NextEvent, light_weight};
+use crate::integrator::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
 use crate::light::{LightSample, LightTable, Target};
 use crate::mis::Density;
 use crate::model::WavelengthModel;
@@ -146,12 +146,23 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             }
         }
         if world.meets_groups || world.moves {
+            // Where only boundaries of solids may let light pass and nothing absorbs it, what meets nothing needs no walk.
+            let mut meets = asks;
+            if world.media.is_some() && world.absorption.is_none() && !world.moves {
+                meets = asks & !self.unoccluded(asks, beyond_target);
+            }
+            let (paths, draws) = (&mut self.paths, &self.lights);
             for lane in lanes(asks) {
                 let Some(draw) = draws.draw(lane) else { continue };
                 let (path, vertex) = (&mut paths.paths[lane], vertex(&paths.at, lane));
                 let before = self.counters.rays + self.counters.shadow_rays;
-                let visible = path.visibility(world, vertex, &draw.sample, &mut self.counters);
-                paths.rays[lane] += (self.counters.rays + self.counters.shadow_rays - before) as u32;
+                let visible = if meets >> lane & 1 == 1 {
+                    path.visibility(world, vertex, &draw.sample, &mut self.counters)
+                } else {
+                    self.counters.shadow_rays += 1;
+                    Some(path.unobstructed(world, vertex, &draw.sample))
+                };
+                paths.ray_count[lane] += (self.counters.rays + self.counters.shadow_rays - before) as u32;
                 if let Some(visible) = visible {
                     path.add_light(world, vertex, &draw, &next[lane], &visible, &mut ());
                 }
@@ -159,7 +170,8 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             return;
         }
         self.counters.shadow_rays += u64::from(asks.count_ones());
-        for lane in lanes(self.unoccluded(asks)) {
+        lanes(asks).for_each(|lane| paths.ray_count[lane] += 1);
+        for lane in lanes(self.unoccluded(asks, |t_max| t_max)) {
             let Some(draw) = self.lights.draw(lane) else { continue };
             let (path, vertex) = (&mut self.paths.paths[lane], vertex(&self.paths.at, lane));
             let visible = path.unobstructed(world, vertex, &draw.sample);
@@ -167,9 +179,9 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         }
     }
 
-    /// Which shadow rays meet nothing.
+    /// Which shadow rays meet nothing up to where `end` says that they end.
     #[inline(always)]
-    fn unoccluded(&mut self, mut asks: Mask) -> Mask {
+    fn unoccluded(&mut self, mut asks: Mask, end: impl Fn(f64) -> f64) -> Mask {
         if asks == 0 {
             return 0;
         }
@@ -177,7 +189,6 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         let (mut leaves, mut surfaces) = ([SurfaceId::NONE; W], [SurfaceId::NONE; W]);
         let mut endless: Mask = 0;
         for lane in lanes(asks) {
-            paths.rays[lane] += 1;
             leaves[lane] = vertex(&paths.at, lane).point.surface;
             surfaces[lane] = draws.surface[lane];
             if draws.rows >> lane & 1 == 1 {
@@ -199,6 +210,9 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             rays.direction.set(lane, ray.direction);
             rays.t_max.0[lane] = ray.t_max;
             surfaces[lane] = SurfaceId::NONE;
+        }
+        for t_max in &mut rays.t_max.0 {
+            *t_max = end(*t_max);
         }
         if asks.count_ones() as usize <= LANES {
             // As many as are cast at once, wherever they are.

@@ -1,5 +1,6 @@
 //! The paths of a set, and the rows that rays and directions of all of them are computed from at once.
 
+use super::arrive::of_group;
 use super::rows::{Mask, Row, Rows3, W};
 use crate::integrator::Path;
 use crate::interaction::SurfaceInteraction;
@@ -7,7 +8,7 @@ use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
 use crate::reuse::Gathered;
 use crate::sampler::{Sampler, Samplers};
-use etalon_geometry::{Ray, SurfaceId};
+use etalon_geometry::{LANES, Ray, Rays, SurfaceId};
 
 /// All paths of a set.
 pub(super) const ALL: Mask = ((1_u64 << W) - 1) as Mask;
@@ -20,7 +21,7 @@ pub(super) struct Paths<'a, M, P, const N: usize> {
     pub number: [u32; W],
     pub samplers: Samplers<W>,
     /// Rays of all kinds so far.
-    pub rays: [u32; W],
+    pub ray_count: [u32; W],
     pub paths: [Path<'a, M, P, N>; W],
     /// Numbers of their vertices.
     pub vertex: [u32; W],
@@ -46,7 +47,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Paths<'a, M,
             alive: 0,
             number: [0; W],
             samplers: Samplers::new(sampler),
-            rays: [0; W],
+            ray_count: [0; W],
             paths: std::array::from_fn(|_| Path::idle()),
             vertex: [0; W],
             origin: Rows3::ZERO,
@@ -59,6 +60,18 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Paths<'a, M,
             normal: Rows3::ZERO,
             shares,
             gathered: [Gathered::NOTHING; W],
+        }
+    }
+
+    /// The rays of a group.
+    #[inline(always)]
+    pub(super) fn rays(&self, group: usize) -> Rays {
+        Rays {
+            origin: self.origin.group(group),
+            direction: self.direction.group(group),
+            t_max: [f64::INFINITY; LANES],
+            leaves: of_group(&self.leaves, group * LANES),
+            aims_at: [SurfaceId::NONE; LANES],
         }
     }
 

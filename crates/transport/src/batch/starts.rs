@@ -6,8 +6,8 @@ use super::rows::{Row, Rows3, W};
 use super::stream::Cursor;
 use crate::camera::Camera;
 use crate::film::Counters;
-use crate::kernel::Tracer;
 use crate::integrator::Start;
+use crate::kernel::Tracer;
 use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
 use crate::reuse::Gathered;
@@ -134,7 +134,7 @@ impl<'a, const N: usize> Starts<'a, N> {
         self.number = self.number.wrapping_add(1);
         paths.samplers.put(lane, *self.samplers.lane(start));
         paths.vertex[lane] = 0;
-        paths.rays[lane] = 0;
+        paths.ray_count[lane] = 0;
         paths.origin.set(lane, self.origin.at(start));
         paths.direction.set(lane, self.direction.at(start));
         paths.leaves[lane] = SurfaceId::NONE;

@@ -23,7 +23,7 @@ mod next_event;
 mod path;
 mod scalar;
 
-pub(crate) use next_event::{LambertTerms, LightDraw, NextEvent, light_weight};
+pub(crate) use next_event::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
 pub(crate) use path::{Arrival, Direction, Path, Start};
 pub(crate) use scalar::trace;
 

@@ -206,9 +206,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     fn transmittance(&self, world: &World<'a>, body: Body<'a>, inside: &Inside, length: f64) -> Lanes<f64, N> {
         let lambda_nm = &self.wavelengths.lambda_nm;
-        let through = |absorption: &Absorption| {
-            absorption.transmittance(body, world.media, inside, lambda_nm, length)
-        };
+        let through = |absorption: &Absorption| absorption.transmittance(body, world.media, inside, lambda_nm, length);
         world.absorption.as_ref().map_or(Lanes::ONE, through)
     }
 
@@ -282,6 +280,6 @@ impl World<'_> {
 
 /// Where the search for masks along a shadow ray ends: beyond its target by some times as much as the ray itself ends short of it,
 /// for rounding. A mask that coincides with a light lies before it.
-fn beyond_target(t_max: f64) -> f64 {
+pub(crate) fn beyond_target(t_max: f64) -> f64 {
     if t_max < 1.0 { 1.0 + 16.0 * (1.0 - t_max) } else { t_max }
 }

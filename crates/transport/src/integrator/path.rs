@@ -319,7 +319,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             }
             BsdfKind::Dielectric(number) => {
                 observer.direction(&crate::caustics::Mixture::NONE);
-                let [interior, exterior] = vertex.indices(&world.tables.interfaces[usize::from(number)], self.hero_nm());
+                let [interior, exterior] =
+                    vertex.indices(&world.tables.interfaces[usize::from(number)], self.hero_nm());
                 let from_outside = vertex.from_front();
                 let eta = if from_outside { interior / exterior } else { exterior / interior };
                 let turn = crate::bsdf::dielectric::turn(point.normal, *wo, eta, u[0]);
