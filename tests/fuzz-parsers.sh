@@ -11,8 +11,11 @@ shift
 work="$here/target/fuzz"
 # The coverage that guides a fuzzer is an option that rustc holds for unstable.
 export RUSTC_BOOTSTRAP=1 CARGO_TARGET_DIR="$work/build"
-cd "$here/crates/scene/fuzz"
 for parser in "$@"; do
+    case $parser in
+    scene | image | picture) cd "$here/crates/scene/fuzz" ;;
+    *) cd "$here/crates/import/fuzz" ;;
+    esac
     seeds=seeds/$parser
     [ "$parser" = scene ] && seeds="$here/scenes"
     mkdir -p "$work/corpus/$parser" "$work/failing/$parser"

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use etalon_scene::import::{Imported, Moment, import, is_model};
+use etalon_import::{Imported, Moment, import, is_model};
 use etalon_scene::{FileUse, LoadError, Scene};
 use miette::{Report, Severity, miette};
 use sha2::{Digest, Sha256};
@@ -54,7 +54,7 @@ pub(crate) fn import_model(path: &Path, prefix: &str, moment: Option<&Moment>) -
 fn load_model(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedScene, Failure> {
     let imported = import_model(path, "", None)?;
     let name = format!("{} as a scene", path.display());
-    let loaded = etalon_scene::parse_imported(&imported, &name, film_size).map_err(scene_failure)?;
+    let loaded = imported.parse(&name, film_size).map_err(scene_failure)?;
     let sha256 = scene_sha256(&imported.text, &loaded.files);
     let note = |code: &str, text: String| miette!(severity = Severity::Warning, code = code.to_owned(), "{text}");
     let mut warnings: Vec<Report> = imported.added.into_iter().map(|added| note("added", added)).collect();

@@ -8,9 +8,8 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-use crate::format::Shading;
-use crate::import::ImportedFile;
 use crate::json::{Code, Reader, Spanned};
+use crate::mesh::Shading;
 use crate::model::Mesh;
 use crate::texture::{Channel, Encoding, Image};
 
@@ -24,6 +23,15 @@ pub struct FileUse {
     pub name: String,
     /// SHA-256 of its bytes, in hex.
     pub sha256: String,
+}
+
+/// A file in memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedFile {
+    /// Its name, as the scene writes it.
+    pub name: String,
+    /// Its contents.
+    pub bytes: Vec<u8>,
 }
 
 /// What makes a mesh of a file.
@@ -65,7 +73,7 @@ impl Files {
     }
 
     /// Files that are in memory.
-    pub(crate) fn given(files: &[ImportedFile]) -> Self {
+    pub(crate) fn given(files: &[NamedFile]) -> Self {
         let given = files.iter().map(|file| (file.name.clone(), file.bytes.clone())).collect();
         Self { given, ..Self::new(None) }
     }
@@ -87,7 +95,7 @@ impl Files {
             return None;
         };
         let path = folder.join(&name.value);
-        match read(&path) {
+        match read_file(&path) {
             Ok(bytes) => {
                 self.note(name, &bytes);
                 Some(bytes)
@@ -189,8 +197,11 @@ impl Files {
     }
 }
 
-/// The bytes of a file of at most [`MAX_FILE_BYTES`].
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
+/// The bytes of a plain file of at most [`MAX_FILE_BYTES`]. Pipes, devices and folders are refused.
+///
+/// # Errors
+/// A sentence that says why the file cannot be read.
+pub fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     let file = etalon_picture::open_plain(path).map_err(|error| error.to_string())?;
     let kind = file.metadata().map_err(|error| error.to_string())?;
     if kind.len() > MAX_FILE_BYTES {

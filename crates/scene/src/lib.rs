@@ -4,7 +4,8 @@
 //! ([`SceneErrors`]), each with its JSON path, line, column and a hint. [`schema`] is the JSON Schema of such files, made
 //! from the same declarations as the reader. The format is described in `docs/scene-format.md`.
 //!
-//! [`json`] is the reader itself, free of scenes, for any other JSON format.
+//! [`json`] is the reader itself, free of scenes, for any other JSON format. Models of other programs (glTF, Mitsuba, pbrt) become
+//! scenes by the crate `etalon-import`.
 //!
 //! ```
 //! let (scene, warnings) = etalon_scene::parse(r#"{
@@ -21,19 +22,20 @@
 
 mod files;
 mod format;
-pub mod import;
 pub mod json;
 pub mod mesh;
 pub mod model;
 mod problem;
 mod texture;
-mod vector;
+#[doc(hidden)]
+pub mod vector;
 
 use std::path::Path;
 
-pub use files::{FileUse, MAX_FILE_BYTES};
+pub use files::{FileUse, MAX_FILE_BYTES, NamedFile, read_file};
+pub use format::MOST_BLEND_PARTS;
 pub use model::*;
-pub use problem::{Code, LoadError, Problem, Related, SceneErrors, Severity, Span};
+pub use problem::{Code, LoadError, Problem, Related, SceneErrors, Severity, Span, shortened};
 pub use texture::{
     Channel, Encoding, Image, ImageTexture, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, Texels, TextureFilter, Wrap,
 };
@@ -94,16 +96,17 @@ pub fn parse_in(
     read_scene(text, file_name, files::Files::new(folder), size)
 }
 
-/// Reads an imported scene, with a film of another width and height, in pixels, if they are given.
+/// As [`parse_with_size`], with the files that the scene refers to in memory. No file is read from the disk.
 ///
 /// # Errors
-/// As [`parse`]: what the model holds may make no sense as a scene.
-pub fn parse_imported(
-    imported: &import::Imported,
+/// As [`parse`]; also if the scene refers to a file that is not among `files`.
+pub fn parse_with_files(
+    text: &str,
     file_name: &str,
+    files: &[NamedFile],
     size: Option<[u32; 2]>,
 ) -> Result<Loaded, SceneErrors> {
-    read_scene(&imported.text, file_name, files::Files::given(&imported.files), size)
+    read_scene(text, file_name, files::Files::given(files), size)
 }
 
 fn read_scene(

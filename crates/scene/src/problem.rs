@@ -168,8 +168,8 @@ impl fmt::Display for Code {
 /// Most characters of a message, a path or a hint; names in a file may be of any length.
 const MAX_CHARACTERS: usize = 400;
 
-/// A text, without its middle if it is longer than a message should be.
-pub(crate) fn shortened(text: String) -> String {
+/// A text for a message: its middle is replaced by an ellipsis if it has more than 400 characters.
+pub fn shortened(text: String) -> String {
     let end_of = |count: usize| text.char_indices().nth(count).map(|(at, _)| at);
     if end_of(MAX_CHARACTERS).is_none() {
         return text;

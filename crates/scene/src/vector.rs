@@ -1,34 +1,34 @@
 //! Vectors in double precision, without overflow or underflow on the way.
 
-pub(crate) type Vector = [f64; 3];
+pub type Vector = [f64; 3];
 
-pub(crate) fn add(a: Vector, b: Vector) -> Vector {
+pub fn add(a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-pub(crate) fn sub(a: Vector, b: Vector) -> Vector {
+pub fn sub(a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
+pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
+pub fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-pub(crate) fn scale(a: Vector, s: f64) -> Vector {
+pub fn scale(a: Vector, s: f64) -> Vector {
     a.map(|c| c * s)
 }
 
 /// Length of a vector whose components are not far from 1.
-pub(crate) fn length(a: Vector) -> f64 {
+pub fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// The unit vector of a direction, however long or short; `None` for zero and for what is not finite.
-pub(crate) fn unit(a: Vector) -> Option<Vector> {
+pub fn unit(a: Vector) -> Option<Vector> {
     let largest = a.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     if largest == 0.0 || a.iter().any(|c| !c.is_finite()) {
         return None;
@@ -40,12 +40,12 @@ pub(crate) fn unit(a: Vector) -> Option<Vector> {
 }
 
 /// A 3×3 matrix by rows.
-pub(crate) type Matrix = [[f64; 3]; 3];
+pub type Matrix = [[f64; 3]; 3];
 
-pub(crate) fn product(a: &Matrix, b: &Matrix) -> Matrix {
+pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-pub(crate) fn apply(a: &Matrix, v: Vector) -> Vector {
+pub fn apply(a: &Matrix, v: Vector) -> Vector {
     std::array::from_fn(|i| dot(a[i], v))
 }

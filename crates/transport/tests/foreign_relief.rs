@@ -1,8 +1,7 @@
 //! Normal and bump maps of Mitsuba and pbrt, imported and rendered: a grey square under parallel light, whose radiance follows
 //! from each program's own conventions, written out here in that program's own axes.
 
-use etalon_scene::import::import_bytes;
-use etalon_scene::parse_imported;
+use etalon_import::import_bytes;
 use etalon_transport::{Control, prepare};
 use std::f64::consts::PI;
 
@@ -112,7 +111,7 @@ fn shown(kind: &str, text: &str, texels: Texels) -> f64 {
     };
     let imported = import_bytes(kind, text.as_bytes(), &file, "", "a").unwrap_or_else(|why| panic!("{why}\n{text}"));
     assert!(imported.left_out.is_empty(), "{:?}", imported.left_out);
-    let scene = parse_imported(&imported, "a", None).unwrap_or_else(|e| panic!("{e}\n{}", imported.text)).scene;
+    let scene = imported.parse("a", None).unwrap_or_else(|e| panic!("{e}\n{}", imported.text)).scene;
     let prepared = prepare(&scene).unwrap_or_else(|why| panic!("{why}"));
     let extent = prepared.whole(Some(1));
     prepared.render(&extent, &|_| Control::Continue).unwrap_or_else(|why| panic!("{why}")).mean_y(extent.rect)

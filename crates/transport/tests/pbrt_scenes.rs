@@ -1,7 +1,6 @@
 //! Scenes of pbrt, imported and rendered, against what they come to in closed form: pbrt's conventions written out independently.
 
-use etalon_scene::import::import_bytes;
-use etalon_scene::parse_imported;
+use etalon_import::import_bytes;
 use etalon_transport::{Control, prepare};
 use std::f64::consts::PI;
 
@@ -9,7 +8,7 @@ use std::f64::consts::PI;
 fn shown(text: &str, files: &dyn Fn(&str) -> Result<Vec<u8>, String>) -> f64 {
     let imported = import_bytes("pbrt", text.as_bytes(), files, "", "a.pbrt").unwrap_or_else(|why| panic!("{why}"));
     assert!(imported.left_out.is_empty(), "{:?}", imported.left_out);
-    let scene = parse_imported(&imported, "a", None).unwrap_or_else(|e| panic!("{e}\n{}", imported.text)).scene;
+    let scene = imported.parse("a", None).unwrap_or_else(|e| panic!("{e}\n{}", imported.text)).scene;
     let prepared = prepare(&scene).unwrap_or_else(|why| panic!("{why}"));
     let extent = prepared.whole(Some(1));
     let film = prepared.render(&extent, &|_| Control::Continue).unwrap_or_else(|why| panic!("{why}"));

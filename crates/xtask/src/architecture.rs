@@ -115,6 +115,19 @@ mod tests {
         );
     }
 
+    /// A film follows from the text of a scene alone, whatever model that text was made of.
+    #[test]
+    fn only_the_program_depends_on_the_importers() {
+        let root = crate::root();
+        for name in source::crates(&root).iter().filter(|name| *name != "cli") {
+            let manifest = manifest::read(&root, name).unwrap();
+            assert!(
+                !manifest.dependencies.iter().any(|d| d.name == "etalon-import"),
+                "{name} depends on etalon-import"
+            );
+        }
+    }
+
     /// A judge that shares code with what it judges judges nothing.
     #[test]
     fn the_oracle_and_the_assignment_renderer_depend_on_nothing_of_ours() {

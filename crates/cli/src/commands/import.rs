@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use etalon_import::Moment;
 use etalon_picture::write_atomically;
-use etalon_scene::import::Moment;
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -84,7 +84,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     let imported = import_model(&args.model, &prefix, moment.as_ref())?;
     // What would not load is not written.
     let name = args.output.display().to_string();
-    etalon_scene::parse_imported(&imported, &name, None).map_err(refused_scene)?;
+    imported.parse(&name, None).map_err(refused_scene)?;
 
     let folder = args.output.parent().unwrap_or(Path::new(""));
     let failed = |path: &Path, error: std::io::Error| {

@@ -11,6 +11,7 @@ use crate::json::{
     Code, Decode, Direction, List, Node, Optional, Positive, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span,
     Spanned,
 };
+use crate::mesh::Shading;
 use crate::model::{Mesh, Shape, Transform};
 use crate::vector::{Matrix, apply, cross, dot, length, product, sub, unit};
 
@@ -74,17 +75,6 @@ crate::record! {
         Rule::Needs("uvs", &["vertices_m"]),
         Rule::Needs("group", &["file"]),
     ]
-}
-
-/// Which normals a mesh is shaded by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Shading {
-    /// Those of the vertices, if there are any.
-    Auto,
-    /// The triangles' own.
-    Flat,
-    /// Vertex normals, made from the triangles if there are none.
-    Smooth,
 }
 
 crate::keywords!(Shading {

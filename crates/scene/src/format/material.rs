@@ -15,8 +15,9 @@ use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
 use crate::json::{Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole};
 use crate::model::{Material, MaterialKind, Metal, PolarisingSheet};
+pub(crate) use blend::Before;
+pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
-pub(crate) use blend::{Before, MOST_PARTS};
 use index::{IndexForm, NamedMetal, complex_index, index};
 use roughness::roughness;
 

@@ -5,10 +5,10 @@ use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::path::Path;
 use std::sync::Arc;
 
-use super::geometry::{MeshShape, Shading};
+use super::geometry::MeshShape;
 use crate::files::{Files, MeshKey};
 use crate::json::{Code, Optional, Reader, Span, Spanned};
-use crate::mesh::{self, Part};
+use crate::mesh::{self, Part, Shading};
 use crate::model::Mesh;
 use crate::vector::{cross, dot, length, scale, sub, unit};
 

@@ -17,6 +17,5 @@ mod scene;
 mod spectra;
 mod spectrum;
 
-pub(crate) use geometry::Shading;
-pub(crate) use material::MOST_PARTS;
+pub use material::MOST_BLEND_PARTS;
 pub(crate) use scene::{SceneForm, scene};

@@ -33,6 +33,17 @@ pub struct Part {
     pub left_out: Vec<String>,
 }
 
+/// Which normals a mesh is shaded by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Shading {
+    /// Those of the vertices, if there are any.
+    Auto,
+    /// The triangles' own.
+    Flat,
+    /// Vertex normals, made from the triangles if there are none.
+    Smooth,
+}
+
 /// Why a mesh file is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}{message}", line.map_or_else(String::new, |line| format!("line {line}: ")))]

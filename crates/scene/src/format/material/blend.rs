@@ -10,9 +10,9 @@ use crate::files::Files;
 use crate::json::{Code, Optional, Reader, Spanned};
 use crate::model::{MaterialKind, NumberTexture};
 
-/// The most materials that a blend may come down to: names can double them line by line, and an image of roughness makes up to
-/// [`MOST_WIDTHS`].
-pub(crate) const MOST_PARTS: usize = 8 * MOST_WIDTHS;
+/// The most materials that a blend may hold, those of blends within it counted. Names can double their number with each line of a
+/// file, and an image of roughness makes up to 97.
+pub const MOST_BLEND_PARTS: usize = 8 * MOST_WIDTHS;
 
 /// Materials that are no blends in a material.
 fn parts(kind: &MaterialKind) -> usize {
@@ -84,9 +84,9 @@ pub(super) fn blend<'f>(
     }
     let kind = MaterialKind::blend(first, second, by);
     let count = parts(&kind);
-    if count > MOST_PARTS {
+    if count > MOST_BLEND_PARTS {
         let message = format!("a blend of {count} materials, blends in blends counted");
-        reader.error_hint(Code::OutOfRange, blend.at.head(), message, format!("at most {MOST_PARTS}"));
+        reader.error_hint(Code::OutOfRange, blend.at.head(), message, format!("at most {MOST_BLEND_PARTS}"));
         return None;
     }
     Some(kind)

@@ -1,0 +1,307 @@
+//! A scene that is being made of a model.
+
+mod files;
+mod groups;
+
+use std::collections::{HashMap, HashSet};
+
+use etalon_scene::vector::{dot, length, sub};
+use etalon_scene::{Encoding, Mesh, NamedFile, shortened};
+use serde_json::{Map, Value, json};
+
+use crate::budget::{Budget, FreshNames};
+use crate::matrix::{Rows, determinant, is_similarity, point, steps};
+use crate::relief::turn_over;
+use crate::{Imported, LeftOut};
+use files::KnownImage;
+pub(crate) use groups::Outside;
+
+/// Most things that are listed as not honoured; the rest is counted.
+const MAX_LEFT_OUT: usize = 1000;
+
+/// A scene that is being made.
+pub(crate) struct Builder<'a> {
+    pub(crate) near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>,
+    pub(crate) prefix: String,
+    pub(crate) materials: Map<String, Value>,
+    pub(crate) objects: Vec<Value>,
+    pub(crate) lights: Vec<Value>,
+    pub(crate) groups: Map<String, Value>,
+    pub(crate) instances: Vec<Value>,
+    /// The box around each group, in its own coordinates.
+    pub(crate) group_bounds: HashMap<String, Bounds>,
+    pub(crate) camera: Option<Value>,
+    /// When the shutter opens and when it closes, s; an instant if left out.
+    pub(crate) shutter_s: Option<[f64; 2]>,
+    pub(crate) film: Value,
+    pub(crate) integrator: Map<String, Value>,
+    pub(crate) files: Vec<NamedFile>,
+    /// Names of files by what they were made from.
+    pub(crate) known: HashMap<String, Option<String>>,
+    /// Images by their file and how its numbers stand: what is known of each, or why there is none.
+    images: HashMap<(String, Encoding), Result<KnownImage, String>>,
+    budget: Budget,
+    material_names: FreshNames,
+    group_names: FreshNames,
+    pub(crate) left_out: Vec<LeftOut>,
+    pub(crate) added: Vec<String>,
+    said: HashSet<LeftOut>,
+    /// What was left out beyond [`MAX_LEFT_OUT`]; the same thing may count more than once.
+    uncounted: usize,
+    pub(crate) emits: bool,
+    /// Of everything, in the world, or in the group that is being made.
+    pub(crate) bounds: Bounds,
+}
+
+/// The two corners of a box around things, if there are any.
+type Bounds = Option<[[f64; 3]; 2]>;
+
+/// An object that is to be placed.
+pub(crate) struct Placed {
+    pub(crate) name: String,
+    /// A shape of the format.
+    pub(crate) shape: Value,
+    /// Two corners of a box around it, before its transform.
+    pub(crate) reach: [[f64; 3]; 2],
+    pub(crate) material: Value,
+    pub(crate) emission: Option<Value>,
+    pub(crate) opacity: f64,
+    /// Further keys of the object.
+    pub(crate) detail: Map<String, Value>,
+    pub(crate) rows: Rows,
+    /// Whether its normals point the other way.
+    pub(crate) flipped: bool,
+}
+
+impl<'a> Builder<'a> {
+    pub(crate) fn new(near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>, prefix: &str) -> Self {
+        Self {
+            near,
+            prefix: prefix.to_owned(),
+            materials: Map::new(),
+            objects: Vec::new(),
+            lights: Vec::new(),
+            groups: Map::new(),
+            instances: Vec::new(),
+            group_bounds: HashMap::new(),
+            camera: None,
+            shutter_s: None,
+            film: json!({ "width": 1280, "height": 720 }),
+            integrator: Map::new(),
+            files: Vec::new(),
+            known: HashMap::new(),
+            images: HashMap::new(),
+            budget: Budget::default(),
+            material_names: FreshNames::default(),
+            group_names: FreshNames::default(),
+            left_out: Vec::new(),
+            added: Vec::new(),
+            said: HashSet::new(),
+            uncounted: 0,
+            emits: false,
+            bounds: None,
+        }
+    }
+
+    pub(crate) fn leave_out(&mut self, place: impl Into<String>, what: impl Into<String>) {
+        let left_out = LeftOut { place: shortened(place.into()), what: shortened(what.into()) };
+        if self.said.contains(&left_out) {
+            return;
+        }
+        if self.left_out.len() == MAX_LEFT_OUT {
+            self.uncounted += 1;
+            return;
+        }
+        self.said.insert(left_out.clone());
+        self.left_out.push(left_out);
+    }
+
+    /// Adds an object made of a mesh.
+    pub(crate) fn add_mesh(
+        &mut self,
+        name: &str,
+        mesh: Mesh,
+        material: &Value,
+        emission: Option<Value>,
+        transform: Value,
+    ) -> Result<(), String> {
+        let file = self.mesh_file(&mesh);
+        self.add_object(name, &file, &mesh, material, (emission, &Map::new()), &transform);
+        Ok(())
+    }
+
+    /// Adds an object whose mesh is a file that has been added. `transform` is a list of the format, or null.
+    pub(crate) fn add_object(
+        &mut self,
+        name: &str,
+        file: &str,
+        mesh: &Mesh,
+        material: &Value,
+        (emission, detail): (Option<Value>, &Map<String, Value>),
+        transform: &Value,
+    ) {
+        let mut object = json!({ "name": name, "shape": { "type": "mesh", "file": file }, "material": material });
+        for (key, value) in detail {
+            object[key] = value.clone();
+        }
+        if let Some(emission) = emission {
+            object["emission"] = emission;
+            self.emits = true;
+        }
+        let rows = transform[0]["matrix"].as_array().map(|rows| {
+            rows.iter().map(|row| std::array::from_fn(|i| row[i].as_f64().unwrap_or(0.0))).collect::<Vec<[f64; 4]>>()
+        });
+        if !transform.is_null() {
+            object["transform"] = transform.clone();
+        }
+        for v in &mesh.vertices {
+            let p: [f64; 3] = match &rows {
+                Some(rows) => std::array::from_fn(|i| dot([rows[i][0], rows[i][1], rows[i][2]], *v) + rows[i][3]),
+                None => *v,
+            };
+            let [low, high] = self.bounds.get_or_insert([p, p]);
+            for k in 0..3 {
+                low[k] = low[k].min(p[k]);
+                high[k] = high[k].max(p[k]);
+            }
+        }
+        self.objects.push(object);
+    }
+
+    /// Adds an object. One whose transform flattens it is left out; a round one that is stretched becomes an instance, which
+    /// may be, unless it emits.
+    ///
+    /// # Errors
+    /// If there are more objects than a scene can hold.
+    pub(crate) fn place(&mut self, placed: &Placed, place: &str) -> Result<(), String> {
+        let determinant = determinant(&placed.rows);
+        if determinant == 0.0 || !determinant.is_finite() {
+            self.leave_out(place, "it is flattened by its transform, and left out");
+            return Ok(());
+        }
+        let mut material = placed.material.clone();
+        let mut emission = placed.emission.clone();
+        if placed.flipped {
+            // Which side is which matters to a dielectric and to what shines on one side.
+            let own = material.as_str().and_then(|name| self.materials.get(name)).cloned().unwrap_or(material.clone());
+            if own["type"] == "dielectric" {
+                material = own.clone();
+                material["interior"] = own.get("exterior").cloned().unwrap_or(json!(1));
+                material["exterior"] = own["interior"].clone();
+            }
+            if let Some(emission) = &mut emission {
+                emission["sides"] = json!(if emission["sides"] == "back" { "front" } else { "back" });
+            }
+        }
+        let mut object = json!({ "name": placed.name, "shape": placed.shape, "material": material });
+        if placed.opacity < 1.0 {
+            object["opacity"] = json!(placed.opacity);
+        }
+        let mut detail = placed.detail.clone();
+        if placed.flipped {
+            turn_over(&mut detail);
+        }
+        for (key, value) in detail {
+            object[key] = value;
+        }
+        let round = matches!(placed.shape["type"].as_str(), Some("sphere" | "disk" | "cylinder"));
+        self.spend(&object, place)?;
+        let stretched = round && !is_similarity(&placed.rows);
+        if stretched && emission.is_some() {
+            self.leave_out(place, "its light is left out: what emits may not be stretched");
+        } else if let Some(emission) = emission {
+            self.spend(&emission, place)?;
+            object["emission"] = emission;
+            self.emits = true;
+        }
+        if stretched {
+            let group = self.group_name(&placed.name);
+            self.groups.insert(group.clone(), json!({ "objects": [object] }));
+            self.instances.push(json!({ "name": placed.name, "group": group, "transform": steps(&placed.rows) }));
+        } else {
+            let transform = steps(&placed.rows);
+            if !transform.is_null() {
+                object["transform"] = transform;
+            }
+            self.objects.push(object);
+        }
+        self.enclose(placed.reach, &placed.rows);
+        Ok(())
+    }
+
+    /// Counts a copy of something toward what a scene can hold.
+    ///
+    /// # Errors
+    /// If that is too much.
+    pub(crate) fn spend(&mut self, value: &Value, place: &str) -> Result<(), String> {
+        self.budget.spend(value, place)
+    }
+
+    /// Widens the bounds by a box that is moved.
+    pub(crate) fn enclose(&mut self, [low, high]: [[f64; 3]; 2], rows: &Rows) {
+        for corner in 0..8 {
+            let p = point(rows, std::array::from_fn(|k| if corner >> k & 1 == 0 { low[k] } else { high[k] }));
+            let [low, high] = self.bounds.get_or_insert([p, p]);
+            for k in 0..3 {
+                low[k] = low[k].min(p[k]);
+                high[k] = high[k].max(p[k]);
+            }
+        }
+    }
+
+    /// A name for a material that none has yet.
+    pub(crate) fn material_name(&mut self, wanted: &str) -> String {
+        self.material_names.name(if wanted.is_empty() { "material" } else { wanted }, &self.materials)
+    }
+
+    /// The scene, with a camera and a light if the model has none.
+    pub(crate) fn finish(mut self, source: &str) -> Result<Imported, String> {
+        let Some([low, high]) = self.bounds else { return Err("there is nothing in it to see".to_owned()) };
+        let mut added = std::mem::take(&mut self.added);
+        if self.uncounted > 0 {
+            let what = format!("{} more things are not listed", self.uncounted);
+            self.left_out.push(LeftOut { place: source.to_owned(), what });
+        }
+        let mut camera = self.camera.take().unwrap_or_else(|| {
+            let center: [f64; 3] = std::array::from_fn(|k| 0.5 * low[k] + 0.5 * high[k]);
+            // So far that the ball around the bounds fits into the height of the picture.
+            let radius = (0.5 * length(sub(high, low))).max(f64::MIN_POSITIVE);
+            let fov_deg = 35.0_f64;
+            let distance = 1.02 * radius / (0.5 * fov_deg).to_radians().sin();
+            let from = [0.45, 0.3, 1.0];
+            let position: [f64; 3] = std::array::from_fn(|k| center[k] + distance * from[k] / length(from));
+            added.push(format!("the model has no camera: one is added that looks at all of it, from {distance:.3} m"));
+            json!({
+                "type": "perspective", "position_m": position, "look_at_m": center, "vertical_fov_deg": fov_deg
+            })
+        });
+        if let Some(shutter_s) = self.shutter_s {
+            camera["shutter_s"] = json!(shutter_s);
+        }
+        if self.lights.is_empty() && !self.emits {
+            added.push("the model has no light: an even white sky is added".to_owned());
+            self.lights.push(json!({
+                "name": "sky", "type": "environment",
+                "radiance": { "type": "illuminant", "name": "D65", "scale": 1 }
+            }));
+        }
+        let comment: Vec<String> = std::iter::once(format!("Imported from {source}."))
+            .chain(added.iter().cloned())
+            .chain(self.left_out.iter().map(|l| format!("not honoured: {}: {}", l.place, l.what)))
+            .collect();
+        let mut scene = json!({
+            "etalon": 1, "comment": comment, "camera": camera, "film": self.film, "materials": self.materials,
+            "objects": self.objects, "lights": self.lights,
+        });
+        for (key, part) in [("groups", &self.groups), ("integrator", &self.integrator)] {
+            if !part.is_empty() {
+                scene[key] = json!(part);
+            }
+        }
+        if !self.instances.is_empty() {
+            scene["instances"] = json!(self.instances);
+        }
+        let text = format!("{scene:#}\n");
+        Ok(Imported { text, files: self.files, left_out: self.left_out, added })
+    }
+}

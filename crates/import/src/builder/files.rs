@@ -1,0 +1,80 @@
+//! Files of the scene that is being made: meshes and images.
+
+use std::path::Path;
+
+use etalon_scene::mesh::write_ply;
+use etalon_scene::{Encoding, Image, Mesh, NamedFile};
+
+use super::Builder;
+use crate::extension;
+
+/// An image that has been decoded.
+#[derive(Clone, Debug)]
+pub(super) struct KnownImage {
+    /// Its file in the scene.
+    file: String,
+    /// The mean of its texels.
+    mean: [f64; 3],
+    /// What of it is not used.
+    left_out: Option<String>,
+}
+
+impl Builder<'_> {
+    /// Adds a file, and gives the name that the scene has for it.
+    pub(crate) fn add_file(&mut self, kind: &str, extension: &str, bytes: Vec<u8>) -> String {
+        let name = format!("{}{kind}-{}.{extension}", self.prefix, self.files.len());
+        self.files.push(NamedFile { name: name.clone(), bytes });
+        name
+    }
+
+    /// Adds a mesh as a file; `None`, and a note, if it has no triangles.
+    pub(crate) fn mesh_file(&mut self, mesh: &Mesh) -> String {
+        let mut bytes = Vec::with_capacity(40 * mesh.vertices.len() + 13 * mesh.triangles.len());
+        // Writing to memory cannot fail.
+        let _ = write_ply(mesh, &mut bytes);
+        self.add_file("mesh", "ply", bytes)
+    }
+
+    /// The bytes of a file that the model names.
+    pub(crate) fn bytes_of(&self, name: &str, place: &str) -> Result<Vec<u8>, String> {
+        let name = name.replace('\\', "/");
+        (self.near)(&name).map_err(|why| format!("{place}: \"{name}\" cannot be read: {why}"))
+    }
+
+    /// Adds the file of an image, once, and gives its name in the scene and the mean of its texels.
+    pub(crate) fn image_file(
+        &mut self,
+        name: &str,
+        encoding: Encoding,
+        place: &str,
+    ) -> Result<(String, [f64; 3]), String> {
+        let key = (name.to_owned(), encoding);
+        let known = match self.images.get(&key) {
+            Some(known) => known.clone(),
+            None => {
+                let read = self.read_image(name, encoding, place);
+                self.images.insert(key, read.clone());
+                read
+            }
+        };
+        let KnownImage { file, mean, left_out } = known?;
+        if let Some(what) = left_out {
+            self.leave_out(place, what);
+        }
+        Ok((file, mean))
+    }
+
+    fn read_image(&mut self, name: &str, encoding: Encoding, place: &str) -> Result<KnownImage, String> {
+        let bytes = self.bytes_of(name, place)?;
+        let (image, left_out) = Image::decode(&bytes, encoding)?;
+        let file = match self.known.get(name) {
+            Some(Some(file)) => file.clone(),
+            _ => {
+                let file = self.add_file("image", &extension(Path::new(name)), bytes);
+                self.known.insert(name.to_owned(), Some(file.clone()));
+                file
+            }
+        };
+        Ok(KnownImage { file, mean: image.mean(), left_out })
+    }
+}

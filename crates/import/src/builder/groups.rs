@@ -1,0 +1,65 @@
+//! Groups of objects, and the instances that place them.
+
+use serde_json::{Value, json};
+
+use super::{Bounds, Builder};
+use crate::matrix::{Rows, determinant, steps};
+
+/// The objects, instances and bounds of what is outside of a group that is being made.
+pub(crate) type Outside = (Vec<Value>, Vec<Value>, Bounds);
+
+impl Builder<'_> {
+    pub(crate) fn group_name(&mut self, wanted: &str) -> String {
+        self.group_names.name(wanted, &self.groups)
+    }
+
+    /// From here on objects belong to a group. Gives what is outside of it.
+    pub(crate) fn begin_group(&mut self) -> Outside {
+        (std::mem::take(&mut self.objects), std::mem::take(&mut self.instances), self.bounds.take())
+    }
+
+    pub(crate) fn end_group(&mut self, name: &str, (objects, instances, bounds): Outside) {
+        let mut group = json!({ "objects": std::mem::replace(&mut self.objects, objects) });
+        let within = std::mem::replace(&mut self.instances, instances);
+        if !within.is_empty() {
+            group["instances"] = json!(within);
+        }
+        self.groups.insert(name.to_owned(), group);
+        self.group_bounds.insert(name.to_owned(), std::mem::replace(&mut self.bounds, bounds));
+    }
+
+    /// Places a group.
+    pub(crate) fn place_group(&mut self, name: &str, group: &str, rows: &Rows, place: &str) {
+        let determinant = determinant(rows);
+        let Some(Some(bounds)) = self.group_bounds.get(group).copied() else {
+            self.leave_out(place, format!("the group \"{group}\" is empty or not there: its instance is left out"));
+            return;
+        };
+        if determinant == 0.0 || !determinant.is_finite() {
+            self.leave_out(place, "it is flattened by its transform, and left out");
+            return;
+        }
+        let mut instance = json!({ "name": name, "group": group });
+        let transform = steps(rows);
+        if !transform.is_null() {
+            instance["transform"] = transform;
+        }
+        self.instances.push(instance);
+        self.enclose(bounds, rows);
+    }
+
+    /// Places a group that moves: keyframes are times, s, and maps at them.
+    pub(crate) fn place_moving(&mut self, name: &str, group: &str, keyframes: &[(f64, Rows)]) {
+        let Some(Some(bounds)) = self.group_bounds.get(group).copied() else {
+            // There is nothing in it.
+            self.groups.remove(group);
+            return;
+        };
+        let frames: Vec<Value> = keyframes
+            .iter()
+            .map(|(time_s, rows)| json!({ "time_s": time_s, "transform": [{ "matrix": rows }] }))
+            .collect();
+        self.instances.push(json!({ "name": name, "group": group, "keyframes": frames }));
+        keyframes.iter().for_each(|(_, rows)| self.enclose(bounds, rows));
+    }
+}

@@ -1,0 +1,372 @@
+//! Animations of glTF: what nodes do while a shutter is open.
+
+use std::collections::HashMap;
+
+use gltf::animation::{Interpolation, Property};
+use gltf::json::validation::Checked;
+use gltf::{Gltf, Node};
+
+use super::Columns;
+use super::accessor::numbers;
+use crate::{Builder, Moment};
+
+/// A cubic curve is followed by so many straight pieces between two keyframes, or turns about fixed axes: they are off by at most
+/// 1/8·(1/16)² of the curve's second derivative over the square of that time, 5·10⁻⁴ of it.
+const CUBIC_PIECES: usize = 16;
+/// A step takes this share of the shutter's time, since what moves cannot jump.
+const STEP_SHARE: f64 = 1.0 / 1048576.0;
+/// Neighbouring keyframes whose rotations are further apart get one between them: half a turn does not say which way.
+const LARGEST_TURN_RAD: f64 = 2.5;
+
+/// Where a node is within its parent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pose {
+    pub translation: [f64; 3],
+    /// A unit quaternion, x y z w.
+    pub rotation: [f64; 4],
+    pub scale: [f64; 3],
+}
+
+/// Numbers over time.
+#[derive(Debug)]
+struct Track {
+    property: Property,
+    times_s: Vec<f64>,
+    /// One for each time; of a cubic curve three: the slope before, the value, the slope after.
+    values: Vec<[f64; 4]>,
+    interpolation: Interpolation,
+}
+
+/// What the animation that is asked for does to nodes.
+#[derive(Debug, Default)]
+pub(super) struct Animated {
+    tracks: HashMap<usize, Vec<Track>>,
+    /// When the shutter opens and when it closes, s.
+    pub shutter_s: [f64; 2],
+}
+
+impl Animated {
+    /// Reads the animation that a moment asks for; the others are listed, and all without a moment.
+    pub(super) fn read(
+        file: &Gltf,
+        buffers: &[Vec<u8>],
+        moment: Option<&Moment>,
+        builder: &mut Builder<'_>,
+    ) -> Result<Self, String> {
+        let label = |animation: &gltf::Animation<'_>| match animation.name() {
+            Some(name) => format!("the animation \"{name}\""),
+            None => "the animation".to_owned(),
+        };
+        let asked = match moment {
+            None => None,
+            Some(moment) => Some(asked(file, moment)?),
+        };
+        for other in file.animations().filter(|other| Some(other.index()) != asked) {
+            let why = if asked.is_some() { "another one is asked for" } else { "no time is asked for" };
+            let what = format!("{} is not followed: {why} (--time and --animation of `etalon import`)", label(&other));
+            builder.leave_out(format!("$.animations[{}]", other.index()), what);
+        }
+        let (Some(asked), Some(moment)) = (asked.and_then(|index| file.animations().nth(index)), moment) else {
+            return Ok(Self::default());
+        };
+        let mut animated = Self { shutter_s: [moment.opens_s, moment.opens_s + moment.shutter_s], ..Self::default() };
+        for (i, channel) in asked.channels().enumerate() {
+            let place = format!("$.animations[{}].channels[{i}]", asked.index());
+            // The library takes both for granted.
+            let target = &file.as_json().animations[asked.index()].channels[i].target;
+            if matches!(target.path, Checked::Invalid) {
+                builder.leave_out(place, "what it changes is not known");
+                continue;
+            }
+            if target.node.value() >= file.nodes().count() {
+                return Err(format!(
+                    "{place}: it names node {}; there are {}",
+                    target.node.value(),
+                    file.nodes().count()
+                ));
+            }
+            let property = channel.target().property();
+            if property == Property::MorphTargetWeights {
+                builder.leave_out(place, "morph weights are not honoured");
+                continue;
+            }
+            let track = Track::read(&channel, property, buffers).map_err(|why| format!("{place}: {why}"))?;
+            let tracks = animated.tracks.entry(channel.target().node().index()).or_default();
+            if tracks.iter().any(|known| known.property == property) {
+                return Err(format!("{place}: it is the second channel of the same property of the same node"));
+            }
+            tracks.push(track);
+        }
+        Ok(animated)
+    }
+
+    /// The transform of a node within its parent at a time.
+    pub(super) fn local(&self, node: &Node<'_>, time_s: f64) -> Columns {
+        match self.tracks.get(&node.index()) {
+            None => node.transform().matrix().map(|column| column.map(f64::from)),
+            Some(tracks) => pose(node, tracks, time_s).columns(),
+        }
+    }
+
+    /// The poses of a node through the time of the shutter, between which it moves in proportion to time and turns about fixed axes;
+    /// `None` if it rests.
+    pub(super) fn motion(&self, node: &Node<'_>) -> Option<Vec<(f64, Pose)>> {
+        let tracks = self.tracks.get(&node.index())?;
+        let [opens, closes] = self.shutter_s;
+        let within = |time: f64| opens < time && time < closes;
+        let mut times = vec![opens, closes];
+        for track in tracks {
+            times.extend(track.times_s.iter().copied().filter(|time| within(*time)));
+            match track.interpolation {
+                Interpolation::Linear => {}
+                Interpolation::Step => {
+                    let before = |time: &f64| time - STEP_SHARE * (closes - opens);
+                    times.extend(track.times_s.iter().filter(|time| within(**time)).map(before));
+                }
+                Interpolation::CubicSpline => {
+                    for pair in track.times_s.windows(2).filter(|pair| pair[0] < closes && pair[1] > opens) {
+                        let at = |k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / CUBIC_PIECES as f64;
+                        times.extend((1..CUBIC_PIECES).map(at).filter(|time| within(*time)));
+                    }
+                }
+            }
+        }
+        times.retain(|time| *time == opens || *time == closes || within(*time));
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let mut poses: Vec<(f64, Pose)> = Vec::new();
+        for time in times {
+            let next = pose(node, tracks, time);
+            if let Some((before, last)) = poses.last().copied()
+                && angle_rad(last.rotation, next.rotation) > LARGEST_TURN_RAD
+            {
+                poses.push((0.5 * (before + time), last.between(&next, 0.5)));
+            }
+            poses.push((time, next));
+        }
+        poses.windows(2).any(|pair| pair[0].1 != pair[1].1).then_some(poses)
+    }
+}
+
+/// The index of the animation that is asked for.
+fn asked(file: &Gltf, moment: &Moment) -> Result<usize, String> {
+    let list = || {
+        let names: Vec<String> = file
+            .animations()
+            .map(|animation| {
+                animation.name().map_or_else(|| animation.index().to_string(), |name| format!("\"{name}\""))
+            })
+            .collect();
+        if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) }
+    };
+    let found = match &moment.animation {
+        None => file.animations().next(),
+        Some(wanted) => {
+            let by_name = file.animations().find(|animation| animation.name() == Some(wanted));
+            by_name.or_else(|| file.animations().nth(wanted.parse().ok()?))
+        }
+    };
+    found.map(|animation| animation.index()).ok_or_else(|| match &moment.animation {
+        Some(wanted) => format!("there is no animation \"{wanted}\": {}", list()),
+        None => "a time is asked for, but it has no animations".to_owned(),
+    })
+}
+
+impl Track {
+    fn read(channel: &gltf::animation::Channel<'_>, property: Property, buffers: &[Vec<u8>]) -> Result<Self, String> {
+        let sampler = channel.sampler();
+        let times_s: Vec<f64> = numbers::<1>(&sampler.input(), buffers)?.iter().map(|[time]| *time).collect();
+        let values: Vec<[f64; 4]> = match property {
+            Property::Rotation => numbers::<4>(&sampler.output(), buffers)?,
+            _ => numbers::<3>(&sampler.output(), buffers)?.iter().map(|[x, y, z]| [*x, *y, *z, 0.0]).collect(),
+        };
+        let interpolation = sampler.interpolation();
+        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        if times_s.is_empty() || Some(values.len()) != times_s.len().checked_mul(each) {
+            return Err(format!("{} values for {} times", values.len(), times_s.len()));
+        }
+        if !times_s.iter().chain(values.iter().flatten()).all(|v| v.is_finite()) {
+            return Err("a time or a value is not finite".to_owned());
+        }
+        if times_s.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return Err("its times do not increase".to_owned());
+        }
+        let zero = |value: &[f64; 4]| value.iter().all(|v| *v == 0.0);
+        if property == Property::Rotation && values.iter().skip(each / 2).step_by(each).any(zero) {
+            return Err("a rotation is a quaternion of length 0".to_owned());
+        }
+        Ok(Self { property, times_s, values, interpolation })
+    }
+
+    /// The value at a time: before the first and after the last it stays.
+    fn at(&self, time_s: f64) -> [f64; 4] {
+        let last = self.times_s.len() - 1;
+        let value = |i: usize| match self.interpolation {
+            Interpolation::CubicSpline => self.values[3 * i + 1],
+            _ => self.values[i],
+        };
+        let next = self.times_s.partition_point(|known| *known <= time_s);
+        let Some(i) = next.checked_sub(1) else { return value(0) };
+        if i == last {
+            return value(last);
+        }
+        let step = self.times_s[i + 1] - self.times_s[i];
+        let share = (time_s - self.times_s[i]) / step;
+        let (a, b) = (value(i), value(i + 1));
+        match self.interpolation {
+            Interpolation::Step => a,
+            Interpolation::Linear if self.property == Property::Rotation => slerp(unit(a), unit(b), share),
+            Interpolation::Linear => std::array::from_fn(|k| a[k] + share * (b[k] - a[k])),
+            Interpolation::CubicSpline => {
+                // Hermite's curve, as appendix C of the specification states it.
+                let (out, into) = (self.values[3 * i + 2], self.values[3 * i + 3]);
+                let (s2, s3) = (share * share, share * share * share);
+                std::array::from_fn(|k| {
+                    (2.0 * s3 - 3.0 * s2 + 1.0) * a[k]
+                        + step * (s3 - 2.0 * s2 + share) * out[k]
+                        + (3.0 * s2 - 2.0 * s3) * b[k]
+                        + step * (s3 - s2) * into[k]
+                })
+            }
+        }
+    }
+}
+
+fn pose(node: &Node<'_>, tracks: &[Track], time_s: f64) -> Pose {
+    let (translation, rotation, scale) = node.transform().decomposed();
+    let mut pose = Pose {
+        translation: translation.map(f64::from),
+        rotation: unit(rotation.map(f64::from)),
+        scale: scale.map(f64::from),
+    };
+    for track in tracks {
+        let value @ [x, y, z, _] = track.at(time_s);
+        match track.property {
+            Property::Translation => pose.translation = [x, y, z],
+            Property::Rotation => pose.rotation = unit(value),
+            Property::Scale => pose.scale = [x, y, z],
+            Property::MorphTargetWeights => {}
+        }
+    }
+    pose
+}
+
+impl Pose {
+    /// T·R·S, by columns.
+    pub(super) fn columns(&self) -> Columns {
+        let [x, y, z, w] = self.rotation;
+        let rotation = [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
+            [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
+            [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ];
+        let [tx, ty, tz] = self.translation;
+        let column = |k: usize| {
+            let [a, b, c] = rotation[k].map(|v| v * self.scale[k]);
+            [a, b, c, 0.0]
+        };
+        [column(0), column(1), column(2), [tx, ty, tz, 1.0]]
+    }
+
+    /// The pose at a time, of poses through time.
+    pub(super) fn at(poses: &[(f64, Self)], time_s: f64) -> Self {
+        let next = poses.partition_point(|(known, _)| *known <= time_s);
+        match (next.checked_sub(1).map(|i| &poses[i]), poses.get(next)) {
+            (Some((before, a)), Some((after, b))) => a.between(b, (time_s - before) / (after - before)),
+            (Some((_, pose)), None) | (None, Some((_, pose))) => *pose,
+            (None, None) => Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0], scale: [1.0; 3] },
+        }
+    }
+
+    /// The move and the turn of a similarity.
+    pub(super) fn rigid(map: &Columns) -> Self {
+        let [x, y, z, _] = map[3];
+        Self { translation: [x, y, z], rotation: quaternion(map), scale: [1.0; 3] }
+    }
+
+    /// What lies between two poses at a share of the time.
+    fn between(&self, other: &Self, share: f64) -> Self {
+        let mix = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k] + share * (b[k] - a[k]));
+        Self {
+            translation: mix(self.translation, other.translation),
+            rotation: slerp(self.rotation, other.rotation, share),
+            scale: mix(self.scale, other.scale),
+        }
+    }
+}
+
+/// The quaternion of length 1; none of length 0 comes here but between two keyframes of a cubic curve that cross it, where it is as
+/// good as any.
+fn unit(q: [f64; 4]) -> [f64; 4] {
+    let largest = q.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    if largest == 0.0 {
+        return [0.0, 0.0, 0.0, 1.0];
+    }
+    let q = q.map(|v| v / largest);
+    let length = q.iter().map(|v| v * v).sum::<f64>().sqrt();
+    q.map(|v| v / length)
+}
+
+/// The angle between two rotations, rad.
+fn angle_rad(a: [f64; 4], b: [f64; 4]) -> f64 {
+    // Of the difference and the sum, so that small angles are not lost in a cosine.
+    let length = |sign: f64| (0..4).map(|k| (a[k] + sign * b[k]).powi(2)).sum::<f64>().sqrt();
+    let (apart, together) = (length(-1.0), length(1.0));
+    4.0 * apart.min(together).atan2(apart.max(together))
+}
+
+/// The rotation at a share of the shorter way between two, at a constant rate about a fixed axis.
+pub(super) fn slerp(a: [f64; 4], b: [f64; 4], share: f64) -> [f64; 4] {
+    let dot: f64 = (0..4).map(|k| a[k] * b[k]).sum();
+    let b = if dot < 0.0 { b.map(|v| -v) } else { b };
+    let half = 0.5 * angle_rad(a, b);
+    let sin = half.sin();
+    // Next to each other, the chord is the arc.
+    let (from, to) = if sin < 1e-9 {
+        (1.0 - share, share)
+    } else {
+        (((1.0 - share) * half).sin() / sin, (share * half).sin() / sin)
+    };
+    unit(std::array::from_fn(|k| from * a[k] + to * b[k]))
+}
+
+/// The rotation of a matrix whose columns are at right angles and of one length.
+pub(super) fn quaternion(m: &Columns) -> [f64; 4] {
+    let length = m[0][..3].iter().map(|v| v * v).sum::<f64>().sqrt();
+    let at = |row: usize, column: usize| m[column][row] / length;
+    let trace = at(0, 0) + at(1, 1) + at(2, 2);
+    // The largest of the four is divided by.
+    let squares = [2.0 * at(0, 0) - trace, 2.0 * at(1, 1) - trace, 2.0 * at(2, 2) - trace, trace].map(|v| 1.0 + v);
+    let largest = (1..4).fold(0, |best, k| if squares[k] > squares[best] { k } else { best });
+    unit(match largest {
+        3 => [at(2, 1) - at(1, 2), at(0, 2) - at(2, 0), at(1, 0) - at(0, 1), squares[3]],
+        0 => [squares[0], at(1, 0) + at(0, 1), at(0, 2) + at(2, 0), at(2, 1) - at(1, 2)],
+        1 => [at(1, 0) + at(0, 1), squares[1], at(2, 1) + at(1, 2), at(0, 2) - at(2, 0)],
+        _ => [at(0, 2) + at(2, 0), at(2, 1) + at(1, 2), squares[2], at(1, 0) - at(0, 1)],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quaternion_and_its_matrix_are_inverses() {
+        for k in 0..200 {
+            let q = unit(std::array::from_fn(|i| (f64::from(k * 7 + 1) * (i as f64 + 1.3)).sin()));
+            let matrix = Pose { translation: [0.0; 3], rotation: q, scale: [2.5; 3] }.columns();
+            assert!(angle_rad(quaternion(&matrix), q) < 1e-14, "{q:?}");
+        }
+    }
+
+    #[test]
+    fn a_slerp_turns_at_a_constant_rate_the_shorter_way() {
+        let turn = |angle: f64| [0.0, 0.0, (0.5 * angle).sin(), (0.5 * angle).cos()];
+        for (a, b, share, want) in
+            [(0.0, 2.0, 0.25, 0.5), (0.3, -0.5, 0.5, -0.1), (0.0, 6.0, 0.5, 3.0 - std::f64::consts::PI)]
+        {
+            assert!(angle_rad(slerp(turn(a), turn(b), share), turn(want)) < 1e-14, "{a} {b}");
+            assert!(angle_rad(slerp(turn(a), turn(b).map(|v| -v), share), turn(want)) < 1e-14, "{a} {b}");
+        }
+    }
+}

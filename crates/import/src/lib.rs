@@ -1,0 +1,190 @@
+//! Models and scenes of other programs as scenes of Etalon: glTF 2.0 (`.gltf`, `.glb`), OBJ with MTL, PLY, Mitsuba 3 (`.xml`) and
+//! pbrt-v4 (`.pbrt`).
+//!
+//! An import makes the text of a scene file and the mesh and image files that it names. `etalon render` reads that text, and
+//! `etalon import` writes it for editing, so both show the same scene. The crate `etalon-scene` reads the text and does not know this
+//! crate.
+//!
+//! ```
+//! let sphere = br#"
+//!     LookAt 0 0 5  0 0 0  0 1 0
+//!     Camera "perspective" "float fov" 40
+//!     WorldBegin
+//!     LightSource "infinite" "rgb L" [1 1 1]
+//!     Shape "sphere" "float radius" 2
+//! "#;
+//! let no_files = |name: &str| Err(format!("there is no {name}"));
+//! let imported = etalon_import::import_bytes("pbrt", sphere, &no_files, "", "sphere.pbrt")?;
+//! assert!(imported.left_out.is_empty());
+//! let scene = imported.parse("sphere", None).map_err(|errors| errors.summary())?.scene;
+//! assert_eq!(scene.objects.len(), 1);
+//! # Ok::<(), String>(())
+//! ```
+//!
+//! | item | what it does |
+//! |---|---|
+//! | [`import`] | imports a file from the disk |
+//! | [`import_bytes`], [`import_bytes_at`] | import bytes in memory, the latter at a [`Moment`] of an animation |
+//! | [`Imported::parse`] | the imported scene as an [`etalon_scene::Scene`] |
+//! | [`Imported::left_out`] | each thing that the model says and the scene does not, with its place in the file |
+//!
+//! Each format has its module. All of them fill one `Builder`, which writes the scene's JSON, and spend from one `Budget`, which bounds
+//! what a small file can ask for.
+
+mod budget;
+mod builder;
+mod gltf;
+mod matrix;
+mod mitsuba;
+mod number;
+mod obj;
+mod pbrt;
+mod relief;
+mod table;
+
+use std::path::{Path, PathBuf};
+
+use etalon_scene::mesh::read_ply;
+use etalon_scene::{Loaded, NamedFile, SceneErrors, read_file, shortened};
+use serde_json::{Value, json};
+
+use builder::{Builder, Outside, Placed};
+
+/// A model as a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Imported {
+    /// The scene, as JSON.
+    pub text: String,
+    /// The files that it names.
+    pub files: Vec<NamedFile>,
+    /// What the model says and the scene does not: at most 1000 things, and a last one that counts the rest.
+    pub left_out: Vec<LeftOut>,
+    /// What the scene has that the model does not say: a camera, a light.
+    pub added: Vec<String>,
+}
+
+impl Imported {
+    /// Reads the scene, with a film of another width and height, in pixels, if they are given. `file_name` is for messages.
+    ///
+    /// # Errors
+    /// Every error of the scene at once: what the model says may make no sense.
+    pub fn parse(&self, file_name: &str, size: Option<[u32; 2]>) -> Result<Loaded, SceneErrors> {
+        etalon_scene::parse_with_files(&self.text, file_name, &self.files, size)
+    }
+}
+
+/// Something that is not honoured.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct LeftOut {
+    /// Where the model says it: a JSON path in glTF, the name of a material in MTL, a line elsewhere.
+    pub place: String,
+    /// What becomes of it, in a sentence without a full stop.
+    pub what: String,
+}
+
+/// When a model that moves is seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// The animation, by its name or its index from 0; the first if left out.
+    pub animation: Option<String>,
+    /// When the shutter opens, s, finite.
+    pub opens_s: f64,
+    /// How long it stays open, s, 0 or above: 0 shows the model as it is at that instant.
+    pub shutter_s: f64,
+}
+
+/// Why a model cannot be imported.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {message}", path.display())]
+pub struct ImportError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong, with its place in the file.
+    pub message: String,
+}
+
+/// Whether a file is imported, by its name, rather than read as a scene.
+pub fn is_model(path: &Path) -> bool {
+    matches!(extension(path).as_str(), "gltf" | "glb" | "obj" | "ply" | "xml" | "pbrt")
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase()
+}
+
+/// Imports a model. `prefix` comes before the names of all files of the scene: the name of their folder and a slash, or
+/// nothing. Of a `moment` that is left out, the model is as its nodes place it.
+///
+/// # Errors
+/// If the file, or one that it cannot be understood without, is missing or damaged, or knows nothing of moments.
+pub fn import(path: &Path, prefix: &str, moment: Option<&Moment>) -> Result<Imported, ImportError> {
+    let fail = |message: String| ImportError { path: path.to_owned(), message };
+    let bytes = read_file(path).map_err(|why| fail(format!("cannot be read: {why}")))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let near = |name: &str| read_file(&folder.join(name));
+    let kind = extension(path);
+    let source = path.file_name().unwrap_or_default().to_string_lossy();
+    import_bytes_at(&kind, &bytes, &near, prefix, &source, moment).map_err(fail)
+}
+
+/// As [`import_bytes_at`], without a moment.
+///
+/// # Errors
+/// As [`import_bytes_at`].
+pub fn import_bytes(
+    kind: &str,
+    bytes: &[u8],
+    near: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    prefix: &str,
+    source: &str,
+) -> Result<Imported, String> {
+    import_bytes_at(kind, bytes, near, prefix, source, None)
+}
+
+/// Imports a model of a kind (`glb`, `gltf`, `obj`, `ply`, `xml`, `pbrt`) from its bytes, as it is at a moment; `near` gives the bytes
+/// of a file by the name that the model has for it.
+///
+/// # Errors
+/// A sentence that says what is wrong, with its place.
+pub fn import_bytes_at(
+    kind: &str,
+    bytes: &[u8],
+    near: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    prefix: &str,
+    source: &str,
+    moment: Option<&Moment>,
+) -> Result<Imported, String> {
+    if moment.is_some() && !matches!(kind, "gltf" | "glb") {
+        return Err("a time is asked for, and only animations of glTF are read".to_owned());
+    }
+    let mut builder = Builder::new(near, prefix);
+    let read = read(kind, bytes, moment, &mut builder);
+    read.and_then(|()| builder.finish(source)).map_err(shortened)
+}
+
+fn read(kind: &str, bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder<'_>) -> Result<(), String> {
+    match kind {
+        "ply" => {
+            let part = read_ply(bytes).map_err(|error| error.to_string())?;
+            part.left_out.iter().for_each(|what| builder.leave_out("vertices and faces", what.clone()));
+            builder.materials.insert("grey".to_owned(), json!({ "type": "lambert", "reflectance": 0.8 }));
+            builder.add_mesh("mesh", part.mesh, &json!("grey"), None, Value::Null)
+        }
+        "obj" => obj::import(bytes, builder),
+        "gltf" | "glb" => gltf::import(bytes, moment, builder),
+        "xml" => mitsuba::import(bytes, builder),
+        "pbrt" => pbrt::import(bytes, builder),
+        other => Err(format!("\"{other}\" is no kind of model that is imported")),
+    }
+}
+
+/// A colour as a reflectance of the format: a number if it is grey. Channels are brought into [0, 1].
+fn reflectance(rgb: [f64; 3]) -> Value {
+    let rgb = rgb.map(|v| v.clamp(0.0, 1.0));
+    if rgb[0] == rgb[1] && rgb[1] == rgb[2] { json!(rgb[0]) } else { json!({ "type": "rgb", "rgb": rgb }) }
+}
+
+/// A colour as light of the format: (1, 1, 1) at scale 1 has the luminance of the constant spectrum 1.
+fn light(rgb: [f64; 3], scale: f64) -> Value {
+    json!({ "type": "rgb", "rgb": rgb, "scale": scale })
+}

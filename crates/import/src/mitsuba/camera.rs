@@ -1,0 +1,178 @@
+//! Sensors and integrators of Mitsuba.
+
+use etalon_scene::vector::{scale, unit};
+use serde_json::json;
+
+use super::Walk;
+use super::element::{Element, numbers};
+use crate::matrix::{IDENTITY, Rows, column, determinant};
+
+/// The diagonal of the 35 mm film that a stated focal length is for, mm.
+const DIAGONAL_35_MM: f64 = 43.266_615_305_567_87;
+
+impl Walk<'_, '_, '_> {
+    pub(super) fn integrator(&mut self, element: &Element) -> Result<(), String> {
+        self.within(element, |walk| walk.read_integrator(element))
+    }
+
+    fn read_integrator(&mut self, element: &Element) -> Result<(), String> {
+        let plugin = element.plugin();
+        match plugin {
+            "path" | "volpath" | "volpathmis" | "prbvolpath" | "prb" => {}
+            "direct" => {
+                self.builder.integrator.insert("max_depth".to_owned(), json!(2));
+            }
+            "stokes" => {
+                self.builder.leave_out(&element.place, "polarisation is a choice of the command: --polarised");
+                for nested in element.nested("integrator", self.ids)? {
+                    self.integrator(nested)?;
+                }
+            }
+            other => {
+                self.builder.leave_out(&element.place, format!("the integrator \"{other}\" becomes a path tracer"))
+            }
+        }
+        // −1 is without limit.
+        if let Some(depth) = element.number("max_depth")?.filter(|depth| *depth >= 1.0) {
+            self.builder.integrator.insert("max_depth".to_owned(), json!(depth.min(f64::from(u32::MAX)) as u32));
+        }
+        if let Some(from) = element.number("rr_depth")?
+            && self.builder.integrator.get("max_depth").and_then(serde_json::Value::as_f64).is_some_and(|d| from > d)
+        {
+            self.builder.integrator.insert("roulette".to_owned(), json!(false));
+        }
+        element.list_unused(self.builder);
+        Ok(())
+    }
+
+    pub(super) fn sensor(&mut self, element: &Element) -> Result<(), String> {
+        let place = element.place.clone();
+        if self.builder.camera.is_some() {
+            self.builder.leave_out(place, "only the first sensor is used");
+            return Ok(());
+        }
+        let aspect = self.film(element)?;
+        let to_world = self.placement(element)?;
+        let (Some(forward), Some(up)) = (unit(column(&to_world, 2)), unit(column(&to_world, 1))) else {
+            return Err(format!("{place}: its transform flattens it"));
+        };
+        if determinant(&to_world) < 0.0 {
+            self.builder.leave_out(&place, "its transform mirrors the picture, which is not honoured");
+        }
+        let mut camera = json!({ "position_m": column(&to_world, 3), "direction": forward, "up": up });
+        match element.plugin() {
+            "perspective" | "thinlens" => {
+                camera["type"] = json!("perspective");
+                let (key, degrees) = field_of_view(element, aspect)?;
+                camera[key] = json!(degrees);
+            }
+            "orthographic" => {
+                camera["type"] = json!("orthographic");
+                // From −1 to 1 across the width, times the scale of the transform.
+                let width = 2.0 * etalon_scene::vector::length(column(&to_world, 0));
+                camera["height_m"] = json!(width / aspect);
+                let position = column(&to_world, 3);
+                let near = element.number("near_clip")?.unwrap_or(0.01);
+                let start = scale(column(&to_world, 2), near);
+                camera["position_m"] = json!([position[0] + start[0], position[1] + start[1], position[2] + start[2]]);
+            }
+            other => {
+                self.builder.leave_out(&place, format!("the sensor \"{other}\" is not known, and is left out"));
+                element.children.iter().for_each(Element::mark);
+                return Ok(());
+            }
+        }
+        if element.plugin() == "thinlens" {
+            let radius = element.number("aperture_radius")?.unwrap_or(0.0);
+            let focus =
+                element.number("focus_distance")?.ok_or_else(|| format!("{place}: it has no focus_distance"))?;
+            camera["lens"] = json!({ "radius_m": radius, "focus_distance_m": focus });
+        }
+        // Nothing is cut off near or far.
+        for harmless in ["near_clip", "far_clip", "shutter_open", "shutter_close"] {
+            element.property(harmless);
+        }
+        if !camera["lens"].is_object() {
+            element.property("focus_distance");
+        }
+        for sampler in element.nested("sampler", self.ids)? {
+            if let Some(count) = sampler.number("sample_count")?.filter(|count| *count >= 1.0) {
+                self.builder.integrator.insert("spp".to_owned(), json!(count as u64));
+            }
+            if let Some(seed) = sampler.number("seed")?.filter(|seed| *seed >= 0.0) {
+                self.builder.integrator.insert("seed".to_owned(), json!(seed as u64));
+            }
+        }
+        self.builder.camera = Some(camera);
+        element.list_unused(self.builder);
+        Ok(())
+    }
+
+    /// Reads the film, and gives its width over its height.
+    fn film(&mut self, sensor: &Element) -> Result<f64, String> {
+        let films = sensor.nested("film", self.ids)?;
+        let Some(film) = films.first() else {
+            self.builder.film = json!({ "width": 768, "height": 576, "filter": { "type": "gaussian" } });
+            return Ok(768.0 / 576.0);
+        };
+        let size = |name: &str, default: f64| Ok::<f64, String>(film.number(name)?.unwrap_or(default).max(1.0).round());
+        let (width, height) = (size("width", 768.0)?, size("height", 576.0)?);
+        let mut filter = json!({ "type": "gaussian", "sigma_px": 0.5 });
+        for rfilter in film.nested("rfilter", self.ids)? {
+            filter = match rfilter.plugin() {
+                "box" => json!({ "type": "box" }),
+                "tent" => json!({ "type": "tent", "radius_px": rfilter.number("radius")?.unwrap_or(1.0) }),
+                "gaussian" => {
+                    json!({ "type": "gaussian", "sigma_px": rfilter.number("stddev")?.unwrap_or(0.5) })
+                }
+                other => {
+                    self.builder.leave_out(&rfilter.place, format!("the filter \"{other}\" becomes a Gaussian"));
+                    rfilter.children.iter().for_each(Element::mark);
+                    filter
+                }
+            };
+            rfilter.list_unused(self.builder);
+        }
+        // How the file is written is the command's choice.
+        for harmless in ["file_format", "pixel_format", "component_format", "banner", "sample_border"] {
+            film.property(harmless);
+        }
+        film.list_unused(self.builder);
+        self.builder.film = json!({ "width": width as u64, "height": height as u64, "filter": filter });
+        Ok(width / height)
+    }
+
+    /// The `to_world` of an element.
+    pub(super) fn placement(&mut self, element: &Element) -> Result<Rows, String> {
+        match element.property("to_world") {
+            None => Ok(IDENTITY),
+            Some(transform) if transform.tag == "transform" => super::transform::read(transform),
+            Some(other) => {
+                self.builder.leave_out(&other.place, format!("<{}>: motion is not honoured", other.tag));
+                Ok(IDENTITY)
+            }
+        }
+    }
+}
+
+/// The key of the format for an angle of view, and the angle in degrees.
+fn field_of_view(element: &Element, aspect: f64) -> Result<(&'static str, f64), String> {
+    let place = &element.place;
+    let axis = element.string("fov_axis").unwrap_or("x");
+    let diagonal_to_vertical =
+        |half_diagonal: f64| 2.0 * (half_diagonal / (1.0 + aspect * aspect).sqrt()).atan().to_degrees();
+    let Some(fov) = element.number("fov")? else {
+        let text = element.string("focal_length").unwrap_or("50mm");
+        let length = numbers(text.trim().trim_end_matches("mm")).ok().filter(|list| list.len() == 1 && list[0] > 0.0);
+        let length = length.ok_or_else(|| format!("{place}: \"{text}\" is no focal length"))?[0];
+        return Ok(("vertical_fov_deg", diagonal_to_vertical(0.5 * DIAGONAL_35_MM / length)));
+    };
+    Ok(match axis {
+        "x" => ("horizontal_fov_deg", fov),
+        "y" => ("vertical_fov_deg", fov),
+        "smaller" => (if aspect >= 1.0 { "vertical_fov_deg" } else { "horizontal_fov_deg" }, fov),
+        "larger" => (if aspect >= 1.0 { "horizontal_fov_deg" } else { "vertical_fov_deg" }, fov),
+        "diagonal" => ("vertical_fov_deg", diagonal_to_vertical((0.5 * fov).to_radians().tan())),
+        other => return Err(format!("{place}: \"{other}\" is no fov_axis")),
+    })
+}

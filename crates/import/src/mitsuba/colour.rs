@@ -1,0 +1,284 @@
+//! Spectra, colours and textures of Mitsuba.
+
+use std::path::Path;
+
+use etalon_scene::Encoding;
+use serde_json::{Value, json};
+
+use super::Walk;
+use super::element::{Element, numbers};
+use crate::number::Number;
+use crate::table::Table;
+use crate::{extension, light, reflectance};
+
+/// What a colour is the colour of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Of {
+    /// A share of light, from 0 to 1; images may stand here.
+    Texture,
+    /// The same, where no image may stand.
+    Reflectance,
+    /// Light.
+    Emission,
+    /// Light of a surface; images may stand here.
+    Shining,
+}
+
+impl Of {
+    fn is_light(self) -> bool {
+        matches!(self, Self::Emission | Self::Shining)
+    }
+}
+
+impl Walk<'_, '_, '_> {
+    /// The colour that an element has under one of some names, as a spectrum of the format.
+    pub(super) fn colour(&mut self, element: &Element, name: &str, of: Of) -> Result<Option<Value>, String> {
+        element.property(name).map(|colour| self.colour_of(colour, of)).transpose()
+    }
+
+    /// A number from 0 to 1 that an element has under a name, perhaps by an image. A colour counts by the mean of its channels.
+    pub(super) fn number(&mut self, element: &Element, name: &str) -> Result<Option<Number>, String> {
+        let Some(stated) = element.property(name) else { return Ok(None) };
+        let target = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
+        if target.tag == "texture" && target.plugin() == "bitmap" {
+            target.mark();
+            let (image, mean) = self.bitmap(target)?.unzip();
+            target.list_unused(self.builder);
+            let Some(mut image) = image else { return Ok(None) };
+            // Three channels count by their luminance there, after the curve of sRGB.
+            image["channel"] = json!("luminance");
+            if let Some(keys) = image.as_object_mut() {
+                keys.remove("type");
+            }
+            let [r, g, b] = mean.unwrap_or([0.0; 3]);
+            return Ok(Some(Number::Image(image, 0.2126 * r + 0.7152 * g + 0.0722 * b)));
+        }
+        let value = self.colour_of(stated, Of::Reflectance)?;
+        Ok(Some(Number::Value(match value.as_f64() {
+            Some(number) => number,
+            None => {
+                self.builder
+                    .leave_out(&element.place, format!("a coloured \"{name}\" counts by the mean of its channels"));
+                let channels = value["rgb"].as_array().map_or(&[][..], Vec::as_slice);
+                channels.iter().filter_map(Value::as_f64).sum::<f64>() / channels.len().max(1) as f64
+            }
+        })))
+    }
+
+    fn colour_of(&mut self, element: &Element, of: Of) -> Result<Value, String> {
+        let place = &element.place;
+        let value = match element.tag.as_str() {
+            "ref" => {
+                let target = self.ids.of(element)?;
+                target.mark();
+                let value = match target.tag.as_str() {
+                    "texture" | "spectrum" | "rgb" => self.colour_of(target, of)?,
+                    other => return Err(format!("{place}: a <{other}> stands where a colour should")),
+                };
+                self.builder.spend(&value, place)?;
+                return Ok(value);
+            }
+            "rgb" => self.rgb(element.attribute("value").unwrap_or(""), place, of)?,
+            "float" | "integer" => {
+                let text = element.attribute("value").unwrap_or("");
+                let value: f64 = text.trim().parse().map_err(|_| format!("{place}: \"{text}\" is no number"))?;
+                self.constant(value, place, of)
+            }
+            "spectrum" => self.spectrum(element, of)?,
+            "texture" => self.texture(element, of)?,
+            other => return Err(format!("{place}: a <{other}> stands where a colour should")),
+        };
+        element.list_unused(self.builder);
+        Ok(value)
+    }
+
+    fn rgb(&mut self, text: &str, place: &str, of: Of) -> Result<Value, String> {
+        let rgb = match numbers(text).map_err(|why| format!("{place}: {why}"))?[..] {
+            [grey] => [grey; 3],
+            [r, g, b] => [r, g, b],
+            _ => return Err(format!("{place}: \"{text}\" is no colour")),
+        };
+        Ok(match of {
+            Of::Emission | Of::Shining => {
+                if rgb.iter().any(|v| *v < 0.0) {
+                    self.builder.leave_out(place, "negative light is taken for none");
+                }
+                light(rgb.map(|v| v.max(0.0)), 1.0)
+            }
+            Of::Texture | Of::Reflectance => {
+                if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
+                    self.builder.leave_out(place, format!("{rgb:?} is no reflectance, and is brought into 0 to 1"));
+                }
+                reflectance(rgb)
+            }
+        })
+    }
+
+    fn constant(&mut self, value: f64, place: &str, of: Of) -> Value {
+        let (low, high) = if of.is_light() { (0.0, f64::MAX) } else { (0.0, 1.0) };
+        if !(low..=high).contains(&value) {
+            self.builder.leave_out(place, format!("{value} is brought into {low} to {high}"));
+        }
+        json!(value.clamp(low, high))
+    }
+
+    fn spectrum(&mut self, element: &Element, of: Of) -> Result<Value, String> {
+        let place = &element.place;
+        if let Some(text) = element.attribute("value") {
+            if text.contains(':') {
+                let pairs = text.replace(':', " ");
+                let list = numbers(&pairs).map_err(|why| format!("{place}: {why}"))?;
+                return self.table(&list, place, of);
+            }
+            let value: f64 = text.trim().parse().map_err(|_| format!("{place}: \"{text}\" is no number"))?;
+            return Ok(self.constant(value, place, of));
+        }
+        if let Some(name) = element.attribute("filename") {
+            return self.file(name, place, of);
+        }
+        let list = |name: &str| {
+            let text = element.string(name).ok_or_else(|| format!("{place}: it has no \"{name}\""))?;
+            numbers(text).map_err(|why| format!("{place}: {why}"))
+        };
+        match (element.plugin(), of) {
+            ("uniform", _) => Ok(self.constant(element.number("value")?.unwrap_or(1.0), place, of)),
+            ("irregular", _) => {
+                if let Some(name) = element.string("filename") {
+                    return self.file(name, place, of);
+                }
+                let (wavelengths, values) = (list("wavelengths")?, list("values")?);
+                let pairs: Vec<f64> = wavelengths.iter().zip(&values).flat_map(|(a, b)| [*a, *b]).collect();
+                self.table(&pairs, place, of)
+            }
+            ("regular", _) => {
+                let range = ["wavelength_min", "wavelength_max"].map(|name| element.number(name));
+                let [Ok(Some(low)), Ok(Some(high))] = range else {
+                    return Err(format!("{place}: it has no wavelength_min and wavelength_max"));
+                };
+                let values = list("values")?;
+                let step = (high - low) / (values.len().max(2) - 1) as f64;
+                let pairs: Vec<f64> =
+                    values.iter().enumerate().flat_map(|(i, value)| [low + step * i as f64, *value]).collect();
+                self.table(&pairs, place, of)
+            }
+            ("blackbody", Of::Emission | Of::Shining) => {
+                let kelvin = element.number("temperature")?.unwrap_or(5000.0);
+                Ok(
+                    json!({ "type": "blackbody", "temperature_k": kelvin, "scale": element.number("scale")?.unwrap_or(1.0) }),
+                )
+            }
+            ("d65", Of::Emission | Of::Shining) => {
+                let scale = element.number("scale")?.unwrap_or(1.0);
+                match element.property("color") {
+                    Some(colour) => self.rgb(colour.attribute("value").unwrap_or(""), place, of).map(|mut light| {
+                        light["scale"] = json!(scale);
+                        light
+                    }),
+                    None => Ok(json!({ "type": "illuminant", "name": "D65", "scale": scale })),
+                }
+            }
+            ("srgb", _) => match element.property("color") {
+                Some(colour) => self.rgb(colour.attribute("value").unwrap_or(""), place, of),
+                None => Err(format!("{place}: it has no \"color\"")),
+            },
+            (other, _) => {
+                self.builder
+                    .leave_out(place, format!("the spectrum \"{other}\" is not known: one half is taken for it"));
+                Ok(json!(0.5))
+            }
+        }
+    }
+
+    /// A file of wavelengths and values.
+    fn file(&mut self, name: &str, place: &str, of: Of) -> Result<Value, String> {
+        let bytes = self.builder.bytes_of(name, place)?;
+        let text = String::from_utf8_lossy(&bytes);
+        let without_comments: Vec<&str> = text.lines().map(|line| line.split('#').next().unwrap_or("")).collect();
+        let list = numbers(&without_comments.join(" ")).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
+        let table = self.table(&list, place, of)?;
+        self.builder.spend(&table, place)?;
+        Ok(table)
+    }
+
+    /// Wavelengths, nm, and values in turn; nothing outside of them, as in the program.
+    fn table(&mut self, pairs: &[f64], place: &str, of: Of) -> Result<Value, String> {
+        let table = Table::of_pairs(pairs);
+        let mut table =
+            table.ok_or_else(|| format!("{place}: {} numbers are no table of wavelengths and values", pairs.len()))?;
+        let highest = if of.is_light() { f64::MAX } else { 1.0 };
+        if table.0.iter().any(|(_, v)| !(0.0..=highest).contains(v)) {
+            self.builder.leave_out(place, format!("values are brought into 0 to {highest}"));
+            table.0.iter_mut().for_each(|(_, v)| *v = v.clamp(0.0, highest));
+        }
+        Ok(table.spectrum("zero"))
+    }
+
+    fn texture(&mut self, element: &Element, of: Of) -> Result<Value, String> {
+        let place = &element.place;
+        if element.plugin() != "bitmap" {
+            let what = element.plugin();
+            // The mean of the usual chequers.
+            self.builder.leave_out(place, format!("the texture \"{what}\" is not known: one half is taken for it"));
+            element.mark();
+            element.children.iter().for_each(Element::mark);
+            return Ok(json!(0.5));
+        }
+        let Some((image, mean)) = self.bitmap(element)? else {
+            return Ok(if of.is_light() { json!(0.0) } else { json!(0.5) });
+        };
+        if of != Of::Texture && of != Of::Shining {
+            self.builder.leave_out(place, "the mean of the image stands for it everywhere");
+            return Ok(if of.is_light() { light(mean, 1.0) } else { reflectance(mean) });
+        }
+        Ok(image)
+    }
+
+    /// The image of the format that a `bitmap` is, and the mean of its texels; `None`, and a note, if it cannot be read.
+    pub(super) fn bitmap(&mut self, element: &Element) -> Result<Option<(Value, [f64; 3])>, String> {
+        let place = &element.place;
+        let name = element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+        let raw = element.flag("raw")?.unwrap_or(false);
+        let word = element.string("wrap_mode").unwrap_or("repeat").to_owned();
+        let filter = element.string("filter_type").unwrap_or("bilinear").to_owned();
+        // The program counts v from the top of the image: 1 − (sv·v + ov).
+        let (mut scale, mut offset) = ([1.0, -1.0], [0.0, 1.0]);
+        if let Some(transform) = element.property("to_uv") {
+            let rows = super::transform::read(transform)?;
+            if rows[0][1] != 0.0 || rows[1][0] != 0.0 {
+                self.builder.leave_out(&transform.place, "the rotation of texture coordinates is not honoured");
+            }
+            (scale, offset) = ([rows[0][0], -rows[1][1]], [rows[0][3], 1.0 - rows[1][3]]);
+        }
+        let wrap = match word.as_str() {
+            "mirror" | "clamp" | "repeat" => word.as_str(),
+            _ => "repeat",
+        };
+        let filter = if filter == "nearest" { "nearest" } else { "bilinear" };
+        Ok(self.image(&name, raw, place).map(|(file, mean)| {
+            let encoding = if raw { "linear" } else { "auto" };
+            let image = json!({
+                "type": "image", "file": file, "encoding": encoding, "wrap": wrap, "filter": filter, "uv_scale": scale,
+                "uv_offset": offset,
+            });
+            (image, mean)
+        }))
+    }
+
+    /// The file of an image in the scene, and the mean of its texels; `None`, and a note, if it cannot be read.
+    pub(super) fn image(&mut self, name: &str, raw: bool, place: &str) -> Option<(String, [f64; 3])> {
+        let encoding = if raw { Encoding::Linear } else { Encoding::Auto };
+        let found = self.builder.image_file(name, encoding, place);
+        match found {
+            Ok(found) => Some(found),
+            Err(why) => {
+                self.builder.leave_out(place, format!("the image is left out: {why}"));
+                None
+            }
+        }
+    }
+}
+
+/// The kind of a file, by its name.
+pub(super) fn kind(name: &str) -> String {
+    extension(Path::new(name))
+}

@@ -1,0 +1,91 @@
+//! Lights of Mitsuba.
+
+use serde_json::{Value, json};
+
+use super::Walk;
+use super::colour::Of;
+use super::element::Element;
+use crate::matrix::{column, determinant};
+
+impl Walk<'_, '_, '_> {
+    pub(super) fn emitter(&mut self, element: &Element) -> Result<(), String> {
+        let place = element.place.clone();
+        let name = element.attribute("id").map_or_else(|| format!("light, {place}"), str::to_owned);
+        let one = || json!({ "type": "illuminant", "name": "D65", "scale": 1 });
+        let value = match element.plugin() {
+            "constant" => {
+                let radiance = self.colour(element, "radiance", Of::Emission)?.unwrap_or_else(one);
+                json!({ "type": "environment", "radiance": radiance })
+            }
+            "envmap" => {
+                let file =
+                    element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+                let Some((file, _)) = self.image(&file, false, &place) else { return Ok(()) };
+                let to_world = self.placement(element)?;
+                // The middle of the image is along +z, its upper edge along +y; the centres of its first row lie at the pole.
+                json!({
+                    "type": "environment",
+                    "image": {
+                        "file": file, "scale": element.number("scale")?.unwrap_or(1.0).max(0.0),
+                        "projection": "latitude-longitude-at-poles", "mirrored": determinant(&to_world) < 0.0,
+                        "up": column(&to_world, 1), "forward": column(&to_world, 2),
+                    },
+                })
+            }
+            "point" => {
+                let intensity = self.colour(element, "intensity", Of::Emission)?.unwrap_or_else(one);
+                let position = match element.triple("position")? {
+                    Some(position) => position,
+                    None => column(&self.placement(element)?, 3),
+                };
+                json!({ "type": "point", "position_m": position, "intensity": intensity })
+            }
+            "spot" => {
+                let intensity = self.colour(element, "intensity", Of::Emission)?.unwrap_or_else(one);
+                let to_world = self.placement(element)?;
+                let cutoff = element.number("cutoff_angle")?.unwrap_or(20.0);
+                let inner = element.number("beam_width")?.unwrap_or(0.75 * cutoff);
+                if inner < cutoff {
+                    self.builder.leave_out(&place, "between beam_width and cutoff_angle it falls by another curve");
+                }
+                json!({
+                    "type": "spot", "position_m": column(&to_world, 3), "direction": column(&to_world, 2),
+                    "intensity": intensity, "half_angle_deg": cutoff, "inner_half_angle_deg": inner.min(cutoff),
+                })
+            }
+            "directional" => {
+                let irradiance = self.colour(element, "irradiance", Of::Emission)?.unwrap_or_else(one);
+                let direction = match element.triple("direction")? {
+                    Some(direction) => direction,
+                    None => column(&self.placement(element)?, 2),
+                };
+                json!({ "type": "directional", "direction": direction, "irradiance": irradiance })
+            }
+            other => {
+                self.builder.leave_out(&place, format!("the emitter \"{other}\" is not known, and is left out"));
+                return Ok(());
+            }
+        };
+        let mut value = value;
+        value["name"] = json!(name);
+        self.builder.lights.push(value);
+        element.list_unused(self.builder);
+        Ok(())
+    }
+
+    /// The emission of a shape's own `area` emitter.
+    pub(super) fn emission(&mut self, shape: &Element) -> Result<Option<Value>, String> {
+        let emitters = shape.nested("emitter", self.ids)?;
+        let Some(emitter) = emitters.first() else { return Ok(None) };
+        if emitter.plugin() != "area" {
+            let what = format!("the emitter \"{}\" of a shape is not known, and is left out", emitter.plugin());
+            self.builder.leave_out(&emitter.place, what);
+            return Ok(None);
+        }
+        let one = json!({ "type": "illuminant", "name": "D65", "scale": 1 });
+        let radiance = self.colour(emitter, "radiance", Of::Shining)?.unwrap_or(one);
+        emitter.list_unused(self.builder);
+        self.builder.spend(&radiance, &emitter.place)?;
+        Ok(Some(json!({ "radiance": radiance, "sides": "front" })))
+    }
+}

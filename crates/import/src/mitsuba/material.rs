@@ -1,0 +1,289 @@
+//! Materials of Mitsuba.
+
+use serde_json::{Map, Value, json};
+
+use super::Walk;
+use super::colour::Of;
+use super::element::Element;
+use crate::budget::BlendSize;
+use crate::number::{Number, Rough};
+use crate::relief::{has_map, without_map};
+use crate::table::{Table, metal};
+
+/// Indices of refraction that Mitsuba has names for, as its documentation lists them.
+const INDICES: [(&str, f64); 21] = [
+    ("vacuum", 1.0),
+    ("helium", 1.000_036),
+    ("hydrogen", 1.000_132),
+    ("air", 1.000_277),
+    ("carbon dioxide", 1.000_45),
+    ("water", 1.3330),
+    ("acetone", 1.36),
+    ("ethanol", 1.361),
+    ("carbon tetrachloride", 1.461),
+    ("glycerol", 1.4729),
+    ("benzene", 1.501),
+    ("silicone oil", 1.520_45),
+    ("bromine", 1.661),
+    ("water ice", 1.31),
+    ("fused quartz", 1.458),
+    ("pyrex", 1.470),
+    ("acrylic glass", 1.49),
+    ("polypropylene", 1.49),
+    ("bk7", 1.5046),
+    ("sodium chloride", 1.544),
+    ("diamond", 2.419),
+];
+
+/// What a surface is made of.
+#[derive(Clone, Debug)]
+pub(super) struct Look {
+    /// A material of the format.
+    pub material: Value,
+    /// Share of light that meets it.
+    pub opacity: f64,
+    /// Further keys of its objects: an image of that share, a map of normals or heights.
+    pub detail: Map<String, Value>,
+    /// How many materials it is a blend of.
+    pub size: BlendSize,
+}
+
+impl Look {
+    pub(super) fn of(material: Value) -> Self {
+        Self { material, opacity: 1.0, detail: Map::new(), size: BlendSize::ONE }
+    }
+
+    pub(super) fn plain(material: Value, opacity: f64) -> Self {
+        Self { opacity, ..Self::of(material) }
+    }
+}
+
+/// The grey that stands for what is not known.
+pub(super) fn grey() -> Value {
+    json!({ "type": "lambert", "reflectance": 0.5 })
+}
+
+impl Walk<'_, '_, '_> {
+    /// The material that an element is. One that others can refer to is read once.
+    pub(super) fn look(&mut self, element: &Element) -> Result<Look, String> {
+        let key = std::ptr::from_ref(element);
+        if let Some(look) = self.looks.get(&key) {
+            return Ok(look.clone());
+        }
+        let look = self.within(element, |walk| walk.read_look(element))?;
+        if element.attribute("id").is_some() {
+            self.looks.insert(key, look.clone());
+        }
+        Ok(look)
+    }
+
+    fn read_look(&mut self, element: &Element) -> Result<Look, String> {
+        let place = element.place.clone();
+        let look = match element.plugin() {
+            "twosided" => {
+                let nested = element.nested("bsdf", self.ids)?;
+                if nested.len() > 1 {
+                    self.builder.leave_out(&place, "both sides have the first of its materials");
+                }
+                self.first(&nested, &place)?
+            }
+            "mask" => {
+                let mut look = self.nested_look(element)?;
+                match self.number(element, "opacity")?.unwrap_or(Number::Value(0.5)) {
+                    Number::Value(share) => look.opacity *= share,
+                    Number::Image(image, _) if !look.detail.contains_key("opacity_image") => {
+                        look.detail.insert("opacity_image".to_owned(), image);
+                    }
+                    image => look.opacity *= image.mean("opacity", &place, self.builder),
+                }
+                look
+            }
+            "bumpmap" | "normalmap" => {
+                let mut look = self.nested_look(element)?;
+                match self.relief(element)? {
+                    Some(_) if has_map(&look.detail) => {
+                        let what = format!("the \"{}\" around another map is left out", element.plugin());
+                        self.builder.leave_out(&place, what);
+                    }
+                    Some((key, map)) => {
+                        look.detail.insert(key.to_owned(), map);
+                    }
+                    None => {}
+                }
+                look
+            }
+            "null" => Look::plain(json!({ "type": "black" }), 0.0),
+            "blendbsdf" => {
+                let nested = element.nested("bsdf", self.ids)?;
+                let [first, second] = nested[..] else {
+                    return Err(format!("{place}: a blend has two materials, not {}", nested.len()));
+                };
+                let (mut first, mut second) = (self.look(first)?, self.look(second)?);
+                if without_map(&mut first.detail) | without_map(&mut second.detail) {
+                    self.builder
+                        .leave_out(&place, "the normals of a part of a blend are not bent: its map is left out");
+                }
+                let weight = self.number(element, "weight")?.unwrap_or(Number::Value(0.5));
+                let mean = match weight {
+                    Number::Value(mean) | Number::Image(_, mean) => mean,
+                };
+                if first.opacity != second.opacity || !first.detail.is_empty() || !second.detail.is_empty() {
+                    self.builder
+                        .leave_out(&place, "masks within a blend count by their mean, images of them not at all");
+                }
+                let mut material = json!({ "type": "blend", "first": first.material, "second": second.material });
+                weight.put_weight(&mut material);
+                // Each blend holds its parts in full.
+                let size = first.size.blend(second.size, &place)?;
+                self.builder.spend(&material, &place)?;
+                Look { size, ..Look::plain(material, (1.0 - mean) * first.opacity + mean * second.opacity) }
+            }
+            plugin => Look::of(self.material(element, plugin, &place)?),
+        };
+        element.list_unused(self.builder);
+        Ok(look)
+    }
+
+    fn nested_look(&mut self, element: &Element) -> Result<Look, String> {
+        let nested = element.nested("bsdf", self.ids)?;
+        self.first(&nested, &element.place)
+    }
+
+    fn first(&mut self, nested: &[&Element], place: &str) -> Result<Look, String> {
+        match nested.first() {
+            Some(first) => self.look(first),
+            None => Err(format!("{place}: it has no <bsdf> in it")),
+        }
+    }
+
+    fn material(&mut self, element: &Element, plugin: &str, place: &str) -> Result<Value, String> {
+        Ok(match plugin {
+            "diffuse" => {
+                let reflectance = self.colour(element, "reflectance", Of::Texture)?.unwrap_or(json!(0.5));
+                json!({ "type": "lambert", "reflectance": reflectance })
+            }
+            "dielectric" | "roughdielectric" => {
+                let (interior, exterior) =
+                    (self.index(element, "int_ior", 1.5046)?, self.index(element, "ext_ior", 1.000_277)?);
+                self.untinted(element, &["specular_reflectance", "specular_transmittance"])?;
+                let mut glass = json!({ "type": "dielectric", "interior": interior, "exterior": exterior,
+                    "multiple_scattering": "lost" });
+                let rough = if plugin == "dielectric" { Rough::Alpha(0.0) } else { self.alpha(element)? };
+                rough.put(&mut glass);
+                glass
+            }
+            "thindielectric" => {
+                let ratio = self.index(element, "int_ior", 1.5046)? / self.index(element, "ext_ior", 1.000_277)?;
+                self.untinted(element, &["specular_reflectance", "specular_transmittance"])?;
+                json!({ "type": "thin-dielectric", "index": ratio })
+            }
+            "conductor" | "roughconductor" => self.conductor(element, plugin == "roughconductor")?,
+            "plastic" | "roughplastic" => {
+                let reflectance = self.colour(element, "diffuse_reflectance", Of::Texture)?.unwrap_or(json!(0.5));
+                let coat = self.index(element, "int_ior", 1.49)? / self.index(element, "ext_ior", 1.000_277)?;
+                self.untinted(element, &["specular_reflectance"])?;
+                let rough = if plugin == "plastic" { Rough::Alpha(0.0) } else { self.alpha(element)? };
+                if !element.flag("nonlinear")?.unwrap_or(false) {
+                    let what = "light that is reflected within the coat is coloured by the ground (nonlinear)";
+                    self.builder.leave_out(place, what);
+                }
+                let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat });
+                rough.put(&mut plastic);
+                plastic
+            }
+            "principled" | "principledthin" => {
+                self.builder.leave_out(place, format!("\"{plugin}\" is taken for diffuse, of its base colour"));
+                let reflectance = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
+                json!({ "type": "lambert", "reflectance": reflectance })
+            }
+            other => {
+                self.builder.leave_out(place, format!("the material \"{other}\" is not known: grey is taken for it"));
+                element.children.iter().for_each(Element::mark);
+                grey()
+            }
+        })
+    }
+
+    fn conductor(&mut self, element: &Element, rough: bool) -> Result<Value, String> {
+        let place = &element.place;
+        let facets = if rough { self.alpha(element)? } else { Rough::Alpha(0.0) };
+        let tint = self.colour(element, "specular_reflectance", Of::Reflectance)?;
+        let mut value = match element.string("material") {
+            Some("none") => {
+                if rough {
+                    self.builder.leave_out(place, "a perfect mirror cannot be rough: it is taken for smooth");
+                }
+                return Ok(json!({ "type": "mirror", "reflectance": tint.unwrap_or(json!(1.0)) }));
+            }
+            Some(metal @ ("Ag" | "Al" | "Au" | "Cu")) => json!({ "type": "conductor", "metal": metal }),
+            Some(other) => {
+                self.builder.leave_out(place, format!("the metal \"{other}\" is not known: aluminium is taken for it"));
+                json!({ "type": "conductor", "metal": "Al" })
+            }
+            None => self.own_metal(element)?.unwrap_or_else(|| json!({ "type": "conductor", "metal": "Cu" })),
+        };
+        if tint.is_some_and(|tint| tint != json!(1.0)) {
+            self.builder.leave_out(place, "specular_reflectance does not tint it");
+        }
+        facets.put(&mut value);
+        value["outside_fit"] = json!("clamp");
+        // As in the program.
+        value["multiple_scattering"] = json!("lost");
+        Ok(value)
+    }
+
+    /// A metal by its own eta and k.
+    fn own_metal(&mut self, element: &Element) -> Result<Option<Value>, String> {
+        let (eta, k) = (self.colour(element, "eta", Of::Emission)?, self.colour(element, "k", Of::Emission)?);
+        let (Some(eta), Some(k)) = (eta, k) else { return Ok(None) };
+        let (Some(eta), Some(k)) = (Table::of_spectrum(&eta), Table::of_spectrum(&k)) else {
+            self.builder.leave_out(&element.place, "eta and k as colours are not honoured: aluminium is taken for it");
+            return Ok(Some(json!({ "type": "conductor", "metal": "Al" })));
+        };
+        Ok(Some(metal(&eta, &k)))
+    }
+
+    fn untinted(&mut self, element: &Element, names: &[&str]) -> Result<(), String> {
+        for name in names {
+            if self.colour(element, name, Of::Reflectance)?.is_some_and(|tint| tint != json!(1.0)) {
+                self.builder.leave_out(&element.place, format!("{name} does not tint it"));
+            }
+        }
+        Ok(())
+    }
+
+    fn index(&mut self, element: &Element, name: &str, default: f64) -> Result<f64, String> {
+        let Some(property) = element.property(name) else { return Ok(default) };
+        let text = property.attribute("value").unwrap_or("").trim();
+        let named = INDICES.iter().find(|(known, _)| known.eq_ignore_ascii_case(text)).map(|(_, index)| *index);
+        match named.or_else(|| text.parse().ok()) {
+            Some(index) if index > 0.0 && index.is_finite() => Ok(index),
+            _ => Err(format!("{}: \"{text}\" is no index of refraction", property.place)),
+        }
+    }
+
+    fn alpha(&mut self, element: &Element) -> Result<Rough, String> {
+        let place = &element.place;
+        if element.string("distribution").unwrap_or("beckmann") != "ggx" {
+            self.builder.leave_out(place, "the distribution of facets is taken for GGX of the same alpha");
+        }
+        element.string("sample_visible");
+        let both = (self.number(element, "alpha_u")?, self.number(element, "alpha_v")?);
+        let alpha = match (self.number(element, "alpha")?, both) {
+            (_, (Some(u), Some(v))) => {
+                let (u, v) = (u.mean("alpha_u", place, self.builder), v.mean("alpha_v", place, self.builder));
+                if u != v {
+                    let what = "alpha_u and alpha_v differ: their geometric mean is taken for both";
+                    self.builder.leave_out(place, what);
+                }
+                Number::Value((u * v).max(0.0).sqrt())
+            }
+            (Some(alpha), _) | (None, (Some(alpha), None)) => alpha,
+            (None, _) => Number::Value(0.1),
+        };
+        Ok(match alpha {
+            Number::Value(alpha) => Rough::width(alpha),
+            Number::Image(image, _) => Rough::image(image, "alpha"),
+        })
+    }
+}

@@ -1,0 +1,270 @@
+//! Shapes of Mitsuba.
+
+use std::rc::Rc;
+
+use etalon_scene::mesh::{Part, read_obj, read_ply};
+use serde_json::{Value, json};
+
+use super::Walk;
+use super::colour::kind;
+use super::element::Element;
+use super::material::{Look, grey};
+use crate::Placed;
+use crate::matrix::{Rows, determinant};
+use crate::number::has_image;
+use crate::relief::without_map;
+
+/// A mesh file, as files of the scene.
+#[derive(Debug)]
+pub(super) struct Mesh {
+    parts: Vec<MeshPart>,
+}
+
+#[derive(Debug)]
+struct MeshPart {
+    file: String,
+    name: Option<String>,
+    bounds: Option<[[f64; 3]; 2]>,
+    has_uvs: bool,
+    has_normals: bool,
+}
+
+impl<'a> Walk<'a, '_, '_> {
+    /// A group, which instances place.
+    pub(super) fn group(&mut self, element: &'a Element) -> Result<(), String> {
+        let Some(id) = element.attribute("id") else {
+            self.builder.leave_out(&element.place, "a group without an id is nothing in the picture");
+            return Ok(());
+        };
+        let outside = self.builder.begin_group();
+        for shape in element.nested("shape", self.ids)? {
+            self.shape(shape)?;
+        }
+        self.builder.end_group(id, outside);
+        element.list_unused(self.builder);
+        Ok(())
+    }
+
+    pub(super) fn shape(&mut self, element: &'a Element) -> Result<(), String> {
+        self.within(element, |walk| walk.read_shape(element))
+    }
+
+    fn read_shape(&mut self, element: &'a Element) -> Result<(), String> {
+        let place = &element.place;
+        let name = element.attribute("id").map_or_else(|| format!("{}, {place}", element.plugin()), str::to_owned);
+        if element.plugin() == "merge" {
+            for shape in element.nested("shape", self.ids)? {
+                self.shape(shape)?;
+            }
+            element.list_unused(self.builder);
+            return Ok(());
+        }
+        if element.plugin() == "instance" {
+            let rows = self.placement(element)?;
+            let groups = element.nested("shape", self.ids)?;
+            let Some(group) = groups.first().and_then(|group| group.attribute("id")) else {
+                return Err(format!("{place}: it refers to no shapegroup"));
+            };
+            self.builder.place_group(&name, group, &rows, place);
+            element.list_unused(self.builder);
+            return Ok(());
+        }
+        let rows = self.placement(element)?;
+        let look = match element.nested("bsdf", self.ids)?.first() {
+            Some(bsdf) => self.known_look(bsdf)?,
+            None => Look::of(grey()),
+        };
+        let emission = self.emission(element)?;
+        let flipped = element.flag("flip_normals")?.unwrap_or(false);
+        let mut dressed = Dressed { name, look, emission, rows, flipped };
+        match element.plugin() {
+            "sphere" => {
+                let center = element.triple("center")?.unwrap_or([0.0; 3]);
+                let radius = element.number("radius")?.unwrap_or(1.0);
+                let reach = [-radius, radius].map(|r| center.map(|c| c + r));
+                self.analytic(
+                    dressed,
+                    json!({ "type": "sphere", "center_m": center, "radius_m": radius }),
+                    reach,
+                    place,
+                )?;
+            }
+            "rectangle" => {
+                let shape =
+                    json!({ "type": "parallelogram", "origin_m": [-1, -1, 0], "u_m": [2, 0, 0], "v_m": [0, 2, 0] });
+                self.analytic(dressed, shape, [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]], place)?;
+            }
+            "disk" => {
+                let shape = json!({ "type": "disk", "normal": [0, 0, 1], "radius_m": 1 });
+                self.analytic(dressed, shape, [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]], place)?;
+            }
+            "cube" => {
+                let shape = json!({ "type": "box", "min_m": [-1, -1, -1], "max_m": [1, 1, 1] });
+                self.analytic(dressed, shape, [[-1.0; 3], [1.0; 3]], place)?;
+            }
+            "cylinder" => {
+                let (start, end) =
+                    (element.triple("p0")?.unwrap_or([0.0; 3]), element.triple("p1")?.unwrap_or([0.0, 0.0, 1.0]));
+                let radius = element.number("radius")?.unwrap_or(1.0);
+                let shape =
+                    json!({ "type": "cylinder", "start_m": start, "end_m": end, "radius_m": radius, "capped": false });
+                let reach = [
+                    std::array::from_fn(|k| start[k].min(end[k]) - radius),
+                    std::array::from_fn(|k| start[k].max(end[k]) + radius),
+                ];
+                self.analytic(dressed, shape, reach, place)?;
+            }
+            "obj" | "ply" => self.mesh(element, &mut dressed)?,
+            other => {
+                self.builder.leave_out(place, format!("the shape \"{other}\" is not known, and is left out"));
+                element.children.iter().for_each(Element::mark);
+            }
+        }
+        element.list_unused(self.builder);
+        Ok(())
+    }
+
+    /// A material; one with an id is named once.
+    fn known_look(&mut self, element: &Element) -> Result<Look, String> {
+        let key = std::ptr::from_ref(element);
+        if let Some(look) = self.named_looks.get(&key) {
+            return Ok(look.clone());
+        }
+        let mut look = self.look(element)?;
+        if let Some(id) = element.attribute("id") {
+            let name = self.builder.material_name(id);
+            self.builder.materials.insert(name.clone(), look.material);
+            look.material = json!(name);
+        }
+        self.named_looks.insert(key, look.clone());
+        Ok(look)
+    }
+
+    fn analytic(
+        &mut self,
+        mut dressed: Dressed,
+        shape: Value,
+        reach: [[f64; 3]; 2],
+        place: &str,
+    ) -> Result<(), String> {
+        let has_uvs = shape["type"] == "parallelogram";
+        self.without_images(&mut dressed, has_uvs, place);
+        if !has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
+            self.builder.leave_out(place, "what it shines by is laid over texture coordinates of another kind");
+        }
+        self.builder.place(&dressed.placed(shape, Some(reach)), place)
+    }
+
+    fn mesh(&mut self, element: &Element, dressed: &mut Dressed) -> Result<(), String> {
+        let place = &element.place;
+        let file = element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+        let is_obj = element.plugin() == "obj" || kind(&file) == "obj";
+        let flip_v = element.flag("flip_tex_coords")?.unwrap_or(is_obj);
+        let flat = element.flag("face_normals")?.unwrap_or(false);
+        let mesh = self.read_mesh(&file, is_obj, flip_v, place)?;
+        for part in &mesh.parts {
+            let mut dressed = dressed.clone();
+            if let Some(name) = part.name.as_ref().filter(|_| mesh.parts.len() > 1) {
+                dressed.name = format!("{}, {name}", dressed.name);
+            }
+            // What is mirrored is turned inside out there unless normals of its vertices say otherwise; here it never is.
+            if (flat || !part.has_normals) && determinant(&dressed.rows) < 0.0 {
+                dressed.flipped = !dressed.flipped;
+            }
+            self.without_images(&mut dressed, part.has_uvs, place);
+            if !part.has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
+                let what = "it has no texture coordinates for the image that it shines by, and is dark";
+                self.builder.leave_out(place, what);
+                dressed.emission = None;
+            }
+            let mut shape = json!({ "type": "mesh", "file": part.file });
+            if flat {
+                shape["shading"] = json!("flat");
+            } else if !part.has_normals {
+                shape["shading"] = json!("smooth");
+            }
+            self.builder.place(&dressed.placed(shape, part.bounds), place)?;
+        }
+        Ok(())
+    }
+
+    fn read_mesh(&mut self, file: &str, is_obj: bool, flip_v: bool, place: &str) -> Result<Rc<Mesh>, String> {
+        let key = format!("{flip_v} {file}");
+        if let Some(mesh) = self.meshes.get(&key) {
+            return Ok(mesh.clone());
+        }
+        let bytes = self.builder.bytes_of(file, place)?;
+        let refused = |why: &dyn std::fmt::Display| format!("{place}: \"{file}\": {why}");
+        let parts: Vec<Part> = if is_obj {
+            // Materials of MTL are not asked for: the scene has its own.
+            read_obj(&bytes, |_| Ok(Vec::new())).map_err(|error| refused(&error))?.parts
+        } else {
+            vec![read_ply(&bytes).map_err(|error| refused(&error))?]
+        };
+        let mut made = Vec::new();
+        for mut part in parts {
+            for what in &part.left_out {
+                self.builder.leave_out(place, format!("\"{file}\": {what}"));
+            }
+            if flip_v {
+                part.mesh.uvs.iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);
+            }
+            let bounds = part.mesh.vertices.iter().fold(None, |bounds: Option<[[f64; 3]; 2]>, v| {
+                let [low, high] = bounds.unwrap_or([*v, *v]);
+                Some([std::array::from_fn(|k| low[k].min(v[k])), std::array::from_fn(|k| high[k].max(v[k]))])
+            });
+            made.push(MeshPart {
+                file: self.builder.mesh_file(&part.mesh),
+                name: part.name,
+                bounds,
+                has_uvs: !part.mesh.uvs.is_empty(),
+                has_normals: !part.mesh.normals.is_empty(),
+            });
+        }
+        let mesh = Rc::new(Mesh { parts: made });
+        self.meshes.insert(key, mesh.clone());
+        Ok(mesh)
+    }
+
+    /// Takes images away from what has no texture coordinates.
+    fn without_images(&mut self, dressed: &mut Dressed, has_uvs: bool, place: &str) {
+        let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
+        if !has_uvs && has_image(own.unwrap_or(&dressed.look.material)) {
+            self.builder.leave_out(place, "it has no texture coordinates for the image of its material, and is grey");
+            dressed.look.material = grey();
+        }
+        if !has_uvs && without_map(&mut dressed.look.detail) {
+            self.builder.leave_out(place, "it has no texture coordinates for the map of its normals, and is smooth");
+        }
+        if !has_uvs && !dressed.look.detail.is_empty() {
+            self.builder.leave_out(place, "it has no texture coordinates for the image of its opacity, and is opaque");
+            dressed.look.detail.clear();
+        }
+    }
+}
+
+/// All of an object but its shape.
+#[derive(Clone, Debug)]
+struct Dressed {
+    name: String,
+    look: Look,
+    emission: Option<Value>,
+    rows: Rows,
+    flipped: bool,
+}
+
+impl Dressed {
+    fn placed(&self, shape: Value, reach: Option<[[f64; 3]; 2]>) -> Placed {
+        Placed {
+            name: self.name.clone(),
+            shape,
+            reach: reach.unwrap_or([[0.0; 3]; 2]),
+            material: self.look.material.clone(),
+            emission: self.emission.clone(),
+            opacity: self.look.opacity,
+            detail: self.look.detail.clone(),
+            rows: self.rows,
+            flipped: self.flipped,
+        }
+    }
+}

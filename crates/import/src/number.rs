@@ -1,0 +1,81 @@
+//! Numbers of materials, which may be images.
+
+use etalon_scene::LEAST_ALPHA;
+use serde_json::{Value, json};
+
+use crate::Builder;
+
+/// A number from 0 to 1.
+#[derive(Clone, Debug)]
+pub(crate) enum Number {
+    Value(f64),
+    /// An image of the format that says numbers, and the mean of its texels.
+    Image(Value, f64),
+}
+
+impl Number {
+    /// What it is everywhere, or in the mean, which is listed.
+    pub(crate) fn mean(self, what: &str, place: &str, builder: &mut Builder<'_>) -> f64 {
+        match self {
+            Self::Value(value) => value,
+            Self::Image(_, mean) => {
+                builder.leave_out(place, format!("the mean of the image of \"{what}\" stands for it everywhere"));
+                mean
+            }
+        }
+    }
+
+    /// The share of a material of the format's `blend`.
+    pub(crate) fn put_weight(self, blend: &mut Value) {
+        match self {
+            Self::Value(weight) => blend["weight"] = json!(weight),
+            Self::Image(image, _) => blend["weight_image"] = image,
+        }
+    }
+}
+
+/// How rough a surface is.
+#[derive(Clone, Debug)]
+pub(crate) enum Rough {
+    /// The width α.
+    Alpha(f64),
+    /// An image of the format.
+    Image(Value),
+}
+
+impl Rough {
+    /// A width as the format has it: below what it resolves the surface is smooth.
+    pub(crate) fn width(alpha: f64) -> Self {
+        Self::Alpha(within(alpha))
+    }
+
+    /// Of an image whose numbers are a quantity of the format.
+    pub(crate) fn image(mut image: Value, quantity: &str) -> Self {
+        image["quantity"] = json!(quantity);
+        Self::Image(image)
+    }
+
+    /// Says it of a material.
+    pub(crate) fn put(self, material: &mut Value) {
+        match self {
+            Self::Alpha(alpha) => material["alpha"] = json!(alpha),
+            Self::Image(image) => material["roughness_image"] = image,
+        }
+    }
+}
+
+fn within(alpha: f64) -> f64 {
+    if alpha < LEAST_ALPHA { 0.0 } else { alpha.min(1.0) }
+}
+
+/// Whether a material of the format shows an image.
+pub(crate) fn has_image(value: &Value) -> bool {
+    match value {
+        Value::Object(map) => {
+            map.get("type").is_some_and(|t| t == "image")
+                || map.iter().any(|(key, value)| key.ends_with("_image") || has_image(value))
+        }
+        Value::Array(list) => list.iter().any(has_image),
+        _ => false,
+    }
+}

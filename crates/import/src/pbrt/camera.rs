@@ -1,0 +1,145 @@
+//! Cameras, films, filters, samplers and integrators of pbrt.
+
+use etalon_scene::vector::{length, unit};
+use serde_json::json;
+
+use super::Reading;
+use super::parameters::Parameters;
+use crate::matrix::{IDENTITY, column, determinant, direction, inverse, point, scaling};
+
+impl Reading<'_, '_> {
+    pub(super) fn camera(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
+        let from_camera =
+            inverse(&self.state.transform).ok_or_else(|| format!("{place}: its transform flattens it"))?;
+        self.systems.insert("camera".to_owned(), from_camera);
+        // In the camera's own axes x points right, y up and z into the picture.
+        self.world = if determinant(&from_camera) > 0.0 { scaling([-1.0, 1.0, 1.0]) } else { IDENTITY };
+        if self.world != IDENTITY {
+            let what = "the model's axes are left-handed: everything is mirrored in x, so that the picture is not";
+            self.builder.added.push(what.to_owned());
+        }
+        let axis = |k: usize| unit(direction(&self.world, column(&from_camera, k)));
+        let (Some(forward), Some(up)) = (axis(2), axis(1)) else {
+            return Err(format!("{place}: its transform flattens it"));
+        };
+        let position = point(&self.world, column(&from_camera, 3));
+        let mut camera = json!({ "position_m": position, "direction": forward, "up": up });
+        let size = |key: &str| self.builder.film[key].as_f64().unwrap_or(1.0);
+        let aspect = size("width") / size("height");
+        match kind {
+            "perspective" => {
+                camera["type"] = json!("perspective");
+                let fov = list.number("fov")?.unwrap_or(90.0);
+                // The angle is that of the shorter side.
+                camera[if aspect >= 1.0 { "vertical_fov_deg" } else { "horizontal_fov_deg" }] = json!(fov);
+            }
+            "orthographic" => {
+                camera["type"] = json!("orthographic");
+                let height = if aspect >= 1.0 { 2.0 } else { 2.0 / aspect };
+                camera["height_m"] = json!(height * length(column(&from_camera, 1)));
+            }
+            other => {
+                self.builder.leave_out(place, format!("the camera \"{other}\" is not known, and is left out"));
+                return Ok(());
+            }
+        }
+        let radius = list.number("lensradius")?.unwrap_or(0.0);
+        let focus = list.number("focaldistance")?;
+        if radius > 0.0 && kind == "perspective" {
+            let along = length(column(&from_camera, 2));
+            let focus = focus.unwrap_or(1e6) * along;
+            camera["lens"] = json!({ "radius_m": radius * along, "focus_distance_m": focus });
+        }
+        for harmless in ["shutteropen", "shutterclose"] {
+            list.get(harmless);
+        }
+        list.list_unused(self.builder);
+        self.builder.camera = Some(camera);
+        Ok(())
+    }
+
+    /// The film comes before the camera in files that people write; the camera's angle is along its shorter side.
+    pub(super) fn film(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
+        let size = |name: &str, default: f64| Ok::<f64, String>(list.number(name)?.unwrap_or(default).max(1.0).round());
+        let (width, height) = (size("xresolution", 1280.0)?, size("yresolution", 720.0)?);
+        self.builder.film["width"] = json!(width as u64);
+        self.builder.film["height"] = json!(height as u64);
+        if let Some(camera) = &mut self.builder.camera {
+            // Stated after the camera.
+            let stated = ["vertical_fov_deg", "horizontal_fov_deg"].into_iter().find(|key| camera[*key].is_number());
+            if let Some(stated) = stated {
+                let fov = camera[stated].take();
+                if let Some(map) = camera.as_object_mut() {
+                    map.remove(stated);
+                }
+                camera[if width >= height { "vertical_fov_deg" } else { "horizontal_fov_deg" }] = fov;
+            }
+        }
+        // How the file is written, and what a physical camera would show, is not what light there is.
+        for harmless in ["filename", "savefp16", "diagonal"] {
+            list.get(harmless);
+        }
+        if matches!(list.string("sensor"), None | Some("cie1931")) && kind == "rgb" {
+            list.get("sensor");
+        }
+        if list.number("iso")?.unwrap_or(100.0) != 100.0 || list.number("exposuretime")?.unwrap_or(1.0) != 1.0 {
+            let factor = list.number("iso")?.unwrap_or(100.0) / 100.0 * list.number("exposuretime")?.unwrap_or(1.0);
+            self.builder.leave_out(place, format!("its exposure is not honoured: a factor of {factor} on the picture"));
+        }
+        list.list_unused(self.builder);
+        Ok(())
+    }
+
+    pub(super) fn sampler(&mut self, kind: &str, list: &Parameters) -> Result<(), String> {
+        if let Some(count) = list.number("pixelsamples")?.filter(|count| *count >= 1.0) {
+            self.builder.integrator.insert("spp".to_owned(), json!(count as u64));
+        }
+        if let (Some(x), Some(y)) = (list.number("xsamples")?, list.number("ysamples")?) {
+            self.builder.integrator.insert("spp".to_owned(), json!((x * y).max(1.0) as u64));
+        }
+        if let Some(seed) = list.number("seed")?.filter(|seed| *seed >= 0.0) {
+            self.builder.integrator.insert("seed".to_owned(), json!(seed as u64));
+        }
+        if kind == "independent" {
+            self.builder.integrator.insert("sampler".to_owned(), json!("independent"));
+        }
+        for harmless in ["randomization", "jitter"] {
+            list.get(harmless);
+        }
+        list.list_unused(self.builder);
+        Ok(())
+    }
+
+    pub(super) fn integrator(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
+        if !matches!(kind, "path" | "volpath" | "simplepath" | "simplevolpath") {
+            self.builder.leave_out(place, format!("the integrator \"{kind}\" becomes a path tracer"));
+        }
+        // A depth of 0 is light seen directly, which is one edge of a path. What is more than a scene can say stands for no limit.
+        let depth = (list.number("maxdepth")?.unwrap_or(5.0).max(0.0) + 1.0).min(f64::from(u32::MAX)) as u32;
+        self.builder.integrator.insert("max_depth".to_owned(), json!(depth));
+        for harmless in ["lightsampler", "regularize"] {
+            if list.flag(harmless) != Some(true) {
+                list.get(harmless);
+            }
+        }
+        list.list_unused(self.builder);
+        Ok(())
+    }
+
+    pub(super) fn filter(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
+        self.builder.film["filter"] = match kind {
+            "box" => json!({ "type": "box" }),
+            "triangle" => json!({ "type": "tent", "radius_px": list.number("xradius")?.unwrap_or(2.0) }),
+            "gaussian" => json!({ "type": "gaussian", "sigma_px": list.number("sigma")?.unwrap_or(0.5) }),
+            other => {
+                self.builder.leave_out(place, format!("the filter \"{other}\" becomes a Gaussian"));
+                json!({ "type": "gaussian" })
+            }
+        };
+        for radius in ["xradius", "yradius"] {
+            list.get(radius);
+        }
+        list.list_unused(self.builder);
+        Ok(())
+    }
+}

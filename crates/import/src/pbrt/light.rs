@@ -1,0 +1,112 @@
+//! Lights of pbrt.
+
+use etalon_scene::Encoding;
+use etalon_scene::vector::sub;
+use serde_json::{Value, json};
+
+use super::Reading;
+use super::parameters::Parameters;
+use crate::matrix::{Rows, column, determinant, direction, is_similarity, point};
+
+impl Reading<'_, '_> {
+    pub(super) fn light(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
+        let scale = list.number("scale")?.unwrap_or(1.0).max(0.0);
+        let rows = self.to_world();
+        let from = list.triple("from")?.unwrap_or([0.0; 3]);
+        let to = list.triple("to")?.unwrap_or([0.0, 0.0, 1.0]);
+        let along = direction(&rows, sub(to, from));
+        let mut value = match kind {
+            "distant" => {
+                let irradiance = self.emitted(list, "L", scale)?;
+                json!({ "type": "directional", "direction": along, "irradiance": irradiance })
+            }
+            "point" => {
+                let intensity = self.emitted(list, "I", scale)?;
+                json!({ "type": "point", "position_m": point(&rows, from), "intensity": intensity })
+            }
+            "spot" => {
+                let intensity = self.emitted(list, "I", scale)?;
+                let outer = list.number("coneangle")?.unwrap_or(30.0);
+                let inner = outer - list.number("conedeltaangle")?.unwrap_or(5.0);
+                json!({
+                    "type": "spot", "position_m": point(&rows, from), "direction": along, "intensity": intensity,
+                    "half_angle_deg": outer, "inner_half_angle_deg": inner.clamp(0.0, outer),
+                })
+            }
+            "infinite" => match list.string("filename").map(str::to_owned) {
+                Some(file) => match self.sky(&file, list, scale, &rows, place)? {
+                    Some(sky) => sky,
+                    None => return Ok(()),
+                },
+                None => json!({ "type": "environment", "radiance": self.emitted(list, "L", scale)? }),
+            },
+            other => {
+                self.builder.leave_out(place, format!("the light \"{other}\" is not known, and is left out"));
+                return Ok(());
+            }
+        };
+        value["name"] = json!(format!("light, {place}"));
+        self.builder.lights.push(value);
+        list.list_unused(self.builder);
+        Ok(())
+    }
+
+    /// A square image of all directions; `None`, and a note, if it cannot be read.
+    fn sky(
+        &mut self,
+        file: &str,
+        list: &Parameters,
+        scale: f64,
+        rows: &Rows,
+        place: &str,
+    ) -> Result<Option<Value>, String> {
+        let found = self.builder.image_file(file, Encoding::Auto, place);
+        let name = match found {
+            Ok((name, _)) => name,
+            Err(why) => {
+                self.builder.leave_out(place, format!("the sky is left out with its image: {why}"));
+                list.mark_all();
+                return Ok(None);
+            }
+        };
+        if !is_similarity(rows) {
+            self.builder.leave_out(place, "its transform stretches the sky, which is not honoured");
+        }
+        // The middle of the square is along +z, its right edge along +x and its lower edge along +y.
+        Ok(Some(json!({
+            "type": "environment",
+            "image": {
+                "file": name, "projection": "equal-area", "scale": scale, "up": column(rows, 2), "forward": column(rows, 1),
+                "mirrored": determinant(rows) < 0.0,
+            },
+        })))
+    }
+
+    /// What the shapes from here on emit.
+    pub(super) fn area_light(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Option<Value>, String> {
+        if kind != "diffuse" {
+            self.builder.leave_out(place, format!("the light \"{kind}\" is not known, and is left out"));
+            return Ok(None);
+        }
+        let scale = list.number("scale")?.unwrap_or(1.0).max(0.0);
+        let radiance = match list.string("filename").map(str::to_owned) {
+            None => self.emitted(list, "L", scale)?,
+            Some(file) => {
+                let found = self.builder.image_file(&file, Encoding::Auto, place);
+                match found {
+                    Ok((name, _)) => {
+                        json!({ "type": "image", "file": name, "wrap": "clamp", "factor": [scale, scale, scale] })
+                    }
+                    Err(why) => {
+                        self.builder.leave_out(place, format!("the light is left out with its image: {why}"));
+                        list.mark_all();
+                        return Ok(None);
+                    }
+                }
+            }
+        };
+        let sides = if list.flag("twosided").unwrap_or(false) { "both" } else { "front" };
+        list.list_unused(self.builder);
+        Ok(Some(json!({ "radiance": radiance, "sides": sides })))
+    }
+}

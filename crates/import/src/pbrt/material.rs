@@ -1,0 +1,174 @@
+//! Materials of pbrt.
+
+use serde_json::{Map, Value, json};
+
+use super::parameters::Parameters;
+use super::{Look, Reading};
+use crate::budget::BlendSize;
+use crate::number::{Number, Rough};
+use crate::relief::has_map;
+use crate::table::{Table, metal};
+
+impl Reading<'_, '_> {
+    pub(super) fn material(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Look, String> {
+        let (mut opacity, mut size) = (1.0, BlendSize::ONE);
+        // What is chosen between has maps of its own, and what is not there has none.
+        let detail = if matches!(kind, "mix" | "interface" | "") { Map::new() } else { self.relief(list)? };
+        let value = match kind {
+            "diffuse" => {
+                let reflectance = self.reflectance(list, "reflectance", true)?.unwrap_or(json!(0.5));
+                json!({ "type": "lambert", "reflectance": reflectance })
+            }
+            "coateddiffuse" => {
+                let reflectance = self.reflectance(list, "reflectance", true)?.unwrap_or(json!(0.5));
+                let coat = self.index(list, 1.5)?;
+                // What the coat adds to its thickness of 0 is nothing without absorption, which is listed if there is some.
+                for harmless in ["thickness", "maxdepth", "nsamples"] {
+                    list.get(harmless);
+                }
+                let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat });
+                self.rough(list, place)?.put(&mut plastic);
+                plastic
+            }
+            "conductor" | "coatedconductor" => {
+                if kind == "coatedconductor" {
+                    self.builder.leave_out(place, "the coat is left out: it is taken for bare metal");
+                }
+                self.conductor(list, place)?
+            }
+            "dielectric" => {
+                let mut glass =
+                    json!({ "type": "dielectric", "interior": self.index(list, 1.5)?, "multiple_scattering": "lost" });
+                self.rough(list, place)?.put(&mut glass);
+                glass
+            }
+            "thindielectric" => json!({ "type": "thin-dielectric", "index": self.index(list, 1.5)? }),
+            "mix" => {
+                let names: Vec<String> = list.get("materials").map_or(&[][..], |p| p.strings()).to_vec();
+                let [first, second] = &names[..] else {
+                    return Err(format!("{place}: a mix has two materials, not {}", names.len()));
+                };
+                let mut known = |name: &String| {
+                    let look = self.materials.get(name).cloned();
+                    let look = look.ok_or_else(|| format!("{place}: there is no material \"{name}\""))?;
+                    if has_map(&look.detail) {
+                        let what =
+                            format!("the normals of a part of it, \"{name}\", are not bent: its map is left out");
+                        self.builder.leave_out(place, what);
+                    }
+                    // In full, since a blend may only name what stands before it.
+                    let named = look.value.as_str().and_then(|name| self.builder.materials.get(name));
+                    Ok::<_, String>((named.unwrap_or(&look.value).clone(), look.size))
+                };
+                let ((first, first_size), (second, second_size)) = (known(first)?, known(second)?);
+                size = first_size.blend(second_size, place)?;
+                let mut blend = json!({ "type": "blend", "first": first, "second": second });
+                self.share(list, "amount")?.unwrap_or(Number::Value(0.5)).put_weight(&mut blend);
+                self.builder.spend(&blend, place)?;
+                blend
+            }
+            "interface" | "" => {
+                opacity = 0.0;
+                json!({ "type": "black" })
+            }
+            other => {
+                self.builder.leave_out(place, format!("the material \"{other}\" is not known: grey is taken for it"));
+                list.mark_all();
+                json!({ "type": "lambert", "reflectance": 0.5 })
+            }
+        };
+        list.get("type");
+        list.list_unused(self.builder);
+        Ok(Look { value, opacity, detail, size })
+    }
+
+    fn conductor(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
+        let rough = self.rough(list, place)?;
+        let prefix = if list.0.iter().any(|p| p.name.starts_with("conductor.")) { "conductor." } else { "" };
+        let named = |what: &str| list.string(&format!("{prefix}{what}")).map(str::to_owned);
+        let eta = named("eta");
+        named("k");
+        let mut value = if let Some(reflectance) = self.reflectance(list, &format!("{prefix}reflectance"), true)? {
+            // The same index as in pbrt: 1 + ik.
+            json!({ "type": "conductor", "reflectance": reflectance })
+        } else if let Some((eta, k)) = self.own_indices(list, prefix)? {
+            metal(&eta, &k)
+        } else {
+            let name = match eta.as_deref() {
+                None | Some("metal-Cu-eta") => "Cu",
+                Some("metal-Ag-eta") => "Ag",
+                Some("metal-Al-eta") => "Al",
+                Some("metal-Au-eta") => "Au",
+                Some(other) => {
+                    self.builder
+                        .leave_out(place, format!("the metal \"{other}\" is not known: aluminium is taken for it"));
+                    "Al"
+                }
+            };
+            json!({ "type": "conductor", "metal": name })
+        };
+        rough.put(&mut value);
+        value["outside_fit"] = json!("clamp");
+        value["multiple_scattering"] = json!("lost");
+        Ok(value)
+    }
+
+    /// Both tables of a metal that is not named.
+    fn own_indices(&mut self, list: &Parameters, prefix: &str) -> Result<Option<(Table, Table)>, String> {
+        let mut tables = Vec::new();
+        for what in ["eta", "k"] {
+            if let Some(parameter) = list.get(&format!("{prefix}{what}"))
+                && let Some(table) = self.table(parameter)?
+            {
+                tables.push(table);
+            }
+        }
+        Ok(match (tables.pop(), tables.pop()) {
+            (Some(k), Some(eta)) => Some((eta, k)),
+            _ => None,
+        })
+    }
+
+    /// An index of refraction: a number, or a glass by its name.
+    fn index(&mut self, list: &Parameters, default: f64) -> Result<Value, String> {
+        let Some(parameter) = list.get("eta").or_else(|| list.get("interface.eta")) else { return Ok(json!(default)) };
+        let place = parameter.place.clone();
+        match (parameter.numbers(), parameter.strings()) {
+            ([index], _) if *index > 0.0 => Ok(json!(index)),
+            (_, [name]) => Ok(match name.as_str() {
+                "glass-BK7" => json!({ "type": "glass", "name": "N-BK7", "outside_fit": "clamp" }),
+                "glass-SF11" => json!({ "type": "glass", "name": "N-SF11", "outside_fit": "clamp" }),
+                other => {
+                    self.builder.leave_out(&place, format!("the glass \"{other}\" is not known: 1.5 is taken for it"));
+                    json!(1.5)
+                }
+            }),
+            _ => Err(format!("{place}: it is no index of refraction")),
+        }
+    }
+
+    fn rough(&mut self, list: &Parameters, place: &str) -> Result<Rough, String> {
+        let prefixed = list.0.iter().any(|p| p.name.starts_with("interface."));
+        let prefix = if prefixed { "interface." } else { "" };
+        let both = self.share(list, &format!("{prefix}roughness"))?;
+        let (u, v) =
+            (self.share(list, &format!("{prefix}uroughness"))?, self.share(list, &format!("{prefix}vroughness"))?);
+        let (u, v) = (u.or_else(|| both.clone()), v.or(both));
+        // Unless told otherwise pbrt takes the square of alpha.
+        let squared = list.flag("remaproughness").unwrap_or(true);
+        let alpha = |roughness: f64| if squared { roughness.max(0.0).sqrt() } else { roughness };
+        Ok(match (u.unwrap_or(Number::Value(0.0)), v.unwrap_or(Number::Value(0.0))) {
+            (Number::Image(u, _), Number::Image(v, _)) if u == v => {
+                Rough::image(u, if squared { "alpha-squared" } else { "alpha" })
+            }
+            (u, v) => {
+                let (u, v) = (u.mean("uroughness", place, self.builder), v.mean("vroughness", place, self.builder));
+                if u != v {
+                    let what = "roughnesses along u and v differ: their geometric mean is taken for both";
+                    self.builder.leave_out(place, what);
+                }
+                Rough::width(alpha((u * v).max(0.0).sqrt()))
+            }
+        })
+    }
+}

@@ -1,0 +1,203 @@
+//! Shapes of pbrt.
+
+use etalon_scene::Mesh;
+use etalon_scene::mesh::{MAX_ELEMENTS, read_ply};
+use etalon_scene::vector::unit;
+use serde_json::{Value, json};
+
+use super::Reading;
+use super::parameters::Parameters;
+use super::spectrum::kind;
+use crate::Placed;
+use crate::number::{Number, has_image};
+use crate::relief::without_map;
+
+/// A shape of the format, the box around it, and whether it has texture coordinates.
+pub(super) type Placeable = (Value, [[f64; 3]; 2], bool);
+
+impl Reading<'_, '_> {
+    pub(super) fn shape(&mut self, shape: &str, list: &Parameters, place: &str) -> Result<(), String> {
+        self.shapes += 1;
+        let name = format!("{shape} {}", self.shapes);
+        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
+        let (value, reach, has_uvs) = match shape {
+            "sphere" => {
+                let radius = number("radius", 1.0)?;
+                (json!({ "type": "sphere", "radius_m": radius }), [[-radius; 3], [radius; 3]], false)
+            }
+            "disk" => {
+                let (height, radius) = (number("height", 0.0)?, number("radius", 1.0)?);
+                let value =
+                    json!({ "type": "disk", "center_m": [0, 0, height], "normal": [0, 0, 1], "radius_m": radius });
+                (value, [[-radius, -radius, height], [radius, radius, height]], false)
+            }
+            "cylinder" => {
+                let (radius, low, high) = (number("radius", 1.0)?, number("zmin", -1.0)?, number("zmax", 1.0)?);
+                let value = json!({
+                    "type": "cylinder", "start_m": [0, 0, low], "end_m": [0, 0, high], "radius_m": radius,
+                    "capped": false,
+                });
+                (value, [[-radius, -radius, low], [radius, radius, high]], false)
+            }
+            "trianglemesh" | "bilinearmesh" => {
+                let mesh = if shape == "trianglemesh" { triangles(list, place)? } else { self.patches(list, place)? };
+                self.file_of(&mesh)
+            }
+            "plymesh" => {
+                let file =
+                    list.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+                if kind(&file) == "gz" {
+                    self.builder.leave_out(place, format!("\"{file}\" is compressed, and is left out"));
+                    return Ok(());
+                }
+                self.mesh(&file, place)?
+            }
+            other => {
+                self.builder.leave_out(place, format!("the shape \"{other}\" is not known, and is left out"));
+                return Ok(());
+            }
+        };
+        let mut opacity = self.state.material.opacity;
+        let mut detail = self.state.material.detail.clone();
+        if !has_uvs && without_map(&mut detail) {
+            self.builder.leave_out(place, "it has no texture coordinates for the map of its normals, and is smooth");
+        }
+        match self.share(list, "alpha")? {
+            None => {}
+            Some(Number::Value(alpha)) => opacity *= alpha,
+            Some(Number::Image(..)) if !has_uvs => {
+                self.builder
+                    .leave_out(place, "it has no texture coordinates for the image of its alpha, and is opaque");
+            }
+            Some(Number::Image(mut image, _)) => {
+                // The format has the factor beside the image.
+                opacity *= image["factor"].as_f64().unwrap_or(1.0);
+                if let Some(keys) = image.as_object_mut() {
+                    keys.remove("factor");
+                }
+                detail.insert("opacity_image".to_owned(), image);
+            }
+        }
+        list.list_unused(self.builder);
+        let material = self.untextured(has_uvs, place);
+        let mut emission = self.state.emission.as_deref().cloned();
+        if !has_uvs && emission.as_ref().is_some_and(has_image) {
+            if matches!(shape, "disk" | "sphere" | "cylinder") {
+                self.builder.leave_out(place, "what it shines by is laid over texture coordinates of another kind");
+            } else {
+                let what = "it has no texture coordinates for the image that it shines by, and is dark";
+                self.builder.leave_out(place, what);
+                emission = None;
+            }
+        }
+        let placed = Placed {
+            name,
+            shape: value,
+            reach,
+            material,
+            emission,
+            opacity,
+            detail,
+            rows: self.to_world(),
+            flipped: self.state.reversed,
+        };
+        self.builder.place(&placed, place)
+    }
+
+    /// The material in force, or grey where it would show an image and there are no texture coordinates.
+    fn untextured(&mut self, has_uvs: bool, place: &str) -> Value {
+        let value = &self.state.material.value;
+        let own = value.as_str().and_then(|name| self.builder.materials.get(name)).unwrap_or(value);
+        if !has_uvs && has_image(own) {
+            self.builder.leave_out(place, "it has no texture coordinates for the image of its material, and is grey");
+            return json!({ "type": "lambert", "reflectance": 0.5 });
+        }
+        value.clone()
+    }
+
+    /// What is placed of a mesh file, which is read once.
+    fn mesh(&mut self, file: &str, place: &str) -> Result<Placeable, String> {
+        if let Some(known) = self.meshes.get(file) {
+            return Ok(known.clone());
+        }
+        let bytes = self.builder.bytes_of(file, place)?;
+        let part = read_ply(&bytes).map_err(|e| format!("{place}: \"{file}\": {e}"))?;
+        for what in &part.left_out {
+            self.builder.leave_out(place, format!("\"{file}\": {what}"));
+        }
+        let made = self.file_of(&part.mesh);
+        self.meshes.insert(file.to_owned(), made.clone());
+        Ok(made)
+    }
+
+    /// A mesh as a file, the box around it, and whether it has texture coordinates.
+    fn file_of(&mut self, mesh: &Mesh) -> Placeable {
+        let first = mesh.vertices.first().copied().unwrap_or([0.0; 3]);
+        let reach = mesh.vertices.iter().fold([first, first], |[low, high], v| {
+            [std::array::from_fn(|k| low[k].min(v[k])), std::array::from_fn(|k| high[k].max(v[k]))]
+        });
+        let file = self.builder.mesh_file(mesh);
+        (json!({ "type": "mesh", "file": file }), reach, !mesh.uvs.is_empty())
+    }
+
+    /// Bilinear patches as two triangles each.
+    fn patches(&mut self, list: &Parameters, place: &str) -> Result<Mesh, String> {
+        let mut mesh = vertices(list, place)?;
+        let corners = indices(list, mesh.vertices.len(), 4, place)?;
+        // Corners (0, 0), (1, 0), (0, 1) and (1, 1), in this order.
+        mesh.triangles = corners.chunks_exact(4).flat_map(|c| [[c[0], c[1], c[3]], [c[0], c[3], c[2]]]).collect();
+        self.builder.leave_out(place, "a bilinear patch becomes two triangles");
+        Ok(mesh)
+    }
+}
+
+fn triangles(list: &Parameters, place: &str) -> Result<Mesh, String> {
+    let mut mesh = vertices(list, place)?;
+    let corners = indices(list, mesh.vertices.len(), 3, place)?;
+    mesh.triangles = corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
+    Ok(mesh)
+}
+
+fn vertices(list: &Parameters, place: &str) -> Result<Mesh, String> {
+    let triples = |key: &str| -> Result<Vec<[f64; 3]>, String> {
+        let numbers = list.numbers(key).unwrap_or(&[]);
+        if !numbers.len().is_multiple_of(3) {
+            return Err(format!("{place}: \"{key}\" has {} numbers, which are no points", numbers.len()));
+        }
+        Ok(numbers.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect())
+    };
+    let vertices = triples("P")?;
+    if vertices.is_empty() || vertices.len() > MAX_ELEMENTS {
+        return Err(format!("{place}: it has {} vertices", vertices.len()));
+    }
+    let normals = triples("N")?;
+    let uvs = list.numbers("uv").or_else(|| list.numbers("st")).unwrap_or(&[]);
+    let uvs: Vec<[f32; 2]> = uvs.chunks_exact(2).map(|c| [c[0] as f32, c[1] as f32]).collect();
+    for (what, length) in [("normals", normals.len()), ("texture coordinates", uvs.len())] {
+        if length != 0 && length != vertices.len() {
+            return Err(format!("{place}: {length} {what} for {} vertices", vertices.len()));
+        }
+    }
+    let normals = normals.into_iter().map(|n| unit(n).map_or([0.0; 3], |n| n.map(|v| v as f32))).collect();
+    Ok(Mesh { vertices, triangles: Vec::new(), normals, uvs })
+}
+
+/// The corners of the faces; those of the only face if none are stated.
+fn indices(list: &Parameters, count: usize, each: usize, place: &str) -> Result<Vec<u32>, String> {
+    let Some(stated) = list.numbers("indices") else {
+        return match count == each {
+            true => Ok((0..each as u32).collect()),
+            false => Err(format!("{place}: it has no \"indices\"")),
+        };
+    };
+    if !stated.len().is_multiple_of(each) || stated.is_empty() {
+        return Err(format!("{place}: {} indices are no faces of {each} corners", stated.len()));
+    }
+    stated
+        .iter()
+        .map(|index| match *index >= 0.0 && *index < count as f64 && index.fract() == 0.0 {
+            true => Ok(*index as u32),
+            false => Err(format!("{place}: index {index} names no vertex; there are {count}")),
+        })
+        .collect()
+}

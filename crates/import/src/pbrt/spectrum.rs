@@ -1,0 +1,299 @@
+//! Spectra and textures of pbrt.
+
+use std::path::Path;
+
+use etalon_optics::colour::luminance_of;
+use etalon_optics::spectrum::Blackbody;
+use etalon_scene::Encoding;
+use serde_json::{Value, json};
+
+use super::Reading;
+use super::parameters::{Parameter, Parameters, Values};
+use crate::number::Number;
+use crate::table::Table;
+use crate::{extension, light, reflectance};
+
+impl Reading<'_, '_> {
+    /// What a surface reflects; an image only where `textured`.
+    pub(super) fn reflectance(
+        &mut self,
+        list: &Parameters,
+        name: &str,
+        textured: bool,
+    ) -> Result<Option<Value>, String> {
+        let Some(parameter) = list.get(name) else { return Ok(None) };
+        let place = parameter.place.clone();
+        let value = match (parameter.kind.as_str(), parameter.numbers()) {
+            ("rgb" | "color", [r, g, b]) => {
+                let rgb = [*r, *g, *b];
+                if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
+                    self.builder.leave_out(&place, format!("{rgb:?} is no reflectance, and is brought into 0 to 1"));
+                }
+                reflectance(rgb)
+            }
+            ("float", [value]) => {
+                if !(0.0..=1.0).contains(value) {
+                    self.builder.leave_out(&place, format!("{value} is no reflectance, and is brought into 0 to 1"));
+                }
+                json!(value.clamp(0.0, 1.0))
+            }
+            ("spectrum", _) => match self.table(parameter)? {
+                Some(mut table) => {
+                    if table.0.iter().any(|(_, v)| !(0.0..=1.0).contains(v)) {
+                        self.builder.leave_out(&place, "values are brought into 0 to 1");
+                    }
+                    table.0.iter_mut().for_each(|(_, v)| *v = v.clamp(0.0, 1.0));
+                    table.spectrum("clamp")
+                }
+                None => {
+                    self.builder.leave_out(&place, "the named spectrum is not known: one half is taken for it");
+                    json!(0.5)
+                }
+            },
+            ("texture", _) => {
+                let name = parameter.strings().first().cloned().unwrap_or_default();
+                let known = self.textures.get(&name).cloned();
+                let value = known.ok_or_else(|| format!("{place}: there is no texture \"{name}\""))?;
+                self.builder.spend(&value, &place)?;
+                if !textured && value["type"] == "image" {
+                    self.builder.leave_out(&place, "the mean of the image stands for it everywhere");
+                    value["mean"].clone()
+                } else {
+                    value
+                }
+            }
+            _ => return Err(format!("{place}: \"{name}\" is no reflectance")),
+        };
+        Ok(Some(without_mean(value)))
+    }
+
+    /// A number from 0 to 1, perhaps by an image, whose channels count by their mean.
+    pub(super) fn share(&mut self, list: &Parameters, name: &str) -> Result<Option<Number>, String> {
+        let Some(parameter) = list.get(name) else { return Ok(None) };
+        if parameter.kind == "texture" {
+            let texture = parameter.strings().first().and_then(|texture| self.textures.get(texture));
+            if let Some(image) = texture.filter(|value| value["type"] == "image") {
+                let number = number_image(image);
+                if let Number::Image(image, _) = &number
+                    && image["factor"].as_f64().is_some_and(|factor| factor < 0.0)
+                {
+                    self.builder.leave_out(&parameter.place, format!("a negative \"{name}\" is taken for none"));
+                    return Ok(Some(Number::Value(0.0)));
+                }
+                return Ok(Some(number));
+            }
+        }
+        let place = parameter.place.clone();
+        let value = self.reflectance(list, name, false)?;
+        Ok(value.map(|value| {
+            Number::Value(value.as_f64().unwrap_or_else(|| {
+                self.builder.leave_out(&place, format!("a coloured \"{name}\" counts by the mean of its channels"));
+                let channels = value["rgb"].as_array().map_or(&[][..], Vec::as_slice);
+                channels.iter().filter_map(Value::as_f64).sum::<f64>() / channels.len().max(1) as f64
+            }))
+        }))
+    }
+
+    /// Light: a colour as it is, any other spectrum with a luminance of 1.
+    pub(super) fn emitted(&mut self, list: &Parameters, name: &str, scale: f64) -> Result<Value, String> {
+        let Some(parameter) = list.get(name) else {
+            return Ok(json!({ "type": "illuminant", "name": "D65", "scale": scale }));
+        };
+        let place = parameter.place.clone();
+        match (parameter.kind.as_str(), parameter.numbers()) {
+            ("rgb" | "color", [r, g, b]) => {
+                if r.min(*g).min(*b) < 0.0 {
+                    self.builder.leave_out(&place, "negative light is taken for none");
+                }
+                Ok(light([*r, *g, *b].map(|v| v.max(0.0)), scale))
+            }
+            ("blackbody", [kelvin, ..]) => {
+                let body = Blackbody::new(*kelvin, 1.0).map_err(|error| format!("{place}: {error}"))?;
+                let luminance = luminance_of(|nm| body.eval(nm));
+                if luminance <= 0.0 {
+                    return Err(format!("{place}: a black body of {kelvin} K does not shine"));
+                }
+                Ok(json!({ "type": "blackbody", "temperature_k": kelvin, "scale": scale / luminance }))
+            }
+            ("float", [_]) => Ok(json!({ "type": "illuminant", "name": "E", "scale": scale })),
+            ("spectrum", _) => {
+                if let Some(table) = self.table(parameter)? {
+                    let luminance = luminance_of(|nm| table.at_or_zero(nm));
+                    if luminance <= 0.0 {
+                        return Err(format!("{place}: nothing of it can be seen"));
+                    }
+                    let mut value = table.spectrum("zero");
+                    value["scale"] = json!(scale / luminance);
+                    return Ok(value);
+                }
+                let name = parameter.strings().first().map_or("", String::as_str);
+                let illuminant = match name {
+                    "stdillum-D65" => "D65",
+                    "stdillum-A" => "A",
+                    "stdillum-E" => "E",
+                    other => {
+                        self.builder.leave_out(&place, format!("the illuminant \"{other}\" is taken for D65"));
+                        "D65"
+                    }
+                };
+                Ok(json!({ "type": "illuminant", "name": illuminant, "scale": scale }))
+            }
+            _ => Err(format!("{place}: \"{name}\" is no light")),
+        }
+    }
+
+    /// Wavelengths, nm, and values; `None` for a named spectrum.
+    pub(super) fn table(&mut self, parameter: &Parameter) -> Result<Option<Table>, String> {
+        let place = &parameter.place;
+        let numbers = match &parameter.values {
+            Values::Numbers(numbers) => numbers.clone(),
+            Values::Strings(strings) => {
+                let name = strings.first().map_or("", String::as_str);
+                if !name.ends_with(".spd") {
+                    return Ok(None);
+                }
+                let bytes = self.builder.bytes_of(name, place)?;
+                let text = String::from_utf8_lossy(&bytes).into_owned();
+                let words = text.lines().flat_map(|line| line.split('#').next().unwrap_or("").split_whitespace());
+                let parsed: Result<Vec<f64>, _> = words.map(str::parse).collect();
+                let numbers = parsed.map_err(|_| format!("{place}: \"{name}\" does not consist of numbers"))?;
+                self.builder.spend(&json!(numbers), place)?;
+                numbers
+            }
+            Values::Flags(_) => return Err(format!("{place}: it is no spectrum")),
+        };
+        let table = Table::of_pairs(&numbers);
+        let fail = || format!("{place}: {} numbers are no table of wavelengths and values", numbers.len());
+        table.ok_or_else(fail).map(Some)
+    }
+
+    pub(super) fn texture(
+        &mut self,
+        name: String,
+        kind: &str,
+        class: &str,
+        list: &Parameters,
+        place: &str,
+    ) -> Result<(), String> {
+        let value = match class {
+            "constant" => self.reflectance(list, "value", true)?.unwrap_or(json!(1.0)),
+            "scale" => {
+                let inner = self.reflectance(list, "tex", true)?.unwrap_or(json!(1.0));
+                let factor = match list.get("scale") {
+                    // An image of heights may have any.
+                    Some(number) if kind == "float" && number.kind == "float" && inner["type"] == "image" => {
+                        list.number("scale")?.map(Value::from)
+                    }
+                    _ => self.reflectance(list, "scale", false)?,
+                };
+                let factor = factor.unwrap_or(json!(1.0));
+                match (inner["type"].as_str(), factor.as_f64()) {
+                    (Some("image"), Some(factor)) => scaled(inner, factor),
+                    (None, Some(factor)) => json!(inner.as_f64().unwrap_or(1.0) * factor),
+                    _ => {
+                        self.builder.leave_out(place, "the product of textures is taken for the first of them");
+                        inner
+                    }
+                }
+            }
+            "imagemap" => self.image(list, place)?,
+            other => {
+                self.builder
+                    .leave_out(place, format!("the texture \"{other}\" is not known: one half is taken for it"));
+                list.mark_all();
+                json!(0.5)
+            }
+        };
+        if kind != "spectrum" && kind != "float" && kind != "color" {
+            return Err(format!("{place}: a texture is of type \"spectrum\" or \"float\", not \"{kind}\""));
+        }
+        list.list_unused(self.builder);
+        self.textures.insert(name, value);
+        Ok(())
+    }
+
+    fn image(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
+        let file = list.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+        let encoding = match list.string("encoding") {
+            None | Some("sRGB") => Encoding::Auto,
+            Some("linear") => Encoding::Linear,
+            Some(other) => {
+                self.builder.leave_out(place, format!("the encoding \"{other}\" is taken for sRGB"));
+                Encoding::Auto
+            }
+        };
+        let found = self.builder.image_file(&file, encoding, place);
+        let (name, mean) = match found {
+            Ok(found) => found,
+            Err(why) => {
+                self.builder.leave_out(place, format!("the image is left out: {why}"));
+                list.mark_all();
+                return Ok(json!(0.5));
+            }
+        };
+        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
+        let wrap = match list.string("wrap").unwrap_or("repeat") {
+            "clamp" => "clamp",
+            "repeat" => "repeat",
+            other => {
+                self.builder.leave_out(place, format!("beyond its edges \"{other}\" becomes \"clamp\""));
+                "clamp"
+            }
+        };
+        // Samples of the pixel average what footprints would.
+        list.get("filter");
+        list.get("maxanisotropy");
+        if list.string("mapping") == Some("uv") {
+            list.get("mapping");
+        }
+        let image = json!({
+            "type": "image", "file": name, "wrap": wrap,
+            "encoding": if matches!(encoding, Encoding::Linear) { "linear" } else { "auto" },
+            "uv_scale": [number("uscale", 1.0)?, number("vscale", 1.0)?],
+            "uv_offset": [number("udelta", 0.0)?, number("vdelta", 0.0)?],
+            "mean": reflectance(mean),
+        });
+        Ok(scaled(image, number("scale", 1.0)?))
+    }
+}
+
+/// An image of colours as one of numbers.
+pub(super) fn number_image(colours: &Value) -> Number {
+    let mut image = without_mean(colours.clone());
+    let factor = colours["factor"][0].as_f64().unwrap_or(1.0);
+    if let Some(keys) = image.as_object_mut() {
+        keys.remove("type");
+        keys.remove("factor");
+        keys.insert("channel".to_owned(), json!("mean"));
+        if factor != 1.0 {
+            keys.insert("factor".to_owned(), json!(factor));
+        }
+    }
+    let mean = colours["mean"].as_f64().or_else(|| {
+        let channels = colours["mean"]["rgb"].as_array()?;
+        Some(channels.iter().filter_map(Value::as_f64).sum::<f64>() / 3.0)
+    });
+    Number::Image(image, factor * mean.unwrap_or(0.5))
+}
+
+/// An image times a factor.
+fn scaled(mut image: Value, factor: f64) -> Value {
+    if factor != 1.0 {
+        let before = image["factor"][0].as_f64().unwrap_or(1.0);
+        image["factor"] = json!([before * factor, before * factor, before * factor]);
+    }
+    image
+}
+
+/// The format has no key for the mean, which goes along for where no image may stand.
+fn without_mean(mut value: Value) -> Value {
+    if let Some(map) = value.as_object_mut() {
+        map.remove("mean");
+    }
+    value
+}
+
+/// The kind of a file, by its name.
+pub(super) fn kind(name: &str) -> String {
+    extension(Path::new(name))
+}
