@@ -5,12 +5,13 @@ mod groups;
 
 use std::collections::{HashMap, HashSet};
 
-use etalon_scene::vector::{dot, length, sub};
+use etalon_scene::linear::is_similarity;
 use etalon_scene::{Encoding, Mesh, NamedFile, shortened};
+use glam::{DAffine3, DVec3};
 use serde_json::{Map, Value, json};
 
 use crate::budget::{Budget, FreshNames};
-use crate::matrix::{Rows, determinant, is_similarity, point, steps};
+use crate::matrix::steps;
 use crate::relief::turn_over;
 use crate::{Imported, LeftOut};
 use files::KnownImage;
@@ -68,7 +69,7 @@ pub(crate) struct Placed {
     pub(crate) opacity: f64,
     /// Further keys of the object.
     pub(crate) detail: Map<String, Value>,
-    pub(crate) rows: Rows,
+    pub(crate) map: DAffine3,
     /// Whether its normals point the other way.
     pub(crate) flipped: bool,
 }
@@ -123,10 +124,9 @@ impl<'a> Builder<'a> {
         mesh: Mesh,
         material: &Value,
         emission: Option<Value>,
-        transform: Value,
     ) -> Result<(), String> {
         let file = self.mesh_file(&mesh);
-        self.add_object(name, &file, &mesh, material, (emission, &Map::new()), &transform);
+        self.add_object(name, &file, &mesh, material, (emission, &Map::new()), &DAffine3::IDENTITY);
         Ok(())
     }
 
@@ -138,7 +138,7 @@ impl<'a> Builder<'a> {
         mesh: &Mesh,
         material: &Value,
         (emission, detail): (Option<Value>, &Map<String, Value>),
-        transform: &Value,
+        map: &DAffine3,
     ) {
         let mut object = json!({ "name": name, "shape": { "type": "mesh", "file": file }, "material": material });
         for (key, value) in detail {
@@ -148,22 +148,12 @@ impl<'a> Builder<'a> {
             object["emission"] = emission;
             self.emits = true;
         }
-        let rows = transform[0]["matrix"].as_array().map(|rows| {
-            rows.iter().map(|row| std::array::from_fn(|i| row[i].as_f64().unwrap_or(0.0))).collect::<Vec<[f64; 4]>>()
-        });
+        let transform = steps(map);
         if !transform.is_null() {
-            object["transform"] = transform.clone();
+            object["transform"] = transform;
         }
         for v in &mesh.vertices {
-            let p: [f64; 3] = match &rows {
-                Some(rows) => std::array::from_fn(|i| dot([rows[i][0], rows[i][1], rows[i][2]], *v) + rows[i][3]),
-                None => *v,
-            };
-            let [low, high] = self.bounds.get_or_insert([p, p]);
-            for k in 0..3 {
-                low[k] = low[k].min(p[k]);
-                high[k] = high[k].max(p[k]);
-            }
+            self.reach(map.transform_point3((*v).into()));
         }
         self.objects.push(object);
     }
@@ -174,7 +164,7 @@ impl<'a> Builder<'a> {
     /// # Errors
     /// If there are more objects than a scene can hold.
     pub(crate) fn place(&mut self, placed: &Placed, place: &str) -> Result<(), String> {
-        let determinant = determinant(&placed.rows);
+        let determinant = placed.map.matrix3.determinant();
         if determinant == 0.0 || !determinant.is_finite() {
             self.leave_out(place, "it is flattened by its transform, and left out");
             return Ok(());
@@ -206,7 +196,7 @@ impl<'a> Builder<'a> {
         }
         let round = matches!(placed.shape["type"].as_str(), Some("sphere" | "disk" | "cylinder"));
         self.spend(&object, place)?;
-        let stretched = round && !is_similarity(&placed.rows);
+        let stretched = round && !is_similarity(&placed.map.matrix3);
         if stretched && emission.is_some() {
             self.leave_out(place, "its light is left out: what emits may not be stretched");
         } else if let Some(emission) = emission {
@@ -217,15 +207,15 @@ impl<'a> Builder<'a> {
         if stretched {
             let group = self.group_name(&placed.name);
             self.groups.insert(group.clone(), json!({ "objects": [object] }));
-            self.instances.push(json!({ "name": placed.name, "group": group, "transform": steps(&placed.rows) }));
+            self.instances.push(json!({ "name": placed.name, "group": group, "transform": steps(&placed.map) }));
         } else {
-            let transform = steps(&placed.rows);
+            let transform = steps(&placed.map);
             if !transform.is_null() {
                 object["transform"] = transform;
             }
             self.objects.push(object);
         }
-        self.enclose(placed.reach, &placed.rows);
+        self.enclose(placed.reach, &placed.map);
         Ok(())
     }
 
@@ -238,14 +228,19 @@ impl<'a> Builder<'a> {
     }
 
     /// Widens the bounds by a box that is moved.
-    pub(crate) fn enclose(&mut self, [low, high]: [[f64; 3]; 2], rows: &Rows) {
+    pub(crate) fn enclose(&mut self, [low, high]: [[f64; 3]; 2], map: &DAffine3) {
         for corner in 0..8 {
-            let p = point(rows, std::array::from_fn(|k| if corner >> k & 1 == 0 { low[k] } else { high[k] }));
-            let [low, high] = self.bounds.get_or_insert([p, p]);
-            for k in 0..3 {
-                low[k] = low[k].min(p[k]);
-                high[k] = high[k].max(p[k]);
-            }
+            let p: [f64; 3] = std::array::from_fn(|k| if corner >> k & 1 == 0 { low[k] } else { high[k] });
+            self.reach(map.transform_point3(p.into()));
+        }
+    }
+
+    /// Widens the bounds by a point.
+    fn reach(&mut self, p: DVec3) {
+        let [low, high] = self.bounds.get_or_insert([p.to_array(); 2]);
+        for k in 0..3 {
+            low[k] = low[k].min(p[k]);
+            high[k] = high[k].max(p[k]);
         }
     }
 
@@ -263,16 +258,18 @@ impl<'a> Builder<'a> {
             self.left_out.push(LeftOut { place: source.to_owned(), what });
         }
         let mut camera = self.camera.take().unwrap_or_else(|| {
-            let center: [f64; 3] = std::array::from_fn(|k| 0.5 * low[k] + 0.5 * high[k]);
+            let (low, high) = (DVec3::from(low), DVec3::from(high));
+            let center = 0.5 * low + 0.5 * high;
             // So far that the ball around the bounds fits into the height of the picture.
-            let radius = (0.5 * length(sub(high, low))).max(f64::MIN_POSITIVE);
+            let radius = (0.5 * (high - low).length()).max(f64::MIN_POSITIVE);
             let fov_deg = 35.0_f64;
             let distance = 1.02 * radius / (0.5 * fov_deg).to_radians().sin();
-            let from = [0.45, 0.3, 1.0];
-            let position: [f64; 3] = std::array::from_fn(|k| center[k] + distance * from[k] / length(from));
+            let from = DVec3::new(0.45, 0.3, 1.0);
+            let position = center + distance * from / from.length();
             added.push(format!("the model has no camera: one is added that looks at all of it, from {distance:.3} m"));
             json!({
-                "type": "perspective", "position_m": position, "look_at_m": center, "vertical_fov_deg": fov_deg
+                "type": "perspective", "position_m": position.to_array(), "look_at_m": center.to_array(),
+                "vertical_fov_deg": fov_deg,
             })
         });
         if let Some(shutter_s) = self.shutter_s {

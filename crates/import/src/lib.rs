@@ -168,7 +168,7 @@ fn read(kind: &str, bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder
             let part = read_ply(bytes).map_err(|error| error.to_string())?;
             part.left_out.iter().for_each(|what| builder.leave_out("vertices and faces", what.clone()));
             builder.materials.insert("grey".to_owned(), json!({ "type": "lambert", "reflectance": 0.8 }));
-            builder.add_mesh("mesh", part.mesh, &json!("grey"), None, Value::Null)
+            builder.add_mesh("mesh", part.mesh, &json!("grey"), None)
         }
         "obj" => obj::import(bytes, builder),
         "gltf" | "glb" => gltf::import(bytes, moment, builder),

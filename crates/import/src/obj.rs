@@ -42,7 +42,7 @@ pub(crate) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         }
         let glow = named.as_ref().and_then(|name| *glows.get(name.as_str())?);
         let emission = glow.map(|rgb| rgb.map(f64::from)).filter(|rgb| rgb.iter().any(|v| *v > 0.0)).map(emission);
-        builder.add_mesh(&name, part.mesh, &material, emission, Value::Null)?;
+        builder.add_mesh(&name, part.mesh, &material, emission)?;
     }
     Ok(())
 }

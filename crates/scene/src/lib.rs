@@ -23,12 +23,11 @@
 mod files;
 mod format;
 pub mod json;
+pub mod linear;
 pub mod mesh;
 pub mod model;
 mod problem;
 mod texture;
-#[doc(hidden)]
-pub mod vector;
 
 use std::path::Path;
 

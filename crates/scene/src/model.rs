@@ -24,6 +24,9 @@ pub use references::ReferenceError;
 use std::sync::Arc;
 
 use etalon_optics::Spectrum;
+use glam::DAffine3;
+
+use crate::linear::{from_rows, rows};
 
 /// A whole scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -222,6 +225,17 @@ impl Transform {
     /// Leaves everything in place.
     pub const IDENTITY: Self =
         Self { linear: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], translation_m: [0.0; 3] };
+
+    /// The map.
+    pub fn affine(&self) -> DAffine3 {
+        DAffine3::from_mat3_translation(from_rows(self.linear), self.translation_m.into())
+    }
+}
+
+impl From<DAffine3> for Transform {
+    fn from(map: DAffine3) -> Self {
+        Self { linear: rows(&map.matrix3), translation_m: map.translation.to_array() }
+    }
 }
 
 /// A light without a surface.

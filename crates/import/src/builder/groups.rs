@@ -1,9 +1,10 @@
 //! Groups of objects, and the instances that place them.
 
+use glam::DAffine3;
 use serde_json::{Value, json};
 
 use super::{Bounds, Builder};
-use crate::matrix::{Rows, determinant, steps};
+use crate::matrix::{rows, steps};
 
 /// The objects, instances and bounds of what is outside of a group that is being made.
 pub(crate) type Outside = (Vec<Value>, Vec<Value>, Bounds);
@@ -29,8 +30,8 @@ impl Builder<'_> {
     }
 
     /// Places a group.
-    pub(crate) fn place_group(&mut self, name: &str, group: &str, rows: &Rows, place: &str) {
-        let determinant = determinant(rows);
+    pub(crate) fn place_group(&mut self, name: &str, group: &str, map: &DAffine3, place: &str) {
+        let determinant = map.matrix3.determinant();
         let Some(Some(bounds)) = self.group_bounds.get(group).copied() else {
             self.leave_out(place, format!("the group \"{group}\" is empty or not there: its instance is left out"));
             return;
@@ -40,16 +41,16 @@ impl Builder<'_> {
             return;
         }
         let mut instance = json!({ "name": name, "group": group });
-        let transform = steps(rows);
+        let transform = steps(map);
         if !transform.is_null() {
             instance["transform"] = transform;
         }
         self.instances.push(instance);
-        self.enclose(bounds, rows);
+        self.enclose(bounds, map);
     }
 
     /// Places a group that moves: keyframes are times, s, and maps at them.
-    pub(crate) fn place_moving(&mut self, name: &str, group: &str, keyframes: &[(f64, Rows)]) {
+    pub(crate) fn place_moving(&mut self, name: &str, group: &str, keyframes: &[(f64, DAffine3)]) {
         let Some(Some(bounds)) = self.group_bounds.get(group).copied() else {
             // There is nothing in it.
             self.groups.remove(group);
@@ -57,9 +58,9 @@ impl Builder<'_> {
         };
         let frames: Vec<Value> = keyframes
             .iter()
-            .map(|(time_s, rows)| json!({ "time_s": time_s, "transform": [{ "matrix": rows }] }))
+            .map(|(time_s, map)| json!({ "time_s": time_s, "transform": [{ "matrix": rows(map) }] }))
             .collect();
         self.instances.push(json!({ "name": name, "group": group, "keyframes": frames }));
-        keyframes.iter().for_each(|(_, rows)| self.enclose(bounds, rows));
+        keyframes.iter().for_each(|(_, map)| self.enclose(bounds, map));
     }
 }

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::animation::{Interpolation, Property};
 use gltf::json::validation::Checked;
 use gltf::{Gltf, Node};
 
-use super::Columns;
 use super::accessor::numbers;
 use crate::{Builder, Moment};
 
@@ -21,10 +21,10 @@ const LARGEST_TURN_RAD: f64 = 2.5;
 /// Where a node is within its parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
-    pub translation: [f64; 3],
+    pub translation: DVec3,
     /// A unit quaternion, x y z w.
     pub rotation: [f64; 4],
-    pub scale: [f64; 3],
+    pub scale: DVec3,
 }
 
 /// Numbers over time.
@@ -101,10 +101,14 @@ impl Animated {
     }
 
     /// The transform of a node within its parent at a time.
-    pub(super) fn local(&self, node: &Node<'_>, time_s: f64) -> Columns {
+    pub(super) fn local(&self, node: &Node<'_>, time_s: f64) -> DAffine3 {
         match self.tracks.get(&node.index()) {
-            None => node.transform().matrix().map(|column| column.map(f64::from)),
-            Some(tracks) => pose(node, tracks, time_s).columns(),
+            None => {
+                // The last row of a matrix that moves and turns things is 0 0 0 1.
+                let columns = node.transform().matrix().map(|[x, y, z, _]| [x, y, z].map(f64::from));
+                DAffine3::from_cols_array_2d(&columns)
+            }
+            Some(tracks) => pose(node, tracks, time_s).map(),
         }
     }
 
@@ -235,16 +239,16 @@ impl Track {
 fn pose(node: &Node<'_>, tracks: &[Track], time_s: f64) -> Pose {
     let (translation, rotation, scale) = node.transform().decomposed();
     let mut pose = Pose {
-        translation: translation.map(f64::from),
+        translation: translation.map(f64::from).into(),
         rotation: unit(rotation.map(f64::from)),
-        scale: scale.map(f64::from),
+        scale: scale.map(f64::from).into(),
     };
     for track in tracks {
         let value @ [x, y, z, _] = track.at(time_s);
         match track.property {
-            Property::Translation => pose.translation = [x, y, z],
+            Property::Translation => pose.translation = DVec3::new(x, y, z),
             Property::Rotation => pose.rotation = unit(value),
-            Property::Scale => pose.scale = [x, y, z],
+            Property::Scale => pose.scale = DVec3::new(x, y, z),
             Property::MorphTargetWeights => {}
         }
     }
@@ -252,20 +256,9 @@ fn pose(node: &Node<'_>, tracks: &[Track], time_s: f64) -> Pose {
 }
 
 impl Pose {
-    /// T·R·S, by columns.
-    pub(super) fn columns(&self) -> Columns {
-        let [x, y, z, w] = self.rotation;
-        let rotation = [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
-            [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
-            [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ];
-        let [tx, ty, tz] = self.translation;
-        let column = |k: usize| {
-            let [a, b, c] = rotation[k].map(|v| v * self.scale[k]);
-            [a, b, c, 0.0]
-        };
-        [column(0), column(1), column(2), [tx, ty, tz, 1.0]]
+    /// T·R·S.
+    pub(super) fn map(&self) -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(self.scale, DQuat::from_array(self.rotation), self.translation)
     }
 
     /// The pose at a time, of poses through time.
@@ -274,19 +267,18 @@ impl Pose {
         match (next.checked_sub(1).map(|i| &poses[i]), poses.get(next)) {
             (Some((before, a)), Some((after, b))) => a.between(b, (time_s - before) / (after - before)),
             (Some((_, pose)), None) | (None, Some((_, pose))) => *pose,
-            (None, None) => Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0], scale: [1.0; 3] },
+            (None, None) => Self { translation: DVec3::ZERO, rotation: [0.0, 0.0, 0.0, 1.0], scale: DVec3::ONE },
         }
     }
 
     /// The move and the turn of a similarity.
-    pub(super) fn rigid(map: &Columns) -> Self {
-        let [x, y, z, _] = map[3];
-        Self { translation: [x, y, z], rotation: quaternion(map), scale: [1.0; 3] }
+    pub(super) fn rigid(map: &DAffine3) -> Self {
+        Self { translation: map.translation, rotation: quaternion(&map.matrix3), scale: DVec3::ONE }
     }
 
     /// What lies between two poses at a share of the time.
     fn between(&self, other: &Self, share: f64) -> Self {
-        let mix = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k] + share * (b[k] - a[k]));
+        let mix = |a: DVec3, b: DVec3| a + share * (b - a);
         Self {
             translation: mix(self.translation, other.translation),
             rotation: slerp(self.rotation, other.rotation, share),
@@ -331,9 +323,9 @@ pub(super) fn slerp(a: [f64; 4], b: [f64; 4], share: f64) -> [f64; 4] {
 }
 
 /// The rotation of a matrix whose columns are at right angles and of one length.
-pub(super) fn quaternion(m: &Columns) -> [f64; 4] {
-    let length = m[0][..3].iter().map(|v| v * v).sum::<f64>().sqrt();
-    let at = |row: usize, column: usize| m[column][row] / length;
+pub(super) fn quaternion(m: &DMat3) -> [f64; 4] {
+    let length = m.x_axis.length();
+    let at = |row: usize, column: usize| m.col(column)[row] / length;
     let trace = at(0, 0) + at(1, 1) + at(2, 2);
     // The largest of the four is divided by.
     let squares = [2.0 * at(0, 0) - trace, 2.0 * at(1, 1) - trace, 2.0 * at(2, 2) - trace, trace].map(|v| 1.0 + v);
@@ -354,8 +346,8 @@ mod tests {
     fn a_quaternion_and_its_matrix_are_inverses() {
         for k in 0..200 {
             let q = unit(std::array::from_fn(|i| (f64::from(k * 7 + 1) * (i as f64 + 1.3)).sin()));
-            let matrix = Pose { translation: [0.0; 3], rotation: q, scale: [2.5; 3] }.columns();
-            assert!(angle_rad(quaternion(&matrix), q) < 1e-14, "{q:?}");
+            let map = Pose { translation: DVec3::ZERO, rotation: q, scale: DVec3::splat(2.5) }.map();
+            assert!(angle_rad(quaternion(&map.matrix3), q) < 1e-14, "{q:?}");
         }
     }
 

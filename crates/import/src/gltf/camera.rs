@@ -1,11 +1,12 @@
 //! Cameras of glTF, also such that move.
 
-use etalon_scene::vector::{length, sub, unit};
+use etalon_scene::linear::{is_similarity, unit};
+use glam::DAffine3;
 use serde_json::{Value, json};
 
+use super::Walk;
 use super::animation::{Pose, slerp};
-use super::{Columns, Walk, rows};
-use crate::matrix::{determinant, is_similarity};
+use crate::matrix::rows;
 
 /// Between keyframes a camera may be off its way by this share of its distance from the origin and of the way, and of a radian.
 const OFF: f64 = 1e-6;
@@ -16,7 +17,7 @@ const MOST_FRAMES: usize = 1 << 16;
 
 impl Walk<'_, '_> {
     /// The first camera is the scene's.
-    pub(super) fn camera(&mut self, camera: &gltf::Camera<'_>, matrix: &Columns) {
+    pub(super) fn camera(&mut self, camera: &gltf::Camera<'_>, matrix: &DAffine3) {
         let place = format!("$.cameras[{}]", camera.index());
         if self.builder.camera.is_some() {
             self.builder.leave_out(place, "only the first camera of the scene is used");
@@ -25,13 +26,13 @@ impl Walk<'_, '_> {
         let motion = self.camera_motion(matrix, &place);
         let opened = self.world(matrix, self.animated.shutter_s[0]);
         let matrix = &opened;
-        let axis = |k: usize, sign: f64| unit([matrix[k][0], matrix[k][1], matrix[k][2]]).map(|v| v.map(|c| sign * c));
-        let (Some(direction), Some(up)) = (axis(2, -1.0), axis(1, 1.0)) else {
+        let (Some(direction), Some(up)) = (unit(-matrix.matrix3.z_axis), unit(matrix.matrix3.y_axis)) else {
             self.builder.leave_out(place, "its node flattens it");
             return;
         };
-        let position = [matrix[3][0], matrix[3][1], matrix[3][2]];
-        let mut value = json!({ "position_m": position, "direction": direction, "up": up });
+        let mut value = json!({
+            "position_m": matrix.translation.to_array(), "direction": direction.to_array(), "up": up.to_array(),
+        });
         let aspect = match camera.projection() {
             gltf::camera::Projection::Perspective(lens) => {
                 value["type"] = json!("perspective");
@@ -58,7 +59,7 @@ impl Walk<'_, '_> {
     }
 
     /// The keyframes of a camera that moves; `None` if it rests, or cannot be followed, which is listed.
-    fn camera_motion(&mut self, matrix: &Columns, place: &str) -> Option<Vec<Value>> {
+    fn camera_motion(&mut self, matrix: &DAffine3, place: &str) -> Option<Vec<Value>> {
         if self.chain.is_empty() {
             return None;
         }
@@ -66,7 +67,7 @@ impl Walk<'_, '_> {
             self.chain.iter().flat_map(|(_, poses)| poses.iter().map(|(time_s, _)| *time_s)).collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
-        let rigid = |map: &Columns| is_similarity(&rows(map)) && determinant(&rows(map)) > 0.0;
+        let rigid = |map: &DAffine3| is_similarity(&map.matrix3) && map.matrix3.determinant() > 0.0;
         let at = |time_s: f64| {
             let map = self.world(matrix, time_s);
             rigid(&map).then(|| (time_s, Pose::rigid(&map)))
@@ -85,7 +86,8 @@ impl Walk<'_, '_> {
             self.builder.leave_out(place, what);
             return None;
         }
-        let frame = |(time_s, pose): &(f64, Pose)| json!({ "time_s": time_s, "transform": [{ "matrix": rows(&pose.columns()) }] });
+        let frame =
+            |(time_s, pose): &(f64, Pose)| json!({ "time_s": time_s, "transform": [{ "matrix": rows(&pose.map()) }] });
         Some(frames.iter().map(frame).collect())
     }
 }
@@ -100,12 +102,12 @@ fn between(
 ) -> Option<()> {
     let middle = at(0.5 * (from.0 + to.0))?;
     let (a, b, m) = (from.1, to.1, middle.1);
-    let straight: [f64; 3] = std::array::from_fn(|k| 0.5 * (a.translation[k] + b.translation[k]));
-    let size = length(m.translation) + length(sub(b.translation, a.translation));
+    let straight = 0.5 * (a.translation + b.translation);
+    let size = m.translation.length() + (b.translation - a.translation).length();
     let turned = slerp(a.rotation, b.rotation, 0.5);
     let apart = |sign: f64| (0..4).map(|k| (turned[k] + sign * m.rotation[k]).powi(2)).sum::<f64>().sqrt();
     // Half of the angle between quaternions is that between rotations.
-    let off = length(sub(m.translation, straight)) > OFF * size || 2.0 * apart(1.0).min(apart(-1.0)) > OFF;
+    let off = (m.translation - straight).length() > OFF * size || 2.0 * apart(1.0).min(apart(-1.0)) > OFF;
     if off && halvings > 0 && frames.len() < MOST_FRAMES && from.0 < middle.0 && middle.0 < to.0 {
         between(from, middle, at, halvings - 1, frames)?;
         frames.push(middle);

@@ -10,13 +10,13 @@ mod material;
 use std::collections::HashMap;
 
 use etalon_scene::Mesh;
+use etalon_scene::linear::{is_similarity, unit, unit_normal};
 use etalon_scene::mesh::MAX_ELEMENTS;
-use etalon_scene::vector::unit;
+use glam::{DAffine3, DVec3};
 use gltf::mesh::{Mode, Semantic};
 use gltf::{Gltf, Node};
 use serde_json::{Value, json};
 
-use crate::matrix::{Rows, is_similarity};
 use crate::{Builder, Moment, light};
 use accessor::numbers;
 use animation::{Animated, Pose};
@@ -26,10 +26,6 @@ use material::Materials;
 /// Deepest nesting of nodes.
 const MAX_DEPTH: usize = 256;
 
-/// A 4 × 4 matrix by columns, as glTF has it.
-type Columns = [[f64; 4]; 4];
-
-const IDENTITY: Columns = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 /// Things that move within things that move: each takes up to two groups within each other, of which the format knows sixteen.
 const MAX_MOVING: usize = 7;
 
@@ -66,7 +62,7 @@ pub(super) fn import(bytes: &[u8], moment: Option<&Moment>, builder: &mut Builde
         walk.uses[mesh.index()] += 1;
     }
     for node in scene.nodes() {
-        walk.node(&node, &IDENTITY, 0)?;
+        walk.node(&node, &DAffine3::IDENTITY, 0)?;
     }
     Ok(())
 }
@@ -85,7 +81,7 @@ struct Walk<'w, 'b> {
     builder: &'w mut Builder<'b>,
     animated: &'w Animated,
     /// What moves around the node: the map from its parent to what moves around that in turn, and its poses.
-    chain: Vec<(Columns, Vec<(f64, Pose)>)>,
+    chain: Vec<(DAffine3, Vec<(f64, Pose)>)>,
     buffers: &'w [Vec<u8>],
     materials: Materials,
     /// Parts by mesh and primitive; `None` is one without triangles.
@@ -96,7 +92,7 @@ struct Walk<'w, 'b> {
 }
 
 impl Walk<'_, '_> {
-    fn node(&mut self, node: &Node<'_>, parent: &Columns, depth: usize) -> Result<(), String> {
+    fn node(&mut self, node: &Node<'_>, parent: &DAffine3, depth: usize) -> Result<(), String> {
         let place = format!("$.nodes[{}]", node.index());
         if depth > MAX_DEPTH {
             return Err(format!("{place}: nodes within nodes, more than {MAX_DEPTH}"));
@@ -107,22 +103,22 @@ impl Walk<'_, '_> {
         if let Some(poses) = self.motion(node, parent, &place) {
             return self.moving(node, parent, poses, depth);
         }
-        let matrix = product(parent, &self.animated.local(node, self.animated.shutter_s[0]));
-        if matrix.iter().flatten().any(|v| !v.is_finite()) {
+        let matrix = *parent * self.animated.local(node, self.animated.shutter_s[0]);
+        if !matrix.is_finite() {
             return Err(format!("{place}: its transform is not finite"));
         }
         self.content(node, &matrix, depth)
     }
 
     /// How a node moves, if it does and can.
-    fn motion(&mut self, node: &Node<'_>, parent: &Columns, place: &str) -> Option<Vec<(f64, Pose)>> {
+    fn motion(&mut self, node: &Node<'_>, parent: &DAffine3, place: &str) -> Option<Vec<(f64, Pose)>> {
         let poses = self.animated.motion(node)?;
-        let sides = poses[0].1.scale.map(f64::signum);
+        let sides = poses[0].1.scale.signum();
         let why = if self.chain.len() >= MAX_MOVING {
             format!("it moves within {MAX_MOVING} things that move")
-        } else if poses.iter().any(|(_, pose)| pose.scale.contains(&0.0) || pose.scale.map(f64::signum) != sides) {
+        } else if poses.iter().any(|(_, pose)| pose.scale.cmpeq(DVec3::ZERO).any() || pose.scale.signum() != sides) {
             "its scale goes through 0".to_owned()
-        } else if determinant(parent) == 0.0 {
+        } else if parent.matrix3.determinant() == 0.0 {
             "it is flattened by its parents".to_owned()
         } else {
             return Some(poses);
@@ -135,33 +131,33 @@ impl Walk<'_, '_> {
     fn moving(
         &mut self,
         node: &Node<'_>,
-        parent: &Columns,
+        parent: &DAffine3,
         poses: Vec<(f64, Pose)>,
         depth: usize,
     ) -> Result<(), String> {
         let name = node.name().map_or_else(|| format!("node {}", node.index()), str::to_owned);
-        let maps: Vec<(f64, Columns)> = poses.iter().map(|(time_s, pose)| (*time_s, pose.columns())).collect();
+        let maps: Vec<(f64, DAffine3)> = poses.iter().map(|(time_s, pose)| (*time_s, pose.map())).collect();
         let outside = self.builder.begin_group();
         self.chain.push((*parent, poses));
-        let within = self.content(node, &IDENTITY, depth);
+        let within = self.content(node, &DAffine3::IDENTITY, depth);
         self.chain.pop();
         let group = self.builder.group_name(&name);
         self.builder.end_group(&group, outside);
         within?;
-        let frames = |before: &Columns| -> Vec<(f64, Rows)> {
-            maps.iter().map(|(time_s, map)| (*time_s, rows(&product(before, map)))).collect()
+        let frames = |before: &DAffine3| -> Vec<(f64, DAffine3)> {
+            maps.iter().map(|(time_s, map)| (*time_s, *before * *map)).collect()
         };
         // Between keyframes stretches, turns and moves are joined each for itself: a similarity changes nothing about that.
-        if is_similarity(&rows(parent)) {
+        if is_similarity(&parent.matrix3) {
             self.builder.place_moving(&name, &group, &frames(parent));
         } else {
             let outside = self.builder.begin_group();
-            self.builder.place_moving(&name, &group, &frames(&IDENTITY));
+            self.builder.place_moving(&name, &group, &frames(&DAffine3::IDENTITY));
             let around = self.builder.group_name(&name);
             self.builder.end_group(&around, outside);
             if self.builder.group_bounds.get(&around).copied().flatten().is_some() {
                 let place = format!("$.nodes[{}]", node.index());
-                self.builder.place_group(&name, &around, &rows(parent), &place);
+                self.builder.place_group(&name, &around, parent, &place);
             } else {
                 self.builder.groups.remove(&around);
             }
@@ -171,7 +167,7 @@ impl Walk<'_, '_> {
 
     /// What is in a node, and in those below it. `matrix` leads from its coordinates to the world, or to those of the group that is
     /// being made.
-    fn content(&mut self, node: &Node<'_>, matrix: &Columns, depth: usize) -> Result<(), String> {
+    fn content(&mut self, node: &Node<'_>, matrix: &DAffine3, depth: usize) -> Result<(), String> {
         let place = format!("$.nodes[{}]", node.index());
         if let Some(camera) = node.camera() {
             self.camera(&camera, matrix);
@@ -206,12 +202,12 @@ impl Walk<'_, '_> {
     }
 
     /// From the coordinates of a node to the world at a time, by what moves around it.
-    fn world(&self, matrix: &Columns, time_s: f64) -> Columns {
+    fn world(&self, matrix: &DAffine3, time_s: f64) -> DAffine3 {
         let moved = self
             .chain
             .iter()
-            .fold(IDENTITY, |map, (before, poses)| product(&product(&map, before), &Pose::at(poses, time_s).columns()));
-        product(&moved, matrix)
+            .fold(DAffine3::IDENTITY, |map, (before, poses)| map * *before * Pose::at(poses, time_s).map());
+        moved * *matrix
     }
 
     /// Adds a primitive where a node places it; its mesh is made once.
@@ -220,7 +216,7 @@ impl Walk<'_, '_> {
         mesh: &gltf::Mesh<'_>,
         primitive: &gltf::Primitive<'_>,
         name: &str,
-        matrix: &Columns,
+        matrix: &DAffine3,
     ) -> Result<(), String> {
         let key = (mesh.index(), primitive.index());
         if !self.parts.contains_key(&key) {
@@ -228,21 +224,19 @@ impl Walk<'_, '_> {
             self.parts.insert(key, made);
         }
         let Some(Some(part)) = self.parts.get(&key) else { return Ok(()) };
-        let determinant = determinant(matrix);
+        let determinant = matrix.matrix3.determinant();
         if determinant == 0.0 || !determinant.is_finite() {
             self.builder.leave_out(format!("node \"{name}\""), "it is flattened by its transform, and left out");
             return Ok(());
         }
-        let rows = rows(matrix);
         if self.uses[key.0] < 2 {
-            let transform = json!([{ "matrix": rows }]);
             self.builder.add_object(
                 name,
                 &part.file,
                 &part.mesh,
                 &part.material,
                 (part.emission.clone(), &part.detail),
-                &transform,
+                matrix,
             );
             return Ok(());
         }
@@ -250,10 +244,10 @@ impl Walk<'_, '_> {
         if !self.builder.groups.contains_key(&group) {
             let outside = self.builder.begin_group();
             let more = (part.emission.clone(), &part.detail);
-            self.builder.add_object(&group, &part.file, &part.mesh, &part.material, more, &Value::Null);
+            self.builder.add_object(&group, &part.file, &part.mesh, &part.material, more, &DAffine3::IDENTITY);
             self.builder.end_group(&group, outside);
         }
-        self.builder.place_group(name, &group, &rows, &format!("node \"{name}\""));
+        self.builder.place_group(name, &group, matrix, &format!("node \"{name}\""));
         Ok(())
     }
 
@@ -315,7 +309,7 @@ impl Walk<'_, '_> {
         let mesh = Mesh {
             vertices,
             triangles,
-            normals: normals.into_iter().map(|n| unit(n).map_or([0.0; 3], |n| n.map(|v| v as f32))).collect(),
+            normals: normals.into_iter().map(unit_normal).collect(),
             // glTF counts v from the top of the image.
             uvs: uvs.into_iter().map(|[u, v]| [u as f32, (1.0 - v) as f32]).collect(),
         };
@@ -335,11 +329,11 @@ impl Walk<'_, '_> {
     }
 
     /// Candela and lux become the format's units as they are: a luminance of 1 cd/m² is a radiance of 1.
-    fn light(&mut self, lamp: &gltf::khr_lights_punctual::Light<'_>, node: &Node<'_>, matrix: &Columns) {
+    fn light(&mut self, lamp: &gltf::khr_lights_punctual::Light<'_>, node: &Node<'_>, matrix: &DAffine3) {
         use gltf::khr_lights_punctual::Kind;
         let place = format!("$.extensions.KHR_lights_punctual.lights[{}]", lamp.index());
         let spectrum = light(lamp.color().map(|c| f64::from(c).max(0.0)), f64::from(lamp.intensity()).max(0.0));
-        let position = [matrix[3][0], matrix[3][1], matrix[3][2]];
+        let position = matrix.translation.to_array();
         let name = node.name().map_or_else(|| format!("light {}", lamp.index()), str::to_owned);
         if lamp.range().is_some() {
             self.builder.leave_out(&place, "its range is not honoured: light goes on for ever");
@@ -364,13 +358,8 @@ impl Walk<'_, '_> {
 }
 
 /// Where a camera or a lamp of a node points.
-fn forward(matrix: &Columns) -> [f64; 3] {
-    unit([-matrix[2][0], -matrix[2][1], -matrix[2][2]]).unwrap_or([0.0, 0.0, -1.0])
-}
-
-/// The upper three rows.
-fn rows(m: &Columns) -> Rows {
-    std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
+fn forward(matrix: &DAffine3) -> [f64; 3] {
+    unit(-matrix.matrix3.z_axis).unwrap_or(DVec3::NEG_Z).to_array()
 }
 
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
@@ -388,14 +377,4 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
         },
         Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
     }
-}
-
-/// a·b, both by columns.
-fn product(a: &Columns, b: &Columns) -> Columns {
-    std::array::from_fn(|j| std::array::from_fn(|i| (0..4).map(|k| a[k][i] * b[j][k]).sum()))
-}
-
-fn determinant(m: &Columns) -> f64 {
-    let column = |k: usize| [m[k][0], m[k][1], m[k][2]];
-    etalon_scene::vector::dot(column(0), etalon_scene::vector::cross(column(1), column(2)))
 }

@@ -1,11 +1,11 @@
 //! Sensors and integrators of Mitsuba.
 
-use etalon_scene::vector::{scale, unit};
+use etalon_scene::linear::unit;
+use glam::DAffine3;
 use serde_json::json;
 
 use super::Walk;
 use super::element::{Element, numbers};
-use crate::matrix::{IDENTITY, Rows, column, determinant};
 
 /// The diagonal of the 35 mm film that a stated focal length is for, mm.
 const DIAGONAL_35_MM: f64 = 43.266_615_305_567_87;
@@ -53,13 +53,15 @@ impl Walk<'_, '_, '_> {
         }
         let aspect = self.film(element)?;
         let to_world = self.placement(element)?;
-        let (Some(forward), Some(up)) = (unit(column(&to_world, 2)), unit(column(&to_world, 1))) else {
+        let (Some(forward), Some(up)) = (unit(to_world.matrix3.z_axis), unit(to_world.matrix3.y_axis)) else {
             return Err(format!("{place}: its transform flattens it"));
         };
-        if determinant(&to_world) < 0.0 {
+        if to_world.matrix3.determinant() < 0.0 {
             self.builder.leave_out(&place, "its transform mirrors the picture, which is not honoured");
         }
-        let mut camera = json!({ "position_m": column(&to_world, 3), "direction": forward, "up": up });
+        let mut camera = json!({
+            "position_m": to_world.translation.to_array(), "direction": forward.to_array(), "up": up.to_array(),
+        });
         match element.plugin() {
             "perspective" | "thinlens" => {
                 camera["type"] = json!("perspective");
@@ -69,12 +71,11 @@ impl Walk<'_, '_, '_> {
             "orthographic" => {
                 camera["type"] = json!("orthographic");
                 // From −1 to 1 across the width, times the scale of the transform.
-                let width = 2.0 * etalon_scene::vector::length(column(&to_world, 0));
+                let width = 2.0 * to_world.matrix3.x_axis.length();
                 camera["height_m"] = json!(width / aspect);
-                let position = column(&to_world, 3);
                 let near = element.number("near_clip")?.unwrap_or(0.01);
-                let start = scale(column(&to_world, 2), near);
-                camera["position_m"] = json!([position[0] + start[0], position[1] + start[1], position[2] + start[2]]);
+                let start = to_world.translation + to_world.matrix3.z_axis * near;
+                camera["position_m"] = json!(start.to_array());
             }
             other => {
                 self.builder.leave_out(&place, format!("the sensor \"{other}\" is not known, and is left out"));
@@ -143,13 +144,13 @@ impl Walk<'_, '_, '_> {
     }
 
     /// The `to_world` of an element.
-    pub(super) fn placement(&mut self, element: &Element) -> Result<Rows, String> {
+    pub(super) fn placement(&mut self, element: &Element) -> Result<DAffine3, String> {
         match element.property("to_world") {
-            None => Ok(IDENTITY),
+            None => Ok(DAffine3::IDENTITY),
             Some(transform) if transform.tag == "transform" => super::transform::read(transform),
             Some(other) => {
                 self.builder.leave_out(&other.place, format!("<{}>: motion is not honoured", other.tag));
-                Ok(IDENTITY)
+                Ok(DAffine3::IDENTITY)
             }
         }
     }

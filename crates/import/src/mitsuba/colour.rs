@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::Walk;
 use super::element::{Element, numbers};
+use crate::matrix::rows;
 use crate::number::Number;
 use crate::table::Table;
 use crate::{extension, light, reflectance};
@@ -243,7 +244,7 @@ impl Walk<'_, '_, '_> {
         // The program counts v from the top of the image: 1 − (sv·v + ov).
         let (mut scale, mut offset) = ([1.0, -1.0], [0.0, 1.0]);
         if let Some(transform) = element.property("to_uv") {
-            let rows = super::transform::read(transform)?;
+            let rows = rows(&super::transform::read(transform)?);
             if rows[0][1] != 0.0 || rows[1][0] != 0.0 {
                 self.builder.leave_out(&transform.place, "the rotation of texture coordinates is not honoured");
             }

@@ -5,7 +5,6 @@ use serde_json::{Value, json};
 use super::Walk;
 use super::colour::Of;
 use super::element::Element;
-use crate::matrix::{column, determinant};
 
 impl Walk<'_, '_, '_> {
     pub(super) fn emitter(&mut self, element: &Element) -> Result<(), String> {
@@ -27,8 +26,8 @@ impl Walk<'_, '_, '_> {
                     "type": "environment",
                     "image": {
                         "file": file, "scale": element.number("scale")?.unwrap_or(1.0).max(0.0),
-                        "projection": "latitude-longitude-at-poles", "mirrored": determinant(&to_world) < 0.0,
-                        "up": column(&to_world, 1), "forward": column(&to_world, 2),
+                        "projection": "latitude-longitude-at-poles", "mirrored": to_world.matrix3.determinant() < 0.0,
+                        "up": to_world.matrix3.y_axis.to_array(), "forward": to_world.matrix3.z_axis.to_array(),
                     },
                 })
             }
@@ -36,7 +35,7 @@ impl Walk<'_, '_, '_> {
                 let intensity = self.colour(element, "intensity", Of::Emission)?.unwrap_or_else(one);
                 let position = match element.triple("position")? {
                     Some(position) => position,
-                    None => column(&self.placement(element)?, 3),
+                    None => self.placement(element)?.translation.to_array(),
                 };
                 json!({ "type": "point", "position_m": position, "intensity": intensity })
             }
@@ -49,7 +48,7 @@ impl Walk<'_, '_, '_> {
                     self.builder.leave_out(&place, "between beam_width and cutoff_angle it falls by another curve");
                 }
                 json!({
-                    "type": "spot", "position_m": column(&to_world, 3), "direction": column(&to_world, 2),
+                    "type": "spot", "position_m": to_world.translation.to_array(), "direction": to_world.matrix3.z_axis.to_array(),
                     "intensity": intensity, "half_angle_deg": cutoff, "inner_half_angle_deg": inner.min(cutoff),
                 })
             }
@@ -57,7 +56,7 @@ impl Walk<'_, '_, '_> {
                 let irradiance = self.colour(element, "irradiance", Of::Emission)?.unwrap_or_else(one);
                 let direction = match element.triple("direction")? {
                     Some(direction) => direction,
-                    None => column(&self.placement(element)?, 2),
+                    None => self.placement(element)?.matrix3.z_axis.to_array(),
                 };
                 json!({ "type": "directional", "direction": direction, "irradiance": irradiance })
             }

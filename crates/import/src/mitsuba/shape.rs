@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use etalon_scene::mesh::{Part, read_obj, read_ply};
+use glam::DAffine3;
 use serde_json::{Value, json};
 
 use super::Walk;
@@ -10,7 +11,6 @@ use super::colour::kind;
 use super::element::Element;
 use super::material::{Look, grey};
 use crate::Placed;
-use crate::matrix::{Rows, determinant};
 use crate::number::has_image;
 use crate::relief::without_map;
 
@@ -60,23 +60,23 @@ impl<'a> Walk<'a, '_, '_> {
             return Ok(());
         }
         if element.plugin() == "instance" {
-            let rows = self.placement(element)?;
+            let map = self.placement(element)?;
             let groups = element.nested("shape", self.ids)?;
             let Some(group) = groups.first().and_then(|group| group.attribute("id")) else {
                 return Err(format!("{place}: it refers to no shapegroup"));
             };
-            self.builder.place_group(&name, group, &rows, place);
+            self.builder.place_group(&name, group, &map, place);
             element.list_unused(self.builder);
             return Ok(());
         }
-        let rows = self.placement(element)?;
+        let map = self.placement(element)?;
         let look = match element.nested("bsdf", self.ids)?.first() {
             Some(bsdf) => self.known_look(bsdf)?,
             None => Look::of(grey()),
         };
         let emission = self.emission(element)?;
         let flipped = element.flag("flip_normals")?.unwrap_or(false);
-        let mut dressed = Dressed { name, look, emission, rows, flipped };
+        let mut dressed = Dressed { name, look, emission, map, flipped };
         match element.plugin() {
             "sphere" => {
                 let center = element.triple("center")?.unwrap_or([0.0; 3]);
@@ -168,7 +168,7 @@ impl<'a> Walk<'a, '_, '_> {
                 dressed.name = format!("{}, {name}", dressed.name);
             }
             // What is mirrored is turned inside out there unless normals of its vertices say otherwise; here it never is.
-            if (flat || !part.has_normals) && determinant(&dressed.rows) < 0.0 {
+            if (flat || !part.has_normals) && dressed.map.matrix3.determinant() < 0.0 {
                 dressed.flipped = !dressed.flipped;
             }
             self.without_images(&mut dressed, part.has_uvs, place);
@@ -249,7 +249,7 @@ struct Dressed {
     name: String,
     look: Look,
     emission: Option<Value>,
-    rows: Rows,
+    map: DAffine3,
     flipped: bool,
 }
 
@@ -263,7 +263,7 @@ impl Dressed {
             emission: self.emission.clone(),
             opacity: self.look.opacity,
             detail: self.look.detail.clone(),
-            rows: self.rows,
+            map: self.map,
             flipped: self.flipped,
         }
     }

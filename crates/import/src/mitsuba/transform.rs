@@ -1,22 +1,25 @@
 //! Transforms of Mitsuba: steps of which the first is applied first.
 
+use etalon_scene::linear::affine_from_rows;
+use glam::DAffine3;
+
 use super::element::{Element, numbers};
-use crate::matrix::{IDENTITY, Rows, looking, product, rotation, scaling, translation};
+use crate::matrix::{looking, rotation};
 
 /// The map that a `<transform>` states.
-pub(super) fn read(element: &Element) -> Result<Rows, String> {
-    let mut rows = IDENTITY;
+pub(super) fn read(element: &Element) -> Result<DAffine3, String> {
+    let mut map = DAffine3::IDENTITY;
     for step in &element.children {
         step.mark();
-        rows = product(&self::step(step)?, &rows);
+        map = self::step(step)? * map;
     }
-    match rows.iter().flatten().all(|v| v.is_finite()) {
-        true => Ok(rows),
+    match map.is_finite() {
+        true => Ok(map),
         false => Err(format!("{}: the transform is not finite", element.place)),
     }
 }
 
-fn step(step: &Element) -> Result<Rows, String> {
+fn step(step: &Element) -> Result<DAffine3, String> {
     let place = &step.place;
     let stated = |key: &str| {
         let text = step.attribute(key).ok_or_else(|| format!("{place}: it has no \"{key}\""))?;
@@ -27,8 +30,8 @@ fn step(step: &Element) -> Result<Rows, String> {
         _ => Err(format!("{place}: \"{key}\" is not three numbers")),
     };
     match step.tag.as_str() {
-        "translate" => Ok(translation(step.own_triple(0.0)?)),
-        "scale" => Ok(scaling(step.own_triple(1.0)?)),
+        "translate" => Ok(DAffine3::from_translation(step.own_triple(0.0)?.into())),
+        "scale" => Ok(DAffine3::from_scale(step.own_triple(1.0)?.into())),
         "rotate" => {
             let [angle_deg] = stated("angle")?[..] else { return Err(format!("{place}: \"angle\" is not a number")) };
             rotation(step.own_triple(0.0)?, angle_deg).ok_or_else(|| format!("{place}: its axis has no direction"))
@@ -43,9 +46,9 @@ fn step(step: &Element) -> Result<Rows, String> {
                 if [m, n, o] != [0.0; 3] || p == 0.0 {
                     return Err(format!("{place}: the last row is not 0 0 0 1"));
                 }
-                Ok([[a, b, c, d], [e, f, g, h], [i, j, k, l]].map(|row| row.map(|v| v / p)))
+                Ok(affine_from_rows(&[[a, b, c, d], [e, f, g, h], [i, j, k, l]].map(|row| row.map(|v| v / p))))
             }
-            [a, b, c, d, e, f, g, h, i] => Ok([[a, b, c, 0.0], [d, e, f, 0.0], [g, h, i, 0.0]]),
+            [a, b, c, d, e, f, g, h, i] => Ok(affine_from_rows(&[[a, b, c, 0.0], [d, e, f, 0.0], [g, h, i, 0.0]])),
             _ => Err(format!("{place}: a matrix has 16 numbers")),
         },
         other => Err(format!("{place}: <{other}> is no step of a transform")),

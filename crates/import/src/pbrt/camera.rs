@@ -1,11 +1,12 @@
 //! Cameras, films, filters, samplers and integrators of pbrt.
 
-use etalon_scene::vector::{length, unit};
+use etalon_scene::linear::unit;
+use glam::{DAffine3, DVec3};
 use serde_json::json;
 
 use super::Reading;
 use super::parameters::Parameters;
-use crate::matrix::{IDENTITY, column, determinant, direction, inverse, point, scaling};
+use crate::matrix::inverse;
 
 impl Reading<'_, '_> {
     pub(super) fn camera(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
@@ -13,17 +14,19 @@ impl Reading<'_, '_> {
             inverse(&self.state.transform).ok_or_else(|| format!("{place}: its transform flattens it"))?;
         self.systems.insert("camera".to_owned(), from_camera);
         // In the camera's own axes x points right, y up and z into the picture.
-        self.world = if determinant(&from_camera) > 0.0 { scaling([-1.0, 1.0, 1.0]) } else { IDENTITY };
-        if self.world != IDENTITY {
+        let mirrored = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        self.world = if from_camera.matrix3.determinant() > 0.0 { mirrored } else { DAffine3::IDENTITY };
+        if self.world != DAffine3::IDENTITY {
             let what = "the model's axes are left-handed: everything is mirrored in x, so that the picture is not";
             self.builder.added.push(what.to_owned());
         }
-        let axis = |k: usize| unit(direction(&self.world, column(&from_camera, k)));
-        let (Some(forward), Some(up)) = (axis(2), axis(1)) else {
+        let placed = self.world * from_camera;
+        let (Some(forward), Some(up)) = (unit(placed.matrix3.z_axis), unit(placed.matrix3.y_axis)) else {
             return Err(format!("{place}: its transform flattens it"));
         };
-        let position = point(&self.world, column(&from_camera, 3));
-        let mut camera = json!({ "position_m": position, "direction": forward, "up": up });
+        let mut camera = json!({
+            "position_m": placed.translation.to_array(), "direction": forward.to_array(), "up": up.to_array(),
+        });
         let size = |key: &str| self.builder.film[key].as_f64().unwrap_or(1.0);
         let aspect = size("width") / size("height");
         match kind {
@@ -36,7 +39,7 @@ impl Reading<'_, '_> {
             "orthographic" => {
                 camera["type"] = json!("orthographic");
                 let height = if aspect >= 1.0 { 2.0 } else { 2.0 / aspect };
-                camera["height_m"] = json!(height * length(column(&from_camera, 1)));
+                camera["height_m"] = json!(height * from_camera.matrix3.y_axis.length());
             }
             other => {
                 self.builder.leave_out(place, format!("the camera \"{other}\" is not known, and is left out"));
@@ -46,7 +49,7 @@ impl Reading<'_, '_> {
         let radius = list.number("lensradius")?.unwrap_or(0.0);
         let focus = list.number("focaldistance")?;
         if radius > 0.0 && kind == "perspective" {
-            let along = length(column(&from_camera, 2));
+            let along = from_camera.matrix3.z_axis.length();
             let focus = focus.unwrap_or(1e6) * along;
             camera["lens"] = json!({ "radius_m": radius * along, "focus_distance_m": focus });
         }

@@ -1,20 +1,20 @@
 //! Lights of pbrt.
 
 use etalon_scene::Encoding;
-use etalon_scene::vector::sub;
+use etalon_scene::linear::is_similarity;
+use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
 
 use super::Reading;
 use super::parameters::Parameters;
-use crate::matrix::{Rows, column, determinant, direction, is_similarity, point};
 
 impl Reading<'_, '_> {
     pub(super) fn light(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
         let scale = list.number("scale")?.unwrap_or(1.0).max(0.0);
-        let rows = self.to_world();
-        let from = list.triple("from")?.unwrap_or([0.0; 3]);
-        let to = list.triple("to")?.unwrap_or([0.0, 0.0, 1.0]);
-        let along = direction(&rows, sub(to, from));
+        let map = self.to_world();
+        let from = DVec3::from(list.triple("from")?.unwrap_or([0.0; 3]));
+        let to = DVec3::from(list.triple("to")?.unwrap_or([0.0, 0.0, 1.0]));
+        let (position, along) = (map.transform_point3(from).to_array(), map.transform_vector3(to - from).to_array());
         let mut value = match kind {
             "distant" => {
                 let irradiance = self.emitted(list, "L", scale)?;
@@ -22,19 +22,19 @@ impl Reading<'_, '_> {
             }
             "point" => {
                 let intensity = self.emitted(list, "I", scale)?;
-                json!({ "type": "point", "position_m": point(&rows, from), "intensity": intensity })
+                json!({ "type": "point", "position_m": position, "intensity": intensity })
             }
             "spot" => {
                 let intensity = self.emitted(list, "I", scale)?;
                 let outer = list.number("coneangle")?.unwrap_or(30.0);
                 let inner = outer - list.number("conedeltaangle")?.unwrap_or(5.0);
                 json!({
-                    "type": "spot", "position_m": point(&rows, from), "direction": along, "intensity": intensity,
+                    "type": "spot", "position_m": position, "direction": along, "intensity": intensity,
                     "half_angle_deg": outer, "inner_half_angle_deg": inner.clamp(0.0, outer),
                 })
             }
             "infinite" => match list.string("filename").map(str::to_owned) {
-                Some(file) => match self.sky(&file, list, scale, &rows, place)? {
+                Some(file) => match self.sky(&file, list, scale, &map, place)? {
                     Some(sky) => sky,
                     None => return Ok(()),
                 },
@@ -57,7 +57,7 @@ impl Reading<'_, '_> {
         file: &str,
         list: &Parameters,
         scale: f64,
-        rows: &Rows,
+        map: &DAffine3,
         place: &str,
     ) -> Result<Option<Value>, String> {
         let found = self.builder.image_file(file, Encoding::Auto, place);
@@ -69,15 +69,16 @@ impl Reading<'_, '_> {
                 return Ok(None);
             }
         };
-        if !is_similarity(rows) {
+        if !is_similarity(&map.matrix3) {
             self.builder.leave_out(place, "its transform stretches the sky, which is not honoured");
         }
         // The middle of the square is along +z, its right edge along +x and its lower edge along +y.
         Ok(Some(json!({
             "type": "environment",
             "image": {
-                "file": name, "projection": "equal-area", "scale": scale, "up": column(rows, 2), "forward": column(rows, 1),
-                "mirrored": determinant(rows) < 0.0,
+                "file": name, "projection": "equal-area", "scale": scale, "up": map.matrix3.z_axis.to_array(),
+                "forward": map.matrix3.y_axis.to_array(),
+                "mirrored": map.matrix3.determinant() < 0.0,
             },
         })))
     }

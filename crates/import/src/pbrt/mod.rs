@@ -14,10 +14,11 @@ mod tokens;
 use std::collections::HashMap;
 use std::rc::Rc;
 
+use glam::DAffine3;
 use serde_json::{Map, Value};
 
 use super::budget::BlendSize;
-use super::matrix::{IDENTITY, Rows, inverse, looking, product, rotation, scaling, translation};
+use super::matrix::{inverse, looking, rotation};
 use super::{Builder, Outside};
 use parameters::Parameters;
 use tokens::{Token, Word, tokens};
@@ -32,7 +33,7 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         builder,
         state: State::default(),
         saved: Vec::new(),
-        world: IDENTITY,
+        world: DAffine3::IDENTITY,
         in_world: false,
         systems: HashMap::new(),
         materials: HashMap::new(),
@@ -58,7 +59,7 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
 #[derive(Clone, Debug)]
 struct State {
     /// From the coordinates in force to the world.
-    transform: Rows,
+    transform: DAffine3,
     /// A material of the format, or the name of one, and how opaque it is.
     material: Rc<Look>,
     /// What the shapes from here on emit.
@@ -81,7 +82,7 @@ impl Default for State {
     fn default() -> Self {
         let value = serde_json::json!({ "type": "lambert", "reflectance": 0.5 });
         let material = Look { value, opacity: 1.0, detail: Map::new(), size: BlendSize::ONE };
-        Self { transform: IDENTITY, material: Rc::new(material), emission: None, reversed: false }
+        Self { transform: DAffine3::IDENTITY, material: Rc::new(material), emission: None, reversed: false }
     }
 }
 
@@ -90,9 +91,9 @@ struct Reading<'r, 'b> {
     state: State,
     saved: Vec<State>,
     /// pbrt's axes are left-handed: unless the camera's transform mirrors, the world is mirrored here.
-    world: Rows,
+    world: DAffine3,
     in_world: bool,
-    systems: HashMap<String, Rows>,
+    systems: HashMap<String, DAffine3>,
     materials: HashMap<String, Rc<Look>>,
     textures: HashMap<String, Value>,
     /// Mesh files that have been read: what is placed of each, the box around it, and whether it has texture coordinates.
@@ -136,9 +137,9 @@ impl Reading<'_, '_> {
     fn directive(&mut self, directive: &str, arguments: &mut Arguments<'_>) -> Result<(), String> {
         let place = arguments.place.to_owned();
         match directive {
-            "Identity" => self.state.transform = IDENTITY,
-            "Translate" => self.apply(&translation(arguments.numbers()?)),
-            "Scale" => self.apply(&scaling(arguments.numbers()?)),
+            "Identity" => self.state.transform = DAffine3::IDENTITY,
+            "Translate" => self.apply(&DAffine3::from_translation(arguments.numbers()?.into())),
+            "Scale" => self.apply(&DAffine3::from_scale(arguments.numbers()?.into())),
             "Rotate" => {
                 let [angle_deg, x, y, z] = arguments.numbers()?;
                 let turn = rotation([x, y, z], angle_deg);
@@ -179,8 +180,8 @@ impl Reading<'_, '_> {
             }
             "ReverseOrientation" => self.state.reversed = !self.state.reversed,
             "WorldBegin" => {
-                self.state.transform = IDENTITY;
-                self.systems.insert("world".to_owned(), IDENTITY);
+                self.state.transform = DAffine3::IDENTITY;
+                self.systems.insert("world".to_owned(), DAffine3::IDENTITY);
                 self.in_world = true;
             }
             "Camera" => self.camera(&arguments.quoted()?, &arguments.parameters()?, &place)?,
@@ -233,8 +234,8 @@ impl Reading<'_, '_> {
             }
             "ObjectInstance" => {
                 let name = arguments.quoted()?;
-                let rows = self.to_world();
-                self.builder.place_group(&format!("{name}, {place}"), &name, &rows, &place);
+                let map = self.to_world();
+                self.builder.place_group(&format!("{name}, {place}"), &name, &map, &place);
             }
             other => {
                 self.builder.leave_out(&place, format!("{other} is not honoured"));
@@ -244,13 +245,13 @@ impl Reading<'_, '_> {
         Ok(())
     }
 
-    fn apply(&mut self, step: &Rows) {
-        self.state.transform = product(&self.state.transform, step);
+    fn apply(&mut self, step: &DAffine3) {
+        self.state.transform *= *step;
     }
 
     /// From the coordinates in force to those of the scene, or of the object that is being defined.
-    fn to_world(&self) -> Rows {
-        if self.object.is_some() { self.state.transform } else { product(&self.world, &self.state.transform) }
+    fn to_world(&self) -> DAffine3 {
+        if self.object.is_some() { self.state.transform } else { self.world * self.state.transform }
     }
 }
 
@@ -296,12 +297,13 @@ impl Arguments<'_> {
     }
 
     /// A matrix, which is listed by columns.
-    fn matrix(&mut self) -> Result<Rows, String> {
+    fn matrix(&mut self) -> Result<DAffine3, String> {
         let m: [f64; 16] = self.numbers()?;
         if [m[3], m[7], m[11]] != [0.0; 3] || m[15] == 0.0 {
             return Err(format!("{}: the matrix is not affine", self.place));
         }
-        Ok(std::array::from_fn(|i| std::array::from_fn(|j| m[4 * j + i] / m[15])))
+        let column = |k: usize| [m[4 * k] / m[15], m[4 * k + 1] / m[15], m[4 * k + 2] / m[15]];
+        Ok(DAffine3::from_cols_array_2d(&[column(0), column(1), column(2), column(3)]))
     }
 
     fn parameters(&mut self) -> Result<Parameters, String> {

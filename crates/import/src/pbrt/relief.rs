@@ -6,7 +6,6 @@ use serde_json::{Map, Value, json};
 use super::Reading;
 use super::parameters::Parameters;
 use super::spectrum::number_image;
-use crate::matrix::determinant;
 use crate::number::Number;
 
 impl Reading<'_, '_> {
@@ -19,7 +18,7 @@ impl Reading<'_, '_> {
                 Ok((name, _)) => {
                     // Green is normal × tangent in the axes of pbrt, which points the other way in a mirrored world.
                     let mut map = json!({ "file": name, "bitangent": "across-u" });
-                    if determinant(&self.world) < 0.0 {
+                    if self.world.matrix3.determinant() < 0.0 {
                         map["strength"] = json!([1.0, -1.0]);
                     }
                     detail.insert("normal_map".to_owned(), map);

@@ -1,8 +1,8 @@
 //! Shapes of pbrt.
 
 use etalon_scene::Mesh;
+use etalon_scene::linear::unit_normal;
 use etalon_scene::mesh::{MAX_ELEMENTS, read_ply};
-use etalon_scene::vector::unit;
 use serde_json::{Value, json};
 
 use super::Reading;
@@ -98,7 +98,7 @@ impl Reading<'_, '_> {
             emission,
             opacity,
             detail,
-            rows: self.to_world(),
+            map: self.to_world(),
             flipped: self.state.reversed,
         };
         self.builder.place(&placed, place)
@@ -178,7 +178,7 @@ fn vertices(list: &Parameters, place: &str) -> Result<Mesh, String> {
             return Err(format!("{place}: {length} {what} for {} vertices", vertices.len()));
         }
     }
-    let normals = normals.into_iter().map(|n| unit(n).map_or([0.0; 3], |n| n.map(|v| v as f32))).collect();
+    let normals = normals.into_iter().map(unit_normal).collect();
     Ok(Mesh { vertices, triangles: Vec::new(), normals, uvs })
 }
 

@@ -335,6 +335,15 @@ fn a_camera_that_is_mirrored_leaves_the_world_as_it_is() {
     assert_eq!(scene.objects[0].transform.translation_m, [5.0, 0.0, 0.0]);
 }
 
+/// The import and the scene agree on what is stretched: this one was taken for a ball, and refused as one.
+#[test]
+fn a_ball_that_is_stretched_by_less_than_a_millionth_arrives_as_an_instance() {
+    for (stretch, instances) in [("1.0000008", 1), ("1.0000001", 0)] {
+        let text = format!("WorldBegin\nLightSource \"infinite\"\nScale 1 1 {stretch}\nShape \"sphere\"\n");
+        assert_eq!(scene(&imported("pbrt", &text)).instances.len(), instances, "{stretch}");
+    }
+}
+
 #[test]
 fn a_damaged_pbrt_scene_is_refused_with_its_line() {
     for (text, part) in [

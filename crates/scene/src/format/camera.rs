@@ -1,10 +1,12 @@
 //! Cameras and film.
 
+use glam::DVec3;
+
 use super::motion::{KeyframeForm, Placed, Stretch, given, shutter_s};
 use super::spectrum::Wavelength;
 use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
+use crate::linear::unit;
 use crate::model::{Bands, Camera, CameraMotion, Film, Filter, Projection, ThinLens};
-use crate::vector::{apply, cross, dot, length, scale, sub, unit};
 
 crate::number! {
     /// A full angle of view, degrees.
@@ -187,7 +189,7 @@ fn orientation(
     let forward = match (look_at_m.given(), direction.given()) {
         (Some(target), None) => {
             // Halved, so that the difference of two finite numbers is finite.
-            let towards = sub(scale(target.value, 0.5), scale(position_m?, 0.5));
+            let towards = 0.5 * DVec3::from(target.value) - 0.5 * DVec3::from(position_m?);
             let forward = unit(towards);
             if forward.is_none() {
                 let message = "the camera looks at its own position";
@@ -195,22 +197,21 @@ fn orientation(
             }
             forward?
         }
-        (None, Some(direction)) => direction.value.0,
+        (None, Some(direction)) => direction.value.0.into(),
         _ => return None,
     };
     let up = up?;
-    let right = cross(forward, up.value.0);
-    if length(right) < PARALLEL {
+    let mut across = DVec3::from(up.value.0);
+    if forward.cross(across).length() < PARALLEL {
         let hint = "give an \"up\" across the view";
         reader.error_hint(Code::DegenerateView, up.at, "\"up\" is along the viewing direction", hint);
         return None;
     }
     // Across the view, and once more, since rounding left a little along it.
-    let mut across = up.value.0;
     for _ in 0..2 {
-        across = unit(sub(across, scale(forward, dot(across, forward))))?;
+        across = unit(across - forward * across.dot(forward))?;
     }
-    Some((forward, across))
+    Some((forward.to_array(), across.to_array()))
 }
 
 /// The camera of a form; `film` gives the shape of the picture.
@@ -258,12 +259,13 @@ pub(crate) fn shutter_of(form: Option<&CameraForm>) -> [f64; 2] {
 /// A camera where its keyframes put it.
 fn moving(still: Camera, placed: Option<Placed>) -> Camera {
     let Some((middle, motion)) = placed else { return still };
-    let direction = |v| apply(&middle.linear, v);
+    let middle = middle.affine();
+    let turned = |v: [f64; 3]| unit(middle.matrix3 * DVec3::from(v)).map_or(v, |v| v.to_array());
     let Camera { position_m, forward, up, .. } = still;
     Camera {
-        position_m: middle.point(position_m),
-        forward: unit(direction(forward)).unwrap_or(forward),
-        up: unit(direction(up)).unwrap_or(up),
+        position_m: middle.transform_point3(position_m.into()).to_array(),
+        forward: turned(forward),
+        up: turned(up),
         motion: motion.map(|motion| CameraMotion { motion, position_m, forward, up }),
         ..still
     }

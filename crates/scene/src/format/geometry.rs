@@ -3,6 +3,7 @@
 use std::ops::Bound;
 use std::sync::Arc;
 
+use glam::{DAffine3, DMat3, DVec3};
 use serde_json::json;
 
 use super::mesh;
@@ -11,9 +12,9 @@ use crate::json::{
     Code, Decode, Direction, List, Node, Optional, Positive, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span,
     Spanned,
 };
+use crate::linear::{self, cofactors, is_similarity, norm, unit};
 use crate::mesh::Shading;
 use crate::model::{Mesh, Shape, Transform};
-use crate::vector::{Matrix, apply, cross, dot, length, product, sub, unit};
 
 crate::record! {
     /// A sphere; its normal points outward.
@@ -132,7 +133,7 @@ pub(crate) fn shape(form: &ShapeForm, object: &str, files: &mut Files, reader: &
         ShapeForm::Sphere(sphere) => Some(Shape::Sphere { center: sphere.center_m?, radius_m: sphere.radius_m?.0 }),
         ShapeForm::Parallelogram(p) => {
             let (u, v) = (p.u_m?, p.v_m?);
-            let sine = unit(u).zip(unit(v)).map_or(0.0, |(u, v)| length(cross(u, v)));
+            let sine = unit(u.into()).zip(unit(v.into())).map_or(0.0, |(u, v)| u.cross(v).length());
             if sine <= FLAT {
                 let message = "u_m and v_m span no area";
                 let hint = "they must be two edges, not zero and not parallel";
@@ -233,12 +234,8 @@ crate::record! {
 }
 
 /// One step of a transform.
-#[derive(Clone, Debug)]
-pub(crate) enum Step {
-    Translate([f64; 3]),
-    Linear(Matrix),
-    Affine([[f64; 4]; 3]),
-}
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step(DAffine3);
 
 impl Decode for Step {
     fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
@@ -248,92 +245,49 @@ impl Decode for Step {
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
         let step = StepFields::decode(node, reader)?;
         if let Some(by) = step.translate_m.given() {
-            return Some(Self::Translate(*by));
+            return Some(Self(DAffine3::from_translation((*by).into())));
         }
         if let Some(rotation) = step.rotate.given() {
-            return Some(Self::Linear(rotation_matrix(rotation.axis?.0, rotation.angle_deg?)));
+            return Some(Self(DAffine3::from_mat3(linear::rotation(rotation.axis?.0.into(), rotation.angle_deg?))));
         }
-        if let Some(Scaling([x, y, z])) = step.scale.given() {
-            return Some(Self::Linear([[*x, 0.0, 0.0], [0.0, *y, 0.0], [0.0, 0.0, *z]]));
+        if let Some(Scaling(factors)) = step.scale.given() {
+            return Some(Self(DAffine3::from_scale((*factors).into())));
         }
         let matrix = step.matrix.given()?;
-        let linear = matrix.value.map(|row| [row[0], row[1], row[2]]);
-        if condition(&linear) > SINGULAR {
+        let map = linear::affine_from_rows(&matrix.value);
+        if condition(&map.matrix3) > SINGULAR {
             reader.error(Code::SingularTransform, matrix.at, "the matrix cannot be inverted: it flattens the object");
             return None;
         }
-        Some(Self::Affine(matrix.value))
+        Some(Self(map))
     }
-}
-
-/// Rodrigues' formula about a unit axis; exact at quarter turns.
-fn rotation_matrix(axis: [f64; 3], angle_deg: f64) -> Matrix {
-    let turn = angle_deg.rem_euclid(360.0);
-    let (sine, cosine) = match turn {
-        // A tiny negative angle is rounded to 360.
-        0.0 | 360.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        _ => turn.to_radians().sin_cos(),
-    };
-    let [x, y, z] = axis;
-    let versine = 1.0 - cosine;
-    [
-        [cosine + x * x * versine, x * y * versine - z * sine, x * z * versine + y * sine],
-        [y * x * versine + z * sine, cosine + y * y * versine, y * z * versine - x * sine],
-        [z * x * versine - y * sine, z * y * versine + x * sine, cosine + z * z * versine],
-    ]
 }
 
 /// Beyond this condition number, the inverse of a matrix in double precision has fewer than four right digits.
 const SINGULAR: f64 = 1e12;
 
 /// ‖A‖·‖A⁻¹‖ in the Frobenius norm; infinite for a singular matrix, or one with numbers that are not finite.
-fn condition(a: &Matrix) -> f64 {
-    let largest = a.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+fn condition(a: &DMat3) -> f64 {
+    let largest = linear::largest(a);
     if largest == 0.0 || !largest.is_finite() {
         return f64::INFINITY;
     }
-    let a = a.map(|row| row.map(|v| v / largest));
-    let cofactors = [cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1])];
-    let determinant = dot(a[0], cofactors[0]);
-    let norm = |m: &Matrix| m.iter().map(|row| dot(*row, *row)).sum::<f64>().sqrt();
-    let condition = norm(&a) * norm(&cofactors) / determinant.abs();
+    let a = *a / largest;
+    let condition = norm(&a) * norm(&cofactors(&a)) / a.determinant().abs();
     if condition.is_nan() { f64::INFINITY } else { condition }
 }
 
 /// The transform of a list of steps, the first of which is applied first.
 pub(crate) fn transform(steps: &List<Box<Step>>, at: Span, reader: &mut Reader<'_>) -> Option<Transform> {
     let steps: Vec<&Step> = steps.0.iter().map(Option::as_deref).collect::<Option<_>>()?;
-    let mut linear: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let mut translation_m = [0.0; 3];
-    for step in steps {
-        match step {
-            Step::Translate(by) => translation_m = std::array::from_fn(|i| translation_m[i] + by[i]),
-            Step::Linear(matrix) => {
-                linear = product(matrix, &linear);
-                translation_m = apply(matrix, translation_m);
-            }
-            Step::Affine(rows) => {
-                let matrix = rows.map(|row| [row[0], row[1], row[2]]);
-                linear = product(&matrix, &linear);
-                let moved = apply(&matrix, translation_m);
-                translation_m = std::array::from_fn(|i| moved[i] + rows[i][3]);
-            }
-        }
-    }
-    if condition(&linear) > SINGULAR || translation_m.iter().any(|v| !v.is_finite()) {
+    let map = steps.iter().fold(DAffine3::IDENTITY, |map, step| step.0 * map);
+    if condition(&map.matrix3) > SINGULAR || !map.translation.is_finite() {
         let message = "together, the steps of the transform cannot be inverted";
         reader.error(Code::SingularTransform, at, message);
         return None;
     }
-    Some(Transform { linear, translation_m })
+    Some(map.into())
 }
-
-/// How far AᵀA/s² may be from the identity for A to count as a similarity: matrices in files are often written with
-/// seven digits.
-const SIMILARITY: f64 = 1e-6;
 
 /// Reports a transform that would turn a sphere into an ellipsoid, or a disk into an ellipse.
 pub(crate) fn check_similarity(shape: &ShapeForm, transform: &Transform, at: Span, reader: &mut Reader<'_>) {
@@ -343,7 +297,7 @@ pub(crate) fn check_similarity(shape: &ShapeForm, transform: &Transform, at: Spa
         ShapeForm::Cylinder(_) => "cylinder",
         ShapeForm::Parallelogram(_) | ShapeForm::Mesh(_) | ShapeForm::Box(_) => return,
     };
-    if !is_similarity(transform) {
+    if !is_similarity(&transform.affine().matrix3) {
         let message = format!("a {what} can only be moved, turned, mirrored and scaled alike along all axes");
         let hint = "use one factor for all axes, or a mesh; or put it in a group and place that";
         reader.error_hint(Code::NotSimilarity, at, message, hint);
@@ -352,7 +306,7 @@ pub(crate) fn check_similarity(shape: &ShapeForm, transform: &Transform, at: Spa
 
 /// Reports an instance that would make an ellipsoid or an ellipse of an emitter.
 pub(crate) fn check_instance_similarity(what: &str, transform: &Transform, at: Span, reader: &mut Reader<'_>) {
-    if !is_similarity(transform) {
+    if !is_similarity(&transform.affine().matrix3) {
         let message = format!(
             "the group holds an emitting {what}, which can only be moved, turned, mirrored and scaled alike along all axes"
         );
@@ -360,36 +314,21 @@ pub(crate) fn check_instance_similarity(what: &str, transform: &Transform, at: S
     }
 }
 
-pub(crate) fn is_similarity(transform: &Transform) -> bool {
-    let largest = transform.linear.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let a = transform.linear.map(|row| row.map(|v| v / largest));
-    let column = |j: usize| [a[0][j], a[1][j], a[2][j]];
-    let square = (0..3).map(|j| dot(column(j), column(j))).sum::<f64>() / 3.0;
-    (0..3).all(|i| {
-        (0..3).all(|j| {
-            let expected = if i == j { 1.0 } else { 0.0 };
-            (dot(column(i), column(j)) / square - expected).abs() <= SIMILARITY
-        })
-    })
-}
-
 /// Reports a shape that its transform would move beyond the numbers of double precision, or shrink to nothing.
 pub(crate) fn check_extent(shape: &Shape, transform: &Transform, at: Span, reader: &mut Reader<'_>) {
-    let linear = |v| apply(&transform.linear, v);
-    let point = |p| {
-        let p = linear(p);
-        std::array::from_fn(|i| p[i] + transform.translation_m[i])
-    };
+    let map = transform.affine();
+    let linear = |v: [f64; 3]| map.matrix3 * DVec3::from(v);
+    let point = |p: [f64; 3]| map.transform_point3(p.into());
     // Squares of lengths are taken all over geometry: what would not survive that is refused as well.
-    let kept = |v: [f64; 3]| (f64::MIN_POSITIVE..f64::INFINITY).contains(&dot(v, v));
-    let finite = |p: [f64; 3]| dot(p, p).is_finite();
+    let kept = |v: DVec3| (f64::MIN_POSITIVE..f64::INFINITY).contains(&v.length_squared());
+    let finite = |p: DVec3| p.length_squared().is_finite();
     let held = match shape {
         Shape::Sphere { center, radius_m } | Shape::Disk { center, radius_m, .. } => {
             finite(point(*center)) && kept(linear([*radius_m, 0.0, 0.0]))
         }
         Shape::Cylinder { start, end, radius_m, .. } => {
             let (start, end) = (point(*start), point(*end));
-            finite(start) && finite(end) && kept(sub(end, start)) && kept(linear([*radius_m, 0.0, 0.0]))
+            finite(start) && finite(end) && kept(end - start) && kept(linear([*radius_m, 0.0, 0.0]))
         }
         Shape::Parallelogram { origin, u, v } => finite(point(*origin)) && kept(linear(*u)) && kept(linear(*v)),
         Shape::Mesh(mesh) => mesh.vertices.iter().all(|v| finite(point(*v))),

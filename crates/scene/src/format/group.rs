@@ -1,10 +1,11 @@
 //! Groups of objects that are defined once, and the instances that place them.
 
-use super::geometry::{Step, check_instance_similarity, is_similarity, transform};
+use super::geometry::{Step, check_instance_similarity, transform};
 use super::motion::{KeyframeForm, Placed, Stretch, motion};
 use super::names::Names;
 use super::scene::ObjectForm;
 use crate::json::{Code, List, NamedEntry, Optional, Reader, Required, Spanned};
+use crate::linear::is_similarity;
 use crate::model::{Group, Instance, Object, Shape, Transform};
 
 /// Most groups within each other: rays descend through them by recursion.
@@ -255,7 +256,9 @@ fn check(
             if let Some(what) = of.round_emitter {
                 let moving = instance.motion.iter().flat_map(|motion| &motion.keyframes).map(|key| &key.transform);
                 // The first that is none is enough.
-                if let Some(other) = moving.chain([&instance.transform]).find(|transform| !is_similarity(transform)) {
+                if let Some(other) =
+                    moving.chain([&instance.transform]).find(|transform| !is_similarity(&transform.affine().matrix3))
+                {
                     check_instance_similarity(what, other, form.at.head(), reader);
                 }
             }

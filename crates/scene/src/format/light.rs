@@ -2,13 +2,15 @@
 
 use std::ops::Bound;
 
+use glam::DVec3;
+
 use super::spectra::{BRIGHTEST, Role, Spectra};
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{Code, Direction, NonNegative, Optional, Reader, Required, Rule, Spanned};
+use crate::linear::unit;
 use crate::model::{EnvironmentImage, EnvironmentProjection, Light, LightKind};
 use crate::texture::Encoding;
-use crate::vector::{add, cross, dot, length, scale, sub, unit};
 
 crate::record! {
     /// The same intensity in every direction, from a point.
@@ -178,21 +180,21 @@ fn environment_image(
     let file = form.file.as_ref()?;
     let image = form.encoding.and_then(|encoding| files.image(file, encoding, reader));
     let axes = form.up.zip(form.forward).and_then(|(up, forward)| {
-        let (up, toward) = (up.value.0, forward.value.0);
-        let across = sub(toward, scale(up, dot(toward, up)));
-        if length(across) < PARALLEL {
+        let (up, toward) = (DVec3::from(up.value.0), DVec3::from(forward.value.0));
+        let across = toward - up * toward.dot(up);
+        if across.length() < PARALLEL {
             let hint = "give a \"forward\" across \"up\"";
             reader.error_hint(Code::DegenerateView, forward.at, "\"forward\" is along \"up\"", hint);
             return None;
         }
         // Once more, since rounding left a little along `up`.
         let across = unit(across)?;
-        let forward = unit(sub(across, scale(up, dot(across, up))))?;
-        let right = cross(forward, up);
+        let forward = unit(across - up * across.dot(up))?;
+        let right = forward.cross(up);
         let (sin, cos) = form.rotation_deg?.to_radians().sin_cos();
-        let turned = |along: f64, across: f64| add(scale(forward, along), scale(right, across));
+        let turned = |along: f64, across: f64| forward * along + right * across;
         let hand = if form.mirrored? { -1.0 } else { 1.0 };
-        Some((turned(cos, -sin), scale(turned(sin, cos), hand), up))
+        Some([turned(cos, -sin), turned(sin, cos) * hand, up].map(|axis| axis.to_array()))
     });
     let white = spectra.daylight(form.scale?.0, form.at, reader);
     let (image, projection) = (image?, form.projection?);
@@ -213,7 +215,7 @@ fn environment_image(
         reader.error(Code::NegativeEmission, file.at, message);
         return None;
     }
-    let ((forward, right, up), white) = (axes?, white?);
+    let ([forward, right, up], white) = (axes?, white?);
     let brightest = white.max_over(spectra.range_nm?);
     if let Some(i) = image.linear_texels().position(|t| t.iter().any(|v| v * brightest > BRIGHTEST)) {
         let (column, row) = texel_at(i);

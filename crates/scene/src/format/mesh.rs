@@ -1,5 +1,6 @@
 //! Meshes, listed in the scene or in a file of their own.
 
+use glam::DVec3;
 use rayon::prelude::*;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::path::Path;
@@ -8,9 +9,9 @@ use std::sync::Arc;
 use super::geometry::MeshShape;
 use crate::files::{Files, MeshKey};
 use crate::json::{Code, Optional, Reader, Span, Spanned};
+use crate::linear::unit;
 use crate::mesh::{self, Part, Shading};
 use crate::model::Mesh;
-use crate::vector::{cross, dot, length, scale, sub, unit};
 
 /// Triangles that a thread is given at once, at least.
 const CHUNK: usize = 1 << 13;
@@ -252,19 +253,20 @@ fn shade(mesh: &mut Mesh, shading: Shading) {
 /// Whether a triangle's normal can be told at all: three corners whose edges are not parallel to rounding.
 fn has_area(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> bool {
     // Of most the angle at a corner is no smaller than 1e-8, and their sizes are usual, so that nothing overflows.
-    let (u, v) = (sub(b, a), sub(c, a));
-    let (squared, products) = (dot(cross(u, v), cross(u, v)), dot(u, u) * dot(v, v));
+    let [a, b, c] = [a, b, c].map(DVec3::from);
+    let (u, v) = (b - a, c - a);
+    let (squared, products) = (u.cross(v).length_squared(), u.length_squared() * v.length_squared());
     if (1e-200..1e200).contains(&products) && squared > 1e-16 * products {
         return true;
     }
     // Halved, so that the difference of two finite coordinates is finite.
-    let [a, b, c] = [a, b, c].map(|p| scale(p, 0.5));
+    let [a, b, c] = [a, b, c].map(|p| 0.5 * p);
     // Two edges from the corner with the largest angle would be best; with unit vectors any two will do down to needles
     // of 1e-15.
-    let edges = [sub(b, a), sub(c, b), sub(a, c)];
+    let edges = [b - a, c - b, a - c];
     let Some(units) = unit(edges[0]).zip(unit(edges[1])).zip(unit(edges[2])) else { return false };
     let ((u, v), w) = units;
-    let sines = [length(cross(u, v)), length(cross(v, w)), length(cross(w, u))];
+    let sines = [u.cross(v), v.cross(w), w.cross(u)].map(DVec3::length);
     // Each component of a vector product of unit vectors is rounded three times.
     sines.into_iter().fold(0.0, f64::max) > 4.0 * f64::EPSILON
 }

@@ -1,9 +1,9 @@
 //! Keyframes of instances and of the camera.
 
-use super::geometry::{Step, is_similarity, transform};
+use super::geometry::{Step, transform};
 use crate::json::{Code, List, Optional, Reader, Required, Spanned};
+use crate::linear::is_similarity;
 use crate::model::{Keyframe, Motion, Transform};
-use crate::vector::dot;
 
 crate::record! {
     /// Where something is at one time.
@@ -89,8 +89,9 @@ pub(crate) fn motion(
 fn keyframe(form: &KeyframeForm, stretch: Stretch, reader: &mut Reader<'_>) -> Option<Keyframe> {
     let steps = form.transform.as_ref()?;
     let transform = transform(&steps.value, steps.at.head(), reader)?;
-    let scale = dot(transform.linear[0], transform.linear[0]);
-    if stretch == Stretch::Refused && !(is_similarity(&transform) && (scale - 1.0).abs() <= RIGID) {
+    let linear = transform.affine().matrix3;
+    if stretch == Stretch::Refused && !(is_similarity(&linear) && (linear.row(0).length_squared() - 1.0).abs() <= RIGID)
+    {
         let message = "a camera can only be moved and turned";
         reader.error_hint(Code::NotSimilarity, steps.at.head(), message, "change its angle of view to zoom");
         return None;

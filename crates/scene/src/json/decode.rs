@@ -297,11 +297,11 @@ impl Decode for Direction {
 
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
         let vector = <[f64; 3]>::decode(node, reader)?;
-        let unit = crate::vector::unit(vector);
+        let unit = crate::linear::unit(vector.into());
         if unit.is_none() {
             reader.error(Code::ZeroVector, reader.span(node), "a zero vector has no direction");
         }
-        unit.map(Self)
+        unit.map(|unit| Self(unit.to_array()))
     }
 }
 

@@ -75,7 +75,7 @@ fn check_vertex(index: usize, position: [f64; 3], normal: Option<&mut [f32; 3]>)
             return Err(format!("the normal of vertex {index} is {normal:?}"));
         }
         // Zero stays zero: such a vertex has no normal of its own.
-        *normal = crate::vector::unit(n).map_or([0.0; 3], |n| n.map(|v| v as f32));
+        *normal = crate::linear::unit_normal(n);
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Polygons as triangles.
 
-use crate::vector::{cross, dot, sub};
+use glam::DVec3;
 
 /// Polygons with more corners than this are cut as fans: clipping ears takes time in the cube of the corners.
 const MOST_EARS: usize = 256;
@@ -15,9 +15,9 @@ pub(super) fn triangulate(corners: &[u32], position: impl Fn(u32) -> [f64; 3], t
         [] | [_] | [_, _] => {}
         [a, b, c] => triangles.push([a, b, c]),
         [a, b, c, d] => {
-            let [pa, pb, pc, pd] = [a, b, c, d].map(position);
-            let normal = |p, q, r| cross(sub(q, p), sub(r, p));
-            if dot(normal(pa, pb, pc), normal(pa, pc, pd)) < 0.0 {
+            let [pa, pb, pc, pd] = [a, b, c, d].map(|i| DVec3::from(position(i)));
+            let normal = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p);
+            if normal(pa, pb, pc).dot(normal(pa, pc, pd)) < 0.0 {
                 triangles.extend([[a, b, d], [b, c, d]]);
             } else {
                 triangles.extend([[a, b, c], [a, c, d]]);
@@ -35,12 +35,11 @@ pub(super) fn triangulate(corners: &[u32], position: impl Fn(u32) -> [f64; 3], t
 
 /// Clips ears until three corners are left; false if at some point there is none.
 fn clip_ears(corners: &[u32], position: &impl Fn(u32) -> [f64; 3], triangles: &mut Vec<[u32; 3]>) -> bool {
-    let points: Vec<[f64; 3]> = corners.iter().map(|&i| position(i)).collect();
+    let points: Vec<DVec3> = corners.iter().map(|&i| position(i).into()).collect();
     // Newell's normal: twice the vector area.
-    let mut normal = [0.0; 3];
+    let mut normal = DVec3::ZERO;
     for i in 0..points.len() {
-        let n = cross(sub(points[i], points[0]), sub(points[(i + 1) % points.len()], points[0]));
-        normal = std::array::from_fn(|k| normal[k] + n[k]);
+        normal += (points[i] - points[0]).cross(points[(i + 1) % points.len()] - points[0]);
     }
     // Dropping the normal's largest component projects without turning the polygon over, if the other two keep their
     // cyclic order for a positive one.
@@ -70,15 +69,14 @@ fn clip_ears(corners: &[u32], position: &impl Fn(u32) -> [f64; 3], triangles: &m
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::length;
 
     fn area(points: &[[f64; 3]]) -> (f64, usize) {
         let corners: Vec<u32> = (0..points.len() as u32).collect();
         let mut triangles = Vec::new();
         triangulate(&corners, |i| points[i as usize], &mut triangles);
         let one = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| points[i as usize]);
-            0.5 * length(cross(sub(b, a), sub(c, a)))
+            let [a, b, c] = t.map(|i| DVec3::from(points[i as usize]));
+            0.5 * (b - a).cross(c - a).length()
         };
         (triangles.iter().map(one).sum(), triangles.len())
     }

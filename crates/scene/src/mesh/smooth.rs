@@ -1,25 +1,26 @@
 //! Normals for a mesh that has none.
 
+use glam::DVec3;
+
+use crate::linear::{unit, unit_normal};
 use crate::model::Mesh;
-use crate::vector::{cross, dot, length, sub, unit};
 
 /// A normal for each vertex: the mean of the normals of the triangles around it, each weighted by its angle there
 /// (Thürmer & Wüthrich 1998), so that how a surface is cut into triangles does not matter.
 ///
 /// Vertices of no triangle with an area get (0, 0, 0): no normal.
 pub fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
-    let mut sums = vec![[0.0_f64; 3]; mesh.vertices.len()];
+    let mut sums = vec![DVec3::ZERO; mesh.vertices.len()];
     for triangle in &mesh.triangles {
-        let p = triangle.map(|i| mesh.vertices[i as usize]);
-        let Some(normal) = unit(cross(sub(p[1], p[0]), sub(p[2], p[0]))) else { continue };
+        let p = triangle.map(|i| DVec3::from(mesh.vertices[i as usize]));
+        let Some(normal) = unit((p[1] - p[0]).cross(p[2] - p[0])) else { continue };
         for k in 0..3 {
-            let (a, b) = (sub(p[(k + 1) % 3], p[k]), sub(p[(k + 2) % 3], p[k]));
-            let angle = length(cross(a, b)).atan2(dot(a, b));
-            let sum = &mut sums[triangle[k] as usize];
-            *sum = std::array::from_fn(|axis| sum[axis] + angle * normal[axis]);
+            let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+            let angle = a.cross(b).length().atan2(a.dot(b));
+            sums[triangle[k] as usize] += angle * normal;
         }
     }
-    sums.into_iter().map(|sum| unit(sum).map_or([0.0; 3], |n| n.map(|v| v as f32))).collect()
+    sums.into_iter().map(|sum| unit_normal(sum.to_array())).collect()
 }
 
 #[cfg(test)]
