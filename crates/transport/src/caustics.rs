@@ -12,19 +12,17 @@
 //! have a small share: through them the bright spots are seen that they throw themselves.
 //!
 //! The share is taken from the light that comes in otherwise. Whether that pays is a matter of the scene, and is tried before the
-//! picture, with random numbers of which it uses none (`trial.rs`).
+//! picture, with random numbers of which it uses none ([`tune`](crate::tune)).
 
 mod hull;
 mod image;
 mod mixture;
 #[cfg(test)]
 mod tests;
-mod trial;
 
 pub(crate) use hull::Hull;
 pub(crate) use image::{Ball, Eye, Image, Shows};
 pub(crate) use mixture::{Aimed, Mixture, Seen, density_of, is_within, place_within, share_of, share_of_images};
-pub(crate) use trial::{Trial, try_casters};
 
 use crate::bsdf::Bsdf;
 use crate::light::{LightTable, Round, visible_sum};

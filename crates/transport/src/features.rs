@@ -4,9 +4,9 @@
 //! the picture is done, so that a render without them does nothing for them.
 
 use crate::film::{Counters, PixelRect};
-use crate::kernel::Tracer;
 use crate::prepare::Prepared;
 use crate::render::ThreadError;
+use crate::tracer::Tracer;
 use crate::wavelength::WavelengthDistribution;
 use etalon_optics::colour::{colour_matching, rec709_from_xyz};
 use etalon_optics::spectrum::Illuminant;

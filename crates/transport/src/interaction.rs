@@ -69,7 +69,7 @@ impl<'a> SurfaceInteraction<'a> {
 
     /// Whether the path met the side that the normal points into.
     #[inline(always)]
-    pub(crate) fn from_front(&self) -> bool {
+    pub(crate) fn meets_front(&self) -> bool {
         self.point.normal.dot(self.wo) > 0.0
     }
 
@@ -107,7 +107,7 @@ impl<'a> SurfaceInteraction<'a> {
             None => of_material.constant.unwrap_or_else(|| of_material.glass.indices(wavelength_nm)),
             Some(media) => {
                 let [near, far] = [media.incident, media.transmitted].map(|medium| medium.eval(wavelength_nm));
-                if self.from_front() { [far, near] } else { [near, far] }
+                if self.meets_front() { [far, near] } else { [near, far] }
             }
         }
     }

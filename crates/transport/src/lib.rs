@@ -6,15 +6,16 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`prepare`](mod@prepare) | shapes in world space, lights, the accelerator |
+//! | [`prepare`](mod@prepare), [`tune`](mod@tune) | shapes in world space, lights, the accelerator; a trial before the picture |
 //! | [`plan`] | which effects the scene calls for, and why |
 //! | [`frame`] | centring and scaling |
-//! | `engine` | many paths at once: the film of `path`, bit for bit |
-//! | `path`, `media`, [`polarisation`] | the path loop; which medium it is in; the Stokes vector that it carries |
+//! | `integrator` | the path loop and its steps |
+//! | `batch` | the same steps for many paths at once: the same film, bit for bit |
+//! | `world`, `interaction`, `media`, [`polarisation`] | the scene as paths see it; what they meet; which medium they are in; the Stokes vector that they carry |
 //! | `coordinates` | shading normals and texture coordinates |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`], [`texture`] | what the estimates are made of |
-//! | `kernel`, `model`, [`mod@render`], [`film`] | the table of kernels, what their lanes stand for, tiles over all cores, sums |
+//! | `kernel`, `tracer`, `model`, [`mod@render`], [`film`] | the table of kernels, where samples begin, what their lanes stand for, tiles over all cores, sums |
 //! | [`features`] | what camera rays meet first |
 //! | [`canvas`] | a picture under way: divided, put down, taken up |
 //! | [`accuracy`], [`pilot`], [`price`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
@@ -57,6 +58,7 @@ pub mod pilot;
 pub mod plan;
 pub mod polarisation;
 pub mod prepare;
+mod prepare_error;
 pub mod price;
 mod probe;
 mod relief;
@@ -72,6 +74,9 @@ pub mod spectral;
 pub mod stop;
 mod surface;
 pub mod texture;
+mod tracer;
+mod trial;
+pub mod tune;
 pub mod warp;
 pub mod wavelength;
 mod world;
@@ -84,8 +89,10 @@ pub use film::{Band, Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
 pub use media::DEPTH as MOST_SOLIDS_AT_ONCE;
 pub use pilot::Pilot;
 pub use plan::{Carried, Effect, EffectName, PathLoop, Plan, Study, StudyError};
-pub use prepare::{PrepareError, Prepared, prepare, prepare_study};
+pub use prepare::Prepared;
+pub use prepare_error::PrepareError;
 pub use price::Price;
 pub use render::{Control, Extent, ThreadError};
 pub use shares::Shares;
 pub use stop::{Ended, Explored, Finished, Foretold, Limits, Reached, SettleError, Settled, Watch};
+pub use tune::{prepare, prepare_study};

@@ -4,27 +4,26 @@ use crate::absorption::{Absorption, Interior};
 use crate::bsdf::Bsdf;
 use crate::camera::{Camera, Moving};
 use crate::caustics::Casters;
-use crate::coincidence;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
-use crate::kernel::{Kernel, kernel, study_kernel};
 use crate::light::{
     DirectionalLight, Environment, EnvironmentLight, EnvironmentRadiance, Light, LightTable, PointLight, SpotLight,
 };
 use crate::media::{Media, Solid, open_edges};
 use crate::motion::motion;
-use crate::plan::{Carried, EffectName, LaneModel, OneLaneFilm, Plan, Study, StudyError, simulated};
+use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
+use crate::prepare_error::PrepareError;
 use crate::shading_tables::ShadingTables;
 use crate::shapes::{self, SceneShapes};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, EmissionImage, ObjectSurface, Relief, Surfaces};
 use crate::wavelength::WavelengthDistribution;
 use crate::world::ShadowRays;
-use etalon_geometry::{Geometry, GeometryError, ShapeError, SurfaceId};
+use etalon_geometry::{Geometry, SurfaceId};
 use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
-use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, ReferenceError, Scene};
-use etalon_simd::{Level, LevelError};
+use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, Scene};
+use etalon_simd::Level;
 use std::sync::Arc;
 
 /// A scene that is ready to be rendered.
@@ -45,62 +44,11 @@ pub struct Prepared {
     pub(crate) tables: ShadingTables,
     pub(crate) casters: Casters,
     plan: Plan,
-    /// What paths carry for the sake of a study.
-    carried: Option<Carried>,
-    warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
 }
 
-/// Why a scene cannot be prepared.
-#[derive(Debug, thiserror::Error)]
-pub enum PrepareError {
-    /// A shape that cannot be intersected.
-    #[error("object \"{object}\": {source}")]
-    Shape {
-        /// Name of the object.
-        object: String,
-        /// What is wrong with it.
-        source: ShapeError,
-    },
-    /// An instance that cannot be placed.
-    #[error("instance \"{instance}\": {source}")]
-    Instance {
-        /// Name of the instance.
-        instance: String,
-        /// What is wrong with it.
-        source: ShapeError,
-    },
-    /// A camera that cannot move as it should.
-    #[error("the camera: {0}")]
-    Camera(ShapeError),
-    /// The scene as a whole cannot be built.
-    #[error("the scene's geometry: {0}")]
-    Geometry(#[from] GeometryError),
-    /// A dielectric with a priority whose surface bounds no solid.
-    #[error("object \"{object}\" has a dielectric with a priority, but {why}: it bounds no solid")]
-    OpenSolid {
-        /// Name of the object.
-        object: String,
-        /// Where it is open.
-        why: String,
-    },
-    /// A reference to something that is not in the scene.
-    #[error(transparent)]
-    Reference(#[from] ReferenceError),
-    /// The instruction set that the environment names cannot be used.
-    #[error(transparent)]
-    Level(#[from] LevelError),
-    /// What the study asks for makes no sense.
-    #[error(transparent)]
-    Study(#[from] StudyError),
-}
-
-/// Prepares a scene: its frame, the shapes and the accelerator in it, the table of lights and the plan.
-pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
-    prepare_study(scene, &Study::default())
-}
-
-/// As [`prepare`], with effects that the scene does not call for, or without some that it does.
-pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareError> {
+/// Prepares a scene: its frame, the shapes and the accelerator in it, the table of lights and the plan. Renders nothing.
+pub(crate) fn build(scene: &Scene, study: &Study) -> Result<Prepared, PrepareError> {
     Level::chosen()?;
     scene.check_references()?;
     let plan = Plan::new(scene, study)?;
@@ -233,7 +181,7 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
     let drawn = matches!(plan.lane_model, LaneModel::Shared | LaneModel::Hero).then_some(&wavelengths);
     let tables = ShadingTables::new(&surfaces, &lights, &environments, drawn, plan.runs(EffectName::Polarisation));
     let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene)).transpose()?;
-    let mut prepared = Prepared {
+    Ok(Prepared {
         frame,
         camera: frame.camera(&scene.camera),
         camera_motion,
@@ -248,15 +196,9 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
         tables,
         casters,
         plan,
-        carried: study.carried,
         warnings,
         scene: simulated,
-    };
-    if !study.by_cosine_alone {
-        prepared.choose_casters();
-    }
-    prepared.warnings.extend(coincidence::warnings(&prepared));
-    Ok(prepared)
+    })
 }
 
 /// The axis of an object that is a polarising sheet, in the coordinates of its group.
@@ -319,14 +261,6 @@ impl Prepared {
                 made(&own).moving(moving.clone())
             }
             _ => made(&self.camera),
-        }
-    }
-
-    /// The kernel that the plan chose.
-    pub(crate) fn kernel(&self) -> &'static Kernel {
-        match self.carried {
-            None => kernel(self.plan.lane_model, self.plan.runs(EffectName::Polarisation)),
-            Some(carried) => study_kernel(carried),
         }
     }
 

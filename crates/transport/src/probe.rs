@@ -1,10 +1,10 @@
 //! Pixels traced with random numbers that no picture uses: what explorations and pilots are made of.
 
 use crate::film::{Counters, Pixel, XyzSum};
-use crate::kernel::Spot;
 use crate::prepare::Prepared;
 use crate::render::ThreadError;
 use crate::sampler::SOBOL_POINTS;
+use crate::tracer::Spot;
 use etalon_scene::SamplerKind;
 use rayon::prelude::*;
 use std::ops::Range;

@@ -1,10 +1,12 @@
 //! Rendering: tiles over all cores, the same bytes whatever their number.
 
 use crate::film::{Counters, Film, PixelRect, Sums, XyzSum};
-use crate::kernel::{RenderSpots, Spot};
+use crate::kernel::RenderSpots;
 use crate::plan::{LaneModel, PathLoop};
 use crate::prepare::Prepared;
+use crate::replay::Replay;
 use crate::shares::Shares;
+use crate::tracer::Spot;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -106,6 +108,11 @@ impl Prepared {
                 .map(|band| self.one_lane.mean_of_unit([bands.edge_nm(band), bands.edge_nm(band + 1)]))
                 .collect(),
         )
+    }
+
+    /// Traces sample number `sample` of pixel (`x`, `y`) once more and says what happened.
+    pub fn replay(&self, x: u32, y: u32, sample: u32) -> Replay {
+        (self.kernel().replay)(self, x, y, sample)
     }
 
     /// Adds samples to a tile, by the loop that the plan chose: to the sums of its pixels, row by row, in each replicate by

@@ -2,11 +2,11 @@
 
 use crate::film::Counters;
 use crate::film_entry::Received;
-use crate::kernel::Tracer;
 use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
+use crate::tracer::Tracer;
 use etalon_optics::{Lanes, Vec3};
 use serde::Serialize;
 
@@ -56,13 +56,6 @@ pub enum Event {
         /// Why.
         because: &'static str,
     },
-}
-
-impl Prepared {
-    /// Traces sample number `sample` of pixel (`x`, `y`) once more and says what happened.
-    pub fn replay(&self, x: u32, y: u32, sample: u32) -> Replay {
-        (self.kernel().replay)(self, x, y, sample)
-    }
 }
 
 /// [`Prepared::replay`] by one kernel.

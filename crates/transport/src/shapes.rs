@@ -7,7 +7,7 @@ use crate::light::{
     TriangleLight,
 };
 use crate::motion::motion;
-use crate::prepare::PrepareError;
+use crate::prepare_error::PrepareError;
 use crate::round::RoundCoordinates;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{

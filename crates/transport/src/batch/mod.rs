@@ -22,11 +22,11 @@ mod tests;
 
 use crate::film::{Counters, Sums};
 use crate::film_entry::{FilmEntry, Received};
-use crate::kernel::{Spot, Tracer};
 use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
 use crate::reuse::Blocks;
+use crate::tracer::{Spot, Tracer};
 use crate::world::World;
 use blocks::Dealing;
 use casters::Casting;

@@ -3,11 +3,11 @@
 use super::render_on;
 use crate::caustics::Aims;
 use crate::film::{Counters, Film, PixelRect, TileSums};
-use crate::kernel::Spot;
 use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::plan::{EffectName, LaneModel, PathLoop};
 use crate::polarisation::Averaged;
 use crate::prepare::Prepared;
+use crate::tracer::Spot;
 use crate::{Control, Study, prepare_study};
 use etalon_simd::Level;
 

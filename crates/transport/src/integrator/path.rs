@@ -196,7 +196,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let Some(absorption) = &world.absorption else { return };
         let mut length = f64::INFINITY;
         if let Some(vertex) = met {
-            self.body = self.body.before(&vertex.surface, vertex.from_front());
+            self.body = self.body.before(&vertex.surface, vertex.meets_front());
             length = (vertex.point.position - self.passed_at.unwrap_or(ray.origin)).length();
         }
         let lambda_nm = &self.wavelengths.lambda_nm;
@@ -321,7 +321,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 observer.direction(&crate::caustics::Mixture::NONE);
                 let [interior, exterior] =
                     vertex.indices(&world.tables.interfaces[usize::from(number)], self.hero_nm());
-                let from_outside = vertex.from_front();
+                let from_outside = vertex.meets_front();
                 let eta = if from_outside { interior / exterior } else { exterior / interior };
                 let turn = crate::bsdf::dielectric::turn(point.normal, *wo, eta, u[0]);
                 Some(Direction::Turned { turn, eta, from_outside })
@@ -402,7 +402,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         self.leave_ray(world);
         if (world.absorption.is_some() || world.media.is_some()) && vertex.goes_through(wi) {
-            self.body = self.body.beyond(surface, vertex.from_front());
+            self.body = self.body.beyond(surface, vertex.meets_front());
             if vertex.crosses {
                 self.inside = self.walk.beyond;
             }
@@ -423,7 +423,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     #[inline(always)]
     pub(super) fn body_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> Body<'a> {
         match vertex.goes_through(wi) {
-            true => self.body.beyond(&vertex.surface, vertex.from_front()),
+            true => self.body.beyond(&vertex.surface, vertex.meets_front()),
             false => self.body,
         }
     }

@@ -5,6 +5,7 @@
 
 mod evidence;
 mod grey;
+pub(crate) mod kernels;
 mod missing_light;
 mod study;
 mod three_channels;
@@ -16,8 +17,8 @@ pub(crate) use grey::OneLaneFilm;
 pub(crate) use study::simulated;
 pub(crate) use three_channels::CHANNELS_NM;
 
-use crate::kernel::{Kernel, kernel, study_kernel};
 use etalon_scene::{LightSampling, SamplerKind, Scene};
+use kernels::KernelKind;
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
@@ -274,10 +275,10 @@ pub struct Plan {
 }
 
 /// Why the pixels of a scene cannot share paths; `None` if they can.
-fn reuse_unsupported(kernel: &Kernel, runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
+fn reuse_unsupported(kernel: &KernelKind, runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
     match () {
         () if kernel.polarised => Some("light is followed with its polarisation"),
-        () if kernel.render_reused.is_none() => Some("a study decides what paths carry"),
+        () if !kernel.shares_paths => Some("a study decides what paths carry"),
         () if runs(EffectName::NestedDielectrics) => Some("dielectrics are nested"),
         () if runs(EffectName::Absorption) => Some("media absorb"),
         () if runs(EffectName::Motion) => Some("something moves while the shutter is open"),
@@ -335,14 +336,12 @@ impl Plan {
             LaneModel::One
         };
         let i = &scene.integrator;
-        let kernel = match study.carried {
-            Some(_) if runs(EffectName::Polarisation) => {
-                let because = "only its own kernel carries it".to_owned();
-                return Err(StudyError::Contradicted { effect: EffectName::Polarisation, because });
-            }
-            None => kernel(lane_model, runs(EffectName::Polarisation)),
-            Some(carried) => study_kernel(carried),
-        };
+        let polarised = runs(EffectName::Polarisation);
+        if study.carried.is_some() && polarised {
+            let because = "only its own kernel carries it".to_owned();
+            return Err(StudyError::Contradicted { effect: EffectName::Polarisation, because });
+        }
+        let kernel = kernels::choose(lane_model, polarised, study.carried);
         if kernel.lanes == LaneModel::ThreeChannels {
             approximations.push("spectra: light and surfaces have three channels instead".to_owned());
         }
@@ -351,7 +350,7 @@ impl Plan {
         if let (Some(_), Some(because)) = (path_reuse, reuse_unsupported(kernel, runs)) {
             return Err(StudyError::PathReuse(because));
         }
-        let &Kernel { name, lanes, lane_count, .. } = kernel;
+        let &KernelKind { name, lanes, lane_count, .. } = kernel;
         Ok(Self {
             kernel: name,
             lane_model: lanes,

@@ -1,76 +1,27 @@
-//! Before a picture: what share of the directions casters of caustics are worth.
+//! A trial of guided sampling: the variance that each share of guided directions would leave.
 
-use super::{Aims, Mixture};
+use crate::caustics::{Aims, Mixture};
 use crate::film::Counters;
-use crate::kernel::Tracer;
 use crate::model::WavelengthModel;
 use crate::observer::{Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
-use crate::sampler::mix;
+use crate::tracer::Tracer;
 use etalon_optics::Lanes;
 use rayon::prelude::*;
 
 /// The share of all casters together that is tried, and those that the trial decides between.
-const TRIED: f64 = 0.35;
-const SHARES: [f64; 5] = [0.1, 0.2, 0.35, 0.5, 0.6];
+pub(crate) const TRIED: f64 = 0.35;
+pub(crate) const SHARES: [f64; 5] = [0.1, 0.2, 0.35, 0.5, 0.6];
 /// Pixels that are tried, and samples of each.
 const PIXELS: u64 = 1024;
 const SAMPLES: u32 = 16;
-/// What must be left of the variance. Much, since the trial knows of no strata: where the picture's samples would be spread evenly over
-/// directions, a share taken from them costs more than it foretells; and paths through casters are longer.
-const WORTH_IT: f64 = 0.4;
-/// The same of images of lamps: small, so that little is taken from what comes in otherwise.
-const IMAGES_WORTH_IT: f64 = 0.9;
-/// The same of whole lenses beside images, of what is left with images alone: with them a path takes a sixth longer, but what they leave of
-/// the error is .69 and .66 where the trial says .54 and .88.
-const LENSES_WORTH_IT: f64 = 0.9;
 /// Paths that the trial draws more than five times as often as the cosine would do not count. Without casters they bear much of the
 /// variance, but are so rare that hardly any picture has them: with them, the trial promises much where nothing is won (two balls in
 /// a room: .1 to .5 of the variance, in truth .9 of the error).
 const RARE: f64 = 0.2;
 /// How far around a pixel its level is averaged, in tried pixels.
 const NEAR: usize = 2;
-
-impl Prepared {
-    /// Gives casters the share of the directions that leaves the least variance, relative to the level of each place, if that is
-    /// worth it.
-    ///
-    /// One trial tells the variance for every share: with xₛ what a path comes to under share s and Fₛ the product of its factors, the
-    /// mean square under s is E[xₛ²·F/Fₛ], F that under the share tried (importance sampling of the second moment, but for what roulette
-    /// does). The rare bright paths that bear the variance without casters are common in the trial.
-    pub(crate) fn choose_casters(&mut self) {
-        if self.casters.bodies.is_empty() {
-            return;
-        }
-        let own = self.scene.integrator.seed;
-        // The same for each seed, so that pictures of different ones are drawn alike; and none that anyone would choose.
-        self.scene.integrator.seed = mix(0x6361_7573_7469_6373);
-        let mut best = (1.0, Aims::Nothing, 0.0);
-        let images = !self.casters.images.is_empty();
-        for (aims, worth_it, there) in [
-            (Aims::Bodies, WORTH_IT, !self.casters.bodies.is_empty()),
-            (Aims::Images, IMAGES_WORTH_IT, images),
-            (Aims::ImagesAndLenses, LENSES_WORTH_IT, images && !self.casters.lenses.is_empty()),
-        ] {
-            // Lenses come last: against the best without them.
-            let worth_it = if aims == Aims::ImagesAndLenses { worth_it * best.0 } else { worth_it };
-            if !there {
-                continue;
-            }
-            (self.casters.aims, self.casters.share) = (aims, TRIED);
-            let [alone, shares @ ..] = (self.kernel().try_casters)(self).variances();
-            for (share, variance) in SHARES.into_iter().zip(shares) {
-                let left = variance / alone;
-                if left < worth_it && left < best.0 {
-                    best = (left, aims, share);
-                }
-            }
-        }
-        (_, self.casters.aims, self.casters.share) = best;
-        self.scene.integrator.seed = own;
-    }
-}
 
 /// What the paths of some pixels came to under the share that was tried.
 pub(crate) struct Trial {
@@ -143,7 +94,7 @@ pub(crate) fn try_casters<M: WavelengthModel<N>, P: Polarisation<N>, const N: us
 impl Trial {
     /// Variances over the square of the level around, with a hundredth of the picture's mean square lest black pixels count alone, in
     /// the sum over pixels.
-    fn variances(&self) -> [f64; 1 + SHARES.len()] {
+    pub(crate) fn variances(&self) -> [f64; 1 + SHARES.len()] {
         let levels = self.levels();
         let mean = levels.iter().sum::<f64>() / levels.len() as f64;
         let mut sums = [0.0; 1 + SHARES.len()];
