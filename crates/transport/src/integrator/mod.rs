@@ -22,10 +22,12 @@
 mod next_event;
 mod path;
 mod scalar;
+mod scatter;
 
 pub(crate) use next_event::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
-pub(crate) use path::{Arrival, Direction, Path, Start};
+pub(crate) use path::{Arrival, Path, Start};
 pub(crate) use scalar::trace;
+pub(crate) use scatter::Direction;
 
 /// Below this throughput a path is ended even without roulette: no film value could change (hard case 30).
 pub(crate) const THROUGHPUT_FLOOR: f64 = 1e-30;

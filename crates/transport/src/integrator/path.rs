@@ -1,19 +1,17 @@
 //! The state of a path between two of its steps, and the steps.
 
-use super::{MOST_VERTICES, ROULETTE_FROM_VERTEX, ROULETTE_THROUGHPUT, THROUGHPUT_FLOOR};
+use super::MOST_VERTICES;
 use crate::absorption::Body;
-use crate::bsdf::dielectric::Turn;
-use crate::bsdf::{BsdfSample, Lobe, lambert};
 use crate::film::Counters;
 use crate::film_entry::Received;
 use crate::interaction::{SurfaceInteraction, Walk};
 use crate::media::Inside;
-use crate::mis::{Density, power_heuristic};
+use crate::mis::power_heuristic;
 use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
-use crate::shading_tables::{BsdfKind, SpectrumCache};
+use crate::shading_tables::SpectrumCache;
 use crate::wavelength::Wavelengths;
 use crate::world::World;
 use etalon_geometry::{Ray, SurfaceId};
@@ -35,13 +33,13 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
     /// ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
     pub eta_squared: f64,
     /// Product of guiding weights since the last diffuse vertex; excluded from Russian roulette.
-    guiding: f64,
+    pub(super) guiding: f64,
     /// The last step of the walk, as far as MIS needs it.
-    step: Step,
+    pub(super) step: Step,
     /// The solids that hold it.
     pub inside: Inside,
     /// The body that it is in, where no priority says it.
-    body: Body<'a>,
+    pub(super) body: Body<'a>,
     /// How far it has come along its ray.
     pub walk: Walk,
     /// Surfaces passed as if they were not there, which are no vertices of the path, and where the last one was on this ray.
@@ -63,7 +61,7 @@ pub(crate) struct Start<P, const N: usize> {
 
 /// The last step of a walk.
 #[derive(Clone, Copy)]
-enum Step {
+pub(super) enum Step {
     /// From the camera or by a delta: no shadow ray could have found what it finds.
     Unshared,
     /// Drawn with this density, the mean over the lanes, from this point of this primitive, where a shadow ray was sent too.
@@ -81,27 +79,6 @@ pub(crate) enum Arrival {
     Passed,
     /// The surface scatters it: the next vertex of the path.
     Scatters,
-}
-
-/// A direction that was drawn from a surface.
-pub(crate) enum Direction<const N: usize> {
-    /// From a Lambertian surface, with its cosine; `guiding` is its density by the cosine over the density that it was drawn with.
-    Diffuse { wi: Vec3<f64>, cos: f64, guiding: f64 },
-    /// By a mirror.
-    Mirrored(Vec3<f64>),
-    /// By a smooth interface, from outside or not, of this relative index for the hero.
-    Turned { turn: Turn, eta: f64, from_outside: bool },
-    /// By any BSDF.
-    General { sample: BsdfSample<N>, guiding: f64 },
-}
-
-/// A step that a path has taken, but for its guiding weight.
-pub(crate) struct Taken {
-    pub wi: Vec3<f64>,
-    /// What throughput is to be multiplied by for the direction not being drawn by the BSDF alone.
-    pub guiding: f64,
-    /// Whether no other direction was possible.
-    pub delta: bool,
 }
 
 impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
@@ -272,194 +249,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         true
     }
 
-    /// f·|cos θ| of a direction, and the mean over the lanes of the density with which the walk would draw it, sr⁻¹.
-    #[inline(always)]
-    pub(super) fn eval(
-        &mut self,
-        world: &World<'a>,
-        vertex: &SurfaceInteraction<'a>,
-        wi: Vec3<f64>,
-    ) -> (Lanes<f64, N>, f64) {
-        match vertex.kind {
-            BsdfKind::Lambert(slot) => {
-                let cos = lambert::common_cosine(vertex.point.normal, vertex.wo, wi);
-                if cos == 0.0 {
-                    return (Lanes::ZERO, 0.0);
-                }
-                let density = lambert::density(cos);
-                (self.spectrum(world, slot) * density, density)
-            }
-            BsdfKind::Mirror(_) | BsdfKind::Dielectric(_) => (Lanes::ZERO, 0.0),
-            BsdfKind::General => {
-                let (f_cos, densities) = vertex.scattering().eval(&self.wavelengths.lambda_nm, vertex.wo, wi);
-                (f_cos, self.lanes.mean_density(densities))
-            }
-        }
-    }
-
-    /// Draws a direction; `None` absorbs the path.
-    #[inline(always)]
-    pub(crate) fn sample_direction(
-        &mut self,
-        world: &World<'a>,
-        vertex: &SurfaceInteraction<'a>,
-        u: [f64; 3],
-        observer: &mut impl Observer<N>,
-    ) -> Option<Direction<N>> {
-        let SurfaceInteraction { point, wo, .. } = vertex;
-        match vertex.kind {
-            BsdfKind::Lambert(_) => {
-                let (wi, cos, mixture) = world.casters.diffuse(point, *wo, [u[1], u[2]])?;
-                observer.direction(&mixture);
-                Some(Direction::Diffuse { wi, cos, guiding: mixture.factor(1.0) })
-            }
-            BsdfKind::Mirror(_) => {
-                observer.direction(&crate::caustics::Mixture::NONE);
-                Some(Direction::Mirrored(wo.reflected_about(point.normal).renormalized()))
-            }
-            BsdfKind::Dielectric(number) => {
-                observer.direction(&crate::caustics::Mixture::NONE);
-                let [interior, exterior] =
-                    vertex.indices(&world.tables.interfaces[usize::from(number)], self.hero_nm());
-                let from_outside = vertex.meets_front();
-                let eta = if from_outside { interior / exterior } else { exterior / interior };
-                let turn = crate::bsdf::dielectric::turn(point.normal, *wo, eta, u[0]);
-                Some(Direction::Turned { turn, eta, from_outside })
-            }
-            BsdfKind::General => {
-                let lambda_nm = &self.wavelengths.lambda_nm;
-                let (sample, mixture) = world.casters.sample(point, vertex.scattering(), lambda_nm, *wo, u)?;
-                observer.direction(&mixture);
-                Some(Direction::General { sample, guiding: mixture.factor(1.0) })
-            }
-        }
-    }
-
-    /// The wavelength that decides where the path goes, nm.
-    #[inline(always)]
-    pub(crate) fn hero_nm(&self) -> f64 {
-        self.wavelengths.lambda_nm[0]
-    }
-
-    /// Takes the step along a direction: throughput is multiplied by f·|cos θ|/p, but for the guiding weight. `u_lobe` is the number that
-    /// chose among deltas.
-    #[inline(always)]
-    pub(crate) fn scatter(
-        &mut self,
-        world: &World<'a>,
-        vertex: &SurfaceInteraction<'a>,
-        direction: Direction<N>,
-        u_lobe: f64,
-    ) -> Taken {
-        let lane_density = Lanes::ONE;
-        // Each kind takes the step by itself, so that what is constant for it is known to the compiler.
-        match (direction, vertex.kind) {
-            (Direction::Diffuse { wi, cos, guiding }, BsdfKind::Lambert(slot)) => {
-                let (weight, density) = (self.spectrum(world, slot), Density::SolidAngle(lambert::density(cos)));
-                let sample = BsdfSample { wi, weight, density, lane_density, eta: 1.0 };
-                self.take(world, vertex, &sample, guiding, u_lobe)
-            }
-            (Direction::Mirrored(wi), BsdfKind::Mirror(slot)) => {
-                let (weight, density) = (self.spectrum(world, slot), Density::Delta);
-                let sample = BsdfSample { wi, weight, density, lane_density, eta: 1.0 };
-                self.take(world, vertex, &sample, 1.0, u_lobe)
-            }
-            (Direction::Turned { turn, eta, from_outside }, BsdfKind::Dielectric(number)) => {
-                let glass = &world.tables.interfaces[usize::from(number)].glass;
-                let lambda_nm = &self.wavelengths.lambda_nm;
-                let sample = glass.turned(lambda_nm, &turn, (eta, from_outside), vertex.interface);
-                self.take(world, vertex, &sample, 1.0, u_lobe)
-            }
-            (Direction::General { sample, guiding }, _) => self.take(world, vertex, &sample, guiding, u_lobe),
-            _ => unreachable!("directions are drawn for the kind of surface that the path is at"),
-        }
-    }
-
-    #[inline(always)]
-    fn take(
-        &mut self,
-        world: &World<'a>,
-        vertex: &SurfaceInteraction<'a>,
-        sample: &BsdfSample<N>,
-        guiding: f64,
-        u_lobe: f64,
-    ) -> Taken {
-        let SurfaceInteraction { point, wo, surface, .. } = vertex;
-        let wi = sample.wi;
-        let delta = matches!(sample.density, Density::Delta);
-        self.beta *= sample.weight;
-        let lobe = if delta { Lobe::Delta(u_lobe) } else { Lobe::SolidAngle };
-        self.polarisation.follow(*wo, wi, || vertex.scattering().mueller(&self.wavelengths.lambda_nm, *wo, wi, lobe));
-        let mean_of_hero = self.lanes.follow(sample.lane_density);
-        self.eta_squared *= sample.eta * sample.eta;
-        self.step = Step::Unshared;
-        if let Density::SolidAngle(density) = sample.density {
-            self.guiding = guiding.min(1.0);
-            if vertex.sees_lights {
-                let density = density * mean_of_hero;
-                self.step = Step::Shared { from: point.position, leaves: point.surface, density };
-            }
-        }
-        self.leave_ray(world);
-        if (world.absorption.is_some() || world.media.is_some()) && vertex.goes_through(wi) {
-            self.body = self.body.beyond(surface, vertex.meets_front());
-            if vertex.crosses {
-                self.inside = self.walk.beyond;
-            }
-        }
-        Taken { wi, guiding, delta }
-    }
-
     /// Forgets how far the path has come along its ray.
     #[inline(always)]
-    fn leave_ray(&mut self, world: &World<'a>) {
+    pub(super) fn leave_ray(&mut self, world: &World<'a>) {
         if world.meets_groups {
             self.walk.restart();
             (self.passed_at, self.u_mask) = (None, None);
         }
-    }
-
-    /// The body on the side of a surface to which a direction leads.
-    #[inline(always)]
-    pub(super) fn body_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> Body<'a> {
-        match vertex.goes_through(wi) {
-            true => self.body.beyond(&vertex.surface, vertex.meets_front()),
-            false => self.body,
-        }
-    }
-
-    /// Applies the guiding weight of a step, and plays Russian roulette with the throughput. False if the path ends.
-    #[inline(always)]
-    pub(crate) fn survives(
-        &mut self,
-        world: &World<'a>,
-        guiding: f64,
-        u_roulette: f64,
-        observer: &mut impl Observer<N>,
-    ) -> bool {
-        self.beta *= guiding;
-        if !self.beta.is_finite() {
-            // Shown to the film, which counts and locates it.
-            self.radiance = self.beta;
-            observer.end(End::NonFinite);
-            return false;
-        }
-        let throughput = (self.beta.max_lane() * self.lanes.weight()) * self.eta_squared;
-        if throughput < THROUGHPUT_FLOOR {
-            observer.end(End::Vanished);
-            return false;
-        }
-        if world.roulette && self.vertex + 1 >= ROULETTE_FROM_VERTEX {
-            // No cap below one: it would make the variance infinite between good mirrors (hard case 29).
-            let survival = (throughput / (self.guiding * ROULETTE_THROUGHPUT)).min(1.0);
-            if u_roulette >= survival {
-                observer.end(End::Roulette);
-                return false;
-            }
-            self.beta /= survival;
-        }
-        self.vertex += 1;
-        true
     }
 
     /// A spectrum of the tables at the path's wavelengths.
