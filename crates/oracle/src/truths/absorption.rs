@@ -105,7 +105,7 @@ fn ball_without_refraction() -> Truth {
     )
     .confirmed("quadrature over the chords", 1e-7, move || {
         let share = |b: f64, _| 2.0 * b * (-2.0 * depth * (1.0 - b * b).max(0.0).sqrt()).exp();
-        framed(rectangle(share, [0.0, 1.0], [0.0, 1.0], 1e-9, 400_000).value)
+        framed(rectangle(share, [0.0, 1.0], [0.0, 1.0], 1e-9, 800_000).value)
     })
     .or_else("the diameter for every chord", framed((-2.0 * depth).exp()))
     .or_else("half of each chord", framed((1.0 - (1.0 + depth) * (-depth).exp()) * 2.0 / (depth * depth)))
@@ -125,12 +125,12 @@ fn ball_of_glass() -> Truth {
         let (r, tau) = lit(u);
         r + (1.0 - r).powi(2) * tau / (1.0 - r * tau)
     };
-    let value = framed(rectangle(whole, [0.0, 1.0], [0.0, 1.0], 1e-9, 400_000).value);
+    let value = framed(rectangle(whole, [0.0, 1.0], [0.0, 1.0], 1e-9, 800_000).value);
     let clear_inside = |u: f64, _: f64| {
         let (r, tau) = lit(u);
         r + (1.0 - r) * tau
     };
-    let once = framed(rectangle(clear_inside, [0.0, 1.0], [0.0, 1.0], 1e-9, 400_000).value);
+    let once = framed(rectangle(clear_inside, [0.0, 1.0], [0.0, 1.0], 1e-9, 800_000).value);
     Truth::new(
         "absorbing-ball-of-glass",
         &ball_scene(1.5, PER_M),
@@ -147,7 +147,7 @@ fn ball_of_glass() -> Truth {
             let inside: f64 = (0..60).map(|k| (1.0 - r).powi(2) * tau * (r * tau).powi(k)).sum();
             2.0 * b * (r + inside)
         };
-        framed(rectangle(beams, [0.0, 1.0], [0.0, 1.0], 1e-8, 400_000).value)
+        framed(rectangle(beams, [0.0, 1.0], [0.0, 1.0], 1e-8, 800_000).value)
     })
     .or_else("absorbed on the first chord only", once)
     .or_else("nothing is absorbed", 1.0)
