@@ -77,7 +77,7 @@ impl Best {
 
     /// Takes a hit within an instance that is the best so far.
     #[inline(always)]
-    pub(crate) fn set_within(&mut self, hit: RawHit, id: PrimitiveId, surface: SurfaceId) {
+    pub(crate) fn set_in_instance(&mut self, hit: RawHit, id: PrimitiveId, surface: SurfaceId) {
         self.set(hit, id);
         self.within = Some(surface);
     }

@@ -108,7 +108,7 @@ impl Builder {
         } else {
             vectorised(self.level, Bins(self.costs, items, &extent))
         };
-        if count <= LEAF_LIMIT && !extent.bounds.is_lone() {
+        if count <= LEAF_LIMIT && !extent.bounds.is_instance_leaf() {
             let area = extent.bounds.half_area();
             let leaf_cost = self.costs.leaf(extent.bounds, count) * area;
             if !split.as_ref().is_some_and(|s| s.cost + self.costs.node * area < leaf_cost) {

@@ -8,9 +8,9 @@ mod ray;
 mod set_out;
 
 use crate::Aabb;
-use crate::measure::half_area;
 pub(crate) use crate::narrow::{Lanes4, Plain};
 use crate::query::power_of_two;
+use crate::sah_cost::half_area;
 use etalon_optics::Vec3;
 use ray::PROJECTION_ERROR;
 pub(crate) use ray::{Entry, LEAST_DISTANCE};

@@ -2,11 +2,11 @@
 
 use crate::best::{Best, Found};
 use crate::build::{Costs, Item, LEAF_LIMIT, build};
-use crate::census::Census;
 use crate::frame::Frame;
-use crate::improve::improved;
+use crate::optimize::improved;
 use crate::query::{Query, RawHit};
 use crate::ray::ExactPoint;
+use crate::statistics::PrimitiveStatistics;
 use crate::traverse::{self, FLAT_LIMIT, Flat, Visit, level};
 use crate::wide::WideTree;
 use crate::{Aabb, Hit, Instance, Passed, Primitive, PrimitiveId, Ray, SurfaceId, SurfacePoint};
@@ -77,9 +77,9 @@ impl Geometry {
         if primitives.len() > 1 << 29 {
             return Err(GeometryError::TooMany(primitives.len()));
         }
-        let census = Census::of(&primitives);
-        let (mut instances, mut instance_count, mut nesting) = (Vec::with_capacity(census.instances), 1, 0);
-        let may_be_instances = if census.instances > 0 { primitives.as_mut_slice() } else { &mut [] };
+        let statistics = PrimitiveStatistics::of(&primitives);
+        let (mut instances, mut instance_count, mut nesting) = (Vec::with_capacity(statistics.instances), 1, 0);
+        let may_be_instances = if statistics.instances > 0 { primitives.as_mut_slice() } else { &mut [] };
         for (index, primitive) in may_be_instances.iter_mut().enumerate() {
             if let Primitive::Instance(instance) = primitive {
                 instances.push(index as u32);
@@ -95,7 +95,7 @@ impl Geometry {
         if nesting > MAX_NESTING {
             return Err(GeometryError::TooDeep(nesting));
         }
-        let bounds = census.bounds;
+        let bounds = statistics.bounds;
         let level = level::best();
         let is_flat = instances.is_empty() && primitives.len() <= flat_limit;
         let flat = bounds.filter(|_| is_flat).map(|bounds| Flat::new(&primitives, bounds));
@@ -103,13 +103,14 @@ impl Geometry {
         let tree = bounds.filter(|_| !is_flat && primitives.len() > TREELESS_LIMIT).map(|bounds| {
             let frame = Frame::around(bounds);
             // What is within an instance costs far more than a node.
-            let lone = |p: &Primitive| matches!(p, Primitive::Instance(_));
-            let item = |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32, lone(p));
+            let instance_leaf = |p: &Primitive| matches!(p, Primitive::Instance(_));
+            let item =
+                |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32, instance_leaf(p));
             let items = primitives.par_iter().enumerate().map(item).collect();
-            let costs = costs(&census);
+            let costs = costs(&statistics);
             let binary = improved(build(items, costs, level), costs, level);
             outline = binary.outline(OUTLINE_LIMIT).into_iter().map(|b| frame.unscaled_box(b)).collect();
-            WideTree::collapse(frame, &binary, &primitives, &census, costs, level::lanes(level))
+            WideTree::collapse(frame, &binary, &primitives, &statistics, costs, level::lanes(level))
         });
         if tree.is_none() {
             outline = if primitives.len() <= OUTLINE_LIMIT {
@@ -230,10 +231,10 @@ impl Geometry {
     /// a time of the shutter's: of any length.
     #[inline]
     pub fn placed_normal(&self, surface: SurfaceId, normal: Vec3<f64>, time: f64) -> Vec3<f64> {
-        if surface.instance == 0 { normal } else { self.normal_within(surface, normal, time) }
+        if surface.instance == 0 { normal } else { self.normal_in_instance(surface, normal, time) }
     }
 
-    fn normal_within(&self, surface: SurfaceId, normal: Vec3<f64>, time: f64) -> Vec3<f64> {
+    fn normal_in_instance(&self, surface: SurfaceId, normal: Vec3<f64>, time: f64) -> Vec3<f64> {
         let Some((_, instance)) = self.instance_of(surface) else { return normal };
         let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
         instance.placement_at(time).normal(instance.geometry().placed_normal(inner, normal, time))
@@ -449,7 +450,7 @@ impl Geometry {
 
 /// What the tree's builder weighs: a leaf tests flat shapes or spheres at once, but cylinders one by one. As many at once, whatever
 /// the instruction set: what a ray meets of an instance must not depend on that, nor does the tree of which its box is made.
-fn costs(census: &Census) -> Costs {
-    let most = 2 * census.cylinders < census.count - census.instances;
+fn costs(statistics: &PrimitiveStatistics) -> Costs {
+    let most = 2 * statistics.cylinders < statistics.count - statistics.instances;
     Costs { block: if most { LEAF_LIMIT as u32 } else { 1 }, node: 0.35 }
 }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// An instance of a tree: the first two cache lines are what every ray needs that meets its box, the third what a hit needs.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Portal {
+pub(crate) struct InstanceNode {
     /// Columns of L⁻¹, and a zero each.
     columns: [[f64; 4]; 3],
     translation: Vec3<f64>,
@@ -25,7 +25,7 @@ pub(crate) struct Portal {
     bounds: Aabb,
 }
 
-impl Portal {
+impl InstanceNode {
     /// For a tree whose leaves have so many lanes.
     pub(crate) fn new(instance: &Instance, id: PrimitiveId, lanes: usize) -> Self {
         let [x, y, z] = instance.placement().inverse();

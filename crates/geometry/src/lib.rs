@@ -18,7 +18,7 @@
 //! | `pages` | arrays in large pages |
 //! | `traverse` | its traversal, for each instruction set; `traverse::flat`: few primitives, without a tree |
 //! | `geometry` | [`Geometry`]: the queries |
-//! | `portal` | what a ray needs to go into an instance |
+//! | `instance_node` | what a ray needs to go into an instance |
 //! | `best` | the closest hit so far |
 //! | `passed` | [`Passed`]: the hits that a walk along a ray leaves behind |
 //! | `lanes` | [`Rays`]: eight rays at once |
@@ -28,22 +28,22 @@
 mod aabb;
 mod best;
 mod build;
-mod census;
 mod double_double;
 mod frame;
 mod geometry;
-mod improve;
 mod instance;
+mod instance_node;
 mod lanes;
-mod measure;
 mod motion;
 mod narrow;
+mod optimize;
 mod pages;
 mod passed;
-mod portal;
 mod query;
 mod ray;
+mod sah_cost;
 mod shapes;
+mod statistics;
 mod traverse;
 mod wide;
 

@@ -2,19 +2,19 @@
 //!
 //! A builder that splits from above sees large boxes alone, and what it cuts first stays apart: a room becomes eight corners, each with
 //! pieces of three walls and the air between them, which most rays enter only to find nothing there. So the largest subtrees are
-//! grouped from below, too (`cluster`), where the pieces of a wall find each other, and it stays so if that is better for rays (`crown`);
+//! grouped from below, too (`agglomerate`), where the pieces of a wall find each other, and it stays so if that is better for rays (`treelet`);
 //! among spheres in the air it is not. Then those that have a better place are moved there, one by one (`reinsert`). What it gains
 //! stands in `docs/performance.md`.
 
-mod cluster;
-mod crown;
+mod agglomerate;
 mod links;
 mod reinsert;
+mod treelet;
 
 use crate::build::{BinaryTree, Costs};
-use crown::Crown;
 use etalon_simd::Level;
 use links::Links;
+use treelet::Treelet;
 
 /// The same leaves in a better tree. The result does not depend on the instruction set.
 pub(crate) fn improved(tree: BinaryTree, costs: Costs, level: Level) -> BinaryTree {
@@ -23,9 +23,9 @@ pub(crate) fn improved(tree: BinaryTree, costs: Costs, level: Level) -> BinaryTr
         links.nodes(|node| tree.nodes[node as usize])
     };
     let mut links = Links::new(&tree);
-    let better = match Crown::new(&links).grouped(costs, level) {
-        Some(crown) => {
-            crown.put_on(&mut links);
+    let better = match Treelet::new(&links).grouped(costs, level) {
+        Some(treelet) => {
+            treelet.put_on(&mut links);
             // What is grouped from below may be too deep for rays.
             moved(links).or_else(|| moved(Links::new(&tree)))
         }
@@ -131,7 +131,7 @@ mod tests {
             (0..400).map(|i| 0.5 * 0.97_f32.powi(i)).map(|r| Box32 { min: [-r; 3], max: [r; 3] }).collect();
         let before = split(&shells);
         let leaves_before = leaves(&before);
-        assert!(Crown::new(&Links::new(&before)).grouped(COSTS, level::best()).is_none());
+        assert!(Treelet::new(&Links::new(&before)).grouped(COSTS, level::best()).is_none());
         let after = improved(before, COSTS, level::best());
         assert_eq!(leaves(&after), leaves_before);
         assert!(Links::new(&after).nodes(|node| after.nodes[node as usize]).is_some());

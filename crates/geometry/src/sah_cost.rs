@@ -14,14 +14,14 @@ const LEAST_VOLUME: f32 = 1e-30;
 /// How often rays enter a box, relative to others of the same scene: half its surface area, by which rays from afar enter it
 /// (Goldsmith & Salmon 1987), and its volume, since some begin in it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Measure {
+pub(crate) struct SahCost {
     /// What volume is worth.
     inside: f32,
 }
 
-impl Measure {
+impl SahCost {
     /// For the boxes in a scene whose box has these sides.
-    pub(crate) fn within(scene: [f32; 3]) -> Self {
+    pub(crate) fn in_scene(scene: [f32; 3]) -> Self {
         let volume = volume(scene);
         Self { inside: if volume > LEAST_VOLUME { CHORD * half_area(scene) / volume } else { 0.0 } }
     }
@@ -57,7 +57,7 @@ mod tests {
         const SCENE: f64 = 2.0;
         let mut random = Random::new(71);
         let length = SCENE * 4.0 / 6.0 / f64::from(CHORD);
-        let measure = Measure::within([SCENE as f32; 3]);
+        let measure = SahCost::in_scene([SCENE as f32; 3]);
         for sides in [[0.8, 0.8, 0.0], [0.8, 0.2, 0.1], [0.6, 0.6, 0.6], [0.02, 0.02, 1.0], [1.2, 0.8, 0.4]] {
             let met = (0..RAYS).filter(|_| {
                 let origin: [f64; 3] = std::array::from_fn(|_| SCENE * (random.unit() - 0.5));
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn scenes_without_an_inside_have_a_measure() {
         for thickness in [0.0, f32::MIN_POSITIVE, 1e-31, 1e-29, 1e-20] {
-            let measure = Measure::within([1.0, 1.0, thickness]);
+            let measure = SahCost::in_scene([1.0, 1.0, thickness]);
             for sides in [[1.0, 1.0, thickness], [0.5, 0.25, thickness], [0.5, 0.25, 0.0]] {
                 let (m, area) = (measure.of(sides), half_area(sides));
                 assert!(m >= area && m <= 1.001 * (area + CHORD), "{m} of {sides:?}");

@@ -9,7 +9,7 @@ const CHUNK: usize = 1 << 14;
 /// What primitives there are: all that is asked of each of them before a tree is built, at once, for a million are ten times what
 /// caches hold.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Census {
+pub(crate) struct PrimitiveStatistics {
     /// All.
     pub(crate) count: usize,
     /// Triangles among them.
@@ -24,7 +24,7 @@ pub(crate) struct Census {
     pub(crate) bounds: Option<Aabb>,
 }
 
-impl Census {
+impl PrimitiveStatistics {
     /// Counts. The result does not depend on the number of threads.
     pub(crate) fn of(primitives: &[Primitive]) -> Self {
         let count = |chunk: &[Primitive]| chunk.iter().fold(Self::default(), Self::with);
@@ -88,10 +88,10 @@ mod tests {
                     primitive
                 })
                 .collect();
-            let census = Census::of(&primitives);
-            assert_eq!([census.spheres, census.cylinders, census.triangles], counts);
-            assert_eq!([census.count, census.instances], [count, 0]);
-            assert_eq!(census.bounds, bounds);
+            let statistics = PrimitiveStatistics::of(&primitives);
+            assert_eq!([statistics.spheres, statistics.cylinders, statistics.triangles], counts);
+            assert_eq!([statistics.count, statistics.instances], [count, 0]);
+            assert_eq!(statistics.bounds, bounds);
         }
     }
 }

@@ -1,17 +1,17 @@
 //! The tree that rays traverse: sixteen children a node, leaves of up to eight or sixteen primitives, both in SoA order.
 
-mod choices;
+mod collapse;
 mod leaf;
 
 use crate::build::{BinaryTree, Costs};
-use crate::census::Census;
 use crate::frame::{Box32, Frame};
+use crate::instance_node::InstanceNode;
 use crate::pages::Pages;
-use crate::portal::Portal;
+use crate::statistics::PrimitiveStatistics;
 use crate::{Primitive, PrimitiveId};
 use bytemuck::{Pod, Zeroable};
-use choices::Choices;
-pub(crate) use choices::least_cost;
+use collapse::Collapse;
+pub(crate) use collapse::least_cost;
 pub(crate) use leaf::{Leaf, NO_ID};
 use rayon::prelude::*;
 
@@ -21,9 +21,9 @@ pub(crate) const NODE_WIDTH: usize = 16;
 const NEAR_CACHE: usize = 16 << 20;
 /// Marks a child that is a leaf.
 pub(crate) const LEAF: u32 = 1 << 31;
-/// Marks, together with [`LEAF`], a leaf that holds but an instance: the rest is the index of its portal. What a leaf tells of
+/// Marks, together with [`LEAF`], a leaf that holds one instance alone: the rest is the index of its instance node. What a leaf tells of
 /// others would say nothing of it.
-pub(crate) const LONE: u32 = 1 << 30;
+pub(crate) const INSTANCE_LEAF: u32 = 1 << 30;
 
 /// What primitives a tree holds, as far as rays have walks of their own: any.
 pub(crate) const MIXED: u8 = 0;
@@ -101,7 +101,7 @@ pub(crate) struct WideTree {
     nodes: Pages<Node16>,
     leaves: LeafPages,
     /// Of the instances that have a leaf of their own, in the order of the tree.
-    portals: Vec<Portal>,
+    instance_nodes: Vec<InstanceNode>,
     /// Levels of nodes.
     pub(crate) depth: usize,
     /// Whether there are spheres.
@@ -118,12 +118,12 @@ impl WideTree {
         frame: Frame,
         tree: &BinaryTree,
         primitives: &[Primitive],
-        census: &Census,
+        statistics: &PrimitiveStatistics,
         costs: Costs,
         lanes: usize,
     ) -> Self {
         let mut size = Size::default();
-        let choices = Choices::new(tree, primitives, costs, lanes);
+        let choices = Collapse::new(tree, primitives, costs, lanes);
         size.count(&choices, 0, 1);
         let mut wide = Self {
             frame,
@@ -132,10 +132,10 @@ impl WideTree {
                 16 => LeafPages::Sixteen(Pages::new(size.leaves)),
                 _ => LeafPages::Eight(Pages::new(size.leaves)),
             },
-            portals: Vec::new(),
+            instance_nodes: Vec::new(),
             depth: size.depth,
-            spheres: census.spheres > 0,
-            kind: match census {
+            spheres: statistics.spheres > 0,
+            kind: match statistics {
                 c if c.triangles == c.count => MESH,
                 c if c.spheres == c.count => BALLS,
                 _ => MIXED,
@@ -150,11 +150,11 @@ impl WideTree {
             nodes: wide.nodes.as_mut_slice(),
             node_count: 0,
             leaves: Vec::with_capacity(size.leaves),
-            portals: Vec::new(),
+            instance_nodes: Vec::new(),
         };
         filler.node(0);
         let roots = filler.leaves;
-        wide.portals = filler.portals;
+        wide.instance_nodes = filler.instance_nodes;
         match &mut wide.leaves {
             LeafPages::Eight(leaves) => fill(leaves.as_mut_slice(), &frame, tree, &roots, primitives),
             LeafPages::Sixteen(leaves) => fill(leaves.as_mut_slice(), &frame, tree, &roots, primitives),
@@ -185,10 +185,10 @@ impl WideTree {
         }
     }
 
-    /// The portals.
+    /// The instance nodes.
     #[inline(always)]
-    pub(crate) fn portals(&self) -> &[Portal] {
-        &self.portals
+    pub(crate) fn instance_nodes(&self) -> &[InstanceNode] {
+        &self.instance_nodes
     }
 
     /// Memory held beside the struct itself, bytes.
@@ -197,7 +197,7 @@ impl WideTree {
             Leaves::Eight(leaves) => size_of_val(leaves),
             Leaves::Sixteen(leaves) => size_of_val(leaves),
         };
-        size_of_val(self.nodes.as_slice()) + leaves + size_of_val(self.portals())
+        size_of_val(self.nodes.as_slice()) + leaves + size_of_val(self.instance_nodes())
     }
 }
 
@@ -223,13 +223,13 @@ struct Size {
 }
 
 impl Size {
-    fn count(&mut self, choices: &Choices<'_>, root: u32, depth: usize) {
+    fn count(&mut self, choices: &Collapse<'_>, root: u32, depth: usize) {
         self.nodes += 1;
         self.depth = self.depth.max(depth);
         let (children, count) = choices.children(root);
         for &child in &children[..count] {
             if choices.is_leaf(child) {
-                self.leaves += usize::from(choices.lone(child).is_none());
+                self.leaves += usize::from(choices.instance_leaf(child).is_none());
             } else {
                 self.count(choices, child, depth + 1);
             }
@@ -239,14 +239,14 @@ impl Size {
 
 /// Fills the nodes of a tree.
 struct Filler<'a> {
-    choices: &'a Choices<'a>,
+    choices: &'a Collapse<'a>,
     tree: &'a BinaryTree,
     lanes: usize,
     nodes: &'a mut [Node16],
     node_count: usize,
     /// The binary nodes whose primitives become leaves, in turn.
     leaves: Vec<u32>,
-    portals: Vec<Portal>,
+    instance_nodes: Vec<InstanceNode>,
 }
 
 impl Filler<'_> {
@@ -266,9 +266,9 @@ impl Filler<'_> {
                 node.planes[k][1][lane] = max[k];
             }
             node.children.0[lane] = if self.choices.is_leaf(child) {
-                if let Some((instance, id)) = self.choices.lone(child) {
-                    node.children.0[lane] = self.portals.len() as u32 | LEAF | LONE;
-                    self.portals.push(Portal::new(instance, PrimitiveId(id), self.lanes));
+                if let Some((instance, id)) = self.choices.instance_leaf(child) {
+                    node.children.0[lane] = self.instance_nodes.len() as u32 | LEAF | INSTANCE_LEAF;
+                    self.instance_nodes.push(InstanceNode::new(instance, PrimitiveId(id), self.lanes));
                     continue;
                 }
                 self.leaves.push(child);

@@ -1,7 +1,7 @@
 //! Boxes and primitives as the builder moves them.
 
 use crate::frame::Box32;
-use crate::measure::half_area;
+use crate::sah_cost::half_area;
 use std::array::from_fn;
 
 /// A box as one vector, so that a union is one maximum: its lower corner negated, a lane for a primitive's index, its upper
@@ -74,7 +74,7 @@ impl Span {
 
     /// Whether it holds a primitive that shares its leaf with no other.
     #[inline(always)]
-    pub(super) fn is_lone(self) -> bool {
+    pub(super) fn is_instance_leaf(self) -> bool {
         self.0[7] > 0.0
     }
 
@@ -89,10 +89,10 @@ impl Span {
 pub(crate) struct Item(Span);
 
 impl Item {
-    /// `lone`: it shares its leaf with no other.
-    pub(crate) fn new(b: &Box32, id: u32, lone: bool) -> Self {
+    /// `instance_leaf`: it shares its leaf with no other.
+    pub(crate) fn new(b: &Box32, id: u32, instance_leaf: bool) -> Self {
         let [x, y, z] = b.min;
-        Self(Span([-x, -y, -z, f32::from_bits(id), b.max[0], b.max[1], b.max[2], f32::from(u8::from(lone))]))
+        Self(Span([-x, -y, -z, f32::from_bits(id), b.max[0], b.max[1], b.max[2], f32::from(u8::from(instance_leaf))]))
     }
 
     #[inline(always)]

@@ -23,7 +23,7 @@ impl Costs {
     /// Cost of testing some primitives whose box is this.
     #[inline(always)]
     pub(super) fn leaf(self, bounds: Span, count: usize) -> f32 {
-        let block = if bounds.is_lone() { 1 } else { self.block };
+        let block = if bounds.is_instance_leaf() { 1 } else { self.block };
         (count as u32).div_ceil(block) as f32
     }
 }

@@ -1,14 +1,14 @@
 //! Grouping subtrees from below.
 //!
 //! Of all boxes those two are joined first whose union rays enter least often, and so on until one is left (Walter, Bala, Kulkarni &
-//! Pingali, *Fast Agglomerative Clustering for Rendering*, IEEE Symposium on Interactive Ray Tracing 2008). The nearest of the nearest and
+//! Pingali, *Fast Agglomerative Agglomeration for Rendering*, IEEE Symposium on Interactive Ray Tracing 2008). The nearest of the nearest and
 //! so on are two at the end of each which is the other's nearest. To join these at once makes the same tree, since no union is nearer to
 //! others than what it consists of, and asks for a number of distances that grows with the square of that of boxes (Murtagh, *A Survey of
-//! Recent Advances in Hierarchical Clustering Algorithms*, The Computer Journal 26(4), 1983).
+//! Recent Advances in Hierarchical Agglomeration Algorithms*, The Computer Journal 26(4), 1983).
 
 use super::links::{Links, NONE};
 use crate::build::Span;
-use crate::measure::Measure;
+use crate::sah_cost::SahCost;
 use crate::traverse::{Loop, vectorised};
 use etalon_simd::Level;
 use std::array::from_fn;
@@ -24,7 +24,7 @@ impl Links {
         let (leaves, mut inner): (Vec<u32>, Vec<u32>) =
             (0..self.children.len() as u32).partition(|&node| self.is_leaf(node));
         let boxes: Vec<Span> = leaves.iter().map(|&leaf| self.bounds[leaf as usize]).collect();
-        let pairs = vectorised(level, Clustering { boxes: &boxes, measure: self.measure });
+        let pairs = vectorised(level, Agglomeration { boxes: &boxes, measure: self.measure });
         // As many as there are inner nodes. The last one is the root, which is the first.
         inner.reverse();
         let node =
@@ -41,12 +41,12 @@ impl Links {
 
 /// Joins boxes two by two. What comes of it are the pairs that were joined: boxes by their indices, what became of the first pair as the
 /// next number, and so on; one pair fewer than boxes.
-struct Clustering<'a> {
+struct Agglomeration<'a> {
     boxes: &'a [Span],
-    measure: Measure,
+    measure: SahCost,
 }
 
-impl Loop for Clustering<'_> {
+impl Loop for Agglomeration<'_> {
     type Output = Vec<[usize; 2]>;
 
     #[inline(always)]
@@ -90,12 +90,12 @@ struct Block([[f32; LANES]; 6]);
 /// Boxes in blocks; what is not there is far away.
 struct Slots {
     blocks: Vec<Block>,
-    measure: Measure,
+    measure: SahCost,
 }
 
 impl Slots {
     #[inline(always)]
-    fn new(boxes: &[Span], measure: Measure) -> Self {
+    fn new(boxes: &[Span], measure: SahCost) -> Self {
         let blocks = vec![Block([[FAR; LANES]; 6]); boxes.len().div_ceil(LANES)];
         let mut slots = Self { blocks, measure };
         boxes.iter().enumerate().for_each(|(slot, span)| slots.set(slot, span.corners()));
@@ -162,7 +162,7 @@ impl Slots {
 mod tests {
     use super::*;
     use crate::build::BinaryTree;
-    use crate::improve::scattered;
+    use crate::optimize::scattered;
     use crate::test_support::Random;
     use crate::traverse::level;
 
@@ -184,7 +184,7 @@ mod tests {
     }
 
     /// The nearest two of all, again and again.
-    fn nearest_first(boxes: &[Span], measure: Measure) -> Vec<[usize; 2]> {
+    fn nearest_first(boxes: &[Span], measure: SahCost) -> Vec<[usize; 2]> {
         let mut left: Vec<(usize, Span)> = boxes.iter().copied().enumerate().collect();
         let mut pairs = Vec::new();
         while left.len() > 1 {
@@ -203,10 +203,10 @@ mod tests {
         let mut random = Random::new(33);
         for count in [1, 2, 3, 8, 9, 40, 100] {
             let boxes = leaves(&scattered(&mut random, count));
-            let measure = Measure::within([1.0, 1.0, 1.0]);
+            let measure = SahCost::in_scene([1.0, 1.0, 1.0]);
             let expected = members(&nearest_first(&boxes, measure), count);
             for level in level::all() {
-                let pairs = vectorised(level, Clustering { boxes: &boxes, measure });
+                let pairs = vectorised(level, Agglomeration { boxes: &boxes, measure });
                 assert_eq!(pairs.len(), count - 1);
                 assert_eq!(members(&pairs, count), expected);
             }
@@ -217,7 +217,8 @@ mod tests {
     fn boxes_that_are_all_alike_are_joined_too() {
         for count in [2, 7, 8, 300] {
             let boxes = vec![leaves(&scattered(&mut Random::new(34), 1))[0]; count];
-            let pairs = vectorised(Level::Baseline, Clustering { boxes: &boxes, measure: Measure::within([1.0; 3]) });
+            let pairs =
+                vectorised(Level::Baseline, Agglomeration { boxes: &boxes, measure: SahCost::in_scene([1.0; 3]) });
             let all = members(&pairs, count);
             assert_eq!(all.len(), count - 1);
             assert!(all.contains(&(0..count).collect()));

@@ -1,7 +1,7 @@
 //! A binary tree whose parts can be moved.
 
 use crate::build::{BinaryTree, MAX_DEPTH, Node, Span};
-use crate::measure::Measure;
+use crate::sah_cost::SahCost;
 
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
@@ -12,7 +12,7 @@ pub(super) struct Links {
     pub(super) bounds: Vec<Span>,
     /// How often rays enter them, by the measure: areas to which the inside adds.
     pub(super) areas: Vec<f32>,
-    pub(super) measure: Measure,
+    pub(super) measure: SahCost,
     /// [`NONE`] for the root, which is node 0.
     pub(super) parents: Vec<u32>,
     /// [`NONE`] for leaves.
@@ -22,7 +22,7 @@ pub(super) struct Links {
 impl Links {
     pub(super) fn new(tree: &BinaryTree) -> Self {
         let bounds: Vec<Span> = tree.nodes.iter().map(|node| Span::of(&node.bounds)).collect();
-        let measure = Measure::within(bounds[0].sides());
+        let measure = SahCost::in_scene(bounds[0].sides());
         let areas = bounds.iter().map(|bounds| measure.of(bounds.sides())).collect();
         let mut parents = vec![NONE; bounds.len()];
         let mut children = vec![[NONE; 2]; bounds.len()];

@@ -130,7 +130,7 @@ impl Links {
 mod tests {
     use super::*;
     use crate::build::Span;
-    use crate::improve::scattered;
+    use crate::optimize::scattered;
     use crate::test_support::Random;
 
     /// The area of all inner nodes, from the leaves' boxes alone.

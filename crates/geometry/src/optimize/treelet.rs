@@ -1,4 +1,4 @@
-//! The crown of a tree: what is above its largest subtrees.
+//! The treelet of a tree: what is above its largest subtrees.
 
 use super::links::{Links, NONE};
 use crate::build::{BinaryTree, Costs, Node};
@@ -7,20 +7,20 @@ use etalon_simd::Level;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Subtrees below a crown, at most.
+/// Subtrees below a treelet, at most.
 const SUBTREES: usize = 512;
-/// A crown that was grouped from below is taken if it costs rays less than this part of what the one that was split from above costs. In
+/// A treelet that was grouped from below is taken if it costs rays less than this part of what the one that was split from above costs. In
 /// the bench's rooms that is .78 to .9, in its other scenes 1 to 1.09.
 const CLEARLY: f32 = 0.97;
 
-/// The crown of a tree, whose leaves are subtrees of the tree.
-pub(super) struct Crown {
+/// The treelet of a tree, whose leaves are subtrees of the tree.
+pub(super) struct Treelet {
     links: Links,
-    /// The nodes of the tree that those of the crown are.
+    /// The nodes of the tree that those of the treelet are.
     of: Vec<u32>,
 }
 
-impl Crown {
+impl Treelet {
     /// Of a tree; the largest nodes are opened first.
     pub(super) fn new(tree: &Links) -> Self {
         let entry = |of: u32, at: usize| (tree.areas[of as usize].to_bits(), Reverse(at));

@@ -1,13 +1,13 @@
 //! Every hit of a ray, in the order of the tree.
 
 use super::compiled::Compiled;
-use super::leaf::{Chords, candidates};
-use super::met::Met;
+use super::leaf::{SphereFilter, candidates};
+use super::node_hits::NodeHits;
 use super::portable::Portable;
 use super::{Filters, Job, level};
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
-use crate::wide::{LEAF, LONE, Leaf, Leaves, MIXED, WideTree};
+use crate::wide::{INSTANCE_LEAF, LEAF, Leaf, Leaves, MIXED, WideTree};
 use crate::{Primitive, PrimitiveId, SurfaceId};
 use etalon_simd::Level;
 
@@ -57,7 +57,7 @@ fn walk<F: Filters, const W: usize>(filters: F, leaves: &[Leaf<W>], all: All<'_,
     let (ahead, culled) = ahead(&tree.frame, query, from);
     let Some(frame_ray) = tree.frame.enter(filters.into(), &culled) else { return t_max };
     let ray = filters.ray(&frame_ray.boxes);
-    let chords = Chords::new(&frame_ray, tree.spheres);
+    let chords = SphereFilter::new(&frame_ray, tree.spheres);
     let mut limit = frame_ray.limit;
     let mut stack = Vec::with_capacity(64);
     stack.push(0);
@@ -68,9 +68,9 @@ fn walk<F: Filters, const W: usize>(filters: F, leaves: &[Leaf<W>], all: All<'_,
             stack.extend(bits(met).map(|lane| node.children.0[lane]));
             continue;
         }
-        if child & LONE != 0 {
-            let portal = &tree.portals()[(child & !(LEAF | LONE)) as usize];
-            t_max = all_of(primitives, query, portal.id, (from, t_max), visit);
+        if child & INSTANCE_LEAF != 0 {
+            let instance_node = &tree.instance_nodes()[(child & !(LEAF | INSTANCE_LEAF)) as usize];
+            t_max = all_of(primitives, query, instance_node.id, (from, t_max), visit);
         } else {
             let leaf = &leaves[(child & !LEAF) as usize];
             // No primitive counts as left: the filters would judge it by the origin that was moved ahead.

@@ -1,16 +1,16 @@
 //! Whether anything is hit at all.
 
 use super::compiled::Compiled;
-use super::leaf::{Chords, candidates};
-use super::met::Met;
+use super::leaf::{SphereFilter, candidates};
+use super::node_hits::NodeHits;
 use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
 use super::{Narrow, intersect_exact};
 use crate::frame::FrameRay;
-use crate::portal::Portal;
+use crate::instance_node::InstanceNode;
 use crate::query::Query;
-use crate::wide::{BALLS, LEAF, LONE, Leaf, MIXED, NODE_WIDTH, Node16, Nodes, WideTree};
+use crate::wide::{BALLS, INSTANCE_LEAF, LEAF, Leaf, MIXED, NODE_WIDTH, Node16, Nodes, WideTree};
 use crate::{Primitive, PrimitiveId};
 
 /// Whether anything is hit, in the order of the tree. A level of the stack is one entry, the children yet to be visited:
@@ -24,7 +24,7 @@ pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize, cons
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> bool {
     let ray = filters.ray(&frame_ray.boxes);
-    let chords = Chords::new(frame_ray, KIND == BALLS || KIND == MIXED && tree.spheres);
+    let chords = SphereFilter::new(frame_ray, KIND == BALLS || KIND == MIXED && tree.spheres);
     let mut query = Deferred::new(start);
     let (leaves_id, aims_at) = (start.leaves(), start.aims_at());
     let limit = frame_ray.limit;
@@ -54,8 +54,8 @@ pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize, cons
                     mask &= mask - 1;
                 }
             }
-            if KIND == MIXED && child & LONE != 0 {
-                break Open::Instance(&tree.portals()[(child & !(LEAF | LONE)) as usize]);
+            if KIND == MIXED && child & INSTANCE_LEAF != 0 {
+                break Open::Instance(&tree.instance_nodes()[(child & !(LEAF | INSTANCE_LEAF)) as usize]);
             }
             let leaf = &leaves[(child & !LEAF) as usize];
             let candidates =
@@ -82,7 +82,7 @@ pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize, cons
             }
         };
         let hit = match open {
-            Open::Instance(portal) => filters.occludes_within(portal, primitives, query.get_apart()),
+            Open::Instance(instance_node) => filters.occludes_in_instance(instance_node, primitives, query.get_apart()),
             Open::Leaf(leaf, mut mask) => loop {
                 if mask == 0 {
                     break false;
@@ -109,7 +109,7 @@ enum Open<'a, const W: usize> {
     /// Whether these lanes of a leaf are hit.
     Leaf(&'a Leaf<W>, u32),
     /// Whether anything within an instance is.
-    Instance(&'a Portal),
+    Instance(&'a InstanceNode),
 }
 
 /// The next child of a node or, if there is none left, of one above it.

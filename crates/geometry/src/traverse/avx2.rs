@@ -1,16 +1,16 @@
 //! The filters in AVX2.
 
 use super::compiled::{Compiled, compiled};
+use super::instance::{closest_in_instance, occludes_in_instance};
 use super::lanes256::{D4, F4, F8};
-use super::met::{Entered, Row};
+use super::node_hits::{HitMask, Row};
 use super::vector::Vector;
 use super::wide256::D8;
-use super::within::{closest_within, occludes_within};
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
 use crate::best::Best;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
-use crate::portal::Portal;
+use crate::instance_node::InstanceNode;
 use crate::query::Query;
 use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use etalon_simd::Avx2;
@@ -37,7 +37,7 @@ fn broadcast(token: Avx2, v: F4) -> [F8; 3] {
 
 impl Filters for Avx2 {
     type Ray = Ray8;
-    type Met = Entered;
+    type NodeHits = HitMask;
     type Vector = F8;
     type Wide = F8;
     type Eight = D8;
@@ -55,10 +55,10 @@ impl Filters for Avx2 {
     }
 
     #[inline(always)]
-    fn enter(self, ray: &Ray8, node: &Node16, limit: f32) -> Entered {
+    fn enter(self, ray: &Ray8, node: &Node16, limit: f32) -> HitMask {
         // The children's numbers lie in a cache line of their own, which would be asked for only once the mask is known.
         Avx2::prefetch(self, &node.children);
-        let mut out = Entered { mask: 0, near: Row([0.0; NODE_WIDTH]) };
+        let mut out = HitMask { mask: 0, near: Row([0.0; NODE_WIDTH]) };
         let [ex, ey, ez] = ray.entry;
         for half in 0..NODE_WIDTH / F8::WIDTH {
             let at = half * F8::WIDTH;

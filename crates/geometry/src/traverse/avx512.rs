@@ -1,16 +1,16 @@
 //! The filters in AVX-512: all children of a node at once.
 
 use super::compiled::{Compiled, compiled};
+use super::instance::{closest_in_instance, occludes_in_instance};
 use super::lanes256::{D4, F4};
 use super::lanes512::F16;
-use super::met::{Met, Row};
+use super::node_hits::{NodeHits, Row};
 use super::wide512::D8;
-use super::within::{closest_within, occludes_within};
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
 use crate::best::Best;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
-use crate::portal::Portal;
+use crate::instance_node::InstanceNode;
 use crate::query::Query;
 use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use etalon_simd::Avx512;
@@ -29,17 +29,17 @@ pub(super) struct Ray16 {
     entry: [usize; 3],
 }
 
-/// [`Met`] in registers: what is met is moved to the front of a vector, which takes half as long as to store distances and to load
+/// [`NodeHits`] in registers: what is met is moved to the front of a vector, which takes half as long as to store distances and to load
 /// those of the children that a mask tells.
 #[derive(Clone, Copy)]
-pub(super) struct Met16 {
+pub(super) struct NodeHits16 {
     mask: __mmask16,
     /// The bits of all children's distances.
     near: __m512i,
     token: Avx512,
 }
 
-impl Met16 {
+impl NodeHits16 {
     /// The children met, and their distances.
     #[inline(always)]
     fn front(&self, node: &Node16) -> [__m512i; 2] {
@@ -49,7 +49,7 @@ impl Met16 {
     }
 }
 
-impl Met for Met16 {
+impl NodeHits for NodeHits16 {
     #[inline(always)]
     fn mask(&self) -> u32 {
         u32::from(self.mask)
@@ -94,7 +94,7 @@ fn broadcast(token: Avx512, v: F4) -> [__m512; 3] {
 
 impl Filters for Avx512 {
     type Ray = Ray16;
-    type Met = Met16;
+    type NodeHits = NodeHits16;
     type Vector = F16;
     type Wide = F16;
     type Eight = D8;
@@ -112,7 +112,7 @@ impl Filters for Avx512 {
     }
 
     #[inline(always)]
-    fn enter(self, ray: &Ray16, node: &Node16, limit: f32) -> Met16 {
+    fn enter(self, ray: &Ray16, node: &Node16, limit: f32) -> NodeHits16 {
         // The children's numbers lie in a cache line of their own, which would be asked for only once the mask is known.
         self.avx2().prefetch(&node.children);
         let slab = |plane: &[f32; NODE_WIDTH], origin: __m512, reciprocal: __m512| {
@@ -133,7 +133,7 @@ impl Filters for Avx512 {
         let near =
             self._mm512_max_epi32(self._mm512_max_epi32(near(0), near(1)), self._mm512_max_epi32(near(2), least));
         let far = self._mm512_min_epi32(self._mm512_min_epi32(far(0), far(1)), self._mm512_min_epi32(far(2), most));
-        Met16 { mask: self._mm512_cmple_epi32_mask(near, far), near, token: self }
+        NodeHits16 { mask: self._mm512_cmple_epi32_mask(near, far), near, token: self }
     }
 
     #[inline(always)]

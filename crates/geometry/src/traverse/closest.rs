@@ -1,15 +1,15 @@
 //! The closest hit.
 
 use super::compiled::Compiled;
-use super::leaf::{Chords, candidates};
+use super::leaf::{SphereFilter, candidates};
 use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
-use super::{Filters, Met, Narrow, intersect_exact};
+use super::{Filters, Narrow, NodeHits, intersect_exact};
 use crate::best::Best;
 use crate::frame::FrameRay;
 use crate::query::{Projection, RawHit};
-use crate::wide::{BALLS, LEAF, LONE, Leaf, MIXED, NODE_WIDTH, Nodes, WideTree};
+use crate::wide::{BALLS, INSTANCE_LEAF, LEAF, Leaf, MIXED, NODE_WIDTH, Nodes, WideTree};
 use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.
@@ -22,7 +22,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> Option<S::Hit> {
     let ray = filters.ray(&frame_ray.boxes);
-    let chords = Chords::new(frame_ray, KIND == BALLS || KIND == MIXED && tree.spheres);
+    let chords = SphereFilter::new(frame_ray, KIND == BALLS || KIND == MIXED && tree.spheres);
     let mut query = Deferred::new(start);
     // At once, for its division takes as long as two nodes and waits for nothing.
     let projection = start.projection::<F::Four>(filters.into(), frame_ray.t_scale, frame_ray.axis);
@@ -90,9 +90,9 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
                 child = nearest as u32;
                 continue;
             }
-        } else if KIND == MIXED && child & LONE != 0 {
-            let portal = &tree.portals()[(child & !(LEAF | LONE)) as usize];
-            if filters.closest_within(&mut best, portal, primitives, query.get_apart()) {
+        } else if KIND == MIXED && child & INSTANCE_LEAF != 0 {
+            let instance_node = &tree.instance_nodes()[(child & !(LEAF | INSTANCE_LEAF)) as usize];
+            if filters.closest_in_instance(&mut best, instance_node, primitives, query.get_apart()) {
                 limit = limit.min(tree.frame.distance(frame_ray.start, best.t_max));
             }
         } else {
@@ -286,7 +286,7 @@ fn prefetch<F: Filters, const KIND: u8, const W: usize>(
     }
     if child & LEAF == 0 {
         filters.prefetch(nodes.at(child));
-    } else if KIND != MIXED || child & LONE == 0 {
+    } else if KIND != MIXED || child & INSTANCE_LEAF == 0 {
         filters.prefetch(&leaves[(child & !LEAF) as usize]);
     }
 }

@@ -4,7 +4,7 @@ use super::start::Start;
 use super::{Filters, Job};
 use crate::Primitive;
 use crate::best::Best;
-use crate::portal::Portal;
+use crate::instance_node::InstanceNode;
 use crate::query::Query;
 use crate::wide::WideTree;
 
@@ -20,10 +20,16 @@ pub(super) trait Compiled: Filters {
     fn closest_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> Option<S::Hit>;
     /// [`any_far_with`](super::any_far_with).
     fn any_far<S: Start>(self, tree: &WideTree, primitives: &[Primitive], start: S) -> bool;
-    /// [`closest_within`](super::within::closest_within).
-    fn closest_within(self, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool;
-    /// [`occludes_within`](super::within::occludes_within).
-    fn occludes_within(self, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool;
+    /// [`closest_in_instance`](super::instance::closest_in_instance).
+    fn closest_in_instance(
+        self,
+        best: &mut Best,
+        instance_node: &InstanceNode,
+        primitives: &[Primitive],
+        query: &Query,
+    ) -> bool;
+    /// [`occludes_in_instance`](super::instance::occludes_in_instance).
+    fn occludes_in_instance(self, instance_node: &InstanceNode, primitives: &[Primitive], query: &Query) -> bool;
 }
 
 /// [`Compiled`] for the token of an instruction set.
@@ -40,9 +46,9 @@ macro_rules! compiled {
             #[inline]
             fn any_far[S: Start][S](tree: &WideTree, primitives: &[Primitive], start: S) -> bool = any_far_with;
             #[inline(never)]
-            fn closest_within[][](best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool = closest_within;
+            fn closest_in_instance[][](best: &mut Best, instance_node: &InstanceNode, primitives: &[Primitive], query: &Query) -> bool = closest_in_instance;
             #[inline(never)]
-            fn occludes_within[][](portal: &Portal, primitives: &[Primitive], query: &Query) -> bool = occludes_within;
+            fn occludes_in_instance[][](instance_node: &InstanceNode, primitives: &[Primitive], query: &Query) -> bool = occludes_in_instance;
         }
     };
     ($set:ident; $(

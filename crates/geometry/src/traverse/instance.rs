@@ -6,7 +6,7 @@ use super::{LEVELS, Narrow, any_on, closest_on, occludes};
 use crate::best::Best;
 use crate::frame::{Entry, FrameRay};
 use crate::instance::{at_least, told_end};
-use crate::portal::Portal;
+use crate::instance_node::InstanceNode;
 use crate::query::{Query, RawHit};
 use crate::wide::{Leaf, Leaves, MESH, MIXED, NODE_WIDTH, WideTree};
 use crate::{Hit, Primitive, Ray};
@@ -14,20 +14,20 @@ use crate::{Hit, Primitive, Ray};
 /// [`Best::test`] of an instance: the same, without a query where there is a tree to walk. The bounds, which cost more than what
 /// most rays that miss find out in the tree's root, are asked for only where there is a hit.
 #[inline(always)]
-pub(super) fn closest_within<F: Compiled>(
+pub(super) fn closest_in_instance<F: Compiled>(
     filters: F,
     best: &mut Best,
-    portal: &Portal,
+    instance_node: &InstanceNode,
     primitives: &[Primitive],
     query: &Query,
 ) -> bool {
-    let Some((geometry, tree)) = portal.tree() else { return best.test(primitives, query, portal.id) };
+    let Some((geometry, tree)) = instance_node.tree() else { return best.test(primitives, query, instance_node.id) };
     // Left as a whole.
-    if query.leaves == portal.id {
+    if query.leaves == instance_node.id {
         return false;
     }
-    let t_max = best.limit(portal.id);
-    let (lanes, ray) = portal.enter::<F::Four>(filters.into(), query, told_end(t_max));
+    let t_max = best.limit(instance_node.id);
+    let (lanes, ray) = instance_node.enter::<F::Four>(filters.into(), query, told_end(t_max));
     let (inner, ray) = (geometry.primitives(), &ray);
     let entry = if tree.depth <= LEVELS[0] {
         tree.frame.enter_anywhere::<F::Four>(filters.into(), lanes, ray.t_max)
@@ -49,27 +49,27 @@ pub(super) fn closest_within<F: Compiled>(
     };
     let Some(Hit { t, surface, uv }) = found else { return false };
     let mut hit = RawHit { t, uv };
-    let Some(entry) = portal.entry(query, t_max) else { return false };
+    let Some(entry) = instance_node.entry(query, t_max) else { return false };
     let found = at_least(&mut hit, entry, t_max);
     if found {
-        best.set_within(hit, portal.id, portal.outward(surface));
+        best.set_in_instance(hit, instance_node.id, instance_node.outward(surface));
     }
     found
 }
 
 /// [`occludes`] of an instance, likewise.
 #[inline(always)]
-pub(super) fn occludes_within<F: Compiled>(
+pub(super) fn occludes_in_instance<F: Compiled>(
     filters: F,
-    portal: &Portal,
+    instance_node: &InstanceNode,
     primitives: &[Primitive],
     query: &Query,
 ) -> bool {
-    let Some((geometry, tree)) = portal.tree() else { return occludes(primitives, query, portal.id) };
-    if portal.id == query.aims_at || portal.id == query.leaves {
+    let Some((geometry, tree)) = instance_node.tree() else { return occludes(primitives, query, instance_node.id) };
+    if instance_node.id == query.aims_at || instance_node.id == query.leaves {
         return false;
     }
-    let (lanes, ray) = portal.enter::<F::Four>(filters.into(), query, query.t_max);
+    let (lanes, ray) = instance_node.enter::<F::Four>(filters.into(), query, query.t_max);
     let (inner, ray) = (geometry.primitives(), &ray);
     let entry = if tree.depth <= LEVELS[0] {
         tree.frame.enter_anywhere::<F::Four>(filters.into(), lanes, query.t_max)
@@ -89,7 +89,7 @@ pub(super) fn occludes_within<F: Compiled>(
             _ => filters.any_far(tree, inner, ray),
         },
     };
-    hit && portal.entry(query, query.t_max).is_some()
+    hit && instance_node.entry(query, query.t_max).is_some()
 }
 
 /// The closest hit in what an instance places. Spheres alone have no walk of their own here: this is one function with all that it walks,

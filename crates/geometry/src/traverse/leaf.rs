@@ -13,7 +13,7 @@ use crate::wide::{BALLS, Leaf, MESH, NO_ID};
 pub(super) fn candidates<F: Filters, const KIND: u8, const W: usize>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
-    chords: &Chords,
+    chords: &SphereFilter,
     leaf: &Leaf<W>,
     limit: f32,
     certain_limit: f32,
@@ -43,7 +43,7 @@ pub(super) fn candidates<F: Filters, const KIND: u8, const W: usize>(
 fn candidates_at<F: Filters, const KIND: u8, const W: usize>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
-    chords: &Chords,
+    chords: &SphereFilter,
     (leaf, at): (&Leaf<W>, usize),
     limit: f32,
     certain_limit: f32,
@@ -178,13 +178,13 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
 /// What spheres ask of a ray of slopes s: n = 1 + s², n times the squared distance from the ray of a point that projects to (x, y)
 /// as the form a·x² − 2b·xy + c·y², and −1/(the largest component of the direction) over n, which takes the place abreast of the
 /// point from what it is along the slopes.
-pub(super) struct Chords {
+pub(super) struct SphereFilter {
     n: f32,
     form: [f32; 3],
     per_n: f32,
 }
 
-impl Chords {
+impl SphereFilter {
     /// For a tree without spheres nothing is computed.
     #[inline(always)]
     pub(super) fn new<L: Lanes4>(ray: &FrameRay<L>, spheres: bool) -> Self {
@@ -214,7 +214,7 @@ impl Chords {
 fn spheres<F: Filters, const W: usize>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
-    &Chords { n, form: [a, b, c], per_n }: &Chords,
+    &SphereFilter { n, form: [a, b, c], per_n }: &SphereFilter,
     (leaf, at): (&Leaf<W>, usize),
     own: u32,
     limit: f32,

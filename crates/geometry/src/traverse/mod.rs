@@ -13,13 +13,14 @@ mod closest;
 mod compiled;
 mod eight;
 mod flat;
+mod instance;
 #[cfg(target_arch = "x86_64")]
 mod lanes256;
 #[cfg(target_arch = "x86_64")]
 mod lanes512;
 mod leaf;
 pub(crate) mod level;
-mod met;
+mod node_hits;
 mod portable;
 mod stack;
 mod start;
@@ -28,7 +29,6 @@ mod vector;
 mod wide256;
 #[cfg(target_arch = "x86_64")]
 mod wide512;
-mod within;
 
 use crate::best::Found;
 use crate::build::MAX_DEPTH;
@@ -46,7 +46,7 @@ use flat::{Eight, Wide};
 pub(crate) use flat::{FLAT_LIMIT, Flat};
 use level::Job;
 pub(crate) use level::{Loop, vectorised};
-use met::{Met, Row};
+use node_hits::{NodeHits, Row};
 use portable::Portable;
 use start::Start;
 use vector::Vector;
@@ -88,7 +88,7 @@ trait Filters:
     /// The ray as the filter of nodes wants it.
     type Ray: Copy;
     /// What a ray meets of a node.
-    type Met: Met;
+    type NodeHits: NodeHits;
     /// Eight floats, or sixteen.
     type Vector: Vector;
     /// Eight floats, or sixteen.
@@ -100,7 +100,7 @@ trait Filters:
     /// Prepares a ray.
     fn ray(self, ray: &BoxRay<Narrow<Self>>) -> Self::Ray;
     /// The children of a node that the ray meets in [0, `limit`].
-    fn enter(self, ray: &Self::Ray, node: &Node16, limit: f32) -> Self::Met;
+    fn enter(self, ray: &Self::Ray, node: &Node16, limit: f32) -> Self::NodeHits;
     /// Announces that an item will be read.
     fn prefetch<T>(self, item: &T);
 }

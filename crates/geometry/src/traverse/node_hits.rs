@@ -9,7 +9,7 @@ use crate::wide::{NODE_WIDTH, Node16};
 pub(super) struct Row<T, const N: usize>(pub(super) [T; N]);
 
 /// The children of a node that a ray meets, in the node's order.
-pub(super) trait Met: Copy {
+pub(super) trait NodeHits: Copy {
     /// One bit a child.
     fn mask(&self) -> u32;
     /// The first, if there is one.
@@ -33,23 +33,23 @@ fn lowest(mask: u32) -> usize {
     mask.trailing_zeros() as usize % NODE_WIDTH
 }
 
-/// [`Met`] with the distances in memory.
+/// [`NodeHits`] with the distances in memory.
 #[derive(Clone, Copy)]
-pub(super) struct Entered {
+pub(super) struct HitMask {
     /// One bit a child.
     pub(super) mask: u32,
     /// The distances at which the ray enters them, not above the true ones.
     pub(super) near: Row<f32, NODE_WIDTH>,
 }
 
-impl Entered {
+impl HitMask {
     #[inline(always)]
     fn entry(&self, node: &Node16, lane: usize) -> u64 {
         entry(self.near.0[lane], node.children.0[lane])
     }
 }
 
-impl Met for Entered {
+impl NodeHits for HitMask {
     #[inline(always)]
     fn mask(&self) -> u32 {
         self.mask

@@ -2,13 +2,13 @@
 
 use super::compiled::Compiled;
 use super::flat::{BLOCK, PlainEight, Wide};
-use super::met::{Entered, Row};
+use super::instance::{closest_in_instance, occludes_in_instance};
+use super::node_hits::{HitMask, Row};
 use super::vector::Vector;
-use super::within::{closest_within, occludes_within};
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::best::Best;
 use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
-use crate::portal::Portal;
+use crate::instance_node::InstanceNode;
 use crate::query::{Plain4, Query};
 use crate::wide::{NODE_WIDTH, Node16, WideTree};
 use crate::{LANES, Primitive};
@@ -199,7 +199,7 @@ impl Wide for Floats {
 
 impl Filters for Portable {
     type Ray = BoxRay<Plain>;
-    type Met = Entered;
+    type NodeHits = HitMask;
     type Vector = Floats;
     type Wide = Floats;
     type Eight = PlainEight;
@@ -211,10 +211,10 @@ impl Filters for Portable {
     }
 
     #[inline(always)]
-    fn enter(self, ray: &BoxRay<Plain>, node: &Node16, limit: f32) -> Entered {
+    fn enter(self, ray: &BoxRay<Plain>, node: &Node16, limit: f32) -> HitMask {
         let [origin_near, origin_far] = [ray.origin_near, ray.origin_far].map(Plain::to_array);
         let [reciprocal_near, reciprocal_far] = [ray.reciprocal_near, ray.reciprocal_far].map(Plain::to_array);
-        let mut out = Entered { mask: 0, near: Row([LEAST_DISTANCE; NODE_WIDTH]) };
+        let mut out = HitMask { mask: 0, near: Row([LEAST_DISTANCE; NODE_WIDTH]) };
         let mut far = [limit; NODE_WIDTH];
         for k in 0..3 {
             let entry = node.planes(k, ray.entry()[k]);
@@ -258,12 +258,18 @@ impl Compiled for Portable {
     }
 
     #[inline(never)]
-    fn closest_within(self, best: &mut Best, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
-        closest_within(self, best, portal, primitives, query)
+    fn closest_in_instance(
+        self,
+        best: &mut Best,
+        instance_node: &InstanceNode,
+        primitives: &[Primitive],
+        query: &Query,
+    ) -> bool {
+        closest_in_instance(self, best, instance_node, primitives, query)
     }
 
     #[inline(never)]
-    fn occludes_within(self, portal: &Portal, primitives: &[Primitive], query: &Query) -> bool {
-        occludes_within(self, portal, primitives, query)
+    fn occludes_in_instance(self, instance_node: &InstanceNode, primitives: &[Primitive], query: &Query) -> bool {
+        occludes_in_instance(self, instance_node, primitives, query)
     }
 }

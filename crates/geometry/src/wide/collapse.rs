@@ -2,7 +2,7 @@
 
 use super::NODE_WIDTH;
 use crate::build::{BinaryTree, Costs, LEAF_LIMIT, Node};
-use crate::measure::Measure;
+use crate::sah_cost::SahCost;
 use crate::{Instance, Primitive};
 
 /// Above this many binary nodes the two halves of a tree are taken in parallel.
@@ -17,7 +17,7 @@ const TOO_MANY: u32 = 1 << 30;
 /// Which binary nodes become the children of which node, and which of them become leaves: the choice of least cost, as a ray
 /// meets a node or a leaf about as often as it is large (Ylitie, Karras & Laine, *Efficient Incoherent Ray Traversal on GPUs
 /// Through Compressed Wide BVHs*, HPG 2017, §3.1).
-pub(super) struct Choices<'a> {
+pub(super) struct Collapse<'a> {
     tree: &'a BinaryTree,
     primitives: &'a [Primitive],
     /// For each inner binary node and each number i of children that it may become, 2 to 16, in four bits: how many of them
@@ -31,7 +31,7 @@ struct Weights<'a> {
     /// None where leaves stay what they are, whatever is in them.
     primitives: Option<&'a [Primitive]>,
     costs: Costs,
-    measure: Measure,
+    measure: SahCost,
     /// What a leaf costs beside how often rays enter it.
     price: f32,
     /// Primitives of a leaf, at most.
@@ -51,8 +51,9 @@ impl Weights<'_> {
         let binary @ Node { bounds, first, count } = &self.tree.nodes[node as usize];
         if *count > 0 {
             // An instance is in no leaf.
-            let lone = self.primitives.is_some_and(|primitives| lone(self.tree, primitives, node).is_some());
-            return if lone {
+            let instance_leaf =
+                self.primitives.is_some_and(|primitives| instance_leaf(self.tree, primitives, node).is_some());
+            return if instance_leaf {
                 ([self.measure.of(bounds.sides()); NODE_WIDTH], TOO_MANY)
             } else {
                 ([self.leaf(binary, *count); NODE_WIDTH], *count)
@@ -94,13 +95,13 @@ impl Weights<'_> {
 
 /// What the nodes and leaves that a binary tree becomes cost rays, if its leaves stay what they are; relative to others of the same box.
 pub(crate) fn least_cost(tree: &BinaryTree, costs: Costs) -> f32 {
-    let measure = Measure::within(tree.nodes[0].bounds.sides());
+    let measure = SahCost::in_scene(tree.nodes[0].bounds.sides());
     let weights = Weights { tree, primitives: None, costs, measure, price: 0.0, lanes: 0 };
     weights.least(0, &mut vec![0; tree.nodes.len()]).0[0]
 }
 
 /// The instance that a binary leaf is, if it is one, and its id.
-fn lone<'a>(tree: &BinaryTree, primitives: &'a [Primitive], leaf: u32) -> Option<(&'a Instance, u32)> {
+fn instance_leaf<'a>(tree: &BinaryTree, primitives: &'a [Primitive], leaf: u32) -> Option<(&'a Instance, u32)> {
     let Node { first, count, .. } = tree.nodes[leaf as usize];
     if count != 1 {
         return None;
@@ -112,7 +113,7 @@ fn lone<'a>(tree: &BinaryTree, primitives: &'a [Primitive], leaf: u32) -> Option
     }
 }
 
-impl<'a> Choices<'a> {
+impl<'a> Collapse<'a> {
     /// For leaves of `lanes` primitives at most; no leaf of the binary tree has more.
     pub(super) fn new(tree: &'a BinaryTree, primitives: &'a [Primitive], costs: Costs, lanes: usize) -> Self {
         // Those of the binary tree are as full as leaves of eight can be.
@@ -123,7 +124,7 @@ impl<'a> Choices<'a> {
 
     fn at_price(tree: &'a BinaryTree, primitives: &'a [Primitive], costs: Costs, price: f32, lanes: usize) -> Self {
         let mut splits = vec![0; tree.nodes.len()];
-        let measure = Measure::within(tree.nodes[0].bounds.sides());
+        let measure = SahCost::in_scene(tree.nodes[0].bounds.sides());
         Weights { tree, primitives: Some(primitives), costs, measure, price, lanes: lanes as u32 }
             .least(0, &mut splits);
         Self { tree, primitives, splits }
@@ -135,8 +136,8 @@ impl<'a> Choices<'a> {
     }
 
     /// The instance that a leaf is, if it is one, and its id.
-    pub(super) fn lone(&self, leaf: u32) -> Option<(&'a Instance, u32)> {
-        lone(self.tree, self.primitives, leaf)
+    pub(super) fn instance_leaf(&self, leaf: u32) -> Option<(&'a Instance, u32)> {
+        instance_leaf(self.tree, self.primitives, leaf)
     }
 
     /// The children of the node whose root is a binary node.
@@ -166,7 +167,7 @@ impl<'a> Choices<'a> {
 mod tests {
     use super::*;
     use crate::Sphere;
-    use crate::improve::scattered;
+    use crate::optimize::scattered;
     use crate::test_support::Random;
     use etalon_optics::Vec3;
 
@@ -179,11 +180,11 @@ mod tests {
     }
 
     fn area(tree: &BinaryTree, node: u32) -> f64 {
-        f64::from(Measure::within(tree.nodes[0].bounds.sides()).of(tree.nodes[node as usize].bounds.sides()))
+        f64::from(SahCost::in_scene(tree.nodes[0].bounds.sides()).of(tree.nodes[node as usize].bounds.sides()))
     }
 
     /// What was chosen costs, by what it consists of; and how many of its leaves were joined of several.
-    fn cost(choices: &Choices<'_>, node: u32, price: f64) -> (f64, usize) {
+    fn cost(choices: &Collapse<'_>, node: u32, price: f64) -> (f64, usize) {
         let tree = choices.tree;
         if choices.is_leaf(node) {
             let count = tree.primitives(node).count();
@@ -228,7 +229,7 @@ mod tests {
             let tree = scattered(&mut random, 8);
             let price = [0.0, 0.01, 0.03][round % 3] * area(&tree, 0) as f32;
             let primitives = primitives(8);
-            let choices = Choices::at_price(&tree, &primitives, COSTS, price, LANES);
+            let choices = Collapse::at_price(&tree, &primitives, COSTS, price, LANES);
             let (cost, leaves) = cost(&choices, 0, f64::from(price));
             let least = least(&tree, f64::from(price));
             assert!((cost - least).abs() < 1e-5 * least, "{cost}, but {least} can be had");
@@ -244,7 +245,7 @@ mod tests {
         let tree = scattered(&mut random, 3000);
         let primitives = primitives(3000);
         let leaves = |price: f32| {
-            let choices = Choices::at_price(&tree, &primitives, COSTS, price, LANES);
+            let choices = Collapse::at_price(&tree, &primitives, COSTS, price, LANES);
             let (mut leaves, mut held, mut rest) = (0, 0, vec![0]);
             while let Some(node) = rest.pop() {
                 if choices.is_leaf(node) {

@@ -72,7 +72,7 @@ impl<V: Wide> Beams<V> {
 }
 
 /// What the spheres want to know besides.
-pub(super) struct Chords<V> {
+pub(super) struct SphereFilter<V> {
     squared: V,
     per_squared: V,
     longer: V,
@@ -83,7 +83,7 @@ pub(super) struct Chords<V> {
     smaller: V,
 }
 
-impl<V: Wide> Chords<V> {
+impl<V: Wide> SphereFilter<V> {
     #[inline(always)]
     pub(super) fn new(token: V::Token, beams: &Beams<V>) -> Self {
         let all = |v| V::splat(token, v);
@@ -204,7 +204,7 @@ pub(super) fn flats<V: Wide>(beams: &Beams<V>, shape: &FlatsIn<V>) -> Known<V> {
 /// The line passes the centre at a distance |q|/|d| that errs by 35us; both radii between which the true one lies, 40us off, and
 /// q² itself, 64 roundoffs off, leave room for every rounding of what follows. The place abreast of the centre errs by 50us.
 #[inline(always)]
-pub(super) fn spheres<V: Wide>(beams: &Beams<V>, chords: &Chords<V>, shape: &SpheresIn<V>) -> Known<V> {
+pub(super) fn spheres<V: Wide>(beams: &Beams<V>, chords: &SphereFilter<V>, shape: &SpheresIn<V>) -> Known<V> {
     let r = minus(shape.centre, beams.origin);
     let q = cross(r, beams.direction);
     let squared = dot(q, q);

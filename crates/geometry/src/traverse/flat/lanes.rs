@@ -143,7 +143,7 @@ fn each<V: Wide>(
     if left == 0 {
         return;
     }
-    let chords = Chords::new(token, beams);
+    let chords = SphereFilter::new(token, beams);
     for block in &flat.spheres {
         let mut at = 0;
         while at < BLOCK.min(left) {

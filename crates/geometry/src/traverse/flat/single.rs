@@ -40,7 +40,7 @@ fn each<V: Wide>(flat: &Flat, token: V::Token, beams: &Beams<V>, mut f: impl FnM
     if left == 0 {
         return;
     }
-    let chords = Chords::new(token, beams);
+    let chords = SphereFilter::new(token, beams);
     for block in &flat.spheres {
         let mut at = 0;
         while at < BLOCK.min(left) {
