@@ -124,9 +124,9 @@ impl LossTable {
     /// A chord of a smooth curve differs from it as a parabola with its top in the middle does, so three cosines tell. Where they do not
     /// lie on one, as at a kink, the place is searched by golden sections.
     fn checks(&self, i: usize, eta: f64, exact: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        const SECTIONS: usize = 12;
-        // Far below what a lossless surface may return too much.
-        const ON_PARABOLA: f64 = 3e-7;
+        const SECTIONS: usize = 8;
+        // A third of what a table may hold too much in a single direction.
+        const ON_PARABOLA: f64 = 3e-5;
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let mut checks = Vec::with_capacity(3);
         let mut excess = |share: f64| {
