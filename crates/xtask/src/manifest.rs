@@ -80,7 +80,22 @@ fn note(manifest: &mut Manifest, section: &str, name: &str, rest: &str) {
 
 #[cfg(test)]
 mod tests {
+    use std::process::Command;
+
     use super::*;
+
+    /// The README's `cargo run --release -- render …` names no package. It needs exactly one default member with a program.
+    #[test]
+    fn cargo_run_runs_the_program() {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let arguments = ["metadata", "--no-deps", "--offline", "--locked", "--format-version", "1"];
+        let output = Command::new(cargo).args(arguments).current_dir(crate::root()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let (_, members) = text.split_once("\"workspace_default_members\":[").unwrap();
+        let (members, _) = members.split_once(']').unwrap();
+        assert!(members.contains("/crates/cli#") && !members.contains(','), "default members: {members}");
+    }
 
     #[test]
     fn every_form_of_a_dependency_is_read() {
