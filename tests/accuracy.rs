@@ -47,7 +47,7 @@ fn a_render_that_ends_by_error_has_the_pixels_of_that_number_of_samples() {
     let error = report["error"]["relative_rmse"].as_f64().unwrap();
     // A pilot of a picture this small knows the error to a tenth or so.
     assert!((0.14..0.27).contains(&error), "{error} at {spp}");
-    assert_eq!(report["foretold"]["samples"].as_f64().unwrap(), spp as f64);
+    assert_eq!(report["predicted"]["samples"].as_f64().unwrap(), spp as f64);
     let (fixed, report) = render(folder.path(), "b.exr", &format!("--size 48x48 --spp {spp}"));
     assert_eq!(report["reached"], "samples");
     assert!(pixel_bits(&stopped).0 == pixel_bits(&fixed).0);
@@ -65,7 +65,7 @@ fn an_adaptive_render_takes_the_mean_number_of_samples_and_says_where_they_went(
     let (one, report) = render(folder.path(), "a.exr", "--size 48x48 --spp 64 --adaptive always --threads 1");
     let [least, most]: [u64; 2] = serde_json::from_value(report["adaptive"]["samples"].clone()).unwrap();
     // The lamp's edges are a small part of the box and most of its error; a quarter of the samples is spread evenly.
-    assert!(report["adaptive"]["foretold_gain"].as_f64().unwrap() > 1.5 && (16..40).contains(&least) && most > 128);
+    assert!(report["adaptive"]["predicted_gain"].as_f64().unwrap() > 1.5 && (16..40).contains(&least) && most > 128);
     let paths = report["paths"].as_f64().unwrap() / (48.0 * 48.0);
     assert!((64.0..68.0).contains(&paths), "{paths}");
     let (three, _) = render(folder.path(), "b.exr", "--size 48x48 --spp 64 --adaptive always --threads 3");
@@ -86,20 +86,22 @@ fn a_quote_names_machine_threads_and_version_and_prices_rise() {
     assert_eq!(quote["machine"]["threads"], 2);
     assert!(!quote["machine"]["processor"].as_str().unwrap().is_empty());
     assert_eq!(quote["machine"]["software"], format!("etalon {}", env!("CARGO_PKG_VERSION")));
-    let prices = quote["prices"].as_array().unwrap();
-    let errors: Vec<f64> = prices.iter().map(|price| price["relative_rmse"].as_f64().unwrap()).collect();
+    let estimates = quote["estimates"].as_array().unwrap();
+    let errors: Vec<f64> =
+        estimates.iter().map(|cost_estimate| cost_estimate["relative_rmse"].as_f64().unwrap()).collect();
     assert_eq!(
         errors.iter().map(|error| (error * 1000.0).round()).collect::<Vec<_>>(),
         [100.0, 50.0, 20.0, 10.0, 5.0, 1.0]
     );
-    for pair in prices.windows(2) {
+    for pair in estimates.windows(2) {
         assert!(pair[0]["samples"].as_f64() < pair[1]["samples"].as_f64());
     }
-    for price in prices {
+    for cost_estimate in estimates {
         for key in ["samples", "seconds"] {
-            let [low, high]: [f64; 2] = serde_json::from_value(price[format!("{key}_interval")].clone()).unwrap();
-            let value = price[key].as_f64().unwrap();
-            assert!(0.0 < low && low <= value && value <= high, "{price}");
+            let [low, high]: [f64; 2] =
+                serde_json::from_value(cost_estimate[format!("{key}_interval")].clone()).unwrap();
+            let value = cost_estimate[key].as_f64().unwrap();
+            assert!(0.0 < low && low <= value && value <= high, "{cost_estimate}");
         }
     }
     let text = etalon_line(line, [&scene("cornell.json")]).expect(0).stdout;
@@ -373,13 +375,14 @@ fn six_scenes_take_the_time_that_was_quoted() {
         let file = scene(&format!("{name}.json"));
         let quote = "quote {} --size 64x64 --clock cpu --seed 3 --error 2%,1% --json";
         let quote = etalon_line(quote, [&file]).expect(0).json();
-        for (error, price, seed) in [("2%", 0, 1), ("2%", 0, 2), ("1%", 1, 1), ("1%", 1, 2)] {
+        for (error, cost_estimate, seed) in [("2%", 0, 1), ("2%", 0, 2), ("1%", 1, 1), ("1%", 1, 2)] {
             let line = format!("render {{}} -o {{}} --size 64x64 --clock cpu --json --error {error} --seed {seed}");
             let report = etalon_line(&line, [&file, &folder.path().join("a.exr")]).expect(0).json();
             let number = |value: &Value| value.as_f64().unwrap();
             let before =
-                number(&report["foretold"]["pilot_seconds"]) + number(&report["adaptive"]["exploration_seconds"]);
-            let (took, quoted) = (number(&report["seconds"]) - before, number(&quote["prices"][price]["seconds"]));
+                number(&report["predicted"]["pilot_seconds"]) + number(&report["adaptive"]["exploration_seconds"]);
+            let (took, quoted) =
+                (number(&report["seconds"]) - before, number(&quote["estimates"][cost_estimate]["seconds"]));
             let ratio = took / quoted;
             tried += 1;
             if !(1.0 / 1.25..=1.25).contains(&ratio) {

@@ -98,7 +98,7 @@ fn an_error_that_is_unknown_ends_no_render_and_has_no_quote() {
     for (limit, reached) in [("--spp 8", "samples"), ("--time 0.5s", "time")] {
         let line = format!("render {{}} -o {{}} --error 10% {limit} --json");
         let report = etalon_line(&line, [&black, &output]).expect(0).says([WITHOUT_LIGHT]).json();
-        assert_eq!((&report["reached"], &report["foretold"]["samples"]), (&reached.into(), &Value::Null));
+        assert_eq!((&report["reached"], &report["predicted"]["samples"]), (&reached.into(), &Value::Null));
     }
     let text = etalon_line("render {} -o {} --error 10% --spp 8", [&black, &output]).expect(0).stdout;
     assert!(text.contains("found no light, so what 10 % takes is unknown"), "{text}");

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use etalon_transport::{Counters, Film, Foretold, PixelRect, Watch};
+use etalon_transport::{Counters, Film, PixelRect, Prediction, Watch};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// A bar that counts samples: how many, what share, how fast, how long still.
@@ -105,7 +105,7 @@ impl Watch for RenderBar {
         self.bar.inc(counters.paths);
     }
 
-    fn planned(&self, paths: u64, _: Option<&Foretold>) {
+    fn planned(&self, paths: u64, _: Option<&Prediction>) {
         self.bar.set_length(paths);
         self.bar.set_position(self.before.load(Ordering::Relaxed));
         // The pilot's pace is not the picture's.

@@ -6,7 +6,7 @@
 //! its interior, and one that goes through it goes on in there, or leaves it. What such a body holds is surrounded by its
 //! interior as long as it is not itself such a body.
 
-use crate::media::{Inside, Media};
+use crate::media::{Media, MediumStack};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Surface, Surfaces};
 use etalon_geometry::{Geometry, Passed, Ray};
@@ -14,9 +14,9 @@ use etalon_optics::{Lanes, exp_neg};
 
 /// The absorption of the body that a path is in, where no priority says it: the coefficient in m⁻¹, if it absorbs.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Body<'a>(Option<&'a PathSpectrum>);
+pub(crate) struct EnclosingMedium<'a>(Option<&'a PathSpectrum>);
 
-impl<'a> Body<'a> {
+impl<'a> EnclosingMedium<'a> {
     /// The body that holds the origin of a ray: that of the first surface along it, whatever stands before that, which says
     /// what it holds, if the ray comes to it from within.
     pub(crate) fn around(geometry: &Geometry, surfaces: &'a Surfaces, ray: &Ray<f64>) -> Self {
@@ -69,13 +69,13 @@ impl Absorption {
     #[inline]
     pub(crate) fn transmittance<const N: usize>(
         &self,
-        body: Body<'_>,
+        enclosing: EnclosingMedium<'_>,
         media: Option<&Media>,
-        inside: &Inside,
+        stack: &MediumStack,
         lambda_nm: &Lanes<f64, N>,
         length: f64,
     ) -> Lanes<f64, N> {
-        let Some(coefficient) = body.0.or_else(|| media.and_then(|media| media.absorption(inside))) else {
+        let Some(coefficient) = enclosing.0.or_else(|| media.and_then(|media| media.absorption(stack))) else {
             return Lanes::ONE;
         };
         let length_m = length * self.unit_m;

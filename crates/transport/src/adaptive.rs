@@ -14,7 +14,7 @@ use crate::film::{Counters, PixelRect};
 use crate::prepare::Prepared;
 use crate::probe::{Probe, Purpose};
 use crate::render::ThreadError;
-use crate::shares::{REGION_SIDE, Shares};
+use crate::sample_allocation::{REGION_SIDE, SampleAllocation};
 use etalon_scene::SamplerKind;
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub const EFFORT: f64 = 1.0 / 16.0;
 /// Camera paths, in the whole picture, below which what few samples foretell of its price is not believed: edges and other rare
 /// things may not have been met, and the exploration is over in a moment anyway.
 const LEAST_PATHS: f64 = (1 << 21) as f64;
-/// The foretold gain from which shares are used where they need not be: it pays for the exploration and for what the law
+/// The predicted gain from which shares are used where they need not be: it pays for the exploration and for what the law
 /// behind it leaves out.
 pub const WORTHWHILE: f64 = 1.2;
 /// Pixels that an exploration holds at most, unless a quarter of the picture is more: its sums take as much as the film's.
@@ -70,8 +70,8 @@ pub struct Goal {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exploration {
     /// Samples for each region.
-    pub shares: Arc<Shares>,
-    /// Time to an error with the same number of samples for all pixels, over that with these shares. Foretold for shares of
+    pub allocation: Arc<SampleAllocation>,
+    /// Time to an error with the same number of samples for all pixels, over that with these shares. Prediction for shares of
     /// half of the pixels by the other half, so that chance does not flatter it.
     pub gain: f64,
     /// Camera paths traced for it.
@@ -95,9 +95,9 @@ pub fn explore(
     probe.trace(0, |_, _| 0..samples, on_work);
     loop {
         let found = found(&probe, rect);
-        // The next step takes as much again as all of them did. Before every pixel was seen, nothing is foretold: the error may be in
+        // The next step takes as much again as all of them did. Before every pixel was seen, nothing is predicted: the error may be in
         // a few of them.
-        let worth = || EFFORT * foretold_paths(&probe, rect, goal, samples, found.gain) >= 2.0 * probe.paths() as f64;
+        let worth = || EFFORT * predicted_paths(&probe, rect, goal, samples, found.gain) >= 2.0 * probe.paths() as f64;
         if enough() || layers == most_layers && !worth() {
             return Ok(found);
         }
@@ -122,12 +122,12 @@ fn add_layers(probe: &mut Probe<'_>, rect: PixelRect, layers: &mut usize, more: 
 }
 
 /// Camera paths that the picture will take.
-fn foretold_paths(probe: &Probe<'_>, rect: PixelRect, goal: &Goal, samples: u32, gain: f64) -> f64 {
+fn predicted_paths(probe: &Probe<'_>, rect: PixelRect, goal: &Goal, samples: u32, gain: f64) -> f64 {
     let power = power(probe.sampler());
     let by_error = goal.relative_rmse.and_then(|target| {
         let mut error = ErrorSum::default();
         probe.seen().for_each(|seen| error.push(seen.pixel));
-        let foretold = match error.relative_rmse() {
+        let predicted = match error.relative_rmse() {
             // Where no light was found yet it is the pilot that goes on to look for some.
             None => 0.0,
             Some(relative_rmse) => {
@@ -135,7 +135,7 @@ fn foretold_paths(probe: &Probe<'_>, rect: PixelRect, goal: &Goal, samples: u32,
                 ratio.is_finite().then(|| f64::from(samples) * ratio.powf(2.0 / power) / gain.max(1.0))?
             }
         };
-        Some(foretold.max(LEAST_PATHS / rect.area() as f64))
+        Some(predicted.max(LEAST_PATHS / rect.area() as f64))
     });
     by_error.unwrap_or(f64::INFINITY).min(f64::from(goal.samples)) * rect.area() as f64
 }
@@ -165,7 +165,7 @@ impl Region {
 }
 
 fn found(probe: &Probe<'_>, rect: PixelRect) -> Exploration {
-    let regions = Shares::regions(rect);
+    let regions = SampleAllocation::regions(rect);
     let columns = (rect.x1 - rect.x0).div_ceil(REGION_SIDE);
     let mut halves = [vec![Region::default(); regions.len()], vec![Region::default(); regions.len()]];
     for seen in probe.seen() {
@@ -182,11 +182,15 @@ fn found(probe: &Probe<'_>, rect: PixelRect) -> Exploration {
     }
     let [even, odd] = &halves;
     let power = power(probe.sampler());
-    let foretold = |of: &[Region], by: &[Region]| gain(of, &weights(by, columns, power), power);
-    let gain = (foretold(even, odd) * foretold(odd, even)).sqrt();
+    let predicted = |of: &[Region], by: &[Region]| gain(of, &weights(by, columns, power), power);
+    let gain = (predicted(even, odd) * predicted(odd, even)).sqrt();
     let mut all = even.clone();
     all.iter_mut().zip(odd).for_each(|(all, odd)| all.add(odd));
-    Exploration { shares: Arc::new(Shares::new(rect, weights(&all, columns, power))), gain, paths: probe.paths() }
+    Exploration {
+        allocation: Arc::new(SampleAllocation::new(rect, weights(&all, columns, power))),
+        gain,
+        paths: probe.paths(),
+    }
 }
 
 /// The weights of the regions: (V/c)^(1/(1 + power)), and [`EVEN`] for all.
@@ -379,7 +383,7 @@ mod tests {
         let rect = PixelRect { x0: 24, y0: 5, x1: 48, y1: 21 };
         let goal = Goal { samples: 1 << 14, relative_rmse: None };
         let found = explore(&prepared, rect, &goal, Some(1), &|| false, &|_| ()).unwrap();
-        let weights = found.shares.weights();
+        let weights = found.allocation.weights();
         let (rows, _) = weights.as_chunks::<3>();
         assert_eq!(rows.len(), 2);
         // What is known of noise: that of the region itself, and with the same weight the mean of it and those around it. The left
@@ -408,7 +412,7 @@ mod tests {
         let samples = 64;
         probe.trace(0, |_, _| 0..samples, &|_| ());
         let paths = |samples: u32, relative_rmse: Option<f64>, gain: f64| {
-            foretold_paths(&probe, rect, &Goal { samples, relative_rmse }, 64, gain) / rect.area() as f64
+            predicted_paths(&probe, rect, &Goal { samples, relative_rmse }, 64, gain) / rect.area() as f64
         };
         // (½·p·(1 − p)/n)/(½·p)².
         let expected = |target: f64| 2.0 * 24.0 / (target * target);

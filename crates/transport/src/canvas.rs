@@ -6,8 +6,8 @@
 use crate::film::{Counters, Film, PixelRect, TileSums};
 use crate::prepare::Prepared;
 use crate::render::{Control, TILE, ThreadError};
+use crate::sample_allocation::SampleAllocation;
 use crate::sampler::mix;
-use crate::shares::Shares;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -67,18 +67,18 @@ pub fn tiles_of(rect: PixelRect, shard: Shard) -> Vec<PixelRect> {
 
 impl Canvas {
     /// The same of a film that has nothing yet, for tiles that were rendered elsewhere.
-    pub fn of_share(film: Film, rect: PixelRect, shard: Shard, shares: Option<&Shares>) -> Self {
+    pub fn of_share(film: Film, rect: PixelRect, shard: Shard, allocation: Option<&SampleAllocation>) -> Self {
         let tiles = tiles_of(rect, shard)
             .into_iter()
-            .flat_map(|tile| shares.map_or_else(|| vec![tile], |shares| shares.parts(tile)))
+            .flat_map(|tile| allocation.map_or_else(|| vec![tile], |allocation| allocation.parts(tile)))
             .map(|rect| Tile { rect, samples: 0, counters: Counters::default() })
             .collect();
         Self { rect, state: Mutex::new(State { film, tiles }) }
     }
 
-    /// Nothing of a share of `rect` yet; where the samples are spread by `shares`, in tiles whose pixels take the same.
-    pub fn new(prepared: &Prepared, rect: PixelRect, shard: Shard, shares: Option<&Shares>) -> Self {
-        Self::of_share(prepared.film(), rect, shard, shares)
+    /// Nothing of a share of `rect` yet; where the samples are spread by `allocation`, in tiles whose pixels take the same.
+    pub fn new(prepared: &Prepared, rect: PixelRect, shard: Shard, allocation: Option<&SampleAllocation>) -> Self {
+        Self::of_share(prepared.film(), rect, shard, allocation)
     }
 
     /// The pixels that the whole picture has.
@@ -205,10 +205,10 @@ mod tests {
     fn shares_hold_every_tile_once_and_are_alike_in_size() {
         let rect = PixelRect { x0: 5, y0: 0, x1: 200, y1: 90 };
         for of in [1, 3, 16] {
-            let shares: Vec<_> = (0..of).map(|index| tiles_of(rect, Shard { index, of })).collect();
-            let (least, most) = (shares.iter().map(Vec::len).min(), shares.iter().map(Vec::len).max());
+            let allocation: Vec<_> = (0..of).map(|index| tiles_of(rect, Shard { index, of })).collect();
+            let (least, most) = (allocation.iter().map(Vec::len).min(), allocation.iter().map(Vec::len).max());
             assert!(most.unwrap() - least.unwrap() <= 1);
-            let mut all: Vec<_> = shares.concat();
+            let mut all: Vec<_> = allocation.concat();
             all.sort_unstable_by_key(|tile| (tile.y0, tile.x0));
             assert_eq!(all, rect.tiles(TILE));
         }

@@ -7,7 +7,7 @@
 //! balance heuristic), so that the estimate is unbiased whatever the share. Light that shadow rays find too is weighed as before, by the
 //! cosine's density on both sides: any two weights will do that add up to one.
 //!
-//! What a smooth ball shows of a lamp is aimed at more closely ([`Image`]): each image with a share in proportion to the light that it
+//! What a smooth ball shows of a lamp is aimed at more closely ([`SpecularImage`]): each image with a share in proportion to the light that it
 //! brings, and all with half of `share` where they bring as much as a lamp that fills [`LEVEL`]. Beside images whole bodies of glass may
 //! have a small share: through them the bright spots are seen that they throw themselves.
 //!
@@ -15,14 +15,16 @@
 //! picture, with random numbers of which it uses none ([`tune`](crate::tune)).
 
 mod hull;
-mod image;
 mod mixture;
+mod specular_image;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use hull::Hull;
-pub(crate) use image::{Ball, Eye, Image, Shows};
-pub(crate) use mixture::{Aimed, Mixture, Seen, density_of, is_within, place_within, share_of, share_of_images};
+pub(crate) use mixture::{
+    Aimed, Mixture, VisibleImages, density_of, is_within, place_within, share_of, specular_image_share,
+};
+pub(crate) use specular_image::{Ball, Eye, Shows, SpecularImage};
 
 use crate::bsdf::Bsdf;
 use crate::light::{LightTable, Round, visible_sum};
@@ -34,7 +36,7 @@ use etalon_optics::Vec3;
 pub(crate) const MOST_BODIES: usize = 8;
 
 /// Most images of lamps that are aimed at, the largest balls' first.
-pub(crate) const MOST_IMAGES: usize = 16;
+pub(crate) const MAX_SPECULAR_IMAGES: usize = 16;
 /// The light that comes in otherwise, about: so many steradians of the brightest lamp, times the cosine over π. Where images bring as
 /// much they have half of the share that they may have.
 const LEVEL: f32 = 0.03;
@@ -42,7 +44,7 @@ const LEVEL: f32 = 0.03;
 const OF_LENSES: f64 = 1.0 / 6.0;
 
 /// Something that directions can be drawn toward. No function has branches, so that a loop over points is vectorised.
-pub(crate) trait Target {
+pub(crate) trait DirectionTarget {
     /// Whether it can be aimed at from a point: from outside, and unless it is wholly behind a surface of normal `n` there.
     fn is_seen(&self, from: Vec3<f64>, n: Vec3<f64>) -> bool;
     /// A direction toward it from where it is seen, for `u` in [0, 1]².
@@ -51,7 +53,7 @@ pub(crate) trait Target {
     fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64;
 }
 
-impl Target for Round {
+impl DirectionTarget for Round {
     #[inline(always)]
     fn is_seen(&self, from: Vec3<f64>, n: Vec3<f64>) -> bool {
         let toward = self.centre - from;
@@ -71,17 +73,17 @@ impl Target for Round {
 
 /// A body that casts caustics, as directions are drawn toward it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Caster {
+pub(crate) enum GuidedTarget {
     Sphere(Round),
     Box(Hull),
 }
 
-impl Caster {
+impl GuidedTarget {
     /// A direction toward it.
     #[inline]
     pub(crate) fn aim(&self, from: Vec3<f64>, u: [f64; 2]) -> Vec3<f64> {
         match self {
-            Self::Sphere(round) => Target::aim(round, from, u),
+            Self::Sphere(round) => DirectionTarget::aim(round, from, u),
             Self::Box(body) => body.aim(from, u),
         }
     }
@@ -96,7 +98,7 @@ impl Caster {
 
 /// What directions are drawn toward.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Aims {
+pub(crate) enum GuidedBy {
     #[default]
     Nothing,
     /// Whole bodies.
@@ -109,25 +111,25 @@ pub(crate) enum Aims {
 
 /// Those of a scene that directions are drawn toward.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Casters {
-    pub(crate) bodies: Vec<Caster>,
+pub(crate) struct GuidedTargets {
+    pub(crate) bodies: Vec<GuidedTarget>,
     /// Those of them that bend light.
-    pub(crate) lenses: Vec<Caster>,
-    pub(crate) images: Vec<Image>,
+    pub(crate) lenses: Vec<GuidedTarget>,
+    pub(crate) images: Vec<SpecularImage>,
     /// Which of them are.
-    pub(crate) aims: Aims,
+    pub(crate) guided_by: GuidedBy,
     /// The share of the directions that bodies have where all are seen, and that images have at most.
     pub(crate) share: f64,
 }
 
-impl Casters {
+impl GuidedTargets {
     /// The scene's own mirrors and bodies of glass, where there are lamps that a walk may run into; none is aimed at yet.
     pub(crate) fn new(surfaces: &Surfaces, geometry: &Geometry, lights: &LightTable, range_nm: [f64; 2]) -> Self {
         if !lights.lights().iter().any(|light| light.emitter().is_some()) {
             return Self::default();
         }
         // With whether they bend light.
-        let mut bodies: Vec<(Caster, bool)> = Vec::new();
+        let mut bodies: Vec<(GuidedTarget, bool)> = Vec::new();
         let mut boxes: Vec<(u32, Aabb, bool)> = Vec::new();
         let mut balls = Vec::new();
         for (i, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {
@@ -141,14 +143,14 @@ impl Casters {
             match (geometry.primitive(PrimitiveId(i as u32)), boxes.last_mut()) {
                 (Primitive::Sphere(sphere), _) => {
                     let ball = Round { centre: sphere.centre(), radius: sphere.radius(), front: true };
-                    bodies.push((Caster::Sphere(ball), bends));
+                    bodies.push((GuidedTarget::Sphere(ball), bends));
                     balls.push((ball, bsdf));
                 }
                 (part, Some((of, body, _))) if *of == object => *body = body.union(part.bounds()),
                 (part, _) => boxes.push((object, part.bounds(), bends)),
             }
         }
-        bodies.extend(boxes.into_iter().map(|(_, body, bends)| (Caster::Box(body.into()), bends)));
+        bodies.extend(boxes.into_iter().map(|(_, body, bends)| (GuidedTarget::Box(body.into()), bends)));
         bodies.sort_by(|a, b| b.0.size().total_cmp(&a.0.size()));
         bodies.truncate(MOST_BODIES);
         balls.sort_by(|a, b| b.0.radius.total_cmp(&a.0.radius));
@@ -168,39 +170,39 @@ impl Casters {
             };
             let ball = shows.map(|shows| Ball::new(ball, shows));
             ball.into_iter()
-                .flat_map(|ball| lamps.iter().map(move |&(lamp, radiance)| Image::new(ball, lamp, radiance)))
+                .flat_map(|ball| lamps.iter().map(move |&(lamp, radiance)| SpecularImage::new(ball, lamp, radiance)))
         });
-        let images = shown.take(MOST_IMAGES).collect();
+        let images = shown.take(MAX_SPECULAR_IMAGES).collect();
         let lenses = bodies.iter().filter(|body| body.1).map(|body| body.0).collect();
         Self {
             bodies: bodies.into_iter().map(|body| body.0).collect(),
             lenses,
             images,
-            aims: Aims::Nothing,
+            guided_by: GuidedBy::Nothing,
             share: 0.0,
         }
     }
 
     /// The bodies that directions are drawn toward, and the share of each where it is seen.
-    pub(crate) fn bodies_aimed_at(&self) -> (&[Caster], f64) {
-        match self.aims {
-            Aims::Bodies => (&self.bodies, self.share / self.bodies.len() as f64),
-            Aims::ImagesAndLenses => (&self.lenses, OF_LENSES * self.share / self.lenses.len() as f64),
-            Aims::Nothing | Aims::Images => (&[], 0.0),
+    pub(crate) fn bodies_aimed_at(&self) -> (&[GuidedTarget], f64) {
+        match self.guided_by {
+            GuidedBy::Bodies => (&self.bodies, self.share / self.bodies.len() as f64),
+            GuidedBy::ImagesAndLenses => (&self.lenses, OF_LENSES * self.share / self.lenses.len() as f64),
+            GuidedBy::Nothing | GuidedBy::Images => (&[], 0.0),
         }
     }
 
     /// The images that directions are drawn toward.
-    pub(crate) fn images_aimed_at(&self) -> &[Image] {
-        match self.aims {
-            Aims::Images | Aims::ImagesAndLenses => &self.images,
-            Aims::Nothing | Aims::Bodies => &[],
+    pub(crate) fn specular_images_aimed_at(&self) -> &[SpecularImage] {
+        match self.guided_by {
+            GuidedBy::Images | GuidedBy::ImagesAndLenses => &self.images,
+            GuidedBy::Nothing | GuidedBy::Bodies => &[],
         }
     }
 
     /// Whether directions are drawn toward anything.
     pub(crate) fn aim(&self) -> bool {
-        self.aims != Aims::Nothing
+        self.guided_by != GuidedBy::Nothing
     }
 }
 

@@ -1,9 +1,9 @@
 //! The one way in which samples enter a film.
 
 use crate::film::{Counters, NonFinite, Sums};
-use crate::model::WavelengthModel;
 use crate::prepare::Prepared;
 use crate::wavelength::Wavelengths;
+use crate::wavelength_lanes::WavelengthModel;
 use etalon_optics::Lanes;
 use etalon_scene::Bands;
 
@@ -11,7 +11,7 @@ use etalon_scene::Bands;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SampleId {
     /// Number of the pixel among those whose sums are kept.
-    pub spot: usize,
+    pub pixel_samples: usize,
     pub x: u32,
     pub y: u32,
     pub sample: u32,
@@ -63,9 +63,9 @@ impl<'a> FilmEntry<'a> {
 
     /// Counts rays of all kinds for a spot.
     #[inline(always)]
-    pub(crate) fn count_rays(&mut self, spot: usize, rays: u64) {
-        if let Some(of_spot) = self.rays.get_mut(spot) {
-            *of_spot += rays;
+    pub(crate) fn count_rays(&mut self, pixel_samples: usize, rays: u64) {
+        if let Some(of_pixel_samples) = self.rays.get_mut(pixel_samples) {
+            *of_pixel_samples += rays;
         }
     }
 
@@ -86,7 +86,7 @@ impl<'a> FilmEntry<'a> {
             counters.record_nonfinite(NonFinite { y: id.y, x: id.x, sample: id.sample });
             return;
         }
-        let replicate = id.spot * self.replicates + id.sample as usize % self.replicates;
+        let replicate = id.pixel_samples * self.replicates + id.sample as usize % self.replicates;
         self.sums.xyz[replicate].add(xyz);
         if let (Some(stokes), Some(sum)) = (stokes_xyz, self.sums.stokes.get_mut(replicate)) {
             (0..3).for_each(|s| (0..3).for_each(|c| sum[s][c] += stokes[s][c]));

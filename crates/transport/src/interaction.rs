@@ -12,7 +12,7 @@
 //! member after scattering leaves the whole group: it starts beyond all of them.
 
 use crate::film::Counters;
-use crate::media::{Inside, Interface, Media};
+use crate::media::{Interface, Media, MediumStack};
 use crate::shading_tables::{BsdfKind, SmoothInterface};
 use crate::surface::{Scattering, Surface};
 use crate::world::{ShadowRays, World};
@@ -119,12 +119,12 @@ pub(crate) struct Walk {
     /// The surfaces of the group that was met last, those already passed among them.
     group: Vec<Member>,
     /// The solids that hold the path if it goes on through the interface that it met last.
-    pub beyond: Inside,
+    pub beyond: MediumStack,
 }
 
 impl Default for Walk {
     fn default() -> Self {
-        Self { passed: Passed::default(), group: Vec::new(), beyond: Inside::NOTHING }
+        Self { passed: Passed::default(), group: Vec::new(), beyond: MediumStack::NOTHING }
     }
 }
 
@@ -173,18 +173,18 @@ impl Walk {
 }
 
 impl<'w> World<'w> {
-    /// What the walk along a ray meets next; `inside` is brought before it.
+    /// What the walk along a ray meets next; `stack` is brought before it.
     #[inline(always)]
     pub(crate) fn intersect(
         &self,
         ray: &Ray<f64>,
         walk: &mut Walk,
-        inside: &mut Inside,
+        stack: &mut MediumStack,
         counters: &mut Counters,
     ) -> Option<SurfaceInteraction<'w>> {
         if self.meets_groups {
             let first = self.geometry.next_hit(ray, &walk.passed)?;
-            return self.intersect_group(ray, first, walk, inside, counters);
+            return self.intersect_group(ray, first, walk, stack, counters);
         }
         let hit = self.geometry.closest_hit(ray)?;
         let point = self.geometry.surface(ray, &hit);
@@ -197,7 +197,7 @@ impl<'w> World<'w> {
         ray: &Ray<f64>,
         mut first: Hit<f64>,
         walk: &mut Walk,
-        inside: &mut Inside,
+        stack: &mut MediumStack,
         counters: &mut Counters,
     ) -> Option<SurfaceInteraction<'w>> {
         let media = self.media;
@@ -206,7 +206,7 @@ impl<'w> World<'w> {
             if let Some(number) = self.first_of_group(&walk.group, media) {
                 let (hit, point) = leaving_group(&walk.group, number);
                 let surface = self.surfaces.of(&point);
-                let around = media.filter(|_| surface.takes_medium()).map(|media| media.medium(inside));
+                let around = media.filter(|_| surface.takes_medium()).map(|media| media.medium(stack));
                 let interface = around.map(|around| Interface { incident: around, transmitted: around });
                 return Some(SurfaceInteraction {
                     interface,
@@ -218,22 +218,22 @@ impl<'w> World<'w> {
             let crossings = ahead.map(|member| {
                 (media.place(self.surfaces, &member.point), member.point.normal.dot(ray.direction) < 0.0)
             });
-            walk.beyond = inside.crossed(crossings, &mut counters.lost_media);
-            if let Some(deciding) = media.deciding(inside, &walk.beyond) {
+            walk.beyond = stack.crossed(crossings, &mut counters.lost_media);
+            if let Some(deciding) = media.deciding(stack, &walk.beyond) {
                 let number = walk.group.iter().position(|member| member.hit == first).expect("it is of its group");
                 let (hit, point) = leaving_group(&walk.group, number);
                 let mut surface = self.surfaces.of(&point);
                 if let Some(object) = deciding {
                     surface.material = self.surfaces.material_of(object);
                 }
-                let interface = Interface { incident: media.medium(inside), transmitted: media.medium(&walk.beyond) };
+                let interface = Interface { incident: media.medium(stack), transmitted: media.medium(&walk.beyond) };
                 return Some(SurfaceInteraction {
                     interface: Some(interface),
                     crosses: true,
                     ..SurfaceInteraction::new(ray.direction, hit, point, surface)
                 });
             }
-            *inside = walk.beyond;
+            *stack = walk.beyond;
             walk.pass_group();
             first = self.geometry.next_hit(ray, &walk.passed)?;
         }

@@ -3,32 +3,32 @@
 use crate::batch::render_batch;
 use crate::film::{Counters, Sums};
 use crate::film_entry::{FilmEntry, SampleId};
-use crate::model::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
 use crate::plan::kernels::{self, KernelKind, LANES};
 use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::prepare::Prepared;
 use crate::replay::{Replay, replay};
 use crate::reuse;
-use crate::tracer::{Spot, Tracer};
-use crate::trial::{Trial, try_casters};
+use crate::tracer::{PixelSamples, Tracer};
+use crate::trial::{Trial, try_guided_targets};
+use crate::wavelength_lanes::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
 
 /// Adds samples to spots: to their sums, spot by spot, in each replicate by replicate; and what rays of all kinds each spot took,
 /// unless nobody asks for that.
-pub(crate) type RenderSpots = fn(&Prepared, &[Spot], Sums<'_>, &mut [u64]) -> Counters;
+pub(crate) type RenderPixels = fn(&Prepared, &[PixelSamples], Sums<'_>, &mut [u64]) -> Counters;
 
 /// The path loop for one model of wavelengths.
 pub(crate) struct Kernel {
     pub kind: &'static KernelKind,
     /// One path at a time.
-    pub render_scalar: RenderSpots,
+    pub render_scalar: RenderPixels,
     /// Many at once: the same, bit for bit.
-    pub render_batch: RenderSpots,
+    pub render_batch: RenderPixels,
     /// One path at a time where neighbouring pixels share paths, if they can.
-    pub render_reused: Option<RenderSpots>,
+    pub render_reused: Option<RenderPixels>,
     /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
-    /// Tells what casters of caustics would win.
-    pub try_casters: fn(&Prepared) -> Trial,
+    /// Tells what guided targets of caustics would win.
+    pub try_guided_targets: fn(&Prepared) -> Trial,
 }
 
 /// The whole table. Everything else is a run-time branch.
@@ -50,13 +50,13 @@ const fn entry<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(kind: 
         render_batch: render_batch::<M, P, N>,
         render_reused: None,
         replay: replay::<M, P, N>,
-        try_casters: try_casters::<M, P, N>,
+        try_guided_targets: try_guided_targets::<M, P, N>,
     }
 }
 
 /// One whose pixels can share paths.
 const fn with_reuse<M: WavelengthModel<N>, const N: usize>(kind: &'static KernelKind) -> Kernel {
-    Kernel { render_reused: Some(reuse::render_spots::<M, N>), ..entry::<M, Averaged, N>(kind) }
+    Kernel { render_reused: Some(reuse::render_pixels::<M, N>), ..entry::<M, Averaged, N>(kind) }
 }
 
 impl Prepared {
@@ -69,20 +69,25 @@ impl Prepared {
 /// The samples of spots, one path at a time, added to `sums` in the order of their numbers.
 fn render_scalar<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
-    spots: &[Spot],
+    all_samples: &[PixelSamples],
     sums: Sums<'_>,
     rays: &mut [u64],
 ) -> Counters {
     let tracer = Tracer::new(prepared);
     let mut counters = Counters::default();
     let mut film = FilmEntry::new(prepared, sums, rays);
-    for (number, spot) in spots.iter().enumerate() {
+    for (number, pixel_samples) in all_samples.iter().enumerate() {
         let before = counters.rays + counters.shadow_rays;
-        for sample in spot.samples.clone() {
-            let path = tracer.sample::<M, P, N>(spot.x, spot.y, sample, &mut counters, &mut ());
+        for sample in pixel_samples.samples.clone() {
+            let path = tracer.sample::<M, P, N>(pixel_samples.x, pixel_samples.y, sample, &mut counters, &mut ());
             let received = path.received();
             let xyz = M::to_xyz(prepared, &received.wavelengths, received.radiance);
-            film.add::<M, N>(SampleId { spot: number, x: spot.x, y: spot.y, sample }, xyz, &received, &mut counters);
+            film.add::<M, N>(
+                SampleId { pixel_samples: number, x: pixel_samples.x, y: pixel_samples.y, sample },
+                xyz,
+                &received,
+                &mut counters,
+            );
         }
         film.count_rays(number, counters.rays + counters.shadow_rays - before);
     }

@@ -12,14 +12,14 @@
 //! | `integrator` | the path loop and its steps |
 //! | `batch` | the same steps for many paths at once: the same film, bit for bit |
 //! | `world`, `interaction`, `media`, [`polarisation`] | the scene as paths see it; what they meet; which medium they are in; the Stokes vector that they carry |
-//! | `coordinates` | shading normals and texture coordinates |
+//! | `shading_geometry` | shading normals and texture coordinates |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
 //! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`], [`texture`] | what the estimates are made of |
-//! | `kernel`, `tracer`, `model`, [`mod@render`], [`film`] | the table of kernels, where samples begin, what their lanes stand for, tiles over all cores, sums |
+//! | `kernel`, `tracer`, `wavelength_lanes`, [`mod@render`], [`film`] | the table of kernels, where samples begin, what their lanes stand for, tiles over all cores, sums |
 //! | [`features`] | what camera rays meet first |
 //! | [`canvas`] | a picture under way: divided, put down, taken up |
-//! | [`accuracy`], [`pilot`], [`price`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
-//! | [`adaptive`], [`shares`] | where samples are worth most, and how they are spread |
+//! | [`accuracy`], [`pilot`], [`cost_estimate`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
+//! | [`adaptive`], [`allocation`] | where samples are worth most, and how they are spread |
 //! | [`replay`] | one path, vertex by vertex |
 //!
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
@@ -34,12 +34,13 @@ pub mod accuracy;
 pub mod adaptive;
 mod batch;
 pub mod bsdf;
+mod bump_mapping;
 pub mod camera;
 pub mod canvas;
 mod caustics;
 mod cells;
 mod coincidence;
-mod coordinates;
+pub mod cost_estimate;
 pub mod features;
 pub mod film;
 mod film_entry;
@@ -51,7 +52,6 @@ mod kernel;
 pub mod light;
 mod media;
 pub mod mis;
-mod model;
 mod motion;
 pub mod observer;
 pub mod pilot;
@@ -59,17 +59,16 @@ pub mod plan;
 pub mod polarisation;
 pub mod prepare;
 mod prepare_error;
-pub mod price;
 mod probe;
-mod relief;
+mod quadric_uv;
 pub mod render;
 pub mod replay;
 mod reuse;
-mod round;
+pub mod sample_allocation;
 pub mod sampler;
+mod shading_geometry;
 mod shading_tables;
 mod shapes;
-pub mod shares;
 pub mod spectral;
 pub mod stop;
 mod surface;
@@ -79,11 +78,13 @@ mod trial;
 pub mod tune;
 pub mod warp;
 pub mod wavelength;
+mod wavelength_lanes;
 mod world;
 
 pub use accuracy::ImageError;
 pub use adaptive::{Adaptivity, Exploration};
 pub use canvas::{Canvas, Shard, Tile};
+pub use cost_estimate::CostEstimate;
 pub use features::Features;
 pub use film::{Band, Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
 pub use media::DEPTH as MOST_SOLIDS_AT_ONCE;
@@ -91,8 +92,7 @@ pub use pilot::Pilot;
 pub use plan::{Carried, Effect, EffectName, PathLoop, Plan, Study, StudyError};
 pub use prepare::Prepared;
 pub use prepare_error::PrepareError;
-pub use price::Price;
 pub use render::{Control, Extent, ThreadError};
-pub use shares::Shares;
-pub use stop::{Ended, Explored, Finished, Foretold, Limits, Reached, SettleError, Settled, Watch};
+pub use sample_allocation::SampleAllocation;
+pub use stop::{Ended, Explored, Finished, Limits, Prediction, Reached, SettleError, Settled, Watch};
 pub use tune::{prepare, prepare_study};

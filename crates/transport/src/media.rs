@@ -31,26 +31,26 @@ pub(crate) struct Solid {
 }
 
 /// A solid where it is placed: its object's number, and the instance (0 if it is in none).
-pub(crate) type Place = (u32, u32);
+pub(crate) type PlacedSolid = (u32, u32);
 
 /// The solids that hold a point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Inside {
-    places: [Place; DEPTH],
+pub(crate) struct MediumStack {
+    places: [PlacedSolid; DEPTH],
     len: usize,
 }
 
-impl Inside {
+impl MediumStack {
     pub(crate) const NOTHING: Self = Self { places: [(0, 0); DEPTH], len: 0 };
 
-    fn iter(&self) -> impl Iterator<Item = Place> + '_ {
+    fn iter(&self) -> impl Iterator<Item = PlacedSolid> + '_ {
         self.places[..self.len].iter().copied()
     }
 
     /// What holds a path behind boundaries that coincide: each with its solid, and whether that is entered. Counts in `lost` what
     /// contradicts itself.
-    pub(crate) fn crossed(&self, crossings: impl Iterator<Item = (Place, bool)>, lost: &mut u64) -> Self {
-        let mut crossed: Vec<(Place, bool)> = Vec::new();
+    pub(crate) fn crossed(&self, crossings: impl Iterator<Item = (PlacedSolid, bool)>, lost: &mut u64) -> Self {
+        let mut crossed: Vec<(PlacedSolid, bool)> = Vec::new();
         for crossing in crossings {
             // Two faces of a mesh that meet in the edge that is hit are one boundary.
             if !crossed.contains(&crossing) {
@@ -69,7 +69,7 @@ impl Inside {
 
     /// Goes through a boundary. False if that contradicts what was known: a solid is left that was never entered, or there
     /// are too many.
-    fn cross(&mut self, place: Place, enters: bool) -> bool {
+    fn cross(&mut self, place: PlacedSolid, enters: bool) -> bool {
         if enters {
             if self.len == DEPTH {
                 return false;
@@ -107,23 +107,23 @@ impl Media {
     }
 
     /// The solid whose medium fills a point.
-    fn filling(&self, inside: &Inside) -> Option<Place> {
-        inside.iter().max_by_key(|&place| self.rank(place))
+    fn filling(&self, stack: &MediumStack) -> Option<PlacedSolid> {
+        stack.iter().max_by_key(|&place| self.rank(place))
     }
 
     /// Which of two solids at one place fills it: the greater.
-    fn rank(&self, place: Place) -> (Option<u32>, Place) {
+    fn rank(&self, place: PlacedSolid) -> (Option<u32>, PlacedSolid) {
         (self.solid(place.0).map(|solid| solid.priority), place)
     }
 
     /// The medium that fills a place.
-    pub(crate) fn medium(&self, inside: &Inside) -> &RefractiveIndex {
-        self.filling(inside).and_then(|place| self.solid(place.0)).map_or(&VACUUM, |solid| &solid.index)
+    pub(crate) fn medium(&self, stack: &MediumStack) -> &RefractiveIndex {
+        self.filling(stack).and_then(|place| self.solid(place.0)).map_or(&VACUUM, |solid| &solid.index)
     }
 
     /// The absorption coefficient of the medium that fills a place, m⁻¹, if it absorbs.
-    pub(crate) fn absorption(&self, inside: &Inside) -> Option<&PathSpectrum> {
-        self.filling(inside).and_then(|place| self.solid(place.0))?.absorption.as_ref()
+    pub(crate) fn absorption(&self, stack: &MediumStack) -> Option<&PathSpectrum> {
+        self.filling(stack).and_then(|place| self.solid(place.0))?.absorption.as_ref()
     }
 
     /// Whether an object is the boundary of a solid.
@@ -132,14 +132,14 @@ impl Media {
     }
 
     /// The solid that a point bounds, if its object is one.
-    pub(crate) fn place(&self, surfaces: &Surfaces, point: &SurfacePoint<f64>) -> Place {
+    pub(crate) fn place(&self, surfaces: &Surfaces, point: &SurfacePoint<f64>) -> PlacedSolid {
         (surfaces.of(point).object, point.surface.instance)
     }
 
     /// The object whose material decides what an interface does, between what holds the path before it and behind it: of the
     /// solids whose medium lies on either side, and that begin or end here, the one of the highest priority. `None` if the
     /// medium does not change: there is no interface.
-    pub(crate) fn deciding(&self, before: &Inside, behind: &Inside) -> Option<Option<u32>> {
+    pub(crate) fn deciding(&self, before: &MediumStack, behind: &MediumStack) -> Option<Option<u32>> {
         let (near, far) = (self.filling(before), self.filling(behind));
         if near == far {
             return None;
@@ -151,25 +151,31 @@ impl Media {
     }
 
     /// The solids that hold the origin of a ray: those whose first boundary along it is left, not entered.
-    pub(crate) fn around(&self, geometry: &Geometry, surfaces: &Surfaces, ray: &Ray<f64>, lost: &mut u64) -> Inside {
+    pub(crate) fn around(
+        &self,
+        geometry: &Geometry,
+        surfaces: &Surfaces,
+        ray: &Ray<f64>,
+        lost: &mut u64,
+    ) -> MediumStack {
         let mut hits = Vec::new();
         geometry.all_hits(ray, 0.0, |hit| {
             hits.push(hit);
             ray.t_max
         });
         hits.sort_by(|a, b| (a.t, a.surface).partial_cmp(&(b.t, b.surface)).expect("distances are numbers"));
-        let mut inside = Inside::NOTHING;
-        let mut known = Inside::NOTHING;
+        let mut stack = MediumStack::NOTHING;
+        let mut known = MediumStack::NOTHING;
         for hit in hits {
             let point = geometry.surface(ray, &hit);
             let place = self.place(surfaces, &point);
             if self.solid(place.0).is_some() && !known.iter().any(|other| other == place) {
                 let leaves = point.normal.dot(ray.direction) > 0.0;
-                let counted = known.cross(place, true) && (!leaves || inside.cross(place, true));
+                let counted = known.cross(place, true) && (!leaves || stack.cross(place, true));
                 *lost += u64::from(!counted);
             }
         }
-        inside
+        stack
     }
 }
 

@@ -6,13 +6,13 @@
 //! have not been found.
 
 use crate::accuracy::ErrorSum;
+use crate::cost_estimate::{CostEstimate, cost_estimate};
 use crate::film::{Counters, PixelRect};
 use crate::prepare::Prepared;
-use crate::price::{Price, price};
 use crate::probe::{Probe, Purpose};
 use crate::render::ThreadError;
+use crate::sample_allocation::SampleAllocation;
 use crate::sampler::mix;
-use crate::shares::Shares;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -53,7 +53,7 @@ pub struct Pilot<'a> {
     prepared: &'a Prepared,
     rect: PixelRect,
     /// How the picture spreads its samples.
-    shares: Option<Arc<Shares>>,
+    allocation: Option<Arc<SampleAllocation>>,
     /// Side of the blocks of which each gives one pixel a layer.
     block: u32,
     layers: u32,
@@ -64,19 +64,19 @@ pub struct Pilot<'a> {
 }
 
 impl<'a> Pilot<'a> {
-    /// A pilot for the pixels of `rect`, which take their samples by `shares` (the same number each if `None`), on so many
+    /// A pilot for the pixels of `rect`, which take their samples by `allocation` (the same number each if `None`), on so many
     /// threads (all cores if `None`), that has not traced anything yet.
     pub fn new(
         prepared: &'a Prepared,
         rect: PixelRect,
-        shares: Option<Arc<Shares>>,
+        allocation: Option<Arc<SampleAllocation>>,
         threads: Option<usize>,
     ) -> Result<Self, ThreadError> {
         let block = (rect.area() as f64 / FIRST_PIXELS as f64).sqrt().ceil() as u32;
         let mut pilot = Self {
             prepared,
             rect,
-            shares,
+            allocation,
             block: block.max(1),
             layers: 0,
             probe: Probe::new(prepared, Purpose::Pilot, threads)?,
@@ -148,9 +148,9 @@ impl<'a> Pilot<'a> {
         self.seconds += clock() - start;
         let copies = f64::from(self.probe.copies());
         let rate = self.seconds / self.probe.paths() as f64;
-        let paths = match &self.shares {
+        let paths = match &self.allocation {
             None => u64::from(samples) * self.rect.area(),
-            Some(shares) => shares.paths(samples, self.probe.replicates()),
+            Some(allocation) => allocation.paths(samples, self.probe.replicates()),
         };
         self.points.push(PilotPoint {
             samples,
@@ -191,12 +191,12 @@ impl<'a> Pilot<'a> {
 
     /// Traces the samples `samples` of the pixels from number `first` on.
     fn trace(&mut self, first: usize, samples: Range<u32>, on_work: &(dyn Fn(&Counters) + Sync)) {
-        let Self { probe, shares, .. } = self;
+        let Self { probe, allocation, .. } = self;
         let replicates = probe.replicates();
-        match shares {
+        match allocation {
             None => probe.trace(first, |_, _| samples.clone(), on_work),
-            Some(shares) => {
-                let up_to = |x, y, mean| shares.samples(x, y, mean, replicates);
+            Some(allocation) => {
+                let up_to = |x, y, mean| allocation.samples(x, y, mean, replicates);
                 probe.trace(first, |x, y| up_to(x, y, samples.start)..up_to(x, y, samples.end), on_work);
             }
         }
@@ -209,7 +209,7 @@ impl<'a> Pilot<'a> {
     }
 
     /// The price of a relative error, from what was seen so far.
-    pub fn price(&self, relative_rmse: f64) -> Price {
-        price(&self.points, relative_rmse, self.prepared.scene.integrator.sampler, self.first_step())
+    pub fn cost_estimate(&self, relative_rmse: f64) -> CostEstimate {
+        cost_estimate(&self.points, relative_rmse, self.prepared.scene.integrator.sampler, self.first_step())
     }
 }

@@ -3,7 +3,7 @@
 use crate::absorption::{Absorption, Interior};
 use crate::bsdf::Bsdf;
 use crate::camera::{Camera, Moving};
-use crate::caustics::Casters;
+use crate::caustics::GuidedTargets;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
 use crate::light::{
@@ -42,7 +42,7 @@ pub struct Prepared {
     pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
     pub(crate) tables: ShadingTables,
-    pub(crate) casters: Casters,
+    pub(crate) guided_targets: GuidedTargets,
     plan: Plan,
     pub(crate) warnings: Vec<String>,
 }
@@ -170,9 +170,9 @@ pub(crate) fn build(scene: &Scene, study: &Study) -> Result<Prepared, PrepareErr
             frame,
         }),
     };
-    let casters = match study.carried {
-        None => Casters::new(&surfaces, &geometry, &lights, range_nm),
-        _ => Casters::default(),
+    let guided_targets = match study.carried {
+        None => GuidedTargets::new(&surfaces, &geometry, &lights, range_nm),
+        _ => GuidedTargets::default(),
     };
     let wavelengths = match &scene.film.bands {
         Some(bands) => WavelengthDistribution::for_bands(range_nm, bands),
@@ -194,7 +194,7 @@ pub(crate) fn build(scene: &Scene, study: &Study) -> Result<Prepared, PrepareErr
         one_lane: OneLaneFilm::new(scene),
         filter: FilterSampler::new(&scene.film.filter),
         tables,
-        casters,
+        guided_targets,
         plan,
         warnings,
         scene: simulated,
@@ -296,15 +296,15 @@ impl Prepared {
 
     /// The share of the directions of diffuse surfaces that is drawn toward mirrors and bodies of glass where all of them are seen, and
     /// the number of these; 0 where that does not pay. Beside images of lamps only bodies of glass.
-    pub fn casters(&self) -> (f64, usize) {
-        let (bodies, each) = self.casters.bodies_aimed_at();
+    pub fn guided_targets(&self) -> (f64, usize) {
+        let (bodies, each) = self.guided_targets.bodies_aimed_at();
         (each * bodies.len() as f64, bodies.len())
     }
 
     /// The largest share that is drawn toward images of lamps in smooth balls, and the number of images; 0 where that does not pay.
-    pub fn images_of_lamps(&self) -> (f64, usize) {
-        let images = self.casters.images_aimed_at().len();
-        (if images > 0 { self.casters.share } else { 0.0 }, images)
+    pub fn specular_light_images(&self) -> (f64, usize) {
+        let images = self.guided_targets.specular_images_aimed_at().len();
+        (if images > 0 { self.guided_targets.share } else { 0.0 }, images)
     }
 
     /// The frame in which the scene is rendered; the geometry is in it.

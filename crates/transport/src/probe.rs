@@ -4,7 +4,7 @@ use crate::film::{Counters, Pixel, XyzSum};
 use crate::prepare::Prepared;
 use crate::render::ThreadError;
 use crate::sampler::SOBOL_POINTS;
-use crate::tracer::Spot;
+use crate::tracer::PixelSamples;
 use etalon_scene::SamplerKind;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -125,19 +125,20 @@ impl<'a> Probe<'a> {
                 .zip(sums[first * stride..].par_chunks_mut(BATCH * stride))
                 .zip(paths[first..].par_chunks_mut(BATCH).zip(rays[first..].par_chunks_mut(BATCH)))
                 .for_each(|((pixels, sums), (paths, rays))| {
-                    let mut spots = Vec::with_capacity(pixels.len() * copies as usize);
+                    let mut all_samples = Vec::with_capacity(pixels.len() * copies as usize);
                     for (&(x, y), paths) in pixels.iter().zip(paths) {
                         let samples = samples(x, y);
                         for copy in 0..copies {
                             let start = beyond + (own + copy) * length;
-                            let spot = Spot { x, y, samples: start + samples.start..start + samples.end };
-                            *paths += u64::from(spot.count());
-                            spots.push(spot);
+                            let pixel_samples =
+                                PixelSamples { x, y, samples: start + samples.start..start + samples.end };
+                            *paths += u64::from(pixel_samples.count());
+                            all_samples.push(pixel_samples);
                         }
                     }
-                    let mut rays_of_spots = vec![0; spots.len()];
-                    on_work(&prepared.render_spots(&spots, sums, &mut rays_of_spots));
-                    for (rays, of_copies) in rays.iter_mut().zip(rays_of_spots.chunks_exact(copies as usize)) {
+                    let mut rays_of_pixels = vec![0; all_samples.len()];
+                    on_work(&prepared.render_pixels(&all_samples, sums, &mut rays_of_pixels));
+                    for (rays, of_copies) in rays.iter_mut().zip(rays_of_pixels.chunks_exact(copies as usize)) {
                         *rays += of_copies.iter().sum::<u64>();
                     }
                 });

@@ -1,12 +1,12 @@
 //! Rendering: tiles over all cores, the same bytes whatever their number.
 
 use crate::film::{Counters, Film, PixelRect, Sums, XyzSum};
-use crate::kernel::RenderSpots;
+use crate::kernel::RenderPixels;
 use crate::plan::{LaneModel, PathLoop};
 use crate::prepare::Prepared;
 use crate::replay::Replay;
-use crate::shares::Shares;
-use crate::tracer::Spot;
+use crate::sample_allocation::SampleAllocation;
+use crate::tracer::PixelSamples;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub struct Extent {
     /// Numbers of the samples; with shares, how far the mean number of samples a pixel goes.
     pub samples: Range<u32>,
     /// How the samples are spread over regions; `None` gives every pixel the same number.
-    pub shares: Option<Arc<Shares>>,
+    pub allocation: Option<Arc<SampleAllocation>>,
     /// Threads; `None` is one for each core.
     pub threads: Option<usize>,
 }
@@ -32,18 +32,18 @@ impl Extent {
     /// Tiles whose pixels take the same samples.
     fn tiles(&self) -> Vec<PixelRect> {
         let tiles = self.rect.tiles(TILE);
-        match &self.shares {
+        match &self.allocation {
             None => tiles,
-            Some(shares) => tiles.into_iter().flat_map(|tile| shares.parts(tile)).collect(),
+            Some(allocation) => tiles.into_iter().flat_map(|tile| allocation.parts(tile)).collect(),
         }
     }
 
     /// The samples of the pixels of one of [`Extent::tiles`].
     fn samples_of(&self, tile: PixelRect, replicates: u32) -> Range<u32> {
-        match &self.shares {
+        match &self.allocation {
             None => self.samples.clone(),
-            Some(shares) => {
-                let up_to = |mean| shares.samples(tile.x0, tile.y0, mean, replicates);
+            Some(allocation) => {
+                let up_to = |mean| allocation.samples(tile.x0, tile.y0, mean, replicates);
                 up_to(self.samples.start)..up_to(self.samples.end)
             }
         }
@@ -71,7 +71,7 @@ impl Prepared {
         Extent {
             rect: PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height },
             samples: 0..self.scene.integrator.spp,
-            shares: None,
+            allocation: None,
             threads,
         }
     }
@@ -118,16 +118,16 @@ impl Prepared {
     /// Adds samples to a tile, by the loop that the plan chose: to the sums of its pixels, row by row, in each replicate by
     /// replicate.
     pub(crate) fn render_tile(&self, tile: PixelRect, samples: Range<u32>, sums: Sums<'_>) -> Counters {
-        self.renderer()(self, &Spot::of_tile(tile, &samples), sums, &mut [])
+        self.renderer()(self, &PixelSamples::of_tile(tile, &samples), sums, &mut [])
     }
 
     /// Adds samples to spots without bands, and the rays of all kinds that each took to `rays`.
-    pub(crate) fn render_spots(&self, spots: &[Spot], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
-        self.renderer()(self, spots, Sums { xyz, stokes: &mut [], bands: &mut [] }, rays)
+    pub(crate) fn render_pixels(&self, all_samples: &[PixelSamples], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
+        self.renderer()(self, all_samples, Sums { xyz, stokes: &mut [], bands: &mut [] }, rays)
     }
 
     /// The loop that the plan chose.
-    fn renderer(&self) -> RenderSpots {
+    fn renderer(&self) -> RenderPixels {
         let kernel = self.kernel();
         match (self.plan().path_loop.name, self.path_reuse()) {
             (PathLoop::Batch, _) => kernel.render_batch,

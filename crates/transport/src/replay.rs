@@ -2,11 +2,11 @@
 
 use crate::film::Counters;
 use crate::film_entry::Received;
-use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
 use crate::tracer::Tracer;
+use crate::wavelength_lanes::WavelengthModel;
 use etalon_optics::{Lanes, Vec3};
 use serde::Serialize;
 

@@ -12,7 +12,7 @@
 //!
 //! Directions of the paths need not be drawn by the cosine alone: of any density p̂ⱼ path j brings its light times pⱼ/p̂ⱼ, and the weights
 //! stay those of the cosine. Any weights do that add up to one, and what is left of pixel i's share is
-//! Σⱼ ∫ p̂ⱼ (pⱼ/p̂ⱼ) wᵢⱼ L = ∫ (Σⱼ pⱼ) pᵢ/Σₖ pₖ L = ∫ pᵢ L. So directions go toward casters of caustics here, too
+//! Σⱼ ∫ p̂ⱼ (pⱼ/p̂ⱼ) wᵢⱼ L = ∫ (Σⱼ pⱼ) pᵢ/Σₖ pₖ L = ∫ pᵢ L. So directions go toward guided targets of caustics here, too
 //! ([`caustics`](crate::caustics)), and no mate asks for the densities of another's.
 //!
 //! Light that a path finds before x, at x, and on y itself (by MIS with the shadow ray from x) stays its own. So does all light of a path
@@ -28,19 +28,19 @@ use crate::film::{Counters, Sums};
 use crate::film_entry::{FilmEntry, Received, SampleId};
 use crate::integrator::{Arrival, Path};
 use crate::interaction::SurfaceInteraction;
-use crate::model::WavelengthModel;
 use crate::polarisation::{Averaged, Polarisation};
 use crate::prepare::Prepared;
 use crate::sampler::Sampler;
-use crate::tracer::{Spot, Tracer};
+use crate::tracer::{PixelSamples, Tracer};
 use crate::wavelength::Wavelengths;
+use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
 use etalon_geometry::{Ray, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Vec3};
 use std::collections::BTreeMap;
 
 /// Most pixels of a block.
-pub(crate) const MOST_MATES: usize = 16;
+pub(crate) const MAX_BLOCK_PIXELS: usize = 16;
 
 /// How far a path has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +50,7 @@ enum Stage {
     /// It has left x.
     Left,
     /// Its light since y is for all.
-    Shares,
+    SampleAllocation,
     /// It has no x, or none that others can be of use to.
     Alone,
     /// It has an x, but what it met from there is for itself.
@@ -79,7 +79,7 @@ enum Target {
 
 /// What one path brings into its block.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Gathered<const N: usize> {
+pub(crate) struct ReusePath<const N: usize> {
     stage: Stage,
     start: Start<N>,
     target: Target,
@@ -89,7 +89,7 @@ pub(crate) struct Gathered<const N: usize> {
     shared: Lanes<f64, N>,
 }
 
-impl<const N: usize> Gathered<N> {
+impl<const N: usize> ReusePath<N> {
     /// Of a path that begins.
     pub(crate) const NOTHING: Self = Self {
         stage: Stage::Begins,
@@ -150,7 +150,7 @@ impl<const N: usize> Gathered<N> {
         let SurfacePoint { position, surface, normal, .. } = vertex.point;
         self.target = Target::Surface { position, surface, normal: toward(normal, vertex.wo) };
         self.take(radiance);
-        self.stage = Stage::Shares;
+        self.stage = Stage::SampleAllocation;
     }
 
     /// The path has met skies only, in this direction. If it has left x, they are for all, unless a shadow ray aims at one of them.
@@ -158,7 +158,7 @@ impl<const N: usize> Gathered<N> {
     pub(crate) fn escape(&mut self, world: &World<'_>, direction: Vec3<f64>) {
         if self.stage == Stage::Left {
             self.target = Target::Sky(direction);
-            self.stage = if world.plain_skies { Stage::Shares } else { Stage::Receives };
+            self.stage = if world.plain_skies { Stage::SampleAllocation } else { Stage::Receives };
         }
     }
 
@@ -174,13 +174,13 @@ impl<const N: usize> Gathered<N> {
         match self.stage {
             Stage::Begins | Stage::Alone => self.own = radiance,
             Stage::Left | Stage::Receives => self.take(&mut radiance),
-            Stage::Shares => self.shared = radiance,
+            Stage::SampleAllocation => self.shared = radiance,
         }
     }
 
     /// Whether its first surface is diffuse.
     fn has_start(&self) -> bool {
-        matches!(self.stage, Stage::Left | Stage::Shares | Stage::Receives)
+        matches!(self.stage, Stage::Left | Stage::SampleAllocation | Stage::Receives)
     }
 }
 
@@ -210,17 +210,17 @@ fn shadow_ray<const N: usize>(x: &Start<N>, target: &Target) -> Ray<f64> {
 /// What each pixel of a block receives from all paths, in the order of the pixels, put into `radiance`. `occluded` tells of some rays which
 /// of them are cut off, one bit each. Returns the number of shadow rays.
 #[inline(always)]
-pub(crate) fn deal<const N: usize>(
-    paths: &[Gathered<N>],
-    radiance: &mut [Lanes<f64, N>; MOST_MATES],
+pub(crate) fn redistribute<const N: usize>(
+    paths: &[ReusePath<N>],
+    radiance: &mut [Lanes<f64, N>; MAX_BLOCK_PIXELS],
     mut occluded: impl FnMut(&[Ray<f64>]) -> u64,
 ) -> u64 {
-    let mut received = [Lanes::ZERO; MOST_MATES];
+    let mut received = [Lanes::ZERO; MAX_BLOCK_PIXELS];
     let mut shadow_rays = 0;
-    let mut rays = [paths[0].start.point.spawn(Vec3::ZERO); MOST_MATES];
-    let (mut q, mut of) = ([0.0; MOST_MATES], [0; MOST_MATES]);
+    let mut rays = [paths[0].start.point.spawn(Vec3::ZERO); MAX_BLOCK_PIXELS];
+    let (mut q, mut of) = ([0.0; MAX_BLOCK_PIXELS], [0; MAX_BLOCK_PIXELS]);
     for (j, path) in paths.iter().enumerate() {
-        if path.stage != Stage::Shares || path.shared.is_zero() {
+        if path.stage != Stage::SampleAllocation || path.shared.is_zero() {
             continue;
         }
         let mut count = 0;
@@ -265,9 +265,9 @@ pub(crate) fn deal<const N: usize>(
 
 /// The pixels of blocks, one block after the other: those of some spots, and their mates, whose paths are traced for them.
 pub(crate) struct Blocks {
-    pub spots: Vec<Spot>,
+    pub all_samples: Vec<PixelSamples>,
     /// How many pixels the block has that begins there; of others 0.
-    pub mates: Vec<usize>,
+    pub block_pixels: Vec<usize>,
     /// The place of each among the spots asked for; `None` of mates.
     pub kept: Vec<Option<usize>>,
 }
@@ -275,25 +275,25 @@ pub(crate) struct Blocks {
 impl Blocks {
     /// The blocks of `block` pixels that hold these spots, on a film of this size. They begin at the corner of the film, whichever part of it
     /// is rendered, so that a sample is the same in each.
-    pub(crate) fn of(spots: &[Spot], block: [u32; 2], film: [u32; 2]) -> Self {
+    pub(crate) fn of(all_samples: &[PixelSamples], block: [u32; 2], film: [u32; 2]) -> Self {
         let mut of_block: BTreeMap<_, Vec<(u32, u32, usize)>> = BTreeMap::new();
-        for (place, spot) in spots.iter().enumerate() {
-            let corner = [spot.y / block[1] * block[1], spot.x / block[0] * block[0]];
-            let key = (corner, spot.samples.start, spot.samples.end);
-            of_block.entry(key).or_default().push((spot.x, spot.y, place));
+        for (place, pixel_samples) in all_samples.iter().enumerate() {
+            let corner = [pixel_samples.y / block[1] * block[1], pixel_samples.x / block[0] * block[0]];
+            let key = (corner, pixel_samples.samples.start, pixel_samples.samples.end);
+            of_block.entry(key).or_default().push((pixel_samples.x, pixel_samples.y, place));
         }
-        let mut blocks = Self { spots: Vec::new(), mates: Vec::new(), kept: Vec::new() };
+        let mut blocks = Self { all_samples: Vec::new(), block_pixels: Vec::new(), kept: Vec::new() };
         for (([y0, x0], start, end), held) in of_block {
-            let first = blocks.spots.len();
+            let first = blocks.all_samples.len();
             for y in y0..(y0 + block[1]).min(film[1]) {
                 for x in x0..(x0 + block[0]).min(film[0]) {
                     let place = held.iter().find(|(of_x, of_y, _)| (*of_x, *of_y) == (x, y));
                     blocks.kept.push(place.map(|(.., place)| *place));
-                    blocks.spots.push(Spot { x, y, samples: start..end });
-                    blocks.mates.push(0);
+                    blocks.all_samples.push(PixelSamples { x, y, samples: start..end });
+                    blocks.block_pixels.push(0);
                 }
             }
-            blocks.mates[first] = blocks.spots.len() - first;
+            blocks.block_pixels[first] = blocks.all_samples.len() - first;
         }
         blocks
     }
@@ -306,24 +306,24 @@ fn trace_gathering<'a, M: WavelengthModel<N>, const N: usize>(
     mut ray: Ray<f64>,
     sampler: &Sampler,
     counters: &mut Counters,
-) -> Gathered<N> {
-    let mut gathered = Gathered::NOTHING;
+) -> ReusePath<N> {
+    let mut reuse_path = ReusePath::NOTHING;
     let observer = &mut ();
     loop {
         counters.rays += 1;
         counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
-        let mut met = world.intersect(&ray, &mut path.walk, &mut path.inside, counters);
+        let mut met = world.intersect(&ray, &mut path.walk, &mut path.stack, counters);
         match path.arrive(world, &ray, met.as_mut(), sampler, counters, observer) {
             Arrival::Scatters => {}
             Arrival::Passed => continue,
             Arrival::Ended => break,
             Arrival::Escaped => {
-                gathered.escape(world, ray.direction);
+                reuse_path.escape(world, ray.direction);
                 break;
             }
         }
         let Some(vertex) = met else { break };
-        gathered.arrive(world, &vertex, &mut path.radiance);
+        reuse_path.arrive(world, &vertex, &mut path.radiance);
         if vertex.sees_lights {
             let [u_light, u1, u2, _] = sampler.vertex_set(path.vertex, 1);
             if let Some(draw) = world.sample_light(&vertex, u_light, [u1, u2])
@@ -336,34 +336,35 @@ fn trace_gathering<'a, M: WavelengthModel<N>, const N: usize>(
         let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
         let Some(direction) = path.sample_direction(world, &vertex, [u_lobe, u1, u2], observer) else { break };
         let taken = path.scatter(world, &vertex, direction, u_lobe);
-        gathered.leave(world, path, &vertex, taken.delta);
+        reuse_path.leave(world, path, &vertex, taken.delta);
         if !path.survives(world, taken.guiding, u_roulette, observer) {
             break;
         }
         ray = vertex.point.spawn(taken.wi);
     }
-    gathered.end(path.radiance);
-    gathered
+    reuse_path.end(path.radiance);
+    reuse_path
 }
 
 /// The samples of spots, one path at a time.
-pub(crate) fn render_spots<M: WavelengthModel<N>, const N: usize>(
+pub(crate) fn render_pixels<M: WavelengthModel<N>, const N: usize>(
     prepared: &Prepared,
-    spots: &[Spot],
+    all_samples: &[PixelSamples],
     sums: Sums<'_>,
     rays: &mut [u64],
 ) -> Counters {
     let film = &prepared.scene.film;
     let block = prepared.path_reuse().expect("only where paths are shared");
-    let blocks = Blocks::of(spots, block, [film.width, film.height]);
+    let blocks = Blocks::of(all_samples, block, [film.width, film.height]);
     let tracer = Tracer::new(prepared);
     let mut counters = Counters::default();
     let mut adding = BlockEntry::new(prepared, sums, rays);
     let mut path = Path::<M, Averaged, N>::idle();
-    for (first, &mates) in blocks.mates.iter().enumerate().filter(|(_, mates)| **mates > 0) {
-        let pixels = &blocks.spots[first..first + mates];
-        let mut gathered = [Gathered::NOTHING; MOST_MATES];
-        let mut rays_of = [0; MOST_MATES];
+    for (first, &block_pixels) in blocks.block_pixels.iter().enumerate().filter(|(_, block_pixels)| **block_pixels > 0)
+    {
+        let pixels = &blocks.all_samples[first..first + block_pixels];
+        let mut reuse_path = [ReusePath::NOTHING; MAX_BLOCK_PIXELS];
+        let mut rays_of = [0; MAX_BLOCK_PIXELS];
         for sample in pixels[0].samples.clone() {
             let mut shared = None;
             for (mate, pixel) in pixels.iter().enumerate() {
@@ -371,16 +372,16 @@ pub(crate) fn render_spots<M: WavelengthModel<N>, const N: usize>(
                 let sampler = tracer.sampler(pixel.x, pixel.y, sample);
                 let start = tracer.start::<M, Averaged, N>(pixel.x, pixel.y, sample, &sampler, &mut counters);
                 path.begin(&tracer.world, &start);
-                gathered[mate] = trace_gathering(&tracer.world, &mut path, start.ray, &sampler, &mut counters);
+                reuse_path[mate] = trace_gathering(&tracer.world, &mut path, start.ray, &sampler, &mut counters);
                 rays_of[mate] = counters.rays + counters.shadow_rays - before;
                 shared = Some(start.wavelengths);
             }
-            let mut radiance = [Lanes::ZERO; MOST_MATES];
+            let mut radiance = [Lanes::ZERO; MAX_BLOCK_PIXELS];
             let occluded = |rays: &[Ray<f64>]| {
                 let hidden = rays.iter().enumerate().filter(|(_, ray)| prepared.geometry.occluded(ray));
                 hidden.fold(0, |mask, (ray, _)| mask | 1 << ray)
             };
-            let shadow_rays = deal(&gathered[..mates], &mut radiance, occluded);
+            let shadow_rays = redistribute(&reuse_path[..block_pixels], &mut radiance, occluded);
             counters.shadow_rays += shadow_rays;
             rays_of[0] += shadow_rays;
             let wavelengths = shared.expect("a block has a pixel");
@@ -410,17 +411,17 @@ impl<'a> BlockEntry<'a> {
     #[inline(always)]
     pub(crate) fn add<M: WavelengthModel<N>, const N: usize>(
         &mut self,
-        (spot, x, y, sample): (Option<usize>, u32, u32, u32),
+        (pixel_samples, x, y, sample): (Option<usize>, u32, u32, u32),
         rays: u64,
         wavelengths: &Wavelengths<N>,
         radiance: Lanes<f64, N>,
         counters: &mut Counters,
     ) {
-        self.last = spot.unwrap_or(self.last);
+        self.last = pixel_samples.unwrap_or(self.last);
         self.film.count_rays(self.last, rays);
-        let Some(spot) = spot else { return };
+        let Some(pixel_samples) = pixel_samples else { return };
         let xyz = if radiance.is_zero() { [0.0; 3] } else { M::to_xyz(self.prepared, wavelengths, radiance) };
         let received = Received::unpolarised(*wavelengths, radiance);
-        self.film.add::<M, N>(SampleId { spot, x, y, sample }, xyz, &received, counters);
+        self.film.add::<M, N>(SampleId { pixel_samples, x, y, sample }, xyz, &received, counters);
     }
 }

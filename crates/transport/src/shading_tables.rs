@@ -2,8 +2,8 @@
 
 use crate::bsdf::{Bsdf, Dielectric};
 use crate::cells::CellTable;
-use crate::coordinates::Coordinates;
 use crate::light::{Environment, EnvironmentRadiance, Light, LightTable};
+use crate::shading_geometry::Coordinates;
 use crate::spectral::PathSpectrum;
 use crate::surface::{ObjectSurface, Surfaces};
 use crate::wavelength::{WavelengthDistribution, Wavelengths};

@@ -1,6 +1,5 @@
 //! The scene's shapes as the accelerator wants them, and the lights that they are.
 
-use crate::coordinates::{Coordinates, MeshCoordinates};
 use crate::frame::{Affine, SceneFrame};
 use crate::light::{
     CylinderLight, DiskLight, Emitter, ImageOf, Light, Link, MovingLight, ParallelogramLight, SphereLight,
@@ -8,7 +7,8 @@ use crate::light::{
 };
 use crate::motion::motion;
 use crate::prepare_error::PrepareError;
-use crate::round::RoundCoordinates;
+use crate::quadric_uv::RoundCoordinates;
+use crate::shading_geometry::{Coordinates, MeshCoordinates};
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{
     Aabb, Cylinder, Disk, Geometry, Instance, Parallelogram, Placement, Primitive, PrimitiveId, ShapeError, Sphere,

@@ -5,12 +5,12 @@
 
 use crate::adaptive::{Adaptivity, Exploration, Goal, WORTHWHILE, explore};
 use crate::canvas::{Canvas, Shard};
+use crate::cost_estimate::{CostEstimate, between, next_step};
 use crate::film::{Counters, Film, PixelRect, TileSums};
 use crate::pilot::Pilot;
 use crate::prepare::Prepared;
-use crate::price::{Price, between, next_step};
 use crate::render::{Control, Extent, ThreadError};
-use crate::shares::Shares;
+use crate::sample_allocation::SampleAllocation;
 use std::sync::Arc;
 
 /// What a render may cost, or must reach. Without any limit it would not end.
@@ -63,11 +63,11 @@ pub enum Reached {
     Interrupted,
 }
 
-/// What was foretold before a render for the sake of its error.
+/// What was predicted before a render for the sake of its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foretold {
+pub struct Prediction {
     /// What the error was to cost: the samples chosen, and seconds of rendering.
-    pub price: Price,
+    pub cost_estimate: CostEstimate,
     /// Seconds that the pilot took.
     pub pilot_seconds: f64,
 }
@@ -91,13 +91,13 @@ pub struct Finished {
     /// Samples that every pixel has, at least; with shares, in the mean.
     pub samples: u32,
     /// How they are spread over regions; `None` gives every pixel the same number.
-    pub shares: Option<Arc<Shares>>,
+    pub allocation: Option<Arc<SampleAllocation>>,
     /// Why no more.
     pub reached: Reached,
     /// Seconds from the start to the end, the pilot included.
     pub seconds: f64,
-    /// What was foretold, if a relative error was asked for.
-    pub foretold: Option<Foretold>,
+    /// What was predicted, if a relative error was asked for.
+    pub predicted: Option<Prediction>,
     /// The exploration, if there was one.
     pub explored: Option<Explored>,
 }
@@ -105,7 +105,7 @@ pub struct Finished {
 impl Finished {
     /// The film's extent: with it, [`Prepared::render`] gives the same film again.
     pub fn extent(&self, rect: PixelRect, threads: Option<usize>) -> Extent {
-        Extent { rect, samples: 0..self.samples, shares: self.shares.clone(), threads }
+        Extent { rect, samples: 0..self.samples, allocation: self.allocation.clone(), threads }
     }
 }
 
@@ -118,8 +118,8 @@ pub struct Ended {
     pub reached: Reached,
     /// Seconds from the start to the end, the pilot included.
     pub seconds: f64,
-    /// What was foretold, if a relative error was asked for.
-    pub foretold: Option<Foretold>,
+    /// What was predicted, if a relative error was asked for.
+    pub predicted: Option<Prediction>,
 }
 
 /// How many samples a picture takes, settled before it begins.
@@ -128,11 +128,11 @@ pub struct Settled {
     /// Samples a pixel; with shares, in the mean.
     pub samples: u32,
     /// How they are spread over regions; `None` gives every pixel the same number.
-    pub shares: Option<Arc<Shares>>,
+    pub allocation: Option<Arc<SampleAllocation>>,
     /// What it is that these samples reach.
     pub reached: Reached,
-    /// What was foretold, if a relative error was asked for.
-    pub foretold: Option<Foretold>,
+    /// What was predicted, if a relative error was asked for.
+    pub predicted: Option<Prediction>,
     /// The exploration that the shares are from, or that found none worth while.
     pub explored: Option<Explored>,
 }
@@ -140,7 +140,7 @@ pub struct Settled {
 impl Settled {
     /// Samples of the pixels of one of a canvas's tiles where all pixels have `mean` in the mean.
     fn samples_of(&self, tile: PixelRect, mean: u32, replicates: u32) -> u32 {
-        self.shares.as_ref().map_or(mean, |shares| shares.samples(tile.x0, tile.y0, mean, replicates))
+        self.allocation.as_ref().map_or(mean, |allocation| allocation.samples(tile.x0, tile.y0, mean, replicates))
     }
 }
 
@@ -151,8 +151,8 @@ pub trait Watch: Sync {
         let _ = counters;
     }
     /// The picture begins; it will take so many camera paths, or fewer if time is up.
-    fn planned(&self, paths: u64, foretold: Option<&Foretold>) {
-        let _ = (paths, foretold);
+    fn planned(&self, paths: u64, predicted: Option<&Prediction>) {
+        let _ = (paths, predicted);
     }
     /// A piece of a tile is done, and these are its sums.
     fn tile(&self, rect: PixelRect, sums: &TileSums) {
@@ -193,11 +193,11 @@ impl Prepared {
         watch: &dyn Watch,
     ) -> Result<Finished, SettleError> {
         let settled = self.settle(rect, limits, threads, clock, watch)?;
-        let canvas = Canvas::new(self, rect, Shard::WHOLE, settled.shares.as_deref());
-        let Ended { samples, reached, seconds, foretold } =
+        let canvas = Canvas::new(self, rect, Shard::WHOLE, settled.allocation.as_deref());
+        let Ended { samples, reached, seconds, predicted } =
             self.render_canvas(&canvas, &settled, limits, threads, clock, watch)?;
-        let Settled { shares, explored, .. } = settled;
-        Ok(Finished { film: canvas.into_film(), samples, shares, reached, seconds, foretold, explored })
+        let Settled { allocation, explored, .. } = settled;
+        Ok(Finished { film: canvas.into_film(), samples, allocation, reached, seconds, predicted, explored })
     }
 
     /// Settles how many samples a picture takes, and where: the most that are allowed, or those that a pilot says its error
@@ -214,35 +214,38 @@ impl Prepared {
         watch: &dyn Watch,
     ) -> Result<Settled, SettleError> {
         let explored = self.explored(rect, limits, threads, clock, watch)?;
-        let shares = explored.as_ref().filter(|explored| explored.used).map(|e| Arc::clone(&e.exploration.shares));
-        let most = match &shares {
+        let allocation =
+            explored.as_ref().filter(|explored| explored.used).map(|e| Arc::clone(&e.exploration.allocation));
+        let most = match &allocation {
             None => limits.samples,
-            Some(shares) => limits.samples.min(shares.largest_mean(i32::MAX as u32, self.scene.integrator.replicates)),
+            Some(allocation) => {
+                limits.samples.min(allocation.largest_mean(i32::MAX as u32, self.scene.integrator.replicates))
+            }
         };
-        let settled = Settled { samples: most, shares, reached: Reached::Samples, foretold: None, explored };
+        let settled = Settled { samples: most, allocation, reached: Reached::Samples, predicted: None, explored };
         let Some(target) = limits.relative_rmse else { return Ok(settled) };
-        let mut pilot = Pilot::new(self, rect, settled.shares.clone(), threads)?;
+        let mut pilot = Pilot::new(self, rect, settled.allocation.clone(), threads)?;
         let needed = pilot.samples_for(target, most, limits, clock, watch);
         if pilot.found_no_light() && !limits.end_without_error() && watch.control() == Control::Continue {
             return Err(SettleError::NoLight { paths: pilot.paths() });
         }
-        let price = pilot.price(target);
+        let cost_estimate = pilot.cost_estimate(target);
         let point = pilot.points().last().expect("a pilot takes a step at least");
-        let foretold = Some(Foretold {
-            price: match needed {
+        let predicted = Some(Prediction {
+            cost_estimate: match needed {
                 // What was chosen, not what a law through the pilot's points says.
-                Some(needed) => Price {
+                Some(needed) => CostEstimate {
                     samples: f64::from(needed),
                     seconds: point.seconds / f64::from(point.samples) * f64::from(needed),
-                    ..price
+                    ..cost_estimate
                 },
-                None => price,
+                None => cost_estimate,
             },
             pilot_seconds: pilot.seconds(),
         });
         Ok(match needed {
-            Some(samples) if samples <= most => Settled { samples, reached: Reached::Error, foretold, ..settled },
-            _ => Settled { foretold, ..settled },
+            Some(samples) if samples <= most => Settled { samples, reached: Reached::Error, predicted, ..settled },
+            _ => Settled { predicted, ..settled },
         })
     }
 
@@ -279,12 +282,12 @@ impl Prepared {
         clock: &(dyn Fn() -> f64 + Sync),
         watch: &dyn Watch,
     ) -> Result<Ended, ThreadError> {
-        let &Settled { samples, mut reached, foretold, .. } = settled;
+        let &Settled { samples, mut reached, predicted, .. } = settled;
         let replicates = self.scene.integrator.replicates;
-        watch.planned(canvas.paths(&|tile| settled.samples_of(tile, samples, replicates)), foretold.as_ref());
+        watch.planned(canvas.paths(&|tile| settled.samples_of(tile, samples, replicates)), predicted.as_ref());
 
         // What a tile has beyond the stage that all have reached is not rendered again.
-        let first = if settled.shares.is_some() { 0 } else { canvas.samples()[0] };
+        let first = if settled.allocation.is_some() { 0 } else { canvas.samples()[0] };
         let (start, mut done) = (clock(), first);
         while done < samples && watch.control() == Control::Continue {
             // As many again as there are, until that is a part of the whole: the error is known after each pass.
@@ -318,7 +321,7 @@ impl Prepared {
         if done < samples && reached != Reached::Time {
             reached = Reached::Interrupted;
         }
-        Ok(Ended { samples: done, reached, seconds: clock(), foretold })
+        Ok(Ended { samples: done, reached, seconds: clock(), predicted })
     }
 }
 
@@ -352,10 +355,10 @@ impl Pilot<'_> {
             }
             // No further than the law of the error says, and over no step of an octave, for that law is a guess, and a whole power of
             // two may have an error that no number before it has.
-            let foretold = self.price(target).samples / f64::from(replicates);
+            let predicted = self.cost_estimate(target).samples / f64::from(replicates);
             let rounds = point.samples / replicates;
-            let foretold = (foretold.ceil().min(f64::from(u32::MAX)) as u32).max(rounds + rounds.div_ceil(16));
-            let rounds = foretold.min(next_step(rounds));
+            let predicted = (predicted.ceil().min(f64::from(u32::MAX)) as u32).max(rounds + rounds.div_ceil(16));
+            let rounds = predicted.min(next_step(rounds));
             next = rounds.saturating_mul(replicates).min(most.max(replicates));
         }
     }

@@ -2,10 +2,10 @@
 
 use crate::absorption::Interior;
 use crate::bsdf::{Bsdf, BsdfSample, Lobe, Shading};
-use crate::coordinates::{At, Coordinates};
+use crate::bump_mapping;
 use crate::media::Interface;
 use crate::polarisation::mueller::Mueller;
-use crate::relief;
+use crate::shading_geometry::{At, Coordinates};
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
 use etalon_optics::spectrum::RgbBasis;
@@ -194,7 +194,7 @@ impl<'a> Surface<'a> {
         if let Some(relief) = &self.own.relief
             && let Some(tangents) = self.own.coordinates.tangents(&place)
         {
-            shading = relief::bend(&relief.image, shading, tangents, relief.per_m);
+            shading = bump_mapping::bend(&relief.image, shading, tangents, relief.per_m);
         }
         if let Some(axis) = self.own.axis {
             shading = shading.with_axis(geometry.placed_normal(hit.surface, axis, point.time).normalized());

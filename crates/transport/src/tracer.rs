@@ -4,14 +4,14 @@ use crate::camera::Camera;
 use crate::film::{Counters, PixelRect};
 use crate::integrator::{MOST_VERTICES, Path, Start, trace};
 use crate::interaction::Walk;
-use crate::media::Inside;
-use crate::model::WavelengthModel;
+use crate::media::MediumStack;
 use crate::observer::Observer;
 use crate::plan::EffectName;
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
 use crate::sampler::Sampler;
 use crate::surface::Scattering;
+use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
 use etalon_geometry::Ray;
 use etalon_optics::Vec3;
@@ -19,14 +19,14 @@ use std::ops::Range;
 
 /// Some samples of one pixel.
 #[derive(Clone, Debug)]
-pub(crate) struct Spot {
+pub(crate) struct PixelSamples {
     pub x: u32,
     pub y: u32,
     /// Their numbers.
     pub samples: Range<u32>,
 }
 
-impl Spot {
+impl PixelSamples {
     /// The same samples of each pixel of a tile.
     pub(crate) fn of_tile(tile: PixelRect, samples: &Range<u32>) -> Vec<Self> {
         tile.pixels().map(|(x, y)| Self { x, y, samples: samples.clone() }).collect()
@@ -90,7 +90,7 @@ impl<'a> Tracer<'a> {
                 roulette: integrator.roulette,
                 tables: &prepared.tables,
                 plain_skies: prepared.environments.iter().all(|sky| sky.light.is_none()),
-                casters: &prepared.casters,
+                guided_targets: &prepared.guided_targets,
             },
         }
     }
@@ -135,7 +135,7 @@ impl<'a> Tracer<'a> {
 
     /// The solids that hold the origin of a camera ray, where they are followed.
     #[inline(always)]
-    pub(crate) fn inside(&self, ray: &Ray<f64>, counters: &mut Counters) -> Option<Inside> {
+    pub(crate) fn stack(&self, ray: &Ray<f64>, counters: &mut Counters) -> Option<MediumStack> {
         let (geometry, surfaces) = (&self.prepared.geometry, &self.prepared.surfaces);
         self.world.media.map(|media| media.around(geometry, surfaces, ray, &mut counters.lost_media))
     }
@@ -150,18 +150,18 @@ impl<'a> Tracer<'a> {
     ) -> Option<FirstSurface<'_>> {
         let sampler = self.sampler(x, y, sample);
         let ray = self.camera_ray(x, y, &sampler, counters);
-        let mut inside = self.inside(&ray, counters).unwrap_or(Inside::NOTHING);
+        let mut stack = self.stack(&ray, counters).unwrap_or(MediumStack::NOTHING);
         let mut walk = Walk::default();
         let [.., mut u_mask] = sampler.vertex_set(0, 1);
         for _ in 0..MOST_VERTICES {
-            let met = self.world.intersect(&ray, &mut walk, &mut inside, counters)?;
+            let met = self.world.intersect(&ray, &mut walk, &mut stack, counters)?;
             let (hit, point, surface) = (&met.hit, &met.point, &met.surface);
             let opacity = if self.world.masks { surface.opacity(&self.prepared.geometry, point, hit) } else { 1.0 };
             if u_mask >= opacity {
                 u_mask = (u_mask - opacity) / (1.0 - opacity);
                 walk.pass(&met);
                 if met.crosses {
-                    inside = walk.beyond;
+                    stack = walk.beyond;
                 }
                 continue;
             }
@@ -210,8 +210,8 @@ impl<'a> Tracer<'a> {
             wavelength
         });
         let ray = self.camera_ray(x, y, sampler, counters);
-        let inside = self.inside(&ray, counters);
+        let stack = self.stack(&ray, counters);
         let polarisation = P::at_camera(ray.direction, self.camera.right(ray.time));
-        Start { ray, inside, wavelengths, polarisation }
+        Start { ray, stack, wavelengths, polarisation }
     }
 }

@@ -1,22 +1,22 @@
 //! A trial of guided sampling: the variance that each share of guided directions would leave.
 
-use crate::caustics::{Aims, Mixture};
+use crate::caustics::{GuidedBy, Mixture};
 use crate::film::Counters;
-use crate::model::WavelengthModel;
 use crate::observer::{Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
 use crate::tracer::Tracer;
+use crate::wavelength_lanes::WavelengthModel;
 use etalon_optics::Lanes;
 use rayon::prelude::*;
 
-/// The share of all casters together that is tried, and those that the trial decides between.
+/// The share of all guided targets together that is tried, and those that the trial decides between.
 pub(crate) const TRIED: f64 = 0.35;
 pub(crate) const SHARES: [f64; 5] = [0.1, 0.2, 0.35, 0.5, 0.6];
 /// Pixels that are tried, and samples of each.
 const PIXELS: u64 = 1024;
 const SAMPLES: u32 = 16;
-/// Paths that the trial draws more than five times as often as the cosine would do not count. Without casters they bear much of the
+/// Paths that the trial draws more than five times as often as the cosine would do not count. Without guided targets they bear much of the
 /// variance, but are so rare that hardly any picture has them: with them, the trial promises much where nothing is won (two balls in
 /// a room: .1 to .5 of the variance, in truth .9 of the error).
 const RARE: f64 = 0.2;
@@ -27,7 +27,7 @@ const NEAR: usize = 2;
 pub(crate) struct Trial {
     /// Pixels of a row.
     columns: usize,
-    /// Pixel by pixel: the mean radiance, and its mean square without casters and with each of [`SHARES`].
+    /// Pixel by pixel: the mean radiance, and its mean square without guided targets and with each of [`SHARES`].
     moments: Vec<(f64, [f64; 1 + SHARES.len()])>,
 }
 
@@ -57,7 +57,9 @@ impl<const N: usize> Observer<N> for Weighed {
 }
 
 /// A trial by one kernel, in some pixels of the picture, evenly spread.
-pub(crate) fn try_casters<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(prepared: &Prepared) -> Trial {
+pub(crate) fn try_guided_targets<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    prepared: &Prepared,
+) -> Trial {
     let film = &prepared.scene.film;
     let pixels = u64::from(film.width) * u64::from(film.height);
     // Of a small picture a quarter, lest the trial cost more than it.
@@ -75,7 +77,7 @@ pub(crate) fn try_casters<M: WavelengthModel<N>, P: Polarisation<N>, const N: us
                 continue;
             }
             mean += path.found[0] * path.tried / f64::from(SAMPLES);
-            if path.tried < RARE && tracer.prepared.casters.aims == Aims::Bodies {
+            if path.tried < RARE && tracer.prepared.guided_targets.guided_by == GuidedBy::Bodies {
                 continue;
             }
             for ((square, found), factor) in squares.iter_mut().zip(path.found).zip(path.factors) {

@@ -1,6 +1,6 @@
 //! From a scene to what is rendered: prepared, then tuned by a trial before the picture.
 
-use crate::caustics::Aims;
+use crate::caustics::GuidedBy;
 use crate::coincidence;
 use crate::plan::Study;
 use crate::prepare::{Prepared, build};
@@ -10,10 +10,10 @@ use crate::trial::{SHARES, TRIED};
 use etalon_scene::Scene;
 
 /// What must be left of the variance. Much, since the trial knows of no strata: where the picture's samples would be spread evenly over
-/// directions, a share taken from them costs more than it foretells; and paths through casters are longer.
+/// directions, a share taken from them costs more than it foretells; and paths through guided targets are longer.
 const WORTH_IT: f64 = 0.4;
 /// The same of images of lamps: small, so that little is taken from what comes in otherwise.
-const IMAGES_WORTH_IT: f64 = 0.9;
+const MIN_SPECULAR_IMAGES_GAIN: f64 = 0.9;
 /// The same of whole lenses beside images, of what is left with images alone: with them a path takes a sixth longer, but what they leave of
 /// the error is .69 and .66 where the trial says .54 and .88.
 const LENSES_WORTH_IT: f64 = 0.9;
@@ -36,40 +36,40 @@ pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareEr
 }
 
 impl Prepared {
-    /// Gives casters the share of the directions that leaves the least variance, relative to the level of each place, if that is
+    /// Gives guided targets the share of the directions that leaves the least variance, relative to the level of each place, if that is
     /// worth it.
     ///
     /// One trial tells the variance for every share: with xₛ what a path comes to under share s and Fₛ the product of its factors, the
     /// mean square under s is E[xₛ²·F/Fₛ], F that under the share tried (importance sampling of the second moment, but for what roulette
-    /// does). The rare bright paths that bear the variance without casters are common in the trial.
+    /// does). The rare bright paths that bear the variance without guided targets are common in the trial.
     pub fn tune(&mut self, seed: u64) {
-        if self.casters.bodies.is_empty() {
+        if self.guided_targets.bodies.is_empty() {
             return;
         }
         let own = self.scene.integrator.seed;
         self.scene.integrator.seed = seed;
-        let mut best = (1.0, Aims::Nothing, 0.0);
-        let images = !self.casters.images.is_empty();
-        for (aims, worth_it, there) in [
-            (Aims::Bodies, WORTH_IT, !self.casters.bodies.is_empty()),
-            (Aims::Images, IMAGES_WORTH_IT, images),
-            (Aims::ImagesAndLenses, LENSES_WORTH_IT, images && !self.casters.lenses.is_empty()),
+        let mut best = (1.0, GuidedBy::Nothing, 0.0);
+        let images = !self.guided_targets.images.is_empty();
+        for (guided_by, worth_it, there) in [
+            (GuidedBy::Bodies, WORTH_IT, !self.guided_targets.bodies.is_empty()),
+            (GuidedBy::Images, MIN_SPECULAR_IMAGES_GAIN, images),
+            (GuidedBy::ImagesAndLenses, LENSES_WORTH_IT, images && !self.guided_targets.lenses.is_empty()),
         ] {
             // Lenses come last: against the best without them.
-            let worth_it = if aims == Aims::ImagesAndLenses { worth_it * best.0 } else { worth_it };
+            let worth_it = if guided_by == GuidedBy::ImagesAndLenses { worth_it * best.0 } else { worth_it };
             if !there {
                 continue;
             }
-            (self.casters.aims, self.casters.share) = (aims, TRIED);
-            let [alone, shares @ ..] = (self.kernel().try_casters)(self).variances();
+            (self.guided_targets.guided_by, self.guided_targets.share) = (guided_by, TRIED);
+            let [alone, shares @ ..] = (self.kernel().try_guided_targets)(self).variances();
             for (share, variance) in SHARES.into_iter().zip(shares) {
                 let left = variance / alone;
                 if left < worth_it && left < best.0 {
-                    best = (left, aims, share);
+                    best = (left, guided_by, share);
                 }
             }
         }
-        (_, self.casters.aims, self.casters.share) = best;
+        (_, self.guided_targets.guided_by, self.guided_targets.share) = best;
         self.scene.integrator.seed = own;
     }
 }

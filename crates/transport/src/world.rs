@@ -1,7 +1,7 @@
 //! The scene as paths see it.
 
 use crate::absorption::Absorption;
-use crate::caustics::Casters;
+use crate::caustics::GuidedTargets;
 use crate::light::{Environment, LightTable};
 use crate::media::Media;
 use crate::shading_tables::ShadingTables;
@@ -37,7 +37,7 @@ pub(crate) struct World<'a> {
     /// Whether no shadow ray aims at any of the skies.
     pub plain_skies: bool,
     /// What diffuse surfaces draw directions toward.
-    pub casters: &'a Casters,
+    pub guided_targets: &'a GuidedTargets,
 }
 
 /// From which surfaces shadow rays are sent.

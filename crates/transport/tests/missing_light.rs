@@ -279,7 +279,7 @@ fn a_picture_without_light_reaches_no_error() {
         // Samples do, and a time does.
         let done = within(limits(32, None, adaptivity)).unwrap();
         assert_eq!((done.samples, done.reached), (32, Reached::Samples));
-        assert!(done.foretold.unwrap().price.samples.is_nan() && !done.film.error(rect).unwrap().is_known());
+        assert!(done.predicted.unwrap().cost_estimate.samples.is_nan() && !done.film.error(rect).unwrap().is_known());
         let paths = std::sync::atomic::AtomicU64::new(0);
         struct Paths<'a>(&'a std::sync::atomic::AtomicU64);
         impl etalon_transport::Watch for Paths<'_> {
@@ -310,7 +310,7 @@ fn a_pilot_that_finds_light_late_knows_no_error_before() {
     assert!(points[0].relative_rmse.is_infinite() && !points[0].reaches(1.0));
     let last = points.last().unwrap();
     assert!(last.relative_rmse.is_finite() && last.uncertainty.is_finite() && !pilot.found_no_light());
-    assert!(pilot.price(0.1).samples.is_finite());
+    assert!(pilot.cost_estimate(0.1).samples.is_finite());
 }
 
 fn materials() -> impl Strategy<Value = (Value, bool)> {

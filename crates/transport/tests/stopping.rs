@@ -3,7 +3,8 @@
 use etalon_oracle::statistics::{Welford, resolvable_bias};
 use etalon_scene::Scene;
 use etalon_transport::{
-    Adaptivity, Control, Counters, Extent, Film, Limits, Pilot, PixelRect, Prepared, Reached, Shares, Watch, prepare,
+    Adaptivity, Control, Counters, Extent, Film, Limits, Pilot, PixelRect, Prepared, Reached, SampleAllocation, Watch,
+    prepare,
 };
 use serde_json::json;
 use std::sync::Arc;
@@ -97,7 +98,7 @@ fn a_picture_whose_shares_an_exploration_chose_is_not_biased() {
         let limits = Limits { samples: 12, relative_rmse: None, seconds: None, adaptivity: Adaptivity::Always };
         let rect = prepared.whole(None).rect;
         let done = prepared.render_within(rect, &limits, Some(1), &|| 0.0, &()).unwrap();
-        let [least, most] = done.explored.unwrap().exploration.shares.least_and_most(done.samples, 4);
+        let [least, most] = done.explored.unwrap().exploration.allocation.least_and_most(done.samples, 4);
         uneven.fetch_add(u64::from(most > least), Ordering::Relaxed);
         mean_y(&prepared, &done.film)
     });
@@ -113,7 +114,7 @@ fn a_picture_whose_shares_follow_its_own_samples_would_be_seen_to_be_biased() {
         let whole = prepared.whole(Some(1));
         let first = Extent { samples: 0..4, ..whole.clone() };
         let mut film = prepared.render(&first, &|_| Control::Continue).unwrap();
-        let regions = Shares::regions(whole.rect);
+        let regions = SampleAllocation::regions(whole.rect);
         let noise = regions
             .iter()
             .map(|&region| film.error(region).filter(|e| e.is_known()).map_or(0.0, |e| e.relative_rmse * e.mean_y));
@@ -175,7 +176,7 @@ fn the_first_limit_wins_and_the_film_is_that_of_as_many_samples() {
         paths.store(0, Ordering::Relaxed);
         let limits = Limits { samples, relative_rmse, seconds, adaptivity: Adaptivity::Never };
         let done = prepared.render_within(rect, &limits, Some(2), &clock, &Paths(&paths)).unwrap();
-        let extent = Extent { rect, samples: 0..done.samples, shares: None, threads: Some(1) };
+        let extent = Extent { rect, samples: 0..done.samples, allocation: None, threads: Some(1) };
         assert_eq!(done.film, prepared.render(&extent, &|_| Control::Continue).unwrap());
         assert!(done.film.pixels().all(|pixel| pixel.count() == done.samples));
         done
@@ -189,7 +190,7 @@ fn the_first_limit_wins_and_the_film_is_that_of_as_many_samples() {
     assert!((40..=50).contains(&by_time.samples) && by_time.seconds <= 3.2, "{}", by_time.samples);
     let by_time = render(1_000_000, Some(1e-3), Some(3.2));
     assert_eq!(by_time.reached, Reached::Time);
-    assert!(by_time.seconds <= 3.2 && by_time.foretold.is_some());
+    assert!(by_time.seconds <= 3.2 && by_time.predicted.is_some());
     // E = √((1 − p)/(pN)) = 1 at N = 24; the pilot of 64 pixels knows it to a tenth.
     let by_error = render(1_000_000, Some(1.0), Some(1e6));
     assert_eq!(by_error.reached, Reached::Error);
@@ -204,12 +205,13 @@ fn uneven_shares_leave_the_same_bytes_for_any_threads_stages_and_crops() {
     scene.integrator.sampler = etalon_scene::SamplerKind::Sobol;
     let prepared = prepare(&scene).unwrap();
     let rect = PixelRect { x0: 3, y0: 1, x1: 37, y1: 8 };
-    let shares: Vec<u32> = (0..Shares::regions(rect).len() as u32).map(|region| 16 + 37 * region).collect();
-    let shares = Some(Arc::new(Shares::new(rect, shares)));
-    let extent = Extent { rect, samples: 0..24, shares: shares.clone(), threads: Some(1) };
+    let allocation: Vec<u32> =
+        (0..SampleAllocation::regions(rect).len() as u32).map(|region| 16 + 37 * region).collect();
+    let allocation = Some(Arc::new(SampleAllocation::new(rect, allocation)));
+    let extent = Extent { rect, samples: 0..24, allocation: allocation.clone(), threads: Some(1) };
     let film = prepared.render(&extent, &|_| Control::Continue).unwrap();
     for (x, y) in rect.pixels() {
-        assert_eq!(film.pixel(x, y).count(), shares.as_ref().unwrap().samples(x, y, 24, 4));
+        assert_eq!(film.pixel(x, y).count(), allocation.as_ref().unwrap().samples(x, y, 24, 4));
     }
     assert_eq!(film.pixels().map(|pixel| u64::from(pixel.count())).sum::<u64>(), film.counters.paths);
     assert_eq!(prepared.render(&Extent { threads: Some(3), ..extent.clone() }, &|_| Control::Continue).unwrap(), film);
@@ -225,7 +227,7 @@ fn uneven_shares_leave_the_same_bytes_for_any_threads_stages_and_crops() {
     }
     assert_eq!(parts, film);
     // A pixel's samples are the first of those that it always has.
-    let uniform = prepared.render(&Extent { shares: None, ..extent }, &|_| Control::Continue).unwrap();
+    let uniform = prepared.render(&Extent { allocation: None, ..extent }, &|_| Control::Continue).unwrap();
     let same = |(x, y): &(u32, u32)| film.pixel(*x, *y).count() == 24;
     let compared: Vec<_> = rect.pixels().filter(same).collect();
     assert!(compared.iter().all(|&(x, y)| film.pixel(x, y) == uniform.pixel(x, y)));

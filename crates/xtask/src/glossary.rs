@@ -59,7 +59,7 @@ const RETIRED: &[Retired] = &[
     retired(&["BALLS", "MESH", "MIXED"], Whole, GEOMETRY, "TreeKind"),
     retired(&["caster", "casters"], Part, TRANSPORT, "guided sampling targets"),
     retired(&["aims"], Part, TRANSPORT, "guided sampling targets"),
-    retired(&["images"], Part, TRANSPORT, "specular light images"),
+    retired(&["images", "Images"], Whole, TRANSPORT, "specular light images"),
     retired(&["mates"], Part, TRANSPORT, "block pixels"),
     retired(&["deal", "dealing"], Part, TRANSPORT, "redistribute"),
     retired(&["Gathered"], Whole, TRANSPORT, "reuse path"),

@@ -40,11 +40,11 @@ struct ExplainJson<'a> {
     lights_by_place: bool,
     /// Share of the directions of diffuse surfaces that is drawn toward mirrors and bodies of glass, and how many these are; 0 where
     /// that does not pay.
-    casters_share: f64,
-    casters: usize,
+    guided_share: f64,
+    guided_targets: usize,
     /// The largest share that is drawn toward images of lamps in smooth balls, and how many these are; 0 where that does not pay.
-    images_share: f64,
-    images_of_lamps: usize,
+    specular_image_share: f64,
+    specular_light_images: usize,
     /// What effects that are off would have cost, if it was measured.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     costs: Vec<Cost>,
@@ -73,17 +73,18 @@ pub(crate) fn run(args: Args) -> Outcome {
     let costs = if args.measure { measure(&loaded.scene, &study, &prepared)? } else { Vec::new() };
     if args.json {
         let scene = args.scene.display().to_string();
-        let ((lights, lights_by_place), (casters_share, casters)) = (prepared.lights(), prepared.casters());
-        let (images_share, images_of_lamps) = prepared.images_of_lamps();
+        let ((lights, lights_by_place), (guided_share, guided_targets)) =
+            (prepared.lights(), prepared.guided_targets());
+        let (specular_image_share, specular_light_images) = prepared.specular_light_images();
         print::json(&ExplainJson {
             scene,
             plan,
             lights,
             lights_by_place,
-            casters_share,
-            casters,
-            images_share,
-            images_of_lamps,
+            guided_share,
+            guided_targets,
+            specular_image_share,
+            specular_light_images,
             costs,
         });
     } else {
@@ -102,11 +103,11 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     let mut lines: Vec<String> = plan.effects.iter().map(|effect| line(effect, costs)).collect();
     lines.push(String::new());
     lines.extend(how(prepared).into_iter().map(|(what, value)| format!("{what:<18} {value}")));
-    if let (share, bodies @ 1..) = prepared.casters() {
+    if let (share, bodies @ 1..) = prepared.guided_targets() {
         let share = format!("{:.0} % of what diffuse surfaces scatter is drawn toward", 100.0 * share);
         lines.push(format!("{:<18} {share} {bodies} that mirror or refract: a trial found less noise", "caustics"));
     }
-    if let (share, images @ 1..) = prepared.images_of_lamps() {
+    if let (share, images @ 1..) = prepared.specular_light_images() {
         let share = format!("up to {:.0} % of what diffuse surfaces scatter is drawn toward", 100.0 * share);
         lines.push(format!("{:<18} {share} {images} images of lamps in balls: a trial found less noise", "caustics"));
     }

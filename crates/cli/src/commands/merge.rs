@@ -160,7 +160,7 @@ fn check(parts: &[(PathBuf, Kept)], failure: &mut Failure) {
             Some(format!("it is one of {} shares, not of {}", header.shard.of, first.shard.of))
         } else if header.samples != first.samples {
             Some(format!("it has {} samples a pixel, not {}", header.samples, first.samples))
-        } else if header.shares != first.shares {
+        } else if header.allocation != first.allocation {
             Some("its samples are spread otherwise over the picture".to_owned())
         } else if header.channels != first.channels {
             Some("it was to have other channels (--aov)".to_owned())
@@ -203,14 +203,14 @@ fn put_together(parts: Vec<(PathBuf, Kept)>) -> Result<(Header, Canvas, Vec<Vec<
     let (first_path, first) = &parts[0];
     let seconds = parts.iter().map(|(_, part)| part.header.seconds).sum();
     let header = Header { shard: Shard::WHOLE, seconds, ..first.header.clone() };
-    let shares = match &header.shares {
+    let allocation = match &header.allocation {
         Some(weights) => Some(
-            state::shares(header.subject.crop, weights)
+            state::allocation(header.subject.crop, weights)
                 .ok_or_else(|| damaged(first_path, "its samples are spread over another picture"))?,
         ),
         None => None,
     };
-    let canvas = Canvas::of_share(header.subject.film(), header.subject.crop, Shard::WHOLE, shares.as_ref());
+    let canvas = Canvas::of_share(header.subject.film(), header.subject.crop, Shard::WHOLE, allocation.as_ref());
     let (mut tiles, mut found) = (0, BTreeMap::new());
     for (path, part) in &parts {
         for (tile, sums, of_tile) in &part.tiles {

@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use etalon_transport::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
-use etalon_transport::price::next_step;
-use etalon_transport::{Limits, Pilot, PixelRect, Price, prepare_study};
+use etalon_transport::cost_estimate::next_step;
+use etalon_transport::{CostEstimate, Limits, Pilot, PixelRect, prepare_study};
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -64,7 +64,7 @@ struct QuoteJson {
     prepare_seconds: f64,
     /// What `etalon render --error` takes beside the seconds of a price, in units of these: its own exploration and pilot.
     settling_share: f64,
-    prices: Vec<PriceJson>,
+    estimates: Vec<CostEstimateJson>,
 }
 
 #[derive(Serialize)]
@@ -76,8 +76,8 @@ struct PilotJson {
 
 #[derive(Serialize)]
 struct AdaptiveJson {
-    /// Factor of time that uneven shares are foretold to win.
-    foretold_gain: f64,
+    /// Factor of time that uneven shares are predicted to win.
+    predicted_gain: f64,
     /// Whether the prices are for such shares.
     used: bool,
     seconds: f64,
@@ -94,7 +94,7 @@ struct PointJson {
 }
 
 #[derive(Serialize)]
-struct PriceJson {
+struct CostEstimateJson {
     relative_rmse: f64,
     samples: f64,
     samples_interval: [f64; 2],
@@ -124,7 +124,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let started = |error| Failure::run(Report::from_err(error));
     let finest = args.errors.iter().copied().fold(f64::INFINITY, f64::min);
-    let mut shares = None;
+    let mut allocation = None;
     let mut adaptive = None;
     if args.adaptive != Adaptive::Never {
         let goal = Goal { samples: Limits::ANY_SAMPLES, relative_rmse: Some(finest) };
@@ -132,10 +132,10 @@ pub(crate) fn run(args: Args) -> Outcome {
         let enough = || clock.seconds() - start > EXPLORING * args.pilot;
         let found = explore(&prepared, whole, &goal, Some(threads), &enough, &|_| ()).map_err(started)?;
         let used = args.adaptive == Adaptive::Always || found.gain >= WORTHWHILE;
-        adaptive = Some(AdaptiveJson { foretold_gain: found.gain, used, seconds: clock.seconds() - start });
-        shares = used.then_some(found.shares);
+        adaptive = Some(AdaptiveJson { predicted_gain: found.gain, used, seconds: clock.seconds() - start });
+        allocation = used.then_some(found.allocation);
     }
-    let mut pilot = Pilot::new(&prepared, whole, shares, Some(threads)).map_err(started)?;
+    let mut pilot = Pilot::new(&prepared, whole, allocation, Some(threads)).map_err(started)?;
     let mut rounds = 1;
     loop {
         pilot.advance(rounds * pilot.first_step(), &|| clock.seconds(), &|_| ());
@@ -177,7 +177,7 @@ pub(crate) fn run(args: Args) -> Outcome {
         settling_share: pilot.share_of_pixels() + if adaptive.is_some() { EFFORT } else { 0.0 },
         adaptive,
         prepare_seconds,
-        prices: args.errors.iter().map(|&error| price_json(&pilot.price(error))).collect(),
+        estimates: args.errors.iter().map(|&error| cost_estimate_json(&pilot.cost_estimate(error))).collect(),
     };
     if args.json {
         print::json(&quote);
@@ -187,13 +187,13 @@ pub(crate) fn run(args: Args) -> Outcome {
     Ok(())
 }
 
-fn price_json(price: &Price) -> PriceJson {
-    PriceJson {
-        relative_rmse: price.relative_rmse,
-        samples: price.samples,
-        samples_interval: price.samples_interval,
-        seconds: price.seconds,
-        seconds_interval: price.seconds_interval,
+fn cost_estimate_json(cost_estimate: &CostEstimate) -> CostEstimateJson {
+    CostEstimateJson {
+        relative_rmse: cost_estimate.relative_rmse,
+        samples: cost_estimate.samples,
+        samples_interval: cost_estimate.samples_interval,
+        seconds: cost_estimate.seconds,
+        seconds_interval: cost_estimate.seconds_interval,
     }
 }
 
@@ -212,7 +212,7 @@ fn describe(quote: &QuoteJson) -> String {
         "time",
         "(95 % sure)",
     );
-    for price in &quote.prices {
+    for cost_estimate in &quote.estimates {
         let between = |interval: [f64; 2], show: &dyn Fn(f64) -> String| {
             format!("{} to {}", show(interval[0]), show(interval[1]))
         };
@@ -220,11 +220,11 @@ fn describe(quote: &QuoteJson) -> String {
         let _ = writeln!(
             text,
             "{:>8} {:>10}  {:<22} {:>10}  {}",
-            percent(price.relative_rmse),
-            two_digits(price.samples),
-            between(price.samples_interval, &two_digits),
-            duration(price.seconds),
-            between(price.seconds_interval, &duration),
+            percent(cost_estimate.relative_rmse),
+            two_digits(cost_estimate.samples),
+            between(cost_estimate.samples_interval, &two_digits),
+            duration(cost_estimate.seconds),
+            between(cost_estimate.seconds_interval, &duration),
         );
     }
     let _ = write!(
@@ -239,8 +239,8 @@ fn describe(quote: &QuoteJson) -> String {
     if let Some(adaptive) = quote.adaptive.as_ref().filter(|adaptive| adaptive.used) {
         let _ = write!(
             text,
-            " Regions with\nmore error take more samples, foretold to take {:.1} times less time than all pixels alike would.",
-            adaptive.foretold_gain
+            " Regions with\nmore error take more samples, predicted to take {:.1} times less time than all pixels alike would.",
+            adaptive.predicted_gain
         );
     }
     text

@@ -31,7 +31,7 @@ pub(crate) struct Header {
     /// Samples a pixel that were settled before the picture began (with shares, in the mean).
     pub samples: u32,
     /// Weights of the regions, where samples are spread by shares.
-    pub shares: Option<Vec<u32>>,
+    pub allocation: Option<Vec<u32>>,
     /// What these samples are to reach: "samples" or "error".
     pub reaches: String,
     /// Which channels the picture is to have.

@@ -18,12 +18,12 @@ pub(crate) use subject::{KeptBands, Subject};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use etalon_transport::{PixelRect, Shares};
+use etalon_transport::{PixelRect, SampleAllocation};
 
 /// The shares that a file states, if they are shares of this rectangle.
-pub(crate) fn shares(rect: PixelRect, weights: &[u32]) -> Option<Shares> {
-    let fit = weights.len() == Shares::regions(rect).len() && weights.iter().all(|&weight| weight > 0);
-    fit.then(|| Shares::new(rect, weights.to_vec()))
+pub(crate) fn allocation(rect: PixelRect, weights: &[u32]) -> Option<SampleAllocation> {
+    let fit = weights.len() == SampleAllocation::regions(rect).len() && weights.iter().all(|&weight| weight > 0);
+    fit.then(|| SampleAllocation::new(rect, weights.to_vec()))
 }
 
 /// The checkpoint of a render whose first output is this file: beside it, with `.checkpoint` after its name.

@@ -31,7 +31,7 @@ pub(crate) struct Subject {
     /// The plan: effects, kernel, sampler, depth.
     pub plan: Value,
     /// The share of directions that is drawn toward what casts caustics, and how many these are: bodies, and images of lamps.
-    pub casters: [(f64, usize); 2],
+    pub guided_targets: [(f64, usize); 2],
 }
 
 /// Bands of wavelengths, and how the film keeps them.
@@ -95,7 +95,7 @@ impl Subject {
                 factors: prepared.band_factors().map(|factors| factors.iter().map(|factor| factor.to_bits()).collect()),
             }),
             plan: serde_json::to_value(prepared.plan()).expect("a plan is plain data"),
-            casters: [prepared.casters(), prepared.images_of_lamps()],
+            guided_targets: [prepared.guided_targets(), prepared.specular_light_images()],
         }
     }
 
@@ -142,7 +142,7 @@ impl Subject {
                 "seed",
                 "replicates",
                 "bands",
-                "casters",
+                "guided_targets",
             ];
             let first: Vec<_> = first.iter().map(|&key| (key.to_owned(), value[key].take())).collect();
             first.into_iter().chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value))).collect()
@@ -164,7 +164,7 @@ impl Subject {
             .map(|(key, value)| (key, value, others.get(key).unwrap_or(&Value::Null)))
             .find(|(_, a, b)| a != b)
             .map(|(key, own, other)| match key.as_str() {
-                "casters" => "its directions are drawn toward other casters (see `etalon explain`)".to_owned(),
+                "guided_targets" => "its directions are guided toward other objects (see `etalon explain`)".to_owned(),
                 "plan.effects" => "its effects are others (see `etalon explain`)".to_owned(),
                 _ => format!("{} is {own}, not {other}", name(key)),
             })
@@ -187,7 +187,7 @@ mod tests {
             replicates: 4,
             matrices: [[0.0; 16]; 2],
             bands: None,
-            casters: [(0.0, 0); 2],
+            guided_targets: [(0.0, 0); 2],
             plan: serde_json::json!({"sampler": "sobol", "approximations": ["lens: everything is in focus"]}),
         };
         assert_eq!(subject.difference(&subject.clone()), None);
@@ -199,8 +199,8 @@ mod tests {
         };
         assert_eq!(with(&|s| s.seed = 4), "its seed is 3, not 4");
         assert_eq!(
-            with(&|s| s.casters[1] = (0.5, 2)),
-            "its directions are drawn toward other casters (see `etalon explain`)"
+            with(&|s| s.guided_targets[1] = (0.5, 2)),
+            "its directions are guided toward other objects (see `etalon explain`)"
         );
         assert_eq!(with(&|s| s.scene_sha256 = "cd".to_owned()), "the SHA-256 of its scene is \"ab\", not \"cd\"");
         assert_eq!(

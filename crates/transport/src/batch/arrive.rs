@@ -5,8 +5,8 @@ use super::paths::vertex;
 use super::rows::{GROUPS, Mask, W, group_of, lanes};
 use crate::integrator::Arrival;
 use crate::interaction::SurfaceInteraction;
-use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
+use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
 use etalon_geometry::{Hit, LANES, SurfaceId, SurfacePoint};
 use etalon_optics::Vec3;
@@ -100,11 +100,11 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         let (paths, world, counters) = (&mut self.paths, self.world, &mut self.counters);
         let ray = paths.ray(lane);
         let path = &mut paths.paths[lane];
-        let (walk, inside) = (&mut path.walk, &mut path.inside);
+        let (walk, stack) = (&mut path.walk, &mut path.stack);
         paths.at[lane] = match first {
-            None => world.intersect(&ray, walk, inside, counters),
+            None => world.intersect(&ray, walk, stack, counters),
             Some(None) => None,
-            Some(Some(first)) => world.intersect_group(&ray, first, walk, inside, counters),
+            Some(Some(first)) => world.intersect_group(&ray, first, walk, stack, counters),
         };
         if let Some(met) = &paths.at[lane] {
             paths.position.set(lane, met.point.position);
@@ -126,7 +126,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         match path.arrive(world, &ray, met, sampler, &mut self.counters, &mut ()) {
             Arrival::Scatters => {
                 if paths.shares {
-                    paths.gathered[lane].arrive(world, vertex(&paths.at, lane), &mut path.radiance);
+                    paths.reuse_path[lane].arrive(world, vertex(&paths.at, lane), &mut path.radiance);
                 }
                 return 1 << lane;
             }
@@ -134,7 +134,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             Arrival::Ended => paths.alive &= !(1 << lane),
             Arrival::Escaped => {
                 if paths.shares {
-                    paths.gathered[lane].escape(world, ray.direction);
+                    paths.reuse_path[lane].escape(world, ray.direction);
                 }
                 paths.alive &= !(1 << lane);
             }

@@ -4,27 +4,27 @@ use super::Batch;
 use super::rows::lanes;
 use super::stream::{Cursor, Window};
 use crate::film::{Counters, Sums};
-use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
-use crate::reuse::{BlockEntry, Blocks, Gathered, MOST_MATES, deal};
+use crate::reuse::{BlockEntry, Blocks, MAX_BLOCK_PIXELS, ReusePath, redistribute};
 use crate::wavelength::Wavelengths;
+use crate::wavelength_lanes::WavelengthModel;
 use etalon_geometry::{Geometry, LANES, Ray, Rays};
 use etalon_optics::Lanes;
 
 /// See the module.
-pub(super) struct Dealing<'a, const N: usize> {
+pub(super) struct Redistribution<'a, const N: usize> {
     blocks: &'a Blocks,
     adding: BlockEntry<'a>,
     /// By their places in the window.
-    waiting: Vec<(Gathered<N>, Wavelengths<N>)>,
+    waiting: Vec<(ReusePath<N>, Wavelengths<N>)>,
     /// Those of a block whose turn has come, and their rays.
-    gathered: [Gathered<N>; MOST_MATES],
-    rays: [u64; MOST_MATES],
+    reuse_path: [ReusePath<N>; MAX_BLOCK_PIXELS],
+    rays: [u64; MAX_BLOCK_PIXELS],
     count: usize,
 }
 
-impl<'a, const N: usize> Dealing<'a, N> {
+impl<'a, const N: usize> Redistribution<'a, N> {
     pub(super) fn new(
         blocks: &'a Blocks,
         size: usize,
@@ -36,9 +36,9 @@ impl<'a, const N: usize> Dealing<'a, N> {
         Self {
             blocks,
             adding: BlockEntry::new(prepared, sums, rays),
-            waiting: vec![(Gathered::NOTHING, nothing); size],
-            gathered: [Gathered::NOTHING; MOST_MATES],
-            rays: [0; MOST_MATES],
+            waiting: vec![(ReusePath::NOTHING, nothing); size],
+            reuse_path: [ReusePath::NOTHING; MAX_BLOCK_PIXELS],
+            rays: [0; MAX_BLOCK_PIXELS],
             count: 0,
         }
     }
@@ -54,21 +54,22 @@ impl<'a, const N: usize> Dealing<'a, N> {
     ) {
         while let Some((number, (_, rays))) = window.take() {
             let place = cursor.next().expect("as many samples come back as went out");
-            let (gathered, wavelengths) = &self.waiting[window.place(number)];
-            self.gathered[self.count] = *gathered;
+            let (reuse_path, wavelengths) = &self.waiting[window.place(number)];
+            self.reuse_path[self.count] = *reuse_path;
             self.rays[self.count] = u64::from(rays);
             self.count += 1;
-            let first = place.spot + 1 - self.count;
-            let mates = self.blocks.mates[first];
-            if self.count < mates {
+            let first = place.pixel_samples + 1 - self.count;
+            let block_pixels = self.blocks.block_pixels[first];
+            if self.count < block_pixels {
                 continue;
             }
             self.count = 0;
-            let mut radiance = [Lanes::ZERO; MOST_MATES];
-            let shadow_rays = deal(&self.gathered[..mates], &mut radiance, |rays| occluded(geometry, rays));
+            let mut radiance = [Lanes::ZERO; MAX_BLOCK_PIXELS];
+            let shadow_rays =
+                redistribute(&self.reuse_path[..block_pixels], &mut radiance, |rays| occluded(geometry, rays));
             counters.shadow_rays += shadow_rays;
             self.rays[0] += shadow_rays;
-            for (mate, pixel) in self.blocks.spots[first..][..mates].iter().enumerate() {
+            for (mate, pixel) in self.blocks.all_samples[first..][..block_pixels].iter().enumerate() {
                 let place = (self.blocks.kept[first + mate], pixel.x, pixel.y, place.sample);
                 self.adding.add::<M, N>(place, self.rays[mate], wavelengths, radiance[mate], counters);
             }
@@ -107,17 +108,22 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
     /// Takes what ended paths have gathered.
     #[inline(always)]
     pub(super) fn end_shared(&mut self, ended: super::rows::Mask) {
-        let Some(dealing) = &mut self.dealing else { return };
+        let Some(redistribution) = &mut self.redistribution else { return };
         let finished = &mut self.finished;
         for lane in lanes(ended) {
             let number = self.paths.number[lane];
             let path = &self.paths.paths[lane];
-            self.paths.gathered[lane].end(path.radiance);
-            dealing.waiting[finished.window.place(number)] = (self.paths.gathered[lane], path.wavelengths);
+            self.paths.reuse_path[lane].end(path.radiance);
+            redistribution.waiting[finished.window.place(number)] = (self.paths.reuse_path[lane], path.wavelengths);
             finished.window.put(number, ([0.0; 3], self.paths.ray_count[lane]));
         }
         if ended != 0 {
-            dealing.add::<M>(&mut finished.window, &mut finished.cursor, self.world.geometry, &mut self.counters);
+            redistribution.add::<M>(
+                &mut finished.window,
+                &mut finished.cursor,
+                self.world.geometry,
+                &mut self.counters,
+            );
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::light::{Aim, Flat, Light, Round};
 use etalon_optics::Vec3;
 
 /// Flat lights, one for each path.
-pub(super) struct Flats {
+pub(super) struct PlanarLights {
     /// Which of them are parallelograms or triangles, and which are disks.
     pub mask: Mask,
     pub disks: Mask,
@@ -20,7 +20,7 @@ pub(super) struct Flats {
 }
 
 /// Spheres that shine, one for each path.
-pub(super) struct Rounds {
+pub(super) struct SphereLights {
     /// Which of them are spheres at all.
     pub mask: Mask,
     centre: Rows3,
@@ -29,14 +29,14 @@ pub(super) struct Rounds {
 }
 
 /// What paths see of a light.
-pub(super) struct Aims {
+pub(super) struct LightSamples {
     pub point: Rows3,
     pub wi: Rows3,
     pub density: Row,
     lit: [bool; W],
 }
 
-impl Flats {
+impl PlanarLights {
     pub(super) const NONE: Self = Self {
         mask: 0,
         disks: 0,
@@ -91,7 +91,7 @@ impl Flats {
     }
 }
 
-impl Rounds {
+impl SphereLights {
     pub(super) const NONE: Self = Self { mask: 0, centre: Rows3::ZERO, radius: Row::ZERO, front: [false; W] };
 
     #[inline(always)]
@@ -110,7 +110,7 @@ impl Rounds {
     }
 }
 
-impl Aims {
+impl LightSamples {
     pub(super) const NONE: Self = Self { point: Rows3::ZERO, wi: Rows3::ZERO, density: Row::ZERO, lit: [false; W] };
 
     #[inline(always)]
@@ -142,28 +142,28 @@ fn choose_aim(condition: bool, a: &Aim, b: &Aim) -> Aim {
 
 stages! {
     /// Points of lights as they are seen.
-    fn aim(from: &Rows3, u: [&[f64; W]; 2], lights: &Flats, aims: &mut Aims) {
+    fn aim(from: &Rows3, u: [&[f64; W]; 2], lights: &PlanarLights, light_samples: &mut LightSamples) {
         for lane in 0..W {
-            aims.put(lane, &lights.at(lane).aim(from.at(lane), [u[0][lane], u[1][lane]]));
+            light_samples.put(lane, &lights.at(lane).aim(from.at(lane), [u[0][lane], u[1][lane]]));
         }
     }
 
     /// Points of disks as they are seen, in place of those that are there.
-    fn aim_at_disks(from: &Rows3, u: [&[f64; W]; 2], lights: &Flats, aims: &mut Aims) {
+    fn aim_at_disks(from: &Rows3, u: [&[f64; W]; 2], lights: &PlanarLights, light_samples: &mut LightSamples) {
         for lane in 0..W {
             let aim = lights.at(lane).aim_at_disk(from.at(lane), [u[0][lane], u[1][lane]]);
-            aims.put(lane, &choose_aim(lights.disks >> lane & 1 == 1, &aim, &aims.at(lane)));
+            light_samples.put(lane, &choose_aim(lights.disks >> lane & 1 == 1, &aim, &light_samples.at(lane)));
         }
     }
 
     /// Points of spheres as they are seen from outside, in place of those that are there; and who is outside.
-    fn aim_at_rounds(from: &Rows3, u: [&[f64; W]; 2], lights: &Rounds, aims: &mut Aims, outside: &mut [bool; W]) {
+    fn aim_at_rounds(from: &Rows3, u: [&[f64; W]; 2], lights: &SphereLights, light_samples: &mut LightSamples, outside: &mut [bool; W]) {
         for lane in 0..W {
             let (centre, radius) = (lights.centre.at(lane), lights.radius.0[lane]);
             let round = Round { centre, radius, front: lights.front[lane] };
             let aim = round.aim(from.at(lane), [u[0][lane], u[1][lane]]);
             outside[lane] = round.is_outside(from.at(lane));
-            aims.put(lane, &choose_aim(lights.mask >> lane & 1 == 1, &aim, &aims.at(lane)));
+            light_samples.put(lane, &choose_aim(lights.mask >> lane & 1 == 1, &aim, &light_samples.at(lane)));
         }
     }
 }

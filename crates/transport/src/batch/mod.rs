@@ -8,7 +8,7 @@
 
 mod arrive;
 mod blocks;
-mod casters;
+mod guided;
 mod lamps;
 mod level;
 mod next_event;
@@ -22,15 +22,15 @@ mod tests;
 
 use crate::film::{Counters, Sums};
 use crate::film_entry::{FilmEntry, Received};
-use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
 use crate::prepare::Prepared;
 use crate::reuse::Blocks;
-use crate::tracer::{Spot, Tracer};
+use crate::tracer::{PixelSamples, Tracer};
+use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
-use blocks::Dealing;
-use casters::Casting;
+use blocks::Redistribution;
 use etalon_optics::Lanes;
+use guided::GuidedDirections;
 use level::{Level, stages};
 use next_event::Lights;
 use paths::Paths;
@@ -42,33 +42,33 @@ use stream::{Cursor, Window};
 /// unless that is empty.
 pub(crate) fn render_batch<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
-    spots: &[Spot],
+    all_samples: &[PixelSamples],
     sums: Sums<'_>,
     rays: &mut [u64],
 ) -> Counters {
-    render_on::<M, P, N>(Level::best(), prepared, spots, sums, rays)
+    render_on::<M, P, N>(Level::best(), prepared, all_samples, sums, rays)
 }
 
 fn render_on<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     level: Level,
     prepared: &Prepared,
-    spots: &[Spot],
+    all_samples: &[PixelSamples],
     sums: Sums<'_>,
     rays: &mut [u64],
 ) -> Counters {
     let tracer = Tracer::new(prepared);
     let film = &prepared.scene.film;
-    let blocks = prepared.path_reuse().map(|block| Blocks::of(spots, block, [film.width, film.height]));
+    let blocks = prepared.path_reuse().map(|block| Blocks::of(all_samples, block, [film.width, film.height]));
     let cursor = match &blocks {
-        None => Cursor::new(spots, &[]),
-        Some(blocks) => Cursor::new(&blocks.spots, &blocks.mates),
+        None => Cursor::new(all_samples, &[]),
+        Some(blocks) => Cursor::new(&blocks.all_samples, &blocks.block_pixels),
     };
     // Where paths are shared, others than those that end there add to the sums.
     let nothing = Sums { xyz: &mut [], stokes: &mut [], bands: &mut [] };
-    let (dealing, finished) = match &blocks {
+    let (redistribution, finished) = match &blocks {
         None => (None, Finished::new::<P>(cursor.clone(), prepared, sums, rays)),
         Some(blocks) => (
-            Some(Dealing::new(blocks, cursor.window(), prepared, sums, rays)),
+            Some(Redistribution::new(blocks, cursor.window(), prepared, sums, rays)),
             Finished::new::<P>(cursor.clone(), prepared, nothing, &mut []),
         ),
     };
@@ -79,10 +79,10 @@ fn render_on<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         counters: Counters::default(),
         paths: Paths::new(tracer.sampler(0, 0, 0), blocks.is_some()),
         lights: Lights::new(),
-        casting: Casting::new(),
+        guided_directions: GuidedDirections::new(),
         seen: [[Lanes::ZERO; 3]; W],
         finished,
-        dealing,
+        redistribution,
     };
     let mut starts = Starts::new(&tracer, cursor);
     trace::<M, P, N>(level, &mut batch, &mut starts);
@@ -119,12 +119,12 @@ struct Batch<'a, M, P, const N: usize> {
     /// The lights that paths look at.
     lights: Lights,
     /// Directions toward targets of guided sampling.
-    casting: Casting,
+    guided_directions: GuidedDirections,
     /// What the lanes of paths that ended add to the film.
     seen: [[Lanes<f64, N>; 3]; W],
     finished: Finished<'a, N>,
     /// Where neighbouring pixels share paths.
-    dealing: Option<Dealing<'a, N>>,
+    redistribution: Option<Redistribution<'a, N>>,
 }
 
 impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, N> {
@@ -199,7 +199,7 @@ impl<'a, const N: usize> Finished<'a, N> {
     fn add<M: WavelengthModel<N>>(&mut self, counters: &mut Counters) {
         while let Some((number, (xyz, rays))) = self.window.take() {
             let id = self.cursor.next().expect("as many samples come back as went out");
-            self.film.count_rays(id.spot, rays.into());
+            self.film.count_rays(id.pixel_samples, rays.into());
             let received = self.received.get(self.window.place(number)).unwrap_or(&Received::NOTHING);
             self.film.add::<M, N>(id, xyz, received, counters);
         }

@@ -2,7 +2,7 @@
 
 use super::Batch;
 use super::arrive::of_group;
-use super::lamps::{Aims, Flats, Rounds, aim, aim_at_disks, aim_at_rounds};
+use super::lamps::{LightSamples, PlanarLights, SphereLights, aim, aim_at_disks, aim_at_rounds};
 use super::level::{Level, stages};
 use super::paths::vertex;
 use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes};
@@ -10,9 +10,9 @@ use crate::bsdf::lambert;
 use crate::integrator::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
 use crate::light::{LightSample, LightTable, Target};
 use crate::mis::Density;
-use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
 use crate::sampler::{CAMERA_SETS, SETS_PER_VERTEX, Samplers, Wanted};
+use crate::wavelength_lanes::WavelengthModel;
 use etalon_geometry::{LANES, Rays, SurfaceId, SurfacePoint};
 use etalon_optics::Lanes;
 use etalon_scene::LightSampling;
@@ -24,9 +24,9 @@ pub(super) struct Lights {
     probability: Row,
     /// Their surfaces, of those that are aimed at in rows.
     surface: [SurfaceId; W],
-    flats: Flats,
-    rounds: Rounds,
-    aims: Aims,
+    planar: PlanarLights,
+    spheres: SphereLights,
+    light_samples: LightSamples,
     /// What Lambertian surfaces make of them.
     cos: Row,
     weight: Row,
@@ -49,9 +49,9 @@ impl Lights {
             light: [u32::MAX; W],
             probability: Row::ZERO,
             surface: [SurfaceId::NONE; W],
-            flats: Flats::NONE,
-            rounds: Rounds::NONE,
-            aims: Aims::NONE,
+            planar: PlanarLights::NONE,
+            spheres: SphereLights::NONE,
+            light_samples: LightSamples::NONE,
             cos: Row::ZERO,
             weight: Row::ZERO,
             rows: 0,
@@ -66,7 +66,7 @@ impl Lights {
         let (light, probability) = (self.light[lane], self.probability.0[lane]);
         if self.rows >> lane & 1 == 1 {
             let lambert = Some(LambertTerms { cos: self.cos.0[lane], weight: self.weight.0[lane] });
-            let sample = self.aims.at(lane).sample(self.surface[lane])?;
+            let sample = self.light_samples.at(lane).sample(self.surface[lane])?;
             return Some(LightDraw { light, probability, sample, lambert });
         }
         let sample = self.others[lane]?;
@@ -84,10 +84,10 @@ impl Lights {
         self.light[lane] = index as u32;
         let light = &lights.lights()[index];
         self.surface[lane] = light.emitter().map_or(SurfaceId::NONE, |emitter| emitter.surface);
-        self.flats.forget(lane);
-        self.rounds.forget(lane);
-        self.flats.put(lane, light);
-        self.rounds.put(lane, light);
+        self.planar.forget(lane);
+        self.spheres.forget(lane);
+        self.planar.put(lane, light);
+        self.spheres.put(lane, light);
     }
 }
 
@@ -115,22 +115,29 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
                 None => shared &= !(1 << lane),
             }
         }
-        if draws.flats.mask & shared != 0 {
-            aim(self.level, &paths.position, [u1, u2], &draws.flats, &mut draws.aims);
+        if draws.planar.mask & shared != 0 {
+            aim(self.level, &paths.position, [u1, u2], &draws.planar, &mut draws.light_samples);
         }
-        if draws.flats.disks & shared != 0 {
-            aim_at_disks(self.level, &paths.position, [u1, u2], &draws.flats, &mut draws.aims);
+        if draws.planar.disks & shared != 0 {
+            aim_at_disks(self.level, &paths.position, [u1, u2], &draws.planar, &mut draws.light_samples);
         }
-        let mut rows = draws.flats.mask | draws.flats.disks;
-        if draws.rounds.mask & shared != 0 {
+        let mut rows = draws.planar.mask | draws.planar.disks;
+        if draws.spheres.mask & shared != 0 {
             let mut outside = [false; W];
-            aim_at_rounds(self.level, &paths.position, [u1, u2], &draws.rounds, &mut draws.aims, &mut outside);
+            aim_at_rounds(
+                self.level,
+                &paths.position,
+                [u1, u2],
+                &draws.spheres,
+                &mut draws.light_samples,
+                &mut outside,
+            );
             // Those within a sphere are asked for one by one.
-            rows |= lanes(draws.rounds.mask).fold(0, |mask, lane| mask | Mask::from(outside[lane]) << lane);
+            rows |= lanes(draws.spheres.mask).fold(0, |mask, lane| mask | Mask::from(outside[lane]) << lane);
         }
-        lambert_cosines(self.level, (&paths.normal, &paths.direction, &draws.aims.wi), &mut draws.cos);
-        let Lights { cos, aims, probability, weight, .. } = draws;
-        weights(self.level, world.light_sampling, cos, &aims.density, probability, weight);
+        lambert_cosines(self.level, (&paths.normal, &paths.direction, &draws.light_samples.wi), &mut draws.cos);
+        let Lights { cos, light_samples, probability, weight, .. } = draws;
+        weights(self.level, world.light_sampling, cos, &light_samples.density, probability, weight);
         let mut next = [NextEvent { f_cos: Lanes::ZERO, weight: 0.0 }; W];
         let mut asks: Mask = 0;
         draws.rows = rows;
@@ -197,12 +204,12 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             let Some(sample) = &draws.others[lane] else { continue };
             surfaces[lane] = sample.surface;
             match sample.target {
-                Target::Point(point) => draws.aims.point.set(lane, point),
+                Target::Point(point) => draws.light_samples.point.set(lane, point),
                 Target::Infinity => endless |= 1 << lane,
             }
         }
-        let Lights { rays, aims, others, .. } = draws;
-        shadow_rays(self.level, (&paths.position, &paths.error, &paths.normal), &aims.point, rays);
+        let Lights { rays, light_samples, others, .. } = draws;
+        shadow_rays(self.level, (&paths.position, &paths.error, &paths.normal), &light_samples.point, rays);
         for lane in lanes(endless) {
             let Some(sample) = &others[lane] else { continue };
             let ray = vertex(&paths.at, lane).point.spawn(sample.wi);

@@ -4,10 +4,10 @@ use super::arrive::of_group;
 use super::rows::{Mask, Row, Rows3, W};
 use crate::integrator::Path;
 use crate::interaction::SurfaceInteraction;
-use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
-use crate::reuse::Gathered;
+use crate::reuse::ReusePath;
 use crate::sampler::{Sampler, Samplers};
+use crate::wavelength_lanes::WavelengthModel;
 use etalon_geometry::{LANES, Ray, Rays, SurfaceId};
 
 /// All paths of a set.
@@ -37,7 +37,7 @@ pub(super) struct Paths<'a, M, P, const N: usize> {
     pub normal: Rows3,
     /// Whether neighbouring pixels share paths, and then what each path brings in.
     pub shares: bool,
-    pub gathered: [Gathered<N>; W],
+    pub reuse_path: [ReusePath<N>; W],
 }
 
 impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Paths<'a, M, P, N> {
@@ -59,7 +59,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Paths<'a, M,
             error: Row::ZERO,
             normal: Rows3::ZERO,
             shares,
-            gathered: [Gathered::NOTHING; W],
+            reuse_path: [ReusePath::NOTHING; W],
         }
     }
 

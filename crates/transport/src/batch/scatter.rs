@@ -8,9 +8,9 @@ use super::rows::{Mask, Row, Rows3, W, lanes};
 use crate::bsdf::dielectric::{self, Turn};
 use crate::bsdf::lambert;
 use crate::integrator::Direction;
-use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
 use crate::shading_tables::BsdfKind;
+use crate::wavelength_lanes::WavelengthModel;
 use etalon_geometry::{SurfaceId, SurfacePoint};
 use etalon_optics::Vec3;
 
@@ -32,16 +32,16 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         vertex_numbers(self.level, &paths.samplers, &paths.vertex, 0, wanted, &mut numbers);
         let [u1, u2, u_lobe, u_roulette] = &numbers;
         let (mut wi, mut cos) = (Rows3::ZERO, Row::ZERO);
-        let casters = world.casters;
-        let casting = &mut self.casting;
-        let guided = casters.aim();
+        let guided_targets = world.guided_targets;
+        let guided_directions = &mut self.guided_directions;
+        let guided = guided_targets.aim();
         if guided {
-            casting.diffuse = diffuse;
+            guided_directions.diffuse = diffuse;
             let surface = (&paths.position, &paths.normal, &paths.direction);
-            casting.deal(self.level, casters, surface, u1);
-            let u = [&casting.u1.0, u2];
+            guided_directions.allot(self.level, guided_targets, surface, u1);
+            let u = [&guided_directions.u1.0, u2];
             lambert_directions(self.level, (&paths.normal, &paths.direction), u, &mut wi, &mut cos);
-            casting.take(self.level, casters, surface, [u1, u2], (&mut wi, &mut cos));
+            guided_directions.take(self.level, guided_targets, surface, [u1, u2], (&mut wi, &mut cos));
         } else if diffuse != 0 {
             lambert_directions(self.level, (&paths.normal, &paths.direction), [u1, u2], &mut wi, &mut cos);
         }
@@ -76,7 +76,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
                     if cos <= 0.0 || cos.is_nan() {
                         continue;
                     }
-                    let guiding = if guided { casting.factor.0[lane] } else { 1.0 };
+                    let guiding = if guided { guided_directions.factor.0[lane] } else { 1.0 };
                     Direction::Diffuse { wi: wi.at(lane), cos, guiding }
                 }
                 BsdfKind::Mirror(_) => Direction::Mirrored(wi.at(lane)),
@@ -89,7 +89,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             };
             let taken = path.scatter(world, vertex, direction, u_lobe[lane]);
             if paths.shares {
-                paths.gathered[lane].leave(world, path, vertex, taken.delta);
+                paths.reuse_path[lane].leave(world, path, vertex, taken.delta);
             }
             if !path.survives(world, taken.guiding, u_roulette[lane], &mut ()) {
                 continue;

@@ -7,12 +7,12 @@ use super::stream::Cursor;
 use crate::camera::Camera;
 use crate::film::Counters;
 use crate::integrator::Start;
-use crate::model::WavelengthModel;
 use crate::polarisation::Polarisation;
-use crate::reuse::Gathered;
+use crate::reuse::ReusePath;
 use crate::sampler::{Samplers, Wanted};
 use crate::tracer::Tracer;
 use crate::wavelength::Wavelengths;
+use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
 use etalon_geometry::SurfaceId;
 
@@ -140,13 +140,13 @@ impl<'a, const N: usize> Starts<'a, N> {
         paths.leaves[lane] = SurfaceId::NONE;
         paths.time[lane] = self.time[start];
         if paths.shares {
-            paths.gathered[lane] = Gathered::NOTHING;
+            paths.reuse_path[lane] = ReusePath::NOTHING;
         }
         let ray = paths.ray(lane);
-        let inside = self.tracer.inside(&ray, counters);
+        let stack = self.tracer.stack(&ray, counters);
         let polarisation = P::at_camera(ray.direction, self.tracer.camera.right(ray.time));
         let wavelengths = self.wavelengths[start];
-        paths.paths[lane].begin(world, &Start { ray, inside, wavelengths, polarisation });
+        paths.paths[lane].begin(world, &Start { ray, stack, wavelengths, polarisation });
     }
 }
 

@@ -3,7 +3,7 @@
 //! Paths end in any order, but a pixel's sums are in the order of its samples: what is finished early waits.
 
 use crate::film_entry::SampleId;
-use crate::tracer::Spot;
+use crate::tracer::PixelSamples;
 
 /// Most samples that may be under way or wait for others: many times the paths in a set, so that one long path does not hold up
 /// the rest.
@@ -12,9 +12,9 @@ const WINDOW: u64 = 1024;
 /// Goes through the samples of spots, one spot after the other.
 #[derive(Clone, Debug)]
 pub(super) struct Cursor<'a> {
-    spots: &'a [Spot],
+    all_samples: &'a [PixelSamples],
     /// How many spots take turns that begin there, sample by sample; empty if each is alone.
-    mates: &'a [usize],
+    block_pixels: &'a [usize],
     /// Those whose turn it is: the first, and the one after the last.
     group: [usize; 2],
     next: SampleId,
@@ -22,11 +22,11 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// Of spots of which `mates` tells who take turns: they have the same samples.
-    pub(super) fn new(spots: &'a [Spot], mates: &'a [usize]) -> Self {
-        let left = spots.iter().map(|spot| u64::from(spot.count())).sum();
-        let next = SampleId { spot: 0, x: 0, y: 0, sample: 0 };
-        let mut cursor = Self { spots, mates, group: [0; 2], next, left };
+    /// Of spots of which `block_pixels` tells who take turns: they have the same samples.
+    pub(super) fn new(all_samples: &'a [PixelSamples], block_pixels: &'a [usize]) -> Self {
+        let left = all_samples.iter().map(|pixel_samples| u64::from(pixel_samples.count())).sum();
+        let next = SampleId { pixel_samples: 0, x: 0, y: 0, sample: 0 };
+        let mut cursor = Self { all_samples, block_pixels, group: [0; 2], next, left };
         cursor.go_to(0);
         cursor
     }
@@ -39,10 +39,11 @@ impl<'a> Cursor<'a> {
     /// The first sample of this spot, or of the next that has one.
     #[inline(always)]
     fn go_to(&mut self, first: usize) {
-        for (spot, Spot { x, y, samples }) in self.spots.iter().enumerate().skip(first) {
+        for (pixel_samples, PixelSamples { x, y, samples }) in self.all_samples.iter().enumerate().skip(first) {
             if !samples.is_empty() {
-                self.next = SampleId { spot, x: *x, y: *y, sample: samples.start };
-                self.group = [spot, spot + self.mates.get(spot).copied().unwrap_or(1)];
+                self.next = SampleId { pixel_samples, x: *x, y: *y, sample: samples.start };
+                self.group =
+                    [pixel_samples, pixel_samples + self.block_pixels.get(pixel_samples).copied().unwrap_or(1)];
                 return;
             }
         }
@@ -57,18 +58,19 @@ impl Iterator for Cursor<'_> {
         self.left = self.left.checked_sub(1)?;
         let place = self.next;
         let [first, end] = self.group;
-        if place.spot + 1 < end {
-            self.next.spot += 1;
+        if place.pixel_samples + 1 < end {
+            self.next.pixel_samples += 1;
         } else {
-            self.next.spot = first;
+            self.next.pixel_samples = first;
             self.next.sample += 1;
-            if self.next.sample == self.spots[first].samples.end {
+            if self.next.sample == self.all_samples[first].samples.end {
                 self.go_to(end);
                 return Some(place);
             }
         }
         if end - first > 1 {
-            (self.next.x, self.next.y) = (self.spots[self.next.spot].x, self.spots[self.next.spot].y);
+            (self.next.x, self.next.y) =
+                (self.all_samples[self.next.pixel_samples].x, self.all_samples[self.next.pixel_samples].y);
         }
         Some(place)
     }

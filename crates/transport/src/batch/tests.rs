@@ -1,13 +1,13 @@
 //! Every instruction set of this machine leaves the film of the scalar driver.
 
 use super::render_on;
-use crate::caustics::Aims;
+use crate::caustics::GuidedBy;
 use crate::film::{Counters, Film, PixelRect, TileSums};
-use crate::model::{Hero, OneLane, Shared, WavelengthModel};
 use crate::plan::{EffectName, LaneModel, PathLoop};
 use crate::polarisation::Averaged;
 use crate::prepare::Prepared;
-use crate::tracer::Spot;
+use crate::tracer::PixelSamples;
+use crate::wavelength_lanes::{Hero, OneLane, Shared, WavelengthModel};
 use crate::{Control, Study, prepare_study};
 use etalon_simd::Level;
 
@@ -65,9 +65,9 @@ fn batch<M: WavelengthModel<N>, const N: usize>(level: Level, prepared: &Prepare
     let tile = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let mut sums = prepared.film().tile(tile);
     let counters = {
-        let spots = Spot::of_tile(tile, &(0..prepared.scene.integrator.spp));
-        let mut rays = vec![0; spots.len()];
-        let counters = render_on::<M, Averaged, N>(level, prepared, &spots, sums.borrow(), &mut rays);
+        let all_samples = PixelSamples::of_tile(tile, &(0..prepared.scene.integrator.spp));
+        let mut rays = vec![0; all_samples.len()];
+        let counters = render_on::<M, Averaged, N>(level, prepared, &all_samples, sums.borrow(), &mut rays);
         assert_eq!(rays.iter().sum::<u64>(), counters.rays + counters.shadow_rays);
         counters
     };
@@ -97,21 +97,21 @@ fn every_instruction_set_and_every_model_of_lanes_leaves_the_film_of_the_scalar_
 
 #[test]
 fn directions_toward_casters_and_images_of_lamps_leave_the_film_of_the_scalar_driver_too() {
-    for aims in [Aims::Bodies, Aims::Images, Aims::ImagesAndLenses] {
+    for guided_by in [GuidedBy::Bodies, GuidedBy::Images, GuidedBy::ImagesAndLenses] {
         let aiming = |path_loop, share| {
             let mut prepared = prepared(&[], path_loop);
             // Two balls, one of which mirrors three lamps; the other shows them through itself.
-            assert_eq!((prepared.casters.bodies.len(), prepared.casters.images.len()), (2, 6));
-            (prepared.casters.aims, prepared.casters.share) = (aims, share);
+            assert_eq!((prepared.guided_targets.bodies.len(), prepared.guided_targets.images.len()), (2, 6));
+            (prepared.guided_targets.guided_by, prepared.guided_targets.share) = (guided_by, share);
             prepared
         };
         let scalar = aiming(PathLoop::Scalar, 0.5);
         let film = scalar.render(&scalar.whole(Some(1)), &|_| Control::Continue).unwrap();
         for level in Level::available() {
             let batch_of = aiming(PathLoop::Batch, 0.5);
-            assert!(is_that_of(&film, &batch::<Shared, 8>(level, &batch_of)), "{aims:?}, {level:?}");
+            assert!(is_that_of(&film, &batch::<Shared, 8>(level, &batch_of)), "{guided_by:?}, {level:?}");
         }
         let other = aiming(PathLoop::Batch, 0.4);
-        assert!(!is_that_of(&film, &batch::<Shared, 8>(Level::best(), &other)), "{aims:?}");
+        assert!(!is_that_of(&film, &batch::<Shared, 8>(Level::best(), &other)), "{guided_by:?}");
     }
 }

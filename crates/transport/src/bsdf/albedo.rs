@@ -44,8 +44,8 @@ pub(crate) enum Tabulated {
 /// A table that is a function of a width and a range of indices alone, made once: images of roughness ask for many, and the
 /// materials of a scene for the same ones.
 pub(crate) fn shared(of: Tabulated, alpha: f64, eta: [f64; 2], make: impl FnOnce() -> LossTable) -> Arc<LossTable> {
-    type Known = HashMap<(Tabulated, u64, [u64; 2]), Arc<LossTable>>;
-    static KNOWN: LazyLock<Mutex<Known>> = LazyLock::new(Mutex::default);
+    type SharedTables = HashMap<(Tabulated, u64, [u64; 2]), Arc<LossTable>>;
+    static KNOWN: LazyLock<Mutex<SharedTables>> = LazyLock::new(Mutex::default);
     let key = (of, alpha.to_bits(), eta.map(f64::to_bits));
     let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(table) = known().get(&key) {

@@ -17,9 +17,9 @@ pub struct Blend {
 
 /// Two neighbours among the parts, each with its share of the surface.
 #[derive(Clone, Copy)]
-struct Shares([(usize, f64); 2]);
+struct PartWeights([(usize, f64); 2]);
 
-impl Shares {
+impl PartWeights {
     /// The part that a number in [0, 1) chooses, and what is left of the number for the choices within it.
     fn choose(self, u: f64) -> (usize, f64) {
         let Self([(first, _), (second, share)]) = self;
@@ -39,12 +39,12 @@ impl Blend {
     }
 
     /// What stands at texture coordinates.
-    fn shares(&self, uv: [f64; 2]) -> Shares {
+    fn shares(&self, uv: [f64; 2]) -> PartWeights {
         let number = self.by.eval(uv);
         let second = self.places.partition_point(|place| *place <= number).clamp(1, self.places.len() - 1);
         let [from, to] = [self.places[second - 1], self.places[second]];
         let share = ((number - from) / (to - from)).clamp(0.0, 1.0);
-        Shares([(second - 1, 1.0 - share), (second, share)])
+        PartWeights([(second - 1, 1.0 - share), (second, share)])
     }
 
     /// Whether any part scatters what arrives from a given direction.

@@ -1,6 +1,6 @@
 //! Boxes as targets of directions.
 
-use super::Target;
+use super::DirectionTarget;
 use etalon_geometry::Aabb;
 use etalon_optics::Vec3;
 
@@ -52,7 +52,7 @@ impl Hull {
     }
 }
 
-impl Target for Hull {
+impl DirectionTarget for Hull {
     #[inline(always)]
     fn is_seen(&self, from: Vec3<f64>, n: Vec3<f64>) -> bool {
         let [x, y, z] = self.extent;

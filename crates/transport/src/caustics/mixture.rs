@@ -1,7 +1,9 @@
 //! Directions drawn from a mixture, and their densities.
 
-use super::image::View;
-use super::{Caster, Casters, Image, LEVEL, MOST_BODIES, MOST_IMAGES, Shows, Target};
+use super::specular_image::View;
+use super::{
+    DirectionTarget, GuidedTarget, GuidedTargets, LEVEL, MAX_SPECULAR_IMAGES, MOST_BODIES, Shows, SpecularImage,
+};
 use crate::bsdf::{BsdfSample, lambert};
 use crate::mis::Density;
 use crate::surface::Scattering;
@@ -10,7 +12,7 @@ use etalon_optics::{Lanes, Vec3};
 
 /// The share of the directions that a body has at a point of a surface of normal `n`.
 #[inline(always)]
-pub(crate) fn share_of(body: &impl Target, each: f64, from: Vec3<f64>, n: Vec3<f64>) -> f64 {
+pub(crate) fn share_of(body: &impl DirectionTarget, each: f64, from: Vec3<f64>, n: Vec3<f64>) -> f64 {
     if body.is_seen(from, n) { each } else { 0.0 }
 }
 
@@ -28,7 +30,7 @@ pub(crate) fn place_within(u: f64, begin: f64, share: f64) -> f64 {
 
 /// The share of the directions that images have together, where `light` is the weight of all and `most` what they have at most.
 #[inline(always)]
-pub(crate) fn share_of_images(light: f32, most: f64) -> f64 {
+pub(crate) fn specular_image_share(light: f32, most: f64) -> f64 {
     most * f64::from(light / (light + LEVEL))
 }
 
@@ -39,36 +41,36 @@ pub(crate) fn density_of(share: f64, density: f64) -> f64 {
     if share > 0.0 { density } else { 0.0 }
 }
 
-/// The density of a direction where casters have a part of all directions.
+/// The density of a direction where guided targets have a part of all directions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mixture {
     /// By the cosine alone, sr⁻¹.
     pub own: f64,
-    /// The part that casters have.
+    /// The part that guided targets have.
     pub part: f64,
     /// What they add, sr⁻¹.
-    pub of_casters: f64,
+    pub of_guided_targets: f64,
 }
 
 impl Mixture {
-    /// Nothing is drawn toward casters.
-    pub(crate) const NONE: Self = Self { own: 1.0, part: 0.0, of_casters: 0.0 };
+    /// Nothing is drawn toward guided targets.
+    pub(crate) const NONE: Self = Self { own: 1.0, part: 0.0, of_guided_targets: 0.0 };
 
-    /// What a direction is worth, against one drawn by the cosine alone, if the casters had `times` of what they have.
+    /// What a direction is worth, against one drawn by the cosine alone, if the guided targets had `times` of what they have.
     #[inline(always)]
     pub(crate) fn factor(&self, times: f64) -> f64 {
-        self.own / ((1.0 - times * self.part) * self.own + times * self.of_casters)
+        self.own / ((1.0 - times * self.part) * self.own + times * self.of_guided_targets)
     }
 }
 
 /// The images of lamps that a point of a surface of normal `n` sees.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen<'a> {
-    pub images: &'a [Image],
+pub(crate) struct VisibleImages<'a> {
+    pub images: &'a [SpecularImage],
     pub from: Vec3<f32>,
     pub n: Vec3<f32>,
     /// Of each image.
-    pub weights: &'a [f32; MOST_IMAGES],
+    pub weights: &'a [f32; MAX_SPECULAR_IMAGES],
     /// The share of the directions that all have together.
     pub share: f64,
 }
@@ -81,7 +83,7 @@ pub(crate) struct Aimed {
     view: View,
 }
 
-impl Seen<'_> {
+impl VisibleImages<'_> {
     /// A direction toward one of them, drawn in proportion to its weight, for `u` in [0, 1]²; none where it was drawn in vain, since by way of
     /// that ball it meets nothing of the lamp. So that part of all directions is drawn by the cosine alone.
     #[inline]
@@ -137,14 +139,14 @@ impl Seen<'_> {
 
     /// Whether an image's lamp is met along `wi` by way of its ball, about.
     #[inline]
-    fn is_shown(&self, image: &Image, wi: Vec3<f64>) -> bool {
+    fn is_shown(&self, image: &SpecularImage, wi: Vec3<f64>) -> bool {
         let wi = wi.cast();
         image.ball.is_met(self.from, wi) && image.is_shown(&image.ball.hand_on(self.from, wi))
     }
 }
 
-impl Casters {
-    /// [`Scattering::sample`], with a share of the directions of diffuse surfaces drawn toward casters: what is drawn as if by the
+impl GuidedTargets {
+    /// [`Scattering::sample`], with a share of the directions of diffuse surfaces drawn toward guided targets: what is drawn as if by the
     /// BSDF alone, and the densities that tell what it is worth.
     #[inline]
     pub(crate) fn sample<const N: usize>(
@@ -202,15 +204,15 @@ impl Casters {
         let (mut part, mut toward) = (0.0, None);
         for (body, share) in bodies.iter().zip(&mut shares) {
             *share = match body {
-                Caster::Sphere(round) => share_of(round, each, from, n),
-                Caster::Box(body) => share_of(body, each, from, n),
+                GuidedTarget::Sphere(round) => share_of(round, each, from, n),
+                GuidedTarget::Box(body) => share_of(body, each, from, n),
             };
             if is_within(u1, part, *share) {
                 toward = Some((body, place_within(u1, part, *share)));
             }
             part += *share;
         }
-        let mut weights = [0.0; MOST_IMAGES];
+        let mut weights = [0.0; MAX_SPECULAR_IMAGES];
         let seen = self.see(from.cast(), n.cast(), &mut weights);
         let begin = part;
         part += seen.share;
@@ -230,18 +232,23 @@ impl Casters {
         }
         let of_bodies = bodies.iter().zip(shares).fold(0.0, |sum, (body, share)| {
             sum + match body {
-                Caster::Sphere(round) => density_of(share, round.density_of(from, wi)),
-                Caster::Box(body) => density_of(share, body.density(from, wi)),
+                GuidedTarget::Sphere(round) => density_of(share, round.density_of(from, wi)),
+                GuidedTarget::Box(body) => density_of(share, body.density(from, wi)),
             }
         });
         let of_images = if seen.share > 0.0 { seen.density(wi, aimed.as_ref()) } else { 0.0 };
         let own = lambert::density(cos);
-        Some((wi, cos, Mixture { own, part, of_casters: of_bodies + of_images }))
+        Some((wi, cos, Mixture { own, part, of_guided_targets: of_bodies + of_images }))
     }
 
     /// The images that a point of a surface of normal `n` sees.
-    fn see<'a>(&'a self, from: Vec3<f32>, n: Vec3<f32>, weights: &'a mut [f32; MOST_IMAGES]) -> Seen<'a> {
-        let images = self.images_aimed_at();
+    fn see<'a>(
+        &'a self,
+        from: Vec3<f32>,
+        n: Vec3<f32>,
+        weights: &'a mut [f32; MAX_SPECULAR_IMAGES],
+    ) -> VisibleImages<'a> {
+        let images = self.specular_images_aimed_at();
         let mut light = 0.0;
         for (image, weight) in images.iter().zip(&mut *weights) {
             let eye = image.ball.eye(from);
@@ -251,6 +258,6 @@ impl Casters {
             };
             light += *weight;
         }
-        Seen { images, from, n, weights, share: share_of_images(light, self.share) }
+        VisibleImages { images, from, n, weights, share: specular_image_share(light, self.share) }
     }
 }

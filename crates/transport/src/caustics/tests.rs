@@ -1,9 +1,9 @@
-//! Directions toward casters have the densities that are said of them, a room of constant radiance stays one, and directions that are
+//! Directions toward guided targets have the densities that are said of them, a room of constant radiance stays one, and directions that are
 //! not weighed are noticed.
 
-mod images;
+mod specular_images;
 
-use super::{Aims, Caster, Hull, Target};
+use super::{DirectionTarget, GuidedBy, GuidedTarget, Hull};
 use crate::film::{PixelRect, XyzSum};
 use crate::light::Round;
 use crate::plan::PathLoop;
@@ -37,7 +37,7 @@ fn mean(count: usize, mut sample: impl FnMut() -> f64) -> (f64, f64) {
 
 /// Whether densities integrate to one, and draws have them: integrals of (1, x, y, z²) over what is seen by draws over their densities
 /// and by uniform directions. Five standard errors each: a right target fails one of the five with probability 3e-6.
-fn is_sound(target: &impl Target, density: &dyn Fn(Vec3<f64>) -> f64, from: Vec3<f64>, seed: u64) -> bool {
+fn is_sound(target: &impl DirectionTarget, density: &dyn Fn(Vec3<f64>) -> f64, from: Vec3<f64>, seed: u64) -> bool {
     draws_are_sound(&|u| target.aim(from, u), density, seed)
 }
 
@@ -78,7 +78,7 @@ fn directions_toward_spheres_and_boxes_have_their_densities_and_wrong_densities_
         let (from, seed) = (Vec3::from_array(from), 10 * seed as u64);
         let body = hull([-0.5, -0.6, -0.2], [0.6, 0.4, 0.9]);
         assert!(is_sound(&body, &|wi| body.density(from, wi), from, seed), "box from {from:?}");
-        assert!(is_sound(&round, &|wi| Target::density(&round, from, wi), from, seed), "sphere from {from:?}");
+        assert!(is_sound(&round, &|wi| DirectionTarget::density(&round, from, wi), from, seed), "sphere from {from:?}");
     }
     // From near, where few draws are needed to tell: a tenth too much, and the right sum with a lean to one side.
     let (body, from) = (hull([-0.5, -0.6, -0.2], [0.6, 0.4, 0.9]), Vec3::new(0.3, -0.9, 0.2));
@@ -181,19 +181,23 @@ fn level(prepared: &Prepared) -> (f64, f64) {
 /// 1 % is seen.
 #[test]
 fn a_room_of_constant_radiance_stays_one_with_directions_toward_casters() {
-    let all = [Aims::Bodies, Aims::Images, Aims::ImagesAndLenses];
-    for (path_loop, aims) in
-        [PathLoop::Scalar, PathLoop::Batch].into_iter().flat_map(|path| all.map(|aims| (path, aims)))
+    let all = [GuidedBy::Bodies, GuidedBy::Images, GuidedBy::ImagesAndLenses];
+    for (path_loop, guided_by) in
+        [PathLoop::Scalar, PathLoop::Batch].into_iter().flat_map(|path| all.map(|guided_by| (path, guided_by)))
     {
         let mut prepared = room(path_loop);
         assert_eq!(
-            (prepared.casters.bodies.len(), prepared.casters.lenses.len(), prepared.casters.images.len()),
+            (
+                prepared.guided_targets.bodies.len(),
+                prepared.guided_targets.lenses.len(),
+                prepared.guided_targets.images.len()
+            ),
             (3, 1, 12)
         );
-        assert!(matches!(prepared.casters.bodies[0], Caster::Box(_)));
-        (prepared.casters.aims, prepared.casters.share) = (aims, 0.5);
+        assert!(matches!(prepared.guided_targets.bodies[0], GuidedTarget::Box(_)));
+        (prepared.guided_targets.guided_by, prepared.guided_targets.share) = (guided_by, 0.5);
         let (mean, error) = level(&prepared);
-        assert!((mean - 1.0).abs() <= 6.0 * error && error < 0.003, "{path_loop:?}, {aims:?}: {mean} ± {error}");
+        assert!((mean - 1.0).abs() <= 6.0 * error && error < 0.003, "{path_loop:?}, {guided_by:?}: {mean} ± {error}");
     }
 }
 
@@ -230,9 +234,9 @@ fn noise(prepared: &Prepared) -> f64 {
 #[test]
 fn lamps_in_a_mirror_ball_are_aimed_at_and_that_leaves_less_noise() {
     let mut prepared = floor();
-    assert_eq!(prepared.casters.aims, Aims::Images);
+    assert_eq!(prepared.guided_targets.guided_by, GuidedBy::Images);
     let aimed = noise(&prepared);
-    prepared.casters.aims = Aims::Nothing;
+    prepared.guided_targets.guided_by = GuidedBy::Nothing;
     let alone = noise(&prepared);
     assert!(aimed < 0.5 * alone, "{aimed} of {alone}");
 }
@@ -269,9 +273,9 @@ fn vault() -> Prepared {
 #[test]
 fn balls_of_glass_are_aimed_at_beside_images_and_that_leaves_less_noise() {
     let mut prepared = vault();
-    assert_eq!(prepared.casters.aims, Aims::ImagesAndLenses);
+    assert_eq!(prepared.guided_targets.guided_by, GuidedBy::ImagesAndLenses);
     let with_lenses = noise(&prepared);
-    prepared.casters.aims = Aims::Images;
+    prepared.guided_targets.guided_by = GuidedBy::Images;
     let images = noise(&prepared);
     assert!(with_lenses < 0.85 * images, "{with_lenses} of {images}");
 }

@@ -10,7 +10,7 @@
 //! estimator is in these steps, once.
 //!
 //! **Wavelengths.** All lanes follow the path that the hero drew. `beta` is f/p along it with the hero's p, and `lanes`
-//! ([`WavelengthModel`](crate::model::WavelengthModel)) knows each lane's own density of the same path relative to the hero's, where
+//! ([`WavelengthModel`](crate::wavelength_lanes::WavelengthModel)) knows each lane's own density of the same path relative to the hero's, where
 //! they can differ. The balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5) then weighs lane j by
 //! N·beta_j / Σ densities: plain `beta` as long as all lanes sample alike, N·beta_hero once dispersion has left the hero
 //! alone.

@@ -1,17 +1,17 @@
 //! Next-event estimation: ∫ f Le |cos θ| dω over the lights, estimated by one direction toward one of them.
 
 use super::{MOST_VERTICES, Path};
-use crate::absorption::{Absorption, Body};
+use crate::absorption::{Absorption, EnclosingMedium};
 use crate::bsdf::{Lobe, lambert};
 use crate::film::Counters;
 use crate::interaction::{SurfaceInteraction, Walk};
 use crate::light::{LightSample, Target};
-use crate::media::Inside;
+use crate::media::MediumStack;
 use crate::mis::{Density, power_heuristic};
-use crate::model::WavelengthModel;
 use crate::observer::{Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::shading_tables::BsdfKind;
+use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
 use etalon_geometry::Ray;
 use etalon_optics::{Lanes, Vec3};
@@ -158,9 +158,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         sample: &LightSample,
     ) -> Visibility<N> {
         let transmittance = world.absorption.as_ref().map(|absorption| {
-            let body = self.body_toward(vertex, sample.wi);
+            let enclosing = self.enclosing_toward(vertex, sample.wi);
             let length = sample.target.distance(vertex.point.position);
-            absorption.transmittance(body, world.media, &self.inside, &self.wavelengths.lambda_nm, length)
+            absorption.transmittance(enclosing, world.media, &self.stack, &self.wavelengths.lambda_nm, length)
         });
         Visibility { share: 1.0, transmittance }
     }
@@ -175,16 +175,16 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         arrives: f64,
         counters: &mut Counters,
     ) -> Visibility<N> {
-        let body = self.body_toward(vertex, sample.wi);
-        let (mut walk, mut inside, mut share, mut start) = (Walk::default(), self.inside, 1.0, ray.origin);
+        let enclosing = self.enclosing_toward(vertex, sample.wi);
+        let (mut walk, mut stack, mut share, mut start) = (Walk::default(), self.stack, 1.0, ray.origin);
         let mut transmittance = Lanes::ONE;
         for _ in 0..MOST_VERTICES {
-            let met = world.intersect(ray, &mut walk, &mut inside, counters);
+            let met = world.intersect(ray, &mut walk, &mut stack, counters);
             let length = match &met {
                 Some(met) => (met.point.position - start).length(),
                 None => sample.target.distance(start),
             };
-            transmittance *= self.transmittance(world, body, &inside, length);
+            transmittance *= self.transmittance(world, enclosing, &stack, length);
             let Some(met) = met else { return Visibility { share, transmittance: Some(transmittance) } };
             let opacity = met.surface.opacity(world.geometry, &met.point, &met.hit);
             if met.point.surface == ray.aims_at || met.hit.t >= arrives && opacity == 1.0 {
@@ -197,16 +197,23 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             start = met.point.position;
             walk.pass(&met);
             if met.crosses {
-                inside = walk.beyond;
+                stack = walk.beyond;
             }
         }
         counters.record_cut(f64::MAX);
         Visibility { share: 0.0, transmittance: None }
     }
 
-    fn transmittance(&self, world: &World<'a>, body: Body<'a>, inside: &Inside, length: f64) -> Lanes<f64, N> {
+    fn transmittance(
+        &self,
+        world: &World<'a>,
+        enclosing: EnclosingMedium<'a>,
+        stack: &MediumStack,
+        length: f64,
+    ) -> Lanes<f64, N> {
         let lambda_nm = &self.wavelengths.lambda_nm;
-        let through = |absorption: &Absorption| absorption.transmittance(body, world.media, inside, lambda_nm, length);
+        let through =
+            |absorption: &Absorption| absorption.transmittance(enclosing, world.media, stack, lambda_nm, length);
         world.absorption.as_ref().map_or(Lanes::ONE, through)
     }
 

@@ -1,18 +1,18 @@
 //! The state of a path between two of its steps, and the steps.
 
 use super::MOST_VERTICES;
-use crate::absorption::Body;
+use crate::absorption::EnclosingMedium;
 use crate::film::Counters;
 use crate::film_entry::Received;
 use crate::interaction::{SurfaceInteraction, Walk};
-use crate::media::Inside;
+use crate::media::MediumStack;
 use crate::mis::power_heuristic;
-use crate::model::WavelengthModel;
 use crate::observer::{End, Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::shading_tables::SpectrumCache;
 use crate::wavelength::Wavelengths;
+use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
 use etalon_geometry::{Ray, SurfaceId};
 use etalon_optics::{Lanes, Vec3};
@@ -37,9 +37,9 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
     /// The last step of the walk, as far as MIS needs it.
     pub(super) step: Step,
     /// The solids that hold it.
-    pub inside: Inside,
+    pub stack: MediumStack,
     /// The body that it is in, where no priority says it.
-    pub(super) body: Body<'a>,
+    pub(super) enclosing: EnclosingMedium<'a>,
     /// How far it has come along its ray.
     pub walk: Walk,
     /// Surfaces passed as if they were not there, which are no vertices of the path, and where the last one was on this ray.
@@ -54,7 +54,7 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
 pub(crate) struct Start<P, const N: usize> {
     pub ray: Ray<f64>,
     /// The solids that hold the camera, where they are followed.
-    pub inside: Option<Inside>,
+    pub stack: Option<MediumStack>,
     pub wavelengths: Wavelengths<N>,
     pub polarisation: P,
 }
@@ -95,8 +95,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             eta_squared: 1.0,
             guiding: 1.0,
             step: Step::Unshared,
-            inside: Inside::NOTHING,
-            body: Body::default(),
+            stack: MediumStack::NOTHING,
+            enclosing: EnclosingMedium::default(),
             walk: Walk::default(),
             passes: 0,
             passed_at: None,
@@ -117,11 +117,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.eta_squared = 1.0;
         self.guiding = 1.0;
         self.step = Step::Unshared;
-        if let Some(inside) = start.inside {
-            self.inside = inside;
+        if let Some(stack) = start.stack {
+            self.stack = stack;
         }
         if world.absorption.is_some() {
-            self.body = Body::around(world.geometry, world.surfaces, &start.ray);
+            self.enclosing = EnclosingMedium::around(world.geometry, world.surfaces, &start.ray);
         }
         self.passes = 0;
         self.leave_ray(world);
@@ -173,11 +173,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let Some(absorption) = &world.absorption else { return };
         let mut length = f64::INFINITY;
         if let Some(vertex) = met {
-            self.body = self.body.before(&vertex.surface, vertex.meets_front());
+            self.enclosing = self.enclosing.before(&vertex.surface, vertex.meets_front());
             length = (vertex.point.position - self.passed_at.unwrap_or(ray.origin)).length();
         }
         let lambda_nm = &self.wavelengths.lambda_nm;
-        self.beta *= absorption.transmittance(self.body, world.media, &self.inside, lambda_nm, length);
+        self.beta *= absorption.transmittance(self.enclosing, world.media, &self.stack, lambda_nm, length);
     }
 
     /// Adds the light from infinity.
@@ -244,7 +244,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.passed_at = Some(vertex.point.position);
         self.walk.pass(vertex);
         if vertex.crosses {
-            self.inside = self.walk.beyond;
+            self.stack = self.walk.beyond;
         }
         true
     }

@@ -2,10 +2,10 @@
 
 use super::{Arrival, Path};
 use crate::film::Counters;
-use crate::model::WavelengthModel;
 use crate::observer::{End, Observer};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
+use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
 use etalon_geometry::Ray;
 
@@ -22,7 +22,7 @@ pub(crate) fn trace<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         // Next surface: where does the ray lead?
         counters.rays += 1;
         counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
-        let mut met = world.intersect(&ray, &mut path.walk, &mut path.inside, counters);
+        let mut met = world.intersect(&ray, &mut path.walk, &mut path.stack, counters);
 
         // Emission: what shines there, or at infinity? Masks let the ray pass.
         match path.arrive(world, &ray, met.as_mut(), sampler, counters, observer) {

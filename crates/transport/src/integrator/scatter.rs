@@ -2,16 +2,16 @@
 
 use super::path::Step;
 use super::{Path, ROULETTE_FROM_VERTEX, ROULETTE_THROUGHPUT, THROUGHPUT_FLOOR};
-use crate::absorption::Body;
+use crate::absorption::EnclosingMedium;
 use crate::bsdf::dielectric::{Turn, turn};
 use crate::bsdf::{BsdfSample, Lobe, lambert};
 use crate::caustics::Mixture;
 use crate::interaction::SurfaceInteraction;
 use crate::mis::Density;
-use crate::model::WavelengthModel;
 use crate::observer::{End, Observer};
 use crate::polarisation::Polarisation;
 use crate::shading_tables::BsdfKind;
+use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
 use etalon_optics::{Lanes, Vec3};
 
@@ -74,7 +74,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let SurfaceInteraction { point, wo, .. } = vertex;
         match vertex.kind {
             BsdfKind::Lambert(_) => {
-                let (wi, cos, mixture) = world.casters.diffuse(point, *wo, [u[1], u[2]])?;
+                let (wi, cos, mixture) = world.guided_targets.diffuse(point, *wo, [u[1], u[2]])?;
                 observer.direction(&mixture);
                 Some(Direction::Diffuse { wi, cos, guiding: mixture.factor(1.0) })
             }
@@ -93,7 +93,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             }
             BsdfKind::General => {
                 let lambda_nm = &self.wavelengths.lambda_nm;
-                let (sample, mixture) = world.casters.sample(point, vertex.scattering(), lambda_nm, *wo, u)?;
+                let (sample, mixture) = world.guided_targets.sample(point, vertex.scattering(), lambda_nm, *wo, u)?;
                 observer.direction(&mixture);
                 Some(Direction::General { sample, guiding: mixture.factor(1.0) })
             }
@@ -167,9 +167,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         self.leave_ray(world);
         if (world.absorption.is_some() || world.media.is_some()) && vertex.goes_through(wi) {
-            self.body = self.body.beyond(surface, vertex.meets_front());
+            self.enclosing = self.enclosing.beyond(surface, vertex.meets_front());
             if vertex.crosses {
-                self.inside = self.walk.beyond;
+                self.stack = self.walk.beyond;
             }
         }
         Taken { wi, guiding, delta }
@@ -177,10 +177,10 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     /// The body on the side of a surface to which a direction leads.
     #[inline(always)]
-    pub(super) fn body_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> Body<'a> {
+    pub(super) fn enclosing_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> EnclosingMedium<'a> {
         match vertex.goes_through(wi) {
-            true => self.body.beyond(&vertex.surface, vertex.meets_front()),
-            false => self.body,
+            true => self.enclosing.beyond(&vertex.surface, vertex.meets_front()),
+            false => self.enclosing,
         }
     }
 

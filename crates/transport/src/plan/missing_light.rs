@@ -71,8 +71,8 @@ pub(super) fn of(scene: &Scene) -> MissingLight {
         return missing;
     }
     let smooth = smooth_objects(scene);
-    let spots = lamps.iter().filter(|lamp| matches!(lamp.kind, LightKind::Spot { .. })).count();
-    let asks = spots > 0 && spots.saturating_mul(smooth.len()) <= MOST_ASKED;
+    let all_samples = lamps.iter().filter(|lamp| matches!(lamp.kind, LightKind::Spot { .. })).count();
+    let asks = all_samples > 0 && all_samples.saturating_mul(smooth.len()) <= MOST_ASKED;
     let mut boxes = HashMap::new();
     // What a group holds is anywhere.
     let balls: Vec<Option<Ball>> = match asks {

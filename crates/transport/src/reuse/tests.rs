@@ -1,6 +1,6 @@
 //! A room of known radiance.
 
-use crate::caustics::Aims;
+use crate::caustics::GuidedBy;
 use crate::film::Film;
 use crate::plan::PathLoop;
 use crate::prepare::Prepared;
@@ -9,14 +9,14 @@ use etalon_scene::PathReuse;
 
 const REPLICATES: u32 = 16;
 
-/// The film, by this thread, with this share of the directions drawn toward such casters.
-fn film(path_loop: PathLoop, aims: Aims) -> Film {
+/// The film, by this thread, with this share of the directions drawn toward such guided targets.
+fn film(path_loop: PathLoop, guided_by: GuidedBy) -> Film {
     let mut prepared =
         prepare_study(&super::room::room(REPLICATES), &Study { path_loop: Some(path_loop), ..Study::default() })
             .unwrap();
     assert_eq!(prepared.path_reuse(), Some([4, 4]));
-    assert_eq!((prepared.casters.bodies.len(), prepared.casters.images.len()), (2, 16));
-    (prepared.casters.aims, prepared.casters.share) = (aims, 0.4);
+    assert_eq!((prepared.guided_targets.bodies.len(), prepared.guided_targets.images.len()), (2, 16));
+    (prepared.guided_targets.guided_by, prepared.guided_targets.share) = (guided_by, 0.4);
     rendered(&prepared)
 }
 
@@ -42,9 +42,9 @@ fn farthest(film: &Film) -> (f64, f64) {
 #[test]
 fn every_pixel_of_a_room_of_constant_radiance_stays_one() {
     for path_loop in [PathLoop::Scalar, PathLoop::Batch] {
-        for aims in [Aims::Nothing, Aims::Bodies, Aims::Images, Aims::ImagesAndLenses] {
-            let (z, error) = farthest(&film(path_loop, aims));
-            assert!(z < 9.0 && error < 0.02, "{path_loop:?}, {aims:?}: {z} standard errors of at most {error}");
+        for guided_by in [GuidedBy::Nothing, GuidedBy::Bodies, GuidedBy::Images, GuidedBy::ImagesAndLenses] {
+            let (z, error) = farthest(&film(path_loop, guided_by));
+            assert!(z < 9.0 && error < 0.02, "{path_loop:?}, {guided_by:?}: {z} standard errors of at most {error}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What is said about a render that is done.
 
 use etalon_transport::accuracy::{FEWEST_LIT, Region};
-use etalon_transport::{Counters, Explored, Foretold, ImageError, Plan, Reached};
+use etalon_transport::{Counters, Explored, ImageError, Plan, Prediction, Reached};
 use serde::Serialize;
 
 use super::{Args, Done, Job};
@@ -29,8 +29,8 @@ pub(super) struct RenderJson<'a> {
     seconds: f64,
     /// What ended the render: "samples", "error", "time" or "interrupted".
     reached: &'static str,
-    /// What the pilot foretold for the error asked for.
-    foretold: Option<ForetoldJson>,
+    /// What the pilot predicted for the error asked for.
+    predicted: Option<PredictionJson>,
     /// How it was decided where the samples go; `null` where that was not asked.
     adaptive: Option<AdaptiveJson>,
     prepare_seconds: f64,
@@ -105,9 +105,9 @@ fn error_json(replicates: u32, error: &ImageError) -> ErrorJson {
     }
 }
 
-/// What a pilot foretold: seconds of rendering, its own left out.
+/// What a pilot predicted: seconds of rendering, its own left out.
 #[derive(Serialize)]
-pub(super) struct ForetoldJson {
+pub(super) struct PredictionJson {
     relative_rmse: f64,
     /// `null`, as the seconds, if the pilot found no light.
     samples: f64,
@@ -115,20 +115,20 @@ pub(super) struct ForetoldJson {
     pilot_seconds: f64,
 }
 
-fn foretold_json(foretold: &Foretold) -> ForetoldJson {
-    ForetoldJson {
-        relative_rmse: foretold.price.relative_rmse,
-        samples: foretold.price.samples,
-        seconds: foretold.price.seconds,
-        pilot_seconds: foretold.pilot_seconds,
+fn prediction_json(predicted: &Prediction) -> PredictionJson {
+    PredictionJson {
+        relative_rmse: predicted.cost_estimate.relative_rmse,
+        samples: predicted.cost_estimate.samples,
+        seconds: predicted.cost_estimate.seconds,
+        pilot_seconds: predicted.pilot_seconds,
     }
 }
 
 /// What an exploration found, and whether it was followed.
 #[derive(Serialize)]
 pub(super) struct AdaptiveJson {
-    /// Factor of time that uneven shares were foretold to win.
-    foretold_gain: f64,
+    /// Factor of time that uneven shares were predicted to win.
+    predicted_gain: f64,
     used: bool,
     /// Fewest and most samples of a pixel.
     samples: [u32; 2],
@@ -138,7 +138,7 @@ pub(super) struct AdaptiveJson {
 
 fn adaptive_json(done: &Done, explored: &Explored) -> AdaptiveJson {
     AdaptiveJson {
-        foretold_gain: explored.exploration.gain,
+        predicted_gain: explored.exploration.gain,
         used: explored.used,
         samples: least_and_most(done, explored),
         exploration_paths: explored.exploration.paths,
@@ -149,7 +149,7 @@ fn adaptive_json(done: &Done, explored: &Explored) -> AdaptiveJson {
 fn least_and_most(done: &Done, explored: &Explored) -> [u32; 2] {
     if explored.used {
         let replicates = done.canvas.with_film(|film| film.replicates());
-        explored.exploration.shares.least_and_most(done.ended.samples, replicates)
+        explored.exploration.allocation.least_and_most(done.ended.samples, replicates)
     } else {
         [done.ended.samples; 2]
     }
@@ -161,12 +161,12 @@ fn describe_explored(done: &Done, explored: &Explored) -> String {
     if explored.used {
         let [least, most] = least_and_most(done, explored);
         format!(
-            "{least} to {most} samples a pixel, by where the error is: an exploration ({}) foretold {gain:.1} times less time",
+            "{least} to {most} samples a pixel, by where the error is: an exploration ({}) predicted {gain:.1} times less time",
             duration(explored.seconds),
         )
     } else {
         format!(
-            "all pixels alike: an exploration ({}) foretold no gain worth it ({gain:.2})",
+            "all pixels alike: an exploration ({}) predicted no gain worth it ({gain:.2})",
             duration(explored.seconds)
         )
     }
@@ -183,26 +183,28 @@ fn word(reached: Reached) -> &'static str {
 
 /// Seconds that went into an exploration and a pilot.
 fn pilot_seconds(done: &Done) -> f64 {
-    let foretold = done.ended.foretold.map_or(0.0, |foretold| foretold.pilot_seconds);
-    foretold + done.explored.as_ref().map_or(0.0, |explored| explored.seconds)
+    let predicted = done.ended.predicted.map_or(0.0, |predicted| predicted.pilot_seconds);
+    predicted + done.explored.as_ref().map_or(0.0, |explored| explored.seconds)
 }
 
-/// What was foretold beside what came.
-fn describe_foretold(done: &Done, foretold: &Foretold) -> String {
+/// What was predicted beside what came.
+fn describe_prediction(done: &Done, predicted: &Prediction) -> String {
     let took = done.ended.seconds - pilot_seconds(done);
-    if foretold.price.samples.is_nan() {
-        let [pilot, asked] = [duration(foretold.pilot_seconds), percent(foretold.price.relative_rmse)];
+    if predicted.cost_estimate.samples.is_nan() {
+        let [pilot, asked] = [duration(predicted.pilot_seconds), percent(predicted.cost_estimate.relative_rmse)];
         return format!("the pilot ({pilot}) found no light, so what {asked} takes is unknown");
     }
     let mut text = format!(
-        "the pilot ({}) foretold {} for {}, with {} samples",
-        duration(foretold.pilot_seconds),
-        duration(foretold.price.seconds),
-        percent(foretold.price.relative_rmse),
-        two_digits(foretold.price.samples),
+        "the pilot ({}) predicted {} for {}, with {} samples",
+        duration(predicted.pilot_seconds),
+        duration(predicted.cost_estimate.seconds),
+        percent(predicted.cost_estimate.relative_rmse),
+        two_digits(predicted.cost_estimate.samples),
     );
     text += &match done.ended.reached {
-        Reached::Error => format!("; it took {}, {:.2} times that", duration(took), took / foretold.price.seconds),
+        Reached::Error => {
+            format!("; it took {}, {:.2} times that", duration(took), took / predicted.cost_estimate.seconds)
+        }
         Reached::Time => "; time was up before".to_owned(),
         Reached::Samples => "; so many samples were not wanted".to_owned(),
         Reached::Interrupted => "; it was interrupted before".to_owned(),
@@ -271,7 +273,7 @@ pub(super) fn json<'a>(
         threads: job.threads,
         seconds,
         reached: word(done.ended.reached),
-        foretold: done.ended.foretold.as_ref().map(foretold_json),
+        predicted: done.ended.predicted.as_ref().map(prediction_json),
         adaptive: done.explored.as_ref().map(|explored| adaptive_json(done, explored)),
         prepare_seconds: job.prepare_seconds,
         paths: counters.paths,
@@ -316,9 +318,9 @@ pub(super) fn summary(job: &Job, done: &Done, written: &[Written]) -> String {
         text.push_str("\n  ");
         text.push_str(&describe_explored(done, explored));
     }
-    if let Some(foretold) = &done.ended.foretold {
+    if let Some(predicted) = &done.ended.predicted {
         text.push_str("\n  ");
-        text.push_str(&describe_foretold(done, foretold));
+        text.push_str(&describe_prediction(done, predicted));
     }
     for written in written {
         text.push_str("\n  ");

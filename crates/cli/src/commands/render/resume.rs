@@ -66,13 +66,13 @@ fn other_end(args: &Args, kept: &Kept) -> Option<String> {
 /// Whether every tile is one of the picture's.
 fn fits(kept: &Kept) -> bool {
     let header = &kept.header;
-    let shares = match &header.shares {
-        Some(weights) => match state::shares(header.subject.crop, weights) {
-            Some(shares) => Some(shares),
+    let allocation = match &header.allocation {
+        Some(weights) => match state::allocation(header.subject.crop, weights) {
+            Some(allocation) => Some(allocation),
             None => return false,
         },
         None => None,
     };
-    let canvas = Canvas::of_share(header.subject.film(), header.subject.crop, header.shard, shares.as_ref());
+    let canvas = Canvas::of_share(header.subject.film(), header.subject.crop, header.shard, allocation.as_ref());
     kept.tiles.iter().all(|(tile, sums, _)| canvas.take_up(tile, sums))
 }

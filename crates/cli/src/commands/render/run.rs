@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
-use etalon_transport::shares::Shares;
+use etalon_transport::sample_allocation::SampleAllocation;
 use etalon_transport::stop::Settled;
 use etalon_transport::{Canvas, Limits, Reached, SettleError, Shard};
 use miette::{Report, miette};
@@ -33,21 +33,21 @@ impl Run {
         let clock = Clock::start(args.clock, job.threads);
         let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
         let settled = job.prepared.settle(job.rect, &limits, Some(job.threads), &|| clock.seconds(), watch)?;
-        let canvas = Canvas::new(&job.prepared, job.rect, shard, settled.shares.as_deref());
+        let canvas = Canvas::new(&job.prepared, job.rect, shard, settled.allocation.as_deref());
         Ok(Self { canvas, settled, limits, clock, before_s: 0.0, shard })
     }
 
     /// Goes on from what was kept.
     pub(super) fn taken_up(args: &Args, job: &Job, kept: Kept, limits: Limits) -> Result<Self, SettleError> {
         let clock = Clock::start(args.clock, job.threads);
-        let Header { shard, samples, shares, reaches, seconds, .. } = kept.header;
-        let shares = shares.map(|weights| Arc::new(Shares::new(job.rect, weights)));
-        let canvas = Canvas::new(&job.prepared, job.rect, shard, shares.as_deref());
+        let Header { shard, samples, allocation, reaches, seconds, .. } = kept.header;
+        let allocation = allocation.map(|weights| Arc::new(SampleAllocation::new(job.rect, weights)));
+        let canvas = Canvas::new(&job.prepared, job.rect, shard, allocation.as_deref());
         for (tile, sums, _) in &kept.tiles {
             assert!(canvas.take_up(tile, sums), "the checkpoint was found to fit");
         }
         let reached = if reaches == "error" { Reached::Error } else { Reached::Samples };
-        let settled = Settled { samples, shares, reached, foretold: None, explored: None };
+        let settled = Settled { samples, allocation, reached, predicted: None, explored: None };
         Ok(Self { canvas, settled, limits, clock, before_s: seconds, shard })
     }
 
@@ -68,7 +68,7 @@ impl Run {
                 adaptive: args.adaptive.effective(args.error),
             },
             samples: self.settled.samples,
-            shares: self.settled.shares.as_ref().map(|shares| shares.weights().to_vec()),
+            allocation: self.settled.allocation.as_ref().map(|allocation| allocation.weights().to_vec()),
             reaches: if self.settled.reached == Reached::Error { "error" } else { "samples" }.to_owned(),
             object_names: channels.has(Aov::Object).then(|| job.prepared.object_names()),
             channels,

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use etalon_transport::{Control, Counters, Film, Foretold, PixelRect, TileSums, Watch};
+use etalon_transport::{Control, Counters, Film, PixelRect, Prediction, TileSums, Watch};
 
 use crate::display::Display;
 use crate::interrupt::Interrupt;
@@ -60,8 +60,8 @@ impl Watch for Watcher<'_> {
         self.tell();
     }
 
-    fn planned(&self, paths: u64, foretold: Option<&Foretold>) {
-        self.bar.planned(paths, foretold);
+    fn planned(&self, paths: u64, predicted: Option<&Prediction>) {
+        self.bar.planned(paths, predicted);
     }
 
     fn tile(&self, rect: PixelRect, sums: &TileSums) {

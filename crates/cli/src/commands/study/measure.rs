@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use etalon_scene::Scene;
 use etalon_transport::adaptive::{Goal, explore};
-use etalon_transport::{Control, Counters, Extent, Film, ImageError, Prepared, Shares, prepare_study};
+use etalon_transport::{Control, Counters, Extent, Film, ImageError, Prepared, SampleAllocation, prepare_study};
 use serde::Serialize;
 
 use super::choices::{self, BASELINE, Choice};
@@ -89,7 +89,7 @@ struct Runner {
     prepared: Prepared,
     film: Film,
     /// How samples are spread, once an exploration has said it.
-    shares: Option<Arc<Shares>>,
+    allocation: Option<Arc<SampleAllocation>>,
     samples: u32,
     seconds: f64,
     points: Vec<Point>,
@@ -108,20 +108,20 @@ impl Runner {
         scene.integrator.seed = seed;
         let prepared = prepare_study(&scene, &choice.study).map_err(|error| error.to_string())?;
         let film = prepared.film();
-        Ok(Self { choice, prepared, film, shares: None, samples: 0, seconds: 0.0, points: Vec::new() })
+        Ok(Self { choice, prepared, film, allocation: None, samples: 0, seconds: 0.0, points: Vec::new() })
     }
 
     fn advance(&mut self, samples: u32, threads: usize) -> Result<(), String> {
         let whole = self.prepared.whole(Some(threads));
-        if self.choice.adaptive && self.shares.is_none() {
+        if self.choice.adaptive && self.allocation.is_none() {
             // Its time counts: it is what uneven shares cost.
             let goal = Goal { samples: EXPLORED_FOR, relative_rmse: None };
             let (found, seconds) =
                 timed(threads, || explore(&self.prepared, whole.rect, &goal, Some(threads), &|| false, &|_| ()));
-            self.shares = Some(found.map_err(|error| error.to_string())?.shares);
+            self.allocation = Some(found.map_err(|error| error.to_string())?.allocation);
             self.seconds += seconds;
         }
-        let extent = Extent { samples: self.samples..samples, shares: self.shares.clone(), ..whole };
+        let extent = Extent { samples: self.samples..samples, allocation: self.allocation.clone(), ..whole };
         let (done, seconds) =
             timed(threads, || self.prepared.render_onto(&mut self.film, &extent, &|_: &Counters| Control::Continue));
         done.map_err(|error| error.to_string())?;

@@ -45,7 +45,7 @@ pub(super) fn of(study: &SceneStudy) -> Result<Vec<Plot>, String> {
             plots.push(Plot { name: format!("{}-{name}", study.scene), svg });
         }
     }
-    let svg = prices(study).map_err(|error| error.to_string())?;
+    let svg = estimates(study).map_err(|error| error.to_string())?;
     plots.push(Plot { name: format!("{}-prices", study.scene), svg });
     Ok(plots)
 }
@@ -116,8 +116,8 @@ fn curves(title: &str, baseline: &Row, rows: &[&Row]) -> Drawn<String> {
 }
 
 /// What each effect adds to the time of a sample, and what else a choice costs or saves.
-fn prices(study: &SceneStudy) -> Drawn<String> {
-    let bars: Vec<(String, f64)> = study.rows.iter().skip(1).map(price).collect();
+fn estimates(study: &SceneStudy) -> Drawn<String> {
+    let bars: Vec<(String, f64)> = study.rows.iter().skip(1).map(cost_estimate).collect();
     let height = 62 + 24 * bars.len() as u32;
     let most = bars.iter().map(|bar| bar.1.abs()).fold(5.0, f64::max);
     let mut svg = String::new();
@@ -142,7 +142,7 @@ fn prices(study: &SceneStudy) -> Drawn<String> {
     Ok(svg)
 }
 
-fn price(row: &Row) -> (String, f64) {
+fn cost_estimate(row: &Row) -> (String, f64) {
     (row.choice.clone(), 100.0 * (row.relative_cost - 1.0))
 }
 

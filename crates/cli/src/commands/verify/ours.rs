@@ -189,11 +189,11 @@ fn is_worth_more(mut rays: u64, before: f64, seen: f64, value: f64) -> bool {
         return seen > wanted;
     }
     let gain = (before / seen).max(f64::from(MORE).sqrt());
-    let mut foretold = seen;
-    while foretold > wanted && rays * u64::from(MORE) <= THOROUGH_REACH_RAYS {
-        (rays, foretold) = (rays * u64::from(MORE), foretold / gain);
+    let mut predicted = seen;
+    while predicted > wanted && rays * u64::from(MORE) <= THOROUGH_REACH_RAYS {
+        (rays, predicted) = (rays * u64::from(MORE), predicted / gain);
     }
-    seen > wanted && foretold <= wanted
+    seen > wanted && predicted <= wanted
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use etalon_scene::SamplerKind;
 
 /// What a relative error costs; not a number, with intervals that end at infinity, where no error is known yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Price {
+pub struct CostEstimate {
     /// The relative error.
     pub relative_rmse: f64,
     /// Samples a pixel, and their 95 % interval.
@@ -25,13 +25,13 @@ const EXPONENTS: [f64; 3] = [1.0, 1.5, 3.0];
 /// Two-sided 95 % of the normal distribution.
 const Z_95: f64 = 1.959_963_984_540_054;
 
-pub(crate) fn price(points: &[PilotPoint], target: f64, sampler: SamplerKind, fewest: u32) -> Price {
+pub(crate) fn cost_estimate(points: &[PilotPoint], target: f64, sampler: SamplerKind, fewest: u32) -> CostEstimate {
     // What found no light knows no error.
     let known: Vec<PilotPoint> = points.iter().filter(|point| point.relative_rmse.is_finite()).copied().collect();
     let points = known.as_slice();
     let Some(last) = points.last() else {
         let unknown = [f64::from(fewest), f64::INFINITY];
-        return Price {
+        return CostEstimate {
             relative_rmse: target,
             samples: f64::NAN,
             samples_interval: unknown,
@@ -60,7 +60,7 @@ pub(crate) fn price(points: &[PilotPoint], target: f64, sampler: SamplerKind, fe
     };
     let samples = inverse(target);
     let interval = [low.min(samples).max(fewest), high.max(samples)];
-    Price {
+    CostEstimate {
         relative_rmse: target,
         samples,
         samples_interval: interval,
@@ -250,14 +250,17 @@ mod tests {
         let law = |n: f64| 1.0 / n + 8.0 * n.powf(-1.5);
         let points = points(law);
         for n in [100.0, 1000.0, 10_000.0_f64] {
-            let price = price(&points, law(n).sqrt(), SamplerKind::Sobol, 4);
+            let cost_estimate = cost_estimate(&points, law(n).sqrt(), SamplerKind::Sobol, 4);
             // The grid's step, 1/40 of the variance.
-            assert!((price.samples / n - 1.0).abs() < 0.05, "{price:?} is not {n}");
-            assert!(price.samples_interval[0] <= n && n <= price.samples_interval[1], "{price:?}");
-            assert!((price.seconds - 0.5 * price.samples).abs() < 1e-9);
+            assert!((cost_estimate.samples / n - 1.0).abs() < 0.05, "{cost_estimate:?} is not {n}");
+            assert!(
+                cost_estimate.samples_interval[0] <= n && n <= cost_estimate.samples_interval[1],
+                "{cost_estimate:?}"
+            );
+            assert!((cost_estimate.seconds - 0.5 * cost_estimate.samples).abs() < 1e-9);
         }
-        let price = price(&points, 0.01, SamplerKind::Independent, 4);
-        assert!((price.samples / (128.0 * law(128.0) * 1e4) - 1.0).abs() < 1e-6, "{price:?}");
+        let cost_estimate = cost_estimate(&points, 0.01, SamplerKind::Independent, 4);
+        assert!((cost_estimate.samples / (128.0 * law(128.0) * 1e4) - 1.0).abs() < 1e-6, "{cost_estimate:?}");
     }
 
     #[test]
@@ -287,16 +290,16 @@ mod tests {
         for (target, at_least) in [(4096.0_f64.powf(-0.75), 4000.0), (5200.0_f64.powf(-0.75), 6000.0), (0.0035, 500.0)]
         {
             let first = (448..).map(f64::from).find(|&n| law(n).sqrt() <= target).unwrap();
-            let price = price(&seen, target, SamplerKind::Sobol, 4);
+            let cost_estimate = cost_estimate(&seen, target, SamplerKind::Sobol, 4);
             assert!(first >= at_least);
-            assert!((price.samples / first - 1.0).abs() < 0.08, "{price:?} is not {first}");
+            assert!((cost_estimate.samples / first - 1.0).abs() < 0.08, "{cost_estimate:?} is not {first}");
         }
     }
 
     #[test]
     fn a_picture_without_noise_costs_the_fewest_samples() {
-        let price = price(&points(|_| 0.0), 0.01, SamplerKind::Sobol, 4);
-        assert_eq!((price.samples, price.samples_interval), (4.0, [4.0, 4.0]));
+        let cost_estimate = cost_estimate(&points(|_| 0.0), 0.01, SamplerKind::Sobol, 4);
+        assert_eq!((cost_estimate.samples, cost_estimate.samples_interval), (4.0, [4.0, 4.0]));
     }
 
     /// Points that found no light are none: with them the price is that of the others, and without any it is unknown.
@@ -309,11 +312,17 @@ mod tests {
             points.iter().map(unknown).collect()
         };
         let late = [dark(&seen[..3]), seen[3..].to_vec()].concat();
-        assert_eq!(price(&late, 0.01, SamplerKind::Sobol, 4), price(&seen[3..], 0.01, SamplerKind::Sobol, 4));
+        assert_eq!(
+            cost_estimate(&late, 0.01, SamplerKind::Sobol, 4),
+            cost_estimate(&seen[3..], 0.01, SamplerKind::Sobol, 4)
+        );
         assert_eq!(between(&late, seen[3].relative_rmse), Some(f64::from(seen[3].samples)));
-        let price = price(&dark(&seen), 0.01, SamplerKind::Sobol, 4);
-        assert!(price.samples.is_nan() && price.seconds.is_nan());
-        assert_eq!((price.samples_interval, price.seconds_interval[1]), ([4.0, f64::INFINITY], f64::INFINITY));
+        let cost_estimate = cost_estimate(&dark(&seen), 0.01, SamplerKind::Sobol, 4);
+        assert!(cost_estimate.samples.is_nan() && cost_estimate.seconds.is_nan());
+        assert_eq!(
+            (cost_estimate.samples_interval, cost_estimate.seconds_interval[1]),
+            ([4.0, f64::INFINITY], f64::INFINITY)
+        );
         // Nor is an error reached that is not known to be.
         let lucky = PilotPoint { uncertainty: f64::INFINITY, ..seen[0] };
         assert!(seen[0].reaches(0.9) && !lucky.reaches(0.9) && !dark(&seen)[0].reaches(f64::INFINITY));

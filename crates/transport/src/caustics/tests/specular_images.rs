@@ -1,8 +1,8 @@
 //! Images of lamps are where rays by way of balls find them and bring what they are said to, and directions toward them have their densities.
 
 use super::{draws_are_sound, mean, numbers};
-use crate::caustics::image::View;
-use crate::caustics::{Ball, Image, MOST_IMAGES, Seen, Shows, Target};
+use crate::caustics::specular_image::View;
+use crate::caustics::{Ball, DirectionTarget, MAX_SPECULAR_IMAGES, Shows, SpecularImage, VisibleImages};
 use crate::light::Round;
 use crate::warp::uniform_sphere;
 use etalon_optics::Vec3;
@@ -25,9 +25,9 @@ fn by_way_of(radius: f64, index: Option<f64>, from: Vec3<f64>, wi: Vec3<f64>) ->
 }
 
 /// What a ball shows of a lamp: a mirror, or glass.
-fn image(index: Option<f64>, ball: Round, lamp: Round) -> Image {
+fn image(index: Option<f64>, ball: Round, lamp: Round) -> SpecularImage {
     let shows = index.map_or(Shows::Mirrored, |index| Shows::Refracted(index as f32));
-    Image::new(Ball::new(ball, shows), lamp, 1.0)
+    SpecularImage::new(Ball::new(ball, shows), lamp, 1.0)
 }
 
 /// What ellipses take in of the directions by which a lamp is seen, and what of an ellipse shows the lamp, over points around a ball: a
@@ -57,7 +57,7 @@ fn hits(index: Option<f64>) -> (f64, f64) {
         }
         // Of all directions that meet the ball.
         for _ in 0..4000 {
-            let wi = Target::aim(&ball, from, [u(), u()]);
+            let wi = DirectionTarget::aim(&ball, from, [u(), u()]);
             if shows(wi) {
                 seen += 1.0;
                 covered += f64::from(u8::from(view.weight > 0.0 && view.density(wi) > 0.0));
@@ -133,9 +133,9 @@ fn mirrored_images_bring_about_what_they_are_said_to() {
         };
         let per_weight = std::f64::consts::PI / 1.1_f64.powi(2);
         (said, farther) = (said + per_weight * weight(lamp), farther + per_weight * weight(twice));
-        let cone = Target::density(&ball, from, -from / from.length());
+        let cone = DirectionTarget::density(&ball, from, -from / from.length());
         for _ in 0..4000 {
-            let wi = Target::aim(&ball, from, [u(), u()]);
+            let wi = DirectionTarget::aim(&ball, from, [u(), u()]);
             let shows = by_way_of(radius, None, from, wi).is_some_and(|(start, onward)| {
                 let toward = lamp.centre - start;
                 toward.dot(onward) > 0.0 && toward.cross(onward).length() < lamp_radius
@@ -149,7 +149,7 @@ fn mirrored_images_bring_about_what_they_are_said_to() {
 
 /// Directions toward images have the density that is said of them, those apart that are drawn in vain: integrals of (1, x, y, z²) over
 /// what is drawn by draws over their densities and by even directions within both balls, and the part that is drawn. Five standard errors.
-fn images_are_sound(density: &dyn Fn(&Seen<'_>, Vec3<f64>) -> f64) -> bool {
+fn images_are_sound(density: &dyn Fn(&VisibleImages<'_>, Vec3<f64>) -> f64) -> bool {
     let (from, n) = (Vec3::new(0.0, 0.0, -2.0), Vec3::new(0.0, 0.6, 0.8));
     let mirror = Round { centre: Vec3::new(-0.9, 0.4, 0.0), radius: 0.9, front: true };
     let glass = Round { centre: Vec3::new(1.0, -0.1, 0.0), radius: 0.8, front: true };
@@ -163,14 +163,14 @@ fn images_are_sound(density: &dyn Fn(&Seen<'_>, Vec3<f64>) -> f64) -> bool {
         .into_iter()
         .flat_map(|(index, ball)| lamps.map(|lamp| image(index, ball, lamp)))
         .collect::<Vec<_>>();
-    let mut weights = [0.0; MOST_IMAGES];
+    let mut weights = [0.0; MAX_SPECULAR_IMAGES];
     for (image, weight) in images.iter().zip(&mut weights) {
         *weight = image.view(&image.ball.eye(from.cast()), n.cast()).weight;
     }
     assert!(weights.iter().filter(|&&weight| weight > 0.0).count() >= 3, "{weights:?}");
-    let seen = Seen { images: &images, from: from.cast(), n: n.cast(), weights: &weights, share: 1.0 };
+    let seen = VisibleImages { images: &images, from: from.cast(), n: n.cast(), weights: &weights, share: 1.0 };
     let count = 100_000;
-    let cones = |wi| 0.5 * (Target::density(&mirror, from, wi) + Target::density(&glass, from, wi));
+    let cones = |wi| 0.5 * (DirectionTarget::density(&mirror, from, wi) + DirectionTarget::density(&glass, from, wi));
     let moments: [fn(Vec3<f64>) -> f64; 4] = [|_| 1.0, |w| w.x, |w| w.y, |w| w.z * w.z];
     let mut sound = true;
     for (seed, of) in moments.into_iter().enumerate() {
@@ -188,7 +188,7 @@ fn images_are_sound(density: &dyn Fn(&Seen<'_>, Vec3<f64>) -> f64) -> bool {
         for of_part in [true, false] {
             let mut u = numbers(60 + seed as u64);
             let found = mean(count, || {
-                let wi = Target::aim(if u() < 0.5 { &mirror } else { &glass }, from, [u(), u()]);
+                let wi = DirectionTarget::aim(if u() < 0.5 { &mirror } else { &glass }, from, [u(), u()]);
                 let density = density(&seen, wi);
                 let value = if of_part { density } else { of(wi) };
                 if density > 0.0 { value / cones(wi) } else { 0.0 }
@@ -210,7 +210,7 @@ fn directions_drawn_toward_images_have_the_density_of_those_not_in_vain_and_wron
     // As if none were drawn in vain.
     assert!(!images_are_sound(&|seen, wi| {
         let total: f32 = seen.weights.iter().sum();
-        let of = |(image, weight): (&Image, &f32)| {
+        let of = |(image, weight): (&SpecularImage, &f32)| {
             let view = image.view(&image.ball.eye(seen.from), seen.n);
             if view.weight > 0.0 { f64::from(weight / total) * view.density(wi) } else { 0.0 }
         };

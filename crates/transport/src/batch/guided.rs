@@ -1,27 +1,27 @@
-//! Directions toward casters of caustics, for the paths that are at diffuse surfaces.
+//! Directions toward guided targets of caustics, for the paths that are at diffuse surfaces.
 
 use super::level::{Level, stages};
 use super::rows::{Mask, Row, Rows3, W, lanes};
 use crate::bsdf::lambert;
 use crate::caustics::{
-    Aimed, Ball, Caster, Casters, Eye, Image, MOST_BODIES, MOST_IMAGES, Mixture, Seen, Shows, Target, density_of,
-    is_within, place_within, share_of, share_of_images,
+    Aimed, Ball, DirectionTarget, Eye, GuidedTarget, GuidedTargets, MAX_SPECULAR_IMAGES, MOST_BODIES, Mixture, Shows,
+    SpecularImage, VisibleImages, density_of, is_within, place_within, share_of, specular_image_share,
 };
 use crate::light::Round;
 use etalon_optics::Vec3;
 
-/// What casters make of the directions of a set. Kept from vertex to vertex.
-pub(super) struct Casting {
+/// What guided targets make of the directions of a set. Kept from vertex to vertex.
+pub(super) struct GuidedDirections {
     /// Whose directions may be drawn toward them.
     pub diffuse: Mask,
     /// The first number of each direction by the cosine.
     pub u1: Row,
     /// What the weight of each direction is to be multiplied by.
     pub factor: Row,
-    /// The part of the numbers that casters take.
+    /// The part of the numbers that guided targets take.
     part: Row,
     bodies: Bodies,
-    images: Images,
+    images: SpecularImages,
 }
 
 /// The bodies that paths aim at.
@@ -33,10 +33,10 @@ struct Bodies {
 }
 
 /// The images that paths aim at; in single precision, twice as many in a register.
-pub(super) struct Images {
+pub(super) struct SpecularImages {
     points: Points,
     eyes: Eyes,
-    weights: [Row32; MOST_IMAGES],
+    weights: [Row32; MAX_SPECULAR_IMAGES],
     light: Row32,
     /// The share that all have together, and where it begins.
     share: Row,
@@ -87,20 +87,25 @@ impl Eyes {
     }
 }
 
-impl Images {
+impl SpecularImages {
     /// What a path sees of images.
     #[inline(always)]
-    fn seen<'a>(&self, lane: usize, casters: &'a Casters, weights: &'a mut [f32; MOST_IMAGES]) -> Seen<'a> {
-        let images = casters.images_aimed_at();
+    fn seen<'a>(
+        &self,
+        lane: usize,
+        guided_targets: &'a GuidedTargets,
+        weights: &'a mut [f32; MAX_SPECULAR_IMAGES],
+    ) -> VisibleImages<'a> {
+        let images = guided_targets.specular_images_aimed_at();
         for (weight, row) in weights.iter_mut().zip(&self.weights).take(images.len()) {
             *weight = row.0[lane];
         }
         let (from, n) = self.points.at(lane);
-        Seen { images, from, n, weights, share: self.share.0[lane] }
+        VisibleImages { images, from, n, weights, share: self.share.0[lane] }
     }
 }
 
-impl Casting {
+impl GuidedDirections {
     pub(super) fn new() -> Self {
         let zero = Row32::ZERO;
         Self {
@@ -109,10 +114,10 @@ impl Casting {
             factor: Row::ZERO,
             part: Row::ZERO,
             bodies: Bodies { shares: [Row::ZERO; MOST_BODIES], taken: 0 },
-            images: Images {
+            images: SpecularImages {
                 points: Points { from: [zero; 3], normal: [zero; 3], weight: zero },
                 eyes: Eyes { toward: [zero; 3], distance: zero, rim: zero, most: zero },
-                weights: [zero; MOST_IMAGES],
+                weights: [zero; MAX_SPECULAR_IMAGES],
                 light: zero,
                 share: Row::ZERO,
                 begin: Row::ZERO,
@@ -124,20 +129,28 @@ impl Casting {
 
     /// Deals out the numbers of directions: to bodies, to images, and to the cosine.
     #[inline(always)]
-    pub(super) fn deal(&mut self, level: Level, casters: &Casters, surface: (&Rows3, &Rows3, &Rows3), u1: &[f64; W]) {
+    pub(super) fn allot(
+        &mut self,
+        level: Level,
+        guided_targets: &GuidedTargets,
+        surface: (&Rows3, &Rows3, &Rows3),
+        u1: &[f64; W],
+    ) {
         (self.part, self.images.light) = (Row::ZERO, Row32::ZERO);
-        let (bodies, each) = casters.bodies_aimed_at();
+        let (bodies, each) = guided_targets.bodies_aimed_at();
         for (body, shares) in bodies.iter().zip(&mut self.bodies.shares) {
             match body {
-                Caster::Sphere(round) => portion(level, round, each, surface, self.diffuse, shares, &mut self.part),
-                Caster::Box(body) => portion(level, body, each, surface, self.diffuse, shares, &mut self.part),
+                GuidedTarget::Sphere(round) => {
+                    portion(level, round, each, surface, self.diffuse, shares, &mut self.part)
+                }
+                GuidedTarget::Box(body) => portion(level, body, each, surface, self.diffuse, shares, &mut self.part),
             }
         }
-        let images = casters.images_aimed_at();
+        let images = guided_targets.specular_images_aimed_at();
         if !images.is_empty() {
             stand(level, surface, self.diffuse, &mut self.images.points);
         }
-        let Images { points, eyes, weights, light, .. } = &mut self.images;
+        let SpecularImages { points, eyes, weights, light, .. } = &mut self.images;
         for (number, (image, weights)) in images.iter().zip(weights).enumerate() {
             if number == 0 || images[number - 1].ball != image.ball {
                 look(level, &image.ball, points, eyes);
@@ -147,7 +160,7 @@ impl Casting {
                 Shows::Refracted(index) => weigh_refracted(level, image, index, points, eyes, weights, light),
             }
         }
-        leave_rest(level, casters.share, u1, self);
+        leave_rest(level, guided_targets.share, u1, self);
     }
 
     /// Draws the directions that are not by the cosine, in place of those that are, and weighs all.
@@ -155,13 +168,13 @@ impl Casting {
     pub(super) fn take(
         &mut self,
         level: Level,
-        casters: &Casters,
+        guided_targets: &GuidedTargets,
         surface: (&Rows3, &Rows3, &Rows3),
         u: [&[f64; W]; 2],
         (wi, cos): (&mut Rows3, &mut Row),
     ) {
-        let (bodies, _) = casters.bodies_aimed_at();
-        let images = casters.images_aimed_at();
+        let (bodies, _) = guided_targets.bodies_aimed_at();
+        let images = guided_targets.specular_images_aimed_at();
         // Few paths: one by one.
         for lane in lanes(self.bodies.taken) {
             let mut begin = 0.0;
@@ -174,9 +187,9 @@ impl Casting {
                 begin += share;
             }
         }
-        let mut weights = [0.0; MOST_IMAGES];
+        let mut weights = [0.0; MAX_SPECULAR_IMAGES];
         for lane in lanes(self.images.taken) {
-            let seen = self.images.seen(lane, casters, &mut weights);
+            let seen = self.images.seen(lane, guided_targets, &mut weights);
             let begin = self.images.begin.0[lane];
             let aimed = seen.aim([place_within(u[0][lane], begin, seen.share), u[1][lane]]);
             if let Some(aimed) = &aimed {
@@ -187,18 +200,20 @@ impl Casting {
         face(level, surface, wi, cos, self);
         for (number, body) in bodies.iter().enumerate() {
             match body {
-                Caster::Sphere(round) => {
+                GuidedTarget::Sphere(round) => {
                     let mut met = [false; W];
                     meet(level, round, surface.0, wi, &mut met);
                     for lane in 0..W {
                         let share = self.bodies.shares[number].0[lane];
                         if met[lane] && share > 0.0 {
                             self.factor.0[lane] +=
-                                density_of(share, Target::density(round, surface.0.at(lane), wi.at(lane)));
+                                density_of(share, DirectionTarget::density(round, surface.0.at(lane), wi.at(lane)));
                         }
                     }
                 }
-                Caster::Box(body) => weigh(level, body, &self.bodies.shares[number], surface.0, wi, &mut self.factor),
+                GuidedTarget::Box(body) => {
+                    weigh(level, body, &self.bodies.shares[number], surface.0, wi, &mut self.factor)
+                }
             }
         }
         if !images.is_empty() {
@@ -211,7 +226,7 @@ impl Casting {
             for lane in lanes(self.diffuse) {
                 let aimed = if self.images.taken >> lane & 1 == 1 { self.images.aimed[lane].as_ref() } else { None };
                 if met[lane] {
-                    let seen = self.images.seen(lane, casters, &mut weights);
+                    let seen = self.images.seen(lane, guided_targets, &mut weights);
                     self.factor.0[lane] += seen.density(wi.at(lane), aimed);
                 }
                 if self.images.taken >> lane & 1 == 1 && aimed.is_none() {
@@ -226,7 +241,7 @@ impl Casting {
 
 stages! {
     /// The share that a body has at each point.
-    fn portion [T: Target][T] (
+    fn portion [T: DirectionTarget][T] (
         target: &T,
         each: f64,
         surface: (&Rows3, &Rows3, &Rows3),
@@ -268,7 +283,7 @@ stages! {
     }
 
     /// What an image that a ball mirrors brings to each point.
-    fn weigh_mirrored(image: &Image, points: &Points, eyes: &Eyes, weights: &mut Row32, light: &mut Row32) {
+    fn weigh_mirrored(image: &SpecularImage, points: &Points, eyes: &Eyes, weights: &mut Row32, light: &mut Row32) {
         for lane in 0..W {
             let weight = image.weight_mirrored(&eyes.at(lane), points.at(lane).1) * points.weight.0[lane];
             weights.0[lane] = weight;
@@ -278,7 +293,7 @@ stages! {
 
     /// The same of one that is seen through a ball.
     fn weigh_refracted(
-        image: &Image,
+        image: &SpecularImage,
         index: f32,
         points: &Points,
         eyes: &Eyes,
@@ -294,18 +309,18 @@ stages! {
     }
 
     /// What is left to images and to the cosine.
-    fn leave_rest(most: f64, u1: &[f64; W], casting: &mut Casting) {
-        let Casting { part, bodies, images, .. } = casting;
+    fn leave_rest(most: f64, u1: &[f64; W], guided_directions: &mut GuidedDirections) {
+        let GuidedDirections { part, bodies, images, .. } = guided_directions;
         let (mut by_bodies, mut by_images) = ([false; W], [false; W]);
         for lane in 0..W {
             let begin = part.0[lane];
-            let share = share_of_images(images.light.0[lane], most);
+            let share = specular_image_share(images.light.0[lane], most);
             let all = begin + share;
             by_bodies[lane] = u1[lane] < begin;
             by_images[lane] = u1[lane] < all;
             (images.begin.0[lane], images.share.0[lane]) = (begin, share);
             part.0[lane] = all;
-            casting.u1.0[lane] = place_within(u1[lane], all, 1.0 - all);
+            guided_directions.u1.0[lane] = place_within(u1[lane], all, 1.0 - all);
         }
         (bodies.taken, images.taken) = (0, 0);
         for lane in 0..W {
@@ -316,16 +331,16 @@ stages! {
     }
 
     /// The cosines of directions.
-    fn face(surface: (&Rows3, &Rows3, &Rows3), wi: &Rows3, cos: &mut Row, casting: &mut Casting) {
+    fn face(surface: (&Rows3, &Rows3, &Rows3), wi: &Rows3, cos: &mut Row, guided_directions: &mut GuidedDirections) {
         let (_, normal, direction) = surface;
         for lane in 0..W {
             cos.0[lane] = lambert::toward(normal.at(lane), -direction.at(lane)).dot(wi.at(lane));
-            casting.factor.0[lane] = 0.0;
+            guided_directions.factor.0[lane] = 0.0;
         }
     }
 
     /// What a body adds to the densities.
-    fn weigh [T: Target][T] (target: &T, shares: &Row, position: &Rows3, wi: &Rows3, sum: &mut Row) {
+    fn weigh [T: DirectionTarget][T] (target: &T, shares: &Row, position: &Rows3, wi: &Rows3, sum: &mut Row) {
         for lane in 0..W {
             sum.0[lane] += density_of(shares.0[lane], target.density(position.at(lane), wi.at(lane)));
         }
@@ -345,12 +360,12 @@ stages! {
         }
     }
 
-    /// From what casters have added to the factors.
-    fn finish(cos: &Row, casting: &mut Casting) {
+    /// From what guided targets have added to the factors.
+    fn finish(cos: &Row, guided_directions: &mut GuidedDirections) {
         for lane in 0..W {
-            let of_casters = casting.factor.0[lane];
+            let of_guided_targets = guided_directions.factor.0[lane];
             let own = lambert::density(cos.0[lane]);
-            casting.factor.0[lane] = Mixture { own, part: casting.part.0[lane], of_casters }.factor(1.0);
+            guided_directions.factor.0[lane] = Mixture { own, part: guided_directions.part.0[lane], of_guided_targets }.factor(1.0);
         }
     }
 }

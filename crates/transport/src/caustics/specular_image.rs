@@ -38,7 +38,7 @@ pub(crate) enum Shows {
 
 /// A lamp that a ball shows.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Image {
+pub(crate) struct SpecularImage {
     pub ball: Ball,
     /// From the middle of the ball to that of a sphere around the lamp: the unit vector and its length, and that sphere's radius.
     toward: Vec3<f32>,
@@ -144,7 +144,7 @@ fn refract(direction: Vec3<f32>, n: Vec3<f32>, eta: f32) -> Vec3<f32> {
     direction * eta + n * (eta * cos - (1.0 - eta * eta * (1.0 - cos * cos)).sqrt())
 }
 
-impl Image {
+impl SpecularImage {
     /// `radiance`: relative to the brightest lamp.
     pub(crate) fn new(ball: Ball, lamp: Round, radiance: f64) -> Self {
         let to_lamp = lamp.centre - ball.centre.to_f64();

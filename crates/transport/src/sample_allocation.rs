@@ -9,7 +9,7 @@ pub const REGION_SIDE: u32 = 8;
 
 /// A weight for each region of a picture: its pixels take samples in proportion to it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shares {
+pub struct SampleAllocation {
     rect: PixelRect,
     columns: u32,
     /// Region by region, row by row; none is zero.
@@ -18,13 +18,13 @@ pub struct Shares {
     total: u64,
 }
 
-impl Shares {
+impl SampleAllocation {
     /// The regions of the pixels `rect`, row by row.
     pub fn regions(rect: PixelRect) -> Vec<PixelRect> {
         rect.tiles(REGION_SIDE)
     }
 
-    /// A weight for each of [`Shares::regions`].
+    /// A weight for each of [`SampleAllocation::regions`].
     ///
     /// # Panics
     ///
@@ -112,46 +112,46 @@ mod tests {
 
     const RECT: PixelRect = PixelRect { x0: 3, y0: 5, x1: 30, y1: 25 };
 
-    fn shares() -> Shares {
-        let regions = Shares::regions(RECT);
-        Shares::new(RECT, (0..regions.len() as u32).map(|i| 16 + i * i % 77).collect())
+    fn allocation() -> SampleAllocation {
+        let regions = SampleAllocation::regions(RECT);
+        SampleAllocation::new(RECT, (0..regions.len() as u32).map(|i| 16 + i * i % 77).collect())
     }
 
     #[test]
     fn the_mean_of_all_pixels_is_the_one_asked_for_but_for_whole_rounds() {
-        let shares = shares();
+        let allocation = allocation();
         for (mean, replicates) in [(1, 1), (7, 4), (256, 4), (1000, 8)] {
             let counts: Vec<u64> =
-                RECT.pixels().map(|(x, y)| u64::from(shares.samples(x, y, mean, replicates))).collect();
+                RECT.pixels().map(|(x, y)| u64::from(allocation.samples(x, y, mean, replicates))).collect();
             let total: u64 = counts.iter().sum();
-            assert_eq!(total, shares.paths(mean, replicates));
+            assert_eq!(total, allocation.paths(mean, replicates));
             assert!(counts.iter().all(|count| *count > 0 && count % u64::from(replicates) == 0));
             let excess = total as f64 / RECT.area() as f64 - f64::from(mean);
             assert!((0.0..f64::from(replicates)).contains(&excess), "{excess}");
-            let [least, most] = shares.least_and_most(mean, replicates).map(u64::from);
+            let [least, most] = allocation.least_and_most(mean, replicates).map(u64::from);
             assert_eq!((counts.iter().min(), counts.iter().max()), (Some(&least), Some(&most)));
         }
-        let largest = shares.largest_mean(i32::MAX as u32, 4);
-        let [_, most] = shares.least_and_most(largest, 4);
+        let largest = allocation.largest_mean(i32::MAX as u32, 4);
+        let [_, most] = allocation.least_and_most(largest, 4);
         assert!(most <= i32::MAX as u32 && most > i32::MAX as u32 - 64, "{most}");
     }
 
     #[test]
     fn the_parts_of_tiles_cover_each_pixel_once_and_do_not_cross_regions() {
-        let shares = shares();
+        let allocation = allocation();
         for size in [5, 8, 16] {
-            let parts: Vec<PixelRect> = RECT.tiles(size).into_iter().flat_map(|tile| shares.parts(tile)).collect();
+            let parts: Vec<PixelRect> = RECT.tiles(size).into_iter().flat_map(|tile| allocation.parts(tile)).collect();
             let mut pixels: Vec<_> = parts.iter().flat_map(PixelRect::pixels).collect();
             pixels.sort_unstable();
             let mut all: Vec<_> = RECT.pixels().collect();
             all.sort_unstable();
             assert_eq!(pixels, all);
             for part in parts {
-                let count = shares.samples(part.x0, part.y0, 64, 4);
-                assert!(part.pixels().all(|(x, y)| shares.samples(x, y, 64, 4) == count));
+                let count = allocation.samples(part.x0, part.y0, 64, 4);
+                assert!(part.pixels().all(|(x, y)| allocation.samples(x, y, 64, 4) == count));
             }
         }
-        let even = Shares::new(RECT, vec![9; Shares::regions(RECT).len()]);
+        let even = SampleAllocation::new(RECT, vec![9; SampleAllocation::regions(RECT).len()]);
         assert_eq!(even.parts(RECT), [RECT]);
         assert!(RECT.pixels().all(|(x, y)| even.samples(x, y, 60, 4) == 60));
     }

@@ -2,7 +2,7 @@
 
 use crate::bsdf::Shading;
 use crate::frame::SceneFrame;
-use crate::round::RoundCoordinates;
+use crate::quadric_uv::RoundCoordinates;
 use etalon_geometry::{Geometry, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
 use etalon_scene::{ImageTexture, Mesh};
