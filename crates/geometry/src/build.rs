@@ -1,6 +1,6 @@
 //! Building a binary tree of boxes by the surface area heuristic.
 //!
-//! How its trees compare with those of the `obvhs` crate stands in `docs/decisions.md`.
+//! How its trees compare with those of the `obvhs` crate stands in `docs/decisions/0003-own-tree-builder.md`.
 
 mod span;
 mod split;
