@@ -4,7 +4,7 @@
 //! pieces of three walls and the air between them, which most rays enter only to find nothing there. So the largest subtrees are
 //! grouped from below, too (`agglomerate`), where the pieces of a wall find each other, and it stays so if that is better for rays (`treelet`);
 //! among spheres in the air it is not. Then those that have a better place are moved there, one by one (`reinsert`). What it gains
-//! stands in `docs/performance.md`.
+//! stands in `docs/log/2026-11-ray-traversal.md`.
 
 mod agglomerate;
 mod links;

@@ -6,7 +6,7 @@
 /// begin in the body or in its shadow, which is s/4 wide on average (Cauchy 1832) and ℓ long: as v + ℓ s/4. To say how long rays are, the
 /// scene's own mean chord is at hand, 4V/S. Fabianowski, Fowler & Dingliana (*A Cost Metric for Scene-Interior Ray Origins*, Eurographics 2009
 /// short papers) let rays end where they leave the scene's box, which makes them half as long or longer; but most end long before, where
-/// they hit something. What was measured with other numbers stands in `docs/performance.md`.
+/// they hit something. What was measured with other numbers stands in `docs/log/2026-11-ray-traversal.md`.
 const CHORD: f32 = 4.0;
 /// A scene whose box has less volume than this, in the units of the frame, where it is about one long, has no inside.
 const LEAST_VOLUME: f32 = 1e-30;

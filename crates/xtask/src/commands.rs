@@ -111,6 +111,13 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 Own(glossary::print),
             ),
             named(
+                "charts",
+                "[--check]",
+                "draws the charts of docs/performance.md from its tables",
+                "1 s",
+                Script("docs/charts.py"),
+            ),
+            named(
                 "allowed",
                 "[--write]",
                 "compares the lists of what is to go with the sources; --write deletes what is gone",

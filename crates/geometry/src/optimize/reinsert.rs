@@ -3,7 +3,7 @@
 //! A builder that splits from above decides about large boxes before it knows small ones. Afterwards each subtree can be taken out and
 //! put where it enlarges the boxes around it least (Bittner, Hapala & Havran, *Fast Insertion-Based Optimization of Bounding Volume
 //! Hierarchies*, CGF 32(1), 2013; the search from the place left upward: Meister & Bittner, *Parallel Reinsertion for Bounding
-//! Volume Hierarchy Optimization*, CGF 37(2), 2018). What it gains stands in `docs/performance.md`.
+//! Volume Hierarchy Optimization*, CGF 37(2), 2018). What it gains stands in `docs/log/2026-11-ray-traversal.md`.
 
 use super::links::{Links, NONE};
 

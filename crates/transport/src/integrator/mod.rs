@@ -36,5 +36,5 @@ pub(crate) const MOST_VERTICES: u32 = 1 << 16;
 /// Vertices before Russian roulette begins.
 pub(crate) const ROULETTE_FROM_VERTEX: u32 = 2;
 /// The throughput that a path keeps which roulette lets live. Less is more vertices with less noise; of 1, 1/2, 1/3, 1/4 and 1/8
-/// this takes the least time to a given error in rooms of white walls and under the sky (docs/performance.md).
+/// this takes the least time to a given error in rooms of white walls and under the sky (docs/log/2026-11-paths.md).
 pub(crate) const ROULETTE_THROUGHPUT: f64 = 0.4;
