@@ -1,16 +1,19 @@
-//! docs/scene-format.md says what the reader does.
+//! docs/scene-format.md says what the reader does, and the scenes of the tutorial and of the how-to pages are right.
 
 mod common;
 
 use common::{Parts, RIGHT};
 use etalon_scene::{Code, json};
+use serde_json::Value;
 use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
 
 const PAGE: &str = include_str!("../../../docs/scene-format.md");
 
-/// The page's JSON examples: what each is of, and its text.
-fn examples() -> Vec<(&'static str, &'static str)> {
-    let blocks = PAGE.split("\n```json ").skip(1);
+/// The JSON examples of a page: what each is of, and its text.
+fn examples(page: &str) -> Vec<(&str, &str)> {
+    let blocks = page.split("\n```json ").skip(1);
     blocks
         .map(|block| {
             let (kind, rest) = block.split_once('\n').expect("a line");
@@ -21,10 +24,47 @@ fn examples() -> Vec<(&'static str, &'static str)> {
 
 #[test]
 fn every_example_is_right() {
-    let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests"));
-    let all = examples();
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests"));
+    let all = examples(PAGE);
     assert!(all.len() >= 20, "{}", all.len());
-    for (kind, text) in all {
+    assert_right(&all, folder);
+}
+
+#[test]
+fn every_example_of_the_tutorial_and_of_the_how_to_pages_is_right() {
+    let docs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs"));
+    let mut pages = vec![docs.join("tutorial.md")];
+    pages.extend(fs::read_dir(docs.join("how-to")).unwrap().map(|entry| entry.unwrap().path()));
+    let texts: Vec<String> = pages.iter().map(|page| fs::read_to_string(page).unwrap()).collect();
+    let all: Vec<_> = texts.iter().flat_map(|text| examples(text)).collect();
+    assert!(all.len() >= 7, "{}", all.len());
+    assert_right(&all, &docs.join("../scenes"));
+}
+
+/// The tutorial's scene is the file that it names, and the file of its last scene has all that the page adds.
+#[test]
+fn the_files_of_the_tutorial_are_what_the_page_says() {
+    let docs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs"));
+    let page = fs::read_to_string(docs.join("tutorial.md")).unwrap();
+    let file = |name: &str| -> Value {
+        serde_json::from_str(&fs::read_to_string(docs.join("tutorial").join(name)).unwrap()).unwrap()
+    };
+    let blocks: Vec<(&str, Value)> =
+        examples(&page).into_iter().map(|(kind, text)| (kind, serde_json::from_str(text).unwrap())).collect();
+    let [("scene", table), ("materials", materials), ("fragment", objects)] = &blocks[..] else {
+        panic!("other examples: {blocks:?}");
+    };
+    assert_eq!(*table, file("table.json"));
+    let mut glass = table.clone();
+    for (name, material) in materials.as_object().unwrap() {
+        glass["materials"][name] = material.clone();
+    }
+    glass["objects"].as_array_mut().unwrap().extend(objects.as_array().unwrap().iter().cloned());
+    assert_eq!(glass, file("glass.json"));
+}
+
+fn assert_right(examples: &[(&str, &str)], folder: &Path) {
+    for &(kind, text) in examples {
         let object = |shape: &str, transform: &str| {
             format!("[{{\"shape\": {shape}, \"material\": {{\"type\": \"black\"}}, \"transform\": {transform}}}]")
         };
@@ -51,7 +91,7 @@ fn every_example_is_right() {
             "lights" => Parts { lights: text, ..RIGHT }.text(),
             "integrator" => Parts { integrator: text, ..RIGHT }.text(),
             "fragment" => {
-                let _: serde_json::Value = serde_json::from_str(text).expect("JSON");
+                let _: Value = serde_json::from_str(text).expect("JSON");
                 continue;
             }
             other => panic!("an example of {other:?}?"),
@@ -72,10 +112,10 @@ fn every_error_and_warning_is_listed() {
 
 #[test]
 fn every_key_and_word_of_the_schema_is_described() {
-    fn collect(schema: &serde_json::Value, found: &mut BTreeSet<String>) {
+    fn collect(schema: &Value, found: &mut BTreeSet<String>) {
         match schema {
-            serde_json::Value::Object(members) => {
-                if let Some(serde_json::Value::Object(properties)) = members.get("properties") {
+            Value::Object(members) => {
+                if let Some(Value::Object(properties)) = members.get("properties") {
                     found.extend(properties.keys().cloned());
                 }
                 found.extend(members.get("const").and_then(|word| word.as_str()).map(str::to_owned));
@@ -83,7 +123,7 @@ fn every_key_and_word_of_the_schema_is_described() {
                 found.extend(words.filter_map(|word| word.as_str()).map(str::to_owned));
                 members.values().for_each(|member| collect(member, found));
             }
-            serde_json::Value::Array(elements) => elements.iter().for_each(|element| collect(element, found)),
+            Value::Array(elements) => elements.iter().for_each(|element| collect(element, found)),
             _ => {}
         }
     }
