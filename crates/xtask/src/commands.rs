@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-use crate::{allowed, architecture, glossary, import_cycles, slowest, targets};
+use crate::{allowed, architecture, glossary, import_cycles, pages, slowest, targets};
 
 /// One named command.
 pub(crate) struct Named {
@@ -109,6 +109,20 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 "words that names no longer have, and what stands for them",
                 "1 s",
                 Own(glossary::print),
+            ),
+            named(
+                "links",
+                "",
+                "links of Markdown pages that lead to no file or to no heading",
+                "1 s",
+                Own(pages::check_links),
+            ),
+            named(
+                "book",
+                "[MDBOOK OPTIONS]",
+                "makes a book of all pages in target/book/html; needs mdbook",
+                "seconds",
+                Own(pages::book),
             ),
             named(
                 "charts",
@@ -237,6 +251,13 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 "runs a job of `etalon farm --slurm` on a Slurm of its own; needs root",
                 "minutes",
                 Script("tests/farm-slurm.sh"),
+            ),
+            named(
+                "docs-commands",
+                "[ETALON]",
+                "the commands of the tutorial and of the how-to pages do what the pages say",
+                "4 min",
+                Script("tests/docs-commands.py"),
             ),
             named(
                 "spectral-exr",

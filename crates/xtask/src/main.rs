@@ -1,7 +1,8 @@
 //! The named commands of the repository. `cargo xtask` lists them, `cargo xtask NAME` runs one.
 //!
 //! The tests of this crate hold the repository itself to its rules: [`commands`] has every script, [`architecture`] states the
-//! dependencies of every crate, no crate has new [`import_cycles`], retired words of the [`glossary`] or [`duplicate_types`].
+//! dependencies of every crate, every link of the [`pages`] leads somewhere, no crate has new [`import_cycles`], retired words of the
+//! [`glossary`] or [`duplicate_types`].
 #![allow(clippy::print_stdout, clippy::print_stderr)] // A tool prints.
 
 mod allowed;
@@ -11,6 +12,7 @@ mod duplicate_types;
 mod glossary;
 mod import_cycles;
 mod manifest;
+mod pages;
 mod slowest;
 mod source;
 mod targets;
