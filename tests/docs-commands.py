@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Runs the commands of the tutorial and of the how-to pages, in a copy of the scenes.
+"""Runs the commands of the documentation in a copy of the scenes.
 
-    python3 tests/docs-commands.py [path of etalon]
+    python3 tests/docs-commands.py [path of etalon [PAGE …]]
 
 Of each block marked `sh` it runs the lines that begin with `etalon`, in the order of the page, and expects the exit status 0, or 1 if the
-page says so behind the block ("the exit status is 1"). A JSON block behind "Save this as `FILE`" is saved under that name. Needs nothing
-but Python.
+page says so behind the block ("the exit status is 1"). Blocks marked `sh illustrative` are not run. A JSON block behind "Save this as
+`FILE`" is saved under that name. Needs nothing but Python.
 """
+import os
 import pathlib
 import re
 import shutil
@@ -16,7 +17,9 @@ import tempfile
 
 root = pathlib.Path(__file__).resolve().parent.parent
 etalon = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else root / "target/release/etalon").resolve()
-FILES = {"model.glb": "crates/import/fuzz/seeds/gltf/all.glb"}  # stands for a model that the reader has
+PAGES = ["docs/tutorial.md", "docs/how-to/*.md", "docs/*.md", "crates/oracle/README.md"]
+# Files that stand for a model and for a scene that the reader has.
+FILES = {"model.glb": "crates/import/fuzz/seeds/gltf/all.glb", "scene.json": "reference/assignment/diffuse-only.json"}
 SKIP = ["etalon verify --images pictures"]  # of pictures that another renderer makes
 EDITS = {"brighter.json": ("glass.json", '"scale": 6 }', '"scale": 6.6 }')}  # a change that the page asks for in words
 
@@ -56,7 +59,8 @@ def run(page, folder):
                 continue
             last = number == len(lines) - 1
             expected = 1 if last and re.match(r"[^`]{0,200}`?[^`]{0,60}`?[^`]{0,80}exit status is 1\b", behind) else 0
-            done = subprocess.run([etalon, *line.split()[1:]], cwd=folder, capture_output=True, text=True, timeout=600)
+            path = os.pathsep.join([str(etalon.parent), os.environ["PATH"]])
+            done = subprocess.run(line, shell=True, cwd=folder, env={**os.environ, "PATH": path}, capture_output=True, text=True, timeout=600)
             right = done.returncode == expected
             failed += not right
             print(f"{'ok   ' if right else 'WRONG'} {page.name}: {line}")
@@ -66,7 +70,7 @@ def run(page, folder):
 
 
 def main():
-    pages = [root / "docs/tutorial.md", *sorted((root / "docs/how-to").glob("*.md"))]
+    pages = sorted({page for pattern in sys.argv[2:] or PAGES for page in root.glob(pattern)})
     failed = 0
     for page in pages:
         with tempfile.TemporaryDirectory() as folder:

@@ -255,7 +255,7 @@ const COMMANDS: &[(&str, &[Named])] = &[
             named(
                 "docs-commands",
                 "[ETALON]",
-                "the commands of the tutorial and of the how-to pages do what the pages say",
+                "the commands in the pages of the documentation do what the pages say",
                 "4 min",
                 Script("tests/docs-commands.py"),
             ),
