@@ -41,7 +41,7 @@ impl<const N: usize> Received<N> {
 pub(crate) struct FilmEntry<'a> {
     prepared: &'a Prepared,
     sums: Sums<'a>,
-    /// Rays of all kinds that each spot took; empty if nobody asks.
+    /// Rays of all kinds that each pixel took; empty if nobody asks.
     rays: &'a mut [u64],
     replicates: usize,
     /// The bands of the film, and how many sums each replicate has for them, if they are kept.
@@ -61,7 +61,7 @@ impl<'a> FilmEntry<'a> {
         self.bands.is_some()
     }
 
-    /// Counts rays of all kinds for a spot.
+    /// Counts rays of all kinds for a pixel.
     #[inline(always)]
     pub(crate) fn count_rays(&mut self, pixel_samples: usize, rays: u64) {
         if let Some(of_pixel_samples) = self.rays.get_mut(pixel_samples) {

@@ -12,7 +12,7 @@ use crate::tracer::{PixelSamples, Tracer};
 use crate::trial::{Trial, try_guided_targets};
 use crate::wavelength_lanes::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
 
-/// Adds samples to spots: to their sums, spot by spot, in each replicate by replicate; and what rays of all kinds each spot took,
+/// Adds samples to pixels: to their sums, pixel by pixel, in each replicate by replicate; and the rays of all kinds that each took,
 /// unless nobody asks for that.
 pub(crate) type RenderPixels = fn(&Prepared, &[PixelSamples], Sums<'_>, &mut [u64]) -> Counters;
 
@@ -66,7 +66,7 @@ impl Prepared {
     }
 }
 
-/// The samples of spots, one path at a time, added to `sums` in the order of their numbers.
+/// The samples of some pixels, one path at a time, added to `sums` in the order of their numbers.
 fn render_scalar<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
     all_samples: &[PixelSamples],

@@ -121,7 +121,7 @@ impl Prepared {
         self.renderer()(self, &PixelSamples::of_tile(tile, &samples), sums, &mut [])
     }
 
-    /// Adds samples to spots without bands, and the rays of all kinds that each took to `rays`.
+    /// Adds samples to pixels without bands, and the rays of all kinds that each took to `rays`.
     pub(crate) fn render_pixels(&self, all_samples: &[PixelSamples], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
         self.renderer()(self, all_samples, Sums { xyz, stokes: &mut [], bands: &mut [] }, rays)
     }

@@ -263,17 +263,18 @@ pub(crate) fn redistribute<const N: usize>(
     shadow_rays
 }
 
-/// The pixels of blocks, one block after the other: those of some spots, and their mates, whose paths are traced for them.
+/// The pixels of whole blocks, one block after the other: the pixels asked for, and the others of their blocks, whose paths are
+/// traced for them.
 pub(crate) struct Blocks {
     pub all_samples: Vec<PixelSamples>,
     /// How many pixels the block has that begins there; of others 0.
     pub block_pixels: Vec<usize>,
-    /// The place of each among the spots asked for; `None` of mates.
+    /// The place of each among the pixels asked for; `None` of the others.
     pub kept: Vec<Option<usize>>,
 }
 
 impl Blocks {
-    /// The blocks of `block` pixels that hold these spots, on a film of this size. They begin at the corner of the film, whichever part of it
+    /// The blocks of `block` pixels that hold these pixels, on a film of this size. They begin at the corner of the film, whichever part of it
     /// is rendered, so that a sample is the same in each.
     pub(crate) fn of(all_samples: &[PixelSamples], block: [u32; 2], film: [u32; 2]) -> Self {
         let mut of_block: BTreeMap<_, Vec<(u32, u32, usize)>> = BTreeMap::new();
@@ -325,13 +326,7 @@ fn trace_gathering<'a, M: WavelengthModel<N>, const N: usize>(
         let Some(vertex) = met else { break };
         reuse_path.arrive(world, &vertex, &mut path.radiance);
         if vertex.sees_lights {
-            let [u_light, u1, u2, _] = sampler.vertex_set(path.vertex, 1);
-            if let Some(draw) = world.sample_light(&vertex, u_light, [u1, u2])
-                && let Some(next) = path.next_event(world, &vertex, &draw)
-                && let Some(visible) = path.visibility(world, &vertex, &draw.sample, counters)
-            {
-                path.add_light(world, &vertex, &draw, &next, &visible, observer);
-            }
+            path.direct_light(world, &vertex, sampler, counters, observer);
         }
         let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
         let Some(direction) = path.sample_direction(world, &vertex, [u_lobe, u1, u2], observer) else { break };
@@ -346,7 +341,7 @@ fn trace_gathering<'a, M: WavelengthModel<N>, const N: usize>(
     reuse_path
 }
 
-/// The samples of spots, one path at a time.
+/// The samples of some pixels, one path at a time.
 pub(crate) fn render_pixels<M: WavelengthModel<N>, const N: usize>(
     prepared: &Prepared,
     all_samples: &[PixelSamples],
@@ -394,11 +389,11 @@ pub(crate) fn render_pixels<M: WavelengthModel<N>, const N: usize>(
     counters
 }
 
-/// Adds the samples of blocks to the sums of spots.
+/// Adds the samples of blocks to the sums of pixels.
 pub(crate) struct BlockEntry<'a> {
     prepared: &'a Prepared,
     film: FilmEntry<'a>,
-    /// The spot whose block's rays nobody else counts.
+    /// The pixel whose block's rays nobody else counts.
     last: usize,
 }
 
@@ -407,7 +402,7 @@ impl<'a> BlockEntry<'a> {
         Self { prepared, film: FilmEntry::new(prepared, sums, rays), last: 0 }
     }
 
-    /// A sample of the spot number `.0`, or of a mate, at the pixel (`.1`, `.2`). What a mate's path took counts for one of the spots.
+    /// A sample of the pixel number `.0`, or of another of its block, at (`.1`, `.2`). The rays of the others count for one of the pixels asked for.
     #[inline(always)]
     pub(crate) fn add<M: WavelengthModel<N>, const N: usize>(
         &mut self,

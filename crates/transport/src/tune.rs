@@ -11,12 +11,12 @@ use etalon_scene::Scene;
 
 /// What must be left of the variance. Much, since the trial knows of no strata: where the picture's samples would be spread evenly over
 /// directions, a share taken from them costs more than it foretells; and paths through guided targets are longer.
-const WORTH_IT: f64 = 0.4;
+const MAX_COST_RATIO: f64 = 0.4;
 /// The same of images of lamps: small, so that little is taken from what comes in otherwise.
-const MIN_SPECULAR_IMAGES_GAIN: f64 = 0.9;
+const IMAGES_MAX_COST_RATIO: f64 = 0.9;
 /// The same of whole lenses beside images, of what is left with images alone: with them a path takes a sixth longer, but what they leave of
-/// the error is .69 and .66 where the trial says .54 and .88.
-const LENSES_WORTH_IT: f64 = 0.9;
+/// the error is 0.69 and 0.66 where the trial says 0.54 and 0.88.
+const LENSES_MAX_COST_RATIO: f64 = 0.9;
 
 /// Prepares a scene: its frame, the shapes and the accelerator in it, the table of lights and the plan; and tunes it.
 pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
@@ -51,9 +51,9 @@ impl Prepared {
         let mut best = (1.0, GuidedBy::Nothing, 0.0);
         let images = !self.guided_targets.images.is_empty();
         for (guided_by, worth_it, there) in [
-            (GuidedBy::Bodies, WORTH_IT, !self.guided_targets.bodies.is_empty()),
-            (GuidedBy::Images, MIN_SPECULAR_IMAGES_GAIN, images),
-            (GuidedBy::ImagesAndLenses, LENSES_WORTH_IT, images && !self.guided_targets.lenses.is_empty()),
+            (GuidedBy::Bodies, MAX_COST_RATIO, !self.guided_targets.bodies.is_empty()),
+            (GuidedBy::Images, IMAGES_MAX_COST_RATIO, images),
+            (GuidedBy::ImagesAndLenses, LENSES_MAX_COST_RATIO, images && !self.guided_targets.lenses.is_empty()),
         ] {
             // Lenses come last: against the best without them.
             let worth_it = if guided_by == GuidedBy::ImagesAndLenses { worth_it * best.0 } else { worth_it };

@@ -127,7 +127,7 @@ const COMMANDS: &[(&str, &[Named])] = &[
             named(
                 "charts",
                 "[--check]",
-                "draws the charts of docs/performance.md from its tables",
+                "draws the charts of docs/performance.md and docs/accuracy.md from their tables",
                 "1 s",
                 Script("docs/charts.py"),
             ),

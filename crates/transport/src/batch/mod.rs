@@ -38,7 +38,7 @@ use rows::{Mask, W, lanes};
 use starts::Starts;
 use stream::{Cursor, Window};
 
-/// The samples of spots, added to `sums` spot by spot in the order of their numbers, and the rays that each spot took to `rays`,
+/// The samples of some pixels, added to `sums` pixel by pixel in the order of their numbers, and the rays that each pixel took to `rays`,
 /// unless that is empty.
 pub(crate) fn render_batch<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,

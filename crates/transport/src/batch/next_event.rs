@@ -5,7 +5,7 @@ use super::arrive::of_group;
 use super::lamps::{LightSamples, PlanarLights, SphereLights, aim, aim_at_disks, aim_at_rounds};
 use super::level::{Level, stages};
 use super::paths::vertex;
-use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes};
+use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes, surface_point};
 use crate::bsdf::lambert;
 use crate::integrator::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
 use crate::light::{LightSample, LightTable, Target};
@@ -13,7 +13,7 @@ use crate::mis::Density;
 use crate::polarisation::Polarisation;
 use crate::sampler::{CAMERA_SETS, SETS_PER_VERTEX, Samplers, Wanted};
 use crate::wavelength_lanes::WavelengthModel;
-use etalon_geometry::{LANES, Rays, SurfaceId, SurfacePoint};
+use etalon_geometry::{LANES, Rays, SurfaceId};
 use etalon_optics::Lanes;
 use etalon_scene::LightSampling;
 
@@ -299,17 +299,9 @@ stages! {
 
     /// Rays from surfaces to points.
     fn shadow_rays(from: (&Rows3, &Row, &Rows3), target: &Rows3, rays: &mut ShadowRows) {
-        let (position, error, normal) = from;
         for lane in 0..W {
-            let from = SurfacePoint {
-                position: position.at(lane),
-                position_error: error.0[lane],
-                normal: normal.at(lane),
-                surface: SurfaceId::NONE,
-                label: 0,
-                time: 0.0,
-            };
-            let ray = from.spawn_to(target.at(lane), SurfaceId::NONE);
+            let point = surface_point(from, lane);
+            let ray = point.spawn_to(target.at(lane), SurfaceId::NONE);
             rays.origin.set(lane, ray.origin);
             rays.direction.set(lane, ray.direction);
             rays.t_max.0[lane] = ray.t_max;

@@ -1,6 +1,6 @@
 //! One number, or one vector, for each path of a set.
 
-use etalon_geometry::LANES;
+use etalon_geometry::{LANES, SurfaceId, SurfacePoint};
 use etalon_optics::Vec3;
 
 /// Paths in a set.
@@ -23,6 +23,19 @@ pub(super) struct Rows3 {
     x: Row,
     y: Row,
     z: Row,
+}
+
+/// The point of one path, from rows of positions, their error bounds and normals. It can spawn rays, and names no surface.
+#[inline(always)]
+pub(super) fn surface_point((position, error, normal): (&Rows3, &Row, &Rows3), lane: usize) -> SurfacePoint<f64> {
+    SurfacePoint {
+        position: position.at(lane),
+        position_error: error.0[lane],
+        normal: normal.at(lane),
+        surface: SurfaceId::NONE,
+        label: 0,
+        time: 0.0,
+    }
 }
 
 impl Row {

@@ -4,14 +4,13 @@ use super::Batch;
 use super::level::{Level, stages};
 use super::next_event::vertex_numbers;
 use super::paths::vertex;
-use super::rows::{Mask, Row, Rows3, W, lanes};
+use super::rows::{Mask, Row, Rows3, W, lanes, surface_point};
 use crate::bsdf::dielectric::{self, Turn};
 use crate::bsdf::lambert;
 use crate::integrator::Direction;
 use crate::polarisation::Polarisation;
 use crate::shading_tables::BsdfKind;
 use crate::wavelength_lanes::WavelengthModel;
-use etalon_geometry::{SurfaceId, SurfacePoint};
 use etalon_optics::Vec3;
 
 impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, N> {
@@ -215,16 +214,8 @@ stages! {
 
     /// Where rays begin that leave surfaces along `wi`.
     fn leave(surface: (&Rows3, &Row, &Rows3), wi: &Rows3, origin: &mut Rows3) {
-        let (position, error, normal) = surface;
         for lane in 0..W {
-            let point = SurfacePoint {
-                position: position.at(lane),
-                position_error: error.0[lane],
-                normal: normal.at(lane),
-                surface: SurfaceId::NONE,
-                label: 0,
-                time: 0.0,
-            };
+            let point = surface_point(surface, lane);
             origin.set(lane, point.spawn(wi.at(lane)).origin);
         }
     }

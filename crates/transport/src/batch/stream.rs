@@ -1,4 +1,4 @@
-//! The samples of spots in their order: handed out to paths, and taken back.
+//! The samples of pixels in their order: handed out to paths, and taken back.
 //!
 //! Paths end in any order, but a pixel's sums are in the order of its samples: what is finished early waits.
 
@@ -9,11 +9,11 @@ use crate::tracer::PixelSamples;
 /// the rest.
 const WINDOW: u64 = 1024;
 
-/// Goes through the samples of spots, one spot after the other.
+/// Goes through the samples of pixels, one pixel after the other.
 #[derive(Clone, Debug)]
 pub(super) struct Cursor<'a> {
     all_samples: &'a [PixelSamples],
-    /// How many spots take turns that begin there, sample by sample; empty if each is alone.
+    /// How many pixels take turns that begin there, sample by sample; empty if each is alone.
     block_pixels: &'a [usize],
     /// Those whose turn it is: the first, and the one after the last.
     group: [usize; 2],
@@ -22,7 +22,7 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// Of spots of which `block_pixels` tells who take turns: they have the same samples.
+    /// Of pixels of which `block_pixels` tells who take turns: they have the same samples.
     pub(super) fn new(all_samples: &'a [PixelSamples], block_pixels: &'a [usize]) -> Self {
         let left = all_samples.iter().map(|pixel_samples| u64::from(pixel_samples.count())).sum();
         let next = SampleId { pixel_samples: 0, x: 0, y: 0, sample: 0 };
@@ -36,7 +36,7 @@ impl<'a> Cursor<'a> {
         self.left.clamp(1, WINDOW).next_power_of_two() as usize
     }
 
-    /// The first sample of this spot, or of the next that has one.
+    /// The first sample of this pixel, or of the next that has one.
     #[inline(always)]
     fn go_to(&mut self, first: usize) {
         for (pixel_samples, PixelSamples { x, y, samples }) in self.all_samples.iter().enumerate().skip(first) {

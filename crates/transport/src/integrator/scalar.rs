@@ -2,6 +2,7 @@
 
 use super::{Arrival, Path};
 use crate::film::Counters;
+use crate::interaction::SurfaceInteraction;
 use crate::observer::{End, Observer};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
@@ -34,13 +35,7 @@ pub(crate) fn trace<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
 
         // Direct light: one shadow ray toward one light.
         if vertex.sees_lights {
-            let [u_light, u1, u2, _] = sampler.vertex_set(path.vertex, 1);
-            if let Some(draw) = world.sample_light(&vertex, u_light, [u1, u2])
-                && let Some(next) = path.next_event(world, &vertex, &draw)
-                && let Some(visible) = path.visibility(world, &vertex, &draw.sample, counters)
-            {
-                path.add_light(world, &vertex, &draw, &next, &visible, observer);
-            }
+            path.direct_light(world, &vertex, sampler, counters, observer);
         }
 
         // Scattering: in which direction does the walk go on?
@@ -56,5 +51,26 @@ pub(crate) fn trace<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
             break;
         }
         ray = vertex.point.spawn(taken.wi);
+    }
+}
+
+impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
+    /// Adds the light of one direction toward one light, where the shadow ray comes through.
+    #[inline(always)]
+    pub(crate) fn direct_light(
+        &mut self,
+        world: &World<'a>,
+        vertex: &SurfaceInteraction<'a>,
+        sampler: &Sampler,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) {
+        let [u_light, u1, u2, _] = sampler.vertex_set(self.vertex, 1);
+        if let Some(draw) = world.sample_light(vertex, u_light, [u1, u2])
+            && let Some(next) = self.next_event(world, vertex, &draw)
+            && let Some(visible) = self.visibility(world, vertex, &draw.sample, counters)
+        {
+            self.add_light(world, vertex, &draw, &next, &visible, observer);
+        }
     }
 }
