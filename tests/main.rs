@@ -3,6 +3,7 @@
 mod accuracy;
 mod assignment;
 mod channels;
+mod defaults;
 #[cfg(feature = "denoise")]
 mod denoise;
 mod display;

@@ -53,9 +53,8 @@ fn values_out_of_range_exit_2_and_name_their_option() {
 }
 
 #[test]
-fn a_path_is_replayed_by_pixel_and_sample_together_only() {
+fn a_path_is_replayed_by_its_pixel() {
     let scene = scene("cornell.json");
-    etalon_line("render {} --pixel 1,1", [&scene]).expect(2).says(["--sample"]);
     etalon_line("render {} --sample 1 -o x.exr --spp 1 --size 4x4", [&scene]).expect(2).says(["--pixel"]);
     etalon_line("render {} --pixel 1,1 --sample 0 -o x.exr", [&scene]).expect(2).says(["--pixel", "--output"]);
 }

@@ -104,17 +104,28 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number of samples: `64`, `1000` or `1e3`.
+pub(crate) fn samples(text: &str) -> Result<u32, String> {
+    const MOST: u32 = i32::MAX as u32;
+    let bad = || format!("a whole number from 1 to {MOST}, such as 64 or 1e3");
+    let number: f64 = text.trim().parse().map_err(|_| bad())?;
+    if number.fract() == 0.0 && (1.0..=f64::from(MOST)).contains(&number) { Ok(number as u32) } else { Err(bad()) }
+}
+
 /// A share: `1%`, `1 %` or `0.01`.
 pub(crate) fn percentage(text: &str) -> Result<f64, String> {
     let bad = || "a share such as 1% or 0.01".to_owned();
+    // A bare number from 1 on is more likely to have lost its per cent sign than to mean an error of all there is.
+    let ambiguous = |number: f64| format!("{number} is {}%: write {number}% or {}", 100.0 * number, number / 100.0);
     let (number, unit) = match text.trim().strip_suffix('%') {
         Some(number) => (number.trim_end(), 0.01),
         None => (text.trim(), 1.0),
     };
     let share = unit * number.parse::<f64>().map_err(|_| bad())?;
-    // A bare number from 1 on is more likely to have lost its per cent sign than to mean an error of all there is.
-    let plausible = if unit < 1.0 { share.is_finite() } else { share < 1.0 };
-    if share > 0.0 && plausible { Ok(share) } else { Err(bad()) }
+    if !(share > 0.0 && share.is_finite()) {
+        return Err(bad());
+    }
+    if unit == 1.0 && share >= 1.0 { Err(ambiguous(share)) } else { Ok(share) }
 }
 
 /// A time: `90`, `90s`, `1.5m`, `2h`, or several of these, `1h30m`. Seconds.
@@ -167,6 +178,8 @@ mod tests {
         for (text, share) in [("1%", 0.01), ("0.5 %", 0.005), ("0.02", 0.02), ("250%", 2.5)] {
             assert!((percentage(text).unwrap() - share).abs() < 1e-15, "{text}");
         }
+        let two = percentage("2").unwrap_err();
+        assert!(two.contains("2%") && two.contains("0.02"), "{two}");
         for text in ["", "1", "0%", "-1%", "nan%", "inf%", "x", "%"] {
             assert!(percentage(text).is_err(), "{text}");
         }
@@ -179,6 +192,18 @@ mod tests {
         }
         for text in ["", "s", "0s", "1d", "-3s", "1m!", "5é"] {
             assert!(seconds(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_samples_may_have_an_exponent() {
+        for (text, expected) in
+            [("1", 1), ("1000", 1000), ("1e3", 1000), ("2.5e1", 25), ("2147483647", i32::MAX as u32)]
+        {
+            assert_eq!(samples(text), Ok(expected), "{text}");
+        }
+        for text in ["", "0", "-1", "1.5", "1e-1", "nan", "inf", "2147483648", "1e10", "x"] {
+            assert!(samples(text).unwrap_err().contains("1e3"), "{text}");
         }
     }
 

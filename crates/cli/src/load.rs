@@ -37,12 +37,22 @@ pub(crate) fn load(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedSce
     if is_model(path) {
         return load_model(path, film_size);
     }
-    let name = path.display().to_string();
-    let text = etalon_scene::json::load_text(path).map_err(refused)?;
+    let (name, text) = if is_standard_input(path) {
+        let name = "standard input".to_owned();
+        let text = etalon_scene::json::read_text(std::io::stdin().lock(), Path::new(&name)).map_err(refused)?;
+        (name, text)
+    } else {
+        (path.display().to_string(), etalon_scene::json::load_text(path).map_err(refused)?)
+    };
     let folder = path.parent().unwrap_or(Path::new(""));
     let loaded = etalon_scene::parse_in(&text, &name, Some(folder), film_size).map_err(scene_failure)?;
     let sha256 = scene_sha256(&text, &loaded.files);
     Ok(LoadedScene { scene: loaded.scene, warnings: scene_warnings(&name, &text, loaded.warnings), sha256 })
+}
+
+/// Whether a scene's name stands for standard input. Files that it refers to are then looked for where the program runs.
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    path.as_os_str() == "-"
 }
 
 /// A model as a scene, as it is at a moment, with a folder's name before the names of its files.

@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use etalon_picture::{Attributes, Clipping, Picture, check_writable, encode_srgb8, write_exr, write_png};
+use etalon_picture::{
+    Attributes, Clipping, Picture, RenderInfo, check_writable, encode_srgb8, read_exr, write_exr, write_png,
+};
 use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::load::is_standard_input;
 
 /// What a file name's extension asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -71,6 +74,32 @@ impl Written {
     pub(crate) fn is(&self, output: &Output) -> bool {
         self.path == output.path.display().to_string()
     }
+}
+
+/// The picture of a scene that no output was named for, in the folder where the program runs.
+pub(crate) fn of_scene(scene: &Path) -> PathBuf {
+    let name = scene.file_stem().filter(|_| !is_standard_input(scene)).unwrap_or_else(|| "scene".as_ref());
+    let mut name = name.to_owned();
+    name.push(".exr");
+    PathBuf::from(name)
+}
+
+/// Refuses to replace what is no picture of this program.
+pub(crate) fn check_own(path: &Path) -> Result<(), Failure> {
+    // A name that is taken in any way, also by a link that leads nowhere.
+    if path.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    let software = read_exr(path).ok().and_then(|file| RenderInfo::from_attributes(&file.attributes));
+    if software.is_some_and(|info| info.software.starts_with("etalon ")) {
+        return Ok(());
+    }
+    Err(Failure::run(miette!(
+        code = "output-exists",
+        help = format!("name the picture: -o FILE, with `-o {}` to replace the file", path.display()),
+        "the picture would be `{}`, which exists and is not a picture of Etalon",
+        path.display()
+    )))
 }
 
 /// Understands the names of the outputs, and finds out whether they can be written, before anything is computed.

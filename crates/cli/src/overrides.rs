@@ -20,8 +20,8 @@ pub(crate) struct Overrides {
 /// The list of all options that may decide something instead of the scene. Farm jobs and hints repeat those that were given.
 #[derive(Args)]
 pub(crate) struct Settings {
-    /// Samples a pixel.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(i32::MAX)))]
+    /// Samples a pixel, such as 64 or 1e3.
+    #[arg(long, value_name = "N", value_parser = crate::args::samples)]
     spp: Option<u32>,
     /// Independent replicates that the samples are dealt to: their scatter is the error bar, 1 is without.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_REPLICATES)))]
@@ -217,6 +217,11 @@ impl Settings {
 }
 
 impl Overrides {
+    /// Whether spectral bands were asked for.
+    pub(crate) fn has_bands(&self) -> bool {
+        self.settings.bands.is_some()
+    }
+
     /// The options that were given, as words of a command line.
     pub(crate) fn as_words(&self) -> &[String] {
         &self.words

@@ -2,10 +2,11 @@
 
 mod tiles;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use etalon_picture::{
-    ExrFile, PIXELS_PER_DEGREE, Picture, RenderInfo, compare, encode_srgb8, flip, read_exr, write_png,
+    Attributes, ExrFile, PIXELS_PER_DEGREE, Picture, PictureError, RenderInfo, compare, encode_srgb8, flip, read_exr,
+    read_png, write_png,
 };
 use miette::{Report, miette};
 use serde::Serialize;
@@ -13,7 +14,7 @@ use serde::Serialize;
 use crate::failure::{Failure, Outcome};
 use crate::print;
 
-/// Compares two EXR pictures.
+/// Compares two pictures, EXR or PNG. A PNG knows no errors, so pictures that are not equal are then not tested.
 ///
 /// Exit status 1 if they differ by more than their noise explains, or if a value is not finite; 3 if that could not be tested
 /// everywhere, because errors are not known.
@@ -103,7 +104,7 @@ struct Comparison {
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 pub(crate) fn run(args: Args) -> Outcome {
-    let read = |path| read_exr(path).map_err(|error| Failure::input(Report::from_err(error)));
+    let read = |path| read(path).map_err(|error| Failure::input(Report::from_err(error)));
     let (image, reference) = (read(&args.image)?, read(&args.reference)?);
     let input = |error| Failure::input(Report::from_err(error));
     let metrics = compare(&image.picture, &reference.picture, &CHANNELS).map_err(input)?;
@@ -148,6 +149,14 @@ pub(crate) fn run(args: Args) -> Outcome {
             "the pictures are not equal, and their errors are not known everywhere: the difference may be noise or not"
         ))),
     }
+}
+
+/// An EXR, or the linear colours of a PNG, which says nothing more.
+fn read(path: &Path) -> Result<ExrFile, PictureError> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        return Ok(ExrFile { picture: read_png(path)?, attributes: Attributes::default() });
+    }
+    read_exr(path)
 }
 
 fn verdict(test: Option<&Test>, non_finite: bool, equal: bool) -> Verdict {
@@ -244,7 +253,7 @@ fn describe(comparison: &Comparison) -> String {
 }
 
 /// The map in colours whose lightness grows with the difference.
-fn write_map(path: &std::path::Path, map: &[f64], image: &ExrFile) -> Result<(), etalon_picture::PictureError> {
+fn write_map(path: &Path, map: &[f64], image: &ExrFile) -> Result<(), PictureError> {
     let ramp = |v: f64, from: f64| ((v - from) * 3.0).clamp(0.0, 1.0) as f32;
     let pixels: Vec<[f32; 3]> = map.iter().map(|&v| [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|from| ramp(v, from))).collect();
     let (width, height) = (image.picture.width(), image.picture.height());

@@ -23,6 +23,7 @@ use crate::failure::{Failure, Outcome, ProblemJson};
 use crate::interrupt::Interrupt;
 use crate::light::NO_LIGHT_HELP;
 use crate::machine::ClockKind;
+use crate::output;
 use crate::overrides::Overrides;
 use crate::print;
 use crate::progress::RenderBar;
@@ -36,11 +37,12 @@ use watcher::{ProgressKind, Watcher};
 /// Renders a scene to EXR and PNG files.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The scene, as JSON (see `etalon schema`), or a model: glTF 2.0 (.glb, .gltf), OBJ or PLY.
+    /// The scene, as JSON (see `etalon schema`), or a model: glTF 2.0 (.glb, .gltf), OBJ or PLY. `-` reads a scene from standard input.
     scene: PathBuf,
     /// Picture to write: .exr keeps the linear picture and all that is known about it, .png is what a screen shows, .part
-    /// the sums themselves. Give it twice to write both.
-    #[arg(short, long, alias = "outfile", value_name = "FILE", required_unless_present = "pixel")]
+    /// the sums themselves. Give it twice to write both. Without it the picture of NAME.json is NAME.exr in this folder; that
+    /// replaces a picture of Etalon, but no other file.
+    #[arg(short, long, alias = "outfile", value_name = "FILE")]
     output: Vec<PathBuf>,
     #[command(flatten)]
     overrides: Overrides,
@@ -85,9 +87,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "K/N", conflicts_with = "time")]
     shard: Option<ShardArg>,
     /// Trace one path of this pixel again and print it vertex by vertex, instead of rendering.
-    #[arg(long, value_name = "X,Y", requires = "sample", conflicts_with_all = ["output", "crop", "error", "time", "checkpoint", "resume", "shard"])]
+    #[arg(long, value_name = "X,Y", conflicts_with_all = ["output", "crop", "error", "time", "checkpoint", "resume", "shard"])]
     pixel: Option<PixelAt>,
-    /// Which of the pixel's paths.
+    /// Which of the pixel's paths; the first, 0, if it is not given.
     #[arg(long, value_name = "K")]
     sample: Option<u32>,
     /// Show the picture in tev while it is rendered; 127.0.0.1:14158 if no HOST:PORT is given.
@@ -149,15 +151,19 @@ struct RefusedJson {
     errors: Vec<ProblemJson>,
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(mut args: Args) -> Outcome {
+    let names_itself = args.output.is_empty() && args.pixel.is_none();
+    if names_itself {
+        args.output.push(output::of_scene(&args.scene));
+    }
     let result = match (args.pixel, args.sample) {
-        (Some(pixel), Some(sample)) => replay(&args, pixel, sample),
-        // clap waives the requirement because --pixel would conflict with --output.
+        (Some(pixel), sample) => replay(&args, pixel, sample.unwrap_or(0)),
+        _ if names_itself && let Err(foreign) = output::check_own(&args.output[0]) => Err(Stop::Refused(foreign)),
         (None, Some(_)) => {
             let failure = miette!(code = "sample-without-pixel", "--sample says which path of --pixel to trace again");
             Err(Stop::Refused(Failure::input(failure)))
         }
-        (_, None) => render(&args),
+        (None, None) => render(&args),
     };
     match result {
         Ok(()) => Ok(()),

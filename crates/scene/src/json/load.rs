@@ -11,10 +11,20 @@ use crate::problem::LoadError;
 /// # Errors
 /// [`LoadError::Io`] if it cannot be read, [`LoadError::Invalid`] if it is too large or not UTF-8.
 pub fn load_text(path: &Path) -> Result<String, LoadError> {
+    let file = etalon_picture::open_plain(path).map_err(|source| LoadError::Io { path: path.to_owned(), source })?;
+    read_text(file, path)
+}
+
+/// The text that a source gives, under the name that errors call it by.
+///
+/// # Errors
+///
+/// As [`load_text`].
+pub fn read_text(source: impl Read, path: &Path) -> Result<String, LoadError> {
     let io = |source| LoadError::Io { path: path.to_owned(), source };
     let mut bytes = Vec::new();
-    // One byte more than is allowed tells a file that is too large, also a growing one.
-    etalon_picture::open_plain(path).map_err(io)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(io)?;
+    // One byte more than is allowed tells a source that is too large, also a growing one.
+    source.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(io)?;
     let refuse = |text: String, code: Code, at: Span, line: usize, column: usize, message: String| {
         LoadError::Invalid(SceneErrors {
             file_name: path.display().to_string(),

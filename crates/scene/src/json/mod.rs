@@ -52,7 +52,7 @@ mod syntax;
 pub use decode::{
     Comment, Decode, Direction, Field, List, Named, NamedEntry, Nullable, Optional, Required, Spanned, keyword, tag,
 };
-pub use load::load_text;
+pub use load::{load_text, read_text};
 pub use number::{NonNegative, Positive, Whole, bounded, bounded_schema};
 pub use object::{ObjectReader, Record, Rule};
 pub use reader::{Kind, Node, Reader, read};

@@ -106,6 +106,16 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
             "--exposure changes PNG files only, and none is written"
         ));
     }
+    if let Some(option) = wants_exr(args)
+        && !outputs.iter().any(|output| output.format != output::Format::Png)
+        && !outputs.is_empty()
+    {
+        failure.add(Failure::input(miette!(
+            code = "no-exr",
+            help = "add -o NAME.exr",
+            "{option} adds channels to an EXR, and none is written"
+        )));
+    }
     let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
     let subject = Subject::new(&prepared, &loaded.sha256, rect);
     let prepare_seconds = start.elapsed().as_secs_f64();
@@ -123,6 +133,15 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
         ));
     }
     Ok(Job { loaded, prepared, prepare_seconds, warnings, rect, threads, subject, resumed })
+}
+
+/// The first option given that only an EXR can follow.
+fn wants_exr(args: &Args) -> Option<&'static str> {
+    match (args.aov.is_empty(), args.overrides.has_bands()) {
+        (false, _) => Some("--aov"),
+        (true, true) => Some("--bands"),
+        (true, false) => None,
+    }
 }
 
 /// Every share must have tiles.
