@@ -6,7 +6,6 @@
 mod args;
 mod channels;
 mod commands;
-mod deliver;
 mod display;
 mod excerpt;
 mod failure;
@@ -25,6 +24,7 @@ mod scene_report;
 mod shell;
 mod state;
 mod stokes;
+mod write_outputs;
 
 use std::process::ExitCode;
 

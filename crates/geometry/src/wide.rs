@@ -25,12 +25,22 @@ pub(crate) const LEAF: u32 = 1 << 31;
 /// others would say nothing of it.
 pub(crate) const INSTANCE_LEAF: u32 = 1 << 30;
 
-/// What primitives a tree holds, as far as rays have walks of their own: any.
-pub(crate) const MIXED: u8 = 0;
-/// Triangles alone.
-pub(crate) const MESH: u8 = 1;
-/// Spheres alone.
-pub(crate) const BALLS: u8 = 2;
+/// Which primitives a tree holds, as far as traversals are specialised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum TreeKind {
+    /// Of several kinds.
+    Any,
+    /// Triangles alone.
+    Triangles,
+    /// Spheres alone.
+    Spheres,
+}
+
+/// Kinds as const parameters of traversals.
+pub(crate) const ANY_KIND: u8 = TreeKind::Any as u8;
+pub(crate) const TRIANGLES: u8 = TreeKind::Triangles as u8;
+pub(crate) const SPHERES: u8 = TreeKind::Spheres as u8;
 
 /// A node: the boxes of up to sixteen children.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -108,8 +118,7 @@ pub(crate) struct WideTree {
     pub(crate) spheres: bool,
     /// Whether the tree is larger than near caches, so that what waits on the stack is announced.
     pub(crate) prefetch: bool,
-    /// One of [`MIXED`], [`MESH`] and [`BALLS`].
-    pub(crate) kind: u8,
+    pub(crate) kind: TreeKind,
 }
 
 impl WideTree {
@@ -136,9 +145,9 @@ impl WideTree {
             depth: size.depth,
             spheres: statistics.spheres > 0,
             kind: match statistics {
-                c if c.triangles == c.count => MESH,
-                c if c.spheres == c.count => BALLS,
-                _ => MIXED,
+                c if c.triangles == c.count => TreeKind::Triangles,
+                c if c.spheres == c.count => TreeKind::Spheres,
+                _ => TreeKind::Any,
             },
             prefetch: false,
         };

@@ -8,13 +8,13 @@ use etalon_transport::{Canvas, Features, ImageError, Shard};
 use miette::{Report, miette};
 use serde::Serialize;
 
-use crate::deliver::Delivery;
 use crate::failure::{Failure, Outcome, ProblemJson, problem_json};
 use crate::light::without_light;
 use crate::output::{self, Written};
 use crate::print;
 use crate::progress::percent;
 use crate::state::{self, Header, Kept};
+use crate::write_outputs::Delivery;
 
 /// Puts the parts of a picture together that `etalon render --shard` has written: byte for byte the whole picture.
 #[derive(clap::Args)]

@@ -1,11 +1,11 @@
 //! `etalon render`: a scene in, a picture out.
 
-mod job;
-mod keep;
+mod checkpoint;
+mod preflight;
 mod report;
 mod resume;
-mod room;
 mod run;
+mod setup;
 mod warnings;
 mod watcher;
 
@@ -17,7 +17,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::args::{Crop, PixelAt, ShardArg};
 use crate::channels::Aov;
-use crate::deliver::Delivery;
 use crate::display::{self, Display};
 use crate::failure::{Failure, Outcome, ProblemJson};
 use crate::interrupt::Interrupt;
@@ -28,10 +27,11 @@ use crate::overrides::Overrides;
 use crate::print;
 use crate::progress::RenderBar;
 use crate::state::Header;
-pub(crate) use job::check_shares;
-use job::{Job, set_up};
-use keep::{interrupted, keep, moved};
+use crate::write_outputs::Delivery;
+use checkpoint::{interrupted, keep, moved};
 use run::Run;
+pub(crate) use setup::check_shares;
+use setup::{Job, set_up};
 use watcher::{ProgressKind, Watcher};
 
 /// Renders a scene to EXR and PNG files.

@@ -7,7 +7,7 @@ use super::portable::Portable;
 use super::{Filters, Job, level};
 use crate::frame::Frame;
 use crate::query::{Query, RawHit};
-use crate::wide::{INSTANCE_LEAF, LEAF, Leaf, Leaves, MIXED, WideTree};
+use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, Leaves, WideTree};
 use crate::{Primitive, PrimitiveId, SurfaceId};
 use etalon_simd::Level;
 
@@ -75,7 +75,7 @@ fn walk<F: Filters, const W: usize>(filters: F, leaves: &[Leaf<W>], all: All<'_,
             let leaf = &leaves[(child & !LEAF) as usize];
             // No primitive counts as left: the filters would judge it by the origin that was moved ahead.
             let leaves = PrimitiveId::NONE;
-            let found = candidates::<F, MIXED, W>(filters, &frame_ray, &chords, leaf, limit, 0.0, leaves);
+            let found = candidates::<F, ANY_KIND, W>(filters, &frame_ray, &chords, leaf, limit, 0.0, leaves);
             for lane in bits(found.mask & !found.missed) {
                 t_max = all_of(primitives, query, leaf.id(lane), (from, t_max), visit);
             }

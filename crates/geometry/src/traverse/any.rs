@@ -10,7 +10,7 @@ use super::{Narrow, intersect_exact};
 use crate::frame::FrameRay;
 use crate::instance_node::InstanceNode;
 use crate::query::Query;
-use crate::wide::{BALLS, INSTANCE_LEAF, LEAF, Leaf, MIXED, NODE_WIDTH, Node16, Nodes, WideTree};
+use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, NODE_WIDTH, Node16, Nodes, SPHERES, WideTree};
 use crate::{Primitive, PrimitiveId};
 
 /// Whether anything is hit, in the order of the tree. A level of the stack is one entry, the children yet to be visited:
@@ -24,7 +24,7 @@ pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize, cons
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> bool {
     let ray = filters.ray(&frame_ray.boxes);
-    let chords = SphereFilter::new(frame_ray, KIND == BALLS || KIND == MIXED && tree.spheres);
+    let chords = SphereFilter::new(frame_ray, KIND == SPHERES || KIND == ANY_KIND && tree.spheres);
     let mut query = Deferred::new(start);
     let (leaves_id, aims_at) = (start.leaves(), start.aims_at());
     let limit = frame_ray.limit;
@@ -54,7 +54,7 @@ pub(super) fn any_on<F: Compiled, S: Start, const KIND: u8, const N: usize, cons
                     mask &= mask - 1;
                 }
             }
-            if KIND == MIXED && child & INSTANCE_LEAF != 0 {
+            if KIND == ANY_KIND && child & INSTANCE_LEAF != 0 {
                 break Open::Instance(&tree.instance_nodes()[(child & !(LEAF | INSTANCE_LEAF)) as usize]);
             }
             let leaf = &leaves[(child & !LEAF) as usize];

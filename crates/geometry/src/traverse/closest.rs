@@ -9,7 +9,7 @@ use super::{Filters, Narrow, NodeHits, intersect_exact};
 use crate::best::Best;
 use crate::frame::FrameRay;
 use crate::query::{Projection, RawHit};
-use crate::wide::{BALLS, INSTANCE_LEAF, LEAF, Leaf, MIXED, NODE_WIDTH, Nodes, WideTree};
+use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, NODE_WIDTH, Nodes, SPHERES, WideTree};
 use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.
@@ -22,7 +22,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
     frame_ray: &FrameRay<Narrow<F>>,
 ) -> Option<S::Hit> {
     let ray = filters.ray(&frame_ray.boxes);
-    let chords = SphereFilter::new(frame_ray, KIND == BALLS || KIND == MIXED && tree.spheres);
+    let chords = SphereFilter::new(frame_ray, KIND == SPHERES || KIND == ANY_KIND && tree.spheres);
     let mut query = Deferred::new(start);
     // At once, for its division takes as long as two nodes and waits for nothing.
     let projection = start.projection::<F::Four>(filters.into(), frame_ray.t_scale, frame_ray.axis);
@@ -90,7 +90,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
                 child = nearest as u32;
                 continue;
             }
-        } else if KIND == MIXED && child & INSTANCE_LEAF != 0 {
+        } else if KIND == ANY_KIND && child & INSTANCE_LEAF != 0 {
             let instance_node = &tree.instance_nodes()[(child & !(LEAF | INSTANCE_LEAF)) as usize];
             if filters.closest_in_instance(&mut best, instance_node, primitives, query.get_apart()) {
                 limit = limit.min(tree.frame.distance(frame_ray.start, best.t_max));
@@ -110,7 +110,7 @@ pub(super) fn closest_on<F: Compiled, S: Start, const KIND: u8, const N: usize, 
                 }
                 if candidates.certain >> lane & 1 == 1 {
                     // Its exact distance can wait until the end, when it has been fetched.
-                    if KIND == BALLS || !leaf.is_exact(lane) {
+                    if KIND == SPHERES || !leaf.is_exact(lane) {
                         filters.prefetch(&primitives[id.0 as usize]);
                     }
                     if pending.count == Pending::LIMIT {
@@ -286,7 +286,7 @@ fn prefetch<F: Filters, const KIND: u8, const W: usize>(
     }
     if child & LEAF == 0 {
         filters.prefetch(nodes.at(child));
-    } else if KIND != MIXED || child & INSTANCE_LEAF == 0 {
+    } else if KIND != ANY_KIND || child & INSTANCE_LEAF == 0 {
         filters.prefetch(&leaves[(child & !LEAF) as usize]);
     }
 }

@@ -8,7 +8,7 @@ use crate::frame::{Entry, FrameRay};
 use crate::instance::{at_least, told_end};
 use crate::instance_node::InstanceNode;
 use crate::query::{Query, RawHit};
-use crate::wide::{Leaf, Leaves, MESH, MIXED, NODE_WIDTH, WideTree};
+use crate::wide::{ANY_KIND, Leaf, Leaves, NODE_WIDTH, TRIANGLES, TreeKind, WideTree};
 use crate::{Hit, Primitive, Ray};
 
 /// [`Best::test`] of an instance: the same, without a query where there is a tree to walk. The bounds, which cost more than what
@@ -104,8 +104,8 @@ fn closest_in<F: Compiled, const W: usize>(
 ) -> Option<Hit<f64>> {
     const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
     match tree.0.kind {
-        MESH => closest_on::<F, _, MESH, ROOM, W>(filters, tree, primitives, ray, near),
-        _ => closest_on::<F, _, MIXED, ROOM, W>(filters, tree, primitives, ray, near),
+        TreeKind::Triangles => closest_on::<F, _, TRIANGLES, ROOM, W>(filters, tree, primitives, ray, near),
+        _ => closest_on::<F, _, ANY_KIND, ROOM, W>(filters, tree, primitives, ray, near),
     }
 }
 
@@ -119,7 +119,7 @@ fn any_in<F: Compiled, const W: usize>(
     near: &FrameRay<Narrow<F>>,
 ) -> bool {
     match tree.0.kind {
-        MESH => any_on::<F, _, MESH, { LEVELS[0] }, W>(filters, tree, primitives, ray, near),
-        _ => any_on::<F, _, MIXED, { LEVELS[0] }, W>(filters, tree, primitives, ray, near),
+        TreeKind::Triangles => any_on::<F, _, TRIANGLES, { LEVELS[0] }, W>(filters, tree, primitives, ray, near),
+        _ => any_on::<F, _, ANY_KIND, { LEVELS[0] }, W>(filters, tree, primitives, ray, near),
     }
 }

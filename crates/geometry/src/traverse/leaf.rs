@@ -5,7 +5,7 @@ use super::{Candidates, Filters, Narrow, Row};
 use crate::PrimitiveId;
 use crate::frame::{FrameRay, Lanes4};
 use crate::query::AXES;
-use crate::wide::{BALLS, Leaf, MESH, NO_ID};
+use crate::wide::{Leaf, NO_ID, SPHERES, TRIANGLES};
 
 /// The primitives of a leaf that the ray may hit in [0, `limit`], and the flat shapes and spheres that it certainly hits in
 /// (0, `certain_limit`). The primitive that the ray leaves is not among them unless it may be hit again, and never certain.
@@ -51,12 +51,12 @@ fn candidates_at<F: Filters, const KIND: u8, const W: usize>(
 ) -> Candidates<W> {
     // By lanes: a ray that leaves a primitive comes by it most often, at no time that could be foretold.
     let own = F::Vector::lanes_with(filters.into(), leaf.ids(), at, leaves.0);
-    if KIND == MESH {
+    if KIND == TRIANGLES {
         let mut found = flats::<F, true, W>(filters, ray, (leaf, at), limit, certain_limit);
         found.mask &= !own;
         return found;
     }
-    if KIND == BALLS {
+    if KIND == SPHERES {
         return spheres(filters, ray, chords, (leaf, at), own, limit, certain_limit);
     }
     let others = lanes::<F>(leaf.others(), at);
@@ -99,7 +99,7 @@ fn lanes<F: Filters>(mask: u32, at: usize) -> u32 {
 /// most three times that times their spread, over the determinant, and by less than 3δ for the rounding of distances, sum and
 /// quotient.
 #[inline(always)]
-fn flats<F: Filters, const MESH: bool, const W: usize>(
+fn flats<F: Filters, const TRIANGLES_ONLY: bool, const W: usize>(
     filters: F,
     ray: &FrameRay<Narrow<F>>,
     (leaf, at): (&Leaf<W>, usize),
@@ -114,7 +114,7 @@ fn flats<F: Filters, const MESH: bool, const W: usize>(
     let delta = ray.error + leaf.error();
     let mut error = leaf_error(delta, leaf.extent());
     let (mut least, mut most) = (v.min(w), v.max(w));
-    if MESH || leaf.quads() == 0 {
+    if TRIANGLES_ONLY || leaf.quads() == 0 {
         (least, most) = (least.min(u), most.max(u));
     } else {
         error *= 2.0;
@@ -140,7 +140,7 @@ fn flats<F: Filters, const MESH: bool, const W: usize>(
         mask: met,
         missed,
         unbounded: !determined,
-        certain: determined & inside & ahead & if MESH { u32::MAX } else { !lanes::<F>(leaf.disks(), at) },
+        certain: determined & inside & ahead & if TRIANGLES_ONLY { u32::MAX } else { !lanes::<F>(leaf.disks(), at) },
         near: Row(near.to_row(at)),
         far: Row(far.to_row(at)),
     }

@@ -34,7 +34,7 @@ use crate::best::Found;
 use crate::build::MAX_DEPTH;
 use crate::frame::{BoxRay, FrameRay};
 use crate::query::{Four, Projection, Query, RawHit};
-use crate::wide::{BALLS, Leaf, Leaves, MESH, MIXED, NODE_WIDTH, Node16, WideTree};
+use crate::wide::{ANY_KIND, Leaf, Leaves, NODE_WIDTH, Node16, SPHERES, TRIANGLES, TreeKind, WideTree};
 use crate::{Hits, Primitive, PrimitiveId, Rays, Triangle};
 pub(crate) use all::{Visit, all, all_of};
 use any::any_on;
@@ -174,9 +174,9 @@ fn closest_near<F: Compiled, S: Start, const W: usize>(
 ) -> Option<S::Hit> {
     const ROOM: usize = LEVELS[0] * (NODE_WIDTH - 1);
     match tree.0.kind {
-        MESH => closest_on::<F, S, MESH, ROOM, W>(filters, tree, primitives, start, ray),
-        BALLS => closest_on::<F, S, BALLS, ROOM, W>(filters, tree, primitives, start, ray),
-        _ => closest_on::<F, S, MIXED, ROOM, W>(filters, tree, primitives, start, ray),
+        TreeKind::Triangles => closest_on::<F, S, TRIANGLES, ROOM, W>(filters, tree, primitives, start, ray),
+        TreeKind::Spheres => closest_on::<F, S, SPHERES, ROOM, W>(filters, tree, primitives, start, ray),
+        _ => closest_on::<F, S, ANY_KIND, ROOM, W>(filters, tree, primitives, start, ray),
     }
 }
 
@@ -194,11 +194,11 @@ fn closest_far_with<F: Compiled, S: Start>(
         match tree.leaves() {
             Leaves::Eight(leaves) if const { F::Vector::WIDTH == 8 } => {
                 let ray = tree.frame.enter(filters.into(), &query)?;
-                return closest_on::<F, S, MIXED, ROOM, 8>(filters, (tree, leaves), primitives, start, &ray);
+                return closest_on::<F, S, ANY_KIND, ROOM, 8>(filters, (tree, leaves), primitives, start, &ray);
             }
             Leaves::Sixteen(leaves) if const { F::Vector::WIDTH == 16 } => {
                 let ray = tree.frame.enter(filters.into(), &query)?;
-                return closest_on::<F, S, MIXED, ROOM, 16>(filters, (tree, leaves), primitives, start, &ray);
+                return closest_on::<F, S, ANY_KIND, ROOM, 16>(filters, (tree, leaves), primitives, start, &ray);
             }
             _ => {}
         }
@@ -232,9 +232,9 @@ fn any_near<F: Compiled, S: Start, const W: usize>(
     ray: &FrameRay<Narrow<F>>,
 ) -> bool {
     match tree.0.kind {
-        MESH => any_on::<F, S, MESH, { LEVELS[0] }, W>(filters, tree, primitives, start, ray),
-        BALLS => any_on::<F, S, BALLS, { LEVELS[0] }, W>(filters, tree, primitives, start, ray),
-        _ => any_on::<F, S, MIXED, { LEVELS[0] }, W>(filters, tree, primitives, start, ray),
+        TreeKind::Triangles => any_on::<F, S, TRIANGLES, { LEVELS[0] }, W>(filters, tree, primitives, start, ray),
+        TreeKind::Spheres => any_on::<F, S, SPHERES, { LEVELS[0] }, W>(filters, tree, primitives, start, ray),
+        _ => any_on::<F, S, ANY_KIND, { LEVELS[0] }, W>(filters, tree, primitives, start, ray),
     }
 }
 
@@ -248,11 +248,11 @@ fn any_far_with<F: Compiled, S: Start>(filters: F, tree: &WideTree, primitives: 
         match tree.leaves() {
             Leaves::Eight(leaves) if const { F::Vector::WIDTH == 8 } => {
                 let Some(ray) = enter() else { return false };
-                return any_on::<F, S, MIXED, N, 8>(filters, (tree, leaves), primitives, start, &ray);
+                return any_on::<F, S, ANY_KIND, N, 8>(filters, (tree, leaves), primitives, start, &ray);
             }
             Leaves::Sixteen(leaves) if const { F::Vector::WIDTH == 16 } => {
                 let Some(ray) = enter() else { return false };
-                return any_on::<F, S, MIXED, N, 16>(filters, (tree, leaves), primitives, start, &ray);
+                return any_on::<F, S, ANY_KIND, N, 16>(filters, (tree, leaves), primitives, start, &ray);
             }
             _ => {}
         }
@@ -267,8 +267,8 @@ pub(crate) fn closest_deep(tree: &WideTree, primitives: &[Primitive], query: &Qu
     const ROOM: usize = LEVELS[1] * (NODE_WIDTH - 1);
     let ray = tree.frame.enter((), query)?;
     match tree.leaves() {
-        Leaves::Eight(l) => closest_on::<_, _, MIXED, ROOM, 8>(Portable, (tree, l), primitives, query, &ray),
-        Leaves::Sixteen(l) => closest_on::<_, _, MIXED, ROOM, 16>(Portable, (tree, l), primitives, query, &ray),
+        Leaves::Eight(l) => closest_on::<_, _, ANY_KIND, ROOM, 8>(Portable, (tree, l), primitives, query, &ray),
+        Leaves::Sixteen(l) => closest_on::<_, _, ANY_KIND, ROOM, 16>(Portable, (tree, l), primitives, query, &ray),
     }
 }
 
@@ -279,8 +279,8 @@ pub(crate) fn any_deep(tree: &WideTree, primitives: &[Primitive], query: &Query)
     const N: usize = LEVELS[1];
     let Some(ray) = tree.frame.enter((), query) else { return false };
     match tree.leaves() {
-        Leaves::Eight(l) => any_on::<_, _, MIXED, N, 8>(Portable, (tree, l), primitives, query, &ray),
-        Leaves::Sixteen(l) => any_on::<_, _, MIXED, N, 16>(Portable, (tree, l), primitives, query, &ray),
+        Leaves::Eight(l) => any_on::<_, _, ANY_KIND, N, 8>(Portable, (tree, l), primitives, query, &ray),
+        Leaves::Sixteen(l) => any_on::<_, _, ANY_KIND, N, 16>(Portable, (tree, l), primitives, query, &ray),
     }
 }
 

@@ -6,7 +6,7 @@ use etalon_transport::canvas::tiles_of;
 use etalon_transport::{PixelRect, Prepared, Shard, prepare_study};
 use miette::{Report, miette};
 
-use super::{Adaptive, Args, resume, room};
+use super::{Adaptive, Args, preflight, resume};
 use crate::args::PixelAt;
 use crate::channels::Channels;
 use crate::failure::Failure;
@@ -44,7 +44,7 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
         return Err(failure);
     }
     let stokes = loaded.scene.film.stokes || args.overrides.polarised();
-    room::check_memory(&loaded.scene, stokes, args.threads.unwrap_or(1) as usize, &mut failure);
+    preflight::check_memory(&loaded.scene, stokes, args.threads.unwrap_or(1) as usize, &mut failure);
     let film = &loaded.scene.film;
     let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let rect = args.crop.map_or(whole, |crop| crop.0);
@@ -122,7 +122,7 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
     let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
     check_shard(args, rect, shard, outputs, &mut failure);
     let channels = Channels::new(&args.aov, args.only);
-    room::check_disks(args.checkpoint.is_some(), &subject, &channels, outputs, &mut failure, &mut warnings);
+    preflight::check_disks(args.checkpoint.is_some(), &subject, &channels, outputs, &mut failure, &mut warnings);
     let resumed = if args.resume { resume::find(args, &subject, shard, &mut failure) } else { None };
     failure.into_outcome()?;
     if args.resume && resumed.is_none() {
