@@ -82,7 +82,7 @@ fn numbers_and_paths_have_their_usual_forms() {
     let folder = tempfile::tempdir().unwrap();
     let (file, cornell) = (folder.path().join("x.exr"), scene("cornell.json"));
     let ran = etalon_line("render {} -o {} --spp 1e1 --size 4x4 --json", [&cornell, &file]).expect(0);
-    assert_eq!(ran.json()["samples_per_pixel"], 10);
+    assert_eq!(ran.json()["spp"], 10);
     let (first, without) = ("render {} --pixel 1,1 --sample 0", "render {} --pixel 1,1");
     assert_eq!(etalon_line(first, [&cornell]).expect(0).stdout, etalon_line(without, [&cornell]).expect(0).stdout);
     etalon_line("render {} -o {} --error 2", [&cornell, &file]).expect(2).says(["2%", "0.02"]);
@@ -92,7 +92,7 @@ fn numbers_and_paths_have_their_usual_forms() {
 fn channels_that_no_output_can_hold_are_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let (png, exr, cornell) = (folder.path().join("x.png"), folder.path().join("x.exr"), scene("cornell.json"));
-    for option in ["--aov depth", "--bands 400:700:100"] {
+    for option in ["--aov depth", "--bands 450:650:100"] {
         let name = option.split(' ').next().unwrap();
         let ran = etalon_line(&format!("render {{}} -o {{}} {SMALL} {option}"), [&cornell, &png]).expect(2);
         assert!(ran.stderr.contains(name) && ran.stderr.contains("-o NAME.exr"), "{}", ran.stderr);
@@ -107,7 +107,9 @@ fn a_png_is_compared_as_it_looks() {
     let (one, two, cornell) = (folder.path().join("one.png"), folder.path().join("two.png"), scene("cornell.json"));
     etalon_line(&format!("render {{}} -o {{}} {SMALL}"), [&cornell, &one]).expect(0);
     etalon_line(&format!("render {{}} -o {{}} {SMALL} --exposure 1"), [&cornell, &two]).expect(0);
-    etalon_line("compare {} {}", [&one, &one]).expect(0).says(["all values are equal"]);
+    let equal = etalon_line("compare {} {}", [&one, &one]).expect(0).stdout;
+    assert!(equal.contains("all values are equal"), "{equal}");
     // It knows no errors, so a difference is not tested.
-    etalon_line("compare {} {}", [&one, &two]).expect(3).says(["no channel Error."]);
+    let untested = etalon_line("compare {} {}", [&one, &two]).expect(3).stdout;
+    assert!(untested.contains("no channel Error."), "{untested}");
 }

@@ -21,7 +21,6 @@ fn help_and_version_are_no_failures() {
 fn what_is_no_command_or_option_exits_2_and_is_named() {
     etalon(["rendre"]).expect(2).says(["rendre", "render"]);
     etalon_line("render {} -o x.exr --ssp 4", [&scene("cornell.json")]).expect(2).says(["--ssp", "--spp"]);
-    etalon_line("render {}", [&scene("cornell.json")]).expect(2).says(["--output"]);
     etalon(["render"]).expect(2).says(["SCENE"]);
 }
 
