@@ -14,6 +14,9 @@ fn in_folder<const N: usize>(folder: &Path, line: &str, paths: [&Path; N]) -> Ra
     ends(command)
 }
 
+/// Makes a file.
+type Make = fn(&Path);
+
 const SMALL: &str = "--spp 1 --size 4x4";
 
 #[test]
@@ -29,7 +32,7 @@ fn a_picture_without_a_name_is_named_after_its_scene_and_replaces_only_pictures_
     assert_ne!(fs::read(at.join("cornell.exr")).unwrap(), before);
 
     // Nothing else is: text, a picture by another program, a folder, a link.
-    let foreign: [(&str, fn(&Path)); 4] = [
+    let foreign: [(&str, Make); 4] = [
         ("text", |path| fs::write(path, "notes").unwrap()),
         ("picture", |path| {
             let picture = etalon_picture::Picture::from_rgb(1, 1, &[[1.0; 3]]).unwrap();
