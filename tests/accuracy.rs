@@ -56,7 +56,7 @@ fn a_render_that_ends_by_error_has_the_pixels_of_that_number_of_samples() {
     // The first pass must be whole, however slow the machine; these take milliseconds.
     assert!(report["seconds"].as_f64().unwrap() < 1.5);
     let ran = etalon_line("render {} -o {} --error 5", [&scene("cornell.json"), &folder.path().join("d.exr")]);
-    ran.expect(2).says(["--error", "1%"]);
+    ran.expect(2).says(["--error", "5%", "0.05"]);
 }
 
 #[test]

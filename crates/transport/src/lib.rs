@@ -19,7 +19,7 @@
 //! | [`features`] | what camera rays meet first |
 //! | [`canvas`] | a picture under way: divided, put down, taken up |
 //! | [`accuracy`], [`pilot`], [`cost_estimate`], [`mod@stop`] | how wrong a film is, what accuracy will cost, when to end |
-//! | [`adaptive`], [`allocation`] | where samples are worth most, and how they are spread |
+//! | [`adaptive`], [`sample_allocation`] | where samples are worth most, and how they are spread |
 //! | [`replay`] | one path, vertex by vertex |
 //!
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
