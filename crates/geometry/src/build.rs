@@ -1,19 +1,31 @@
-//! Building a binary tree of boxes by the surface area heuristic.
+//! Building a binary tree of boxes: by the surface area heuristic here, by clustering of neighbours in `ploc`.
 //!
-//! How its trees compare with those of the `obvhs` crate stands in `docs/decisions/0003-own-tree-builder.md`.
+//! How the two compare stands in `docs/decisions/0049-obvhs-as-fast-builder.md`.
 
+mod ploc;
 mod span;
 mod split;
 
 use crate::frame::Box32;
 use crate::traverse::vectorised;
 use etalon_simd::Level;
+pub(crate) use ploc::build_fast;
 use span::Extent;
 pub(crate) use span::{Item, Span};
 pub(crate) use split::Costs;
 use split::{Bins, Partition, SWEEP_LIMIT, Sweep};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+
+/// Which builder makes the tree of a [`Geometry`](crate::Geometry).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TreeBuilder {
+    /// Binned splits by the surface area heuristic, then an optimiser: the fastest rays.
+    #[default]
+    Thorough,
+    /// Locally ordered clustering (PLOC) by the crate `obvhs`, without an optimiser: for trees that are built often.
+    Fast,
+}
 
 /// Primitives of a leaf, at most. Which of these become one leaf of the tree that rays traverse is found when that is made.
 pub(crate) const LEAF_LIMIT: usize = 8;

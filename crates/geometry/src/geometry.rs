@@ -1,7 +1,7 @@
 //! The door: a set of primitives that answers ray queries.
 
 use crate::best::{Best, Found};
-use crate::build::{Costs, Item, LEAF_LIMIT, build};
+use crate::build::{Costs, Item, LEAF_LIMIT, TreeBuilder, build, build_fast};
 use crate::frame::Frame;
 use crate::optimize::improved;
 use crate::query::{Query, RawHit};
@@ -65,7 +65,16 @@ impl Geometry {
     /// If there are more than 2²⁹ primitives, more than 2³¹ instances, or more than [`MAX_NESTING`] of them within each
     /// other.
     pub fn build(primitives: Vec<Primitive>) -> Result<Self, GeometryError> {
-        Self::build_with(primitives, FLAT_LIMIT)
+        Self::build_by(primitives, TreeBuilder::Thorough)
+    }
+
+    /// [`Geometry::build`] with a choice of the tree's builder. The hits of rays do not depend on it. Of a geometry that is placed by
+    /// instances, the boxes of these follow the tree: there the last bits of a hit at the edge of a box may.
+    ///
+    /// # Errors
+    /// As [`Geometry::build`].
+    pub fn build_by(primitives: Vec<Primitive>, builder: TreeBuilder) -> Result<Self, GeometryError> {
+        Self::build_as(primitives, FLAT_LIMIT, builder)
     }
 
     /// [`Geometry::build`] with a tree above another number of primitives: for tests, which want trees of few.
@@ -73,7 +82,15 @@ impl Geometry {
     /// # Errors
     /// As [`Geometry::build`].
     #[doc(hidden)]
-    pub fn build_with(mut primitives: Vec<Primitive>, flat_limit: usize) -> Result<Self, GeometryError> {
+    pub fn build_with(primitives: Vec<Primitive>, flat_limit: usize) -> Result<Self, GeometryError> {
+        Self::build_as(primitives, flat_limit, TreeBuilder::Thorough)
+    }
+
+    pub(crate) fn build_as(
+        mut primitives: Vec<Primitive>,
+        flat_limit: usize,
+        builder: TreeBuilder,
+    ) -> Result<Self, GeometryError> {
         if primitives.len() > 1 << 29 {
             return Err(GeometryError::TooMany(primitives.len()));
         }
@@ -108,7 +125,10 @@ impl Geometry {
                 |(id, p): (usize, &Primitive)| Item::new(&frame.enclose(p.bounds()), id as u32, instance_leaf(p));
             let items = primitives.par_iter().enumerate().map(item).collect();
             let costs = costs(&statistics);
-            let binary = improved(build(items, costs, level), costs, level);
+            let binary = match builder {
+                TreeBuilder::Thorough => improved(build(items, costs, level), costs, level),
+                TreeBuilder::Fast => build_fast(items, costs, level),
+            };
             outline = binary.outline(OUTLINE_LIMIT).into_iter().map(|b| frame.unscaled_box(b)).collect();
             WideTree::collapse(frame, &binary, &primitives, &statistics, costs, level::lanes(level))
         });

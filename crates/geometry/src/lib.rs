@@ -11,7 +11,7 @@
 //! | `query` | a ray prepared for the intersection tests; the watertight projection |
 //! | `double_double` | the arithmetic behind `f64`, where an error bound calls for it |
 //! | `frame` | the accelerator's frame and conservative box tests in `f32` |
-//! | `build` | the builder of a binary tree |
+//! | `build` | the two builders of a binary tree ([`TreeBuilder`]) |
 //! | `improve` | grouping and moving its subtrees |
 //! | `measure` | how often rays enter a box |
 //! | `wide` | the tree of sixteen children a node that it becomes |
@@ -48,6 +48,7 @@ mod traverse;
 mod wide;
 
 pub use aabb::Aabb;
+pub use build::TreeBuilder;
 pub use geometry::{Geometry, GeometryError, MAX_NESTING};
 pub use instance::{Instance, Placement};
 pub use lanes::{Hits, LANES, Rays, SurfacePoints};

@@ -3,9 +3,10 @@
 //! One thread; all engines take turns on the same rays, and each figure is made of the best of several turns. Run with
 //! `cargo bench -p etalon-geometry --bench traversal -- [NAME] [--rays KIND] [--turns N] [--alone] [--eights]`, where NAME and
 //! KIND select scenes and rays by substring; `--alone` leaves Embree out, `--eights` casts eight rays at once, too, where there is a
-//! tree.
+//! tree. `--builders` compares the two builders of trees instead, on meshes and on balls that move.
 #![allow(missing_docs, clippy::print_stdout)] // A bench prints.
 
+mod builders;
 mod embree;
 mod scenes;
 
@@ -24,10 +25,12 @@ struct Options {
     turns: usize,
     alone: bool,
     eights: bool,
+    builders: bool,
 }
 
 fn main() {
-    let mut options = Options { filter: String::new(), rays: String::new(), turns: 7, alone: false, eights: false };
+    let mut options =
+        Options { filter: String::new(), rays: String::new(), turns: 7, alone: false, eights: false, builders: false };
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
@@ -36,8 +39,12 @@ fn main() {
             "--rays" => options.rays = arguments.next().expect("--rays takes a kind of rays"),
             "--alone" => options.alone = true,
             "--eights" => options.eights = true,
+            "--builders" => options.builders = true,
             name => options.filter = name.to_owned(),
         }
+    }
+    if options.builders {
+        return compare_builders(&options);
     }
     let threads = rayon::current_num_threads();
     let embree = if options.alone { None } else { Embree::load(threads) };
@@ -89,6 +96,21 @@ fn main() {
         let content = Content::Instances { placed: &placed, placements: &placements, others: &others };
         let primitives = instances(&placed, &placements, &others);
         measure("instances-10k", primitives, embree.as_ref().map(|e| (e, content)), &options);
+    }
+}
+
+fn compare_builders(options: &Options) {
+    println!("{} build threads; rays of one thread\n", rayon::current_num_threads());
+    type Make = fn() -> Vec<Primitive>;
+    let scenes: [(&str, Make); 5] = [
+        ("displaced-100k", || Mesh::displaced(100_000).primitives()),
+        ("gridded-100k", || Mesh::gridded(100_000).primitives()),
+        ("slivers-100k", || Mesh::slivers(100_000).primitives()),
+        ("moving-1k", || builders::movers(1_000)),
+        ("moving-100k", || builders::movers(100_000)),
+    ];
+    for (name, make) in scenes.into_iter().filter(|(name, _)| name.contains(&options.filter)) {
+        builders::compare(name, &make(), options.turns);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Tests of the whole: the tree against brute force, watertightness, spheres, slabs, and rays that leave surfaces.
 
+mod builders;
 mod cylinders;
 mod flat;
 mod flattened;
