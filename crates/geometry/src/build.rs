@@ -23,7 +23,8 @@ pub enum TreeBuilder {
     /// Binned splits by the surface area heuristic, then an optimiser: the fastest rays.
     #[default]
     Thorough,
-    /// Locally ordered clustering (PLOC) by the crate `obvhs`, without an optimiser: for trees that are built often.
+    /// Locally ordered clustering (PLOC) by the crate `obvhs`, without an optimiser: for trees over some thousand moving objects that are
+    /// built often. On meshes it is slower (`docs/decisions/0049-obvhs-as-fast-builder.md`).
     Fast,
 }
 

@@ -312,6 +312,13 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 Cargo(&["bench", "-p", "etalon-geometry", "--bench", "traversal"]),
             ),
             named(
+                "bench-builders",
+                "[SCENE] [--turns N]",
+                "build and trace times of both tree builders, in turns",
+                "1 min",
+                Cargo(&["bench", "-p", "etalon-geometry", "--bench", "traversal", "--", "--builders"]),
+            ),
+            named(
                 "films",
                 "[OPTIONS]",
                 "hashes of fifty films, to hold changes of code to the same bits",

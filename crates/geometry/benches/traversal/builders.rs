@@ -24,7 +24,7 @@ pub(crate) fn movers(count: usize) -> Vec<Primitive> {
     (0..count).map(|_| one()).collect()
 }
 
-/// Of each the best of several turns: times to build and to trace, and after how many rays the thorough builder has paid.
+/// Of each the best of several turns: times to build and to trace, and after how many rays their sums are equal.
 pub(crate) fn compare(name: &str, primitives: &[Primitive], turns: usize) {
     let mut build = [f64::INFINITY; 2];
     let mut built = [None, None];
@@ -60,10 +60,11 @@ pub(crate) fn compare(name: &str, primitives: &[Primitive], turns: usize) {
         }
         assert_eq!(hits[0], hits[1], "both builders find the same hits");
         let ns = best.map(|chunks| chunks.iter().sum::<f64>() / count as f64 * 1e9);
+        // Rays after which the builder of faster rays has made up for a slower build.
         let even = (build[0] - build[1]) / (ns[1] - ns[0]) * 1e3;
-        let even = if ns[1] > ns[0] { format!("{even:.2} million rays") } else { "never".to_owned() };
+        let even = if even > 0.0 { format!("equal after {even:.2} million rays") } else { "never equal".to_owned() };
         println!(
-            "  {kind:<17} {:>7.1} ns a ray; fast: {:>7.1} ns, {:.2} times as long; thorough pays after {even}",
+            "  {kind:<17} {:>7.1} ns a ray; fast: {:>7.1} ns, {:.2} times as long; {even}",
             ns[0],
             ns[1],
             ns[1] / ns[0]

@@ -12,6 +12,7 @@ use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
+use std::iter::once;
 use std::ops::Range;
 
 /// Boxes of a run, at most: PLOC takes at most this many passes over them.
@@ -25,12 +26,12 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy)]
 struct Root {
     bounds: Span,
-    /// Its index in [`Clusters`].
+    /// Its index in [`Forest`].
     cluster: u32,
 }
 
 /// Nodes by index: first one leaf for each primitive, then inner nodes, children before parents.
-struct Clusters {
+struct Forest {
     bounds: Vec<Span>,
     children: Vec<[u32; 2]>,
 }
@@ -46,24 +47,24 @@ pub(crate) fn build_fast(items: Vec<Item>, costs: Costs, level: Level) -> Binary
 
 /// The tree that clustering makes. None if it is too deep for rays.
 fn clustered(items: &[Item]) -> Option<BinaryTree> {
-    let mut clusters = Clusters {
+    let mut forest = Forest {
         bounds: items.iter().map(|item| Span::of(&item.span().to_box())).collect(),
         children: vec![[NONE; 2]; items.len()],
     };
     let mut roots: Vec<Root> =
-        (0..items.len() as u32).map(|cluster| Root { bounds: clusters.bounds[cluster as usize], cluster }).collect();
+        (0..items.len() as u32).map(|cluster| Root { bounds: forest.bounds[cluster as usize], cluster }).collect();
     while roots.len() > 1 {
         let runs = sorted_runs(&mut roots);
         let joined: Vec<Vec<[u32; 2]>> = runs.par_iter().map(|run| joined(&roots[run.clone()])).collect();
-        roots = runs.iter().zip(joined).map(|(run, joined)| clusters.add(&roots[run.clone()], &joined)).collect();
+        roots = runs.iter().zip(joined).map(|(run, joined)| forest.add(&roots[run.clone()], &joined)).collect();
     }
-    clusters.tree(items, roots[0].cluster)
+    forest.tree(items, roots[0].cluster)
 }
 
 /// Sorts boxes along a Morton curve and divides them into runs of at most [`RUN_LIMIT`], between cells of the curve; equal codes by count.
 fn sorted_runs(roots: &mut Vec<Root>) -> Vec<Range<usize>> {
     if roots.len() <= RUN_LIMIT {
-        return vec![0..roots.len()];
+        return once(0..roots.len()).collect();
     }
     let centres = roots.iter().fold([[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]], |[lower, upper], root| {
         let c = root.bounds.centre2();
@@ -79,12 +80,12 @@ fn sorted_runs(roots: &mut Vec<Root>) -> Vec<Range<usize>> {
         };
         axis(0) | axis(1) << 1 | axis(2) << 2
     };
-    let mut coded: Vec<(u64, Root)> = roots.par_iter().map(|root| (code(root), *root)).collect();
-    // Clusters differ: the order is total.
-    coded.par_sort_unstable_by_key(|(code, root)| (*code, root.cluster));
-    roots.clear();
-    roots.extend(coded.iter().map(|(_, root)| *root));
-    let (mut runs, mut rest) = (Vec::new(), vec![0..coded.len()]);
+    // Places differ: the order is total.
+    let mut coded: Vec<(u64, u32)> =
+        roots.par_iter().enumerate().map(|(place, root)| (code(root), place as u32)).collect();
+    coded.par_sort_unstable();
+    *roots = coded.par_iter().map(|&(_, place)| roots[place as usize]).collect();
+    let (mut runs, mut rest) = (Vec::new(), Vec::from_iter(once(0..coded.len())));
     while let Some(run) = rest.pop() {
         if run.len() <= RUN_LIMIT {
             runs.push(run);
@@ -119,7 +120,7 @@ fn joined(run: &[Root]) -> Vec<[u32; 2]> {
         })
         .collect();
     let places = (0..run.len() as u32).collect();
-    let tree = PlocBuilder::new().build(PlocSearchDistance::Medium, &boxes, places, SortPrecision::U64, 0);
+    let tree = PlocBuilder::new().build(PlocSearchDistance::Low, &boxes, places, SortPrecision::U64, 0);
     // Parents come before children there, and a parent's children are neighbours.
     let mut place = vec![NONE; tree.nodes.len()];
     let mut joined = Vec::with_capacity(run.len() - 1);
@@ -135,7 +136,7 @@ fn joined(run: &[Root]) -> Vec<[u32; 2]> {
     joined
 }
 
-impl Clusters {
+impl Forest {
     /// Adds the inner nodes over a run; its root.
     fn add(&mut self, run: &[Root], joined: &[[u32; 2]]) -> Root {
         let base = self.children.len();
