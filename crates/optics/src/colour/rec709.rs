@@ -5,7 +5,7 @@
 //! D65 by the CIE's own table has (0.31273, 0.32902), so a D65-lit perfect reflector has an RGB that differs from
 //! (1, 1, 1) by up to 2.6·10⁻⁴; that is the rounding in the Recommendation, not an error of the renderer.
 
-type Matrix = [[f64; 3]; 3];
+use super::matrix::{Matrix, inverse, multiply};
 
 /// Chromaticities (x, y) of the red, green and blue primaries of Rec. 709.
 pub const REC709_PRIMARIES_XY: [[f64; 2]; 3] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
@@ -13,17 +13,17 @@ pub const REC709_PRIMARIES_XY: [[f64; 2]; 3] = [[0.64, 0.33], [0.30, 0.60], [0.1
 pub const REC709_WHITE_XY: [f64; 2] = [0.3127, 0.3290];
 
 /// Takes linear Rec. 709 to XYZ; (1, 1, 1) has Y = 1.
-pub const XYZ_FROM_REC709: Matrix = rgb_to_xyz_matrix([
-    REC709_WHITE_XY[0] / REC709_WHITE_XY[1],
-    1.0,
-    (1.0 - REC709_WHITE_XY[0] - REC709_WHITE_XY[1]) / REC709_WHITE_XY[1],
-]);
+pub const XYZ_FROM_REC709: Matrix = rgb_to_xyz_matrix(xyz_of_chromaticity(REC709_WHITE_XY));
 /// Takes XYZ to linear Rec. 709.
 pub const REC709_FROM_XYZ: Matrix = inverse(&XYZ_FROM_REC709);
 
 /// Takes linear RGB of the Rec. 709 primaries to XYZ such that (1, 1, 1) becomes `white` (SMPTE RP 177).
 pub(crate) const fn rgb_to_xyz_matrix(white: [f64; 3]) -> Matrix {
-    let p = REC709_PRIMARIES_XY;
+    primaries_to_xyz(REC709_PRIMARIES_XY, white)
+}
+
+/// Takes linear RGB of these primaries to XYZ such that (1, 1, 1) becomes `white` (SMPTE RP 177).
+const fn primaries_to_xyz(p: [[f64; 2]; 3], white: [f64; 3]) -> Matrix {
     let mut m = [[0.0; 3]; 3];
     let mut c = 0;
     while c < 3 {
@@ -43,40 +43,19 @@ pub(crate) const fn rgb_to_xyz_matrix(white: [f64; 3]) -> Matrix {
     m
 }
 
-/// Matrix times vector.
-pub(crate) const fn multiply(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
-    [
-        m[0][0] * v[0] + m[0][1] * v[1] + m[0][2] * v[2],
-        m[1][0] * v[0] + m[1][1] * v[1] + m[1][2] * v[2],
-        m[2][0] * v[0] + m[2][1] * v[1] + m[2][2] * v[2],
-    ]
+/// XYZ of a chromaticity (x, y) with Y = 1: (x/y, 1, (1 − x − y)/y).
+pub const fn xyz_of_chromaticity([x, y]: [f64; 2]) -> [f64; 3] {
+    [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// The inverse by cofactors; the colour matrices are well conditioned.
-pub(crate) const fn inverse(m: &Matrix) -> Matrix {
-    let cof = [
-        [
-            m[1][1] * m[2][2] - m[1][2] * m[2][1],
-            m[0][2] * m[2][1] - m[0][1] * m[2][2],
-            m[0][1] * m[1][2] - m[0][2] * m[1][1],
-        ],
-        [
-            m[1][2] * m[2][0] - m[1][0] * m[2][2],
-            m[0][0] * m[2][2] - m[0][2] * m[2][0],
-            m[0][2] * m[1][0] - m[0][0] * m[1][2],
-        ],
-        [
-            m[1][0] * m[2][1] - m[1][1] * m[2][0],
-            m[0][1] * m[2][0] - m[0][0] * m[2][1],
-            m[0][0] * m[1][1] - m[0][1] * m[1][0],
-        ],
-    ];
-    let d = m[0][0] * cof[0][0] + m[0][1] * cof[1][0] + m[0][2] * cof[2][0];
-    [
-        [cof[0][0] / d, cof[0][1] / d, cof[0][2] / d],
-        [cof[1][0] / d, cof[1][1] / d, cof[1][2] / d],
-        [cof[2][0] / d, cof[2][1] / d, cof[2][2] / d],
-    ]
+/// Takes linear RGB of primaries with these chromaticities (x, y) to XYZ, such that (1, 1, 1) becomes the white with Y = 1
+/// (SMPTE RP 177).
+///
+/// `None` where there is no such matrix: coordinates that are not finite, a y of 0, primaries on a line.
+pub fn xyz_from_rgb(primaries_xy: [[f64; 2]; 3], white_xy: [f64; 2]) -> Option<Matrix> {
+    let matrix = primaries_to_xyz(primaries_xy, xyz_of_chromaticity(white_xy));
+    let usable = |m: &Matrix| m.iter().flatten().all(|v| v.is_finite());
+    (usable(&matrix) && usable(&inverse(&matrix))).then_some(matrix)
 }
 
 /// Linear Rec. 709 of an XYZ; negative where the colour is outside the gamut.
@@ -134,6 +113,22 @@ mod tests {
         assert_relative_eq!(white[1], 1.0, epsilon = 1e-15);
         assert_relative_eq!(white[0] / sum, REC709_WHITE_XY[0], epsilon = 1e-15);
         assert_relative_eq!(white[1] / sum, REC709_WHITE_XY[1], epsilon = 1e-15);
+    }
+
+    #[test]
+    fn primaries_decide_the_matrix() {
+        assert_eq!(xyz_from_rgb(REC709_PRIMARIES_XY, REC709_WHITE_XY), Some(XYZ_FROM_REC709));
+        // ITU-R BT.2020-2, table 4: the weights of the luminance.
+        let wide = xyz_from_rgb([[0.708, 0.292], [0.170, 0.797], [0.131, 0.046]], REC709_WHITE_XY).unwrap();
+        for (c, weight) in [0.2627, 0.6780, 0.0593].into_iter().enumerate() {
+            assert!((wide[1][c] - weight).abs() < 5e-5, "{c}: {}", wide[1][c]);
+        }
+        for primaries in
+            [[[0.3, 0.3]; 3], [[0.1, 0.1], [0.2, 0.2], [0.4, 0.4]], [[0.64, 0.0], [0.3, 0.6], [0.15, 0.06]]]
+        {
+            assert_eq!(xyz_from_rgb(primaries, REC709_WHITE_XY), None, "{primaries:?}");
+        }
+        assert_eq!(xyz_from_rgb(REC709_PRIMARIES_XY, [f64::NAN, 0.3]), None);
     }
 
     #[test]
