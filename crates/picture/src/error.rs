@@ -100,6 +100,12 @@ pub enum PictureError {
         /// What is wrong with it.
         why: &'static str,
     },
+    /// A picture that cannot be developed as it was asked for.
+    #[error("{why}")]
+    Develop {
+        /// What it lacks, as a sentence.
+        why: String,
+    },
     /// Two pictures that cannot be compared pixel by pixel.
     #[error("pictures of {} × {} and {} × {} pixels cannot be compared", image.0, image.1, reference.0, reference.1)]
     SizeMismatch {
@@ -111,6 +117,10 @@ pub enum PictureError {
 }
 
 impl PictureError {
+    pub(crate) fn develop(why: impl Into<String>) -> Self {
+        Self::Develop { why: why.into() }
+    }
+
     pub(crate) fn io(action: &'static str, path: &Path, source: std::io::Error) -> Self {
         Self::Io { action, path: path.to_owned(), source }
     }

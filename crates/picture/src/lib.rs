@@ -4,6 +4,8 @@
 //! - [`write_exr`] and [`read_exr`] keep every channel and every attribute; [`RenderInfo`] is how a render describes
 //!   itself. EXR is the file that keeps the radiometric truth.
 //! - [`encode_srgb8`] and [`write_png`] make the picture that a screen shows, and say what was lost on the way.
+//! - [`develop`](mod@develop) holds what stands between the two: exposure, white balance, tone curves, crop and scale, false colour, maps
+//!   of the error, spectra.
 //! - Files appear under their name whole or not at all ([`write_atomically`]), and [`check_writable`] finds out before
 //!   an hour of rendering whether they can.
 //! - [`compare`] measures RMSE and relMSE, [`flip`](fn@flip) what the eye sees.
@@ -12,6 +14,7 @@
 
 mod atomic;
 mod attribute;
+pub mod develop;
 mod error;
 mod error_info;
 mod exr_header;

@@ -8,6 +8,8 @@ pub trait Sample: Copy + Send + Sync + PartialEq + std::fmt::Debug + sealed::Sea
     fn to_f32(self) -> f32;
     /// The same number as an `f64`.
     fn to_f64(self) -> f64;
+    /// The nearest number of this type.
+    fn from_f64(value: f64) -> Self;
 }
 
 mod sealed {
@@ -24,6 +26,10 @@ impl Sample for f32 {
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
+
+    fn from_f64(value: f64) -> Self {
+        value as Self
+    }
 }
 
 impl Sample for f64 {
@@ -33,6 +39,10 @@ impl Sample for f64 {
 
     fn to_f64(self) -> f64 {
         self
+    }
+
+    fn from_f64(value: f64) -> Self {
+        value
     }
 }
 

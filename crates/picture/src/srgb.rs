@@ -39,21 +39,30 @@ pub struct Clipping {
 /// # Errors
 /// A missing channel.
 pub fn encode_srgb8<T: Sample>(picture: &Picture<T>, exposure_ev: f64) -> Result<(Rgb8, Clipping), PictureError> {
-    let channels = [picture.require("R")?, picture.require("G")?, picture.require("B")?];
     let scale = exposure_ev.exp2();
+    encode_with(picture, |rgb| rgb.map(|linear| scale * linear))
+}
+
+/// [`encode_srgb8`] with any function from the picture's linear light to that of the screen.
+pub(crate) fn encode_with<T: Sample>(
+    picture: &Picture<T>,
+    light: impl Fn([f64; 3]) -> [f64; 3],
+) -> Result<(Rgb8, Clipping), PictureError> {
+    let channels = [picture.require("R")?, picture.require("G")?, picture.require("B")?];
     let mut clipping = Clipping { of: picture.width() * picture.height(), ..Clipping::default() };
     let mut pixels = Vec::with_capacity(3 * clipping.of);
     for index in 0..clipping.of {
-        let (mut above, mut below, mut non_finite) = (false, false, false);
-        for channel in channels {
-            let linear = channel[index].to_f64();
-            let level = 255.0 * encode_srgb(scale * linear);
-            non_finite |= !linear.is_finite();
-            above |= linear.is_finite() && level > 255.5;
-            below |= linear.is_finite() && level < -0.5;
+        let linear = channels.map(|channel| channel[index].to_f64());
+        let finite = linear.map(f64::is_finite);
+        let levels = light(linear).map(|value| 255.0 * encode_srgb(value));
+        let (mut above, mut below) = (false, false);
+        for (level, finite) in levels.into_iter().zip(finite) {
+            above |= finite && level > 255.5;
+            below |= finite && level < -0.5;
             // Saturates, and takes NaN to 0.
             pixels.push(level.round() as u8);
         }
+        let non_finite = finite != [true; 3];
         clipping.above += usize::from(above);
         clipping.below += usize::from(below);
         clipping.non_finite += usize::from(non_finite);
