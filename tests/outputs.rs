@@ -59,7 +59,7 @@ fn an_exposure_that_nothing_shows_is_worth_a_warning() {
     let output = folder.path().join("x.exr");
     let line = "render {} -o {} --spp 1 --size 4x4 --exposure 1 --json";
     let ran = etalon_line(line, [&scene("cornell.json"), &output]).expect(0).says(["--exposure"]);
-    assert_eq!(ran.json()["warnings"][0]["code"], "exposure-unused");
+    assert_eq!(ran.json()["warnings"][0]["code"], "develop-unused");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use etalon_picture::develop::Rect;
 use etalon_transport::{PixelRect, Shard};
 
 /// Largest side of a picture, pixels.
@@ -95,6 +96,25 @@ impl FromStr for BandsArg {
     }
 }
 
+/// `X,Y,W,H`: the first column and row, the columns and rows; not empty.
+pub(crate) fn rect(text: &str) -> Result<Rect, String> {
+    match numbers(text).map(|numbers: [u32; 4]| numbers.map(|number| number as usize)) {
+        Some([x, y, width, height]) if width > 0 && height > 0 => Ok(Rect { x, y, width, height }),
+        _ => {
+            Err("a rectangle is X,Y,W,H in pixels from the top left, W and H at least 1, such as 10,20,64,48"
+                .to_owned())
+        }
+    }
+}
+
+/// `X,Y`, a single pixel, or `X,Y,W,H`.
+pub(crate) fn region(text: &str) -> Result<Rect, String> {
+    match numbers(text).map(|numbers: [u32; 2]| numbers.map(|number| number as usize)) {
+        Some([x, y]) => Ok(Rect { x, y, width: 1, height: 1 }),
+        None => rect(text).map_err(|error| format!("a pixel is X,Y; {error}")),
+    }
+}
+
 /// A number that is not infinite and not NaN.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -171,6 +191,17 @@ mod tests {
         assert_eq!("1X65536".parse(), Ok(Size { width: 1, height: 65_536 }));
         assert_eq!("1,3,2,7".parse(), Ok(Crop(PixelRect { x0: 1, x1: 3, y0: 2, y1: 7 })));
         assert_eq!("12, 40".parse(), Ok(PixelAt { x: 12, y: 40 }));
+    }
+
+    #[test]
+    fn rectangles_and_regions_are_read_as_they_are_written() {
+        let whole = Rect { x: 1, y: 2, width: 3, height: 4 };
+        assert_eq!(rect("1,2,3, 4"), Ok(whole));
+        assert_eq!(region("1,2,3,4"), Ok(whole));
+        assert_eq!(region("1,2"), Ok(Rect { width: 1, height: 1, ..whole }));
+        for text in ["", "1", "1,2,3", "1,2,0,4", "1,2,3,0", "-1,2,3,4", "1,2,3,4,5", "4294967296,0,1,1"] {
+            assert!(rect(text).is_err() && region(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@
 mod args;
 mod channels;
 mod commands;
+mod developing;
 mod display;
 mod excerpt;
 mod failure;
@@ -48,11 +49,12 @@ struct Cli {
 /// What to do. A command is listed here once it works.
 #[derive(Subcommand)]
 enum Command {
-    Render(commands::render::Args),
+    Render(Box<commands::render::Args>),
     Merge(commands::merge::Args),
     Farm(commands::farm::Args),
     Quote(commands::quote::Args),
     Compare(commands::compare::Args),
+    Develop(commands::develop::Args),
     #[cfg(feature = "denoise")]
     Denoise(commands::denoise::Args),
     Study(commands::study::Args),
@@ -72,11 +74,12 @@ fn main() -> ExitCode {
         return Failure::input(miette::miette!("{error}")).report();
     }
     let outcome: Outcome = match cli.command {
-        Command::Render(args) => commands::render::run(args),
+        Command::Render(args) => commands::render::run(*args),
         Command::Merge(args) => commands::merge::run(args),
         Command::Farm(args) => commands::farm::run(args),
         Command::Quote(args) => commands::quote::run(args),
         Command::Compare(args) => commands::compare::run(args),
+        Command::Develop(args) => commands::develop::run(args),
         #[cfg(feature = "denoise")]
         Command::Denoise(args) => commands::denoise::run(args),
         Command::Study(args) => commands::study::run(args),

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use etalon_picture::{
-    Attributes, Clipping, Picture, RenderInfo, check_writable, encode_srgb8, read_exr, write_exr, write_png,
-};
+use etalon_picture::develop::Tone;
+use etalon_picture::{Clipping, ExrFile, PictureError, RenderInfo, check_writable, read_exr, write_exr};
 use miette::{Report, miette};
 use serde::Serialize;
 
+use crate::developing::{Developing, warn_not_finite};
 use crate::failure::Failure;
 use crate::load::is_standard_input;
 
@@ -59,15 +59,16 @@ pub(crate) struct Written {
     pub format: Format,
     /// Pixels that the format could not hold as they are; `null` for a format that holds everything.
     pub clipped_pixels: Option<usize>,
+    /// What became of the values, in words.
     #[serde(skip)]
-    pub clipping: Option<Clipping>,
+    pub description: Option<String>,
 }
 
 impl Written {
     /// A file that holds everything.
     pub(crate) fn whole(output: &Output) -> Self {
         let path = output.path.display().to_string();
-        Self { path, format: output.format, clipped_pixels: None, clipping: None }
+        Self { path, format: output.format, clipped_pixels: None, description: None }
     }
 
     /// Whether it is this output.
@@ -130,40 +131,29 @@ pub(crate) fn plan(paths: &[PathBuf], failure: &mut Failure) -> Vec<Output> {
     outputs
 }
 
-/// Writes the picture to one output.
-pub(crate) fn write(
-    output: &Output,
-    picture: &Picture<f32>,
-    attributes: &Attributes,
-    exposure_ev: f64,
-    software: &str,
-    comment: &str,
-) -> Result<Written, Failure> {
+/// Writes a picture and what is said about it to one output.
+pub(crate) fn write(output: &Output, file: &ExrFile, developing: &Developing) -> Result<Written, Failure> {
     let path = output.path.as_path();
-    let clipping = match output.format {
-        Format::Exr => write_exr(path, picture, attributes).map(|()| None),
-        Format::Png => png(path, picture, exposure_ev, software, comment).map(Some),
+    let failed = |error| Failure::run(Report::from_err(error));
+    let mut written = Written::whole(output);
+    match output.format {
+        Format::Exr => write_exr(path, &file.picture, &file.attributes).map_err(failed)?,
+        Format::Png => {
+            let developed = developing.write(path, file, None).map_err(|error| match error {
+                PictureError::Develop { why } => {
+                    Failure::run(miette!(code = "develop", "cannot make `{}`: {why}", path.display()))
+                }
+                other => failed(other),
+            })?;
+            crate::print::warnings(&warn_not_finite(path, &developed));
+            written.description = Some(developing.describe(&developed));
+            if let Tone::Picture { clipping, .. } = developed.tone {
+                written.clipped_pixels = Some(clipping.any);
+            }
+        }
         Format::Part => unreachable!("parts are written from the canvas"),
     }
-    .map_err(|error| Failure::run(Report::from_err(error)))?;
-    Ok(Written {
-        path: path.display().to_string(),
-        format: output.format,
-        clipped_pixels: clipping.map(|clipping| clipping.any),
-        clipping,
-    })
-}
-
-fn png(
-    path: &Path,
-    picture: &Picture<f32>,
-    exposure_ev: f64,
-    software: &str,
-    comment: &str,
-) -> Result<Clipping, etalon_picture::PictureError> {
-    let (shown, clipping) = encode_srgb8(picture, exposure_ev)?;
-    write_png(path, &shown, &[("Software", software), ("Comment", comment)])?;
-    Ok(clipping)
+    Ok(written)
 }
 
 /// What an 8-bit picture could not hold, in words.
@@ -189,6 +179,22 @@ pub(crate) fn describe_clipping(clipping: &Clipping) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::Parser;
+    use etalon_picture::{Attributes, Picture};
+
+    /// The options when none is given.
+    fn plain() -> Developing {
+        #[derive(Parser)]
+        struct Options {
+            #[command(flatten)]
+            developing: Developing,
+        }
+        Options::parse_from(["etalon"]).developing
+    }
+
+    fn file(pixels: &[[f32; 3]]) -> ExrFile {
+        ExrFile { picture: Picture::from_rgb(pixels.len(), 1, pixels).unwrap(), attributes: Attributes::new() }
+    }
 
     #[test]
     fn a_folder_that_goes_away_during_the_render_is_an_error_that_names_the_file() {
@@ -199,9 +205,9 @@ mod tests {
         let outputs = plan(&[gone.join("a.exr"), gone.join("a.png")], &mut failure);
         assert!(failure.into_outcome().is_ok());
         std::fs::remove_dir(&gone).unwrap();
-        let picture = Picture::from_rgb(1, 1, &[[0.5_f32; 3]]).unwrap();
+        let file = file(&[[0.5; 3]]);
         for output in &outputs {
-            let failure = write(output, &picture, &Attributes::new(), 0.0, "etalon", "").map(drop).unwrap_err();
+            let failure = write(output, &file, &plain()).map(drop).unwrap_err();
             let json = serde_json::to_value(failure.to_json()).unwrap();
             let message = json[0]["message"].as_str().unwrap();
             assert!(message.contains(&output.path.display().to_string()), "{message}");
@@ -213,12 +219,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let outputs = plan(&[folder.path().join("a.png"), folder.path().join("a.exr")], &mut Failure::default());
         let pixels = [[0.5_f32; 3], [9.0, 9.0, 0.0], [-9.0, 0.5, 0.5], [9.0, -9.0, 0.0], [f32::NAN, 0.0, 0.0]];
-        let picture = Picture::from_rgb(5, 1, &pixels).unwrap();
-        let clipped = outputs.iter().map(|output| {
-            write(output, &picture, &Attributes::new(), 0.0, "etalon", "")
-                .unwrap_or_else(|_| panic!("writable"))
-                .clipped_pixels
-        });
+        let file = file(&pixels);
+        let clipped = outputs
+            .iter()
+            .map(|output| write(output, &file, &plain()).unwrap_or_else(|_| panic!("writable")).clipped_pixels);
         assert_eq!(clipped.collect::<Vec<_>>(), [Some(4), None]);
     }
 

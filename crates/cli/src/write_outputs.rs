@@ -1,12 +1,15 @@
 //! A film as files: the same for a picture that was rendered here and for one that was merged from parts.
 
 use etalon_optics::colour;
-use etalon_picture::{Attribute, Attributes, ERROR_PREFIX, ErrorInfo, Picture, PictureError, RenderInfo, Window};
+use etalon_picture::{
+    Attribute, Attributes, ERROR_PREFIX, ErrorInfo, ExrFile, Picture, PictureError, RenderInfo, Window,
+};
 use etalon_transport::accuracy::Region;
 use etalon_transport::{Band, Canvas, Features, Film, ImageError, Pixel, PixelRect};
 use miette::Report;
 
 use crate::channels::{Aov, Channels};
+use crate::developing::Developing;
 use crate::failure::Failure;
 use crate::output::{self, Format, Output, Written};
 use crate::state::{self, Header, KeptBands};
@@ -23,8 +26,8 @@ pub(crate) struct Delivery<'a> {
     pub samples: u32,
     /// Its error, where something is known of it.
     pub error: Option<ImageError>,
-    /// Exposure of PNG files, stops.
-    pub exposure_ev: f64,
+    /// How PNG files are made.
+    pub developing: &'a Developing,
 }
 
 impl Delivery<'_> {
@@ -48,15 +51,15 @@ impl Delivery<'_> {
         let tiles: Vec<PixelRect> = (0..self.features.len()).map(|number| self.canvas.tile(number).0.rect).collect();
         let made = self.canvas.with_film(|film| {
             let (picture, attributes) = self.contents(film, &tiles)?;
-            Ok::<_, PictureError>((picture, self.colour(film)?, attributes))
+            let shown = ExrFile { picture: self.shown(film, &tiles)?, attributes: attributes.clone() };
+            Ok::<_, PictureError>((ExrFile { picture, attributes }, shown))
         });
         match made {
             Err(error) => failure.add(Failure::run(Report::from_err(error))),
-            Ok((picture, colour, attributes)) => {
-                let (software, comment) = (&self.header.subject.software, self.comment());
+            Ok((whole, shown)) => {
                 for output in pictures {
-                    let picture = if output.format == Format::Png { &colour } else { &picture };
-                    match output::write(output, picture, &attributes, self.exposure_ev, software, &comment) {
+                    let file = if output.format == Format::Png { &shown } else { &whole };
+                    match output::write(output, file, self.developing) {
                         Ok(done) => written.push(done),
                         Err(error) => failure.add(error),
                     }
@@ -70,7 +73,7 @@ impl Delivery<'_> {
     }
 
     fn contents(&self, film: &Film, tiles: &[PixelRect]) -> Result<(Picture<f32>, Attributes), PictureError> {
-        let (mut picture, mut attributes) = (self.picture(film, tiles)?, self.attributes(film)?);
+        let (mut picture, mut attributes) = (self.picture(film, tiles, &self.header.channels)?, self.attributes(film)?);
         if self.header.channels.has(Aov::Stokes) {
             crate::stokes::add(&mut picture, &mut attributes, film, self.header.subject.crop)?;
         }
@@ -129,22 +132,6 @@ impl Delivery<'_> {
         (!lacks.is_empty()).then(|| lacks.join(", "))
     }
 
-    fn comment(&self) -> String {
-        let subject = &self.header.subject;
-        let mut comment = format!(
-            "{} samples a pixel, seed {}, exposure {:+} EV, scene {}",
-            self.samples, subject.seed, self.exposure_ev, subject.scene_sha256
-        );
-        let approximations = subject.approximations();
-        if !approximations.is_empty() {
-            comment += &format!(", approximation without {}", approximations.join("; without "));
-        }
-        if let Some(unfinished) = self.unfinished() {
-            comment += &format!(", {unfinished}");
-        }
-        comment
-    }
-
     /// An empty picture of the rendered part of the frame.
     fn frame(&self, film: &Film) -> Result<Picture<f32>, PictureError> {
         let rect = self.header.subject.crop;
@@ -155,7 +142,16 @@ impl Delivery<'_> {
         Picture::new((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize)?.in_frame(window)
     }
 
-    /// The colour alone, as a screen shows it.
+    /// What a PNG is made from.
+    fn shown(&self, film: &Film, tiles: &[PixelRect]) -> Result<Picture<f32>, PictureError> {
+        if self.developing.needs_all_channels() {
+            self.picture(film, tiles, &Channels::default())
+        } else {
+            self.colour(film)
+        }
+    }
+
+    /// The colour alone.
     fn colour(&self, film: &Film) -> Result<Picture<f32>, PictureError> {
         let mut picture = self.frame(film)?;
         let pixels = self.of_pixels(film, |pixel| pixel.linear_rec709());
@@ -168,8 +164,8 @@ impl Delivery<'_> {
     }
 
     /// Every channel that is wanted; `tiles` are those of the features.
-    fn picture(&self, film: &Film, tiles: &[PixelRect]) -> Result<Picture<f32>, PictureError> {
-        let (rect, channels) = (self.header.subject.crop, &self.header.channels);
+    fn picture(&self, film: &Film, tiles: &[PixelRect], channels: &Channels) -> Result<Picture<f32>, PictureError> {
+        let rect = self.header.subject.crop;
         let mut picture = if channels.has(Aov::Color) { self.colour(film)? } else { self.frame(film)? };
         let variances = self.of_pixels(film, |pixel| match pixel.variance(colour::rec709_from_xyz) {
             Some((variance, _)) => variance,
@@ -195,14 +191,19 @@ impl Delivery<'_> {
             picture.insert(SAMPLES, counts)?;
         }
         if !self.features.is_empty() {
-            self.insert_features(&mut picture, tiles)?;
+            self.insert_features(&mut picture, tiles, channels)?;
         }
         Ok(picture)
     }
 
     /// What the pixels meet first.
-    fn insert_features(&self, picture: &mut Picture<f32>, tiles: &[PixelRect]) -> Result<(), PictureError> {
-        let (rect, channels) = (self.header.subject.crop, &self.header.channels);
+    fn insert_features(
+        &self,
+        picture: &mut Picture<f32>,
+        tiles: &[PixelRect],
+        channels: &Channels,
+    ) -> Result<(), PictureError> {
+        let rect = self.header.subject.crop;
         // Pixels of tiles that are not here meet nothing.
         let mut all = vec![Features::default(); rect.area() as usize];
         for (tile, features) in tiles.iter().zip(self.features) {

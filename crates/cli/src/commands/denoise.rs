@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use etalon_picture::{Attribute, Attributes, Chromaticities, ExrFile, Picture, read_exr};
 use miette::{Report, miette};
 
+use crate::developing::Developing;
 use crate::failure::{Failure, Outcome};
-use crate::output::{self, describe_clipping};
+use crate::output;
 use crate::print;
 
 /// Smooths a picture with Open Image Denoise, for show: the result is no measurement, and has no error bars.
@@ -19,9 +20,8 @@ pub(crate) struct Args {
     /// Files to write: .exr or .png. May be given several times.
     #[arg(short, long, required = true, value_name = "FILE")]
     output: Vec<PathBuf>,
-    /// Exposure of PNG files, in stops.
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::args::finite)]
-    exposure: f64,
+    #[command(flatten)]
+    developing: Developing,
 }
 
 /// The attribute that marks a picture as smoothed.
@@ -51,13 +51,13 @@ pub(crate) fn run(args: Args) -> Outcome {
     // Nothing by which a picture would pass for a render: no seed, no samples, no hash of a scene.
     let name = args.image.file_name().map_or_else(|| args.image.display().to_string(), |n| n.to_string_lossy().into());
     let note = format!("{name}, smoothed by Open Image Denoise: for show, not measured");
-    attributes.insert(DENOISED.to_owned(), Attribute::Text(note.clone()));
+    attributes.insert(DENOISED.to_owned(), Attribute::Text(note));
+    let smoothed = ExrFile { picture: smoothed, attributes };
     for output in &outputs {
-        let software = concat!("etalon ", env!("CARGO_PKG_VERSION"));
-        match output::write(output, &smoothed, &attributes, args.exposure, software, &note) {
+        match output::write(output, &smoothed, &args.developing) {
             Ok(written) => {
-                let clipping = written.clipping.as_ref().map(describe_clipping);
-                print::line(&format!("wrote {}{}", written.path, clipping.map_or(String::new(), |c| format!(", {c}"))));
+                let description = written.description.map_or(String::new(), |text| format!(", {text}"));
+                print::line(&format!("wrote {}{description}", written.path));
             }
             Err(error) => failure.add(error),
         }

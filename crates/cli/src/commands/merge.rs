@@ -8,6 +8,7 @@ use etalon_transport::{Canvas, Features, ImageError, Shard};
 use miette::{Report, miette};
 use serde::Serialize;
 
+use crate::developing::Developing;
 use crate::failure::{Failure, Outcome, ProblemJson, problem_json};
 use crate::light::without_light;
 use crate::output::{self, Written};
@@ -28,15 +29,14 @@ pub(crate) struct Args {
     /// Picture to write, as for `etalon render`: .exr, .png or .part. Give it twice to write both.
     #[arg(short, long, alias = "outfile", value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
-    /// Exposure of PNG files, in stops: each doubles the light.
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::args::finite)]
-    exposure: f64,
     /// Print one JSON object on standard output.
     #[arg(long)]
     json: bool,
     /// Print nothing but warnings and errors.
     #[arg(short, long)]
     quiet: bool,
+    #[command(flatten)]
+    developing: Developing,
 }
 
 #[derive(Serialize)]
@@ -72,8 +72,14 @@ pub(crate) fn run(args: Args) -> Outcome {
     let (header, canvas, features) = put_together(parts)?;
     let error = canvas.with_film(|film| film.error(header.subject.crop));
     let samples = header.samples;
-    let delivery =
-        Delivery { header: &header, canvas: &canvas, features: &features, samples, error, exposure_ev: args.exposure };
+    let delivery = Delivery {
+        header: &header,
+        canvas: &canvas,
+        features: &features,
+        samples,
+        error,
+        developing: &args.developing,
+    };
     let warning = canvas.with_film(|film| without_light(film, header.subject.crop));
     print::warnings(&warning);
     let (written, failure) = delivery.write(&outputs);

@@ -3,6 +3,7 @@
 pub(crate) mod compare;
 #[cfg(feature = "denoise")]
 pub(crate) mod denoise;
+pub(crate) mod develop;
 pub(crate) mod explain;
 pub(crate) mod farm;
 pub(crate) mod figures;

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::args::{Crop, PixelAt, ShardArg};
 use crate::channels::Aov;
+use crate::developing::Developing;
 use crate::display::{self, Display};
 use crate::failure::{Failure, Outcome, ProblemJson};
 use crate::interrupt::Interrupt;
@@ -64,9 +65,6 @@ pub(crate) struct Args {
     /// Threads; all cores if not given. The picture is the same whatever their number.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
-    /// Exposure of PNG files, in stops: each doubles the light. EXR files stay as they are.
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::args::finite)]
-    exposure: f64,
     /// Channels that the EXR has beside the picture: of the first surface that is met, or of the samples.
     #[arg(long, value_enum, value_name = "CHANNELS", value_delimiter = ',')]
     aov: Vec<Aov>,
@@ -104,6 +102,8 @@ pub(crate) struct Args {
     /// Print nothing but warnings and errors.
     #[arg(short, long)]
     quiet: bool,
+    #[command(flatten)]
+    developing: Developing,
 }
 
 /// When samples are spread by an exploration.
@@ -221,7 +221,7 @@ fn render(args: &Args) -> Result<(), Stop> {
         features: &done.features,
         samples: done.ended.samples,
         error: done.error,
-        exposure_ev: args.exposure,
+        developing: &args.developing,
     };
     let begun = done.canvas.samples()[1] > 0;
     let (written, mut failure) = if begun { delivery.write(&outputs) } else { Default::default() };

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{Args, Done, Job};
 use crate::failure::{Failure, ProblemJson, problem_json};
-use crate::output::{self, Written};
+use crate::output::Written;
 use crate::progress::{duration, percent, si, two_digits};
 
 /// What `--json` prints about a render.
@@ -325,9 +325,9 @@ pub(super) fn summary(job: &Job, done: &Done, written: &[Written]) -> String {
     for written in written {
         text.push_str("\n  ");
         text.push_str(&written.path);
-        if let Some(clipping) = &written.clipping {
+        if let Some(description) = &written.description {
             text.push_str(": ");
-            text.push_str(&output::describe_clipping(clipping));
+            text.push_str(description);
         }
     }
     text

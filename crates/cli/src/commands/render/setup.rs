@@ -99,11 +99,12 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
             "the picture is an approximation, without {lost}"
         )
     }));
-    if args.exposure != 0.0 && !outputs.iter().any(|output| output.format == output::Format::Png) {
+    if !args.developing.is_plain() && !outputs.iter().any(|output| output.format == output::Format::Png) {
         warnings.push(miette!(
             severity = miette::Severity::Warning,
-            code = "exposure-unused",
-            "--exposure changes PNG files only, and none is written"
+            code = "develop-unused",
+            help = "`etalon develop` makes a PNG from the EXR later",
+            "--exposure and the other options of development change PNG files only, and none is written"
         ));
     }
     if let Some(option) = wants_exr(args)
@@ -116,8 +117,9 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
             "{option} adds channels to an EXR, and none is written"
         )));
     }
-    let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
     let subject = Subject::new(&prepared, &loaded.sha256, rect);
+    check_developing(args, &subject, &mut failure);
+    let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
     let prepare_seconds = start.elapsed().as_secs_f64();
     let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
     check_shard(args, rect, shard, outputs, &mut failure);
@@ -133,6 +135,39 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
         ));
     }
     Ok(Job { loaded, prepared, prepare_seconds, warnings, rect, threads, subject, resumed })
+}
+
+/// Finds what a PNG could not show before there is a picture.
+fn check_developing(args: &Args, subject: &Subject, failure: &mut Failure) {
+    let rect = subject.crop;
+    let mut refuse = |code: &'static str, help: &str, why: String| {
+        failure.add(Failure::input(miette!(code = code, help = help, "{why}")));
+    };
+    if let Err(error) = args.developing.check((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize) {
+        refuse("develop", "see `etalon render --help`", error.to_string());
+    }
+    if args.developing.shows_errors() && subject.replicates < 2 {
+        refuse(
+            "develop",
+            "the errors come from two replicates or more",
+            "--error-map: the error is not known".to_owned(),
+        );
+    }
+    let Some(nm) = args.developing.band_nm() else { return };
+    let Some(bands) = &subject.bands else {
+        return refuse(
+            "develop",
+            "add bands such as `--bands 400:700:10`",
+            "--band: the film keeps no bands".to_owned(),
+        );
+    };
+    let [first, last] = [bands.first_nm, bands.centre_nm(bands.count - 1)];
+    // A single band is found by its centre: see `etalon_picture::develop::band_at`.
+    let reach = if bands.count == 1 { 0.5 } else { 0.5 * bands.step_nm };
+    if !(first - reach <= nm && nm <= last + reach) {
+        let why = format!("--band: {nm} nm is in none of the bands, whose centres go from {first} to {last} nm");
+        refuse("develop", "change --band or --bands", why);
+    }
 }
 
 /// The first option given that only an EXR can follow.
