@@ -6,6 +6,7 @@ mod channels;
 mod defaults;
 #[cfg(feature = "denoise")]
 mod denoise;
+mod develop;
 mod display;
 mod explain;
 mod farm;

@@ -4,7 +4,7 @@ mod plot;
 
 use std::path::{Path, PathBuf};
 
-use etalon_picture::develop::{Rect, spectrum_of};
+use etalon_picture::develop::{Rect, Tone, spectrum_of};
 use etalon_picture::{ExrFile, PictureError, check_writable, read_exr, write_atomically};
 use miette::{Report, Severity, miette};
 
@@ -70,17 +70,11 @@ fn check_output(args: &Args) -> Outcome {
 }
 
 fn develop(args: &Args, file: &ExrFile) -> Result<String, Failure> {
-    let (width, height) =
-        args.crop.map_or((file.picture.width(), file.picture.height()), |rect| (rect.width, rect.height));
     let developed = args.developing.write(&args.output, file, args.crop).map_err(|error| cannot(&args.image, error))?;
     print::warnings(&warn_not_finite(&args.image, &developed));
-    let (image, told) = (&developed.image, args.developing.describe(&developed));
-    let from = if (image.width, image.height) == (width, height) {
-        String::new()
-    } else {
-        format!(" from {width} × {height}")
-    };
-    Ok(format!("{} × {} pixels{from}, {told}", image.width, image.height))
+    let image = &developed.image;
+    let legend = if matches!(developed.tone, Tone::Map { .. }) { " with a legend" } else { "" };
+    Ok(format!("{} × {} pixels{legend}, {}", image.width, image.height, args.developing.describe(&developed)))
 }
 
 fn plot_spectrum(args: &Args, file: &ExrFile, region: Rect) -> Result<String, Failure> {
@@ -101,7 +95,9 @@ fn plot_spectrum(args: &Args, file: &ExrFile, region: Rect) -> Result<String, Fa
             print::warnings(&[miette!(severity = Severity::Warning, code = "spectrum", "`{path}`: {count} {what}")]);
         }
     }
-    Ok(format!("{} bands, the mean over {} pixels", bands.len(), region.width * region.height))
+    let pixels = region.width * region.height;
+    let place = if pixels == 1 { "of a pixel".to_owned() } else { format!("averaged over {pixels} pixels") };
+    Ok(format!("{} bands {place}", bands.len()))
 }
 
 /// A picture that cannot be shown as it was asked for is the input's fault, a file that cannot be written is not.

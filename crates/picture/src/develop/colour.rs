@@ -125,7 +125,7 @@ pub(crate) fn rgb_pixels<T: Sample>(picture: &Picture<T>) -> Result<impl Iterato
 /// ```
 #[must_use]
 pub fn luminance_unit(attributes: &Attributes) -> Option<f64> {
-    if knows_radiance(attributes) {
+    if is_radiance(attributes) {
         return Some(LUMINOUS_EFFICACY_LM_W * cie_y_integral_nm());
     }
     match attributes.get("whiteLuminance") {
@@ -134,8 +134,19 @@ pub fn luminance_unit(attributes: &Attributes) -> Option<f64> {
     }
 }
 
-/// Whether the file's numbers are radiances in W·m⁻²·sr⁻¹·nm⁻¹.
-pub(crate) fn knows_radiance(attributes: &Attributes) -> bool {
+/// Whether the file says that its numbers are radiances in W·m⁻²·sr⁻¹·nm⁻¹: a render of Etalon does (`software`), and a spectral file with the
+/// attribute `emissiveUnits`.
+///
+/// ```
+/// use etalon_picture::Attribute;
+/// use etalon_picture::develop::is_radiance;
+///
+/// let unit = Attribute::Text("W.m^-2.sr^-1".to_owned());
+/// assert!(is_radiance(&[("emissiveUnits".to_owned(), unit)].into()));
+/// assert!(!is_radiance(&Default::default()));
+/// ```
+#[must_use]
+pub fn is_radiance(attributes: &Attributes) -> bool {
     let text = |name: &str| match attributes.get(name) {
         Some(Attribute::Text(text)) => text.as_str(),
         _ => "",

@@ -135,7 +135,7 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
 }
 
 fn linear_ticks(low: f64, high: f64) -> Vec<f64> {
-    let rough = (high - low) / 6.0;
+    let rough = (high - low) / 8.0;
     let power = rough.log10().floor();
     let unit = 10.0_f64.powf(power);
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|s| s * unit >= rough).unwrap_or(10.0);
@@ -175,7 +175,7 @@ mod tests {
         };
         assert_eq!(of(Axis::Log, [0.01, 10.0]), "0.01 0.02 0.05 0.1 0.2 0.5 1 2 5 10");
         assert_eq!(of(Axis::Log, [3.0, 4e4]), "10 100 1000 10000");
-        assert_eq!(of(Axis::Log, [1e-6, 1e6]), "1e-6 0.0001 0.01 1 100 10000 1e6");
+        assert_eq!(of(Axis::Log, [1e-6, 1e6]), "1e-6 1e-4 0.01 1 100 10000 1e6");
         assert_eq!(of(Axis::Log, [2.5, 3.1]), "2.5 2.6 2.7 2.8 2.9 3 3.1");
         assert_eq!(of(Axis::Linear, [0.0, 1.0]), "0 0.2 0.4 0.6 0.8 1");
         assert_eq!(of(Axis::Linear, [-3.0, 1e5]), "0 20000 40000 60000 80000 1e5");

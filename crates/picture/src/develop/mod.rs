@@ -38,7 +38,7 @@ mod tone_curve;
 mod white_balance;
 
 pub use band::{SpectralBand, band_at, bands_of};
-pub use colour::{colour_of, luminance_unit};
+pub use colour::{colour_of, is_radiance, luminance_unit};
 pub use crop::{Rect, crop};
 pub use error_map::{ErrorKind, luminance_errors};
 pub use exposure::{Exposure, MAX_STOPS, MIDDLE_GREY, auto_exposure};
@@ -248,7 +248,7 @@ fn numbers(file: &ExrFile, band_nm: Option<f64>, error: Option<ErrorKind>) -> Re
         Some(nm) => {
             let band = band_at(&file.picture, nm)?;
             let errors = error.map(|_| error_map::band_errors(file, &band)).transpose()?.map(wide);
-            let unit = if colour::knows_radiance(&file.attributes) { "W/(m² sr nm)" } else { "channel units" };
+            let unit = if is_radiance(&file.attributes) { "W/(m² sr nm)" } else { "channel units" };
             let what = format!("radiance at {} nm", band.centre_nm);
             (wide(band.samples), errors, what, unit, Some(band.centre_nm))
         }

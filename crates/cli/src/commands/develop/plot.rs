@@ -1,7 +1,7 @@
 //! The plot of a spectrum, as SVG.
 
 use etalon_picture::Attributes;
-use etalon_picture::develop::{BandMean, Rect, luminance_unit};
+use etalon_picture::develop::{BandMean, Rect, is_radiance};
 use plotters::prelude::*;
 
 /// Width and height, pixels.
@@ -18,7 +18,7 @@ pub(super) fn svg(name: &str, region: Rect, bands: &[BandMean], attributes: &Att
         Rect { x, y, width: 1, height: 1 } => format!("pixel {x},{y}"),
         Rect { x, y, width, height } => format!("mean of {width} × {height} pixels from {x},{y}"),
     };
-    let unit = if luminance_unit(attributes).is_some() { "radiance, W/(m² sr nm)" } else { "channel units" };
+    let unit = if is_radiance(attributes) { "radiance, W/(m² sr nm)" } else { "channel units" };
     draw(&format!("{name}: {place}"), unit, &shown).map_err(|error| error.to_string())
 }
 

@@ -172,7 +172,8 @@ fn check_developing(args: &Args, subject: &Subject, failure: &mut Failure) {
 
 /// The first option given that only an EXR can follow.
 fn wants_exr(args: &Args) -> Option<&'static str> {
-    match (args.aov.is_empty(), args.overrides.has_bands()) {
+    // A PNG can show a band.
+    match (args.aov.is_empty(), args.overrides.has_bands() && args.developing.band_nm().is_none()) {
         (false, _) => Some("--aov"),
         (true, true) => Some("--bands"),
         (true, false) => None,
