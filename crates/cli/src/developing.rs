@@ -4,12 +4,11 @@ use etalon_picture::develop::{
     Axis, ColourScale, Developed, ErrorKind, Exposure, MAX_STOPS, Map, Rect, Settings, Tone, ToneCurve, White,
     WhiteBalance, develop, scaled_size, short_number,
 };
-use etalon_picture::{Attribute, ExrFile, PictureError, RenderInfo, write_png};
+use etalon_picture::{Attribute, Clipping, ExrFile, PictureError, RenderInfo, write_png};
 use miette::{Report, Severity, miette};
 use std::path::Path;
 
 use crate::args;
-use crate::output::describe_clipping;
 
 /// The heading of these options in `--help`.
 const HEADING: &str = "Development of PNG files (EXR files stay as they are)";
@@ -17,8 +16,8 @@ const HEADING: &str = "Development of PNG files (EXR files stay as they are)";
 /// The options of every command that writes PNG files.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct Developing {
-    /// Brighten the picture by so many stops; each doubles the light. `auto` makes the log-average luminance 18 % grey; neither single bright
-    /// pixels nor a black background decide it.
+    /// Brighten the picture by EV stops; each doubles the light. `auto` makes the log-average luminance 18 % grey. Single bright pixels
+    /// and a black background hardly change it.
     #[arg(long, value_name = "EV|auto", default_value = "0", allow_negative_numbers = true, value_parser = exposure, help_heading = HEADING)]
     exposure: Exposure,
     /// The light that looks white: none (as it is), A, D50, D55, D65, D75, E, a black body such as 3200K, or a patch of the picture,
@@ -219,6 +218,26 @@ impl Developing {
     }
 }
 
+/// What an 8-bit picture could not hold, in words.
+fn describe_clipping(clipping: &Clipping) -> String {
+    let share = 100.0 * clipping.any as f64 / clipping.of as f64;
+    let mut kinds = Vec::new();
+    for (count, kind) in [
+        (clipping.above, "too bright"),
+        (clipping.below, "outside the sRGB gamut"),
+        (clipping.non_finite, "not finite"),
+    ] {
+        if count > 0 {
+            kinds.push(format!("{count} {kind}"));
+        }
+    }
+    if kinds.is_empty() {
+        "no pixel clipped".to_owned()
+    } else {
+        format!("{} pixels clipped ({share:.2} %: {})", clipping.any, kinds.join(", "))
+    }
+}
+
 /// A warning of values that no picture can show.
 pub(crate) fn warn_not_finite(path: &Path, developed: &Developed) -> Option<Report> {
     let [x, y] = developed.not_finite.first?;
@@ -317,5 +336,13 @@ mod tests {
         for text in ["", "patch", "patch:1,2,3", "patch:1,2,0,4", "tungsten", "10K"] {
             assert!(white_balance(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn clipping_is_told_in_words() {
+        let none = Clipping { of: 10, ..Clipping::default() };
+        assert_eq!(describe_clipping(&none), "no pixel clipped");
+        let some = Clipping { above: 2, below: 0, non_finite: 1, any: 3, of: 200 };
+        assert_eq!(describe_clipping(&some), "3 pixels clipped (1.50 %: 2 too bright, 1 not finite)");
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use etalon_picture::develop::Tone;
-use etalon_picture::{Clipping, ExrFile, PictureError, RenderInfo, check_writable, read_exr, write_exr};
+use etalon_picture::{ExrFile, PictureError, RenderInfo, check_writable, read_exr, write_exr};
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -156,26 +156,6 @@ pub(crate) fn write(output: &Output, file: &ExrFile, developing: &Developing) ->
     Ok(written)
 }
 
-/// What an 8-bit picture could not hold, in words.
-pub(crate) fn describe_clipping(clipping: &Clipping) -> String {
-    let share = 100.0 * clipping.any as f64 / clipping.of as f64;
-    let mut kinds = Vec::new();
-    for (count, kind) in [
-        (clipping.above, "too bright"),
-        (clipping.below, "outside the sRGB gamut"),
-        (clipping.non_finite, "not finite"),
-    ] {
-        if count > 0 {
-            kinds.push(format!("{count} {kind}"));
-        }
-    }
-    if kinds.is_empty() {
-        "no pixel clipped".to_owned()
-    } else {
-        format!("{} pixels clipped ({share:.2} %: {})", clipping.any, kinds.join(", "))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -224,13 +204,5 @@ mod tests {
             .iter()
             .map(|output| write(output, &file, &plain()).unwrap_or_else(|_| panic!("writable")).clipped_pixels);
         assert_eq!(clipped.collect::<Vec<_>>(), [Some(4), None]);
-    }
-
-    #[test]
-    fn clipping_is_told_in_words() {
-        let none = Clipping { of: 10, ..Clipping::default() };
-        assert_eq!(describe_clipping(&none), "no pixel clipped");
-        let some = Clipping { above: 2, below: 0, non_finite: 1, any: 3, of: 200 };
-        assert_eq!(describe_clipping(&some), "3 pixels clipped (1.50 %: 2 too bright, 1 not finite)");
     }
 }

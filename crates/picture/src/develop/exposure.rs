@@ -17,7 +17,7 @@ const BRIGHT_END: f64 = 0.95;
 /// By how much a picture is brightened: by 2^EV in linear light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exposure {
-    /// So many stops EV; each doubles the light.
+    /// A number of stops, EV; each doubles the light.
     Stops(f64),
     /// As [`auto_exposure`] says.
     Auto,

@@ -147,8 +147,8 @@ pub struct NotFinite {
 /// Develops a picture: see the [module](self).
 ///
 /// # Errors
-/// A file that lacks what is asked for, with a sentence that says what; a rectangle outside of the picture; a size that is too large; an automatic
-/// exposure or range where there is no light.
+/// A file that lacks what is asked for. A rectangle outside of the picture. A size that is too large. An automatic exposure or range where
+/// there is no light.
 pub fn develop(file: &ExrFile, settings: &Settings) -> Result<Developed, PictureError> {
     let whole = Rect { x: 0, y: 0, width: file.picture.width(), height: file.picture.height() };
     let shown = settings.crop.unwrap_or(whole);

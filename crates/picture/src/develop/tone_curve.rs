@@ -42,10 +42,11 @@ impl ToneCurve {
     }
 }
 
-/// The curve of John Hable (*Filmic Tonemapping Operators*, 2010, made for the game Uncharted 2), of one component:
-/// f(2x) / f(11.2) with f(x) = ((x(Ax + CB) + DE) / (x(Ax + B) + DF)) − E/F and A = 0.15 (shoulder), B = 0.50, C = 0.10 (linear part),
-/// D = 0.20, E = 0.02, F = 0.30 (toe). It has a toe and a long shoulder. It is 0 at 0, 0.128 at 0.18 and 1 at 5.6, above which it goes
-/// on rising to 1.29. Negative values stay as they are.
+/// The curve of John Hable (*Filmic Tonemapping Operators*, 2010, made for the game Uncharted 2), of one component: f(2x) / f(11.2).
+///
+/// f(x) = ((x(Ax + CB) + DE) / (x(Ax + B) + DF)) − E/F. A = 0.15 shapes the shoulder, B = 0.50 and C = 0.10 the linear part,
+/// D = 0.20, E = 0.02 and F = 0.30 the toe. The curve is 0 at 0, 0.128 at 0.18 and 1 at 5.6. Above that it goes on rising to 1.29. Negative
+/// values stay as they are.
 ///
 /// ```
 /// use etalon_picture::develop::filmic;
