@@ -168,6 +168,21 @@ mod tests {
     }
 
     #[test]
+    fn a_band_reaches_half_way_to_its_neighbours() {
+        let mut picture = Picture::new(1, 1).unwrap();
+        for nm in [500, 511, 550] {
+            picture.insert(&format!("S0.{nm}nm"), vec![1.0]).unwrap();
+        }
+        // From 494.5 nm to 505.5 nm: eleven whole cells of the observer.
+        let first = colour_weights(&bands_of(&picture))[0];
+        let expected = xyz_of(|nm| f64::from(u8::from((495.0..=505.0).contains(&nm))));
+        assert!((0..3).all(|c| (first[c] - expected[c]).abs() < 1e-15), "{first:?} {expected:?}");
+        assert_eq!(band_at(&picture, 530.0).unwrap().centre_nm, 511.0);
+        assert_eq!(band_at(&picture, 569.0).unwrap().centre_nm, 550.0);
+        assert!(band_at(&picture, 570.0).is_err() && band_at(&picture, 494.0).is_err());
+    }
+
+    #[test]
     fn a_single_band_is_found_by_its_own_wavelength_only() {
         let mut picture = Picture::new(1, 1).unwrap();
         assert!(band_at(&picture, 550.0).unwrap_err().to_string().contains("--bands"));
