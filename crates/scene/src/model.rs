@@ -17,7 +17,10 @@ pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};
 pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
 pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
-pub use material::{LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture};
+pub use material::{
+    LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, Parameter, ParameterMut, PolarisingSheet,
+    SpectrumTexture,
+};
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use references::ReferenceError;
 

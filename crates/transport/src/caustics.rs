@@ -135,8 +135,8 @@ impl GuidedTargets {
         for (i, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {
             let Some(of_object) = surfaces.objects.get(object as usize) else { continue };
             let bsdf = &surfaces.bsdfs[of_object.material];
-            let hands_on = !bsdf.has_solid_angle_part() && !matches!(bsdf, Bsdf::Black);
-            if !hands_on || of_object.emission.is_some() {
+            let is_specular = surfaces.properties[of_object.material].is_specular();
+            if !is_specular || of_object.emission.is_some() {
                 continue;
             }
             let bends = matches!(bsdf, Bsdf::Dielectric(_));

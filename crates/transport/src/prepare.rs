@@ -1,7 +1,7 @@
 //! From a scene to what the kernels trace. After this nothing fails.
 
 use crate::absorption::{Absorption, Interior};
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, properties};
 use crate::camera::{Camera, Moving};
 use crate::caustics::GuidedTargets;
 use crate::filter::FilterSampler;
@@ -133,6 +133,7 @@ pub(crate) fn build(scene: &Scene, study: &Study) -> Result<Prepared, PrepareErr
     }
     let surfaces = Surfaces {
         bsdfs,
+        properties: scene.materials.iter().map(|material| properties(&material.kind)).collect(),
         interiors: scene
             .materials
             .iter()

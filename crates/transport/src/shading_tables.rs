@@ -1,6 +1,6 @@
 //! Per-object shading lookup tables, and the spectra that paths keep at their wavelengths.
 
-use crate::bsdf::{Bsdf, Dielectric};
+use crate::bsdf::{Bsdf, Dielectric, Properties};
 use crate::cells::CellTable;
 use crate::light::{Environment, EnvironmentRadiance, Light, LightTable};
 use crate::shading_geometry::Coordinates;
@@ -85,11 +85,11 @@ impl ShadingTables {
         polarised: bool,
     ) -> Self {
         let (mut spectra, mut interfaces) = (Vec::new(), Vec::new());
-        let material = |bsdf: &Bsdf| MaterialRecord {
+        let material = |(bsdf, properties): (&Bsdf, &Properties)| MaterialRecord {
             kind: if polarised { BsdfKind::General } else { kind(bsdf, &mut spectra, &mut interfaces) },
-            solid_angle_part: bsdf.has_solid_angle_part(),
+            solid_angle_part: properties.solid_angle,
         };
-        let materials: Vec<_> = surfaces.bsdfs.iter().map(material).collect();
+        let materials: Vec<_> = surfaces.bsdfs.iter().zip(&surfaces.properties).map(material).collect();
         let objects = surfaces.objects.iter().map(|object| record(object, surfaces, &mut spectra)).collect();
         let environments = skies
             .iter()

@@ -1,7 +1,7 @@
 //! What a primitive is made of: scattering, emission and the light it belongs to.
 
 use crate::absorption::Interior;
-use crate::bsdf::{Bsdf, BsdfSample, Lobe, Shading};
+use crate::bsdf::{Bsdf, BsdfSample, Lobe, Properties, Shading};
 use crate::bump_mapping;
 use crate::media::Interface;
 use crate::polarisation::mueller::Mueller;
@@ -95,6 +95,8 @@ impl Emission {
 pub(crate) struct Surfaces {
     /// Scattering of each material.
     pub bsdfs: Vec<Bsdf>,
+    /// Properties of each material.
+    pub properties: Vec<Properties>,
     /// What each material holds, where it states both its sides itself.
     pub interiors: Vec<Option<Interior>>,
     pub objects: Vec<ObjectSurface>,
@@ -204,7 +206,7 @@ impl<'a> Surface<'a> {
 
     /// Whether what the surface does depends on the medium that it stands in.
     pub(crate) fn takes_medium(&self) -> bool {
-        self.bsdf().takes_medium()
+        self.surfaces.properties[self.material].takes_medium
     }
 
     /// What is emitted along `wo` at a point of it, if that side emits.

@@ -3,13 +3,18 @@
 
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{RefractiveIndex, Spectrum};
-use etalon_scene::{Image, ImageTexture, Scene, SpectrumTexture, Texels, TextureFilter};
+use etalon_scene::{Image, ImageTexture, MaterialKind, ParameterMut, Scene, SpectrumTexture, Texels, TextureFilter};
 use etalon_transport::{EffectName, Study, prepare};
 use serde_json::{Value, json};
 
 #[path = "common/rendering.rs"]
 mod rendering;
 use rendering::{mean_y, parse, render};
+
+/// What a material reflects.
+fn reflectance(kind: &mut MaterialKind) -> &mut SpectrumTexture {
+    kind.parameters_mut().into_iter().find_map(ParameterMut::reflectance).unwrap()
+}
 
 /// A room that calls for almost everything, in which all of it is seen.
 fn room() -> Value {
@@ -117,7 +122,7 @@ fn images_that_are_left_out_leave_their_mean_colour() {
             (emission.image, emission.radiance) = (Some(image()), Spectrum::ONE);
         } else {
             let stone = scene.materials.iter_mut().find(|material| material.name == "stone").unwrap();
-            *stone.kind.reflectance_mut().unwrap() = SpectrumTexture::Image(image());
+            *reflectance(&mut stone.kind) = SpectrumTexture::Image(image());
         }
         same(EffectName::Textures, &scene, &plain);
     }
@@ -187,7 +192,7 @@ fn without_wavelengths_images_keep_their_luminances_and_wave_plates_the_delay_of
         let mut scene = parse(&scene(vec![floor]).to_string());
         let image = Image::new(2, 1, Texels::F32(texels.to_vec()));
         let texture = ImageTexture { filter: TextureFilter::Nearest, factor, ..ImageTexture::new(image) };
-        *scene.materials[0].kind.reflectance_mut().unwrap() = SpectrumTexture::Image(texture);
+        *reflectance(&mut scene.materials[0].kind) = SpectrumTexture::Image(texture);
         scene
     };
     let luminances = [0.2126 * 0.25 + 0.7152 * 0.5 + 0.0722 * 0.125, 0.2126 * 0.125 + 0.7152 * 0.25 + 0.0722 * 0.5];

@@ -147,6 +147,30 @@ pub enum PolarisingSheet {
     },
 }
 
+/// Makes a function that lists the parameters of a material: each material states its own here, once.
+macro_rules! parameters {
+    ($(#[$doc:meta])* $name:ident, $of:ident, $parts:ident, ($($by:tt)+)) => {
+        $(#[$doc])*
+        pub fn $name($($by)+ self) -> Vec<$of<'_>> {
+            let parts = self.$parts().into_iter();
+            let parameters = parts.flat_map(|part| match part {
+                Self::Lambert { reflectance } | Self::Mirror { reflectance } | Self::OrenNayar { reflectance, .. } => {
+                    vec![$of::Reflectance(reflectance)]
+                }
+                Self::Plastic { reflectance, coat, .. } => vec![$of::Reflectance(reflectance), $of::Coat(coat)],
+                Self::Conductor { metal } | Self::RoughConductor { metal, .. } => vec![$of::Metal(metal)],
+                Self::Dielectric { interior, exterior, .. } | Self::RoughDielectric { interior, exterior, .. } => {
+                    vec![$of::Interface([interior, exterior])]
+                }
+                Self::ThinDielectric { index } => vec![$of::Coat(index)],
+                Self::PolarisingSheet { sheet, .. } => vec![$of::Sheet(sheet)],
+                Self::Blend { .. } | Self::Black => Vec::new(),
+            });
+            parameters.collect()
+        }
+    };
+}
+
 impl MaterialKind {
     /// The medium and the priority of the closed solid that it bounds, if it bounds one.
     pub fn solid(&self) -> Option<(&RefractiveIndex, u32)> {
@@ -177,68 +201,109 @@ impl MaterialKind {
         Self::Blend { parts: vec![(0.0, first), (1.0, second)], by: weight.into() }
     }
 
-    /// What it reflects, which may vary over a surface, if it states that; of a blend, its parts do.
-    pub fn reflectance(&self) -> Option<&SpectrumTexture> {
+    /// The materials that it is made of: of a blend those of its parts, of any other itself.
+    pub fn parts(&self) -> Vec<&Self> {
         match self {
-            Self::Lambert { reflectance }
-            | Self::Mirror { reflectance }
-            | Self::OrenNayar { reflectance, .. }
-            | Self::Plastic { reflectance, .. }
-            | Self::Conductor { metal: Metal::Reflectance(reflectance) }
-            | Self::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => Some(reflectance),
-            Self::Conductor { metal: Metal::Index(_) }
-            | Self::RoughConductor { metal: Metal::Index(_), .. }
-            | Self::Dielectric { .. }
-            | Self::RoughDielectric { .. }
-            | Self::ThinDielectric { .. }
-            | Self::PolarisingSheet { .. }
-            | Self::Blend { .. }
-            | Self::Black => None,
+            Self::Blend { parts, .. } => parts.iter().flat_map(|(_, part)| part.parts()).collect(),
+            other => vec![other],
         }
     }
 
-    /// As [`MaterialKind::reflectance`], to be changed.
-    pub fn reflectance_mut(&mut self) -> Option<&mut SpectrumTexture> {
+    /// As [`MaterialKind::parts`], to be changed.
+    pub fn parts_mut(&mut self) -> Vec<&mut Self> {
         match self {
-            Self::Lambert { reflectance }
-            | Self::Mirror { reflectance }
-            | Self::OrenNayar { reflectance, .. }
-            | Self::Plastic { reflectance, .. }
-            | Self::Conductor { metal: Metal::Reflectance(reflectance) }
-            | Self::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => Some(reflectance),
-            Self::Conductor { metal: Metal::Index(_) }
-            | Self::RoughConductor { metal: Metal::Index(_), .. }
-            | Self::Dielectric { .. }
-            | Self::RoughDielectric { .. }
-            | Self::ThinDielectric { .. }
-            | Self::PolarisingSheet { .. }
-            | Self::Blend { .. }
-            | Self::Black => None,
+            Self::Blend { parts, .. } => parts.iter_mut().flat_map(|(_, part)| part.parts_mut()).collect(),
+            other => vec![other],
         }
+    }
+
+    parameters! {
+        /// The numbers by which it treats wavelengths, of a blend those of all its parts.
+        parameters, Parameter, parts, (&)
+    }
+
+    parameters! {
+        /// As [`MaterialKind::parameters`], to be changed.
+        parameters_mut, ParameterMut, parts_mut, (&mut)
     }
 
     /// The first image that varies it over a surface.
     pub fn image(&self) -> Option<&ImageTexture> {
         match self {
             Self::Blend { parts, by } => parts.iter().find_map(|(_, part)| part.image()).or_else(|| by.image()),
-            kind => kind.reflectance()?.image(),
+            kind => kind.parameters().into_iter().find_map(|parameter| parameter.reflectance()?.image()),
         }
     }
 
     /// Replaces every image that varies something over a surface by one value, for spectra that of `mean` and for numbers the
     /// mean of their texels.
     pub fn flatten(&mut self, mean: &dyn Fn(&ImageTexture) -> Spectrum) {
+        self.flatten_shares();
+        for reflectance in self.parameters_mut().into_iter().filter_map(ParameterMut::reflectance) {
+            if let Some(image) = reflectance.image() {
+                *reflectance = mean(image).into();
+            }
+        }
+    }
+
+    fn flatten_shares(&mut self) {
         if let Self::Blend { parts, by } = self {
-            parts.iter_mut().for_each(|(_, part)| part.flatten(mean));
+            parts.iter_mut().for_each(|(_, part)| part.flatten_shares());
             if let NumberTexture::Image(image) = by {
                 let [number, ..] = image.image.mean();
                 *by = NumberTexture::Uniform(number * image.factor[0]);
             }
         }
-        if let Some(reflectance) = self.reflectance_mut()
-            && let Some(image) = reflectance.image()
-        {
-            *reflectance = mean(image).into();
+    }
+}
+
+/// A number of a material that may depend on the wavelength. What is done to every spectrum of a scene is done to these, and
+/// need not know the materials.
+#[derive(Debug)]
+pub enum Parameter<'a> {
+    /// A share of light that is reflected.
+    Reflectance(&'a SpectrumTexture),
+    /// The index of a metal.
+    Metal(&'a Metal),
+    /// The media behind and before an interface, whose indices decide which way light goes.
+    Interface([&'a RefractiveIndex; 2]),
+    /// The index of a coat or a pane, which decides how much light goes each way.
+    Coat(&'a RefractiveIndex),
+    /// A polarising sheet.
+    Sheet(&'a PolarisingSheet),
+}
+
+/// [`Parameter`], to be changed.
+#[derive(Debug)]
+pub enum ParameterMut<'a> {
+    /// See [`Parameter::Reflectance`].
+    Reflectance(&'a mut SpectrumTexture),
+    /// See [`Parameter::Metal`].
+    Metal(&'a mut Metal),
+    /// See [`Parameter::Interface`].
+    Interface([&'a mut RefractiveIndex; 2]),
+    /// See [`Parameter::Coat`].
+    Coat(&'a mut RefractiveIndex),
+    /// See [`Parameter::Sheet`].
+    Sheet(&'a mut PolarisingSheet),
+}
+
+impl<'a> Parameter<'a> {
+    /// The share of light that it says is reflected, if it says one.
+    pub fn reflectance(self) -> Option<&'a SpectrumTexture> {
+        match self {
+            Self::Reflectance(reflectance) | Self::Metal(Metal::Reflectance(reflectance)) => Some(reflectance),
+            _ => None,
+        }
+    }
+}
+
+impl<'a> ParameterMut<'a> {
+    /// The share of light that it says is reflected, if it says one.
+    pub fn reflectance(self) -> Option<&'a mut SpectrumTexture> {
+        match self {
+            Self::Reflectance(reflectance) | Self::Metal(Metal::Reflectance(reflectance)) => Some(reflectance),
+            _ => None,
         }
     }
 }

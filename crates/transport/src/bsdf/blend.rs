@@ -1,6 +1,6 @@
 //! Materials side by side, finer than can be seen: f = (1 − w)·f₁ + w·f₂ of the two between whose places a number lies.
 
-use super::{Bsdf, BsdfSample, Lobe, Shading};
+use super::{Bsdf, BsdfSample, Lobe, Properties, Shading};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{Lanes, Real, Vec3};
@@ -47,14 +47,18 @@ impl Blend {
         PartWeights([(second - 1, 1.0 - share), (second, share)])
     }
 
-    /// Whether any part scatters what arrives from a given direction.
-    pub(super) fn has_solid_angle_part(&self) -> bool {
-        self.parts.iter().any(Bsdf::has_solid_angle_part)
-    }
-
-    /// Whether what any part does depends on the medium that it stands in.
-    pub(super) fn takes_medium(&self) -> bool {
-        self.parts.iter().any(Bsdf::takes_medium)
+    /// See [`Properties`]: what any of the parts has.
+    pub(super) fn properties(parts: impl IntoIterator<Item = Properties>) -> Properties {
+        let both = |one: Properties, other: Properties| Properties {
+            solid_angle: one.solid_angle || other.solid_angle,
+            delta_reflection: one.delta_reflection || other.delta_reflection,
+            delta_transmission: one.delta_transmission || other.delta_transmission,
+            dark: one.dark && other.dark,
+            polarising_axis: one.polarising_axis || other.polarising_axis,
+            takes_medium: one.takes_medium || other.takes_medium,
+            smooth_name: if one.smooth_name.is_empty() { other.smooth_name } else { one.smooth_name },
+        };
+        parts.into_iter().reduce(both).unwrap_or(Properties { dark: true, ..Properties::default() })
     }
 
     /// What it does to polarised light, in the frames of `x`: a delta is one part's own, else both parts count, each by what it

@@ -1,12 +1,13 @@
 //! Smooth metal: Fresnel reflection from a complex refractive index n + ik, relative to the medium it stands in (vacuum, if
 //! media are not tracked), s and p averaged.
 
-use super::BsdfSample;
 use super::metal::PathMetal;
+use super::{BsdfSample, Properties};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{Lanes, Vec3, fresnel};
+use etalon_scene::Metal;
 
 /// Smooth metal.
 #[derive(Clone, Debug)]
@@ -18,6 +19,15 @@ impl Conductor {
     /// A smooth surface of this metal.
     pub fn new(metal: PathMetal) -> Self {
         Self { metal }
+    }
+
+    /// See [`Properties`].
+    pub(super) fn properties(metal: &Metal) -> Properties {
+        let dark = match metal {
+            Metal::Reflectance(reflectance) => reflectance.is_zero(),
+            Metal::Index(_) => false,
+        };
+        Properties { dark, takes_medium: true, ..Properties::mirror("smooth metal") }
     }
 
     /// n and k in every lane, relative to the medium in front of the metal.

@@ -4,7 +4,7 @@
 //! gone elsewhere. Reflection is shared by all lanes, each with its own probability of having chosen it, which the
 //! balance heuristic over lanes needs (Wilkie et al. 2014, eq. 5).
 
-use super::BsdfSample;
+use super::{BsdfSample, Properties};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
@@ -23,6 +23,11 @@ impl Dielectric {
     pub fn new(interior: RefractiveIndex, exterior: RefractiveIndex) -> Self {
         let dispersive = interior.is_dispersive() || exterior.is_dispersive();
         Self { interior, exterior, dispersive }
+    }
+
+    /// See [`Properties`]. It states its own media, unless it bounds a solid with a priority.
+    pub(super) fn properties() -> Properties {
+        Properties::pane("a smooth interface of two media")
     }
 
     /// The indices behind and before the outward normal, if they are the same at every wavelength; and otherwise `None`.

@@ -1,11 +1,12 @@
 //! Ideal diffuse reflection on both sides: f = ρ/π (Lambert 1760), drawn in proportion to the cosine.
 
-use super::BsdfSample;
+use super::{BsdfSample, Properties};
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Frame, Lanes, Vec3};
+use etalon_scene::SpectrumTexture;
 use std::f64::consts::FRAC_1_PI;
 
 /// Ideal diffuse reflection.
@@ -18,6 +19,11 @@ impl Lambert {
     /// A surface of this albedo, in [0, 1].
     pub fn new(reflectance: PathTexture) -> Self {
         Self { reflectance }
+    }
+
+    /// See [`Properties`].
+    pub(super) fn properties(reflectance: &SpectrumTexture) -> Properties {
+        Properties { dark: reflectance.is_zero(), ..Properties::SOLID_ANGLE }
     }
 
     /// The reflectance, if it is the same everywhere.

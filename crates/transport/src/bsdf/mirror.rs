@@ -1,10 +1,11 @@
 //! Ideal mirror on both sides: the same reflectance at every angle.
 
-use super::BsdfSample;
+use super::{BsdfSample, Properties};
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
 use etalon_optics::{Lanes, Vec3};
+use etalon_scene::SpectrumTexture;
 
 /// Ideal mirror.
 #[derive(Clone, Debug)]
@@ -16,6 +17,11 @@ impl Mirror {
     /// A mirror of this reflectance, in [0, 1].
     pub fn new(reflectance: PathTexture) -> Self {
         Self { reflectance }
+    }
+
+    /// See [`Properties`].
+    pub(super) fn properties(reflectance: &SpectrumTexture) -> Properties {
+        Properties { dark: reflectance.is_zero(), ..Properties::mirror("a mirror") }
     }
 
     /// The reflectance, if it is the same everywhere.

@@ -17,6 +17,7 @@ mod mueller;
 mod oren_nayar;
 mod plastic;
 mod polarising_sheet;
+mod properties;
 mod rough_conductor;
 mod rough_dielectric;
 mod shading;
@@ -34,6 +35,7 @@ pub use mueller::Lobe;
 pub use oren_nayar::OrenNayar;
 pub use plastic::Plastic;
 pub use polarising_sheet::PolarisingSheet;
+pub use properties::{Properties, properties};
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
@@ -142,25 +144,6 @@ impl Bsdf {
         }
     }
 
-    /// Whether light arriving from a given direction can be scattered toward the camera at all: false where every
-    /// direction is a delta, so that a shadow ray would find nothing.
-    pub fn has_solid_angle_part(&self) -> bool {
-        match self {
-            Self::Lambert(_)
-            | Self::RoughConductor(_)
-            | Self::RoughDielectric(_)
-            | Self::OrenNayar(_)
-            | Self::Plastic(_) => true,
-            Self::Blend(blend) => blend.has_solid_angle_part(),
-            Self::Mirror(_)
-            | Self::Conductor(_)
-            | Self::Dielectric(_)
-            | Self::ThinDielectric(_)
-            | Self::PolarisingSheet(_)
-            | Self::Black => false,
-        }
-    }
-
     /// The BSDF's part without deltas, f(wo, wi)·|cos θ_i| in sr⁻¹, and the density in sr⁻¹ with which
     /// [`Bsdf::sample`] would draw `wi` if that lane's wavelength were the hero.
     #[inline]
@@ -241,19 +224,6 @@ impl Bsdf {
             Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
             Self::Black => None,
-        }
-    }
-
-    /// Whether what it does depends on the medium that it stands in.
-    pub(crate) fn takes_medium(&self) -> bool {
-        match self {
-            Self::Conductor(_) => true,
-            // It states its own, unless it bounds a solid with a priority.
-            Self::Dielectric(_) | Self::RoughDielectric(_) => false,
-            Self::Blend(blend) => blend.takes_medium(),
-            // Their tables, and the coat, are made for vacuum; a pane's index is relative.
-            Self::RoughConductor(_) | Self::Plastic(_) | Self::ThinDielectric(_) => false,
-            Self::Lambert(_) | Self::Mirror(_) | Self::OrenNayar(_) | Self::PolarisingSheet(_) | Self::Black => false,
         }
     }
 }

@@ -5,12 +5,13 @@
 //! and 1 elsewhere, A = 1/(1 + r(1/2 − 2/3π)) and ρ_ms = ρ²E_avg/(1 − ρ(1 − E_avg)). E is the albedo of the first term for
 //! ρ = 1. At ρ = 1 all light comes back, at r = 0 it is Lambert's.
 
-use super::BsdfSample;
 use super::albedo::LossTable;
 use super::microfacet::Facing;
+use super::{BsdfSample, Properties};
 use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Lanes, Vec3};
+use etalon_scene::SpectrumTexture;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Rough diffuse reflection.
@@ -28,6 +29,11 @@ impl OrenNayar {
         let scale = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * roughness);
         let loss = Box::new(LossTable::new([1.0, 1.0], 1e-5, |mu, _| 1.0 - albedo(roughness, scale, mu)));
         Self { reflectance, roughness, scale, loss }
+    }
+
+    /// See [`Properties`].
+    pub(super) fn properties(reflectance: &SpectrumTexture) -> Properties {
+        Properties { dark: reflectance.is_zero(), ..Properties::SOLID_ANGLE }
     }
 
     pub(super) fn eval<const N: usize>(

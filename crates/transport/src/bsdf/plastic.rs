@@ -6,11 +6,11 @@
 //! that a white ground returns all that the coat lets in (Walsh 1926; Duntley 1942). T is exact for a smooth coat; for a
 //! rough one 1 − R of its facets, tabulated. Facets of the coat that hide each other pass their light to the ground.
 
-use super::BsdfSample;
 use super::albedo::{self, LossTable, Tabulated};
 use super::microfacet::{Facet, Facing, Ggx, MEAN_ERROR, mean_over_facets};
 use super::mueller::{Lobe, PolarisedLoss};
 use super::rough_dielectric::mean_transmittance;
+use super::{BsdfSample, Properties};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
@@ -74,6 +74,14 @@ impl Plastic {
         };
         plastic.ground = steps().map(ground).sum::<f64>() / 65.0;
         plastic
+    }
+
+    /// See [`Properties`]: a coat without width is a mirror over the diffuse ground. It is made for vacuum.
+    pub(super) fn properties(alpha: f64) -> Properties {
+        match alpha {
+            0.0 => Properties { solid_angle: true, ..Properties::mirror("a smooth coat") },
+            _ => Properties::SOLID_ANGLE,
+        }
     }
 
     /// ρ/(n²(1 − ρ r_i)) of a coat of index `n`.

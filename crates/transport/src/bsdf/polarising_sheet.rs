@@ -5,7 +5,7 @@
 //! **b** is where the molecules of a film lie, or the wires of a grid, which absorb what swings along them. So the frame's x is
 //! **k** × **b**, at every angle of incidence; of a retarder the delay is the same at every angle. Nothing is mirrored.
 
-use super::{BsdfSample, Shading};
+use super::{BsdfSample, Properties, Shading};
 use crate::mis::Density;
 use crate::polarisation::across;
 use crate::polarisation::mueller::{self, Matrix};
@@ -48,6 +48,15 @@ impl PolarisingSheet {
             }
         };
         Self { effect }
+    }
+
+    /// See [`Properties`].
+    pub(super) fn properties(sheet: &Sheet) -> Properties {
+        let (name, dark) = match sheet {
+            Sheet::Polariser { transmittance, .. } => ("a polariser", transmittance.is_zero()),
+            Sheet::Retarder { .. } => ("a retarder", false),
+        };
+        Properties { dark, polarising_axis: true, ..Properties::sheet(name) }
     }
 
     pub(super) fn sample<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wo: Vec3<f64>) -> Option<BsdfSample<N>> {

@@ -4,10 +4,10 @@
 //! F_ms = F_avg² E_avg/(1 − F_avg(1 − E_avg)): Kulla & Conty 2017, with the colour of the series of bounces, the first of
 //! which cannot escape. E is the albedo of the same facets if they reflected everything.
 
-use super::BsdfSample;
 use super::albedo::{self, LossTable, Tabulated};
 use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Facing, Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
+use super::{BsdfSample, Properties};
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{Lanes, Vec3, fresnel};
 use std::f64::consts::FRAC_1_PI;
@@ -47,6 +47,11 @@ impl RoughConductor {
             Box::new(Compensation { loss, factor })
         });
         Self { metal, ggx, compensation }
+    }
+
+    /// See [`Properties`]. Its tables are made for vacuum.
+    pub(super) fn properties() -> Properties {
+        Properties::SOLID_ANGLE
     }
 
     fn loss(&self, mu: f64) -> f64 {

@@ -14,10 +14,10 @@
 //! Facets bend each wavelength by its own angle, but a rough interface sends every wavelength everywhere: all lanes go on
 //! along the hero's direction, each with its own value and its own density of that direction.
 
-use super::BsdfSample;
 use super::albedo::{self, LossTable, Tabulated};
 use super::microfacet::{Facet, Facing, Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
+use super::{BsdfSample, Properties};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
@@ -162,6 +162,11 @@ impl RoughDielectric {
         let ggx = Ggx::new(alpha);
         let own = Boundary::new(interior, exterior, ggx, compensated, range_nm);
         Self { ggx, compensated, own, others: Vec::new() }
+    }
+
+    /// See [`Properties`]. It states its own media, unless it bounds a solid with a priority.
+    pub(super) fn properties() -> Properties {
+        Properties::SOLID_ANGLE
     }
 
     /// Makes it the boundary of a solid that may border on any of `media`.

@@ -2,7 +2,7 @@
 //! number of internal reflections, added without interference ([`mueller::pane`]). Between its two faces s and p go their own
 //! ways: a pane is one surface, which treats the light that it is given as unpolarised, but not what is within it.
 
-use super::BsdfSample;
+use super::{BsdfSample, Properties};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{Lanes, RefractiveIndex, Vec3};
@@ -20,6 +20,11 @@ impl ThinDielectric {
     pub fn new(index: RefractiveIndex, range_nm: [f64; 2]) -> Self {
         let reference = index.eval(0.5 * (range_nm[0] + range_nm[1]));
         Self { index, reference }
+    }
+
+    /// See [`Properties`]. Its index is relative to any medium.
+    pub(super) fn properties() -> Properties {
+        Properties::pane("a thin pane")
     }
 
     /// What the pane does to polarised light that meets it at the cosine `cos`.

@@ -8,11 +8,12 @@
 //! A pair is listed unless it is certain that no light of the lamp reaches the surface: outside the cone of a spot. What stands
 //! between the two is not asked.
 
-use super::evidence::{is_target, sheet_name};
+use super::evidence::is_target;
+use crate::bsdf::properties;
 use crate::frame::Affine;
 use etalon_geometry::Aabb;
 use etalon_optics::Vec3;
-use etalon_scene::{LightKind, MaterialKind, Mesh, Metal, Object, PolarisingSheet, Scene, Shape};
+use etalon_scene::{LightKind, MaterialKind, Mesh, Object, Scene, Shape};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -118,35 +119,17 @@ fn smooth_objects(scene: &Scene) -> Vec<Smooth<'_>> {
         .collect()
 }
 
-/// The part of a material that sends light on in single directions, if it has one.
+/// The part of a material that sends light on in single directions, if it has one; of several the name of the first.
 fn smooth_part(kind: &MaterialKind) -> Option<(&'static str, Lost)> {
-    match kind {
-        MaterialKind::Mirror { reflectance } => (!reflectance.is_zero()).then_some(("a mirror", Lost::Reflected)),
-        MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) } => {
-            (!reflectance.is_zero()).then_some(("smooth metal", Lost::Reflected))
-        }
-        MaterialKind::Conductor { metal: Metal::Index(_) } => Some(("smooth metal", Lost::Reflected)),
-        MaterialKind::Dielectric { .. } => Some(("a smooth interface of two media", Lost::ReflectedAndTransmitted)),
-        MaterialKind::ThinDielectric { .. } => Some(("a thin pane", Lost::ReflectedAndTransmitted)),
-        MaterialKind::Plastic { alpha, .. } => (*alpha == 0.0).then_some(("a smooth coat", Lost::Reflected)),
-        MaterialKind::PolarisingSheet { sheet: PolarisingSheet::Polariser { transmittance, .. }, .. }
-            if transmittance.is_zero() =>
-        {
-            None
-        }
-        MaterialKind::PolarisingSheet { sheet, .. } => Some((sheet_name(sheet), Lost::Transmitted)),
-        MaterialKind::Blend { parts, .. } => {
-            let parts: Vec<_> = parts.iter().filter_map(|(_, part)| smooth_part(part)).collect();
-            let (surface, first) = *parts.first()?;
-            let alike = parts.iter().all(|(_, lost)| *lost == first);
-            Some((surface, if alike { first } else { Lost::ReflectedAndTransmitted }))
-        }
-        MaterialKind::Lambert { .. }
-        | MaterialKind::RoughConductor { .. }
-        | MaterialKind::RoughDielectric { .. }
-        | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Black => None,
-    }
+    let of_parts = kind.parts().into_iter().map(properties);
+    let parts: Vec<_> = of_parts.filter(|part| part.has_delta() && !part.dark).collect();
+    let lost = match (parts.iter().any(|part| part.delta_reflection), parts.iter().any(|part| part.delta_transmission))
+    {
+        (true, false) => Lost::Reflected,
+        (false, true) => Lost::Transmitted,
+        _ => Lost::ReflectedAndTransmitted,
+    };
+    Some((parts.first()?.smooth_name, lost))
 }
 
 /// A ball around an object in the world.

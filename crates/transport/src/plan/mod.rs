@@ -1,7 +1,8 @@
 //! What a scene calls for, and what will therefore be simulated.
 //!
-//! Effects are derived, never declared: each material, light, camera and film says in an exhaustive `match` what it calls
-//! for ([`evidence`](self)), and what nothing calls for is not done. A [`Study`] may have it otherwise.
+//! Effects are derived, never declared. Each light, camera and film says in an exhaustive `match` what it calls for
+//! ([`evidence`](self)). Materials say it by their [properties](crate::bsdf::Properties) and
+//! [parameters](etalon_scene::Parameter). What nothing calls for is not done. A [`Study`] may have it otherwise.
 
 mod evidence;
 mod grey;

@@ -2,12 +2,13 @@
 
 use super::evidence::{self, middle};
 use super::{EffectName, PathLoop, three_channels};
+use crate::bsdf::properties;
 use crate::texture;
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_scene::{
-    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Metal, Object, PolarisingSheet,
-    Projection, Scene, Shape, SpectrumTexture, Texels,
+    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Metal, Object, ParameterMut,
+    PolarisingSheet, Projection, Scene, Shape, SpectrumTexture, Texels,
 };
 use std::sync::Arc;
 
@@ -234,71 +235,42 @@ pub(super) fn lights_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Spectru
 
 /// Makes a material treat all wavelengths alike.
 fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
-    if let Some(reflectance) = kind.reflectance_mut() {
-        *reflectance = grey_texture(reflectance, range_nm);
-    }
-    match kind {
-        MaterialKind::Conductor { metal: Metal::Index(index) }
-        | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => *index = grey_metal(index, range_nm),
-        MaterialKind::Plastic { coat, .. } => *coat = index_at_middle(coat, range_nm),
-        MaterialKind::ThinDielectric { index } => *index = index_at_middle(index, range_nm),
-        MaterialKind::PolarisingSheet { sheet, .. } => match sheet {
-            PolarisingSheet::Polariser { transmittance, .. } => *transmittance = grey(transmittance, range_nm),
-            PolarisingSheet::Retarder { retardance_rad, at_nm } => {
+    for parameter in kind.parameters_mut() {
+        match parameter {
+            ParameterMut::Reflectance(reflectance) | ParameterMut::Metal(Metal::Reflectance(reflectance)) => {
+                *reflectance = grey_texture(reflectance, range_nm);
+            }
+            ParameterMut::Metal(Metal::Index(index)) => *index = grey_metal(index, range_nm),
+            ParameterMut::Coat(index) => *index = index_at_middle(index, range_nm),
+            ParameterMut::Sheet(PolarisingSheet::Polariser { transmittance, .. }) => {
+                *transmittance = grey(transmittance, range_nm);
+            }
+            ParameterMut::Sheet(PolarisingSheet::Retarder { retardance_rad, at_nm }) => {
                 if let Some(at_nm) = at_nm.take() {
                     *retardance_rad *= at_nm / middle(range_nm);
                 }
             }
-        },
-        MaterialKind::Blend { parts, .. } => parts.iter_mut().for_each(|(_, part)| turn_grey(part, range_nm)),
-        MaterialKind::Lambert { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Conductor { metal: Metal::Reflectance(_) }
-        | MaterialKind::RoughConductor { metal: Metal::Reflectance(_), .. }
-        | MaterialKind::Dielectric { .. }
-        | MaterialKind::RoughDielectric { .. }
-        | MaterialKind::Black => {}
+            // See `fix_indices`.
+            ParameterMut::Interface(_) => {}
+        }
     }
 }
 
 /// Makes every wavelength that a material refracts take the way of one.
 pub(super) fn fix_indices(kind: &mut MaterialKind, range_nm: [f64; 2]) {
-    match kind {
-        MaterialKind::Dielectric { interior, exterior, .. }
-        | MaterialKind::RoughDielectric { interior, exterior, .. } => {
-            for index in [interior, exterior] {
-                *index = index_at_middle(index, range_nm);
-            }
+    for parameter in kind.parameters_mut() {
+        if let ParameterMut::Interface(media) = parameter {
+            media.into_iter().for_each(|index| *index = index_at_middle(index, range_nm));
         }
-        MaterialKind::Blend { parts, .. } => parts.iter_mut().for_each(|(_, part)| fix_indices(part, range_nm)),
-        MaterialKind::Lambert { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::Conductor { .. }
-        | MaterialKind::RoughConductor { .. }
-        | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Plastic { .. }
-        | MaterialKind::ThinDielectric { .. }
-        | MaterialKind::PolarisingSheet { .. }
-        | MaterialKind::Black => {}
     }
 }
 
-/// Makes black what hands light on in single directions.
+/// Makes black what hands light on in single directions only.
 fn blacken(kind: &mut MaterialKind) {
-    match kind {
-        MaterialKind::Mirror { .. }
-        | MaterialKind::Conductor { .. }
-        | MaterialKind::Dielectric { .. }
-        | MaterialKind::ThinDielectric { .. }
-        | MaterialKind::PolarisingSheet { .. } => *kind = MaterialKind::Black,
-        MaterialKind::Blend { parts, .. } => parts.iter_mut().for_each(|(_, part)| blacken(part)),
-        MaterialKind::Lambert { .. }
-        | MaterialKind::RoughConductor { .. }
-        | MaterialKind::RoughDielectric { .. }
-        | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Plastic { .. }
-        | MaterialKind::Black => {}
+    for part in kind.parts_mut() {
+        if properties(part).is_specular() {
+            *part = MaterialKind::Black;
+        }
     }
 }
 

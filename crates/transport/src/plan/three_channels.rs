@@ -7,7 +7,7 @@ use super::{EffectName, evidence, grey};
 use etalon_optics::colour::{rec709_from_xyz, xyz_of_reflectance};
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{Illuminant, Spectrum};
-use etalon_scene::{MaterialKind, Metal, Scene, SpectrumTexture};
+use etalon_scene::{MaterialKind, Metal, ParameterMut, Scene, SpectrumTexture};
 
 /// Wavelengths that stand for blue, green and red, nm; of metals, whose indices stay what they are, they are chosen.
 pub(crate) const CHANNELS_NM: [f64; 3] = [450.0, 545.0, 610.0];
@@ -41,30 +41,17 @@ pub(super) fn replace(scene: &mut Scene) {
 
 fn colour(kind: &mut MaterialKind, range_nm: [f64; 2]) {
     let shown = |spectrum: &Spectrum| channels(xyz_of_reflectance(|nm| spectrum.eval(nm), Illuminant::D65), 1.0);
-    // Images are refused.
-    let show = |reflectance: &mut SpectrumTexture| {
-        if let SpectrumTexture::Uniform(spectrum) = reflectance {
-            *spectrum = shown(spectrum);
+    for parameter in kind.parameters_mut() {
+        match parameter {
+            // Images are refused.
+            ParameterMut::Reflectance(reflectance) | ParameterMut::Metal(Metal::Reflectance(reflectance)) => {
+                if let SpectrumTexture::Uniform(spectrum) = reflectance {
+                    *spectrum = shown(spectrum);
+                }
+            }
+            ParameterMut::Coat(index) => *index = index_at_middle(index, range_nm),
+            ParameterMut::Metal(Metal::Index(_)) | ParameterMut::Interface(_) | ParameterMut::Sheet(_) => {}
         }
-    };
-    match kind {
-        MaterialKind::Lambert { reflectance }
-        | MaterialKind::Mirror { reflectance }
-        | MaterialKind::OrenNayar { reflectance, .. }
-        | MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
-        | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => show(reflectance),
-        MaterialKind::Plastic { reflectance, coat, .. } => {
-            show(reflectance);
-            *coat = index_at_middle(coat, range_nm);
-        }
-        MaterialKind::ThinDielectric { index } => *index = index_at_middle(index, range_nm),
-        MaterialKind::Blend { parts, .. } => parts.iter_mut().for_each(|(_, part)| colour(part, range_nm)),
-        MaterialKind::Conductor { metal: Metal::Index(_) }
-        | MaterialKind::RoughConductor { metal: Metal::Index(_), .. }
-        | MaterialKind::Dielectric { .. }
-        | MaterialKind::RoughDielectric { .. }
-        | MaterialKind::PolarisingSheet { .. }
-        | MaterialKind::Black => {}
     }
 }
 

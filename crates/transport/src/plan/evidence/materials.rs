@@ -1,58 +1,37 @@
 //! What the materials of surfaces call for.
 
+use crate::bsdf::{Properties, properties};
 use crate::plan::grey::steps;
 use etalon_optics::{ComplexIndex, RefractiveIndex};
-use etalon_scene::{Material, MaterialKind, Metal, PolarisingSheet, SpectrumTexture};
+use etalon_scene::{Material, MaterialKind, Metal, Parameter, PolarisingSheet, SpectrumTexture};
 
+/// The index by which wavelengths go different ways, if there is one.
 pub(super) fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
-    match kind {
-        MaterialKind::Dielectric { interior, exterior, .. }
-        | MaterialKind::RoughDielectric { interior, exterior, .. } => [interior, exterior]
-            .into_iter()
-            .find(|index| index.is_dispersive())
-            .map(|index| index_range(index, range_nm)),
-        MaterialKind::Lambert { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::Conductor { .. }
-        | MaterialKind::RoughConductor { .. }
-        | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Plastic { .. }
-        | MaterialKind::ThinDielectric { .. }
-        | MaterialKind::PolarisingSheet { .. }
-        | MaterialKind::Black => None,
-        MaterialKind::Blend { parts, .. } => parts.iter().find_map(|(_, part)| dispersion(part, range_nm)),
-    }
+    kind.parameters().iter().find_map(|parameter| match parameter {
+        Parameter::Interface(media) => dispersion_of_media(*media, range_nm),
+        _ => None,
+    })
+}
+
+fn dispersion_of_media(media: [&RefractiveIndex; 2], range_nm: [f64; 2]) -> Option<String> {
+    media.into_iter().find(|index| index.is_dispersive()).map(|index| index_range(index, range_nm))
 }
 
 /// How the light that a material hands on depends on the wavelength, if it does.
 pub(super) fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
-    if let Some(found) = kind.reflectance().and_then(|reflectance| colour_of_texture(reflectance, range_nm)) {
-        return Some(found);
-    }
-    match kind {
-        MaterialKind::Conductor { metal: Metal::Index(index) }
-        | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => {
-            index.is_dispersive().then(|| metal_range(index, range_nm))
+    kind.parameters().into_iter().find_map(|parameter| match parameter {
+        Parameter::Reflectance(reflectance) | Parameter::Metal(Metal::Reflectance(reflectance)) => {
+            colour_of_texture(reflectance, range_nm)
         }
-        MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } => dispersion(kind, range_nm),
-        MaterialKind::Plastic { coat: index, .. } | MaterialKind::ThinDielectric { index } => {
-            index.is_dispersive().then(|| index_range(index, range_nm))
-        }
-        MaterialKind::PolarisingSheet { sheet, .. } => match sheet {
-            PolarisingSheet::Polariser { transmittance, .. } => (!transmittance.is_constant())
-                .then(|| format!("transmittance {}", spread(range_nm, |nm| transmittance.eval(nm)))),
-            PolarisingSheet::Retarder { retardance_rad, at_nm } => at_nm.map(|at_nm| {
-                format!("retardance in degrees {}", spread(range_nm, |nm| retardance_rad.to_degrees() * at_nm / nm))
-            }),
-        },
-        MaterialKind::Blend { parts, .. } => parts.iter().find_map(|(_, part)| colour(part, range_nm)),
-        MaterialKind::Lambert { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Conductor { metal: Metal::Reflectance(_) }
-        | MaterialKind::RoughConductor { metal: Metal::Reflectance(_), .. }
-        | MaterialKind::Black => None,
-    }
+        Parameter::Metal(Metal::Index(index)) => index.is_dispersive().then(|| metal_range(index, range_nm)),
+        Parameter::Interface(media) => dispersion_of_media(media, range_nm),
+        Parameter::Coat(index) => index.is_dispersive().then(|| index_range(index, range_nm)),
+        Parameter::Sheet(PolarisingSheet::Polariser { transmittance, .. }) => (!transmittance.is_constant())
+            .then(|| format!("transmittance {}", spread(range_nm, |nm| transmittance.eval(nm)))),
+        Parameter::Sheet(PolarisingSheet::Retarder { retardance_rad, at_nm }) => at_nm.map(|at_nm| {
+            format!("retardance in degrees {}", spread(range_nm, |nm| retardance_rad.to_degrees() * at_nm / nm))
+        }),
+    })
 }
 
 /// How a reflectance depends on the wavelength, if it does.
@@ -70,64 +49,18 @@ pub(super) fn absorption(material: &Material, range_nm: [f64; 2]) -> Option<Stri
 }
 
 pub(super) fn nested(kind: &MaterialKind) -> Option<String> {
-    match kind {
-        MaterialKind::Dielectric { priority, .. } | MaterialKind::RoughDielectric { priority, .. } => {
-            priority.map(|priority| format!("priority {priority}"))
-        }
-        // The reader refuses priorities in the parts of a blend.
-        MaterialKind::RoughConductor { .. }
-        | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Plastic { .. }
-        | MaterialKind::ThinDielectric { .. }
-        | MaterialKind::PolarisingSheet { .. }
-        | MaterialKind::Blend { .. }
-        | MaterialKind::Lambert { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::Conductor { .. }
-        | MaterialKind::Black => None,
-    }
+    kind.solid().map(|(_, priority)| format!("priority {priority}"))
 }
 
+/// The first part that sends all light on in single directions.
 pub(super) fn specular(kind: &MaterialKind) -> Option<String> {
-    match kind {
-        MaterialKind::Mirror { .. } => Some("a mirror".to_owned()),
-        MaterialKind::Conductor { .. } => Some("smooth metal".to_owned()),
-        MaterialKind::Dielectric { .. } => Some("a smooth interface of two media".to_owned()),
-        MaterialKind::ThinDielectric { .. } => Some("a thin pane".to_owned()),
-        MaterialKind::PolarisingSheet { sheet, .. } => Some(sheet_name(sheet).to_owned()),
-        MaterialKind::Blend { parts, .. } => parts.iter().find_map(|(_, part)| specular(part)),
-        MaterialKind::Lambert { .. }
-        | MaterialKind::RoughConductor { .. }
-        | MaterialKind::RoughDielectric { .. }
-        | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Plastic { .. }
-        | MaterialKind::Black => None,
-    }
-}
-
-pub(in crate::plan) fn sheet_name(sheet: &PolarisingSheet) -> &'static str {
-    match sheet {
-        PolarisingSheet::Polariser { .. } => "a polariser",
-        PolarisingSheet::Retarder { .. } => "a retarder",
-    }
+    let mut parts = kind.parts().into_iter().map(properties);
+    parts.find(Properties::is_specular).map(|part| part.smooth_name.to_owned())
 }
 
 /// Whether a shadow ray from the surface could find light.
 pub(super) fn is_diffuse(kind: &MaterialKind) -> bool {
-    match kind {
-        MaterialKind::Lambert { reflectance } => !reflectance.is_zero(),
-        MaterialKind::OrenNayar { reflectance, .. } => !reflectance.is_zero(),
-        MaterialKind::RoughConductor { .. } | MaterialKind::RoughDielectric { .. } | MaterialKind::Plastic { .. } => {
-            true
-        }
-        MaterialKind::Blend { parts, .. } => parts.iter().any(|(_, part)| is_diffuse(part)),
-        MaterialKind::Mirror { .. }
-        | MaterialKind::Conductor { .. }
-        | MaterialKind::Dielectric { .. }
-        | MaterialKind::ThinDielectric { .. }
-        | MaterialKind::PolarisingSheet { .. }
-        | MaterialKind::Black => false,
-    }
+    kind.parts().into_iter().map(properties).any(|part| part.solid_angle && !part.dark)
 }
 
 fn index_range(index: &RefractiveIndex, range_nm: [f64; 2]) -> String {

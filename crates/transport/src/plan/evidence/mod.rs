@@ -6,7 +6,6 @@ mod motion;
 mod polarisation;
 
 pub(super) use lights::{is_target, sources};
-pub(super) use materials::sheet_name;
 pub(super) use polarisation::{UNPOLARISED, polarisation};
 
 use super::EffectName;

@@ -1,10 +1,11 @@
 //! Whether light is polarised, and by how much it matters that it is not.
 
-use super::{first_surface, materials::sheet_name, middle, surface};
+use super::{first_surface, middle, surface};
+use crate::bsdf::properties;
 use crate::plan::grey::steps;
 use crate::texture;
 use etalon_optics::{colour::colour_matching, fresnel};
-use etalon_scene::{MaterialKind, Metal, Scene};
+use etalon_scene::{MaterialKind, Metal, Parameter, Scene};
 
 /// Why polarisation is not carried where it could make no difference.
 pub(in crate::plan) const UNPOLARISED: &str = "no surface polarises light";
@@ -14,9 +15,9 @@ pub(in crate::plan) fn polarisation(scene: &Scene, asked_for: bool) -> Result<St
     if asked_for {
         return Ok("asked for by --polarised".to_owned());
     }
-    let sheet = first_surface(scene, |material, _| match &material.kind {
-        MaterialKind::PolarisingSheet { sheet, .. } => Some(sheet_name(sheet).to_owned()),
-        _ => None,
+    let sheet = first_surface(scene, |material, _| {
+        let properties = properties(&material.kind);
+        properties.polarising_axis.then(|| properties.smooth_name.to_owned())
     });
     if let Some(found) = sheet {
         return Ok(found);
@@ -44,32 +45,22 @@ pub(in crate::plan) fn polarisation(scene: &Scene, asked_for: bool) -> Result<St
 /// a = (A_s − A_p)/(A_s + A_p) each hand on 1 + a² of what the averages do where their planes of incidence are parallel, and 1 − a²
 /// where they are crossed.
 fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
-    match kind {
-        MaterialKind::Dielectric { interior, exterior, .. }
-        | MaterialKind::RoughDielectric { interior, exterior, .. } => {
-            let [interior, exterior] = [interior, exterior].map(|index| index.eval(middle(range_nm)));
+    let of_parameter = |parameter| match parameter {
+        Parameter::Interface(media) => {
+            let [interior, exterior] = media.map(|index| index.eval(middle(range_nm)));
             glass(interior / exterior)
         }
-        MaterialKind::Plastic { coat, .. } => glass(coat.eval(middle(range_nm))),
-        MaterialKind::ThinDielectric { index } => glass(index.eval(middle(range_nm))),
-        MaterialKind::Conductor { metal: Metal::Reflectance(reflectance) }
-        | MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => {
+        Parameter::Coat(index) => glass(index.eval(middle(range_nm))),
+        Parameter::Metal(Metal::Reflectance(reflectance)) => {
             let mean = texture::mean(reflectance);
             metal(range_nm, |nm| (1.0, Metal::k_of(mean.eval(nm))))
         }
-        MaterialKind::Conductor { metal: Metal::Index(index) }
-        | MaterialKind::RoughConductor { metal: Metal::Index(index), .. } => metal(range_nm, |nm| index.eval(nm)),
-        MaterialKind::Blend { parts, .. } => {
-            let worst = parts.iter().filter_map(|(_, part)| polarises(part, range_nm));
-            worst.reduce(|worst, other| if other.0 > worst.0 { other } else { worst })
-        }
-        // A mirror treats s and p alike; sheets call for polarisation themselves.
-        MaterialKind::Lambert { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::PolarisingSheet { .. }
-        | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Black => None,
-    }
+        Parameter::Metal(Metal::Index(index)) => metal(range_nm, |nm| index.eval(nm)),
+        // What states a reflectance treats s and p alike; sheets call for polarisation themselves.
+        Parameter::Reflectance(_) | Parameter::Sheet(_) => None,
+    };
+    let worst = kind.parameters().into_iter().filter_map(of_parameter);
+    worst.reduce(|worst, other| if other.0 > worst.0 { other } else { worst })
 }
 
 /// [`polarises`] of a metal of n + ik at each wavelength.

@@ -1,0 +1,157 @@
+//! What the rest of the renderer asks of a material: each file of this folder states it of its own.
+
+use super::{
+    Blend, Conductor, Dielectric, Lambert, Mirror, OrenNayar, Plastic, PolarisingSheet, RoughConductor,
+    RoughDielectric, ThinDielectric,
+};
+use etalon_scene::MaterialKind;
+
+/// Properties of the scattering at a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Properties {
+    /// Light from any direction may be scattered toward the camera: shadow rays are of use.
+    pub solid_angle: bool,
+    /// It reflects light in a single direction (a delta).
+    pub delta_reflection: bool,
+    /// It transmits light in a single direction (a delta).
+    pub delta_transmission: bool,
+    /// It is known to scatter no light at all.
+    pub dark: bool,
+    /// It may polarise unpolarised light by an axis of its own.
+    pub polarising_axis: bool,
+    /// What it does depends on the medium that it stands in.
+    pub takes_medium: bool,
+    /// What it is called where a delta is the reason for something.
+    pub smooth_name: &'static str,
+}
+
+impl Properties {
+    /// Of a surface without deltas.
+    pub(super) const SOLID_ANGLE: Self = Self {
+        solid_angle: true,
+        delta_reflection: false,
+        delta_transmission: false,
+        dark: false,
+        polarising_axis: false,
+        takes_medium: false,
+        smooth_name: "",
+    };
+
+    /// Of a surface that only reflects, in a single direction.
+    pub(super) const fn mirror(smooth_name: &'static str) -> Self {
+        Self { solid_angle: false, delta_reflection: true, smooth_name, ..Self::SOLID_ANGLE }
+    }
+
+    /// Of a surface that only transmits, in a single direction.
+    pub(super) const fn sheet(smooth_name: &'static str) -> Self {
+        Self { delta_reflection: false, delta_transmission: true, ..Self::mirror(smooth_name) }
+    }
+
+    /// Of a surface that reflects and transmits, each in a single direction.
+    pub(super) const fn pane(smooth_name: &'static str) -> Self {
+        Self { delta_transmission: true, ..Self::mirror(smooth_name) }
+    }
+
+    /// Whether some light goes on in a single direction.
+    pub fn has_delta(&self) -> bool {
+        self.delta_reflection || self.delta_transmission
+    }
+
+    /// Whether all light goes on in single directions.
+    pub fn is_specular(&self) -> bool {
+        self.has_delta() && !self.solid_angle
+    }
+}
+
+/// The properties of a material; of a blend, all that its parts have.
+pub fn properties(kind: &MaterialKind) -> Properties {
+    match kind {
+        MaterialKind::Lambert { reflectance } => Lambert::properties(reflectance),
+        MaterialKind::Mirror { reflectance } => Mirror::properties(reflectance),
+        MaterialKind::Conductor { metal } => Conductor::properties(metal),
+        MaterialKind::Dielectric { .. } => Dielectric::properties(),
+        MaterialKind::RoughConductor { .. } => RoughConductor::properties(),
+        MaterialKind::RoughDielectric { .. } => RoughDielectric::properties(),
+        MaterialKind::OrenNayar { reflectance, .. } => OrenNayar::properties(reflectance),
+        MaterialKind::Plastic { alpha, .. } => Plastic::properties(*alpha),
+        MaterialKind::ThinDielectric { .. } => ThinDielectric::properties(),
+        MaterialKind::PolarisingSheet { sheet, .. } => PolarisingSheet::properties(sheet),
+        MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
+        MaterialKind::Black => Properties { solid_angle: false, dark: true, ..Properties::SOLID_ANGLE },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Bsdf, Shading};
+    use super::*;
+    use crate::mis::Density;
+    use etalon_optics::{Lanes, RefractiveIndex, Spectrum, Vec3};
+    use etalon_scene::{Metal, PolarisingSheet as Sheet};
+
+    fn kinds() -> Vec<MaterialKind> {
+        let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
+        let sheet = |sheet| MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet };
+        let polariser = |t| Sheet::Polariser { transmittance: Spectrum::Constant(t), extinction: 0.0 };
+        let mut kinds = vec![
+            MaterialKind::Black,
+            MaterialKind::Dielectric { interior: interior.clone(), exterior: exterior.clone(), priority: None },
+            MaterialKind::RoughDielectric {
+                interior: interior.clone(),
+                exterior,
+                alpha: 0.3,
+                compensated: false,
+                priority: None,
+            },
+            MaterialKind::ThinDielectric { index: interior.clone() },
+            sheet(Sheet::Retarder { retardance_rad: 1.0, at_nm: None }),
+        ];
+        for r in [0.0, 0.5] {
+            let reflectance = || Spectrum::Constant(r).into();
+            let metal = || Metal::Reflectance(reflectance());
+            kinds.extend([
+                MaterialKind::Lambert { reflectance: reflectance() },
+                MaterialKind::Mirror { reflectance: reflectance() },
+                MaterialKind::Conductor { metal: metal() },
+                MaterialKind::RoughConductor { metal: metal(), alpha: 0.3, compensated: false },
+                MaterialKind::OrenNayar { reflectance: reflectance(), roughness: 0.5 },
+                sheet(polariser(r)),
+            ]);
+        }
+        for alpha in [0.0, 0.3] {
+            let (reflectance, coat) = (Spectrum::Constant(0.5).into(), interior.clone());
+            kinds.push(MaterialKind::Plastic { reflectance, coat, alpha });
+        }
+        let both = |first: usize, second: usize| MaterialKind::blend(kinds[first].clone(), kinds[second].clone(), 0.5);
+        let blends = [both(0, 1), both(1, 3), both(5, 6), both(0, 0), both(7, 17)];
+        kinds.extend(blends);
+        kinds
+    }
+
+    /// What is stated of a material is what it does: the directions that it draws from both sides are looked at.
+    #[test]
+    fn materials_have_the_properties_that_they_state() {
+        let at = Shading::flat(Vec3::new(0.0, 0.0, 1.0)).with_axis(Vec3::new(1.0, 0.0, 0.0));
+        for kind in kinds() {
+            let bsdf = Bsdf::new(&kind, [380.0, 780.0]);
+            let (mut found, mut light) = (Properties::default(), 0.0);
+            // Glass reflects one in thirty here, and half of a blend is glass.
+            let number = |i: u32, of: u32| (f64::from(i % of) + 0.5) / f64::from(of);
+            for (i, wo) in (0..1024).flat_map(|i| [1.0, -1.0].map(|side| (i, Vec3::new(0.6, 0.0, 0.8 * side)))) {
+                let u = [number(i, 64), number(i / 64, 4), number(i / 256, 4)];
+                let Some(next) = bsdf.sample(&Lanes([550.0]), &at, wo, u) else { continue };
+                light += next.weight[0];
+                match next.density {
+                    Density::SolidAngle(_) => found.solid_angle = true,
+                    Density::Delta if next.wi.z * wo.z > 0.0 => found.delta_reflection = true,
+                    Density::Delta => found.delta_transmission = true,
+                }
+            }
+            let stated = properties(&kind);
+            let of = |p: Properties| (p.solid_angle, p.delta_reflection, p.delta_transmission);
+            assert_eq!(of(stated), of(found), "{kind:?}");
+            assert!(!stated.dark || light == 0.0, "{kind:?} scatters {light}");
+            assert_eq!(stated.has_delta(), !stated.smooth_name.is_empty(), "{kind:?}");
+        }
+    }
+}
