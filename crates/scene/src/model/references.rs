@@ -116,8 +116,8 @@ fn check_material(kind: &MaterialKind, material: &Material) -> Result<(), Refere
         by.image().map_or(Ok(()), |texture| check_image(&texture.image, owner))?;
         parts.iter().try_for_each(|(_, part)| check_material(part, material))?;
     }
-    let images = kind.parameters().into_iter().filter_map(|parameter| parameter.reflectance()?.image());
-    images.map(|texture| check_image(&texture.image, owner)).collect()
+    let mut images = kind.parameters().into_iter().filter_map(|parameter| parameter.reflectance()?.image());
+    images.try_for_each(|texture| check_image(&texture.image, owner))
 }
 
 /// An object, one of `materials`. Its mesh is looked at unless it is one of those `checked`.
