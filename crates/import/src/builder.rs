@@ -2,6 +2,7 @@
 
 mod files;
 mod groups;
+mod studio;
 
 use std::collections::{HashMap, HashSet};
 
@@ -16,6 +17,7 @@ use crate::relief::turn_over;
 use crate::{Imported, LeftOut};
 use files::KnownImage;
 pub(crate) use groups::Outside;
+use studio::area;
 
 /// Most things that are listed as not honoured; the rest is counted.
 const MAX_LEFT_OUT: usize = 1000;
@@ -50,6 +52,14 @@ pub(crate) struct Builder<'a> {
     /// What was left out beyond [`MAX_LEFT_OUT`]; the same thing may count more than once.
     uncounted: usize,
     pub(crate) emits: bool,
+    /// Whether it is a model that may come without light, rather than a scene of another renderer.
+    pub(crate) is_bare: bool,
+    /// Radiance × area of everything that emits, m²; as `bounds`, of the world or of the group that is being made.
+    emitted: f64,
+    /// The same of each group, in its own coordinates.
+    group_emitted: HashMap<String, f64>,
+    /// The mean luminance of images that emit, by their file.
+    emitting_images: HashMap<String, f64>,
     /// Of everything, in the world, or in the group that is being made.
     pub(crate) bounds: Bounds,
 }
@@ -100,6 +110,10 @@ impl<'a> Builder<'a> {
             said: HashSet::new(),
             uncounted: 0,
             emits: false,
+            is_bare: false,
+            emitted: 0.0,
+            group_emitted: HashMap::new(),
+            emitting_images: HashMap::new(),
             bounds: None,
         }
     }
@@ -145,6 +159,7 @@ impl<'a> Builder<'a> {
             object[key] = value.clone();
         }
         if let Some(emission) = emission {
+            self.emitted += self.mean_radiance(&emission) * area(mesh, map);
             object["emission"] = emission;
             self.emits = true;
         }
@@ -258,30 +273,14 @@ impl<'a> Builder<'a> {
             self.left_out.push(LeftOut { place: source.to_owned(), what });
         }
         let mut camera = self.camera.take().unwrap_or_else(|| {
-            let (low, high) = (DVec3::from(low), DVec3::from(high));
-            let center = 0.5 * low + 0.5 * high;
-            // So far that the ball around the bounds fits into the height of the picture.
-            let radius = (0.5 * (high - low).length()).max(f64::MIN_POSITIVE);
-            let fov_deg = 35.0_f64;
-            let distance = 1.02 * radius / (0.5 * fov_deg).to_radians().sin();
-            let from = DVec3::new(0.45, 0.3, 1.0);
-            let position = center + distance * from / from.length();
+            let (camera, distance) = studio::camera([low, high]);
             added.push(format!("the model has no camera: one is added that looks at all of it, from {distance:.3} m"));
-            json!({
-                "type": "perspective", "position_m": position.to_array(), "look_at_m": center.to_array(),
-                "vertical_fov_deg": fov_deg,
-            })
+            camera
         });
         if let Some(shutter_s) = self.shutter_s {
             camera["shutter_s"] = json!(shutter_s);
         }
-        if self.lights.is_empty() && !self.emits {
-            added.push("the model has no light: an even white sky is added".to_owned());
-            self.lights.push(json!({
-                "name": "sky", "type": "environment",
-                "radiance": { "type": "illuminant", "name": "D65", "scale": 1 }
-            }));
-        }
+        added.extend(self.add_light([low, high], &camera));
         let comment: Vec<String> = std::iter::once(format!("Imported from {source}."))
             .chain(added.iter().cloned())
             .chain(self.left_out.iter().map(|l| format!("not honoured: {}: {}", l.place, l.what)))

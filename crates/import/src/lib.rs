@@ -158,6 +158,7 @@ pub fn import_bytes_at(
         return Err("a time is asked for, and only animations of glTF are read".to_owned());
     }
     let mut builder = Builder::new(near, prefix);
+    builder.is_bare = matches!(kind, "ply" | "obj" | "gltf" | "glb");
     let read = read(kind, bytes, moment, &mut builder);
     read.and_then(|()| builder.finish(source)).map_err(shortened)
 }

@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use super::{Bounds, Builder};
 use crate::matrix::{rows, steps};
 
-/// The objects, instances and bounds of what is outside of a group that is being made.
-pub(crate) type Outside = (Vec<Value>, Vec<Value>, Bounds);
+/// The objects, instances, bounds and emitted light of what is outside of a group that is being made.
+pub(crate) type Outside = (Vec<Value>, Vec<Value>, Bounds, f64);
 
 impl Builder<'_> {
     pub(crate) fn group_name(&mut self, wanted: &str) -> String {
@@ -16,10 +16,11 @@ impl Builder<'_> {
 
     /// From here on objects belong to a group. Gives what is outside of it.
     pub(crate) fn begin_group(&mut self) -> Outside {
-        (std::mem::take(&mut self.objects), std::mem::take(&mut self.instances), self.bounds.take())
+        let emitted = std::mem::take(&mut self.emitted);
+        (std::mem::take(&mut self.objects), std::mem::take(&mut self.instances), self.bounds.take(), emitted)
     }
 
-    pub(crate) fn end_group(&mut self, name: &str, (objects, instances, bounds): Outside) {
+    pub(crate) fn end_group(&mut self, name: &str, (objects, instances, bounds, emitted): Outside) {
         let mut group = json!({ "objects": std::mem::replace(&mut self.objects, objects) });
         let within = std::mem::replace(&mut self.instances, instances);
         if !within.is_empty() {
@@ -27,6 +28,7 @@ impl Builder<'_> {
         }
         self.groups.insert(name.to_owned(), group);
         self.group_bounds.insert(name.to_owned(), std::mem::replace(&mut self.bounds, bounds));
+        self.group_emitted.insert(name.to_owned(), std::mem::replace(&mut self.emitted, emitted));
     }
 
     /// Places a group.
@@ -47,6 +49,14 @@ impl Builder<'_> {
         }
         self.instances.push(instance);
         self.enclose(bounds, map);
+        self.count_emitted(group, map);
+    }
+
+    /// Counts the light that an instance of a group emits.
+    fn count_emitted(&mut self, group: &str, map: &DAffine3) {
+        // An area grows by the square of the lengths; one that is stretched, by that of their geometric mean.
+        let scale = map.matrix3.determinant().abs().cbrt();
+        self.emitted += self.group_emitted.get(group).copied().unwrap_or(0.0) * scale * scale;
     }
 
     /// Places a group that moves: keyframes are times, s, and maps at them.
@@ -62,5 +72,8 @@ impl Builder<'_> {
             .collect();
         self.instances.push(json!({ "name": name, "group": group, "keyframes": frames }));
         keyframes.iter().for_each(|(_, map)| self.enclose(bounds, map));
+        if let Some((_, map)) = keyframes.first() {
+            self.count_emitted(group, map);
+        }
     }
 }
