@@ -4,7 +4,6 @@
 //! 143 by SIGTERM.
 
 mod args;
-mod channels;
 mod commands;
 mod developing;
 mod display;
@@ -15,7 +14,6 @@ mod light;
 mod load;
 mod machine;
 mod machine_limits;
-mod matrices;
 mod output;
 mod overrides;
 mod print;
@@ -24,7 +22,6 @@ mod replay_text;
 mod scene_report;
 mod shell;
 mod state;
-mod stokes;
 mod write_outputs;
 
 use std::process::ExitCode;

@@ -3,9 +3,8 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use etalon_transport::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
-use etalon_transport::cost_estimate::next_step;
-use etalon_transport::{CostEstimate, Limits, Pilot, PixelRect, prepare_study};
+use etalon::{CostEstimate, Quote, QuoteSettings, RenderError};
+use etalon_transport::prepare_study;
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -46,9 +45,6 @@ pub(crate) struct Args {
     #[arg(long)]
     json: bool,
 }
-
-/// Part of the pilot's time that the exploration may take before it takes no further step.
-const EXPLORING: f64 = 0.25;
 
 #[derive(Serialize)]
 struct QuoteJson {
@@ -112,49 +108,14 @@ pub(crate) fn run(args: Args) -> Outcome {
         .map_err(|error| Failure::input(Report::from_err(error)))?;
     let prepare_seconds = clock.seconds();
     print::warnings(&light::missing(&prepared.plan().missing_light));
-    if prepared.path_reuse().is_some() {
-        return Err(Failure::input(miette!(
-            code = "path-reuse",
-            help = "leave out --path-reuse",
-            "a quote is made from single paths, and where neighbouring pixels share paths none stands alone"
-        )));
-    }
-
+    let settings = QuoteSettings {
+        errors: args.errors.clone(),
+        pilot_seconds: args.pilot,
+        adaptivity: args.adaptive.into(),
+        threads: Some(threads),
+    };
+    let found = Quote::of(&prepared, &settings, &|| clock.seconds()).map_err(refused)?;
     let film = &loaded.scene.film;
-    let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
-    let started = |error| Failure::run(Report::from_err(error));
-    let finest = args.errors.iter().copied().fold(f64::INFINITY, f64::min);
-    let mut allocation = None;
-    let mut adaptive = None;
-    if args.adaptive != Adaptive::Never {
-        let goal = Goal { samples: Limits::ANY_SAMPLES, relative_rmse: Some(finest) };
-        let start = clock.seconds();
-        let enough = || clock.seconds() - start > EXPLORING * args.pilot;
-        let found = explore(&prepared, whole, &goal, Some(threads), &enough, &|_| ()).map_err(started)?;
-        let used = args.adaptive == Adaptive::Always || found.gain >= WORTHWHILE;
-        adaptive = Some(AdaptiveJson { predicted_gain: found.gain, used, seconds: clock.seconds() - start });
-        allocation = used.then_some(found.allocation);
-    }
-    let mut pilot = Pilot::new(&prepared, whole, allocation, Some(threads)).map_err(started)?;
-    let mut rounds = 1;
-    loop {
-        pilot.advance(rounds * pilot.first_step(), &|| clock.seconds(), &|_| ());
-        let reached = pilot.points().last().is_some_and(|point| point.reaches(finest));
-        let next = next_step(rounds);
-        let seconds = pilot.seconds() * f64::from(next) / f64::from(rounds);
-        if reached || seconds > args.pilot || next > Limits::ANY_SAMPLES / pilot.first_step() {
-            break;
-        }
-        rounds = next;
-    }
-    if pilot.points().iter().all(|point| point.relative_rmse.is_infinite()) {
-        return Err(Failure::run(miette!(
-            code = "no-light",
-            help = format!("a longer pilot may find some (--pilot); {NO_LIGHT_HELP}"),
-            "the pilot found no light in {} paths: what an error of the picture costs is unknown",
-            pilot.paths()
-        )));
-    }
     let quote = QuoteJson {
         scene: args.scene.display().to_string(),
         scene_sha256: loaded.sha256,
@@ -162,9 +123,9 @@ pub(crate) fn run(args: Args) -> Outcome {
         height: film.height,
         machine: Machine::with_threads(threads),
         pilot: PilotJson {
-            seconds: pilot.seconds(),
-            points: pilot
-                .points()
+            seconds: found.pilot_seconds,
+            points: found
+                .points
                 .iter()
                 .map(|p| PointJson {
                     samples: p.samples,
@@ -174,10 +135,14 @@ pub(crate) fn run(args: Args) -> Outcome {
                 })
                 .collect(),
         },
-        settling_share: pilot.share_of_pixels() + if adaptive.is_some() { EFFORT } else { 0.0 },
-        adaptive,
+        settling_share: found.settling_share,
+        adaptive: found.exploration.map(|exploration| AdaptiveJson {
+            predicted_gain: exploration.predicted_gain,
+            used: exploration.used,
+            seconds: exploration.seconds,
+        }),
         prepare_seconds,
-        estimates: args.errors.iter().map(|&error| cost_estimate_json(&pilot.cost_estimate(error))).collect(),
+        estimates: found.estimates.iter().map(cost_estimate_json).collect(),
     };
     if args.json {
         print::json(&quote);
@@ -185,6 +150,23 @@ pub(crate) fn run(args: Args) -> Outcome {
         print::line(&describe(&quote));
     }
     Ok(())
+}
+
+/// Why there is no quote.
+fn refused(error: RenderError) -> Failure {
+    match error {
+        RenderError::PathReuse(_) => Failure::input(miette!(
+            code = "path-reuse",
+            help = "leave out --path-reuse",
+            "a quote is made from single paths, and where neighbouring pixels share paths none stands alone"
+        )),
+        RenderError::NoLight { paths } => Failure::run(miette!(
+            code = "no-light",
+            help = format!("a longer pilot may find some (--pilot); {NO_LIGHT_HELP}"),
+            "the pilot found no light in {paths} paths: what an error of the picture costs is unknown",
+        )),
+        other => Failure::run(Report::from_err(other)),
+    }
 }
 
 fn cost_estimate_json(cost_estimate: &CostEstimate) -> CostEstimateJson {

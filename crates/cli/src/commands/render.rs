@@ -11,12 +11,12 @@ mod watcher;
 
 use std::path::PathBuf;
 
+use etalon::Aov;
 use etalon_transport::{Adaptivity, Canvas, Ended, Explored, Features, ImageError, Limits, SettleError};
 use miette::{Report, miette};
 use serde::{Deserialize, Serialize};
 
 use crate::args::{Crop, PixelAt, ShardArg};
-use crate::channels::Aov;
 use crate::developing::Developing;
 use crate::display::{self, Display};
 use crate::failure::{Failure, Outcome, ProblemJson};

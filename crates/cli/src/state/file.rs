@@ -4,13 +4,12 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
+use etalon::{Channels, Subject};
 use etalon_picture::{PictureError, open_plain, write_atomically};
 use etalon_transport::{Canvas, Features, Shard, Tile, TileSums};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::Subject;
-use crate::channels::Channels;
 use crate::commands::render::Adaptive;
 
 const MAGIC: [u8; 8] = *b"ETALON\0\x03";

@@ -10,10 +10,8 @@
 //! Numbers are little-endian. The sums are those of `etalon_transport::TileSums`, with every bit.
 
 mod file;
-mod subject;
 
 pub(crate) use file::{Header, Kept, Limited, StateError, read, write};
-pub(crate) use subject::{KeptBands, Subject};
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

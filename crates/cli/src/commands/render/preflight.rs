@@ -1,14 +1,13 @@
 //! Whether the picture fits into memory, and its files on their disks: asked before the work.
 
+use etalon::{Channels, Subject};
 use etalon_scene::Scene;
 use etalon_transport::Film;
 use miette::{Report, Severity, miette};
 
-use crate::channels::Channels;
 use crate::failure::Failure;
 use crate::machine_limits::{address_space_left, bytes, memory_available, room_for};
 use crate::output::{Format, Output};
-use crate::state::Subject;
 
 /// Bytes a pixel that writing a picture takes beside the film: seven channels, and their encoded form.
 const OF_PICTURE: u64 = 2 * 7 * 4;

@@ -1,11 +1,12 @@
 //! Finding a checkpoint, and whether it is of the same picture.
 
+use etalon::Subject;
 use etalon_transport::{Canvas, Shard};
 use miette::{Report, miette};
 
 use super::Args;
 use crate::failure::Failure;
-use crate::state::{self, Kept, StateError, Subject};
+use crate::state::{self, Kept, StateError};
 
 /// The checkpoint of this render, if there is one. Whatever keeps it from being used goes into `failure`: to begin anew is for
 /// the user to decide, by leaving --resume out.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
+use etalon::{Aov, Channels};
 use etalon_transport::sample_allocation::SampleAllocation;
 use etalon_transport::stop::Settled;
 use etalon_transport::{Canvas, Limits, Reached, SettleError, Shard};
@@ -11,7 +12,6 @@ use miette::{Report, miette};
 
 use super::watcher::Watcher;
 use super::{Args, Done, Job};
-use crate::channels::{Aov, Channels};
 use crate::machine::Clock;
 use crate::print;
 use crate::state::{self, Header, Kept, Limited};

@@ -2,18 +2,18 @@
 
 use std::time::Instant;
 
+use etalon::{Channels, Subject};
 use etalon_transport::canvas::tiles_of;
 use etalon_transport::{PixelRect, Prepared, Shard, prepare_study};
 use miette::{Report, miette};
 
 use super::{Adaptive, Args, preflight, resume};
 use crate::args::PixelAt;
-use crate::channels::Channels;
 use crate::failure::Failure;
 use crate::light;
 use crate::load::{LoadedScene, load};
 use crate::output::{self, Output};
-use crate::state::{Kept, Subject};
+use crate::state::Kept;
 
 /// A scene ready to be rendered.
 pub(super) struct Job {

@@ -1,15 +1,16 @@
 //! What a picture is of: all that decides its pixels, and what its file says about it.
 
+use std::collections::BTreeMap;
+
 use etalon_transport::{Band, Film, PixelRect, Prepared};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::matrices;
-use serde_json::Value;
-use std::collections::BTreeMap;
 
 /// All that decides a pixel's samples, so that two pictures of one subject are two parts of the same picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Subject {
+pub struct Subject {
     /// Program and version: another version may trace other paths.
     pub software: String,
     /// SHA-256 of the sources of the program: two builds of one version may trace other paths, too.
@@ -24,7 +25,7 @@ pub(crate) struct Subject {
     pub seed: u64,
     /// Independent replicates of each pixel.
     pub replicates: u32,
-    /// `worldToCamera` and `worldToNDC`: see [`crate::matrices`].
+    /// `worldToCamera` and `worldToNDC` of the EXR file, for row vectors, row after row.
     pub matrices: [[f32; 16]; 2],
     /// Bands of wavelengths that the film keeps.
     pub bands: Option<KeptBands>,
@@ -36,7 +37,7 @@ pub(crate) struct Subject {
 
 /// Bands of wavelengths, and how the film keeps them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct KeptBands {
+pub struct KeptBands {
     /// Centre of the first, nm, and the step from one to the next.
     pub first_nm: f64,
     /// From centre to centre, nm.
@@ -55,12 +56,12 @@ impl KeptBands {
     }
 
     /// Centre of band `index`, nm.
-    pub(crate) fn centre_nm(&self, index: u32) -> f64 {
+    pub fn centre_nm(&self, index: u32) -> f64 {
         self.first_nm + f64::from(index) * self.step_nm
     }
 
     /// What a pixel knows of Stokes parameter number `parameter` in band `index`.
-    pub(crate) fn of_pixel(&self, film: &Film, x: u32, y: u32, parameter: u32, index: u32) -> Band {
+    pub fn of_pixel(&self, film: &Film, x: u32, y: u32, parameter: u32, index: u32) -> Band {
         let Some(factors) = &self.factors else { return film.band(x, y, parameter * self.count + index) };
         let (one, factor) = (film.band(x, y, 0), f64::from_bits(factors[index as usize]));
         Band {
@@ -77,7 +78,7 @@ const SOFTWARE: &str = concat!("etalon ", env!("CARGO_PKG_VERSION"));
 
 impl Subject {
     /// Of a scene that is ready to be rendered.
-    pub(crate) fn new(prepared: &Prepared, scene_sha256: &str, crop: PixelRect) -> Self {
+    pub fn new(prepared: &Prepared, scene_sha256: &str, crop: PixelRect) -> Self {
         let scene = prepared.scene();
         Self {
             software: SOFTWARE.to_owned(),
@@ -100,35 +101,35 @@ impl Subject {
     }
 
     /// A black film of this picture.
-    pub(crate) fn film(&self) -> Film {
+    pub fn film(&self) -> Film {
         let block = serde_json::from_value(self.plan["path_reuse"].clone()).ok();
         let film = Film::with_bands(self.size[0], self.size[1], self.replicates, self.band_sums()).sharing(block);
         if self.records_stokes() { film.recording_stokes() } else { film }
     }
 
     /// Whether its film holds S₁, S₂ and S₃.
-    pub(crate) fn records_stokes(&self) -> bool {
+    pub fn records_stokes(&self) -> bool {
         self.plan["stokes"] == true
     }
 
     /// Stokes parameters that the film holds: S₀, or all four.
-    pub(crate) fn stokes_parameters(&self) -> u32 {
+    pub fn stokes_parameters(&self) -> u32 {
         if self.records_stokes() { 4 } else { 1 }
     }
 
     /// Sums for bands that each replicate of a pixel has.
-    pub(crate) fn band_sums(&self) -> u32 {
+    pub fn band_sums(&self) -> u32 {
         self.bands.as_ref().map_or(0, |bands| bands.sums(self.stokes_parameters()))
     }
 
     /// What the picture lacks that the scene calls for.
-    pub(crate) fn approximations(&self) -> Vec<String> {
+    pub fn approximations(&self) -> Vec<String> {
         let list = self.plan["approximations"].as_array();
         list.into_iter().flatten().filter_map(|lost| lost.as_str().map(str::to_owned)).collect()
     }
 
     /// The first thing in which another subject differs, as "its seed is 3, not 4"; `None` if in nothing.
-    pub(crate) fn difference(&self, other: &Self) -> Option<String> {
+    pub fn difference(&self, other: &Self) -> Option<String> {
         let parts = |subject: &Self| {
             let mut value = serde_json::to_value(subject).expect("plain data");
             let plan = value["plan"].take().as_object().cloned().unwrap_or_default();

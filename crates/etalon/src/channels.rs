@@ -1,12 +1,12 @@
 //! What an EXR shows beside the picture, or instead of it.
 
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 /// A group of channels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Aov {
+pub enum Aov {
     /// `R`, `G`, `B`.
     Color,
     /// `Error.`: the standard error of each colour and band.
@@ -35,7 +35,7 @@ pub(crate) enum Aov {
 
 /// Which groups a file has.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Channels {
+pub struct Channels {
     /// What was asked for.
     also: Vec<Aov>,
     /// Whether nothing else is wanted.
@@ -44,23 +44,23 @@ pub(crate) struct Channels {
 
 impl Channels {
     /// These, beside what every picture has or, with `only`, alone.
-    pub(crate) fn new(also: &[Aov], only: bool) -> Self {
+    pub fn new(also: &[Aov], only: bool) -> Self {
         Self { also: also.to_vec(), only }
     }
 
     /// Whether a group is wanted.
-    pub(crate) fn has(&self, aov: Aov) -> bool {
+    pub fn has(&self, aov: Aov) -> bool {
         let of_every_picture = matches!(aov, Aov::Color | Aov::Error | Aov::Bands | Aov::Stokes);
         self.also.contains(&aov) || !self.only && of_every_picture
     }
 
     /// Whether any of them is of the first surface.
-    pub(crate) fn has_features(&self) -> bool {
+    pub fn has_features(&self) -> bool {
         [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Uv, Aov::Object].into_iter().any(|aov| self.has(aov))
     }
 
     /// How many there are, of a film with so many bands and so many Stokes parameters.
-    pub(crate) fn count(&self, bands: u64, parameters: u64) -> u64 {
+    pub fn count(&self, bands: u64, parameters: u64) -> u64 {
         let of_bands = if self.has(Aov::Bands) { bands } else { 0 };
         let colours = 3 * u64::from(self.has(Aov::Color)) + (1 + parameters) * of_bands;
         let shown = 3 + parameters * of_bands;

@@ -1,0 +1,46 @@
+//! Why there is no picture.
+
+use etalon_picture::PictureError;
+use etalon_transport::{SettleError, ThreadError};
+
+/// Why there is no picture, or no answer about it.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// A setting makes no sense.
+    #[error("{0}")]
+    Setting(String),
+    /// The rectangle or the pixel is not in the picture.
+    #[error("{what} reaches to column {} and row {} of a picture of {} × {} pixels", reach[0], reach[1], size[0], size[1])]
+    Outside {
+        /// Which rectangle or pixel.
+        what: &'static str,
+        /// One past its last column and row.
+        reach: [u32; 2],
+        /// Width and height of the picture, pixels.
+        size: [u32; 2],
+    },
+    /// Where neighbouring pixels share paths, no path stands alone.
+    #[error("{0} needs single paths, and where neighbouring pixels share paths none stands alone")]
+    PathReuse(&'static str),
+    /// The error of the picture is unknown, for no light was found.
+    #[error("the pilot found no light in {paths} paths: the error of the picture is unknown")]
+    NoLight {
+        /// Camera paths that the pilot traced.
+        paths: u64,
+    },
+    /// The threads cannot be started.
+    #[error(transparent)]
+    Threads(#[from] ThreadError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+impl From<SettleError> for RenderError {
+    fn from(error: SettleError) -> Self {
+        match error {
+            SettleError::Threads(error) => Self::Threads(error),
+            SettleError::NoLight { paths } => Self::NoLight { paths },
+        }
+    }
+}
