@@ -4,7 +4,7 @@ use super::geometry::{Step, check_instance_similarity, transform};
 use super::motion::{KeyframeForm, Placed, Stretch, motion};
 use super::names::Names;
 use super::scene::ObjectForm;
-use crate::json::{Code, List, NamedEntry, Optional, Reader, Required, Spanned};
+use crate::json::{Code, List, NamedEntry, Optional, Place, Reader, Required, Spanned};
 use crate::linear::is_similarity;
 use crate::model::{Group, Instance, Object, Shape, Transform};
 
@@ -129,7 +129,7 @@ pub(crate) fn groups<'f>(
     mut object: impl FnMut(&'f ObjectForm, String, &mut Reader<'_>) -> Option<Object>,
     reader: &mut Reader<'_>,
 ) -> Option<(Vec<Group>, Vec<Instance>)> {
-    let names = Names::new("group", "groups", entries);
+    let names = Names::new("group", "groups", Place::Group, entries);
     let mut right = true;
     // In the order of the file.
     let mut members: Vec<Members<'f>> = Vec::new();

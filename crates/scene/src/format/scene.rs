@@ -14,7 +14,8 @@ use super::spectra::Spectra;
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{
-    Code, Decode, Kind, List, Named, Node, Optional, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span, Spanned,
+    Code, Decode, Kind, List, Named, Node, Optional, Place, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span,
+    Spanned,
 };
 use crate::model::{Emission, EmissionSides, LightKind, Material, Object, Scene, Shape};
 use crate::texture::ImageTexture;
@@ -166,7 +167,7 @@ pub(crate) fn scene(
     let mut spectra = Spectra::new(form.spectra.as_ref(), range_nm, reader);
 
     let named = form.materials.as_ref().map_or(&[][..], |named| &named.0);
-    let names = Names::new("material", "materials", named);
+    let names = Names::new("material", "materials", Place::Material, named);
     let mut materials = All::default();
     let mut made = Vec::with_capacity(named.len());
     for entry in named {

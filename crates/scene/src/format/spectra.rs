@@ -9,9 +9,9 @@ use etalon_optics::{Illuminant, OpticsError, Spectrum};
 
 use super::names::Names;
 use super::spectrum::{
-    Density, OutsideTable, RgbSpectrum, SpectrumForm, SpectrumObject, TabulatedSpectrum, check_table, sound,
+    Density, OutsideTable, RgbSpectrum, SpectrumForm, SpectrumObject, TabulatedSpectrum, check_table, of_bytes, sound,
 };
-use crate::json::{Code, List, Named, NamedEntry, Reader, Span, Spanned};
+use crate::json::{Code, List, Named, NamedEntry, Place, Reader, Span, Spanned};
 
 pub(crate) use image::FARTHEST_UV;
 
@@ -60,7 +60,7 @@ impl<'f> Spectra<'f> {
         reader: &mut Reader<'_>,
     ) -> Self {
         let entries = named.map_or(&[][..], |named| &named.0);
-        let names = Names::new("spectrum", "spectra", entries);
+        let names = Names::new("spectrum", "spectra", Place::Spectrum, entries);
         for entry in entries {
             if let Some(SpectrumForm::Object(SpectrumObject::Tabulated(table))) = entry.value.as_deref() {
                 check_table(table, reader);
@@ -189,10 +189,10 @@ impl<'f> Spectra<'f> {
     }
 
     /// Whether a value is possible in its role.
-    fn admits(&mut self, value: f64, at: Span, used: Use, reader: &mut Reader<'_>) -> bool {
+    fn admits(&mut self, value: f64, hint: &str, at: Span, used: Use, reader: &mut Reader<'_>) -> bool {
         let (code, message) = match used.role {
             Role::Reflectance if !(0.0..=1.0).contains(&value) => {
-                (Code::Reflectance, format!("{value} is no reflectance: those lie from 0 to 1"))
+                (Code::Reflectance, format!("a reflectance lies from 0 to 1, and this is {value}"))
             }
             Role::Emission if value < 0.0 => (Code::NegativeEmission, format!("an emission of {value} is below 0")),
             Role::Absorption if value < 0.0 => {
@@ -200,12 +200,12 @@ impl<'f> Spectra<'f> {
             }
             _ => return true,
         };
-        self.complain(code, at, message, "", used, reader);
+        self.complain(code, at, message, hint, used, reader);
         false
     }
 
     fn constant(&mut self, number: &Spanned<Density>, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
-        self.admits(number.value.0, number.at, used, reader).then_some(Spectrum::Constant(number.value.0))
+        self.admits(number.value.0, "", number.at, used, reader).then_some(Spectrum::Constant(number.value.0))
     }
 
     fn light_only(&mut self, what: &str, at: Span, used: Use, reader: &mut Reader<'_>) -> Option<()> {
@@ -230,7 +230,7 @@ impl<'f> Spectra<'f> {
         for value in table.values.iter().flat_map(|values| values.0.iter().flatten()) {
             // With a wrong scale only the sign can be judged.
             let scaled = if value.value.0 < 0.0 { value.value.0 } else { value.value.0 * scale.unwrap_or(0.0) };
-            possible &= self.admits(scaled, value.at, used, reader);
+            possible &= self.admits(scaled, "", value.at, used, reader);
         }
         let wavelengths_nm = plain(table.wavelengths_nm.as_ref()?, |w| w.0)?;
         let values = plain(table.values.as_ref()?, |v| v.0)?;
@@ -266,14 +266,15 @@ impl<'f> Spectra<'f> {
             }
         }
         let channels = colour.rgb.as_ref()?;
+        let rgb = channels.map(|channel| channel.value.0);
+        let hint = if rgb.iter().any(|v| *v > 1.0) { of_bytes(rgb) } else { String::new() };
         let mut possible = true;
         for channel in channels {
-            possible &= self.admits(channel.value.0, channel.at, used, reader);
+            possible &= self.admits(channel.value.0, &hint, channel.at, used, reader);
         }
         if !possible {
             return None;
         }
-        let rgb = channels.map(|channel| channel.value.0);
         if used.role == Role::Reflectance {
             return accept(Spectrum::rgb_reflectance(rgb), colour.at, reader);
         }

@@ -3,6 +3,7 @@
 use std::ops::Bound;
 
 use etalon_optics::Illuminant;
+use etalon_optics::colour::srgb_decode;
 use serde_json::json;
 
 use crate::texture::{Encoding, TextureFilter, Wrap};
@@ -205,11 +206,43 @@ impl Decode for SpectrumForm {
             Kind::Object => SpectrumObject::decode(node, reader).map(Self::Object),
             other => {
                 let message = format!("expected a spectrum (a number, a name or an object), found {}", other.name());
-                reader.error(Code::WrongType, reader.span(node), message);
+                reader.error_hint(Code::WrongType, reader.span(node), message, list_hint(node));
                 None
             }
         }
     }
+}
+
+/// What to write instead of a list, which is no spectrum.
+fn list_hint(node: Node<'_>) -> String {
+    let Some(elements) = node.elements() else { return String::new() };
+    let numbers: Option<Vec<f64>> = elements
+        .take(4)
+        .map(|element| match element.kind() {
+            Kind::Number(number) => number.parse().ok(),
+            _ => None,
+        })
+        .collect();
+    let Some([red, green, blue]) = numbers.as_deref() else {
+        return "a table is {\"type\": \"tabulated\", \"wavelengths_nm\": […], \"values\": […]}".to_owned();
+    };
+    let colour = [*red, *green, *blue];
+    let mut hint = format!("a colour is {}", written(colour));
+    if colour.iter().any(|v| *v > 1.0) {
+        hint += &format!("; {}", of_bytes(colour));
+    }
+    hint
+}
+
+/// A linear colour as a file writes it.
+fn written([red, green, blue]: [f64; 3]) -> String {
+    format!("{{\"type\": \"rgb\", \"rgb\": [{red}, {green}, {blue}]}}")
+}
+
+/// The hint for a colour that may count from 0 to 255, as image programs do.
+pub(super) fn of_bytes(colour: [f64; 3]) -> String {
+    let linear = colour.map(|v| (srgb_decode(v / 255.0) * 1e4).round() / 1e4);
+    format!("if these numbers are sRGB values from 0 to 255, write {}", written(linear))
 }
 
 impl SpectrumForm {

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::object::named_entries;
-use super::{Code, Kind, Node, Reader, SchemaBuilder, Span, did_you_mean, listed};
+use super::{Answer, Code, Kind, Node, Place, Reader, SchemaBuilder, Span, did_you_mean, listed, neighbour};
 
 /// A type that a JSON value can be decoded to.
 pub trait Decode: Sized {
@@ -344,11 +344,13 @@ pub fn keyword(node: Node<'_>, words: &[&'static str], reader: &mut Reader<'_>) 
     if let Some(word) = words.iter().find(|w| **w == given) {
         return Some(word);
     }
-    let message = format!("\"{given}\" cannot stand here");
-    let meant = did_you_mean(given, words.iter().copied());
-    let hint = match meant {
-        Some(meant) => format!("did you mean \"{meant}\"?"),
-        None => format!("what can: {}", listed(words.iter().copied())),
+    let message = format!("unknown word \"{given}\"");
+    let answer = neighbour(Place::Keyword, given, words);
+    let meant = answer.map_or_else(|| did_you_mean(given, words.iter().copied()), Answer::word);
+    let hint = match (answer, meant) {
+        (Some(answer), _) => answer.hint(),
+        (None, Some(meant)) => format!("did you mean \"{meant}\"?"),
+        (None, None) => format!("the words here are {}", listed(words.iter().copied())),
     };
     reader.error_hint(Code::UnknownWord, reader.span(node), message, hint);
     // Back to the static one.
@@ -366,7 +368,9 @@ pub fn tag(node: Node<'_>, key: &str, words: &[&'static str], reader: &mut Reade
     };
     let exact = members.find(|m| m.0 == key);
     // `ObjectReader` reports the misspelt key.
-    let misspelt = || node.members().and_then(|mut all| all.find(|m| did_you_mean(m.0, [key]).is_some()));
+    let means_key =
+        |given: &str| did_you_mean(given, [key]).is_some() || neighbour(Place::Key, given, &[key]).is_some();
+    let misspelt = || node.members().and_then(|mut all| all.find(|m| means_key(m.0)));
     match exact.or_else(misspelt) {
         Some((_, _, value)) => keyword(value, words, reader),
         None => {

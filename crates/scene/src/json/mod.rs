@@ -41,6 +41,7 @@
 mod decode;
 mod load;
 mod macros;
+mod neighbours;
 mod number;
 mod object;
 mod path;
@@ -53,6 +54,8 @@ pub use decode::{
     Comment, Decode, Direction, Field, List, Named, NamedEntry, Nullable, Optional, Required, Spanned, keyword, tag,
 };
 pub use load::{load_text, read_text};
+pub(crate) use neighbours::neighbour;
+pub use neighbours::{Answer, NEIGHBOURS, Neighbour, Place};
 pub use number::{NonNegative, Positive, Whole, bounded, bounded_schema};
 pub use object::{ObjectReader, Record, Rule};
 pub use reader::{Kind, Node, Reader, read};

@@ -1,7 +1,8 @@
 //! Objects with known keys.
 
 use super::{
-    Code, Comment, Decode, Field, FieldSchema, Node, Reader, SchemaBuilder, Span, describe, did_you_mean, listed,
+    Code, Comment, Decode, Field, FieldSchema, Node, Place, Reader, SchemaBuilder, Span, describe, did_you_mean,
+    listed, neighbour,
 };
 
 /// Which keys of an object go together.
@@ -36,8 +37,8 @@ pub trait Record: Sized {
 
 /// An object whose members are being taken out by key.
 ///
-/// Keys that stand twice and unknown keys are reported when it is made. An unknown key that plainly is a misspelling
-/// of an absent one is read as that one, so that what its value holds is checked too, and nothing is missed twice.
+/// Repeated keys and unknown keys are reported when it is made. An unknown key that is a misspelling of an absent one, or
+/// another program's word for it, is read as that one: its value is checked too, and nothing is reported missing twice.
 #[derive(Debug)]
 pub struct ObjectReader<'n> {
     span: Span,
@@ -75,9 +76,18 @@ impl<'n> ObjectReader<'n> {
                 reader.error(Code::UnknownKey, at, String::new());
                 continue;
             }
-            let absent = keys.iter().copied().filter(|k| !members.iter().any(|m| m.0 == *k));
+            let is_there = |key: &str| members.iter().any(|m| m.0 == key);
             let message = format!("unknown key \"{key}\"");
-            if let Some(meant) = did_you_mean(key, absent) {
+            if let Some(answer) = neighbour(Place::Key, key, keys) {
+                let hint = match answer.word() {
+                    Some(meant) if is_there(meant) => format!("\"{meant}\" is there already"),
+                    _ => answer.hint(),
+                };
+                if let Some(meant) = answer.word().filter(|meant| !is_there(meant)) {
+                    members.push((meant, at, value));
+                }
+                reader.error_hint(Code::UnknownKey, at, message, hint);
+            } else if let Some(meant) = did_you_mean(key, keys.iter().copied().filter(|key| !is_there(key))) {
                 members.push((meant, at, value));
                 reader.error_hint(Code::UnknownKey, at, message, format!("did you mean \"{meant}\"?"));
             } else if let Some(meant) = did_you_mean(key, keys.iter().copied()) {

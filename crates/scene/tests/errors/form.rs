@@ -259,7 +259,7 @@ fn words_that_cannot_stand_there() {
         Code::UnknownWord,
         "$.integrator.sampler",
         "\"sobol\", \"independent\"",
-        integrator("{\"sampler\": «\"halton\"»}"),
+        integrator("{\"sampler\": «\"lattice\"»}"),
     );
     hinted(
         Code::UnknownWord,
@@ -355,4 +355,53 @@ fn a_priority_replaces_the_exterior() {
              \"exterior\": 1.33, «\"priority\"»: 2}}]",
         ),
     );
+}
+
+#[test]
+fn words_of_other_programs() {
+    let word = Code::UnknownWord;
+    hinted(
+        word,
+        "$.materials.m.type",
+        "\"lambert\"",
+        materials("{\"m\": {\"type\": «\"diffuse\"», \"reflectance\": 1}}"),
+    );
+    hinted(
+        word,
+        "$.materials.m.type",
+        "\"dielectric\"",
+        materials("{\"m\": {\"type\": «\"glass\"», \"interior\": 1.5}}"),
+    );
+    let several = "use \"plastic\", \"conductor\" or \"dielectric\"";
+    hinted(word, "$.materials.m.type", several, materials("{\"m\": {\"type\": «\"principled\"»}}"));
+    let rectangle = "{\"type\": «\"rectangle\"», \"origin_m\": [0,0,0], \"u_m\": [1,0,0], \"v_m\": [0,1,0]}";
+    hinted(word, "$.objects[0].shape.type", "\"parallelogram\"", objects(&shaped(rectangle, "[]")));
+    let mesh = "{\"type\": «\"obj\"», \"vertices_m\": [[0,0,0],[1,0,0],[0,1,0]], \"triangles\": [[0,1,2]]}";
+    hinted(word, "$.objects[0].shape.type", "\"mesh\"", objects(&shaped(mesh, "[]")));
+    hinted(word, "$.lights[0].type", "\"environment\"", lights("[{\"type\": «\"envmap\"», \"radiance\": 1}]"));
+    hinted(word, "$.lights[0].type", "\"emission\"", lights("[{\"type\": «\"area\"», \"radiance\": 1}]"));
+    let fov = "{\"type\": \"perspective\", \"position_m\": [0, 0, 5], \"look_at_m\": [0, 0, 0], «\"yfov\"»: 40}";
+    hinted(Code::UnknownKey, "$.camera.yfov", "\"vertical_fov_deg\"", camera(fov));
+    let medium = "{\"m\": {\"type\": \"dielectric\", \"interior\": «\"BK7\"»}}";
+    hinted(Code::UnknownName, "$.materials.m.interior", "\"N-BK7\"", materials(medium));
+    let fov = fov.replace(['«', '»'], "").replace("yfov", "fov");
+    let found = problems(&camera(&fov).text());
+    let unknown = found.iter().find(|problem| problem.code == Code::UnknownKey).expect("a hint");
+    assert_eq!(unknown.hint.as_deref(), Some("use \"vertical_fov_deg\" or \"horizontal_fov_deg\""));
+}
+
+#[test]
+fn a_list_is_no_spectrum() {
+    let reflectance = |value: &str| format!("{{\"m\": {{\"type\": \"lambert\", \"reflectance\": {value}}}}}");
+    let path = "$.materials.m.reflectance";
+    let hint = "a colour is {\"type\": \"rgb\", \"rgb\": [0.8, 0.2, 0]}";
+    hinted(Code::WrongType, path, hint, materials(&reflectance("«[0.8, 0.2, 0]»")));
+    // sRGB 188 is half of white.
+    let hint = "from 0 to 255, write {\"type\": \"rgb\", \"rgb\": [1, 0.5029, 0]}";
+    hinted(Code::WrongType, path, hint, materials(&reflectance("«[255, 188, 0]»")));
+    hinted(Code::WrongType, path, "\"tabulated\"", materials(&reflectance("«[[400, 0.5], [700, 0.5]]»")));
+    let rgb = materials(&reflectance("{\"type\": \"rgb\", \"rgb\": [«255», 188, 0]}")).text();
+    let found = problems(&rgb.replace(['«', '»'], ""));
+    assert_eq!(found[0].json_path, "$.materials.m.reflectance.rgb[0]");
+    assert!(found[0].hint.as_deref().is_some_and(|given| given.contains(hint)), "{found:#?}");
 }

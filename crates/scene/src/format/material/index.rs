@@ -8,8 +8,8 @@ use super::super::spectra::{accept, outside_message, plain};
 use super::super::spectrum::{Wavelength, check_increasing, check_same_length};
 use super::ConductorMaterial;
 use crate::json::{
-    Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, SchemaBuilder, SchemaValue,
-    Span, Spanned, did_you_mean, listed,
+    Code, Decode, Kind, List, Node, NonNegative, Optional, Place, Positive, Reader, Required, SchemaBuilder,
+    SchemaValue, Span, Spanned, did_you_mean, listed, neighbour,
 };
 
 crate::keywords!(OutsideFit {
@@ -92,7 +92,7 @@ impl Decode for NamedMetal {
 
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
         let names: Vec<_> = ComplexIndex::names().collect();
-        built_in(node, "metal", &names, ComplexIndex::named, reader).map(Self)
+        built_in(node, Place::Metal, "metal", &names, ComplexIndex::named, reader).map(Self)
     }
 }
 
@@ -103,14 +103,14 @@ impl Decode for Glass {
 
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
         let names: Vec<_> = RefractiveIndex::names().collect();
-        built_in(node, "medium", &names, RefractiveIndex::named, reader).map(Self)
+        built_in(node, Place::Medium, "medium", &names, RefractiveIndex::named, reader).map(Self)
     }
 }
 
-/// What a name stands for. Only the names as they are listed count, so that the schema can list them; for others that
-/// `find` knows, one of those is suggested.
-fn built_in<T: PartialEq>(
+/// What a name stands for. Only the names as they are listed count, so that the schema can list them.
+fn built_in<T>(
     node: Node<'_>,
+    place: Place,
     what: &str,
     names: &[&'static str],
     find: impl Fn(&str) -> Option<T>,
@@ -120,10 +120,12 @@ fn built_in<T: PartialEq>(
     if names.contains(&name.as_str()) {
         return find(&name);
     }
-    let known = find(&name).and_then(|known| names.iter().copied().find(|n| find(n).as_ref() == Some(&known)));
-    let hint = match known.or_else(|| did_you_mean(&name, names.iter().copied())) {
-        Some(meant) => format!("did you mean \"{meant}\"?"),
-        None => format!("there are {}", listed(names.iter().copied())),
+    let hint = match neighbour(place, &name, names) {
+        Some(answer) => answer.hint(),
+        None => match did_you_mean(&name, names.iter().copied()) {
+            Some(meant) => format!("did you mean \"{meant}\"?"),
+            None => format!("the names are {}", listed(names.iter().copied())),
+        },
     };
     reader.error_hint(Code::UnknownName, reader.span(node), format!("no built-in {what} is named \"{name}\""), hint);
     None
