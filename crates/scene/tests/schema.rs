@@ -78,6 +78,24 @@ fn the_schema_refuses_what_it_can_see_to_be_wrong() {
         ("/objects/3/shape/triangles/0", json!([0, 1])),
         ("/lights/0/type", json!("lamp")),
         ("/integrator/max_depth", json!(0)),
+        ("/integrator/max_depth", json!("none")),
+        ("/integrator/sampler", json!("halton")),
+        ("/integrator/roulette", json!(1)),
+        ("/film/bands_nm", json!([400, 700])),
+        ("/materials/lambert/type", json!("diffuse")),
+        ("/materials/lambert/reflectance", json!([1, 0, 0])),
+        ("/materials/lambert/reflectance", json!({ "type": "rgb", "rgb": [1, 0] })),
+        ("/materials/lambert/reflectance", json!({ "rgb": [1, 0, 0] })),
+        ("/materials/solid/exterior", json!(1)),
+        ("/materials/clay/roughness", json!(1.5)),
+        ("/materials/dusty/second/type", json!("none")),
+        ("/materials/mirror", json!("lambert")),
+        ("/objects/0/material", json!(7)),
+        ("/objects/0/shape", json!([])),
+        ("/objects/3/transform/1/scale/0", json!(0)),
+        ("/lights/0/intensity", json!(true)),
+        ("/lights/2/image", json!({ "file": "sky.exr" })),
+        ("/groups/ball/objects/0/shape/type", json!("ball")),
     ] {
         let mut scene = everything();
         let (parent, key) = path.rsplit_once('/').expect("a path");
@@ -91,6 +109,11 @@ fn the_schema_refuses_what_it_can_see_to_be_wrong() {
     }
 }
 
+/// The parts of a part of a schema, without conditions, which only ask for a kind.
+fn below(members: &serde_json::Map<String, Value>) -> impl Iterator<Item = &Value> {
+    members.iter().filter(|(key, _)| *key != "if").map(|(_, member)| member)
+}
+
 /// Every key of every record in a schema.
 fn keys(schema: &Value, found: &mut BTreeSet<String>) {
     match schema {
@@ -98,7 +121,7 @@ fn keys(schema: &Value, found: &mut BTreeSet<String>) {
             if let Some(Value::Object(properties)) = members.get("properties") {
                 found.extend(properties.keys().cloned());
             }
-            members.values().for_each(|member| keys(member, found));
+            below(members).for_each(|member| keys(member, found));
         }
         Value::Array(elements) => elements.iter().for_each(|element| keys(element, found)),
         _ => {}
@@ -115,7 +138,7 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
             }
         }
         match schema {
-            Value::Object(members) => members.values().for_each(described),
+            Value::Object(members) => below(members).for_each(described),
             Value::Array(elements) => elements.iter().for_each(described),
             _ => {}
         }
@@ -145,6 +168,90 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
     let mut expected = [exclusive.as_slice(), &of_files, &of_detail, &of_skies].concat();
     expected.sort_unstable();
     assert_eq!(unused, expected);
+}
+
+/// Each fault of a scene: the path of the value, and what is wrong with it.
+fn faults(scene: &Value) -> Vec<(String, String)> {
+    VALIDATOR.iter_errors(scene).map(|error| (error.instance_path().to_string(), error.to_string())).collect()
+}
+
+#[test]
+fn an_unknown_key_is_one_error_at_its_object() {
+    let mut all = vec![String::new()];
+    places(&everything(), String::new(), &mut all);
+    let mut tried = 0;
+    for path in all {
+        let mut scene = everything();
+        let place = scene.pointer_mut(&path).expect("there");
+        // Names in these are the file's own.
+        let named = ["/spectra", "/materials", "/groups"].contains(&path.as_str());
+        if let Some(members) = place.as_object_mut().filter(|_| !named) {
+            members.insert("radus".to_owned(), json!(1));
+            let found = faults(&scene);
+            assert!(
+                matches!(found.as_slice(), [(at, text)] if *at == path && text.contains("radus")),
+                "{path}: {found:#?}"
+            );
+            tried += 1;
+        }
+    }
+    assert!(tried > 60, "{tried}");
+}
+
+#[test]
+fn a_wrong_word_or_value_is_one_error_at_its_place() {
+    for (path, value) in [
+        ("/materials/glass/type", json!("glas")),
+        ("/materials/glass/interior", json!("BK7")),
+        ("/materials/lambert/reflectance", json!([1, 0, 0])),
+        ("/materials/lambert", json!([])),
+        ("/materials/dispersive/interior/name", json!("BK7")),
+        ("/spectra/red/rgb", json!(1)),
+        ("/objects/0/material", json!(7)),
+        ("/objects/0/shape/type", json!("rectangle")),
+        ("/objects/0/shape/radius_m", json!("1")),
+        ("/objects/3/transform/1/scale/0", json!("2")),
+        ("/objects/3/material/reflectance/value", json!("2")),
+        ("/lights/0/type", json!("area")),
+        ("/film/filter/sigma_px", json!(-1)),
+        ("/integrator/sampler", json!("halton")),
+        ("/integrator/max_depth", json!("none")),
+        ("/objects/3/transform/0", json!(2)),
+        ("/camera/lens", json!(0.1)),
+    ] {
+        let mut scene = everything();
+        *scene.pointer_mut(path).expect("there") = value;
+        let found = faults(&scene);
+        assert!(matches!(found.as_slice(), [(at, _)] if at == path), "{path}: {found:#?}");
+    }
+}
+
+/// Editors list the words of a `type` from one enum, with what each means.
+#[test]
+fn every_type_is_a_list_of_words() {
+    fn visit(schema: &Value, found: &mut Vec<Vec<String>>) {
+        if let Some(tag) = schema.pointer("/properties/type").filter(|tag| tag.get("enum").is_some()) {
+            let words: Vec<String> = serde_json::from_value(tag["enum"].clone()).expect("a list of words");
+            let meanings = tag["enumDescriptions"].as_array().expect("meanings");
+            assert_eq!(words.len(), meanings.len());
+            assert!(meanings.iter().all(|text| text.as_str().is_some_and(|text| text.len() > 5)), "{meanings:?}");
+            let cases = schema["allOf"].as_array().expect("cases");
+            let of =
+                |case: &Value| case.pointer("/if/properties/type/const").and_then(Value::as_str).map(str::to_owned);
+            assert_eq!(cases.iter().filter_map(of).collect::<Vec<_>>(), words);
+            found.push(words);
+        }
+        match schema {
+            Value::Object(members) => below(members).for_each(|member| visit(member, found)),
+            Value::Array(elements) => elements.iter().for_each(|element| visit(element, found)),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    visit(&etalon_scene::schema(), &mut found);
+    for word in ["perspective", "gaussian", "lambert", "sphere", "environment", "rgb", "sellmeier"] {
+        assert!(found.iter().any(|words| words.iter().any(|listed| listed == word)), "{word}");
+    }
 }
 
 /// Places in a JSON value: every value below the root.

@@ -232,6 +232,13 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 Script("tests/fuzz-parsers.sh"),
             ),
             named(
+                "editor",
+                "",
+                "ten mistakes and six completions of the schema in the JSON service of Visual Studio Code; needs npm",
+                "1 min",
+                Script("tests/editor.sh"),
+            ),
+            named(
                 "denoise",
                 "",
                 "`etalon denoise` in a build with Open Image Denoise, which it fetches",

@@ -1,12 +1,11 @@
 //! Images that give a surface detail: opacity, normals, heights, numbers of its material.
 
-use serde_json::json;
-
 use super::material::Share;
 use super::spectra::FARTHEST_UV;
 use crate::files::Files;
 use crate::json::{
     Code, Decode, Node, NonNegative, Optional, Reader, Required, SchemaBuilder, SchemaValue, Span, Spanned,
+    by_json_type,
 };
 use crate::model::{Bitangent, OpacityImage, Relief};
 use crate::texture::{Channel, Encoding, ImageTexture, TextureFilter, Wrap};
@@ -127,7 +126,7 @@ pub(crate) struct Strength([f64; 2]);
 
 impl Decode for Strength {
     fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
-        json!({ "anyOf": [f64::schema(schema), <[f64; 2]>::schema(schema)] })
+        by_json_type(vec![("number", f64::schema(schema)), ("array", <[f64; 2]>::schema(schema))])
     }
 
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {

@@ -10,7 +10,7 @@ use super::mesh;
 use crate::files::Files;
 use crate::json::{
     Code, Decode, Direction, List, Node, Optional, Positive, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span,
-    Spanned,
+    Spanned, by_json_type,
 };
 use crate::linear::{self, cofactors, is_similarity, norm, unit};
 use crate::mesh::Shading;
@@ -203,7 +203,7 @@ impl Decode for Scaling {
         let factor = json!({ "type": "number", "not": { "const": 0 } });
         let mut factors = <[f64; 3]>::schema(schema);
         factors["items"] = factor.clone();
-        json!({ "anyOf": [factor, factors] })
+        by_json_type(vec![("number", factor), ("array", factors)])
     }
 
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {

@@ -15,7 +15,7 @@ use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{
     Code, Decode, Kind, List, Named, Node, Optional, Place, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span,
-    Spanned,
+    Spanned, by_json_type,
 };
 use crate::model::{Emission, EmissionSides, LightKind, Material, Object, Scene, Shape};
 use crate::texture::ImageTexture;
@@ -137,7 +137,7 @@ impl MaterialUse {
 
 impl Decode for MaterialUse {
     fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
-        json!({ "anyOf": [{ "type": "string" }, MaterialForm::schema(schema)] })
+        by_json_type(vec![("string", String::schema(schema)), ("object", MaterialForm::schema(schema))])
     }
 
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {

@@ -4,13 +4,12 @@ use std::ops::Bound;
 
 use etalon_optics::Illuminant;
 use etalon_optics::colour::srgb_decode;
-use serde_json::json;
 
 use crate::texture::{Encoding, TextureFilter, Wrap};
 
 use crate::json::{
     Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, SchemaBuilder, SchemaValue,
-    Span, Spanned,
+    Span, Spanned, by_json_type,
 };
 
 crate::number! {
@@ -187,15 +186,16 @@ pub(crate) enum SpectrumForm {
 impl Decode for SpectrumForm {
     fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
         schema.define("Spectrum", |schema| {
-            json!({
-                "description": "A spectrum: a number (the same at every wavelength), a name from \"spectra\", or an \
-                    object with a \"type\".",
-                "anyOf": [
-                    Density::schema(schema),
-                    { "type": "string" },
-                    SpectrumObject::schema(schema),
-                ],
-            })
+            let mut spectrum = by_json_type(vec![
+                ("number", Density::schema(schema)),
+                ("string", String::schema(schema)),
+                ("object", SpectrumObject::schema(schema)),
+            ]);
+            spectrum["description"] =
+                "A spectrum: a number (the same at every wavelength), a name from \"spectra\", or an \
+                object with a \"type\"."
+                    .into();
+            spectrum
         })
     }
 

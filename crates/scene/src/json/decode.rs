@@ -3,7 +3,9 @@
 use serde_json::json;
 
 use super::object::named_entries;
-use super::{Answer, Code, Kind, Node, Place, Reader, SchemaBuilder, Span, did_you_mean, listed, neighbour};
+use super::{
+    Answer, Code, Kind, Node, Place, Reader, SchemaBuilder, Span, by_json_type, did_you_mean, listed, neighbour,
+};
 
 /// A type that a JSON value can be decoded to.
 pub trait Decode: Sized {
@@ -193,7 +195,11 @@ pub enum Nullable<T> {
 
 impl<T: Decode> Decode for Nullable<T> {
     fn schema(schema: &mut SchemaBuilder) -> serde_json::Value {
-        json!({ "anyOf": [{ "type": "null" }, T::schema(schema)] })
+        let value = T::schema(schema);
+        match value["type"].as_str().map(str::to_owned) {
+            Some(name) => by_json_type(vec![("null", json!({ "type": "null" })), (&name, value)]),
+            None => json!({ "anyOf": [{ "type": "null" }, value] }),
+        }
     }
 
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {

@@ -67,7 +67,7 @@ macro_rules! record {
 
         impl $crate::json::Decode for $name {
             fn schema(schema: &mut $crate::json::SchemaBuilder) -> $crate::json::SchemaValue {
-                schema.define(stringify!($name), |schema| $crate::json::record_schema::<Self>(None, schema))
+                schema.define(stringify!($name), |schema| $crate::json::record_schema::<Self>(schema))
             }
 
             fn decode(
@@ -108,8 +108,10 @@ macro_rules! variants {
         impl $crate::json::Decode for $name {
             fn schema(schema: &mut $crate::json::SchemaBuilder) -> $crate::json::SchemaValue {
                 schema.define(stringify!($name), |schema| {
-                    let kinds = ::std::vec![$($crate::json::record_schema::<$record>(Some(($tag, $word)), schema)),+];
-                    $crate::json::one_of($crate::json::describe(&[$($doc),+]), kinds)
+                    let kinds = ::std::vec![
+                        $(($word, $crate::json::tagged_record_schema::<$record>(Some($tag), schema))),+
+                    ];
+                    $crate::json::one_of(&$crate::json::describe(&[$($doc),+]), $tag, kinds)
                 })
             }
 

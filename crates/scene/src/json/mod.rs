@@ -59,7 +59,10 @@ pub use neighbours::{Answer, NEIGHBOURS, Neighbour, Place};
 pub use number::{NonNegative, Positive, Whole, bounded, bounded_schema};
 pub use object::{ObjectReader, Record, Rule};
 pub use reader::{Kind, Node, Reader, read};
-pub use schema::{FieldSchema, SchemaBuilder, SchemaValue, describe, document_schema, one_of, record_schema, words};
+pub use schema::{
+    FieldSchema, SchemaBuilder, SchemaValue, by_json_type, describe, document_schema, one_of, record_schema,
+    tagged_record_schema, words,
+};
 pub use suggest::{did_you_mean, listed};
 
 pub use crate::problem::{Code, Problem, Related, SceneErrors, Severity, Span};

@@ -60,13 +60,25 @@ pub fn describe(lines: &[&str]) -> String {
     lines.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ").trim().to_owned()
 }
 
-/// The schema of a record; `tag` is a further key and the word that it must be.
-pub fn record_schema<R: Record>(tag: Option<(&str, &str)>, schema: &mut SchemaBuilder) -> Value {
+/// The schema of a record.
+pub fn record_schema<R: Record>(schema: &mut SchemaBuilder) -> Value {
+    let mut record = tagged_record_schema::<R>(None, schema);
+    record["type"] = "object".into();
+    if let Some(choices) = record.get_mut("allOf") {
+        // Of what is no object, only the type is wrong.
+        *choices = json!([{ "if": { "type": "object" }, "then": { "allOf": choices } }]);
+    }
+    record
+}
+
+/// What holds of the objects of a record. `tag` is a further key, which the caller requires.
+///
+/// It says nothing of other values than objects, so that they get one error from the caller, not one from each kind.
+pub fn tagged_record_schema<R: Record>(tag: Option<&str>, schema: &mut SchemaBuilder) -> Value {
     let mut properties = Map::new();
     let mut required = Vec::new();
-    if let Some((key, word)) = tag {
-        properties.insert(key.to_owned(), json!({ "const": word, "description": R::description() }));
-        required.push(key);
+    if let Some(key) = tag {
+        properties.insert(key.to_owned(), json!({ "description": R::description() }));
     }
     for field in R::fields(schema) {
         properties.insert(field.key.to_owned(), field.schema);
@@ -80,7 +92,6 @@ pub fn record_schema<R: Record>(tag: Option<(&str, &str)>, schema: &mut SchemaBu
         properties.insert("comment".to_owned(), comment);
     }
     let mut record = json!({
-        "type": "object",
         "description": R::description(),
         "properties": properties,
         "required": required,
@@ -110,16 +121,56 @@ pub fn record_schema<R: Record>(tag: Option<(&str, &str)>, schema: &mut SchemaBu
     record
 }
 
-/// The schema of a value that is of exactly one of several kinds.
-pub fn one_of(description: String, kinds: Vec<Value>) -> Value {
-    json!({ "description": description, "oneOf": kinds })
+/// The schema of an object of several kinds, told apart by the word under a key.
+///
+/// Only the schema of the object's own kind applies, so that editors offer the keys of that kind and report one error for each
+/// mistake.
+pub fn one_of(description: &str, tag: &str, kinds: Vec<(&str, Value)>) -> Value {
+    let descriptions =
+        kinds.iter().map(|(word, kind)| (*word, kind["description"].as_str().unwrap_or_default().to_owned()));
+    let mut tag_schema = words(&descriptions.collect::<Vec<_>>());
+    tag_schema["description"] = description.into();
+    let cases: Vec<Value> = kinds
+        .into_iter()
+        .map(|(word, kind)| {
+            json!({ "if": { "type": "object", "properties": { tag: { "const": word } }, "required": [tag] }, "then": kind })
+        })
+        .collect();
+    json!({
+        "description": description,
+        "type": "object",
+        "properties": { tag: tag_schema },
+        "required": [tag],
+        "allOf": cases,
+    })
+}
+
+/// The schema of a value of one of several JSON types, each with a schema of its own.
+pub fn by_json_type(kinds: Vec<(&str, Value)>) -> Value {
+    let types: Vec<&str> = kinds.iter().map(|(name, _)| *name).collect();
+    // Editors offer examples where there is no value yet.
+    let examples: Vec<Value> =
+        kinds.iter().filter_map(|(_, kind)| kind["enum"].as_array()).flatten().cloned().collect();
+    let cases: Vec<Value> = kinds
+        .iter()
+        .filter(|(name, kind)| *kind != json!({ "type": name }))
+        .map(|(name, kind)| json!({ "if": { "type": name }, "then": kind }))
+        .collect();
+    let mut schema = json!({ "type": types });
+    if !cases.is_empty() {
+        schema["allOf"] = cases.into();
+    }
+    if !examples.is_empty() {
+        schema["examples"] = examples.into();
+    }
+    schema
 }
 
 /// The schema of a string that is one of some words, each with what it means.
 pub fn words(words: &[(&str, String)]) -> Value {
-    let kinds: Vec<Value> =
-        words.iter().map(|(word, meaning)| json!({ "const": word, "description": meaning })).collect();
-    json!({ "oneOf": kinds })
+    let (words, meanings): (Vec<&str>, Vec<&String>) = words.iter().map(|(word, meaning)| (*word, meaning)).unzip();
+    // The second is a keyword of editors; validators ignore it.
+    json!({ "enum": words, "enumDescriptions": meanings })
 }
 
 /// The whole schema (JSON Schema 2020-12) of files that hold a `T`.

@@ -135,8 +135,8 @@ struct Color(Vec3);
 
 impl Decode for Color {
     fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
-        let channel = NonNegative::schema(schema);
-        json::one_of("Red, green and blue, or grey.".to_owned(), vec![channel, <[NonNegative; 3]>::schema(schema)])
+        let (grey, channels) = (NonNegative::schema(schema), <[NonNegative; 3]>::schema(schema));
+        json::by_json_type(vec![("number", grey), ("array", channels)])
     }
 
     fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {

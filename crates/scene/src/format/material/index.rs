@@ -9,7 +9,7 @@ use super::super::spectrum::{Wavelength, check_increasing, check_same_length};
 use super::ConductorMaterial;
 use crate::json::{
     Code, Decode, Kind, List, Node, NonNegative, Optional, Place, Positive, Reader, Required, SchemaBuilder,
-    SchemaValue, Span, Spanned, did_you_mean, listed, neighbour,
+    SchemaValue, Span, Spanned, by_json_type, did_you_mean, listed, neighbour,
 };
 
 crate::keywords!(OutsideFit {
@@ -148,15 +148,16 @@ enum IndexKind {
 impl Decode for IndexForm {
     fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
         schema.define("Index", |schema| {
-            json!({
-                "description": "An index of refraction relative to vacuum: a number (the same at every wavelength), the \
-                    name of a built-in medium, or an object with a \"type\".",
-                "anyOf": [
-                    { "type": "number", "exclusiveMinimum": 0 },
-                    Glass::schema(schema),
-                    IndexObject::schema(schema),
-                ],
-            })
+            let mut index = by_json_type(vec![
+                ("number", Positive::schema(schema)),
+                ("string", Glass::schema(schema)),
+                ("object", IndexObject::schema(schema)),
+            ]);
+            index["description"] =
+                "An index of refraction relative to vacuum: a number (the same at every wavelength), the \
+                name of a built-in medium, or an object with a \"type\"."
+                    .into();
+            index
         })
     }
 
