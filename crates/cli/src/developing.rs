@@ -234,7 +234,8 @@ fn describe_clipping(clipping: &Clipping) -> String {
     if kinds.is_empty() {
         "no pixel clipped".to_owned()
     } else {
-        format!("{} pixels clipped ({share:.2} %: {})", clipping.any, kinds.join(", "))
+        let pixels = if clipping.any == 1 { "pixel" } else { "pixels" };
+        format!("{} {pixels} clipped ({share:.2} %: {})", clipping.any, kinds.join(", "))
     }
 }
 
@@ -344,5 +345,7 @@ mod tests {
         assert_eq!(describe_clipping(&none), "no pixel clipped");
         let some = Clipping { above: 2, below: 0, non_finite: 1, any: 3, of: 200 };
         assert_eq!(describe_clipping(&some), "3 pixels clipped (1.50 %: 2 too bright, 1 not finite)");
+        let one = Clipping { above: 1, any: 1, of: 200, ..Clipping::default() };
+        assert_eq!(describe_clipping(&one), "1 pixel clipped (0.50 %: 1 too bright)");
     }
 }

@@ -175,7 +175,7 @@ fn read(kind: &str, bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder
         "gltf" | "glb" => gltf::import(bytes, moment, builder),
         "xml" => mitsuba::import(bytes, builder),
         "pbrt" => pbrt::import(bytes, builder),
-        other => Err(format!("\"{other}\" is no kind of model that is imported")),
+        other => Err(format!("\"{other}\" is not a kind of model that can be imported")),
     }
 }
 

@@ -89,7 +89,7 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
     }
     let diffuse = diffuse.unwrap_or([if material.diffuse_texture.is_some() { 1.0 } else { 0.8 }; 3]);
     if diffuse.iter().any(|v| !(0.0..=1.0).contains(v)) {
-        builder.leave_out(&place, format!("Kd {diffuse:?} is no reflectance, and is brought into 0 to 1"));
+        builder.leave_out(&place, format!("Kd {diffuse:?} is not a reflectance: it is clamped to 0 to 1"));
     }
     if let Some(words) = &material.diffuse_texture
         && let Some(image) = image(words, &place, builder)

@@ -91,7 +91,7 @@ codes! {
     Limit = "limit",
     /// The file says a version of the format that this program does not read.
     Version = "version",
-    /// A key stands twice in one object.
+    /// A key appears twice in one object.
     DuplicateKey = "duplicate-key",
     /// A key that has no meaning here.
     UnknownKey = "unknown-key",

@@ -9,11 +9,11 @@ pub use image_file::{Channel, Encoding, Image, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, 
 /// What an image shows beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Wrap {
-    /// Itself again.
+    /// The image repeats.
     Repeat,
-    /// Its mirror image.
+    /// The image repeats, mirrored every other time.
     Mirror,
-    /// Its outermost texels.
+    /// The outermost texels continue.
     Clamp,
 }
 

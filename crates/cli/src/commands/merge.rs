@@ -174,7 +174,8 @@ fn check(parts: &[(PathBuf, Kept)], failure: &mut Failure) {
             None
         };
         if let Some(difference) = foreign {
-            let text = format!("`{name}` is no part of the same picture as `{}`: {difference}", first_path.display());
+            let text =
+                format!("`{name}` is not a part of the same picture as `{}`: {difference}", first_path.display());
             refuse("foreign-part", text);
             continue;
         }

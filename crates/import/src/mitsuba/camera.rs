@@ -165,7 +165,7 @@ fn field_of_view(element: &Element, aspect: f64) -> Result<(&'static str, f64), 
     let Some(fov) = element.number("fov")? else {
         let text = element.string("focal_length").unwrap_or("50mm");
         let length = numbers(text.trim().trim_end_matches("mm")).ok().filter(|list| list.len() == 1 && list[0] > 0.0);
-        let length = length.ok_or_else(|| format!("{place}: \"{text}\" is no focal length"))?[0];
+        let length = length.ok_or_else(|| format!("{place}: \"{text}\" is not a focal length"))?[0];
         return Ok(("vertical_fov_deg", diagonal_to_vertical(0.5 * DIAGONAL_35_MM / length)));
     };
     Ok(match axis {
@@ -174,6 +174,6 @@ fn field_of_view(element: &Element, aspect: f64) -> Result<(&'static str, f64), 
         "smaller" => (if aspect >= 1.0 { "vertical_fov_deg" } else { "horizontal_fov_deg" }, fov),
         "larger" => (if aspect >= 1.0 { "horizontal_fov_deg" } else { "vertical_fov_deg" }, fov),
         "diagonal" => ("vertical_fov_deg", diagonal_to_vertical((0.5 * fov).to_radians().tan())),
-        other => return Err(format!("{place}: \"{other}\" is no fov_axis")),
+        other => return Err(format!("{place}: \"{other}\" is not a fov_axis")),
     })
 }

@@ -82,7 +82,7 @@ impl Walk<'_, '_, '_> {
             "rgb" => self.rgb(element.attribute("value").unwrap_or(""), place, of)?,
             "float" | "integer" => {
                 let text = element.attribute("value").unwrap_or("");
-                let value: f64 = text.trim().parse().map_err(|_| format!("{place}: \"{text}\" is no number"))?;
+                let value: f64 = text.trim().parse().map_err(|_| format!("{place}: \"{text}\" is not a number"))?;
                 self.constant(value, place, of)
             }
             "spectrum" => self.spectrum(element, of)?,
@@ -97,7 +97,7 @@ impl Walk<'_, '_, '_> {
         let rgb = match numbers(text).map_err(|why| format!("{place}: {why}"))?[..] {
             [grey] => [grey; 3],
             [r, g, b] => [r, g, b],
-            _ => return Err(format!("{place}: \"{text}\" is no colour")),
+            _ => return Err(format!("{place}: \"{text}\" is not a colour")),
         };
         Ok(match of {
             Of::Emission | Of::Shining => {
@@ -108,7 +108,7 @@ impl Walk<'_, '_, '_> {
             }
             Of::Texture | Of::Reflectance => {
                 if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
-                    self.builder.leave_out(place, format!("{rgb:?} is no reflectance, and is brought into 0 to 1"));
+                    self.builder.leave_out(place, format!("{rgb:?} is not a reflectance: it is clamped to 0 to 1"));
                 }
                 reflectance(rgb)
             }
@@ -131,7 +131,7 @@ impl Walk<'_, '_, '_> {
                 let list = numbers(&pairs).map_err(|why| format!("{place}: {why}"))?;
                 return self.table(&list, place, of);
             }
-            let value: f64 = text.trim().parse().map_err(|_| format!("{place}: \"{text}\" is no number"))?;
+            let value: f64 = text.trim().parse().map_err(|_| format!("{place}: \"{text}\" is not a number"))?;
             return Ok(self.constant(value, place, of));
         }
         if let Some(name) = element.attribute("filename") {

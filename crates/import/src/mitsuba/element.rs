@@ -59,7 +59,7 @@ impl Element {
         let text = element.attribute("value").unwrap_or("").trim();
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Some(value)),
-            _ => Err(format!("{}: \"{text}\" is no number", element.place)),
+            _ => Err(format!("{}: \"{text}\" is not a number", element.place)),
         }
     }
 
@@ -81,7 +81,7 @@ impl Element {
     pub(super) fn own_triple(&self, default: f64) -> Result<[f64; 3], String> {
         let parse = |text: &str| match text.trim().parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(format!("{}: \"{text}\" is no number", self.place)),
+            _ => Err(format!("{}: \"{text}\" is not a number", self.place)),
         };
         if let Some(list) = self.attribute("value") {
             let values = numbers(list).map_err(|why| format!("{}: {why}", self.place))?;
@@ -145,7 +145,7 @@ pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
         .filter(|word| !word.is_empty())
         .map(|word| match word.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(format!("\"{}\" is no number", shortened(word))),
+            _ => Err(format!("\"{}\" is not a number", shortened(word))),
         })
         .collect()
 }

@@ -258,7 +258,7 @@ impl Walk<'_, '_, '_> {
         let named = INDICES.iter().find(|(known, _)| known.eq_ignore_ascii_case(text)).map(|(_, index)| *index);
         match named.or_else(|| text.parse().ok()) {
             Some(index) if index > 0.0 && index.is_finite() => Ok(index),
-            _ => Err(format!("{}: \"{text}\" is no index of refraction", property.place)),
+            _ => Err(format!("{}: \"{text}\" is not an index of refraction", property.place)),
         }
     }
 

@@ -20,7 +20,7 @@ use material::Look;
 pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
     let root = element::read(bytes, builder.near)?;
     if root.tag != "scene" {
-        return Err(format!("{}: <{}> is no Mitsuba scene", root.place, root.tag));
+        return Err(format!("{}: <{}> is not a Mitsuba scene", root.place, root.tag));
     }
     let version = root.attribute("version").unwrap_or("");
     if !version.starts_with('3') && !version.starts_with('2') {

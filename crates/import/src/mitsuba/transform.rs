@@ -51,6 +51,6 @@ fn step(step: &Element) -> Result<DAffine3, String> {
             [a, b, c, d, e, f, g, h, i] => Ok(affine_from_rows(&[[a, b, c, 0.0], [d, e, f, 0.0], [g, h, i, 0.0]])),
             _ => Err(format!("{place}: a matrix has 16 numbers")),
         },
-        other => Err(format!("{place}: <{other}> is no step of a transform")),
+        other => Err(format!("{place}: <{other}> is not a step of a transform")),
     }
 }

@@ -143,7 +143,7 @@ impl Reading<'_, '_> {
                     json!(1.5)
                 }
             }),
-            _ => Err(format!("{place}: it is no index of refraction")),
+            _ => Err(format!("{place}: it is not an index of refraction")),
         }
     }
 

@@ -27,13 +27,13 @@ impl Reading<'_, '_> {
             ("rgb" | "color", [r, g, b]) => {
                 let rgb = [*r, *g, *b];
                 if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
-                    self.builder.leave_out(&place, format!("{rgb:?} is no reflectance, and is brought into 0 to 1"));
+                    self.builder.leave_out(&place, format!("{rgb:?} is not a reflectance: it is clamped to 0 to 1"));
                 }
                 reflectance(rgb)
             }
             ("float", [value]) => {
                 if !(0.0..=1.0).contains(value) {
-                    self.builder.leave_out(&place, format!("{value} is no reflectance, and is brought into 0 to 1"));
+                    self.builder.leave_out(&place, format!("{value} is not a reflectance: it is clamped to 0 to 1"));
                 }
                 json!(value.clamp(0.0, 1.0))
             }
@@ -62,7 +62,7 @@ impl Reading<'_, '_> {
                     value
                 }
             }
-            _ => return Err(format!("{place}: \"{name}\" is no reflectance")),
+            _ => return Err(format!("{place}: \"{name}\" is not a reflectance")),
         };
         Ok(Some(without_mean(value)))
     }
@@ -138,7 +138,7 @@ impl Reading<'_, '_> {
                 };
                 Ok(json!({ "type": "illuminant", "name": illuminant, "scale": scale }))
             }
-            _ => Err(format!("{place}: \"{name}\" is no light")),
+            _ => Err(format!("{place}: \"{name}\" is not a light")),
         }
     }
 
@@ -160,7 +160,7 @@ impl Reading<'_, '_> {
                 self.builder.spend(&json!(numbers), place)?;
                 numbers
             }
-            Values::Flags(_) => return Err(format!("{place}: it is no spectrum")),
+            Values::Flags(_) => return Err(format!("{place}: it is not a spectrum")),
         };
         let table = Table::of_pairs(&numbers);
         let fail = || format!("{place}: {} numbers are no table of wavelengths and values", numbers.len());

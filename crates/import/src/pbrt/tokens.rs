@@ -80,6 +80,6 @@ fn bare(word: &str, line: usize) -> Result<Word, String> {
     }
     match word.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(Word::Number(value)),
-        _ => Err(format!("line {line}: \"{}\" is no number", word.chars().take(40).collect::<String>())),
+        _ => Err(format!("line {line}: \"{}\" is not a number", word.chars().take(40).collect::<String>())),
     }
 }

@@ -209,7 +209,7 @@ fn a_damaged_mitsuba_scene_is_refused_with_its_line() {
     for (text, part) in [
         (
             "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><float name=\"radius\" value=\"x\"/></shape></scene>",
-            "line 2: \"x\" is no number",
+            "line 2: \"x\" is not a number",
         ),
         (
             "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><ref id=\"gone\"/></shape></scene>",
@@ -223,7 +223,7 @@ fn a_damaged_mitsuba_scene_is_refused_with_its_line() {
         ("<scene version=\"3.0.0\"><include filename=\"itself.xml\"/></scene>", "more than"),
         ("<scene version=\"3.0.0\"></scene>", "nothing in it to see"),
         ("<scene>", "line"),
-        ("<world/>", "<world> is no Mitsuba scene"),
+        ("<world/>", "<world> is not a Mitsuba scene"),
     ] {
         let why = refusal("xml", text).replace("it has no <scene>", "line");
         assert!(why.contains(part) || part == "line", "{text}: {why}");

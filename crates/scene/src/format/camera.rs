@@ -294,7 +294,7 @@ fn perspective(form: &PerspectiveCamera, film: Option<&Film>, reader: &mut Reade
     };
     // Also for NaN.
     if !(vertical_fov_rad > 0.0 && vertical_fov_rad < std::f64::consts::PI) {
-        let message = "the angle of view is 0° or 180° to rounding";
+        let message = "the angle of view rounds to 0° or 180°";
         reader.error(Code::OutOfRange, form.at.head(), message);
         return None;
     }
@@ -317,7 +317,7 @@ fn sensor_distance_m(
     let focus = lens.focus_distance_m.as_ref()?;
     if focus.value.0 <= f {
         let message = format!("a lens of focal length {f} m cannot focus at {} m", focus.value.0);
-        reader.error_hint(Code::OutOfRange, focus.at, message, "it must be farther than the focal length");
+        reader.error_hint(Code::OutOfRange, focus.at, message, "focus farther away than the focal length");
         return None;
     }
     Some(f / (1.0 - f / focus.value.0))

@@ -22,7 +22,7 @@ macro_rules! laid_image {
                 /// A PNG, JPEG, EXR or HDR file, relative to this file's folder.
                 file: Required<Spanned<String>>,
                 $($own)*
-                /// What it shows beyond its edges.
+                /// What the image shows beyond its edges.
                 wrap: Required<Wrap> = r#""repeat""#,
                 /// What it shows beyond its lower and upper edge, if that is another thing.
                 wrap_v: Optional<Wrap>,
@@ -200,7 +200,8 @@ impl Laid<'_> {
         let image = files.data(self.file, data.channel, data.encoding, reader);
         for (key, pair) in [("uv_scale", self.uv_scale), ("uv_offset", self.uv_offset)] {
             if pair.iter().any(|v| v.abs() > FARTHEST_UV) {
-                let message = format!("a {key} beyond {FARTHEST_UV:e} leaves no digits for the place in the image");
+                let message =
+                    format!("{key} is beyond {FARTHEST_UV:e}, where rounding errors hide the place in the image");
                 reader.error(Code::OutOfRange, self.at.head(), message);
                 return None;
             }

@@ -298,7 +298,7 @@ pub(crate) fn check_similarity(shape: &ShapeForm, transform: &Transform, at: Spa
         ShapeForm::Parallelogram(_) | ShapeForm::Mesh(_) | ShapeForm::Box(_) => return,
     };
     if !is_similarity(&transform.affine().matrix3) {
-        let message = format!("a {what} can only be moved, turned, mirrored and scaled alike along all axes");
+        let message = format!("the transform of a {what} must scale all axes by the same factor");
         let hint = "use one factor for all axes, or a mesh; or put it in a group and place that";
         reader.error_hint(Code::NotSimilarity, at, message, hint);
     }
@@ -307,9 +307,8 @@ pub(crate) fn check_similarity(shape: &ShapeForm, transform: &Transform, at: Spa
 /// Reports an instance that would make an ellipsoid or an ellipse of an emitter.
 pub(crate) fn check_instance_similarity(what: &str, transform: &Transform, at: Span, reader: &mut Reader<'_>) {
     if !is_similarity(&transform.affine().matrix3) {
-        let message = format!(
-            "the group holds an emitting {what}, which can only be moved, turned, mirrored and scaled alike along all axes"
-        );
+        let message =
+            format!("the group has an emitting {what}, so its transform must scale all axes by the same factor");
         reader.error_hint(Code::NotSimilarity, at, message, "use one factor for all axes, or an emitting mesh");
     }
 }
@@ -334,7 +333,7 @@ pub(crate) fn check_extent(shape: &Shape, transform: &Transform, at: Span, reade
         Shape::Mesh(mesh) => mesh.vertices.iter().all(|v| finite(point(*v))),
     };
     if !held {
-        let message = "in the world, the object is too far, too large or too small for double precision";
+        let message = "the object is too far away, too large or too small for double precision";
         reader.error(Code::OutOfRange, at, message);
     }
 }

@@ -97,8 +97,7 @@ fn placements(form: &InstanceForm, shutter_s: [f64; 2], reader: &mut Reader<'_>)
         }
         (Optional::Absent, Optional::Given(several)) => {
             if several.value.0.is_empty() {
-                let hint =
-                    "give it a transform for each placement, or leave the key out for one where the group stands";
+                let hint = "add a transform for each placement, or leave the key out to place the group once";
                 reader.error_hint(Code::WrongLength, several.at.head(), "the instance is placed nowhere", hint);
                 return None;
             }

@@ -9,8 +9,8 @@ crate::record! {
     pub(crate) struct IntegratorForm + comment {
         /// Samples a pixel.
         spp: Required<Whole<1, { u32::MAX as u64 }>> = "64",
-        /// Independent replicates that the samples are dealt to in turn, so that their scatter tells the error of each pixel.
-        /// With 1 there are no error bars, and no sample is spent on them.
+        /// Independent replicates. Samples go to them in turn, and the differences between them give the error of each pixel.
+        /// With 1 there are no error bars.
         replicates: Required<Whole<1, { MOST_REPLICATES as u64 }>> = "4",
         /// Seed of every random number.
         seed: Required<Whole<0, { u64::MAX }>> = "0",
@@ -50,7 +50,7 @@ crate::keywords!(LightSampling {
 crate::keywords!(LightSelection {
     /// By a tree from 8 lights on that have a place, by power below.
     "auto" => Self::Auto,
-    /// In proportion to their power, wherever they are.
+    /// In proportion to their power, without regard to their place.
     "power" => Self::Power,
     /// By a tree over where they are and where they shine, for each point anew.
     "tree" => Self::Tree,

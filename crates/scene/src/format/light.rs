@@ -220,7 +220,12 @@ fn environment_image(
     if let Some(i) = image.linear_texels().position(|t| t.iter().any(|v| v * brightest > BRIGHTEST)) {
         let (column, row) = texel_at(i);
         let message = format!("{}: the texel in column {column}, row {row} is more than {BRIGHTEST:e}", file.value);
-        reader.error_hint(Code::OutOfRange, file.at, message, "pictures are in single precision and could not hold it");
+        reader.error_hint(
+            Code::OutOfRange,
+            file.at,
+            message,
+            "pictures store single-precision numbers, which cannot hold it",
+        );
         return None;
     }
     Some(EnvironmentImage { image, name: file.value.clone(), projection, forward, right, up, white })

@@ -43,7 +43,7 @@ fn from_file(
     let extension = Path::new(&file.value).extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
     if !matches!(extension.as_str(), "ply" | "obj") {
         let hint = "a mesh file is .ply or .obj; other models become scenes by `etalon import`";
-        reader.error_hint(Code::FileFormat, file.at, format!("\"{}\" is no mesh file", file.value), hint);
+        reader.error_hint(Code::FileFormat, file.at, format!("\"{}\" is not a mesh file", file.value), hint);
         return None;
     }
     let bytes = files.bytes(file, reader)?;

@@ -26,7 +26,7 @@ pub(crate) fn shutter_s(form: Option<&Spanned<[f64; 2]>>, reader: &mut Reader<'_
     }
     // Also where each alone is finite.
     if !(close - open).is_finite() {
-        reader.error(Code::OutOfRange, shutter.at, "the shutter is open for longer than can be computed with");
+        reader.error(Code::OutOfRange, shutter.at, "the shutter time is too long for double precision");
         return None;
     }
     Some(shutter.value)
@@ -50,7 +50,7 @@ pub(crate) fn motion(
     reader: &mut Reader<'_>,
 ) -> Option<Placed> {
     if forms.value.0.is_empty() {
-        let hint = "one is where it rests; two are a motion";
+        let hint = "give one keyframe for a fixed place, or two or more for a motion";
         reader.error_hint(Code::WrongLength, forms.at.head(), "there are no keyframes", hint);
         return None;
     }
@@ -66,14 +66,15 @@ pub(crate) fn motion(
             let message = format!("the keyframe at {} s does not come after the one at {} s", b.time_s, a.time_s);
             reader.error_hint(Code::OutOfRange, at, message, "times must increase");
         } else if !((b.time_s - a.time_s).is_finite() && (b.time_s - a.time_s).recip().is_finite()) {
-            reader.error(Code::OutOfRange, at, "the time from the keyframe before cannot be computed with");
+            reader.error(Code::OutOfRange, at, "the time since the previous keyframe is too long for double precision");
         } else if a.mirrors() != b.mirrors() {
             let message =
-                "this keyframe mirrors and the one before does not, or the reverse: on the way all would be flat";
+                "only one of this keyframe and the previous one mirrors, so the object would become flat in between";
             reader.error(Code::Motion, at, message);
         } else if a.is_half_turn_from(b) {
-            let message = "the keyframe is half a turn from the one before: it does not say which way round";
-            reader.error_hint(Code::Motion, at, message, "put another one between the two");
+            let message =
+                "the keyframe is half a turn from the previous one, so the direction of the rotation is unknown";
+            reader.error_hint(Code::Motion, at, message, "add a keyframe between the two");
         }
     }
     if reader.error_count() != before {

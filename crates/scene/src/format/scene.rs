@@ -328,7 +328,7 @@ fn check_coordinates(image: Option<&ImageTexture>, shape: &Shape, at: Span, read
         && !has_coordinates
     {
         let message = format!("the shape has no texture coordinates for the image \"{}\"", image.name);
-        let hint = "a mesh has them by its \"uvs\", or by its file";
+        let hint = "give the mesh \"uvs\", or use a file with texture coordinates";
         reader.error_hint(Code::NoTextureCoordinates, at, message, hint);
     }
 }

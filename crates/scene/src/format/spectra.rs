@@ -99,11 +99,11 @@ impl<'f> Spectra<'f> {
             SpectrumForm::Object(SpectrumObject::Tabulated(table)) => self.table(table, used, reader),
             SpectrumForm::Object(SpectrumObject::Rgb(colour)) => self.rgb(colour, used, reader),
             SpectrumForm::Object(SpectrumObject::Image(image)) => {
-                let hint = "images are for what a material reflects and a surface emits";
+                let hint = "an image can give the reflectance of a material or the emission of a surface";
                 self.complain(
                     Code::KeyConflict,
                     image.at.head(),
-                    "an image cannot stand here".to_owned(),
+                    "an image is not allowed here".to_owned(),
                     hint,
                     used,
                     reader,
@@ -128,7 +128,7 @@ impl<'f> Spectra<'f> {
                 Code::OutOfRange,
                 form.at().head(),
                 message,
-                "pictures are in single precision and could not hold it",
+                "pictures store single-precision numbers, which cannot hold it",
                 used,
                 reader,
             );
@@ -161,8 +161,8 @@ impl<'f> Spectra<'f> {
         };
         let values: Vec<f64> = wavelengths_nm.iter().map(|nm| coefficient(*nm)).collect();
         if let Some(i) = values.iter().position(|v| !v.is_finite()) {
-            let message = format!("nothing comes through at {} nm: no absorption is that strong", wavelengths_nm[i]);
-            reader.error_hint(Code::OutOfRange, at, message, "a transmittance lies above 0");
+            let message = format!("the transmittance is 0 at {} nm, which no absorption reaches", wavelengths_nm[i]);
+            reader.error_hint(Code::OutOfRange, at, message, "a transmittance must be above 0");
             return None;
         }
         match values.as_slice() {
@@ -213,8 +213,8 @@ impl<'f> Spectra<'f> {
             return Some(());
         }
         if used.role == Role::Absorption {
-            let hint = "an absorption is a number or a table; of a colour give the \"transmittance\"";
-            let message = format!("{what} is no absorption");
+            let hint = "an absorption is a number or a table; for a colour use \"transmittance\"";
+            let message = format!("{what} cannot give an absorption");
             self.complain(Code::KeyConflict, at.head(), message, hint, used, reader);
             return None;
         }
@@ -317,7 +317,7 @@ fn targets(
             }
             if met_in[at] == start {
                 for &i in passed.iter().skip_while(|i| **i != at) {
-                    let message = format!("the spectrum \"{}\" stands, through its name, for itself", entries[i].name);
+                    let message = format!("the spectrum \"{}\" refers to itself", entries[i].name);
                     reader.error(Code::Circular, entries[i].at, message);
                 }
                 break None;
@@ -342,7 +342,7 @@ fn targets(
 pub(super) fn outside_message(what: &str, known_nm: [f64; 2], range_nm: [f64; 2]) -> String {
     let [first, last] = known_nm;
     let [from, to] = range_nm;
-    format!("{what} is known from {first} to {last} nm only, and {from} to {to} nm are rendered")
+    format!("{what} covers only {first} to {last} nm, but the scene renders {from} to {to} nm")
 }
 
 /// The wavelengths for which the CIE defines an illuminant, nm.

@@ -120,7 +120,7 @@ crate::record! {
         file: Required<Spanned<String>>,
         /// How its numbers are to be read.
         encoding: Required<Encoding> = r#""auto""#,
-        /// What it shows beyond its edges.
+        /// What the image shows beyond its edges.
         wrap: Required<Wrap> = r#""repeat""#,
         /// What it shows beyond its lower and upper edge, if that is another thing.
         wrap_v: Optional<Wrap>,
@@ -140,16 +140,16 @@ crate::keywords!(Encoding {
     "auto" => Self::Auto,
     /// By the curve of sRGB.
     "srgb" => Self::Srgb,
-    /// In proportion.
+    /// Values are proportional to light.
     "linear" => Self::Linear,
 });
 
 crate::keywords!(Wrap {
-    /// Itself again.
+    /// The image repeats.
     "repeat" => Self::Repeat,
-    /// Its mirror image.
+    /// The image repeats, mirrored every other time.
     "mirror" => Self::Mirror,
-    /// Its outermost texels.
+    /// The outermost texels continue.
     "clamp" => Self::Clamp,
 });
 
@@ -287,8 +287,8 @@ pub(super) fn check_same_length(key: &str, found: usize, wavelengths: usize, at:
 
 pub(super) fn check_increasing(wavelengths: &List<Spanned<Wavelength>>, at: Span, reader: &mut Reader<'_>) {
     if wavelengths.0.len() < 2 {
-        let message = format!("a table needs at least 2 wavelengths, and has {}", wavelengths.0.len());
-        reader.error_hint(Code::WrongLength, at.head(), message, "for a constant write a number");
+        let message = format!("a table needs at least 2 wavelengths, but this one has {}", wavelengths.0.len());
+        reader.error_hint(Code::WrongLength, at.head(), message, "for a constant spectrum write a number");
     }
     for pair in wavelengths.0.windows(2) {
         if let [Some(before), Some(after)] = pair

@@ -147,7 +147,7 @@ pub(super) fn wrong_type(expected: &str, node: Node<'_>, reader: &mut Reader<'_>
         Kind::String(text) if expected.ends_with("number") && text.trim().parse::<f64>().is_ok() => {
             reader.error_hint(Code::WrongType, at, message, "remove the quotes");
         }
-        Kind::Null => reader.error_hint(Code::WrongType, at, message, "to say nothing, leave the key out"),
+        Kind::Null => reader.error_hint(Code::WrongType, at, message, "leave the key out, or give a value"),
         _ => reader.error(Code::WrongType, at, message),
     }
 }

@@ -125,8 +125,8 @@ impl<'n> ObjectReader<'n> {
                 let mut present = keys.iter().filter_map(|key| Some((key, self.get(key)?.0)));
                 match (present.next(), present.next()) {
                     (None, _) => {
-                        let hint = format!("exactly one of {} must be there", listed(keys.iter().copied()));
-                        reader.error_hint(Code::MissingKey, self.span.head(), "a choice is missing", hint);
+                        let hint = format!("add exactly one of {}", listed(keys.iter().copied()));
+                        reader.error_hint(Code::MissingKey, self.span.head(), "a required key is missing", hint);
                     }
                     (Some((first, at)), Some((second, other))) => {
                         let message = format!("\"{first}\" and \"{second}\" exclude each other");
@@ -185,7 +185,7 @@ impl<'n> ObjectReader<'n> {
 }
 
 fn duplicate(key: &str, first: Span, at: Span, reader: &mut Reader<'_>) {
-    let message = format!("the key \"{key}\" stands twice");
+    let message = format!("the key \"{key}\" appears twice");
     reader.error_related(Code::DuplicateKey, at, message, "remove one of the two", (first, "first here"));
 }
 

@@ -78,7 +78,7 @@ pub enum LightSampling {
 pub enum LightSelection {
     /// By a tree where there are many, by power where there are few.
     Auto,
-    /// In proportion to their power, wherever they are.
+    /// In proportion to their power, without regard to their place.
     Power,
     /// By a tree over where they are and where they shine, for each point anew.
     Tree,

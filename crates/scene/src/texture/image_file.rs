@@ -44,7 +44,7 @@ pub enum Encoding {
     Auto,
     /// By the curve of sRGB.
     Srgb,
-    /// In proportion.
+    /// Values are proportional to light.
     Linear,
 }
 
@@ -152,7 +152,7 @@ impl Image {
         let failed = |error: image::ImageError| error.to_string();
         let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
         let Some(format) = reader.format() else {
-            return Err("it is no PNG, JPEG, EXR or HDR file".to_owned());
+            return Err("it is not a PNG, JPEG, EXR or HDR file".to_owned());
         };
         let length = bytes.len() as u64;
         let mut limits = Limits::default();
@@ -336,7 +336,7 @@ mod tests {
         for length in [0, 3, 20, png.len() / 2] {
             assert!(Image::decode(&png[..length], Encoding::Auto).is_err(), "{length}");
         }
-        assert!(Image::decode(b"not an image at all", Encoding::Auto).unwrap_err().contains("no PNG"));
+        assert!(Image::decode(b"not an image at all", Encoding::Auto).unwrap_err().contains("not a PNG"));
         // A header that promises 60,000 × 60,000 texels in a hundred bytes.
         let mut huge = png.clone();
         huge[16..24].copy_from_slice(&[0, 0, 0xea, 0x60, 0, 0, 0xea, 0x60]);

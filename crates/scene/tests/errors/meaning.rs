@@ -216,7 +216,7 @@ fn wavelengths_outside_what_is_known() {
         "$.materials.m.interior",
         materials("{\"m\": {\"type\": \"dielectric\", \"interior\": «\"diamond\"»}}"),
     );
-    assert_eq!(problem.message, "diamond is known from 226 to 760 nm only, and 360 to 830 nm are rendered");
+    assert_eq!(problem.message, "diamond covers only 226 to 760 nm, but the scene renders 360 to 830 nm");
     error(
         Code::OutsideFit,
         "$.materials.m.exterior",

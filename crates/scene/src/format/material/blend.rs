@@ -37,8 +37,7 @@ impl Before<'_> {
         match self.made.get(place) {
             Some(made) => made.clone(),
             None => {
-                let message =
-                    format!("the material \"{}\" does not stand before the blend that is made of it", name.value);
+                let message = format!("the blend uses the material \"{}\", which is defined after it", name.value);
                 reader.error_hint(Code::Circular, name.at, message, "move it up");
                 None
             }
@@ -66,26 +65,26 @@ pub(super) fn blend<'f>(
     };
     let (first, second, by) = (first?, second?, by?);
     if first.absorption.is_some() || second.absorption.is_some() {
-        let message = "a part of a blend bounds no medium: its dielectric cannot absorb";
-        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "let the dielectric stand alone");
+        let message = "a dielectric inside a blend cannot have an absorption";
+        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "use the dielectric without a blend");
         return None;
     }
     let (first, second) = (first.kind, second.kind);
     if [&first, &second].iter().any(|part| part.solid().is_some()) {
-        let message = "a part of a blend bounds no solid: its dielectric cannot have a priority";
-        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "say its exterior instead");
+        let message = "a dielectric inside a blend cannot have a \"priority\"";
+        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "give its \"exterior\" instead");
         return None;
     }
     if [&first, &second].iter().any(|part| matches!(part, MaterialKind::PolarisingSheet { .. })) {
-        let message = "a part of a blend has no axis of its own: it cannot be a polariser or a retarder";
-        let hint = "give the sheet an object of its own, perhaps with an \"opacity\"";
+        let message = "a blend cannot contain a polariser or a retarder";
+        let hint = "put the sheet on an object of its own, with an \"opacity\" if needed";
         reader.error_hint(Code::KeyConflict, blend.at.head(), message, hint);
         return None;
     }
     let kind = MaterialKind::blend(first, second, by);
     let count = parts(&kind);
     if count > MOST_BLEND_PARTS {
-        let message = format!("a blend of {count} materials, blends in blends counted");
+        let message = format!("the blend has {count} materials, with those of its inner blends");
         reader.error_hint(Code::OutOfRange, blend.at.head(), message, format!("at most {MOST_BLEND_PARTS}"));
         return None;
     }

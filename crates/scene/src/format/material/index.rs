@@ -274,7 +274,7 @@ fn fits(checked: Result<(), OpticsError>, at: Span, reader: &mut Reader<'_>) {
         Ok(()) => {}
         Err(OpticsError::OutsideFit { what, fit_nm, range_nm }) => {
             let message = outside_message(&what, fit_nm, range_nm);
-            let hint = "say \"outside_fit\": \"clamp\", or narrow the integrator's wavelength_range_nm";
+            let hint = "set \"outside_fit\": \"clamp\", or narrow the integrator's wavelength_range_nm";
             reader.error_hint(Code::OutsideFit, at, message, hint);
         }
         Err(error) => reader.error(Code::OutOfRange, at, error.to_string()),

@@ -83,8 +83,8 @@ pub(super) fn roughness(
 fn width(alpha: Option<&Spanned<Alpha>>, reader: &mut Reader<'_>) -> Option<f64> {
     let (alpha, at) = alpha.map(|alpha| (alpha.value.0, alpha.at))?;
     if alpha > 0.0 && alpha < LEAST_ALPHA {
-        let message = format!("a width of {alpha} is narrower than {LEAST_ALPHA}, the least that is rendered");
-        reader.error_hint(Code::OutOfRange, at, message, "0 is smooth");
+        let message = format!("alpha {alpha} is below {LEAST_ALPHA}, the smallest roughness that can be rendered");
+        reader.error_hint(Code::OutOfRange, at, message, "for a smooth surface use 0");
         return None;
     }
     Some(alpha)

@@ -60,7 +60,8 @@ impl<'f> Spectra<'f> {
         let image = files.image(file, form.encoding?, reader);
         for (key, pair) in [("uv_scale", form.uv_scale?), ("uv_offset", form.uv_offset?)] {
             if pair.iter().any(|v| v.abs() > FARTHEST_UV) {
-                let message = format!("a {key} beyond {FARTHEST_UV:e} leaves no digits for the place in the image");
+                let message =
+                    format!("{key} is beyond {FARTHEST_UV:e}, where rounding errors hide the place in the image");
                 reader.error(Code::OutOfRange, form.at.head(), message);
                 return None;
             }
