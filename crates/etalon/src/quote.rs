@@ -1,8 +1,8 @@
 //! What accuracy will cost, before it is paid for.
 
 use etalon_transport::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
+use etalon_transport::cost_estimate::PilotPoint;
 use etalon_transport::cost_estimate::next_step;
-use etalon_transport::pilot::PilotPoint;
 use etalon_transport::{Adaptivity, CostEstimate, Limits, Pilot, PixelRect, Prepared};
 
 use crate::error::RenderError;

@@ -50,13 +50,6 @@ impl<'a> EnclosingMedium<'a> {
     }
 }
 
-/// What a dielectric that states both its sides holds.
-#[derive(Clone, Debug)]
-pub(crate) struct Interior {
-    /// Absorption coefficient, m⁻¹, if it absorbs.
-    pub absorption: Option<PathSpectrum>,
-}
-
 /// Absorption along paths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Absorption {

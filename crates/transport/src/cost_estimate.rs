@@ -1,7 +1,26 @@
 //! What a relative error of a picture costs, from what a pilot saw.
 
-use crate::pilot::PilotPoint;
 use etalon_scene::SamplerKind;
+
+/// The error of the picture at a number of samples, as the pilot saw it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PilotPoint {
+    /// Samples a pixel, in the mean over the picture.
+    pub samples: u32,
+    /// Relative error of the picture: see [`crate::accuracy`]. Infinite where it is unknown, since no light was found.
+    pub relative_rmse: f64,
+    /// Relative standard error of that, by the choice of pixels and by chance. Infinite where it is unknown.
+    pub uncertainty: f64,
+    /// Seconds that the whole picture takes for so many samples, by the pilot's rate.
+    pub seconds: f64,
+}
+
+impl PilotPoint {
+    /// Whether the error is known to be so small.
+    pub fn reaches(&self, relative_rmse: f64) -> bool {
+        self.relative_rmse <= relative_rmse && self.uncertainty.is_finite()
+    }
+}
 
 /// What a relative error costs; not a number, with intervals that end at infinity, where no error is known yet.
 #[derive(Clone, Copy, Debug, PartialEq)]

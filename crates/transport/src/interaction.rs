@@ -216,7 +216,7 @@ impl<'w> World<'w> {
             let media = media.expect("what is no boundary was met above");
             let ahead = walk.group.iter().filter(|member| !member.passed);
             let crossings = ahead.map(|member| {
-                (media.place(self.surfaces, &member.point), member.point.normal.dot(ray.direction) < 0.0)
+                (self.surfaces.placed_solid(&member.point), member.point.normal.dot(ray.direction) < 0.0)
             });
             walk.beyond = stack.crossed(crossings, &mut counters.lost_media);
             if let Some(deciding) = media.deciding(stack, &walk.beyond) {

@@ -70,6 +70,7 @@ mod shading_geometry;
 mod shading_tables;
 mod shapes;
 pub mod spectral;
+mod starting_media;
 pub mod stop;
 mod surface;
 pub mod texture;

@@ -10,8 +10,6 @@
 //! ([`interaction`](crate::interaction)), as one interface between the medium before all of them and the medium behind.
 
 use crate::spectral::PathSpectrum;
-use crate::surface::Surfaces;
-use etalon_geometry::{Geometry, Ray, SurfacePoint};
 use etalon_optics::RefractiveIndex;
 use etalon_scene::{Mesh, Shape};
 use std::collections::HashMap;
@@ -43,7 +41,7 @@ pub(crate) struct MediumStack {
 impl MediumStack {
     pub(crate) const NOTHING: Self = Self { places: [(0, 0); DEPTH], len: 0 };
 
-    fn iter(&self) -> impl Iterator<Item = PlacedSolid> + '_ {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = PlacedSolid> + '_ {
         self.places[..self.len].iter().copied()
     }
 
@@ -69,7 +67,7 @@ impl MediumStack {
 
     /// Goes through a boundary. False if that contradicts what was known: a solid is left that was never entered, or there
     /// are too many.
-    fn cross(&mut self, place: PlacedSolid, enters: bool) -> bool {
+    pub(crate) fn cross(&mut self, place: PlacedSolid, enters: bool) -> bool {
         if enters {
             if self.len == DEPTH {
                 return false;
@@ -83,6 +81,13 @@ impl MediumStack {
         self.places[at] = self.places[self.len];
         true
     }
+}
+
+/// What a dielectric that states both its sides holds.
+#[derive(Clone, Debug)]
+pub(crate) struct Interior {
+    /// Absorption coefficient, m⁻¹, if it absorbs.
+    pub absorption: Option<PathSpectrum>,
 }
 
 /// The two media at an interface, along the walk from the camera.
@@ -131,11 +136,6 @@ impl Media {
         self.solid(object).is_some()
     }
 
-    /// The solid that a point bounds, if its object is one.
-    pub(crate) fn place(&self, surfaces: &Surfaces, point: &SurfacePoint<f64>) -> PlacedSolid {
-        (surfaces.of(point).object, point.surface.instance)
-    }
-
     /// The object whose material decides what an interface does, between what holds the path before it and behind it: of the
     /// solids whose medium lies on either side, and that begin or end here, the one of the highest priority. `None` if the
     /// medium does not change: there is no interface.
@@ -148,34 +148,6 @@ impl Media {
         let entered = far.filter(|&place| !before.iter().any(|other| other == place));
         let deciding = left.into_iter().chain(entered).max_by_key(|&place| self.rank(place));
         Some(deciding.map(|(object, _)| object))
-    }
-
-    /// The solids that hold the origin of a ray: those whose first boundary along it is left, not entered.
-    pub(crate) fn around(
-        &self,
-        geometry: &Geometry,
-        surfaces: &Surfaces,
-        ray: &Ray<f64>,
-        lost: &mut u64,
-    ) -> MediumStack {
-        let mut hits = Vec::new();
-        geometry.all_hits(ray, 0.0, |hit| {
-            hits.push(hit);
-            ray.t_max
-        });
-        hits.sort_by(|a, b| (a.t, a.surface).partial_cmp(&(b.t, b.surface)).expect("distances are numbers"));
-        let mut stack = MediumStack::NOTHING;
-        let mut known = MediumStack::NOTHING;
-        for hit in hits {
-            let point = geometry.surface(ray, &hit);
-            let place = self.place(surfaces, &point);
-            if self.solid(place.0).is_some() && !known.iter().any(|other| other == place) {
-                let leaves = point.normal.dot(ray.direction) > 0.0;
-                let counted = known.cross(place, true) && (!leaves || stack.cross(place, true));
-                *lost += u64::from(!counted);
-            }
-        }
-        stack
     }
 }
 

@@ -6,7 +6,7 @@
 //! have not been found.
 
 use crate::accuracy::ErrorSum;
-use crate::cost_estimate::{CostEstimate, cost_estimate};
+use crate::cost_estimate::{CostEstimate, PilotPoint, cost_estimate};
 use crate::film::{Counters, PixelRect};
 use crate::prepare::Prepared;
 use crate::probe::{Probe, Purpose};
@@ -27,26 +27,6 @@ const BELIEVED_FROM: u32 = 16;
 /// Camera paths after which a pilot that has found no light looks no further. Light that one path in a million finds would take a
 /// million million paths to an error of 1 % in ten thousand pixels.
 const PATHS_WITHOUT_LIGHT: u64 = 1 << 22;
-
-/// The error of the picture at a number of samples, as the pilot saw it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PilotPoint {
-    /// Samples a pixel, in the mean over the picture.
-    pub samples: u32,
-    /// Relative error of the picture: see [`crate::accuracy`]. Infinite where it is unknown, since no light was found.
-    pub relative_rmse: f64,
-    /// Relative standard error of that, by the choice of pixels and by chance. Infinite where it is unknown.
-    pub uncertainty: f64,
-    /// Seconds that the whole picture takes for so many samples, by the pilot's rate.
-    pub seconds: f64,
-}
-
-impl PilotPoint {
-    /// Whether the error is known to be so small.
-    pub fn reaches(&self, relative_rmse: f64) -> bool {
-        self.relative_rmse <= relative_rmse && self.uncertainty.is_finite()
-    }
-}
 
 /// A pilot under way.
 pub struct Pilot<'a> {

@@ -1,9 +1,8 @@
 //! What a primitive is made of: scattering, emission and the light it belongs to.
 
-use crate::absorption::Interior;
 use crate::bsdf::{Bsdf, BsdfSample, Lobe, Properties, Shading};
 use crate::bump_mapping;
-use crate::media::Interface;
+use crate::media::{Interface, Interior, PlacedSolid};
 use crate::polarisation::mueller::Mueller;
 use crate::shading_geometry::{At, Coordinates};
 use crate::spectral::PathSpectrum;
@@ -142,6 +141,11 @@ impl Surfaces {
             object.coordinates.uv(&At { geometry, surface, uv, position, normal, time })
         };
         Some(object.emission.as_ref()?.at(uv))
+    }
+
+    /// The object of a point where it is placed: a solid, if the object is the boundary of one.
+    pub(crate) fn placed_solid(&self, point: &SurfacePoint<f64>) -> PlacedSolid {
+        (self.of(point).object, point.surface.instance)
     }
 
     /// The material of an object.

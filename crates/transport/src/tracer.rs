@@ -133,13 +133,6 @@ impl<'a> Tracer<'a> {
         self.camera.ray_at(film, [lens_1, lens_2], time)
     }
 
-    /// The solids that hold the origin of a camera ray, where they are followed.
-    #[inline(always)]
-    pub(crate) fn stack(&self, ray: &Ray<f64>, counters: &mut Counters) -> Option<MediumStack> {
-        let (geometry, surfaces) = (&self.prepared.geometry, &self.prepared.surfaces);
-        self.world.media.map(|media| media.around(geometry, surfaces, ray, &mut counters.lost_media))
-    }
-
     /// The first surface that the path of a sample meets, masks passed as the path passes them.
     pub(crate) fn first_surface(
         &self,
@@ -150,7 +143,7 @@ impl<'a> Tracer<'a> {
     ) -> Option<FirstSurface<'_>> {
         let sampler = self.sampler(x, y, sample);
         let ray = self.camera_ray(x, y, &sampler, counters);
-        let mut stack = self.stack(&ray, counters).unwrap_or(MediumStack::NOTHING);
+        let mut stack = self.world.solids_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
         let mut walk = Walk::default();
         let [.., mut u_mask] = sampler.vertex_set(0, 1);
         for _ in 0..MOST_VERTICES {
@@ -210,7 +203,7 @@ impl<'a> Tracer<'a> {
             wavelength
         });
         let ray = self.camera_ray(x, y, sampler, counters);
-        let stack = self.stack(&ray, counters);
+        let stack = self.world.solids_around(&ray, counters);
         let polarisation = P::at_camera(ray.direction, self.camera.right(ray.time));
         Start { ray, stack, wavelengths, polarisation }
     }
