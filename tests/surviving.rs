@@ -199,7 +199,7 @@ fn of_another_build(from: &Path, to: &Path) {
     let (header, rest) = bytes[12..].split_at(length);
     let mut header: serde_json::Value = serde_json::from_slice(header).unwrap();
     let sources = header["subject"]["sources_sha256"].take();
-    assert_eq!(sources, etalon_transport::SOURCES_SHA256);
+    assert_eq!(sources, etalon_control::SOURCES_SHA256);
     header["subject"]["sources_sha256"] = "another".into();
     let header = serde_json::to_vec(&header).unwrap();
     let mut changed = bytes[..8].to_vec();
@@ -222,7 +222,7 @@ fn parts_and_checkpoints_of_another_build_are_refused() {
     of_another_build(&two, &other);
     let exr = folder.path().join("x.exr");
     let ran = etalon_line("merge {} {} -o {}", [&one, &other, &exr]).expect(2);
-    ran.says(["other.part", "sources of the program", "another", etalon_transport::SOURCES_SHA256]);
+    ran.says(["other.part", "sources of the program", "another", etalon_control::SOURCES_SHA256]);
     etalon_line("merge {} {} -o {} --quiet", [&one, &two, &exr]).expect(0);
     of_another_build(&one, &folder.path().join("1.part.checkpoint"));
     let line = format!("render {{}} -o {{}} {size} --shard 1/2 --resume");

@@ -2,8 +2,9 @@
 
 use std::str::FromStr;
 
+use etalon_control::Shard;
 use etalon_picture::develop::Rect;
-use etalon_transport::{PixelRect, Shard};
+use etalon_transport::PixelRect;
 
 /// Largest side of a picture, pixels.
 const LARGEST_SIDE: u32 = 65_536;

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use etalon_transport::{Counters, Film, PixelRect, Prediction, Watch};
+use etalon_control::{Prediction, Watch};
+use etalon_transport::{Counters, Film, PixelRect};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// A bar that counts samples: how many, what share, how fast, how long still.

@@ -1,8 +1,9 @@
 //! A film as files: the same for a picture that was rendered here and for one that was merged from parts.
 
 use etalon::{Channels, FilmFile};
+use etalon_control::Canvas;
 use etalon_picture::{ExrFile, PictureError};
-use etalon_transport::{Canvas, Features, Film, ImageError, PixelRect};
+use etalon_transport::{Features, Film, ImageError, PixelRect};
 use miette::Report;
 
 use crate::developing::Developing;

@@ -1,7 +1,8 @@
 //! Why there is no picture.
 
+use etalon_control::SettleError;
 use etalon_picture::PictureError;
-use etalon_transport::{SettleError, ThreadError};
+use etalon_transport::ThreadError;
 
 /// Why there is no picture, or no answer about it.
 #[derive(Debug, thiserror::Error)]

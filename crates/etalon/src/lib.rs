@@ -63,13 +63,14 @@ mod subject;
 pub use builder::SceneBuilder;
 pub use channels::{Aov, Channels};
 pub use error::RenderError;
+pub use etalon_control::{Adaptivity, CostEstimate, Ended, Prediction, Reached, Settled, Watch};
 pub use etalon_import::{ImportError, LeftOut};
 pub use etalon_picture as picture_files;
 pub use etalon_scene as scene_model;
 pub use etalon_scene::{LoadError, NamedFile, Problem, SceneErrors};
 pub use etalon_transport::{
-    Adaptivity, Band, Control, CostEstimate, Counters, Ended, Features, Film, ImageError, Pixel, PixelRect, Plan,
-    Prediction, PrepareError, Prepared, Reached, Settled, Study, TileSums, Watch, replay,
+    Band, Control, Counters, Features, Film, ImageError, Pixel, PixelRect, Plan, PrepareError, Prepared, Study,
+    TileSums, replay,
 };
 pub use film_file::FilmFile;
 pub use picture::Render;

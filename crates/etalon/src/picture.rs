@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use etalon_control::{Ended, Prediction, Reached, Settled};
 use etalon_optics::colour::rec709_from_xyz;
 use etalon_picture::{Clipping, ExrFile, encode_srgb8, write_exr, write_png};
-use etalon_transport::{Band, Ended, Features, Film, ImageError, Pixel, PixelRect, Prediction, Reached, Settled};
+use etalon_transport::{Band, Features, Film, ImageError, Pixel, PixelRect};
 
 use crate::channels::{Aov, Channels};
 use crate::error::RenderError;

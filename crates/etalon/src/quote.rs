@@ -1,9 +1,10 @@
 //! What accuracy will cost, before it is paid for.
 
-use etalon_transport::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
-use etalon_transport::cost_estimate::PilotPoint;
-use etalon_transport::cost_estimate::next_step;
-use etalon_transport::{Adaptivity, CostEstimate, Limits, Pilot, PixelRect, Prepared};
+use etalon_control::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
+use etalon_control::cost_estimate::PilotPoint;
+use etalon_control::cost_estimate::next_step;
+use etalon_control::{Adaptivity, CostEstimate, Limits, Pilot};
+use etalon_transport::{PixelRect, Prepared};
 
 use crate::error::RenderError;
 

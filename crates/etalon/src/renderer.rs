@@ -3,10 +3,9 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use etalon_control::{Adaptivity, Canvas, Ended, Limits, Shard, Watch, render_canvas, settle};
 use etalon_transport::replay::Replay;
-use etalon_transport::{
-    Adaptivity, Canvas, Control, Ended, Film, ImageError, Limits, PixelRect, Plan, Prepared, Shard, Watch,
-};
+use etalon_transport::{Control, Film, ImageError, PixelRect, Plan, Prepared};
 
 use crate::channels::Channels;
 use crate::error::RenderError;
@@ -166,10 +165,10 @@ impl Renderer {
         let start = Instant::now();
         let clock = || start.elapsed().as_secs_f64();
         let (prepared, threads) = (&self.prepared, settings.threads);
-        let settled = prepared.settle(rect, &limits, threads, &clock, watch)?;
+        let settled = settle(prepared, rect, &limits, threads, &clock, watch)?;
         let canvas = Canvas::new(prepared, rect, Shard::WHOLE, settled.allocation.as_deref());
         let ended @ Ended { samples, .. } =
-            prepared.render_canvas(&canvas, &settled, &limits, threads, &clock, watch)?;
+            render_canvas(prepared, &canvas, &settled, &limits, threads, &clock, watch)?;
         let (mut tiles, mut features) = (Vec::new(), Vec::new());
         if settings.channels.has_features() {
             tiles = (0..canvas.tiles()).map(|number| canvas.tile(number).0.rect).collect();

@@ -82,7 +82,7 @@ impl Subject {
         let scene = prepared.scene();
         Self {
             software: SOFTWARE.to_owned(),
-            sources_sha256: etalon_transport::SOURCES_SHA256.to_owned(),
+            sources_sha256: etalon_control::SOURCES_SHA256.to_owned(),
             scene_sha256: scene_sha256.to_owned(),
             size: [scene.film.width, scene.film.height],
             crop,

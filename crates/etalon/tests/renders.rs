@@ -23,13 +23,13 @@ fn a_render_has_the_film_of_the_integrator() {
     let renderer = scene.prepare().unwrap();
     let render = renderer.render(&Settings { samples: Some(32), ..Default::default() }).unwrap();
     let direct = etalon_transport::prepare(&scene.model).unwrap();
-    let limits = etalon_transport::Limits {
+    let limits = etalon_control::Limits {
         samples: 32,
         relative_rmse: None,
         seconds: None,
         adaptivity: etalon::Adaptivity::Never,
     };
-    let film = direct.render_within(render.rect(), &limits, Some(1), &|| 0.0, &()).unwrap().film;
+    let film = etalon_control::render_within(&direct, render.rect(), &limits, Some(1), &|| 0.0, &()).unwrap().film;
     assert_eq!(render.rgb_pixels(), film.linear_rec709());
     assert_eq!(render.bands_nm(), [450.0, 550.0, 650.0]);
     for (x, y) in render.rect().pixels() {

@@ -73,7 +73,8 @@ impl XyzSum {
 pub struct Pixel<'a>(&'a [XyzSum]);
 
 impl<'a> Pixel<'a> {
-    pub(crate) fn new(sums: &'a [XyzSum]) -> Self {
+    /// The pixel with these sums, one a replicate.
+    pub fn new(sums: &'a [XyzSum]) -> Self {
         Self(sums)
     }
 

@@ -1,53 +1,27 @@
 //! Rendering: tiles over all cores, the same bytes whatever their number.
 
-use crate::film::{Counters, Film, PixelRect, Sums, XyzSum};
+use crate::film::{Counters, Film, PixelRect, Sums, TileSums, XyzSum};
 use crate::kernel::RenderPixels;
 use crate::plan::{LaneModel, PathLoop};
 use crate::prepare::Prepared;
 use crate::replay::Replay;
-use crate::sample_allocation::SampleAllocation;
 use crate::tracer::PixelSamples;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Side of a tile, pixels.
-pub(crate) const TILE: u32 = 16;
+pub const TILE: u32 = 16;
 
 /// A stage of a render: which pixels, which samples, on how many threads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// Pixels.
     pub rect: PixelRect,
-    /// Numbers of the samples; with shares, how far the mean number of samples a pixel goes.
+    /// Numbers of the samples.
     pub samples: Range<u32>,
-    /// How the samples are spread over regions; `None` gives every pixel the same number.
-    pub allocation: Option<Arc<SampleAllocation>>,
     /// Threads; `None` is one for each core.
     pub threads: Option<usize>,
-}
-
-impl Extent {
-    /// Tiles whose pixels take the same samples.
-    fn tiles(&self) -> Vec<PixelRect> {
-        let tiles = self.rect.tiles(TILE);
-        match &self.allocation {
-            None => tiles,
-            Some(allocation) => tiles.into_iter().flat_map(|tile| allocation.parts(tile)).collect(),
-        }
-    }
-
-    /// The samples of the pixels of one of [`Extent::tiles`].
-    fn samples_of(&self, tile: PixelRect, replicates: u32) -> Range<u32> {
-        match &self.allocation {
-            None => self.samples.clone(),
-            Some(allocation) => {
-                let up_to = |mean| allocation.samples(tile.x0, tile.y0, mean, replicates);
-                up_to(self.samples.start)..up_to(self.samples.end)
-            }
-        }
-    }
 }
 
 /// Whether to go on.
@@ -71,7 +45,6 @@ impl Prepared {
         Extent {
             rect: PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height },
             samples: 0..self.scene.integrator.spp,
-            allocation: None,
             threads,
         }
     }
@@ -115,14 +88,14 @@ impl Prepared {
         (self.kernel().replay)(self, x, y, sample)
     }
 
-    /// Adds samples to a tile, by the loop that the plan chose: to the sums of its pixels, row by row, in each replicate by
-    /// replicate.
-    pub(crate) fn render_tile(&self, tile: PixelRect, samples: Range<u32>, sums: Sums<'_>) -> Counters {
-        self.renderer()(self, &PixelSamples::of_tile(tile, &samples), sums, &mut [])
+    /// Adds samples to the sums of a tile, by the loop that the plan chose.
+    pub fn render_tile(&self, tile: PixelRect, samples: Range<u32>, sums: &mut TileSums) -> Counters {
+        self.renderer()(self, &PixelSamples::of_tile(tile, &samples), sums.borrow(), &mut [])
     }
 
-    /// Adds samples to pixels without bands, and the rays of all kinds that each took to `rays`.
-    pub(crate) fn render_pixels(&self, all_samples: &[PixelSamples], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
+    /// Adds samples to the colours of pixels, pixel by pixel, in each replicate by replicate; and to `rays` the rays of all kinds that
+    /// each entry of `all_samples` took.
+    pub fn render_pixels(&self, all_samples: &[PixelSamples], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
         self.renderer()(self, all_samples, Sums { xyz, stokes: &mut [], bands: &mut [] }, rays)
     }
 
@@ -155,20 +128,30 @@ impl Prepared {
         extent: &Extent,
         on_tile: &(dyn Fn(&Counters) -> Control + Sync),
     ) -> Result<(), ThreadError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(extent.threads.unwrap_or(0)).build()?;
-        let tiles = extent.tiles();
-        let replicates = self.scene.integrator.replicates;
+        let tiles = extent.rect.tiles(TILE).into_iter().map(|tile| (tile, extent.samples.clone()));
+        self.render_tiles_onto(film, &tiles.collect::<Vec<_>>(), extent.threads, on_tile)
+    }
+
+    /// As [`Prepared::render_onto`], with samples for each tile.
+    pub fn render_tiles_onto(
+        &self,
+        film: &mut Film,
+        tiles: &[(PixelRect, Range<u32>)],
+        threads: Option<usize>,
+        on_tile: &(dyn Fn(&Counters) -> Control + Sync),
+    ) -> Result<(), ThreadError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
         let stopped = AtomicBool::new(false);
         let before: &Film = film;
         let finished: Vec<_> = pool.install(|| {
             tiles
                 .par_iter()
-                .map(|&tile| {
+                .map(|(tile, samples)| {
                     if stopped.load(Ordering::Relaxed) {
                         return None;
                     }
-                    let mut sums = before.tile(tile);
-                    let counters = self.render_tile(tile, extent.samples_of(tile, replicates), sums.borrow());
+                    let mut sums = before.tile(*tile);
+                    let counters = self.render_tile(*tile, samples.clone(), &mut sums);
                     if on_tile(&counters) == Control::Stop {
                         stopped.store(true, Ordering::Relaxed);
                     }
@@ -176,7 +159,7 @@ impl Prepared {
                 })
                 .collect()
         });
-        for (tile, done) in tiles.iter().zip(finished) {
+        for ((tile, _), done) in tiles.iter().zip(finished) {
             if let Some((sums, counters)) = done {
                 film.put(*tile, &sums);
                 film.counters.merge(&counters);

@@ -20,7 +20,7 @@ pub const CAMERA_SETS: u32 = 2;
 pub const SETS_PER_VERTEX: u32 = 2;
 
 /// Longest Owen-scrambled Sobol point set of the library; further samples come from independent sets.
-pub(crate) const SOBOL_POINTS: u32 = 1 << 16;
+pub const SOBOL_POINTS: u32 = 1 << 16;
 
 /// The numbers of one sample of one pixel.
 #[derive(Clone, Copy, Debug)]
@@ -197,7 +197,7 @@ fn unit_interval(bits: u64) -> f64 {
 
 /// A bijective mixer of 64 bits: the finaliser of SplitMix64 (Steele, Lea & Flood 2014) after its increment.
 #[inline(always)]
-pub(crate) fn mix(value: u64) -> u64 {
+pub fn mix(value: u64) -> u64 {
     let mut z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

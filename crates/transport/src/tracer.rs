@@ -19,8 +19,10 @@ use std::ops::Range;
 
 /// Some samples of one pixel.
 #[derive(Clone, Debug)]
-pub(crate) struct PixelSamples {
+pub struct PixelSamples {
+    /// Column.
     pub x: u32,
+    /// Row.
     pub y: u32,
     /// Their numbers.
     pub samples: Range<u32>,
@@ -33,7 +35,7 @@ impl PixelSamples {
     }
 
     /// How many.
-    pub(crate) fn count(&self) -> u32 {
+    pub fn count(&self) -> u32 {
         self.samples.end.saturating_sub(self.samples.start)
     }
 }

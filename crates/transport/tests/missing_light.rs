@@ -2,9 +2,7 @@
 
 use etalon_scene::Scene;
 use etalon_transport::plan::Lost;
-use etalon_transport::{
-    Adaptivity, Control, ImageError, Limits, PathLoop, Pilot, Prepared, Reached, SettleError, Study, prepare_study,
-};
+use etalon_transport::{Control, ImageError, PathLoop, Prepared, Study, prepare_study};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -247,70 +245,6 @@ fn many_pairs_are_counted() {
     scene["objects"].as_array_mut().unwrap().push(objects[1].clone());
     let missing = prepared(&parse(&scene))[0].plan().missing_light.clone();
     assert_eq!((missing.pairs, missing.listed.len()), (600, 64));
-}
-
-/// A ball around the camera and a lamp outside, a lamp that faces away, and light through glass alone.
-fn black() -> Vec<Value> {
-    let mut ball = behind(json!({"type": "lambert", "reflectance": 0.5}), Lamp::Point);
-    ball["objects"][0]["shape"] = json!({"type": "sphere", "radius_m": 1});
-    let mut away = behind(json!({"type": "lambert", "reflectance": 0.5}), Lamp::Point);
-    away["lights"] = json!([]);
-    // Its normal points up, and the floor is below.
-    away["objects"][0] = json!({"material": "black", "emission": {"radiance": 1},
-        "shape": {"type": "disk", "center_m": [0, 1, 0], "normal": [0, 1, 0], "radius_m": 1}});
-    let glass = behind(json!({"type": "dielectric", "interior": 1.5}), Lamp::Spot);
-    vec![ball, away, glass]
-}
-
-fn limits(samples: u32, seconds: Option<f64>, adaptivity: Adaptivity) -> Limits {
-    Limits { samples, relative_rmse: Some(0.1), seconds, adaptivity }
-}
-
-#[test]
-fn a_picture_without_light_reaches_no_error() {
-    for (scene, adaptivity) in black().iter().zip([Adaptivity::Never, Adaptivity::Auto, Adaptivity::Always]) {
-        let prepared = prepared(&parse(scene)).pop().unwrap();
-        let rect = prepared.whole(None).rect;
-        assert!(!error(&prepared).is_known());
-        let within = |limits: Limits| prepared.render_within(rect, &limits, None, &|| 0.0, &());
-        // Nothing else would ever end it.
-        let refused = within(limits(Limits::ANY_SAMPLES, None, adaptivity)).unwrap_err();
-        assert!(matches!(refused, SettleError::NoLight { paths } if paths >= 1 << 22), "{refused}");
-        // Samples do, and a time does.
-        let done = within(limits(32, None, adaptivity)).unwrap();
-        assert_eq!((done.samples, done.reached), (32, Reached::Samples));
-        assert!(done.predicted.unwrap().cost_estimate.samples.is_nan() && !done.film.error(rect).unwrap().is_known());
-        let paths = std::sync::atomic::AtomicU64::new(0);
-        struct Paths<'a>(&'a std::sync::atomic::AtomicU64);
-        impl etalon_transport::Watch for Paths<'_> {
-            fn work(&self, counters: &etalon_transport::Counters) {
-                self.0.fetch_add(counters.paths, std::sync::atomic::Ordering::Relaxed);
-            }
-        }
-        // A millionth of a second each.
-        let clock = || 1e-6 * paths.load(std::sync::atomic::Ordering::Relaxed) as f64;
-        let limits = limits(Limits::ANY_SAMPLES, Some(0.1), adaptivity);
-        let done = prepared.render_within(rect, &limits, None, &clock, &Paths(&paths)).unwrap();
-        assert_eq!(done.reached, Reached::Time);
-    }
-}
-
-/// A pilot goes on until it finds light, and knows an error then.
-#[test]
-fn a_pilot_that_finds_light_late_knows_no_error_before() {
-    // Seen from afar the lamp fills 10⁻⁵ of the sky, and is found by chance.
-    let mut scene = behind(json!({"type": "lambert", "reflectance": 0.5}), Lamp::Sphere);
-    scene["objects"].as_array_mut().unwrap().remove(0);
-    scene["objects"][1]["shape"]["radius_m"] = json!(0.006);
-    scene["integrator"] = json!({"light_sampling": "bsdf", "max_depth": 2});
-    let prepared = prepared(&parse(&scene)).pop().unwrap();
-    let mut pilot = Pilot::new(&prepared, prepared.whole(None).rect, None, None).unwrap();
-    (2..=18).for_each(|step| pilot.advance(1 << step, &|| 0.0, &|_| ()));
-    let points = pilot.points();
-    assert!(points[0].relative_rmse.is_infinite() && !points[0].reaches(1.0));
-    let last = points.last().unwrap();
-    assert!(last.relative_rmse.is_finite() && last.uncertainty.is_finite() && !pilot.found_no_light());
-    assert!(pilot.cost_estimate(0.1).samples.is_finite());
 }
 
 fn materials() -> impl Strategy<Value = (Value, bool)> {

@@ -3,9 +3,7 @@
 use etalon_oracle::statistics::Welford;
 use etalon_scene::{LightSampling, SamplerKind, Scene};
 use etalon_transport::film::PixelRect;
-use etalon_transport::{
-    Canvas, Control, Extent, Film, PathLoop, Prepared, Shard, Study, TileSums, prepare, prepare_study,
-};
+use etalon_transport::{Control, Extent, Film, PathLoop, Prepared, Study, prepare, prepare_study};
 use serde_json::{Value, json};
 
 fn parse(json: &Value) -> Scene {
@@ -125,57 +123,6 @@ fn a_stopped_render_keeps_whole_tiles_only() {
     let done = film.pixels().filter(|p| p.count() > 0).count();
     assert_eq!(done, 16 * 16);
     assert!(film.pixels().all(|p| p.count() == 0 || p.count() == 8));
-}
-
-/// Renders a share of the picture, putting it down as bytes after every stage and taking it up on a new canvas.
-fn by_stages(prepared: &Prepared, shard: Shard, stages: &[u32]) -> Canvas {
-    let rect = prepared.whole(None).rect;
-    let mut canvas = Canvas::new(prepared, rect, shard, None);
-    for &samples in stages {
-        canvas.advance(prepared, &|_| samples, Some(2), &|_, _, _| Control::Continue).unwrap();
-        let next = Canvas::new(prepared, rect, shard, None);
-        for number in 0..canvas.tiles() {
-            let (tile, sums) = canvas.tile(number);
-            let replicates = prepared.scene().integrator.replicates;
-            let sums =
-                TileSums::from_bytes(&sums.to_bytes(), tile.rect.area(), replicates, prepared.band_sums()).unwrap();
-            assert!(next.take_up(&tile, &sums));
-            assert!(!next.take_up(&tile, &sums), "a tile was taken up twice");
-        }
-        canvas = next;
-    }
-    canvas
-}
-
-#[test]
-fn a_picture_put_down_divided_and_taken_up_has_the_same_bytes() {
-    let prepared = prepare(&room()).unwrap();
-    let film = render(&prepared, &prepared.whole(Some(1)));
-    assert_eq!(by_stages(&prepared, Shard::WHOLE, &[1, 2, 7, 8]).into_film(), film);
-    for of in [2, 3, 6] {
-        let whole = Canvas::new(&prepared, prepared.whole(None).rect, Shard::WHOLE, None);
-        for index in 0..of {
-            let part = by_stages(&prepared, Shard { index, of }, &[3, 8]);
-            (0..part.tiles()).for_each(|number| {
-                let (tile, sums) = part.tile(number);
-                assert!(whole.take_up(&tile, &sums));
-            });
-        }
-        assert_eq!(whole.into_film(), film, "{of} parts");
-    }
-}
-
-#[test]
-fn a_canvas_that_is_stopped_goes_on_where_it_was() {
-    let prepared = prepare(&room()).unwrap();
-    let film = render(&prepared, &prepared.whole(Some(1)));
-    let canvas = Canvas::new(&prepared, prepared.whole(None).rect, Shard::WHOLE, None);
-    canvas.advance(&prepared, &|_| 8, Some(1), &|_, _, _| Control::Stop).unwrap();
-    assert_eq!(canvas.samples(), [0, 8]);
-    canvas.advance(&prepared, &|_| 5, Some(2), &|_, _, _| Control::Continue).unwrap();
-    assert_eq!(canvas.samples(), [5, 8]);
-    canvas.advance(&prepared, &|_| 8, Some(2), &|_, _, _| Control::Continue).unwrap();
-    assert_eq!(canvas.into_film(), film);
 }
 
 /// Mean Y of the film over independent seeds.

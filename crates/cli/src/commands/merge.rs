@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use etalon_control::{Canvas, Shard};
 use etalon_picture::open_plain;
-use etalon_transport::{Canvas, Features, ImageError, Shard};
+use etalon_transport::{Features, ImageError};
 use miette::{Report, miette};
 use serde::Serialize;
 

@@ -12,7 +12,8 @@ mod watcher;
 use std::path::PathBuf;
 
 use etalon::Aov;
-use etalon_transport::{Adaptivity, Canvas, Ended, Explored, Features, ImageError, Limits, SettleError};
+use etalon_control::{Adaptivity, Canvas, Ended, Explored, Limits, SettleError};
+use etalon_transport::{Features, ImageError};
 use miette::{Report, miette};
 use serde::{Deserialize, Serialize};
 

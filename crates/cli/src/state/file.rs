@@ -5,8 +5,9 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use etalon::{Channels, Subject};
+use etalon_control::{Canvas, Shard, Tile};
 use etalon_picture::{PictureError, open_plain, write_atomically};
-use etalon_transport::{Canvas, Features, Shard, Tile, TileSums};
+use etalon_transport::{Features, TileSums};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 

@@ -16,7 +16,8 @@ pub(crate) use file::{Header, Kept, Limited, StateError, read, write};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use etalon_transport::{PixelRect, SampleAllocation};
+use etalon_control::SampleAllocation;
+use etalon_transport::PixelRect;
 
 /// The shares that a file states, if they are shares of this rectangle.
 pub(crate) fn allocation(rect: PixelRect, weights: &[u32]) -> Option<SampleAllocation> {

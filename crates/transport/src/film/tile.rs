@@ -93,7 +93,7 @@ impl TileSums {
 
 impl Film {
     /// All that the film keeps of a rectangle's pixels.
-    pub(crate) fn tile(&self, rect: PixelRect) -> TileSums {
+    pub fn tile(&self, rect: PixelRect) -> TileSums {
         let stride = (self.replicates * self.bands) as usize;
         let of_bands = |(x, y)| {
             let start = (y as usize * self.width as usize + x as usize) * stride;
@@ -110,7 +110,8 @@ impl Film {
         }
     }
 
-    pub(crate) fn put(&mut self, rect: PixelRect, tile: &TileSums) {
+    /// Replaces all that the film keeps of a rectangle's pixels.
+    pub fn put(&mut self, rect: PixelRect, tile: &TileSums) {
         let replicates = self.replicates as usize;
         for ((x, y), sums) in rect.pixels().zip(tile.xyz.chunks_exact(replicates)) {
             let range = self.replicates_of(x, y);
@@ -128,7 +129,7 @@ impl Film {
     }
 
     /// Whether `tile` is what this film keeps of `rect`, by its size.
-    pub(crate) fn fits(&self, rect: PixelRect, tile: &TileSums) -> bool {
+    pub fn fits(&self, rect: PixelRect, tile: &TileSums) -> bool {
         let sums = rect.area() * u64::from(self.replicates);
         let stokes = if self.records_stokes() { sums } else { 0 };
         let [xyz_held, stokes_held, bands_held] = [tile.xyz.len(), tile.stokes.len(), tile.bands.len()];

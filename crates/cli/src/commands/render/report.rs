@@ -1,7 +1,8 @@
 //! What is said about a render that is done.
 
+use etalon_control::{Explored, Prediction, Reached};
 use etalon_transport::accuracy::{FEWEST_LIT, Region};
-use etalon_transport::{Counters, Explored, ImageError, Plan, Prediction, Reached};
+use etalon_transport::{Counters, ImageError, Plan};
 use serde::Serialize;
 
 use super::{Args, Done, Job};

@@ -1,7 +1,7 @@
 //! Finding a checkpoint, and whether it is of the same picture.
 
 use etalon::Subject;
-use etalon_transport::{Canvas, Shard};
+use etalon_control::{Canvas, Shard};
 use miette::{Report, miette};
 
 use super::Args;

@@ -5,9 +5,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 use etalon::{Aov, Channels};
-use etalon_transport::sample_allocation::SampleAllocation;
-use etalon_transport::stop::Settled;
-use etalon_transport::{Canvas, Limits, Reached, SettleError, Shard};
+use etalon_control::{Canvas, Limits, Reached, SampleAllocation, SettleError, Settled, Shard, render_canvas, settle};
 use miette::{Report, miette};
 
 use super::watcher::Watcher;
@@ -32,7 +30,7 @@ impl Run {
     pub(super) fn new(args: &Args, job: &Job, limits: Limits, watch: &Watcher<'_>) -> Result<Self, SettleError> {
         let clock = Clock::start(args.clock, job.threads);
         let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
-        let settled = job.prepared.settle(job.rect, &limits, Some(job.threads), &|| clock.seconds(), watch)?;
+        let settled = settle(&job.prepared, job.rect, &limits, Some(job.threads), &|| clock.seconds(), watch)?;
         let canvas = Canvas::new(&job.prepared, job.rect, shard, settled.allocation.as_deref());
         Ok(Self { canvas, settled, limits, clock, before_s: 0.0, shard })
     }
@@ -102,8 +100,15 @@ impl Run {
                 });
             }
             let clock = || self.seconds();
-            let done =
-                job.prepared.render_canvas(&self.canvas, &self.settled, &self.limits, Some(job.threads), &clock, watch);
+            let done = render_canvas(
+                &job.prepared,
+                &self.canvas,
+                &self.settled,
+                &self.limits,
+                Some(job.threads),
+                &clock,
+                watch,
+            );
             drop(ended);
             done
         })?;

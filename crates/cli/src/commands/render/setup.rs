@@ -3,8 +3,9 @@
 use std::time::Instant;
 
 use etalon::{Channels, Subject};
-use etalon_transport::canvas::tiles_of;
-use etalon_transport::{PixelRect, Prepared, Shard, prepare_study};
+use etalon_control::Shard;
+use etalon_control::canvas::tiles_of;
+use etalon_transport::{PixelRect, Prepared, prepare_study};
 use miette::{Report, miette};
 
 use super::{Adaptive, Args, preflight, resume};

@@ -2,7 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use etalon_transport::{Control, Counters, Film, PixelRect, Prediction, TileSums, Watch};
+use etalon_control::{Prediction, Watch};
+use etalon_transport::{Control, Counters, Film, PixelRect, TileSums};
 
 use crate::display::Display;
 use crate::interrupt::Interrupt;

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use etalon_control::SampleAllocation;
+use etalon_control::adaptive::{Goal, explore};
 use etalon_scene::Scene;
-use etalon_transport::adaptive::{Goal, explore};
-use etalon_transport::{Control, Counters, Extent, Film, ImageError, Prepared, SampleAllocation, prepare_study};
+use etalon_transport::{Control, Extent, Film, ImageError, Prepared, prepare_study};
 use serde::Serialize;
 
 use super::choices::{self, BASELINE, Choice};
@@ -121,9 +122,17 @@ impl Runner {
             self.allocation = Some(found.map_err(|error| error.to_string())?.allocation);
             self.seconds += seconds;
         }
-        let extent = Extent { samples: self.samples..samples, allocation: self.allocation.clone(), ..whole };
-        let (done, seconds) =
-            timed(threads, || self.prepared.render_onto(&mut self.film, &extent, &|_: &Counters| Control::Continue));
+        let (stage, replicates) = (self.samples..samples, self.prepared.scene().integrator.replicates);
+        let tiles = self.allocation.as_ref().map(|allocation| allocation.tiles(whole.rect, stage.clone(), replicates));
+        let (done, seconds) = timed(threads, || match tiles {
+            None => {
+                let extent = Extent { samples: stage, ..whole };
+                self.prepared.render_onto(&mut self.film, &extent, &|_| Control::Continue)
+            }
+            Some(tiles) => {
+                self.prepared.render_tiles_onto(&mut self.film, &tiles, Some(threads), &|_| Control::Continue)
+            }
+        });
         done.map_err(|error| error.to_string())?;
         self.samples = samples;
         self.seconds += seconds;

@@ -3,11 +3,10 @@
 //! Tiles know nothing of each other, so a picture can be divided among machines by tiles, cut off between any two pieces of
 //! one, kept, and continued elsewhere: the sums are the same numbers in the same order.
 
-use crate::film::{Counters, Film, PixelRect, TileSums};
-use crate::prepare::Prepared;
-use crate::render::{Control, TILE, ThreadError};
 use crate::sample_allocation::SampleAllocation;
-use crate::sampler::mix;
+use etalon_transport::render::TILE;
+use etalon_transport::sampler::mix;
+use etalon_transport::{Control, Counters, Film, PixelRect, Prepared, ThreadError, TileSums};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -167,7 +166,7 @@ impl Canvas {
                 let piece = (PATHS_OF_PIECE / tile.rect.area()).max(1) as u32;
                 while tile.samples < samples && !stopped.load(Ordering::Relaxed) {
                     let until = tile.samples.saturating_add(piece).min(samples);
-                    let counters = prepared.render_tile(tile.rect, tile.samples..until, sums.borrow());
+                    let counters = prepared.render_tile(tile.rect, tile.samples..until, &mut sums);
                     tile.samples = until;
                     tile.counters.merge(&counters);
                     {

@@ -1,11 +1,9 @@
 //! Pixels traced with random numbers that no picture uses: what explorations and pilots are made of.
 
-use crate::film::{Counters, Pixel, XyzSum};
-use crate::prepare::Prepared;
-use crate::render::ThreadError;
-use crate::sampler::SOBOL_POINTS;
-use crate::tracer::PixelSamples;
 use etalon_scene::SamplerKind;
+use etalon_transport::film::XyzSum;
+use etalon_transport::sampler::SOBOL_POINTS;
+use etalon_transport::{Counters, Pixel, PixelSamples, Prepared, ThreadError};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -74,12 +72,12 @@ impl<'a> Probe<'a> {
 
     /// Replicates of the picture.
     pub(crate) fn replicates(&self) -> u32 {
-        self.prepared.scene.integrator.replicates
+        self.prepared.scene().integrator.replicates
     }
 
     /// Number sequence of the picture.
     pub(crate) fn sampler(&self) -> SamplerKind {
-        self.prepared.scene.integrator.sampler
+        self.prepared.scene().integrator.sampler
     }
 
     /// Independent copies of the picture's estimate, so that there are replicates enough.

@@ -7,7 +7,7 @@ use etalon_scene::SamplerKind;
 pub struct PilotPoint {
     /// Samples a pixel, in the mean over the picture.
     pub samples: u32,
-    /// Relative error of the picture: see [`crate::accuracy`]. Infinite where it is unknown, since no light was found.
+    /// Relative error of the picture: see [`etalon_transport::accuracy`]. Infinite where it is unknown, since no light was found.
     pub relative_rmse: f64,
     /// Relative standard error of that, by the choice of pixels and by chance. Infinite where it is unknown.
     pub uncertainty: f64,

@@ -5,14 +5,12 @@
 //! as one whose number was given. A rule that looked at the picture itself would prefer those in which rare bright paths
 //! have not been found.
 
-use crate::accuracy::ErrorSum;
 use crate::cost_estimate::{CostEstimate, PilotPoint, cost_estimate};
-use crate::film::{Counters, PixelRect};
-use crate::prepare::Prepared;
 use crate::probe::{Probe, Purpose};
-use crate::render::ThreadError;
 use crate::sample_allocation::SampleAllocation;
-use crate::sampler::mix;
+use etalon_transport::accuracy::ErrorSum;
+use etalon_transport::sampler::mix;
+use etalon_transport::{Counters, PixelRect, Prepared, ThreadError};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -156,7 +154,7 @@ impl<'a> Pilot<'a> {
         // Odd and near the golden section of the block; layers that meet a cell again only cost time.
         let stride = (area as f64 * 0.618) as u64 | 1;
         let rect = self.rect;
-        let (seed, layer) = (mix(self.prepared.scene.integrator.seed), u64::from(self.layers));
+        let (seed, layer) = (mix(self.prepared.scene().integrator.seed), u64::from(self.layers));
         let corners = (rect.y0..rect.y1)
             .step_by(self.block as usize)
             .flat_map(|y0| (rect.x0..rect.x1).step_by(block as usize).map(move |x0| (x0, y0)));
@@ -190,6 +188,6 @@ impl<'a> Pilot<'a> {
 
     /// The price of a relative error, from what was seen so far.
     pub fn cost_estimate(&self, relative_rmse: f64) -> CostEstimate {
-        cost_estimate(&self.points, relative_rmse, self.prepared.scene.integrator.sampler, self.first_step())
+        cost_estimate(&self.points, relative_rmse, self.prepared.scene().integrator.sampler, self.first_step())
     }
 }

@@ -1,13 +1,10 @@
 //! Renders that end by error or by time: the right number of samples, the same bytes, no bias.
 
+use etalon_control::{Adaptivity, Limits, Pilot, Reached, SampleAllocation, Watch, render_within};
 use etalon_oracle::statistics::{Welford, resolvable_bias};
 use etalon_scene::Scene;
-use etalon_transport::{
-    Adaptivity, Control, Counters, Extent, Film, Limits, Pilot, PixelRect, Prepared, Reached, SampleAllocation, Watch,
-    prepare,
-};
+use etalon_transport::{Control, Counters, Extent, Film, PixelRect, Prepared, prepare};
 use serde_json::json;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Height of the lamp over its radius: the share of a diffuse floor's sky that it fills right below it is 1/25.
@@ -62,7 +59,7 @@ fn a_picture_whose_samples_a_pilot_chose_is_not_biased() {
     let z = bias("pilot", |seed| {
         let prepared = lottery(seed);
         let limits = Limits { samples: 4096, relative_rmse: Some(1.0), seconds: None, adaptivity: Adaptivity::Never };
-        let done = prepared.render_within(prepared.whole(None).rect, &limits, Some(1), &|| 0.0, &()).unwrap();
+        let done = render_within(&prepared, prepared.whole(None).rect, &limits, Some(1), &|| 0.0, &()).unwrap();
         assert_eq!(done.reached, Reached::Error);
         mean_y(&prepared, &done.film)
     });
@@ -97,7 +94,7 @@ fn a_picture_whose_shares_an_exploration_chose_is_not_biased() {
         let prepared = lottery_of(seed, 16);
         let limits = Limits { samples: 12, relative_rmse: None, seconds: None, adaptivity: Adaptivity::Always };
         let rect = prepared.whole(None).rect;
-        let done = prepared.render_within(rect, &limits, Some(1), &|| 0.0, &()).unwrap();
+        let done = render_within(&prepared, rect, &limits, Some(1), &|| 0.0, &()).unwrap();
         let [least, most] = done.explored.unwrap().exploration.allocation.least_and_most(done.samples, 4);
         uneven.fetch_add(u64::from(most > least), Ordering::Relaxed);
         mean_y(&prepared, &done.film)
@@ -152,7 +149,7 @@ fn a_deadline_does_not_bias_even_where_light_is_what_takes_time() {
             adaptivity: Adaptivity::Never,
         };
         let clock = || watch.0.load(Ordering::Relaxed) as f64;
-        let done = prepared.render_within(prepared.whole(None).rect, &limits, Some(1), &clock, &watch).unwrap();
+        let done = render_within(&prepared, prepared.whole(None).rect, &limits, Some(1), &clock, &watch).unwrap();
         assert_eq!(done.reached, Reached::Time);
         mean_y(&prepared, &done.film)
     });
@@ -175,8 +172,8 @@ fn the_first_limit_wins_and_the_film_is_that_of_as_many_samples() {
     let render = |samples, relative_rmse, seconds| {
         paths.store(0, Ordering::Relaxed);
         let limits = Limits { samples, relative_rmse, seconds, adaptivity: Adaptivity::Never };
-        let done = prepared.render_within(rect, &limits, Some(2), &clock, &Paths(&paths)).unwrap();
-        let extent = Extent { rect, samples: 0..done.samples, allocation: None, threads: Some(1) };
+        let done = render_within(&prepared, rect, &limits, Some(2), &clock, &Paths(&paths)).unwrap();
+        let extent = Extent { rect, samples: 0..done.samples, threads: Some(1) };
         assert_eq!(done.film, prepared.render(&extent, &|_| Control::Continue).unwrap());
         assert!(done.film.pixels().all(|pixel| pixel.count() == done.samples));
         done
@@ -207,27 +204,33 @@ fn uneven_shares_leave_the_same_bytes_for_any_threads_stages_and_crops() {
     let rect = PixelRect { x0: 3, y0: 1, x1: 37, y1: 8 };
     let allocation: Vec<u32> =
         (0..SampleAllocation::regions(rect).len() as u32).map(|region| 16 + 37 * region).collect();
-    let allocation = Some(Arc::new(SampleAllocation::new(rect, allocation)));
-    let extent = Extent { rect, samples: 0..24, allocation: allocation.clone(), threads: Some(1) };
-    let film = prepared.render(&extent, &|_| Control::Continue).unwrap();
+    let allocation = SampleAllocation::new(rect, allocation);
+    let render = |film: &mut Film, rect, means, threads| {
+        let tiles = allocation.tiles(rect, means, 4);
+        prepared.render_tiles_onto(film, &tiles, Some(threads), &|_| Control::Continue).unwrap();
+    };
+    let whole = |threads| {
+        let mut film = prepared.film();
+        render(&mut film, rect, 0..24, threads);
+        film
+    };
+    let film = whole(1);
     for (x, y) in rect.pixels() {
-        assert_eq!(film.pixel(x, y).count(), allocation.as_ref().unwrap().samples(x, y, 24, 4));
+        assert_eq!(film.pixel(x, y).count(), allocation.samples(x, y, 24, 4));
     }
     assert_eq!(film.pixels().map(|pixel| u64::from(pixel.count())).sum::<u64>(), film.counters.paths);
-    assert_eq!(prepared.render(&Extent { threads: Some(3), ..extent.clone() }, &|_| Control::Continue).unwrap(), film);
+    assert_eq!(whole(3), film);
     let mut staged = prepared.film();
-    for samples in [0..4, 4..5, 5..24] {
-        prepared.render_onto(&mut staged, &Extent { samples, ..extent.clone() }, &|_| Control::Continue).unwrap();
-    }
+    [0..4, 4..5, 5..24].into_iter().for_each(|means| render(&mut staged, rect, means, 1));
     assert_eq!(staged, film);
     let mut parts = prepared.film();
     for (x0, x1) in [(3, 10), (10, 11), (11, 37)] {
-        let rect = PixelRect { x0, x1, ..rect };
-        prepared.render_onto(&mut parts, &Extent { rect, ..extent.clone() }, &|_| Control::Continue).unwrap();
+        render(&mut parts, PixelRect { x0, x1, ..rect }, 0..24, 1);
     }
     assert_eq!(parts, film);
     // A pixel's samples are the first of those that it always has.
-    let uniform = prepared.render(&Extent { allocation: None, ..extent }, &|_| Control::Continue).unwrap();
+    let uniform = Extent { rect, samples: 0..24, threads: Some(1) };
+    let uniform = prepared.render(&uniform, &|_| Control::Continue).unwrap();
     let same = |(x, y): &(u32, u32)| film.pixel(*x, *y).count() == 24;
     let compared: Vec<_> = rect.pixels().filter(same).collect();
     assert!(compared.iter().all(|&(x, y)| film.pixel(x, y) == uniform.pixel(x, y)));

@@ -2,7 +2,9 @@
 //!
 //! Shares must be settled before the first sample that is kept, by nothing that those samples say.
 
-use crate::film::PixelRect;
+use etalon_transport::PixelRect;
+use etalon_transport::render::TILE;
+use std::ops::Range;
 
 /// Side of a region, pixels; it divides a tile's.
 pub const REGION_SIDE: u32 = 8;
@@ -80,6 +82,13 @@ impl SampleAllocation {
         let of =
             |(region, &weight): (PixelRect, &u32)| region.area() * u64::from(self.of_weight(weight, mean, replicates));
         Self::regions(self.rect).into_iter().zip(&self.weights).map(of).sum()
+    }
+
+    /// The tiles of `rect` whose pixels take the same samples, each with those between two means of all pixels.
+    pub fn tiles(&self, rect: PixelRect, means: Range<u32>, replicates: u32) -> Vec<(PixelRect, Range<u32>)> {
+        let parts = rect.tiles(TILE).into_iter().flat_map(|tile| self.parts(tile));
+        let up_to = |tile: &PixelRect, mean| self.samples(tile.x0, tile.y0, mean, replicates);
+        parts.map(|tile| (tile, up_to(&tile, means.start)..up_to(&tile, means.end))).collect()
     }
 
     /// Cuts a tile into parts whose pixels take the same number of samples at every stage: the tile itself, if it can be.

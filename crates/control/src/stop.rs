@@ -6,11 +6,9 @@
 use crate::adaptive::{Adaptivity, Exploration, Goal, WORTHWHILE, explore};
 use crate::canvas::{Canvas, Shard};
 use crate::cost_estimate::{CostEstimate, between, next_step};
-use crate::film::{Counters, Film, PixelRect, TileSums};
 use crate::pilot::Pilot;
-use crate::prepare::Prepared;
-use crate::render::{Control, Extent, ThreadError};
 use crate::sample_allocation::SampleAllocation;
+use etalon_transport::{Control, Counters, Film, PixelRect, Prepared, ThreadError, TileSums};
 use std::sync::Arc;
 
 /// What a render may cost, or must reach. Without any limit it would not end.
@@ -18,7 +16,7 @@ use std::sync::Arc;
 pub struct Limits {
     /// Most samples a pixel, in the mean; [`Limits::ANY_SAMPLES`] is no limit.
     pub samples: u32,
-    /// The relative error at which it is good enough: see [`crate::accuracy`].
+    /// The relative error at which it is good enough: see [`etalon_transport::accuracy`].
     pub relative_rmse: Option<f64>,
     /// Seconds from the start of the render, the pilot included.
     pub seconds: Option<f64>,
@@ -102,13 +100,6 @@ pub struct Finished {
     pub explored: Option<Explored>,
 }
 
-impl Finished {
-    /// The film's extent: with it, [`Prepared::render`] gives the same film again.
-    pub fn extent(&self, rect: PixelRect, threads: Option<usize>) -> Extent {
-        Extent { rect, samples: 0..self.samples, allocation: self.allocation.clone(), threads }
-    }
-}
-
 /// How a render on a canvas ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ended {
@@ -181,148 +172,145 @@ const WORTH_A_PASS: u32 = 16;
 /// Part of the remaining time that passes are planned for: what is left pays for passes that take longer than the last.
 const USE_OF_TIME: f64 = 0.98;
 
-impl Prepared {
-    /// Renders `rect` until the first of the limits. `clock` tells seconds since the start. The film is the one that
-    /// [`Prepared::render`] gives for the same number of samples; at least one sample for each replicate is taken.
-    pub fn render_within(
-        &self,
-        rect: PixelRect,
-        limits: &Limits,
-        threads: Option<usize>,
-        clock: &(dyn Fn() -> f64 + Sync),
-        watch: &dyn Watch,
-    ) -> Result<Finished, SettleError> {
-        let settled = self.settle(rect, limits, threads, clock, watch)?;
-        let canvas = Canvas::new(self, rect, Shard::WHOLE, settled.allocation.as_deref());
-        let Ended { samples, reached, seconds, predicted } =
-            self.render_canvas(&canvas, &settled, limits, threads, clock, watch)?;
-        let Settled { allocation, explored, .. } = settled;
-        Ok(Finished { film: canvas.into_film(), samples, allocation, reached, seconds, predicted, explored })
-    }
+/// Renders `rect` until the first of the limits. `clock` tells seconds since the start. The film is the one that
+/// [`Prepared::render`] gives for the same number of samples; at least one sample for each replicate is taken.
+pub fn render_within(
+    prepared: &Prepared,
+    rect: PixelRect,
+    limits: &Limits,
+    threads: Option<usize>,
+    clock: &(dyn Fn() -> f64 + Sync),
+    watch: &dyn Watch,
+) -> Result<Finished, SettleError> {
+    let settled = settle(prepared, rect, limits, threads, clock, watch)?;
+    let canvas = Canvas::new(prepared, rect, Shard::WHOLE, settled.allocation.as_deref());
+    let Ended { samples, reached, seconds, predicted } =
+        render_canvas(prepared, &canvas, &settled, limits, threads, clock, watch)?;
+    let Settled { allocation, explored, .. } = settled;
+    Ok(Finished { film: canvas.into_film(), samples, allocation, reached, seconds, predicted, explored })
+}
 
-    /// Settles how many samples a picture takes, and where: the most that are allowed, or those that a pilot says its error
-    /// takes, spread as an exploration says.
-    ///
-    /// # Errors
-    /// If there are no threads, and if the pilot finds no light where nothing but the error is to end the render.
-    pub fn settle(
-        &self,
-        rect: PixelRect,
-        limits: &Limits,
-        threads: Option<usize>,
-        clock: &(dyn Fn() -> f64 + Sync),
-        watch: &dyn Watch,
-    ) -> Result<Settled, SettleError> {
-        let explored = self.explored(rect, limits, threads, clock, watch)?;
-        let allocation =
-            explored.as_ref().filter(|explored| explored.used).map(|e| Arc::clone(&e.exploration.allocation));
-        let most = match &allocation {
-            None => limits.samples,
-            Some(allocation) => {
-                limits.samples.min(allocation.largest_mean(i32::MAX as u32, self.scene.integrator.replicates))
-            }
-        };
-        let settled = Settled { samples: most, allocation, reached: Reached::Samples, predicted: None, explored };
-        let Some(target) = limits.relative_rmse else { return Ok(settled) };
-        let mut pilot = Pilot::new(self, rect, settled.allocation.clone(), threads)?;
-        let needed = pilot.samples_for(target, most, limits, clock, watch);
-        if pilot.found_no_light() && !limits.end_without_error() && watch.control() == Control::Continue {
-            return Err(SettleError::NoLight { paths: pilot.paths() });
+/// Settles how many samples a picture takes, and where: the most that are allowed, or those that a pilot says its error
+/// takes, spread as an exploration says.
+///
+/// # Errors
+/// If there are no threads, and if the pilot finds no light where nothing but the error is to end the render.
+pub fn settle(
+    prepared: &Prepared,
+    rect: PixelRect,
+    limits: &Limits,
+    threads: Option<usize>,
+    clock: &(dyn Fn() -> f64 + Sync),
+    watch: &dyn Watch,
+) -> Result<Settled, SettleError> {
+    let explored = explored(prepared, rect, limits, threads, clock, watch)?;
+    let allocation = explored.as_ref().filter(|explored| explored.used).map(|e| Arc::clone(&e.exploration.allocation));
+    let most = match &allocation {
+        None => limits.samples,
+        Some(allocation) => {
+            limits.samples.min(allocation.largest_mean(i32::MAX as u32, prepared.scene().integrator.replicates))
         }
-        let cost_estimate = pilot.cost_estimate(target);
-        let point = pilot.points().last().expect("a pilot takes a step at least");
-        let predicted = Some(Prediction {
-            cost_estimate: match needed {
-                // What was chosen, not what a law through the pilot's points says.
-                Some(needed) => CostEstimate {
-                    samples: f64::from(needed),
-                    seconds: point.seconds / f64::from(point.samples) * f64::from(needed),
-                    ..cost_estimate
-                },
-                None => cost_estimate,
+    };
+    let settled = Settled { samples: most, allocation, reached: Reached::Samples, predicted: None, explored };
+    let Some(target) = limits.relative_rmse else { return Ok(settled) };
+    let mut pilot = Pilot::new(prepared, rect, settled.allocation.clone(), threads)?;
+    let needed = pilot.samples_for(target, most, limits, clock, watch);
+    if pilot.found_no_light() && !limits.end_without_error() && watch.control() == Control::Continue {
+        return Err(SettleError::NoLight { paths: pilot.paths() });
+    }
+    let cost_estimate = pilot.cost_estimate(target);
+    let point = pilot.points().last().expect("a pilot takes a step at least");
+    let predicted = Some(Prediction {
+        cost_estimate: match needed {
+            // What was chosen, not what a law through the pilot's points says.
+            Some(needed) => CostEstimate {
+                samples: f64::from(needed),
+                seconds: point.seconds / f64::from(point.samples) * f64::from(needed),
+                ..cost_estimate
             },
-            pilot_seconds: pilot.seconds(),
-        });
-        Ok(match needed {
-            Some(samples) if samples <= most => Settled { samples, reached: Reached::Error, predicted, ..settled },
-            _ => Settled { predicted, ..settled },
-        })
+            None => cost_estimate,
+        },
+        pilot_seconds: pilot.seconds(),
+    });
+    Ok(match needed {
+        Some(samples) if samples <= most => Settled { samples, reached: Reached::Error, predicted, ..settled },
+        _ => Settled { predicted, ..settled },
+    })
+}
+
+/// Explores where samples are worth most, where that is wanted.
+fn explored(
+    prepared: &Prepared,
+    rect: PixelRect,
+    limits: &Limits,
+    threads: Option<usize>,
+    clock: &(dyn Fn() -> f64 + Sync),
+    watch: &dyn Watch,
+) -> Result<Option<Explored>, ThreadError> {
+    match limits.adaptivity {
+        Adaptivity::Never => return Ok(None),
+        Adaptivity::Auto if limits.relative_rmse.is_none() => return Ok(None),
+        Adaptivity::Auto | Adaptivity::Always => {}
     }
+    let start = clock();
+    let goal = Goal { samples: limits.samples, relative_rmse: limits.relative_rmse };
+    let late = || limits.seconds.is_some_and(|seconds| clock() - start > EXPLORING * seconds);
+    let enough = || watch.control() == Control::Stop || late();
+    let exploration = explore(prepared, rect, &goal, threads, &enough, &|counters| watch.work(counters))?;
+    let used = limits.adaptivity == Adaptivity::Always || exploration.gain >= WORTHWHILE;
+    Ok(Some(Explored { exploration, used, seconds: clock() - start }))
+}
 
-    /// Explores where samples are worth most, where that is wanted.
-    fn explored(
-        &self,
-        rect: PixelRect,
-        limits: &Limits,
-        threads: Option<usize>,
-        clock: &(dyn Fn() -> f64 + Sync),
-        watch: &dyn Watch,
-    ) -> Result<Option<Explored>, ThreadError> {
-        match limits.adaptivity {
-            Adaptivity::Never => return Ok(None),
-            Adaptivity::Auto if limits.relative_rmse.is_none() => return Ok(None),
-            Adaptivity::Auto | Adaptivity::Always => {}
-        }
-        let start = clock();
-        let goal = Goal { samples: limits.samples, relative_rmse: limits.relative_rmse };
-        let late = || limits.seconds.is_some_and(|seconds| clock() - start > EXPLORING * seconds);
-        let enough = || watch.control() == Control::Stop || late();
-        let exploration = explore(self, rect, &goal, threads, &enough, &|counters| watch.work(counters))?;
-        let used = limits.adaptivity == Adaptivity::Always || exploration.gain >= WORTHWHILE;
-        Ok(Some(Explored { exploration, used, seconds: clock() - start }))
-    }
+/// Renders a canvas on until all its tiles have the samples that were settled, time is up or `watch` says stop.
+pub fn render_canvas(
+    prepared: &Prepared,
+    canvas: &Canvas,
+    settled: &Settled,
+    limits: &Limits,
+    threads: Option<usize>,
+    clock: &(dyn Fn() -> f64 + Sync),
+    watch: &dyn Watch,
+) -> Result<Ended, ThreadError> {
+    let &Settled { samples, mut reached, predicted, .. } = settled;
+    let replicates = prepared.scene().integrator.replicates;
+    watch.planned(canvas.paths(&|tile| settled.samples_of(tile, samples, replicates)), predicted.as_ref());
 
-    /// Renders a canvas on until all its tiles have the samples that were settled, time is up or `watch` says stop.
-    pub fn render_canvas(
-        &self,
-        canvas: &Canvas,
-        settled: &Settled,
-        limits: &Limits,
-        threads: Option<usize>,
-        clock: &(dyn Fn() -> f64 + Sync),
-        watch: &dyn Watch,
-    ) -> Result<Ended, ThreadError> {
-        let &Settled { samples, mut reached, predicted, .. } = settled;
-        let replicates = self.scene.integrator.replicates;
-        watch.planned(canvas.paths(&|tile| settled.samples_of(tile, samples, replicates)), predicted.as_ref());
-
-        // What a tile has beyond the stage that all have reached is not rendered again.
-        let first = if settled.allocation.is_some() { 0 } else { canvas.samples()[0] };
-        let (start, mut done) = (clock(), first);
-        while done < samples && watch.control() == Control::Continue {
-            // As many again as there are, until that is a part of the whole: the error is known after each pass.
-            let mut pass = done.max(replicates).min(samples - done);
-            let mut end = samples;
-            if let (Some(seconds), true) = (limits.seconds, done > first) {
-                let now = clock();
-                let affordable = USE_OF_TIME * (seconds - now) / ((now - start) / f64::from(done - first));
-                // Whole rounds of replicates, so that all weigh alike.
-                let affordable = affordable.max(0.0) as u32 / replicates * replicates;
-                if affordable == 0 {
-                    reached = Reached::Time;
-                    break;
-                }
-                pass = pass.min(affordable);
-                end = end.min(done.saturating_add(affordable));
-            }
-            pass = pass.min((end / PASSES).max(WORTH_A_PASS).next_multiple_of(replicates));
-            let target = |rect| settled.samples_of(rect, done + pass, replicates);
-            canvas.advance(self, &target, threads, &|counters, rect, sums| {
-                watch.work(counters);
-                watch.tile(rect, sums);
-                watch.control()
-            })?;
-            if !canvas.has_reached(&target) {
+    // What a tile has beyond the stage that all have reached is not rendered again.
+    let first = if settled.allocation.is_some() { 0 } else { canvas.samples()[0] };
+    let (start, mut done) = (clock(), first);
+    while done < samples && watch.control() == Control::Continue {
+        // As many again as there are, until that is a part of the whole: the error is known after each pass.
+        let mut pass = done.max(replicates).min(samples - done);
+        let mut end = samples;
+        if let (Some(seconds), true) = (limits.seconds, done > first) {
+            let now = clock();
+            let affordable = USE_OF_TIME * (seconds - now) / ((now - start) / f64::from(done - first));
+            // Whole rounds of replicates, so that all weigh alike.
+            let affordable = affordable.max(0.0) as u32 / replicates * replicates;
+            if affordable == 0 {
+                reached = Reached::Time;
                 break;
             }
-            done += pass;
-            canvas.with_film(|film| watch.pass(film, done));
+            pass = pass.min(affordable);
+            end = end.min(done.saturating_add(affordable));
         }
-        if done < samples && reached != Reached::Time {
-            reached = Reached::Interrupted;
+        pass = pass.min((end / PASSES).max(WORTH_A_PASS).next_multiple_of(replicates));
+        let target = |rect| settled.samples_of(rect, done + pass, replicates);
+        canvas.advance(prepared, &target, threads, &|counters, rect, sums| {
+            watch.work(counters);
+            watch.tile(rect, sums);
+            watch.control()
+        })?;
+        if !canvas.has_reached(&target) {
+            break;
         }
-        Ok(Ended { samples: done, reached, seconds: clock(), predicted })
+        done += pass;
+        canvas.with_film(|film| watch.pass(film, done));
     }
+    if done < samples && reached != Reached::Time {
+        reached = Reached::Interrupted;
+    }
+    Ok(Ended { samples: done, reached, seconds: clock(), predicted })
 }
 
 impl Pilot<'_> {

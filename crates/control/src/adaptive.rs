@@ -9,13 +9,11 @@
 //! A part [`EVEN`] of the samples is spread evenly all the same: what an exploration has not met, such as a caustic, is still
 //! sampled, and still shows in the error.
 
-use crate::accuracy::ErrorSum;
-use crate::film::{Counters, PixelRect};
-use crate::prepare::Prepared;
 use crate::probe::{Probe, Purpose};
-use crate::render::ThreadError;
 use crate::sample_allocation::{REGION_SIDE, SampleAllocation};
 use etalon_scene::SamplerKind;
+use etalon_transport::accuracy::ErrorSum;
+use etalon_transport::{Counters, PixelRect, Prepared, ThreadError};
 use std::sync::Arc;
 
 /// The part of the samples that is spread evenly.
@@ -62,7 +60,7 @@ pub enum Adaptivity {
 pub struct Goal {
     /// Samples a pixel at most.
     pub samples: u32,
-    /// Relative error of the picture: see [`crate::accuracy`].
+    /// Relative error of the picture: see [`etalon_transport::accuracy`].
     pub relative_rmse: Option<f64>,
 }
 
@@ -339,7 +337,7 @@ mod tests {
                       "shape": {{"type": "sphere", "center_m": [0, 5, 0], "radius_m": 1}}}}],
                 "integrator": {{"light_sampling": "bsdf", "max_depth": 2, "sampler": "independent"}}}}"#
         );
-        crate::prepare(&etalon_scene::parse(&json, "lottery").unwrap_or_else(|e| panic!("{e:?}")).0).unwrap()
+        etalon_transport::prepare(&etalon_scene::parse(&json, "lottery").unwrap_or_else(|e| panic!("{e:?}")).0).unwrap()
     }
 
     /// The rule: a layer of the picture, another one, two, then all of it again, as long as the next step and what was before take no
@@ -347,7 +345,7 @@ mod tests {
     #[test]
     fn an_exploration_takes_its_part_of_the_paths() {
         let prepared = half_a_lottery(32, 16);
-        let (rect, replicates) = (prepared.whole(None).rect, u64::from(prepared.scene.integrator.replicates));
+        let (rect, replicates) = (prepared.whole(None).rect, u64::from(prepared.scene().integrator.replicates));
         let paths = |samples: u32, enough: &dyn Fn() -> bool| {
             let goal = Goal { samples, relative_rmse: None };
             explore(&prepared, rect, &goal, Some(1), enough, &|_| ()).unwrap().paths
@@ -373,7 +371,7 @@ mod tests {
         let goal = Goal { samples: 1, relative_rmse: None };
         let found = explore(&prepared, rect, &goal, None, &|| false, &|_| ()).unwrap();
         assert!(2 * rect.area() / 4 < MOST_PIXELS && 3 * rect.area() / 4 >= MOST_PIXELS);
-        assert_eq!(found.paths, 3 * rect.area() / 4 * u64::from(prepared.scene.integrator.replicates));
+        assert_eq!(found.paths, 3 * rect.area() / 4 * u64::from(prepared.scene().integrator.replicates));
     }
 
     /// In a part of the picture that begins anywhere, each region has the noise that is its own: two of three columns here.

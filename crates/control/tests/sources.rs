@@ -87,13 +87,13 @@ fn of(top: &Path) -> String {
 fn the_hash_of_this_build_is_that_of_the_sources_here() {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
     let hashed = hash(own, Path::new(env!("CARGO_TARGET_TMPDIR")), &[]).unwrap();
-    assert_eq!(hashed.sha256, etalon_transport::SOURCES_SHA256);
-    for name in ["optics", "geometry", "scene", "transport", "picture"] {
+    assert_eq!(hashed.sha256, etalon_control::SOURCES_SHA256);
+    for name in ["optics", "geometry", "scene", "transport", "control", "picture"] {
         let folder = own.join("..").join(name).canonicalize().unwrap().join("src");
         let read = hashed.read.iter().any(|path| path.canonicalize().is_ok_and(|path| path == folder));
         assert!(read, "{name} is not in {:?}", hashed.read);
     }
-    for name in ["oracle", "whitted", "cli"] {
+    for name in ["oracle", "whitted", "import", "etalon", "cli"] {
         assert!(hashed.read.iter().all(|path| !path.ends_with(format!("{name}/src"))), "{name}");
     }
 }
