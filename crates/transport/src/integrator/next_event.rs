@@ -160,7 +160,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let transmittance = world.absorption.as_ref().map(|absorption| {
             let enclosing = self.enclosing_toward(vertex, sample.wi);
             let length = sample.target.distance(vertex.point.position);
-            absorption.transmittance(enclosing, world.media, &self.stack, &self.wavelengths.lambda_nm, length)
+            let stack = self.stack_toward(vertex, sample.wi);
+            absorption.transmittance(enclosing, world.media, stack, &self.wavelengths.lambda_nm, length)
         });
         Visibility { share: 1.0, transmittance }
     }
@@ -176,7 +177,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
     ) -> Visibility<N> {
         let enclosing = self.enclosing_toward(vertex, sample.wi);
-        let (mut walk, mut stack, mut share, mut start) = (Walk::default(), self.stack, 1.0, ray.origin);
+        let mut stack = *self.stack_toward(vertex, sample.wi);
+        let (mut walk, mut share, mut start) = (Walk::default(), 1.0, ray.origin);
         let mut transmittance = Lanes::ONE;
         for _ in 0..MOST_VERTICES {
             let met = world.intersect(ray, &mut walk, &mut stack, counters);

@@ -7,6 +7,7 @@ use crate::bsdf::dielectric::{Turn, turn};
 use crate::bsdf::{BsdfSample, Lobe, lambert};
 use crate::caustics::Mixture;
 use crate::interaction::SurfaceInteraction;
+use crate::media::MediumStack;
 use crate::mis::Density;
 use crate::observer::{End, Observer};
 use crate::polarisation::Polarisation;
@@ -173,6 +174,15 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             }
         }
         Taken { wi, guiding, delta }
+    }
+
+    /// The solids on the side of a surface to which a direction leads.
+    #[inline(always)]
+    pub(super) fn stack_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> &MediumStack {
+        match vertex.crosses && vertex.goes_through(wi) {
+            true => &self.walk.beyond,
+            false => &self.stack,
+        }
     }
 
     /// The body on the side of a surface to which a direction leads.
