@@ -28,7 +28,7 @@ pub(crate) struct SurfaceInteraction<'a> {
     pub surface: Surface<'a>,
     /// The media on both sides; `None` where the material itself says.
     pub interface: Option<Interface<'a>>,
-    /// Whether a path that goes on through it crosses boundaries of solids: [`Walk::beyond`] then holds it.
+    /// Whether a path that goes on through it crosses boundaries of solids.
     pub crosses: bool,
     pub kind: BsdfKind,
     /// Whether shadow rays are sent from here.
@@ -114,15 +114,15 @@ impl<'a> SurfaceInteraction<'a> {
 }
 
 /// How far a path has come along its ray.
-pub(crate) struct Walk {
+pub(crate) struct Walk<'a> {
     passed: Passed,
     /// The surfaces of the group that was met last, those already passed among them.
     group: Vec<Member>,
-    /// The solids that hold the path if it goes on through the interface that it met last.
-    pub beyond: MediumStack,
+    /// The media behind the interface of solids that it met last.
+    beyond: MediumStack<'a>,
 }
 
-impl Default for Walk {
+impl Default for Walk<'_> {
     fn default() -> Self {
         Self { passed: Passed::default(), group: Vec::new(), beyond: MediumStack::NOTHING }
     }
@@ -135,7 +135,7 @@ struct Member {
     passed: bool,
 }
 
-impl Walk {
+impl<'a> Walk<'a> {
     /// Whether it has passed nothing on its ray.
     #[inline(always)]
     pub(crate) fn begins(&self) -> bool {
@@ -150,11 +150,23 @@ impl Walk {
         }
     }
 
-    /// Passes a surface as if it were not there; a boundary together with those that coincide with it.
-    pub(crate) fn pass(&mut self, met: &SurfaceInteraction<'_>) {
+    /// Passes a surface as if it were not there; a boundary together with those that coincide with it. `stack` is brought behind it.
+    pub(crate) fn pass(&mut self, met: &SurfaceInteraction<'_>, stack: &mut MediumStack<'a>) {
         match met.crosses {
-            true => self.pass_group(),
+            true => {
+                self.pass_group();
+                *stack = self.beyond;
+            }
             false => self.passed.pass(&met.hit, self.first_distance()),
+        }
+    }
+
+    /// The media behind what it has met last, before which there are those of `stack`.
+    #[inline(always)]
+    pub(crate) fn behind(&self, met: &SurfaceInteraction<'a>, stack: &MediumStack<'a>) -> MediumStack<'a> {
+        match met.crosses {
+            true => self.beyond,
+            false => stack.behind(met.surface.interior(), met.meets_front()),
         }
     }
 
@@ -178,8 +190,8 @@ impl<'w> World<'w> {
     pub(crate) fn intersect(
         &self,
         ray: &Ray<f64>,
-        walk: &mut Walk,
-        stack: &mut MediumStack,
+        walk: &mut Walk<'w>,
+        stack: &mut MediumStack<'w>,
         counters: &mut Counters,
     ) -> Option<SurfaceInteraction<'w>> {
         if self.meets_groups {
@@ -196,8 +208,8 @@ impl<'w> World<'w> {
         &self,
         ray: &Ray<f64>,
         mut first: Hit<f64>,
-        walk: &mut Walk,
-        stack: &mut MediumStack,
+        walk: &mut Walk<'w>,
+        stack: &mut MediumStack<'w>,
         counters: &mut Counters,
     ) -> Option<SurfaceInteraction<'w>> {
         let media = self.media;
@@ -240,7 +252,7 @@ impl<'w> World<'w> {
     }
 
     /// Finds the group of a hit.
-    fn gather(&self, ray: &Ray<f64>, walk: &mut Walk, first: Hit<f64>) {
+    fn gather(&self, ray: &Ray<f64>, walk: &mut Walk<'_>, first: Hit<f64>) {
         let Walk { passed, group, .. } = walk;
         let point = self.geometry.surface(ray, &first);
         group.clear();

@@ -23,7 +23,6 @@
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
 //! into stages can change a film.
 
-mod absorption;
 pub mod accuracy;
 mod batch;
 pub mod bsdf;

@@ -1,16 +1,20 @@
-//! Nested dielectrics: which medium a path is in where solids touch, overlap or float in each other.
+//! The media that a path is in.
 //!
-//! Solids that carry a priority are tracked along the path (Schmidt & Budge, *Simple Nested Dielectrics in Ray Traced
+//! Which medium a stretch of a path runs through is known in two ways:
+//!
+//! **Solids with priorities** are tracked along the path (Schmidt & Budge, *Simple Nested Dielectrics in Ray Traced
 //! Images*, JGT 7(2), 2002). Where several of them overlap, the one of the highest priority fills the place; of equal
 //! priorities, the object that comes later in the scene. Both depend on the place alone, so a path and its reverse see the
 //! same media. A boundary that does not change the medium is no surface at all: paths and shadow rays go through it, and it
-//! is no vertex.
-//!
-//! Boundaries of solids may coincide, as where glass holds water. They are met together
+//! is no vertex. Boundaries of solids may coincide, as where glass holds water. They are met together
 //! ([`interaction`](crate::interaction)), as one interface between the medium before all of them and the medium behind.
+//!
+//! **A dielectric that states both its sides** says it itself: a path that meets it from within has come through its interior, and one
+//! that goes through it goes on in there, or leaves it. What such a body holds is surrounded by its interior as long as it is not itself
+//! such a body.
 
 use crate::spectral::PathSpectrum;
-use etalon_optics::RefractiveIndex;
+use etalon_optics::{Lanes, RefractiveIndex, exp_neg};
 use etalon_scene::{Mesh, Shape};
 use std::collections::HashMap;
 
@@ -31,21 +35,47 @@ pub(crate) struct Solid {
 /// A solid where it is placed: its object's number, and the instance (0 if it is in none).
 pub(crate) type PlacedSolid = (u32, u32);
 
-/// The solids that hold a point.
+/// The media that hold a point of a path.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MediumStack {
+pub(crate) struct MediumStack<'a> {
+    /// The solids with priorities, in no order.
     places: [PlacedSolid; DEPTH],
     len: usize,
+    /// The absorption coefficient of the body around it that states both its sides, m⁻¹, if it absorbs.
+    body_absorption: Option<&'a PathSpectrum>,
 }
 
-impl MediumStack {
-    pub(crate) const NOTHING: Self = Self { places: [(0, 0); DEPTH], len: 0 };
+impl<'a> MediumStack<'a> {
+    pub(crate) const NOTHING: Self = Self { places: [(0, 0); DEPTH], len: 0, body_absorption: None };
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = PlacedSolid> + '_ {
+    /// Corrects it before a dielectric that states both its sides. Met from within, it is known to be its interior.
+    #[inline(always)]
+    pub(crate) fn meet(&mut self, interior: Option<&'a Interior>, from_front: bool) {
+        if let Some(interior) = interior.filter(|_| !from_front) {
+            self.body_absorption = interior.absorption.as_ref();
+        }
+    }
+
+    /// The media behind such a dielectric.
+    #[inline(always)]
+    pub(crate) fn behind(&self, interior: Option<&'a Interior>, from_front: bool) -> Self {
+        let mut behind = *self;
+        if let Some(interior) = interior {
+            behind.body_absorption = interior.absorption.as_ref().filter(|_| from_front);
+        }
+        behind
+    }
+
+    fn iter(&self) -> impl Iterator<Item = PlacedSolid> + '_ {
         self.places[..self.len].iter().copied()
     }
 
-    /// What holds a path behind boundaries that coincide: each with its solid, and whether that is entered. Counts in `lost` what
+    /// Whether a solid holds it.
+    pub(crate) fn holds(&self, place: PlacedSolid) -> bool {
+        self.iter().any(|other| other == place)
+    }
+
+    /// The media behind boundaries of solids that coincide: each with its solid, and whether that is entered. Counts in `lost` what
     /// contradicts itself.
     pub(crate) fn crossed(&self, crossings: impl Iterator<Item = (PlacedSolid, bool)>, lost: &mut u64) -> Self {
         let mut crossed: Vec<(PlacedSolid, bool)> = Vec::new();
@@ -112,7 +142,7 @@ impl Media {
     }
 
     /// The solid whose medium fills a point.
-    fn filling(&self, stack: &MediumStack) -> Option<PlacedSolid> {
+    fn filling(&self, stack: &MediumStack<'_>) -> Option<PlacedSolid> {
         stack.iter().max_by_key(|&place| self.rank(place))
     }
 
@@ -122,12 +152,12 @@ impl Media {
     }
 
     /// The medium that fills a place.
-    pub(crate) fn medium(&self, stack: &MediumStack) -> &RefractiveIndex {
+    pub(crate) fn medium(&self, stack: &MediumStack<'_>) -> &RefractiveIndex {
         self.filling(stack).and_then(|place| self.solid(place.0)).map_or(&VACUUM, |solid| &solid.index)
     }
 
-    /// The absorption coefficient of the medium that fills a place, m⁻¹, if it absorbs.
-    pub(crate) fn absorption(&self, stack: &MediumStack) -> Option<&PathSpectrum> {
+    /// The absorption coefficient of the solid that fills a place, m⁻¹, if it absorbs.
+    fn absorption(&self, stack: &MediumStack<'_>) -> Option<&PathSpectrum> {
         self.filling(stack).and_then(|place| self.solid(place.0))?.absorption.as_ref()
     }
 
@@ -139,15 +169,46 @@ impl Media {
     /// The object whose material decides what an interface does, between what holds the path before it and behind it: of the
     /// solids whose medium lies on either side, and that begin or end here, the one of the highest priority. `None` if the
     /// medium does not change: there is no interface.
-    pub(crate) fn deciding(&self, before: &MediumStack, behind: &MediumStack) -> Option<Option<u32>> {
+    pub(crate) fn deciding(&self, before: &MediumStack<'_>, behind: &MediumStack<'_>) -> Option<Option<u32>> {
         let (near, far) = (self.filling(before), self.filling(behind));
         if near == far {
             return None;
         }
-        let left = near.filter(|&place| !behind.iter().any(|other| other == place));
-        let entered = far.filter(|&place| !before.iter().any(|other| other == place));
+        let left = near.filter(|&place| !behind.holds(place));
+        let entered = far.filter(|&place| !before.holds(place));
         let deciding = left.into_iter().chain(entered).max_by_key(|&place| self.rank(place));
         Some(deciding.map(|(object, _)| object))
+    }
+}
+
+/// Absorption along paths: light that goes d metres through a medium is multiplied by e^(−σd), σ the absorption coefficient in m⁻¹ at its
+/// wavelength (Bouguer 1729, Lambert 1760, Beer 1852).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Absorption {
+    /// Metres in a unit of the frame.
+    pub unit_m: f64,
+}
+
+impl Absorption {
+    /// The share of light that comes through a stretch of this `length`, in units of the frame, in each lane.
+    #[inline]
+    pub(crate) fn transmittance<const N: usize>(
+        &self,
+        media: Option<&Media>,
+        stack: &MediumStack<'_>,
+        lambda_nm: &Lanes<f64, N>,
+        length: f64,
+    ) -> Lanes<f64, N> {
+        let Some(coefficient) = stack.body_absorption.or_else(|| media.and_then(|media| media.absorption(stack)))
+        else {
+            return Lanes::ONE;
+        };
+        let length_m = length * self.unit_m;
+        Lanes::from_fn(|lane| {
+            let per_m = coefficient.eval(lambda_nm[lane]);
+            // Nothing is lost on an endless way through what is clear.
+            if per_m > 0.0 { exp_neg(per_m * length_m) } else { 1.0 }
+        })
     }
 }
 

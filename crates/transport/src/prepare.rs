@@ -1,6 +1,5 @@
 //! From a scene to what the kernels trace. After this nothing fails.
 
-use crate::absorption::Absorption;
 use crate::bsdf::{Bsdf, properties};
 use crate::camera::{Camera, Moving};
 use crate::caustics::GuidedTargets;
@@ -9,7 +8,7 @@ use crate::frame::{Affine, SceneFrame};
 use crate::light::{
     DirectionalLight, Environment, EnvironmentLight, EnvironmentRadiance, Light, LightTable, PointLight, SpotLight,
 };
-use crate::media::{Interior, Media, Solid, open_edges};
+use crate::media::{Absorption, Interior, Media, Solid, open_edges};
 use crate::motion::motion;
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
 use crate::prepare_error::PrepareError;

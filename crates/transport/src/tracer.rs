@@ -145,7 +145,7 @@ impl<'a> Tracer<'a> {
     ) -> Option<FirstSurface<'_>> {
         let sampler = self.sampler(x, y, sample);
         let ray = self.camera_ray(x, y, &sampler, counters);
-        let mut stack = self.world.solids_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
+        let mut stack = self.world.media_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
         let mut walk = Walk::default();
         let [.., mut u_mask] = sampler.vertex_set(0, 1);
         for _ in 0..MOST_VERTICES {
@@ -154,10 +154,7 @@ impl<'a> Tracer<'a> {
             let opacity = if self.world.masks { surface.opacity(&self.prepared.geometry, point, hit) } else { 1.0 };
             if u_mask >= opacity {
                 u_mask = (u_mask - opacity) / (1.0 - opacity);
-                walk.pass(&met);
-                if met.crosses {
-                    stack = walk.beyond;
-                }
+                walk.pass(&met, &mut stack);
                 continue;
             }
             let [u_lobe, u1, u2, _] = sampler.vertex_set(0, 0);
@@ -199,13 +196,13 @@ impl<'a> Tracer<'a> {
         sample: u32,
         sampler: &Sampler,
         counters: &mut Counters,
-    ) -> Start<P, N> {
+    ) -> Start<'a, P, N> {
         let wavelengths = M::wavelengths(self.prepared, || {
             let [wavelength, ..] = self.of_block(x, y, sample).set(1);
             wavelength
         });
         let ray = self.camera_ray(x, y, sampler, counters);
-        let stack = self.world.solids_around(&ray, counters);
+        let stack = self.world.media_around(&ray, counters);
         let polarisation = P::at_camera(ray.direction, self.camera.right(ray.time));
         Start { ray, stack, wavelengths, polarisation }
     }

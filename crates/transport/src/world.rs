@@ -1,9 +1,8 @@
 //! The scene as paths see it.
 
-use crate::absorption::Absorption;
 use crate::caustics::GuidedTargets;
 use crate::light::{Environment, LightTable};
-use crate::media::Media;
+use crate::media::{Absorption, Media};
 use crate::shading_tables::ShadingTables;
 use crate::surface::Surfaces;
 use etalon_geometry::Geometry;
@@ -38,6 +37,14 @@ pub(crate) struct World<'a> {
     pub plain_skies: bool,
     /// What diffuse surfaces draw directions toward.
     pub guided_targets: &'a GuidedTargets,
+}
+
+impl World<'_> {
+    /// Whether it matters which media hold a path.
+    #[inline(always)]
+    pub(crate) fn follows_media(&self) -> bool {
+        self.media.is_some() || self.absorption.is_some()
+    }
 }
 
 /// From which surfaces shadow rays are sent.

@@ -143,7 +143,7 @@ impl<'a, const N: usize> Starts<'a, N> {
             paths.reuse_path[lane] = ReusePath::NOTHING;
         }
         let ray = paths.ray(lane);
-        let stack = world.solids_around(&ray, counters);
+        let stack = world.media_around(&ray, counters);
         let polarisation = P::at_camera(ray.direction, self.tracer.camera.right(ray.time));
         let wavelengths = self.wavelengths[start];
         paths.paths[lane].begin(world, &Start { ray, stack, wavelengths, polarisation });

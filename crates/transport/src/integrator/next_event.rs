@@ -1,12 +1,11 @@
 //! Next-event estimation: ∫ f Le |cos θ| dω over the lights, estimated by one direction toward one of them.
 
 use super::{MOST_VERTICES, Path};
-use crate::absorption::{Absorption, EnclosingMedium};
 use crate::bsdf::{Lobe, lambert};
 use crate::film::Counters;
 use crate::interaction::{SurfaceInteraction, Walk};
 use crate::light::{LightSample, Target};
-use crate::media::MediumStack;
+use crate::media::{Absorption, MediumStack};
 use crate::mis::{Density, power_heuristic};
 use crate::observer::{Found, Observer};
 use crate::polarisation::Polarisation;
@@ -158,10 +157,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         sample: &LightSample,
     ) -> Visibility<N> {
         let transmittance = world.absorption.as_ref().map(|absorption| {
-            let enclosing = self.enclosing_toward(vertex, sample.wi);
             let length = sample.target.distance(vertex.point.position);
-            let stack = self.stack_toward(vertex, sample.wi);
-            absorption.transmittance(enclosing, world.media, stack, &self.wavelengths.lambda_nm, length)
+            let stack = self.media_toward(vertex, sample.wi);
+            absorption.transmittance(world.media, &stack, &self.wavelengths.lambda_nm, length)
         });
         Visibility { share: 1.0, transmittance }
     }
@@ -176,8 +174,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         arrives: f64,
         counters: &mut Counters,
     ) -> Visibility<N> {
-        let enclosing = self.enclosing_toward(vertex, sample.wi);
-        let mut stack = *self.stack_toward(vertex, sample.wi);
+        let mut stack = self.media_toward(vertex, sample.wi);
         let (mut walk, mut share, mut start) = (Walk::default(), 1.0, ray.origin);
         let mut transmittance = Lanes::ONE;
         for _ in 0..MOST_VERTICES {
@@ -186,7 +183,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 Some(met) => (met.point.position - start).length(),
                 None => sample.target.distance(start),
             };
-            transmittance *= self.transmittance(world, enclosing, &stack, length);
+            transmittance *= self.transmittance(world, &stack, length);
             let Some(met) = met else { return Visibility { share, transmittance: Some(transmittance) } };
             let opacity = met.surface.opacity(world.geometry, &met.point, &met.hit);
             if met.point.surface == ray.aims_at || met.hit.t >= arrives && opacity == 1.0 {
@@ -197,25 +194,15 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 return Visibility { share, transmittance: None };
             }
             start = met.point.position;
-            walk.pass(&met);
-            if met.crosses {
-                stack = walk.beyond;
-            }
+            walk.pass(&met, &mut stack);
         }
         counters.record_cut(f64::MAX);
         Visibility { share: 0.0, transmittance: None }
     }
 
-    fn transmittance(
-        &self,
-        world: &World<'a>,
-        enclosing: EnclosingMedium<'a>,
-        stack: &MediumStack,
-        length: f64,
-    ) -> Lanes<f64, N> {
+    fn transmittance(&self, world: &World<'a>, stack: &MediumStack<'a>, length: f64) -> Lanes<f64, N> {
         let lambda_nm = &self.wavelengths.lambda_nm;
-        let through =
-            |absorption: &Absorption| absorption.transmittance(enclosing, world.media, stack, lambda_nm, length);
+        let through = |absorption: &Absorption| absorption.transmittance(world.media, stack, lambda_nm, length);
         world.absorption.as_ref().map_or(Lanes::ONE, through)
     }
 

@@ -1,7 +1,6 @@
 //! The state of a path between two of its steps, and the steps.
 
 use super::MOST_VERTICES;
-use crate::absorption::EnclosingMedium;
 use crate::film::Counters;
 use crate::film_entry::Received;
 use crate::interaction::{SurfaceInteraction, Walk};
@@ -36,12 +35,10 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
     pub(super) guiding: f64,
     /// The last step of the walk, as far as MIS needs it.
     pub(super) step: Step,
-    /// The solids that hold it.
-    pub stack: MediumStack,
-    /// The body that it is in, where no priority says it.
-    pub(super) enclosing: EnclosingMedium<'a>,
+    /// The media that it is in, where they are followed.
+    pub stack: MediumStack<'a>,
     /// How far it has come along its ray.
-    pub walk: Walk,
+    pub walk: Walk<'a>,
     /// Surfaces passed as if they were not there, which are no vertices of the path, and where the last one was on this ray.
     passes: u32,
     passed_at: Option<Vec3<f64>>,
@@ -51,10 +48,10 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
 }
 
 /// Where a path begins.
-pub(crate) struct Start<P, const N: usize> {
+pub(crate) struct Start<'a, P, const N: usize> {
     pub ray: Ray<f64>,
-    /// The solids that hold the camera, where they are followed.
-    pub stack: Option<MediumStack>,
+    /// The media that hold the camera, where they are followed.
+    pub stack: Option<MediumStack<'a>>,
     pub wavelengths: Wavelengths<N>,
     pub polarisation: P,
 }
@@ -96,7 +93,6 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             guiding: 1.0,
             step: Step::Unshared,
             stack: MediumStack::NOTHING,
-            enclosing: EnclosingMedium::default(),
             walk: Walk::default(),
             passes: 0,
             passed_at: None,
@@ -107,7 +103,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     /// Begins a path here.
     #[inline(always)]
-    pub(crate) fn begin(&mut self, world: &World<'a>, start: &Start<P, N>) {
+    pub(crate) fn begin(&mut self, world: &World<'a>, start: &Start<'a, P, N>) {
         self.wavelengths = start.wavelengths;
         self.radiance = Lanes::ZERO;
         self.beta = Lanes::ONE;
@@ -119,9 +115,6 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.step = Step::Unshared;
         if let Some(stack) = start.stack {
             self.stack = stack;
-        }
-        if world.absorption.is_some() {
-            self.enclosing = EnclosingMedium::around(world.geometry, world.surfaces, &start.ray);
         }
         self.passes = 0;
         self.leave_ray(world);
@@ -173,11 +166,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let Some(absorption) = &world.absorption else { return };
         let mut length = f64::INFINITY;
         if let Some(vertex) = met {
-            self.enclosing = self.enclosing.before(&vertex.surface, vertex.meets_front());
+            self.stack.meet(vertex.surface.interior(), vertex.meets_front());
             length = (vertex.point.position - self.passed_at.unwrap_or(ray.origin)).length();
         }
         let lambda_nm = &self.wavelengths.lambda_nm;
-        self.beta *= absorption.transmittance(self.enclosing, world.media, &self.stack, lambda_nm, length);
+        self.beta *= absorption.transmittance(world.media, &self.stack, lambda_nm, length);
     }
 
     /// Adds the light from infinity.
@@ -242,10 +235,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.u_mask = Some((u - opacity) / (1.0 - opacity));
         self.passes += 1;
         self.passed_at = Some(vertex.point.position);
-        self.walk.pass(vertex);
-        if vertex.crosses {
-            self.stack = self.walk.beyond;
-        }
+        self.walk.pass(vertex, &mut self.stack);
         true
     }
 

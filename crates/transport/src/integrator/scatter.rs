@@ -2,7 +2,6 @@
 
 use super::path::Step;
 use super::{Path, ROULETTE_FROM_VERTEX, ROULETTE_THROUGHPUT, THROUGHPUT_FLOOR};
-use crate::absorption::EnclosingMedium;
 use crate::bsdf::dielectric::{Turn, turn};
 use crate::bsdf::{BsdfSample, Lobe, lambert};
 use crate::caustics::Mixture;
@@ -150,7 +149,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         guiding: f64,
         u_lobe: f64,
     ) -> Taken {
-        let SurfaceInteraction { point, wo, surface, .. } = vertex;
+        let SurfaceInteraction { point, wo, .. } = vertex;
         let wi = sample.wi;
         let delta = matches!(sample.density, Density::Delta);
         self.beta *= sample.weight;
@@ -167,30 +166,18 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             }
         }
         self.leave_ray(world);
-        if (world.absorption.is_some() || world.media.is_some()) && vertex.goes_through(wi) {
-            self.enclosing = self.enclosing.beyond(surface, vertex.meets_front());
-            if vertex.crosses {
-                self.stack = self.walk.beyond;
-            }
+        if world.follows_media() && vertex.goes_through(wi) {
+            self.stack = self.walk.behind(vertex, &self.stack);
         }
         Taken { wi, guiding, delta }
     }
 
-    /// The solids on the side of a surface to which a direction leads.
+    /// The media on the side of a surface to which a direction leads.
     #[inline(always)]
-    pub(super) fn stack_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> &MediumStack {
-        match vertex.crosses && vertex.goes_through(wi) {
-            true => &self.walk.beyond,
-            false => &self.stack,
-        }
-    }
-
-    /// The body on the side of a surface to which a direction leads.
-    #[inline(always)]
-    pub(super) fn enclosing_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> EnclosingMedium<'a> {
+    pub(super) fn media_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> MediumStack<'a> {
         match vertex.goes_through(wi) {
-            true => self.enclosing.beyond(&vertex.surface, vertex.meets_front()),
-            false => self.enclosing,
+            true => self.walk.behind(vertex, &self.stack),
+            false => self.stack,
         }
     }
 
