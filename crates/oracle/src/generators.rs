@@ -1,8 +1,11 @@
 //! Scenes and rays that careless intersection code loses, as plain numbers: for anyone's shapes and tree.
 
+mod mesh;
+
+pub use mesh::{Aim, ClosedMesh};
+
 use crate::{
     Uniform,
-    laws::ClosedMesh,
     vector::{add, frame, normalize, representable, scale, sub},
 };
 
@@ -193,10 +196,6 @@ pub fn scenes(epsilon: f64, seed: u64) -> Vec<Scene> {
     let mut numbers = Uniform::new(seed);
     let scene = |name: &str, shapes| Scene::new(name, shapes, epsilon);
     let soup = scene("soup of all shapes, sizes 1e-6 to 1", soup(&mut numbers, 120, 1e-6, 1.0));
-    let mesh = |mesh: &ClosedMesh, size: f64| {
-        let corner = |i: u32| scale(size, mesh.vertices[i as usize]);
-        mesh.triangles.iter().map(|t| Shape::Triangle { corners_m: t.map(corner) }).collect()
-    };
     vec![
         soup.placed(1e-6, [0.0; 3]),
         soup.placed(1e3, [2e6, -1e6, 3e6]),
@@ -204,8 +203,8 @@ pub fn scenes(epsilon: f64, seed: u64) -> Vec<Scene> {
         scene("small soup", self::soup(&mut numbers, 120, 1e-3, 0.1)),
         scene("rectangles in shared planes", blocks(&mut numbers, 150)),
         scene("triangles that converge to a corner", converging(60)),
-        scene("ball of triangles", mesh(&ClosedMesh::sphere(9, 12), 0.9)),
-        scene("needles of 1000 : 1", mesh(&ClosedMesh::needles(60, 1e3), 1e-3)),
+        scene("ball of triangles", ClosedMesh::sphere(9, 12).shapes(0.9)),
+        scene("needles of 1000 : 1", ClosedMesh::needles(60, 1e3).shapes(1e-3)),
         scene(
             "one triangle, a hundred times",
             vec![Shape::Triangle { corners_m: [[-0.5, -0.5, 0.0], [0.5, -0.5, 0.1], [0.0, 0.6, 0.0]] }; 100],

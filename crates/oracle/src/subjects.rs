@@ -1,6 +1,6 @@
 //! What a renderer can hand to the oracle: traits over plain numbers.
 
-use crate::{generators::Shape, quadrature::Cone, statistics::Estimate, truths::Truth};
+use crate::{generators::Shape, quadrature::Cone, statistics::Estimate};
 
 /// How likely a sampled direction was.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,13 +174,4 @@ pub struct Reading {
     /// Largest absolute bias that paths may have caused which the renderer cut for no reason of the scene's; 0 if there were none.
     /// [`Truth::bias_of_cut_paths`](crate::truths::Truth::bias_of_cut_paths) bounds it. What cannot be bounded is infinite.
     pub cut_bias: f64,
-}
-
-/// A whole renderer.
-pub trait Renders {
-    /// Renders the truth's scene and reads its quantity off the picture.
-    ///
-    /// # Errors
-    /// Why it could not, as a sentence: a refused scene, an unsupported feature.
-    fn render(&mut self, truth: &Truth) -> Result<Reading, String>;
 }

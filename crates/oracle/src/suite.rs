@@ -1,8 +1,9 @@
 //! Whole suites for a subject, and the macros that turn them into tests.
 
 use crate::{
-    Verdict, generators,
-    laws::{self, Aim, ClosedMesh},
+    Verdict,
+    generators::{self, Aim, ClosedMesh},
+    laws,
     statistics::Budget,
     subjects::{Builds, Emits, Scatters},
 };
@@ -61,11 +62,11 @@ pub fn closed_meshes(epsilon: f64) -> impl Iterator<Item = ClosedMesh> {
 
 /// Signed zeros and powers of two, on a cube and a ball of triangles.
 fn zeros_and_scales(subject: &dyn Builds, seed: u64) -> Verdict {
-    let cube = subject.build(&laws::triangles(&ClosedMesh::cube(), 1.0));
+    let cube = subject.build(&ClosedMesh::cube().shapes(1.0));
     let zeros = laws::signed_zeros_are_equal(cube.as_ref(), &[[0.0; 3], [0.5, -0.25, 0.125]], 5.0);
     let ball = ClosedMesh::sphere(16, 16);
     let aims: Vec<Aim> = ball.aims(300, subject.epsilon(), seed).collect();
-    let build = |factor: f64| subject.build(&laws::triangles(&ball, factor));
+    let build = |factor: f64| subject.build(&ball.shapes(factor));
     let scales = laws::powers_of_two_are_exact(build, &aims, &[-30, -20, -3, 7, 20, 30]);
     Verdict::worst_of("signed zeros are equal, and powers of two exact", [zeros, scales])
 }

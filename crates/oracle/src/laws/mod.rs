@@ -22,9 +22,7 @@ pub use fresnel::{
     FresnelPowers, fresnel_conserves_energy, fresnel_exact, fresnel_is_accurate, fresnel_obeys_brewster,
     fresnel_obeys_stokes, fresnel_reflects_totally, stokes_amplitudes,
 };
-pub use intersection::{
-    Aim, ClosedMesh, closed_mesh_is_tight, far_sphere_is_hit, powers_of_two_are_exact, signed_zeros_are_equal,
-};
+pub use intersection::{closed_mesh_is_tight, far_sphere_is_hit, powers_of_two_are_exact, signed_zeros_are_equal};
 pub use light::{
     light_closed_forms, light_fills_its_solid_angle, light_gives_irradiance, light_is_uniform_in_solid_angle,
     light_laws, light_pdf_integrates_to_one, light_sample_is_consistent, light_samples_follow_pdf,
@@ -38,9 +36,7 @@ pub use polarisation::{
 pub use refraction::{Crossing, mirror_reflection, snell, snell_sweep, total_internal_reflection};
 pub use sampling::{energy_is_not_created, furnace_agrees, pdf_integrates_to_one, samples_follow_pdf};
 pub use scattering::{etendue_is_conserved, f_and_pdf_are_proper, is_isotropic, is_reciprocal, sample_is_consistent};
-pub use trees::{
-    built_mesh_is_tight, near_surfaces_are_hit, needles_are_hit_where_they_are, neighbours_change_no_hit, triangles,
-};
+pub use trees::{built_mesh_is_tight, near_surfaces_are_hit, needles_are_hit_where_they_are, neighbours_change_no_hit};
 
 /// Machine epsilon of an f32 subject, as an `f64`.
 pub const SINGLE: f64 = f32::EPSILON as f64;

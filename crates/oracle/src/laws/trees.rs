@@ -1,9 +1,9 @@
 //! Laws of what is built from many shapes: a tree may save work, never hits.
 
-use super::{ClosedMesh, closed_mesh_is_tight};
+use super::closed_mesh_is_tight;
 use crate::{
     Uniform, Verdict,
-    generators::{Scene, Shape},
+    generators::{ClosedMesh, Scene, Shape},
     subjects::{Builds, Intersects},
     vector::{cross, length, representable, representable_scalar, sub},
 };
@@ -53,14 +53,7 @@ pub fn neighbours_change_no_hit(subject: &dyn Builds, scene: &Scene, rays: usize
 
 /// [`closed_mesh_is_tight`] for what the subject builds of a mesh's triangles.
 pub fn built_mesh_is_tight(subject: &dyn Builds, mesh: &ClosedMesh, rays: usize, seed: u64) -> Verdict {
-    closed_mesh_is_tight(mesh, subject.build(&triangles(mesh, 1.0)).as_ref(), rays, subject.epsilon(), seed)
-}
-
-/// The triangles of a mesh that is scaled.
-#[must_use]
-pub fn triangles(mesh: &ClosedMesh, factor: f64) -> Vec<Shape> {
-    let corner = |i: u32| mesh.vertices[i as usize].map(|x| x * factor);
-    mesh.triangles.iter().map(|t| Shape::Triangle { corners_m: t.map(corner) }).collect()
+    closed_mesh_is_tight(mesh, subject.build(&mesh.shapes(1.0)).as_ref(), rays, subject.epsilon(), seed)
 }
 
 /// Needles from 1 : 1 to 1 : 1e-4/ε in the plane z = 0, seen from all sides, are hit at t = 1 exactly, with the normal ±z.

@@ -1,7 +1,16 @@
-//! Holding a reading to a truth.
+//! Renderers, and holding what they read to a truth.
 
 use super::Truth;
 use crate::{Verdict, statistics::z_verdict, subjects::Reading};
+
+/// A whole renderer.
+pub trait Renders {
+    /// Renders the truth's scene and reads its quantity off the picture.
+    ///
+    /// # Errors
+    /// Why it could not, as a sentence: a refused scene, an unsupported feature.
+    fn render(&mut self, truth: &Truth) -> Result<Reading, String>;
+}
 
 /// The part of a reading's resolvable bias that paths which were cut may make up at most.
 pub const CUT_SHARE: f64 = 0.1;

@@ -39,7 +39,7 @@ pub use irradiance::{
     walsh_reflectance,
 };
 
-pub use judge::{CUT_SHARE, judge};
+pub use judge::{CUT_SHARE, Renders, judge};
 pub use prisms::photometric_weight;
 
 /// What a renderer must be able to do, or claims to do, for a truth to apply to it.

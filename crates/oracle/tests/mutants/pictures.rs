@@ -3,8 +3,8 @@
 use etalon_oracle::{
     Verdict,
     statistics::{Budget, z_verdict},
-    subjects::{Reading, Renders},
-    truths::{Claim, Truth, judge, truths},
+    subjects::Reading,
+    truths::{Claim, Renders, Truth, judge, truths},
 };
 
 use crate::renderer::Tracer;

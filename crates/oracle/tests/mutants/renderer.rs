@@ -10,8 +10,8 @@ use crate::{
 use etalon_oracle::{
     Uniform,
     statistics::{Estimate, Welford},
-    subjects::{Reading, Renders},
-    truths::{Claim, Truth, photometric_weight},
+    subjects::Reading,
+    truths::{Claim, Renders, Truth, photometric_weight},
 };
 
 struct Hit {

@@ -3,7 +3,8 @@
 use etalon_oracle::{
     Verdict,
     double_double::DoubleDouble,
-    laws::{self, Aim, ClosedMesh},
+    generators::{Aim, ClosedMesh},
+    laws,
     subjects::{Hit, Intersects},
 };
 

@@ -4,9 +4,8 @@ use crate::surface::{Leaky, meet_triangle};
 use crate::vector::Vec3;
 use etalon_oracle::{
     Verdict,
-    generators::{Scene, Shape, scenes},
-    intersects_suite,
-    laws::{self, ClosedMesh},
+    generators::{ClosedMesh, Scene, Shape, scenes},
+    intersects_suite, laws,
     subjects::{Builds, Hit, Intersects},
 };
 
