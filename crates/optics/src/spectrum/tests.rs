@@ -1,7 +1,5 @@
 use super::*;
-use crate::colour::{
-    CIE_RANGE_NM, inverse, luminance_of, multiply, rec709_from_xyz, rgb_to_xyz_matrix, xyz_of, xyz_of_reflectance,
-};
+use crate::colour::{CIE_RANGE_NM, inverse, luminance_of, multiply, rec709_from_xyz, rgb_to_xyz_matrix, xyz_of};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -132,7 +130,7 @@ fn greys_white_and_black_are_exactly_constant() {
 /// The colour of a reflectance under a light, relative to the perfect reflector under D65 and that reflector's white.
 fn rgb_under(reflectance: &RgbReflectance, light: Illuminant) -> [f64; 3] {
     let white = xyz_of(|nm| Illuminant::D65.eval(nm));
-    multiply(&inverse(&rgb_to_xyz_matrix(white)), xyz_of_reflectance(|nm| reflectance.eval(nm), light))
+    multiply(&inverse(&rgb_to_xyz_matrix(white)), light.xyz_of_reflectance(|nm| reflectance.eval(nm)))
 }
 
 fn largest_difference(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -4,7 +4,7 @@
 
 use super::study::{StudyError, fix_indices, index_at_middle, lights_mut};
 use super::{EffectName, evidence, grey};
-use etalon_optics::colour::{rec709_from_xyz, xyz_of_reflectance};
+use etalon_optics::colour::rec709_from_xyz;
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{Illuminant, Spectrum};
 use etalon_scene::{MaterialKind, Metal, ParameterMut, Scene, SpectrumTexture};
@@ -40,7 +40,7 @@ pub(super) fn replace(scene: &mut Scene) {
 }
 
 fn colour(kind: &mut MaterialKind, range_nm: [f64; 2]) {
-    let shown = |spectrum: &Spectrum| channels(xyz_of_reflectance(|nm| spectrum.eval(nm), Illuminant::D65), 1.0);
+    let shown = |spectrum: &Spectrum| channels(Illuminant::D65.xyz_of_reflectance(|nm| spectrum.eval(nm)), 1.0);
     for parameter in kind.parameters_mut() {
         match parameter {
             // Images are refused.
