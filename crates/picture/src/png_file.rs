@@ -7,18 +7,7 @@ use image::codecs::png::PngDecoder;
 use image::{DynamicImage, ImageDecoder, ImageError};
 
 use crate::exr_size::{MAX_PNG_METADATA_BYTES, most_image_bytes};
-use crate::{Picture, PictureError, decode_srgb, write_atomically};
-
-/// A picture of 8-bit RGB pixels.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Rgb8 {
-    /// Width, pixels.
-    pub width: usize,
-    /// Height, pixels.
-    pub height: usize,
-    /// Red, green and blue of each pixel in turn, row after row from the top: 3 · width · height bytes.
-    pub pixels: Vec<u8>,
-}
+use crate::{Picture, PictureError, Rgb8, decode_srgb, write_atomically};
 
 /// Writes an 8-bit PNG that says it is sRGB, atomically (see [`write_atomically`]), with a text chunk for each keyword
 /// and text. The same picture and texts give the same bytes.

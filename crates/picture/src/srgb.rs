@@ -1,6 +1,17 @@
 //! Linear light to what a screen shows.
 
-use crate::{Picture, PictureError, Rgb8, Sample};
+use crate::{Picture, PictureError, Sample};
+
+/// A picture of 8-bit RGB pixels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rgb8 {
+    /// Width, pixels.
+    pub width: usize,
+    /// Height, pixels.
+    pub height: usize,
+    /// Red, green and blue of each pixel in turn, row after row from the top: 3 · width · height bytes.
+    pub pixels: Vec<u8>,
+}
 
 /// Encodes a linear value for an sRGB display (IEC 61966-2-1:1999): 12.92·x up to 0.0031308, 1.055·x^(1/2.4) − 0.055
 /// above. Nothing is clamped: values below 0 keep the linear branch, values above 1 the power.
