@@ -1,10 +1,11 @@
-//! Values on the command line that clap does not know.
+//! Values on the command line.
 
 use std::str::FromStr;
 
-use etalon_control::Shard;
+use etalon_control::{Adaptivity, Shard};
 use etalon_picture::develop::Rect;
 use etalon_transport::PixelRect;
+use serde::{Deserialize, Serialize};
 
 /// Largest side of a picture, pixels.
 const LARGEST_SIDE: u32 = 65_536;
@@ -180,6 +181,44 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
 fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
     let numbers: Result<Vec<u32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
     numbers.ok()?.try_into().ok()
+}
+
+/// When samples are spread by an exploration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Adaptive {
+    /// With --error, where the exploration foretells that the error is reached sooner.
+    Auto,
+    /// In any case.
+    Always,
+    /// Every pixel takes the same number of samples.
+    Never,
+}
+
+impl Adaptive {
+    /// What it comes to where a relative error is asked for, or none: "auto" without one is "never".
+    pub(crate) fn effective(self, error: Option<f64>) -> Self {
+        if self == Self::Auto && error.is_none() { Self::Never } else { self }
+    }
+
+    /// The word of the command line.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Always => "always",
+            Self::Never => "never",
+        }
+    }
+}
+
+impl From<Adaptive> for Adaptivity {
+    fn from(adaptive: Adaptive) -> Self {
+        match adaptive {
+            Adaptive::Auto => Self::Auto,
+            Adaptive::Always => Self::Always,
+            Adaptive::Never => Self::Never,
+        }
+    }
 }
 
 #[cfg(test)]

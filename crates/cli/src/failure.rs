@@ -3,7 +3,6 @@
 use std::process::ExitCode;
 
 use miette::Report;
-use serde::Serialize;
 
 /// What every command returns.
 pub(crate) type Outcome = Result<(), Failure>;
@@ -25,35 +24,6 @@ pub(crate) enum Blame {
 #[derive(Default)]
 pub(crate) struct Failure {
     problems: Vec<(Blame, Report)>,
-}
-
-/// One problem, for machines.
-#[derive(Serialize)]
-pub(crate) struct ProblemJson {
-    /// The problem and its causes in one line.
-    message: String,
-    /// A stable name for its kind.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    code: Option<String>,
-    /// What to do about it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    hint: Option<String>,
-    /// Where in a file, if it is in a file.
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    place: Option<Place>,
-}
-
-/// A place in a JSON file.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct Place {
-    /// The file.
-    pub file: String,
-    /// Line, from 1.
-    pub line: usize,
-    /// Column, from 1, in characters.
-    pub column: usize,
-    /// The value in question: `$.objects[3].shape.radius_m`.
-    pub json_path: String,
 }
 
 impl Failure {
@@ -92,14 +62,14 @@ impl Failure {
         if self.problems.is_empty() { Ok(()) } else { Err(self) }
     }
 
-    /// The problems, for machines.
-    pub(crate) fn to_json(&self) -> Vec<ProblemJson> {
-        self.problems.iter().map(|(_, report)| problem_json(report)).collect()
+    /// The problems.
+    pub(crate) fn reports(&self) -> impl Iterator<Item = &Report> {
+        self.problems.iter().map(|(_, report)| report)
     }
 
     /// Prints the problems on standard error and gives the exit status: 2 if any of them is the input's, 1 if the machine's.
     pub(crate) fn report(self) -> ExitCode {
-        crate::print::warnings(self.problems.iter().map(|(_, report)| report));
+        crate::print::warnings(self.reports());
         match self.problems.iter().map(|(blame, _)| *blame).max() {
             None => ExitCode::SUCCESS,
             Some(Blame::Signal(number)) => ExitCode::from(128 | number),
@@ -107,19 +77,5 @@ impl Failure {
             Some(Blame::Run) => ExitCode::from(1),
             Some(Blame::Input) => ExitCode::from(2),
         }
-    }
-}
-
-/// A problem or a warning, for machines.
-pub(crate) fn problem_json(report: &Report) -> ProblemJson {
-    let scene_problem = report.downcast_ref::<crate::scene_report::SceneProblem>();
-    ProblemJson {
-        message: match scene_problem {
-            Some(problem) => problem.message().to_owned(),
-            None => report.chain().map(ToString::to_string).collect::<Vec<_>>().join(": "),
-        },
-        code: report.code().map(|code| code.to_string()),
-        hint: report.help().map(|help| help.to_string()),
-        place: scene_problem.map(crate::scene_report::SceneProblem::place),
     }
 }

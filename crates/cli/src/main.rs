@@ -17,6 +17,7 @@ mod machine_limits;
 mod output;
 mod overrides;
 mod print;
+mod problem_json;
 mod progress;
 mod replay_text;
 mod scene_report;

@@ -188,7 +188,7 @@ mod tests {
         let file = file(&[[0.5; 3]]);
         for output in &outputs {
             let failure = write(output, &file, &plain()).map(drop).unwrap_err();
-            let json = serde_json::to_value(failure.to_json()).unwrap();
+            let json = serde_json::to_value(crate::problem_json::problems_json(&failure)).unwrap();
             let message = json[0]["message"].as_str().unwrap();
             assert!(message.contains(&output.path.display().to_string()), "{message}");
         }

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use etalon_scene::{Problem, SceneErrors, Severity};
 use miette::{Diagnostic, LabeledSpan, Report, SourceCode};
+use serde::Serialize;
 
 use crate::excerpt::Excerpts;
-use crate::failure::{Failure, Place};
+use crate::failure::Failure;
 
 /// One problem of a scene file.
 #[derive(Debug)]
@@ -16,6 +17,19 @@ pub(crate) struct SceneProblem {
     excerpts: Excerpts,
     /// The places of the problem and of what has to do with it, in the excerpts.
     marks: Vec<LabeledSpan>,
+}
+
+/// A place in a JSON file.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Place {
+    /// The file.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1, in characters.
+    pub column: usize,
+    /// The value in question: `$.objects[3].shape.radius_m`.
+    pub json_path: String,
 }
 
 /// All errors of a refused scene, and its warnings with them: they may be why.

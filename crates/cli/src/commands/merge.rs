@@ -10,10 +10,11 @@ use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::developing::Developing;
-use crate::failure::{Failure, Outcome, ProblemJson, problem_json};
+use crate::failure::{Failure, Outcome};
 use crate::light::without_light;
 use crate::output::{self, Written};
 use crate::print;
+use crate::problem_json::{ProblemJson, problem_json, problems_json};
 use crate::progress::percent;
 use crate::state::{self, Header, Kept};
 use crate::write_outputs::Delivery;
@@ -63,7 +64,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     }
     let Some(parts) = parts.filter(|_| failure.is_empty()) else {
         if args.json {
-            let (parts, errors) = (paths.len(), failure.to_json());
+            let (parts, errors) = (paths.len(), problems_json(&failure));
             let (outputs, warnings) = (Vec::new(), Vec::new());
             print::json(&MergeJson { parts, outputs, samples: 0, seconds: 0.0, relative_rmse: None, warnings, errors });
         }
@@ -86,7 +87,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     let (written, failure) = delivery.write(&outputs);
     let relative_rmse = error.filter(ImageError::is_known).map(|error| error.relative_rmse);
     if args.json {
-        let (parts, errors) = (paths.len(), failure.to_json());
+        let (parts, errors) = (paths.len(), problems_json(&failure));
         let (seconds, warnings) = (header.seconds, warning.iter().map(problem_json).collect());
         print::json(&MergeJson { parts, outputs: written, samples, seconds, relative_rmse, warnings, errors });
     } else if !args.quiet {

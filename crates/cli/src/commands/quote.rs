@@ -8,8 +8,7 @@ use etalon_transport::prepare_study;
 use miette::{Report, miette};
 use serde::Serialize;
 
-use crate::args::percentage;
-use crate::commands::render::Adaptive;
+use crate::args::{Adaptive, percentage};
 use crate::failure::{Failure, Outcome};
 use crate::light::{self, NO_LIGHT_HELP};
 use crate::load::load;

@@ -12,21 +12,22 @@ mod watcher;
 use std::path::PathBuf;
 
 use etalon::Aov;
-use etalon_control::{Adaptivity, Canvas, Ended, Explored, Limits, SettleError};
+use etalon_control::{Canvas, Ended, Explored, Limits, SettleError};
 use etalon_transport::{Features, ImageError};
 use miette::{Report, miette};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use crate::args::{Crop, PixelAt, ShardArg};
+use crate::args::{Adaptive, Crop, PixelAt, ShardArg};
 use crate::developing::Developing;
 use crate::display::{self, Display};
-use crate::failure::{Failure, Outcome, ProblemJson};
+use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::light::NO_LIGHT_HELP;
 use crate::machine::ClockKind;
 use crate::output;
 use crate::overrides::Overrides;
 use crate::print;
+use crate::problem_json::{ProblemJson, problems_json};
 use crate::progress::RenderBar;
 use crate::state::Header;
 use crate::write_outputs::Delivery;
@@ -107,44 +108,6 @@ pub(crate) struct Args {
     developing: Developing,
 }
 
-/// When samples are spread by an exploration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Adaptive {
-    /// With --error, where the exploration foretells that the error is reached sooner.
-    Auto,
-    /// In any case.
-    Always,
-    /// Every pixel takes the same number of samples.
-    Never,
-}
-
-impl Adaptive {
-    /// What it comes to where a relative error is asked for, or none: "auto" without one is "never".
-    fn effective(self, error: Option<f64>) -> Self {
-        if self == Self::Auto && error.is_none() { Self::Never } else { self }
-    }
-
-    /// The word of the command line.
-    fn word(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Always => "always",
-            Self::Never => "never",
-        }
-    }
-}
-
-impl From<Adaptive> for Adaptivity {
-    fn from(adaptive: Adaptive) -> Self {
-        match adaptive {
-            Adaptive::Auto => Self::Auto,
-            Adaptive::Always => Self::Always,
-            Adaptive::Never => Self::Never,
-        }
-    }
-}
-
 /// What `--json` prints when there is no render to speak of.
 #[derive(Serialize)]
 struct RefusedJson {
@@ -170,7 +133,7 @@ pub(crate) fn run(mut args: Args) -> Outcome {
         Ok(()) => Ok(()),
         Err(Stop::Refused(failure)) => {
             if args.json {
-                print::json(&RefusedJson { scene: args.scene.display().to_string(), errors: failure.to_json() });
+                print::json(&RefusedJson { scene: args.scene.display().to_string(), errors: problems_json(&failure) });
             }
             Err(failure)
         }

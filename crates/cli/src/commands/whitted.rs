@@ -12,8 +12,9 @@ use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::args::Size;
-use crate::failure::{Failure, Outcome, ProblemJson, problem_json};
+use crate::failure::{Failure, Outcome};
 use crate::print;
+use crate::problem_json::{ProblemJson, problem_json, problems_json};
 use crate::progress::SampleBar;
 use crate::scene_report::{scene_failure, scene_warnings};
 
@@ -94,7 +95,7 @@ pub(crate) fn run(args: Args) -> Outcome {
         Ok((scene, warnings)) => render_and_write(&args, &name, &scene, warnings),
         Err(failure) => {
             if args.json {
-                print::json(&RefusedJson { scene: name, errors: failure.to_json() });
+                print::json(&RefusedJson { scene: name, errors: problems_json(&failure) });
             }
             Err(failure)
         }
@@ -190,7 +191,7 @@ fn render_and_write(args: &Args, name: &str, scene: &Scene, mut warnings: Vec<Re
             seconds,
             nonfinite,
             warnings: warnings.iter().map(problem_json).collect(),
-            errors: failure.to_json(),
+            errors: problems_json(&failure),
         });
     } else if !args.quiet && output.is_some() {
         print::line(&format!("{width} × {height} pixels, {} rays each, in {seconds:.2} s", args.rays));

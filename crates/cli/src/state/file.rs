@@ -11,7 +11,7 @@ use etalon_transport::{Features, TileSums};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::commands::render::Adaptive;
+use crate::args::Adaptive;
 
 const MAGIC: [u8; 8] = *b"ETALON\0\x03";
 /// A header is a page of JSON and, with shares, a number for each region; a file that claims more is damaged.

@@ -6,8 +6,9 @@ use etalon_transport::{Counters, ImageError, Plan};
 use serde::Serialize;
 
 use super::{Args, Done, Job};
-use crate::failure::{Failure, ProblemJson, problem_json};
+use crate::failure::Failure;
 use crate::output::Written;
+use crate::problem_json::{ProblemJson, problem_json, problems_json};
 use crate::progress::{duration, percent, si, two_digits};
 
 /// What `--json` prints about a render.
@@ -291,7 +292,7 @@ pub(super) fn json<'a>(
         nonfinite_at: counters.nonfinite_at.iter().map(|at| [at.x, at.y, at.sample]).collect(),
         error: done.error.as_ref().map(|error| error_json(subject.replicates, error)),
         warnings: job.warnings.iter().map(problem_json).collect(),
-        errors: failure.to_json(),
+        errors: problems_json(failure),
         plan: job.prepared.plan(),
     }
 }
