@@ -7,7 +7,7 @@ mod span;
 mod split;
 
 use crate::frame::Box32;
-use crate::traverse::vectorised;
+use crate::level::vectorised;
 use etalon_simd::Level;
 pub(crate) use ploc::build_fast;
 use span::Extent;
@@ -164,8 +164,8 @@ fn append(nodes: &mut Vec<Node>, subtree: &[Node]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::level;
     use crate::test_support::Random;
-    use crate::traverse::level;
 
     #[test]
     fn a_tree_is_the_same_for_every_instruction_set() {

@@ -8,9 +8,7 @@ mod ray;
 mod set_out;
 
 use crate::Aabb;
-pub(crate) use crate::narrow::{Lanes4, Plain};
 use crate::query::power_of_two;
-use crate::sah_cost::half_area;
 use etalon_optics::Vec3;
 use ray::PROJECTION_ERROR;
 pub(crate) use ray::{Entry, LEAST_DISTANCE};
@@ -37,6 +35,12 @@ impl Box32 {
     pub(crate) fn sides(&self) -> [f32; 3] {
         from_fn(|k| self.max[k] - self.min[k])
     }
+}
+
+/// Half the surface area of a box with these sides.
+#[inline(always)]
+pub(crate) fn half_area([x, y, z]: [f32; 3]) -> f32 {
+    x * y + y * z + z * x
 }
 
 /// A translation and a scaling by a power of two.

@@ -2,7 +2,7 @@
 //!
 //! Every ray is answered to the bit as it is alone, whatever the others are.
 
-use crate::{Geometry, Hit, Ray, SurfaceId, SurfacePoint, traverse};
+use crate::{Hit, Ray, SurfaceId, SurfacePoint};
 use etalon_optics::Vec3;
 
 /// Rays that are asked for at once.
@@ -163,58 +163,5 @@ impl SurfacePoints {
         set_vector(&mut self.normal, lane, point.normal);
         self.surface[lane] = point.surface;
         self.label[lane] = point.label;
-    }
-}
-
-impl Geometry {
-    /// [`Geometry::closest_hit`] of the rays in the lanes of `active`, one bit each.
-    pub fn closest_hits(&self, rays: &Rays, active: u8) -> Hits {
-        if let Some(tree) = self.tree() {
-            return traverse::closest_hits(self.level(), tree, self.primitives(), rays, active);
-        }
-        let (mut hits, undecided) = match self.flat() {
-            Some((flat, level)) => flat.closest_hits(level, self.primitives(), rays, active),
-            None => (Hits::NONE, active),
-        };
-        for lane in lanes_of(undecided) {
-            hits.set(lane, self.closest_hit(&rays.get(lane)).as_ref());
-        }
-        hits
-    }
-
-    /// [`Geometry::occluded`] of the rays in the lanes of `active`: one bit for each lane, zero in the others.
-    pub fn any_hits(&self, rays: &Rays, active: u8) -> u8 {
-        if let Some(tree) = self.tree() {
-            return traverse::any_hits(self.level(), tree, self.primitives(), rays, active);
-        }
-        let (hits, undecided) = match self.flat() {
-            Some((flat, level)) => flat.any_hits(level, rays, active),
-            None => (0, active),
-        };
-        lanes_of(undecided).fold(hits, |mask, lane| mask | u8::from(self.occluded(&rays.get(lane))) << lane)
-    }
-
-    /// [`Geometry::surface`] at the hits in the lanes of `active`, as [`Geometry::closest_hits`] returned them for `rays`.
-    ///
-    /// # Panics
-    /// If one is not a hit of this geometry's with its ray.
-    pub fn surfaces(&self, rays: &Rays, hits: &Hits, active: u8) -> SurfacePoints {
-        if let Some((flat, level)) = self.flat() {
-            let primitives = self.primitives();
-            let known = |&lane: &usize| {
-                hits.surface[lane].instance == 0 && (hits.surface[lane].primitive.0 as usize) < primitives.len()
-            };
-            assert!(
-                active & !hits.mask == 0 && lanes_of(active).all(|l| known(&l)),
-                "a surface is asked for where there is a hit"
-            );
-            return flat.surfaces(level, primitives, rays, hits, active, self.label());
-        }
-        let mut points = SurfacePoints::NONE;
-        for lane in lanes_of(active) {
-            let hit = hits.get(lane).expect("a surface is asked for where there is a hit");
-            points.set(lane, &self.surface(&rays.get(lane), &hit));
-        }
-        points
     }
 }

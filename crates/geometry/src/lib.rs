@@ -1,61 +1,91 @@
-//! Shapes, robust intersection and the ray accelerator.
+//! Shapes and a ray accelerator over them, without a scene epsilon.
 //!
-//! The door is [`Geometry`]: it is built once from primitives in `f64` and answers closest-hit and occlusion queries for
-//! rays of either scalar type. No query uses a scene epsilon: a hit carries a bound on the error of its position, and a
-//! ray that leaves a surface knows the primitive and the bound that it left.
+//! A [`Geometry`] is built once from [`Primitive`]s and answers which surface a ray meets first, and whether anything lies between two points.
+//! Every hit comes with a bound on the error of its position. A ray that leaves a surface starts as far off it as this bound requires, and
+//! knows which primitive it leaves.
+//!
+//! ```
+//! use etalon_geometry::{Geometry, Parallelogram, Primitive, Ray, Sphere, SurfaceId};
+//! use etalon_optics::Vec3;
+//!
+//! let v = Vec3::<f64>::new;
+//! let ball = Sphere::new(v(0.0, 1.0, 0.0), 1.0)?;
+//! let floor = Parallelogram::new(v(-5.0, 0.0, -5.0), v(10.0, 0.0, 0.0), v(0.0, 0.0, 10.0))?;
+//! let geometry = Geometry::build(vec![Primitive::from(ball), floor.into()])?;
+//!
+//! // Down on the floor, two metres beside the middle of the ball.
+//! let ray = Ray::free(v(2.0, 5.0, 0.0), v(0.0, -1.0, 0.0));
+//! let hit = geometry.closest_hit(&ray).expect("the floor");
+//! assert_eq!(hit.t, 5.0);
+//! let point = geometry.surface(&ray, &hit);
+//! // The ball hides a lamp on its other side, and not one above.
+//! assert!(geometry.occluded(&point.spawn_to(v(-2.0, 2.0, 0.0), SurfaceId::NONE)));
+//! assert!(!geometry.occluded(&point.spawn_to(v(2.0, 9.0, 0.0), SurfaceId::NONE)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | for | see |
+//! |---|---|
+//! | shapes | [`Sphere`], [`Triangle`], [`Parallelogram`], [`Disk`], [`Cylinder`] |
+//! | a geometry within another, placed by an affine map, also a moving one | [`Instance`], [`Placement`], [`Motion`] |
+//! | rays and what they find | [`Ray`], [`Hit`], [`SurfacePoint`] |
+//! | eight rays at once | [`Geometry::closest_hits`], [`Rays`] |
+//! | every hit of a ray, in order | [`Geometry::next_hit`], [`Passed`] |
+//! | thorough or fast building | [`TreeBuilder`] |
+//!
+//! The example `shadow` draws a ball and its shadow.
+//!
+//! # Inside
+//!
+//! Everything is decided in `f64`. Boxes and leaves are filtered in `f32`, by bounds that err on the side of keeping. So hits are the same on
+//! every instruction set, and the same as without a tree. Each module uses those above it:
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `shapes` | [`Primitive`] and the shapes, one a file, with their intersection tests in `f64` |
-//! | `ray` | [`Ray`], [`Hit`], [`SurfacePoint`] and the rays that leave it |
-//! | `query` | a ray prepared for the intersection tests; the watertight projection |
-//! | `double_double` | the arithmetic behind `f64`, where an error bound calls for it |
-//! | `frame` | the accelerator's frame and conservative box tests in `f32` |
-//! | `build` | the two builders of a binary tree ([`TreeBuilder`]) |
-//! | `improve` | grouping and moving its subtrees |
-//! | `measure` | how often rays enter a box |
-//! | `wide` | the tree of sixteen children a node that it becomes |
-//! | `pages` | arrays in large pages |
-//! | `traverse` | its traversal, for each instruction set; `traverse::flat`: few primitives, without a tree |
-//! | `geometry` | [`Geometry`]: the queries |
-//! | `instance_node` | what a ray needs to go into an instance |
-//! | `best` | the closest hit so far |
-//! | `passed` | [`Passed`]: the hits that a walk along a ray leaves behind |
-//! | `lanes` | [`Rays`]: eight rays at once |
-//! | `instance` | [`Instance`]: a geometry within another, placed by an affine map |
-//! | `motion` | [`Motion`]: such a map that changes while the shutter is open |
+//! | `vec4`, `ray`, `query` | four lanes of any instruction set; rays and hits; a ray prepared for the tests in `f64` |
+//! | `shapes` | the shapes, one a file, with their tests |
+//! | `placement`, `motion` | where a geometry is placed, also as a function of time |
+//! | `frame` | the accelerator's frame, and conservative box tests in `f32` |
+//! | `level` | the instruction set to use |
+//! | `build` | the two builders of a binary tree |
+//! | `sah_cost`, `wide` | how often rays enter a box; nodes of sixteen children, leaves, and the choice of both (`wide/collapse.rs`) |
+//! | `optimize` | a finished binary tree made better |
+//! | `small_scene` | up to 128 primitives in blocks, instead of a tree |
+//! | `geometry` | primitives, instances, and what is built over them |
+//! | `traverse` | how rays go through trees, small scenes and instances, for each instruction set |
+//! | `queries` | the questions that a [`Geometry`] answers |
 
 mod aabb;
-mod best;
 mod build;
 mod double_double;
 mod frame;
 mod geometry;
-mod instance;
-mod instance_node;
 mod lanes;
+mod level;
 mod motion;
-mod narrow;
 mod optimize;
 mod pages;
 mod passed;
+mod placement;
+mod queries;
 mod query;
 mod ray;
 mod sah_cost;
 mod shapes;
-mod statistics;
+mod small_scene;
 mod traverse;
+mod vec4;
 mod wide;
 
 pub use aabb::Aabb;
 pub use build::TreeBuilder;
-pub use geometry::{Geometry, GeometryError, MAX_NESTING};
-pub use instance::{Instance, Placement};
+pub use geometry::{Geometry, GeometryError, Instance, MAX_NESTING, Primitive};
 pub use lanes::{Hits, LANES, Rays, SurfacePoints};
 pub use motion::{Motion, Pose};
 pub use passed::Passed;
+pub use placement::Placement;
 pub use ray::{Hit, PrimitiveId, Ray, SurfaceId, SurfacePoint};
-pub use shapes::{Cylinder, Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, Primitive, ShapeError, Sphere, Triangle};
+pub use shapes::{Cylinder, Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, ShapeError, Sphere, Triangle};
 
 #[cfg(test)]
 mod test_support;

@@ -7,8 +7,8 @@
 //! not polygons: with sine and cosine by polynomials of [`Real::sin_cos_turns`] the placement is exact to rounding at every
 //! time, and + − × ÷ are all that it takes.
 
-use crate::instance::Placement;
-use crate::{Aabb, ShapeError};
+use crate::shapes::check_points;
+use crate::{Aabb, Placement, ShapeError};
 use etalon_optics::{Real, Vec3};
 use std::f64::consts::TAU;
 
@@ -196,9 +196,9 @@ impl Segment {
 
 fn check(pose: &Pose) -> Result<(), ShapeError> {
     let Pose { time, translation, rotation, stretch } = pose;
-    crate::shapes::check_points(&[*translation, Vec3::splat(*time)])?;
-    crate::shapes::check_points(rotation)?;
-    crate::shapes::check_points(stretch)?;
+    check_points(&[*translation, Vec3::splat(*time)])?;
+    check_points(rotation)?;
+    check_points(stretch)?;
     let linear = product(rotation, stretch).map(Vec3::to_array);
     Placement::new(linear, translation.to_array())?;
     let square = product(&transposed(rotation), rotation);

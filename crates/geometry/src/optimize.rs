@@ -45,8 +45,8 @@ mod tests {
     use super::*;
     use crate::build::{Item, Span, build};
     use crate::frame::Box32;
+    use crate::level;
     use crate::test_support::Random;
-    use crate::traverse::level;
     use crate::wide::least_cost;
     use std::array::from_fn;
 

@@ -1,6 +1,5 @@
 //! Rays, hits and the points that rays leave.
 
-use crate::query::RawHit;
 use etalon_optics::{Real, Vec3};
 
 /// Index of a primitive, in the order given to [`Geometry::build`](crate::Geometry::build).
@@ -83,6 +82,18 @@ pub struct Hit<R> {
     /// Surface parameters (barycentric weights of b and c in a triangle; a and b of a parallelogram; else 0).
     pub uv: [R; 2],
 }
+
+/// What an intersection test finds, in the parameters of a [`Query`](crate::query::Query).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RawHit {
+    /// Parameter along [`Query::direction`](crate::query::Query::direction).
+    pub(crate) t: f64,
+    /// Surface parameters.
+    pub(crate) uv: [f64; 2],
+}
+
+/// A hit and its surface.
+pub(crate) type Found = (RawHit, SurfaceId);
 
 impl<R: Real> Hit<R> {
     /// A hit along a ray; none if its distance is too large for the numbers of the ray.

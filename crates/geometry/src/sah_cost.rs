@@ -1,5 +1,7 @@
 //! How often rays enter a box.
 
+use crate::frame::half_area;
+
 /// The mean chord of a scene's box, in lengths of rays.
 ///
 /// Rays that begin anywhere in a scene, in any direction, and are ℓ long meet a convex body of surface s and volume v within it if they
@@ -31,12 +33,6 @@ impl SahCost {
     pub(crate) fn of(self, sides: [f32; 3]) -> f32 {
         half_area(sides) + self.inside * volume(sides)
     }
-}
-
-/// Half the surface area of a box with these sides.
-#[inline(always)]
-pub(crate) fn half_area([x, y, z]: [f32; 3]) -> f32 {
-    x * y + y * z + z * x
 }
 
 #[inline(always)]

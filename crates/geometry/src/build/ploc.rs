@@ -187,8 +187,8 @@ impl Forest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::level;
     use crate::test_support::Random;
-    use crate::traverse::level;
 
     const COSTS: Costs = Costs { block: 8, node: 0.35 };
 

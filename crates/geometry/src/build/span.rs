@@ -1,7 +1,6 @@
 //! Boxes and primitives as the builder moves them.
 
-use crate::frame::Box32;
-use crate::sah_cost::half_area;
+use crate::frame::{Box32, half_area};
 use std::array::from_fn;
 
 /// A box as one vector, so that a union is one maximum: its lower corner negated, a lane for a primitive's index, its upper

@@ -1,7 +1,7 @@
 //! Where a node is split.
 
 use super::span::{Extent, Item, Span};
-use crate::traverse::Loop;
+use crate::level::Loop;
 
 /// Above this many primitives a node is split between bins, below at any of their sorted centres.
 pub(super) const SWEEP_LIMIT: usize = 64;

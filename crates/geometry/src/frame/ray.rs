@@ -1,8 +1,8 @@
 //! Rays in the accelerator's frame.
 
 use super::{BoxRay, Frame, FrameRay, above, below};
-use crate::narrow::Lanes4;
-use crate::query::{Four, Query, larger, projection_axis};
+use crate::query::Query;
+use crate::vec4::{Four, Lanes4, larger, projection_axis};
 use etalon_optics::Vec3;
 use std::array::from_fn;
 use std::cmp::Ordering;

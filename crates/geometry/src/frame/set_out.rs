@@ -1,7 +1,5 @@
 //! What a ray is in the accelerator's frame.
 
-use crate::wide::NODE_WIDTH;
-
 /// A ray in the accelerator's frame; fourth lanes are not used.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrameRay<L> {
@@ -43,13 +41,4 @@ pub(crate) struct BoxRay<L> {
     pub(crate) reciprocal_far: L,
     /// The direction's sign bits, that of x lowest.
     pub(crate) negative: usize,
-}
-
-impl<L> BoxRay<L> {
-    /// The planes along each axis where the ray enters boxes, for [`Node16::planes`](crate::wide::Node16::planes).
-    #[inline(always)]
-    pub(crate) fn entry(&self) -> [usize; 3] {
-        let bits = self.negative * NODE_WIDTH;
-        [bits & NODE_WIDTH, bits >> 1 & NODE_WIDTH, bits >> 2 & NODE_WIDTH]
-    }
 }

@@ -8,8 +8,8 @@
 
 use super::links::{Links, NONE};
 use crate::build::Span;
+use crate::level::{Loop, vectorised};
 use crate::sah_cost::SahCost;
-use crate::traverse::{Loop, vectorised};
 use etalon_simd::Level;
 use std::array::from_fn;
 
@@ -162,9 +162,9 @@ impl Slots {
 mod tests {
     use super::*;
     use crate::build::BinaryTree;
+    use crate::level;
     use crate::optimize::scattered;
     use crate::test_support::Random;
-    use crate::traverse::level;
 
     fn leaves(tree: &BinaryTree) -> Vec<Span> {
         tree.nodes.iter().filter(|node| node.count > 0).map(|node| Span::of(&node.bounds)).collect()

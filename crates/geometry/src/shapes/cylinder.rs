@@ -1,8 +1,8 @@
 //! Circular cylinders, open or closed.
 
 use super::{ShapeError, check_points, check_radius, outward, planar};
-use crate::query::{Query, RawHit};
-use crate::ray::ExactPoint;
+use crate::query::Query;
+use crate::ray::{ExactPoint, RawHit};
 use crate::{Aabb, MIN_LENGTH};
 use etalon_optics::{Real, Vec3};
 

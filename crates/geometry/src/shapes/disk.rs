@@ -2,8 +2,8 @@
 
 use super::{ShapeError, check_points, check_radius, planar};
 use crate::Aabb;
-use crate::query::{Query, RawHit};
-use crate::ray::ExactPoint;
+use crate::query::Query;
+use crate::ray::{ExactPoint, RawHit};
 use etalon_optics::{Frame, Real, Vec3};
 
 /// A flat disk, seen by rays from both sides; its outward side is the one to which the normal points.

@@ -2,8 +2,9 @@
 
 use super::{ShapeError, check_points, planar};
 use crate::Aabb;
-use crate::query::{Four, Plain4, Projection, Query, RawHit, exact_edge, larger};
-use crate::ray::ExactPoint;
+use crate::query::{Projection, Query, exact_edge};
+use crate::ray::{ExactPoint, RawHit};
+use crate::vec4::{Four, Plain4, larger};
 use etalon_optics::Vec3;
 
 /// A parallelogram, seen by rays from both sides; its outward side is the one to which a × b points.

@@ -2,8 +2,8 @@
 
 use crate::Aabb;
 use crate::double_double::{cross, difference, dot, round, widen};
-use crate::query::{Query, RawHit};
-use crate::ray::ExactPoint;
+use crate::query::Query;
+use crate::ray::{ExactPoint, RawHit};
 use etalon_optics::{Real, Vec3};
 
 /// The cross product of two edges that leave `origin`, right to a few unit roundoffs in direction; zero if what is left

@@ -2,8 +2,8 @@
 
 use super::{ShapeError, check_points, check_radius, outward};
 use crate::Aabb;
-use crate::query::{Query, RawHit};
-use crate::ray::ExactPoint;
+use crate::query::Query;
+use crate::ray::{ExactPoint, RawHit};
 use etalon_optics::{Real, Vec3};
 
 /// A full sphere; its outward side is the outside.

@@ -2,8 +2,9 @@
 
 use super::{ShapeError, check_points, planar};
 use crate::Aabb;
-use crate::query::{Axis, Four, Plain4, Projection, Query, RawHit, exact_edge, larger};
-use crate::ray::ExactPoint;
+use crate::query::{Projection, Query, exact_edge};
+use crate::ray::{ExactPoint, RawHit};
+use crate::vec4::{Axis, Four, Plain4, larger};
 use etalon_optics::Vec3;
 
 /// A triangle, seen by rays from both sides; its outward side is the one from which a, b, c turn counter-clockwise.

@@ -1,8 +1,8 @@
 //! Few primitives: what is filtered many at once, for one ray or for eight, is what each primitive answers alone.
 
 use super::tree::check_geometry;
+use crate::level;
 use crate::test_support::*;
-use crate::traverse::level;
 use crate::{Geometry, LANES, Primitive, PrimitiveId, Ray, Rays, SurfaceId, SurfacePoint, Triangle};
 use etalon_optics::Vec3;
 
@@ -61,7 +61,7 @@ fn bits(p: &SurfacePoint<f64>) -> [u64; 7] {
 
 /// Compares eight rays at once with each alone, on every instruction set; returns how many of them eight at once decided.
 fn compare(geometry: &Geometry, rays: &Rays, active: u8) -> [usize; 2] {
-    let (flat, _) = geometry.flat().expect("few primitives");
+    let flat = geometry.small_scene().expect("few primitives");
     let mut decided = [0, 0];
     for level in level::all() {
         let (hits, open) = flat.closest_hits(level, geometry.primitives(), rays, active);
@@ -106,7 +106,7 @@ fn few_primitives_filtered_at_once_answer_as_each_alone() {
         let centre = primitives.iter().map(Primitive::bounds).reduce(crate::Aabb::union).unwrap().centre();
         let offset = if centre.length() > 2.5 { centre } else { Vec3::ZERO };
         let geometry = Geometry::build(primitives).unwrap();
-        assert!(geometry.flat().is_some());
+        assert!(geometry.small_scene().is_some());
         check_geometry(&geometry, 2_500, 400 + seed as u64, |(o, d)| (o + offset, d));
     }
 }
@@ -164,7 +164,7 @@ fn filters_that_know_nothing_of_rounding_are_found_out() {
 fn eight_rays_among_many_primitives_or_instances_are_answered_as_each_alone() {
     let mut random = Random::new(8);
     let geometry = Geometry::build(soup(&mut random, 300, -2.0..0.0)).unwrap();
-    assert!(geometry.flat().is_none());
+    assert!(geometry.small_scene().is_none());
     for _ in 0..300 {
         let mut rays = Rays::NONE;
         for lane in 0..LANES {

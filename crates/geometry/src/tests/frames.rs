@@ -1,9 +1,9 @@
 //! Rays in the accelerator's frame.
 
 use crate::Aabb;
-use crate::frame::{Entry, Frame, Lanes4, Plain};
-use crate::query::{Four, Plain4};
+use crate::frame::{Entry, Frame};
 use crate::test_support::*;
+use crate::vec4::{Four, Lanes4, Plain, Plain4};
 
 /// A ray in `f32` that needs no rounding enters a frame as the same ray in `f64`: the same numbers, or none.
 #[test]

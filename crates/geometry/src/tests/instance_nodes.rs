@@ -1,7 +1,7 @@
 //! The walk into an instance decides as the instance itself does.
 
+use crate::level;
 use crate::test_support::*;
-use crate::traverse::level;
 use crate::{Geometry, Instance, Placement, Primitive, Ray, Triangle};
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Our shapes and tree, held to the oracle's laws of intersection with its generators.
 
+use crate::small_scene::FLAT_LIMIT;
 use crate::test_support::primitive;
-use crate::traverse::FLAT_LIMIT;
 use crate::{Geometry, Ray};
 use etalon_optics::{Real, Vec3};
 use etalon_oracle::generators::{Shape, scenes};

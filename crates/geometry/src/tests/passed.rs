@@ -56,7 +56,7 @@ fn repeated(random: &mut Random, primitives: &[Primitive]) -> Vec<Primitive> {
 
 #[test]
 fn a_walk_meets_every_hit_once_and_in_order() {
-    for (seed, flat_limit) in [(0, 0), (1, 0), (2, crate::traverse::FLAT_LIMIT)] {
+    for (seed, flat_limit) in [(0, 0), (1, 0), (2, crate::small_scene::FLAT_LIMIT)] {
         let mut random = Random::new(900 + seed);
         let soups = [
             soup(&mut random, 40, -2.0..0.5),

@@ -1,8 +1,8 @@
 //! Which placements there may be, and what they hold.
 
 use super::instances::{affine, build, place, scaling, similarity};
+use crate::level;
 use crate::test_support::*;
-use crate::traverse::level;
 use crate::{Geometry, Instance, Placement, Primitive, Ray, ShapeError, Sphere};
 use etalon_optics::Vec3;
 use etalon_simd::Level;

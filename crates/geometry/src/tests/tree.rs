@@ -1,8 +1,8 @@
 //! The tree finds what brute force finds.
 
 use crate::test_support::*;
-use crate::traverse::{self, level};
 use crate::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, SurfaceId, Triangle};
+use crate::{level, traverse};
 use etalon_optics::{Real, Vec3};
 use etalon_simd::Level;
 
@@ -25,7 +25,7 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
             assert_eq!(geometry.closest_hit(&ray).map(|hit| (hit.t, hit.surface)), scaled, "{ray:?}");
             // Rays, too, not queries made of them.
             let start =
-                flat.and_then(|(hit, id)| crate::Hit::new(crate::query::RawHit { t: hit.t * query.scale, ..hit }, id));
+                flat.and_then(|(hit, id)| crate::Hit::new(crate::ray::RawHit { t: hit.t * query.scale, ..hit }, id));
             // Whatever instruction set the tree is made for.
             for level in level::all() {
                 assert_eq!(traverse::closest(level, tree, primitives, &query), flat, "{level:?} {ray:?}");
@@ -36,7 +36,7 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
             assert_eq!(traverse::closest_deep(tree, primitives, &query), flat, "{ray:?}");
             assert_eq!(traverse::any_deep(tree, primitives, &query), occluded, "{ray:?}");
         }
-        if let Some((few, _)) = geometry.flat() {
+        if let Some(few) = geometry.small_scene() {
             for level in level::all() {
                 assert_eq!(few.closest(level, geometry.primitives(), &query), flat, "{level:?} {ray:?}");
                 assert_eq!(few.any(level, geometry.primitives(), &query), occluded, "{level:?} {ray:?}");
@@ -63,7 +63,7 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
 pub(super) fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
     at_each_level(|level| {
         let geometry = Geometry::build_with(primitives.clone(), 0).unwrap();
-        assert!(geometry.tree().is_none_or(|tree| tree.lanes() == level::lanes(level)));
+        assert!(geometry.tree().is_none_or(|tree| tree.lanes() == crate::wide::leaf_lanes(level)));
         check_geometry(&geometry, rays, seed, &place)
     })
 }

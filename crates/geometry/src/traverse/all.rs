@@ -4,10 +4,12 @@ use super::compiled::Compiled;
 use super::leaf::{SphereFilter, candidates};
 use super::node_hits::NodeHits;
 use super::portable::Portable;
-use super::{Filters, Job, level};
+use super::{Filters, Job, run};
 use crate::frame::Frame;
-use crate::query::{Query, RawHit};
-use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, Leaves, WideTree};
+use crate::geometry::WideTree;
+use crate::query::Query;
+use crate::ray::RawHit;
+use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, Leaves};
 use crate::{Primitive, PrimitiveId, SurfaceId};
 use etalon_simd::Level;
 
@@ -24,7 +26,7 @@ pub(crate) fn all(
     from: f64,
     visit: &mut Visit<'_>,
 ) -> f64 {
-    level::run(level, All { tree, primitives, query, from, visit })
+    run(level, All { tree, primitives, query, from, visit })
 }
 
 struct All<'a, 'v> {

@@ -1,5 +1,6 @@
 //! The filters in AVX-512: all children of a node at once.
 
+use super::best::Best;
 use super::compiled::{Compiled, compiled};
 use super::instance::{closest_in_instance, occludes_in_instance};
 use super::lanes256::{D4, F4};
@@ -8,11 +9,11 @@ use super::node_hits::{NodeHits, Row};
 use super::wide512::D8;
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
-use crate::best::Best;
-use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4};
-use crate::instance_node::InstanceNode;
+use crate::frame::{BoxRay, LEAST_DISTANCE};
+use crate::geometry::{InstanceNode, WideTree};
 use crate::query::Query;
-use crate::wide::{NODE_WIDTH, Node16, WideTree};
+use crate::vec4::Lanes4;
+use crate::wide::{NODE_WIDTH, Node16};
 use etalon_simd::Avx512;
 use std::arch::x86_64::*;
 
@@ -25,7 +26,7 @@ pub(super) struct Ray16 {
     origin_far: [__m512; 3],
     reciprocal_near: [__m512; 3],
     reciprocal_far: [__m512; 3],
-    /// [`BoxRay::entry`].
+    /// [`Node16::entry_planes`].
     entry: [usize; 3],
 }
 
@@ -107,7 +108,7 @@ impl Filters for Avx512 {
             origin_far: broadcast(self, ray.origin_far),
             reciprocal_near: broadcast(self, ray.reciprocal_near),
             reciprocal_far: broadcast(self, ray.reciprocal_far),
-            entry: ray.entry(),
+            entry: Node16::entry_planes(ray.negative),
         }
     }
 

@@ -1,15 +1,17 @@
 //! The closest hit.
 
+use super::best::Best;
 use super::compiled::Compiled;
 use super::leaf::{SphereFilter, candidates};
 use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
 use super::{Filters, Narrow, NodeHits, intersect_exact};
-use crate::best::Best;
 use crate::frame::FrameRay;
-use crate::query::{Projection, RawHit};
-use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, NODE_WIDTH, Nodes, SPHERES, WideTree};
+use crate::geometry::WideTree;
+use crate::query::Projection;
+use crate::ray::RawHit;
+use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, NODE_WIDTH, Nodes, SPHERES};
 use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.

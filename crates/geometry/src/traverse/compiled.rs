@@ -1,12 +1,11 @@
 //! The walks, compiled for an instruction set.
 
+use super::best::Best;
 use super::start::Start;
 use super::{Filters, Job};
 use crate::Primitive;
-use crate::best::Best;
-use crate::instance_node::InstanceNode;
+use crate::geometry::{InstanceNode, WideTree};
 use crate::query::Query;
-use crate::wide::WideTree;
 
 /// What is compiled once for each instruction set: functions that a walk begins with, or that are called on it.
 pub(super) trait Compiled: Filters {

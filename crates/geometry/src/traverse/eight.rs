@@ -5,9 +5,11 @@ use super::compiled::Compiled;
 use super::start::Start;
 use super::{Job, any_with, closest_with};
 use crate::frame::{Frame, FrameRay};
+use crate::geometry::WideTree;
 use crate::lanes::{Hits, LANES, Rays, lanes_of, vector};
-use crate::query::{Four, Query, RawHit};
-use crate::wide::WideTree;
+use crate::query::Query;
+use crate::ray::RawHit;
+use crate::vec4::Four;
 use crate::{Hit, Primitive, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
 

@@ -1,15 +1,87 @@
 //! From the walk of a tree into what an instance places.
 
+use super::best::Best;
 use super::compiled::Compiled;
 use super::vector::Vector;
-use super::{LEVELS, Narrow, any_on, closest_on, occludes};
-use crate::best::Best;
+use super::{LEVELS, Narrow, Visit, any_on, closest_on, occludes};
 use crate::frame::{Entry, FrameRay};
-use crate::instance::{at_least, told_end};
-use crate::instance_node::InstanceNode;
-use crate::query::{Query, RawHit};
-use crate::wide::{ANY_KIND, Leaf, Leaves, NODE_WIDTH, TRIANGLES, TreeKind, WideTree};
-use crate::{Hit, Primitive, Ray};
+use crate::geometry::{InstanceNode, WideTree};
+use crate::query::Query;
+use crate::ray::{ExactPoint, Found, RawHit};
+use crate::wide::{ANY_KIND, Leaf, Leaves, NODE_WIDTH, TRIANGLES, TreeKind};
+use crate::{Hit, Instance, Primitive, Ray, SurfaceId};
+
+/// The end of a ray within an instance: that outside, but no smaller than 2⁻¹²⁰. In the units there, which may be 2⁹⁰⁰ times as long, a
+/// smaller one would be rounded, and what of several instances is hit first would depend on which was asked before. What is found is
+/// compared with the end outside anyway.
+#[inline(always)]
+fn told_end(t_max: f64) -> f64 {
+    const LEAST: f64 = 1.0 / (1_u128 << 120) as f64;
+    // Never of NaN: ends are limits that have been compared.
+    if t_max > LEAST { t_max } else { LEAST }
+}
+
+/// Puts a hit that rounding found before the ray has entered the instance's bounds to where it does, and tells whether it counts before
+/// `t_max`. What is hit first must not depend on whether the bounds are entered before `t_max`, and an instance that is flat to one part
+/// in 10³⁰ has coordinates in which rays are little but rounding.
+#[inline(always)]
+fn at_least(hit: &mut RawHit, entry: f64, t_max: f64) -> bool {
+    // Where t is so small that the change of units lost it there is no hit, nor beyond an end that was not told.
+    let is_ahead = hit.t > 0.0;
+    hit.t = if hit.t < entry { entry } else { hit.t };
+    is_ahead && hit.t < t_max
+}
+
+impl Instance {
+    /// The closest hit with 0 < t < `t_max`.
+    #[inline(never)]
+    pub(crate) fn closest(&self, query: &Query, t_max: f64) -> Option<Found> {
+        let entry = self.entry(query, t_max)?;
+        let inner = self.enter(query, told_end(t_max))?;
+        let (mut hit, mut surface) = self.geometry().closest(&inner)?;
+        hit.t *= inner.scale;
+        surface.instance += self.first;
+        at_least(&mut hit, entry, t_max).then_some((hit, surface))
+    }
+
+    /// Calls `visit` for every hit at a distance from `from` on and below `t_max`, as [`all_of`](super::all_of) does.
+    pub(crate) fn all(&self, query: &Query, (from, t_max): (f64, f64), visit: &mut Visit<'_>) -> f64 {
+        let Some(entry) = self.entry(query, t_max) else { return t_max };
+        let Some(inner) = self.enter(query, told_end(t_max)) else { return t_max };
+        let mut end = t_max;
+        // A hit before the bounds are entered counts as one where they are.
+        let inner_from = if entry < from { from / inner.scale } else { 0.0 };
+        self.geometry().all(&inner, inner_from, &mut |mut hit, mut surface| {
+            hit.t *= inner.scale;
+            surface.instance += self.first;
+            if at_least(&mut hit, entry, end) && hit.t >= from {
+                end = visit(hit, surface);
+            }
+            told_end(end) / inner.scale
+        });
+        end
+    }
+
+    /// Whether anything but the surface aimed at is hit.
+    #[inline(never)]
+    pub(crate) fn occludes(&self, query: &Query) -> bool {
+        self.entry(query, query.t_max).is_some()
+            && self.enter(query, query.t_max).is_some_and(|inner| self.geometry().any(&inner))
+    }
+
+    /// The point of a surface within at parameter `t` of the query; see [`Geometry::exact_point`].
+    pub(crate) fn exact_point(
+        &self,
+        query: &Query,
+        t: f64,
+        refine: bool,
+        surface: SurfaceId,
+    ) -> Option<(ExactPoint, u32)> {
+        let inner = self.enter(query, query.t_max)?;
+        let (point, label) = self.geometry().exact_point(&inner, t / inner.scale, refine, self.inward(surface))?;
+        Some((self.placement_at(query.time).outward(&point), label))
+    }
+}
 
 /// [`Best::test`] of an instance: the same, without a query where there is a tree to walk. The bounds, which cost more than what
 /// most rays that miss find out in the tree's root, are asked for only where there is a hit.

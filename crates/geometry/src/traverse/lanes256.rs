@@ -1,8 +1,7 @@
 //! Eight floats, four floats and four numbers of AVX2.
 
 use super::vector::Vector;
-use crate::frame::Lanes4;
-use crate::query::Four;
+use crate::vec4::{Four, Lanes4};
 use etalon_simd::Avx2;
 use std::arch::x86_64::*;
 

@@ -3,8 +3,8 @@
 use super::vector::Vector;
 use super::{Candidates, Filters, Narrow, Row};
 use crate::PrimitiveId;
-use crate::frame::{FrameRay, Lanes4};
-use crate::query::AXES;
+use crate::frame::FrameRay;
+use crate::vec4::{AXES, Lanes4};
 use crate::wide::{Leaf, NO_ID, SPHERES, TRIANGLES};
 
 /// The primitives of a leaf that the ray may hit in [0, `limit`], and the flat shapes and spheres that it certainly hits in

@@ -9,19 +9,21 @@ mod any;
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod best;
 mod closest;
 mod compiled;
 mod eight;
-mod flat;
+mod geometry;
 mod instance;
+mod job;
 #[cfg(target_arch = "x86_64")]
 mod lanes256;
 #[cfg(target_arch = "x86_64")]
 mod lanes512;
 mod leaf;
-pub(crate) mod level;
 mod node_hits;
 mod portable;
+mod small_scene;
 mod stack;
 mod start;
 mod vector;
@@ -30,11 +32,14 @@ mod wide256;
 #[cfg(target_arch = "x86_64")]
 mod wide512;
 
-use crate::best::Found;
 use crate::build::MAX_DEPTH;
 use crate::frame::{BoxRay, FrameRay};
-use crate::query::{Four, Projection, Query, RawHit};
-use crate::wide::{ANY_KIND, Leaf, Leaves, NODE_WIDTH, Node16, SPHERES, TRIANGLES, TreeKind, WideTree};
+use crate::geometry::WideTree;
+use crate::query::{Projection, Query};
+use crate::ray::{Found, RawHit};
+use crate::small_scene::{Eight, Wide};
+use crate::vec4::Four;
+use crate::wide::{ANY_KIND, Leaf, Leaves, NODE_WIDTH, Node16, SPHERES, TRIANGLES, TreeKind};
 use crate::{Hits, Primitive, PrimitiveId, Rays, Triangle};
 pub(crate) use all::{Visit, all, all_of};
 use any::any_on;
@@ -42,10 +47,7 @@ pub(crate) use any::occludes;
 use closest::closest_on;
 use compiled::Compiled;
 use etalon_simd::Level;
-use flat::{Eight, Wide};
-pub(crate) use flat::{FLAT_LIMIT, Flat};
-use level::Job;
-pub(crate) use level::{Loop, vectorised};
+use job::{Job, run};
 use node_hits::{NodeHits, Row};
 use portable::Portable;
 use start::Start;
@@ -134,13 +136,13 @@ pub(crate) fn any<S: Start>(level: Level, tree: &WideTree, primitives: &[Primiti
 /// [`closest`] of the rays in the lanes of `active`, one bit each.
 #[inline]
 pub(crate) fn closest_hits(level: Level, tree: &WideTree, primitives: &[Primitive], rays: &Rays, active: u8) -> Hits {
-    level::run(level, eight::Closest { tree, primitives, rays, active })
+    run(level, eight::Closest { tree, primitives, rays, active })
 }
 
 /// [`any`] of the rays in the lanes of `active`: one bit for each lane, zero in the others.
 #[inline]
 pub(crate) fn any_hits(level: Level, tree: &WideTree, primitives: &[Primitive], rays: &Rays, active: u8) -> u8 {
-    level::run(level, eight::Any { tree, primitives, rays, active })
+    run(level, eight::Any { tree, primitives, rays, active })
 }
 
 /// The closest hit of a ray that starts near the frame, as most do: without a query until one is needed.

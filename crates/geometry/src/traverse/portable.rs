@@ -1,16 +1,17 @@
 //! The filters in plain Rust.
 
+use super::best::Best;
 use super::compiled::Compiled;
-use super::flat::{BLOCK, PlainEight, Wide};
 use super::instance::{closest_in_instance, occludes_in_instance};
 use super::node_hits::{HitMask, Row};
 use super::vector::Vector;
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
-use crate::best::Best;
-use crate::frame::{BoxRay, LEAST_DISTANCE, Lanes4, Plain};
-use crate::instance_node::InstanceNode;
-use crate::query::{Plain4, Query};
-use crate::wide::{NODE_WIDTH, Node16, WideTree};
+use crate::frame::{BoxRay, LEAST_DISTANCE};
+use crate::geometry::{InstanceNode, WideTree};
+use crate::query::Query;
+use crate::small_scene::{BLOCK, PlainEight, Wide};
+use crate::vec4::{Lanes4, Plain, Plain4};
+use crate::wide::{NODE_WIDTH, Node16};
 use crate::{LANES, Primitive};
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Sub};
@@ -217,8 +218,8 @@ impl Filters for Portable {
         let mut out = HitMask { mask: 0, near: Row([LEAST_DISTANCE; NODE_WIDTH]) };
         let mut far = [limit; NODE_WIDTH];
         for k in 0..3 {
-            let entry = node.planes(k, ray.entry()[k]);
-            let exit = node.planes(k, ray.entry()[k] ^ NODE_WIDTH);
+            let entry = node.planes(k, Node16::entry_planes(ray.negative)[k]);
+            let exit = node.planes(k, Node16::entry_planes(ray.negative)[k] ^ NODE_WIDTH);
             for lane in 0..NODE_WIDTH {
                 let near = (origin_near[k] - entry[lane]) * reciprocal_near[k];
                 out.near.0[lane] = if near > out.near.0[lane] { near } else { out.near.0[lane] };

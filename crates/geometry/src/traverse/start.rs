@@ -1,8 +1,9 @@
 //! What a traversal starts with.
 
-use crate::best::Found;
-use crate::frame::{Frame, FrameRay, Lanes4};
-use crate::query::{Four, Projection, Query, RawHit};
+use crate::frame::{Frame, FrameRay};
+use crate::query::{Projection, Query};
+use crate::ray::{Found, RawHit};
+use crate::vec4::{Four, Lanes4};
 use crate::{Hit, PrimitiveId, Ray, SurfaceId};
 use etalon_optics::{Real, Vec3};
 

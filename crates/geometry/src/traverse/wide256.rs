@@ -1,9 +1,9 @@
 //! Eight floats of AVX2 as the filters of flat geometries want them.
 
-use super::flat::{BLOCK, EXPONENT, Eight, TURN, Wide};
 use super::lanes256::F8;
 use super::vector::Vector;
 use crate::LANES;
+use crate::small_scene::{BLOCK, EXPONENT, Eight, TURN, Wide};
 use etalon_simd::Avx2;
 use std::arch::x86_64::*;
 use std::ops::{BitAnd, BitOr, Not};

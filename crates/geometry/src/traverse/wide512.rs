@@ -1,9 +1,9 @@
 //! Sixteen floats of AVX-512 as the filters of flat geometries want them.
 
-use super::flat::{BLOCK, EXPONENT, Eight, TURN, Wide};
 use super::lanes512::F16;
 use super::vector::Vector;
 use crate::LANES;
+use crate::small_scene::{BLOCK, EXPONENT, Eight, TURN, Wide};
 use etalon_simd::Avx512;
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};

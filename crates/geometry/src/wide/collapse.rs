@@ -3,7 +3,6 @@
 use super::NODE_WIDTH;
 use crate::build::{BinaryTree, Costs, LEAF_LIMIT, Node};
 use crate::sah_cost::SahCost;
-use crate::{Instance, Primitive};
 
 /// Above this many binary nodes the two halves of a tree are taken in parallel.
 const PARALLEL_LIMIT: usize = 16_384;
@@ -14,12 +13,15 @@ const LEAF_PRICE: f32 = 2.0;
 /// More primitives than any leaf holds: those of a subtree that is no leaf, or of one that shares none.
 const TOO_MANY: u32 = 1 << 30;
 
+/// Whether the primitive of an id is an instance, which has a leaf of its own.
+type IsInstance<'a> = dyn Fn(u32) -> bool + Sync + 'a;
+
 /// Which binary nodes become the children of which node, and which of them become leaves: the choice of least cost, as a ray
 /// meets a node or a leaf about as often as it is large (Ylitie, Karras & Laine, *Efficient Incoherent Ray Traversal on GPUs
 /// Through Compressed Wide BVHs*, HPG 2017, §3.1).
-pub(super) struct Collapse<'a> {
+pub(crate) struct Collapse<'a> {
     tree: &'a BinaryTree,
-    primitives: &'a [Primitive],
+    is_instance: &'a IsInstance<'a>,
     /// For each inner binary node and each number i of children that it may become, 2 to 16, in four bits: how many of them
     /// its left child becomes, zero if it stays one. In the lowest four: one if it is a leaf where it stays one.
     splits: Vec<u64>,
@@ -29,7 +31,7 @@ pub(super) struct Collapse<'a> {
 struct Weights<'a> {
     tree: &'a BinaryTree,
     /// None where leaves stay what they are, whatever is in them.
-    primitives: Option<&'a [Primitive]>,
+    is_instance: Option<&'a IsInstance<'a>>,
     costs: Costs,
     measure: SahCost,
     /// What a leaf costs beside how often rays enter it.
@@ -52,7 +54,7 @@ impl Weights<'_> {
         if *count > 0 {
             // An instance is in no leaf.
             let instance_leaf =
-                self.primitives.is_some_and(|primitives| instance_leaf(self.tree, primitives, node).is_some());
+                self.is_instance.is_some_and(|is_instance| instance_leaf(self.tree, is_instance, node).is_some());
             return if instance_leaf {
                 ([self.measure.of(bounds.sides()); NODE_WIDTH], TOO_MANY)
             } else {
@@ -96,52 +98,49 @@ impl Weights<'_> {
 /// What the nodes and leaves that a binary tree becomes cost rays, if its leaves stay what they are; relative to others of the same box.
 pub(crate) fn least_cost(tree: &BinaryTree, costs: Costs) -> f32 {
     let measure = SahCost::in_scene(tree.nodes[0].bounds.sides());
-    let weights = Weights { tree, primitives: None, costs, measure, price: 0.0, lanes: 0 };
+    let weights = Weights { tree, is_instance: None, costs, measure, price: 0.0, lanes: 0 };
     weights.least(0, &mut vec![0; tree.nodes.len()]).0[0]
 }
 
-/// The instance that a binary leaf is, if it is one, and its id.
-fn instance_leaf<'a>(tree: &BinaryTree, primitives: &'a [Primitive], leaf: u32) -> Option<(&'a Instance, u32)> {
+/// The id of the instance that a binary leaf is, if it is one.
+fn instance_leaf(tree: &BinaryTree, is_instance: &IsInstance<'_>, leaf: u32) -> Option<u32> {
     let Node { first, count, .. } = tree.nodes[leaf as usize];
     if count != 1 {
         return None;
     }
     let id = tree.order[first as usize];
-    match &primitives[id as usize] {
-        Primitive::Instance(instance) => Some((instance, id)),
-        _ => None,
-    }
+    is_instance(id).then_some(id)
 }
 
 impl<'a> Collapse<'a> {
     /// For leaves of `lanes` primitives at most; no leaf of the binary tree has more.
-    pub(super) fn new(tree: &'a BinaryTree, primitives: &'a [Primitive], costs: Costs, lanes: usize) -> Self {
+    pub(crate) fn new(tree: &'a BinaryTree, is_instance: &'a IsInstance<'a>, costs: Costs, lanes: usize) -> Self {
         // Those of the binary tree are as full as leaves of eight can be.
         let price = if lanes > LEAF_LIMIT { LEAF_PRICE } else { 0.0 };
         let price = price * tree.nodes[0].bounds.half_area() / tree.order.len() as f32;
-        Self::at_price(tree, primitives, costs, price, lanes)
+        Self::at_price(tree, is_instance, costs, price, lanes)
     }
 
-    fn at_price(tree: &'a BinaryTree, primitives: &'a [Primitive], costs: Costs, price: f32, lanes: usize) -> Self {
+    fn at_price(tree: &'a BinaryTree, is_instance: &'a IsInstance<'a>, costs: Costs, price: f32, lanes: usize) -> Self {
         let mut splits = vec![0; tree.nodes.len()];
         let measure = SahCost::in_scene(tree.nodes[0].bounds.sides());
-        Weights { tree, primitives: Some(primitives), costs, measure, price, lanes: lanes as u32 }
+        Weights { tree, is_instance: Some(is_instance), costs, measure, price, lanes: lanes as u32 }
             .least(0, &mut splits);
-        Self { tree, primitives, splits }
+        Self { tree, is_instance, splits }
     }
 
     /// Whether a binary node that is a child becomes a leaf.
-    pub(super) fn is_leaf(&self, child: u32) -> bool {
+    pub(crate) fn is_leaf(&self, child: u32) -> bool {
         self.tree.nodes[child as usize].count > 0 || self.splits[child as usize] & 15 == 1
     }
 
-    /// The instance that a leaf is, if it is one, and its id.
-    pub(super) fn instance_leaf(&self, leaf: u32) -> Option<(&'a Instance, u32)> {
-        instance_leaf(self.tree, self.primitives, leaf)
+    /// The id of the instance that a leaf is, if it is one.
+    pub(crate) fn instance_leaf(&self, leaf: u32) -> Option<u32> {
+        instance_leaf(self.tree, self.is_instance, leaf)
     }
 
     /// The children of the node whose root is a binary node.
-    pub(super) fn children(&self, root: u32) -> ([u32; NODE_WIDTH], usize) {
+    pub(crate) fn children(&self, root: u32) -> ([u32; NODE_WIDTH], usize) {
         let mut out = ([0; NODE_WIDTH], 0);
         if self.is_leaf(root) {
             out = ([root; NODE_WIDTH], 1);
@@ -166,18 +165,11 @@ impl<'a> Collapse<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Sphere;
     use crate::optimize::scattered;
     use crate::test_support::Random;
-    use etalon_optics::Vec3;
 
     const LANES: usize = 16;
     const COSTS: Costs = Costs { block: LANES as u32, node: 0.35 };
-
-    /// As many primitives that are no instances.
-    fn primitives(count: usize) -> Vec<Primitive> {
-        vec![Primitive::Sphere(Sphere::new(Vec3::new(0.0, 0.0, 0.0), 1.0).expect("a sphere")); count]
-    }
 
     fn area(tree: &BinaryTree, node: u32) -> f64 {
         f64::from(SahCost::in_scene(tree.nodes[0].bounds.sides()).of(tree.nodes[node as usize].bounds.sides()))
@@ -228,8 +220,7 @@ mod tests {
         for round in 0..60 {
             let tree = scattered(&mut random, 8);
             let price = [0.0, 0.01, 0.03][round % 3] * area(&tree, 0) as f32;
-            let primitives = primitives(8);
-            let choices = Collapse::at_price(&tree, &primitives, COSTS, price, LANES);
+            let choices = Collapse::at_price(&tree, &|_| false, COSTS, price, LANES);
             let (cost, leaves) = cost(&choices, 0, f64::from(price));
             let least = least(&tree, f64::from(price));
             assert!((cost - least).abs() < 1e-5 * least, "{cost}, but {least} can be had");
@@ -243,9 +234,8 @@ mod tests {
     fn a_price_fills_leaves() {
         let mut random = Random::new(42);
         let tree = scattered(&mut random, 3000);
-        let primitives = primitives(3000);
         let leaves = |price: f32| {
-            let choices = Collapse::at_price(&tree, &primitives, COSTS, price, LANES);
+            let choices = Collapse::at_price(&tree, &|_| false, COSTS, price, LANES);
             let (mut leaves, mut held, mut rest) = (0, 0, vec![0]);
             while let Some(node) = rest.pop() {
                 if choices.is_leaf(node) {

@@ -1,9 +1,10 @@
 //! Leaves of the tree that rays traverse.
 
+use crate::PrimitiveId;
 use crate::build::BinaryTree;
 use crate::frame::Frame;
-use crate::query::{Axis, Four};
-use crate::{Primitive, PrimitiveId};
+use crate::shapes::FilterShape;
+use crate::vec4::{Axis, Four};
 use bytemuck::{Pod, Zeroable};
 
 /// The fewest lanes that leaves have, and as many numbers about its primitives as a leaf tells.
@@ -51,8 +52,8 @@ enum About {
 }
 
 impl<const W: usize> Leaf<W> {
-    /// The leaf that stands for a subtree of a binary tree.
-    pub(super) fn new(frame: &Frame, tree: &BinaryTree, root: u32, primitives: &[Primitive]) -> Self {
+    /// The leaf that stands for a subtree of a binary tree. `shape` tells what a primitive is.
+    pub(crate) fn new(frame: &Frame, tree: &BinaryTree, root: u32, shape: impl Fn(u32) -> FilterShape) -> Self {
         let node = &tree.nodes[root as usize];
         let mut vertices = [[[f32::NAN; W]; 3]; 3];
         let mut ids = [NO_ID; W];
@@ -64,30 +65,29 @@ impl<const W: usize> Leaf<W> {
                     row[lane] = c;
                 }
             };
-            match &primitives[id as usize] {
-                Primitive::Triangle(t) => {
-                    t.vertices().into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
+            match shape(id) {
+                FilterShape::Triangle(vertices) => {
+                    vertices.into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
                     flats |= 1 << lane;
-                    exact |= u32::from(t.vertices().into_iter().all(|v| frame.is_exact(v))) << lane;
+                    exact |= u32::from(vertices.into_iter().all(|v| frame.is_exact(v))) << lane;
                 }
-                Primitive::Parallelogram(p) => {
-                    let [corner, a, _, b] = p.corners();
-                    [corner, a, b].into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
+                FilterShape::Parallelogram(corners) => {
+                    corners.into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
                     flats |= 1 << lane;
                     quads |= 1 << lane;
                 }
-                Primitive::Disk(d) => {
-                    d.square().into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
+                FilterShape::Disk(corners) => {
+                    corners.into_iter().enumerate().for_each(|(i, vertex)| put(i, vertex));
                     flats |= 1 << lane;
                     quads |= 1 << lane;
                     disks |= 1 << lane;
                 }
-                Primitive::Sphere(s) => {
-                    put(0, s.centre());
-                    vertices[1][0][lane] = frame.length(s.radius());
+                FilterShape::Sphere(centre, radius) => {
+                    put(0, centre);
+                    vertices[1][0][lane] = frame.length(radius);
                     spheres |= 1 << lane;
                 }
-                _ => others |= 1 << lane,
+                FilterShape::Other => others |= 1 << lane,
             }
         }
         // NaN is never the larger.

@@ -1,8 +1,9 @@
 //! What a ray needs to go into an instance, together where a tree's walk finds it.
 
-use crate::query::{Four, Query};
-use crate::wide::WideTree;
-use crate::{Aabb, Geometry, Instance, PrimitiveId, Ray, SurfaceId};
+use super::{Geometry, Instance, WideTree};
+use crate::query::Query;
+use crate::vec4::Four;
+use crate::{Aabb, PrimitiveId, Ray, SurfaceId};
 use etalon_optics::Vec3;
 use std::sync::Arc;
 

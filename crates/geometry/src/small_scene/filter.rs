@@ -19,24 +19,24 @@ use super::wide::Wide;
 const U: f32 = 0.5 * f32::EPSILON;
 
 /// What the filters want to know of a ray, number by number.
-pub(super) type Beam = [f32; 11];
+pub(crate) type Beam = [f32; 11];
 /// Where in a [`Beam`] are: the origin in the frame,
-pub(super) const ORIGIN: usize = 0;
+pub(crate) const ORIGIN: usize = 0;
 /// the direction, scaled by a power of two so that its largest component is in [1, 2),
-pub(super) const DIRECTION: usize = 3;
+pub(crate) const DIRECTION: usize = 3;
 /// s,
-pub(super) const REACH: usize = 6;
+pub(crate) const REACH: usize = 6;
 /// what is not below the distance of any hit that counts,
-pub(super) const LIMIT: usize = 7;
+pub(crate) const LIMIT: usize = 7;
 /// what is not above the distance of any hit that does not,
-pub(super) const CERTAIN_LIMIT: usize = 8;
+pub(crate) const CERTAIN_LIMIT: usize = 8;
 /// the primitive left,
-pub(super) const LEAVES: usize = 9;
+pub(crate) const LEAVES: usize = 9;
 /// and the one aimed at.
-pub(super) const AIMS_AT: usize = 10;
+pub(crate) const AIMS_AT: usize = 10;
 
 /// One ray, or eight, in vectors.
-pub(super) struct Beams<V> {
+pub(crate) struct Beams<V> {
     origin: [V; 3],
     direction: [V; 3],
     reach: V,
@@ -45,7 +45,7 @@ pub(super) struct Beams<V> {
     limit: V,
     certain_limit: V,
     leaves: V,
-    pub(super) aims_at: V,
+    pub(crate) aims_at: V,
     zero: V,
     one: V,
 }
@@ -53,7 +53,7 @@ pub(super) struct Beams<V> {
 impl<V: Wide> Beams<V> {
     /// From a vector for each place in a [`Beam`].
     #[inline(always)]
-    pub(super) fn new(of: [V; size_of::<Beam>() / 4], token: V::Token) -> Self {
+    pub(crate) fn new(of: [V; size_of::<Beam>() / 4], token: V::Token) -> Self {
         let reach = of[REACH];
         Self {
             origin: [of[ORIGIN], of[ORIGIN + 1], of[ORIGIN + 2]],
@@ -72,7 +72,7 @@ impl<V: Wide> Beams<V> {
 }
 
 /// What the spheres want to know besides.
-pub(super) struct SphereFilter<V> {
+pub(crate) struct SphereFilter<V> {
     squared: V,
     per_squared: V,
     longer: V,
@@ -85,7 +85,7 @@ pub(super) struct SphereFilter<V> {
 
 impl<V: Wide> SphereFilter<V> {
     #[inline(always)]
-    pub(super) fn new(token: V::Token, beams: &Beams<V>) -> Self {
+    pub(crate) fn new(token: V::Token, beams: &Beams<V>) -> Self {
         let all = |v| V::splat(token, v);
         let squared = dot(beams.direction, beams.direction);
         let per_squared = beams.one / squared;
@@ -103,38 +103,38 @@ impl<V: Wide> SphereFilter<V> {
 }
 
 /// What is known of a ray and a primitive.
-pub(super) struct Known<V: Wide> {
+pub(crate) struct Known<V: Wide> {
     /// Where there may be a hit that counts.
-    pub(super) met: V::Mask,
+    pub(crate) met: V::Mask,
     /// Where there certainly is one.
-    pub(super) certain: V::Mask,
+    pub(crate) certain: V::Mask,
     /// Not above its distance.
-    pub(super) near: V,
+    pub(crate) near: V,
     /// Not below its distance, where it is certain.
-    pub(super) far: V,
+    pub(crate) far: V,
 }
 
 /// Rows of [`Flats`] as vectors.
-pub(super) struct FlatsIn<V> {
+pub(crate) struct FlatsIn<V> {
     corner: [V; 3],
     a: [V; 3],
     minus_b: [V; 3],
     normal: [V; 3],
     t_error: V,
     triangle: V,
-    pub(super) id: V,
+    pub(crate) id: V,
 }
 
 /// Rows of [`Spheres`] as vectors.
-pub(super) struct SpheresIn<V> {
+pub(crate) struct SpheresIn<V> {
     centre: [V; 3],
     radius: V,
-    pub(super) id: V,
+    pub(crate) id: V,
 }
 
 impl<V> FlatsIn<V> {
     #[inline(always)]
-    pub(super) fn new(block: &Flats, row: impl Fn(&[f32; BLOCK]) -> V) -> Self {
+    pub(crate) fn new(block: &Flats, row: impl Fn(&[f32; BLOCK]) -> V) -> Self {
         let three = |rows: &[[f32; BLOCK]; 3]| [row(&rows[0]), row(&rows[1]), row(&rows[2])];
         Self {
             corner: three(&block.corner),
@@ -150,7 +150,7 @@ impl<V> FlatsIn<V> {
 
 impl<V> SpheresIn<V> {
     #[inline(always)]
-    pub(super) fn new(block: &Spheres, row: impl Fn(&[f32; BLOCK]) -> V) -> Self {
+    pub(crate) fn new(block: &Spheres, row: impl Fn(&[f32; BLOCK]) -> V) -> Self {
         let centre = [row(&block.centre[0]), row(&block.centre[1]), row(&block.centre[2])];
         Self { centre, radius: row(&block.radius), id: row(&block.id) }
     }
@@ -174,7 +174,7 @@ fn minus<V: Wide>(p: [V; 3], q: [V; 3]) -> [V; 3] {
 /// Triangles, parallelograms and squares (Möller & Trumbore, *Fast, Minimum Storage Ray/Triangle Intersection*, 1997). What a
 /// ray leaves it does not meet.
 #[inline(always)]
-pub(super) fn flats<V: Wide>(beams: &Beams<V>, shape: &FlatsIn<V>) -> Known<V> {
+pub(crate) fn flats<V: Wide>(beams: &Beams<V>, shape: &FlatsIn<V>) -> Known<V> {
     let r = minus(shape.corner, beams.origin);
     let q = cross(r, beams.direction);
     let det = dot(shape.normal, beams.direction);
@@ -204,7 +204,7 @@ pub(super) fn flats<V: Wide>(beams: &Beams<V>, shape: &FlatsIn<V>) -> Known<V> {
 /// The line passes the centre at a distance |q|/|d| that errs by 35us; both radii between which the true one lies, 40us off, and
 /// q² itself, 64 roundoffs off, leave room for every rounding of what follows. The place abreast of the centre errs by 50us.
 #[inline(always)]
-pub(super) fn spheres<V: Wide>(beams: &Beams<V>, chords: &SphereFilter<V>, shape: &SpheresIn<V>) -> Known<V> {
+pub(crate) fn spheres<V: Wide>(beams: &Beams<V>, chords: &SphereFilter<V>, shape: &SpheresIn<V>) -> Known<V> {
     let r = minus(shape.centre, beams.origin);
     let q = cross(r, beams.direction);
     let squared = dot(q, q);

@@ -5,7 +5,7 @@ use std::array::from_fn;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
 /// Eight numbers.
-pub(in crate::traverse) trait Eight:
+pub(crate) trait Eight:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The proof that the processor has the instructions.
@@ -50,18 +50,18 @@ pub(in crate::traverse) trait Eight:
 /// What a function makes of each of three axes. `array::map` may stay a function of its own, without the caller's vector
 /// instructions, and each operation within it then becomes a call.
 #[inline(always)]
-pub(in crate::traverse) fn axes<T>(f: impl Fn(usize) -> T) -> [T; 3] {
+pub(crate) fn axes<T>(f: impl Fn(usize) -> T) -> [T; 3] {
     [f(0), f(1), f(2)]
 }
 
 /// Exponents' bits.
-pub(in crate::traverse) const EXPONENT: u64 = 0x7FF << 52;
+pub(crate) const EXPONENT: u64 = 0x7FF << 52;
 /// The sum of the bits of a power of two and of its inverse.
-pub(in crate::traverse) const TURN: u64 = 2046 << 52;
+pub(crate) const TURN: u64 = 2046 << 52;
 
 /// [`Eight`] in plain Rust.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::traverse) struct PlainEight([f64; LANES]);
+pub(crate) struct PlainEight([f64; LANES]);
 
 macro_rules! operator {
     ($trait:ident, $f:ident, $operator:tt) => {

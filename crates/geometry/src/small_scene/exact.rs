@@ -3,41 +3,42 @@
 
 use super::FLAT_LIMIT;
 use super::eight::Eight;
+use crate::LANES;
+use crate::shapes::FilterShape;
 use crate::shapes::planar::{T_DETERMINED, W_DETERMINED};
-use crate::{LANES, Primitive};
 use std::array::from_fn;
 
 /// The corners of triangles, one row of coordinates for each.
 #[derive(Debug)]
-pub(super) struct Corners(Vec<f64>);
+pub(crate) struct Corners(Vec<f64>);
 
 /// Eight rays as [`Query`](crate::query::Query) prepares them.
-pub(super) struct Eights<E> {
+pub(crate) struct Eights<E> {
     /// The axis along which each direction is largest.
-    pub(super) axis: [u32; LANES],
+    pub(crate) axis: [u32; LANES],
     /// Along the axes of the projection.
-    pub(super) start: [E; 3],
-    pub(super) shear: [E; 3],
-    pub(super) t_max: E,
+    pub(crate) start: [E; 3],
+    pub(crate) shear: [E; 3],
+    pub(crate) t_max: E,
 }
 
 /// What the test finds: whether it is certain, and a hit.
-pub(super) struct Decided<E: Eight> {
-    pub(super) hit: E::Mask,
-    pub(super) t: E,
-    pub(super) uv: [E; 2],
+pub(crate) struct Decided<E: Eight> {
+    pub(crate) hit: E::Mask,
+    pub(crate) t: E,
+    pub(crate) uv: [E; 2],
 }
 
 /// Numbers of a triangle: four for each corner.
 const ROW: usize = 16;
 
 impl Corners {
-    pub(super) fn new(primitives: &[Primitive]) -> Self {
+    pub(crate) fn new(shapes: impl Iterator<Item = FilterShape>) -> Self {
         // NaN hits nothing here.
         let mut table = vec![f64::NAN; ROW * FLAT_LIMIT];
-        for (row, primitive) in table.chunks_mut(ROW).zip(primitives) {
-            if let Primitive::Triangle(t) = primitive {
-                for (corner, vertex) in row.chunks_mut(4).zip(t.vertices()) {
+        for (row, shape) in table.chunks_mut(ROW).zip(shapes) {
+            if let FilterShape::Triangle(vertices) = shape {
+                for (corner, vertex) in row.chunks_mut(4).zip(vertices) {
                     corner[..3].copy_from_slice(&vertex.to_array());
                 }
             }
@@ -45,13 +46,13 @@ impl Corners {
         Self(table)
     }
 
-    pub(super) fn memory_bytes(&self) -> usize {
+    pub(crate) fn memory_bytes(&self) -> usize {
         size_of_val(self.0.as_slice())
     }
 
     /// Tests the triangle of each ray.
     #[inline(always)]
-    pub(super) fn triangles<E: Eight>(&self, token: E::Token, rays: &Eights<E>, ids: &[u32; LANES]) -> Decided<E> {
+    pub(crate) fn triangles<E: Eight>(&self, token: E::Token, rays: &Eights<E>, ids: &[u32; LANES]) -> Decided<E> {
         let table: &[f64; ROW * FLAT_LIMIT] = self.0.as_slice().try_into().expect("a row for each id");
         let kz = rays.axis;
         let kx = kz.map(|k| if k == 2 { 0 } else { k + 1 });

@@ -1,19 +1,16 @@
 //! Eight rays against each primitive in turn.
 
-use super::eight::{Eight, axes};
-use super::exact::{Corners, Decided, Eights};
-use super::filter::*;
-use super::{BLOCK, FLAT_LIMIT, FURTHEST, Flat, MOST_REACH, NO_ID, SLACK, Wide};
 use crate::frame::{lowered, raised};
 use crate::lanes::lanes_of;
 use crate::query::{MAX_ORIGIN, Query, power_of_two};
+use crate::small_scene::*;
 use crate::traverse::{Filters, Job};
 use crate::{Hits, LANES, Primitive, PrimitiveId, Rays, SurfaceId};
 use std::array::from_fn;
 
 /// The closest hits; and the lanes that have to be asked for one by one.
 pub(super) struct Closest<'a> {
-    pub(super) flat: &'a Flat,
+    pub(super) flat: &'a SmallScene,
     pub(super) corners: &'a Corners,
     pub(super) primitives: &'a [Primitive],
     pub(super) rays: &'a Rays,
@@ -22,7 +19,7 @@ pub(super) struct Closest<'a> {
 
 /// Whether anything is hit; and the lanes that have to be asked for one by one.
 pub(super) struct Any<'a> {
-    pub(super) flat: &'a Flat,
+    pub(super) flat: &'a SmallScene,
     pub(super) rays: &'a Rays,
     pub(super) active: u8,
 }
@@ -44,7 +41,7 @@ struct Prepared<E: Eight> {
 
 impl<E: Eight> Prepared<E> {
     #[inline(always)]
-    fn new(token: E::Token, flat: &Flat, rays: &Rays, active: u8) -> Self {
+    fn new(token: E::Token, flat: &SmallScene, rays: &Rays, active: u8) -> Self {
         let all = |v| E::splat(token, v);
         let (origin, given) = (E::rows(token, &rays.origin), E::rows(token, &rays.direction));
         let t = E::new(token, &rays.t_max);
@@ -109,7 +106,7 @@ fn id_of(SurfaceId { instance, primitive }: SurfaceId) -> f32 {
     if id < FLAT_LIMIT as u32 { id as i32 as f32 } else { NO_ID }
 }
 
-/// [`super::limits`] of eight.
+/// [`crate::small_scene::limits`] of eight.
 #[inline(always)]
 fn limits<E: Eight>(token: E::Token, t: E) -> [[f32; LANES]; 2] {
     let all = |v| E::splat(token, v);
@@ -120,7 +117,7 @@ fn limits<E: Eight>(token: E::Token, t: E) -> [[f32; LANES]; 2] {
 /// Calls a function with what is known of the eight rays and each share of primitives, and their ids.
 #[inline(always)]
 fn each<V: Wide>(
-    flat: &Flat,
+    flat: &SmallScene,
     token: V::Token,
     beams: &Beams<V>,
     mut f: impl FnMut(Known<V>, V),

@@ -5,7 +5,7 @@ use crate::LANES;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
 /// Floats of one vector: as many primitives for one ray, or one or two primitives for each of eight rays.
-pub(in crate::traverse) trait Wide:
+pub(crate) trait Wide:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The proof that the processor has the instructions.

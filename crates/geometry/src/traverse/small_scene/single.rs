@@ -1,29 +1,29 @@
 //! One ray against all primitives, as many at once as a vector holds.
 
-use super::filter::*;
-use super::{BLOCK, Flat, NO_ID, Wide};
-use crate::best::{Best, Found};
 use crate::query::Query;
+use crate::ray::Found;
+use crate::small_scene::*;
+use crate::traverse::best::Best;
 use crate::traverse::{Filters, Job, intersect_shape, occludes};
 use crate::{Primitive, PrimitiveId};
 
 /// The closest hit.
 pub(super) struct Closest<'a> {
-    pub(super) flat: &'a Flat,
+    pub(super) flat: &'a SmallScene,
     pub(super) primitives: &'a [Primitive],
     pub(super) query: &'a Query,
 }
 
 /// Whether anything is hit.
 pub(super) struct Any<'a> {
-    pub(super) flat: &'a Flat,
+    pub(super) flat: &'a SmallScene,
     pub(super) primitives: &'a [Primitive],
     pub(super) query: &'a Query,
 }
 
 /// Calls a function with what is known of each vector of primitives, and their ids, until it wants no more.
 #[inline(always)]
-fn each<V: Wide>(flat: &Flat, token: V::Token, beams: &Beams<V>, mut f: impl FnMut(Known<V>, V) -> bool) {
+fn each<V: Wide>(flat: &SmallScene, token: V::Token, beams: &Beams<V>, mut f: impl FnMut(Known<V>, V) -> bool) {
     let mut left = flat.flat_count;
     for block in &flat.flats {
         let mut at = 0;

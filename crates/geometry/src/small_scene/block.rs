@@ -1,15 +1,15 @@
-//! The primitives of a flat geometry, as the filters want them.
+//! The primitives of a small scene, as the filters want them.
 
+use crate::PrimitiveId;
 use crate::double_double::{cross, difference, round};
 use crate::frame::Frame;
 use crate::query::power_of_two;
-use crate::{Primitive, PrimitiveId};
 use etalon_optics::Vec3;
 
 /// Primitives of a block.
-pub(in crate::traverse) const BLOCK: usize = 16;
+pub(crate) const BLOCK: usize = 16;
 /// What stands for no primitive where ids are numbers.
-pub(super) const NO_ID: f32 = -1.0;
+pub(crate) const NO_ID: f32 = -1.0;
 
 /// One number for each primitive.
 type Row = [f32; BLOCK];
@@ -18,36 +18,36 @@ type Row = [f32; BLOCK];
 /// filter keeps.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(super) struct Flats {
+pub(crate) struct Flats {
     /// A corner.
-    pub(super) corner: [Row; 3],
+    pub(crate) corner: [Row; 3],
     /// The edge a from it to the next corner, scaled by a power of two so that the larger edge's largest component is in [1, 2).
-    pub(super) a: [Row; 3],
+    pub(crate) a: [Row; 3],
     /// The edge to the one before, negated, at the same scale.
-    pub(super) minus_b: [Row; 3],
+    pub(crate) minus_b: [Row; 3],
     /// Their product b × a, at that scale once.
-    pub(super) normal: [Row; 3],
+    pub(crate) normal: [Row; 3],
     /// 48 roundoffs of its largest component: see `filter`. Infinite if the filter can know no distance.
-    pub(super) t_error: Row,
+    pub(crate) t_error: Row,
     /// 1 for triangles, else 0.
-    pub(super) triangle: Row,
+    pub(crate) triangle: Row,
     /// Ids, as numbers.
-    pub(super) id: Row,
+    pub(crate) id: Row,
 }
 
 /// Sixteen spheres, likewise.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub(super) struct Spheres {
-    pub(super) centre: [Row; 3],
-    pub(super) radius: Row,
-    pub(super) id: Row,
+pub(crate) struct Spheres {
+    pub(crate) centre: [Row; 3],
+    pub(crate) radius: Row,
+    pub(crate) id: Row,
 }
 
 const EMPTY: Row = [f32::NAN; BLOCK];
 
 impl Flats {
-    pub(super) const EMPTY: Self = Self {
+    pub(crate) const EMPTY: Self = Self {
         corner: [EMPTY; 3],
         a: [EMPTY; 3],
         minus_b: [EMPTY; 3],
@@ -58,7 +58,7 @@ impl Flats {
     };
 
     /// Puts a shape into a lane, given by three corners, the first between its neighbours.
-    pub(super) fn set(
+    pub(crate) fn set(
         &mut self,
         lane: usize,
         frame: &Frame,
@@ -88,11 +88,11 @@ impl Flats {
 }
 
 impl Spheres {
-    pub(super) const EMPTY: Self = Self { centre: [EMPTY; 3], radius: EMPTY, id: EMPTY };
+    pub(crate) const EMPTY: Self = Self { centre: [EMPTY; 3], radius: EMPTY, id: EMPTY };
 
-    pub(super) fn set(&mut self, lane: usize, frame: &Frame, id: PrimitiveId, sphere: &crate::Sphere) {
-        put(&mut self.centre, lane, frame.point(sphere.centre()).map(f64::from));
-        self.radius[lane] = frame.length(sphere.radius());
+    pub(crate) fn set(&mut self, lane: usize, frame: &Frame, id: PrimitiveId, centre: Vec3<f64>, radius: f64) {
+        put(&mut self.centre, lane, frame.point(centre).map(f64::from));
+        self.radius[lane] = frame.length(radius);
         self.id[lane] = id.0 as f32;
     }
 }
@@ -103,25 +103,10 @@ fn put(rows: &mut [Row; 3], lane: usize, v: [f64; 3]) {
     }
 }
 
-/// How the filters see a primitive.
+/// Which flat shape a lane holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Triangle,
     Parallelogram,
     Disk,
-    Sphere,
-    /// Without a filter.
-    Other,
-}
-
-impl Kind {
-    pub(super) fn of(primitive: &Primitive) -> Self {
-        match primitive {
-            Primitive::Triangle(_) => Self::Triangle,
-            Primitive::Parallelogram(_) => Self::Parallelogram,
-            Primitive::Disk(_) => Self::Disk,
-            Primitive::Sphere(_) => Self::Sphere,
-            Primitive::Cylinder(_) | Primitive::Instance(_) => Self::Other,
-        }
-    }
 }

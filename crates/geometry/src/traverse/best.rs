@@ -1,10 +1,8 @@
 //! The closest hit so far, and what replaces it.
 
-use crate::query::{Query, RawHit};
+use crate::query::Query;
+use crate::ray::{Found, RawHit};
 use crate::{Primitive, PrimitiveId, SurfaceId};
-
-/// A hit and its surface.
-pub(crate) type Found = (RawHit, SurfaceId);
 
 /// The closest hit so far.
 pub(crate) struct Best {

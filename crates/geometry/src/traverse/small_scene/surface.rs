@@ -1,49 +1,10 @@
 //! The surfaces of few primitives at eight hits: the operations of each shape's own, in their order, on what they share.
 
-use super::FLAT_LIMIT;
-use super::eight::{Eight, axes};
 use crate::lanes::lanes_of;
-use crate::ray::ExactPoint;
-use crate::shapes::planar;
+use crate::small_scene::{Eight, FLAT_LIMIT, IS_PLANE, POINT, ROW, SIZE, SurfaceTable, axes};
 use crate::traverse::{Filters, Job};
-use crate::{Hits, LANES, Primitive, PrimitiveId, Rays, SurfacePoint, SurfacePoints};
-use etalon_optics::{Real, Vec3};
-
-/// Numbers of a plane: see [`planar::surface`]. Its normal, a point, its size, and 1, or 0 for what is no plane.
-const ROW: usize = 8;
-const POINT: u32 = 3;
-const SIZE: u32 = 6;
-const IS_PLANE: u32 = 7;
-
-/// The planes of primitives.
-#[derive(Debug)]
-pub(super) struct SurfaceTable(Vec<f64>);
-
-impl SurfaceTable {
-    pub(super) fn new(primitives: &[Primitive]) -> Self {
-        let mut table = vec![0.0; ROW * FLAT_LIMIT];
-        for (row, primitive) in table.chunks_mut(ROW).zip(primitives) {
-            if let Some((point, normal, size)) = primitive.plane() {
-                row.copy_from_slice(&[normal.x, normal.y, normal.z, point.x, point.y, point.z, size, 1.0]);
-            }
-        }
-        Self(table)
-    }
-
-    pub(super) fn memory_bytes(&self) -> usize {
-        size_of_val(self.0.as_slice())
-    }
-
-    /// The surface of a primitive near a point.
-    #[inline]
-    pub(super) fn at(&self, primitives: &[Primitive], id: PrimitiveId, p: Vec3<f64>) -> ExactPoint {
-        let (rows, _) = self.0.as_chunks::<ROW>();
-        match rows[id.0 as usize] {
-            [nx, ny, nz, x, y, z, size, 1.0] => planar::surface(p, Vec3::new(x, y, z), Vec3::new(nx, ny, nz), size),
-            _ => primitives[id.0 as usize].surface(p),
-        }
-    }
-}
+use crate::{Hits, LANES, Primitive, Rays, SurfacePoint, SurfacePoints};
+use etalon_optics::Real;
 
 /// The surfaces at the hits.
 pub(super) struct Surfaces<'a> {
@@ -64,7 +25,7 @@ impl Job for Surfaces<'_> {
         let token = filters.into();
         let all = |v| F::Eight::splat(token, v);
         let ids = hits.surface.map(|s| s.primitive.0 % FLAT_LIMIT as u32);
-        let planes: &[f64; ROW * FLAT_LIMIT] = table.0.as_slice().try_into().expect("a plane for each id");
+        let planes = table.rows();
         // Functions and not closures, which may be left outside without the caller's vector instructions.
         let n: [F::Eight; 3] = three(token, planes, &ids, 0);
         let point: [F::Eight; 3] = three(token, planes, &ids, POINT);

@@ -1,6 +1,7 @@
 //! What primitives there are.
 
-use crate::{Aabb, Primitive};
+use super::Primitive;
+use crate::Aabb;
 use rayon::prelude::*;
 
 /// Primitives that are counted one after the other.
