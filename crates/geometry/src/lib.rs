@@ -47,38 +47,33 @@
 //! | `placement`, `motion` | where a geometry is placed, also as a function of time |
 //! | `frame` | the accelerator's frame, and conservative box tests in `f32` |
 //! | `level` | the instruction set to use |
-//! | `build` | the two builders of a binary tree |
-//! | `sah_cost`, `wide` | how often rays enter a box; nodes of sixteen children, leaves, and the choice of both (`wide/collapse.rs`) |
-//! | `optimize` | a finished binary tree made better |
+//! | `bvh` | the tree: its two builders, an optimiser, the choice of nodes of sixteen children and of leaves |
 //! | `small_scene` | up to 128 primitives in blocks, instead of a tree |
 //! | `geometry` | primitives, instances, and what is built over them |
 //! | `traverse` | how rays go through trees, small scenes and instances, for each instruction set |
 //! | `queries` | the questions that a [`Geometry`] answers |
 
 mod aabb;
-mod build;
+mod bvh;
 mod double_double;
 mod frame;
 mod geometry;
 mod lanes;
 mod level;
 mod motion;
-mod optimize;
 mod pages;
 mod passed;
 mod placement;
 mod queries;
 mod query;
 mod ray;
-mod sah_cost;
 mod shapes;
 mod small_scene;
 mod traverse;
 mod vec4;
-mod wide;
 
 pub use aabb::Aabb;
-pub use build::TreeBuilder;
+pub use bvh::build::TreeBuilder;
 pub use geometry::{Geometry, GeometryError, Instance, MAX_NESTING, Primitive};
 pub use lanes::{Hits, LANES, Rays, SurfacePoints};
 pub use motion::{Motion, Pose};

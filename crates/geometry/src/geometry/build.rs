@@ -1,12 +1,12 @@
 //! Building a geometry: a tree of many primitives, a small scene of few shapes.
 
 use super::{Geometry, GeometryError, MAX_NESTING, Primitive, PrimitiveStatistics, WideTree};
-use crate::build::{Costs, Item, LEAF_LIMIT, TreeBuilder, build, build_fast};
+use crate::bvh::build::{Costs, Item, LEAF_LIMIT, TreeBuilder, build, build_fast};
+use crate::bvh::node::leaf_lanes;
+use crate::bvh::optimize::improved;
 use crate::frame::Frame;
 use crate::level;
-use crate::optimize::improved;
 use crate::small_scene::{FLAT_LIMIT, SmallScene};
-use crate::wide::leaf_lanes;
 use rayon::prelude::*;
 
 /// Up to this many primitives, instances among them, are tested one by one, without a tree.

@@ -2,12 +2,12 @@
 
 use super::{InstanceNode, Primitive, PrimitiveStatistics};
 use crate::PrimitiveId;
-use crate::build::{BinaryTree, Costs};
+use crate::bvh::build::{BinaryTree, Costs};
+use crate::bvh::collapse::Collapse;
+use crate::bvh::leaf::Leaf;
+use crate::bvh::node::{Children, INSTANCE_LEAF, LEAF, Leaves, NODE_LINES, NODE_WIDTH, Node16, Nodes, TreeKind};
 use crate::frame::{Box32, Frame};
 use crate::pages::Pages;
-use crate::wide::{
-    Children, Collapse, INSTANCE_LEAF, LEAF, Leaf, Leaves, NODE_LINES, NODE_WIDTH, Node16, Nodes, TreeKind,
-};
 use rayon::prelude::*;
 
 /// Trees up to this size, bytes, are mostly in caches from which prefetching gains nothing.

@@ -63,7 +63,7 @@ pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: Primit
 pub(super) fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
     at_each_level(|level| {
         let geometry = Geometry::build_with(primitives.clone(), 0).unwrap();
-        assert!(geometry.tree().is_none_or(|tree| tree.lanes() == crate::wide::leaf_lanes(level)));
+        assert!(geometry.tree().is_none_or(|tree| tree.lanes() == crate::bvh::node::leaf_lanes(level)));
         check_geometry(&geometry, rays, seed, &place)
     })
 }

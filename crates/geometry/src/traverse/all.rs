@@ -5,11 +5,12 @@ use super::leaf::{SphereFilter, candidates};
 use super::node_hits::NodeHits;
 use super::portable::Portable;
 use super::{Filters, Job, run};
+use crate::bvh::leaf::Leaf;
+use crate::bvh::node::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaves};
 use crate::frame::Frame;
 use crate::geometry::WideTree;
 use crate::query::Query;
 use crate::ray::RawHit;
-use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, Leaves};
 use crate::{Primitive, PrimitiveId, SurfaceId};
 use etalon_simd::Level;
 

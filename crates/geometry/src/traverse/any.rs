@@ -7,10 +7,11 @@ use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
 use super::{Narrow, intersect_exact};
+use crate::bvh::leaf::Leaf;
+use crate::bvh::node::{ANY_KIND, INSTANCE_LEAF, LEAF, NODE_WIDTH, Node16, Nodes, SPHERES};
 use crate::frame::FrameRay;
 use crate::geometry::{InstanceNode, WideTree};
 use crate::query::Query;
-use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, NODE_WIDTH, Node16, Nodes, SPHERES};
 use crate::{Primitive, PrimitiveId};
 
 /// Whether anything is hit, in the order of the tree. A level of the stack is one entry, the children yet to be visited:

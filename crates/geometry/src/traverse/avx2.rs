@@ -9,11 +9,11 @@ use super::vector::Vector;
 use super::wide256::D8;
 use super::{Filters, Job, Start, any_far_with, any_with, closest_far_with, closest_with};
 use crate::Primitive;
+use crate::bvh::node::{NODE_WIDTH, Node16};
 use crate::frame::{BoxRay, LEAST_DISTANCE};
 use crate::geometry::{InstanceNode, WideTree};
 use crate::query::Query;
 use crate::vec4::Lanes4;
-use crate::wide::{NODE_WIDTH, Node16};
 use etalon_simd::Avx2;
 
 compiled!(Avx2);

@@ -7,11 +7,12 @@ use super::portable::Portable;
 use super::stack::{Room, Stack};
 use super::start::{Deferred, Start};
 use super::{Filters, Narrow, NodeHits, intersect_exact};
+use crate::bvh::leaf::Leaf;
+use crate::bvh::node::{ANY_KIND, INSTANCE_LEAF, LEAF, NODE_WIDTH, Nodes, SPHERES};
 use crate::frame::FrameRay;
 use crate::geometry::WideTree;
 use crate::query::Projection;
 use crate::ray::RawHit;
-use crate::wide::{ANY_KIND, INSTANCE_LEAF, LEAF, Leaf, NODE_WIDTH, Nodes, SPHERES};
 use crate::{Primitive, PrimitiveId, SurfaceId, Triangle};
 
 /// The closest hit, by a stack of children, nearest on top.

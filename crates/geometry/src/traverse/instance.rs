@@ -4,11 +4,12 @@ use super::best::Best;
 use super::compiled::Compiled;
 use super::vector::Vector;
 use super::{LEVELS, Narrow, Visit, any_on, closest_on, occludes};
+use crate::bvh::leaf::Leaf;
+use crate::bvh::node::{ANY_KIND, Leaves, NODE_WIDTH, TRIANGLES, TreeKind};
 use crate::frame::{Entry, FrameRay};
 use crate::geometry::{InstanceNode, WideTree};
 use crate::query::Query;
 use crate::ray::{ExactPoint, Found, RawHit};
-use crate::wide::{ANY_KIND, Leaf, Leaves, NODE_WIDTH, TRIANGLES, TreeKind};
 use crate::{Hit, Instance, Primitive, Ray, SurfaceId};
 
 /// The end of a ray within an instance: that outside, but no smaller than 2⁻¹²⁰. In the units there, which may be 2⁹⁰⁰ times as long, a

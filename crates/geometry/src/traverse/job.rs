@@ -27,9 +27,9 @@ pub(super) fn run<J: Job>(level: Level, job: J) -> J::Output {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bvh::node::leaf_lanes;
     use crate::level;
     use crate::traverse::vector::Vector;
-    use crate::wide::leaf_lanes;
 
     struct Width;
 

@@ -3,9 +3,10 @@
 use super::vector::Vector;
 use super::{Candidates, Filters, Narrow, Row};
 use crate::PrimitiveId;
+use crate::bvh::leaf::{Leaf, NO_ID};
+use crate::bvh::node::{SPHERES, TRIANGLES};
 use crate::frame::FrameRay;
 use crate::vec4::{AXES, Lanes4};
-use crate::wide::{Leaf, NO_ID, SPHERES, TRIANGLES};
 
 /// The primitives of a leaf that the ray may hit in [0, `limit`], and the flat shapes and spheres that it certainly hits in
 /// (0, `certain_limit`). The primitive that the ray leaves is not among them unless it may be hit again, and never certain.

@@ -32,14 +32,15 @@ mod wide256;
 #[cfg(target_arch = "x86_64")]
 mod wide512;
 
-use crate::build::MAX_DEPTH;
+use crate::bvh::build::MAX_DEPTH;
+use crate::bvh::leaf::Leaf;
+use crate::bvh::node::{ANY_KIND, Leaves, NODE_WIDTH, Node16, SPHERES, TRIANGLES, TreeKind};
 use crate::frame::{BoxRay, FrameRay};
 use crate::geometry::WideTree;
 use crate::query::{Projection, Query};
 use crate::ray::{Found, RawHit};
 use crate::small_scene::{Eight, Wide};
 use crate::vec4::Four;
-use crate::wide::{ANY_KIND, Leaf, Leaves, NODE_WIDTH, Node16, SPHERES, TRIANGLES, TreeKind};
 use crate::{Hits, Primitive, PrimitiveId, Rays, Triangle};
 pub(crate) use all::{Visit, all, all_of};
 use any::any_on;

@@ -1,6 +1,6 @@
 //! The children of a node that a ray meets.
 
-use crate::wide::{NODE_WIDTH, Node16};
+use crate::bvh::node::{NODE_WIDTH, Node16};
 
 /// Numbers that a vector is stored to and of which some are read back at once: within a cache line, for what is stored across two of
 /// them can be read only once it is written.

@@ -129,8 +129,8 @@ impl Links {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::build::Span;
-    use crate::optimize::scattered;
+    use crate::bvh::build::Span;
+    use crate::bvh::optimize::scattered;
     use crate::test_support::Random;
 
     /// The area of all inner nodes, from the leaves' boxes alone.

@@ -1,12 +1,8 @@
 //! The tree that rays traverse: sixteen children a node, leaves of up to eight or sixteen primitives, both in SoA order.
 
-mod collapse;
-mod leaf;
-
+use super::leaf::Leaf;
 use bytemuck::{Pod, Zeroable};
-pub(crate) use collapse::{Collapse, least_cost};
 use etalon_simd::Level;
-pub(crate) use leaf::{Leaf, NO_ID};
 
 /// Children of a node. A ray waits for each node's answer before it knows where to go next: sixteen at once shorten the way.
 pub(crate) const NODE_WIDTH: usize = 16;

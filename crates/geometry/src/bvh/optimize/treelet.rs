@@ -1,8 +1,8 @@
 //! The treelet of a tree: what is above its largest subtrees.
 
 use super::links::{Links, NONE};
-use crate::build::{BinaryTree, Costs, Node};
-use crate::wide::least_cost;
+use crate::bvh::build::{BinaryTree, Costs, Node};
+use crate::bvh::collapse::least_cost;
 use etalon_simd::Level;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -1,7 +1,7 @@
 //! A binary tree whose parts can be moved.
 
-use crate::build::{BinaryTree, MAX_DEPTH, Node, Span};
-use crate::sah_cost::SahCost;
+use crate::bvh::build::{BinaryTree, MAX_DEPTH, Node, Span};
+use crate::bvh::sah_cost::SahCost;
 
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;

@@ -1,8 +1,8 @@
 //! Which nodes of a binary tree become nodes and leaves of the tree that rays traverse.
 
-use super::NODE_WIDTH;
-use crate::build::{BinaryTree, Costs, LEAF_LIMIT, Node};
-use crate::sah_cost::SahCost;
+use super::node::NODE_WIDTH;
+use crate::bvh::build::{BinaryTree, Costs, LEAF_LIMIT, Node};
+use crate::bvh::sah_cost::SahCost;
 
 /// Above this many binary nodes the two halves of a tree are taken in parallel.
 const PARALLEL_LIMIT: usize = 16_384;
@@ -165,7 +165,7 @@ impl<'a> Collapse<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimize::scattered;
+    use crate::bvh::optimize::scattered;
     use crate::test_support::Random;
 
     const LANES: usize = 16;

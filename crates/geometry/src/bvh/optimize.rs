@@ -11,7 +11,7 @@ mod links;
 mod reinsert;
 mod treelet;
 
-use crate::build::{BinaryTree, Costs};
+use crate::bvh::build::{BinaryTree, Costs};
 use etalon_simd::Level;
 use links::Links;
 use treelet::Treelet;
@@ -43,11 +43,11 @@ pub(crate) use tests::scattered;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::build::{Item, Span, build};
+    use crate::bvh::build::{Item, Span, build};
+    use crate::bvh::collapse::least_cost;
     use crate::frame::Box32;
     use crate::level;
     use crate::test_support::Random;
-    use crate::wide::least_cost;
     use std::array::from_fn;
 
     const COSTS: Costs = Costs { block: 1, node: 0.35 };

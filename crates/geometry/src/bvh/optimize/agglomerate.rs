@@ -7,9 +7,9 @@
 //! Recent Advances in Hierarchical Agglomeration Algorithms*, The Computer Journal 26(4), 1983).
 
 use super::links::{Links, NONE};
-use crate::build::Span;
+use crate::bvh::build::Span;
+use crate::bvh::sah_cost::SahCost;
 use crate::level::{Loop, vectorised};
-use crate::sah_cost::SahCost;
 use etalon_simd::Level;
 use std::array::from_fn;
 
@@ -161,9 +161,9 @@ impl Slots {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::build::BinaryTree;
+    use crate::bvh::build::BinaryTree;
+    use crate::bvh::optimize::scattered;
     use crate::level;
-    use crate::optimize::scattered;
     use crate::test_support::Random;
 
     fn leaves(tree: &BinaryTree) -> Vec<Span> {

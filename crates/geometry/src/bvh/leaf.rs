@@ -1,7 +1,7 @@
 //! Leaves of the tree that rays traverse.
 
 use crate::PrimitiveId;
-use crate::build::BinaryTree;
+use crate::bvh::build::BinaryTree;
 use crate::frame::Frame;
 use crate::shapes::FilterShape;
 use crate::vec4::{Axis, Four};
