@@ -11,6 +11,7 @@ mod integrator;
 mod material;
 mod motion;
 mod references;
+mod shutter;
 
 pub use detail::{Bitangent, OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
@@ -23,6 +24,7 @@ pub use material::{
 };
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use references::ReferenceError;
+pub(crate) use shutter::middle_s;
 
 use std::sync::Arc;
 
@@ -69,7 +71,7 @@ impl Scene {
     }
 }
 
-/// A camera in world space: if it moves, as it stands in the middle of the shutter's time.
+/// A camera in world space: if it has keyframes, as it stands in the middle of the shutter's time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     /// Position of the eye (the centre of the lens), m.
@@ -82,7 +84,7 @@ pub struct Camera {
     pub projection: Projection,
     /// When the shutter opens and when it closes, s.
     pub shutter_s: [f64; 2],
-    /// How it moves, if it does while the shutter is open.
+    /// Where it is at all times, if the scene states keyframes. Whether it moves while the shutter is open: [`CameraMotion::moves`].
     pub motion: Option<CameraMotion>,
 }
 
@@ -151,9 +153,9 @@ pub struct Instance {
     pub name: String,
     /// Index into [`Scene::groups`].
     pub group: usize,
-    /// From the group's coordinates to those where it is placed: if it moves, in the middle of the shutter's time.
+    /// From the group's coordinates to those where it is placed: if it has keyframes, in the middle of the shutter's time.
     pub transform: Transform,
-    /// How it moves, if it does while the shutter is open.
+    /// Where it is at all times, if the scene states keyframes. Whether it moves while the shutter is open: [`Motion::moves`].
     pub motion: Option<Motion>,
 }
 
@@ -214,6 +216,9 @@ pub struct Mesh {
     /// Texture coordinates: none, or one pair for each vertex.
     pub uvs: Vec<[f32; 2]>,
 }
+
+/// No number is NaN. Two [`Arc`]s of one mesh are therefore equal at once, without a look at its vertices.
+impl Eq for Mesh {}
 
 /// An affine map: `world = linear · local + translation`.
 #[derive(Clone, Debug, PartialEq)]

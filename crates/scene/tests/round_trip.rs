@@ -378,8 +378,36 @@ fn groups_come_after_what_they_place_and_transforms_make_an_instance_each() {
     assert_eq!((keyframes.len(), keyframes[1].time_s, keyframes[1].mirrors()), (2, 1.0, false));
     assert_eq!(keyframes[1].transform.translation_m, [4.0, 0.0, 2.0]);
     // A keyframe that is the only one moves nothing.
-    assert_eq!((scene.camera.shutter_s, &scene.camera.motion), ([-0.5, 1.5], &None));
+    assert_eq!((scene.camera.shutter_s, scene.camera.moves()), ([-0.5, 1.5], false));
     assert_eq!(scene.placed_objects().count(), scene.objects.len() + 1);
+}
+
+/// The frames of a sequence are made so.
+#[test]
+fn a_scene_whose_shutter_is_opened_later_is_that_of_a_file_that_says_so() {
+    let text = |shutter_s: &str| {
+        let camera = format!(
+            r#"{{"type": "perspective", "position_m": [0, 1, 5], "look_at_m": [0, 0, 0], "vertical_fov_deg": 40, "shutter_s": {shutter_s},
+            "keyframes": [{{"time_s": 1}}, {{"time_s": 4, "transform": [{{"rotate": {{"axis": [0, 1, 0], "angle_deg": 90}}}}]}}]}}"#
+        );
+        let turn = r#"[{"rotate": {"axis": [1, 2, 3], "angle_deg": 50}}, {"translate_m": [1, 2, 3]}]"#;
+        let keyframes = format!(r#"[{{"time_s": 0}}, {{"time_s": 1.5, "transform": {turn}}}]"#);
+        let groups =
+            format!(r#"{{"moon": {{}}, "earth": {{"instances": [{{"group": "moon", "keyframes": {keyframes}}}]}}}}"#);
+        format!(
+            r#"{{"etalon": 1, "camera": {camera}, "film": {{"width": 4, "height": 3}}, "groups": {groups},
+            "instances": [{{"group": "earth", "keyframes": {keyframes}}}, {{"group": "moon", "transform": {turn}}}]}}"#
+        )
+    };
+    let stated = |shutter_s: &str| scene(&text(shutter_s));
+    let mut moved = stated("[0, 0]");
+    for [open, close] in [[0.3, 0.3], [0.25, 0.75], [1.0, 2.5], [-3.0, -1.0], [4.0, 9.0], [0.0, 0.0]] {
+        moved.set_shutter([open, close]);
+        assert_eq!(moved, stated(&format!("[{open:?}, {close:?}]")));
+    }
+    assert!(!moved.camera.moves() && !moved.instances[0].moves([0.0, 0.0]));
+    assert!(moved.instances[0].moves([0.0, 0.5]) && !moved.instances[0].moves([2.0, 3.0]));
+    assert!(!moved.instances[1].moves([0.0, 0.5]));
 }
 
 #[test]

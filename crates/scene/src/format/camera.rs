@@ -258,17 +258,12 @@ pub(crate) fn shutter_of(form: Option<&CameraForm>) -> [f64; 2] {
 
 /// A camera where its keyframes put it.
 fn moving(still: Camera, placed: Option<Placed>) -> Camera {
-    let Some((middle, motion)) = placed else { return still };
-    let middle = middle.affine();
-    let turned = |v: [f64; 3]| unit(middle.matrix3 * DVec3::from(v)).map_or(v, |v| v.to_array());
-    let Camera { position_m, forward, up, .. } = still;
-    Camera {
-        position_m: middle.transform_point3(position_m.into()).to_array(),
-        forward: turned(forward),
-        up: turned(up),
-        motion: motion.map(|motion| CameraMotion { motion, position_m, forward, up }),
-        ..still
-    }
+    let Some((_, motion)) = placed else { return still };
+    let Camera { position_m, forward, up, shutter_s, .. } = still;
+    let motion = motion.map(|motion| CameraMotion { motion, position_m, forward, up });
+    let mut camera = Camera { motion, ..still };
+    camera.set_shutter(shutter_s);
+    camera
 }
 
 fn perspective(form: &PerspectiveCamera, film: Option<&Film>, reader: &mut Reader<'_>) -> Option<Projection> {

@@ -3,7 +3,7 @@
 use super::geometry::{Step, transform};
 use crate::json::{Code, List, Optional, Reader, Required, Spanned};
 use crate::linear::is_similarity;
-use crate::model::{Keyframe, Motion, Transform};
+use crate::model::{Keyframe, Motion, Transform, middle_s};
 
 crate::record! {
     /// Where something is at one time.
@@ -39,7 +39,7 @@ pub(crate) enum Stretch {
     Refused,
 }
 
-/// A placement in the middle of the shutter's time, and how it moves if it does while the shutter is open.
+/// A placement in the middle of the shutter's time, and where it is at all times if there are keyframes.
 pub(crate) type Placed = (Transform, Option<Motion>);
 
 /// The motion of some keyframes.
@@ -81,10 +81,7 @@ pub(crate) fn motion(
         return None;
     }
     let motion = Motion { keyframes };
-    let [open, close] = shutter_s;
-    let middle = motion.at(open + 0.5 * (close - open));
-    let moves = motion.moves(shutter_s);
-    Some((middle, moves.then_some(motion)))
+    Some((motion.at(middle_s(shutter_s)), Some(motion)))
 }
 
 fn keyframe(form: &KeyframeForm, stretch: Stretch, reader: &mut Reader<'_>) -> Option<Keyframe> {

@@ -1,9 +1,9 @@
-//! Motion while the shutter is open.
+//! Motion: where things are at each time.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::Transform;
-use crate::linear::{cofactors, from_rows, largest, rows};
+use crate::linear::{cofactors, from_rows, largest, rows, unit};
 
 /// A placement through several transforms in the order of their times; before the first and after the last it rests.
 ///
@@ -158,6 +158,20 @@ pub struct CameraMotion {
     pub forward: [f64; 3],
     /// What is up in its picture there.
     pub up: [f64; 3],
+}
+
+impl CameraMotion {
+    /// Position, viewing direction and up at a time.
+    pub fn at(&self, time_s: f64) -> [[f64; 3]; 3] {
+        let placed = self.motion.at(time_s).affine();
+        let turned = |v: [f64; 3]| unit(placed.matrix3 * DVec3::from(v)).map_or(v, |v| v.to_array());
+        [placed.transform_point3(self.position_m.into()).to_array(), turned(self.forward), turned(self.up)]
+    }
+
+    /// Whether it moves from one time to another.
+    pub fn moves(&self, during_s: [f64; 2]) -> bool {
+        self.motion.moves(during_s)
+    }
 }
 
 #[cfg(test)]
