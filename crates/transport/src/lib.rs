@@ -77,4 +77,4 @@ pub use prepare::Prepared;
 pub use prepare_error::PrepareError;
 pub use render::{Control, Extent, ThreadError};
 pub use tracer::PixelSamples;
-pub use tune::{prepare, prepare_study};
+pub use tune::{prepare, prepare_frame, prepare_study};

@@ -1,5 +1,6 @@
 //! From a scene to what the kernels trace. After this nothing fails.
 
+mod earlier;
 use crate::bsdf::{Bsdf, properties};
 use crate::camera::{Camera, Moving};
 use crate::caustics::GuidedTargets;
@@ -13,7 +14,7 @@ use crate::motion::motion;
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
 use crate::prepare_error::PrepareError;
 use crate::shading_tables::ShadingTables;
-use crate::shapes::{self, SceneShapes};
+use crate::shapes::{self, GroupShapes, SceneShapes};
 use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, EmissionImage, ObjectSurface, Relief, Surfaces};
 use crate::wavelength::WavelengthDistribution;
@@ -43,20 +44,31 @@ pub struct Prepared {
     pub(crate) tables: ShadingTables,
     pub(crate) guided_targets: GuidedTargets,
     plan: Plan,
+    /// Those of the shapes, then those of the view.
     pub(crate) warnings: Vec<String>,
+    shape_warnings: usize,
+    /// What a later frame of a sequence may take over.
+    groups: Vec<Arc<GroupShapes>>,
+    study: Study,
 }
 
-/// Prepares a scene: its frame, the shapes and the accelerator in it, the table of lights and the plan. Renders nothing.
-pub(crate) fn build(scene: &Scene, study: &Study) -> Result<Prepared, PrepareError> {
+/// Prepares a scene: its frame, the shapes and the accelerator in it, the table of lights and the plan. Renders nothing. What is the
+/// same in an earlier frame of a sequence is taken over from it.
+pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> Result<Prepared, PrepareError> {
     Level::chosen()?;
     scene.check_references()?;
     let plan = Plan::new(scene, study)?;
     let simulated = simulated(scene, study);
     let scene = &simulated;
+    let mut earlier = earlier.filter(|earlier| earlier.study == *study);
+    if let Some(earlier) = earlier.take_if(|earlier| earlier.is_the_same_world(scene, &plan)) {
+        return earlier.seen_anew(simulated, plan);
+    }
     let range_nm = scene.integrator.wavelength_range_nm;
     let spectrum = |s: &Spectrum| PathSpectrum::new(s, range_nm);
-    let SceneShapes { frame, geometry, object_of, mut emitters, coordinates, warnings } =
-        shapes::build(scene, range_nm)?;
+    let groups = earlier.as_ref().map(|earlier| (&earlier.scene, earlier.groups.as_slice()));
+    let SceneShapes { frame, geometry, object_of, mut emitters, coordinates, warnings, groups } =
+        shapes::build(scene, range_nm, groups)?;
     let radius = geometry.bounds().map_or(0.0, |b| 0.5 * b.extent().length());
 
     if scene.integrator.light_sampling == LightSampling::Bsdf {
@@ -84,7 +96,8 @@ pub(crate) fn build(scene: &Scene, study: &Study) -> Result<Prepared, PrepareErr
             LightKind::Environment { radiance } => environments.push(Environment::from(spectrum(radiance))),
             LightKind::ImageEnvironment(image) if image.is_zero() => {}
             LightKind::ImageEnvironment(image) => {
-                let light = Arc::new(EnvironmentLight::new(image, range_nm));
+                let kept = earlier.as_ref().and_then(|earlier| earlier.image_environment(image, range_nm));
+                let light = kept.unwrap_or_else(|| Arc::new(EnvironmentLight::new(image, range_nm)));
                 if scene.integrator.light_sampling != LightSampling::Bsdf {
                     emitters.push(Light::Environment(Arc::clone(&light)));
                 }
@@ -162,14 +175,7 @@ pub(crate) fn build(scene: &Scene, study: &Study) -> Result<Prepared, PrepareErr
         object_of,
         light_of,
     };
-    let camera_motion = match &scene.camera.motion {
-        None => None,
-        Some(moves) => Some(Moving {
-            motion: motion(&moves.motion, scene.camera.shutter_s).map_err(PrepareError::Camera)?,
-            eye_m: Vec3::from_array(moves.position_m),
-            frame,
-        }),
-    };
+    let camera_motion = camera_motion(&scene.camera, frame)?;
     let guided_targets = match study.carried {
         None => GuidedTargets::new(&surfaces, &geometry, &lights, range_nm),
         _ => GuidedTargets::default(),
@@ -196,9 +202,19 @@ pub(crate) fn build(scene: &Scene, study: &Study) -> Result<Prepared, PrepareErr
         tables,
         guided_targets,
         plan,
+        shape_warnings: warnings.len(),
         warnings,
+        groups,
+        study: study.clone(),
         scene: simulated,
     })
+}
+
+/// How the camera moves, if it does while the shutter is open.
+fn camera_motion(camera: &etalon_scene::Camera, frame: SceneFrame) -> Result<Option<Moving>, PrepareError> {
+    let Some(moves) = camera.motion.as_ref().filter(|moves| moves.moves(camera.shutter_s)) else { return Ok(None) };
+    let motion = motion(&moves.motion, camera.shutter_s).map_err(PrepareError::Camera)?;
+    Ok(Some(Moving { motion, eye_m: Vec3::from_array(moves.position_m), frame }))
 }
 
 /// The axis of an object that is a polarising sheet, in the coordinates of its group.

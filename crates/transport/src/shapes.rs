@@ -33,7 +33,25 @@ pub(crate) struct SceneShapes {
     /// By the number of the object.
     pub coordinates: Vec<Coordinates>,
     pub warnings: Vec<String>,
+    /// Of each group, for a later frame of a sequence.
+    pub groups: Vec<Arc<GroupShapes>>,
 }
+
+/// The shapes of a group, in its own coordinates.
+#[derive(Debug)]
+pub(crate) struct GroupShapes {
+    geometry: Arc<Geometry>,
+    /// The object of each primitive.
+    object_of: Vec<u32>,
+    /// Of each of its objects.
+    coordinates: Vec<Coordinates>,
+    warnings: Vec<String>,
+    /// Whether it is placed anywhere; if it is not, its geometry is empty.
+    placed: bool,
+}
+
+/// An earlier frame of a sequence: its scene, and what was made of its groups.
+pub(crate) type EarlierGroups<'a> = (&'a Scene, &'a [Arc<GroupShapes>]);
 
 const NO_OBJECT: u32 = u32::MAX;
 /// Shapes that a thread is given at once, at least.
@@ -44,8 +62,12 @@ pub(crate) fn objects(scene: &Scene) -> impl Iterator<Item = &Object> {
     scene.objects.iter().chain(scene.groups.iter().flat_map(|group| &group.objects))
 }
 
-/// Builds the geometry of a scene and of each of its groups.
-pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, PrepareError> {
+/// Builds the geometry of a scene and of each of its groups. Groups that are the same in an earlier frame are taken over from it.
+pub(crate) fn build(
+    scene: &Scene,
+    range_nm: [f64; 2],
+    earlier: Option<EarlierGroups<'_>>,
+) -> Result<SceneShapes, PrepareError> {
     let mut warnings = Vec::new();
     let shutter_s = scene.camera.shutter_s;
     let mut object_of = vec![Vec::new()];
@@ -53,16 +75,31 @@ pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, Pr
     let placed = placed(scene);
     let mut first_object = scene.objects.len();
     let mut grouped_coordinates = Vec::new();
+    let mut groups: Vec<Arc<GroupShapes>> = Vec::with_capacity(scene.groups.len());
+    let mut same = vec![false; scene.groups.len()];
     for (index, group) in scene.groups.iter().enumerate() {
-        let mut collected = Collected::default();
-        if placed[index] {
-            collected.add_all(first_object, &group.objects, (&group.instances, shutter_s), &shared, &mut warnings)?;
-        }
-        collected.coordinates.resize(group.objects.len(), Coordinates::None);
-        grouped_coordinates.append(&mut collected.coordinates);
+        let kept = earlier.and_then(|earlier| same_group(index, (scene, &placed), &same, earlier));
+        same[index] = kept.is_some();
+        let made = match kept {
+            Some(kept) => kept,
+            None => {
+                let (mut collected, mut warnings) = (Collected::default(), Vec::new());
+                if placed[index] {
+                    let instances = (group.instances.as_slice(), shutter_s);
+                    collected.add_all(first_object, &group.objects, instances, &shared, &mut warnings)?;
+                }
+                collected.coordinates.resize(group.objects.len(), Coordinates::None);
+                let Collected { primitives, object_of, coordinates } = collected;
+                let geometry = Arc::new(Geometry::build(primitives)?.with_label(index as u32 + 1));
+                Arc::new(GroupShapes { geometry, object_of, coordinates, warnings, placed: placed[index] })
+            }
+        };
+        warnings.extend_from_slice(&made.warnings);
+        grouped_coordinates.extend_from_slice(&made.coordinates);
         first_object += group.objects.len();
-        object_of.push(collected.object_of);
-        shared.push(Arc::new(Geometry::build(collected.primitives)?.with_label(index as u32 + 1)));
+        object_of.push(made.object_of.clone());
+        shared.push(made.geometry.clone());
+        groups.push(made);
     }
     let mut collected = Collected::default();
     collected.add_all(0, &scene.objects, (&scene.instances, shutter_s), &shared, &mut warnings)?;
@@ -110,7 +147,32 @@ pub(crate) fn build(scene: &Scene, range_nm: [f64; 2]) -> Result<SceneShapes, Pr
     };
     lamps.add(&geometry, 0, &Affine::IDENTITY)?;
     let emitters = lamps.lights;
-    Ok(SceneShapes { frame, geometry, object_of, emitters, coordinates, warnings })
+    Ok(SceneShapes { frame, geometry, object_of, emitters, coordinates, warnings, groups })
+}
+
+/// The shapes of a group in an earlier frame, if they are those of this one: of the same objects with the same numbers, and of groups
+/// that are the same (`same`) and stand still in the same places.
+fn same_group(
+    index: usize,
+    (scene, placed): (&Scene, &[bool]),
+    same: &[bool],
+    (earlier, made): EarlierGroups<'_>,
+) -> Option<Arc<GroupShapes>> {
+    let (group, before, made) = (&scene.groups[index], earlier.groups.get(index)?, made.get(index)?);
+    let counts = |scene: &Scene| -> Vec<usize> {
+        let groups = scene.groups[..index].iter().map(|group| group.objects.len());
+        std::iter::once(scene.objects.len()).chain(groups).collect()
+    };
+    let numbered_alike = counts(scene) == counts(earlier);
+    let still = stand_still(&group.instances, scene) && stand_still(&before.instances, earlier);
+    let within = group.instances.iter().all(|instance| same[instance.group]);
+    let equal = made.placed == placed[index] && group.objects == before.objects && group.instances == before.instances;
+    (numbered_alike && still && within && equal).then(|| made.clone())
+}
+
+/// Whether none of some instances moves while the shutter is open.
+pub(crate) fn stand_still(instances: &[scene::Instance], scene: &Scene) -> bool {
+    !instances.iter().any(|instance| instance.moves(scene.camera.shutter_s))
 }
 
 /// Which groups are placed somewhere.
@@ -152,7 +214,7 @@ impl Collected {
             if geometry.is_empty() {
                 continue;
             }
-            let made = match &instance.motion {
+            let made = match instance.motion.as_ref().filter(|motion| motion.moves(shutter_s)) {
                 None => Placement::new(instance.transform.linear, instance.transform.translation_m)
                     .and_then(|placement| Instance::new(geometry.clone(), placement)),
                 Some(moves) => {

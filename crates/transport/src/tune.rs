@@ -25,7 +25,14 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
 
 /// As [`prepare`], with effects that the scene does not call for, or without some that it does.
 pub fn prepare_study(scene: &Scene, study: &Study) -> Result<Prepared, PrepareError> {
-    let mut prepared = build(scene, study)?;
+    prepare_frame(scene, study, None)
+}
+
+/// As [`prepare_study`], for a frame of a sequence: what is the same in an earlier frame is taken over from it. What is rendered has the
+/// same bits without it. If only the camera moves, everything but the trial is taken over; else the groups of which nothing inside moves,
+/// and the tables of image environments.
+pub fn prepare_frame(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> Result<Prepared, PrepareError> {
+    let mut prepared = build(scene, study, earlier)?;
     if !study.by_cosine_alone {
         // The same for each seed of a scene, so that pictures of different ones are drawn alike; and none that anyone would choose.
         prepared.tune(mix(0x6361_7573_7469_6373));

@@ -5,7 +5,7 @@ use etalon_scene::{Instance, Keyframe, Motion, Scene};
 /// What calls for motion (`Ok`), or why nothing does (`Err`).
 pub(super) fn motion(scene: &Scene) -> Result<String, String> {
     let shutter_s = scene.camera.shutter_s;
-    if let Some(moving) = &scene.camera.motion {
+    if let Some(moving) = scene.camera.motion.as_ref().filter(|moving| moving.moves(shutter_s)) {
         return Ok(format!("the camera {}", travelled(&moving.motion, shutter_s)));
     }
     let mut placed = vec![false; scene.groups.len()];
@@ -22,6 +22,7 @@ pub(super) fn motion(scene: &Scene) -> Result<String, String> {
         .iter()
         .chain(within)
         .filter_map(|instance| instance.motion.as_ref().map(|motion| (instance, motion)))
+        .filter(|(_, motion)| motion.moves(shutter_s))
         .collect();
     match moving.first() {
         Some((first, motion)) => {
