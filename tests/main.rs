@@ -17,6 +17,7 @@ mod outputs;
 mod refusals;
 mod renders;
 mod scenes;
+mod sequences;
 mod support;
 mod surviving;
 mod usage;

@@ -8,7 +8,7 @@ use etalon_picture::{Attribute, Clipping, ExrFile, PictureError, RenderInfo, wri
 use miette::{Report, Severity, miette};
 use std::path::Path;
 
-use crate::args;
+use crate::{args, frame_settings};
 
 /// The heading of these options in `--help`.
 const HEADING: &str = "Development of PNG files (EXR files stay as they are)";
@@ -133,6 +133,11 @@ impl Developing {
         self.band.is_some() || self.error_map.is_some()
     }
 
+    /// All that decides how a picture is shown, in words.
+    pub(crate) fn as_text(&self) -> String {
+        format!("{:?}", self.settings(None))
+    }
+
     /// The wavelength of the band that is shown, nm.
     pub(crate) fn band_nm(&self) -> Option<f64> {
         self.band
@@ -165,7 +170,11 @@ impl Developing {
         let own = concat!("etalon ", env!("CARGO_PKG_VERSION"));
         let software = info.as_ref().map(|info| info.software.as_str()).filter(|name| name.starts_with("etalon "));
         let comment = self.comment(file, info.as_ref(), &developed, crop);
-        write_png(path, &developed.image, &[("Software", software.unwrap_or(own)), ("Comment", &comment)])?;
+        let mut texts = vec![("Software", software.unwrap_or(own)), ("Comment", comment.as_str())];
+        if let Some(Attribute::Text(settings)) = file.attributes.get(frame_settings::KEY) {
+            texts.push((frame_settings::KEY, settings));
+        }
+        write_png(path, &developed.image, &texts)?;
         Ok(developed)
     }
 

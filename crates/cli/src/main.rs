@@ -9,6 +9,8 @@ mod developing;
 mod display;
 mod excerpt;
 mod failure;
+mod frame_settings;
+mod frames;
 mod interrupt;
 mod light;
 mod load;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 use std::io::IsTerminal;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use etalon_control::{Prediction, Watch};
@@ -78,6 +78,17 @@ impl RenderBar {
         self.before.store(paths, Ordering::Relaxed);
     }
 
+    /// Says before the bar which frame of a sequence it is, and counts those after it into the time that is left. `mean_s` is what
+    /// a frame took so far, if one is done.
+    pub(crate) fn of_frame(self, label: String, after: usize, mean_s: Option<f64>) -> Self {
+        self.bar.set_prefix(label + "  ");
+        // Nobody else writes it.
+        if let Ok(mut sequence) = self.traced.after.lock() {
+            *sequence = Some((after, mean_s));
+        }
+        self
+    }
+
     /// Takes the bar off the screen.
     pub(crate) fn clear(&self) {
         self.bar.finish_and_clear();
@@ -132,6 +143,8 @@ impl Watch for RenderBar {
 struct Traced {
     paths: AtomicU64,
     rays: AtomicU64,
+    /// Frames of a sequence after this one, and the seconds that one took so far.
+    after: Mutex<Option<(usize, Option<f64>)>>,
 }
 
 impl Traced {
@@ -139,9 +152,16 @@ impl Traced {
         let load = |count: &AtomicU64| count.load(Ordering::Relaxed) as f64;
         load(&self.rays) / load(&self.paths).max(1.0)
     }
+
+    /// Seconds of the sequence that are left, of which this frame takes `left` and took `elapsed`.
+    fn sequence_left(&self, elapsed: f64, left: f64) -> Option<f64> {
+        let (after, mean_s) = (*self.after.lock().ok()?)?;
+        Some(left + after as f64 * mean_s.unwrap_or(elapsed + left))
+    }
 }
 
 fn style(seconds: Option<f64>, traced: Option<Arc<Traced>>) -> ProgressStyle {
+    let in_sequence = traced.clone();
     let rate = move |state: &ProgressState, out: &mut dyn Write| {
         // Writing to the bar's own buffer cannot fail.
         let _ = match &traced {
@@ -159,6 +179,12 @@ fn style(seconds: Option<f64>, traced: Option<Arc<Traced>>) -> ProgressStyle {
             (None, Some(most)) => write!(out, ", at most {} to go", duration(most)),
             (None, None) => Ok(()),
         };
+        let sequence = in_sequence.as_ref().zip(by_samples.into_iter().chain(by_time).reduce(f64::min));
+        if let Some(left) =
+            sequence.and_then(|(traced, left)| traced.sequence_left(state.elapsed().as_secs_f64(), left))
+        {
+            let _ = write!(out, ", all frames {}", duration(left));
+        }
     };
     let gone = |state: &ProgressState, out: &mut dyn Write| {
         let seconds = state.elapsed().as_secs_f64();
@@ -167,7 +193,7 @@ fn style(seconds: Option<f64>, traced: Option<Arc<Traced>>) -> ProgressStyle {
             s => write!(out, "{}", duration(s)),
         };
     };
-    ProgressStyle::with_template("{wide_bar:.green/dim} {percent:>3} %  {msg}  {rate:>16}  {gone} gone{left}")
+    ProgressStyle::with_template("{prefix}{wide_bar:.green/dim} {percent:>3} %  {msg}  {rate:>16}  {gone} gone{left}")
         .expect("the template is well formed")
         .with_key("rate", rate)
         .with_key("gone", gone)
@@ -282,6 +308,20 @@ mod tests {
         assert!(bar.bar.is_hidden());
         assert_eq!((bar.bar.position(), bar.bar.length()), (4, Some(32)));
         bar.clear();
+    }
+
+    #[test]
+    fn the_time_left_of_a_sequence_is_that_of_this_frame_and_of_those_after_it() {
+        let rect = PixelRect { x0: 0, y0: 0, x1: 2, y1: 2 };
+        let left = |after, mean_s| {
+            let bar = RenderBar::new(rect, None, None, true).of_frame("frame 3".to_owned(), after, mean_s);
+            assert_eq!(bar.bar.prefix(), "frame 3  ");
+            bar.traced.sequence_left(2.0, 4.0)
+        };
+        assert_eq!(left(10, None), Some(64.0));
+        assert_eq!(left(10, Some(3.0)), Some(34.0));
+        assert_eq!(left(0, Some(3.0)), Some(4.0));
+        assert_eq!(Traced::default().sequence_left(2.0, 4.0), None);
     }
 
     #[test]

@@ -2,12 +2,13 @@
 
 use etalon::{Channels, FilmFile};
 use etalon_control::Canvas;
-use etalon_picture::{ExrFile, PictureError};
+use etalon_picture::{Attribute, ExrFile, PictureError};
 use etalon_transport::{Features, Film, ImageError, PixelRect};
 use miette::Report;
 
 use crate::developing::Developing;
 use crate::failure::Failure;
+use crate::frame_settings::{self, FrameSettings};
 use crate::output::{self, Format, Output, Written};
 use crate::state::{self, Header};
 
@@ -25,6 +26,8 @@ pub(crate) struct Delivery<'a> {
     pub error: Option<ImageError>,
     /// How PNG files are made.
     pub developing: &'a Developing,
+    /// What the files say of the frame, if it is one of a sequence.
+    pub frame: Option<&'a FrameSettings>,
 }
 
 impl Delivery<'_> {
@@ -48,10 +51,15 @@ impl Delivery<'_> {
         let tiles: Vec<PixelRect> = (0..self.features.len()).map(|number| self.canvas.tile(number).0.rect).collect();
         let made = self.canvas.with_film(|film| {
             let file = self.film_file(film, &tiles);
-            let whole = file.exr()?;
+            let mut whole = file.exr()?;
             let picture =
                 if self.developing.needs_all_channels() { file.picture(&Channels::default())? } else { file.colour()? };
-            let shown = ExrFile { picture, attributes: whole.attributes.clone() };
+            let mut shown = ExrFile { picture, attributes: whole.attributes.clone() };
+            if let Some(frame) = self.frame {
+                for (file, format) in [(&mut whole, Format::Exr), (&mut shown, Format::Png)] {
+                    file.attributes.insert(frame_settings::KEY.to_owned(), Attribute::Text(frame.text(format)));
+                }
+            }
             Ok::<_, PictureError>((whole, shown))
         });
         match made {

@@ -8,6 +8,7 @@ use etalon_transport::accuracy::Region;
 use etalon_transport::{Band, Features, Film, ImageError, Pixel, PixelRect};
 
 use crate::channels::{Aov, Channels};
+use crate::frame::{Frame, FrameRate};
 use crate::subject::{KeptBands, Subject};
 
 /// A film, with all that its file says of it.
@@ -69,6 +70,12 @@ impl FilmFile<'_> {
                 ("emissiveDensity".to_owned(), text("nm^-1")),
                 ("EV".to_owned(), Attribute::Float(0.0)),
             ]);
+        }
+        if let Some(Frame { number, rate: FrameRate([frames, seconds]) }) = subject.frame {
+            attributes.insert("frame".to_owned(), Attribute::Text(number.to_string()));
+            // Numerator and denominator, as OpenEXR's standard attribute has them.
+            let bytes = [frames.to_le_bytes(), seconds.to_le_bytes()].concat();
+            attributes.insert("framesPerSecond".to_owned(), Attribute::Other { kind: "rational".to_owned(), bytes });
         }
         let [to_camera, to_ndc] = subject.matrices;
         attributes.insert("worldToCamera".to_owned(), Attribute::Matrix4(to_camera));

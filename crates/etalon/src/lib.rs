@@ -44,6 +44,7 @@
 //! | colours, errors, bands, Stokes parameters, depth, normals | [`Render`] |
 //! | channels of EXR files | [`Channels`], [`Aov`] |
 //! | one path, vertex by vertex | [`Renderer::replay`] |
+//! | frames of a sequence | [`Frame`], `scene.model.set_shutter` |
 //! | exposure, white balance, tone curves | [`picture_files::develop`] |
 //!
 //! The same scene and seed give the same pixels for any number of threads and on any processor.
@@ -52,6 +53,7 @@ mod builder;
 mod channels;
 mod error;
 mod film_file;
+mod frame;
 mod matrices;
 mod picture;
 mod quote;
@@ -73,6 +75,7 @@ pub use etalon_transport::{
     TileSums, replay,
 };
 pub use film_file::FilmFile;
+pub use frame::{Frame, FrameRate};
 pub use picture::Render;
 pub use quote::{Quote, QuoteSettings, QuotedExploration};
 pub use renderer::{Progress, Renderer, Settings};

@@ -6,6 +6,7 @@ use etalon_transport::{Band, Film, PixelRect, Prepared};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::frame::Frame;
 use crate::matrices;
 
 /// All that decides a pixel's samples, so that two pictures of one subject are two parts of the same picture.
@@ -21,6 +22,9 @@ pub struct Subject {
     pub size: [u32; 2],
     /// The pixels that are rendered.
     pub crop: PixelRect,
+    /// Which frame of a sequence, if it is one of one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<Frame>,
     /// Seed of every random number.
     pub seed: u64,
     /// Independent replicates of each pixel.
@@ -86,6 +90,7 @@ impl Subject {
             scene_sha256: scene_sha256.to_owned(),
             size: [scene.film.width, scene.film.height],
             crop,
+            frame: None,
             seed: scene.integrator.seed,
             replicates: scene.integrator.replicates,
             matrices: matrices::of_camera(&scene.camera, scene.film.width, scene.film.height),
@@ -140,6 +145,7 @@ impl Subject {
                 "scene_sha256",
                 "size",
                 "crop",
+                "frame",
                 "seed",
                 "replicates",
                 "bands",
@@ -148,6 +154,7 @@ impl Subject {
             let first: Vec<_> = first.iter().map(|&key| (key.to_owned(), value[key].take())).collect();
             first.into_iter().chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value))).collect()
         };
+        let other_frame = other.frame;
         let (own, others): (Vec<(String, Value)>, BTreeMap<String, Value>) =
             (parts(self), parts(other).into_iter().collect());
         let name = |key: &str| match key {
@@ -156,6 +163,7 @@ impl Subject {
             "scene_sha256" => "the SHA-256 of its scene".to_owned(),
             "size" => "its size".to_owned(),
             "crop" => "its crop".to_owned(),
+            "frame" => "its frame".to_owned(),
             "seed" => "its seed".to_owned(),
             "replicates" => "its number of replicates".to_owned(),
             "bands" => "its bands".to_owned(),
@@ -167,14 +175,24 @@ impl Subject {
             .map(|(key, own, other)| match key.as_str() {
                 "guided_targets" => "its directions are guided toward other objects (see `etalon explain`)".to_owned(),
                 "plan.effects" => "its effects are others (see `etalon explain`)".to_owned(),
+                "frame" => format!("it is {}, not {}", frame_name(self.frame), frame_name(other_frame)),
                 _ => format!("{} is {own}, not {other}", name(key)),
             })
     }
 }
 
+/// A frame in words.
+fn frame_name(frame: Option<Frame>) -> String {
+    frame.map_or_else(
+        || "a picture by itself".to_owned(),
+        |Frame { number, rate }| format!("frame {number} of a sequence with {rate} frames a second"),
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::FrameRate;
 
     #[test]
     fn the_first_difference_is_named() {
@@ -184,6 +202,7 @@ mod tests {
             scene_sha256: "ab".to_owned(),
             size: [4, 3],
             crop: PixelRect { x0: 0, y0: 0, x1: 4, y1: 3 },
+            frame: None,
             seed: 3,
             replicates: 4,
             matrices: [[0.0; 16]; 2],
@@ -199,6 +218,10 @@ mod tests {
             subject.difference(&other).unwrap()
         };
         assert_eq!(with(&|s| s.seed = 4), "its seed is 3, not 4");
+        assert_eq!(
+            with(&|s| s.frame = Some(Frame { number: 7, rate: FrameRate::default() })),
+            "it is a picture by itself, not frame 7 of a sequence with 24 frames a second"
+        );
         assert_eq!(
             with(&|s| s.guided_targets[1] = (0.5, 2)),
             "its directions are guided toward other objects (see `etalon explain`)"

@@ -63,6 +63,25 @@ pub fn read_png(path: &Path) -> Result<Picture<f32>, PictureError> {
     Ok(picture)
 }
 
+/// The text that a PNG file has under a keyword, if it has one. All pixels are decoded, so that a file which is cut short is an error.
+///
+/// # Errors
+/// As [`read_png`].
+pub fn read_png_text(path: &Path, keyword: &str) -> Result<Option<String>, PictureError> {
+    decode(path, 3)?;
+    let bytes = crate::read_plain(path).map_err(|source| PictureError::io("read", path, source))?;
+    let text = || {
+        let reader = png::Decoder::new(Cursor::new(bytes)).read_info()?;
+        let found = reader.info().utf8_text.iter().find(|text| text.keyword == keyword);
+        found.map(|text| text.get_text()).transpose()
+    };
+    text().map_err(|source: png::DecodingError| PictureError::Png {
+        action: "read",
+        path: path.to_owned(),
+        source: Box::new(source),
+    })
+}
+
 /// The samples of one channel out of `count`, from 0 to 1.
 fn channel(image: &DynamicImage, offset: usize, count: usize) -> Box<dyn Iterator<Item = f32> + '_> {
     match image.as_flat_samples_u16() {
@@ -129,6 +148,15 @@ mod tests {
         let texts: Vec<_> =
             reader.info().utf8_text.iter().map(|text| (text.keyword.clone(), text.get_text().unwrap())).collect();
         assert_eq!(texts, [("Software".into(), "etalon".into()), ("Comment".into(), "+1.5 EV · λ".into())]);
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("texts.png");
+        write_png(&path, &picture, &[("Comment", "λ")]).unwrap();
+        assert_eq!(read_png_text(&path, "Comment").unwrap().as_deref(), Some("λ"));
+        assert_eq!(read_png_text(&path, "Author").unwrap(), None);
+        let bytes = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &bytes[..bytes.len() - 20]).unwrap();
+        assert!(read_png_text(&path, "Comment").is_err(), "it is cut short");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `etalon farm`: a job for many machines, as a script for Slurm or a template for Open Job Description.
 
 mod openjd;
+mod sequence;
 mod slurm;
 
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ use miette::{Report, miette};
 
 use crate::commands::render::check_shares;
 use crate::failure::{Failure, Outcome};
+use crate::frames::{FrameArgs, FrameList, numbered};
 use crate::load::load;
 use crate::output;
 use crate::overrides::Overrides;
@@ -25,9 +27,9 @@ use crate::state;
 pub(crate) struct Args {
     /// The scene, as for `etalon render`. All machines must see it, and the picture's folder, under the same path.
     scene: PathBuf,
-    /// How many shares; each is one task of the job.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    shards: u32,
+    /// How many shares; each is one task of the job. With --frames one for each frame, 10,000 at most, if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_SHARES), required_unless_present = "frames")]
+    shards: Option<u32>,
     /// Write a script for Slurm: run it where jobs are submitted, and it submits an array of renders and a merge.
     #[arg(long, group = "kind")]
     slurm: bool,
@@ -37,7 +39,8 @@ pub(crate) struct Args {
     /// The job; standard output if not given.
     #[arg(short, long, alias = "outfile", value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The picture that the job makes; the scene's name with .exr, in this folder, if not given. The parts lie beside it.
+    /// The picture that the job makes; the scene's name with .exr, in this folder, if not given. The parts lie beside it. With --frames
+    /// it has {frame} in its name.
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
     /// Threads of each task; all cores of its machine if not given.
@@ -49,8 +52,13 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PERCENT", value_parser = crate::args::percentage)]
     error: Option<f64>,
     #[command(flatten)]
+    frames: FrameArgs,
+    #[command(flatten)]
     overrides: Overrides,
 }
+
+/// Most tasks of a job.
+const MOST_SHARES: i64 = 10_000;
 
 /// A job, with paths that do not depend on where it runs.
 struct Job {
@@ -86,7 +94,12 @@ pub(crate) fn run(args: Args) -> Outcome {
     print::warnings(&loaded.warnings);
     let stem = args.scene.file_stem().map_or_else(|| "picture".into(), |stem| stem.to_string_lossy().into_owned());
     let absolute = |path: &Path| std::path::absolute(path).map_err(|error| Failure::run(Report::from_err(error)));
-    let picture = args.picture.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.exr")));
+    let frames = args.frames.frames.as_ref();
+    let picture = args.picture.clone().unwrap_or_else(|| {
+        let name = PathBuf::from(format!("{stem}.exr"));
+        if frames.is_some() { numbered(&name) } else { name }
+    });
+    let each_its_own = || frames.map_or(1, |list| list.numbers().len().min(MOST_SHARES as usize) as u32);
     let mut options = args.overrides.as_words().to_vec();
     options.extend(args.error.iter().flat_map(|error| ["--error".to_owned(), error.to_string()]));
     let job = Job {
@@ -94,12 +107,17 @@ pub(crate) fn run(args: Args) -> Outcome {
         program: std::env::current_exe().map_err(|error| Failure::run(Report::from_err(error)))?,
         scene: absolute(&args.scene)?,
         picture: absolute(&picture)?,
-        shards: args.shards,
+        shards: args.shards.unwrap_or_else(each_its_own),
         threads: args.threads,
         options,
     };
-    check(&job, &loaded.scene, args.openjd).into_outcome()?;
-    let text = if args.slurm { slurm::script(&job) } else { openjd::template(&job) };
+    check(&job, &loaded.scene, args.openjd, frames).into_outcome()?;
+    let text = match frames.map(|list| args.frames.words(list.text())) {
+        None if args.slurm => slurm::script(&job),
+        None => openjd::template(&job),
+        Some(frames) if args.slurm => sequence::slurm(&job, &frames),
+        Some(frames) => sequence::openjd(&job, &frames),
+    };
     match &args.output {
         None => print::line(text.trim_end()),
         Some(path) => write_atomically(path, |out| out.write_all(text.as_bytes()))
@@ -121,7 +139,7 @@ const LONGEST_VALUE: usize = 1024;
 const LONGEST_NAME: usize = 255;
 
 /// All that would make the job fail when it runs.
-fn check(job: &Job, scene: &Scene, openjd: bool) -> Failure {
+fn check(job: &Job, scene: &Scene, openjd: bool, frames: Option<&FrameList>) -> Failure {
     let mut failure = Failure::default();
     let mut refuse = |code: &str, text: String| failure.add(Failure::input(miette!(code = code.to_owned(), "{text}")));
     for path in [&job.program, &job.scene, &job.picture] {
@@ -140,20 +158,28 @@ fn check(job: &Job, scene: &Scene, openjd: bool) -> Failure {
             Some(_) => {}
         }
     }
-    let checkpoint = state::checkpoint_path(&job.part(job.shards));
-    let length = checkpoint.file_name().map_or(0, |name| name.len());
-    if length > LONGEST_NAME {
-        let text = format!(
-            "the picture's name is too long: its parts' checkpoints would have names of {length} bytes, such as"
-        );
-        refuse("path", format!("{text} `{}`", checkpoint.display()));
+    if let Some(list) = frames {
+        failure.add(sequence::check(job, list));
+        return failure;
     }
+    failure.add(check_length(&state::checkpoint_path(&job.part(job.shards)), "its parts' checkpoints"));
     let film = PixelRect { x0: 0, y0: 0, x1: scene.film.width, y1: scene.film.height };
     if let Err(unknown) = output::Format::of(&job.picture) {
         failure.add(unknown);
     }
     if let Err(too_many) = check_shares(film, job.shards) {
         failure.add(too_many);
+    }
+    failure
+}
+
+/// A name must not be longer than file systems allow.
+fn check_length(name: &Path, whose: &str) -> Failure {
+    let mut failure = Failure::default();
+    let length = name.file_name().map_or(0, |name| name.len());
+    if length > LONGEST_NAME {
+        let text = format!("the picture's name is too long: {whose} would have names of {length} bytes, such as");
+        failure.add(Failure::input(miette!(code = "path", "{text} `{}`", name.display())));
     }
     failure
 }

@@ -81,6 +81,7 @@ pub(crate) fn run(args: Args) -> Outcome {
         samples,
         error,
         developing: &args.developing,
+        frame: None,
     };
     let warning = canvas.with_film(|film| without_light(film, header.subject.crop));
     print::warnings(&warning);

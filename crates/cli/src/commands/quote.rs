@@ -1,17 +1,20 @@
 //! `etalon quote`: what accuracy will cost, before it is paid for.
 
+mod sequence;
+
 use std::fmt::Write;
 use std::path::PathBuf;
 
 use etalon::{CostEstimate, Quote, QuoteSettings, RenderError};
-use etalon_transport::prepare_study;
+use etalon_transport::{Prepared, prepare_study};
 use miette::{Report, miette};
 use serde::Serialize;
 
 use crate::args::{Adaptive, percentage};
 use crate::failure::{Failure, Outcome};
+use crate::frames::FrameArgs;
 use crate::light::{self, NO_LIGHT_HELP};
-use crate::load::load;
+use crate::load::{LoadedScene, load};
 use crate::machine::{Clock, ClockKind, Machine};
 use crate::overrides::Overrides;
 use crate::print;
@@ -22,6 +25,8 @@ use crate::progress::{duration, percent, two_digits};
 pub(crate) struct Args {
     /// The scene, as JSON.
     scene: PathBuf,
+    #[command(flatten)]
+    frames: FrameArgs,
     #[command(flatten)]
     overrides: Overrides,
     /// Relative errors to quote.
@@ -101,26 +106,48 @@ pub(crate) fn run(args: Args) -> Outcome {
     let mut loaded = load(&args.scene, args.overrides.film_size())?;
     args.overrides.apply(&mut loaded.scene)?;
     print::warnings(&loaded.warnings);
-    let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
-    let clock = Clock::start(args.clock, threads);
+    if let Some(list) = &args.frames.frames {
+        return sequence::run(&args, list, loaded);
+    }
+    let clock = Clock::start(args.clock, threads(&args));
     let prepared = prepare_study(&loaded.scene, &args.overrides.study())
         .map_err(|error| Failure::input(Report::from_err(error)))?;
     let prepare_seconds = clock.seconds();
     print::warnings(&light::missing(&prepared.plan().missing_light));
+    let quote = quote(&args, &loaded, &prepared, (&clock, args.pilot, prepare_seconds))?;
+    if args.json {
+        print::json(&quote);
+    } else {
+        print::line(&describe(&quote));
+    }
+    Ok(())
+}
+
+fn threads(args: &Args) -> usize {
+    args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize)
+}
+
+/// Pilots a scene that is ready for so many seconds.
+fn quote(
+    args: &Args,
+    loaded: &LoadedScene,
+    prepared: &Prepared,
+    (clock, pilot_seconds, prepare_seconds): (&Clock, f64, f64),
+) -> Result<QuoteJson, Failure> {
     let settings = QuoteSettings {
         errors: args.errors.clone(),
-        pilot_seconds: args.pilot,
+        pilot_seconds,
         adaptivity: args.adaptive.into(),
-        threads: Some(threads),
+        threads: Some(threads(args)),
     };
-    let found = Quote::of(&prepared, &settings, &|| clock.seconds()).map_err(refused)?;
+    let found = Quote::of(prepared, &settings, &|| clock.seconds()).map_err(refused)?;
     let film = &loaded.scene.film;
-    let quote = QuoteJson {
+    Ok(QuoteJson {
         scene: args.scene.display().to_string(),
-        scene_sha256: loaded.sha256,
+        scene_sha256: loaded.sha256.clone(),
         width: film.width,
         height: film.height,
-        machine: Machine::with_threads(threads),
+        machine: Machine::with_threads(threads(args)),
         pilot: PilotJson {
             seconds: found.pilot_seconds,
             points: found
@@ -142,13 +169,7 @@ pub(crate) fn run(args: Args) -> Outcome {
         }),
         prepare_seconds,
         estimates: found.estimates.iter().map(cost_estimate_json).collect(),
-    };
-    if args.json {
-        print::json(&quote);
-    } else {
-        print::line(&describe(&quote));
-    }
-    Ok(())
+    })
 }
 
 /// Why there is no quote.

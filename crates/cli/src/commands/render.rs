@@ -5,6 +5,7 @@ mod preflight;
 mod report;
 mod resume;
 mod run;
+mod sequence;
 mod setup;
 mod warnings;
 mod watcher;
@@ -21,10 +22,11 @@ use crate::args::{Adaptive, Crop, PixelAt, ShardArg};
 use crate::developing::Developing;
 use crate::display::{self, Display};
 use crate::failure::{Failure, Outcome};
+use crate::frames::{FrameArgs, asks_for_number, numbered};
 use crate::interrupt::Interrupt;
 use crate::light::NO_LIGHT_HELP;
 use crate::machine::ClockKind;
-use crate::output;
+use crate::output::{self, Output, Written};
 use crate::overrides::Overrides;
 use crate::print;
 use crate::problem_json::{ProblemJson, problems_json};
@@ -33,6 +35,7 @@ use crate::state::Header;
 use crate::write_outputs::Delivery;
 use checkpoint::{interrupted, keep, moved};
 use run::Run;
+use sequence::InSequence;
 pub(crate) use setup::check_shares;
 use setup::{Job, set_up};
 use watcher::{ProgressKind, Watcher};
@@ -47,6 +50,8 @@ pub(crate) struct Args {
     /// replaces a picture of Etalon, but no other file.
     #[arg(short, long, alias = "outfile", value_name = "FILE")]
     output: Vec<PathBuf>,
+    #[command(flatten)]
+    frames: FrameArgs,
     #[command(flatten)]
     overrides: Overrides,
     /// End when the relative error is this small. A pilot, none of whose samples are kept, tells how many samples that
@@ -83,8 +88,9 @@ pub(crate) struct Args {
     /// Go on from OUTPUT.checkpoint, if there is one; the picture is the same, byte for byte.
     #[arg(long)]
     resume: bool,
-    /// Render one share of the picture's tiles only, the K-th of N: an output that ends in .part is for `etalon merge`.
-    #[arg(long, value_name = "K/N", conflicts_with = "time")]
+    /// Render one share of the picture's tiles only, the K-th of N: an output that ends in .part is for `etalon merge`. With --frames,
+    /// render one share of the frames: every N-th from the K-th on.
+    #[arg(long, value_name = "K/N")]
     shard: Option<ShardArg>,
     /// Trace one path of this pixel again and print it vertex by vertex, instead of rendering.
     #[arg(long, value_name = "X,Y", conflicts_with_all = ["output", "crop", "error", "time", "checkpoint", "resume", "shard"])]
@@ -118,10 +124,20 @@ struct RefusedJson {
 pub(crate) fn run(mut args: Args) -> Outcome {
     let names_itself = args.output.is_empty() && args.pixel.is_none();
     if names_itself {
-        args.output.push(output::of_scene(&args.scene));
+        let name = output::of_scene(&args.scene);
+        args.output.push(if args.frames.frames.is_some() { numbered(&name) } else { name });
     }
     let result = match (args.pixel, args.sample) {
         (Some(pixel), sample) => replay(&args, pixel, sample.unwrap_or(0)),
+        (None, None) if args.frames.frames.is_some() => sequence::render(&mut args, names_itself),
+        _ if let Some(name) = args.output.iter().find(|name| asks_for_number(name)) => {
+            Err(Stop::Refused(Failure::input(miette!(
+                code = "frame-name",
+                help = "add the frames, such as --frames 0:99",
+                "`{}` has the number of a frame in it, and --frames is not given",
+                name.display()
+            ))))
+        }
         _ if names_itself && let Err(foreign) = output::check_own(&args.output[0]) => Err(Stop::Refused(foreign)),
         (None, Some(_)) => {
             let failure = miette!(code = "sample-without-pixel", "--sample says which path of --pixel to trace again");
@@ -153,24 +169,57 @@ fn render(args: &Args) -> Result<(), Stop> {
     let mut outputs = Vec::new();
     let mut job = set_up(args, &mut outputs).map_err(Stop::Refused)?;
     print::warnings(&job.warnings);
-    let interrupt = Interrupt::listen()
-        .map_err(|error| Stop::Refused(Failure::run(Report::from_err(error).wrap_err("cannot listen to signals"))))?;
+    let interrupt = listen().map_err(Stop::Refused)?;
+    let bar = RenderBar::new(job.rect, args.time, args.error, args.quiet || args.json);
+    let rendered = render_job(args, &mut job, &outputs, &interrupt, &bar, None).map_err(Stop::Refused)?;
+    let Rendered { done, written, failure, begun } = rendered;
+    if args.json {
+        print::json(&report::json(args, &job, &done, &written, &failure));
+    } else if !args.quiet && begun {
+        // The picture is written, whether anybody reads about it or not.
+        print::line_if_read(&report::summary(&job, &done, &written));
+    }
+    failure.into_outcome().map_err(Stop::Reported)
+}
 
-    let limits = limits(args, &job);
-    let bar = RenderBar::new(job.rect, limits.seconds, limits.relative_rmse, args.quiet || args.json);
-    let openjd = args.progress == ProgressKind::Openjd;
+fn listen() -> Result<Interrupt, Failure> {
+    Interrupt::listen().map_err(|error| Failure::run(Report::from_err(error).wrap_err("cannot listen to signals")))
+}
+
+/// What became of a render.
+struct Rendered {
+    done: Done,
+    written: Vec<Written>,
+    /// What went wrong after it had begun.
+    failure: Failure,
+    /// Whether there is anything of the picture.
+    begun: bool,
+}
+
+/// Renders a picture and writes it, and keeps what there is of it if it is interrupted. A frame of a sequence is only written once it is
+/// finished.
+fn render_job(
+    args: &Args,
+    job: &mut Job,
+    outputs: &[Output],
+    interrupt: &Interrupt,
+    bar: &RenderBar,
+    frame: Option<&InSequence>,
+) -> Result<Rendered, Failure> {
+    let limits = limits(args, job);
     let display = args.display_server.as_ref().and_then(|address| {
         let name = args.output.first().map_or_else(|| "etalon".to_owned(), |output| output.display().to_string());
         Display::open(address, &name, job.subject.size, job.subject.replicates)
     });
-    let watch = Watcher::new(&bar, &interrupt, display.as_ref(), openjd);
+    let openjd = (args.progress == ProgressKind::Openjd).then(|| frame.map_or([0, 1], |frame| frame.position));
+    let watch = Watcher::new(bar, interrupt, display.as_ref(), openjd);
     let run = match job.resumed.take() {
-        Some(kept) => Run::taken_up(args, &job, kept, limits),
-        None => Run::new(args, &job, limits, &watch),
+        Some(kept) => Run::taken_up(args, job, kept, limits),
+        None => Run::new(args, job, limits, &watch),
     };
-    let done = run.and_then(|run| run.finish(args, &job, &watch));
+    let done = run.and_then(|run| run.finish(args, job, &watch));
     bar.clear();
-    let mut done = done.map_err(|error| Stop::Refused(not_rendered(error)))?;
+    let mut done = done.map_err(not_rendered)?;
     if let Some(display) = display {
         done.canvas.with_film(|film| display.finish(film, job.rect));
     }
@@ -186,9 +235,11 @@ fn render(args: &Args) -> Result<(), Stop> {
         samples: done.ended.samples,
         error: done.error,
         developing: &args.developing,
+        frame: frame.map(|frame| &frame.settings),
     };
     let begun = done.canvas.samples()[1] > 0;
-    let (written, mut failure) = if begun { delivery.write(&outputs) } else { Default::default() };
+    let is_to_be_written = begun && (done.header.complete || frame.is_none());
+    let (written, mut failure) = if is_to_be_written { delivery.write(outputs) } else { Default::default() };
     let kept = keep(args, &done, &failure, begun);
     if let Some(signal) = interrupt.signal().filter(|_| !done.header.complete) {
         failure.add(interrupted(args, signal, &done, &written, kept.as_ref()));
@@ -206,13 +257,7 @@ fn render(args: &Args) -> Result<(), Stop> {
             Err(failure) => failure,
         });
     }
-    if args.json {
-        print::json(&report::json(args, &job, &done, &written, &failure));
-    } else if !args.quiet && begun {
-        // The picture is written, whether anybody reads about it or not.
-        print::line_if_read(&report::summary(&job, &done, &written));
-    }
-    failure.into_outcome().map_err(Stop::Reported)
+    Ok(Rendered { done, written, failure, begun })
 }
 
 /// Why there is no picture.

@@ -16,6 +16,9 @@ use crate::progress::{duration, percent, si, two_digits};
 pub(super) struct RenderJson<'a> {
     scene: String,
     scene_sha256: &'a str,
+    /// The number of the frame, in a sequence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<u32>,
     /// The first output; `outputs` has all.
     output: Option<&'a str>,
     outputs: &'a [Written],
@@ -265,6 +268,7 @@ pub(super) fn json<'a>(
     RenderJson {
         scene: args.scene.display().to_string(),
         scene_sha256: &job.loaded.sha256,
+        frame: subject.frame.map(|frame| frame.number),
         output: written.first().map(|written| written.path.as_str()),
         outputs: written,
         width: subject.size[0],

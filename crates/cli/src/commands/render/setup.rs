@@ -2,15 +2,16 @@
 
 use std::time::Instant;
 
-use etalon::{Channels, Subject};
+use etalon::{Channels, Frame, Subject};
 use etalon_control::Shard;
 use etalon_control::canvas::tiles_of;
-use etalon_transport::{PixelRect, Prepared, prepare_study};
+use etalon_transport::{PixelRect, Prepared, prepare_frame};
 use miette::{Report, miette};
 
 use super::{Adaptive, Args, preflight, resume};
 use crate::args::PixelAt;
 use crate::failure::Failure;
+use crate::frames::FirstFrame;
 use crate::light;
 use crate::load::{LoadedScene, load};
 use crate::output::{self, Output};
@@ -33,17 +34,51 @@ pub(super) struct Job {
 pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
     let mut failure = Failure::default();
     *outputs = output::plan(&args.output, &mut failure);
-    let mut loaded = match load(&args.scene, args.overrides.film_size()) {
-        Ok(loaded) => loaded,
-        Err(scene_failure) => {
-            failure.add(scene_failure);
-            return Err(failure);
+    let ready = load_scene(args).and_then(|mut loaded| {
+        let frame = only_frame(args, &mut loaded)?;
+        Ok((loaded, frame))
+    });
+    match ready {
+        Ok((loaded, frame)) => make_ready(args, outputs, loaded, frame, None, failure),
+        Err(wrong) => {
+            failure.add(wrong);
+            Err(failure)
         }
-    };
-    if let Err(wrong) = args.overrides.apply(&mut loaded.scene) {
-        failure.add(wrong);
-        return Err(failure);
     }
+}
+
+/// The scene, as the options have it.
+pub(super) fn load_scene(args: &Args) -> Result<LoadedScene, Failure> {
+    let mut loaded = load(&args.scene, args.overrides.film_size())?;
+    args.overrides.apply(&mut loaded.scene)?;
+    Ok(loaded)
+}
+
+/// Where a path of a frame is to be traced again: moves the scene there.
+fn only_frame(args: &Args, loaded: &mut LoadedScene) -> Result<Option<Frame>, Failure> {
+    let Some(list) = &args.frames.frames else { return Ok(None) };
+    let [number] = list.numbers() else {
+        return Err(Failure::input(miette!(
+            code = "frames",
+            help = "give its number, such as --frames 12",
+            "--pixel traces a path of one frame, and --frames {} are several",
+            list.text()
+        )));
+    };
+    let first = FirstFrame::of(&loaded.scene);
+    args.frames.set(&mut loaded.scene, first, *number);
+    Ok(Some(args.frames.frame(*number)))
+}
+
+/// Makes a scene ready that is as the options, and the frame, have it. What is the same in an earlier frame is taken over from it.
+pub(super) fn make_ready(
+    args: &Args,
+    outputs: &[Output],
+    mut loaded: LoadedScene,
+    frame: Option<Frame>,
+    earlier: Option<Prepared>,
+    mut failure: Failure,
+) -> Result<Job, Failure> {
     let stokes = loaded.scene.film.stokes || args.overrides.polarised();
     preflight::check_memory(&loaded.scene, stokes, args.threads.unwrap_or(1) as usize, &mut failure);
     let film = &loaded.scene.film;
@@ -68,7 +103,7 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
         )));
     }
     let start = Instant::now();
-    let prepared = match prepare_study(&loaded.scene, &args.overrides.study()) {
+    let prepared = match prepare_frame(&loaded.scene, &args.overrides.study(), earlier) {
         Ok(prepared) => prepared,
         Err(error) => {
             failure.add(Failure::input(Report::from_err(error)));
@@ -118,7 +153,7 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
             "{option} adds channels to an EXR, and none is written"
         )));
     }
-    let subject = Subject::new(&prepared, &loaded.sha256, rect);
+    let subject = Subject { frame, ..Subject::new(&prepared, &loaded.sha256, rect) };
     check_developing(args, &subject, &mut failure);
     let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
     let prepare_seconds = start.elapsed().as_secs_f64();
@@ -128,7 +163,7 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
     preflight::check_disks(args.checkpoint.is_some(), &subject, &channels, outputs, &mut failure, &mut warnings);
     let resumed = if args.resume { resume::find(args, &subject, shard, &mut failure) } else { None };
     failure.into_outcome()?;
-    if args.resume && resumed.is_none() {
+    if args.resume && resumed.is_none() && frame.is_none() {
         warnings.push(miette!(
             severity = miette::Severity::Warning,
             code = "nothing-to-resume",
@@ -197,6 +232,13 @@ pub(crate) fn check_shares(rect: PixelRect, shares: u32) -> Result<(), Failure> 
 fn check_shard(args: &Args, rect: PixelRect, shard: Shard, outputs: &[Output], failure: &mut Failure) {
     if let Err(too_many) = check_shares(rect, shard.of) {
         failure.add(too_many);
+    }
+    if args.shard.is_some() && args.time.is_some() {
+        failure.add(Failure::input(miette!(
+            code = "shard-time",
+            help = "give --spp or --error, or render whole frames of a sequence",
+            "--time and --shard exclude each other: the shares of a picture would have different numbers of samples"
+        )));
     }
     if args.shard.is_some()
         && !outputs.is_empty()

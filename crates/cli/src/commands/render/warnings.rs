@@ -27,7 +27,11 @@ fn nonfinite(args: &Args, counters: &Counters) -> Option<Report> {
         code = "nonfinite",
         help = format!(
             "replay the first: etalon render {} --pixel {},{} --sample {}",
-            shell::words(std::iter::once(args.scene.display().to_string()).chain(args.overrides.as_words().to_vec())),
+            shell::words(
+                std::iter::once(args.scene.display().to_string())
+                    .chain(args.frames.frames.iter().flat_map(|list| args.frames.words(list.text())))
+                    .chain(args.overrides.as_words().to_vec())
+            ),
             first.x,
             first.y,
             first.sample

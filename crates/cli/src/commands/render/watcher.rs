@@ -26,16 +26,20 @@ pub(super) struct Watcher<'a> {
     said: AtomicBool,
     /// Per mille that were last told to a farm.
     told: Option<AtomicU64>,
+    /// How many pictures of how many are done.
+    position: [usize; 2],
 }
 
 impl<'a> Watcher<'a> {
+    /// `openjd` is how many pictures of how many are done, if lines of Open Job Description are wanted.
     pub(super) fn new(
         bar: &'a RenderBar,
         interrupt: &'a Interrupt,
         display: Option<&'a Display>,
-        openjd: bool,
+        openjd: Option<[usize; 2]>,
     ) -> Self {
-        Self { bar, interrupt, display, said: AtomicBool::new(false), told: openjd.then(AtomicU64::default) }
+        let (told, position) = (openjd.map(|_| AtomicU64::default()), openjd.unwrap_or([0, 1]));
+        Self { bar, interrupt, display, said: AtomicBool::new(false), told, position }
     }
 
     /// See [`RenderBar::goes_on_from`].
@@ -45,7 +49,8 @@ impl<'a> Watcher<'a> {
 
     fn tell(&self) {
         if let (Some(told), Some(share)) = (&self.told, self.bar.share()) {
-            let permille = (1000.0 * share) as u64;
+            let [done, of] = self.position.map(|count| count as f64);
+            let permille = (1000.0 * (done + share) / of) as u64;
             let new = told.fetch_max(permille, Ordering::Relaxed) < permille;
             if new && !crate::print::line_if_read(&format!("openjd_progress: {:.1}", 0.1 * permille as f64)) {
                 // Nobody reads it any more; the render is worth finishing all the same.
