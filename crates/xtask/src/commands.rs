@@ -132,6 +132,13 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 Script("docs/charts.py"),
             ),
             named(
+                "turntable",
+                "[ETALON]",
+                "renders scenes/turntable.json and makes the animation of docs/how-to/sequences.md",
+                "15 min",
+                Script("docs/turntable.py"),
+            ),
+            named(
                 "allowed",
                 "[--write]",
                 "compares the lists of what is to go with the sources; --write deletes what is gone",

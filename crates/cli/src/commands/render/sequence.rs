@@ -10,13 +10,14 @@ use serde_json::{Value, json};
 
 use super::setup::{load_scene, make_ready};
 use super::{Args, Job, Rendered, Stop, listen, render_job, report};
-use crate::failure::{Failure, ProblemJson};
+use crate::failure::Failure;
 use crate::frame_settings::FrameSettings;
 use crate::frames::{FirstFrame, FrameList, FramePattern, patterns};
 use crate::interrupt::Interrupt;
 use crate::load::LoadedScene;
 use crate::output::{self, Format};
 use crate::print;
+use crate::problem_json::{ProblemJson, problems_json};
 use crate::progress::{RenderBar, duration};
 use etalon::Channels;
 use etalon_transport::Prepared;
@@ -92,7 +93,7 @@ pub(super) fn render(args: &mut Args, names_itself: bool) -> Result<(), Stop> {
             scene_sha256: &sha256,
             fps: args.frames.fps.to_string(),
             frames: progress.reports,
-            errors: failure.to_json(),
+            errors: problems_json(&failure),
         });
     } else if !args.quiet && !plan.finished.is_empty() {
         print::line_if_read(&format!("{} of {total} frames were there already", plan.finished.len()));
