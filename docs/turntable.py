@@ -12,8 +12,8 @@ import sys
 import zlib
 
 root = pathlib.Path(__file__).resolve().parent.parent
-FRAMES, FPS = 48, 12
-OPTIONS = ["--size", "288x192", "--spp", "256", "--exposure", "0.4", "--curve", "filmic"]
+FRAMES, FPS = 36, 12
+OPTIONS = ["--size", "192x128", "--spp", "40"]
 COLOURS = 256
 
 

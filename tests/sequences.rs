@@ -158,7 +158,10 @@ fn a_camera_with_keyframes_for_the_whole_sequence_sees_the_disk_where_it_should(
         // The disk is at x = 0; 16 pixels are a metre.
         let expected = 32.0 - 16.0 * (middle_s - 1.0);
         let [x, y] = centroid(&folder.path().join(format!("{number}.exr")));
-        assert!((x - expected).abs() < CENTROID_PX && (y - 24.0).abs() < CENTROID_PX, "frame {number}: {x}, not {expected}");
+        assert!(
+            (x - expected).abs() < CENTROID_PX && (y - 24.0).abs() < CENTROID_PX,
+            "frame {number}: {x}, not {expected}"
+        );
     }
 }
 
@@ -198,7 +201,11 @@ fn finished_frames_are_kept_and_those_of_other_settings_refused() {
     ] {
         let ran = render(folder.path(), &format!("{change} --resume")).expect(2);
         let of_frame_0 = !change.contains("fixed-seed") && !change.contains("fps 24");
-        assert!(ran.stderr.contains(says) && (!of_frame_0 || ran.stderr.contains("f-000.exr")), "{change}: {}", ran.stderr);
+        assert!(
+            ran.stderr.contains(says) && (!of_frame_0 || ran.stderr.contains("f-000.exr")),
+            "{change}: {}",
+            ran.stderr
+        );
         assert!(ran.stderr.contains("--resume"), "{change}: {}", ran.stderr);
     }
     render(folder.path(), &format!("{options} --resume --exposure 1")).expect(2).says(["p-0.png", "development"]);
@@ -262,7 +269,8 @@ fn a_signal_keeps_the_finished_frames_and_the_sums_of_the_one_under_way() {
 #[test]
 fn mistakes_in_frames_and_names_are_found_before_anything_is_rendered() {
     let folder = tempfile::tempdir().unwrap();
-    let names = [folder.path().join("x-{frame}.exr"), folder.path().join("x.exr"), folder.path().join("x-{frame:q}.exr")];
+    let names =
+        [folder.path().join("x-{frame}.exr"), folder.path().join("x.exr"), folder.path().join("x-{frame:q}.exr")];
     let part = folder.path().join("x-{frame}.part");
     for (options, name, says) in [
         ("--frames 5:3", &names[0], "comes before"),
@@ -285,7 +293,8 @@ fn mistakes_in_frames_and_names_are_found_before_anything_is_rendered() {
     etalon_line("render {} --frames 0:3 --pixel 1,1", [&scene(TURNTABLE)]).expect(2).says(["one frame"]);
     assert_eq!(entries(folder.path()), [""; 0]);
     // A path of one frame is one of its picture.
-    let path = |options: &str| etalon_line(&format!("render {{}} --pixel 240,160 {options}"), [&scene(TURNTABLE)]).expect(0);
+    let path =
+        |options: &str| etalon_line(&format!("render {{}} --pixel 240,160 {options}"), [&scene(TURNTABLE)]).expect(0);
     assert_eq!(path("--frames 12 --seed 2").stdout, path("--frames 12 --seed 2 --fps 24/1").stdout);
     assert_ne!(path("--frames 12 --fixed-seed").stdout, path("").stdout);
     assert_eq!(path("--frames 0").stdout, path("").stdout);
@@ -313,8 +322,7 @@ fn a_sequence_without_a_name_for_its_pictures_has_that_of_its_scene() {
 fn progress_for_a_farm_goes_from_the_first_frame_to_the_last() {
     let folder = tempfile::tempdir().unwrap();
     let said = render(folder.path(), "--frames 0:3 --progress openjd").expect(0).stdout;
-    let told: Vec<f64> =
-        said.lines().filter_map(|line| line.strip_prefix("openjd_progress: ")?.parse().ok()).collect();
+    let told: Vec<f64> = said.lines().filter_map(|line| line.strip_prefix("openjd_progress: ")?.parse().ok()).collect();
     assert!(told.windows(2).all(|pair| pair[0] <= pair[1]), "{told:?}");
     assert_eq!(told.last(), Some(&100.0));
     assert!(told.iter().any(|&percent| percent > 0.0 && percent <= 25.0), "{told:?}");
@@ -344,8 +352,14 @@ fn farms_render_every_frame_once() {
     let folder = tempfile::tempdir().unwrap();
     let [script, shows]: [PathBuf; 2] = ["job.sh", "shows.sh"].map(|name| folder.path().join(name));
     let picture = folder.path().join("it's {frame:04}.exr");
-    let mut arguments = words("farm {} --frames 0:99:5 --fps 24000/1001 --shards 7 --slurm --spp 12", [&scene(TURNTABLE)]);
-    arguments.extend(["-o".to_owned(), script.display().to_string(), "--picture".to_owned(), picture.display().to_string()]);
+    let mut arguments =
+        words("farm {} --frames 0:99:5 --fps 24000/1001 --shards 7 --slurm --spp 12", [&scene(TURNTABLE)]);
+    arguments.extend([
+        "-o".to_owned(),
+        script.display().to_string(),
+        "--picture".to_owned(),
+        picture.display().to_string(),
+    ]);
     crate::support::etalon(&arguments).expect(0);
     assert!(Command::new("sh").arg("-n").arg(&script).status().unwrap().success());
     fs::write(&shows, "#!/bin/sh\nfor word in \"$@\"; do echo \"$word\"; done\n").unwrap();
@@ -380,6 +394,8 @@ fn farms_render_every_frame_once() {
 
     etalon_line("farm {} --frames 0:3 --shards 5 --slurm", [&scene(TURNTABLE)]).expect(2).says(["5 shares"]);
     let plain = folder.path().join("plain.exr");
-    etalon_line("farm {} --frames 0:3 --slurm --picture {}", [&scene(TURNTABLE), &plain]).expect(2).says(["{frame:04}"]);
+    etalon_line("farm {} --frames 0:3 --slurm --picture {}", [&scene(TURNTABLE), &plain])
+        .expect(2)
+        .says(["{frame:04}"]);
     etalon_line("farm {} --slurm", [&scene(TURNTABLE)]).expect(2).says(["--shards"]);
 }

@@ -1,8 +1,8 @@
-"""Writes scenes/turntable.json: an orrery on a turning plate, whose four seconds begin again where they end."""
+"""Writes scenes/turntable.json: an orrery on a turning plate, whose three seconds begin again where they end."""
 
 from scene_text import write
 
-LOOP_S = 4
+LOOP_S = 3
 TILTED = [{"rotate": {"axis": [1, 0, 0.3], "angle_deg": 24}}]
 
 
@@ -54,7 +54,7 @@ scene = {
     "etalon": 1,
     "comment": [
         "An orrery of brass on a turning plate: a lamp for the sun, and three planets, one with a moon and one with a ring.",
-        "All of it is back where it began after four seconds. `etalon render scenes/turntable.json --frames 0:47 --fps 12` renders",
+        "All of it is back where it began after three seconds. `etalon render scenes/turntable.json --frames 0:35 --fps 12` renders",
         "the loop; each frame is exposed for a fiftieth of a second (docs/how-to/sequences.md).",
         "Written by scenes/generators/turntable.py.",
     ],
@@ -92,7 +92,7 @@ scene = {
         },
         "middle planet": {
             "objects": arm(0.38, 0.24, lambda at: [ball("middle planet", 0.072, "sea", at)]),
-            "instances": [turning("moon", "moon", 6, (0.38, 0.24, 0))],
+            "instances": [turning("moon", "moon", 4, (0.38, 0.24, 0))],
         },
         "ring": {
             "objects": [

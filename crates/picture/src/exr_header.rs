@@ -56,6 +56,12 @@ pub(crate) fn insert(
             ("fieldOfViewVertical", Value::F32(value)) => layer.vertical_field_of_view = Some(value),
             ("worldToCamera", Value::Matrix4x4(value)) => layer.world_to_camera = Some(value),
             ("worldToNDC", Value::Matrix4x4(value)) => layer.world_to_normalized_device = Some(value),
+            ("framesPerSecond", Value::Custom { kind, bytes })
+                if kind.as_slice() == b"rational" && bytes.len() == 8 =>
+            {
+                let four = |from: usize| [0, 1, 2, 3].map(|i| bytes[from + i]);
+                layer.frames_per_second = Some((i32::from_le_bytes(four(0)), u32::from_le_bytes(four(4))));
+            }
             (name, _) if names::ALL.contains(&name.as_bytes()) => {
                 return Err(bad("is a standard attribute that is of another type or is set by the picture itself"));
             }

@@ -129,7 +129,7 @@ fn frame(
     progress.rendered += u32::from(rendered.failure.is_empty());
     if args.json {
         progress.reports.push(report_of(args, &job, &rendered));
-    } else if !args.quiet && rendered.done.header.complete {
+    } else if !args.quiet && rendered.failure.is_empty() {
         let left = format!(", {} to go", duration(mean_s(progress) * after as f64));
         let summary = report::summary(&job, &rendered.done, &rendered.written);
         // The picture is written, whether anybody reads about it or not.
