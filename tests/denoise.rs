@@ -38,5 +38,5 @@ fn a_smoothed_picture_is_nearer_to_the_truth_and_says_that_it_is_no_measurement(
     let compared = etalon_line("compare {} {}", [&file("smooth.exr"), &file("truth.exr")]).expect(3);
     assert!(compared.stdout.contains("Error.R"), "{}", compared.stdout);
     let again = etalon_line("denoise {} -o {}", [&file("smooth.exr"), &file("again.exr")]).expect(2);
-    assert!(again.stderr.contains("smoothed already") && !file("again.exr").exists(), "{}", again.stderr);
+    assert!(again.stderr.contains("denoised already") && !file("again.exr").exists(), "{}", again.stderr);
 }

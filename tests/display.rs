@@ -108,7 +108,7 @@ fn a_viewer_sees_every_tile_and_in_the_end_the_picture() {
     let address = listener.local_addr().unwrap();
     let viewer = thread::spawn(move || Viewer::watch(listener.accept().unwrap().0));
     // The crop's tiles are not those of the frame.
-    let line = format!("render {{}} -o {{}} --size 70x40 --crop 3,60,1,40 --spp 16 --quiet --display-server={address}");
+    let line = format!("render {{}} -o {{}} --size 70x40 --crop 3,1,57,39 --spp 16 --quiet --display-server={address}");
     etalon_line(&line, [&scene("cornell.json"), &output]).expect(0);
     let viewer = viewer.join().unwrap();
     assert_eq!((viewer.name.as_str(), viewer.width, viewer.height), (output.to_str().unwrap(), 70, 40));

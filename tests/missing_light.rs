@@ -101,7 +101,7 @@ fn an_error_that_is_unknown_ends_no_render_and_has_no_quote() {
         assert_eq!((&report["reached"], &report["predicted"]["samples"]), (&reached.into(), &Value::Null));
     }
     let text = etalon_line("render {} -o {} --error 10% --spp 8", [&black, &output]).expect(0).stdout;
-    assert!(text.contains("found no light, so what 10 % takes is unknown"), "{text}");
+    assert!(text.contains("found no light, so the cost of 10 % is unknown"), "{text}");
     let ran = etalon_line("quote {} --pilot 0.2s --json", [&black])
         .expect(1)
         .says(["the pilot found no light in", "--pilot"]);
@@ -131,7 +131,7 @@ fn light_that_no_path_finds_is_named_with_lamp_and_glass() {
     let folder = tempfile::tempdir().unwrap();
     let output = folder.path().join("a.exr");
     let said =
-        "of light \"torch\" what \"prism\" reflects or lets pass (material \"flint\": a smooth interface of two media)";
+        "light of \"torch\" that \"prism\" reflects or transmits (material \"flint\": a smooth interface of two media)";
     let sky = json!({"type": "environment", "name": "sky", "radiance": 1});
     for lights in [json!([spot()]), json!([sky, spot()])] {
         let prism = prism(folder.path(), lights);

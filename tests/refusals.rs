@@ -98,7 +98,11 @@ fn what_lies_outside_the_picture_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let scene = crate::support::scene("cornell.json");
     let output = folder.path().join("x.exr");
-    etalon_line("render {} -o {} --size 8x6 --crop 0,9,0,6", [&scene, &output]).expect(2).says(["crop", "8 × 6"]);
+    etalon_line("render {} -o {} --size 8x6 --crop 0,0,9,6", [&scene, &output]).expect(2).says(["crop", "8 × 6"]);
+    let swapped = etalon_line("render {} -o {} --size 8x6 --crop 4,8,0,6", [&scene, &output]).expect(2);
+    swapped.says(["X,Y,W,H"]);
+    let swapped = etalon_line("render {} -o {} --size 8x6 --crop 2,8,1,6", [&scene, &output]).expect(2);
+    swapped.says(["X,Y,W,H", "columns 2 to 7 and rows 1 to 5", "2,1,6,5"]);
     etalon_line("render {} --size 8x6 --pixel 0,6 --sample 0", [&scene]).expect(2).says(["0,6", "8 × 6"]);
     assert_eq!(entries(folder.path()), [""; 0]);
 }

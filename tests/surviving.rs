@@ -152,7 +152,7 @@ fn parts_merge_to_the_bytes_of_the_whole_and_wrong_ones_are_refused_by_name() {
     refused([&a, &b, &b], &["2-of-3.part", "both share 2/3"]);
     refused([&a, &foreign, &c], &["foreign.part", "its seed is 9"]);
     refused([&a, &b, &part(5, 16)], &["5-of-16.part", "one of 16 shares"]);
-    refused([&a, &b, &whole], &["whole.exr", "neither a checkpoint nor a part"]);
+    refused([&a, &b, &whole], &["whole.exr", "not a checkpoint or part"]);
     etalon_line("merge {} {} -o {}", [&a, &c, &none]).expect(2).says(["share 2/3", "missing"]);
 }
 

@@ -38,7 +38,7 @@ fn values_out_of_range_exit_2_and_name_their_option() {
         ("--size", "640"),
         ("--exposure", "nan"),
         ("--exposure", "inf"),
-        ("--crop", "5,5,0,1"),
+        ("--crop", "5,5,1,0"),
         ("--crop", "1,2,3"),
         ("--sampler", "halton"),
         ("--max-depth", "0"),

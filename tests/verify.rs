@@ -70,7 +70,7 @@ fn a_signal_ends_a_run_with_what_has_been_judged() {
         let mut said = String::new();
         notes.read_to_string(&mut said).unwrap();
         assert_eq!(output.status.code(), Some(status), "{said}");
-        assert!(said.contains("1 truths, 1 are not judged"), "{said}");
+        assert!(said.contains("1 truths; 1 are not judged"), "{said}");
         let report: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert_eq!((&report["complete"], &report["passed"], &report["failed"]), (&false.into(), &1.into(), &0.into()));
         assert_eq!(row(&report, "sky-alone")["pass"], true);

@@ -24,7 +24,7 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let bad = || format!("a size is WIDTHxHEIGHT, each from 1 to {LARGEST_SIDE}, such as 640x480");
+        let bad = || format!("a size is WIDTHxHEIGHT in pixels, each from 1 to {LARGEST_SIDE}, such as 640x480");
         let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(bad)?;
         let side = |text: &str| match text.trim().parse() {
             Ok(side @ 1..=LARGEST_SIDE) => Ok(side),
@@ -34,7 +34,7 @@ impl FromStr for Size {
     }
 }
 
-/// `X0,X1,Y0,Y1`, not empty.
+/// `X,Y,W,H`, not empty: the part of a picture that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Crop(pub(crate) PixelRect);
 
@@ -42,13 +42,24 @@ impl FromStr for Crop {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let [x0, x1, y0, y1] =
-            numbers(text).ok_or("a crop is X0,X1,Y0,Y1 in pixels, such as 0,320,100,340 (columns 0 to 319)")?;
-        if x0 >= x1 || y0 >= y1 {
-            return Err("the crop holds no pixel: X0 must be below X1 and Y0 below Y1".to_owned());
-        }
+        let Rect { x, y, width, height } = rect(text)?;
+        let [x0, y0, x1, y1] = [x, y, x.saturating_add(width), y.saturating_add(height)]
+            .map(|number| u32::try_from(number).unwrap_or(u32::MAX));
         Ok(Self(PixelRect { x0, y0, x1, y1 }))
     }
+}
+
+/// A hint for a rectangle `X,Y,W,H` that leaves a picture of this size: the same numbers may have been meant as `X0,X1,Y0,Y1`.
+pub(crate) fn corners_hint([x0, x1, y0, y1]: [usize; 4], [width, height]: [usize; 2]) -> Option<String> {
+    let fits = x0 < x1 && x1 <= width && y0 < y1 && y1 <= height;
+    fits.then(|| {
+        let (columns, rows) = (x1 - x0, y1 - y0);
+        format!(
+            "the order is X,Y,W,H: for columns {x0} to {} and rows {y0} to {} write {x0},{y0},{columns},{rows}",
+            x1 - 1,
+            y1 - 1
+        )
+    })
 }
 
 /// `X,Y`.
@@ -94,7 +105,7 @@ impl FromStr for BandsArg {
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers: Result<Vec<f64>, _> = text.split(':').map(|number| number.trim().parse()).collect();
         let numbers = numbers.ok().and_then(|numbers| numbers.try_into().ok());
-        numbers.map(Self).ok_or_else(|| "bands are FIRST:LAST:STEP, the centres of the first and the last and the step, in nm, such as 400:700:10".to_owned())
+        numbers.map(Self).ok_or_else(|| "bands are FIRST:LAST:STEP in nm (the centre of the first band, that of the last, and the step), such as 400:700:10".to_owned())
     }
 }
 
@@ -103,7 +114,7 @@ pub(crate) fn rect(text: &str) -> Result<Rect, String> {
     match numbers(text).map(|numbers: [u32; 4]| numbers.map(|number| number as usize)) {
         Some([x, y, width, height]) if width > 0 && height > 0 => Ok(Rect { x, y, width, height }),
         _ => {
-            Err("a rectangle is X,Y,W,H in pixels from the top left, W and H at least 1, such as 10,20,64,48"
+            Err("a rectangle is X,Y,W,H in pixels: first column, first row, width, height, such as 10,20,64,48"
                 .to_owned())
         }
     }
@@ -121,7 +132,7 @@ pub(crate) fn region(text: &str) -> Result<Rect, String> {
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err("it must be finite".to_owned()),
+        Ok(_) => Err("the number must be finite".to_owned()),
         Err(error) => Err(error.to_string()),
     }
 }
@@ -129,14 +140,14 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
 /// A number of samples: `64`, `1000` or `1e3`.
 pub(crate) fn samples(text: &str) -> Result<u32, String> {
     const MOST: u32 = i32::MAX as u32;
-    let bad = || format!("a whole number from 1 to {MOST}, such as 64 or 1e3");
+    let bad = || format!("expected a whole number from 1 to {MOST}, such as 64 or 1e3");
     let number: f64 = text.trim().parse().map_err(|_| bad())?;
     if number.fract() == 0.0 && (1.0..=f64::from(MOST)).contains(&number) { Ok(number as u32) } else { Err(bad()) }
 }
 
 /// A share: `1%`, `1 %` or `0.01`.
 pub(crate) fn percentage(text: &str) -> Result<f64, String> {
-    let bad = || "a share such as 1% or 0.01".to_owned();
+    let bad = || "expected a percentage or a fraction above 0, such as 1% or 0.01".to_owned();
     // A bare number from 1 on is more likely to have lost its per cent sign than to mean an error of all there is.
     let ambiguous = |number: f64| format!("{number} is {}%: write {number}% or {}", 100.0 * number, number / 100.0);
     let (number, unit) = match text.trim().strip_suffix('%') {
@@ -152,7 +163,7 @@ pub(crate) fn percentage(text: &str) -> Result<f64, String> {
 
 /// A time: `90`, `90s`, `1.5m`, `2h`, or several of these, `1h30m`. Seconds.
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
-    let bad = || "a time such as 90s, 5m or 1h30m".to_owned();
+    let bad = || "expected a time such as 90s, 5m or 1h30m".to_owned();
     let mut total = 0.0;
     let mut rest = text.trim();
     if rest.is_empty() {
@@ -172,7 +183,7 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
         rest = rest.get(1..).unwrap_or("").trim_start();
     }
     match total {
-        _ if total > LONGEST_SECONDS => Err(format!("a time of at most {LONGEST_SECONDS:e} s")),
+        _ if total > LONGEST_SECONDS => Err(format!("a time is at most {LONGEST_SECONDS:e} s")),
         _ if total > 0.0 => Ok(total),
         _ => Err(bad()),
     }
@@ -187,11 +198,11 @@ fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Adaptive {
-    /// With --error, where the exploration foretells that the error is reached sooner.
+    /// Only with --error, and only if the exploration predicts a shorter render.
     Auto,
-    /// In any case.
+    /// Always.
     Always,
-    /// Every pixel takes the same number of samples.
+    /// Never: every pixel takes the same number of samples.
     Never,
 }
 
@@ -229,7 +240,9 @@ mod tests {
     fn sizes_crops_and_pixels_are_read_as_they_are_written() {
         assert_eq!("640x480".parse(), Ok(Size { width: 640, height: 480 }));
         assert_eq!("1X65536".parse(), Ok(Size { width: 1, height: 65_536 }));
-        assert_eq!("1,3,2,7".parse(), Ok(Crop(PixelRect { x0: 1, x1: 3, y0: 2, y1: 7 })));
+        assert_eq!("1,2,3,4".parse(), Ok(Crop(PixelRect { x0: 1, x1: 4, y0: 2, y1: 6 })));
+        let far = "4294967295,0,4294967295,1".parse();
+        assert_eq!(far, Ok(Crop(PixelRect { x0: u32::MAX, x1: u32::MAX, y0: 0, y1: 1 })));
         assert_eq!("12, 40".parse(), Ok(PixelAt { x: 12, y: 40 }));
     }
 
@@ -241,6 +254,15 @@ mod tests {
         assert_eq!(region("1,2"), Ok(Rect { width: 1, height: 1, ..whole }));
         for text in ["", "1", "1,2,3", "1,2,0,4", "1,2,3,0", "-1,2,3,4", "1,2,3,4,5", "4294967296,0,1,1"] {
             assert!(rect(text).is_err() && region(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn corners_in_place_of_a_size_get_a_hint() {
+        let hint = corners_hint([100, 200, 80, 180], [320, 200]).unwrap();
+        assert!(hint.contains("columns 100 to 199") && hint.ends_with("100,80,100,100"), "{hint}");
+        for numbers in [[100, 100, 0, 1], [0, 321, 0, 1], [0, 1, 2, 2], [0, 1, 0, 201]] {
+            assert_eq!(corners_hint(numbers, [320, 200]), None, "{numbers:?}");
         }
     }
 
@@ -292,7 +314,7 @@ mod tests {
         for text in ["", "640", "0x480", "640x", "-1x5", "640x65537", "6x4x2", "4294967297x1"] {
             assert!(text.parse::<Size>().is_err(), "{text}");
         }
-        for text in ["", "1,2,3", "1,2,3,4,5", "2,2,0,1", "0,1,3,2", "-1,2,0,1", "0.5,1,0,1"] {
+        for text in ["", "1,2,3", "1,2,3,4,5", "2,2,0,1", "0,1,3,0", "-1,2,1,1", "0.5,1,1,1"] {
             assert!(text.parse::<Crop>().is_err(), "{text}");
         }
         for text in ["", "1", "1,2,3", "a,b"] {

@@ -11,39 +11,38 @@ use std::path::Path;
 use crate::{args, frame_settings};
 
 /// The heading of these options in `--help`.
-const HEADING: &str = "Development of PNG files (EXR files stay as they are)";
+const HEADING: &str = "How PNG files look (an EXR keeps the linear picture)";
 
 /// The options of every command that writes PNG files.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct Developing {
-    /// Brighten the picture by EV stops; each doubles the light. `auto` makes the log-average luminance 18 % grey. Single bright pixels
-    /// and a black background hardly change it.
+    /// Brightness in stops. Each stop doubles the light. `auto` maps the log-average luminance to 18 % grey.
     #[arg(long, value_name = "EV|auto", default_value = "0", allow_negative_numbers = true, value_parser = exposure, help_heading = HEADING)]
     exposure: Exposure,
-    /// The light that looks white: none (as it is), A, D50, D55, D65, D75, E, a black body such as 3200K, or a patch of the picture,
-    /// patch:X,Y,W,H. Adaptation is complete, by CAT16.
+    /// Light that looks white: none (no change), A, D50, D55, D65, D75, E, a black body such as 3200K, or the mean of a patch of the picture,
+    /// patch:X,Y,W,H. The chromatic adaptation is complete, by CAT16.
     #[arg(long, value_name = "LIGHT", default_value = "none", value_parser = white_balance, help_heading = HEADING)]
     white_balance: Balance,
-    /// How bright parts are brought into the range of the screen.
+    /// Tone curve: how bright values fit into the range of the screen.
     #[arg(long, value_enum, default_value_t = CurveArg::Linear, help_heading = HEADING)]
     curve: CurveArg,
-    /// Make the picture larger or smaller by this factor, in linear light.
+    /// Factor on width and height. Pixels are averaged in linear light.
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = factor, help_heading = HEADING)]
     scale: f64,
-    /// Show the spectral band at this wavelength, such as 550nm, instead of the colour.
+    /// Show one spectral band as grey, such as 550nm.
     #[arg(long, value_name = "WAVELENGTH", value_parser = wavelength, conflicts_with = "white_balance", help_heading = HEADING)]
     band: Option<f64>,
-    /// Show the luminance in false colour, with a colour bar: in cd/m² where the file tells its unit. With --band, show the radiance.
+    /// Show luminance in false colour with a colour bar, in cd/m² if the file states its unit. With --band, show radiance.
     #[arg(long, alias = "false-color", group = "map", conflicts_with_all = LIGHT, help_heading = HEADING)]
     false_colour: bool,
-    /// Show the standard error of each pixel in false colour, relative to its luminance or absolute.
+    /// Show the standard error of each pixel in false colour. Without a KIND it is relative.
     #[arg(long, value_enum, value_name = "KIND", num_args = 0..=1, require_equals = true, default_missing_value = "relative",
         group = "map", conflicts_with_all = LIGHT, help_heading = HEADING)]
     error_map: Option<ErrorArg>,
-    /// The values at the two ends of the colour bar; chosen from the picture if not given.
+    /// Values at the two ends of the colour bar, such as 0.1:100. Default: chosen from the picture.
     #[arg(long, value_name = "LOW:HIGH", value_parser = range, requires = "map", allow_negative_numbers = true, help_heading = HEADING)]
     range: Option<Ends>,
-    /// How values are spread over the colour bar.
+    /// Scale of the colour bar.
     #[arg(long, value_enum, default_value_t = AxisArg::Log, requires = "map", help_heading = HEADING)]
     axis: AxisArg,
 }
@@ -68,28 +67,28 @@ struct Ends([f64; 2]);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum CurveArg {
-    /// None; what is brighter than white is clipped, and counted.
+    /// No curve. Values above white are clipped and counted.
     Linear,
-    /// Hable's curve of 2010, on each component: a toe, a shoulder, white at 5.6.
+    /// Hable's filmic curve (2010) on each component. The value 5.6 becomes white.
     Filmic,
-    /// Sobotka's AgX: very bright colours turn white instead of clipping.
+    /// Sobotka's AgX. Very bright colours turn white instead of clipping.
     #[value(name = "agx")]
     Agx,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum ErrorArg {
-    /// The standard error over the value.
+    /// Standard error divided by the value.
     Relative,
-    /// The standard error in the unit of the value.
+    /// Standard error in the unit of the value.
     Absolute,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum AxisArg {
-    /// By their logarithms.
+    /// Logarithmic.
     Log,
-    /// Evenly.
+    /// Linear.
     Linear,
 }
 
@@ -187,7 +186,7 @@ impl Developing {
             Tone::Picture { clipping, .. } => describe_clipping(clipping),
             Tone::Map { title, range: [low, high], below, above } => {
                 let ends = format!("{title}, from {} to {}", short_number(*low), short_number(*high));
-                format!("{ends}; {below} pixels are below and {above} above")
+                format!("{ends}; pixels below: {below}, above: {above}")
             }
         }
     }
@@ -252,7 +251,7 @@ fn describe_clipping(clipping: &Clipping) -> String {
 pub(crate) fn warn_not_finite(path: &Path, developed: &Developed) -> Option<Report> {
     let [x, y] = developed.not_finite.first?;
     let shown = match developed.tone {
-        Tone::Picture { .. } => "NaN is shown as black, an infinity as white or black",
+        Tone::Picture { .. } => "NaN is shown as black, and an infinity as white or black",
         Tone::Map { .. } => "they are shown in green",
     };
     Some(miette!(
@@ -269,9 +268,10 @@ fn exposure(text: &str) -> Result<Exposure, String> {
     if text == "auto" {
         return Ok(Exposure::Auto);
     }
-    let stops = args::finite(text).map_err(|error| format!("{error}; a number of stops such as -1.5, or `auto`"))?;
+    let stops =
+        args::finite(text).map_err(|error| format!("{error}; write a number of stops such as -1.5, or `auto`"))?;
     if stops.abs() > MAX_STOPS {
-        return Err(format!("from -{MAX_STOPS} to {MAX_STOPS} stops"));
+        return Err(format!("the exposure must lie between -{MAX_STOPS} and {MAX_STOPS} stops"));
     }
     Ok(Exposure::Stops(stops))
 }
@@ -293,14 +293,14 @@ fn white_balance(text: &str) -> Result<Balance, String> {
 fn factor(text: &str) -> Result<f64, String> {
     match args::finite(text) {
         Ok(factor) if factor > 0.0 => Ok(factor),
-        _ => Err("a factor above 0, such as 0.5".to_owned()),
+        _ => Err("the factor must be above 0, such as 0.5".to_owned()),
     }
 }
 
 fn wavelength(text: &str) -> Result<f64, String> {
     match args::finite(text.strip_suffix("nm").unwrap_or(text).trim_end()) {
         Ok(nm) if nm > 0.0 => Ok(nm),
-        _ => Err("a wavelength such as 550nm".to_owned()),
+        _ => Err("expected a wavelength in nm, such as 550nm".to_owned()),
     }
 }
 

@@ -11,11 +11,11 @@ const MOST_NAMED: usize = 8;
 fn name(pair: &MissingPair) -> String {
     let lost = match pair.lost {
         Lost::Reflected => "reflects",
-        Lost::Transmitted => "lets pass",
-        Lost::ReflectedAndTransmitted => "reflects or lets pass",
+        Lost::Transmitted => "transmits",
+        Lost::ReflectedAndTransmitted => "reflects or transmits",
     };
     let MissingPair { light, object, material, surface, .. } = pair;
-    format!("of light \"{light}\" what \"{object}\" {lost} (material \"{material}\": {surface})")
+    format!("light of \"{light}\" that \"{object}\" {lost} (material \"{material}\": {surface})")
 }
 
 /// The pairs of a plan in words, and how many more there are.
@@ -35,7 +35,7 @@ pub(crate) fn missing(missing: &MissingLight) -> Option<Report> {
         miette!(
             severity = Severity::Warning,
             code = "missing-light",
-            help = "only shadow rays find a lamp without an area, and they end at a smooth surface: give the lamp an area (an object with \
+            help = "only shadow rays find a lamp without an area, and they cannot pass a smooth surface: give the lamp an area (an object with \
                     `emission`), or the surface a roughness (`alpha`). `etalon explain --json` lists the pairs",
             "some light is missing from the picture:\n  {}",
             missing_pairs(missing).join("\n  ")
@@ -52,11 +52,11 @@ pub(crate) fn without_light(film: &Film, rect: PixelRect) -> Option<Report> {
             severity = Severity::Warning,
             code = "no-light",
             help = NO_LIGHT_HELP,
-            "no sample found light: the picture is black, and its error is unknown"
+            "no sample found light: the picture is black and its error is unknown"
         )
     })
 }
 
 /// Where to look if no light was found.
-pub(crate) const NO_LIGHT_HELP: &str = "does a lamp shine toward what the camera sees, with nothing opaque between? `etalon explain` names \
-                                        lamps whose light mirrors and smooth glass keep from being found";
+pub(crate) const NO_LIGHT_HELP: &str = "check that a lamp shines on what the camera sees, with nothing opaque between. `etalon explain` names \
+                                        lamps whose light no path finds, because of a mirror or smooth glass";

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 pub(crate) use crate::scene_report::scene_failure as refused_scene;
 use crate::scene_report::{scene_failure, scene_warnings};
 
-/// Most things that a model says and a scene cannot, shown by commands that render.
+/// Most things that are not converted exactly, shown by commands that render.
 const MAX_NOTES: usize = 50;
 
 /// A scene and the file it came from.
@@ -35,14 +35,14 @@ pub(crate) fn load(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedSce
         Scene::load_sized(path, film_size)
     };
     let Scene { model, warnings: problems, added, left_out, file_name, text, sha256 } = scene.map_err(refused)?;
-    // What a model does not say is added, what is not honoured listed, both as warnings.
+    // What a model does not say is added, what is not converted is listed, both as warnings.
     let note = |code: &str, text: String| miette!(severity = Severity::Warning, code = code.to_owned(), "{text}");
     let mut warnings: Vec<Report> = added.into_iter().map(|added| note("added", added)).collect();
     let more = left_out.len().saturating_sub(MAX_NOTES);
     let left_out = left_out.into_iter().take(MAX_NOTES);
-    warnings.extend(left_out.map(|l| note("not-honoured", format!("{}: {}", l.place, l.what))));
+    warnings.extend(left_out.map(|l| note("not-converted", format!("{}: {}", l.place, l.what))));
     if more > 0 {
-        warnings.push(note("not-honoured", format!("{more} more are not shown; `etalon import` lists them")));
+        warnings.push(note("not-converted", format!("{more} more are not shown; `etalon import` lists them")));
     }
     warnings.extend(scene_warnings(&file_name, &text, problems));
     Ok(LoadedScene { scene: model, warnings, sha256 })

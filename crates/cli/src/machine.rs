@@ -30,9 +30,9 @@ impl Machine {
 /// Which clock counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum ClockKind {
-    /// The clock on the wall.
+    /// Elapsed time.
     Wall,
-    /// The processor's time over the number of threads: what the wall's clock would show on an idle machine.
+    /// Processor time divided by the number of threads. Other programs do not change it.
     Cpu,
 }
 

@@ -33,10 +33,22 @@ use clap::{Parser, Subcommand};
 
 use crate::failure::{Failure, Outcome};
 
-/// What the environment may say, for `--help`.
-const ENVIRONMENT: &str = "Environment:
-  ETALON_SIMD  Instruction set: baseline, avx2 or avx512; the widest that the processor has if not set. \
-Pictures have the same bytes on each";
+/// What follows the list of commands in `--help`.
+const ENVIRONMENT: &str = "Example:
+  etalon render scenes/cornell.json --spp 64 -o cornell.exr -o cornell.png
+
+`etalon COMMAND --help` lists the options of a command, with an example.
+
+Exit status:
+  0    done
+  1    failed, or pictures that differ
+  2    bad usage, or a bad scene
+  3    a comparison that could not be decided
+  130  ended by SIGINT (Ctrl-C)
+  143  ended by SIGTERM
+
+Environment:
+  ETALON_SIMD  Instruction set: baseline, avx2 or avx512. Default: the widest of the processor. It does not change a picture";
 
 /// A physically based spectral path tracer with a test oracle.
 #[derive(Parser)]
@@ -64,6 +76,8 @@ enum Command {
     Whitted(commands::whitted::Args),
     Figures(commands::figures::Args),
     Verify(commands::verify::Args),
+    Completions(commands::completions::CompletionArgs),
+    Man(commands::man::ManArgs),
 }
 
 fn main() -> ExitCode {
@@ -89,9 +103,49 @@ fn main() -> ExitCode {
         Command::Whitted(args) => commands::whitted::run(args),
         Command::Figures(args) => commands::figures::run(args),
         Command::Verify(args) => commands::verify::run(args),
+        Command::Completions(args) => commands::completions::run(args),
+        Command::Man(args) => commands::man::run(args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn every_command_has_an_example_that_the_program_understands() {
+        for command in Cli::command().get_subcommands() {
+            let name = command.get_name();
+            let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let examples: Vec<&str> = help.lines().filter_map(|line| line.strip_prefix("  etalon ")).collect();
+            assert!(!examples.is_empty(), "{name} has no example");
+            for example in examples {
+                let line = example.split(" > ").next().unwrap_or_default();
+                let words = std::iter::once("etalon").chain(line.split_whitespace());
+                assert!(line.starts_with(name), "{example}: an example of another command than {name}");
+                if let Err(error) = Cli::try_parse_from(words) {
+                    panic!("etalon {example}: {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_command_option_and_value_is_described() {
+        for command in Cli::command().get_subcommands() {
+            assert!(command.get_about().is_some(), "{}", command.get_name());
+            for argument in command.get_arguments() {
+                assert!(argument.get_help().is_some(), "{} {}", command.get_name(), argument.get_id());
+                for value in argument.get_possible_values() {
+                    let described = value.get_help().is_some() || command.get_name() == "completions";
+                    assert!(described, "{} {} {}", command.get_name(), argument.get_id(), value.get_name());
+                }
+            }
+        }
     }
 }

@@ -17,54 +17,60 @@ pub(crate) struct Overrides {
     words: Vec<String>,
 }
 
+/// The heading of the scene's settings in `--help`.
+const SETTINGS: &str = "Settings of the scene (default: what the scene says)";
+
+/// The heading of options that change how a scene is traced in `--help`.
+const STUDY: &str = "For study";
+
 /// The list of all options that may decide something instead of the scene. Farm jobs and hints repeat those that were given.
 #[derive(Args)]
 pub(crate) struct Settings {
-    /// Samples a pixel, such as 64 or 1e3.
-    #[arg(long, value_name = "N", value_parser = crate::args::samples)]
+    /// Samples per pixel, such as 64 or 1e3.
+    #[arg(long, value_name = "N", help_heading = SETTINGS, value_parser = crate::args::samples)]
     spp: Option<u32>,
-    /// Independent replicates that the samples are dealt to: their scatter is the error bar, 1 is without.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_REPLICATES)))]
+    /// Number of independent replicates. Their scatter gives the error bars; 1 disables error bars.
+    #[arg(long, value_name = "N", help_heading = SETTINGS, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_REPLICATES)))]
     replicates: Option<u32>,
-    /// Seed of every random number.
-    #[arg(long, value_name = "N")]
+    /// Seed of the random numbers.
+    #[arg(long, value_name = "N", help_heading = SETTINGS)]
     seed: Option<u64>,
-    /// Size of the picture in pixels.
-    #[arg(long, value_name = "WxH")]
+    /// Width and height of the picture in pixels, such as 640x480.
+    #[arg(long, value_name = "WxH", help_heading = SETTINGS)]
     size: Option<Size>,
-    /// Number sequence.
-    #[arg(long, value_enum)]
+    /// Sequence of random numbers.
+    #[arg(long, value_enum, help_heading = SETTINGS)]
     sampler: Option<SamplerArg>,
-    /// How direct light is found.
-    #[arg(long, value_enum)]
+    /// How paths find light.
+    #[arg(long, value_enum, help_heading = SETTINGS)]
     light_sampling: Option<LightSamplingArg>,
-    /// Which neighbouring pixels share paths: less noise within each block, of which their errors then have a part in common.
-    #[arg(long, value_enum, value_name = "BLOCK")]
+    /// Blocks of neighbouring pixels that share paths. There is less noise, but the errors within a block are correlated.
+    #[arg(long, value_enum, value_name = "BLOCK", help_heading = SETTINGS)]
     path_reuse: Option<PathReuseArg>,
-    /// Most path edges from the camera to a light; 1 shows emitters only, 2 adds one bounce.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    /// Largest number of path edges from the camera to a light: 1 shows only emitters, 2 adds direct light.
+    #[arg(long, value_name = "N", help_heading = SETTINGS, value_parser = clap::value_parser!(u32).range(1..))]
     max_depth: Option<u32>,
-    /// Keep bands of wavelengths beside the colour: centres of the first and the last and the step, nm. Each is as wide as the
-    /// step. The EXR has them as channels S0.400,000000nm and so on.
-    #[arg(long, value_name = "FIRST:LAST:STEP")]
+    /// Keep spectral bands beside the colour, such as 400:700:10. FIRST and LAST are centres of bands. STEP is the width of each band and
+    /// the distance between centres. All are in nm. The EXR channels are S0.400,000000nm and so on.
+    #[arg(long, value_name = "FIRST:LAST:STEP", help_heading = SETTINGS)]
     bands: Option<BandsArg>,
-    /// Follow light with its polarisation, instead of averaging s and p at every surface.
-    #[arg(long)]
+    /// Trace the polarisation of light. Without it, surfaces average s and p polarisation.
+    #[arg(long, help_heading = SETTINGS)]
     polarised: bool,
-    /// For study: simulate an effect that the scene does not call for (see `etalon explain`).
-    #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
+    /// Simulate an effect that the scene does not need (see `etalon explain`).
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',', help_heading = STUDY)]
     force: Vec<EffectName>,
-    /// For study: leave an effect out that the scene calls for. The picture is then an approximation, and says so.
-    #[arg(long, value_name = "EFFECT", value_delimiter = ',')]
+    /// Leave out an effect that the scene needs. The picture is then an approximation, and its file says so.
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',', help_heading = STUDY)]
     without: Vec<EffectName>,
-    /// For study: what paths carry instead of the wavelengths that the scene calls for.
-    #[arg(long, value_enum, value_name = "WHAT")]
+    /// What each path carries. Default: as many wavelengths as the scene needs.
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = STUDY)]
     carry: Option<CarryArg>,
-    /// For study: trace one path at a time, or many at once. Both give the same picture, bit for bit.
-    #[arg(long = "loop", value_enum, value_name = "WHICH")]
+    /// Trace one path at a time, or many at once. Both give the same picture, bit for bit. Default: the faster one.
+    #[arg(long = "loop", value_enum, value_name = "WHICH", help_heading = STUDY)]
     path_loop: Option<PathLoopArg>,
-    /// For study: draw all directions of diffuse surfaces by the cosine, none toward what casts caustics.
-    #[arg(long)]
+    /// Sample all diffuse directions by the cosine. Guide none toward mirrors and glass.
+    #[arg(long, help_heading = STUDY)]
     by_cosine: bool,
 }
 
@@ -87,7 +93,7 @@ impl From<PathLoopArg> for PathLoop {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum PathReuseArg {
-    /// None.
+    /// No pixels.
     None,
     /// Blocks of 2 × 2 pixels.
     #[value(name = "2x2")]
@@ -121,21 +127,21 @@ enum SamplerArg {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum LightSamplingArg {
-    /// Shadow rays and BSDF sampling together.
+    /// Shadow rays and BSDF sampling, combined by multiple importance sampling.
     Mis,
-    /// Shadow rays.
+    /// Shadow rays only.
     Light,
-    /// BSDF sampling.
+    /// BSDF sampling only.
     Bsdf,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum CarryArg {
-    /// A single wavelength.
+    /// One wavelength.
     OneWavelength,
     /// Four wavelengths.
     FourWavelengths,
-    /// Red, green and blue: every light and surface is replaced by its colour. The picture is then an approximation.
+    /// Red, green and blue. The colour of each light and surface replaces its spectrum, so the picture is an approximation.
     ThreeChannels,
 }
 

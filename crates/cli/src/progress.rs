@@ -173,10 +173,10 @@ fn style(seconds: Option<f64>, traced: Option<Arc<Traced>>) -> ProgressStyle {
         let by_samples = state.len().map(|_| state.eta().as_secs_f64());
         let by_time = seconds.map(|seconds| (seconds - state.elapsed().as_secs_f64()).max(0.0));
         let _ = match (by_samples, by_time) {
-            (Some(left), Some(most)) => write!(out, ", {} to go", duration(left.min(most))),
-            (Some(left), None) => write!(out, ", {} to go", duration(left)),
+            (Some(left), Some(most)) => write!(out, ", remaining {}", duration(left.min(most))),
+            (Some(left), None) => write!(out, ", remaining {}", duration(left)),
             // It is not known yet how many samples there will be.
-            (None, Some(most)) => write!(out, ", at most {} to go", duration(most)),
+            (None, Some(most)) => write!(out, ", remaining at most {}", duration(most)),
             (None, None) => Ok(()),
         };
         let sequence = in_sequence.as_ref().zip(by_samples.into_iter().chain(by_time).reduce(f64::min));
@@ -186,19 +186,21 @@ fn style(seconds: Option<f64>, traced: Option<Arc<Traced>>) -> ProgressStyle {
             let _ = write!(out, ", all frames {}", duration(left));
         }
     };
-    let gone = |state: &ProgressState, out: &mut dyn Write| {
+    let elapsed = |state: &ProgressState, out: &mut dyn Write| {
         let seconds = state.elapsed().as_secs_f64();
         let _ = match seconds {
             s if s < 59.5 => write!(out, "{s:.0} s"),
             s => write!(out, "{}", duration(s)),
         };
     };
-    ProgressStyle::with_template("{prefix}{wide_bar:.green/dim} {percent:>3} %  {msg}  {rate:>16}  {gone} gone{left}")
-        .expect("the template is well formed")
-        .with_key("rate", rate)
-        .with_key("gone", gone)
-        .with_key("left", left)
-        .progress_chars("━╸─")
+    ProgressStyle::with_template(
+        "{prefix}{wide_bar:.green/dim} {percent:>3} %  {msg}  {rate:>16}  elapsed {elapsed_time}{left}",
+    )
+    .expect("the template is well formed")
+    .with_key("rate", rate)
+    .with_key("elapsed_time", elapsed)
+    .with_key("left", left)
+    .progress_chars("━╸─")
 }
 
 /// A time in words: `0.25 s`, `14 s`, `3 min 20 s`, `5 h 12 min`, `3 d 4 h`.

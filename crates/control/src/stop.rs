@@ -41,7 +41,7 @@ pub enum SettleError {
     #[error(transparent)]
     Threads(#[from] ThreadError),
     /// The render is to end by its error alone, which is unknown as long as no light is found.
-    #[error("the pilot found no light in {paths} paths: the error of the picture is unknown, and cannot be reached")]
+    #[error("the pilot found no light in {paths} paths, so the error of the picture is unknown and cannot be reached")]
     NoLight {
         /// Camera paths that the pilot traced.
         paths: u64,

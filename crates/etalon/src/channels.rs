@@ -13,23 +13,23 @@ pub enum Aov {
     Error,
     /// `Variance.`: its square.
     Variance,
-    /// `samples`: finite samples of each pixel.
+    /// `samples`: the number of finite samples of each pixel.
     Samples,
-    /// `S0.…nm`: the bands that the film keeps; with Stokes parameters also `S1.…nm` to `S3.…nm`.
+    /// `S0.…nm`: the spectral bands of the film. Polarised renders also have `S1.…nm` to `S3.…nm`.
     Bands,
-    /// `S1.R` to `S3.B` and their errors: Stokes parameters, where the film keeps them.
+    /// `S1.R` to `S3.B` and their errors: Stokes parameters, in polarised renders.
     Stokes,
-    /// `Albedo.R/G/B`: the share of light that the first surface scatters.
+    /// `Albedo.R/G/B`: the fraction of light that the first surface scatters.
     Albedo,
-    /// `N.X/Y/Z`: its shading normal in the world, toward the camera.
+    /// `N.X/Y/Z`: the shading normal of the first surface in world space, toward the camera.
     Normal,
-    /// `P.X/Y/Z`: its position in the world, m.
+    /// `P.X/Y/Z`: the position of the first hit in world space, in metres.
     Position,
-    /// `Z`: its distance along the camera's viewing direction, m.
+    /// `Z`: the depth of the first hit along the viewing direction, in metres.
     Depth,
-    /// `u`, `v`: its texture coordinates.
+    /// `u`, `v`: the texture coordinates of the first hit.
     Uv,
-    /// `ObjectId`: which object it is; the attribute `objectNames` has the names.
+    /// `ObjectId`: the number of the first object. The attribute `objectNames` has the names.
     Object,
 }
 

@@ -11,7 +11,7 @@ pub enum RenderError {
     #[error("{0}")]
     Setting(String),
     /// The rectangle or the pixel is not in the picture.
-    #[error("{what} reaches to column {} and row {} of a picture of {} × {} pixels", reach[0], reach[1], size[0], size[1])]
+    #[error("{what} reaches to column {} and row {} of a picture of {} × {} pixels", reach[0].saturating_sub(1), reach[1].saturating_sub(1), size[0], size[1])]
     Outside {
         /// Which rectangle or pixel.
         what: &'static str,
@@ -21,10 +21,10 @@ pub enum RenderError {
         size: [u32; 2],
     },
     /// Where neighbouring pixels share paths, no path stands alone.
-    #[error("{0} needs single paths, and where neighbouring pixels share paths none stands alone")]
+    #[error("{0} needs independent pixels, and path reuse makes neighbouring pixels share paths")]
     PathReuse(&'static str),
     /// The error of the picture is unknown, for no light was found.
-    #[error("the pilot found no light in {paths} paths: the error of the picture is unknown")]
+    #[error("the pilot found no light in {paths} paths, so the error of the picture is unknown")]
     NoLight {
         /// Camera paths that the pilot traced.
         paths: u64,

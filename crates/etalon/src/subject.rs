@@ -173,8 +173,8 @@ impl Subject {
             .map(|(key, value)| (key, value, others.get(key).unwrap_or(&Value::Null)))
             .find(|(_, a, b)| a != b)
             .map(|(key, own, other)| match key.as_str() {
-                "guided_targets" => "its directions are guided toward other objects (see `etalon explain`)".to_owned(),
-                "plan.effects" => "its effects are others (see `etalon explain`)".to_owned(),
+                "guided_targets" => "its paths are guided toward other objects (see `etalon explain`)".to_owned(),
+                "plan.effects" => "it simulates other effects (see `etalon explain`)".to_owned(),
                 "frame" => format!("it is {}, not {}", frame_name(self.frame), frame_name(other_frame)),
                 _ => format!("{} is {own}, not {other}", name(key)),
             })
@@ -224,7 +224,7 @@ mod tests {
         );
         assert_eq!(
             with(&|s| s.guided_targets[1] = (0.5, 2)),
-            "its directions are guided toward other objects (see `etalon explain`)"
+            "its paths are guided toward other objects (see `etalon explain`)"
         );
         assert_eq!(with(&|s| s.scene_sha256 = "cd".to_owned()), "the SHA-256 of its scene is \"ab\", not \"cd\"");
         assert_eq!(

@@ -26,8 +26,8 @@ impl Budget {
         self.count(value);
         if self.values > MAX_VALUES || self.bytes > MAX_BYTES {
             return Err(format!(
-                "{place}: up to here the file makes more than {MAX_VALUES} values or {MAX_BYTES} bytes of text, \
-                 which no scene can hold"
+                "{place}: up to here the file becomes more than {MAX_VALUES} values or {MAX_BYTES} bytes of text, \
+                 more than a scene can hold"
             ));
         }
         Ok(())
@@ -71,7 +71,7 @@ impl BlendSize {
         if size.parts > MOST_BLEND_PARTS || size.depth > MAX_BLENDS {
             let Self { parts, depth } = size;
             return Err(format!(
-                "{place}: a blend of {parts} materials and {depth} levels, blends in blends counted; at most \
+                "{place}: a blend of {parts} materials and {depth} levels, counting blends inside blends; at most \
                  {MOST_BLEND_PARTS} materials and {MAX_BLENDS} levels"
             ));
         }

@@ -213,7 +213,7 @@ impl<'a> Builder<'a> {
         self.spend(&object, place)?;
         let stretched = round && !is_similarity(&placed.map.matrix3);
         if stretched && emission.is_some() {
-            self.leave_out(place, "its light is left out: what emits may not be stretched");
+            self.leave_out(place, "its emission is left out: an emitting shape of this kind cannot be stretched");
         } else if let Some(emission) = emission {
             self.spend(&emission, place)?;
             object["emission"] = emission;
@@ -266,7 +266,7 @@ impl<'a> Builder<'a> {
 
     /// The scene, with a camera and a light if the model has none.
     pub(crate) fn finish(mut self, source: &str) -> Result<Imported, String> {
-        let Some([low, high]) = self.bounds else { return Err("there is nothing in it to see".to_owned()) };
+        let Some([low, high]) = self.bounds else { return Err("it has no surfaces".to_owned()) };
         let mut added = std::mem::take(&mut self.added);
         if self.uncounted > 0 {
             let what = format!("{} more things are not listed", self.uncounted);
@@ -283,7 +283,7 @@ impl<'a> Builder<'a> {
         added.extend(self.add_light([low, high], &camera));
         let comment: Vec<String> = std::iter::once(format!("Imported from {source}."))
             .chain(added.iter().cloned())
-            .chain(self.left_out.iter().map(|l| format!("not honoured: {}: {}", l.place, l.what)))
+            .chain(self.left_out.iter().map(|l| format!("not converted: {}: {}", l.place, l.what)))
             .collect();
         let mut scene = json!({
             "etalon": 1, "comment": comment, "camera": camera, "film": self.film, "materials": self.materials,

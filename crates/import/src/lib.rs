@@ -155,7 +155,7 @@ pub fn import_bytes_at(
     moment: Option<&Moment>,
 ) -> Result<Imported, String> {
     if moment.is_some() && !matches!(kind, "gltf" | "glb") {
-        return Err("a time is asked for, and only animations of glTF are read".to_owned());
+        return Err("a time is asked for, but only animations of glTF can be read".to_owned());
     }
     let mut builder = Builder::new(near, prefix);
     builder.is_bare = matches!(kind, "ply" | "obj" | "gltf" | "glb");

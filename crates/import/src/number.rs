@@ -19,7 +19,7 @@ impl Number {
         match self {
             Self::Value(value) => value,
             Self::Image(_, mean) => {
-                builder.leave_out(place, format!("the mean of the image of \"{what}\" stands for it everywhere"));
+                builder.leave_out(place, format!("the mean of the image of \"{what}\" is used"));
                 mean
             }
         }

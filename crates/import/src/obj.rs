@@ -64,12 +64,13 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
         ("map_d", material.dissolve_texture.is_some()),
     ] {
         if there {
-            builder.leave_out(&place, format!("{key} is not honoured"));
+            builder.leave_out(&place, format!("{key} is ignored"));
         }
     }
-    for key in material.unknown_param.keys().collect::<std::collections::BTreeSet<_>>() {
-        if key != "Ke" && key != "Tf" {
-            builder.leave_out(&place, format!("{key} is not honoured"));
+    let is_one = |value: &str| value.split_whitespace().all(|number| number.parse() == Ok(1.0));
+    for (key, value) in material.unknown_param.iter().collect::<std::collections::BTreeMap<_, _>>() {
+        if key != "Ke" && !(key == "Tf" && is_one(value)) {
+            builder.leave_out(&place, format!("{key} is ignored"));
         }
     }
     let illumination = material.illumination_model.unwrap_or(2);
@@ -79,13 +80,13 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
         return json!({ "type": "dielectric", "interior": index });
     }
     if clear || material.dissolve.is_some_and(|d| d < 1.0) {
-        builder.leave_out(&place, "d: it is transparent without an index of refraction, and taken for opaque");
+        builder.leave_out(&place, "d: it is transparent but has no index of refraction: it becomes opaque");
     }
     if matches!(illumination, 3 | 5) && diffuse.is_none_or(is_black) && !is_black(specular) {
         return json!({ "type": "mirror", "reflectance": reflectance(specular) });
     }
     if !is_black(specular) {
-        builder.leave_out(&place, "Ks: its gloss is not honoured; it is taken for diffuse");
+        builder.leave_out(&place, "Ks: its gloss is ignored; it becomes diffuse");
     }
     let diffuse = diffuse.unwrap_or([if material.diffuse_texture.is_some() { 1.0 } else { 0.8 }; 3]);
     if diffuse.iter().any(|v| !(0.0..=1.0).contains(v)) {
@@ -105,7 +106,7 @@ fn image(words: &str, place: &str, builder: &mut Builder<'_>) -> Option<String> 
     let words = words.replace('\\', "/");
     let mut name = words.trim();
     if name.starts_with('-') {
-        builder.leave_out(place, "the options of map_Kd are not honoured");
+        builder.leave_out(place, "the options of map_Kd are ignored");
         name = name.rsplit(char::is_whitespace).next().unwrap_or(name);
     }
     if let Some(known) = builder.known.get(name) {

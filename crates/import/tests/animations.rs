@@ -281,7 +281,7 @@ fn what_cannot_be_followed_is_said() {
     unknown["animations"][0]["channels"][0]["target"]["path"] = json!("pointer");
     assert_eq!(
         said(&at(&unknown, Some(&moment(0.0, 1.0))).unwrap()),
-        ["$.animations[0].channels[0]: what it changes is not known"]
+        ["$.animations[0].channels[0]: its target is not known"]
     );
     let vanishing = single("scale", &[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
     let imported = at(&vanishing, Some(&moment(0.0, 1.0))).unwrap();

@@ -212,7 +212,7 @@ fn what_shines_by_an_image_does_so_where_there_are_texture_coordinates() {
     assert_eq!((image.factor, image.uv_scale, image.wrap), ([1.0, 0.5, 0.25], [1.0; 2], [Wrap::Clamp, Wrap::Mirror]));
     // The strip has no texture coordinates: nothing says which texel shines where.
     assert!(emission(2).is_none());
-    assert!(imported.left_out.iter().any(|l| l.what.contains("does not shine")), "{:?}", imported.left_out);
+    assert!(imported.left_out.iter().any(|l| l.what.contains("emission is left out")), "{:?}", imported.left_out);
     // Of the material with another strength, where there are coordinates.
     model["materials"][0]["extensions"] = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 8 } });
     let brighter = self::scene(&self::imported(&model).unwrap());
@@ -283,7 +283,7 @@ fn what_is_not_honoured_is_listed_with_its_path() {
         assert!(places.contains(&expected), "{expected} is not among {places:#?}");
     }
     // The scene to edit says so too.
-    assert!(imported.text.contains("not honoured: $.materials[2].extensions.KHR_materials_clearcoat"));
+    assert!(imported.text.contains("not converted: $.materials[2].extensions.KHR_materials_clearcoat"));
 }
 
 #[test]

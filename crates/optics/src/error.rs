@@ -29,7 +29,7 @@ pub enum OpticsError {
         value: f64,
     },
     /// An index of refraction beyond what Fresnel's equations can be computed with.
-    #[error("{what} of {value:e} is beyond what can be computed with ({0:e} to {1:e})", INDEX_RANGE[0], INDEX_RANGE[1])]
+    #[error("{what} of {value:e} is outside the possible range ({0:e} to {1:e})", INDEX_RANGE[0], INDEX_RANGE[1])]
     Extreme {
         /// The quantity.
         what: &'static str,
@@ -100,7 +100,7 @@ pub enum OpticsError {
         wavelength_nm: f64,
     },
     /// A colour that no spectrum of the family can show.
-    #[error("no smooth spectrum under {white} shows the colour [{0}, {1}, {2}]", rgb[0], rgb[1], rgb[2])]
+    #[error("no smooth reflectance has the colour [{0}, {1}, {2}] under {white}", rgb[0], rgb[1], rgb[2])]
     UnreachableColour {
         /// Linear Rec. 709.
         rgb: [f64; 3],

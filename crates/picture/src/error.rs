@@ -59,7 +59,7 @@ pub enum PictureError {
         found: String,
     },
     /// A picture without pixels, or with more than the file formats can count.
-    #[error("a picture of {width} × {height} pixels is not possible")]
+    #[error("a picture cannot have {width} × {height} pixels")]
     BadSize {
         /// Width, pixels.
         width: usize,

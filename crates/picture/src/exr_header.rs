@@ -63,7 +63,7 @@ pub(crate) fn insert(
                 layer.frames_per_second = Some((i32::from_le_bytes(four(0)), u32::from_le_bytes(four(4))));
             }
             (name, _) if names::ALL.contains(&name.as_bytes()) => {
-                return Err(bad("is a standard attribute that is of another type or is set by the picture itself"));
+                return Err(bad("is a standard attribute of another type, or one that the picture sets itself"));
             }
             (_, value) => {
                 layer.other.insert(text(name), value);

@@ -56,11 +56,12 @@ pub(crate) fn check(bytes: &[u8], most_bytes: u64, most_side: u64) -> exr::error
         let asked = u128::from(width) * u128::from(height) * u128::from(pixel_bytes);
         if asked > u128::from(most_bytes) {
             let length = bytes.len();
-            let message = format!("its {length} bytes claim {width} × {height} pixels, {asked} bytes of memory");
+            let message =
+                format!("its {length} bytes claim {width} × {height} pixels, which would take {asked} bytes of memory");
             return Err(Error::Invalid(message.into()));
         }
         if width > most_side || height > most_side {
-            let message = format!("it claims {width} × {height} pixels, of at most {most_side} a side");
+            let message = format!("it claims {width} × {height} pixels; a side has at most {most_side}");
             return Err(Error::Invalid(message.into()));
         }
     }
@@ -106,7 +107,7 @@ fn check_dwa_chunk(part: &Header, chunk: &Chunk) -> exr::error::Result<()> {
         let claimed = counters[8 * counter..][..8].iter().rev().fold(0_u64, |n, byte| n << 8 | u64::from(*byte));
         if u128::from(claimed) > most {
             let message = format!(
-                "a chunk of {} × {} pixels claims to unpack to {claimed} values, of at most {most}",
+                "a chunk of {} × {} pixels claims {claimed} values; at most {most}",
                 size.width(),
                 size.height()
             );

@@ -127,7 +127,7 @@ impl<T: Sample> Picture<T> {
             return bad_name("contains a NUL");
         }
         if self.channel(name).is_some() {
-            return bad_name("is there twice");
+            return bad_name("appears twice");
         }
         if samples.len() != self.width * self.height {
             return Err(PictureError::ChannelLength {

@@ -90,7 +90,7 @@ impl Files {
             return Some(bytes);
         }
         let Some(folder) = &self.folder else {
-            let message = format!("\"{}\" cannot be found: this scene is a text without a folder", name.value);
+            let message = format!("\"{}\" cannot be found: this scene has no folder", name.value);
             reader.error(Code::File, name.at, message);
             return None;
         };
@@ -106,6 +106,12 @@ impl Files {
                 None
             }
         }
+    }
+
+    /// Whether a name, which is not the address of a page, leads to no file from the scene's folder. A scene without a folder lacks none.
+    pub(crate) fn lacks_beside_the_scene(&self, name: &str) -> bool {
+        let is_address = name.contains("://");
+        self.folder.as_ref().is_some_and(|folder| !is_address && !folder.join(name).exists())
     }
 
     fn note(&mut self, name: &Spanned<String>, bytes: &[u8]) {
@@ -205,7 +211,7 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     let file = etalon_picture::open_plain(path).map_err(|error| error.to_string())?;
     let kind = file.metadata().map_err(|error| error.to_string())?;
     if kind.len() > MAX_FILE_BYTES {
-        return Err(format!("it has {} bytes, and {MAX_FILE_BYTES} is the most that is read", kind.len()));
+        return Err(format!("it has {} bytes; at most {MAX_FILE_BYTES} are read", kind.len()));
     }
     let mut bytes = Vec::with_capacity(kind.len() as usize);
     file.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(|error| error.to_string())?;

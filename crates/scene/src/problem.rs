@@ -155,6 +155,8 @@ codes! {
     NoLight = "no-light",
     /// The scene has no objects (a warning).
     NoObjects = "no-objects",
+    /// The schema that the file names for editors does not exist (a warning).
+    NoSchema = "no-schema",
     /// Wavelengths that no eye sees add nothing to the picture (a warning).
     InvisibleWavelengths = "invisible-wavelengths",
 }

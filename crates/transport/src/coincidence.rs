@@ -74,8 +74,8 @@ fn message(prepared: &Prepared, (a, b): (u32, u32), pair: &Pair) -> String {
     let name = |object: u32| prepared.object(object).map_or_else(String::new, |object| object.name.clone());
     let metre = prepared.frame.per_m();
     format!(
-        "the interfaces of objects \"{}\" and \"{}\" coincide: on {} of {} lines through the picture they are at most {:.1e} m apart, \
-         and only what is more than {:.1e} m apart can be told apart there. Light between them is lost or refracted wrongly. Give both \
+        "the interfaces of objects \"{}\" and \"{}\" coincide: on {} of {} test rays through the picture they are at most {:.1e} m apart, \
+         but need to be more than {:.1e} m apart to be distinguished. Light between them is lost or refracted wrongly. Give both \
          materials a \"priority\" in place of \"exterior\", so that they share one interface, or leave a gap",
         name(a),
         name(b),

@@ -31,7 +31,7 @@ pub enum PrepareError {
     #[error("the scene's geometry: {0}")]
     Geometry(#[from] GeometryError),
     /// A dielectric with a priority whose surface bounds no solid.
-    #[error("object \"{object}\" has a dielectric with a priority, but {why}: it bounds no solid")]
+    #[error("object \"{object}\" has a dielectric with a priority, but it is not a closed solid: {why}")]
     OpenSolid {
         /// Name of the object.
         object: String,

@@ -35,7 +35,7 @@ pub enum Control {
 
 /// No thread pool could be had.
 #[derive(Debug, thiserror::Error)]
-#[error("threads for the render could not be started: {0}")]
+#[error("cannot start the threads of the render: {0}")]
 pub struct ThreadError(#[from] rayon::ThreadPoolBuildError);
 
 impl Prepared {

@@ -62,5 +62,5 @@ fn where_paths_cannot_be_shared_the_scene_is_refused_with_the_reason() {
     let scene = room::room(REPLICATES);
     let polarised = Study { polarised: true, ..Study::default() };
     let refused = prepare_study(&scene, &polarised).map(|_| ()).unwrap_err().to_string();
-    assert_eq!(refused, "neighbouring pixels cannot share paths: light is followed with its polarisation");
+    assert_eq!(refused, "neighbouring pixels cannot share paths: polarisation is traced");
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-use crate::{allowed, architecture, glossary, import_cycles, pages, slowest, targets};
+use crate::{allowed, architecture, glossary, import_cycles, messages, pages, slowest, targets};
 
 /// One named command.
 pub(crate) struct Named {
@@ -109,6 +109,13 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 "words that names no longer have, and what stands for them",
                 "1 s",
                 Own(glossary::print),
+            ),
+            named(
+                "messages",
+                "[CRATE …]",
+                "every text that the program may print, to be read as a list",
+                "1 s",
+                Own(messages::print),
             ),
             named(
                 "links",
@@ -251,6 +258,13 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 "`etalon denoise` in a build with Open Image Denoise, which it fetches",
                 "minutes",
                 Script("tests/denoise.sh"),
+            ),
+            named(
+                "docker-steps",
+                "",
+                "runs the steps of the Dockerfile by hand, without Docker",
+                "10 min",
+                Script("tests/docker-steps.sh"),
             ),
             named(
                 "farm-openjd",

@@ -12,6 +12,7 @@ mod duplicate_types;
 mod glossary;
 mod import_cycles;
 mod manifest;
+mod messages;
 mod pages;
 mod slowest;
 mod source;

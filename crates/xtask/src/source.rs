@@ -1,9 +1,9 @@
-//! The Rust sources of the crates as tokens, without comments, strings and test code.
+//! The Rust sources of the crates as tokens, without comments and test code.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A word or a punctuation mark of a source file. Literals are left out.
+/// A word or a punctuation mark of a source file, or a string where strings are asked for. Other literals are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Token {
     pub(crate) text: String,
@@ -12,7 +12,12 @@ pub(crate) struct Token {
 
 impl Token {
     pub(crate) fn is_word(&self) -> bool {
-        self.text.starts_with(|c: char| c.is_alphabetic() || c == '_')
+        !self.is_string() && self.text.starts_with(|c: char| c.is_alphabetic() || c == '_')
+    }
+
+    /// Whether it is a string, with its quotes.
+    pub(crate) fn is_string(&self) -> bool {
+        self.text.len() > 1 && self.text.ends_with(['"', '#'])
     }
 }
 
@@ -35,22 +40,37 @@ pub(crate) fn crates(root: &Path) -> Vec<String> {
     names
 }
 
-/// All files of a crate that its library or program is made of, from its root module on. Test modules are left out.
+/// All files of a crate that its library or program is made of, from its root module on. Test modules and strings are left out.
 pub(crate) fn sources(root: &Path, name: &str) -> Result<Vec<Source>, String> {
+    sources_by(root, name, tokens)
+}
+
+/// [`sources`] with strings.
+pub(crate) fn sources_with_strings(root: &Path, name: &str) -> Result<Vec<Source>, String> {
+    sources_by(root, name, tokens_with_strings)
+}
+
+fn sources_by(root: &Path, name: &str, split: fn(&str) -> Vec<Token>) -> Result<Vec<Source>, String> {
     let folder = root.join("crates").join(name).join("src");
     let mut found = Vec::new();
     for file in ["lib.rs", "main.rs"].map(|file| folder.join(file)) {
         if file.is_file() {
-            visit(&file, &folder, Vec::new(), &mut found)?;
+            visit(&file, &folder, Vec::new(), split, &mut found)?;
         }
     }
     if found.is_empty() { Err(format!("{}: neither lib.rs nor main.rs", folder.display())) } else { Ok(found) }
 }
 
 /// Reads `file`, which holds `module`, and the files of its modules, which lie in `folder`.
-fn visit(file: &Path, folder: &Path, module: Vec<String>, found: &mut Vec<Source>) -> Result<(), String> {
+fn visit(
+    file: &Path,
+    folder: &Path,
+    module: Vec<String>,
+    split: fn(&str) -> Vec<Token>,
+    found: &mut Vec<Source>,
+) -> Result<(), String> {
     let text = fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
-    let tokens = without_tests(&tokens(&text));
+    let tokens = without_tests(&split(&text));
     let mut children = Vec::new();
     walk(&tokens, |at, inline| {
         if let [keyword, name, end, ..] = &tokens[at..]
@@ -68,7 +88,7 @@ fn visit(file: &Path, folder: &Path, module: Vec<String>, found: &mut Vec<Source
             return Err(format!("{}: no file of `mod {name}`; `#[path]` is not understood", file.display()));
         };
         let module = module.iter().chain(&inline).chain([&name]).cloned().collect();
-        visit(file, &folder.join(&name), module, found)?;
+        visit(file, &folder.join(&name), module, split, found)?;
     }
     Ok(())
 }
@@ -98,8 +118,15 @@ pub(crate) fn walk(tokens: &[Token], mut act: impl FnMut(usize, &[String])) {
     }
 }
 
-/// Splits a source file into tokens.
+/// Splits a source file into tokens, without strings.
 pub(crate) fn tokens(text: &str) -> Vec<Token> {
+    let mut tokens = tokens_with_strings(text);
+    tokens.retain(|token| !token.is_string());
+    tokens
+}
+
+/// Splits a source file into tokens.
+pub(crate) fn tokens_with_strings(text: &str) -> Vec<Token> {
     let bytes = text.as_bytes();
     let (mut found, mut at, mut line) = (Vec::new(), 0, 1);
     let starts = |at: usize, what: &str| bytes[at..].starts_with(what.as_bytes());
@@ -112,6 +139,7 @@ pub(crate) fn tokens(text: &str) -> Vec<Token> {
             at = after_block_comment(bytes, at);
         } else if let Some(end) = after_string(bytes, at) {
             at = end;
+            found.push(Token { text: text[start..at].to_owned(), line });
         } else if byte == b'\'' {
             at = after_quote(text, at);
         } else if byte.is_ascii_alphabetic() || byte == b'_' || byte >= 0x80 {

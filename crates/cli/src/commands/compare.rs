@@ -14,27 +14,31 @@ use serde::Serialize;
 use crate::failure::{Failure, Outcome};
 use crate::print;
 
-/// Compares two pictures, EXR or PNG. A PNG knows no errors, so pictures that are not equal are then not tested.
+/// Compare two pictures, and test whether they differ by more than their noise.
 ///
-/// Exit status 1 if they differ by more than their noise explains, or if a value is not finite; 3 if that could not be tested
-/// everywhere, because errors are not known.
+/// Prints RMSE, relative MSE and FLIP. The test needs the error bars of an EXR; a PNG has none.
+///
+/// Exit status: 0 if the pictures are equal or differ by no more than their noise, 1 if they differ by more or a value is not finite, 3 if a
+/// difference could not be tested.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon compare one.exr two.exr --diff difference.png")]
 pub(crate) struct Args {
-    /// A picture.
+    /// Picture, EXR or PNG.
     image: PathBuf,
-    /// The picture that it is held against: relative measures are in units of this one.
+    /// Reference picture, EXR or PNG. Relative measures are relative to it.
     reference: PathBuf,
-    /// Probability of calling two pictures of the same thing different.
+    /// Probability of a false alarm, for two renders of the same scene with different seeds.
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = probability)]
     significance: f64,
-    /// Side of the tiles that are compared, pixels. Each counts as the sum of so many pixels, whose noise is taken for normally
-    /// distributed: of fewer than 4 it is not, and pictures of the same thing are called different too often.
+    /// Side of the tiles that are compared, in pixels. The test assumes that the mean of a tile has a normal distribution, so take 4 or
+    /// more. Smaller tiles give more false alarms.
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     tile: u32,
-    /// Exposure for FLIP and the picture of the difference, in stops.
+    /// Exposure in stops, for FLIP and --diff.
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::args::finite)]
     exposure: f64,
-    /// Write where the pictures look different as a PNG file: FLIP from black over red and yellow to white.
+    /// Write the FLIP map as PNG: black where the pictures look alike, then red, yellow and white.
     #[arg(long, value_name = "PNG")]
     diff: Option<PathBuf>,
     /// Print one JSON object on standard output.
@@ -45,7 +49,7 @@ pub(crate) struct Args {
 fn probability(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
-        _ => Err("a probability between 0 and 1, such as 0.001".to_owned()),
+        _ => Err("expected a probability between 0 and 1, such as 0.001".to_owned()),
     }
 }
 
@@ -137,7 +141,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     match (verdict, &comparison.non_finite) {
         (Verdict::Equal | Verdict::WithinNoise, _) => Ok(()),
         (Verdict::Differ, Some(_)) => {
-            Err(Failure::run(miette!(code = "pictures-differ", "the pictures have values that are not finite")))
+            Err(Failure::run(miette!(code = "pictures-differ", "a picture has values that are not finite")))
         }
         (Verdict::Differ, None) => Err(Failure::run(miette!(
             code = "pictures-differ",
@@ -145,8 +149,8 @@ pub(crate) fn run(args: Args) -> Outcome {
         ))),
         (Verdict::Untested, _) => Err(Failure::undecided(miette!(
             code = "not-tested",
-            help = "render both pictures with at least two replicates, and with a sample in each",
-            "the pictures are not equal, and their errors are not known everywhere: the difference may be noise or not"
+            help = "render both pictures with at least two replicates, and at least one sample in each",
+            "the pictures are not equal, and their errors are not known everywhere: the difference may be noise"
         ))),
     }
 }
@@ -189,8 +193,10 @@ fn test(args: &Args, image: &ExrFile, reference: &ExrFile) -> (Option<Test>, Opt
     for name in CHANNELS {
         let (Some(a), Some(b)) = (tiles::Measured::new(image, name), tiles::Measured::new(reference, name)) else {
             let lacking = if tiles::Measured::new(image, name).is_none() { &args.image } else { &args.reference };
-            let note =
-                format!("`{}` has no channel Error.{name}, so noise cannot be told from difference", lacking.display());
+            let note = format!(
+                "`{}` has no channel Error.{name}, so the difference cannot be compared with the noise",
+                lacking.display()
+            );
             return (None, Some(note));
         };
         channels.push(tiles::test(name, &a, &b, image.picture.width(), args.tile as usize));
@@ -198,8 +204,8 @@ fn test(args: &Args, image: &ExrFile, reference: &ExrFile) -> (Option<Test>, Opt
     let accepted_from = tiles::each(args.significance, channels.len());
     let differ = channels.iter().any(|channel| channel.p() < accepted_from);
     let note = same_numbers.then(|| {
-        "both were rendered from the same scene with the same seed: their noise is not independent, and the test sees too \
-         little"
+        "both pictures have the same scene and the same seed: their noise is not independent, and the test may miss a \
+         difference"
             .to_owned()
     });
     (Some(Test { significance: args.significance, differ, accepted_from, channels }), note)
@@ -221,7 +227,7 @@ fn describe(comparison: &Comparison) -> String {
             if let Some(tile) = &channel.worst {
                 let [x0, x1, y0, y1] = tile.crop;
                 text.push_str(&format!(
-                    "of {} tiles the worst is columns {x0} to {}, rows {y0} to {}: {:.6} against {:.6}, t {:.2}, ",
+                    "worst of {} tiles is columns {x0} to {}, rows {y0} to {}: {:.6} against {:.6}, t {:.2}, ",
                     channel.tiles,
                     x1 - 1,
                     y1 - 1,
@@ -235,10 +241,7 @@ fn describe(comparison: &Comparison) -> String {
                 text.push_str(&format!("; {} tiles without known errors", channel.untested_tiles));
             }
         }
-        text.push_str(&format!(
-            "\n  pictures of the same thing are called different with probability {}",
-            test.significance
-        ));
+        text.push_str(&format!("\n  the probability of a false alarm is {}", test.significance));
     }
     text.push_str(match comparison.verdict {
         Verdict::Equal => "\n  all values are equal",

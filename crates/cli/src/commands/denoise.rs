@@ -10,14 +10,16 @@ use crate::failure::{Failure, Outcome};
 use crate::output;
 use crate::print;
 
-/// Smooths a picture with Open Image Denoise, for show: the result is no measurement, and has no error bars.
+/// Denoise a picture with Open Image Denoise, for show only.
 ///
-/// Albedo and normals help it: render with `--aov albedo,normal`.
+/// The result is no measurement and has no error bars. Albedo and normals help the denoiser: render with --aov albedo,normal.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon denoise cornell.exr -o smooth.png")]
 pub(crate) struct Args {
-    /// The picture, as EXR.
+    /// Picture, as EXR.
     image: PathBuf,
-    /// Files to write: .exr or .png. May be given several times.
+    /// File to write: .exr or .png. Repeat the option to write several.
     #[arg(short, long, required = true, value_name = "FILE")]
     output: Vec<PathBuf>,
     #[command(flatten)]
@@ -35,10 +37,10 @@ pub(crate) fn run(args: Args) -> Outcome {
         |code: &'static str, why: String| Failure::input(miette!(code = code, "`{}` {why}", args.image.display()));
     let file = read_exr(&args.image).map_err(|error| Failure::input(Report::from_err(error)))?;
     if file.attributes.contains_key(DENOISED) {
-        return Err(refused("denoised-already", "is smoothed already".to_owned()));
+        return Err(refused("denoised-already", "is denoised already".to_owned()));
     }
     let Some(colour) = interleaved(&file, ["R", "G", "B"]) else {
-        return Err(refused("no-colour", "lacks the channels R, G and B".to_owned()));
+        return Err(refused("no-colour", "lacks a channel R, G or B".to_owned()));
     };
     if let Some(at) = colour.iter().position(|v| !v.is_finite()) {
         let (x, y) = (at / 3 % file.picture.width(), at / 3 / file.picture.width());

@@ -6,31 +6,35 @@ use std::path::{Path, PathBuf};
 
 use etalon_picture::develop::{Rect, Tone, spectrum_of};
 use etalon_picture::{ExrFile, PictureError, check_writable, read_exr, write_atomically};
-use miette::{Report, Severity, miette};
+use miette::{MietteDiagnostic, Report, Severity, miette};
 
+use crate::args::corners_hint;
 use crate::developing::{ALL, Developing, warn_not_finite};
 use crate::failure::{Failure, Outcome};
 use crate::print;
 
-/// Makes a PNG for a screen from an EXR, of Etalon or of another renderer: exposure, white balance, tone curve, crop, scale, false colour,
-/// error map, single bands. With --spectrum it plots a spectrum instead.
+/// Make a PNG for a screen from an EXR file, or plot a spectrum.
 ///
-/// Without options the PNG is that of `etalon render`. It holds R, G, B of the file, or else X, Y, Z, or Y, or the colour of its spectral
-/// bands.
+/// The EXR may be of Etalon or of another renderer. Without options the PNG is the same as that of `etalon render`. It shows the channels R, G
+/// and B. If the file has none, it shows X, Y and Z, or Y, or the colour of the spectral bands.
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  etalon develop cornell.exr --exposure auto --curve agx -o cornell.png
+  etalon develop cornell.exr --error-map -o error.png
+  etalon develop cornell.exr --spectrum 32,50 -o spectrum.svg")]
 pub(crate) struct Args {
-    /// The picture, as EXR.
+    /// Picture, as EXR.
     image: PathBuf,
     /// File to write: .png, or .svg with --spectrum.
     #[arg(short, long, alias = "outfile", value_name = "FILE", required = true)]
     output: PathBuf,
-    /// Show only these pixels: W columns from column X, H rows from row Y, counted from 0 at the top left of the picture.
+    /// Show only a part: W × H pixels from column X and row Y, counted from 0 at the top left.
     #[arg(long, value_name = "X,Y,W,H", value_parser = crate::args::rect)]
     crop: Option<Rect>,
-    /// Plot the spectral bands of a pixel, or their means over W × H pixels, with bars of one standard error.
+    /// Plot the spectral bands of a pixel, or their mean over W × H pixels. Error bars are one standard error.
     #[arg(long, value_name = "X,Y[,W,H]", value_parser = crate::args::region, conflicts_with = "crop", conflicts_with_all = ALL)]
     spectrum: Option<Rect>,
-    /// Print nothing but warnings and errors.
+    /// Print only warnings and errors.
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
@@ -55,7 +59,7 @@ pub(crate) fn run(args: Args) -> Outcome {
 fn check_output(args: &Args) -> Outcome {
     let extension = args.output.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     let (kind, help) = match args.spectrum {
-        Some(_) => ("svg", "a plot is written as SVG; browsers show it, and other programs turn it into PNG or PDF"),
+        Some(_) => ("svg", "a plot is an SVG file; browsers show it, and other programs convert it to PNG or PDF"),
         None => ("png", "a developed picture is a PNG; the EXR keeps the linear picture"),
     };
     if extension.as_deref() != Some(kind) {
@@ -70,11 +74,26 @@ fn check_output(args: &Args) -> Outcome {
 }
 
 fn develop(args: &Args, file: &ExrFile) -> Result<String, Failure> {
+    check_crop(args, file)?;
     let developed = args.developing.write(&args.output, file, args.crop).map_err(|error| cannot(&args.image, error))?;
     print::warnings(&warn_not_finite(&args.image, &developed));
     let image = &developed.image;
     let legend = if matches!(developed.tone, Tone::Map { .. }) { " with a legend" } else { "" };
     Ok(format!("{} × {} pixels{legend}, {}", image.width, image.height, args.developing.describe(&developed)))
+}
+
+/// Refuses a crop that leaves the picture.
+fn check_crop(args: &Args, file: &ExrFile) -> Outcome {
+    let Some(crop) = args.crop else { return Ok(()) };
+    let size = [file.picture.width(), file.picture.height()];
+    crop.check_within(size[0], size[1]).map_err(|error| {
+        let outside = MietteDiagnostic::new(format!("cannot develop `{}`: {error}", args.image.display()));
+        let outside = outside.with_code("crop-outside");
+        match corners_hint([crop.x, crop.y, crop.width, crop.height], size) {
+            Some(hint) => Failure::input(outside.with_help(hint)),
+            None => Failure::input(outside),
+        }
+    })
 }
 
 fn plot_spectrum(args: &Args, file: &ExrFile, region: Rect) -> Result<String, Failure> {
@@ -87,8 +106,8 @@ fn plot_spectrum(args: &Args, file: &ExrFile, region: Rect) -> Result<String, Fa
     let left_out: usize = bands.iter().map(|band| band.left_out).sum();
     let unknown = bands.iter().filter(|band| !band.error.is_some_and(f64::is_finite)).count();
     for (count, what) in [
-        (left_out, "values of pixels are not finite and are left out of the means"),
-        (unknown, "bands have no error bar: their error is not known"),
+        (left_out, "values are not finite and are left out of the means"),
+        (unknown, "bands have no error bar, because their error is not known"),
     ] {
         if count > 0 {
             let path = args.image.display();

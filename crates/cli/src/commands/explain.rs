@@ -15,14 +15,16 @@ use crate::load::load;
 use crate::overrides::Overrides;
 use crate::print;
 
-/// Says which effects of light a scene calls for and by which object, and how it will be rendered.
+/// List the effects of light that a scene needs, which object needs them, and how it will be rendered.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon explain scenes/cornell-glass.json")]
 pub(crate) struct Args {
-    /// The scene, as JSON.
+    /// Scene as JSON, or a model (see `etalon render`).
     scene: PathBuf,
     #[command(flatten)]
     overrides: Overrides,
-    /// Measure what each effect that is off would have cost, by short renders that alternate with and without it.
+    /// Measure what each effect that is off would cost, by short renders with and without it.
     #[arg(long)]
     measure: bool,
     /// Print one JSON object on standard output.
@@ -104,12 +106,14 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     lines.push(String::new());
     lines.extend(how(prepared).into_iter().map(|(what, value)| format!("{what:<18} {value}")));
     if let (share, bodies @ 1..) = prepared.guided_targets() {
-        let share = format!("{:.0} % of what diffuse surfaces scatter is drawn toward", 100.0 * share);
-        lines.push(format!("{:<18} {share} {bodies} that mirror or refract: a trial found less noise", "caustics"));
+        let share = format!("{:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
+        let objects = if bodies == 1 { "object that mirrors or refracts" } else { "objects that mirror or refract" };
+        lines.push(format!("{:<18} {share} {bodies} {objects}: a trial found less noise", "caustics"));
     }
     if let (share, images @ 1..) = prepared.specular_light_images() {
-        let share = format!("up to {:.0} % of what diffuse surfaces scatter is drawn toward", 100.0 * share);
-        lines.push(format!("{:<18} {share} {images} images of lamps in balls: a trial found less noise", "caustics"));
+        let share = format!("up to {:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
+        let images_word = if images == 1 { "image of a lamp in a ball" } else { "images of lamps in balls" };
+        lines.push(format!("{:<18} {share} {images} {images_word}: a trial found less noise", "caustics"));
     }
     for pair in light::missing_pairs(&plan.missing_light) {
         lines.push(format!("{:<18} {pair}", "missing light"));
@@ -123,8 +127,8 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
 fn line(effect: &Effect, costs: &[Cost]) -> String {
     let state = if effect.on { "on" } else { "off" };
     let study = match effect.study {
-        Some(Decision::Forced) => "forced, although: ",
-        Some(Decision::LeftOut) => "left out, although called for by ",
+        Some(Decision::Forced) => "forced, although ",
+        Some(Decision::LeftOut) => "left out, although needed by ",
         None => "",
     };
     let cost = costs.iter().find(|cost| cost.effect == effect.name).map_or(String::new(), |cost| {
@@ -139,17 +143,17 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
     let plan = prepared.plan();
     let choice = match prepared.lights() {
         _ if !plan.runs(EffectName::ShadowRays) => "no shadow rays".to_owned(),
-        (0, _) => "no shadow ray has an aim".to_owned(),
-        (1, _) => "one".to_owned(),
-        (count, false) => format!("of {count}, by their power"),
-        (count, true) => format!("of {count}, by a tree: those that are bright, near and turned this way"),
+        (0, _) => "no lamp for shadow rays".to_owned(),
+        (1, _) => "the only one".to_owned(),
+        (count, false) => format!("one of {count}, chosen by power"),
+        (count, true) => format!("one of {count}, chosen by a light tree: by power, distance and direction"),
     };
     let lanes = match plan.lane_model {
-        LaneModel::One => "1: radiance is a number times the one spectrum of all light".to_owned(),
+        LaneModel::One => "1, because all light has the same spectrum".to_owned(),
         LaneModel::Hero if plan.runs(EffectName::Dispersion) => {
-            format!("{} wavelengths that dispersion may part from the hero", plan.lanes)
+            format!("{} wavelengths; dispersion may separate them", plan.lanes)
         }
-        LaneModel::Shared | LaneModel::Hero => format!("{} wavelengths that always go the same way", plan.lanes),
+        LaneModel::Shared | LaneModel::Hero => format!("{} wavelengths that share the whole path", plan.lanes),
         LaneModel::ThreeChannels => format!("{}: red, green and blue", plan.lanes),
     };
     let paths = match plan.path_loop.name {
@@ -168,7 +172,10 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
         ("bounces", format!("{depth}, {roulette}")),
         ("light sampling", plan.light_sampling.to_owned()),
         ("choice of lights", choice),
-        ("path reuse", plan.path_reuse.map_or("none".to_owned(), |[w, h]| format!("among blocks of {w} × {h} pixels"))),
+        (
+            "path reuse",
+            plan.path_reuse.map_or("none".to_owned(), |[w, h]| format!("within blocks of {w} × {h} pixels")),
+        ),
         ("numbers", plan.sampler.to_owned()),
     ]
 }

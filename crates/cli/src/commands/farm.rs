@@ -20,35 +20,38 @@ use crate::overrides::Overrides;
 use crate::print;
 use crate::state;
 
-/// Writes a job that renders a scene in shares on many machines and merges them into one picture, byte for byte that of one
-/// machine.
+/// Write a job that renders a scene on many machines.
+///
+/// Each task renders one share of the picture. The last task merges them. The picture has the same pixels as that of one machine, bit
+/// for bit.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon farm scenes/cornell.json --shards 64 --spp 1024 --slurm -o job.sh")]
 #[command(group = clap::ArgGroup::new("kind").required(true))]
 pub(crate) struct Args {
-    /// The scene, as for `etalon render`. All machines must see it, and the picture's folder, under the same path.
+    /// Scene. All machines must see it, and the folder of the picture, under the same path.
     scene: PathBuf,
-    /// How many shares; each is one task of the job. With --frames one for each frame, 10,000 at most, if not given.
+    /// Number of shares. Each is one task of the job. With --frames, the default is one for each frame, 10,000 at most.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_SHARES), required_unless_present = "frames")]
     shards: Option<u32>,
-    /// Write a script for Slurm: run it where jobs are submitted, and it submits an array of renders and a merge.
+    /// Write a shell script for Slurm. Run it where you submit jobs. It submits an array of renders and a merge.
     #[arg(long, group = "kind")]
     slurm: bool,
-    /// Write a job template of Open Job Description (jobtemplate-2023-09).
+    /// Write a job template for Open Job Description (jobtemplate-2023-09).
     #[arg(long, group = "kind")]
     openjd: bool,
-    /// The job; standard output if not given.
+    /// File for the job. Default: standard output.
     #[arg(short, long, alias = "outfile", value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The picture that the job makes; the scene's name with .exr, in this folder, if not given. The parts lie beside it. With --frames
-    /// it has {frame} in its name.
+    /// Picture that the job writes, with the parts beside it. Default: the name of the scene with .exr, in the current folder. With
+    /// --frames it has {frame} in its name.
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
-    /// Threads of each task; all cores of its machine if not given.
+    /// Number of threads of each task. Default: all cores of its machine.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
-    /// End when the relative error is this small: see `etalon render`. Every share explores and pilots the
-    /// whole picture to find out, which costs each of them a tenth of the picture or so: from about ten shares on, `etalon quote`
-    /// and --spp cost less.
+    /// Stop at this relative error, such as 2% (see `etalon render`). Each task first explores the whole picture. This takes about a tenth
+    /// of the time of the whole picture. For ten tasks or more, ask `etalon quote` once and pass --spp instead.
     #[arg(long, value_name = "PERCENT", value_parser = crate::args::percentage)]
     error: Option<f64>,
     #[command(flatten)]

@@ -24,16 +24,18 @@ const ANIMATION: &str = "figure5_animation.gif";
 /// How long the animation shows a frame.
 const FRAME_TIME: Duration = Duration::from_millis(40);
 
-/// Renders the assignment's 16 images and its animation, and counts the pixels that differ from the published ones.
+/// Render the 16 published images and the animation of a course assignment, and count the pixels that differ.
 ///
-/// The published images' hashes are built in. Where the files themselves are at hand, every pixel is compared as well.
-/// The exit status is 1 if any differs.
+/// The hashes of the published images are built in. If the files are available, every pixel is compared as well. The exit status is 1 if any
+/// pixel differs.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon figures -o figures")]
 pub(crate) struct Args {
-    /// Folder to write the images to; made if it is missing.
+    /// Folder for the images. It is created if it does not exist.
     #[arg(short, long, alias = "outfile", value_name = "DIR", default_value = "figures")]
     output: PathBuf,
-    /// Folder with the published PNG files; ../shared/assignment/figures, if that exists, unless given.
+    /// Folder with the published PNG files. Default: ../shared/assignment/figures, if it exists.
     #[arg(long, value_name = "DIR")]
     published: Option<PathBuf>,
     /// Print one JSON object on standard output instead of the table.
@@ -65,7 +67,7 @@ struct FiguresJson<'a> {
 pub(crate) fn run(args: Args) -> Outcome {
     let published = args.published.clone().or_else(|| Some(PathBuf::from(PUBLISHED)).filter(|path| path.is_dir()));
     std::fs::create_dir_all(&args.output).map_err(|error| {
-        Failure::run(Report::from_err(error).wrap_err(format!("cannot make the folder `{}`", args.output.display())))
+        Failure::run(Report::from_err(error).wrap_err(format!("cannot create the folder `{}`", args.output.display())))
     })?;
 
     // Each image is one sequence of random numbers, so it is rendered by one thread; the images go to all of them.

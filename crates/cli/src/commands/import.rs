@@ -11,27 +11,29 @@ use crate::failure::{Failure, Outcome};
 use crate::load::{import_model, refused_scene};
 use crate::print;
 
-/// Turns a model (glTF 2.0, OBJ with MTL, PLY) or a scene of Mitsuba 3 or pbrt-v4 into a scene to edit.
+/// Convert a model, or a scene of Mitsuba 3 or pbrt-v4, into a scene to edit.
 ///
-/// Meshes are written as PLY files and images copied into a folder beside the scene, named after it. What the model says
-/// and the scene cannot is listed, each thing with its place.
+/// Models are glTF 2.0, OBJ with MTL, and PLY. Meshes and images go into the folder SCENE-files beside the scene. Everything that cannot
+/// be converted exactly is listed with its place.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon import model.glb -o model.json")]
 pub(crate) struct Args {
-    /// The model: .glb, .gltf, .obj, .ply, .xml (Mitsuba) or .pbrt.
+    /// Model: .glb, .gltf, .obj, .ply, .xml (Mitsuba) or .pbrt.
     model: PathBuf,
-    /// The scene to write.
+    /// Scene to write.
     #[arg(short, long, value_name = "SCENE.json")]
     output: PathBuf,
-    /// When the shutter opens, of a glTF model that moves: 1.25s, 40ms. Without it the model is as its nodes place it.
+    /// Time at which the shutter opens in an animation of glTF, such as 1.25s or 40ms. Default: no animation.
     #[arg(long, value_name = "TIME", value_parser = instant, allow_hyphen_values = true)]
     time: Option<f64>,
-    /// How long the shutter stays open: 20ms. Without it the picture shows an instant.
+    /// How long the shutter stays open, such as 20ms. 0s shows an instant, without motion blur.
     #[arg(long, value_name = "TIME", value_parser = shutter, requires = "time", default_value = "0s")]
     shutter: f64,
-    /// Which animation: its name, or its index from 0; the first if left out.
+    /// Name of the animation, or its index from 0. Default: the first.
     #[arg(long, value_name = "NAME", requires = "time")]
     animation: Option<String>,
-    /// Print one JSON object on standard output about what was written and what was left out.
+    /// Print one JSON object on standard output, with the files and what was not converted.
     #[arg(long)]
     json: bool,
 }
@@ -46,7 +48,7 @@ fn instant(text: &str) -> Result<f64, String> {
     };
     match number.trim_end().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(unit * value),
-        _ => Err("a time such as 1.25s or 40ms".to_owned()),
+        _ => Err("expected a time such as 1.25s or 40ms".to_owned()),
     }
 }
 
@@ -54,7 +56,7 @@ fn instant(text: &str) -> Result<f64, String> {
 fn shutter(text: &str) -> Result<f64, String> {
     match instant(text)? {
         seconds if seconds >= 0.0 => Ok(seconds),
-        _ => Err("a shutter is open for no less than no time".to_owned()),
+        _ => Err("the time must be 0 or more, such as 20ms".to_owned()),
     }
 }
 
@@ -76,7 +78,11 @@ struct LeftOutJson {
 pub(crate) fn run(args: Args) -> Outcome {
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     if args.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("json")) || stem.is_empty() {
-        return Err(Failure::input(miette!(code = "output-format", "`{}` is not named .json", args.output.display())));
+        return Err(Failure::input(miette!(
+            code = "output-format",
+            "`{}` does not end in .json",
+            args.output.display()
+        )));
     }
     let prefix = format!("{stem}-files/");
     let moment =
@@ -118,7 +124,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     print::line(&format!("{name}: {} files beside it in {prefix}", imported.files.len()));
     imported.added.iter().for_each(|added| print::line(&format!("  added: {added}")));
     for left_out in &imported.left_out {
-        print::line(&format!("  not honoured: {}: {}", left_out.place, left_out.what));
+        print::line(&format!("  not converted: {}: {}", left_out.place, left_out.what));
     }
     Ok(())
 }

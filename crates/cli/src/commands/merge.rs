@@ -19,22 +19,26 @@ use crate::progress::percent;
 use crate::state::{self, Header, Kept};
 use crate::write_outputs::Delivery;
 
-/// Puts the parts of a picture together that `etalon render --shard` has written: byte for byte the whole picture.
+/// Merge the parts of `etalon render --shard` into one picture.
+///
+/// The picture has the same pixels as if one machine had rendered it, bit for bit.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon merge 1.part 2.part 3.part -o cornell.exr -o cornell.png")]
 pub(crate) struct Args {
-    /// The parts, in any order; of a folder, all files in it whose names end in .part.
+    /// Parts in any order. A folder stands for all .part files in it.
     #[arg(required_unless_present = "list", value_name = "PART")]
     parts: Vec<PathBuf>,
-    /// A file with the name of a part, or of a folder, in each line: for more parts than a command line holds. Standard input if it is -.
+    /// File with one part or folder per line, for more parts than a command line holds. `-` reads standard input.
     #[arg(long, value_name = "FILE")]
     list: Option<PathBuf>,
-    /// Picture to write, as for `etalon render`: .exr, .png or .part. Give it twice to write both.
+    /// File to write: .exr, .png or .part. Repeat the option to write several.
     #[arg(short, long, alias = "outfile", value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
     /// Print one JSON object on standard output.
     #[arg(long)]
     json: bool,
-    /// Print nothing but warnings and errors.
+    /// Print only warnings and errors.
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
@@ -139,7 +143,7 @@ fn named(args: &Args, failure: &mut Failure) -> Vec<PathBuf> {
         parts.extend(inside);
     }
     if parts.is_empty() && failure.is_empty() {
-        failure.add(Failure::input(miette!(code = "parts", "no part is named")));
+        failure.add(Failure::input(miette!(code = "parts", "no part is given")));
     }
     parts
 }
@@ -170,9 +174,9 @@ fn check(parts: &[(PathBuf, Kept)], failure: &mut Failure) {
         } else if header.samples != first.samples {
             Some(format!("it has {} samples a pixel, not {}", header.samples, first.samples))
         } else if header.allocation != first.allocation {
-            Some("its samples are spread otherwise over the picture".to_owned())
+            Some("its samples are distributed differently over the picture".to_owned())
         } else if header.channels != first.channels {
-            Some("it was to have other channels (--aov)".to_owned())
+            Some("it has other channels (--aov)".to_owned())
         } else {
             None
         };
@@ -201,7 +205,7 @@ fn check(parts: &[(PathBuf, Kept)], failure: &mut Failure) {
             missing.join(", "),
             if missing.len() == 1 { "is" } else { "are" }
         );
-        failure.add(Failure::input(miette!(code = "missing-part", help = "render with --shard K/N", "{text}")));
+        failure.add(Failure::input(miette!(code = "missing-part", help = "render them with --shard K/N", "{text}")));
     }
 }
 
@@ -216,7 +220,7 @@ fn put_together(parts: Vec<(PathBuf, Kept)>) -> Result<(Header, Canvas, Vec<Vec<
     let allocation = match &header.allocation {
         Some(weights) => Some(
             state::allocation(header.subject.crop, weights)
-                .ok_or_else(|| damaged(first_path, "its samples are spread over another picture"))?,
+                .ok_or_else(|| damaged(first_path, "its samples are distributed over another picture"))?,
         ),
         None => None,
     };
@@ -225,11 +229,14 @@ fn put_together(parts: Vec<(PathBuf, Kept)>) -> Result<(Header, Canvas, Vec<Vec<
     for (path, part) in &parts {
         for (tile, sums, of_tile) in &part.tiles {
             if header.channels.has_features() && of_tile.is_empty() {
-                return Err(damaged(path, "it lacks what its channels need"));
+                return Err(damaged(path, "it lacks the data of its channels"));
             }
             found.insert((tile.rect.y0, tile.rect.x0), of_tile);
             if !canvas.take_up(tile, sums) {
-                return Err(damaged(path, "it has a tile that is not one of the picture's, or that another part has"));
+                return Err(damaged(
+                    path,
+                    "it has a tile that does not belong to the picture, or that another part has too",
+                ));
             }
             tiles += 1;
         }

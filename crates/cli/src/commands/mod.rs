@@ -1,6 +1,7 @@
 //! The commands, one a module: an `Args` for clap, and `pub(crate) fn run(args: Args) -> Outcome`.
 
 pub(crate) mod compare;
+pub(crate) mod completions;
 #[cfg(feature = "denoise")]
 pub(crate) mod denoise;
 pub(crate) mod develop;
@@ -8,6 +9,7 @@ pub(crate) mod explain;
 pub(crate) mod farm;
 pub(crate) mod figures;
 pub(crate) mod import;
+pub(crate) mod man;
 pub(crate) mod merge;
 pub(crate) mod quote;
 pub(crate) mod render;

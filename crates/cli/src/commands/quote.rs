@@ -20,29 +20,34 @@ use crate::overrides::Overrides;
 use crate::print;
 use crate::progress::{duration, percent, two_digits};
 
-/// Says what each accuracy of a scene will cost in samples and seconds on this machine.
+/// Predict the samples and the time for each accuracy, on this machine.
+///
+/// A pilot renders the scene for a few seconds. From it the command predicts how many samples per pixel, and how much time, a picture of each
+/// relative error takes. Intervals are at 95 % confidence.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon quote scenes/cornell.json --error 5%,1% --pilot 5s")]
 pub(crate) struct Args {
-    /// The scene, as JSON.
+    /// Scene as JSON, or a model (see `etalon render`).
     scene: PathBuf,
     #[command(flatten)]
     frames: FrameArgs,
     #[command(flatten)]
     overrides: Overrides,
-    /// Relative errors to quote.
+    /// Relative errors to predict the cost of, separated by commas.
     #[arg(long = "error", value_name = "PERCENT", value_delimiter = ',', value_parser = percentage,
         default_values = ["10%", "5%", "2%", "1%", "0.5%", "0.1%"])]
     errors: Vec<f64>,
-    /// Longest time that the pilot may take.
+    /// Maximum time of the pilot, such as 10s.
     #[arg(long, value_name = "TIME", value_parser = crate::args::seconds, default_value = "10s")]
     pilot: f64,
-    /// Whether regions with more error are to take more samples, as `etalon render --adaptive` decides it.
+    /// Whether noisy regions get more samples, as in `etalon render`.
     #[arg(long, value_enum, value_name = "WHEN", default_value_t = Adaptive::Auto)]
     adaptive: Adaptive,
-    /// Threads; all cores if not given.
+    /// Number of threads. Default: all cores.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
-    /// Which clock counts: that on the wall, or the processor's, which other programs do not slow down.
+    /// Clock of the predicted times.
     #[arg(long, value_enum, default_value_t = ClockKind::Wall)]
     clock: ClockKind,
     /// Print one JSON object on standard output.
@@ -177,13 +182,13 @@ fn refused(error: RenderError) -> Failure {
     match error {
         RenderError::PathReuse(_) => Failure::input(miette!(
             code = "path-reuse",
-            help = "leave out --path-reuse",
-            "a quote is made from single paths, and where neighbouring pixels share paths none stands alone"
+            help = "leave out --path-reuse, and \"path_reuse\" in the scene",
+            "a quote needs independent pixels, and path reuse makes neighbouring pixels share paths"
         )),
         RenderError::NoLight { paths } => Failure::run(miette!(
             code = "no-light",
-            help = format!("a longer pilot may find some (--pilot); {NO_LIGHT_HELP}"),
-            "the pilot found no light in {paths} paths: what an error of the picture costs is unknown",
+            help = format!("a longer pilot may find some: --pilot 60s; {NO_LIGHT_HELP}"),
+            "the pilot found no light in {paths} paths, so the cost of an error is unknown",
         )),
         other => Failure::run(Report::from_err(other)),
     }
@@ -232,8 +237,8 @@ fn describe(quote: &QuoteJson) -> String {
     let _ = write!(
         text,
         "\nThe error is the root mean square over all pixels of the standard error of luminance, in units of the picture's\n\
-         mean luminance; samples are of each pixel. The pilot took {}, preparing the scene {}.\n\
-         `etalon render --error` finds the number of samples itself, for about {} of these times more.",
+         mean luminance. Samples are per pixel. The pilot took {}, preparing the scene {}.\n\
+         `etalon render --error` finds the number of samples itself. This takes about {} more time.",
         duration(quote.pilot.seconds),
         duration(quote.prepare_seconds),
         percent(quote.settling_share),
@@ -241,7 +246,7 @@ fn describe(quote: &QuoteJson) -> String {
     if let Some(adaptive) = quote.adaptive.as_ref().filter(|adaptive| adaptive.used) {
         let _ = write!(
             text,
-            " Regions with\nmore error take more samples, predicted to take {:.1} times less time than all pixels alike would.",
+            " Noisy regions\nget more samples. This is predicted to be {:.1} times as fast as the same number of samples in every pixel.",
             adaptive.predicted_gain
         );
     }

@@ -40,74 +40,79 @@ pub(crate) use setup::check_shares;
 use setup::{Job, set_up};
 use watcher::{ProgressKind, Watcher};
 
-/// Renders a scene to EXR and PNG files.
+/// Render a scene to EXR and PNG files.
+///
+/// The scene says how many samples each pixel takes. --spp, --error and --time replace this number. If several are given, the limit that is
+/// reached first ends the render.
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  etalon render scenes/cornell.json --spp 64 -o cornell.exr -o cornell.png
+  etalon render scenes/cornell.json --error 2% -o cornell.exr
+  etalon render scenes/cornell.json --time 30s --exposure auto --curve agx -o cornell.png")]
 pub(crate) struct Args {
-    /// The scene, as JSON (see `etalon schema`), or a model: glTF 2.0 (.glb, .gltf), OBJ or PLY. `-` reads a scene from standard input.
+    /// Scene as JSON, or a model: glTF 2.0 (.glb, .gltf), OBJ or PLY. `-` reads a scene from standard input.
     scene: PathBuf,
-    /// Picture to write: .exr keeps the linear picture and all that is known about it, .png is what a screen shows, .part
-    /// the sums themselves. Give it twice to write both. Without it the picture of NAME.json is NAME.exr in this folder; that
-    /// replaces a picture of Etalon, but no other file.
+    /// File to write. Repeat the option to write several. An .exr holds the linear picture with its error bars, a .png is for a screen, a
+    /// .part is for `etalon merge`. Default: the name of the scene with .exr, in the current folder. This replaces a picture of
+    /// Etalon, but no other file.
     #[arg(short, long, alias = "outfile", value_name = "FILE")]
     output: Vec<PathBuf>,
     #[command(flatten)]
     frames: FrameArgs,
     #[command(flatten)]
     overrides: Overrides,
-    /// End when the relative error is this small. A pilot, none of whose samples are kept, tells how many samples that
-    /// takes; the scene's own number of samples does not count then. Of --error, --time and --spp the first one wins.
+    /// Stop at this relative error, such as 2%. It is the root mean square over all pixels of the standard error of luminance, divided by the
+    /// mean luminance. A pilot predicts the number of samples; its own samples are discarded.
     #[arg(long, value_name = "PERCENT", value_parser = crate::args::percentage)]
     error: Option<f64>,
-    /// End when this time is up, such as 90s or 1h30m; the scene's own number of samples does not count then.
+    /// Stop after this time, such as 90s or 1h30m. A plain number is in seconds.
     #[arg(long, value_name = "TIME", value_parser = crate::args::seconds)]
     time: Option<f64>,
-    /// Whether regions with more error take more samples. An exploration, none of whose samples are kept, decides it before the
-    /// picture begins; the mean number of samples a pixel is that of --spp all the same.
+    /// Whether noisy regions get more samples. A short exploration decides before the render; its own samples are discarded. The mean
+    /// number of samples per pixel stays the same.
     #[arg(long, value_enum, value_name = "WHEN", default_value_t = Adaptive::Auto)]
     adaptive: Adaptive,
-    /// Which clock counts for --time and for reports: that on the wall, or the processor's over the number of threads, which
-    /// other programs do not slow down.
+    /// Clock for --time and for reports.
     #[arg(long, value_enum, default_value_t = ClockKind::Wall)]
     clock: ClockKind,
-    /// Threads; all cores if not given. The picture is the same whatever their number.
+    /// Number of threads. Default: all cores. It does not change the picture.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
-    /// Channels that the EXR has beside the picture: of the first surface that is met, or of the samples.
+    /// More channels for the EXR, separated by commas: properties of the first surface, or of the samples.
     #[arg(long, value_enum, value_name = "CHANNELS", value_delimiter = ',')]
     aov: Vec<Aov>,
-    /// Write no channels but those of --aov to the EXR.
+    /// Write only the channels of --aov to the EXR.
     #[arg(long, requires = "aov")]
     only: bool,
-    /// Render only these pixels: columns from X0 up to but not including X1, rows from Y0 to Y1, counted from the top
-    /// left. The EXR remembers where they belong.
-    #[arg(long, value_name = "X0,X1,Y0,Y1")]
+    /// Render only a part: W × H pixels from column X and row Y, counted from 0 at the top left. The EXR states where they belong.
+    #[arg(long, value_name = "X,Y,W,H")]
     crop: Option<Crop>,
-    /// Keep what is rendered in a file beside the first output, OUTPUT.checkpoint, each time so much time has passed.
+    /// Save the unfinished render at this interval, such as 60s, to OUTPUT.checkpoint. OUTPUT is the first output.
     #[arg(long, value_name = "TIME", value_parser = crate::args::seconds)]
     checkpoint: Option<f64>,
-    /// Go on from OUTPUT.checkpoint, if there is one; the picture is the same, byte for byte.
+    /// Continue from OUTPUT.checkpoint, if it exists. The picture is the same as without the interruption.
     #[arg(long)]
     resume: bool,
-    /// Render one share of the picture's tiles only, the K-th of N: an output that ends in .part is for `etalon merge`. With --frames,
-    /// render one share of the frames: every N-th from the K-th on.
+    /// Render share K of N of the picture, such as 3/16. Write it to a .part file. `etalon merge` joins the parts. With --frames,
+    /// render every N-th frame from the K-th on.
     #[arg(long, value_name = "K/N")]
     shard: Option<ShardArg>,
-    /// Trace one path of this pixel again and print it vertex by vertex, instead of rendering.
+    /// Render nothing. Trace one path of this pixel and print it vertex by vertex. X and Y count from 0 at the top left.
     #[arg(long, value_name = "X,Y", conflicts_with_all = ["output", "crop", "error", "time", "checkpoint", "resume", "shard"])]
     pixel: Option<PixelAt>,
-    /// Which of the pixel's paths; the first, 0, if it is not given.
+    /// Number of the path within --pixel, from 0. Default: 0.
     #[arg(long, value_name = "K")]
     sample: Option<u32>,
-    /// Show the picture in tev while it is rendered; 127.0.0.1:14158 if no HOST:PORT is given.
+    /// Show the picture in the viewer tev during the render. Without a HOST:PORT it is 127.0.0.1:14158.
     #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true, default_missing_value = display::DEFAULT)]
     display_server: Option<String>,
-    /// How progress is shown: as a bar on a terminal, or as lines on standard output that a farm reads.
+    /// How to show progress.
     #[arg(long, value_enum, default_value_t = ProgressKind::Bar, conflicts_with_all = ["json", "quiet"])]
     progress: ProgressKind,
-    /// Print one JSON object on standard output, about the render or about what is wrong, and no progress.
+    /// Print one JSON object on standard output, with the report or the errors. Shows no progress.
     #[arg(long)]
     json: bool,
-    /// Print nothing but warnings and errors.
+    /// Print only warnings and errors.
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
@@ -140,7 +145,10 @@ pub(crate) fn run(mut args: Args) -> Outcome {
         }
         _ if names_itself && let Err(foreign) = output::check_own(&args.output[0]) => Err(Stop::Refused(foreign)),
         (None, Some(_)) => {
-            let failure = miette!(code = "sample-without-pixel", "--sample says which path of --pixel to trace again");
+            let failure = miette!(
+                code = "sample-without-pixel",
+                "--sample needs --pixel: it chooses one of the paths of that pixel"
+            );
             Err(Stop::Refused(Failure::input(failure)))
         }
         (None, None) => render(&args),
@@ -248,10 +256,10 @@ fn render_job(
             Ok(path) => Failure::run(miette!(
                 code = "kept",
                 help = format!(
-                    "{}with --resume, the same command writes the pictures without rendering again",
+                    "{}the same command with --resume writes the pictures without rendering again",
                     moved(args, &path)
                 ),
-                "what was rendered is kept in `{}`",
+                "the render is kept in `{}`",
                 path.display()
             )),
             Err(failure) => failure,
@@ -266,7 +274,7 @@ fn not_rendered(error: SettleError) -> Failure {
         SettleError::Threads(error) => Report::from_err(error),
         SettleError::NoLight { .. } => miette!(
             code = "no-light",
-            help = format!("with --spp or --time beside --error the picture is rendered all the same; {NO_LIGHT_HELP}"),
+            help = format!("add --spp or --time to render the picture without knowing its error; {NO_LIGHT_HELP}"),
             "{error}"
         ),
     })

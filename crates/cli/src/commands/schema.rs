@@ -3,8 +3,10 @@
 use crate::failure::Outcome;
 use crate::print;
 
-/// Prints the JSON Schema of scene files, with which editors complete and check them.
+/// Print the JSON Schema of scene files, so that an editor can complete and check them.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon schema > scenes/etalon.schema.json")]
 pub(crate) struct Args {}
 
 pub(crate) fn run(_: Args) -> Outcome {

@@ -20,37 +20,40 @@ use crate::machine::{Clock, ClockKind, Machine};
 use crate::print;
 use measure::{Effort, SceneStudy};
 
-/// Measures what samplers, path depth, roulette, light sampling and effects buy and cost.
+/// Measure what samplers, path depth, light sampling and effects gain and cost.
+///
+/// Renders each scene with one setting changed at a time, and compares error and time. Writes a table, plots and a page of HTML.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon study scenes/cornell.json --seconds 1s -o study")]
 pub(crate) struct Args {
-    /// Scenes as JSON files, or truths of the oracle as `truth:NAME` (see `etalon verify`); all of the folder `scenes` if
-    /// none is given.
+    /// Scenes as JSON files, or truths of the oracle as truth:NAME (see `etalon verify`). Default: all scenes in the folder `scenes`.
     scenes: Vec<String>,
-    /// Folder for study.json, study.md, study.html and the plots.
+    /// Folder for study.json, study.md, study.html and the plots. It is created if it does not exist.
     #[arg(short, long, alias = "outfile", value_name = "FOLDER")]
     output: PathBuf,
-    /// Width of the pictures, pixels; their height follows each scene's shape.
+    /// Width of the pictures in pixels. The height follows from the shape of the film.
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..=4096))]
     width: u32,
-    /// Longest rendering of each choice.
+    /// Maximum render time of each choice, such as 2s.
     #[arg(long, value_name = "TIME", value_parser = crate::args::seconds, default_value = "2s")]
     seconds: f64,
-    /// Longest rendering of the reference, times that of a choice.
+    /// Maximum render time of the reference, as a multiple of --seconds.
     #[arg(long, value_name = "FACTOR", default_value_t = 5.0, value_parser = crate::args::finite)]
     reference: f64,
-    /// Only choices, or groups of them, whose name contains one of these.
+    /// Study only choices, or groups of choices, whose name contains one of these words.
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     only: Vec<String>,
-    /// Seed of every random number.
+    /// Seed of the random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// What the report says the program was built from.
+    /// Commit of the program, to state in the report.
     #[arg(long, value_name = "COMMIT")]
     commit: Option<String>,
-    /// Threads; all cores if not given.
+    /// Number of threads. Default: all cores.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
-    /// Print nothing but warnings and errors.
+    /// Print only warnings and errors.
     #[arg(short, long)]
     quiet: bool,
 }
@@ -142,7 +145,9 @@ fn subjects(args: &Args) -> Result<Vec<Subject>, Failure> {
 
 fn all_scenes() -> Result<Vec<String>, Failure> {
     let folder = std::fs::read_dir("scenes").map_err(|error| {
-        Failure::input(Report::from_err(error).wrap_err("no scene is given, and there is no folder `scenes` here"))
+        Failure::input(
+            Report::from_err(error).wrap_err("no scene is given, and the current folder has no folder `scenes`"),
+        )
     })?;
     let mut names: Vec<String> = folder
         .filter_map(|entry| entry.ok().map(|entry| entry.path()))
@@ -167,7 +172,7 @@ fn of_truth(name: &str) -> Result<Subject, Failure> {
     let claims: Vec<Claim> = Claim::UNPOLARISED.into_iter().chain([Claim::CarriesPolarisation]).collect();
     let truth = truths().into_iter().find(|truth| truth.name == name && truth.applies_to(&claims));
     let truth = truth.filter(|truth| truth.band_nm.is_none()).ok_or_else(|| {
-        Failure::input(miette!(code = "unknown-truth", "there is no truth `{name}` that is a mean luminance"))
+        Failure::input(miette!(code = "unknown-truth", "there is no truth `{name}` of a mean luminance"))
     })?;
     let (scene, _) = etalon_scene::parse(&truth.scene, name).map_err(|e| Failure::run(miette!("{}", e.summary())))?;
     Ok(Subject { name: name.to_owned(), scene, truth: Some(truth.value) })

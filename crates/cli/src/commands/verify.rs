@@ -13,28 +13,35 @@ use miette::miette;
 
 use crate::failure::{Failure, Outcome};
 
-/// Renders scenes whose answer is known in closed form, and says how far off we are; or judges another renderer's pictures.
+/// Test Etalon, or another renderer, with scenes whose answer is known in closed form.
+///
+/// For each scene it prints the measured value, its standard error, and the smallest bias that the test would have found. The exit status is
+/// 1 if a scene fails.
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  etalon verify eye-in-glass
+  etalon verify --export truths
+  etalon verify --images pictures")]
 pub(crate) struct Args {
-    /// Only truths whose name contains one of these; all if none is given.
+    /// Test only scenes whose name contains one of these words. Default: all.
     names: Vec<String>,
-    /// Judge the pictures in this folder (NAME.exr), which another program rendered, instead of rendering.
+    /// Render nothing. Judge the pictures of another renderer in this folder, named NAME.exr.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["seed", "thorough", "threads"])]
     images: Option<PathBuf>,
-    /// Write the scenes with what is expected of them into this folder, for another renderer to join, and do nothing else.
+    /// Render nothing. Write the scenes and the expected values to this folder, for another renderer.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["images", "json", "seed", "thorough", "threads"])]
     export: Option<PathBuf>,
     /// Print one JSON object on standard output instead of a table.
     #[arg(long)]
     json: bool,
-    /// Seed of every random number.
+    /// Seed of the random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Take more samples until a bias of one part in ten thousand would show: 32 million rays a truth, and up to 256 million where
-    /// these will do. Each film is one pixel then, whose samples are spread over the whole picture.
+    /// Take enough samples to find a relative bias of 10⁻⁴: from 32 million to 256 million rays per scene. Each film is then one pixel whose
+    /// samples cover the whole picture.
     #[arg(long)]
     thorough: bool,
-    /// Threads; all cores if not given.
+    /// Number of threads. Default: all cores.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
 }
@@ -44,9 +51,11 @@ pub(crate) fn run(args: Args) -> Outcome {
         |truth: &Truth| args.names.is_empty() || args.names.iter().any(|name| truth.name.contains(name.as_str()));
     let chosen: Vec<Truth> = truths().into_iter().filter(named).collect();
     match (&args.export, &args.images) {
-        _ if chosen.is_empty() => {
-            Err(Failure::input(miette!(code = "unknown-truth", "no truth has a name like {:?}", args.names)))
-        }
+        _ if chosen.is_empty() => Err(Failure::input(miette!(
+            code = "unknown-truth",
+            "no scene has a name that contains one of {:?}",
+            args.names
+        ))),
         (Some(folder), _) => export::run(folder, &chosen),
         (None, Some(folder)) => pictures::run(folder, &chosen, args.json),
         (None, None) => ours::run(&args, chosen),

@@ -18,45 +18,49 @@ use crate::problem_json::{ProblemJson, problem_json, problems_json};
 use crate::progress::SampleBar;
 use crate::scene_report::{scene_failure, scene_warnings};
 
-/// Renders a scene in the assignment's JSON form, as the assignment prescribes.
+/// Render a scene in the JSON form of a course assignment (Whitted ray tracing).
 ///
-/// Spheres and parallelograms, perspective and orthographic cameras. The defaults are those of the published figures.
+/// The form has spheres, parallelograms, and perspective and orthographic cameras. The defaults are those of the published figures.
 #[derive(clap::Args)]
+#[command(after_help = "Example:
+  etalon whitted assignment.json -o picture.png")]
 pub(crate) struct Args {
-    /// The scene, in the assignment's JSON form.
+    /// Scene in the JSON form of the assignment.
     scene: PathBuf,
-    /// Picture to write.
+    /// PNG file to write.
     #[arg(short, long, alias = "outfile", value_name = "FILE.png")]
     output: PathBuf,
-    /// How far along a shadow ray its search begins, as a fraction of the way to the light. 0 shows shadow acne.
+    /// Start of each shadow ray, as a fraction of the distance to the light. 0 shows shadow acne.
     #[arg(long, value_name = "E", default_value_t = 0.001, value_parser = not_negative)]
     epsilon: f64,
-    /// Camera rays a pixel.
+    /// Camera rays per pixel.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     rays: u32,
-    /// Half the side of the square lens, instead of the file's.
+    /// Half the side of the square lens, in the units of the scene. Default: what the scene says.
     #[arg(long, value_name = "R", value_parser = not_negative)]
     lens_radius: Option<f64>,
-    /// Most surfaces that a mirror or refraction ray visits.
+    /// Maximum number of surfaces on the way of a mirror or refraction ray.
     #[arg(long, value_name = "N", default_value_t = 10)]
     max_bounce: u32,
-    /// Size of the picture, pixels.
+    /// Width and height of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "640x480")]
     size: Size,
-    /// Refracted directions by equation (1) as it was published, or by Snell's law.
+    /// Formula of refracted directions.
     #[arg(long, value_enum, default_value_t = Refraction::Published)]
     refraction: Refraction,
-    /// Print one JSON object on standard output, and no progress.
+    /// Print one JSON object on standard output. Shows no progress.
     #[arg(long)]
     json: bool,
-    /// Print nothing but warnings and errors.
+    /// Print only warnings and errors.
     #[arg(short, long)]
     quiet: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Refraction {
+    /// Equation (1) of the assignment, as published.
     Published,
+    /// Snell's law.
     Snell,
 }
 
@@ -84,7 +88,7 @@ struct RefusedJson {
 fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
-        Ok(_) => Err("it must be 0 or more, and finite".to_owned()),
+        Ok(_) => Err("the value must be 0 or more, and finite".to_owned()),
         Err(error) => Err(error.to_string()),
     }
 }
@@ -165,7 +169,7 @@ fn render_and_write(args: &Args, name: &str, scene: &Scene, mut warnings: Vec<Re
         warnings.push(miette!(
             severity = miette::Severity::Warning,
             code = "nonfinite",
-            help = "a light that lies exactly on a surface, or lengths too large to be squared, do this",
+            help = "causes are a light exactly on a surface, and lengths too large to be squared",
             "{nonfinite} pixels are not finite; the picture shows them black or white"
         ));
     }

@@ -77,7 +77,7 @@ pub(crate) enum StateError {
         source: io::Error,
     },
     /// It is something else.
-    #[error("`{}` is neither a checkpoint nor a part of a picture by this version of etalon", path.display())]
+    #[error("`{}` is not a checkpoint or part of this version of etalon", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
@@ -215,7 +215,7 @@ impl Input<'_> {
         self.take(&mut length)?;
         let length = u32::from_le_bytes(length);
         if length > most {
-            return Err(self.damaged("a block is longer than any can be"));
+            return Err(self.damaged("a block is longer than the largest possible"));
         }
         // By what is there, not by what is claimed.
         let mut bytes = Vec::new();

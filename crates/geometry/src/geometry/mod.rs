@@ -27,13 +27,13 @@ pub const MAX_NESTING: u32 = 32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeometryError {
     /// More primitives than ids.
-    #[error("{0} primitives are more than the 2^29 that can be indexed")]
+    #[error("{0} primitives; at most 2^29 are possible")]
     TooMany(usize),
     /// More instances, those within instances counted wherever they are placed, than numbers for them.
-    #[error("{0} placed instances are more than the 2^31 that can be numbered")]
+    #[error("{0} placed instances; at most 2^31 are possible")]
     TooManyInstances(u64),
     /// Instances within instances, too many of them.
-    #[error("instances within instances, {0} of them: more than {MAX_NESTING}")]
+    #[error("instances are nested {0} deep; at most {MAX_NESTING}")]
     TooDeep(u32),
 }
 

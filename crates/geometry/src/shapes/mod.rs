@@ -27,19 +27,19 @@ pub enum ShapeError {
     #[error("a coordinate is not a finite number")]
     NotFinite,
     /// A coordinate or length is larger than [`MAX_COORDINATE`], or a length smaller than [`MIN_LENGTH`].
-    #[error("a coordinate or a length is beyond what can be computed with (2^±120 m)")]
+    #[error("a coordinate or a length is too large or too small (beyond 2^±120 m)")]
     OutOfRange,
     /// The shape has no area, so no normal.
     #[error("the shape has no area")]
     NoArea,
     /// The placement of an instance cannot be inverted.
-    #[error("the placement flattens what it places")]
+    #[error("the transform flattens the object")]
     Singular,
     /// An instance of a geometry without primitives.
     #[error("the instance places nothing")]
     Empty,
     /// Poses of a motion that no smooth motion joins, or that are none.
-    #[error("the poses of the motion cannot be joined")]
+    #[error("no motion connects the keyframes")]
     Unjoinable,
 }
 

@@ -35,7 +35,10 @@ impl Builder<'_> {
     pub(crate) fn place_group(&mut self, name: &str, group: &str, map: &DAffine3, place: &str) {
         let determinant = map.matrix3.determinant();
         let Some(Some(bounds)) = self.group_bounds.get(group).copied() else {
-            self.leave_out(place, format!("the group \"{group}\" is empty or not there: its instance is left out"));
+            self.leave_out(
+                place,
+                format!("the group \"{group}\" is empty or does not exist: its instance is left out"),
+            );
             return;
         };
         if determinant == 0.0 || !determinant.is_finite() {

@@ -93,7 +93,7 @@ impl Builder<'_> {
             if lit.is_nan() || lit >= LEAST_RADIANCE {
                 return None;
             }
-            format!("what shines of the model lights it too little (mean radiance {lit:.1e} of {LEAST_RADIANCE})")
+            format!("the model's own lights are too weak (mean radiance {lit:.1e}, below {LEAST_RADIANCE})")
         } else {
             "the model has no light".to_owned()
         };

@@ -15,7 +15,7 @@ pub(super) fn numbers<const N: usize>(accessor: &Accessor<'_>, buffers: &[Vec<u8
         _ => Dimensions::Vec4,
     };
     if accessor.dimensions() != expected {
-        return Err(fail("it has another number of components than is needed here"));
+        return Err(fail("it has the wrong number of components"));
     }
     let count = accessor.count();
     if count > MAX_ELEMENTS {
@@ -62,7 +62,7 @@ pub(super) fn numbers<const N: usize>(accessor: &Accessor<'_>, buffers: &[Vec<u8
         for i in 0..sparse.count() {
             let index = number(&at[i * index_kind.size()..], index_kind, false) as usize;
             let target =
-                numbers.get_mut(index).ok_or_else(|| fail("its sparse part names an element that it has not"))?;
+                numbers.get_mut(index).ok_or_else(|| fail("its sparse part names an element that does not exist"))?;
             *target = std::array::from_fn(|k| number(&data[i * element + k * kind.size()..], kind, normalized));
         }
     }

@@ -63,7 +63,7 @@ impl Animated {
         };
         for other in file.animations().filter(|other| Some(other.index()) != asked) {
             let why = if asked.is_some() { "another one is asked for" } else { "no time is asked for" };
-            let what = format!("{} is not followed: {why} (--time and --animation of `etalon import`)", label(&other));
+            let what = format!("{} is ignored: {why} (--time and --animation of `etalon import`)", label(&other));
             builder.leave_out(format!("$.animations[{}]", other.index()), what);
         }
         let (Some(asked), Some(moment)) = (asked.and_then(|index| file.animations().nth(index)), moment) else {
@@ -75,7 +75,7 @@ impl Animated {
             // The library takes both for granted.
             let target = &file.as_json().animations[asked.index()].channels[i].target;
             if matches!(target.path, Checked::Invalid) {
-                builder.leave_out(place, "what it changes is not known");
+                builder.leave_out(place, "its target is not known");
                 continue;
             }
             if target.node.value() >= file.nodes().count() {
@@ -87,7 +87,7 @@ impl Animated {
             }
             let property = channel.target().property();
             if property == Property::MorphTargetWeights {
-                builder.leave_out(place, "morph weights are not honoured");
+                builder.leave_out(place, "morph weights are ignored");
                 continue;
             }
             let track = Track::read(&channel, property, buffers).map_err(|why| format!("{place}: {why}"))?;

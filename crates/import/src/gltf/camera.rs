@@ -82,7 +82,7 @@ impl Walk<'_, '_> {
         if let (Some(()), Some(last)) = (followed, times.last().and_then(|time| at(*time))) {
             frames.push(last);
         } else {
-            let what = "its nodes stretch or mirror it while it moves: it rests where it is when the shutter opens";
+            let what = "its nodes stretch or mirror it while it moves: it stays where it is when the shutter opens";
             self.builder.leave_out(place, what);
             return None;
         }

@@ -17,7 +17,7 @@ pub(super) fn check_primitives(bytes: &[u8]) -> Result<(), String> {
         if let Some(&[a, b, c, d]) = bytes.get(8..12)
             && u32::from_le_bytes([a, b, c, d]) < GLB_HEADER
         {
-            return Err(format!("its header takes {GLB_HEADER} bytes, and says that the whole file takes fewer"));
+            return Err(format!("its header has {GLB_HEADER} bytes, but states a smaller length for the whole file"));
         }
         glb = gltf::Glb::from_slice(bytes).map_err(|error| error.to_string())?;
         &*glb.json
@@ -59,7 +59,7 @@ pub(super) fn check_lights(file: &Gltf) -> Result<(), String> {
     for (i, node) in file.as_json().nodes.iter().enumerate() {
         let lamp = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
         if lamp.is_some_and(|lamp| lamp.light.value() >= count) {
-            return Err(format!("$.nodes[{i}]: it names a light that is not there; there are {count}"));
+            return Err(format!("$.nodes[{i}]: it names a light that does not exist; there are {count}"));
         }
     }
     Ok(())

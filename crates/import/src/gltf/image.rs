@@ -49,7 +49,7 @@ impl Materials {
             let at = format!("{place}.extensions.KHR_texture_transform");
             set = transform.tex_coord().unwrap_or(set);
             if transform.rotation() != 0.0 {
-                builder.leave_out(at, "the rotation is not honoured");
+                builder.leave_out(at, "the rotation is ignored");
             }
             let ([su, sv], [ou, ov]) = (transform.scale().map(f64::from), transform.offset().map(f64::from));
             image["uv_scale"] = json!([su, sv]);
@@ -70,7 +70,7 @@ impl Materials {
         match texture.source() {
             Some(image) => self.file(&image, buffers, builder),
             None => {
-                builder.leave_out(place, "its image is of a kind that is not read");
+                builder.leave_out(place, "its image is of an unknown kind");
                 None
             }
         }

@@ -80,7 +80,7 @@ impl Materials {
         {
             let at = format!("{place}.extensions.KHR_materials_transmission");
             if transmission.transmission_factor() < 1.0 || transmission.transmission_texture().is_some() {
-                builder.leave_out(&at, "it is taken for fully transmitting");
+                builder.leave_out(&at, "it becomes fully transmitting");
             }
             if base != [1.0; 3] || surface.base_color_texture().is_some() {
                 builder.leave_out(format!("{place}.pbrMetallicRoughness"), "clear glass has no base colour");
@@ -158,7 +158,7 @@ impl Materials {
         let (image, set) = self.image(&info, &at, buffers, builder)?;
         let texels = linear(&info.texture(), buffers, builder)?;
         if *uv_set.get_or_insert(set) != set {
-            builder.leave_out(at, "it uses another set of texture coordinates than the colour, and counts by its mean");
+            builder.leave_out(at, "it uses another set of texture coordinates than the colour: its mean is used");
             return Some((None, texels));
         }
         Some((Some(data_image(image)), texels))
@@ -179,7 +179,7 @@ impl Materials {
             let fits = *uv_set.get_or_insert(set) == set;
             if !fits {
                 builder
-                    .leave_out(at, "it uses another set of texture coordinates than the first image, and is left out");
+                    .leave_out(at, "it uses another set of texture coordinates than the first image: it is left out");
             }
             fits
         };
@@ -258,7 +258,8 @@ impl Materials {
                 image["factor"] = json!(material.emissive_factor().map(|v| f64::from(v).max(0.0) * strength));
                 return Some(json!({ "radiance": image, "sides": sides }));
             }
-            builder.leave_out(at, "it uses another set of texture coordinates than the first image: its mean shines");
+            builder
+                .leave_out(at, "it uses another set of texture coordinates than the first image: its mean is emitted");
         }
         Some(json!({ "radiance": light(rgb, strength), "sides": sides }))
     }
@@ -338,8 +339,7 @@ fn alpha(roughness: f32) -> f64 {
 fn index(material: &gltf::Material<'_>, place: &str, builder: &mut Builder<'_>) -> Value {
     let ior = decimal(material.ior().unwrap_or(1.5));
     if ior < 1.0 {
-        builder
-            .leave_out(format!("{place}.extensions.KHR_materials_ior"), format!("an index of {ior} is taken for 1.5"));
+        builder.leave_out(format!("{place}.extensions.KHR_materials_ior"), format!("an index of {ior} becomes 1.5"));
         return json!(1.5);
     }
     // 20/V, V the Abbe number (n_d − 1)/(n_F − n_C).
@@ -357,19 +357,21 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
             builder.leave_out(format!("{place}.{key}"), what);
         }
     };
-    let no = "it is not honoured";
-    list(material.occlusion_texture().is_some(), "occlusionTexture", "it is not needed: shadows are traced");
-    list(material.unlit(), "extensions.KHR_materials_unlit", "it is lit like any other");
+    let no = "it is ignored";
+    list(material.occlusion_texture().is_some(), "occlusionTexture", "it is ignored: shadows are traced");
+    list(material.unlit(), "extensions.KHR_materials_unlit", "it is ignored: the surface is lit like any other");
     let specular = material.specular().is_some_and(|specular| {
         ![0.0, 1.0].contains(&specular.specular_factor())
             || specular.specular_texture().is_some()
             || specular.specular_color_factor() != [1.0; 3]
             || specular.specular_color_texture().is_some()
     });
-    list(specular, "extensions.KHR_materials_specular", "only a factor of 0 or 1 is honoured");
+    list(specular, "extensions.KHR_materials_specular", "only the factors 0 and 1 can be converted");
     let opaque = material.transmission().is_none_or(|transmission| transmission.transmission_factor() < 0.5);
+    let weak = material.transmission().is_some_and(|transmission| transmission.transmission_factor() > 0.0);
+    list(weak && opaque, "extensions.KHR_materials_transmission", "a factor below 0.5 becomes opaque");
     let coloured = material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite());
-    list(coloured && opaque, "extensions.KHR_materials_volume", "it is not transmitting: nothing is absorbed inside");
+    list(coloured && opaque, "extensions.KHR_materials_volume", "it is ignored: the material does not transmit light");
     const KNOWN: [&str; 1] = ["KHR_materials_dispersion"];
     for key in material.extensions().into_iter().flat_map(|map| map.keys()) {
         list(!KNOWN.contains(&key.as_str()), &format!("extensions.{key}"), no);

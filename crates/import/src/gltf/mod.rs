@@ -36,7 +36,7 @@ pub(super) fn import(bytes: &[u8], moment: Option<&Moment>, builder: &mut Builde
     check_lights(&file)?;
     let buffers = buffers(&file, builder)?;
     if file.skins().count() > 0 {
-        builder.leave_out("$.skins", "they are not honoured: the model is as its nodes place it");
+        builder.leave_out("$.skins", "they are ignored: the model is as its nodes place it");
     }
     let animated = Animated::read(&file, &buffers, moment, builder)?;
     if moment.is_some_and(|moment| moment.shutter_s > 0.0) {
@@ -95,7 +95,7 @@ impl Walk<'_, '_> {
     fn node(&mut self, node: &Node<'_>, parent: &DAffine3, depth: usize) -> Result<(), String> {
         let place = format!("$.nodes[{}]", node.index());
         if depth > MAX_DEPTH {
-            return Err(format!("{place}: nodes within nodes, more than {MAX_DEPTH}"));
+            return Err(format!("{place}: nodes are nested more than {MAX_DEPTH} deep"));
         }
         if std::mem::replace(&mut self.visited[node.index()], true) {
             return Err(format!("{place}: it is part of the scene twice"));
@@ -115,7 +115,7 @@ impl Walk<'_, '_> {
         let poses = self.animated.motion(node)?;
         let sides = poses[0].1.scale.signum();
         let why = if self.chain.len() >= MAX_MOVING {
-            format!("it moves within {MAX_MOVING} things that move")
+            format!("it moves inside {MAX_MOVING} other moving nodes")
         } else if poses.iter().any(|(_, pose)| pose.scale.cmpeq(DVec3::ZERO).any() || pose.scale.signum() != sides) {
             "its scale goes through 0".to_owned()
         } else if parent.matrix3.determinant() == 0.0 {
@@ -123,7 +123,7 @@ impl Walk<'_, '_> {
         } else {
             return Some(poses);
         };
-        self.builder.leave_out(place, format!("{why}: it rests as it is when the shutter opens"));
+        self.builder.leave_out(place, format!("{why}: it stays as it is when the shutter opens"));
         None
     }
 
@@ -176,14 +176,14 @@ impl Walk<'_, '_> {
             let [opens, closes] = self.animated.shutter_s;
             if !self.chain.is_empty() {
                 let what =
-                    "a light without a surface does not move: it is where it is in the middle of the shutter's time";
+                    "a light without a surface cannot move: it stays at its place in the middle of the shutter time";
                 self.builder.leave_out(&place, what);
             }
             let world = self.world(matrix, 0.5 * (opens + closes));
             self.light(&lamp, node, &world);
         }
         if node.weights().is_some() {
-            self.builder.leave_out(&place, "morph weights are not honoured");
+            self.builder.leave_out(&place, "morph weights are ignored");
         }
         if let Some(mesh) = node.mesh() {
             for primitive in mesh.primitives() {
@@ -263,11 +263,11 @@ impl Walk<'_, '_> {
             };
             if !used {
                 let key = semantic.to_string();
-                self.builder.leave_out(format!("{place}.attributes.{key}"), "it is not honoured");
+                self.builder.leave_out(format!("{place}.attributes.{key}"), "it is ignored");
             }
         }
         if primitive.morph_targets().count() > 0 {
-            self.builder.leave_out(format!("{place}.targets"), "morph targets are not honoured");
+            self.builder.leave_out(format!("{place}.targets"), "morph targets are ignored");
         }
         let Some(positions) = primitive.get(&Semantic::Positions) else {
             self.builder.leave_out(place, "it has no positions, and is left out");
@@ -317,8 +317,8 @@ impl Walk<'_, '_> {
         let mut detail = look.detail.clone();
         let mut emission = look.emission.clone();
         if mesh.uvs.is_empty() && look.has_image {
-            let what = "it has no texture coordinates for the images of its material, and is grey; what an image says does \
-                        not shine";
+            let what = "it has no texture coordinates for the images of its material: it becomes grey, and an image of \
+                        emission is left out";
             self.builder.leave_out(place, what);
             material = json!({ "type": "lambert", "reflectance": 0.8 });
             detail.clear();
@@ -336,7 +336,7 @@ impl Walk<'_, '_> {
         let position = matrix.translation.to_array();
         let name = node.name().map_or_else(|| format!("light {}", lamp.index()), str::to_owned);
         if lamp.range().is_some() {
-            self.builder.leave_out(&place, "its range is not honoured: light goes on for ever");
+            self.builder.leave_out(&place, "its range is ignored: light has no range");
         }
         let value = match lamp.kind() {
             Kind::Directional => {
@@ -344,7 +344,7 @@ impl Walk<'_, '_> {
             }
             Kind::Point => json!({ "name": name, "type": "point", "position_m": position, "intensity": spectrum }),
             Kind::Spot { inner_cone_angle, outer_cone_angle } => {
-                self.builder.leave_out(&place, "between its two angles it falls by another curve");
+                self.builder.leave_out(&place, "between its two angles the light falls off by another curve");
                 let outer = f64::from(outer_cone_angle).to_degrees().clamp(1e-3, 180.0);
                 let inner = f64::from(inner_cone_angle).to_degrees().clamp(0.0, outer);
                 json!({

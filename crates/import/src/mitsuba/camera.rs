@@ -23,7 +23,7 @@ impl Walk<'_, '_, '_> {
                 self.builder.integrator.insert("max_depth".to_owned(), json!(2));
             }
             "stokes" => {
-                self.builder.leave_out(&element.place, "polarisation is a choice of the command: --polarised");
+                self.builder.leave_out(&element.place, "polarisation is an option of the command: --polarised");
                 for nested in element.nested("integrator", self.ids)? {
                     self.integrator(nested)?;
                 }
@@ -57,7 +57,7 @@ impl Walk<'_, '_, '_> {
             return Err(format!("{place}: its transform flattens it"));
         };
         if to_world.matrix3.determinant() < 0.0 {
-            self.builder.leave_out(&place, "its transform mirrors the picture, which is not honoured");
+            self.builder.leave_out(&place, "its transform mirrors the picture; this is ignored");
         }
         let mut camera = json!({
             "position_m": to_world.translation.to_array(), "direction": forward.to_array(), "up": up.to_array(),
@@ -149,7 +149,7 @@ impl Walk<'_, '_, '_> {
             None => Ok(DAffine3::IDENTITY),
             Some(transform) if transform.tag == "transform" => super::transform::read(transform),
             Some(other) => {
-                self.builder.leave_out(&other.place, format!("<{}>: motion is not honoured", other.tag));
+                self.builder.leave_out(&other.place, format!("<{}>: motion is ignored", other.tag));
                 Ok(DAffine3::IDENTITY)
             }
         }

@@ -59,7 +59,7 @@ impl Walk<'_, '_, '_> {
             Some(number) => number,
             None => {
                 self.builder
-                    .leave_out(&element.place, format!("a coloured \"{name}\" counts by the mean of its channels"));
+                    .leave_out(&element.place, format!("\"{name}\" is a colour: the mean of its channels is used"));
                 let channels = value["rgb"].as_array().map_or(&[][..], Vec::as_slice);
                 channels.iter().filter_map(Value::as_f64).sum::<f64>() / channels.len().max(1) as f64
             }
@@ -102,7 +102,7 @@ impl Walk<'_, '_, '_> {
         Ok(match of {
             Of::Emission | Of::Shining => {
                 if rgb.iter().any(|v| *v < 0.0) {
-                    self.builder.leave_out(place, "negative light is taken for none");
+                    self.builder.leave_out(place, "negative light becomes 0");
                 }
                 light(rgb.map(|v| v.max(0.0)), 1.0)
             }
@@ -118,7 +118,7 @@ impl Walk<'_, '_, '_> {
     fn constant(&mut self, value: f64, place: &str, of: Of) -> Value {
         let (low, high) = if of.is_light() { (0.0, f64::MAX) } else { (0.0, 1.0) };
         if !(low..=high).contains(&value) {
-            self.builder.leave_out(place, format!("{value} is brought into {low} to {high}"));
+            self.builder.leave_out(place, format!("{value} is clamped to {low} to {high}"));
         }
         json!(value.clamp(low, high))
     }
@@ -183,8 +183,7 @@ impl Walk<'_, '_, '_> {
                 None => Err(format!("{place}: it has no \"color\"")),
             },
             (other, _) => {
-                self.builder
-                    .leave_out(place, format!("the spectrum \"{other}\" is not known: one half is taken for it"));
+                self.builder.leave_out(place, format!("the spectrum \"{other}\" is not known: it becomes 0.5"));
                 Ok(json!(0.5))
             }
         }
@@ -204,11 +203,11 @@ impl Walk<'_, '_, '_> {
     /// Wavelengths, nm, and values in turn; nothing outside of them, as in the program.
     fn table(&mut self, pairs: &[f64], place: &str, of: Of) -> Result<Value, String> {
         let table = Table::of_pairs(pairs);
-        let mut table =
-            table.ok_or_else(|| format!("{place}: {} numbers are no table of wavelengths and values", pairs.len()))?;
+        let mut table = table
+            .ok_or_else(|| format!("{place}: {} numbers are not a table of wavelengths and values", pairs.len()))?;
         let highest = if of.is_light() { f64::MAX } else { 1.0 };
         if table.0.iter().any(|(_, v)| !(0.0..=highest).contains(v)) {
-            self.builder.leave_out(place, format!("values are brought into 0 to {highest}"));
+            self.builder.leave_out(place, format!("values are clamped to 0 to {highest}"));
             table.0.iter_mut().for_each(|(_, v)| *v = v.clamp(0.0, highest));
         }
         Ok(table.spectrum("zero"))
@@ -219,7 +218,7 @@ impl Walk<'_, '_, '_> {
         if element.plugin() != "bitmap" {
             let what = element.plugin();
             // The mean of the usual chequers.
-            self.builder.leave_out(place, format!("the texture \"{what}\" is not known: one half is taken for it"));
+            self.builder.leave_out(place, format!("the texture \"{what}\" is not known: it becomes 0.5"));
             element.mark();
             element.children.iter().for_each(Element::mark);
             return Ok(json!(0.5));
@@ -228,7 +227,7 @@ impl Walk<'_, '_, '_> {
             return Ok(if of.is_light() { json!(0.0) } else { json!(0.5) });
         };
         if of != Of::Texture && of != Of::Shining {
-            self.builder.leave_out(place, "the mean of the image stands for it everywhere");
+            self.builder.leave_out(place, "the mean of the image is used");
             return Ok(if of.is_light() { light(mean, 1.0) } else { reflectance(mean) });
         }
         Ok(image)
@@ -246,7 +245,7 @@ impl Walk<'_, '_, '_> {
         if let Some(transform) = element.property("to_uv") {
             let rows = rows(&super::transform::read(transform)?);
             if rows[0][1] != 0.0 || rows[1][0] != 0.0 {
-                self.builder.leave_out(&transform.place, "the rotation of texture coordinates is not honoured");
+                self.builder.leave_out(&transform.place, "the rotation of texture coordinates is ignored");
             }
             (scale, offset) = ([rows[0][0], -rows[1][1]], [rows[0][3], 1.0 - rows[1][3]]);
         }

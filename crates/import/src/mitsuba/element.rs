@@ -126,7 +126,7 @@ impl Element {
                 .iter()
                 .filter_map(|key| child.attribute(key).map(|value| format!(" {key}=\"{}\"", shortened(value))))
                 .collect();
-            builder.leave_out(&child.place, format!("<{}{}> is not honoured", child.tag, words.concat()));
+            builder.leave_out(&child.place, format!("<{}{}> is ignored", child.tag, words.concat()));
         }
     }
 }
@@ -273,7 +273,7 @@ impl Reading<'_> {
             let value = self.parameters.get(name).ok_or_else(|| format!("no <default> gives ${name} a value"))?;
             self.substituted += value.len();
             if self.substituted > MAX_SUBSTITUTED {
-                return Err(format!("with ${name} the values of parameters make more than {MAX_SUBSTITUTED} bytes"));
+                return Err(format!("with ${name} the values of parameters are longer than {MAX_SUBSTITUTED} bytes"));
             }
             result.push_str(value);
             rest = &tail[end..];

@@ -120,8 +120,7 @@ impl Walk<'_, '_, '_> {
                 };
                 let (mut first, mut second) = (self.look(first)?, self.look(second)?);
                 if without_map(&mut first.detail) | without_map(&mut second.detail) {
-                    self.builder
-                        .leave_out(&place, "the normals of a part of a blend are not bent: its map is left out");
+                    self.builder.leave_out(&place, "a normal or bump map of a part of a blend is left out");
                 }
                 let weight = self.number(element, "weight")?.unwrap_or(Number::Value(0.5));
                 let mean = match weight {
@@ -129,7 +128,7 @@ impl Walk<'_, '_, '_> {
                 };
                 if first.opacity != second.opacity || !first.detail.is_empty() || !second.detail.is_empty() {
                     self.builder
-                        .leave_out(&place, "masks within a blend count by their mean, images of them not at all");
+                        .leave_out(&place, "masks inside a blend become their mean; images of masks are left out");
                 }
                 let mut material = json!({ "type": "blend", "first": first.material, "second": second.material });
                 weight.put_weight(&mut material);
@@ -184,7 +183,7 @@ impl Walk<'_, '_, '_> {
                 self.untinted(element, &["specular_reflectance"])?;
                 let rough = if plugin == "plastic" { Rough::Alpha(0.0) } else { self.alpha(element)? };
                 if !element.flag("nonlinear")?.unwrap_or(false) {
-                    let what = "light that is reflected within the coat is coloured by the ground (nonlinear)";
+                    let what = "light reflected inside the coat gets the colour of the ground (nonlinear)";
                     self.builder.leave_out(place, what);
                 }
                 let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat });
@@ -192,12 +191,12 @@ impl Walk<'_, '_, '_> {
                 plastic
             }
             "principled" | "principledthin" => {
-                self.builder.leave_out(place, format!("\"{plugin}\" is taken for diffuse, of its base colour"));
+                self.builder.leave_out(place, format!("\"{plugin}\" becomes diffuse, with its base colour"));
                 let reflectance = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
                 json!({ "type": "lambert", "reflectance": reflectance })
             }
             other => {
-                self.builder.leave_out(place, format!("the material \"{other}\" is not known: grey is taken for it"));
+                self.builder.leave_out(place, format!("the material \"{other}\" is not known: it becomes grey"));
                 element.children.iter().for_each(Element::mark);
                 grey()
             }
@@ -211,19 +210,19 @@ impl Walk<'_, '_, '_> {
         let mut value = match element.string("material") {
             Some("none") => {
                 if rough {
-                    self.builder.leave_out(place, "a perfect mirror cannot be rough: it is taken for smooth");
+                    self.builder.leave_out(place, "a perfect mirror cannot be rough: it becomes smooth");
                 }
                 return Ok(json!({ "type": "mirror", "reflectance": tint.unwrap_or(json!(1.0)) }));
             }
             Some(metal @ ("Ag" | "Al" | "Au" | "Cu")) => json!({ "type": "conductor", "metal": metal }),
             Some(other) => {
-                self.builder.leave_out(place, format!("the metal \"{other}\" is not known: aluminium is taken for it"));
+                self.builder.leave_out(place, format!("the metal \"{other}\" is not known: it becomes aluminium"));
                 json!({ "type": "conductor", "metal": "Al" })
             }
             None => self.own_metal(element)?.unwrap_or_else(|| json!({ "type": "conductor", "metal": "Cu" })),
         };
         if tint.is_some_and(|tint| tint != json!(1.0)) {
-            self.builder.leave_out(place, "specular_reflectance does not tint it");
+            self.builder.leave_out(place, "specular_reflectance is ignored");
         }
         facets.put(&mut value);
         value["outside_fit"] = json!("clamp");
@@ -237,7 +236,7 @@ impl Walk<'_, '_, '_> {
         let (eta, k) = (self.colour(element, "eta", Of::Emission)?, self.colour(element, "k", Of::Emission)?);
         let (Some(eta), Some(k)) = (eta, k) else { return Ok(None) };
         let (Some(eta), Some(k)) = (Table::of_spectrum(&eta), Table::of_spectrum(&k)) else {
-            self.builder.leave_out(&element.place, "eta and k as colours are not honoured: aluminium is taken for it");
+            self.builder.leave_out(&element.place, "eta and k as colours are ignored: the metal becomes aluminium");
             return Ok(Some(json!({ "type": "conductor", "metal": "Al" })));
         };
         Ok(Some(metal(&eta, &k)))
@@ -246,7 +245,7 @@ impl Walk<'_, '_, '_> {
     fn untinted(&mut self, element: &Element, names: &[&str]) -> Result<(), String> {
         for name in names {
             if self.colour(element, name, Of::Reflectance)?.is_some_and(|tint| tint != json!(1.0)) {
-                self.builder.leave_out(&element.place, format!("{name} does not tint it"));
+                self.builder.leave_out(&element.place, format!("{name} is ignored"));
             }
         }
         Ok(())
@@ -265,7 +264,7 @@ impl Walk<'_, '_, '_> {
     fn alpha(&mut self, element: &Element) -> Result<Rough, String> {
         let place = &element.place;
         if element.string("distribution").unwrap_or("beckmann") != "ggx" {
-            self.builder.leave_out(place, "the distribution of facets is taken for GGX of the same alpha");
+            self.builder.leave_out(place, "the distribution of facets becomes GGX with the same alpha");
         }
         element.string("sample_visible");
         let both = (self.number(element, "alpha_u")?, self.number(element, "alpha_v")?);
@@ -273,7 +272,7 @@ impl Walk<'_, '_, '_> {
             (_, (Some(u), Some(v))) => {
                 let (u, v) = (u.mean("alpha_u", place, self.builder), v.mean("alpha_v", place, self.builder));
                 if u != v {
-                    let what = "alpha_u and alpha_v differ: their geometric mean is taken for both";
+                    let what = "alpha_u and alpha_v differ: both become their geometric mean";
                     self.builder.leave_out(place, what);
                 }
                 Number::Value((u * v).max(0.0).sqrt())

@@ -63,14 +63,14 @@ impl<'a> Walk<'a, '_, '_> {
     fn within<T>(&mut self, element: &Element, read: impl FnOnce(&mut Self) -> Result<T, String>) -> Result<T, String> {
         let (place, tag, key) = (&element.place, &element.tag, std::ptr::from_ref(element));
         if self.open.contains(&key) {
-            return Err(format!("{place}: by its references this <{tag}> is within itself"));
+            return Err(format!("{place}: this <{tag}> refers to itself"));
         }
         if self.open.len() == MAX_DEPTH {
-            return Err(format!("{place}: <{tag}> within <{tag}>, by references, in more than {MAX_DEPTH} levels"));
+            return Err(format!("{place}: by references, <{tag}> is nested more than {MAX_DEPTH} deep"));
         }
         self.entered += 1;
         if self.entered > MAX_ELEMENTS {
-            return Err(format!("{place}: references ask for more than {MAX_ELEMENTS} elements"));
+            return Err(format!("{place}: references make more than {MAX_ELEMENTS} elements"));
         }
         self.open.push(key);
         let made = read(self);

@@ -11,7 +11,7 @@ impl Walk<'_, '_, '_> {
         let (place, bumps) = (&element.place, element.plugin() == "bumpmap");
         let scale = if bumps { element.number("scale")?.unwrap_or(1.0) } else { 1.0 };
         if element.flag("use_shadowing_function")?.unwrap_or(true) {
-            self.builder.leave_out(place, "light that grazes what is bent is not dimmed (use_shadowing_function)");
+            self.builder.leave_out(place, "grazing light on bent surfaces is not dimmed (use_shadowing_function)");
         }
         let texture = if bumps {
             element.nested("texture", self.ids)?.first().copied()
@@ -20,7 +20,7 @@ impl Walk<'_, '_, '_> {
             stated.map(|stated| if stated.tag == "ref" { self.ids.of(stated) } else { Ok(stated) }).transpose()?
         };
         let Some(texture) = texture.filter(|texture| texture.plugin() == "bitmap") else {
-            self.builder.leave_out(place, format!("the \"{}\" is left out: it is not by a bitmap", element.plugin()));
+            self.builder.leave_out(place, format!("the \"{}\" is left out: it has no bitmap", element.plugin()));
             return Ok(None);
         };
         texture.mark();
@@ -29,7 +29,8 @@ impl Walk<'_, '_, '_> {
         let Some((mut map, _)) = image else { return Ok(None) };
         if bumps && map["filter"] == "nearest" {
             // Its derivative is 0 there, too.
-            self.builder.leave_out(&texture.place, "heights that are not interpolated have no slopes: nothing is bent");
+            self.builder
+                .leave_out(&texture.place, "heights without interpolation have no slopes: the bump map has no effect");
             return Ok(None);
         }
         if let Some(keys) = map.as_object_mut() {

@@ -33,7 +33,7 @@ impl<'a> Walk<'a, '_, '_> {
     /// A group, which instances place.
     pub(super) fn group(&mut self, element: &'a Element) -> Result<(), String> {
         let Some(id) = element.attribute("id") else {
-            self.builder.leave_out(&element.place, "a group without an id is nothing in the picture");
+            self.builder.leave_out(&element.place, "a group without an id is never placed: it is left out");
             return Ok(());
         };
         let outside = self.builder.begin_group();
@@ -150,7 +150,7 @@ impl<'a> Walk<'a, '_, '_> {
         let has_uvs = shape["type"] == "parallelogram";
         self.without_images(&mut dressed, has_uvs, place);
         if !has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
-            self.builder.leave_out(place, "what it shines by is laid over texture coordinates of another kind");
+            self.builder.leave_out(place, "the image of its emission is laid over another kind of texture coordinates");
         }
         self.builder.place(&dressed.placed(shape, Some(reach)), place)
     }
@@ -173,7 +173,7 @@ impl<'a> Walk<'a, '_, '_> {
             }
             self.without_images(&mut dressed, part.has_uvs, place);
             if !part.has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
-                let what = "it has no texture coordinates for the image that it shines by, and is dark";
+                let what = "it has no texture coordinates for the image of its emission: it does not emit";
                 self.builder.leave_out(place, what);
                 dressed.emission = None;
             }
@@ -230,14 +230,17 @@ impl<'a> Walk<'a, '_, '_> {
     fn without_images(&mut self, dressed: &mut Dressed, has_uvs: bool, place: &str) {
         let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
         if !has_uvs && has_image(own.unwrap_or(&dressed.look.material)) {
-            self.builder.leave_out(place, "it has no texture coordinates for the image of its material, and is grey");
+            self.builder
+                .leave_out(place, "it has no texture coordinates for the image of its material: it becomes grey");
             dressed.look.material = grey();
         }
         if !has_uvs && without_map(&mut dressed.look.detail) {
-            self.builder.leave_out(place, "it has no texture coordinates for the map of its normals, and is smooth");
+            self.builder
+                .leave_out(place, "it has no texture coordinates for its normal or bump map: the map is left out");
         }
         if !has_uvs && !dressed.look.detail.is_empty() {
-            self.builder.leave_out(place, "it has no texture coordinates for the image of its opacity, and is opaque");
+            self.builder
+                .leave_out(place, "it has no texture coordinates for the image of its opacity: it becomes opaque");
             dressed.look.detail.clear();
         }
     }

@@ -39,7 +39,7 @@ fn step(step: &Element) -> Result<DAffine3, String> {
         "lookat" => {
             let up = if step.attribute("up").is_some() { triple("up")? } else { [0.0, 1.0, 0.0] };
             looking(triple("origin")?, triple("target")?, up)
-                .ok_or_else(|| format!("{place}: it looks nowhere, or along its up"))
+                .ok_or_else(|| format!("{place}: it has no viewing direction, or its up is along it"))
         }
         "matrix" => match stated("value")?[..] {
             [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] => {
@@ -51,6 +51,6 @@ fn step(step: &Element) -> Result<DAffine3, String> {
             [a, b, c, d, e, f, g, h, i] => Ok(affine_from_rows(&[[a, b, c, 0.0], [d, e, f, 0.0], [g, h, i, 0.0]])),
             _ => Err(format!("{place}: a matrix has 16 numbers")),
         },
-        other => Err(format!("{place}: <{other}> is not a step of a transform")),
+        other => Err(format!("{place}: <{other}> is not part of a transform")),
     }
 }

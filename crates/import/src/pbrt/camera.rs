@@ -17,7 +17,8 @@ impl Reading<'_, '_> {
         let mirrored = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
         self.world = if from_camera.matrix3.determinant() > 0.0 { mirrored } else { DAffine3::IDENTITY };
         if self.world != DAffine3::IDENTITY {
-            let what = "the model's axes are left-handed: everything is mirrored in x, so that the picture is not";
+            let what =
+                "the axes of the model are left-handed: everything is mirrored along x, so that the picture is right";
             self.builder.added.push(what.to_owned());
         }
         let placed = self.world * from_camera;
@@ -87,7 +88,7 @@ impl Reading<'_, '_> {
         }
         if list.number("iso")?.unwrap_or(100.0) != 100.0 || list.number("exposuretime")?.unwrap_or(1.0) != 1.0 {
             let factor = list.number("iso")?.unwrap_or(100.0) / 100.0 * list.number("exposuretime")?.unwrap_or(1.0);
-            self.builder.leave_out(place, format!("its exposure is not honoured: a factor of {factor} on the picture"));
+            self.builder.leave_out(place, format!("its exposure is ignored: a factor of {factor} on the picture"));
         }
         list.list_unused(self.builder);
         Ok(())

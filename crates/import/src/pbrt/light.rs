@@ -70,7 +70,7 @@ impl Reading<'_, '_> {
             }
         };
         if !is_similarity(&map.matrix3) {
-            self.builder.leave_out(place, "its transform stretches the sky, which is not honoured");
+            self.builder.leave_out(place, "its transform stretches the sky; this is ignored");
         }
         // The middle of the square is along +z, its right edge along +x and its lower edge along +y.
         Ok(Some(json!({

@@ -32,7 +32,7 @@ impl Reading<'_, '_> {
             }
             "conductor" | "coatedconductor" => {
                 if kind == "coatedconductor" {
-                    self.builder.leave_out(place, "the coat is left out: it is taken for bare metal");
+                    self.builder.leave_out(place, "the coat is left out: it becomes bare metal");
                 }
                 self.conductor(list, place)?
             }
@@ -52,8 +52,7 @@ impl Reading<'_, '_> {
                     let look = self.materials.get(name).cloned();
                     let look = look.ok_or_else(|| format!("{place}: there is no material \"{name}\""))?;
                     if has_map(&look.detail) {
-                        let what =
-                            format!("the normals of a part of it, \"{name}\", are not bent: its map is left out");
+                        let what = format!("the normal or bump map of a part of it, \"{name}\", is left out");
                         self.builder.leave_out(place, what);
                     }
                     // In full, since a blend may only name what stands before it.
@@ -72,7 +71,7 @@ impl Reading<'_, '_> {
                 json!({ "type": "black" })
             }
             other => {
-                self.builder.leave_out(place, format!("the material \"{other}\" is not known: grey is taken for it"));
+                self.builder.leave_out(place, format!("the material \"{other}\" is not known: it becomes grey"));
                 list.mark_all();
                 json!({ "type": "lambert", "reflectance": 0.5 })
             }
@@ -100,8 +99,7 @@ impl Reading<'_, '_> {
                 Some("metal-Al-eta") => "Al",
                 Some("metal-Au-eta") => "Au",
                 Some(other) => {
-                    self.builder
-                        .leave_out(place, format!("the metal \"{other}\" is not known: aluminium is taken for it"));
+                    self.builder.leave_out(place, format!("the metal \"{other}\" is not known: it becomes aluminium"));
                     "Al"
                 }
             };
@@ -139,7 +137,8 @@ impl Reading<'_, '_> {
                 "glass-BK7" => json!({ "type": "glass", "name": "N-BK7", "outside_fit": "clamp" }),
                 "glass-SF11" => json!({ "type": "glass", "name": "N-SF11", "outside_fit": "clamp" }),
                 other => {
-                    self.builder.leave_out(&place, format!("the glass \"{other}\" is not known: 1.5 is taken for it"));
+                    self.builder
+                        .leave_out(&place, format!("the glass \"{other}\" is not known: its index becomes 1.5"));
                     json!(1.5)
                 }
             }),
@@ -164,7 +163,7 @@ impl Reading<'_, '_> {
             (u, v) => {
                 let (u, v) = (u.mean("uroughness", place, self.builder), v.mean("vroughness", place, self.builder));
                 if u != v {
-                    let what = "roughnesses along u and v differ: their geometric mean is taken for both";
+                    let what = "roughnesses along u and v differ: both become their geometric mean";
                     self.builder.leave_out(place, what);
                 }
                 Rough::width(alpha((u * v).max(0.0).sqrt()))

@@ -107,7 +107,7 @@ struct Reading<'r, 'b> {
 impl Reading<'_, '_> {
     fn file(&mut self, bytes: &[u8], of: &str, depth: usize) -> Result<(), String> {
         if depth > MAX_DEPTH {
-            return Err(format!("{of}files that include files, more than {MAX_DEPTH}"));
+            return Err(format!("{of}files are included more than {MAX_DEPTH} deep"));
         }
         let text = std::str::from_utf8(bytes).map_err(|_| format!("{of}it is not UTF-8"))?;
         let tokens = tokens(text).map_err(|why| format!("{of}{why}"))?;
@@ -148,7 +148,9 @@ impl Reading<'_, '_> {
             "LookAt" => {
                 let [a, b, c, d, e, f, g, h, i] = arguments.numbers()?;
                 let placed = looking([a, b, c], [d, e, f], [g, h, i]).and_then(|placed| inverse(&placed));
-                self.apply(&placed.ok_or_else(|| format!("{place}: it looks nowhere, or along its up"))?);
+                self.apply(
+                    &placed.ok_or_else(|| format!("{place}: it has no viewing direction, or its up is along it"))?,
+                );
             }
             "Transform" => self.state.transform = arguments.matrix()?,
             "ConcatTransform" => {
@@ -166,12 +168,12 @@ impl Reading<'_, '_> {
             }
             "AttributeBegin" | "TransformBegin" => {
                 if self.saved.len() > 1 << 16 {
-                    return Err(format!("{place}: attributes within attributes, more than 65536"));
+                    return Err(format!("{place}: AttributeBegin is nested more than 65536 deep"));
                 }
                 self.saved.push(self.state.clone());
             }
             "AttributeEnd" | "TransformEnd" => {
-                let saved = self.saved.pop().ok_or_else(|| format!("{place}: nothing was begun that could end"))?;
+                let saved = self.saved.pop().ok_or_else(|| format!("{place}: this end has no matching begin"))?;
                 if directive == "TransformEnd" {
                     self.state.transform = saved.transform;
                 } else {
@@ -222,13 +224,14 @@ impl Reading<'_, '_> {
             "ObjectBegin" => {
                 let name = arguments.quoted()?;
                 if self.object.is_some() {
-                    return Err(format!("{place}: an object within an object"));
+                    return Err(format!("{place}: ObjectBegin inside another object"));
                 }
                 self.saved.push(self.state.clone());
                 self.object = Some((name, self.builder.begin_group()));
             }
             "ObjectEnd" => {
-                let (name, outside) = self.object.take().ok_or_else(|| format!("{place}: no object was begun"))?;
+                let (name, outside) =
+                    self.object.take().ok_or_else(|| format!("{place}: ObjectEnd without ObjectBegin"))?;
                 self.builder.end_group(&name, outside);
                 self.state = self.saved.pop().unwrap_or_default();
             }
@@ -238,7 +241,7 @@ impl Reading<'_, '_> {
                 self.builder.place_group(&format!("{name}, {place}"), &name, &map, &place);
             }
             other => {
-                self.builder.leave_out(&place, format!("{other} is not honoured"));
+                self.builder.leave_out(&place, format!("{other} is ignored"));
                 arguments.skip();
             }
         }

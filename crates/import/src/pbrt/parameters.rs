@@ -124,7 +124,7 @@ impl Parameters {
     /// Lists what was not used.
     pub(super) fn list_unused(&self, builder: &mut Builder<'_>) {
         for parameter in self.0.iter().filter(|parameter| !parameter.used.get()) {
-            let what = format!("\"{} {}\" is not honoured", parameter.kind, parameter.name);
+            let what = format!("\"{} {}\" is ignored", parameter.kind, parameter.name);
             builder.leave_out(&parameter.place, what);
         }
     }

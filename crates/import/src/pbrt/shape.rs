@@ -60,14 +60,15 @@ impl Reading<'_, '_> {
         let mut opacity = self.state.material.opacity;
         let mut detail = self.state.material.detail.clone();
         if !has_uvs && without_map(&mut detail) {
-            self.builder.leave_out(place, "it has no texture coordinates for the map of its normals, and is smooth");
+            self.builder
+                .leave_out(place, "it has no texture coordinates for its normal or bump map: the map is left out");
         }
         match self.share(list, "alpha")? {
             None => {}
             Some(Number::Value(alpha)) => opacity *= alpha,
             Some(Number::Image(..)) if !has_uvs => {
                 self.builder
-                    .leave_out(place, "it has no texture coordinates for the image of its alpha, and is opaque");
+                    .leave_out(place, "it has no texture coordinates for the image of its alpha: it becomes opaque");
             }
             Some(Number::Image(mut image, _)) => {
                 // The format has the factor beside the image.
@@ -83,9 +84,10 @@ impl Reading<'_, '_> {
         let mut emission = self.state.emission.as_deref().cloned();
         if !has_uvs && emission.as_ref().is_some_and(has_image) {
             if matches!(shape, "disk" | "sphere" | "cylinder") {
-                self.builder.leave_out(place, "what it shines by is laid over texture coordinates of another kind");
+                self.builder
+                    .leave_out(place, "the image of its emission is laid over another kind of texture coordinates");
             } else {
-                let what = "it has no texture coordinates for the image that it shines by, and is dark";
+                let what = "it has no texture coordinates for the image of its emission: it does not emit";
                 self.builder.leave_out(place, what);
                 emission = None;
             }
@@ -109,7 +111,8 @@ impl Reading<'_, '_> {
         let value = &self.state.material.value;
         let own = value.as_str().and_then(|name| self.builder.materials.get(name)).unwrap_or(value);
         if !has_uvs && has_image(own) {
-            self.builder.leave_out(place, "it has no texture coordinates for the image of its material, and is grey");
+            self.builder
+                .leave_out(place, "it has no texture coordinates for the image of its material: it becomes grey");
             return json!({ "type": "lambert", "reflectance": 0.5 });
         }
         value.clone()
@@ -162,7 +165,10 @@ fn vertices(list: &Parameters, place: &str) -> Result<Mesh, String> {
     let triples = |key: &str| -> Result<Vec<[f64; 3]>, String> {
         let numbers = list.numbers(key).unwrap_or(&[]);
         if !numbers.len().is_multiple_of(3) {
-            return Err(format!("{place}: \"{key}\" has {} numbers, which are no points", numbers.len()));
+            return Err(format!(
+                "{place}: \"{key}\" has {} numbers, which is not a whole number of points",
+                numbers.len()
+            ));
         }
         Ok(numbers.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect())
     };
@@ -191,7 +197,7 @@ fn indices(list: &Parameters, count: usize, each: usize, place: &str) -> Result<
         };
     };
     if !stated.len().is_multiple_of(each) || stated.is_empty() {
-        return Err(format!("{place}: {} indices are no faces of {each} corners", stated.len()));
+        return Err(format!("{place}: {} indices are not a whole number of faces with {each} corners", stated.len()));
     }
     stated
         .iter()

@@ -40,13 +40,13 @@ impl Reading<'_, '_> {
             ("spectrum", _) => match self.table(parameter)? {
                 Some(mut table) => {
                     if table.0.iter().any(|(_, v)| !(0.0..=1.0).contains(v)) {
-                        self.builder.leave_out(&place, "values are brought into 0 to 1");
+                        self.builder.leave_out(&place, "values are clamped to 0 to 1");
                     }
                     table.0.iter_mut().for_each(|(_, v)| *v = v.clamp(0.0, 1.0));
                     table.spectrum("clamp")
                 }
                 None => {
-                    self.builder.leave_out(&place, "the named spectrum is not known: one half is taken for it");
+                    self.builder.leave_out(&place, "the named spectrum is not known: it becomes 0.5");
                     json!(0.5)
                 }
             },
@@ -56,7 +56,7 @@ impl Reading<'_, '_> {
                 let value = known.ok_or_else(|| format!("{place}: there is no texture \"{name}\""))?;
                 self.builder.spend(&value, &place)?;
                 if !textured && value["type"] == "image" {
-                    self.builder.leave_out(&place, "the mean of the image stands for it everywhere");
+                    self.builder.leave_out(&place, "the mean of the image is used");
                     value["mean"].clone()
                 } else {
                     value
@@ -77,7 +77,7 @@ impl Reading<'_, '_> {
                 if let Number::Image(image, _) = &number
                     && image["factor"].as_f64().is_some_and(|factor| factor < 0.0)
                 {
-                    self.builder.leave_out(&parameter.place, format!("a negative \"{name}\" is taken for none"));
+                    self.builder.leave_out(&parameter.place, format!("a negative \"{name}\" becomes 0"));
                     return Ok(Some(Number::Value(0.0)));
                 }
                 return Ok(Some(number));
@@ -87,7 +87,7 @@ impl Reading<'_, '_> {
         let value = self.reflectance(list, name, false)?;
         Ok(value.map(|value| {
             Number::Value(value.as_f64().unwrap_or_else(|| {
-                self.builder.leave_out(&place, format!("a coloured \"{name}\" counts by the mean of its channels"));
+                self.builder.leave_out(&place, format!("\"{name}\" is a colour: the mean of its channels is used"));
                 let channels = value["rgb"].as_array().map_or(&[][..], Vec::as_slice);
                 channels.iter().filter_map(Value::as_f64).sum::<f64>() / channels.len().max(1) as f64
             }))
@@ -103,7 +103,7 @@ impl Reading<'_, '_> {
         match (parameter.kind.as_str(), parameter.numbers()) {
             ("rgb" | "color", [r, g, b]) => {
                 if r.min(*g).min(*b) < 0.0 {
-                    self.builder.leave_out(&place, "negative light is taken for none");
+                    self.builder.leave_out(&place, "negative light becomes 0");
                 }
                 Ok(light([*r, *g, *b].map(|v| v.max(0.0)), scale))
             }
@@ -111,7 +111,7 @@ impl Reading<'_, '_> {
                 let body = Blackbody::new(*kelvin, 1.0).map_err(|error| format!("{place}: {error}"))?;
                 let luminance = luminance_of(|nm| body.eval(nm));
                 if luminance <= 0.0 {
-                    return Err(format!("{place}: a black body of {kelvin} K does not shine"));
+                    return Err(format!("{place}: a black body of {kelvin} K emits no light"));
                 }
                 Ok(json!({ "type": "blackbody", "temperature_k": kelvin, "scale": scale / luminance }))
             }
@@ -120,7 +120,7 @@ impl Reading<'_, '_> {
                 if let Some(table) = self.table(parameter)? {
                     let luminance = luminance_of(|nm| table.at_or_zero(nm));
                     if luminance <= 0.0 {
-                        return Err(format!("{place}: nothing of it can be seen"));
+                        return Err(format!("{place}: it has no visible light"));
                     }
                     let mut value = table.spectrum("zero");
                     value["scale"] = json!(scale / luminance);
@@ -132,7 +132,7 @@ impl Reading<'_, '_> {
                     "stdillum-A" => "A",
                     "stdillum-E" => "E",
                     other => {
-                        self.builder.leave_out(&place, format!("the illuminant \"{other}\" is taken for D65"));
+                        self.builder.leave_out(&place, format!("the illuminant \"{other}\" becomes D65"));
                         "D65"
                     }
                 };
@@ -156,14 +156,14 @@ impl Reading<'_, '_> {
                 let text = String::from_utf8_lossy(&bytes).into_owned();
                 let words = text.lines().flat_map(|line| line.split('#').next().unwrap_or("").split_whitespace());
                 let parsed: Result<Vec<f64>, _> = words.map(str::parse).collect();
-                let numbers = parsed.map_err(|_| format!("{place}: \"{name}\" does not consist of numbers"))?;
+                let numbers = parsed.map_err(|_| format!("{place}: \"{name}\" is not a list of numbers"))?;
                 self.builder.spend(&json!(numbers), place)?;
                 numbers
             }
             Values::Flags(_) => return Err(format!("{place}: it is not a spectrum")),
         };
         let table = Table::of_pairs(&numbers);
-        let fail = || format!("{place}: {} numbers are no table of wavelengths and values", numbers.len());
+        let fail = || format!("{place}: {} numbers are not a table of wavelengths and values", numbers.len());
         table.ok_or_else(fail).map(Some)
     }
 
@@ -191,15 +191,14 @@ impl Reading<'_, '_> {
                     (Some("image"), Some(factor)) => scaled(inner, factor),
                     (None, Some(factor)) => json!(inner.as_f64().unwrap_or(1.0) * factor),
                     _ => {
-                        self.builder.leave_out(place, "the product of textures is taken for the first of them");
+                        self.builder.leave_out(place, "a product of textures becomes the first of them");
                         inner
                     }
                 }
             }
             "imagemap" => self.image(list, place)?,
             other => {
-                self.builder
-                    .leave_out(place, format!("the texture \"{other}\" is not known: one half is taken for it"));
+                self.builder.leave_out(place, format!("the texture \"{other}\" is not known: it becomes 0.5"));
                 list.mark_all();
                 json!(0.5)
             }
@@ -218,7 +217,7 @@ impl Reading<'_, '_> {
             None | Some("sRGB") => Encoding::Auto,
             Some("linear") => Encoding::Linear,
             Some(other) => {
-                self.builder.leave_out(place, format!("the encoding \"{other}\" is taken for sRGB"));
+                self.builder.leave_out(place, format!("the encoding \"{other}\" becomes sRGB"));
                 Encoding::Auto
             }
         };

@@ -18,12 +18,12 @@ fn materials_within_themselves_are_refused() {
         "<bsdf type=\"blendbsdf\" id=\"m\"><bsdf type=\"diffuse\"/><ref id=\"m\"/></bsdf>",
     ] {
         let why = refusal("xml", &mitsuba(material));
-        assert_eq!(why, "line 2: by its references this <bsdf> is within itself", "{material}");
+        assert_eq!(why, "line 2: this <bsdf> refers to itself", "{material}");
     }
     let shape = "<bsdf type=\"diffuse\" id=\"m\"/><shape type=\"merge\" id=\"s\">\n<ref id=\"s\"/></shape>";
-    assert_eq!(refusal("xml", &mitsuba(shape)), "line 2: by its references this <shape> is within itself");
+    assert_eq!(refusal("xml", &mitsuba(shape)), "line 2: this <shape> refers to itself");
     let integrator = "<integrator type=\"stokes\" id=\"i\"><ref id=\"i\"/></integrator>";
-    assert_eq!(refusal("xml", &mitsuba(integrator)), "line 2: by its references this <integrator> is within itself");
+    assert_eq!(refusal("xml", &mitsuba(integrator)), "line 2: this <integrator> refers to itself");
 }
 
 #[test]

@@ -135,8 +135,8 @@ fn what_mitsuba_says_and_we_cannot_is_listed_with_its_line() {
     let imported = imported("xml", MITSUBA);
     let said = said(&imported);
     for line in [
-        "line 6: <boolean name=\"hide_emitters\" value=\"true\"> is not honoured",
-        "line 22: the distribution of facets is taken for GGX of the same alpha",
+        "line 6: <boolean name=\"hide_emitters\" value=\"true\"> is ignored",
+        "line 22: the distribution of facets becomes GGX with the same alpha",
         "line 27: the shape \"hair\" is not known, and is left out",
     ] {
         assert!(said.iter().any(|l| l == line), "{line}\n{said:#?}");
@@ -221,7 +221,7 @@ fn a_damaged_mitsuba_scene_is_refused_with_its_line() {
             "\"b.obj\" cannot be read",
         ),
         ("<scene version=\"3.0.0\"><include filename=\"itself.xml\"/></scene>", "more than"),
-        ("<scene version=\"3.0.0\"></scene>", "nothing in it to see"),
+        ("<scene version=\"3.0.0\"></scene>", "it has no surfaces"),
         ("<scene>", "line"),
         ("<world/>", "<world> is not a Mitsuba scene"),
     ] {
@@ -281,7 +281,7 @@ fn a_pbrt_scene_arrives_with_its_camera_shapes_materials_and_lights() {
     assert_eq!((scene.integrator.spp, scene.integrator.max_depth), (33, Some(7)));
     // Without a mirroring transform the axes are left-handed: the world arrives mirrored in x.
     assert_eq!(scene.camera.position_m, [-1.0, 2.0, 6.0]);
-    assert!(imported.added.iter().any(|a| a.contains("mirrored in x")), "{:?}", imported.added);
+    assert!(imported.added.iter().any(|a| a.contains("mirrored along x")), "{:?}", imported.added);
     let LightKind::Point { position_m, intensity } = &scene.lights[1].kind else { panic!("a point") };
     assert_eq!(*position_m, [2.0, 2.0, 2.0]);
     // Any light but a colour has the luminance of its scale.
@@ -318,9 +318,9 @@ fn a_depth_beyond_all_limits_is_the_largest_that_a_scene_can_say() {
 fn what_pbrt_says_and_we_cannot_is_listed_with_its_line() {
     let said = said(&imported("pbrt", PBRT));
     for line in [
-        "line 21: \"float g\" is not honoured",
+        "line 21: \"float g\" is ignored",
         "line 35: the shape \"curve\" is not known, and is left out",
-        "line 36: MakeNamedMedium is not honoured",
+        "line 36: MakeNamedMedium is ignored",
     ] {
         assert!(said.iter().any(|l| l == line), "{line}\n{said:#?}");
     }
@@ -350,7 +350,7 @@ fn a_damaged_pbrt_scene_is_refused_with_its_line() {
         ("WorldBegin\nShape \"sphere\" \"float radius\" [ 1 2 ]", "line 2: \"radius\" is not one number"),
         ("WorldBegin\nTranslate 1 2", "line 2: 3 numbers should follow"),
         ("WorldBegin\nShape \"sphere", "line 2: a quote is not closed"),
-        ("WorldBegin\nAttributeEnd", "line 2: nothing was begun"),
+        ("WorldBegin\nAttributeEnd", "line 2: no matching begin"),
         ("WorldBegin\nNamedMaterial \"x\"", "line 2: there is no material \"x\""),
         (
             "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 7 ]",
@@ -358,7 +358,7 @@ fn a_damaged_pbrt_scene_is_refused_with_its_line() {
         ),
         ("WorldBegin\nShape \"plymesh\" \"string filename\" \"b.ply\"", "\"b.ply\" cannot be read"),
         ("Include \"itself.pbrt\"", "more than 64"),
-        ("WorldBegin", "nothing in it to see"),
+        ("WorldBegin", "it has no surfaces"),
         ("WorldBegin\nObjectBegin \"a\"", "is not ended"),
     ] {
         let why = refusal("pbrt", text);

@@ -146,23 +146,28 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
         (
             "xml",
             bumpy(&bitmap).replace("value=\"false\"", "value=\"true\""),
-            "line 3: light that grazes what is bent is not dimmed (use_shadowing_function)",
+            "line 3: grazing light on bent surfaces is not dimmed (use_shadowing_function)",
             true,
         ),
         (
             "xml",
             bumpy(&format!("{bitmap}<boolean name=\"flip_invalid_normals\" value=\"false\"/>")),
-            "line 4: <boolean name=\"flip_invalid_normals\" value=\"false\"> is not honoured",
+            "line 4: <boolean name=\"flip_invalid_normals\" value=\"false\"> is ignored",
             true,
         ),
         (
             "xml",
             bumpy("<texture type=\"checkerboard\"/>"),
-            "line 3: the \"bumpmap\" is left out: it is not by a bitmap",
+            "line 3: the \"bumpmap\" is left out: it has no bitmap",
             false,
         ),
-        ("xml", bumpy(""), "line 3: the \"bumpmap\" is left out: it is not by a bitmap", false),
-        ("xml", bumpy(nearest), "line 4: heights that are not interpolated have no slopes: nothing is bent", false),
+        ("xml", bumpy(""), "line 3: the \"bumpmap\" is left out: it has no bitmap", false),
+        (
+            "xml",
+            bumpy(nearest),
+            "line 4: heights without interpolation have no slopes: the bump map has no effect",
+            false,
+        ),
         (
             "xml",
             bumpy(&bitmap.replace("chequers", "no")),
@@ -172,13 +177,13 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
         (
             "xml",
             bumpy(&bitmap).replace("rectangle", "sphere"),
-            "line 1: it has no texture coordinates for the map of its normals, and is smooth",
+            "line 1: it has no texture coordinates for its normal or bump map: the map is left out",
             false,
         ),
         (
             "xml",
             within("<bsdf type=\"blendbsdf\"><bsdf type=\"diffuse\"/>", "</bsdf>"),
-            "line 3: the normals of a part of a blend are not bent: its map is left out",
+            "line 3: a normal or bump map of a part of a blend is left out",
             false,
         ),
         (
@@ -193,7 +198,7 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
         (
             "pbrt",
             pbrt(heights, &format!("Material \"diffuse\" {named}\"texture displacement\" \"h\"")),
-            "line 3: \"texture displacement\" is not honoured",
+            "line 3: \"texture displacement\" is ignored",
             true,
         ),
         (
@@ -205,25 +210,25 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
         (
             "pbrt",
             pbrt(mix, "Material \"mix\" \"string materials\" [ \"m\" \"m\" ]"),
-            "line 3: the normals of a part of it, \"m\", are not bent: its map is left out",
+            "line 3: the normal or bump map of a part of it, \"m\", is left out",
             false,
         ),
         (
             "pbrt",
             pbrt(heights, "Material \"interface\" \"texture displacement\" \"h\""),
-            "line 3: \"texture displacement\" is not honoured",
+            "line 3: \"texture displacement\" is ignored",
             false,
         ),
         (
             "pbrt",
             pbrt("Texture \"w\" \"float\" \"wrinkled\"", "Material \"diffuse\" \"texture displacement\" \"w\""),
-            "line 2: the texture \"wrinkled\" is not known: one half is taken for it",
+            "line 2: the texture \"wrinkled\" is not known: it becomes 0.5",
             false,
         ),
         (
             "pbrt",
             format!("WorldBegin\nMaterial \"diffuse\" {named}\nShape \"sphere\"\n"),
-            "line 3: it has no texture coordinates for the map of its normals, and is smooth",
+            "line 3: it has no texture coordinates for its normal or bump map: the map is left out",
             false,
         ),
         (
@@ -232,7 +237,7 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
                 &heights.replace("\"chequers.png\"", "\"chequers.png\" \"float scale\" -1"),
                 "Material \"conductor\" \"texture roughness\" \"h\"",
             ),
-            "line 3: a negative \"roughness\" is taken for none",
+            "line 3: a negative \"roughness\" becomes 0",
             false,
         ),
     ];

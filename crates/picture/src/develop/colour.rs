@@ -87,7 +87,7 @@ fn foreign_primaries(attributes: &Attributes) -> Result<Option<[[f64; 3]; 3]>, P
     match matrix {
         Some(matrix) => Ok(Some(matrix)),
         None => {
-            Err(PictureError::develop("the `chromaticities` of the file are no triangle of primaries with a white"))
+            Err(PictureError::develop("the `chromaticities` of the file are not three primaries with a white inside"))
         }
     }
 }

@@ -75,7 +75,7 @@ pub(crate) fn band_errors<'a>(file: &'a ExrFile, band: &SpectralBand<'_>) -> Res
 
 fn no_errors(channel: &str) -> PictureError {
     PictureError::develop(format!(
-        "the file has no channel `{ERROR_PREFIX}{channel}`: the error of its pixels is not known (renders have it from two replicates on)"
+        "the file has no channel `{ERROR_PREFIX}{channel}`: the error of its pixels is not known (render with at least two replicates)"
     ))
 }
 

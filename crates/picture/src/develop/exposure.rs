@@ -70,7 +70,7 @@ pub fn auto_exposure(luminances: impl IntoIterator<Item = f64>) -> Option<f64> {
 /// [`auto_exposure`], with what to say where there is no light.
 pub(crate) fn auto_or_refuse(luminances: impl IntoIterator<Item = f64>) -> Result<f64, PictureError> {
     auto_exposure(luminances).ok_or_else(|| {
-        PictureError::develop("the exposure cannot be chosen by itself: no pixel has a finite luminance above 0")
+        PictureError::develop("the exposure cannot be chosen automatically: no pixel has a finite luminance above 0")
     })
 }
 

@@ -221,7 +221,10 @@ fn develop_map(
     let scale = match map.range {
         Some(range) => ColourScale::new(map.axis, range).map_err(PictureError::develop)?,
         None => ColourScale::fitting(map.axis, values.iter().copied()).ok_or_else(|| {
-            PictureError::develop(format!("there is no value to choose a range by ({}): give it", numbers.title))
+            PictureError::develop(format!(
+                "there is no value to choose a range from ({}): give --range LOW:HIGH",
+                numbers.title
+            ))
         })?,
     };
     let pixels = values.iter().flat_map(|value| scale.colour(*value)).collect();

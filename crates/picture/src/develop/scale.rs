@@ -20,7 +20,7 @@ pub const MAX_SCALED_PIXELS: usize = 1 << 26;
 /// ```
 pub fn scaled_size(width: usize, height: usize, factor: f64) -> Result<(usize, usize), PictureError> {
     if !(factor > 0.0 && factor.is_finite()) {
-        return Err(PictureError::develop("the factor of a scale must be above 0 and finite"));
+        return Err(PictureError::develop("the scale factor must be above 0 and finite"));
     }
     let [new_width, new_height] = [width, height].map(|side| (side as f64 * factor).round().max(1.0));
     if new_width * new_height > MAX_SCALED_PIXELS.max(width * height) as f64 {

@@ -72,7 +72,7 @@ impl White {
         if (least..=most).contains(&kelvin) {
             Ok(Self::Temperature(kelvin))
         } else {
-            Err(format!("a temperature from {least} K to {most} K"))
+            Err(format!("the temperature of a black body is from {least} K to {most} K"))
         }
     }
 
@@ -149,7 +149,7 @@ pub(crate) fn matrix_for<T: Sample>(
     match white_balance(white) {
         Some(matrix) => Ok(Some(matrix)),
         None => Err(PictureError::develop(format!(
-            "the white balance has no light to go by: the patch has the XYZ {:.4}, {:.4}, {:.4}",
+            "the patch cannot be the white: its mean XYZ is {:.4}, {:.4}, {:.4}",
             white[0], white[1], white[2]
         ))),
     }

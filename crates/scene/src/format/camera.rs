@@ -156,7 +156,7 @@ pub(crate) fn film(
     };
     let (width, height) = (form.width?.0, form.height?);
     if width * height.value.0 > MAX_PIXELS {
-        let message = format!("{width} × {} pixels are more than {MAX_PIXELS}", height.value.0);
+        let message = format!("{width} × {} pixels; at most {MAX_PIXELS} are possible", height.value.0);
         reader.error(Code::OutOfRange, height.at, message);
         return None;
     }

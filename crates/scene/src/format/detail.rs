@@ -201,7 +201,7 @@ impl Laid<'_> {
         for (key, pair) in [("uv_scale", self.uv_scale), ("uv_offset", self.uv_offset)] {
             if pair.iter().any(|v| v.abs() > FARTHEST_UV) {
                 let message =
-                    format!("{key} is beyond {FARTHEST_UV:e}, where rounding errors hide the place in the image");
+                    format!("{key} is beyond {FARTHEST_UV:e}, where rounding errors are larger than the image");
                 reader.error(Code::OutOfRange, self.at.head(), message);
                 return None;
             }
@@ -228,7 +228,7 @@ fn from_0_to_1(
     let outside = |[number, ..]: &[f64; 3]| !(0.0..=1.0).contains(&(number * factor));
     if let Some([number, ..]) = texture.image.linear_texels().find(outside) {
         let times = if factor == 1.0 { String::new() } else { format!(", times {factor},") };
-        let message = format!("{}: a texel of {number}{times} does not lie from 0 to 1", file.value);
+        let message = format!("{}: a texel of {number}{times} is not between 0 and 1", file.value);
         reader.error(Code::OutOfRange, file.at, message);
         return None;
     }

@@ -163,7 +163,7 @@ pub(crate) fn shape(form: &ShapeForm, object: &str, files: &mut Files, reader: &
         ShapeForm::Box(block) => {
             let (min, max) = (block.min_m?, block.max_m?);
             if let Some(axis) = (0..3).find(|&i| max.value[i] <= min[i]) {
-                let message = format!("max_m is not above min_m along {}", ["x", "y", "z"][axis]);
+                let message = format!("max_m must be above min_m along {}", ["x", "y", "z"][axis]);
                 reader.error(Code::DegenerateShape, max.at, message);
                 return None;
             }

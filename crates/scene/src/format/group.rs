@@ -217,7 +217,7 @@ fn order(members: &[Members<'_>], reader: &mut Reader<'_>) -> Option<Vec<usize>>
                 State::Open => {
                     right = false;
                     let at = form.group.as_ref().map_or(form.at.head(), |name| name.at);
-                    reader.error(Code::Circular, at, "this group would hold itself");
+                    reader.error(Code::Circular, at, "this group contains itself");
                 }
                 State::Done => {}
             }
@@ -275,10 +275,10 @@ fn check(
     let (nesting, placed) = (sum.nesting - 1, sum.placed - 1);
     let at = top.first().map(|(_, form)| form.at.head());
     if let Some(at) = at.filter(|_| nesting > MAX_NESTING) {
-        reader.error(Code::Limit, at, format!("{nesting} groups within each other are more than {MAX_NESTING}"));
+        reader.error(Code::Limit, at, format!("groups are nested {nesting} deep; at most {MAX_NESTING}"));
     }
     if let Some(at) = at.filter(|_| placed > MAX_PLACED) {
-        reader.error(Code::Limit, at, format!("{placed} placed groups are more than {MAX_PLACED}"));
+        reader.error(Code::Limit, at, format!("{placed} placed groups; at most {MAX_PLACED}"));
     }
     (reader.error_count() == before).then_some(())
 }

@@ -80,7 +80,10 @@ pub(crate) fn wavelength_range_nm(form: &IntegratorForm, reader: &mut Reader<'_>
         return None;
     }
     if first < VISIBLE_NM[0] || last > VISIBLE_NM[1] {
-        let message = format!("wavelengths outside {} to {} nm add nothing to a picture", VISIBLE_NM[0], VISIBLE_NM[1]);
+        let message = format!(
+            "wavelengths outside {} to {} nm are invisible and add nothing to the picture",
+            VISIBLE_NM[0], VISIBLE_NM[1]
+        );
         reader.warning(Code::InvisibleWavelengths, range.at, message, Some("narrow the range".to_owned()));
     }
     Some([first, last])

@@ -69,7 +69,7 @@ pub(crate) fn motion(
             reader.error(Code::OutOfRange, at, "the time since the previous keyframe is too long for double precision");
         } else if a.mirrors() != b.mirrors() {
             let message =
-                "only one of this keyframe and the previous one mirrors, so the object would become flat in between";
+                "of this keyframe and the previous one only one mirrors, so the object would become flat in between";
             reader.error(Code::Motion, at, message);
         } else if a.is_half_turn_from(b) {
             let message =

@@ -50,8 +50,7 @@ crate::record! {
         #[allow(dead_code, reason = "checked when it is decoded")]
         etalon: Required<Version>,
         /// The schema that this file follows, for editors. It changes nothing.
-        #[allow(dead_code, reason = "for editors only")]
-        schema as "$schema": Optional<String>,
+        schema as "$schema": Optional<Spanned<String>>,
         /// The camera.
         camera: Required<CameraForm>,
         /// Size and reconstruction of the picture.
@@ -213,6 +212,14 @@ pub(crate) fn scene(
         integrator: integrator?,
     };
     warn(&scene, form, reader);
+    if let Optional::Given(schema) = &form.schema
+        && files.lacks_beside_the_scene(&schema.value)
+    {
+        let message = format!("there is no file \"{}\": an editor cannot complete or check this scene", schema.value);
+        let hint =
+            format!("write it with `etalon schema > {}` in the folder of the scene, or remove the key", schema.value);
+        reader.warning(Code::NoSchema, schema.at, message, Some(hint));
+    }
     Some(scene)
 }
 

@@ -161,7 +161,8 @@ impl<'f> Spectra<'f> {
         };
         let values: Vec<f64> = wavelengths_nm.iter().map(|nm| coefficient(*nm)).collect();
         if let Some(i) = values.iter().position(|v| !v.is_finite()) {
-            let message = format!("the transmittance is 0 at {} nm, which no absorption reaches", wavelengths_nm[i]);
+            let message =
+                format!("the transmittance is 0 at {} nm: this would be an infinite absorption", wavelengths_nm[i]);
             reader.error_hint(Code::OutOfRange, at, message, "a transmittance must be above 0");
             return None;
         }
@@ -192,11 +193,11 @@ impl<'f> Spectra<'f> {
     fn admits(&mut self, value: f64, hint: &str, at: Span, used: Use, reader: &mut Reader<'_>) -> bool {
         let (code, message) = match used.role {
             Role::Reflectance if !(0.0..=1.0).contains(&value) => {
-                (Code::Reflectance, format!("a reflectance lies from 0 to 1, and this is {value}"))
+                (Code::Reflectance, format!("a reflectance must be from 0 to 1, but this is {value}"))
             }
             Role::Emission if value < 0.0 => (Code::NegativeEmission, format!("an emission of {value} is below 0")),
             Role::Absorption if value < 0.0 => {
-                (Code::OutOfRange, format!("an absorption of {value} is below 0: light would grow on its way"))
+                (Code::OutOfRange, format!("an absorption of {value} is below 0: light would be amplified"))
             }
             _ => return true,
         };

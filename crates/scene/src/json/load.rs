@@ -43,7 +43,7 @@ pub fn read_text(source: impl Read, path: &Path) -> Result<String, LoadError> {
         })
     };
     if bytes.len() > MAX_BYTES {
-        let message = format!("the file is larger than {MAX_BYTES} bytes, the most that is read");
+        let message = format!("the file is larger than {MAX_BYTES} bytes, which is the limit");
         return Err(refuse(String::new(), Code::Limit, Span::new(0, 0), 1, 1, message));
     }
     // As `read` does, whose places count from after the mark.

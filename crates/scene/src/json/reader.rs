@@ -265,7 +265,7 @@ pub fn read<T: Decode, R>(
         Some(result) if errors == 0 => Ok((result, problems)),
         Some(_) => Err(SceneErrors { file_name: file_name.to_owned(), text: text.to_owned(), problems }),
         None => {
-            assert!(errors > 0, "{file_name} was refused without a reason; this is a defect of its reader");
+            assert!(errors > 0, "{file_name} was refused without a reason; this is a bug of the program");
             Err(SceneErrors { file_name: file_name.to_owned(), text: text.to_owned(), problems })
         }
     }

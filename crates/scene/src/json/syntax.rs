@@ -145,7 +145,7 @@ fn scan(text: &str) -> Scan {
                 if let Some(c) = text[i..].chars().next().filter(|c| c.is_whitespace()) {
                     faults.push(Fault::syntax(
                         Span::new(i, i + c.len_utf8()),
-                        format!("a blank that JSON does not know (U+{:04X})", u32::from(c)),
+                        format!("a space character that JSON does not allow (U+{:04X})", u32::from(c)),
                         "use plain spaces",
                     ));
                 }
@@ -196,16 +196,24 @@ fn liberties(text: &str, tokens: &[TokenAndRange<'_>]) -> Vec<Fault> {
             Token::Number(number) => {
                 let digits = number.trim_start_matches(['+', '-']);
                 if digits.starts_with(['I', 'N']) {
-                    let message = format!("{number} is not a number that JSON knows");
+                    let message = format!("JSON has no number {number}");
                     faults.push(Fault::new(Code::NotFinite, span, message, "write a finite number"));
                 } else if digits.starts_with("0x") || digits.starts_with("0X") {
                     faults.push(Fault::syntax(span, "a hexadecimal number", "write it in decimal"));
                 } else if number.starts_with('+') {
                     faults.push(Fault::syntax(span, "a number that starts with +", "remove the +"));
                 } else if digits.starts_with('.') || !digits.contains(|c: char| c.is_ascii_digit()) {
-                    faults.push(Fault::syntax(span, "a number that starts with its point", "write 0 before it"));
+                    faults.push(Fault::syntax(
+                        span,
+                        "a number that starts with the decimal point",
+                        "write 0 before it",
+                    ));
                 } else if digits.split(['e', 'E']).next().is_some_and(|d| d.ends_with('.')) {
-                    faults.push(Fault::syntax(span, "a number without a digit after its point", "write 0 after it"));
+                    faults.push(Fault::syntax(
+                        span,
+                        "a number without a digit after the decimal point",
+                        "write 0 after it",
+                    ));
                 }
             }
             _ => {}
@@ -228,7 +236,7 @@ fn string_liberties(source: &str, offset: usize, faults: &mut Vec<Fault>) {
             && !"\"\\/bfnrtu".contains(escape)
         {
             let span = Span::new(at, at + 1 + escape.len_utf8());
-            faults.push(Fault::syntax(span, "an escape that JSON does not know", "write \\\\ for a backslash"));
+            faults.push(Fault::syntax(span, "an escape that JSON does not have", "write \\\\ for a backslash"));
         }
     }
 }
@@ -269,9 +277,7 @@ fn fault_of(error: &ParseError) -> Fault {
         K::UnexpectedColon => fault("a value was expected, not a colon", ""),
         K::UnexpectedComma => fault("a value was expected, not a comma", ""),
         K::UnexpectedWord => fault("a word without quotes", "strings stand in double quotes"),
-        K::NonFiniteNumbersNotAllowed => {
-            Fault::new(Code::NotFinite, span, "infinity and NaN are not numbers that JSON knows", "")
-        }
+        K::NonFiniteNumbersNotAllowed => Fault::new(Code::NotFinite, span, "JSON has no infinity and no NaN", ""),
         kind => {
             let message = kind.to_string();
             let mut characters = message.chars();

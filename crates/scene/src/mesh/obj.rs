@@ -58,7 +58,7 @@ pub fn read_obj(bytes: &[u8], library: impl Fn(&Path) -> Result<Vec<u8>, String>
         use tobj::LoadError as E;
         match error {
             E::FaceVertexOutOfBounds | E::FaceTexCoordOutOfBounds | E::FaceNormalOutOfBounds => {
-                MeshError::at_line(line.get(), format!("{error}, in the group of faces that ends here"))
+                MeshError::at_line(line.get(), format!("{error}, in the group of faces that ends on this line"))
             }
             _ => MeshError::at_line(line.get(), error.to_string()),
         }

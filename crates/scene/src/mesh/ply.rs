@@ -24,7 +24,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Part, MeshError> {
     // What the parser makes of line ends must not move the payload.
     let payload = bytes.len() - reader.get_ref().len();
     if payload != header_end {
-        return Err(MeshError::new("the header's end is not a line of its own"));
+        return Err(MeshError::new("\"end_header\" must be on its own line"));
     }
     let lines = header.encoding == Encoding::Ascii;
     let mut left_out = Vec::new();
@@ -48,7 +48,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Part, MeshError> {
         left_out.push(format!("{} bytes after its last element are not read", rest.len()));
     }
     let (vertices, normals, uvs) = vertices.ok_or_else(|| MeshError::new("there is no element \"vertex\""))?;
-    let faces = faces.ok_or_else(|| MeshError::new("there is no element \"face\": it holds points only"))?;
+    let faces = faces.ok_or_else(|| MeshError::new("there is no element \"face\": the file has only points"))?;
     let mut mesh = Mesh { vertices, normals, uvs, triangles: Vec::new() };
     mesh.triangles.reserve_exact(faces.iter().map(|face| face.len().saturating_sub(2)).sum());
     let mut corners = Vec::new();
@@ -64,7 +64,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Part, MeshError> {
             corners.push(known);
         }
         if corners.len() < 3 {
-            left_out.push(format!("face {i} has {} corners and is no polygon", corners.len()));
+            left_out.push(format!("face {i} has {} corners; a face needs at least 3", corners.len()));
         }
         triangulate(&corners, |v| mesh.vertices[v as usize], &mut mesh.triangles);
         if mesh.triangles.len() > MAX_ELEMENTS {
@@ -74,7 +74,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Part, MeshError> {
     if left_out.len() > 20 {
         let more = left_out.len() - 20;
         left_out.truncate(20);
-        left_out.push(format!("{more} more things of this kind are not used"));
+        left_out.push(format!("{more} more elements or properties are not used"));
     }
     Ok(Part { mesh, left_out, ..Part::default() })
 }
@@ -126,7 +126,8 @@ fn check_count(element: &ElementDef, lines: bool, bytes: usize) -> Result<(), Me
     }
     // The last line may lack its end.
     if count > 0 && count.checked_mul(least).is_none_or(|needed| needed > bytes + 1) {
-        let message = format!("its header says {count} elements \"{name}\", for which {bytes} bytes are too few");
+        let message =
+            format!("its header promises {count} elements \"{name}\", but {bytes} bytes are too few for them");
         return Err(MeshError::new(message));
     }
     if count > MAX_ELEMENTS {

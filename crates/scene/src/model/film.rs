@@ -34,14 +34,14 @@ pub const MOST_BANDS: u32 = 512;
 pub enum BandsError {
     /// Numbers that make no bands.
     #[error(
-        "bands are the first centre, the last centre and the step in nm, the last a whole number of steps from the first"
+        "bands are the first centre, the last centre and the step in nm, and the last centre must be a whole number of steps from the first"
     )]
     Malformed,
     /// Too many.
-    #[error("{0} bands are more than {MOST_BANDS}")]
+    #[error("{0} bands; at most {MOST_BANDS} are possible")]
     TooMany(u64),
     /// Wavelengths that are not rendered.
-    #[error("the bands reach from {} to {} nm, and wavelengths from {} to {} nm are rendered", bands[0], bands[1], range[0], range[1])]
+    #[error("the bands reach from {} to {} nm, but only wavelengths from {} to {} nm are rendered", bands[0], bands[1], range[0], range[1])]
     OutOfRange {
         /// First and last edge, nm.
         bands: [f64; 2],

@@ -9,7 +9,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReferenceError {
     /// An object of no material.
-    #[error("object \"{object}\" has material {index}, and the scene has {count}")]
+    #[error("object \"{object}\" has material {index}, but the scene has {count}")]
     Material {
         /// Name of the object.
         object: String,
@@ -19,7 +19,7 @@ pub enum ReferenceError {
         count: usize,
     },
     /// An instance of no group.
-    #[error("instance \"{instance}\" places group {index}, and there are {count} that it may place")]
+    #[error("instance \"{instance}\" places group {index}, but it may only place the first {count}")]
     Group {
         /// Name of the instance.
         instance: String,
@@ -29,7 +29,7 @@ pub enum ReferenceError {
         count: usize,
     },
     /// A triangle of no vertex.
-    #[error("object \"{object}\": triangle {triangle} has vertex {index}, and the mesh has {count}")]
+    #[error("object \"{object}\": triangle {triangle} has vertex {index}, but the mesh has {count}")]
     Vertex {
         /// Name of the object.
         object: String,

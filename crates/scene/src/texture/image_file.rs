@@ -179,7 +179,7 @@ impl Image {
         let most = MAX_IMAGE_BYTES.min(most_image_bytes(length));
         if asked > u128::from(most) {
             return Err(format!(
-                "its {length} bytes claim {width} × {height} pixels, {asked} bytes of memory with their conversions, of at most \
+                "its {length} bytes claim {width} × {height} pixels, which would take {asked} bytes of memory; at most \
                  {most}"
             ));
         }

@@ -255,6 +255,23 @@ fn wavelengths_outside_what_is_known() {
 }
 
 #[test]
+fn a_schema_that_is_not_beside_the_scene_is_mentioned_once() {
+    let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests"));
+    let warnings = |schema: &str, folder| {
+        let text = RIGHT.text().replacen('{', &format!("{{\"$schema\": \"{schema}\", "), 1);
+        etalon_scene::parse_in(&text, "test.json", folder, None).unwrap().warnings
+    };
+    let found = warnings("missing.schema.json", Some(folder));
+    let [problem] = found.as_slice() else { panic!("one warning: {found:?}") };
+    assert_eq!((problem.code, problem.json_path.as_str()), (Code::NoSchema, "$.$schema"));
+    assert!(problem.hint.as_ref().is_some_and(|hint| hint.contains("etalon schema > missing.schema.json")));
+    // A file that is there, the address of a page, and a scene without a folder.
+    assert_eq!(warnings("common/everything.json", Some(folder)), []);
+    assert_eq!(warnings("schemas://etalon/1", Some(folder)), []);
+    assert_eq!(warnings("missing.schema.json", None), []);
+}
+
+#[test]
 fn odd_scenes_are_warned_about() {
     one(Severity::Warning, Code::NoObjects, "$.objects", &objects("«[»]").text());
     let dark = lights("[]").text();

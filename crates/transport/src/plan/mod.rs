@@ -111,25 +111,25 @@ impl EffectName {
     /// What a picture lacks that is rendered without it although the scene calls for it.
     pub const fn lost_without(self) -> &'static str {
         match self {
-            Self::Wavelengths => "every spectrum is replaced by its mean as the eye weighs it: no colours",
+            Self::Wavelengths => "every spectrum is replaced by its mean, weighted by the eye: no colours",
             Self::Dispersion => "every index of refraction is that of one wavelength",
             Self::Lens => "everything is in focus",
             Self::ShadowRays => {
                 "lights without a surface are left out; the others are found by chance, with more noise"
             }
-            Self::Mis => "the same mean, with more noise where shadow rays are a bad guess",
+            Self::Mis => "the mean is the same, with more noise where shadow rays sample badly",
             Self::Environment => "light from infinity is left out",
             Self::SpecularChains => "mirrors, metals and glass are black",
             Self::NestedDielectrics => "each solid is treated as if it stood in vacuum",
             Self::Absorption => "glass is clear, however thick",
-            Self::Polarisation => "light is taken for unpolarised at every surface",
+            Self::Polarisation => "light is treated as unpolarised at every surface",
             Self::Textures => "each image is replaced by its mean colour",
             Self::ShadingNormals => "meshes show their triangles",
             Self::Masks => "every surface is opaque",
-            Self::Instances => "what instances place is left out",
-            Self::Motion => "everything stands still, as in the middle of the shutter's time",
-            Self::WideFilter => "a pixel is its own square",
-            Self::Bands => "the film keeps the colour only",
+            Self::Instances => "instances are left out",
+            Self::Motion => "everything stands still, at the middle of the shutter time",
+            Self::WideFilter => "each pixel is a square (box filter)",
+            Self::Bands => "the film keeps only the colour",
         }
     }
 
@@ -164,7 +164,7 @@ impl FromStr for EffectName {
     fn from_str(text: &str) -> Result<Self, String> {
         Self::ALL.into_iter().find(|name| name.as_str() == text).ok_or_else(|| {
             let names: Vec<_> = Self::ALL.iter().map(|name| name.as_str()).collect();
-            format!("there is no effect \"{text}\"; there are {}", names.join(", "))
+            format!("there is no effect \"{text}\"; the effects are {}", names.join(", "))
         })
     }
 }
@@ -278,12 +278,12 @@ pub struct Plan {
 /// Why the pixels of a scene cannot share paths; `None` if they can.
 fn reuse_unsupported(kernel: &KernelKind, runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
     match () {
-        () if kernel.polarised => Some("light is followed with its polarisation"),
+        () if kernel.polarised => Some("polarisation is traced"),
         () if !kernel.shares_paths => Some("a study decides what paths carry"),
         () if runs(EffectName::NestedDielectrics) => Some("dielectrics are nested"),
         () if runs(EffectName::Absorption) => Some("media absorb"),
         () if runs(EffectName::Motion) => Some("something moves while the shutter is open"),
-        () if runs(EffectName::Masks) => Some("surfaces let paths pass"),
+        () if runs(EffectName::Masks) => Some("surfaces have an opacity below 1"),
         () => None,
     }
 }
@@ -291,7 +291,7 @@ fn reuse_unsupported(kernel: &KernelKind, runs: impl Fn(EffectName) -> bool) -> 
 /// Many paths at once, unless the study wants otherwise.
 fn chosen_loop(study: &Study) -> ChosenLoop {
     match study.path_loop {
-        Some(name) => ChosenLoop { name, because: "the command line wants it" },
+        Some(name) => ChosenLoop { name, because: "chosen by --loop" },
         None => ChosenLoop { name: PathLoop::Batch, because: "it is the fastest" },
     }
 }
@@ -339,7 +339,7 @@ impl Plan {
         let i = &scene.integrator;
         let polarised = runs(EffectName::Polarisation);
         if study.carried.is_some() && polarised {
-            let because = "only its own kernel carries it".to_owned();
+            let because = "--carry has no polarised variant".to_owned();
             return Err(StudyError::Contradicted { effect: EffectName::Polarisation, because });
         }
         let kernel = kernels::choose(lane_model, polarised, study.carried);

@@ -51,9 +51,8 @@ pub enum StudyError {
     #[error("{0} cannot be forced and left out at once")]
     Both(EffectName),
     /// Nothing to force.
-    #[error("{0} cannot be forced: it is what surfaces and film are made of, and without them there is nothing to do")]
+    #[error("{0} cannot be forced: it changes nothing in a scene that does not need it")]
     NothingToForce(EffectName),
-    /// Not covered by the loop over many paths.
     /// Neighbouring pixels cannot share paths.
     #[error("neighbouring pixels cannot share paths: {0}")]
     PathReuse(&'static str),

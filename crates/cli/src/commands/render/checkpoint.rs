@@ -27,7 +27,7 @@ pub(super) fn keep(args: &Args, done: &Done, failure: &Failure, begun: bool) -> 
     let elsewhere = std::env::temp_dir().join(name);
     Some(match state::write(&elsewhere, &done.header, &done.canvas, &[]) {
         Ok(()) => Ok(elsewhere),
-        Err(_) => Err(Failure::run(Report::from_err(error).wrap_err("what was rendered is lost"))),
+        Err(_) => Err(Failure::run(Report::from_err(error).wrap_err("the render is lost"))),
     })
 }
 

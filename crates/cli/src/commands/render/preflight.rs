@@ -37,7 +37,7 @@ pub(super) fn check_memory(scene: &Scene, stokes: bool, threads: usize, failure:
             code = "too-large",
             help =
                 "make it smaller, keep fewer bands or replicates, use fewer threads, or raise the limits (`ulimit -v`)",
-            "a picture of {width} × {height} pixels with {} replicates takes {} of memory, and {} are left",
+            "a picture of {width} × {height} pixels with {} replicates takes {} of memory, and {} are free",
             scene.integrator.replicates,
             bytes(needed),
             bytes(available)

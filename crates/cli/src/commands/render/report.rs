@@ -166,12 +166,12 @@ fn describe_explored(done: &Done, explored: &Explored) -> String {
     if explored.used {
         let [least, most] = least_and_most(done, explored);
         format!(
-            "{least} to {most} samples a pixel, by where the error is: an exploration ({}) predicted {gain:.1} times less time",
+            "{least} to {most} samples per pixel, more where the error is larger: an exploration ({}) predicted {gain:.1} times less time",
             duration(explored.seconds),
         )
     } else {
         format!(
-            "all pixels alike: an exploration ({}) predicted no gain worth it ({gain:.2})",
+            "the same number of samples in every pixel: an exploration ({}) predicted too little gain from others ({gain:.2} times less time)",
             duration(explored.seconds)
         )
     }
@@ -197,7 +197,7 @@ fn describe_prediction(done: &Done, predicted: &Prediction) -> String {
     let took = done.ended.seconds - pilot_seconds(done);
     if predicted.cost_estimate.samples.is_nan() {
         let [pilot, asked] = [duration(predicted.pilot_seconds), percent(predicted.cost_estimate.relative_rmse)];
-        return format!("the pilot ({pilot}) found no light, so what {asked} takes is unknown");
+        return format!("the pilot ({pilot}) found no light, so the cost of {asked} is unknown");
     }
     let mut text = format!(
         "the pilot ({}) predicted {} for {}, with {} samples",
@@ -208,11 +208,11 @@ fn describe_prediction(done: &Done, predicted: &Prediction) -> String {
     );
     text += &match done.ended.reached {
         Reached::Error => {
-            format!("; it took {}, {:.2} times that", duration(took), took / predicted.cost_estimate.seconds)
+            format!("; it took {}, {:.2} times the prediction", duration(took), took / predicted.cost_estimate.seconds)
         }
-        Reached::Time => "; time was up before".to_owned(),
-        Reached::Samples => "; so many samples were not wanted".to_owned(),
-        Reached::Interrupted => "; it was interrupted before".to_owned(),
+        Reached::Time => "; --time ended the render earlier".to_owned(),
+        Reached::Samples => "; --spp ended the render earlier".to_owned(),
+        Reached::Interrupted => "; the render was interrupted earlier".to_owned(),
     };
     text
 }
@@ -243,12 +243,10 @@ fn describe_error(error: &ImageError) -> String {
         100.0 * share,
     );
     if error.is_heavy_tailed() {
-        text.push_str(
-            "\n  rare bright paths carry most of this error: it is likely to be larger than these numbers say",
-        );
+        text.push_str("\n  rare bright paths cause most of this error: the true error is probably larger");
     } else if error.has_heavy_tailed_pixels() {
         text.push_str(
-            "\n  rare bright paths: error bars of single pixels are too short, those of larger regions are right",
+            "\n  rare bright paths: the error bars of single pixels are too short, but those of larger regions are right",
         );
     }
     text

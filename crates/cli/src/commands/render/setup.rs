@@ -6,10 +6,10 @@ use etalon::{Channels, Frame, Subject};
 use etalon_control::Shard;
 use etalon_control::canvas::tiles_of;
 use etalon_transport::{PixelRect, Prepared, prepare_frame};
-use miette::{Report, miette};
+use miette::{MietteDiagnostic, Report, miette};
 
 use super::{Adaptive, Args, preflight, resume};
-use crate::args::PixelAt;
+use crate::args::{PixelAt, corners_hint};
 use crate::failure::Failure;
 use crate::frames::FirstFrame;
 use crate::light;
@@ -85,14 +85,21 @@ pub(super) fn make_ready(
     let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let rect = args.crop.map_or(whole, |crop| crop.0);
     if rect.x1 > whole.x1 || rect.y1 > whole.y1 {
-        failure.add(Failure::input(miette!(
-            code = "crop-outside",
+        let PixelRect { x0, y0, x1, y1 } = rect;
+        let numbers = [x0, y0, x1 - x0, y1 - y0].map(|number| number as usize);
+        let hint = corners_hint(numbers, [whole.x1 as usize, whole.y1 as usize]);
+        let outside = MietteDiagnostic::new(format!(
             "the crop reaches to column {} and row {} of a picture of {} × {} pixels",
-            rect.x1,
-            rect.y1,
+            x1 - 1,
+            y1 - 1,
             whole.x1,
             whole.y1
-        )));
+        ));
+        let outside = outside.with_code("crop-outside");
+        failure.add(Failure::input(match hint {
+            Some(hint) => outside.with_help(hint),
+            None => outside,
+        }));
     }
     if let Some(PixelAt { x, y }) = args.pixel.filter(|at| at.x >= whole.x1 || at.y >= whole.y1) {
         failure.add(Failure::input(miette!(
@@ -116,7 +123,7 @@ pub(super) fn make_ready(
         failure.add(Failure::input(miette!(
             code = "path-reuse",
             help = "leave out --path-reuse, or give --spp or --time",
-            "where neighbouring pixels share paths, no path stands alone: --error, --adaptive always and --pixel trace single ones"
+            "path reuse makes neighbouring pixels share paths, but --error, --adaptive always and --pixel need independent pixels"
         )));
     }
     std::mem::take(&mut failure).into_outcome()?;
@@ -140,7 +147,7 @@ pub(super) fn make_ready(
             severity = miette::Severity::Warning,
             code = "develop-unused",
             help = "`etalon develop` makes a PNG from the EXR later",
-            "--exposure and the other options of development change PNG files only, and none is written"
+            "--exposure and the other options for PNG files have no effect, because no PNG is written"
         ));
     }
     if let Some(option) = wants_exr(args)
@@ -150,7 +157,7 @@ pub(super) fn make_ready(
         failure.add(Failure::input(miette!(
             code = "no-exr",
             help = "add -o NAME.exr",
-            "{option} adds channels to an EXR, and none is written"
+            "{option} adds channels to an EXR, but no EXR is written"
         )));
     }
     let subject = Subject { frame, ..Subject::new(&prepared, &loaded.sha256, rect) };
@@ -185,8 +192,8 @@ fn check_developing(args: &Args, subject: &Subject, failure: &mut Failure) {
     if args.developing.shows_errors() && subject.replicates < 2 {
         refuse(
             "develop",
-            "the errors come from two replicates or more",
-            "--error-map: the error is not known".to_owned(),
+            "render with at least two replicates",
+            "--error-map: the error is not known with a single replicate".to_owned(),
         );
     }
     let Some(nm) = args.developing.band_nm() else { return };
@@ -194,7 +201,7 @@ fn check_developing(args: &Args, subject: &Subject, failure: &mut Failure) {
         return refuse(
             "develop",
             "add bands such as `--bands 400:700:10`",
-            "--band: the film keeps no bands".to_owned(),
+            "--band: the film has no spectral bands".to_owned(),
         );
     };
     let [first, last] = [bands.first_nm, bands.centre_nm(bands.count - 1)];
@@ -246,8 +253,8 @@ fn check_shard(args: &Args, rect: PixelRect, shard: Shard, outputs: &[Output], f
     {
         failure.add(Failure::input(miette!(
             code = "shard-without-part",
-            help = "add -o NAME.part; an EXR or a PNG beside it shows the share's tiles",
-            "a share of a picture is merged from its .part file, and none is written"
+            help = "add -o NAME.part; an EXR or a PNG beside it shows the tiles of this share",
+            "`etalon merge` needs a .part file of each share, but none is written"
         )));
     }
 }

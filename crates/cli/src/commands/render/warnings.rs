@@ -48,8 +48,8 @@ fn cut_paths(counters: &Counters) -> Option<Report> {
         miette!(
             severity = miette::Severity::Warning,
             code = "cut-paths",
-            help = "with Russian roulette, and any absorption, paths end by themselves",
-            "{} of {} paths were cut at the most vertices that are traced, and may lack light",
+            help = "paths end by themselves with Russian roulette, if the surfaces absorb some light",
+            "{} of {} paths were cut at the largest number of vertices: the picture may lack light",
             counters.cut_paths,
             counters.paths
         )
@@ -66,7 +66,7 @@ fn lost_media(counters: &Counters) -> Option<Report> {
                 "solids with a priority must be closed, their normals must point outward, and at most {MOST_SOLIDS_AT_ONCE} of them \
                  may overlap in one place"
             ),
-            "{} times a path left a solid that it had not entered, or was in more than {MOST_SOLIDS_AT_ONCE} solids at once \
+            "{} times a path left a solid that it had not entered, or was inside more than {MOST_SOLIDS_AT_ONCE} solids at once \
              ({} paths in all)",
             counters.lost_media,
             counters.paths

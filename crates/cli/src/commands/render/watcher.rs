@@ -12,9 +12,9 @@ use crate::progress::RenderBar;
 /// How progress is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum ProgressKind {
-    /// A bar, on a terminal only.
+    /// A progress bar, on a terminal only.
     Bar,
-    /// Lines `openjd_progress: 12.5` on standard output, as Open Job Description reads them.
+    /// Lines such as `openjd_progress: 12.5` (per cent) on standard output, for Open Job Description.
     Openjd,
 }
 
@@ -89,7 +89,7 @@ impl Watch for Watcher<'_> {
         }
         if !self.said.swap(true, Ordering::Relaxed) {
             self.bar
-                .say("stopping: tiles under way are finished (the same signal again ends at once, and keeps nothing)");
+                .say("stopping after the tiles in progress (the same signal again stops at once and keeps nothing)");
         }
         Control::Stop
     }

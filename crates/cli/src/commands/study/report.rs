@@ -23,13 +23,15 @@ const COLUMNS: [&str; 11] = [
 
 /// What the columns mean.
 pub(super) const LEGEND: &str = "\
-Seconds are processor time over threads. The **error** is the root mean square over all pixels of the error of luminance, in \
-units of the picture's mean luminance, against the reference (whose own error is taken off) or, where that is no longer larger \
-than the reference's, by the scatter of the picture's own replicates. **Slope** is how the scatter falls with the number of \
-samples n, as n to the power −slope: 0.5 for independent numbers. **Efficiency** is 1/(error² · seconds), in units of the scene \
-as it is. **Bias** is the difference of the mean luminance to the reference's (or to the truth, where that is known), with its z: \
-beyond ±4 it is no accident. Time a sample is relative to the scene as it is. Choices that follow one path at a time, where the \
-scene as it is follows many at once, say so: their times compare with that of the row of this name.";
+Seconds are processor time divided by the number of threads. The **error** is the root mean square over all pixels of the \
+error of luminance, divided by the mean luminance of the picture. It is measured against the reference, and the error of \
+the reference is subtracted. If it is no larger than the error of the reference, it comes from the scatter of the \
+replicates of the picture instead. **Slope**: with n samples the scatter falls as n to the power −slope. Independent \
+numbers have a slope of 0.5. **Efficiency** is 1/(error² · seconds), relative to the scene as it is. **Bias** is the \
+difference of the mean luminance from that of the reference, or from the truth where it is known. z is the bias divided by \
+its standard error. A z beyond ±4 is hardly chance. Time per sample is relative to the scene as it is. Some choices trace \
+one path at a time, although the scene as it is traces many at once. They say so, and their times compare with the row \
+\"one path at a time\".";
 
 /// The cells of a row.
 pub(super) fn cells(row: &Row, study: &SceneStudy) -> [String; 11] {
@@ -59,7 +61,9 @@ pub(super) fn about(study: &SceneStudy) -> String {
     let reference = &study.reference;
     let truth = study.truth.map_or_else(String::new, |truth| format!(" The mean luminance is known to be {truth}."));
     let tails = match reference.heavy_tailed {
-        true => " Rare bright paths carry the error: errors, efficiencies and slopes of this scene are known poorly.",
+        true => {
+            " Rare bright paths cause most of the error, so the errors, efficiencies and slopes of this scene are inaccurate."
+        }
         false => "",
     };
     format!(
@@ -145,11 +149,14 @@ pub(super) fn verdict(samplers: &[Verdict]) -> String {
     let poorly: Vec<&str> = samplers.iter().filter(|one| one.heavy_tailed).map(|one| one.scene.as_str()).collect();
     let poorly = match poorly.as_slice() {
         [] => String::new(),
-        names => format!(" Where rare bright paths carry the error this is known poorly: {}.", names.join(", ")),
+        names => format!(
+            " On these scenes rare bright paths cause most of the error, so this is inaccurate: {}.",
+            names.join(", ")
+        ),
     };
     let lost = if worse.is_empty() { "none".to_owned() } else { worse.join(", ") };
     format!(
-        "Owen-Sobol reaches the same error sooner on {sooner} of {} scenes; scenes on which it loses more than 5 %: {lost}.{poorly}",
+        "Owen-Sobol reaches the same error sooner on {sooner} of {} scenes. Scenes on which it loses more than 5 %: {lost}.{poorly}",
         known.len()
     )
 }

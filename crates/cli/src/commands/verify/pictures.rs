@@ -118,7 +118,9 @@ fn reading(truth: &Truth, pictures: &Pictures, white: Option<&Pictures>) -> Resu
 
 fn read(pictures: &Pictures, size: [usize; 2]) -> Result<Reading, String> {
     match (&pictures.one, pictures.several.as_slice()) {
-        (Some(_), [_, ..]) => Err("there is one picture and there are numbered ones: which counts?".to_owned()),
+        (Some(_), [_, ..]) => {
+            Err("there is a picture without a number, and there are numbered ones: keep one kind".to_owned())
+        }
         (Some(path), []) => {
             let (values, errors) = pixels(path, size)?;
             let errors = errors.ok_or_else(|| {
@@ -130,7 +132,9 @@ fn read(pictures: &Pictures, size: [usize; 2]) -> Result<Reading, String> {
             })?;
             Ok(Reading::from_pixels(&values, &errors))
         }
-        (None, [only]) => Err(format!("`{}` is alone: noise shows from two numbered pictures on", only.display())),
+        (None, [only]) => {
+            Err(format!("`{}` is the only numbered picture: the noise needs two or more", only.display()))
+        }
         (None, several) => {
             let (mut means, mut nonfinite) = (Vec::new(), 0);
             for path in several {

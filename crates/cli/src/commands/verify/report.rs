@@ -110,7 +110,7 @@ impl Report {
         if table {
             print::line(&format!(
                 "{:<44} {:>14} {:>14} {:>9} {:>6} {:>9} {:>6}",
-                "truth", "value", "measured", "± error", "z", "sees", "s"
+                "truth", "value", "measured", "± error", "z", "min bias", "s"
             ));
         }
         Self {
@@ -165,7 +165,7 @@ impl Report {
         }
         if let Some(expected) = self.expected.filter(|_| !self.table) {
             print::note(&format!(
-                "{}/{expected} {}: {}, sees {:.1e} of {:.10}, {:.1} s",
+                "{}/{expected} {}: {}, smallest visible bias {:.1e} of {:.10}, {:.1} s",
                 self.truths.len() + 1,
                 row.name,
                 if row.pass { "passes".to_owned() } else { format!("FAILED: {}", row.evidence) },
@@ -200,7 +200,7 @@ impl Report {
         self.unjudged = left.iter().map(|truth| truth.name.clone()).collect();
         let (done, left) = (self.truths.len(), left.len());
         let ended =
-            Failure::signal(signal, miette!(code = "interrupted", "ended after {done} truths, {left} are not judged"));
+            Failure::signal(signal, miette!(code = "interrupted", "ended after {done} truths; {left} are not judged"));
         let mut failure = self.finish().err().unwrap_or_default();
         failure.add(ended);
         Err(failure)
@@ -219,7 +219,7 @@ impl Report {
                 left => format!(", {left} not judged"),
             };
             print::line(&format!(
-                "{} passed, {} failed{missing}{unjudged}, in {:.1} s; a right renderer fails any of them with probability {:.0e}",
+                "{} passed, {} failed{missing}{unjudged}, in {:.1} s; a correct renderer fails one of them with probability {:.0e}",
                 self.passed, self.failed, self.seconds, SUITE_SIGNIFICANCE
             ));
             if let Some(slowest) = self.slowest() {
@@ -230,9 +230,7 @@ impl Report {
         }
         match self.failed {
             0 => Ok(()),
-            failed => {
-                Err(Failure::run(miette!(code = "truths", "{failed} of {} truths do not hold", self.truths.len())))
-            }
+            failed => Err(Failure::run(miette!(code = "truths", "{failed} of {} truths failed", self.truths.len()))),
         }
     }
 }

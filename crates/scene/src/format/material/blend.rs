@@ -84,7 +84,7 @@ pub(super) fn blend<'f>(
     let kind = MaterialKind::blend(first, second, by);
     let count = parts(&kind);
     if count > MOST_BLEND_PARTS {
-        let message = format!("the blend has {count} materials, with those of its inner blends");
+        let message = format!("the blend has {count} materials, counting those of blends inside it");
         reader.error_hint(Code::OutOfRange, blend.at.head(), message, format!("at most {MOST_BLEND_PARTS}"));
         return None;
     }

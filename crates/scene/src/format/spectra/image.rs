@@ -61,7 +61,7 @@ impl<'f> Spectra<'f> {
         for (key, pair) in [("uv_scale", form.uv_scale?), ("uv_offset", form.uv_offset?)] {
             if pair.iter().any(|v| v.abs() > FARTHEST_UV) {
                 let message =
-                    format!("{key} is beyond {FARTHEST_UV:e}, where rounding errors hide the place in the image");
+                    format!("{key} is beyond {FARTHEST_UV:e}, where rounding errors are larger than the image");
                 reader.error(Code::OutOfRange, form.at.head(), message);
                 return None;
             }
@@ -73,10 +73,8 @@ impl<'f> Spectra<'f> {
         }
         let image = image?;
         let (range, code, not) = match used.role {
-            Role::Emission => {
-                (0.0..=BRIGHTEST, Code::OutOfRange, format!("no emission, which lies from 0 to {BRIGHTEST:e}"))
-            }
-            _ => (0.0..=1.0, Code::Reflectance, "no reflectance, which lies from 0 to 1".to_owned()),
+            Role::Emission => (0.0..=BRIGHTEST, Code::OutOfRange, format!("not an emission (0 to {BRIGHTEST:e})")),
+            _ => (0.0..=1.0, Code::Reflectance, "not a reflectance (0 to 1)".to_owned()),
         };
         let impossible = |texel: [f64; 3]| (0..3).any(|c| !range.contains(&(texel[c] * factor[c])));
         if let Some(i) = image.linear_texels().position(impossible) {

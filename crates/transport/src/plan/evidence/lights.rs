@@ -75,7 +75,7 @@ pub(super) fn mis(scene: &Scene) -> Result<String, String> {
     match (scene.integrator.light_sampling, lamp(scene), diffuse_surface(scene)) {
         (LightSampling::Light, ..) => Err("integrator.light_sampling is \"light\"".to_owned()),
         (LightSampling::Bsdf, ..) => Err("integrator.light_sampling is \"bsdf\"".to_owned()),
-        (LightSampling::Mis, None, _) => Err("no lamp that paths could run into".to_owned()),
+        (LightSampling::Mis, None, _) => Err("no lamp that a path could hit".to_owned()),
         (LightSampling::Mis, _, None) => Err("no diffuse surface, where shadow rays and paths compete".to_owned()),
         (LightSampling::Mis, Some(lamp), Some(diffuse)) => {
             Ok(format!("{lamp} is found from {diffuse} by shadow rays and by paths"))

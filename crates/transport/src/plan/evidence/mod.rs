@@ -56,7 +56,7 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         },
         EffectName::ShadingNormals => match scene.placed_objects().find_map(bent) {
             Some(found) => Ok(found),
-            None => nothing("no mesh has normals of its own, and no image bends any"),
+            None => nothing("no mesh has normals, and no image changes normals"),
         },
         EffectName::Masks => match scene.placed_objects().find_map(mask) {
             Some(found) => Ok(found),
@@ -71,12 +71,12 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         },
         EffectName::Motion => motion::motion(scene),
         EffectName::WideFilter => match scene.film.filter {
-            Filter::Box => nothing("a pixel is its own square"),
+            Filter::Box => nothing("each pixel is a square (box filter)"),
             Filter::Tent { radius_px } => Ok(format!("film: tent of radius {radius_px} px")),
             Filter::Gaussian { sigma_px } => Ok(format!("film: Gaussian of σ {sigma_px} px")),
         },
         EffectName::Bands => match &scene.film.bands {
-            None => nothing("the film keeps the colour only"),
+            None => nothing("the film keeps only the colour"),
             Some(bands) => {
                 let [first, last] = [bands.edge_nm(0), bands.edge_nm(bands.count)];
                 Ok(format!("film: {} bands of {} nm over {first}–{last} nm", bands.count, bands.step_nm))
@@ -176,7 +176,7 @@ fn wavelengths(scene: &Scene) -> Result<String, String> {
     let range_nm = scene.integrator.wavelength_range_nm;
     let lamps = sources(scene);
     let Some((first, shape)) = lamps.first() else {
-        return Err("nothing shines".to_owned());
+        return Err("nothing emits light".to_owned());
     };
     match lamps.iter().find(|(_, other)| !same_shape(shape, other, range_nm)) {
         Some((second, _)) => Ok(format!("{first} and {second} differ in spectrum")),

@@ -37,7 +37,7 @@ pub(in crate::plan) fn polarisation(scene: &Scene, asked_for: bool) -> Result<St
         .reduce(|worst, other| if other.0 > worst.0 { other } else { worst });
     match worst {
         None => Err(UNPOLARISED.to_owned()),
-        Some((_, found)) => Err(format!("not asked for (--polarised); the picture averages s and p at {found}")),
+        Some((_, found)) => Err(format!("not asked for (--polarised); s and p are averaged at {found}")),
     }
 }
 
