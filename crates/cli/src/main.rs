@@ -135,6 +135,39 @@ mod tests {
         }
     }
 
+    /// The page of all commands. It is for the ordinary build, which has no `denoise`.
+    #[cfg(not(feature = "denoise"))]
+    fn page() -> String {
+        let mut program = Cli::command().disable_help_subcommand(true);
+        program.build();
+        let mut text = "# Commands\n\nThis is the help of every command (`etalon COMMAND --help`). A test compares the page with the program.\n\n"
+            .to_owned();
+        let mut add = |heading: &str, command: &mut clap::Command| {
+            let help = command.render_long_help().to_string();
+            let lines: Vec<&str> = help.lines().map(str::trim_end).collect();
+            text += &format!("## {heading}\n\n```text\n{}\n```\n\n", lines.join("\n").trim_end());
+        };
+        add("etalon", &mut program.clone());
+        for command in program.get_subcommands_mut() {
+            add(&format!("etalon {}", command.get_name()), command);
+        }
+        text.truncate(text.trim_end().len() + 1);
+        text
+    }
+
+    /// Run with `ETALON_UPDATE_SNAPSHOTS=1` to write the page, and read the difference.
+    #[cfg(not(feature = "denoise"))]
+    #[test]
+    fn the_page_of_commands_is_their_help() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/commands.md");
+        let page = page();
+        if std::env::var_os("ETALON_UPDATE_SNAPSHOTS").is_some() {
+            std::fs::write(file, &page).unwrap();
+        }
+        let written = std::fs::read_to_string(file).unwrap_or_default();
+        assert!(page == written, "ETALON_UPDATE_SNAPSHOTS=1 cargo test -p etalon-cli writes docs/commands.md anew");
+    }
+
     #[test]
     fn every_command_option_and_value_is_described() {
         for command in Cli::command().get_subcommands() {
