@@ -200,9 +200,9 @@ fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
 pub(crate) enum Adaptive {
     /// Only with --error, and only if the exploration predicts a shorter render.
     Auto,
-    /// Always.
+    /// In every render.
     Always,
-    /// Never: every pixel takes the same number of samples.
+    /// Every pixel takes the same number of samples.
     Never,
 }
 

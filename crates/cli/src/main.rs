@@ -48,7 +48,8 @@ Exit status:
   143  ended by SIGTERM
 
 Environment:
-  ETALON_SIMD  Instruction set: baseline, avx2 or avx512. Default: the widest of the processor. It does not change a picture";
+  ETALON_SIMD  Instruction set: baseline, avx2 or avx512. It does not change a picture.
+               Default: the widest that the processor has";
 
 /// A physically based spectral path tracer with a test oracle.
 #[derive(Parser)]
@@ -138,7 +139,7 @@ mod tests {
     /// The page of all commands. It is for the ordinary build, which has no `denoise`.
     #[cfg(not(feature = "denoise"))]
     fn page() -> String {
-        let mut program = Cli::command().disable_help_subcommand(true);
+        let mut program = Cli::command().disable_help_subcommand(true).term_width(100);
         program.build();
         let mut text = "# Commands\n\nThis is the help of every command (`etalon COMMAND --help`). A test compares the page with the program.\n\n"
             .to_owned();

@@ -93,7 +93,7 @@ impl From<PathLoopArg> for PathLoop {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum PathReuseArg {
-    /// No pixels.
+    /// Pixels share no paths.
     None,
     /// Blocks of 2 × 2 pixels.
     #[value(name = "2x2")]

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Aov {
-    /// `R`, `G`, `B`.
+    /// `R`, `G`, `B`: the colour.
     Color,
     /// `Error.`: the standard error of each colour and band.
     Error,
-    /// `Variance.`: its square.
+    /// `Variance.`: the square of each standard error.
     Variance,
     /// `samples`: the number of finite samples of each pixel.
     Samples,

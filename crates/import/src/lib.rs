@@ -105,8 +105,13 @@ pub struct ImportError {
 
 /// Whether a file is imported, by its name, rather than read as a scene.
 pub fn is_model(path: &Path) -> bool {
-    matches!(extension(path).as_str(), "gltf" | "glb" | "obj" | "ply" | "xml" | "pbrt")
+    let kind = extension(path);
+    matches!(kind.as_str(), "gltf" | "glb" | "obj" | "ply" | "xml" | "pbrt") || UNREADABLE.contains(&kind.as_str())
 }
+
+/// Kinds of models and scenes that a user may have and that cannot be read. They are no scenes of ours with errors.
+const UNREADABLE: [&str; 12] =
+    ["fbx", "blend", "usd", "usda", "usdc", "usdz", "dae", "stl", "3ds", "abc", "max", "c4d"];
 
 fn extension(path: &Path) -> String {
     path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase()
@@ -175,7 +180,10 @@ fn read(kind: &str, bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder
         "gltf" | "glb" => gltf::import(bytes, moment, builder),
         "xml" => mitsuba::import(bytes, builder),
         "pbrt" => pbrt::import(bytes, builder),
-        other => Err(format!("\"{other}\" is not a kind of model that can be imported")),
+        other => Err(format!(
+            "models of the kind .{other} cannot be read. Export the model as glTF (.glb), or as .gltf, .obj or .ply. Scenes of Mitsuba 3 \
+             (.xml) and pbrt-v4 (.pbrt) can be read too"
+        )),
     }
 }
 

@@ -508,3 +508,50 @@ fn a_scene_of_another_renderer_gets_no_backdrop() {
     assert!(imported.added.iter().any(|a| a.contains("even white sky")), "{:?}", imported.added);
     assert_eq!(scene(&imported).objects.len(), 1);
 }
+
+/// A kind that a user may have, and that cannot be read, is no scene with errors: the message says what to do.
+#[test]
+fn models_of_other_kinds_are_refused_with_the_way_out() {
+    for kind in ["fbx", "blend", "usdz", "STL"] {
+        let path = std::path::PathBuf::from(format!("model.{kind}"));
+        assert!(etalon_import::is_model(&path), "{kind}");
+        let why = import_bytes(kind, b"", &nothing, "", "model").unwrap_err();
+        assert!(why.contains(kind) && why.contains(".glb"), "{why}");
+    }
+    assert!(!etalon_import::is_model(std::path::Path::new("scene.json")));
+}
+
+#[test]
+fn weak_transmission_and_filters_of_mtl_are_listed() {
+    let listed = |imported: &Imported, place: &str, what: &str| {
+        imported.left_out.iter().any(|l| l.place.contains(place) && l.what.contains(what))
+    };
+    let weak = |factor: f64| {
+        let mut model = model();
+        model["materials"] =
+            json!([{ "extensions": { "KHR_materials_transmission": { "transmissionFactor": factor } } }]);
+        for primitive in model["meshes"]
+            .as_array_mut()
+            .unwrap()
+            .iter_mut()
+            .flat_map(|mesh| mesh["primitives"].as_array_mut().unwrap())
+        {
+            primitive["material"] = json!(0);
+        }
+        imported(&model).unwrap()
+    };
+    assert!(listed(&weak(0.25), "KHR_materials_transmission", "becomes opaque"));
+    assert!(
+        !listed(&weak(0.0), "KHR_materials_transmission", "opaque")
+            && !listed(&weak(1.0), "KHR_materials_transmission", "")
+    );
+
+    let filtered = |filter: &str| {
+        let mtl = format!("newmtl m\nKd 0.5 0.5 0.5\nTf {filter}\n");
+        let near = |name: &str| if name == "m.mtl" { Ok(mtl.clone().into_bytes()) } else { nothing(name) };
+        let obj = b"mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        import_bytes("obj", obj, &near, "", "model").unwrap()
+    };
+    assert!(listed(&filtered("0.5 1 1"), "m", "Tf is ignored"));
+    assert!(!listed(&filtered("1 1 1.0"), "m", "Tf"));
+}

@@ -50,7 +50,8 @@ use watcher::{ProgressKind, Watcher};
   etalon render scenes/cornell.json --error 2% -o cornell.exr
   etalon render scenes/cornell.json --time 30s --exposure auto --curve agx -o cornell.png")]
 pub(crate) struct Args {
-    /// Scene as JSON, or a model: glTF 2.0 (.glb, .gltf), OBJ or PLY. `-` reads a scene from standard input.
+    /// Scene as JSON. It may also be a model (glTF 2.0, OBJ or PLY) or a scene of Mitsuba 3 (.xml) or pbrt-v4 (.pbrt); see `etalon import`.
+    /// `-` reads JSON from standard input.
     scene: PathBuf,
     /// File to write. Repeat the option to write several. An .exr holds the linear picture with its error bars, a .png is for a screen, a
     /// .part is for `etalon merge`. Default: the name of the scene with .exr, in the current folder. This replaces a picture of

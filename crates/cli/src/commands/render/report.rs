@@ -304,9 +304,13 @@ pub(super) fn summary(job: &Job, done: &Done, written: &[Written]) -> String {
     let (samples, seconds) = (done.ended.samples, done.ended.seconds);
     let counters = done.canvas.with_film(|film| film.counters.clone());
     let uneven = done.explored.as_ref().is_some_and(|explored| explored.used);
-    let each = if uneven { "in the mean" } else { "each" };
+    let each = match (uneven, samples) {
+        (true, _) => "samples on average",
+        (false, 1) => "sample each",
+        (false, _) => "samples each",
+    };
     let mut text = format!(
-        "{} × {} pixels, {} samples {each}, in {seconds:.1} s ({} paths/s on {} threads), {} not finite",
+        "{} × {} pixels, {} {each}, in {seconds:.1} s ({} paths/s on {} threads), {} samples not finite",
         job.rect.x1 - job.rect.x0,
         job.rect.y1 - job.rect.y0,
         samples,
