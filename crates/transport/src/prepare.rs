@@ -16,11 +16,10 @@ use crate::prepare_error::PrepareError;
 use crate::shading_tables::ShadingTables;
 use crate::shapes::{self, GroupShapes, SceneShapes};
 use crate::spectral::PathSpectrum;
-use crate::surface::{Emission, EmissionImage, ObjectSurface, Relief, Surfaces};
+use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
 use crate::wavelength::WavelengthDistribution;
 use crate::world::ShadowRays;
 use etalon_geometry::{Geometry, SurfaceId};
-use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
 use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, Scene};
 use etalon_simd::Level;
@@ -163,7 +162,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
                 emission: o.emission.as_ref().map(|e| Emission {
                     radiance: spectrum(&e.radiance),
                     sides: e.sides,
-                    image: e.image.clone().map(|texture| EmissionImage { texture, basis: RgbBasis::get() }),
+                    image: e.image.clone(),
                 }),
                 opacity: o.opacity,
                 opacity_image: o.opacity_image.clone(),

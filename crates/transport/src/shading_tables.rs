@@ -2,12 +2,13 @@
 
 use crate::bsdf::{Bsdf, Dielectric, Properties};
 use crate::cells::CellTable;
-use crate::light::{Environment, EnvironmentRadiance, Light, LightTable};
+use crate::light::{Environment, LightTable};
 use crate::shading_geometry::Coordinates;
 use crate::spectral::PathSpectrum;
 use crate::surface::{ObjectSurface, Surfaces};
 use crate::wavelength::{WavelengthDistribution, Wavelengths};
 use etalon_optics::Lanes;
+use etalon_optics::spectrum::RgbBasis;
 
 /// Spectra whose values at its wavelengths a path keeps.
 const SLOTS: usize = 16;
@@ -68,9 +69,9 @@ pub(crate) struct ShadingTables {
     materials: Vec<MaterialRecord>,
     /// The first [`INTERFACES`] of them.
     pub(crate) interfaces: Vec<SmoothInterface>,
-    /// Of the lights, in their order.
+    /// Of the lights, in their order; of an image, its white.
     pub(crate) lights: Vec<Slot>,
-    /// Of the environments.
+    /// Of the environments; of an image, its white.
     pub(crate) environments: Vec<Slot>,
 }
 
@@ -91,22 +92,13 @@ impl ShadingTables {
         };
         let materials: Vec<_> = surfaces.bsdfs.iter().zip(&surfaces.properties).map(material).collect();
         let objects = surfaces.objects.iter().map(|object| record(object, surfaces, &mut spectra)).collect();
-        let environments = skies
-            .iter()
-            .map(|sky| match &sky.radiance {
-                EnvironmentRadiance::Uniform(spectrum) => slot(spectrum, &mut spectra),
-                EnvironmentRadiance::Image(_) => None,
-            })
-            .collect();
+        let environments = skies.iter().map(|sky| slot(sky.radiance.spectrum(), &mut spectra)).collect();
         // The triangles of a mesh share their spectrum, and come one after the other.
         let mut last: Option<(*const PathSpectrum, Slot)> = None;
         let lights = lights
             .lights()
             .iter()
             .map(|light| {
-                if matches!(light, Light::Environment(_)) || light.emitter().is_some_and(|e| e.image.is_some()) {
-                    return None;
-                }
                 let spectrum = light.spectrum();
                 let found = match last {
                     Some((of, found)) if std::ptr::eq(of, spectrum) => found,
@@ -187,11 +179,13 @@ pub(crate) struct SpectrumCache<const N: usize> {
     values: [Lanes<f64, N>; SLOTS],
     /// How far wavelengths are from the whole nanometre before.
     past_nm: Lanes<f64, N>,
+    /// What one unit of red, green and blue reflect, once an image was asked.
+    primaries: Option<[Lanes<f64, N>; 3]>,
 }
 
 impl<const N: usize> SpectrumCache<N> {
     pub(crate) fn new() -> Self {
-        Self { valid: 0, values: [Lanes::ZERO; SLOTS], past_nm: Lanes::ZERO }
+        Self { valid: 0, values: [Lanes::ZERO; SLOTS], past_nm: Lanes::ZERO, primaries: None }
     }
 
     /// Another path, of these wavelengths, takes the place.
@@ -199,6 +193,7 @@ impl<const N: usize> SpectrumCache<N> {
     pub(crate) fn forget(&mut self, lambda_nm: &Lanes<f64, N>) {
         self.valid = 0;
         self.past_nm = lambda_nm.map(past_whole);
+        self.primaries = None;
     }
 
     /// A spectrum with a place at the wavelengths of the path.
@@ -214,6 +209,13 @@ impl<const N: usize> SpectrumCache<N> {
             self.valid |= 1 << slot;
         }
         self.values[slot]
+    }
+
+    /// A colour of an image as a reflectance.
+    #[inline(always)]
+    pub(crate) fn colour(&mut self, [r, g, b]: [f64; 3], lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
+        let [red, green, blue] = self.primaries.get_or_insert_with(|| RgbBasis::get().lanes(lambda_nm));
+        *red * r + *green * g + *blue * b
     }
 
     /// A spectrum at the wavelengths of the path, with a place or not.

@@ -7,7 +7,6 @@ use crate::polarisation::mueller::Mueller;
 use crate::shading_geometry::{At, Coordinates};
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
-use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{Lanes, Vec3};
 use etalon_scene::{EmissionSides, ImageTexture, OpacityImage};
 
@@ -43,14 +42,7 @@ pub(crate) struct Emission {
     pub radiance: PathSpectrum,
     pub sides: EmissionSides,
     /// An image of shares of white.
-    pub image: Option<EmissionImage>,
-}
-
-/// Colours over a surface that shines.
-#[derive(Clone, Debug)]
-pub(crate) struct EmissionImage {
-    pub texture: ImageTexture,
-    pub basis: RgbBasis,
+    pub image: Option<ImageTexture>,
 }
 
 /// What shines at a point of a surface.
@@ -58,33 +50,15 @@ pub(crate) struct EmissionImage {
 pub(crate) struct Emitted<'a> {
     /// With a colour, that of its white.
     pub radiance: &'a PathSpectrum,
-    /// Shares of the white.
-    colour: Option<(&'a RgbBasis, [f64; 3])>,
-}
-
-impl Emitted<'_> {
-    /// The radiance in each lane, where that of [`Emitted::radiance`] is `white`.
-    #[inline]
-    pub(crate) fn of_white<const N: usize>(&self, white: Lanes<f64, N>, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
-        match self.colour {
-            None => white,
-            Some((basis, rgb)) => white * Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane])),
-        }
-    }
-
-    /// The radiance in each lane.
-    #[inline]
-    pub(crate) fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
-        self.of_white(self.radiance.lanes(lambda_nm), lambda_nm)
-    }
+    /// What an image shows there, in shares of the white.
+    pub colour: Option<[f64; 3]>,
 }
 
 impl Emission {
     /// What it emits at texture coordinates, which it asks for where it needs them.
     #[inline]
     fn at(&self, uv: impl FnOnce() -> [f64; 2]) -> Emitted<'_> {
-        let image = self.image.as_ref();
-        let colour = image.map(|image| (&image.basis, image.texture.eval(uv())));
+        let colour = self.image.as_ref().map(|image| image.eval(uv()));
         Emitted { radiance: &self.radiance, colour }
     }
 }

@@ -1,6 +1,7 @@
 //! Images of everything around: sampled as their density says, bright as their closed forms say.
 
 use etalon_geometry::SurfaceId;
+use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{Illuminant, Lanes, Spectrum, Vec3};
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::{Emits, Emitted};
@@ -28,6 +29,12 @@ fn sky(width: u32, height: u32, texels: &[f64]) -> EnvironmentImage {
     }
 }
 
+/// What arrives from a direction, by the spectra of three primaries.
+fn radiance<const N: usize>(light: &EnvironmentLight, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<f64, N> {
+    let colour = light.look(wi).colour;
+    lambda_nm.map(|nm| RgbBasis::get().reflectance(colour, nm) * light.white().eval(nm))
+}
+
 /// What one of our lights is to the oracle.
 struct Sky {
     light: EnvironmentLight,
@@ -44,6 +51,7 @@ impl Emits for Sky {
         let s = Light::Environment(Arc::new(self.light.clone())).sample(Vec3::from_array(from_m), u, 0.0)?;
         let Density::SolidAngle(pdf) = s.density else { panic!("an image has no delta") };
         assert_eq!((s.target, s.surface, s.scale), (Target::Infinity, SurfaceId::NONE, 1.0));
+        assert_eq!(s.colour, Some(self.light.look(s.wi).colour));
         Some(Emitted {
             wi: s.wi.to_array(),
             distance_m: f64::INFINITY,
@@ -53,11 +61,11 @@ impl Emits for Sky {
     }
 
     fn pdf(&self, _: [f64; 3], wi: [f64; 3]) -> f64 {
-        self.light.density(Vec3::from_array(wi))
+        self.light.look(Vec3::from_array(wi)).density
     }
 
     fn radiance(&self, _: [f64; 3], wi: [f64; 3]) -> f64 {
-        self.light.lanes::<1>(&Lanes([550.0]), Vec3::from_array(wi))[0]
+        radiance(&self.light, &Lanes([550.0]), Vec3::from_array(wi))[0]
     }
 
     fn irradiance(&self, _: [f64; 3], normal: [f64; 3]) -> Option<f64> {
@@ -416,7 +424,7 @@ fn white_is_daylight_and_primaries_add_up_to_it() {
             white: daylight.clone(),
             ..uneven()
         };
-        EnvironmentLight::new(&image, RANGE_NM).lanes::<4>(&lambda, Vec3::new(0.0, 0.6, 0.8))
+        radiance(&EnvironmentLight::new(&image, RANGE_NM), &lambda, Vec3::new(0.0, 0.6, 0.8))
     };
     let parts = of([1.0, 0.0, 0.0]) + of([0.0, 1.0, 0.0]) + of([0.0, 0.0, 1.0]);
     for lane in 0..4 {

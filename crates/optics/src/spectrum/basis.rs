@@ -1,5 +1,6 @@
 //! Three spectra that mix as colours do.
 
+use crate::Lanes;
 use std::sync::LazyLock;
 
 /// Wavelengths of the table's first and last row, nm, and the step between rows.
@@ -44,6 +45,17 @@ impl RgbBasis {
         let i = (x as usize).min(self.rows.len() - 2);
         let (low, high, share) = (&self.rows[i], &self.rows[i + 1], x - i as f64);
         [0, 1, 2].map(|k| low[k] + share * (high[k] - low[k]))
+    }
+
+    /// What one unit of red, green and blue reflect in each lane.
+    #[inline]
+    pub fn lanes<const N: usize>(&self, wavelengths_nm: &Lanes<f64, N>) -> [Lanes<f64, N>; 3] {
+        let mut lanes = [Lanes::ZERO; 3];
+        for lane in 0..N {
+            let of_lane = self.eval(wavelengths_nm[lane]);
+            (0..3).for_each(|k| lanes[k][lane] = of_lane[k]);
+        }
+        lanes
     }
 
     /// The reflectance of a colour in linear Rec. 709 at a wavelength in nm.

@@ -13,7 +13,7 @@ use crate::shading_tables::BsdfKind;
 use crate::wavelength_lanes::WavelengthModel;
 use crate::world::World;
 use etalon_geometry::Ray;
-use etalon_optics::{Lanes, Vec3};
+use etalon_optics::Lanes;
 use etalon_scene::LightSampling;
 
 /// A direction toward a light that was chosen.
@@ -217,11 +217,10 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         visible: &Visibility<N>,
         observer: &mut impl Observer<N>,
     ) {
-        let LightDraw { light, sample: LightSample { wi, target, .. }, .. } = *draw;
-        let arriving = match self.spectrum_of_light(world, light) {
-            Some(arriving) => arriving,
-            None => world.radiance_of_light(light, wi, target, vertex.point.time, &self.wavelengths.lambda_nm),
-        };
+        let LightDraw { light, sample: LightSample { wi, target, colour, .. }, .. } = *draw;
+        let colour = colour.or_else(|| world.colour_of_emitter(light, target, vertex.point.time));
+        let white = self.spectrum_of_light(world, light);
+        let arriving = self.coloured(white, colour);
         let mut direct = next.f_cos * arriving * (next.weight * visible.share);
         if let Some(transmittance) = visible.transmittance {
             direct *= transmittance;
@@ -236,23 +235,12 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 }
 
 impl World<'_> {
-    /// What a light sends along `wi` from the point that a shadow ray aims at, but for the scale of its sample.
-    fn radiance_of_light<const N: usize>(
-        &self,
-        light: u32,
-        wi: Vec3<f64>,
-        target: Target,
-        time: f64,
-        lambda_nm: &Lanes<f64, N>,
-    ) -> Lanes<f64, N> {
-        let light = &self.lights.lights()[light as usize];
-        if let (Some(emitter), Target::Point(position)) = (light.emitter(), target)
-            && let Some(image) = emitter.image
-            && let Some(emitted) = self.surfaces.emitted(image.object, self.geometry, (emitter.surface, position), time)
-        {
-            return emitted.lanes(lambda_nm);
-        }
-        light.lanes(lambda_nm, wi)
+    /// The colour that an image gives an emitting surface at the point that a shadow ray aims at.
+    #[inline(always)]
+    fn colour_of_emitter(&self, light: u32, target: Target, time: f64) -> Option<[f64; 3]> {
+        let emitter = self.lights.lights()[light as usize].emitter()?;
+        let (image, Target::Point(position)) = (emitter.image?, target) else { return None };
+        self.surfaces.emitted(image.object, self.geometry, (emitter.surface, position), time)?.colour
     }
 
     /// The share of light that comes through where masks are all that a shadow ray may pass: in any order.

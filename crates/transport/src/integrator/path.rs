@@ -4,6 +4,7 @@ use super::MOST_VERTICES;
 use crate::film::Counters;
 use crate::film_entry::Received;
 use crate::interaction::{SurfaceInteraction, Walk};
+use crate::light::{EnvironmentRadiance, Light, Look};
 use crate::media::MediumStack;
 use crate::mis::power_heuristic;
 use crate::observer::{End, Found, Observer};
@@ -184,10 +185,14 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     ) {
         for (sky, slot) in world.environments.iter().zip(&world.tables.environments) {
             counters.environment_lookups += 1;
-            let mis = self.weight_of_hit(world, SurfaceId::NONE, ray, || sky.light);
-            let radiance = match *slot {
-                Some(slot) => self.spectrum(world, slot),
-                None => sky.radiance.lanes(&self.wavelengths.lambda_nm, ray.direction),
+            let white = self.spectra.of(*slot, sky.radiance.spectrum(), world.tables, &self.wavelengths);
+            let (radiance, mis) = match &sky.radiance {
+                EnvironmentRadiance::Uniform(_) => (white, 1.0),
+                EnvironmentRadiance::Image(image) => {
+                    let Look { colour, density } = image.look(ray.direction);
+                    let mis = self.weight_of_hit(world, SurfaceId::NONE, || sky.light, |_, _| density);
+                    (self.coloured(white, Some(colour)), mis)
+                }
             };
             self.add(observer, Found::Environment, radiance, mis);
         }
@@ -204,10 +209,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     ) {
         let SurfaceInteraction { hit, point, surface, wo, .. } = vertex;
         let Some(emitted) = surface.emission_along(world.geometry, point, hit, *wo) else { return };
-        let mis = self.weight_of_hit(world, point.surface, ray, || surface.light(point.surface));
+        let density = |light: &Light, from| light.density(from, ray.direction, ray.time);
+        let mis = self.weight_of_hit(world, point.surface, || surface.light(point.surface), density);
         let slot = world.tables.objects[surface.object as usize].emission;
         let white = self.spectra.of(slot, emitted.radiance, world.tables, &self.wavelengths);
-        let radiance = emitted.of_white(white, &self.wavelengths.lambda_nm);
+        let radiance = self.coloured(white, emitted.colour);
         self.add(observer, Found::Emitter, radiance, mis);
     }
 
@@ -254,16 +260,32 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.spectra.spectrum(slot, world.tables, &self.wavelengths)
     }
 
-    /// The radiance that a light sends toward a vertex, white where an image colours it.
+    /// The spectrum of a light; where an image colours it, its white.
     #[inline(always)]
-    pub(super) fn spectrum_of_light(&mut self, world: &World<'a>, light: u32) -> Option<Lanes<f64, N>> {
-        let slot = world.tables.lights[light as usize]?;
-        Some(self.spectrum(world, slot))
+    pub(super) fn spectrum_of_light(&mut self, world: &World<'a>, light: u32) -> Lanes<f64, N> {
+        let slot = world.tables.lights[light as usize];
+        self.spectra.of(slot, world.lights.lights()[light as usize].spectrum(), world.tables, &self.wavelengths)
     }
 
-    /// The MIS weight of light that the walk ran into `on` a surface; `light` finds its number, if shadow rays aim at it.
+    /// A white in the colour that an image gives it.
     #[inline(always)]
-    fn weight_of_hit(&self, world: &World<'a>, on: SurfaceId, ray: &Ray<f64>, light: impl Fn() -> Option<u32>) -> f64 {
+    pub(super) fn coloured(&mut self, white: Lanes<f64, N>, colour: Option<[f64; 3]>) -> Lanes<f64, N> {
+        match colour {
+            None => white,
+            Some(colour) => white * self.spectra.colour(colour, &self.wavelengths.lambda_nm),
+        }
+    }
+
+    /// The MIS weight of light that the walk ran into `on` a surface. `light` finds its number, if shadow rays aim at it, and
+    /// `density_of` the density with which they take the direction of the walk from a point.
+    #[inline(always)]
+    fn weight_of_hit(
+        &self,
+        world: &World<'a>,
+        on: SurfaceId,
+        light: impl Fn() -> Option<u32>,
+        density_of: impl Fn(&Light, Vec3<f64>) -> f64,
+    ) -> f64 {
         let Step::Shared { from, leaves, density } = self.step else { return 1.0 };
         // The far side of the sphere that it left: see `next_event`.
         if !world.weigh_hits || leaves == on {
@@ -271,7 +293,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         let Some(light) = light() else { return 1.0 };
         let light = light as usize;
-        let of_direction = world.lights.lights()[light].density(from, ray.direction, ray.time);
+        let of_direction = density_of(&world.lights.lights()[light], from);
         match world.light_sampling {
             // No shadow ray could have found it.
             _ if of_direction == 0.0 => 1.0,

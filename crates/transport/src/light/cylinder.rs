@@ -98,6 +98,7 @@ impl CylinderLight {
         }
         // Along the surface up to rounding, the density is infinite and the light's share zero.
         (density > 0.0 && density.is_finite()).then_some(LightSample {
+            colour: None,
             wi,
             density: Density::SolidAngle(density),
             target: Target::Point(first.position),

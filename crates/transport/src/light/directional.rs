@@ -18,6 +18,7 @@ pub struct DirectionalLight {
 impl DirectionalLight {
     pub(super) fn sample(&self) -> LightSample {
         LightSample {
+            colour: None,
             wi: self.toward,
             density: Density::Delta,
             target: Target::Infinity,

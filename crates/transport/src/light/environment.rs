@@ -8,8 +8,7 @@ use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use equal_area::EqualArea;
 use etalon_geometry::SurfaceId;
-use etalon_optics::spectrum::RgbBasis;
-use etalon_optics::{Lanes, Real, Vec3};
+use etalon_optics::{Real, Vec3};
 use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image};
 use meridians::Meridians;
 use std::sync::Arc;
@@ -22,8 +21,16 @@ pub struct EnvironmentLight {
     right: Vec3<f64>,
     up: Vec3<f64>,
     white: PathSpectrum,
-    basis: RgbBasis,
     map: Map,
+}
+
+/// What an image of everything around shows in a direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// Its colour, in shares of the white.
+    pub colour: [f64; 3],
+    /// The density in sr⁻¹ with which shadow rays are drawn in this direction.
+    pub density: f64,
 }
 
 /// How directions stand in the image.
@@ -56,7 +63,6 @@ impl EnvironmentLight {
             right,
             up,
             white: PathSpectrum::new(&image.white, range_nm),
-            basis: RgbBasis::get(),
             map,
         }
     }
@@ -74,24 +80,13 @@ impl EnvironmentLight {
         }
     }
 
-    /// Radiance that arrives from the direction `wi`, in each lane.
+    /// What the image shows in the direction `wi`.
     #[inline]
-    pub fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<f64, N> {
-        let rgb = match &self.map {
-            Map::Meridians(map) => map.rgb(&self.image, self.along(wi)),
-            Map::EqualArea(map) => map.rgb(&self.image, self.along(wi)),
-        };
-        Lanes::from_fn(|lane| {
-            let nm = lambda_nm[lane];
-            self.basis.reflectance(rgb, nm) * self.white.eval(nm)
-        })
-    }
-
-    /// The density in sr⁻¹ with which `sample` draws the direction `wi`.
-    pub fn density(&self, wi: Vec3<f64>) -> f64 {
+    pub fn look(&self, wi: Vec3<f64>) -> Look {
+        let along = Along { forward: wi.dot(self.forward), right: wi.dot(self.right), up: wi.dot(self.up) };
         match &self.map {
-            Map::Meridians(map) => map.density(&self.image, self.along(wi)),
-            Map::EqualArea(map) => map.density(&self.image, self.along(wi)),
+            Map::Meridians(map) => map.look(&self.image, along),
+            Map::EqualArea(map) => map.look(&self.image, along),
         }
     }
 
@@ -103,19 +98,16 @@ impl EnvironmentLight {
         };
         let wi = self.up * up + (self.forward * forward + self.right * right);
         let wi = wi.renormalized();
-        let density = self.density(wi);
+        let Look { colour, density } = self.look(wi);
         // Rounding may put the edge of a cell into a black neighbour.
         (density > 0.0).then_some(LightSample {
+            colour: Some(colour),
             wi,
             density: Density::SolidAngle(density),
             target: Target::Infinity,
             surface: SurfaceId::NONE,
             scale: 1.0,
         })
-    }
-
-    fn along(&self, wi: Vec3<f64>) -> Along {
-        Along { forward: wi.dot(self.forward), right: wi.dot(self.right), up: wi.dot(self.up) }
     }
 }
 

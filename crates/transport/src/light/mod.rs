@@ -20,7 +20,7 @@ mod triangle;
 pub use cylinder::CylinderLight;
 pub use directional::DirectionalLight;
 pub use disk::DiskLight;
-pub use environment::EnvironmentLight;
+pub use environment::{EnvironmentLight, Look};
 pub use moving::MovingLight;
 pub use parallelogram::ParallelogramLight;
 pub use point::PointLight;
@@ -37,7 +37,7 @@ pub(crate) use table::visible_sum;
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Aabb, SurfaceId};
-use etalon_optics::{Lanes, Vec3};
+use etalon_optics::Vec3;
 use std::sync::Arc;
 use tree::LightBounds;
 
@@ -73,6 +73,8 @@ pub struct LightSample {
     pub surface: SurfaceId,
     /// What the light's spectrum is multiplied by: 1 for radiance, 1/d² for a point's intensity.
     pub scale: f64,
+    /// The colour that an image of everything around shows there, in shares of the light's spectrum.
+    pub colour: Option<[f64; 3]>,
 }
 
 /// A light that shadow rays aim at.
@@ -154,18 +156,9 @@ impl Light {
             Self::Disk(light) => light.density(from, wi),
             Self::Triangle(light) => light.density(from, wi),
             Self::Cylinder(light) => light.density(from, wi),
-            Self::Environment(light) => light.density(wi),
+            Self::Environment(light) => light.look(wi).density,
             Self::Moving(light) => light.density(from, wi, time),
             Self::Point(_) | Self::Spot(_) | Self::Directional(_) => 0.0,
-        }
-    }
-
-    /// What [`LightSample::scale`] multiplies of a sample in the direction `wi`, in each lane.
-    #[inline]
-    pub fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<f64, N> {
-        match self {
-            Self::Environment(light) => light.lanes(lambda_nm, wi),
-            _ => self.spectrum().lanes(lambda_nm),
         }
     }
 
@@ -279,12 +272,11 @@ pub(crate) enum EnvironmentRadiance {
 }
 
 impl EnvironmentRadiance {
-    /// From the direction `wi`, in each lane.
-    #[inline]
-    pub(crate) fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Lanes<f64, N> {
+    /// The spectrum, of an image that of its white.
+    pub(crate) fn spectrum(&self) -> &PathSpectrum {
         match self {
-            Self::Uniform(spectrum) => spectrum.lanes(lambda_nm),
-            Self::Image(light) => light.lanes(lambda_nm, wi),
+            Self::Uniform(spectrum) => spectrum,
+            Self::Image(light) => light.white(),
         }
     }
 }

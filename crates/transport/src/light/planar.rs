@@ -101,6 +101,7 @@ impl Aim {
     pub(crate) fn sample(&self, surface: SurfaceId) -> Option<LightSample> {
         let Self { point, wi, density, lit } = *self;
         lit.then_some(LightSample {
+            colour: None,
             wi,
             density: Density::SolidAngle(density),
             target: Target::Point(point),

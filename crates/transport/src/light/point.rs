@@ -23,6 +23,7 @@ impl PointLight {
         let distance_squared = toward.length_squared();
         // A light exactly on the surface it lights has no direction.
         (distance_squared > 0.0).then(|| LightSample {
+            colour: None,
             wi: toward / distance_squared.sqrt(),
             density: Density::Delta,
             target: Target::Point(self.position),

@@ -143,6 +143,7 @@ impl SphereLight {
         let t = if b >= 0.0 { b + root } else { depth / (root - b) };
         // From a point on the sphere itself half of all directions leave it at once.
         (t > 0.0).then(|| LightSample {
+            colour: None,
             wi,
             density: Density::SolidAngle(self.density(from)),
             target: Target::Point(from + wi * t),

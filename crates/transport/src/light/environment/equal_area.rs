@@ -5,7 +5,7 @@
 //! the whole, constant in each texel: a texel is chosen by its luminance and a place in it evenly, and shadow rays have no
 //! variance but that of what they meet.
 
-use super::{Along, choose, luminance, normalise};
+use super::{Along, Look, choose, luminance, normalise};
 use etalon_optics::{Real, atan2_turns};
 use etalon_scene::Image;
 use std::f64::consts::PI;
@@ -50,17 +50,13 @@ impl EqualArea {
         self.total
     }
 
-    /// The colour in a direction.
+    /// The colour in a direction, and its density.
     #[inline]
-    pub(super) fn rgb(&self, image: &Image, wi: Along) -> [f64; 3] {
+    pub(super) fn look(&self, image: &Image, wi: Along) -> Look {
         let texel = |share: f64| ((share * self.side as f64) as usize).min(self.side - 1);
         let [u, v] = square(wi);
-        image.texel(texel(u), texel(v))
-    }
-
-    /// Density of a direction, sr⁻¹.
-    pub(super) fn density(&self, image: &Image, wi: Along) -> f64 {
-        luminance(self.rgb(image, wi)) / self.total
+        let colour = image.texel(texel(u), texel(v));
+        Look { colour, density: luminance(colour) / self.total }
     }
 
     /// The direction that `u` in [0, 1)² draws.

@@ -11,7 +11,7 @@
 //! form, and where the image is not black the density is not zero. Within a cell the two functions differ by how the polar
 //! angle and its cosine run between two rows: by at most a factor of two, next to the poles.
 
-use super::{Along, choose, luminance, normalise};
+use super::{Along, Look, choose, luminance, normalise};
 use etalon_optics::{Real, atan2_turns};
 use etalon_scene::Image;
 use std::f64::consts::{PI, TAU};
@@ -97,18 +97,19 @@ impl Meridians {
         self.total
     }
 
-    /// The colour in a direction.
+    /// The colour in a direction, and its density.
     #[inline]
-    pub(super) fn rgb(&self, image: &Image, wi: Along) -> [f64; 3] {
+    pub(super) fn look(&self, image: &Image, wi: Along) -> Look {
         let place = self.place(wi);
-        self.mix(image, &place, place.down, |texel| texel)
-    }
-
-    /// Density of a direction, sr⁻¹.
-    pub(super) fn density(&self, image: &Image, wi: Along) -> f64 {
-        let place = self.place(wi);
-        let [luminance] = self.mix(image, &place, place.down_by_cosine, |texel| [luminance(texel)]);
-        luminance / self.total
+        let [left, right] = place.columns;
+        // The image along both rows of texels, from which the colour mixes by angle and the density by cosine.
+        let [upper, lower] = self.rows_around(place.row).map(|row| {
+            let (left, right) = (image.texel(left, row), image.texel(right, row));
+            [0, 1, 2].map(|k| left[k] + place.across * (right[k] - left[k]))
+        });
+        let colour = [0, 1, 2].map(|k| upper[k] + place.down * (lower[k] - upper[k]));
+        let [upper, lower] = [luminance(upper), luminance(lower)];
+        Look { colour, density: (upper + place.down_by_cosine * (lower - upper)) / self.total }
     }
 
     /// The direction that `u` in [0, 1)² draws.
@@ -150,24 +151,6 @@ impl Meridians {
             down: from_centre - row as f64,
             down_by_cosine: ((above - z) / (above - below)).clamp(0.0, 1.0),
         }
-    }
-
-    /// The bilinear mixture of what `of` makes of the four texels around a place, with this share of the lower row.
-    fn mix<const C: usize>(
-        &self,
-        image: &Image,
-        place: &Place,
-        down: f64,
-        of: impl Fn([f64; 3]) -> [f64; C],
-    ) -> [f64; C] {
-        let [left, right] = place.columns;
-        let [upper, lower] = self.rows_around(place.row);
-        let texel = |column, row| of(image.texel(column, row));
-        let [a, b, c, d] = [texel(left, upper), texel(right, upper), texel(left, lower), texel(right, lower)];
-        std::array::from_fn(|i| {
-            let [upper, lower] = [(a[i], b[i]), (c[i], d[i])].map(|(left, right)| left + place.across * (right - left));
-            upper + down * (lower - upper)
-        })
     }
 
     /// The rows of texels above and below a row of cells.
