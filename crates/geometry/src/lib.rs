@@ -43,7 +43,8 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `vec4`, `ray`, `query` | four lanes of any instruction set; rays and hits; a ray prepared for the tests in `f64` |
-//! | `shapes` | the shapes, one a file, with their tests |
+//! | `shapes` | the shapes, one a file, with their intersection tests; [`ShapeSampler`]: directions toward them |
+//! | [`warp`] | maps from the unit square to disks, hemispheres and spheres |
 //! | `placement`, `motion` | where a geometry is placed, also as a function of time |
 //! | `frame` | the accelerator's frame, and conservative box tests in `f32` |
 //! | `level` | the instruction set to use |
@@ -71,6 +72,7 @@ mod shapes;
 mod small_scene;
 mod traverse;
 mod vec4;
+pub mod warp;
 
 pub use aabb::Aabb;
 pub use bvh::build::TreeBuilder;
@@ -80,7 +82,10 @@ pub use motion::{Motion, Pose};
 pub use passed::Passed;
 pub use placement::Placement;
 pub use ray::{Hit, PrimitiveId, Ray, SurfaceId, SurfacePoint};
-pub use shapes::{Cylinder, Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, ShapeError, Sphere, Triangle};
+pub use shapes::{
+    Cylinder, DirectionDensity, Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, PlanarSampler, ShapeError, ShapeMap,
+    ShapeSample, ShapeSampler, Sphere, SphereSampler, Triangle,
+};
 
 #[cfg(test)]
 mod test_support;

@@ -5,7 +5,7 @@
 //! where every coordinate c of the scene is between half of the centre and twice it, in which case c − centre is exact
 //! (Sterbenz, *Floating-Point Computation*, 1974). Scaling a scene by a power of two therefore changes no bit of its image.
 
-use etalon_geometry::{Aabb, Cylinder, Disk, Parallelogram, Placement, Primitive, ShapeError, Sphere, Triangle};
+use etalon_geometry::{Aabb, Instance, Placement, Primitive, ShapeError, ShapeMap};
 use etalon_optics::Vec3;
 use etalon_scene::{Camera, Projection, ThinLens, Transform};
 use std::sync::Arc;
@@ -75,34 +75,37 @@ impl SceneFrame {
 
     /// A shape of the world in the frame.
     pub(crate) fn shape(&self, shape: &Primitive) -> Result<Primitive, ShapeError> {
-        let s = self.per_m;
-        Ok(match shape {
-            Primitive::Sphere(q) => Sphere::new(self.point(q.centre()), q.radius() * s)?.into(),
-            Primitive::Disk(q) => Disk::new(self.point(q.centre()), q.normal(), q.radius() * s)?.into(),
-            Primitive::Parallelogram(q) => {
-                let [a, b] = q.edges();
-                Parallelogram::new(self.point(q.corner()), a * s, b * s)?.into()
-            }
-            Primitive::Triangle(q) => {
-                let [a, b, c] = q.vertices().map(|p| self.point(p));
-                Triangle::new(a, b, c)?.into()
-            }
-            Primitive::Cylinder(q) => {
-                let [start, end] = q.ends().map(|p| self.point(p));
-                Cylinder::new(start, end, q.radius() * s, q.is_capped())?.into()
-            }
-            Primitive::Instance(q) => {
-                if let Some(motion) = q.motion() {
-                    let framed = Arc::new(motion.framed(self.centre, s));
-                    return Ok(etalon_geometry::Instance::moving(q.geometry().clone(), framed)?.into());
-                }
-                let placement = Placement::new(
-                    q.placement().linear().map(|row| (row * s).to_array()),
-                    self.point(q.placement().translation()).to_array(),
-                )?;
-                etalon_geometry::Instance::new(q.geometry().clone(), placement)?.into()
-            }
-        })
+        let Primitive::Instance(instance) = shape else { return shape.mapped(self) };
+        let (geometry, s) = (instance.geometry().clone(), self.per_m);
+        if let Some(motion) = instance.motion() {
+            return Ok(Instance::moving(geometry, Arc::new(motion.framed(self.centre, s)))?.into());
+        }
+        let placement = instance.placement();
+        let linear = placement.linear().map(|row| (row * s).to_array());
+        let placement = Placement::new(linear, self.point(placement.translation()).to_array())?;
+        Ok(Instance::new(geometry, placement)?.into())
+    }
+}
+
+impl ShapeMap for SceneFrame {
+    fn point(&self, p: Vec3<f64>) -> Vec3<f64> {
+        self.point(p)
+    }
+
+    fn vector(&self, v: Vec3<f64>) -> Vec3<f64> {
+        v * self.per_m
+    }
+
+    fn normal(&self, n: Vec3<f64>) -> Vec3<f64> {
+        n
+    }
+
+    fn length(&self, length: f64) -> f64 {
+        length * self.per_m
+    }
+
+    fn mirrors(&self) -> bool {
+        false
     }
 }
 
@@ -175,29 +178,30 @@ impl Affine {
         if self.mirrors { (second, first) } else { (first, second) }
     }
 
-    /// The image of a shape; of spheres and disks under similarities only.
+    /// The image of a shape; of spheres, disks and cylinders under similarities only.
     pub(crate) fn shape(&self, shape: &Primitive) -> Result<Primitive, ShapeError> {
-        let point = |p: Vec3<f64>| self.point(p.to_array());
-        let vector = |v: Vec3<f64>| self.vector(v.to_array());
-        Ok(match shape {
-            Primitive::Sphere(q) => Sphere::new(point(q.centre()), q.radius() * self.uniform_scale())?.into(),
-            Primitive::Disk(q) => {
-                Disk::new(point(q.centre()), vector(q.normal()), q.radius() * self.uniform_scale())?.into()
-            }
-            Primitive::Parallelogram(q) => {
-                let (a, b) = self.oriented(vector(q.edges()[0]), vector(q.edges()[1]));
-                Parallelogram::new(point(q.corner()), a, b)?.into()
-            }
-            Primitive::Triangle(q) => {
-                let [a, b, c] = q.vertices().map(point);
-                let (b, c) = self.oriented(b, c);
-                Triangle::new(a, b, c)?.into()
-            }
-            Primitive::Cylinder(q) => {
-                let [start, end] = q.ends().map(point);
-                Cylinder::new(start, end, q.radius() * self.uniform_scale(), q.is_capped())?.into()
-            }
-            Primitive::Instance(q) => return Ok(Primitive::Instance(q.clone())),
-        })
+        shape.mapped(self)
+    }
+}
+
+impl ShapeMap for Affine {
+    fn point(&self, p: Vec3<f64>) -> Vec3<f64> {
+        self.point(p.to_array())
+    }
+
+    fn vector(&self, v: Vec3<f64>) -> Vec3<f64> {
+        self.vector(v.to_array())
+    }
+
+    fn normal(&self, n: Vec3<f64>) -> Vec3<f64> {
+        self.vector(n.to_array())
+    }
+
+    fn length(&self, length: f64) -> f64 {
+        length * self.uniform_scale()
+    }
+
+    fn mirrors(&self) -> bool {
+        self.mirrors
     }
 }

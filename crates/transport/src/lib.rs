@@ -63,12 +63,12 @@ pub mod texture;
 mod tracer;
 mod trial;
 pub mod tune;
-pub mod warp;
 pub mod wavelength;
 mod wavelength_lanes;
 mod world;
 
 pub use accuracy::ImageError;
+pub use etalon_geometry::warp;
 pub use features::Features;
 pub use film::{Band, Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
 pub use media::DEPTH as MOST_SOLIDS_AT_ONCE;

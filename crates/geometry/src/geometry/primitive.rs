@@ -3,8 +3,8 @@
 use super::Instance;
 use crate::query::Query;
 use crate::ray::{ExactPoint, RawHit};
-use crate::shapes::FilterShape;
-use crate::{Aabb, Cylinder, Disk, Parallelogram, Sphere, Triangle};
+use crate::shapes::{FilterShape, ShapeMap};
+use crate::{Aabb, Cylinder, Disk, Parallelogram, ShapeError, ShapeSampler, Sphere, Triangle};
 use etalon_optics::Vec3;
 
 /// A shape that rays meet.
@@ -67,6 +67,33 @@ impl Primitive {
             Self::Parallelogram(s) => Some(s.plane()),
             Self::Disk(s) => Some((s.centre(), s.normal(), s.radius())),
             Self::Sphere(_) | Self::Cylinder(_) | Self::Instance(_) => None,
+        }
+    }
+
+    /// Its image, of spheres, disks and cylinders under similarities only. An instance stays what it is.
+    ///
+    /// # Errors
+    /// If the image is out of range or has no area.
+    pub fn mapped(&self, map: &impl ShapeMap) -> Result<Self, ShapeError> {
+        Ok(match self {
+            Self::Sphere(s) => s.mapped(map)?.into(),
+            Self::Parallelogram(s) => s.mapped(map)?.into(),
+            Self::Disk(s) => s.mapped(map)?.into(),
+            Self::Triangle(s) => s.mapped(map)?.into(),
+            Self::Cylinder(s) => s.mapped(map)?.into(),
+            Self::Instance(_) => self.clone(),
+        })
+    }
+
+    /// How directions toward it are drawn; `None` of an instance.
+    pub fn sampler(&self) -> Option<ShapeSampler> {
+        match self {
+            Self::Sphere(s) => Some(ShapeSampler::Sphere(s.clone())),
+            Self::Parallelogram(s) => Some(ShapeSampler::Planar(s.sampler())),
+            Self::Disk(s) => Some(ShapeSampler::Disk(s.clone())),
+            Self::Triangle(s) => Some(ShapeSampler::Planar(s.sampler())),
+            Self::Cylinder(s) => Some(ShapeSampler::Cylinder(s.clone())),
+            Self::Instance(_) => None,
         }
     }
 

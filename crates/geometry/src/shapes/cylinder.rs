@@ -1,10 +1,11 @@
 //! Circular cylinders, open or closed.
 
-use super::{ShapeError, check_points, check_radius, outward, planar};
+use super::{DirectionDensity, ShapeError, ShapeMap, ShapeSample, check_points, check_radius, outward, planar};
 use crate::query::Query;
-use crate::ray::{ExactPoint, RawHit};
+use crate::ray::{ExactPoint, PrimitiveId, RawHit, Ray, SurfaceId, SurfacePoint};
+use crate::warp::concentric_disk;
 use crate::{Aabb, MIN_LENGTH};
-use etalon_optics::{Real, Vec3};
+use etalon_optics::{Frame, Real, Vec3};
 
 /// A right circular cylinder, closed by two disks or open at both ends, seen by rays from both sides; its outward side is the
 /// outside.
@@ -185,7 +186,84 @@ impl Cylinder {
             (position.abs() + Vec3::splat(self.radius * 6.0 + o.abs().max_component() * 8.0)) * f64::UNIT_ROUNDOFF;
         ExactPoint { position, error, normal, curvature: 1.0 / self.radius }
     }
+
+    /// Its image under a similarity.
+    pub(crate) fn mapped(&self, map: &impl ShapeMap) -> Result<Self, ShapeError> {
+        let [start, end] = self.ends().map(|p| map.point(p));
+        Self::new(start, end, map.length(self.radius), self.capped)
+    }
+
+    /// The first point of the cylinder alone along a ray.
+    fn met_alone(&self, ray: &Ray<f64>) -> Option<SurfacePoint<f64>> {
+        let query = Query::new(ray)?;
+        let hit = self.intersect(&query, query.t_max, ray.leaves == ALONE)?;
+        let t = hit.t * query.scale;
+        (t < f64::INFINITY).then(|| SurfacePoint::rounded(&self.surface(ray.at(t)), ALONE, 0, ray.time))
+    }
+
+    /// The point that a direction meets first, and the density of the direction: the sum of d²/(|cos|·A) over the points
+    /// that it meets, which are two at most.
+    fn seen(&self, from: Vec3<f64>, wi: Vec3<f64>) -> Option<(SurfacePoint<f64>, f64)> {
+        let share = |point: &SurfacePoint<f64>| {
+            let toward = point.position - from;
+            toward.length_squared() / (wi.dot(point.normal).abs() * self.area())
+        };
+        let first = self.met_alone(&Ray::free(from, wi))?;
+        let mut density = share(&first);
+        if let Some(second) = self.met_alone(&first.spawn(wi)) {
+            density += share(&second);
+        }
+        Some((first, density))
+    }
+
+    /// A point uniform on the area gives the direction, and the direction the point that is seen. No sample is lost on points that
+    /// hide behind others.
+    ///
+    /// The square of the distance of a uniform point of the unit disk from its middle is uniform too, and independent of its
+    /// direction: the one chooses the height or the place on a cap, the other the place around the axis.
+    pub(super) fn sample(&self, from: Vec3<f64>, u: [f64; 2]) -> ShapeSample {
+        let [x, y] = concentric_disk(u);
+        let squared = x * x + y * y;
+        let around = if squared > 0.0 {
+            let r = squared.sqrt();
+            [x / r, y / r]
+        } else {
+            [1.0, 0.0]
+        };
+        let (radius, half_length) = (self.radius, self.half_length);
+        let cap_share = if self.capped { 0.5 * radius / (2.0 * half_length + radius) } else { 0.0 };
+        let wall_share = 1.0 - 2.0 * cap_share;
+        let (reach, height) = if squared < wall_share {
+            (radius, half_length * (2.0 * squared / wall_share - 1.0))
+        } else {
+            // The last step may round to just above 1.
+            let rest = (squared - wall_share) / cap_share;
+            let (side, rest) = if rest < 1.0 { (-1.0, rest) } else { (1.0, (rest - 1.0).min(1.0)) };
+            (radius * rest.sqrt(), half_length * side)
+        };
+        let frame = Frame::from_normal(self.axis);
+        let point = self.centre + (frame.s * around[0] + frame.t * around[1]) * reach + frame.n * height;
+        let toward = point - from;
+        let distance = toward.length();
+        let wi = toward / distance;
+        let Some((first, density)) = (distance != 0.0).then(|| self.seen(from, wi)).flatten() else {
+            return ShapeSample { point, wi, density: 0.0, front: false, valid: false };
+        };
+        // Along the surface up to rounding, the density is infinite.
+        let valid = density > 0.0 && density.is_finite();
+        ShapeSample { point: first.position, wi, density, front: first.normal.dot(-wi) > 0.0, valid }
+    }
+
+    pub(super) fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> DirectionDensity {
+        match self.seen(from, wi) {
+            Some((first, density)) => DirectionDensity { density, front: first.normal.dot(-wi) > 0.0 },
+            None => DirectionDensity { density: 0.0, front: false },
+        }
+    }
 }
+
+/// The cylinder, where nothing else is there.
+const ALONE: SurfaceId = SurfaceId { instance: 0, primitive: PrimitiveId(0) };
 
 /// Squared sine below which a ray is as good as parallel to the axis: its wall would be beyond all coordinates.
 const PARALLEL: f64 = 1e-280;

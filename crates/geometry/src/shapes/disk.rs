@@ -1,6 +1,6 @@
 //! Flat disks.
 
-use super::{ShapeError, check_points, check_radius, planar};
+use super::{DirectionDensity, PlanarSampler, ShapeError, ShapeMap, ShapeSample, check_points, check_radius, planar};
 use crate::Aabb;
 use crate::query::Query;
 use crate::ray::{ExactPoint, RawHit};
@@ -88,5 +88,29 @@ impl Disk {
     #[inline]
     pub(crate) fn surface(&self, p: Vec3<f64>) -> ExactPoint {
         planar::surface(p, self.centre, self.normal, self.radius)
+    }
+
+    /// Its uniform points: of [`PlanarSampler::sample_disk`].
+    #[inline]
+    pub fn sampler(&self) -> PlanarSampler {
+        let frame = Frame::from_normal(self.normal);
+        let edges = [frame.s * self.radius, frame.t * self.radius];
+        PlanarSampler { corner: self.centre, edges, normal: self.normal, area: self.area(), half: false }
+    }
+
+    /// A direction toward a uniform point.
+    #[inline]
+    pub(super) fn sample(&self, from: Vec3<f64>, u: [f64; 2]) -> ShapeSample {
+        self.sampler().sample_disk(from, u)
+    }
+
+    #[inline]
+    pub(super) fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> DirectionDensity {
+        self.sampler().density(from, wi)
+    }
+
+    /// Its image under a similarity.
+    pub(crate) fn mapped(&self, map: &impl ShapeMap) -> Result<Self, ShapeError> {
+        Self::new(map.point(self.centre), map.normal(self.normal), map.length(self.radius))
     }
 }

@@ -1,16 +1,19 @@
-//! The shapes, one a file: data in `f64` world space, and intersection tests without cancellation.
+//! The shapes, one a file: data in `f64` world space, intersection tests without cancellation, and directions drawn toward them.
 
 mod cylinder;
 mod disk;
 mod parallelogram;
 pub(crate) mod planar;
+mod sampler;
 mod sphere;
 mod triangle;
 
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use parallelogram::Parallelogram;
-pub use sphere::Sphere;
+pub use planar::PlanarSampler;
+pub use sampler::{DirectionDensity, ShapeSample, ShapeSampler};
+pub use sphere::{Sphere, SphereSampler};
 pub use triangle::Triangle;
 
 use etalon_optics::Vec3;
@@ -83,4 +86,23 @@ fn check_radius(radius: f64) -> Result<(), ShapeError> {
 /// its points rounded to its centre or next to it: any direction is as good there.
 fn outward(v: Vec3<f64>) -> Vec3<f64> {
     if v.length_squared() > f64::MIN_POSITIVE { v.normalized() } else { Vec3::new(1.0, 0.0, 0.0) }
+}
+
+/// A map of space that takes shapes to shapes of their kind.
+pub trait ShapeMap {
+    /// The image of a point.
+    fn point(&self, p: Vec3<f64>) -> Vec3<f64>;
+    /// The image of a vector.
+    fn vector(&self, v: Vec3<f64>) -> Vec3<f64>;
+    /// The image of a normal under a similarity, of any length.
+    fn normal(&self, n: Vec3<f64>) -> Vec3<f64>;
+    /// The image of a length under a similarity.
+    fn length(&self, length: f64) -> f64;
+    /// Whether it turns left hands into right ones.
+    fn mirrors(&self) -> bool;
+}
+
+/// Two edges or corners in the order that keeps the surface's outward side outward.
+fn oriented<T>(map: &impl ShapeMap, first: T, second: T) -> (T, T) {
+    if map.mirrors() { (second, first) } else { (first, second) }
 }

@@ -1,6 +1,6 @@
 //! Parallelograms.
 
-use super::{ShapeError, check_points, planar};
+use super::{PlanarSampler, ShapeError, ShapeMap, check_points, oriented, planar};
 use crate::Aabb;
 use crate::query::{Projection, Query, exact_edge};
 use crate::ray::{ExactPoint, RawHit};
@@ -69,6 +69,18 @@ impl Parallelogram {
     /// The smallest box around the corners.
     pub fn bounds(&self) -> Aabb {
         Aabb::of_points(self.corners())
+    }
+
+    /// Its uniform points.
+    pub(crate) fn sampler(&self) -> PlanarSampler {
+        let edges = [self.a, self.b];
+        PlanarSampler { corner: self.corner, edges, normal: self.normal, area: self.area(), half: false }
+    }
+
+    /// Its image.
+    pub(crate) fn mapped(&self, map: &impl ShapeMap) -> Result<Self, ShapeError> {
+        let (a, b) = oriented(map, map.vector(self.a), map.vector(self.b));
+        Self::new(map.point(self.corner), a, b)
     }
 
     fn cross(&self) -> Vec3<f64> {

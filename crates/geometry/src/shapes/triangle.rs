@@ -1,6 +1,6 @@
 //! Triangles.
 
-use super::{ShapeError, check_points, planar};
+use super::{PlanarSampler, ShapeError, ShapeMap, check_points, oriented, planar};
 use crate::Aabb;
 use crate::query::{Projection, Query, exact_edge};
 use crate::ray::{ExactPoint, RawHit};
@@ -53,6 +53,19 @@ impl Triangle {
     #[inline]
     pub fn bounds(&self) -> Aabb {
         Aabb::of_points([self.a, self.b, self.c])
+    }
+
+    /// Its uniform points.
+    pub(crate) fn sampler(&self) -> PlanarSampler {
+        let edges = [self.b - self.a, self.c - self.a];
+        PlanarSampler { corner: self.a, edges, normal: self.normal(), area: self.area(), half: true }
+    }
+
+    /// Its image.
+    pub(crate) fn mapped(&self, map: &impl ShapeMap) -> Result<Self, ShapeError> {
+        let [a, b, c] = self.vertices().map(|p| map.point(p));
+        let (b, c) = oriented(map, b, c);
+        Self::new(a, b, c)
     }
 
     #[inline]

@@ -11,6 +11,7 @@ mod motion;
 mod oracle;
 mod passed;
 mod placements;
+mod samplers;
 mod spawn;
 mod spheres;
 mod tree;
