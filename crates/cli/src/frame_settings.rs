@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use etalon::{Channels, Frame};
-use etalon_picture::{Attribute, PictureError, read_exr, read_png_text};
 use etalon_control::SOURCES_SHA256;
+use etalon_picture::{Attribute, PictureError, read_exr, read_png_text};
 use etalon_transport::PixelRect;
 use miette::miette;
 use serde::Serialize;

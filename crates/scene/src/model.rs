@@ -8,9 +8,11 @@ mod emission;
 mod environment;
 mod film;
 mod integrator;
+mod light;
 mod material;
 mod motion;
 mod references;
+mod shape;
 mod shutter;
 
 pub use detail::{Bitangent, OpacityImage, Relief};
@@ -18,17 +20,16 @@ pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};
 pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
 pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
+pub use light::{Light, LightCone, LightKind};
 pub use material::{
     LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, Parameter, ParameterMut, PolarisingSheet,
     SpectrumTexture,
 };
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use references::ReferenceError;
+pub use shape::{Mesh, Shape};
 pub(crate) use shutter::middle_s;
 
-use std::sync::Arc;
-
-use etalon_optics::Spectrum;
 use glam::DAffine3;
 
 use crate::linear::{from_rows, rows};
@@ -159,67 +160,6 @@ pub struct Instance {
     pub motion: Option<Motion>,
 }
 
-/// A shape in its own coordinates, lengths in m.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// Sphere; its normal points outward.
-    Sphere {
-        /// Centre.
-        center: [f64; 3],
-        /// Radius, above 0.
-        radius_m: f64,
-    },
-    /// The points `origin + a·u + b·v` for a, b in [0, 1]; its normal is along u × v.
-    Parallelogram {
-        /// One corner.
-        origin: [f64; 3],
-        /// One edge from it.
-        u: [f64; 3],
-        /// The other edge from it.
-        v: [f64; 3],
-    },
-    /// Disk.
-    Disk {
-        /// Centre.
-        center: [f64; 3],
-        /// Unit normal.
-        normal: [f64; 3],
-        /// Radius, above 0.
-        radius_m: f64,
-    },
-    /// Cylinder; its normal points outward.
-    Cylinder {
-        /// Middle of one end.
-        start: [f64; 3],
-        /// Middle of the other.
-        end: [f64; 3],
-        /// Radius, above 0.
-        radius_m: f64,
-        /// Whether disks close its ends.
-        capped: bool,
-    },
-    /// Triangles; objects that name the same file share them.
-    Mesh(Arc<Mesh>),
-}
-
-/// Triangles, and what their vertices carry.
-///
-/// The geometric normal of a triangle (a, b, c) is along (b − a) × (c − a).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mesh {
-    /// Vertex positions, m.
-    pub vertices: Vec<[f64; 3]>,
-    /// Vertex indices, all within range.
-    pub triangles: Vec<[u32; 3]>,
-    /// Shading normals: none, or for each vertex a unit vector, or (0, 0, 0) where it has none.
-    pub normals: Vec<[f32; 3]>,
-    /// Texture coordinates: none, or one pair for each vertex.
-    pub uvs: Vec<[f32; 2]>,
-}
-
-/// No number is NaN. Two [`Arc`]s of one mesh are therefore equal at once, without a look at its vertices.
-impl Eq for Mesh {}
-
 /// An affine map: `world = linear · local + translation`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transform {
@@ -244,50 +184,4 @@ impl From<DAffine3> for Transform {
     fn from(map: DAffine3) -> Self {
         Self { linear: rows(&map.matrix3), translation_m: map.translation.to_array() }
     }
-}
-
-/// A light without a surface.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Light {
-    /// Its name in the file, or `lights[i]`.
-    pub name: String,
-    /// What it is.
-    pub kind: LightKind,
-}
-
-/// What a light without a surface is.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LightKind {
-    /// The same intensity in every direction, from a point.
-    Point {
-        /// Position, m.
-        position_m: [f64; 3],
-        /// Radiant intensity, W·sr⁻¹·nm⁻¹.
-        intensity: Spectrum,
-    },
-    /// A point that shines into a cone, less and less towards its edge.
-    Spot {
-        /// Position, m.
-        position_m: [f64; 3],
-        /// Unit vector along the axis of the cone.
-        axis: [f64; 3],
-        /// Half angles, rad, at which the intensity begins to fall and is 0; in [0, π], ordered.
-        half_angles_rad: [f64; 2],
-        /// Radiant intensity along the axis, W·sr⁻¹·nm⁻¹.
-        intensity: Spectrum,
-    },
-    /// Parallel light.
-    Directional {
-        /// Unit vector in which the light travels.
-        direction: [f64; 3],
-        /// Irradiance on a plane at right angles to it, W·m⁻²·nm⁻¹.
-        irradiance: Spectrum,
-    },
-    /// The same radiance from every direction at infinity.
-    Environment {
-        /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹.
-        radiance: Spectrum,
-    },
-    /// Radiance from infinity that an image says for each direction.
-    ImageEnvironment(EnvironmentImage),
 }

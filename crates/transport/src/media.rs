@@ -15,8 +15,6 @@
 
 use crate::spectral::PathSpectrum;
 use etalon_optics::{Lanes, RefractiveIndex, exp_neg};
-use etalon_scene::{Mesh, Shape};
-use std::collections::HashMap;
 
 static VACUUM: RefractiveIndex = RefractiveIndex::VACUUM;
 
@@ -209,32 +207,5 @@ impl Absorption {
             // Nothing is lost on an endless way through what is clear.
             if per_m > 0.0 { exp_neg(per_m * length_m) } else { 1.0 }
         })
-    }
-}
-
-/// Where a shape is open, so that it bounds no solid; `None` if it is closed.
-///
-/// A mesh is closed if each edge is shared by two triangles that pass it in opposite directions, vertices at the same
-/// place counting as one.
-pub(crate) fn open_edges(shape: &Shape) -> Option<String> {
-    match shape {
-        Shape::Sphere { .. } => None,
-        Shape::Cylinder { capped, .. } => (!capped).then(|| "a tube is open at its ends".to_owned()),
-        Shape::Parallelogram { .. } => Some("a parallelogram has an edge".to_owned()),
-        Shape::Disk { .. } => Some("a disk has an edge".to_owned()),
-        Shape::Mesh(mesh) => {
-            let Mesh { vertices, triangles, .. } = mesh.as_ref();
-            let at = |i: u32| vertices[i as usize].map(|v| (v + 0.0).to_bits());
-            let mut open: HashMap<_, i64> = HashMap::new();
-            for triangle in triangles {
-                for i in 0..3 {
-                    let (a, b) = (at(triangle[i]), at(triangle[(i + 1) % 3]));
-                    let (edge, turn) = if a < b { ((a, b), 1) } else { ((b, a), -1) };
-                    *open.entry(edge).or_default() += turn;
-                }
-            }
-            let count = open.values().filter(|&&balance| balance != 0).count();
-            (count > 0).then(|| format!("{count} edges of its mesh are open"))
-        }
     }
 }

@@ -9,7 +9,7 @@ use crate::frame::{Affine, SceneFrame};
 use crate::light::{
     DirectionalLight, Environment, EnvironmentLight, EnvironmentRadiance, Light, LightTable, PointLight, SpotLight,
 };
-use crate::media::{Absorption, Interior, Media, Solid, open_edges};
+use crate::media::{Absorption, Interior, Media, Solid};
 use crate::motion::motion;
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
 use crate::prepare_error::PrepareError;
@@ -228,7 +228,7 @@ fn media(scene: &Scene) -> Result<Media, PrepareError> {
     let range_nm = scene.integrator.wavelength_range_nm;
     let solid = |object: &Object| {
         let Some((index, priority)) = scene.materials[object.material].kind.solid() else { return Ok(None) };
-        match open_edges(&object.shape) {
+        match object.shape.open_edges() {
             None => {
                 let absorption = &scene.materials[object.material].absorption;
                 let absorption = absorption.as_ref().filter(|spectrum| !spectrum.is_zero());

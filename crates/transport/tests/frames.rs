@@ -12,9 +12,7 @@ use rendering::parse;
 
 /// Keyframes that turn about the vertical and move along x, from 0 s to 2 s.
 fn rolling() -> Value {
-    let key = |time_s: f64, angle_deg: f64, x: f64| {
-        json!({"time_s": time_s, "transform": [{"rotate": {"axis": [0, 1, 0], "angle_deg": angle_deg}}, {"translate_m": [x, 0, 0]}]})
-    };
+    let key = |time_s: f64, angle_deg: f64, x: f64| json!({"time_s": time_s, "transform": [{"rotate": {"axis": [0, 1, 0], "angle_deg": angle_deg}}, {"translate_m": [x, 0, 0]}]});
     json!([key(0.0, 0.0, -0.3), key(2.0, 120.0, 0.4)])
 }
 
@@ -32,7 +30,8 @@ fn scene(moved: [bool; 3]) -> Scene {
     let mut camera = json!({"type": "perspective", "position_m": [0, 1, 4], "look_at_m": [0, 0.5, 0], "vertical_fov_deg": 40,
         "shutter_s": [0, 0.02]});
     if camera_moves {
-        camera["keyframes"] = json!([{"time_s": 0}, {"time_s": 2, "transform": [{"rotate": {"axis": [0, 1, 0], "angle_deg": 50}}]}]);
+        camera["keyframes"] =
+            json!([{"time_s": 0}, {"time_s": 2, "transform": [{"rotate": {"axis": [0, 1, 0], "angle_deg": 50}}]}]);
     }
     parse(
         &json!({

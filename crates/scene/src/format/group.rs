@@ -6,7 +6,7 @@ use super::names::Names;
 use super::scene::ObjectForm;
 use crate::json::{Code, List, NamedEntry, Optional, Place, Reader, Required, Spanned};
 use crate::linear::is_similarity;
-use crate::model::{Group, Instance, Object, Shape, Transform};
+use crate::model::{Group, Instance, Object, Transform};
 
 /// Most groups within each other: rays descend through them by recursion.
 pub(crate) const MAX_NESTING: usize = 16;
@@ -267,7 +267,7 @@ fn check(
     for &group in order {
         let mut sum = place(&members[group].instances, &summaries, reader);
         let emitters = members[group].objects.iter().filter(|object| object.emission.is_some());
-        sum.round_emitter = emitters.filter_map(|object| round(&object.shape)).next().or(sum.round_emitter);
+        sum.round_emitter = emitters.filter_map(|object| object.shape.round_name()).next().or(sum.round_emitter);
         summaries[group] = sum;
     }
     let sum = place(top, &summaries, reader);
@@ -281,14 +281,4 @@ fn check(
         reader.error(Code::Limit, at, format!("{placed} placed groups; at most {MAX_PLACED}"));
     }
     (reader.error_count() == before).then_some(())
-}
-
-/// The name of a shape that only similarities keep what it is.
-fn round(shape: &Shape) -> Option<&'static str> {
-    match shape {
-        Shape::Sphere { .. } => Some("sphere"),
-        Shape::Disk { .. } => Some("disk"),
-        Shape::Cylinder { .. } => Some("cylinder"),
-        Shape::Parallelogram { .. } | Shape::Mesh(_) => None,
-    }
 }

@@ -17,7 +17,7 @@ use crate::json::{
     Code, Decode, Kind, List, Named, Node, Optional, Place, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span,
     Spanned, by_json_type,
 };
-use crate::model::{Emission, EmissionSides, LightKind, Material, Object, Scene, Shape};
+use crate::model::{Emission, EmissionSides, Material, Object, Scene, Shape};
 use crate::texture::ImageTexture;
 
 /// The version of the format that this program reads.
@@ -327,12 +327,8 @@ fn object<'f>(
 
 /// Reports an image over a shape that has no texture coordinates.
 fn check_coordinates(image: Option<&ImageTexture>, shape: &Shape, at: Span, reader: &mut Reader<'_>) {
-    let has_coordinates = match shape {
-        Shape::Mesh(mesh) => !mesh.uvs.is_empty(),
-        Shape::Parallelogram { .. } | Shape::Sphere { .. } | Shape::Disk { .. } | Shape::Cylinder { .. } => true,
-    };
     if let Some(image) = image
-        && !has_coordinates
+        && !shape.has_texture_coordinates()
     {
         let message = format!("the shape has no texture coordinates for the image \"{}\"", image.name);
         let hint = "give the mesh \"uvs\", or use a file with texture coordinates";
@@ -346,13 +342,7 @@ fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {
     if scene.objects.is_empty() && scene.instances.is_empty() {
         reader.warning(Code::NoObjects, at, "the scene has no objects", None);
     }
-    let lit = scene.lights.iter().any(|light| match &light.kind {
-        LightKind::Point { intensity: spectrum, .. }
-        | LightKind::Spot { intensity: spectrum, .. }
-        | LightKind::Directional { irradiance: spectrum, .. }
-        | LightKind::Environment { radiance: spectrum } => !spectrum.is_zero(),
-        LightKind::ImageEnvironment(image) => !image.is_zero(),
-    });
+    let lit = scene.lights.iter().any(|light| !light.kind.is_zero());
     let glowing = scene.placed_objects().filter_map(|o| o.emission.as_ref()).any(|e| !e.is_zero());
     if !lit && !glowing {
         let hint = "give an object an \"emission\", or add to \"lights\"".to_owned();

@@ -1,6 +1,6 @@
 //! What refers to something else by number, and arrays that go together.
 
-use super::{Group, Instance, LightKind, Material, MaterialKind, Mesh, Motion, Object, Scene, Shape};
+use super::{Group, Instance, Material, MaterialKind, Mesh, Motion, Object, Scene, Shape};
 use crate::texture::{Image, Texels};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -98,7 +98,7 @@ impl Scene {
             check_motion(&moves.motion, || "the camera".into())?;
         }
         for light in &self.lights {
-            if let LightKind::ImageEnvironment(environment) = &light.kind {
+            if let Some(environment) = light.kind.image() {
                 check_image(&environment.image, || format!("light \"{}\"", light.name))?;
             }
         }

@@ -13,9 +13,10 @@ use crate::bsdf::properties;
 use crate::frame::Affine;
 use etalon_geometry::Aabb;
 use etalon_optics::Vec3;
-use etalon_scene::{LightKind, MaterialKind, Mesh, Object, Scene, Shape};
+use etalon_scene::{LightCone, MaterialKind, Mesh, Object, Scene, Shape};
 use serde::Serialize;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Pairs that a plan lists; the others are counted.
 const MOST_LISTED: usize = 64;
@@ -72,16 +73,17 @@ pub(super) fn of(scene: &Scene) -> MissingLight {
         return missing;
     }
     let smooth = smooth_objects(scene);
-    let all_samples = lamps.iter().filter(|lamp| matches!(lamp.kind, LightKind::Spot { .. })).count();
-    let asks = all_samples > 0 && all_samples.saturating_mul(smooth.len()) <= MOST_ASKED;
-    let mut boxes = HashMap::new();
+    let cones = lamps.iter().filter(|lamp| lamp.kind.cone().is_some()).count();
+    let asks = cones > 0 && cones.saturating_mul(smooth.len()) <= MOST_ASKED;
+    let mut hulls = HashMap::new();
     // What a group holds is anywhere.
     let balls: Vec<Option<Ball>> = match asks {
-        true => smooth.iter().map(|one| one.stands.then(|| Ball::around(one.object, &mut boxes))).collect(),
+        true => smooth.iter().map(|one| one.stands.then(|| Ball::around(one.object, &mut hulls))).collect(),
         false => vec![None; smooth.len()],
     };
     for lamp in lamps {
-        let lit = |ball: &Option<Ball>| ball.is_none_or(|ball| may_light(&lamp.kind, ball));
+        let cone = lamp.kind.cone();
+        let lit = |ball: &Option<Ball>| cone.zip(*ball).is_none_or(|(cone, ball)| may_light(&cone, ball));
         let reached = smooth.iter().zip(&balls).filter(|(_, ball)| lit(ball));
         for (Smooth { object, surface, lost, .. }, _) in reached {
             missing.pairs += 1;
@@ -140,46 +142,37 @@ struct Ball {
 }
 
 impl Ball {
-    /// `boxes` are those of meshes, each found once.
-    fn around(object: &Object, boxes: &mut HashMap<*const Mesh, Aabb>) -> Self {
-        let placed = Affine::new(&object.transform);
-        let of_points = |points: &[[f64; 3]], beyond: f64| {
-            let points = || points.iter().map(|point| placed.point(*point));
-            let centre = Aabb::of_points(points()).centre();
-            let reach = points().map(|point| (point - centre).length()).fold(0.0, f64::max);
-            // Shapes with a radius are scaled alike in every direction.
-            Self { centre, radius: reach + beyond * placed.uniform_scale() }
+    /// `hulls` are those of meshes, each found once.
+    fn around(object: &Object, hulls: &mut HashMap<*const Mesh, Hull>) -> Self {
+        let found;
+        let (points, beyond_m) = match &object.shape {
+            Shape::Mesh(mesh) => &*hulls.entry(Arc::as_ptr(mesh)).or_insert_with(|| object.shape.hull_m()),
+            other => {
+                found = other.hull_m();
+                &found
+            }
         };
-        match &object.shape {
-            Shape::Sphere { center, radius_m } | Shape::Disk { center, radius_m, .. } => {
-                of_points(&[*center], *radius_m)
-            }
-            Shape::Cylinder { start, end, radius_m, .. } => of_points(&[*start, *end], *radius_m),
-            Shape::Parallelogram { origin, u, v } => {
-                let corner = |a: f64, b: f64| [0, 1, 2].map(|k| origin[k] + a * u[k] + b * v[k]);
-                of_points(&[corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0), corner(1.0, 1.0)], 0.0)
-            }
-            Shape::Mesh(mesh) => {
-                let vertices = || mesh.vertices.iter().map(|vertex| Vec3::from_array(*vertex));
-                let around = *boxes.entry(std::sync::Arc::as_ptr(mesh)).or_insert_with(|| Aabb::of_points(vertices()));
-                let side = |number: usize, k: usize| if number >> k & 1 == 0 { around.min[k] } else { around.max[k] };
-                let corners: [_; 8] = std::array::from_fn(|number| [0, 1, 2].map(|k| side(number, k)));
-                of_points(&corners, 0.0)
-            }
-        }
+        let placed = Affine::new(&object.transform);
+        let points = || points.iter().map(|point| placed.point(*point));
+        let centre = Aabb::of_points(points()).centre();
+        let reach = points().map(|point| (point - centre).length()).fold(0.0, f64::max);
+        // Shapes with a radius are scaled alike in every direction.
+        Self { centre, radius: reach + beyond_m * placed.uniform_scale() }
     }
 }
 
-/// Whether light of a lamp may reach a ball.
-fn may_light(lamp: &LightKind, ball: Ball) -> bool {
-    let LightKind::Spot { position_m, axis, half_angles_rad: [_, outer], .. } = lamp else { return true };
-    let toward = ball.centre - Vec3::from_array(*position_m);
+/// See [`Shape::hull_m`].
+type Hull = (Vec<[f64; 3]>, f64);
+
+/// Whether light within a cone may reach a ball.
+fn may_light(cone: &LightCone, ball: Ball) -> bool {
+    let toward = ball.centre - Vec3::from_array(cone.position_m);
     let distance = toward.length();
     if distance <= ball.radius {
         return true;
     }
-    let off_axis = (toward.dot(Vec3::from_array(*axis)) / distance).clamp(-1.0, 1.0).acos();
+    let off_axis = (toward.dot(Vec3::from_array(cone.axis)) / distance).clamp(-1.0, 1.0).acos();
     // What cannot be computed is not certain; nor is what rounding decides.
-    let beyond = off_axis - (ball.radius / distance).asin() - outer;
+    let beyond = off_axis - (ball.radius / distance).asin() - cone.half_angle_rad;
     beyond.is_nan() || beyond < 1e-9
 }

@@ -7,8 +7,8 @@ use crate::texture;
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_scene::{
-    Filter, Image, ImageTexture, LightKind, LightSampling, MaterialKind, Mesh, Metal, Object, ParameterMut,
-    PolarisingSheet, Projection, Scene, Shape, SpectrumTexture, Texels,
+    Filter, Image, ImageTexture, LightSampling, MaterialKind, Mesh, Metal, Object, ParameterMut, PolarisingSheet,
+    Projection, Scene, Shape, SpectrumTexture, Texels,
 };
 use std::sync::Arc;
 
@@ -141,7 +141,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 emission.image = emission.image.as_ref().map(grey_image);
             }
             for light in &mut scene.lights {
-                if let LightKind::ImageEnvironment(image) = &mut light.kind {
+                if let Some(image) = light.kind.image_mut() {
                     image.image = Arc::new(luminances(&image.image, [1.0; 3]));
                 }
             }
@@ -153,18 +153,10 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             Projection::Perspective { lens, .. } => *lens = None,
             Projection::Orthographic { .. } => {}
         },
-        EffectName::ShadowRays => {
-            scene.lights.retain(|light| match light.kind {
-                LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Directional { .. } => false,
-                LightKind::Environment { .. } | LightKind::ImageEnvironment(_) => true,
-            });
-        }
+        EffectName::ShadowRays => scene.lights.retain(|light| !light.kind.is_delta()),
         // The integrator's setting, which `Study::light_sampling` has changed.
         EffectName::Mis => {}
-        EffectName::Environment => scene.lights.retain(|light| match light.kind {
-            LightKind::Environment { .. } | LightKind::ImageEnvironment(_) => false,
-            LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Directional { .. } => true,
-        }),
+        EffectName::Environment => scene.lights.retain(|light| light.kind.is_delta()),
         EffectName::SpecularChains => scene.materials.iter_mut().for_each(|material| blacken(&mut material.kind)),
         EffectName::NestedDielectrics => {
             for material in &mut scene.materials {
@@ -222,13 +214,7 @@ fn objects_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Object> {
 pub(super) fn lights_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Spectrum> {
     let grouped = scene.groups.iter_mut().flat_map(|group| &mut group.objects);
     let lamps = scene.objects.iter_mut().chain(grouped).filter_map(|object| object.emission.as_mut());
-    let lights = scene.lights.iter_mut().map(|light| match &mut light.kind {
-        LightKind::Point { intensity: spectrum, .. }
-        | LightKind::Spot { intensity: spectrum, .. }
-        | LightKind::Directional { irradiance: spectrum, .. }
-        | LightKind::Environment { radiance: spectrum } => spectrum,
-        LightKind::ImageEnvironment(image) => &mut image.white,
-    });
+    let lights = scene.lights.iter_mut().map(|light| light.kind.spectrum_mut());
     lamps.map(|emission| &mut emission.radiance).chain(lights)
 }
 

@@ -5,36 +5,17 @@ use etalon_optics::Spectrum;
 use etalon_scene::{Light, LightKind, LightSampling, Object, Scene};
 
 pub(super) fn is_environment(kind: &LightKind) -> bool {
-    match kind {
-        LightKind::Environment { radiance } => !radiance.is_zero(),
-        LightKind::ImageEnvironment(image) => !image.is_zero(),
-        LightKind::Point { .. } | LightKind::Spot { .. } | LightKind::Directional { .. } => false,
-    }
+    !kind.is_delta() && !kind.is_zero()
 }
 
 /// Whether only a shadow ray finds the light.
 pub(in crate::plan) fn is_target(kind: &LightKind) -> bool {
-    match kind {
-        LightKind::Point { intensity: spectrum, .. }
-        | LightKind::Spot { intensity: spectrum, .. }
-        | LightKind::Directional { irradiance: spectrum, .. } => !spectrum.is_zero(),
-        LightKind::Environment { .. } | LightKind::ImageEnvironment(_) => false,
-    }
+    kind.is_delta() && !kind.is_zero()
 }
 
 /// An image of everything around, which shadow rays aim at and paths run into.
 fn sky(scene: &Scene) -> Option<&Light> {
-    scene.lights.iter().find(|light| matches!(&light.kind, LightKind::ImageEnvironment(image) if !image.is_zero()))
-}
-
-/// The spectrum of a light.
-fn spectrum(light: &Light) -> &Spectrum {
-    match &light.kind {
-        LightKind::Point { intensity, .. } | LightKind::Spot { intensity, .. } => intensity,
-        LightKind::Directional { irradiance, .. } => irradiance,
-        LightKind::Environment { radiance } => radiance,
-        LightKind::ImageEnvironment(image) => &image.white,
-    }
+    scene.lights.iter().find(|light| light.kind.image().is_some_and(|image| !image.is_zero()))
 }
 
 fn emitter(scene: &Scene) -> Option<&Object> {
@@ -88,6 +69,6 @@ pub(in crate::plan) fn sources(scene: &Scene) -> Vec<(String, &Spectrum)> {
     let emitters = scene
         .placed_objects()
         .filter_map(|object| Some((format!("emission of \"{}\"", object.name), &object.emission.as_ref()?.radiance)));
-    let lights = scene.lights.iter().map(|light| (format!("light \"{}\"", light.name), spectrum(light)));
+    let lights = scene.lights.iter().map(|light| (format!("light \"{}\"", light.name), light.kind.spectrum()));
     emitters.chain(lights).filter(|(_, spectrum)| !spectrum.is_zero()).collect()
 }

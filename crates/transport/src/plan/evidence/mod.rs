@@ -10,7 +10,7 @@ pub(super) use polarisation::{UNPOLARISED, polarisation};
 
 use super::EffectName;
 use super::grey::same_shape;
-use etalon_scene::{Filter, ImageTexture, Light, LightKind, Material, Object, Projection, Scene, Shape};
+use etalon_scene::{Filter, ImageTexture, Light, Material, Object, Projection, Scene, Shape};
 use lights::{is_environment, mis, shadow_rays};
 use materials::{absorption, colour, dispersion, nested, specular};
 
@@ -27,11 +27,13 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         EffectName::ShadowRays => shadow_rays(scene),
         EffectName::Mis => mis(scene),
         EffectName::Environment => match scene.lights.iter().find(|light| is_environment(&light.kind)) {
-            Some(Light { name, kind: LightKind::ImageEnvironment(sky) }) => {
-                let (width, height) = (sky.image.width, sky.image.height);
-                Ok(format!("light \"{name}\": \"{}\", {width} × {height} texels", sky.name))
-            }
-            Some(light) => Ok(format!("light \"{}\"", light.name)),
+            Some(Light { name, kind }) => Ok(match kind.image() {
+                Some(sky) => {
+                    let (width, height) = (sky.image.width, sky.image.height);
+                    format!("light \"{name}\": \"{}\", {width} × {height} texels", sky.name)
+                }
+                None => format!("light \"{name}\""),
+            }),
             None => nothing("no light at infinity"),
         },
         EffectName::SpecularChains => match first_surface(scene, |material, _| specular(&material.kind)) {
@@ -124,16 +126,9 @@ fn bent(object: &Object) -> Option<String> {
 }
 
 fn smooth_mesh(object: &Object) -> Option<String> {
-    match &object.shape {
-        Shape::Mesh(mesh) if !mesh.normals.is_empty() => {
-            Some(format!("\"{}\": {} vertices with normals", object.name, mesh.normals.len()))
-        }
-        Shape::Mesh(_)
-        | Shape::Sphere { .. }
-        | Shape::Parallelogram { .. }
-        | Shape::Disk { .. }
-        | Shape::Cylinder { .. } => None,
-    }
+    let Shape::Mesh(mesh) = &object.shape else { return None };
+    let normals = mesh.normals.len();
+    (normals > 0).then(|| format!("\"{}\": {normals} vertices with normals", object.name))
 }
 
 /// The helium line d, at which catalogues state indices, or the wavelength of the range nearest to it.
@@ -163,7 +158,7 @@ fn wavelengths(scene: &Scene) -> Result<String, String> {
         return Ok(found);
     }
     for light in &scene.lights {
-        if let LightKind::ImageEnvironment(sky) = &light.kind
+        if let Some(sky) = light.kind.image()
             && !sky.image.is_grey()
         {
             return Ok(format!("light \"{}\": colours of \"{}\"", light.name, sky.name));

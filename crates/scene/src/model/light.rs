@@ -1,0 +1,124 @@
+//! Lights without a surface, and what the rest of the renderer asks of them.
+
+use etalon_optics::Spectrum;
+
+use super::EnvironmentImage;
+
+/// A light without a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// Its name in the file, or `lights[i]`.
+    pub name: String,
+    /// What it is.
+    pub kind: LightKind,
+}
+
+/// What a light without a surface is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightKind {
+    /// The same intensity in every direction, from a point.
+    Point {
+        /// Position, m.
+        position_m: [f64; 3],
+        /// Radiant intensity, W·sr⁻¹·nm⁻¹.
+        intensity: Spectrum,
+    },
+    /// A point that shines into a cone, less and less towards its edge.
+    Spot {
+        /// Position, m.
+        position_m: [f64; 3],
+        /// Unit vector along the axis of the cone.
+        axis: [f64; 3],
+        /// Half angles, rad, at which the intensity begins to fall and is 0; in [0, π], ordered.
+        half_angles_rad: [f64; 2],
+        /// Radiant intensity along the axis, W·sr⁻¹·nm⁻¹.
+        intensity: Spectrum,
+    },
+    /// Parallel light.
+    Directional {
+        /// Unit vector in which the light travels.
+        direction: [f64; 3],
+        /// Irradiance on a plane at right angles to it, W·m⁻²·nm⁻¹.
+        irradiance: Spectrum,
+    },
+    /// The same radiance from every direction at infinity.
+    Environment {
+        /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹.
+        radiance: Spectrum,
+    },
+    /// Radiance from infinity that an image says for each direction.
+    ImageEnvironment(EnvironmentImage),
+}
+
+/// A cone that holds all the light of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightCone {
+    /// The point, m.
+    pub position_m: [f64; 3],
+    /// Unit vector along the axis.
+    pub axis: [f64; 3],
+    /// Half angle, rad.
+    pub half_angle_rad: f64,
+}
+
+impl LightKind {
+    /// The spectrum of what it sends; of an image, that of its white.
+    pub fn spectrum(&self) -> &Spectrum {
+        match self {
+            Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity,
+            Self::Directional { irradiance, .. } => irradiance,
+            Self::Environment { radiance } => radiance,
+            Self::ImageEnvironment(image) => &image.white,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn spectrum_mut(&mut self) -> &mut Spectrum {
+        match self {
+            Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity,
+            Self::Directional { irradiance, .. } => irradiance,
+            Self::Environment { radiance } => radiance,
+            Self::ImageEnvironment(image) => &mut image.white,
+        }
+    }
+
+    /// Whether its light comes from a single point or a single direction. Then no path runs into it: only shadow rays find it. Every
+    /// other light without a surface is at infinity, where paths find it that leave the scene.
+    pub fn is_delta(&self) -> bool {
+        match self {
+            Self::Point { .. } | Self::Spot { .. } | Self::Directional { .. } => true,
+            Self::Environment { .. } | Self::ImageEnvironment(_) => false,
+        }
+    }
+
+    /// The image that says what it sends into each direction, if there is one.
+    pub fn image(&self) -> Option<&EnvironmentImage> {
+        match self {
+            Self::ImageEnvironment(image) => Some(image),
+            _ => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn image_mut(&mut self) -> Option<&mut EnvironmentImage> {
+        match self {
+            Self::ImageEnvironment(image) => Some(image),
+            _ => None,
+        }
+    }
+
+    /// The cone beyond which it sends nothing, if there is one.
+    pub fn cone(&self) -> Option<LightCone> {
+        match *self {
+            Self::Spot { position_m, axis, half_angles_rad: [_, half_angle_rad], .. } => {
+                Some(LightCone { position_m, axis, half_angle_rad })
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether it sends nothing.
+    pub fn is_zero(&self) -> bool {
+        self.image().map_or_else(|| self.spectrum().is_zero(), EnvironmentImage::is_zero)
+    }
+}
