@@ -27,9 +27,9 @@ pub(crate) use mixture::{
 pub(crate) use specular_image::{Ball, Eye, Shows, SpecularImage};
 
 use crate::bsdf::Bsdf;
-use crate::light::{LightTable, Round, visible_sum};
+use crate::light::{LightTable, visible_sum};
 use crate::surface::Surfaces;
-use etalon_geometry::{Aabb, Geometry, Primitive, PrimitiveId};
+use etalon_geometry::{Aabb, Geometry, Primitive, PrimitiveId, ShapeSampler, SphereSampler};
 use etalon_optics::Vec3;
 
 /// Most bodies that are aimed at, the largest first.
@@ -53,7 +53,7 @@ pub(crate) trait DirectionTarget {
     fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64;
 }
 
-impl DirectionTarget for Round {
+impl DirectionTarget for SphereSampler {
     #[inline(always)]
     fn is_seen(&self, from: Vec3<f64>, n: Vec3<f64>) -> bool {
         let toward = self.centre - from;
@@ -62,19 +62,19 @@ impl DirectionTarget for Round {
 
     #[inline(always)]
     fn aim(&self, from: Vec3<f64>, u: [f64; 2]) -> Vec3<f64> {
-        self.aim(from, u).wi
+        self.sample(from, u).wi
     }
 
     #[inline(always)]
     fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> f64 {
-        self.density_of(from, wi)
+        self.density(from, wi)
     }
 }
 
 /// A body that casts caustics, as directions are drawn toward it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum GuidedTarget {
-    Sphere(Round),
+    Sphere(SphereSampler),
     Box(Hull),
 }
 
@@ -83,14 +83,14 @@ impl GuidedTarget {
     #[inline]
     pub(crate) fn aim(&self, from: Vec3<f64>, u: [f64; 2]) -> Vec3<f64> {
         match self {
-            Self::Sphere(round) => DirectionTarget::aim(round, from, u),
+            Self::Sphere(sphere) => sphere.aim(from, u),
             Self::Box(body) => body.aim(from, u),
         }
     }
 
     fn size(&self) -> f64 {
         match self {
-            Self::Sphere(round) => 2.0 * round.radius,
+            Self::Sphere(sphere) => 2.0 * sphere.radius,
             Self::Box(hull) => Vec3::from_array(hull.extent).length(),
         }
     }
@@ -142,7 +142,7 @@ impl GuidedTargets {
             let bends = matches!(bsdf, Bsdf::Dielectric(_));
             match (geometry.primitive(PrimitiveId(i as u32)), boxes.last_mut()) {
                 (Primitive::Sphere(sphere), _) => {
-                    let ball = Round { centre: sphere.centre(), radius: sphere.radius(), front: true };
+                    let ball = sphere.sampler();
                     bodies.push((GuidedTarget::Sphere(ball), bends));
                     balls.push((ball, bsdf));
                 }
@@ -212,8 +212,13 @@ const IMAGE_NM: f64 = 550.0;
 const LEAST_INDEX: f64 = 1.05;
 
 /// Spheres around the lamps that a walk may run into, one for each object, with their radiance relative to the brightest.
-fn lamps(surfaces: &Surfaces, geometry: &Geometry, lights: &LightTable, range_nm: [f64; 2]) -> Vec<(Round, f64)> {
-    let mut lamps: Vec<(u32, Option<Round>, Aabb, f64)> = Vec::new();
+fn lamps(
+    surfaces: &Surfaces,
+    geometry: &Geometry,
+    lights: &LightTable,
+    range_nm: [f64; 2],
+) -> Vec<(SphereSampler, f64)> {
+    let mut lamps: Vec<(u32, Option<SphereSampler>, Aabb, f64)> = Vec::new();
     for light in lights.lights() {
         let Some(emitter) = light.emitter() else { continue };
         let primitive = emitter.surface.primitive;
@@ -223,14 +228,20 @@ fn lamps(surfaces: &Surfaces, geometry: &Geometry, lights: &LightTable, range_nm
         }
         let bounds = geometry.primitive(primitive).bounds();
         match lamps.last_mut() {
-            Some((of, round, body, _)) if *of == object => (*round, *body) = (None, body.union(bounds)),
-            _ => lamps.push((object, light.round(), bounds, visible_sum(light.spectrum(), range_nm))),
+            Some((of, sphere, body, _)) if *of == object => (*sphere, *body) = (None, body.union(bounds)),
+            _ => {
+                let sphere = light.area().and_then(|light| match &light.shape {
+                    ShapeSampler::Sphere(sphere) => Some(sphere.sampler()),
+                    _ => None,
+                });
+                lamps.push((object, sphere, bounds, visible_sum(light.spectrum(), range_nm)));
+            }
         }
     }
     let brightest = lamps.iter().map(|lamp| lamp.3).fold(0.0, f64::max);
-    let around = |body: Aabb| Round { centre: body.centre(), radius: 0.5 * body.extent().length(), front: true };
+    let around = |body: Aabb| SphereSampler { centre: body.centre(), radius: 0.5 * body.extent().length() };
     lamps
         .into_iter()
-        .map(|(_, round, body, bright)| (round.unwrap_or_else(|| around(body)), bright / brightest))
+        .map(|(_, sphere, body, bright)| (sphere.unwrap_or_else(|| around(body)), bright / brightest))
         .collect()
 }

@@ -6,9 +6,7 @@ use crate::camera::{Camera, Moving};
 use crate::caustics::GuidedTargets;
 use crate::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame};
-use crate::light::{
-    DirectionalLight, Environment, EnvironmentLight, EnvironmentRadiance, Light, LightTable, PointLight, SpotLight,
-};
+use crate::light::{Environment, Light, LightTable};
 use crate::media::{Absorption, Interior, Media, Solid};
 use crate::motion::motion;
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
@@ -21,7 +19,7 @@ use crate::wavelength::WavelengthDistribution;
 use crate::world::ShadowRays;
 use etalon_geometry::{Geometry, SurfaceId};
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
-use etalon_scene::{LightKind, LightSampling, MaterialKind, Object, Scene};
+use etalon_scene::{EnvironmentImage, LightSampling, MaterialKind, Object, Scene};
 use etalon_simd::Level;
 use std::sync::Arc;
 
@@ -75,49 +73,18 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     }
     let mut environments = Vec::new();
     for light in &scene.lights {
-        match &light.kind {
-            LightKind::Point { position_m, intensity } => {
-                let position = frame.point(Vec3::from_array(*position_m));
-                let (intensity, per_m) = (spectrum(intensity), frame.per_m());
-                emitters.push(Light::Point(PointLight { position, intensity, per_m }));
-            }
-            LightKind::Spot { position_m, axis, half_angles_rad, intensity } => {
-                let position = frame.point(Vec3::from_array(*position_m));
-                let point = PointLight { position, intensity: spectrum(intensity), per_m: frame.per_m() };
-                let (axis, cosines) = (Vec3::from_array(*axis), half_angles_rad.map(f64::cos));
-                emitters.push(Light::Spot(SpotLight { point, axis, cosines }));
-            }
-            LightKind::Directional { direction, irradiance } => {
-                let toward = -Vec3::from_array(*direction);
-                emitters.push(Light::Directional(DirectionalLight { toward, irradiance: spectrum(irradiance) }));
-            }
-            LightKind::Environment { radiance } if radiance.is_zero() => {}
-            LightKind::Environment { radiance } => environments.push(Environment::from(spectrum(radiance))),
-            LightKind::ImageEnvironment(image) if image.is_zero() => {}
-            LightKind::ImageEnvironment(image) => {
-                let kept = earlier.as_ref().and_then(|earlier| earlier.image_environment(image, range_nm));
-                let light = kept.unwrap_or_else(|| Arc::new(EnvironmentLight::new(image, range_nm)));
-                if scene.integrator.light_sampling != LightSampling::Bsdf {
-                    emitters.push(Light::Environment(Arc::clone(&light)));
-                }
-                environments.push(Environment { radiance: EnvironmentRadiance::Image(light), light: None });
-            }
+        let known = |image: &EnvironmentImage| earlier.as_ref()?.image_environment(image, range_nm);
+        let (target, sky) = Light::of_scene(&light.kind, &frame, range_nm, known);
+        environments.extend(sky);
+        if light.kind.is_delta() || scene.integrator.light_sampling != LightSampling::Bsdf {
+            emitters.extend(target);
         }
     }
     if plan.forces(EffectName::Environment) {
         environments.push(PathSpectrum::Constant(0.0).into());
     }
     let lights = LightTable::new(emitters, radius, range_nm, scene.integrator.light_selection);
-    let mut skies = environments.iter_mut().filter(|sky| matches!(sky.radiance, EnvironmentRadiance::Image(_)));
-    for (index, light) in lights.lights().iter().enumerate() {
-        if let Light::Environment(light) = light {
-            let same = |sky: &&mut Environment| matches!(&sky.radiance, EnvironmentRadiance::Image(image) if Arc::ptr_eq(image, light));
-            // Both lists have them in the order of the scene.
-            if let Some(sky) = skies.find(same) {
-                sky.light = Some(index as u32);
-            }
-        }
-    }
+    Environment::number(&mut environments, lights.lights());
     let mut light_of: Vec<(SurfaceId, u32)> = lights
         .lights()
         .iter()

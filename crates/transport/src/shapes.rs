@@ -1,10 +1,7 @@
 //! The scene's shapes as the accelerator wants them, and the lights that they are.
 
 use crate::frame::{Affine, SceneFrame};
-use crate::light::{
-    CylinderLight, DiskLight, Emitter, ImageOf, Light, Link, MovingLight, ParallelogramLight, SphereLight,
-    TriangleLight,
-};
+use crate::light::{AreaLight, Emitter, ImageOf, Light, Link, MovingLight};
 use crate::motion::motion;
 use crate::prepare_error::PrepareError;
 use crate::quadric_uv::RoundCoordinates;
@@ -324,18 +321,6 @@ struct Lamps<'a> {
     lights: Vec<Light>,
 }
 
-/// The light that a shape is.
-fn light(shape: Primitive, emitter: Emitter) -> Result<Option<Light>, PrepareError> {
-    Ok(Some(match shape {
-        Primitive::Sphere(shape) => Light::Sphere(SphereLight::new(shape, emitter)),
-        Primitive::Parallelogram(shape) => Light::Parallelogram(ParallelogramLight::new(shape, emitter)),
-        Primitive::Disk(shape) => Light::Disk(DiskLight::new(shape, emitter)),
-        Primitive::Triangle(shape) => Light::Triangle(TriangleLight::new(shape, emitter)),
-        Primitive::Cylinder(shape) => Light::Cylinder(CylinderLight::new(shape, emitter)?),
-        Primitive::Instance(_) => return Ok(None),
-    }))
-}
-
 impl Lamps<'_> {
     /// Adds those of a geometry that is placed by `to_frame` and whose own primitives have the instance number `number`.
     fn add(&mut self, geometry: &Geometry, number: u32, to_frame: &Affine) -> Result<(), PrepareError> {
@@ -381,8 +366,11 @@ impl Lamps<'_> {
                     .shape(geometry.primitive(primitive))
                     .map_err(|source| PrepareError::Shape { object: object.name.clone(), source })?,
             };
-            let Some(light) = light(shape, emitter)? else { continue };
-            self.lights.push(if moves { Light::Moving(MovingLight::new(chain.clone(), light)) } else { light });
+            let Some(light) = AreaLight::new(&shape, emitter) else { continue };
+            self.lights.push(match moves {
+                true => Light::Moving(MovingLight::new(chain.clone(), light)),
+                false => Light::Area(light),
+            });
         }
         for (inner, instance) in geometry.instances() {
             self.chain.push(match instance.motion() {

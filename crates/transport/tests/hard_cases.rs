@@ -4,7 +4,7 @@ use etalon_geometry::{Parallelogram, PrimitiveId};
 use etalon_optics::Vec3;
 use etalon_oracle::laws;
 use etalon_oracle::quadrature;
-use etalon_transport::light::{Emitter, Light, ParallelogramLight};
+use etalon_transport::light::{AreaLight, Emitter, Light};
 use etalon_transport::mis::{Density, power_heuristic};
 use etalon_transport::spectral::PathSpectrum;
 use etalon_transport::{Control, Film, prepare};
@@ -25,7 +25,7 @@ fn a_square_light_fills_its_solid_angle_from_ten_thousand_sides_across_to_a_hund
             surface: PrimitiveId(0).into(),
             image: None,
         };
-        let light = Light::Parallelogram(ParallelogramLight::new(shape, emitter));
+        let light = Light::Area(AreaLight::new(&shape.into(), emitter).unwrap());
         let per_sample = |u: f64, v: f64| match light.sample(from, [u, v], 0.0).map(|sample| sample.density) {
             Some(Density::SolidAngle(density)) => 1.0 / density,
             other => panic!("a light in plain view has a density: {other:?}"),

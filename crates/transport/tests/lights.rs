@@ -1,11 +1,8 @@
 //! Lights: the density of a sample is the density that the light reports, and it is the density of the directions.
 
-use etalon_geometry::{Cylinder, Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
+use etalon_geometry::{Cylinder, Disk, Parallelogram, Primitive, PrimitiveId, Sphere, Triangle};
 use etalon_optics::Vec3;
-use etalon_transport::light::{
-    CylinderLight, DirectionalLight, DiskLight, Emitter, Light, ParallelogramLight, PointLight, SphereLight, Target,
-    TriangleLight,
-};
+use etalon_transport::light::{AreaLight, DirectionalLight, Emitter, Light, PointLight, Target};
 use etalon_transport::mis::Density;
 use etalon_transport::spectral::PathSpectrum;
 use proptest::prelude::*;
@@ -21,20 +18,24 @@ fn emitter() -> Emitter {
     }
 }
 
+fn area(shape: impl Into<Primitive>, emitter: Emitter) -> Light {
+    Light::Area(AreaLight::new(&shape.into(), emitter).unwrap())
+}
+
 fn sphere(center: Vec3<f64>, radius: f64) -> Light {
-    Light::Sphere(SphereLight::new(Sphere::new(center, radius).unwrap(), emitter()))
+    area(Sphere::new(center, radius).unwrap(), emitter())
 }
 
 fn parallelogram(corner: Vec3<f64>, a: Vec3<f64>, b: Vec3<f64>) -> Light {
-    Light::Parallelogram(ParallelogramLight::new(Parallelogram::new(corner, a, b).unwrap(), emitter()))
+    area(Parallelogram::new(corner, a, b).unwrap(), emitter())
 }
 
 fn disk(center: Vec3<f64>, normal: Vec3<f64>, radius: f64) -> Light {
-    Light::Disk(DiskLight::new(Disk::new(center, normal.normalized(), radius).unwrap(), emitter()))
+    area(Disk::new(center, normal.normalized(), radius).unwrap(), emitter())
 }
 
 fn triangle(a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>) -> Light {
-    Light::Triangle(TriangleLight::new(Triangle::new(a, b, c).unwrap(), emitter()))
+    area(Triangle::new(a, b, c).unwrap(), emitter())
 }
 
 /// Solid angle of a triangle seen from the origin (Van Oosterom & Strackee 1983).
@@ -123,10 +124,7 @@ fn flat_lights_fill_their_solid_angle() {
 fn closed_tubes_fill_their_solid_angle_from_before_a_cap_and_from_within() {
     let up = Vec3::new(0.0, 0.0, 1.0);
     for (length, radius) in [(3.0, 0.7), (5.0, 0.5), (0.9, 1.1)] {
-        let tube = |from: f64| {
-            let shape = Cylinder::new(up * from, up * (from + length), radius, true).unwrap();
-            Light::Cylinder(CylinderLight::new(shape, emitter()).unwrap())
-        };
+        let tube = |from: f64| area(Cylinder::new(up * from, up * (from + length), radius, true).unwrap(), emitter());
         // The midpoint rule loses an order where walls end and caps begin, and its cells are skew on both: errors as of so many
         // random points, 1/n times a few. The walls are hidden by the near cap.
         let cap = 2.0 * PI * (1.0 - 1.0 / (1.0 + radius * radius).sqrt());
@@ -142,13 +140,10 @@ fn a_surface_shines_only_from_the_sides_that_emit_and_not_along_itself() {
     let of_sides = |front, back| {
         let emitter = || Emitter { front, back, ..emitter() };
         [
-            Light::Parallelogram(ParallelogramLight::new(
-                Parallelogram::new(-x - y, x * 2.0, y * 2.0).unwrap(),
-                emitter(),
-            )),
-            Light::Triangle(TriangleLight::new(Triangle::new(-x - y, x, y).unwrap(), emitter())),
-            Light::Disk(DiskLight::new(Disk::new(Vec3::ZERO, up, 1.0).unwrap(), emitter())),
-            Light::Cylinder(CylinderLight::new(tube.clone(), emitter()).unwrap()),
+            area(Parallelogram::new(-x - y, x * 2.0, y * 2.0).unwrap(), emitter()),
+            area(Triangle::new(-x - y, x, y).unwrap(), emitter()),
+            area(Disk::new(Vec3::ZERO, up, 1.0).unwrap(), emitter()),
+            area(tube.clone(), emitter()),
         ]
     };
     // Before the front of each, behind it, and for what is flat in its plane; out of the tube and in it.

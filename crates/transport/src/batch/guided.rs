@@ -7,7 +7,7 @@ use crate::caustics::{
     Aimed, Ball, DirectionTarget, Eye, GuidedTarget, GuidedTargets, MAX_SPECULAR_IMAGES, MOST_BODIES, Mixture, Shows,
     SpecularImage, VisibleImages, density_of, is_within, place_within, share_of, specular_image_share,
 };
-use crate::light::Round;
+use etalon_geometry::SphereSampler;
 use etalon_optics::Vec3;
 
 /// What guided targets make of the directions of a set. Kept from vertex to vertex.
@@ -140,8 +140,8 @@ impl GuidedDirections {
         let (bodies, each) = guided_targets.bodies_aimed_at();
         for (body, shares) in bodies.iter().zip(&mut self.bodies.shares) {
             match body {
-                GuidedTarget::Sphere(round) => {
-                    portion(level, round, each, surface, self.diffuse, shares, &mut self.part)
+                GuidedTarget::Sphere(sphere) => {
+                    portion(level, sphere, each, surface, self.diffuse, shares, &mut self.part)
                 }
                 GuidedTarget::Box(body) => portion(level, body, each, surface, self.diffuse, shares, &mut self.part),
             }
@@ -200,14 +200,13 @@ impl GuidedDirections {
         face(level, surface, wi, cos, self);
         for (number, body) in bodies.iter().enumerate() {
             match body {
-                GuidedTarget::Sphere(round) => {
+                GuidedTarget::Sphere(sphere) => {
                     let mut met = [false; W];
-                    meet(level, round, surface.0, wi, &mut met);
+                    meet(level, sphere, surface.0, wi, &mut met);
                     for lane in 0..W {
                         let share = self.bodies.shares[number].0[lane];
                         if met[lane] && share > 0.0 {
-                            self.factor.0[lane] +=
-                                density_of(share, DirectionTarget::density(round, surface.0.at(lane), wi.at(lane)));
+                            self.factor.0[lane] += density_of(share, sphere.density(surface.0.at(lane), wi.at(lane)));
                         }
                     }
                 }
@@ -347,9 +346,9 @@ stages! {
     }
 
     /// Whether directions meet a sphere.
-    fn meet(round: &Round, position: &Rows3, wi: &Rows3, met: &mut [bool; W]) {
+    fn meet(sphere: &SphereSampler, position: &Rows3, wi: &Rows3, met: &mut [bool; W]) {
         for lane in 0..W {
-            met[lane] = round.is_met(position.at(lane), wi.at(lane));
+            met[lane] = sphere.is_met(position.at(lane), wi.at(lane));
         }
     }
 

@@ -2,7 +2,8 @@
 
 use super::level::{Level, stages};
 use super::rows::{Mask, Row, Rows3, W};
-use crate::light::{Aim, Flat, Light, Round};
+use crate::light::{Light, LightSample};
+use etalon_geometry::{PlanarSampler, ShapeSample, ShapeSampler, SphereSampler, SurfaceId};
 use etalon_optics::Vec3;
 
 /// Flat lights, one for each path.
@@ -25,6 +26,7 @@ pub(super) struct SphereLights {
     pub mask: Mask,
     centre: Rows3,
     radius: Row,
+    /// Whether their outside emits.
     front: [bool; W],
 }
 
@@ -58,36 +60,46 @@ impl PlanarLights {
     /// The light that a path looks at, if it is flat.
     #[inline(always)]
     pub(super) fn put(&mut self, lane: usize, light: &Light) {
-        if let Some(flat) = light.flat() {
-            self.mask |= 1 << lane;
-            self.set(lane, &flat);
-        } else if let Some(disk) = light.disk() {
-            self.disks |= 1 << lane;
-            self.set(lane, &disk);
+        let Some(light) = light.area() else { return };
+        match &light.shape {
+            ShapeSampler::Planar(shape) => {
+                self.mask |= 1 << lane;
+                self.set(lane, shape);
+            }
+            ShapeSampler::Disk(disk) => {
+                self.disks |= 1 << lane;
+                self.set(lane, &disk.sampler());
+            }
+            _ => return,
         }
+        (self.front[lane], self.back[lane]) = (light.emitter.front, light.emitter.back);
     }
 
     #[inline(always)]
-    fn set(&mut self, lane: usize, light: &Flat) {
-        self.corner.set(lane, light.corner);
-        self.edges[0].set(lane, light.edges[0]);
-        self.edges[1].set(lane, light.edges[1]);
-        self.normal.set(lane, light.normal);
-        self.area.0[lane] = light.area;
-        (self.half[lane], self.front[lane], self.back[lane]) = (light.half, light.front, light.back);
+    fn set(&mut self, lane: usize, shape: &PlanarSampler) {
+        self.corner.set(lane, shape.corner);
+        self.edges[0].set(lane, shape.edges[0]);
+        self.edges[1].set(lane, shape.edges[1]);
+        self.normal.set(lane, shape.normal);
+        self.area.0[lane] = shape.area;
+        self.half[lane] = shape.half;
     }
 
     #[inline(always)]
-    fn at(&self, lane: usize) -> Flat {
-        Flat {
+    fn at(&self, lane: usize) -> PlanarSampler {
+        PlanarSampler {
             corner: self.corner.at(lane),
             edges: [self.edges[0].at(lane), self.edges[1].at(lane)],
             normal: self.normal.at(lane),
             area: self.area.0[lane],
             half: self.half[lane],
-            front: self.front[lane],
-            back: self.back[lane],
         }
+    }
+
+    /// Whether a sample sees a side that emits.
+    #[inline(always)]
+    fn is_lit(&self, lane: usize, sample: &ShapeSample) -> bool {
+        sample.valid & if sample.front { self.front[lane] } else { self.back[lane] }
     }
 }
 
@@ -102,11 +114,18 @@ impl SphereLights {
     /// The light that a path looks at, if it is a sphere.
     #[inline(always)]
     pub(super) fn put(&mut self, lane: usize, light: &Light) {
-        if let Some(light) = light.round() {
+        let Some(light) = light.area() else { return };
+        if let ShapeSampler::Sphere(sphere) = &light.shape {
+            let SphereSampler { centre, radius } = sphere.sampler();
             self.mask |= 1 << lane;
-            self.centre.set(lane, light.centre);
-            (self.radius.0[lane], self.front[lane]) = (light.radius, light.front);
+            self.centre.set(lane, centre);
+            (self.radius.0[lane], self.front[lane]) = (radius, light.emitter.front);
         }
+    }
+
+    #[inline(always)]
+    fn at(&self, lane: usize) -> SphereSampler {
+        SphereSampler { centre: self.centre.at(lane), radius: self.radius.0[lane] }
     }
 }
 
@@ -114,29 +133,29 @@ impl LightSamples {
     pub(super) const NONE: Self = Self { point: Rows3::ZERO, wi: Rows3::ZERO, density: Row::ZERO, lit: [false; W] };
 
     #[inline(always)]
-    fn put(&mut self, lane: usize, aim: &Aim) {
-        self.point.set(lane, aim.point);
-        self.wi.set(lane, aim.wi);
-        self.density.0[lane] = aim.density;
-        self.lit[lane] = aim.lit;
+    fn put(&mut self, lane: usize, sample: &ShapeSample, lit: bool) {
+        self.point.set(lane, sample.point);
+        self.wi.set(lane, sample.wi);
+        self.density.0[lane] = sample.density;
+        self.lit[lane] = lit;
     }
 
+    /// The same if `condition` holds, without a branch.
     #[inline(always)]
-    pub(super) fn at(&self, lane: usize) -> Aim {
-        Aim { point: self.point.at(lane), wi: self.wi.at(lane), density: self.density.0[lane], lit: self.lit[lane] }
+    fn put_if(&mut self, condition: bool, lane: usize, sample: &ShapeSample, lit: bool) {
+        let number = |a: f64, b: f64| if condition { a } else { b };
+        let vector = |a: Vec3<f64>, b: Vec3<f64>| Vec3::new(number(a.x, b.x), number(a.y, b.y), number(a.z, b.z));
+        self.point.set(lane, vector(sample.point, self.point.at(lane)));
+        self.wi.set(lane, vector(sample.wi, self.wi.at(lane)));
+        self.density.0[lane] = number(sample.density, self.density.0[lane]);
+        self.lit[lane] = (condition & lit) | (!condition & self.lit[lane]);
     }
-}
 
-/// The first if `condition` holds, else the second, without a branch.
-#[inline(always)]
-fn choose_aim(condition: bool, a: &Aim, b: &Aim) -> Aim {
-    let number = |a: f64, b: f64| if condition { a } else { b };
-    let vector = |a: Vec3<f64>, b: Vec3<f64>| Vec3::new(number(a.x, b.x), number(a.y, b.y), number(a.z, b.z));
-    Aim {
-        point: vector(a.point, b.point),
-        wi: vector(a.wi, b.wi),
-        density: number(a.density, b.density),
-        lit: (condition & a.lit) | (!condition & b.lit),
+    /// What a path sees of the light of this surface; `None` where that is dark.
+    #[inline(always)]
+    pub(super) fn sample(&self, lane: usize, surface: SurfaceId) -> Option<LightSample> {
+        let (point, wi, density) = (self.point.at(lane), self.wi.at(lane), self.density.0[lane]);
+        self.lit[lane].then_some(LightSample::on_surface(point, wi, density, surface))
     }
 }
 
@@ -144,26 +163,26 @@ stages! {
     /// Points of lights as they are seen.
     fn aim(from: &Rows3, u: [&[f64; W]; 2], lights: &PlanarLights, light_samples: &mut LightSamples) {
         for lane in 0..W {
-            light_samples.put(lane, &lights.at(lane).aim(from.at(lane), [u[0][lane], u[1][lane]]));
+            let sample = lights.at(lane).sample(from.at(lane), [u[0][lane], u[1][lane]]);
+            light_samples.put(lane, &sample, lights.is_lit(lane, &sample));
         }
     }
 
     /// Points of disks as they are seen, in place of those that are there.
     fn aim_at_disks(from: &Rows3, u: [&[f64; W]; 2], lights: &PlanarLights, light_samples: &mut LightSamples) {
         for lane in 0..W {
-            let aim = lights.at(lane).aim_at_disk(from.at(lane), [u[0][lane], u[1][lane]]);
-            light_samples.put(lane, &choose_aim(lights.disks >> lane & 1 == 1, &aim, &light_samples.at(lane)));
+            let sample = lights.at(lane).sample_disk(from.at(lane), [u[0][lane], u[1][lane]]);
+            light_samples.put_if(lights.disks >> lane & 1 == 1, lane, &sample, lights.is_lit(lane, &sample));
         }
     }
 
     /// Points of spheres as they are seen from outside, in place of those that are there; and who is outside.
-    fn aim_at_rounds(from: &Rows3, u: [&[f64; W]; 2], lights: &SphereLights, light_samples: &mut LightSamples, outside: &mut [bool; W]) {
+    fn aim_at_spheres(from: &Rows3, u: [&[f64; W]; 2], lights: &SphereLights, light_samples: &mut LightSamples, outside: &mut [bool; W]) {
         for lane in 0..W {
-            let (centre, radius) = (lights.centre.at(lane), lights.radius.0[lane]);
-            let round = Round { centre, radius, front: lights.front[lane] };
-            let aim = round.aim(from.at(lane), [u[0][lane], u[1][lane]]);
-            outside[lane] = round.is_outside(from.at(lane));
-            light_samples.put(lane, &choose_aim(lights.mask >> lane & 1 == 1, &aim, &light_samples.at(lane)));
+            let sphere = lights.at(lane);
+            let sample = sphere.sample(from.at(lane), [u[0][lane], u[1][lane]]);
+            outside[lane] = sphere.is_outside(from.at(lane));
+            light_samples.put_if(lights.mask >> lane & 1 == 1, lane, &sample, lights.front[lane] & sample.valid);
         }
     }
 }

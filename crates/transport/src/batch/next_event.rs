@@ -2,7 +2,7 @@
 
 use super::Batch;
 use super::arrive::of_group;
-use super::lamps::{LightSamples, PlanarLights, SphereLights, aim, aim_at_disks, aim_at_rounds};
+use super::lamps::{LightSamples, PlanarLights, SphereLights, aim, aim_at_disks, aim_at_spheres};
 use super::level::{Level, stages};
 use super::paths::vertex;
 use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes, surface_point};
@@ -66,7 +66,7 @@ impl Lights {
         let (light, probability) = (self.light[lane], self.probability.0[lane]);
         if self.rows >> lane & 1 == 1 {
             let lambert = Some(LambertTerms { cos: self.cos.0[lane], weight: self.weight.0[lane] });
-            let sample = self.light_samples.at(lane).sample(self.surface[lane])?;
+            let sample = self.light_samples.sample(lane, self.surface[lane])?;
             return Some(LightDraw { light, probability, sample, lambert });
         }
         let sample = self.others[lane]?;
@@ -124,7 +124,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         let mut rows = draws.planar.mask | draws.planar.disks;
         if draws.spheres.mask & shared != 0 {
             let mut outside = [false; W];
-            aim_at_rounds(
+            aim_at_spheres(
                 self.level,
                 &paths.position,
                 [u1, u2],

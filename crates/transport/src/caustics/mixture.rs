@@ -204,7 +204,7 @@ impl GuidedTargets {
         let (mut part, mut toward) = (0.0, None);
         for (body, share) in bodies.iter().zip(&mut shares) {
             *share = match body {
-                GuidedTarget::Sphere(round) => share_of(round, each, from, n),
+                GuidedTarget::Sphere(sphere) => share_of(sphere, each, from, n),
                 GuidedTarget::Box(body) => share_of(body, each, from, n),
             };
             if is_within(u1, part, *share) {
@@ -232,7 +232,7 @@ impl GuidedTargets {
         }
         let of_bodies = bodies.iter().zip(shares).fold(0.0, |sum, (body, share)| {
             sum + match body {
-                GuidedTarget::Sphere(round) => density_of(share, round.density_of(from, wi)),
+                GuidedTarget::Sphere(sphere) => density_of(share, sphere.density(from, wi)),
                 GuidedTarget::Box(body) => density_of(share, body.density(from, wi)),
             }
         });

@@ -8,8 +8,8 @@
 //! What an image brings can be told without knowing where it is, if roughly, and most directions meet no ball. So every point asks
 //! every image for its weight, but only the one that it aims at, and those that a direction shows, are found.
 
-use crate::light::Round;
 use crate::warp::concentric_disk;
+use etalon_geometry::SphereSampler;
 use etalon_optics::Vec3;
 use std::f64::consts::PI;
 
@@ -92,7 +92,7 @@ pub(crate) struct HandedOn {
 }
 
 impl Ball {
-    pub(crate) fn new(ball: Round, shows: Shows) -> Self {
+    pub(crate) fn new(ball: SphereSampler, shows: Shows) -> Self {
         Self { centre: ball.centre.cast(), radius: ball.radius as f32, shows }
     }
 
@@ -146,7 +146,7 @@ fn refract(direction: Vec3<f32>, n: Vec3<f32>, eta: f32) -> Vec3<f32> {
 
 impl SpecularImage {
     /// `radiance`: relative to the brightest lamp.
-    pub(crate) fn new(ball: Ball, lamp: Round, radiance: f64) -> Self {
+    pub(crate) fn new(ball: Ball, lamp: SphereSampler, radiance: f64) -> Self {
         let to_lamp = lamp.centre - ball.centre.to_f64();
         let lamp_distance = to_lamp.length();
         Self {

@@ -5,13 +5,12 @@ mod specular_images;
 
 use super::{DirectionTarget, GuidedBy, GuidedTarget, Hull};
 use crate::film::{PixelRect, XyzSum};
-use crate::light::Round;
 use crate::plan::PathLoop;
 use crate::prepare::Prepared;
 use crate::sampler::mix;
 use crate::warp::uniform_sphere;
 use crate::{Study, prepare_study};
-use etalon_geometry::Aabb;
+use etalon_geometry::{Aabb, SphereSampler};
 use etalon_optics::Vec3;
 
 /// Numbers in [0, 1).
@@ -71,14 +70,14 @@ fn draws_are_sound(aim: &dyn Fn([f64; 2]) -> Vec3<f64>, density: &dyn Fn(Vec3<f6
 fn directions_toward_spheres_and_boxes_have_their_densities_and_wrong_densities_are_noticed() {
     let hull =
         |min: [f64; 3], max: [f64; 3]| Hull::from(Aabb { min: Vec3::from_array(min), max: Vec3::from_array(max) });
-    let round = Round { centre: Vec3::new(0.2, -0.1, 0.4), radius: 0.7, front: true };
+    let sphere = SphereSampler { centre: Vec3::new(0.2, -0.1, 0.4), radius: 0.7 };
     // One face seen, two, three; near and far.
     for (seed, from) in [[0.1, 1.5, 0.3], [2.0, 1.1, 0.1], [-1.5, -2.0, 3.0], [0.3, -0.9, 0.2]].into_iter().enumerate()
     {
         let (from, seed) = (Vec3::from_array(from), 10 * seed as u64);
         let body = hull([-0.5, -0.6, -0.2], [0.6, 0.4, 0.9]);
         assert!(is_sound(&body, &|wi| body.density(from, wi), from, seed), "box from {from:?}");
-        assert!(is_sound(&round, &|wi| DirectionTarget::density(&round, from, wi), from, seed), "sphere from {from:?}");
+        assert!(is_sound(&sphere, &|wi| sphere.density(from, wi), from, seed), "sphere from {from:?}");
     }
     // From near, where few draws are needed to tell: a tenth too much, and the right sum with a lean to one side.
     let (body, from) = (hull([-0.5, -0.6, -0.2], [0.6, 0.4, 0.9]), Vec3::new(0.3, -0.9, 0.2));
@@ -117,7 +116,7 @@ fn a_box_far_away_is_drawn_evenly() {
 #[test]
 fn what_is_behind_a_surface_or_around_a_point_is_not_seen() {
     let up = Vec3::new(0.0, 0.0, 1.0);
-    let round = Round { centre: Vec3::new(0.0, 0.0, 2.0), radius: 1.0, front: true };
+    let sphere = SphereSampler { centre: Vec3::new(0.0, 0.0, 2.0), radius: 1.0 };
     let hull = Hull::from(Aabb { min: Vec3::new(-1.0, -1.0, 1.0), max: Vec3::new(1.0, 1.0, 3.0) });
     for (from, n, seen) in [
         (Vec3::ZERO, up, true),
@@ -125,7 +124,7 @@ fn what_is_behind_a_surface_or_around_a_point_is_not_seen() {
         (Vec3::new(0.0, 0.0, 2.5), up, false),
         (Vec3::new(4.0, 0.0, 2.0), up, true),
     ] {
-        assert_eq!((round.is_seen(from, n), hull.is_seen(from, n)), (seen, seen), "{from:?}, {n:?}");
+        assert_eq!((sphere.is_seen(from, n), hull.is_seen(from, n)), (seen, seen), "{from:?}, {n:?}");
     }
 }
 
@@ -164,7 +163,7 @@ fn room(path_loop: PathLoop) -> Prepared {
 fn level(prepared: &Prepared) -> (f64, f64) {
     let tile = PixelRect { x0: 0, y0: 0, x1: 8, y1: 8 };
     let mut sums = prepared.film().tile(tile);
-    prepared.render_tile(tile, 0..prepared.scene.integrator.spp, sums.borrow());
+    prepared.render_tile(tile, 0..prepared.scene.integrator.spp, &mut sums);
     let of_replicate =
         |r: usize| sums.xyz.iter().skip(r).step_by(16).map(|sum| sum.xyz[1] / f64::from(sum.count)).sum::<f64>() / 64.0;
     let (mean, error) = mean(16, {
@@ -220,7 +219,7 @@ fn noise(prepared: &Prepared) -> f64 {
     let film = &prepared.scene.film;
     let tile = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let mut sums = prepared.film().tile(tile);
-    prepared.render_tile(tile, 0..prepared.scene.integrator.spp, sums.borrow());
+    prepared.render_tile(tile, 0..prepared.scene.integrator.spp, &mut sums);
     let of_pixel = |replicates: &[XyzSum]| {
         let mut y = replicates.iter().map(|sum| sum.xyz[1] / f64::from(sum.count));
         let (mean, error) = mean(16, || y.next().unwrap());

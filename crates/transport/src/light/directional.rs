@@ -1,10 +1,11 @@
 //! Parallel light: irradiance E on a plane at right angles to it.
 
-use super::{LightSample, Target};
+use super::{LightSample, LightSource, Target};
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::SurfaceId;
 use etalon_optics::Vec3;
+use std::f64::consts::PI;
 
 /// Parallel light.
 #[derive(Clone, Debug)]
@@ -15,15 +16,23 @@ pub struct DirectionalLight {
     pub irradiance: PathSpectrum,
 }
 
-impl DirectionalLight {
-    pub(super) fn sample(&self) -> LightSample {
-        LightSample {
+impl LightSource for DirectionalLight {
+    fn sample(&self, _from: Vec3<f64>, _u: [f64; 2], _time: f64) -> Option<LightSample> {
+        Some(LightSample {
             colour: None,
             wi: self.toward,
             density: Density::Delta,
             target: Target::Infinity,
             surface: SurfaceId::NONE,
             scale: 1.0,
-        }
+        })
+    }
+
+    fn spectrum(&self) -> &PathSpectrum {
+        &self.irradiance
+    }
+
+    fn power_factor(&self, scene_radius: f64) -> f64 {
+        PI * scene_radius * scene_radius
     }
 }

@@ -3,7 +3,7 @@
 mod equal_area;
 mod meridians;
 
-use super::{LightSample, Target};
+use super::{LightSample, LightSource, Target};
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use equal_area::EqualArea;
@@ -11,6 +11,7 @@ use etalon_geometry::SurfaceId;
 use etalon_optics::{Real, Vec3};
 use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image};
 use meridians::Meridians;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Light from infinity by the colours of an image.
@@ -73,7 +74,7 @@ impl EnvironmentLight {
     }
 
     /// ∫ of the luminance over all directions, sr: what the white would have to shine with from one.
-    pub(super) fn total(&self) -> f64 {
+    fn total(&self) -> f64 {
         match &self.map {
             Map::Meridians(map) => map.total(),
             Map::EqualArea(map) => map.total(),
@@ -90,8 +91,13 @@ impl EnvironmentLight {
         }
     }
 
-    /// Draws a direction with `u` in [0, 1)².
-    pub(super) fn sample(&self, u: [f64; 2]) -> Option<LightSample> {
+    fn along(&self, wi: Vec3<f64>) -> Along {
+        Along { forward: wi.dot(self.forward), right: wi.dot(self.right), up: wi.dot(self.up) }
+    }
+}
+
+impl LightSource for EnvironmentLight {
+    fn sample(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
         let Along { forward, right, up } = match &self.map {
             Map::Meridians(map) => map.sample(&self.image, u),
             Map::EqualArea(map) => map.sample(u),
@@ -108,6 +114,23 @@ impl EnvironmentLight {
             surface: SurfaceId::NONE,
             scale: 1.0,
         })
+    }
+
+    fn density(&self, _from: Vec3<f64>, wi: Vec3<f64>, _time: f64) -> f64 {
+        self.look(wi).density
+    }
+
+    /// That of its white.
+    fn spectrum(&self) -> &PathSpectrum {
+        &self.white
+    }
+
+    fn can_be_met(&self) -> bool {
+        true
+    }
+
+    fn power_factor(&self, scene_radius: f64) -> f64 {
+        self.total() * PI * scene_radius * scene_radius
     }
 }
 

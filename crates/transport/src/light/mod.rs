@@ -1,43 +1,34 @@
 //! Lights that shadow rays aim at: one kind a file, one door, [`Light`].
 //!
-//! Everything here is computed in `f64`, which solid angles of near, far and enclosing lights need. A density is always a function of the reference point and the direction
-//! alone, the same function for a sampled direction and for one that the BSDF found: the two can not disagree.
+//! Everything here is computed in `f64`. A density is always a function of the reference point and the direction alone, the same function
+//! for a sampled direction and for one that the BSDF found: the two can not disagree.
 
-mod cylinder;
+mod area;
 mod directional;
-mod disk;
 mod environment;
 mod moving;
-mod parallelogram;
-mod planar;
 mod point;
-mod sphere;
 mod spot;
 mod table;
 mod tree;
-mod triangle;
 
-pub use cylinder::CylinderLight;
+pub use area::{AreaLight, Emitter, ImageOf};
 pub use directional::DirectionalLight;
-pub use disk::DiskLight;
 pub use environment::{EnvironmentLight, Look};
 pub use moving::MovingLight;
-pub use parallelogram::ParallelogramLight;
 pub use point::PointLight;
-pub use sphere::SphereLight;
 pub use spot::SpotLight;
 pub use table::LightTable;
-pub use triangle::TriangleLight;
 
 pub(crate) use moving::Link;
-pub(crate) use planar::{Aim, Flat};
-pub(crate) use sphere::Round;
 pub(crate) use table::visible_sum;
 
+use crate::frame::SceneFrame;
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
-use etalon_geometry::{Aabb, SurfaceId};
-use etalon_optics::Vec3;
+use etalon_geometry::SurfaceId;
+use etalon_optics::{Spectrum, Vec3};
+use etalon_scene::{EnvironmentImage, LightKind};
 use std::sync::Arc;
 use tree::LightBounds;
 
@@ -77,19 +68,40 @@ pub struct LightSample {
     pub colour: Option<[f64; 3]>,
 }
 
+/// What each kind of light answers; see the methods of [`Light`].
+trait LightSource {
+    fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample>;
+
+    /// 0 of a light whose position or direction is a single one.
+    fn density(&self, _from: Vec3<f64>, _wi: Vec3<f64>, _time: f64) -> f64 {
+        0.0
+    }
+
+    fn spectrum(&self) -> &PathSpectrum;
+
+    /// Only for lights with a surface.
+    fn emitter(&self) -> Option<&Emitter> {
+        None
+    }
+
+    fn can_be_met(&self) -> bool {
+        self.emitter().is_some()
+    }
+
+    /// Where it is and where it shines, with a power of 1; `None` if it is nowhere, or not always at one place.
+    fn bounds(&self) -> Option<LightBounds> {
+        None
+    }
+
+    /// What the spectrum is to be multiplied by for the light's power in a scene of this radius.
+    fn power_factor(&self, scene_radius: f64) -> f64;
+}
+
 /// A light that shadow rays aim at.
 #[derive(Clone, Debug)]
 pub enum Light {
-    /// An emitting sphere.
-    Sphere(SphereLight),
-    /// An emitting parallelogram.
-    Parallelogram(ParallelogramLight),
-    /// An emitting disk.
-    Disk(DiskLight),
-    /// An emitting triangle.
-    Triangle(TriangleLight),
-    /// An emitting cylinder.
-    Cylinder(CylinderLight),
+    /// A shape whose surface emits.
+    Area(AreaLight),
     /// A point.
     Point(PointLight),
     /// A point that shines into a cone.
@@ -98,158 +110,103 @@ pub enum Light {
     Directional(DirectionalLight),
     /// An image of everything around.
     Environment(Arc<EnvironmentLight>),
-    /// An emitter that moves.
+    /// A shape whose surface emits and that moves.
     Moving(MovingLight),
+}
+
+macro_rules! each {
+    ($of:expr, $light:ident => $result:expr) => {
+        match $of {
+            Light::Area($light) => $result,
+            Light::Point($light) => $result,
+            Light::Spot($light) => $result,
+            Light::Directional($light) => $result,
+            Light::Environment($light) => {
+                let $light = $light.as_ref();
+                $result
+            }
+            Light::Moving($light) => $result,
+        }
+    };
 }
 
 impl Light {
     /// Draws a direction from `from` toward the light with `u` in [0, 1)² at a time of the shutter's, from 0 to 1; `None` where
     /// none of its light arrives.
     pub fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
-        match self {
-            Self::Sphere(light) => light.sample(from, u),
-            Self::Parallelogram(light) => light.sample(from, u),
-            Self::Disk(light) => light.sample(from, u),
-            Self::Triangle(light) => light.sample(from, u),
-            Self::Cylinder(light) => light.sample(from, u),
-            Self::Point(light) => light.sample(from),
-            Self::Spot(light) => light.sample(from),
-            Self::Directional(light) => Some(light.sample()),
-            Self::Environment(light) => light.sample(u),
-            Self::Moving(light) => light.sample(from, u, time),
-        }
-    }
-
-    /// The light as far as its points and their densities depend on it, where it is a parallelogram or a triangle.
-    #[inline]
-    pub(crate) fn flat(&self) -> Option<Flat> {
-        match self {
-            Self::Parallelogram(light) => Some(light.flat()),
-            Self::Triangle(light) => Some(light.flat()),
-            _ => None,
-        }
-    }
-
-    /// The same of a disk: its middle and two radii stand for the corner and the edges.
-    #[inline]
-    pub(crate) fn disk(&self) -> Option<Flat> {
-        match self {
-            Self::Disk(light) => Some(light.flat()),
-            _ => None,
-        }
-    }
-
-    /// The same of a sphere.
-    #[inline]
-    pub(crate) fn round(&self) -> Option<Round> {
-        match self {
-            Self::Sphere(light) => Some(light.round()),
-            _ => None,
-        }
+        each!(self, light => LightSource::sample(light, from, u, time))
     }
 
     /// The density in sr⁻¹ with which [`Light::sample`] draws the direction `wi`, which meets the light at that time, from `from`.
     pub fn density(&self, from: Vec3<f64>, wi: Vec3<f64>, time: f64) -> f64 {
-        match self {
-            Self::Sphere(light) => light.density(from),
-            Self::Parallelogram(light) => light.density(from, wi),
-            Self::Disk(light) => light.density(from, wi),
-            Self::Triangle(light) => light.density(from, wi),
-            Self::Cylinder(light) => light.density(from, wi),
-            Self::Environment(light) => light.look(wi).density,
-            Self::Moving(light) => light.density(from, wi, time),
-            Self::Point(_) | Self::Spot(_) | Self::Directional(_) => 0.0,
-        }
+        each!(self, light => LightSource::density(light, from, wi, time))
     }
 
     /// The spectrum that [`LightSample::scale`] multiplies; of an image, that of its white.
     pub fn spectrum(&self) -> &PathSpectrum {
-        match self {
-            Self::Sphere(light) => &light.emitter.radiance,
-            Self::Parallelogram(light) => &light.emitter.radiance,
-            Self::Disk(light) => &light.emitter.radiance,
-            Self::Triangle(light) => &light.emitter.radiance,
-            Self::Cylinder(light) => &light.emitter.radiance,
-            Self::Point(light) => &light.intensity,
-            Self::Spot(light) => &light.point.intensity,
-            Self::Directional(light) => &light.irradiance,
-            Self::Environment(light) => light.white(),
-            Self::Moving(light) => light.own().spectrum(),
-        }
+        each!(self, light => LightSource::spectrum(light))
     }
 
     /// What an emitting surface emits; `None` for a light without a surface.
+    #[inline]
     pub fn emitter(&self) -> Option<&Emitter> {
+        each!(self, light => LightSource::emitter(light))
+    }
+
+    /// The shape and what it emits, of a light with a surface that does not move.
+    #[inline]
+    pub(crate) fn area(&self) -> Option<&AreaLight> {
         match self {
-            Self::Sphere(light) => Some(&light.emitter),
-            Self::Parallelogram(light) => Some(&light.emitter),
-            Self::Disk(light) => Some(&light.emitter),
-            Self::Triangle(light) => Some(&light.emitter),
-            Self::Cylinder(light) => Some(&light.emitter),
-            Self::Moving(light) => light.emitter(),
-            Self::Point(_) | Self::Spot(_) | Self::Directional(_) | Self::Environment(_) => None,
+            Self::Area(light) => Some(light),
+            _ => None,
         }
     }
 
-    /// Where it is and where it shines, with a power of 1; `None` if it is nowhere, or not always at one place.
-    fn place(&self) -> Option<LightBounds> {
-        let x = Vec3::new(1.0, 0.0, 0.0);
-        let surface = |bounds: Aabb, emitter: &Emitter, normal: Option<Vec3<f64>>| LightBounds {
-            bounds,
-            axis: normal.map_or(x, |normal| if emitter.front { normal } else { -normal }),
-            // Normals of what is round point everywhere.
-            cos_normals: if normal.is_some() { 1.0 } else { -1.0 },
-            cos_shines: 0.0,
-            both_sides: emitter.front && emitter.back,
-            power: 1.0,
-        };
-        let point = |position| LightBounds {
-            bounds: Aabb { min: position, max: position },
-            axis: x,
-            cos_normals: -1.0,
-            cos_shines: 0.0,
-            both_sides: false,
-            power: 1.0,
-        };
-        match self {
-            Self::Sphere(light) => Some(surface(light.bounds(), &light.emitter, None)),
-            Self::Cylinder(light) => Some(surface(light.bounds(), &light.emitter, None)),
-            Self::Disk(light) => Some(surface(light.bounds(), &light.emitter, Some(light.normal()))),
-            Self::Parallelogram(light) => {
-                Some(surface(light.flat().bounds(), &light.emitter, Some(light.flat().normal)))
-            }
-            Self::Triangle(light) => Some(surface(light.flat().bounds(), &light.emitter, Some(light.flat().normal))),
-            Self::Point(light) => Some(point(light.position)),
-            Self::Spot(light) => Some(LightBounds {
-                axis: light.axis,
-                cos_normals: light.cosines[0],
-                cos_shines: light.cos_beyond_inner(),
-                ..point(light.point.position)
-            }),
-            Self::Directional(_) | Self::Environment(_) | Self::Moving(_) => None,
-        }
+    fn bounds(&self) -> Option<LightBounds> {
+        each!(self, light => LightSource::bounds(light))
     }
 
     /// Whether a path may run into it.
     pub fn can_be_met(&self) -> bool {
-        self.emitter().is_some() || matches!(self, Self::Environment(_))
+        each!(self, light => LightSource::can_be_met(light))
     }
 
-    /// What the spectrum is to be multiplied by for the light's power in a scene of this radius.
     fn power_factor(&self, scene_radius: f64) -> f64 {
-        use std::f64::consts::PI;
-        match self {
-            Self::Sphere(light) => light.emitter.brightness() * PI * light.area(),
-            Self::Parallelogram(light) => light.emitter.brightness() * PI * light.area(),
-            Self::Disk(light) => light.emitter.brightness() * PI * light.area(),
-            Self::Triangle(light) => light.emitter.brightness() * PI * light.area(),
-            Self::Cylinder(light) => light.emitter.brightness() * PI * light.area(),
-            Self::Point(light) => 4.0 * PI * light.per_m * light.per_m,
-            Self::Spot(light) => light.power_factor(),
-            Self::Directional(_) => PI * scene_radius * scene_radius,
-            Self::Environment(light) => light.total() * PI * scene_radius * scene_radius,
-            Self::Moving(light) => light.own().power_factor(scene_radius) * light.area_factor(),
-        }
+        each!(self, light => LightSource::power_factor(light, scene_radius))
+    }
+
+    /// What shadow rays aim at of a light of the scene without a surface, and what paths find of it that leave the scene. Directions
+    /// are of the world, positions and lengths in the frame. `known` finds the light of an image that was made before.
+    pub(crate) fn of_scene(
+        kind: &LightKind,
+        frame: &SceneFrame,
+        range_nm: [f64; 2],
+        known: impl Fn(&EnvironmentImage) -> Option<Arc<EnvironmentLight>>,
+    ) -> (Option<Self>, Option<Environment>) {
+        let spectrum = |spectrum: &Spectrum| PathSpectrum::new(spectrum, range_nm);
+        let target = match kind {
+            LightKind::Point { position_m, intensity } => {
+                Self::Point(PointLight::new(*position_m, spectrum(intensity), frame))
+            }
+            LightKind::Spot { position_m, axis, half_angles_rad, intensity } => Self::Spot(SpotLight {
+                point: PointLight::new(*position_m, spectrum(intensity), frame),
+                axis: Vec3::from_array(*axis),
+                cosines: half_angles_rad.map(f64::cos),
+            }),
+            LightKind::Directional { direction, irradiance } => Self::Directional(DirectionalLight {
+                toward: -Vec3::from_array(*direction),
+                irradiance: spectrum(irradiance),
+            }),
+            // A black sky is none.
+            _ if kind.is_zero() => return (None, None),
+            LightKind::Environment { radiance } => return (None, Some(spectrum(radiance).into())),
+            LightKind::ImageEnvironment(image) => {
+                let light = known(image).unwrap_or_else(|| Arc::new(EnvironmentLight::new(image, range_nm)));
+                let radiance = EnvironmentRadiance::Image(Arc::clone(&light));
+                return (Some(Self::Environment(light)), Some(Environment { radiance, light: None }));
+            }
+        };
+        (Some(target), None)
     }
 }
 
@@ -271,6 +228,21 @@ pub(crate) enum EnvironmentRadiance {
     Image(Arc<EnvironmentLight>),
 }
 
+impl Environment {
+    /// States the numbers of skies among the lights that shadow rays aim at. Both have them in the order of the scene.
+    pub(crate) fn number(skies: &mut [Self], lights: &[Light]) {
+        let mut skies = skies.iter_mut();
+        for (index, light) in lights.iter().enumerate() {
+            let Light::Environment(light) = light else { continue };
+            let is_same =
+                |sky: &&mut Self| matches!(&sky.radiance, EnvironmentRadiance::Image(of) if Arc::ptr_eq(of, light));
+            if let Some(sky) = skies.find(is_same) {
+                sky.light = Some(index as u32);
+            }
+        }
+    }
+}
+
 impl EnvironmentRadiance {
     /// The spectrum, of an image that of its white.
     pub(crate) fn spectrum(&self) -> &PathSpectrum {
@@ -284,42 +256,5 @@ impl EnvironmentRadiance {
 impl From<PathSpectrum> for Environment {
     fn from(spectrum: PathSpectrum) -> Self {
         Self { radiance: EnvironmentRadiance::Uniform(spectrum), light: None }
-    }
-}
-
-/// What every emitting surface has: its radiance, its emitting sides and where it is.
-#[derive(Clone, Debug)]
-pub struct Emitter {
-    /// Emitted radiance, W·m⁻²·sr⁻¹·nm⁻¹.
-    pub radiance: Arc<PathSpectrum>,
-    /// Whether the side that the normal points into emits.
-    pub front: bool,
-    /// Whether the other side emits.
-    pub back: bool,
-    /// The surface.
-    pub surface: SurfaceId,
-    /// Where an image says what it emits.
-    pub image: Option<ImageOf>,
-}
-
-/// An image of what an emitting surface emits, of which `radiance` is the white.
-#[derive(Clone, Copy, Debug)]
-pub struct ImageOf {
-    /// The number of the object that has it.
-    pub object: u32,
-    /// About the mean luminance of its colours over the surface, which only decides how often the surface is aimed at.
-    pub mean: f64,
-}
-
-impl Emitter {
-    /// Whether light leaves along `direction` from a point whose normal is `n`.
-    pub fn emits_along(&self, n: Vec3<f64>, direction: Vec3<f64>) -> bool {
-        if n.dot(direction) > 0.0 { self.front } else { self.back }
-    }
-
-    /// What the spectrum and the area are to be multiplied by for what all sides emit.
-    fn brightness(&self) -> f64 {
-        let sides = f64::from(u8::from(self.front)) + f64::from(u8::from(self.back));
-        sides * self.image.map_or(1.0, |image| image.mean)
     }
 }

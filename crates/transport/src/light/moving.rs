@@ -1,11 +1,11 @@
 //! An emitter within something that moves: at each time it is the light that it would be if it stood still there.
 //!
-//! A parallelogram or triangle is put in its place and sampled there. A sphere, disk or cylinder is only ever placed by
-//! similarities; they leave solid angles as they are, so it is sampled in its own coordinates, seen from where the reference
-//! point is in them.
+//! A parallelogram or triangle is put in its place and sampled there. Any other shape is only ever placed by similarities; they
+//! leave solid angles as they are, so it is sampled in its own coordinates, seen from where the reference point is in them.
 
-use super::{Emitter, Flat, Light, LightSample, Target, planar};
-use etalon_geometry::{Motion, Placement};
+use super::{AreaLight, Emitter, LightSample, LightSource, Target};
+use crate::spectral::PathSpectrum;
+use etalon_geometry::{Motion, Placement, PlanarSampler, ShapeSampler};
 use etalon_optics::Vec3;
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ pub struct MovingLight {
     /// How it is placed, the outermost first.
     chain: Arc<[Link]>,
     /// In its own coordinates.
-    own: Box<Light>,
+    own: Box<AreaLight>,
 }
 
 /// From an emitter's own coordinates to the frame at one time: p ↦ L·p + T.
@@ -58,7 +58,7 @@ impl Place {
         self.transposed(p - self.translation) / self.square()
     }
 
-    fn flat(&self, own: &Flat) -> Flat {
+    fn planar(&self, own: &PlanarSampler) -> PlanarSampler {
         let edges = own.edges.map(|edge| self.vector(edge));
         let across = edges[0].cross(edges[1]);
         let twice = across.length();
@@ -66,7 +66,7 @@ impl Place {
         let mirrors = self.linear[0].cross(self.linear[1]).dot(self.linear[2]) < 0.0;
         let turned = own.edges[0].cross(own.edges[1]).dot(own.normal) < 0.0;
         let side = if mirrors != turned { -1.0 } else { 1.0 };
-        Flat {
+        PlanarSampler {
             corner: self.point(own.corner),
             edges,
             normal: across * (side / twice),
@@ -78,7 +78,7 @@ impl Place {
 
 impl MovingLight {
     /// The light `own` in its own coordinates, placed by a chain of placements, the outermost first.
-    pub(crate) fn new(chain: Arc<[Link]>, own: Light) -> Self {
+    pub(crate) fn new(chain: Arc<[Link]>, own: AreaLight) -> Self {
         Self { chain, own: Box::new(own) }
     }
 
@@ -104,39 +104,21 @@ impl MovingLight {
         })
     }
 
-    /// What it emits.
-    pub(super) fn emitter(&self) -> Option<&Emitter> {
-        self.own.emitter()
-    }
-
-    pub(super) fn own(&self) -> &Light {
-        &self.own
-    }
-
     /// The area in the middle of the shutter's time over that in its own coordinates.
-    pub(super) fn area_factor(&self) -> f64 {
+    fn area_factor(&self) -> f64 {
         let place = self.place(0.5);
-        match self.own.flat() {
-            Some(own) => place.flat(&own).area / own.area,
-            None => place.square(),
+        match &self.own.shape {
+            ShapeSampler::Planar(own) => place.planar(own).area / own.area,
+            _ => place.square(),
         }
     }
+}
 
-    pub(super) fn density(&self, from: Vec3<f64>, wi: Vec3<f64>, time: f64) -> f64 {
+impl LightSource for MovingLight {
+    fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
         let place = self.place(time);
-        match self.own.flat() {
-            Some(own) => {
-                let flat = place.flat(&own);
-                planar::density(from, wi, flat.corner, flat.normal, flat.area)
-            }
-            None => self.own.density(place.inward(from), place.transposed(wi).normalized(), time),
-        }
-    }
-
-    pub(super) fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
-        let place = self.place(time);
-        if let Some(own) = self.own.flat() {
-            return place.flat(&own).sample(from, u, self.emitter()?.surface);
+        if let ShapeSampler::Planar(own) = &self.own.shape {
+            return self.own.emitter.sample(&place.planar(own).sample(from, u));
         }
         let sample = self.own.sample(place.inward(from), u, time)?;
         let target = match sample.target {
@@ -145,13 +127,33 @@ impl MovingLight {
         };
         Some(LightSample { wi: place.vector(sample.wi).normalized(), target, ..sample })
     }
+
+    fn density(&self, from: Vec3<f64>, wi: Vec3<f64>, time: f64) -> f64 {
+        let place = self.place(time);
+        match &self.own.shape {
+            ShapeSampler::Planar(own) => self.own.emitter.density(&place.planar(own).density(from, wi)),
+            _ => self.own.density(place.inward(from), place.transposed(wi).normalized(), time),
+        }
+    }
+
+    fn spectrum(&self) -> &PathSpectrum {
+        self.own.spectrum()
+    }
+
+    fn emitter(&self) -> Option<&Emitter> {
+        self.own.emitter()
+    }
+
+    fn power_factor(&self, scene_radius: f64) -> f64 {
+        self.own.power_factor(scene_radius) * self.area_factor()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::frame::Affine;
-    use crate::light::{CylinderLight, DiskLight, ParallelogramLight, SphereLight, TriangleLight};
+    use crate::light::Light;
     use crate::mis::Density;
     use crate::spectral::PathSpectrum;
     use etalon_geometry::{Cylinder, Disk, Parallelogram, Pose, Primitive, PrimitiveId, Sphere, Triangle};
@@ -167,15 +169,8 @@ mod tests {
         }
     }
 
-    fn light(shape: Primitive, emitter: Emitter) -> Light {
-        match shape {
-            Primitive::Sphere(q) => Light::Sphere(SphereLight::new(q, emitter)),
-            Primitive::Disk(q) => Light::Disk(DiskLight::new(q, emitter)),
-            Primitive::Cylinder(q) => Light::Cylinder(CylinderLight::new(q, emitter).unwrap()),
-            Primitive::Parallelogram(q) => Light::Parallelogram(ParallelogramLight::new(q, emitter)),
-            Primitive::Triangle(q) => Light::Triangle(TriangleLight::new(q, emitter)),
-            Primitive::Instance(_) => unreachable!(),
-        }
+    fn light(shape: &Primitive, emitter: Emitter) -> AreaLight {
+        AreaLight::new(shape, emitter).unwrap()
     }
 
     fn shapes() -> [Primitive; 5] {
@@ -221,13 +216,13 @@ mod tests {
             let chain = chain(turn, if round { 1.0 } else { 1.7 });
             let emitter = || emitter(sides != 1, sides != 0);
             let own = shapes()[shape].clone();
-            let moving = Light::Moving(MovingLight::new(chain.clone(), light(own.clone(), emitter())));
+            let moving = Light::Moving(MovingLight::new(chain.clone(), light(&own, emitter())));
             let still = |time: f64| {
                 let to_frame = chain.iter().fold(Affine::IDENTITY, |outer, link| match link {
                     Link::Still(placement) => outer.after(placement),
                     Link::Moving(motion) => outer.after(&motion.at(time)),
                 });
-                light(to_frame.shape(&own).unwrap(), emitter())
+                Light::Area(light(&to_frame.shape(&own).unwrap(), emitter()))
             };
             let (there, from) = (still(time), Vec3::from_array(from));
             if let Some(sample) = moving.sample(from, u, time) {
@@ -254,7 +249,7 @@ mod tests {
     fn where_it_was_as_the_shutter_opened_is_seen_to_be_wrong() {
         let from = Vec3::new(1.0, -2.0, 3.0);
         for shape in shapes() {
-            let moving = Light::Moving(MovingLight::new(chain(1.0, 1.0), light(shape, emitter(true, true))));
+            let moving = Light::Moving(MovingLight::new(chain(1.0, 1.0), light(&shape, emitter(true, true))));
             let sample = moving.sample(from, [0.3, 0.6], 0.7).unwrap();
             let Density::SolidAngle(density) = sample.density else { panic!("a surface has a density") };
             let stale = moving.density(from, sample.wi, 0.0);

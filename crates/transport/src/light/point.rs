@@ -1,10 +1,13 @@
 //! A point that radiates the same intensity in every direction: irradiance I·cos/d².
 
-use super::{LightSample, Target};
+use super::tree::LightBounds;
+use super::{LightSample, LightSource, Target};
+use crate::frame::SceneFrame;
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
-use etalon_geometry::SurfaceId;
+use etalon_geometry::{Aabb, SurfaceId};
 use etalon_optics::Vec3;
+use std::f64::consts::PI;
 
 /// A point light.
 #[derive(Clone, Debug)]
@@ -18,7 +21,14 @@ pub struct PointLight {
 }
 
 impl PointLight {
-    pub(super) fn sample(&self, from: Vec3<f64>) -> Option<LightSample> {
+    /// At a point of the world, in the frame.
+    pub(super) fn new(position_m: [f64; 3], intensity: PathSpectrum, frame: &SceneFrame) -> Self {
+        Self { position: frame.point(Vec3::from_array(position_m)), intensity, per_m: frame.per_m() }
+    }
+}
+
+impl LightSource for PointLight {
+    fn sample(&self, from: Vec3<f64>, _u: [f64; 2], _time: f64) -> Option<LightSample> {
         let toward = self.position - from;
         let distance_squared = toward.length_squared();
         // A light exactly on the surface it lights has no direction.
@@ -30,5 +40,24 @@ impl PointLight {
             surface: SurfaceId::NONE,
             scale: self.per_m * self.per_m / distance_squared,
         })
+    }
+
+    fn spectrum(&self) -> &PathSpectrum {
+        &self.intensity
+    }
+
+    fn bounds(&self) -> Option<LightBounds> {
+        Some(LightBounds {
+            bounds: Aabb { min: self.position, max: self.position },
+            axis: Vec3::new(1.0, 0.0, 0.0),
+            cos_normals: -1.0,
+            cos_shines: 0.0,
+            both_sides: false,
+            power: 1.0,
+        })
+    }
+
+    fn power_factor(&self, _scene_radius: f64) -> f64 {
+        4.0 * PI * self.per_m * self.per_m
     }
 }

@@ -3,7 +3,9 @@
 //! I(θ) = I₀·(3x² − 2x³) with x = (cos θ − cos θ_outer)/(cos θ_inner − cos θ_outer) cut to [0, 1]: I₀ within the inner angle,
 //! nothing beyond the outer. Its power is 2πI₀·(1 − ½cos θ_inner − ½cos θ_outer).
 
-use super::{LightSample, PointLight};
+use super::tree::LightBounds;
+use super::{LightSample, LightSource, PointLight};
+use crate::spectral::PathSpectrum;
 use etalon_optics::Vec3;
 
 /// A spot light.
@@ -31,20 +33,34 @@ impl SpotLight {
         x * x * (3.0 - 2.0 * x)
     }
 
-    pub(super) fn sample(&self, from: Vec3<f64>) -> Option<LightSample> {
-        let sample = self.point.sample(from)?;
+    /// Cosine of the angle between the inner and the outer cone.
+    fn cos_beyond_inner(&self) -> f64 {
+        let [inner, outer] = self.cosines;
+        inner * outer + ((1.0 - inner * inner) * (1.0 - outer * outer)).max(0.0).sqrt()
+    }
+}
+
+impl LightSource for SpotLight {
+    fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
+        let sample = self.point.sample(from, u, time)?;
         let falloff = self.falloff(-sample.wi.dot(self.axis));
         (falloff > 0.0).then_some(LightSample { scale: sample.scale * falloff, ..sample })
     }
 
-    /// Cosine of the angle between the inner and the outer cone.
-    pub(super) fn cos_beyond_inner(&self) -> f64 {
-        let [inner, outer] = self.cosines;
-        inner * outer + ((1.0 - inner * inner) * (1.0 - outer * outer)).max(0.0).sqrt()
+    fn spectrum(&self) -> &PathSpectrum {
+        &self.point.intensity
     }
 
-    /// Power over the intensity along the axis.
-    pub(super) fn power_factor(&self) -> f64 {
+    fn bounds(&self) -> Option<LightBounds> {
+        Some(LightBounds {
+            axis: self.axis,
+            cos_normals: self.cosines[0],
+            cos_shines: self.cos_beyond_inner(),
+            ..self.point.bounds()?
+        })
+    }
+
+    fn power_factor(&self, _scene_radius: f64) -> f64 {
         let [inner, outer] = self.cosines;
         std::f64::consts::TAU * self.point.per_m * self.point.per_m * (1.0 - 0.5 * (inner + outer))
     }

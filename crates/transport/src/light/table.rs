@@ -85,7 +85,7 @@ impl Near {
             .iter()
             .zip(powers)
             .enumerate()
-            .map(|(index, (light, &power))| match light.place() {
+            .map(|(index, (light, &power))| match light.bounds() {
                 Some(place) => {
                     within.push(index as u32);
                     bounds.push(LightBounds { power, ..place });
@@ -149,7 +149,7 @@ impl LightTable {
         let by_place = match selection {
             LightSelection::Power => false,
             LightSelection::Tree => true,
-            LightSelection::Auto => lights.iter().filter(|light| light.place().is_some()).count() >= TREE_FROM,
+            LightSelection::Auto => lights.iter().filter(|light| light.bounds().is_some()).count() >= TREE_FROM,
         };
         let near = if by_place { Near::new(&lights, &powers) } else { None };
         Self { lights, table, near }
@@ -214,11 +214,8 @@ pub(crate) fn visible_sum(spectrum: &PathSpectrum, [first, last]: [f64; 2]) -> f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::{
-        CylinderLight, DirectionalLight, DiskLight, Emitter, EnvironmentLight, ParallelogramLight, PointLight,
-        SphereLight, SpotLight, TriangleLight,
-    };
-    use etalon_geometry::{Cylinder, Disk, Parallelogram, PrimitiveId, Sphere, Triangle};
+    use crate::light::{AreaLight, DirectionalLight, Emitter, EnvironmentLight, PointLight, SpotLight};
+    use etalon_geometry::{Cylinder, Disk, Parallelogram, Primitive, PrimitiveId, Sphere, Triangle};
     use etalon_optics::{Spectrum, Vec3};
     use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image, Texels};
     use std::f64::consts::PI;
@@ -236,6 +233,10 @@ mod tests {
         }
     }
 
+    fn area(shape: impl Into<Primitive>, emitter: Emitter) -> Light {
+        Light::Area(AreaLight::new(&shape.into(), emitter).unwrap())
+    }
+
     /// Radiant power of a surface is π times radiance, area and sides, of a point 4π times intensity, of parallel light the
     /// irradiance on the scene's disk, of a sky 4π times that. Only the noise depends on it.
     #[test]
@@ -251,19 +252,11 @@ mod tests {
         let one = || PathSpectrum::Constant(1.0);
         let point = || PointLight { position: Vec3::ZERO, intensity: one(), per_m: 2.0 };
         let lights = vec![
-            Light::Sphere(SphereLight::new(Sphere::new(Vec3::ZERO, 2.0).unwrap(), shines(true, false))),
-            Light::Parallelogram(ParallelogramLight::new(
-                Parallelogram::new(Vec3::ZERO, x, y).unwrap(),
-                shines(true, true),
-            )),
-            Light::Disk(DiskLight::new(
-                Disk::new(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.0), 3.0).unwrap(),
-                shines(false, true),
-            )),
-            Light::Triangle(TriangleLight::new(Triangle::new(Vec3::ZERO, x, y).unwrap(), shines(true, true))),
-            Light::Cylinder(
-                CylinderLight::new(Cylinder::new(Vec3::ZERO, x, 1.5, false).unwrap(), shines(true, false)).unwrap(),
-            ),
+            area(Sphere::new(Vec3::ZERO, 2.0).unwrap(), shines(true, false)),
+            area(Parallelogram::new(Vec3::ZERO, x, y).unwrap(), shines(true, true)),
+            area(Disk::new(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.0), 3.0).unwrap(), shines(false, true)),
+            area(Triangle::new(Vec3::ZERO, x, y).unwrap(), shines(true, true)),
+            area(Cylinder::new(Vec3::ZERO, x, 1.5, false).unwrap(), shines(true, false)),
             Light::Point(point()),
             Light::Spot(SpotLight { point: point(), axis: Vec3::new(0.0, 0.0, 1.0), cosines: [0.8, 0.5] }),
             Light::Directional(DirectionalLight { toward: Vec3::new(0.0, 0.0, 1.0), irradiance: one() }),
@@ -307,10 +300,10 @@ mod tests {
         };
         let lights = vec![
             sun(0.5),
-            Light::Sphere(SphereLight::new(ball(-3.0, 0.5), shines(10.0))),
-            Light::Sphere(SphereLight::new(ball(0.0, 0.25), shines(20.0))),
+            area(ball(-3.0, 0.5), shines(10.0)),
+            area(ball(0.0, 0.25), shines(20.0)),
             Light::Environment(Arc::new(EnvironmentLight::new(&white_sky(), [360.0, 830.0]))),
-            Light::Sphere(SphereLight::new(ball(4.0, 1.0), shines(5.0))),
+            area(ball(4.0, 1.0), shines(5.0)),
             sun(3.0),
         ];
         let count = lights.len();

@@ -9,7 +9,7 @@ use etalon_oracle::{
     truths::{lambert_polygon, sphere_irradiance},
 };
 use etalon_transport::{
-    light::{Emitter, Light, Target},
+    light::{AreaLight, Emitter, Light, Target},
     mis,
     spectral::PathSpectrum,
 };
@@ -33,12 +33,8 @@ pub(crate) enum Form {
 }
 
 impl Lamp {
-    pub(crate) fn new<S: Clone + Into<Primitive>>(
-        shape: S,
-        (center, radius): (Vec3<f64>, f64),
-        form: Form,
-        light: impl FnOnce(S, Emitter) -> Light,
-    ) -> Self {
+    pub(crate) fn new(shape: impl Into<Primitive>, (center, radius): (Vec3<f64>, f64), form: Form) -> Self {
+        let shape = shape.into();
         let emitter = Emitter {
             radiance: PathSpectrum::Constant(2.0).into(),
             front: true,
@@ -46,8 +42,8 @@ impl Lamp {
             surface: PrimitiveId(0).into(),
             image: None,
         };
-        let geometry = Geometry::build(vec![shape.clone().into()]).unwrap();
-        Self { light: light(shape, emitter), geometry, center, radius, form }
+        let light = Light::Area(AreaLight::new(&shape, emitter).unwrap());
+        Self { light, geometry: Geometry::build(vec![shape]).unwrap(), center, radius, form }
     }
 
     pub(crate) fn is_met(&self, from_m: [f64; 3], wi: [f64; 3]) -> bool {

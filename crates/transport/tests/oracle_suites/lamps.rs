@@ -7,46 +7,39 @@ use etalon_oracle::{
     statistics::{Budget, Welford},
     subjects::Emits,
 };
-use etalon_transport::light::{CylinderLight, DiskLight, Light, ParallelogramLight, SphereLight, TriangleLight};
 
 use crate::lamp::{Form, Lamp};
 
 pub(crate) fn sphere_lamp() -> Lamp {
     let (center, radius) = (Vec3::new(0.0, 0.0, 2.0), 0.5);
-    let light = |s, e| Light::Sphere(SphereLight::new(s, e));
-    Lamp::new(Sphere::new(center, radius).unwrap(), (center, radius), Form::Sphere, light)
+    Lamp::new(Sphere::new(center, radius).unwrap(), (center, radius), Form::Sphere)
 }
 
 pub(crate) fn disk_lamp() -> Lamp {
     let (center, radius) = (Vec3::new(0.3, 0.0, 1.0), 0.7);
     let disk = Disk::new(center, Vec3::new(0.6, 0.0, -0.8), radius).unwrap();
-    Lamp::new(disk, (center, radius), Form::Other, |s, e| Light::Disk(DiskLight::new(s, e)))
+    Lamp::new(disk, (center, radius), Form::Other)
 }
 
 pub(crate) fn parallelogram_lamp() -> Lamp {
     let (corner, a, b) = (Vec3::new(-0.5, -0.4, 1.0), Vec3::new(1.0, 0.2, 0.1), Vec3::new(0.3, 0.9, 0.0));
     let center = corner + (a + b) * 0.5;
     let form = Form::Polygon(vec![corner, corner + a, corner + a + b, corner + b]);
-    Lamp::new(Parallelogram::new(corner, a, b).unwrap(), (center, 0.5 * (a + b).length()), form, |s, e| {
-        Light::Parallelogram(ParallelogramLight::new(s, e))
-    })
+    Lamp::new(Parallelogram::new(corner, a, b).unwrap(), (center, 0.5 * (a + b).length()), form)
 }
 
 pub(crate) fn triangle_lamp() -> Lamp {
     let (a, b, c) = (Vec3::new(-0.5, -0.4, 1.0), Vec3::new(0.6, -0.2, 1.1), Vec3::new(0.1, 0.7, 0.8));
     let center = (a + b + c) / 3.0;
     let radius = [a, b, c].map(|v| (v - center).length()).into_iter().fold(0.0, f64::max);
-    let light = |s, e| Light::Triangle(TriangleLight::new(s, e));
-    Lamp::new(Triangle::new(a, b, c).unwrap(), (center, radius), Form::Polygon(vec![a, b, c]), light)
+    Lamp::new(Triangle::new(a, b, c).unwrap(), (center, radius), Form::Polygon(vec![a, b, c]))
 }
 
 fn cylinder_lamp(capped: bool) -> Lamp {
     let (start, end, radius) = (Vec3::new(-0.3, -0.2, 1.4), Vec3::new(0.5, 0.2, 1.9), 0.3);
     let cylinder = Cylinder::new(start, end, radius, capped).unwrap();
     let reach = (0.25 * (end - start).length_squared() + radius * radius).sqrt();
-    Lamp::new(cylinder, ((start + end) * 0.5, reach), Form::Other, |s, e| {
-        Light::Cylinder(CylinderLight::new(s, e).unwrap())
-    })
+    Lamp::new(cylinder, ((start + end) * 0.5, reach), Form::Other)
 }
 
 // The quadrature meets the rim of a flat light with the resolution of its grid: 2 % of the integral is what it can tell

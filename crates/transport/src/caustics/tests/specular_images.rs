@@ -3,8 +3,8 @@
 use super::{draws_are_sound, mean, numbers};
 use crate::caustics::specular_image::View;
 use crate::caustics::{Ball, DirectionTarget, MAX_SPECULAR_IMAGES, Shows, SpecularImage, VisibleImages};
-use crate::light::Round;
 use crate::warp::uniform_sphere;
+use etalon_geometry::SphereSampler;
 use etalon_optics::Vec3;
 
 /// A ray that leaves along `wi` by way of a ball about the origin: where it goes on, if it meets the ball. By Snell's law with vectors,
@@ -25,7 +25,7 @@ fn by_way_of(radius: f64, index: Option<f64>, from: Vec3<f64>, wi: Vec3<f64>) ->
 }
 
 /// What a ball shows of a lamp: a mirror, or glass.
-fn image(index: Option<f64>, ball: Round, lamp: Round) -> SpecularImage {
+fn image(index: Option<f64>, ball: SphereSampler, lamp: SphereSampler) -> SpecularImage {
     let shows = index.map_or(Shows::Mirrored, |index| Shows::Refracted(index as f32));
     SpecularImage::new(Ball::new(ball, shows), lamp, 1.0)
 }
@@ -35,11 +35,11 @@ fn image(index: Option<f64>, ball: Round, lamp: Round) -> SpecularImage {
 fn hits(index: Option<f64>) -> (f64, f64) {
     let mut u = numbers(3);
     let (radius, lamp_radius) = (0.8, 0.15);
-    let ball = Round { centre: Vec3::ZERO, radius, front: true };
+    let ball = SphereSampler { centre: Vec3::ZERO, radius };
     let (mut shown, mut drawn, mut covered, mut seen) = (0.0, 0.0, 0.0, 0.0);
     for _ in 0..400 {
         let from = uniform_sphere([u(), u()]) * (radius * (1.5 + 4.0 * u()));
-        let lamp = Round { centre: uniform_sphere([u(), u()]) * (3.0 + 5.0 * u()), radius: lamp_radius, front: true };
+        let lamp = SphereSampler { centre: uniform_sphere([u(), u()]) * (3.0 + 5.0 * u()), radius: lamp_radius };
         let n = -from / from.length();
         let image = image(index, ball, lamp);
         let view = image.view(&image.ball.eye(from.cast()), n.cast());
@@ -80,12 +80,12 @@ fn images_of_lamps_are_where_rays_by_way_of_balls_find_them() {
 /// Whether a ball hands on rays as the laws have it for this index, but for single precision, and what it hands on to a lamp is said to meet it.
 fn hands_on(ball_index: Option<f64>, index: Option<f64>) -> bool {
     let mut u = numbers(11);
-    let ball = Round { centre: Vec3::ZERO, radius: 0.8, front: true };
+    let ball = SphereSampler { centre: Vec3::ZERO, radius: 0.8 };
     let (mut met, mut differ, mut farthest, mut lost) = (0, 0, 0.0_f64, 0);
     for _ in 0..60_000 {
         let from = uniform_sphere([u(), u()]) * (1.0 + 4.0 * u());
         let wi = uniform_sphere([u(), u()]);
-        let lamp = Round { centre: uniform_sphere([u(), u()]) * 3.0, radius: 0.5, front: true };
+        let lamp = SphereSampler { centre: uniform_sphere([u(), u()]) * 3.0, radius: 0.5 };
         let image = image(ball_index, ball, lamp);
         let exact = by_way_of(0.8, index, from, wi).filter(|_| from.dot(wi) < 0.0);
         let is_met = image.ball.is_met(from.cast(), wi.cast());
@@ -118,15 +118,15 @@ fn balls_hand_on_rays_as_the_laws_have_it_and_not_as_another_glass() {
 fn mirrored_images_bring_about_what_they_are_said_to() {
     let mut u = numbers(21);
     let (radius, lamp_radius) = (0.8, 0.3);
-    let ball = Round { centre: Vec3::ZERO, radius, front: true };
+    let ball = SphereSampler { centre: Vec3::ZERO, radius };
     let (mut said, mut farther, mut brought) = (0.0, 0.0, 0.0);
     for _ in 0..400 {
         let from = uniform_sphere([u(), u()]) * (radius * (2.0 + 3.0 * u()));
-        let lamp = Round { centre: uniform_sphere([u(), u()]) * (3.0 + 5.0 * u()), radius: lamp_radius, front: true };
+        let lamp = SphereSampler { centre: uniform_sphere([u(), u()]) * (3.0 + 5.0 * u()), radius: lamp_radius };
         // Up to 60° from facing the ball's middle.
         let lean = uniform_sphere([u(), u()]) * (0.86 * from.length());
         let n = (lean - from) / (lean - from).length();
-        let twice = Round { centre: lamp.centre * 2.0, ..lamp };
+        let twice = SphereSampler { centre: lamp.centre * 2.0, ..lamp };
         let weight = |lamp| {
             let image = image(None, ball, lamp);
             f64::from(image.weight_mirrored(&image.ball.eye(from.cast()), n.cast()))
@@ -151,14 +151,11 @@ fn mirrored_images_bring_about_what_they_are_said_to() {
 /// what is drawn by draws over their densities and by even directions within both balls, and the part that is drawn. Five standard errors.
 fn images_are_sound(density: &dyn Fn(&VisibleImages<'_>, Vec3<f64>) -> f64) -> bool {
     let (from, n) = (Vec3::new(0.0, 0.0, -2.0), Vec3::new(0.0, 0.6, 0.8));
-    let mirror = Round { centre: Vec3::new(-0.9, 0.4, 0.0), radius: 0.9, front: true };
-    let glass = Round { centre: Vec3::new(1.0, -0.1, 0.0), radius: 0.8, front: true };
+    let mirror = SphereSampler { centre: Vec3::new(-0.9, 0.4, 0.0), radius: 0.9 };
+    let glass = SphereSampler { centre: Vec3::new(1.0, -0.1, 0.0), radius: 0.8 };
     // As large as they may be, so that few draws tell.
-    let lamps = [[-0.5, 3.0, -3.0], [2.0, 0.3, 3.0]].map(|centre| Round {
-        centre: Vec3::from_array(centre),
-        radius: 1.0,
-        front: true,
-    });
+    let lamps = [[-0.5, 3.0, -3.0], [2.0, 0.3, 3.0]]
+        .map(|centre| SphereSampler { centre: Vec3::from_array(centre), radius: 1.0 });
     let images = [(None, mirror), (Some(1.5), glass)]
         .into_iter()
         .flat_map(|(index, ball)| lamps.map(|lamp| image(index, ball, lamp)))
