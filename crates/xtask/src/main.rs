@@ -2,7 +2,7 @@
 //!
 //! The tests of this crate hold the repository itself to its rules: [`commands`] has every script, [`architecture`] states the
 //! dependencies of every crate, every link of the [`pages`] leads somewhere, no crate has new [`import_cycles`], retired words of the
-//! [`glossary`] or [`duplicate_types`].
+//! [`glossary`] or [`duplicate_types`], and the lists of CONTRIBUTING.md name the files that an existing part touches (`parts`).
 #![allow(clippy::print_stdout, clippy::print_stderr)] // A tool prints.
 
 mod allowed;
@@ -14,6 +14,8 @@ mod import_cycles;
 mod manifest;
 mod messages;
 mod pages;
+#[cfg(test)]
+mod parts;
 mod slowest;
 mod source;
 mod targets;

@@ -98,9 +98,9 @@ impl Geometry {
     }
 }
 
-/// What the tree's builder weighs: a leaf tests flat shapes or spheres at once, but cylinders one by one. As many at once, whatever
+/// What the tree's builder weighs: a leaf tests flat shapes or spheres at once, but shapes without a filter one by one. As many at once, whatever
 /// the instruction set: what a ray meets of an instance must not depend on that, nor does the tree of which its box is made.
 fn costs(statistics: &PrimitiveStatistics) -> Costs {
-    let most = 2 * statistics.cylinders < statistics.count - statistics.instances;
+    let most = 2 * statistics.without_filter < statistics.count - statistics.instances;
     Costs { block: if most { LEAF_LIMIT as u32 } else { 1 }, node: 0.35 }
 }

@@ -2,6 +2,7 @@
 
 use super::Primitive;
 use crate::Aabb;
+use crate::shapes::FilterShape;
 use rayon::prelude::*;
 
 /// Primitives that are counted one after the other.
@@ -17,8 +18,8 @@ pub(crate) struct PrimitiveStatistics {
     pub(crate) triangles: usize,
     /// Spheres among them.
     pub(crate) spheres: usize,
-    /// Cylinders among them.
-    pub(crate) cylinders: usize,
+    /// Shapes among them that are tested one by one.
+    pub(crate) without_filter: usize,
     /// Instances among them.
     pub(crate) instances: usize,
     /// A box around all; `None` if there are none.
@@ -42,8 +43,8 @@ impl PrimitiveStatistics {
             count: 1,
             triangles: is(matches!(primitive, Primitive::Triangle(_))),
             spheres: is(matches!(primitive, Primitive::Sphere(_))),
-            cylinders: is(matches!(primitive, Primitive::Cylinder(_))),
-            instances: is(matches!(primitive, Primitive::Instance(_))),
+            without_filter: is(!primitive.is_instance() && matches!(primitive.filter_shape(), FilterShape::Other)),
+            instances: is(primitive.is_instance()),
             bounds: Some(primitive.bounds()),
         })
     }
@@ -53,7 +54,7 @@ impl PrimitiveStatistics {
             count: self.count + other.count,
             triangles: self.triangles + other.triangles,
             spheres: self.spheres + other.spheres,
-            cylinders: self.cylinders + other.cylinders,
+            without_filter: self.without_filter + other.without_filter,
             instances: self.instances + other.instances,
             bounds: self.bounds.into_iter().chain(other.bounds).reduce(Aabb::union),
         }
@@ -90,7 +91,7 @@ mod tests {
                 })
                 .collect();
             let statistics = PrimitiveStatistics::of(&primitives);
-            assert_eq!([statistics.spheres, statistics.cylinders, statistics.triangles], counts);
+            assert_eq!([statistics.spheres, statistics.without_filter, statistics.triangles], counts);
             assert_eq!([statistics.count, statistics.instances], [count, 0]);
             assert_eq!(statistics.bounds, bounds);
         }

@@ -90,10 +90,6 @@ impl EnvironmentLight {
             Map::EqualArea(map) => map.look(&self.image, along),
         }
     }
-
-    fn along(&self, wi: Vec3<f64>) -> Along {
-        Along { forward: wi.dot(self.forward), right: wi.dot(self.right), up: wi.dot(self.up) }
-    }
 }
 
 impl LightSource for EnvironmentLight {
