@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Hashes of some fifty films, one for each effect and way to trace paths: held against those of another build of the program.
+"""Hashes of some sixty films, one for each effect and way to trace paths: held against those of another build of the program.
 
     python3 bench/films.py > before.txt                   # with target/release/etalon, or the variable ETALON
     python3 bench/films.py --against before.txt           # exit status 1 if a film differs
@@ -131,6 +131,36 @@ def masks():
     return scene
 
 
+def lamps(moves):
+    """A lamp of each shape and kind over a rough floor; what emits from one side only can be seen into through masks."""
+    lamp = lambda shape, sides="front", **more: {
+        "shape": shape, "material": {"type": "lambert", "reflectance": 0.3}, "emission": {"radiance": 8, "sides": sides}, **more}
+    tube = lambda x, capped: {"type": "cylinder", "start_m": [x, 0.5, -0.4], "end_m": [x + 0.2, 0.6, -0.2], "radius_m": 0.06, "capped": capped}
+    triangle = {"type": "mesh", "vertices_m": [[-0.1, 0, 0], [0.1, 0, 0.05], [0, 0.15, 0]], "triangles": [[0, 1, 2]]}
+    group = [lamp(triangle, "both"), lamp({"type": "sphere", "center_m": [0.3, 0, 0], "radius_m": 0.05})]
+    group += [lamp({"type": "cylinder", "start_m": [0.1, 0.2, 0], "end_m": [0.2, 0.25, 0], "radius_m": 0.03})]
+    steps = lambda x: [{"scale": [-1, 1, 1]}, {"rotate": {"axis": [0, 1, 0], "angle_deg": 90 * x}}, {"translate_m": [x, 0.4, 0.3]}]
+    placed = {"keyframes": [{"time_s": 0, "transform": steps(-0.3)}, {"time_s": 1, "transform": steps(0.4)}]} if moves else {"transform": steps(0.2)}
+    return {
+        "etalon": 1, "film": {"width": 240, "height": 180}, "integrator": {"spp": 32},
+        "camera": {"type": "perspective", "position_m": [0.1, 0.7, 1.8], "look_at_m": [0, 0.25, 0], "vertical_fov_deg": 40, "shutter_s": [0, 1]},
+        "objects": [
+            {"shape": {"type": "parallelogram", "origin_m": [-2, 0, 2], "u_m": [4, 0, 0], "v_m": [0, 0, -4]},
+             "material": {"type": "oren-nayar", "reflectance": 0.6, "roughness": 0.5}},
+            lamp(tube(-0.7, True)), lamp(tube(-0.3, False), "both"), lamp(tube(0.3, False), "back", opacity=0.5), lamp(tube(0.6, True), "back", opacity=0.4),
+            lamp({"type": "sphere", "center_m": [-0.5, 0.2, 0.4], "radius_m": 0.1}), lamp({"type": "sphere", "center_m": [0.5, 0.2, 0.3], "radius_m": 0.1}, "back", opacity=0.5),
+            lamp({"type": "disk", "center_m": [0, 0.9, -0.5], "normal": [0.1, -1, 0.2], "radius_m": 0.15}),
+            lamp({"type": "disk", "center_m": [0.2, 0.3, -0.7], "normal": [0, 0.2, 1], "radius_m": 0.1}, "back"),
+            lamp({"type": "parallelogram", "origin_m": [-0.9, 0.1, -0.5], "u_m": [0.2, 0, 0.1], "v_m": [0, 0.3, 0]}, "both"),
+        ],
+        "groups": {"things": {"objects": group}}, "instances": [{"group": "things", **placed}],
+        "lights": [
+            {"type": "point", "position_m": [0.8, 0.8, 0.5], "intensity": 0.3}, {"type": "directional", "direction": [0.3, -1, -0.2], "irradiance": 0.1},
+            {"type": "spot", "position_m": [-0.4, 1, 0.8], "direction": [0.2, -1, -0.5], "half_angle_deg": 25, "intensity": 1},
+        ],
+    }
+
+
 def write_scenes(folder):
     folder.mkdir(parents=True, exist_ok=True)
     bumpy_ball(folder / "bumpy.obj", 120, 250)
@@ -150,7 +180,7 @@ def write_scenes(folder):
         "preview-plastic": preview({"type": "plastic", "reflectance": {"type": "rgb", "rgb": [0.1, 0.3, 0.5]}, "alpha": 0.1}),
         "preview-glass": preview({"type": "dielectric", "interior": 1.5}),
         "preview-rough-glass": preview({"type": "dielectric", "interior": "N-BK7", "alpha": 0.2}),
-        "masks": masks(),
+        "masks": masks(), "lamps": lamps(False), "moving-lamps": lamps(True),
     }
     for name, scene in made.items():
         for light in scene["lights"]:
@@ -174,7 +204,7 @@ def films(folder, made):
         ("cornell", "--force nested-dielectrics --force motion"), ("cornell-glass", "--without dispersion"),
         ("cornell", "--carry three-channels"), ("cornell-glass", "--carry one-wavelength"), ("cornell-glass", "--carry four-wavelengths"),
         ("wine", "--loop {scalar}"), ("wine", "--polarised"), ("masks", "--sampler independent"), ("fan", "--bands 420:680:20"),
-        ("window", "--path-reuse 2x2"),
+        ("window", "--path-reuse 2x2"), ("lamps", "--loop {scalar}"), ("lamps", "--light-sampling light"), ("moving-lamps", "--loop {scalar}"),
     ]
     where = {name: path for name, path, _ in listed}
     return listed + [(name, where[name], more) for name, more in again]

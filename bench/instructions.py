@@ -30,10 +30,12 @@ def out(command):
 
 def count(program, scene, size, spp):
     command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no",
-               "--toggle-collect=*kernel::render_scalar*", "--toggle-collect=*render_spots_lanes*", program, "render", scene, "--size", size, "--spp", str(spp), "--threads", "1",
+               "--toggle-collect=*kernel::render_scalar*", "--toggle-collect=*batch::render_batch*", program, "render", scene, "--size", size, "--spp", str(spp), "--threads", "1",
                "--quiet", "--output", os.path.join(os.path.dirname(scene), "out.exr")]
     collected = re.search(r"Collected : (\d+)", out(command).stderr)
     width, height = map(int, size.split("x"))
+    if int(collected.group(1)) == 0:
+        sys.exit("nothing was collected: the functions named by --toggle-collect have other names now")
     return int(collected.group(1)) / (width * height * spp)
 
 
