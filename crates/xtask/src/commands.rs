@@ -349,7 +349,7 @@ const COMMANDS: &[(&str, &[Named])] = &[
             named(
                 "films",
                 "[OPTIONS]",
-                "hashes of fifty films, to hold changes of code to the same bits",
+                "hashes of sixty films, to hold changes of code to the same bits",
                 "20 s",
                 Script("bench/films.py"),
             ),

@@ -60,7 +60,8 @@ fn directions_have_their_densities_and_wrong_densities_are_noticed() {
             let from = Vec3::from_array(from);
             assert!(is_sound(&shape, &|density| density, from, &mut random), "{name} from {from:?}");
         }
-        assert!(!is_sound(&shape, &|density| 1.1 * density, Vec3::ZERO, &mut random), "{name}: the mutant");
+        // Uniform directions know the solid angle from here to 3 % at worst, one standard error.
+        assert!(!is_sound(&shape, &|density| 1.3 * density, Vec3::ZERO, &mut random), "{name}: the mutant");
     }
 }
 
