@@ -2,6 +2,9 @@
 //!
 //! The density of a direction is a function of the reference point and the direction alone. It is the same for a direction that was drawn
 //! and for one that was found otherwise. Solid angles of near, far and enclosing shapes need `f64`.
+//!
+//! This belongs to geometry: it needs the roots and error bounds of shapes, and knows of no light. Which sides emit, and how much, is the
+//! light's.
 
 use super::{Cylinder, Disk, PlanarSampler, Sphere};
 use crate::Aabb;
