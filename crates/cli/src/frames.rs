@@ -316,7 +316,7 @@ mod tests {
         let names = ["a-{frame}.exr", "b.png"].map(PathBuf::from);
         assert!(patterns(&names, 1).is_ok());
         let failure = patterns(&names, 2).map(drop).unwrap_err();
-        let json = serde_json::to_value(failure.to_json()).unwrap();
+        let json = serde_json::to_value(crate::problem_json::problems_json(&failure)).unwrap();
         assert_eq!(json[0]["hint"], "write `b-{frame:04}.png`");
         assert_eq!(json.as_array().unwrap().len(), 1);
     }
