@@ -1,7 +1,5 @@
 //! How a command ends when it does not succeed.
 
-use std::process::ExitCode;
-
 use miette::Report;
 
 /// What every command returns.
@@ -68,14 +66,14 @@ impl Failure {
     }
 
     /// Prints the problems on standard error and gives the exit status: 2 if any of them is the input's, 1 if the machine's.
-    pub(crate) fn report(self) -> ExitCode {
+    pub(crate) fn report(self) -> u8 {
         crate::print::warnings(self.reports());
         match self.problems.iter().map(|(blame, _)| *blame).max() {
-            None => ExitCode::SUCCESS,
-            Some(Blame::Signal(number)) => ExitCode::from(128 | number),
-            Some(Blame::Undecided) => ExitCode::from(3),
-            Some(Blame::Run) => ExitCode::from(1),
-            Some(Blame::Input) => ExitCode::from(2),
+            None => 0,
+            Some(Blame::Signal(number)) => 128 | number,
+            Some(Blame::Undecided) => 3,
+            Some(Blame::Run) => 1,
+            Some(Blame::Input) => 2,
         }
     }
 }

@@ -29,6 +29,9 @@ pub enum RenderError {
         /// Camera paths that the pilot traced.
         paths: u64,
     },
+    /// Whoever watched wanted no more, and there is no answer yet.
+    #[error("interrupted before there was an answer")]
+    Interrupted,
     /// The threads cannot be started.
     #[error(transparent)]
     Threads(#[from] ThreadError),

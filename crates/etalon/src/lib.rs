@@ -41,6 +41,9 @@
 //! | how long a render lasts: samples, error, time | [`Settings`] |
 //! | what accuracy will cost | [`Renderer::quote`] |
 //! | a render that calls back, or can be stopped | [`Renderer::render_with`], [`Renderer::render_watched`] |
+//! | the picture after each pass | [`Renderer::render_passes`] |
+//! | whether two pictures differ beyond their noise | [`compare()`] |
+//! | what is said about a render, as JSON | [`RenderReport`] |
 //! | colours, errors, bands, Stokes parameters, depth, normals | [`Render`] |
 //! | channels of EXR files | [`Channels`], [`Aov`] |
 //! | one path, vertex by vertex | [`Renderer::replay`] |
@@ -51,6 +54,7 @@
 
 mod builder;
 mod channels;
+mod compare;
 mod error;
 mod film_file;
 mod frame;
@@ -58,15 +62,18 @@ mod matrices;
 mod picture;
 mod quote;
 mod renderer;
+mod report;
 mod scene;
 mod stokes;
 mod subject;
 
 pub use builder::SceneBuilder;
 pub use channels::{Aov, Channels};
+pub use compare::{ChannelTest, CompareSettings, Comparison, NoiseTest, NonFinitePixels, TileTest, Verdict, compare};
 pub use error::RenderError;
 pub use etalon_control::{Adaptivity, CostEstimate, Ended, Prediction, Reached, Settled, Watch};
 pub use etalon_import::{ImportError, LeftOut};
+pub use etalon_optics as optics;
 pub use etalon_picture as picture_files;
 pub use etalon_scene as scene_model;
 pub use etalon_scene::{LoadError, NamedFile, Problem, SceneErrors};
@@ -79,6 +86,7 @@ pub use frame::{Frame, FrameRate};
 pub use picture::Render;
 pub use quote::{Quote, QuoteSettings, QuotedExploration};
 pub use renderer::{Progress, Renderer, Settings};
+pub use report::{ErrorReport, NoisiestTile, PredictionReport, RenderReport, reached_name};
 pub use scene::{Scene, SceneError};
 pub use serde_json::json;
 pub use subject::{KeptBands, Subject};

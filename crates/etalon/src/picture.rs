@@ -94,6 +94,11 @@ impl Render {
         self.ended.samples
     }
 
+    /// Whether any sample was taken: a render that was stopped at once has none.
+    pub fn has_samples(&self) -> bool {
+        self.rect().pixels().any(|(x, y)| self.film.pixel(x, y).count() > 0)
+    }
+
     /// Seconds from the start to the end, with the pilot.
     pub fn seconds(&self) -> f64 {
         self.ended.seconds

@@ -4,7 +4,7 @@ use etalon_control::adaptive::{EFFORT, Goal, WORTHWHILE, explore};
 use etalon_control::cost_estimate::PilotPoint;
 use etalon_control::cost_estimate::next_step;
 use etalon_control::{Adaptivity, CostEstimate, Limits, Pilot};
-use etalon_transport::{PixelRect, Prepared};
+use etalon_transport::{Control, PixelRect, Prepared};
 
 use crate::error::RenderError;
 
@@ -26,6 +26,26 @@ impl Default for QuoteSettings {
     fn default() -> Self {
         let errors = vec![0.1, 0.05, 0.02, 0.01, 0.005, 0.001];
         Self { errors, pilot_seconds: 10.0, adaptivity: Adaptivity::Auto, threads: None }
+    }
+}
+
+impl QuoteSettings {
+    fn check(&self) -> Result<(), RenderError> {
+        let above_0 = |value: f64| value > 0.0 && value.is_finite();
+        let refuse = |text: String| Err(RenderError::Setting(text));
+        if let Some(error) = self.errors.iter().find(|&&error| !above_0(error)) {
+            return refuse(format!("the error is {error}; it must be above 0 and finite"));
+        }
+        if self.errors.is_empty() {
+            return refuse("a quote needs at least one error".to_owned());
+        }
+        if !above_0(self.pilot_seconds) {
+            return refuse(format!("the time of the pilot is {}; it must be above 0 and finite", self.pilot_seconds));
+        }
+        if self.threads == Some(0) {
+            return refuse("a quote needs one thread at least".to_owned());
+        }
+        Ok(())
     }
 }
 
@@ -68,9 +88,24 @@ impl Quote {
         settings: &QuoteSettings,
         clock: &(dyn Fn() -> f64 + Sync),
     ) -> Result<Self, RenderError> {
+        Self::of_watched(prepared, settings, clock, &|| Control::Continue)
+    }
+
+    /// As [`Quote::of`]; `control` is asked after each round of the pilot whether to go on.
+    ///
+    /// # Errors
+    /// As [`Quote::of`], and [`RenderError::Interrupted`] where `control` ended it.
+    pub fn of_watched(
+        prepared: &Prepared,
+        settings: &QuoteSettings,
+        clock: &(dyn Fn() -> f64 + Sync),
+        control: &(dyn Fn() -> Control + Sync),
+    ) -> Result<Self, RenderError> {
+        let stopped = || control() == Control::Stop;
         if prepared.path_reuse().is_some() {
             return Err(RenderError::PathReuse("a quote"));
         }
+        settings.check()?;
         let film = &prepared.scene().film;
         let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
         let finest = settings.errors.iter().copied().fold(f64::INFINITY, f64::min);
@@ -78,7 +113,7 @@ impl Quote {
         if settings.adaptivity != Adaptivity::Never {
             let goal = Goal { samples: Limits::ANY_SAMPLES, relative_rmse: Some(finest) };
             let start = clock();
-            let enough = || clock() - start > EXPLORING * settings.pilot_seconds;
+            let enough = || stopped() || clock() - start > EXPLORING * settings.pilot_seconds;
             let found = explore(prepared, whole, &goal, settings.threads, &enough, &|_| ())?;
             let used = settings.adaptivity == Adaptivity::Always || found.gain >= WORTHWHILE;
             let seconds = clock() - start;
@@ -88,6 +123,9 @@ impl Quote {
         let mut pilot = Pilot::new(prepared, whole, allocation, settings.threads)?;
         let mut rounds = 1;
         loop {
+            if stopped() {
+                return Err(RenderError::Interrupted);
+            }
             pilot.advance(rounds * pilot.first_step(), clock, &|_| ());
             let reached = pilot.points().last().is_some_and(|point| point.reaches(finest));
             let next = next_step(rounds);

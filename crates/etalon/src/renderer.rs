@@ -3,9 +3,11 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use etalon_control::{Adaptivity, Canvas, Ended, Limits, Shard, Watch, render_canvas, settle};
+use etalon_control::{
+    Adaptivity, Canvas, Ended, Limits, Prediction, Reached, Settled, Shard, Watch, render_canvas, settle,
+};
 use etalon_transport::replay::Replay;
-use etalon_transport::{Control, Film, ImageError, PixelRect, Plan, Prepared};
+use etalon_transport::{Control, Counters, Film, ImageError, PixelRect, Plan, Prepared, TileSums};
 
 use crate::channels::Channels;
 use crate::error::RenderError;
@@ -113,8 +115,20 @@ impl Renderer {
     /// # Errors
     /// If no light is found, if neighbouring pixels share paths, and if there are no threads.
     pub fn quote(&self, settings: &QuoteSettings) -> Result<Quote, RenderError> {
+        self.quote_watched(settings, &|| Control::Continue)
+    }
+
+    /// As [`Renderer::quote`]; `control` is asked after each round of the pilot whether to go on.
+    ///
+    /// # Errors
+    /// As [`Renderer::quote`], and [`RenderError::Interrupted`] where `control` ended it.
+    pub fn quote_watched(
+        &self,
+        settings: &QuoteSettings,
+        control: &(dyn Fn() -> Control + Sync),
+    ) -> Result<Quote, RenderError> {
         let start = Instant::now();
-        Quote::of(&self.prepared, settings, &|| start.elapsed().as_secs_f64())
+        Quote::of_watched(&self.prepared, settings, &|| start.elapsed().as_secs_f64(), control)
     }
 
     /// Renders the scene.
@@ -160,30 +174,49 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::render`].
     pub fn render_watched(&self, settings: &Settings, watch: &dyn Watch) -> Result<Render, RenderError> {
-        let rect = self.rect(settings)?;
-        let limits = self.limits(settings)?;
-        let start = Instant::now();
-        let clock = || start.elapsed().as_secs_f64();
-        let (prepared, threads) = (&self.prepared, settings.threads);
-        let settled = settle(prepared, rect, &limits, threads, &clock, watch)?;
-        let canvas = Canvas::new(prepared, rect, Shard::WHOLE, settled.allocation.as_deref());
-        let ended @ Ended { samples, .. } =
-            render_canvas(prepared, &canvas, &settled, &limits, threads, &clock, watch)?;
-        let (mut tiles, mut features) = (Vec::new(), Vec::new());
-        if settings.channels.has_features() {
-            tiles = (0..canvas.tiles()).map(|number| canvas.tile(number).0.rect).collect();
-            features = prepared.features(&tiles, samples, threads)?;
-        }
-        Ok(Render {
-            subject: Subject::new(prepared, &self.scene_sha256, rect),
-            film: canvas.into_film(),
-            ended,
-            settled,
-            channels: settings.channels.clone(),
-            tiles,
-            features,
-            object_names: prepared.object_names(),
-        })
+        let job = self.job(settings)?;
+        let settled = job.settle(watch)?;
+        job.render(&settled, watch)
+    }
+
+    /// Renders the scene, and calls `callback` with the picture after each pass but the last; the last is what is returned.
+    /// [`Control::Stop`] ends the render. The pictures on the way lack what the camera rays meet first ([`Render::features`]).
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    ///
+    /// ```
+    /// use etalon::{Control, Settings};
+    /// use std::sync::Mutex;
+    ///
+    /// let renderer = etalon::Scene::load_sized("../../scenes/cornell.json", Some([16, 16]))?.prepare()?;
+    /// let passes = Mutex::new(Vec::new());
+    /// let settings = Settings { samples: Some(64), ..Default::default() };
+    /// let last = renderer.render_passes(&settings, &(), |picture| {
+    ///     passes.lock().unwrap().push((picture.samples(), picture.error().unwrap().relative_rmse));
+    ///     Control::Continue
+    /// })?;
+    /// let passes = passes.into_inner().unwrap();
+    /// assert!(passes.windows(2).all(|pair| pair[0].0 < pair[1].0), "{passes:?}");
+    /// assert!(passes[0].0 < 64 && last.samples() == 64);
+    /// assert_eq!(last.rgb_pixels(), renderer.render(&settings)?.rgb_pixels());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn render_passes(
+        &self,
+        settings: &Settings,
+        watch: &dyn Watch,
+        callback: impl Fn(Render) -> Control + Sync,
+    ) -> Result<Render, RenderError> {
+        let job = self.job(settings)?;
+        let settled = job.settle(watch)?;
+        let passes = Passes { job: &job, settled: &settled, watch, callback, stopped: AtomicBool::new(false) };
+        job.render(&settled, &passes)
+    }
+
+    fn job<'a>(&'a self, settings: &'a Settings) -> Result<Job<'a>, RenderError> {
+        let (rect, limits) = (self.rect(settings)?, self.limits(settings)?);
+        Ok(Job { renderer: self, settings, rect, limits, start: Instant::now() })
     }
 
     /// The pixels that are rendered.
@@ -224,6 +257,93 @@ impl Renderer {
             self.prepared.scene().integrator.spp
         };
         Ok(Limits { samples: samples.unwrap_or(otherwise), relative_rmse: error, seconds, adaptivity })
+    }
+}
+
+/// A render that can begin.
+struct Job<'a> {
+    renderer: &'a Renderer,
+    settings: &'a Settings,
+    rect: PixelRect,
+    limits: Limits,
+    start: Instant,
+}
+
+impl Job<'_> {
+    fn seconds(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    /// Settles how many samples the picture takes, and where.
+    fn settle(&self, watch: &dyn Watch) -> Result<Settled, RenderError> {
+        let clock = || self.seconds();
+        Ok(settle(&self.renderer.prepared, self.rect, &self.limits, self.settings.threads, &clock, watch)?)
+    }
+
+    fn render(&self, settled: &Settled, watch: &dyn Watch) -> Result<Render, RenderError> {
+        let (prepared, threads) = (&self.renderer.prepared, self.settings.threads);
+        let canvas = Canvas::new(prepared, self.rect, Shard::WHOLE, settled.allocation.as_deref());
+        let ended = render_canvas(prepared, &canvas, settled, &self.limits, threads, &|| self.seconds(), watch)?;
+        let (mut tiles, mut features) = (Vec::new(), Vec::new());
+        if self.settings.channels.has_features() {
+            tiles = (0..canvas.tiles()).map(|number| canvas.tile(number).0.rect).collect();
+            features = prepared.features(&tiles, ended.samples, threads)?;
+        }
+        Ok(Render { tiles, features, ..self.picture(canvas.into_film(), ended, settled) })
+    }
+
+    /// The picture of a film, without what the camera rays meet first.
+    fn picture(&self, film: Film, ended: Ended, settled: &Settled) -> Render {
+        let Renderer { prepared, scene_sha256 } = self.renderer;
+        Render {
+            film,
+            subject: Subject::new(prepared, scene_sha256, self.rect),
+            ended,
+            settled: settled.clone(),
+            channels: self.settings.channels.clone(),
+            tiles: Vec::new(),
+            features: Vec::new(),
+            object_names: prepared.object_names(),
+        }
+    }
+}
+
+/// A watcher that calls a function with the picture after each pass but the last, and tells another of all else.
+struct Passes<'a, F> {
+    job: &'a Job<'a>,
+    settled: &'a Settled,
+    watch: &'a dyn Watch,
+    callback: F,
+    stopped: AtomicBool,
+}
+
+impl<F: Fn(Render) -> Control + Sync> Watch for Passes<'_, F> {
+    fn work(&self, counters: &Counters) {
+        self.watch.work(counters);
+    }
+
+    fn planned(&self, paths: u64, predicted: Option<&Prediction>) {
+        self.watch.planned(paths, predicted);
+    }
+
+    fn tile(&self, rect: PixelRect, sums: &TileSums) {
+        self.watch.tile(rect, sums);
+    }
+
+    fn pass(&self, film: &Film, samples: u32) {
+        self.watch.pass(film, samples);
+        if samples >= self.settled.samples {
+            return;
+        }
+        let (seconds, predicted) = (self.job.seconds(), self.settled.predicted);
+        let ended = Ended { samples, reached: Reached::Interrupted, seconds, predicted };
+        if (self.callback)(self.job.picture(film.clone(), ended, self.settled)) == Control::Stop {
+            self.stopped.store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn control(&self) -> Control {
+        if self.stopped.load(Ordering::Relaxed) { Control::Stop } else { self.watch.control() }
     }
 }
 

@@ -16,15 +16,27 @@ use crate::{Picture, PictureError, Rgb8, decode_srgb, write_atomically};
 /// A file that cannot be written; a keyword that PNG does not allow (1 to 79 characters of Latin-1); a number of bytes
 /// that does not fit the size.
 pub fn write_png(path: &Path, picture: &Rgb8, texts: &[(&str, &str)]) -> Result<(), PictureError> {
-    let bytes = encode_png(picture, texts).map_err(|source| PictureError::Png {
-        action: "write",
-        path: path.to_owned(),
-        source: Box::new(source),
-    })?;
+    let bytes = encode(picture, texts, path)?;
     write_atomically(path, |out| out.write_all(&bytes))
 }
 
-fn encode_png(picture: &Rgb8, texts: &[(&str, &str)]) -> Result<Vec<u8>, png::EncodingError> {
+/// The bytes of the file that [`write_png`] writes.
+///
+/// # Errors
+/// As [`write_png`], but for files.
+pub fn encode_png(picture: &Rgb8, texts: &[(&str, &str)]) -> Result<Vec<u8>, PictureError> {
+    encode(picture, texts, Path::new("(in memory)"))
+}
+
+fn encode(picture: &Rgb8, texts: &[(&str, &str)], path: &Path) -> Result<Vec<u8>, PictureError> {
+    encode_bytes(picture, texts).map_err(|source| PictureError::Png {
+        action: "write",
+        path: path.to_owned(),
+        source: Box::new(source),
+    })
+}
+
+fn encode_bytes(picture: &Rgb8, texts: &[(&str, &str)]) -> Result<Vec<u8>, png::EncodingError> {
     // A side too long for PNG becomes one that PNG refuses.
     let side = |pixels: usize| u32::try_from(pixels).unwrap_or(0);
     let mut bytes = Vec::new();

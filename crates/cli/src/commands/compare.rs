@@ -1,13 +1,9 @@
 //! `etalon compare`: how far apart two pictures are, and whether that is more than their noise.
 
-mod tiles;
-
 use std::path::{Path, PathBuf};
 
-use etalon_picture::{
-    Attributes, ExrFile, PIXELS_PER_DEGREE, Picture, PictureError, RenderInfo, compare, encode_srgb8, flip, read_exr,
-    read_png, write_png,
-};
+use etalon::{CompareSettings, Comparison, NonFinitePixels, Verdict, compare};
+use etalon_picture::{Attributes, ExrFile, Picture, PictureError, encode_srgb8, read_exr, read_png, write_png};
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -53,92 +49,32 @@ fn probability(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What the noise has to say about the difference.
 #[derive(Serialize)]
-struct Test {
-    significance: f64,
-    /// Whether the pictures differ beyond their noise.
-    differ: bool,
-    /// Below this p a single question is answered "different".
-    accepted_from: f64,
-    channels: Vec<tiles::Channel>,
-}
-
-/// What the comparison comes to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum Verdict {
-    /// All values are equal.
-    Equal,
-    /// No difference beyond the noise.
-    WithinNoise,
-    /// A difference beyond the noise, or a value that is not finite.
-    Differ,
-    /// There are differences, and at least one tile's errors are not known.
-    Untested,
-}
-
-/// Pixels with a value that is not finite in either picture.
-#[derive(Serialize)]
-struct NonFinite {
-    pixels: usize,
-    /// Column and row of the first.
-    first: [usize; 2],
-}
-
-#[derive(Serialize)]
-struct Comparison {
+struct ComparisonJson<'a> {
     image: String,
     reference: String,
-    width: usize,
-    height: usize,
-    rmse: f64,
-    rel_mse: f64,
-    flip: f64,
-    verdict: Verdict,
-    /// `null` where all values are finite.
-    non_finite: Option<NonFinite>,
-    /// `null` where a picture does not know its errors.
-    test: Option<Test>,
-    /// Why there is no test, or why it must not be believed.
-    note: Option<String>,
+    #[serde(flatten)]
+    comparison: &'a Comparison,
 }
-
-/// Channels compared.
-const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 pub(crate) fn run(args: Args) -> Outcome {
     let read = |path| read(path).map_err(|error| Failure::input(Report::from_err(error)));
     let (image, reference) = (read(&args.image)?, read(&args.reference)?);
-    let input = |error| Failure::input(Report::from_err(error));
-    let metrics = compare(&image.picture, &reference.picture, &CHANNELS).map_err(input)?;
-    let scale = args.exposure.exp2();
-    let map = flip(&image.picture, &reference.picture, scale, PIXELS_PER_DEGREE).map_err(input)?;
-    let (test, note) = test(&args, &image, &reference);
-    let non_finite = non_finite(&image, &reference);
-    let verdict = verdict(test.as_ref(), non_finite.is_some(), metrics.rmse == 0.0);
-    let comparison = Comparison {
-        image: args.image.display().to_string(),
-        reference: args.reference.display().to_string(),
-        width: image.picture.width(),
-        height: image.picture.height(),
-        rmse: metrics.rmse,
-        rel_mse: metrics.rel_mse,
-        flip: map.iter().sum::<f64>() / map.len() as f64,
-        verdict,
-        non_finite,
-        test,
-        note,
-    };
+    let names = [&args.image, &args.reference].map(|path| path.display().to_string());
+    let settings =
+        CompareSettings { significance: args.significance, tile: args.tile as usize, exposure_ev: args.exposure };
+    let comparison = compare(&image, &reference, names.each_ref().map(String::as_str), &settings)
+        .map_err(|error| Failure::input(Report::from_err(error)))?;
     if let Some(path) = &args.diff {
-        write_map(path, &map, &image).map_err(|error| Failure::run(Report::from_err(error)))?;
+        write_map(path, &comparison.flip_map, &image).map_err(|error| Failure::run(Report::from_err(error)))?;
     }
     if args.json {
-        print::json(&comparison);
+        let [image, reference] = names;
+        print::json(&ComparisonJson { image, reference, comparison: &comparison });
     } else {
         print::line(&describe(&comparison));
     }
-    match (verdict, &comparison.non_finite) {
+    match (comparison.verdict, &comparison.non_finite) {
         (Verdict::Equal | Verdict::WithinNoise, _) => Ok(()),
         (Verdict::Differ, Some(_)) => {
             Err(Failure::run(miette!(code = "pictures-differ", "a picture has values that are not finite")))
@@ -163,60 +99,12 @@ fn read(path: &Path) -> Result<ExrFile, PictureError> {
     read_exr(path)
 }
 
-fn verdict(test: Option<&Test>, non_finite: bool, equal: bool) -> Verdict {
-    let tested = test.is_some_and(|test| test.channels.iter().all(|channel| channel.untested_tiles == 0));
-    if non_finite || test.is_some_and(|test| test.differ) {
-        Verdict::Differ
-    } else if equal {
-        Verdict::Equal
-    } else if tested {
-        Verdict::WithinNoise
-    } else {
-        Verdict::Untested
-    }
-}
-
-/// Where the values of one of the compared channels are not finite.
-fn non_finite(image: &ExrFile, reference: &ExrFile) -> Option<NonFinite> {
-    let channels = || [image, reference].into_iter().flat_map(|file| CHANNELS.map(|name| file.picture.channel(name)));
-    let (width, height) = (image.picture.width(), image.picture.height());
-    let wrong = |pixel: &usize| channels().flatten().any(|values| !values[*pixel].is_finite());
-    let mut pixels = (0..width * height).filter(wrong);
-    let first = pixels.next()?;
-    Some(NonFinite { pixels: 1 + pixels.count(), first: [first % width, first / width] })
-}
-
-fn test(args: &Args, image: &ExrFile, reference: &ExrFile) -> (Option<Test>, Option<String>) {
-    let [a, b] = [image, reference].map(|file| RenderInfo::from_attributes(&file.attributes));
-    let same_numbers = matches!((&a, &b), (Some(a), Some(b)) if a.seed == b.seed && a.scene_sha256 == b.scene_sha256);
-    let mut channels = Vec::new();
-    for name in CHANNELS {
-        let (Some(a), Some(b)) = (tiles::Measured::new(image, name), tiles::Measured::new(reference, name)) else {
-            let lacking = if tiles::Measured::new(image, name).is_none() { &args.image } else { &args.reference };
-            let note = format!(
-                "`{}` has no channel Error.{name}, so the difference cannot be compared with the noise",
-                lacking.display()
-            );
-            return (None, Some(note));
-        };
-        channels.push(tiles::test(name, &a, &b, image.picture.width(), args.tile as usize));
-    }
-    let accepted_from = tiles::each(args.significance, channels.len());
-    let differ = channels.iter().any(|channel| channel.p() < accepted_from);
-    let note = same_numbers.then(|| {
-        "both pictures have the same scene and the same seed: their noise is not independent, and the test may miss a \
-         difference"
-            .to_owned()
-    });
-    (Some(Test { significance: args.significance, differ, accepted_from, channels }), note)
-}
-
 fn describe(comparison: &Comparison) -> String {
     let Comparison { width, height, rmse, rel_mse, flip, .. } = comparison;
     let mut text = format!(
         "{width} × {height} pixels: RMSE {rmse:.6e}, relative MSE {rel_mse:.6e}, FLIP {flip:.6} (0 looks alike, 1 does not)"
     );
-    if let Some(NonFinite { pixels, first: [x, y] }) = comparison.non_finite {
+    if let Some(NonFinitePixels { pixels, first: [x, y] }) = comparison.non_finite {
         text.push_str(&format!(
             "\n  {pixels} pixels have values that are not finite, the first in column {x}, row {y}"
         ));

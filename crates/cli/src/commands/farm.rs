@@ -90,7 +90,7 @@ impl Job {
 /// How often a task keeps what it has, so that it can be moved to another machine.
 const CHECKPOINT: &str = "60s";
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: Args, program: Option<PathBuf>) -> Outcome {
     // A scene with mistakes is found here, not on a hundred machines.
     let mut loaded = load(&args.scene, args.overrides.film_size())?;
     args.overrides.apply(&mut loaded.scene)?;
@@ -107,7 +107,10 @@ pub(crate) fn run(args: Args) -> Outcome {
     options.extend(args.error.iter().flat_map(|error| ["--error".to_owned(), error.to_string()]));
     let job = Job {
         name: label(&stem),
-        program: std::env::current_exe().map_err(|error| Failure::run(Report::from_err(error)))?,
+        program: match program {
+            Some(program) => program,
+            None => std::env::current_exe().map_err(|error| Failure::run(Report::from_err(error)))?,
+        },
         scene: absolute(&args.scene)?,
         picture: absolute(&picture)?,
         shards: args.shards.unwrap_or_else(each_its_own),

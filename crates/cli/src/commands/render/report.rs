@@ -1,5 +1,6 @@
 //! What is said about a render that is done.
 
+use etalon::{ErrorReport, PredictionReport, reached_name};
 use etalon_control::{Explored, Prediction, Reached};
 use etalon_transport::accuracy::{FEWEST_LIT, Region};
 use etalon_transport::{Counters, ImageError, Plan};
@@ -35,7 +36,7 @@ pub(super) struct RenderJson<'a> {
     /// What ended the render: "samples", "error", "time" or "interrupted".
     reached: &'static str,
     /// What the pilot predicted for the error asked for.
-    predicted: Option<PredictionJson>,
+    predicted: Option<PredictionReport>,
     /// How it was decided where the samples go; `null` where that was not asked.
     adaptive: Option<AdaptiveJson>,
     prepare_seconds: f64,
@@ -55,78 +56,10 @@ pub(super) struct RenderJson<'a> {
     nonfinite_at: Vec<[u32; 3]>,
     /// `null` with a single replicate, of whose error nothing is known. Where no sample found light, the numbers in it that are
     /// unknown are `null`.
-    error: Option<ErrorJson>,
+    error: Option<ErrorReport>,
     warnings: Vec<ProblemJson>,
     errors: Vec<ProblemJson>,
     plan: &'a Plan,
-}
-
-/// The error of the picture.
-#[derive(Serialize)]
-pub(super) struct ErrorJson {
-    /// Root mean square over all pixels of the standard error of Y, in units of the mean Y; `null` if no sample found light.
-    relative_rmse: Option<f64>,
-    /// `null` if that is unknown, or if too few samples found light.
-    interval_95: Option<[f64; 2]>,
-    mean_y: f64,
-    replicates: u32,
-    /// 0: normal replicates, 1: each pixel's error is one outlier.
-    tail_index: Option<f64>,
-    heavy_tailed: bool,
-    /// The same, every noisy pixel counted alike.
-    pixel_tail_index: Option<f64>,
-    heavy_tailed_pixels: bool,
-    /// `null` if the error is unknown.
-    noisiest: Option<NoisiestJson>,
-    unknown_pixels: u64,
-}
-
-/// The tile with the largest error.
-#[derive(Serialize)]
-struct NoisiestJson {
-    /// Columns x0 to x1, rows y0 to y1.
-    crop: [u32; 4],
-    relative_rmse: f64,
-    /// Share of the squared error of the picture.
-    share: f64,
-}
-
-fn error_json(replicates: u32, error: &ImageError) -> ErrorJson {
-    ErrorJson {
-        relative_rmse: error.is_known().then_some(error.relative_rmse),
-        interval_95: error.has_interval().then_some(error.interval),
-        mean_y: error.mean_y,
-        replicates,
-        tail_index: error.tail_index,
-        heavy_tailed: error.is_heavy_tailed(),
-        pixel_tail_index: error.pixel_tail_index,
-        heavy_tailed_pixels: error.has_heavy_tailed_pixels(),
-        noisiest: error.noisiest.map(|Region { rect, relative_rmse, share }| NoisiestJson {
-            crop: [rect.x0, rect.x1, rect.y0, rect.y1],
-            relative_rmse,
-            share,
-        }),
-        unknown_pixels: error.unknown_pixels,
-    }
-}
-
-/// What a pilot predicted: seconds of rendering, its own left out.
-#[derive(Serialize)]
-pub(super) struct PredictionJson {
-    relative_rmse: f64,
-    /// `null`, as the seconds, if the pilot found no light.
-    samples: f64,
-    seconds: f64,
-    pilot_seconds: f64,
-}
-
-fn prediction_json(predicted: &Prediction) -> PredictionJson {
-    PredictionJson {
-        relative_rmse: predicted.cost_estimate.relative_rmse,
-        samples: predicted.cost_estimate.samples,
-        seconds: predicted.cost_estimate.seconds,
-        pilot_seconds: predicted.pilot_seconds,
-    }
 }
 
 /// What an exploration found, and whether it was followed.
@@ -174,15 +107,6 @@ fn describe_explored(done: &Done, explored: &Explored) -> String {
             "the same number of samples in every pixel: an exploration ({}) predicted too little gain from others ({gain:.2} times less time)",
             duration(explored.seconds)
         )
-    }
-}
-
-fn word(reached: Reached) -> &'static str {
-    match reached {
-        Reached::Samples => "samples",
-        Reached::Error => "error",
-        Reached::Time => "time",
-        Reached::Interrupted => "interrupted",
     }
 }
 
@@ -276,8 +200,8 @@ pub(super) fn json<'a>(
         seed: job.loaded.scene.integrator.seed,
         threads: job.threads,
         seconds,
-        reached: word(done.ended.reached),
-        predicted: done.ended.predicted.as_ref().map(prediction_json),
+        reached: reached_name(done.ended.reached),
+        predicted: done.ended.predicted.as_ref().map(PredictionReport::new),
         adaptive: done.explored.as_ref().map(|explored| adaptive_json(done, explored)),
         prepare_seconds: job.prepare_seconds,
         paths: counters.paths,
@@ -292,7 +216,7 @@ pub(super) fn json<'a>(
         cut_paths: counters.cut_paths,
         nonfinite: counters.nonfinite,
         nonfinite_at: counters.nonfinite_at.iter().map(|at| [at.x, at.y, at.sample]).collect(),
-        error: done.error.as_ref().map(|error| error_json(subject.replicates, error)),
+        error: done.error.as_ref().map(|error| ErrorReport::new(subject.replicates, error)),
         warnings: job.warnings.iter().map(problem_json).collect(),
         errors: problems_json(failure),
         plan: job.prepared.plan(),

@@ -51,7 +51,7 @@ impl<'a> Measured<'a> {
 
 /// The test of one tile in one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct Tile {
+pub struct TileTest {
     /// Columns x0 to x1, rows y0 to y1.
     pub crop: [usize; 4],
     /// Mean of the first and of the second picture.
@@ -66,23 +66,25 @@ pub(super) struct Tile {
 }
 
 /// The outcome for one channel.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct Channel {
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChannelTest {
+    /// Its name.
     pub channel: String,
+    /// Tiles that were tested.
     pub tiles: usize,
     /// Tiles in which a pixel's error is not known.
     pub untested_tiles: usize,
     /// The tile with the smallest p-value.
-    pub worst: Option<Tile>,
+    pub worst: Option<TileTest>,
     /// Probability that the smallest p-value of so many tiles is that small if the pictures show the same.
     pub p_worst: f64,
     /// Probability that so many p-values are that small together: it sees a small difference spread over many tiles.
     pub p_spread: f64,
 }
 
-impl Channel {
+impl ChannelTest {
     /// The smaller of both probabilities.
-    pub(super) fn p(&self) -> f64 {
+    pub fn p(&self) -> f64 {
         self.p_worst.min(self.p_spread)
     }
 }
@@ -93,7 +95,7 @@ pub(super) fn each(significance: f64, channels: usize) -> f64 {
 }
 
 /// Tests one channel of two pictures of the same width, tile by tile.
-pub(super) fn test(channel: &str, a: &Measured<'_>, b: &Measured<'_>, width: usize, side: usize) -> Channel {
+pub(super) fn test(channel: &str, a: &Measured<'_>, b: &Measured<'_>, width: usize, side: usize) -> ChannelTest {
     let height = a.values.len() / width;
     let mut tiles = Vec::new();
     let mut untested = 0;
@@ -109,7 +111,7 @@ pub(super) fn test(channel: &str, a: &Measured<'_>, b: &Measured<'_>, width: usi
     }
     let worst = tiles.iter().copied().min_by(|a, b| a.p.total_cmp(&b.p));
     let noisy: Vec<f64> = tiles.iter().filter(|tile| tile.noisy).map(|tile| tile.p).collect();
-    Channel {
+    ChannelTest {
         channel: channel.to_owned(),
         tiles: tiles.len(),
         untested_tiles: untested,
@@ -121,7 +123,7 @@ pub(super) fn test(channel: &str, a: &Measured<'_>, b: &Measured<'_>, width: usi
 }
 
 /// `None` where an error is not known. A value that is not finite equals nothing: its tile differs with certainty.
-fn welch(a: &Measured<'_>, b: &Measured<'_>, pixels: &[usize], crop: [usize; 4]) -> Option<Tile> {
+fn welch(a: &Measured<'_>, b: &Measured<'_>, pixels: &[usize], crop: [usize; 4]) -> Option<TileTest> {
     let sum = |values: &[f32]| pixels.iter().map(|&pixel| f64::from(values[pixel])).sum::<f64>();
     let rounding: f64 = pixels
         .iter()
@@ -132,7 +134,7 @@ fn welch(a: &Measured<'_>, b: &Measured<'_>, pixels: &[usize], crop: [usize; 4])
     let variance = variance_a + variance_b;
     let n = pixels.len() as f64;
     if !(sum_a.is_finite() && sum_b.is_finite()) {
-        return Some(Tile { crop, means: [sum_a / n, sum_b / n], t: f64::INFINITY, p: 0.0, noisy: false });
+        return Some(TileTest { crop, means: [sum_a / n, sum_b / n], t: f64::INFINITY, p: 0.0, noisy: false });
     }
     if !variance.is_finite() {
         return None;
@@ -147,7 +149,7 @@ fn welch(a: &Measured<'_>, b: &Measured<'_>, pixels: &[usize], crop: [usize; 4])
     } else {
         student_two_sided_tail(t, freedom([a, b], variance, squares_a + squares_b))
     };
-    Some(Tile { crop, means: [sum_a / n, sum_b / n], t, p, noisy: variance > 0.0 })
+    Some(TileTest { crop, means: [sum_a / n, sum_b / n], t, p, noisy: variance > 0.0 })
 }
 
 /// Degrees of freedom of a sum of variances, `squares` being the sum of the squares of each over its own ν + 2: (Σσ²)² over Σσ⁴/ν, both
@@ -200,11 +202,11 @@ mod tests {
         })
     }
 
-    fn channel(pair: &[(Vec<f32>, Vec<f32>); 2]) -> Channel {
+    fn channel(pair: &[(Vec<f32>, Vec<f32>); 2]) -> ChannelTest {
         channel_in_tiles(pair, 16, 1.0)
     }
 
-    fn channel_in_tiles(pair: &[(Vec<f32>, Vec<f32>); 2], side: usize, correlated: f64) -> Channel {
+    fn channel_in_tiles(pair: &[(Vec<f32>, Vec<f32>); 2], side: usize, correlated: f64) -> ChannelTest {
         let [a, b] =
             [0, 1].map(|i| Measured { values: &pair[i].0, errors: &pair[i].1, freedom: Some(3.0), correlated });
         test("Y", &a, &b, 64, side)
