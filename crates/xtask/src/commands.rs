@@ -253,6 +253,13 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 Script("tests/editor.sh"),
             ),
             named(
+                "python",
+                "[--fuzz [COUNT [SEED]]]",
+                "wheel, types, tests and notebooks of the Python package, or arbitrary dicts for it; needs Python 3.10 and pip",
+                "15 min",
+                Script("tests/python.sh"),
+            ),
+            named(
                 "denoise",
                 "",
                 "`etalon denoise` in a build with Open Image Denoise, which it fetches",

@@ -1,0 +1,92 @@
+"""Scenes as dicts: what JSON cannot say is found here, everything else by the reader of scene files."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from typing import Any
+
+import numpy as np
+
+from ._errors import Problem
+
+MOST_LEVELS = 100
+"""Deepest nesting; scene files are nested less deeply."""
+
+
+class Plain:
+    """A value as JSON text, with the problems of what JSON cannot say."""
+
+    problems: list[Problem]
+    text: str
+
+    def __init__(self, value: Any) -> None:
+        self.problems = []
+        self.text = json.dumps(self._plain(value, "$", 0), indent=2, allow_nan=False)
+
+    def _refuse(self, path: str, code: str, message: str) -> None:
+        self.problems.append(Problem("error", code, path, message, None, None, None))
+
+    def _plain(self, value: Any, path: str, level: int) -> Any:
+        if level > MOST_LEVELS:
+            self._refuse(path, "limit", f"is nested more than {MOST_LEVELS} levels deep")
+            return None
+        if value is None or isinstance(value, bool):
+            return value
+        if isinstance(value, str):
+            return self._string(str(value), path)
+        if isinstance(value, np.ndarray):
+            return self._plain(value.tolist(), path, level)
+        if isinstance(value, np.generic):
+            return self._plain(value.item(), path, level)
+        if isinstance(value, int):
+            return self._integer(int(value), path)
+        if isinstance(value, float):
+            if math.isfinite(value):
+                return float(value)
+            self._refuse(path, "not-finite", f"{value} is not a finite number")
+            return None
+        if isinstance(value, os.PathLike):
+            return self._string(os.fsdecode(value), path)
+        if isinstance(value, dict):
+            return self._object(value, path, level)
+        if isinstance(value, (list, tuple)):
+            return [self._plain(item, f"{path}[{index}]", level + 1) for index, item in enumerate(value)]
+        self._refuse(path, "wrong-type", f"a value of type {type(value).__name__} is no JSON value")
+        return None
+
+    def _string(self, value: str, path: str) -> Any:
+        if _is_unicode(value):
+            return value
+        self._refuse(path, "not-utf-8", "the text has half of a surrogate pair")
+        return None
+
+    def _integer(self, value: int, path: str) -> Any:
+        # Far beyond every number of a scene; Python itself refuses to print integers of more than 4300 digits.
+        if value.bit_length() <= 1024:
+            return value
+        self._refuse(path, "out-of-range", "the integer has more than 1024 bits")
+        return None
+
+    def _object(self, value: dict[Any, Any], path: str, level: int) -> dict[str, Any]:
+        plain = {}
+        for key, item in value.items():
+            if not isinstance(key, str) or not _is_unicode(key):
+                self._refuse(path, "wrong-type", f"a key of type {type(key).__name__} is no text")
+                continue
+            plain[str(key)] = self._plain(item, path + _step(key), level + 1)
+        return plain
+
+
+def _is_unicode(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _step(key: str) -> str:
+    """A key in a JSON path, as the reader of scene files writes it."""
+    return f".{key}" if key.isidentifier() and key.isascii() else f"[{json.dumps(key, ensure_ascii=False)}]"
