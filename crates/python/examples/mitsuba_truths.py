@@ -1,9 +1,10 @@
-"""Mitsuba 3, held to ten truths of the oracle.
+"""Mitsuba 3, held to eleven truths of the oracle.
 
     pip install mitsuba
     python mitsuba_truths.py
 
-The translation of scenes is that of docs/mitsuba-verify.py, which does the same for all truths and from the command line.
+Version 3.9.1 passes ten. In room-cut-at-2 a point inside a sphere light gets too much light: case 27 of docs/hard-cases.md. The translation
+of scenes is that of docs/mitsuba-verify.py, which does the same for all truths and from the command line.
 """
 
 import importlib.util
@@ -16,7 +17,7 @@ from etalon import oracle
 
 TRUTHS = [
     "sky-alone", "furnace-lambert-sphere", "furnace-mirror-sphere", "room-cut-at-2", "lamp-in-a-sphere", "parallel-plates-lower",
-    "disk-light", "square-light", "sky-on-a-plate", "sky-behind-a-disk",
+    "disk-light", "square-light", "sphere-light-overhead", "sky-on-a-plate", "sky-behind-a-disk",
 ]
 
 
@@ -28,8 +29,8 @@ def translator():
     return module
 
 
-def verdict(name, seconds=20.0, variant="scalar_mono"):
-    """Renders the scene of a truth with independent seeds, and judges the pixels."""
+def verdict(name, seconds=20.0, variant="scalar_rgb"):
+    """Renders the scene of a truth with independent seeds, and judges the pixels. The variant needs no LLVM."""
     verify = translator()
     mitsuba.set_variant(variant)
     truth = oracle.truth(name)

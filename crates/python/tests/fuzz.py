@@ -29,13 +29,15 @@ ODD: list[Any] = [
 ]
 
 
-def places(value: Any) -> list[tuple[Any, Any]]:
-    """Every container with every key or index of it."""
-    found = []
+def places(value: Any, level: int = 0) -> list[tuple[Any, Any]]:
+    """Every container with every key or index of it, down to a level that no scene has."""
+    found: list[tuple[Any, Any]] = []
+    if level > 30:
+        return found
     keys = list(value) if isinstance(value, dict) else range(len(value)) if isinstance(value, list) else ()
     for key in keys:
         found.append((value, key))
-        found += places(value[key])
+        found += places(value[key], level + 1)
     return found
 
 
@@ -60,15 +62,16 @@ def mutate(scene: dict[str, Any], words: list[str], rng: random.Random) -> Any:
             case 0:
                 del container[key]
             case 1:
+                # Sometimes without a copy, which may make a dict that holds itself.
                 other, name = rng.choice(options)
-                container[key] = copy.deepcopy(other[name]) if name in other or isinstance(other, list) and name < len(other) else None
+                container[key] = other[name] if rng.random() < 0.01 else copy.deepcopy(other[name])
             case 2 if isinstance(container, dict):
                 container[rng.choice(words)] = container.pop(key)
             case 3 if isinstance(container, dict):
                 container[rng.choice(words)] = rng.choice(ODD)
-            case 4 if isinstance(container[key], (int, float)):
+            case 4 if isinstance(container[key], (int, float)) and abs(container[key]) < 10**300:
                 container[key] = container[key] * rng.choice((-1, 0, 1e-9, 1e9, 1e-200, 1e200, 1 + 1e-15))
-            case 5 if isinstance(container[key], list):
+            case 5 if isinstance(container[key], list) and len(container[key]) < 1000:
                 container[key] = container[key] * rng.choice((0, 2, 3))
             case 6:
                 container[key] = rng.choice(words)

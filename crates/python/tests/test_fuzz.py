@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 
 import numpy as np
+import pytest
 
 import etalon
 import fuzz
@@ -28,6 +29,7 @@ def test_arbitrary_texts_give_a_scene_or_its_errors():
             assert error.errors
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_arbitrary_arguments_give_an_answer_or_an_exception_of_ours():
     rng = random.Random(5)
     scene = etalon.load(fuzz.seeds()[1], size=(4, 3))

@@ -14,6 +14,7 @@ import etalon
 
 
 def test_a_picture_knows_its_truth_within_its_error(ball):
+    ball["camera"]["vertical_fov_deg"] = 12
     picture = etalon.load(ball).render(spp=64, bands=(450, 650, 100), seed=3)
     assert picture.size == (32, 24) and picture.crop == (0, 32, 0, 24)
     assert picture.rgb.shape == picture.error.shape == (24, 32, 3)
@@ -109,7 +110,10 @@ def test_polarised_light_has_stokes_parameters(ball):
     assert np.array_equal(picture.stokes_bands[..., 0], picture.bands)
     s0, s1, s2, s3 = picture.stokes_bands.astype(float).mean(axis=(0, 1, 2))
     # All reflected light is polarised. The angle is off by 0.05° at most, which lets less than 1e-5 of the other kind through.
-    assert s0 > 0.1 and abs(s1 / s0 - 1) < 1e-4 and abs(s2) < 1e-4 and abs(s3) < 1e-4
+    assert s0 > 0 and abs(s1 / s0 - 1) < 1e-4 and abs(s2) < 1e-4 and abs(s3) < 1e-4
+    # Half of Fresnel's reflectance across the plane of incidence: ((n² − 1) / (n² + 1))² / 2.
+    spectrum = picture.spectrum(0, 0, 8, 8)
+    assert (np.abs(spectrum.radiance - (1.25 / 3.25) ** 2 / 2) < 5 * spectrum.error).all()
     assert scene.render(spp=1).stokes is None
 
 

@@ -3,6 +3,38 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, final
 
+__all__ = [
+    "Passes",
+    "Picture",
+    "Renderer",
+    "Scene",
+    "VERSION",
+    "abbe_number",
+    "blackbody",
+    "colour_matching",
+    "compare",
+    "emission_of_rgb",
+    "exchange_files",
+    "glass",
+    "glasses",
+    "illuminant",
+    "illuminants",
+    "judge",
+    "load",
+    "main",
+    "metal",
+    "metals",
+    "parse",
+    "read",
+    "reflectance_of_rgb",
+    "rgb_to_xyz",
+    "schema",
+    "srgb_decode",
+    "srgb_encode",
+    "truths",
+    "xyz_to_rgb",
+]
+
 VERSION: Final[str]
 
 @final

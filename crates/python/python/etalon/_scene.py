@@ -20,7 +20,6 @@ from ._picture import Picture
 from ._progress import Bar
 from ._results import Cost, Effect, Explanation, Quote, Replay, known, pair
 
-Adaptive = Literal["auto", "always", "never"]
 Bands = tuple[float, float, float]
 
 MOST_THREADS = 4096
@@ -195,7 +194,7 @@ class Scene:
         max_depth: int | None = None,
         replicates: int | None = None,
         polarised: bool = False,
-        adaptive: Adaptive = "auto",
+        adaptive: Literal["auto", "always", "never"] = "auto",
         threads: int | None = None,
         progress: bool | Callable[[Progress], object] | None = None,
     ) -> Picture:
@@ -259,7 +258,7 @@ class Scene:
         max_depth: int | None = None,
         replicates: int | None = None,
         polarised: bool = False,
-        adaptive: Adaptive = "auto",
+        adaptive: Literal["auto", "always", "never"] = "auto",
         threads: int | None = None,
     ) -> Iterator[Picture]:
         """Renders the scene and gives the picture after each pass; the last is that of :meth:`render`.
@@ -283,7 +282,7 @@ class Scene:
         size: tuple[int, int] | None = None,
         bands: Bands | str | None = None,
         seed: int | None = None,
-        adaptive: Adaptive = "auto",
+        adaptive: Literal["auto", "always", "never"] = "auto",
         threads: int | None = None,
     ) -> Quote:
         """What accuracy will cost in samples and seconds on this machine, by a pilot of at most ``pilot`` seconds.

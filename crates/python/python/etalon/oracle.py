@@ -5,15 +5,14 @@ is the mean over all pixels of the radiance (W·m⁻²·sr⁻¹·nm⁻¹) that a
 constant spectrum of radiance 1 is 1.
 
 >>> from etalon import oracle
->>> truth = oracle.truth("furnace-albedo-0.50")
->>> verdict = oracle.judge(truth, mean=0.5003, error=0.0004)
+>>> truth = oracle.truth("furnace-lambert-sphere")
+>>> verdict = oracle.judge(truth, mean=0.7003, error=0.0004)
 >>> verdict.passed
 True
 """
 
 from __future__ import annotations
 
-import functools
 import json
 import math
 import os
@@ -82,16 +81,20 @@ class Verdict:
         return f"{self.truth}: {word}: {self.mean:.8g} ± {self.standard_error:.2g}, truth {self.value:.8g}: {self.evidence}"
 
 
-@functools.cache
+_TRUTHS: dict[str, Truth] = {}
+
+
 def _all() -> dict[str, Truth]:
-    found = {}
+    """All truths by name, made when they are asked for first."""
+    if _TRUTHS:
+        return _TRUTHS
     for entry in json.loads(_etalon.truths()):
         band = entry["band_nm"]
         names = Truth.__dataclass_fields__
         plain = {name: entry[name] for name in names if name in entry}
         plain["band_nm"] = None if band is None else (band[0], band[1])
-        found[entry["name"]] = Truth(**plain)
-    return found
+        _TRUTHS[entry["name"]] = Truth(**plain)
+    return _TRUTHS
 
 
 def truths(*parts: str) -> list[Truth]:

@@ -99,7 +99,7 @@ def reflectance_of_rgb(rgb: npt.ArrayLike, wavelengths_nm: npt.ArrayLike) -> Flo
 
 
 def emission_of_rgb(rgb: npt.ArrayLike, wavelengths_nm: npt.ArrayLike, *, white: str = "D65") -> Floats:
-    """An emission whose colour is ``rgb``: linear Rec. 709, shape (3,). Equal components emit the illuminant ``white``."""
+    """An emission whose colour is ``rgb``: linear Rec. 709, shape (3,). The illuminant ``white`` gives the spectrum its structure."""
     nm = _wavelengths(wavelengths_nm)
     return _like(nm, _etalon.emission_of_rgb(_three(rgb), _name(white), nm.tobytes()))
 
@@ -197,4 +197,4 @@ def _name(value: Any) -> str:
 
 
 def _like(shape: Floats, data: bytearray, *last: int) -> Floats:
-    return np.frombuffer(data, dtype=np.float64).reshape(*shape.shape, *last)
+    return np.frombuffer(data, dtype=np.float64).reshape((*shape.shape, *last))
