@@ -82,7 +82,10 @@ pub use motion::{Motion, Pose};
 pub use passed::Passed;
 pub use placement::Placement;
 pub use ray::{Hit, PrimitiveId, Ray, SurfaceId, SurfacePoint};
-pub use shapes::*;
+pub use shapes::{
+    Cylinder, DirectionDensity, Disk, MAX_COORDINATE, MIN_LENGTH, Parallelogram, PlanarSampler, ShapeError, ShapeMap,
+    ShapeSample, ShapeSampler, Sphere, SphereSampler, Triangle,
+};
 
 #[cfg(test)]
 mod test_support;

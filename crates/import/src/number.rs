@@ -39,6 +39,8 @@ impl Number {
 pub(crate) enum Rough {
     /// The width α.
     Alpha(f64),
+    /// Widths along the direction of growing u and across it.
+    Widths([f64; 2]),
     /// An image of the format.
     Image(Value),
 }
@@ -47,6 +49,14 @@ impl Rough {
     /// A width as the format has it: below what it resolves the surface is smooth.
     pub(crate) fn width(alpha: f64) -> Self {
         Self::Alpha(within(alpha))
+    }
+
+    /// Widths along the direction of growing u and across it: below what the format resolves they are the least that it does, unless both are.
+    pub(crate) fn widths([u, v]: [f64; 2]) -> Self {
+        if u == v || (within(u) == 0.0 && within(v) == 0.0) {
+            return Self::width(u);
+        }
+        Self::Widths([u, v].map(|alpha| alpha.clamp(LEAST_ALPHA, 1.0)))
     }
 
     /// Of an image whose numbers are a quantity of the format.
@@ -59,6 +69,7 @@ impl Rough {
     pub(crate) fn put(self, material: &mut Value) {
         match self {
             Self::Alpha(alpha) => material["alpha"] = json!(alpha),
+            Self::Widths([u, v]) => (material["alpha_u"], material["alpha_v"]) = (json!(u), json!(v)),
             Self::Image(image) => material["roughness_image"] = image,
         }
     }
@@ -67,6 +78,28 @@ impl Rough {
 fn within(alpha: f64) -> f64 {
     if alpha < LEAST_ALPHA { 0.0 } else { alpha.min(1.0) }
 }
+
+/// Takes the directions away from facets of two widths, in a material of the format: the geometric mean of both is their width. Returns
+/// whether there were any.
+pub(crate) fn without_directions(value: &mut Value) -> bool {
+    match value {
+        Value::Object(map) => {
+            let widths = [map.remove("alpha_u"), map.remove("alpha_v")].map(|width| width.and_then(|w| w.as_f64()));
+            map.remove("tangent_rotation_deg");
+            if let [Some(u), Some(v)] = widths {
+                map.insert("alpha".to_owned(), json!((u * v).sqrt()));
+                return true;
+            }
+            // Each of them, not the first alone.
+            map.values_mut().fold(false, |found, value| without_directions(value) || found)
+        }
+        _ => false,
+    }
+}
+
+/// What is said where facets lose their directions.
+pub(crate) const WITHOUT_DIRECTIONS: &str =
+    "it has no texture coordinates for the directions of its roughness: the geometric mean of both widths is taken";
 
 /// Whether a material of the format shows an image.
 pub(crate) fn has_image(value: &Value) -> bool {

@@ -113,9 +113,9 @@ fn imported(model: &Value) -> Result<Imported, String> {
 fn widths(kind: &MaterialKind) -> Vec<(f64, f64)> {
     let MaterialKind::Blend { parts, by: NumberTexture::Image(_) } = kind else { panic!("{kind:?}") };
     let alpha = |kind: &MaterialKind| match kind {
-        MaterialKind::Plastic { alpha, .. }
-        | MaterialKind::RoughConductor { alpha, .. }
-        | MaterialKind::RoughDielectric { alpha, .. } => *alpha,
+        MaterialKind::Plastic { facets: Some(facets), .. }
+        | MaterialKind::RoughConductor { facets, .. }
+        | MaterialKind::RoughDielectric { facets, .. } => facets.alpha[0],
         MaterialKind::Conductor { .. } | MaterialKind::Dielectric { .. } => 0.0,
         other => panic!("{other:?}"),
     };
@@ -220,14 +220,60 @@ fn what_shines_by_an_image_does_so_where_there_are_texture_coordinates() {
     assert_eq!(object.emission.as_ref().and_then(|e| e.image.as_ref()).expect("an image").factor, [8.0, 4.0, 2.0]);
 }
 
+/// `KHR_materials_anisotropy` of roughness 0.5: α is 0.25, and along the direction 0.25 + 0.75·0.6².
+#[test]
+fn anisotropy_of_gltf_arrives() {
+    let with = |extension: Value, roughness_texture: bool| {
+        let mut model = model();
+        let mut surface = json!({ "metallicFactor": 1, "roughnessFactor": 0.5 });
+        if roughness_texture {
+            surface["metallicRoughnessTexture"] = json!({ "index": 0 });
+        }
+        let material =
+            json!({ "pbrMetallicRoughness": surface, "extensions": { "KHR_materials_anisotropy": extension } });
+        model["extensionsUsed"].as_array_mut().unwrap().push(json!("KHR_materials_anisotropy"));
+        for (i, place) in model["materials"].as_array_mut().unwrap().iter_mut().enumerate() {
+            if i != 1 {
+                *place = material.clone();
+            }
+        }
+        let imported = imported(&model).unwrap();
+        let scene = scene(&imported);
+        let facets = |i: usize| {
+            let part = &scene.groups[scene.instances[i].group].objects[0];
+            scene.materials[part.material].kind.microfacets().next().copied()
+        };
+        let said: Vec<_> = imported.left_out.iter().map(|l| l.what.clone()).collect();
+        ([facets(0), facets(2)], said.join("\n"))
+    };
+    let full = json!({ "anisotropyStrength": 0.6, "anisotropyRotation": 0.5 });
+    // The third part of the mesh has no texture coordinates.
+    let ([found, without], said) = with(full.clone(), false);
+    let found = found.unwrap();
+    assert!((found.alpha[0] - 0.52).abs() < 1e-7 && (found.alpha[1] - 0.25).abs() < 1e-7, "{found:?}");
+    assert!((found.rotation_rad - 0.5).abs() < 1e-12, "{found:?}");
+    let mean = (0.52_f64 * 0.25).sqrt();
+    assert!(without.is_some_and(|facets| facets.is_isotropic() && (facets.alpha[0] - mean).abs() < 1e-7), "{without:?}");
+    assert!(said.contains("geometric mean of both widths") && !said.contains("honoured"), "{said}");
+    // Nothing without strength.
+    let ([found, _], said) = with(json!({ "anisotropyRotation": 0.5 }), false);
+    assert!(found.is_some_and(|facets| facets.is_isotropic()) && !said.contains("widths"), "{said}");
+    // Images.
+    let mut textured = full.clone();
+    textured["anisotropyTexture"] = json!({ "index": 0 });
+    let ([found, _], said) = with(textured, false);
+    assert!(!found.unwrap().is_isotropic() && said.contains("its image is left out"), "{said}");
+    let (_, said) = with(full, true);
+    assert!(said.contains("since an image says the roughness"), "{said}");
+}
+
 #[test]
 fn glb_materials_lights_and_cameras_arrive() {
     let scene = scene(&imported(&model()).unwrap());
     let part = |i: usize| &scene.groups[scene.instances[i].group].objects[0];
     let kind = |i: usize| &scene.materials[part(i).material].kind;
-    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), coat, alpha: 1.0 } = kind(0) else {
-        panic!("an image")
-    };
+    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), coat, facets } = kind(0) else { panic!("an image") };
+    assert_eq!(*facets, Some(1.0.into()));
     assert_eq!(coat.eval(550.0), 1.5);
     assert_eq!((image.wrap, image.filter), ([Wrap::Clamp, Wrap::Mirror], TextureFilter::Nearest));
     assert_eq!((image.factor, image.uv_scale), ([0.5, 1.0, 0.25], [2.0, 4.0]));
@@ -240,10 +286,10 @@ fn glb_materials_lights_and_cameras_arrive() {
     assert!((n(587.5618) - 1.6).abs() < 1e-12);
     assert!(((n(587.5618) - 1.0) / (n(486.1327) - n(656.2725)) - 40.0).abs() < 1e-9);
     // Metal of roughness 0.1, so α = 0.01, that reflects a tenth of white head-on.
-    let MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), alpha, .. } = kind(2) else {
+    let MaterialKind::RoughConductor { metal: Metal::Reflectance(reflectance), facets, .. } = kind(2) else {
         panic!("metal")
     };
-    assert!((alpha - 0.01).abs() < 1e-7, "{alpha}");
+    assert!((facets.alpha[0] - 0.01).abs() < 1e-7 && facets.is_isotropic(), "{facets:?}");
     assert_eq!(reflectance, &etalon_optics::Spectrum::Constant(0.1).into());
     let emission = part(2).emission.as_ref().expect("a lamp");
     let expected = etalon_optics::Spectrum::rgb_emission([7.0, 3.5, 0.0], etalon_optics::Illuminant::D65).unwrap();

@@ -22,7 +22,7 @@ pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
 pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
 pub use light::{Light, LightCone, LightKind};
 pub use material::{
-    LEAST_ALPHA, Material, MaterialKind, Metal, NumberTexture, Parameter, ParameterMut, PolarisingSheet,
+    LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets, NumberTexture, Parameter, ParameterMut, PolarisingSheet,
     SpectrumTexture,
 };
 pub use motion::{CameraMotion, Keyframe, Motion};

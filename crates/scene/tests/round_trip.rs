@@ -115,7 +115,7 @@ fn materials_and_spectra() {
     let gold = ComplexIndex::named("Au").expect("gold").with_outside(OutsideFit::Clamp);
     assert_eq!(
         kind(&scene, "gold"),
-        &MaterialKind::RoughConductor { metal: Metal::Index(gold), alpha: 0.25, compensated: false }
+        &MaterialKind::RoughConductor { metal: Metal::Index(gold), facets: 0.25.into(), compensated: false }
     );
     let own = ComplexIndex::tabulated(vec![300.0, 900.0], vec![0.2, 0.3], vec![3.0, 4.0]).expect("right");
     assert_eq!(kind(&scene, "own metal"), &MaterialKind::Conductor { metal: Metal::Index(own) });
@@ -129,7 +129,7 @@ fn materials_and_spectra() {
         &MaterialKind::RoughDielectric {
             interior: glass("N-SF11").with_outside(OutsideFit::Clamp),
             exterior: RefractiveIndex::Constant(1.33),
-            alpha: 1.0,
+            facets: 1.0.into(),
             compensated: true,
             priority: None,
         }
@@ -153,7 +153,7 @@ fn materials_and_spectra() {
     let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
     assert_eq!(kind(&scene, "clay"), &clay);
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
-    let toy = MaterialKind::Plastic { reflectance, coat, alpha: 0.1 };
+    let toy = MaterialKind::Plastic { reflectance, coat, facets: Some(0.1.into()) };
     assert_eq!(kind(&scene, "toy"), &toy);
     assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7") });
     let sheet = PolarisingSheet::Polariser { transmittance: Spectrum::Constant(0.75), extinction: 0.125 };

@@ -200,15 +200,16 @@ fn numbers_and_colours_of_materials_come_from_images() {
     assert!(first <= 40.0 / 255.0 && 40.0 / 255.0 < 1.051 * first);
     assert!(last >= 230.0 / 255.0 && 230.0 / 255.0 > last / 1.051);
     for (roughness, part) in parts {
-        let MaterialKind::RoughConductor { metal: Metal::Reflectance(SpectrumTexture::Image(_)), alpha, .. } = part
+        let MaterialKind::RoughConductor { metal: Metal::Reflectance(SpectrumTexture::Image(_)), facets, .. } = part
         else {
             panic!("{part:?}")
         };
-        assert_eq!(*alpha, roughness * roughness);
+        assert_eq!(facets.alpha, [roughness * roughness; 2]);
     }
     // Of one roughness everywhere.
     let kind = right(r#"{"type": "conductor", "reflectance": 0.5, "alpha": 0.25}"#);
-    assert!(matches!(kind, MaterialKind::RoughConductor { metal: Metal::Reflectance(_), alpha: 0.25, .. }));
+    let MaterialKind::RoughConductor { metal: Metal::Reflectance(_), facets, .. } = kind else { panic!("{kind:?}") };
+    assert_eq!(facets, 0.25.into());
 }
 
 #[test]

@@ -171,10 +171,16 @@ impl<'a> Surface<'a> {
     ) -> Scattering<'a> {
         let place = at(geometry, point, hit);
         let mut shading = self.own.coordinates.at(&place);
-        if let Some(relief) = &self.own.relief
+        let takes_tangents = self.surfaces.properties[self.material].takes_tangents;
+        if (self.own.relief.is_some() || takes_tangents)
             && let Some(tangents) = self.own.coordinates.tangents(&place)
         {
-            shading = bump_mapping::bend(&relief.image, shading, tangents, relief.per_m);
+            if let Some(relief) = &self.own.relief {
+                shading = bump_mapping::bend(&relief.image, shading, tangents, relief.per_m);
+            }
+            if takes_tangents {
+                shading = shading.with_tangents(tangents);
+            }
         }
         if let Some(axis) = self.own.axis {
             shading = shading.with_axis(geometry.placed_normal(hit.surface, axis, point.time).normalized());

@@ -74,10 +74,10 @@ fn at_one_half(of: impl Fn(f64) -> MaterialKind) -> MaterialKind {
 #[test]
 fn glass_whose_roughness_an_image_says_absorbs_as_glass_of_that_roughness() {
     let glass = |index: f64| {
-        move |alpha| MaterialKind::RoughDielectric {
+        move |alpha: f64| MaterialKind::RoughDielectric {
             interior: RefractiveIndex::Constant(index),
             exterior: RefractiveIndex::VACUUM,
-            alpha,
+            facets: alpha.into(),
             compensated: true,
             priority: None,
         }

@@ -39,7 +39,7 @@ fn smooth_plastic_has_the_albedo_of_its_closed_form() {
     let n = 1.5;
     for rho in [0.2, 0.8, 1.0] {
         let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(n));
-        let bsdf = Bsdf::new(&MaterialKind::Plastic { reflectance, coat, alpha: 0.0 }, RANGE_NM);
+        let bsdf = Bsdf::new(&MaterialKind::Plastic { reflectance, coat, facets: None }, RANGE_NM);
         for mu in [1.0, 0.5, 0.1] {
             let passed = fresnel_exact(mu, n).transmittance();
             let mean = 1.0 - walsh_reflectance(n);
@@ -245,10 +245,10 @@ fn texel(value: f32) -> ImageTexture {
 /// What an image says of a material is what the material is where the image says it, to the bit where no neighbour has a share.
 #[test]
 fn a_material_by_images_is_the_material_that_they_say() {
-    let rough = |alpha| MaterialKind::Plastic {
+    let rough = |alpha: f64| MaterialKind::Plastic {
         reflectance: Spectrum::Constant(0.5).into(),
         coat: RefractiveIndex::Constant(1.5),
-        alpha,
+        facets: Some(alpha.into()),
     };
     let places = [0.25, 0.5, 1.0];
     let varied = |roughness: f32| MaterialKind::Blend {
@@ -275,16 +275,16 @@ fn a_material_by_images_is_the_material_that_they_say() {
         let painted = |reflectance: SpectrumTexture| MaterialKind::Plastic {
             reflectance,
             coat: RefractiveIndex::Constant(1.5),
-            alpha: 0.0,
+            facets: None,
         };
         let image = || SpectrumTexture::Image(texel(0.5));
         let uniform = || SpectrumTexture::from(Spectrum::Constant(0.5));
         let (a, b) = (eval(&painted(image()), pair), eval(&painted(uniform()), pair));
         assert!((a.0[0] - b.0[0]).abs() < 1e-12 * b.0[0], "{a:?} {b:?}");
-        let metal = |r| MaterialKind::RoughConductor { metal: Metal::Reflectance(r), alpha: 0.3, compensated: true };
+        let metal = |r| MaterialKind::RoughConductor { metal: Metal::Reflectance(r), facets: 0.3.into(), compensated: true };
         // k²/(4 + k²) is one half.
         let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1.0; 2], vec![2.0; 2]).unwrap();
-        let exact = MaterialKind::RoughConductor { metal: Metal::Index(index), alpha: 0.3, compensated: true };
+        let exact = MaterialKind::RoughConductor { metal: Metal::Index(index), facets: 0.3.into(), compensated: true };
         let (a, b, c) = (eval(&metal(image()), pair), eval(&metal(uniform()), pair), eval(&exact, pair));
         // What light that meets several facets adds is tabulated in steps of 1/256 of √R.
         for found in [a, b] {

@@ -90,7 +90,8 @@ impl Materials {
             let mut uv_set = None;
             let numbers = self.numbers(&surface, place, &mut uv_set, buffers, builder);
             let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
-            if !roughness.put_as_roughness(&mut glass) {
+            let anisotropy = Anisotropy::of(material, &roughness, place, builder);
+            if !roughness.put_as_roughness(anisotropy.as_ref(), &mut glass) {
                 uv_set = None;
             }
             if let Some(volume) = material.volume()
@@ -117,12 +118,13 @@ impl Materials {
             None => (reflectance(base), None),
         };
         let numbers = self.numbers(&surface, place, &mut uv_set, buffers, builder);
+        let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
+        let anisotropy = Anisotropy::of(material, &roughness, place, builder);
         let part = |kind: &str, roughness: &Number| {
             let mut part = json!({ "type": kind, "reflectance": colour });
-            roughness.put_as_roughness(&mut part);
+            roughness.put_as_roughness(anisotropy.as_ref(), &mut part);
             part
         };
-        let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
         let mut ground = part("plastic", &roughness);
         ground["coat"] = index(material, place, builder);
         if material.specular().is_some_and(|specular| specular.specular_factor() == 0.0) || ground["coat"] == json!(1.0)
@@ -305,12 +307,59 @@ impl Number {
     }
 
     /// Says it of a material as its roughness; returns whether by an image.
-    fn put_as_roughness(&self, material: &mut Value) -> bool {
+    fn put_as_roughness(&self, anisotropy: Option<&Anisotropy>, material: &mut Value) -> bool {
         match self {
-            Self::Value(roughness) => material["alpha"] = json!(alpha(*roughness as f32)),
+            Self::Value(roughness) => {
+                let alpha = alpha(*roughness as f32);
+                match anisotropy {
+                    Some(anisotropy) => anisotropy.put(alpha, material),
+                    None => material["alpha"] = json!(alpha),
+                }
+            }
             Self::Image(image) => material["roughness_image"] = image.clone(),
         }
         matches!(self, Self::Image(_))
+    }
+}
+
+/// `KHR_materials_anisotropy`: along a direction the width α becomes α + (1 − α)s², s the strength. The direction is that of growing u,
+/// turned toward the top of the image.
+struct Anisotropy {
+    strength: f64,
+    rotation_rad: f64,
+}
+
+impl Anisotropy {
+    fn of(
+        material: &gltf::Material<'_>,
+        roughness: &Number,
+        place: &str,
+        builder: &mut Builder<'_>,
+    ) -> Option<Self> {
+        let value = material.extension_value("KHR_materials_anisotropy")?;
+        let number = |key: &str| value[key].as_f64().unwrap_or(0.0);
+        let place = format!("{place}.extensions.KHR_materials_anisotropy");
+        let strength = number("anisotropyStrength").clamp(0.0, 1.0);
+        if strength == 0.0 {
+            return None;
+        }
+        if matches!(roughness, Number::Image(_)) {
+            builder.leave_out(place, "it is left out, since an image says the roughness");
+            return None;
+        }
+        if value.get("anisotropyTexture").is_some() {
+            builder.leave_out(place, "its image is left out: strength and rotation are the same everywhere");
+        }
+        Some(Self { strength, rotation_rad: number("anisotropyRotation") })
+    }
+
+    fn put(&self, alpha: f64, material: &mut Value) {
+        let alpha = alpha.max(LEAST_ALPHA);
+        material["alpha_u"] = json!((alpha + (1.0 - alpha) * self.strength * self.strength).min(1.0));
+        material["alpha_v"] = json!(alpha);
+        if self.rotation_rad != 0.0 {
+            material["tangent_rotation_deg"] = json!(self.rotation_rad.to_degrees());
+        }
     }
 }
 
@@ -372,7 +421,7 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
     list(weak && opaque, "extensions.KHR_materials_transmission", "a factor below 0.5 becomes opaque");
     let coloured = material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite());
     list(coloured && opaque, "extensions.KHR_materials_volume", "it is ignored: the material does not transmit light");
-    const KNOWN: [&str; 1] = ["KHR_materials_dispersion"];
+    const KNOWN: [&str; 2] = ["KHR_materials_anisotropy", "KHR_materials_dispersion"];
     for key in material.extensions().into_iter().flat_map(|map| map.keys()) {
         list(!KNOWN.contains(&key.as_str()), &format!("extensions.{key}"), no);
     }

@@ -17,6 +17,7 @@ use gltf::mesh::{Mode, Semantic};
 use gltf::{Gltf, Node};
 use serde_json::{Value, json};
 
+use crate::number::{WITHOUT_DIRECTIONS, without_directions};
 use crate::{Builder, Moment, light};
 use accessor::numbers;
 use animation::{Animated, Pose};
@@ -323,6 +324,14 @@ impl Walk<'_, '_> {
             material = json!({ "type": "lambert", "reflectance": 0.8 });
             detail.clear();
             emission = emission.filter(|emission| emission["radiance"]["type"] != "image");
+        }
+        if mesh.uvs.is_empty() {
+            let own = material.as_str().and_then(|name| self.builder.materials.get(name));
+            let mut without = own.unwrap_or(&material).clone();
+            if without_directions(&mut without) {
+                self.builder.leave_out(place, WITHOUT_DIRECTIONS);
+                material = without;
+            }
         }
         let file = self.builder.mesh_file(&mesh);
         Ok(Some(MadePart { file, mesh, material, emission, detail }))

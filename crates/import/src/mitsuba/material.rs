@@ -271,11 +271,7 @@ impl Walk<'_, '_, '_> {
         let alpha = match (self.number(element, "alpha")?, both) {
             (_, (Some(u), Some(v))) => {
                 let (u, v) = (u.mean("alpha_u", place, self.builder), v.mean("alpha_v", place, self.builder));
-                if u != v {
-                    let what = "alpha_u and alpha_v differ: both become their geometric mean";
-                    self.builder.leave_out(place, what);
-                }
-                Number::Value((u * v).max(0.0).sqrt())
+                return Ok(Rough::widths([u, v]));
             }
             (Some(alpha), _) | (None, (Some(alpha), None)) => alpha,
             (None, _) => Number::Value(0.1),

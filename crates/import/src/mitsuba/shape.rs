@@ -11,7 +11,7 @@ use super::colour::kind;
 use super::element::Element;
 use super::material::{Look, grey};
 use crate::Placed;
-use crate::number::has_image;
+use crate::number::{WITHOUT_DIRECTIONS, has_image, without_directions};
 use crate::relief::without_map;
 
 /// A mesh file, as files of the scene.
@@ -233,6 +233,14 @@ impl<'a> Walk<'a, '_, '_> {
             self.builder
                 .leave_out(place, "it has no texture coordinates for the image of its material: it becomes grey");
             dressed.look.material = grey();
+        }
+        if !has_uvs {
+            let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
+            let mut material = own.unwrap_or(&dressed.look.material).clone();
+            if without_directions(&mut material) {
+                self.builder.leave_out(place, WITHOUT_DIRECTIONS);
+                dressed.look.material = material;
+            }
         }
         if !has_uvs && without_map(&mut dressed.look.detail) {
             self.builder

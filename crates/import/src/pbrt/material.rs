@@ -162,11 +162,7 @@ impl Reading<'_, '_> {
             }
             (u, v) => {
                 let (u, v) = (u.mean("uroughness", place, self.builder), v.mean("vroughness", place, self.builder));
-                if u != v {
-                    let what = "roughnesses along u and v differ: both become their geometric mean";
-                    self.builder.leave_out(place, what);
-                }
-                Rough::width(alpha((u * v).max(0.0).sqrt()))
+                Rough::widths([u, v].map(|roughness| alpha(roughness.max(0.0))))
             }
         })
     }

@@ -9,7 +9,7 @@ use super::Reading;
 use super::parameters::Parameters;
 use super::spectrum::kind;
 use crate::Placed;
-use crate::number::{Number, has_image};
+use crate::number::{Number, WITHOUT_DIRECTIONS, has_image, without_directions};
 use crate::relief::without_map;
 
 /// A shape of the format, the box around it, and whether it has texture coordinates.
@@ -114,6 +114,11 @@ impl Reading<'_, '_> {
             self.builder
                 .leave_out(place, "it has no texture coordinates for the image of its material: it becomes grey");
             return json!({ "type": "lambert", "reflectance": 0.5 });
+        }
+        let mut without = own.clone();
+        if !has_uvs && without_directions(&mut without) {
+            self.builder.leave_out(place, WITHOUT_DIRECTIONS);
+            return without;
         }
         value.clone()
     }

@@ -25,9 +25,9 @@ fn surfaces_that_shine_by_an_image_arrive() {
 fn widths(kind: &MaterialKind) -> Vec<(f64, f64)> {
     let MaterialKind::Blend { parts, by: NumberTexture::Image(_) } = kind else { panic!("{kind:?}") };
     let width = |kind: &MaterialKind| match kind {
-        MaterialKind::RoughConductor { alpha, .. }
-        | MaterialKind::RoughDielectric { alpha, .. }
-        | MaterialKind::Plastic { alpha, .. } => *alpha,
+        MaterialKind::RoughConductor { facets, .. }
+        | MaterialKind::RoughDielectric { facets, .. }
+        | MaterialKind::Plastic { facets: Some(facets), .. } => facets.alpha[0],
         MaterialKind::Conductor { .. } | MaterialKind::Dielectric { .. } => 0.0,
         other => panic!("{other:?}"),
     };

@@ -1,6 +1,7 @@
 //! Scenes of Mitsuba and pbrt: what they say arrives in the scene, what cannot be honoured is listed with its line.
 
 mod bounds;
+mod brushed;
 mod images;
 mod relief;
 
@@ -288,10 +289,10 @@ fn a_pbrt_scene_arrives_with_its_camera_shapes_materials_and_lights() {
     assert!((etalon_optics::colour::luminance_of(|nm| intensity.eval(nm)) - 2.0).abs() < 1e-9);
     let Shape::Sphere { radius_m, .. } = &scene.objects[1].shape else { panic!("the coated ball") };
     assert_eq!((scene.objects[1].transform.translation_m, *radius_m), ([1.0, 0.5, 0.0], 0.5));
-    let MaterialKind::Plastic { alpha, .. } = &scene.materials[scene.objects[1].material].kind else {
+    let MaterialKind::Plastic { facets: Some(facets), .. } = &scene.materials[scene.objects[1].material].kind else {
         panic!("coated")
     };
-    assert!((alpha - 0.2).abs() < 1e-12, "roughness is the square of alpha");
+    assert!((facets.alpha[0] - 0.2).abs() < 1e-12, "roughness is the square of alpha");
     let radiance = &scene.objects[1].emission.as_ref().expect("it shines").radiance;
     assert!((etalon_optics::colour::luminance_of(|nm| radiance.eval(nm)) - 1.0).abs() < 1e-9);
     let MaterialKind::Dielectric { interior, .. } = &scene.materials[scene.objects[2].material].kind else {

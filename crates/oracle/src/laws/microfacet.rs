@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use super::fresnel_exact;
-use crate::vector::{Vec3, add, dot, scale};
+use crate::vector::{Vec3, add, dot, normalize, scale};
 
 /// How facets hide each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,10 +27,10 @@ pub struct SingleScattering {
     pub refracted: f64,
 }
 
-/// Smith's Λ for GGX facets of width `alpha`.
-fn lambda(alpha: f64, w: Vec3) -> f64 {
-    let tan2 = (w[0] * w[0] + w[1] * w[1]) / (w[2] * w[2]);
-    0.5 * ((1.0 + alpha * alpha * tan2).sqrt() - 1.0)
+/// Smith's Λ for GGX facets of widths `alpha` along x and y.
+fn lambda(alpha: [f64; 2], w: Vec3) -> f64 {
+    let slope2 = (alpha[0] * w[0]).powi(2) + (alpha[1] * w[1]).powi(2);
+    0.5 * ((1.0 + slope2 / (w[2] * w[2])).sqrt() - 1.0)
 }
 
 /// Steps in slope and in azimuth of the rule for [`ggx_albedo`].
@@ -41,7 +41,34 @@ const STEPS: usize = 640;
 /// rule of a higher order gains.
 #[must_use]
 pub fn ggx_albedo(alpha: f64, mu: f64, eta: Option<f64>, masking: Masking) -> SingleScattering {
-    let o = [(1.0 - mu * mu).sqrt(), 0.0, mu];
+    // In its own plane of incidence a direction sees both halves of all azimuths alike.
+    albedo([alpha; 2], [(1.0 - mu * mu).sqrt(), 0.0, mu], facets([alpha; 2], PI), eta, masking)
+}
+
+/// The same for facets of widths `alpha` along x and y, and light from the direction `o`.
+#[must_use]
+pub fn anisotropic_ggx_albedo(alpha: [f64; 2], o: Vec3, eta: Option<f64>, masking: Masking) -> SingleScattering {
+    albedo(alpha, o, facets(alpha, 2.0 * PI), eta, masking)
+}
+
+/// The BRDF of GGX facets of widths `alpha` along x and y that reflect everything: D G/(4 cos θ_o cos θ_i) with Smith's masking, correlated
+/// in height (Heitz 2014, equations (85) and (99)), in sr⁻¹, for directions on the side of +z.
+#[must_use]
+pub fn anisotropic_ggx_mirrors(alpha: [f64; 2], o: Vec3, i: Vec3) -> f64 {
+    let h = normalize(add(o, i));
+    let slope2 = (h[0] / alpha[0]).powi(2) + (h[1] / alpha[1]).powi(2);
+    let density = 1.0 / (PI * alpha[0] * alpha[1] * h[2].powi(4) * (1.0 + slope2 / (h[2] * h[2])).powi(2));
+    density / (1.0 + lambda(alpha, o) + lambda(alpha, i)) / (4.0 * o[2] * i[2])
+}
+
+fn albedo(
+    alpha: [f64; 2],
+    o: Vec3,
+    facets: impl Iterator<Item = (Vec3, f64)>,
+    eta: Option<f64>,
+    masking: Masking,
+) -> SingleScattering {
+    let mu = o[2];
     let lambda_o = lambda(alpha, o);
     let together = |w: Vec3, reflection: bool| {
         let other = lambda(alpha, w);
@@ -51,7 +78,7 @@ pub fn ggx_albedo(alpha: f64, mu: f64, eta: Option<f64>, masking: Masking) -> Si
         }
     };
     let mut sum = SingleScattering { reflected: 0.0, refracted: 0.0 };
-    for (h, weight) in facets(alpha) {
+    for (h, weight) in facets {
         let c = dot(o, h);
         if c <= 0.0 {
             continue;
@@ -74,19 +101,18 @@ pub fn ggx_albedo(alpha: f64, mu: f64, eta: Option<f64>, masking: Masking) -> Si
     sum
 }
 
-/// Normals of facets on one side of the plane of incidence with the share of the surface, projected, that each stands for; together 1.
+/// Normals of facets of the azimuths up to `turn` with the share of the surface, projected, that each stands for; together 1.
 ///
-/// tan²θ = α²x/(1 − x) spreads D cos θ dω evenly over x in [0, 1] and the azimuth, and x = 1 − y⁴ spreads the steepest facets out, which grazing
+/// Slopes are those of width 1, stretched by the widths: tan²θ = α²x/(1 − x) spreads D cos θ dω evenly over x in [0, 1] and the azimuth, and x = 1 − y⁴ spreads the steepest facets out, which grazing
 /// light sees as 1/√(1 − x).
-fn facets(alpha: f64) -> impl Iterator<Item = (Vec3, f64)> {
+fn facets(alpha: [f64; 2], turn: f64) -> impl Iterator<Item = (Vec3, f64)> {
     let step = |i: usize| (i as f64 + 0.5) / STEPS as f64;
     (0..STEPS * STEPS).map(move |i| {
-        let (y, phi) = (step(i % STEPS), step(i / STEPS) * PI);
+        let (y, phi) = (step(i % STEPS), step(i / STEPS) * turn);
         let rest = y.powi(4);
-        let tan2 = alpha * alpha * (1.0 - rest) / rest;
-        let cos = 1.0 / (1.0 + tan2).sqrt();
-        let sin = tan2.sqrt() * cos;
-        ([sin * phi.cos(), sin * phi.sin(), cos], 4.0 * y.powi(3) / (STEPS * STEPS) as f64)
+        let tan = ((1.0 - rest) / rest).sqrt();
+        let slope = [alpha[0] * tan * phi.cos(), alpha[1] * tan * phi.sin()];
+        (normalize([slope[0], slope[1], 1.0]), 4.0 * y.powi(3) / (STEPS * STEPS) as f64)
     })
 }
 
@@ -113,10 +139,50 @@ mod tests {
         for alpha in [0.03, 0.3, 1.0] {
             for mu in [1.0, 0.3, 0.02] {
                 let o = [(1.0_f64 - mu * mu).sqrt(), 0.0, mu];
-                let whole: f64 = facets(alpha).map(|(h, weight)| weight * dot(o, h).max(0.0) / h[2]).sum();
-                let whole = whole / (mu * (1.0 + lambda(alpha, o)));
+                let whole: f64 = facets([alpha; 2], PI).map(|(h, weight)| weight * dot(o, h).max(0.0) / h[2]).sum();
+                let whole = whole / (mu * (1.0 + lambda([alpha; 2], o)));
                 assert!((whole - 1.0).abs() < 2e-5, "α {alpha} µ {mu}: {whole}");
             }
+        }
+    }
+
+    /// Of two widths as of one; and a surface turned by a quarter has its widths exchanged.
+    #[test]
+    fn facets_of_two_widths_fill_what_sees_them() {
+        for (alpha, mu, phi) in [([0.05, 0.5], 0.3, 0.4_f64), ([1.0, 0.2], 0.05, 1.3), ([0.1, 0.9], 0.9, 2.0)] {
+            let s = (1.0_f64 - mu * mu).sqrt();
+            let o = [s * phi.cos(), s * phi.sin(), mu];
+            let whole: f64 = facets(alpha, 2.0 * PI).map(|(h, weight)| weight * dot(o, h).max(0.0) / h[2]).sum();
+            let whole = whole / (mu * (1.0 + lambda(alpha, o)));
+            assert!((whole - 1.0).abs() < 5e-5, "α {alpha:?} µ {mu}: {whole}");
+            let [a, b] = [(alpha, o), ([alpha[1], alpha[0]], [-o[1], o[0], o[2]])]
+                .map(|(alpha, o)| anisotropic_ggx_albedo(alpha, o, None, Masking::Correlated).reflected);
+            assert!((a - b).abs() < 2e-5, "α {alpha:?} µ {mu}: {a} {b}");
+        }
+        let (one, two) = (
+            ggx_albedo(0.3, 0.4, Some(1.5), Masking::Correlated),
+            anisotropic_ggx_albedo([0.3; 2], [0.0, -(1.0_f64 - 0.16).sqrt(), 0.4], Some(1.5), Masking::Correlated),
+        );
+        assert!((one.reflected - two.reflected).abs() < 1e-5 && (one.refracted - two.refracted).abs() < 1e-5);
+    }
+
+    /// The albedo once more, from the BRDF itself over directions of light.
+    #[test]
+    fn the_brdf_of_two_widths_has_the_albedo_of_its_facets() {
+        let alpha = [0.3, 0.7];
+        for (mu, phi) in [(0.8, 0.3_f64), (0.4, 1.2)] {
+            let s = (1.0_f64 - mu * mu).sqrt();
+            let o = [s * phi.cos(), s * phi.sin(), mu];
+            let steps = 1000;
+            let place = |k: usize| (k as f64 + 0.5) / steps as f64;
+            let of = |k: usize| {
+                let (z, turn) = (place(k % steps), 2.0 * PI * place(k / steps));
+                let s = (1.0 - z * z).sqrt();
+                anisotropic_ggx_mirrors(alpha, o, [s * turn.cos(), s * turn.sin(), z]) * z
+            };
+            let sum = (0..steps * steps).map(of).sum::<f64>() * 2.0 * PI / (steps * steps) as f64;
+            let albedo = anisotropic_ggx_albedo(alpha, o, None, Masking::Correlated).reflected;
+            assert!((sum - albedo).abs() < 1e-4, "{mu} {phi}: {sum} {albedo}");
         }
     }
 

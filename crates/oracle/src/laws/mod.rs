@@ -28,7 +28,7 @@ pub use light::{
     light_laws, light_pdf_integrates_to_one, light_sample_is_consistent, light_samples_follow_pdf,
     rectangle_solid_angle, sphere_solid_angle, triangle_solid_angle,
 };
-pub use microfacet::{Masking, SingleScattering, ggx_albedo};
+pub use microfacet::{Masking, SingleScattering, anisotropic_ggx_albedo, anisotropic_ggx_mirrors, ggx_albedo};
 pub use numerics::{film_mean_is_exact, frame_is_orthonormal, mis_weights_add_up, wavelengths_follow_density};
 pub use polarisation::{
     Polarises, Turn, TurnedBy, mueller_is_physical, mueller_is_reciprocal, stokes_along, stokes_along_paths_is_exact,

@@ -85,6 +85,9 @@ impl Claim {
             Self::Motion => "motion",
             Self::Masks => "masks",
             Self::LosslessRoughGlass => "lossless-rough-glass",
+            Self::LosslessRoughMetal => "lossless-rough-metal",
+            Self::AnisotropicFacets => "anisotropic-facets",
+            Self::CorrelatedMasking => "correlated-masking",
         }
     }
 }

@@ -12,6 +12,7 @@ mod absorption;
 mod cameras;
 mod enclosures;
 mod exchange;
+mod facets;
 mod furnaces;
 mod glass;
 mod illumination;
@@ -71,11 +72,17 @@ pub enum Claim {
     Masks,
     /// Rough dielectrics give back the light that meets several facets.
     LosslessRoughGlass,
+    /// Rough metals give back the light that meets several facets.
+    LosslessRoughMetal,
+    /// Facets have two widths, along the surface's first texture coordinate and across it.
+    AnisotropicFacets,
+    /// Facets hide each other in reflection by Smith's masking that is correlated in height.
+    CorrelatedMasking,
 }
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 12] = [
+    pub const UNPOLARISED: [Self; 15] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -88,6 +95,9 @@ impl Claim {
         Self::Motion,
         Self::Masks,
         Self::LosslessRoughGlass,
+        Self::LosslessRoughMetal,
+        Self::AnisotropicFacets,
+        Self::CorrelatedMasking,
     ];
 }
 
@@ -279,6 +289,7 @@ impl Truth {
 pub fn truths() -> Vec<Truth> {
     [
         furnaces::truths(),
+        facets::truths(),
         enclosures::truths(),
         illumination::truths(),
         lamps::truths(),

@@ -257,6 +257,20 @@ pub(super) fn conductor(n: f64, k: f64) -> Value {
     json!({ "type": "conductor", "wavelengths_nm": [300, 900], "n": [n, n], "k": [k, k] })
 }
 
+/// Metal that reflects everything, with GGX facets of widths along the grain and across it. The grain is turned from the direction of growing
+/// u toward that of growing v. Light that meets several facets is given back or lost.
+pub(super) fn brushed_metal(alpha: [f64; 2], rotation_deg: f64, lossless: bool) -> Value {
+    let mut metal = conductor(1e-12, 3.0);
+    (metal["alpha_u"], metal["alpha_v"]) = (json!(alpha[0]), json!(alpha[1]));
+    if rotation_deg != 0.0 {
+        metal["tangent_rotation_deg"] = json!(rotation_deg);
+    }
+    if !lossless {
+        metal["multiple_scattering"] = json!("lost");
+    }
+    metal
+}
+
 pub(super) fn glass(interior: f64) -> Value {
     json!({ "type": "dielectric", "interior": interior })
 }

@@ -3,6 +3,7 @@
 //! Right subjects and mutants are written here in plain `f64`, independent of any renderer. A mutant is a right subject with one
 //! line wrong, selected by name.
 
+mod brushed;
 mod bsdf;
 mod layers;
 mod light;

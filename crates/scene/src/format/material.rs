@@ -14,12 +14,12 @@ use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
 use crate::json::{Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole};
-use crate::model::{Material, MaterialKind, Metal, PolarisingSheet};
+use crate::model::{LEAST_ALPHA, Material, MaterialKind, Metal, PolarisingSheet};
 pub(crate) use blend::Before;
 pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
 use index::{IndexForm, NamedMetal, complex_index, index};
-use roughness::roughness;
+use roughness::{RoughnessKeys, roughness};
 
 crate::record! {
     /// Ideal diffuse reflection, on both sides.
@@ -55,6 +55,12 @@ crate::record! {
         outside_fit: Required<OutsideFit> = r#""error""#,
         /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
+        /// Instead: the width along the tangent, the direction in which u grows, from 0.0001 to 1.
+        alpha_u: Optional<Width>,
+        /// And the width across the tangent, from 0.0001 to 1.
+        alpha_v: Optional<Width>,
+        /// By how much the tangent is turned from growing u toward growing v, degrees.
+        tangent_rotation_deg: Optional<f64>,
         /// Instead: an image that says the width at each place.
         roughness_image: Optional<RoughnessImageForm>,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
@@ -62,6 +68,11 @@ crate::record! {
     } with [
         Rule::OneOf(&["metal", "wavelengths_nm", "reflectance"]),
         Rule::NotBoth("alpha", "roughness_image"),
+        Rule::NotBoth("alpha", "alpha_u"),
+        Rule::NotBoth("alpha_u", "roughness_image"),
+        Rule::Needs("alpha_u", &["alpha_v"]),
+        Rule::Needs("alpha_v", &["alpha_u"]),
+        Rule::Needs("tangent_rotation_deg", &["alpha_u"]),
         Rule::Needs("wavelengths_nm", &["n", "k"]),
         Rule::Needs("n", &["wavelengths_nm"]),
         Rule::Needs("k", &["wavelengths_nm"]),
@@ -71,6 +82,11 @@ crate::record! {
 crate::number! {
     /// A width of a distribution of facets: 0 or a width that directions can resolve, at most 1.
     pub(crate) struct Alpha in (Bound::Included(0.0), Bound::Included(1.0));
+}
+
+crate::number! {
+    /// A width of a distribution of facets: one that directions can resolve, at most 1.
+    pub(crate) struct Width in (Bound::Included(LEAST_ALPHA), Bound::Included(1.0));
 }
 
 /// What becomes of light that meets several facets of a rough surface.
@@ -96,6 +112,12 @@ crate::record! {
         exterior: Required<IndexForm> = "1",
         /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
+        /// Instead: the width along the tangent, the direction in which u grows, from 0.0001 to 1.
+        alpha_u: Optional<Width>,
+        /// And the width across the tangent, from 0.0001 to 1.
+        alpha_v: Optional<Width>,
+        /// By how much the tangent is turned from growing u toward growing v, degrees.
+        tangent_rotation_deg: Optional<f64>,
         /// Instead: an image that says the width at each place.
         roughness_image: Optional<RoughnessImageForm>,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
@@ -111,6 +133,11 @@ crate::record! {
         transmittance_depth_m: Optional<Positive>,
     } with [
         Rule::NotBoth("alpha", "roughness_image"),
+        Rule::NotBoth("alpha", "alpha_u"),
+        Rule::NotBoth("alpha_u", "roughness_image"),
+        Rule::Needs("alpha_u", &["alpha_v"]),
+        Rule::Needs("alpha_v", &["alpha_u"]),
+        Rule::Needs("tangent_rotation_deg", &["alpha_u"]),
         Rule::NotBoth("exterior", "priority"),
         Rule::NotBoth("roughness_image", "priority"),
         Rule::NotBoth("absorption_per_m", "transmittance"),
@@ -143,10 +170,21 @@ crate::record! {
         coat: Required<IndexForm> = "1.5",
         /// Roughness of the coat: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
+        /// Instead: the coat's width along the tangent, the direction in which u grows, from 0.0001 to 1.
+        alpha_u: Optional<Width>,
+        /// And the width across the tangent, from 0.0001 to 1.
+        alpha_v: Optional<Width>,
+        /// By how much the tangent is turned from growing u toward growing v, degrees.
+        tangent_rotation_deg: Optional<f64>,
         /// Instead: an image that says the coat's width at each place.
         roughness_image: Optional<RoughnessImageForm>,
     } with [
         Rule::NotBoth("alpha", "roughness_image"),
+        Rule::NotBoth("alpha", "alpha_u"),
+        Rule::NotBoth("alpha_u", "roughness_image"),
+        Rule::Needs("alpha_u", &["alpha_v"]),
+        Rule::Needs("alpha_v", &["alpha_u"]),
+        Rule::Needs("tangent_rotation_deg", &["alpha_u"]),
     ]
 }
 
@@ -241,6 +279,18 @@ impl MaterialForm {
     }
 }
 
+/// The keys of a form that say how rough it is.
+macro_rules! roughness_keys {
+    ($form:ident) => {
+        RoughnessKeys {
+            alpha: $form.alpha.as_ref(),
+            widths: [&$form.alpha_u, &$form.alpha_v],
+            rotation_deg: &$form.tangent_rotation_deg,
+            image: &$form.roughness_image,
+        }
+    };
+}
+
 /// What a form says.
 #[derive(Clone, Debug)]
 pub(crate) struct Made {
@@ -289,27 +339,29 @@ pub(crate) fn material<'f>(
                 }
                 _ => complex_index(conductor, spectra.range_nm, reader).map(Metal::Index),
             };
-            let roughness = roughness(conductor.alpha.as_ref(), &conductor.roughness_image, files, reader);
+            let roughness = roughness(&roughness_keys!(conductor), files, reader);
             let compensated = conductor.multiple_scattering? == MultipleScattering::Compensated;
             let metal = metal?;
-            Some(roughness?.material(|alpha| match alpha {
-                0.0 => MaterialKind::Conductor { metal: metal.clone() },
-                alpha => MaterialKind::RoughConductor { metal: metal.clone(), alpha, compensated },
+            Some(roughness?.material(|facets| match facets {
+                None => MaterialKind::Conductor { metal: metal.clone() },
+                Some(facets) => MaterialKind::RoughConductor { metal: metal.clone(), facets, compensated },
             }))
         }
         MaterialForm::Dielectric(dielectric) => {
             let interior = dielectric.interior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let exterior = dielectric.exterior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
-            let roughness = roughness(dielectric.alpha.as_ref(), &dielectric.roughness_image, files, reader);
+            let roughness = roughness(&roughness_keys!(dielectric), files, reader);
             let compensated = dielectric.multiple_scattering? == MultipleScattering::Compensated;
             let priority = dielectric.priority.clone().checked()?.map(|priority| priority.0 as u32);
             let absorption = absorption(dielectric, spectra, reader);
             let (interior, exterior) = (interior?, exterior?);
-            let kind = roughness?.material(|alpha| {
+            let kind = roughness?.material(|facets| {
                 let (interior, exterior) = (interior.clone(), exterior.clone());
-                match alpha {
-                    0.0 => MaterialKind::Dielectric { interior, exterior, priority },
-                    alpha => MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority },
+                match facets {
+                    None => MaterialKind::Dielectric { interior, exterior, priority },
+                    Some(facets) => {
+                        MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority }
+                    }
                 }
             });
             return Some(Made { kind, absorption: absorption? });
@@ -324,12 +376,12 @@ pub(crate) fn material<'f>(
                 .as_ref()
                 .and_then(|form| spectra.resolve_texture(form, Role::Reflectance, files, reader));
             let coat = plastic.coat.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
-            let roughness = roughness(plastic.alpha.as_ref(), &plastic.roughness_image, files, reader);
+            let roughness = roughness(&roughness_keys!(plastic), files, reader);
             let (reflectance, coat) = (reflectance?, coat?);
-            Some(roughness?.material(|alpha| MaterialKind::Plastic {
+            Some(roughness?.material(|facets| MaterialKind::Plastic {
                 reflectance: reflectance.clone(),
                 coat: coat.clone(),
-                alpha,
+                facets,
             }))
         }
         MaterialForm::ThinDielectric(pane) => {

@@ -284,7 +284,11 @@ fn object<'f>(
     {
         // Indices count the right ones only as long as all are.
         let material = materials.right.get(material).filter(|_| !materials.wrong);
-        check_coordinates(material.and_then(|material| material.kind.image()), shape, at, reader);
+        let material = material.map(|material| &material.kind);
+        check_coordinates(material.and_then(|kind| kind.image()), shape, at, reader);
+        if material.is_some_and(|kind| kind.microfacets().any(|facets| !facets.is_isotropic())) {
+            check_tangents(shape, at, reader);
+        }
     }
     let opacity_image = match &form.opacity_image {
         Optional::Absent => Some(None),
@@ -331,10 +335,19 @@ fn check_coordinates(image: Option<&ImageTexture>, shape: &Shape, at: Span, read
         && !shape.has_texture_coordinates()
     {
         let message = format!("the shape has no texture coordinates for the image \"{}\"", image.name);
-        let hint = "give the mesh \"uvs\", or use a file with texture coordinates";
-        reader.error_hint(Code::NoTextureCoordinates, at, message, hint);
+        reader.error_hint(Code::NoTextureCoordinates, at, message, GIVE_COORDINATES);
     }
 }
+
+/// Reports facets of two widths on a shape that has no texture coordinates.
+fn check_tangents(shape: &Shape, at: Span, reader: &mut Reader<'_>) {
+    if !shape.has_texture_coordinates() {
+        let message = "the shape has no texture coordinates, from which \"alpha_u\" and \"alpha_v\" have their directions";
+        reader.error_hint(Code::NoTextureCoordinates, at, message, GIVE_COORDINATES);
+    }
+}
+
+const GIVE_COORDINATES: &str = "give the mesh \"uvs\", or use a file with texture coordinates";
 
 /// Odd scenes that can be rendered all the same.
 fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {

@@ -17,6 +17,28 @@ pub struct Material {
     pub absorption: Option<Spectrum>,
 }
 
+/// The facets of a rough surface: GGX normals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Microfacets {
+    /// Widths α along the tangent and across it, each in [[`LEAST_ALPHA`], 1].
+    pub alpha: [f64; 2],
+    /// Angle of the tangent from the direction of growing u toward that of growing v, rad.
+    pub rotation_rad: f64,
+}
+
+impl Microfacets {
+    /// Whether the surface is the same when it is turned about its normal: then it needs no tangent.
+    pub fn is_isotropic(&self) -> bool {
+        self.alpha[0] == self.alpha[1]
+    }
+}
+
+impl From<f64> for Microfacets {
+    fn from(alpha: f64) -> Self {
+        Self { alpha: [alpha; 2], rotation_rad: 0.0 }
+    }
+}
+
 /// What a surface does to light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialKind {
@@ -49,8 +71,8 @@ pub enum MaterialKind {
     RoughConductor {
         /// Its index.
         metal: Metal,
-        /// Width of the GGX distribution of facets, in [[`LEAST_ALPHA`], 1].
-        alpha: f64,
+        /// Its facets.
+        facets: Microfacets,
         /// Whether light that meets several facets is counted.
         compensated: bool,
     },
@@ -60,8 +82,8 @@ pub enum MaterialKind {
         interior: RefractiveIndex,
         /// Medium on the side that the surface normal points into.
         exterior: RefractiveIndex,
-        /// Width of the GGX distribution of facets, in [[`LEAST_ALPHA`], 1].
-        alpha: f64,
+        /// Its facets.
+        facets: Microfacets,
         /// Whether light that meets several facets is counted.
         compensated: bool,
         /// As of a smooth one.
@@ -80,8 +102,8 @@ pub enum MaterialKind {
         reflectance: SpectrumTexture,
         /// Index of the coat.
         coat: RefractiveIndex,
-        /// Width of the coat's facets: 0 (smooth) or in [[`LEAST_ALPHA`], 1].
-        alpha: f64,
+        /// The coat's facets; `None` is a smooth coat.
+        facets: Option<Microfacets>,
     },
     /// A pane without thickness.
     ThinDielectric {
@@ -179,6 +201,16 @@ impl MaterialKind {
             | Self::RoughDielectric { interior, priority: Some(priority), .. } => Some((interior, *priority)),
             _ => None,
         }
+    }
+
+    /// The facets of it and of its parts.
+    pub fn microfacets(&self) -> impl Iterator<Item = &Microfacets> {
+        self.parts().into_iter().filter_map(|part| match part {
+            Self::RoughConductor { facets, .. }
+            | Self::RoughDielectric { facets, .. }
+            | Self::Plastic { facets: Some(facets), .. } => Some(facets),
+            _ => None,
+        })
     }
 
     /// The media before and behind an interface that has no priority; of materials side by side those of all, if they are

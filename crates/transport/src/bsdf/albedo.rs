@@ -6,10 +6,11 @@
 //! loss. The table lies below the loss between its nodes too, so that no energy is created: what a lossless surface fails to
 //! return is what the table's interpolation misses, which a test bounds.
 
+use super::microfacet::Ggx;
 use etalon_optics::{Real, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// Nodes in µ, at (i/(NODES−1))²: dense towards grazing, where the loss changes fastest.
@@ -17,18 +18,93 @@ pub(super) const NODES: usize = 65;
 /// Nodes in the relative index where it depends on wavelength.
 const INDICES: usize = 2;
 
-/// A loss in [0, 1], linear between nodes in µ and in the relative index η.
+/// A loss in [0, 1], linear between nodes in µ, in the relative index η and, of facets of two widths, in the azimuth.
 #[derive(Clone, Debug)]
 pub(crate) struct LossTable {
     /// The index of the first row, and what one row more adds; 0 for a single row.
     eta: f64,
     step: f64,
+    azimuths: Azimuths,
     rows: Vec<Row>,
-    /// Cumulative share, up to each node, of loss·µ dµ, the mean over the rows: directions are drawn by it.
+    /// Cumulative share, up to each node, of loss·µ dµ, the mean over the rows and azimuths: directions are drawn by it.
     cdf: [f64; NODES],
 }
 
-/// What a table of facets of a width α is of.
+/// Nodes in azimuth of a table of facets of two widths.
+const TURNS: usize = 13;
+
+/// Azimuths within a quarter turn, which stands for all four: what facets lose is even in x and in y.
+///
+/// A direction sees slopes as wide as a = √(α_x² cos²φ + α_y² sin²φ). Nodes are at equal steps of √(a − a₀), a₀ the least width: dense
+/// where the loss changes fastest, and smooth functions of the azimuth are smooth in it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Azimuths {
+    /// One width: no azimuth counts.
+    All,
+    /// Widths along x and along y.
+    Quarter([f64; 2]),
+}
+
+impl Azimuths {
+    pub(super) fn of(ggx: &Ggx) -> Self {
+        match ggx.isotropic_alpha() {
+            Some(_) => Self::All,
+            None => Self::Quarter(ggx.alpha()),
+        }
+    }
+
+    /// How many nodes there are.
+    pub(super) fn count(self) -> usize {
+        match self {
+            Self::All => 1,
+            Self::Quarter(_) => TURNS,
+        }
+    }
+
+    /// Where a direction lies between nodes.
+    pub(super) fn place(self, w: Vec3<f64>) -> Between {
+        let Self::Quarter([x, y]) = self else { return Between { index: 0, share: 0.0 } };
+        let (x2, y2) = (w.x * w.x, w.y * w.y);
+        let along = x2 + y2;
+        // Along the normal all azimuths are one.
+        let width = if along > 0.0 { ((x * x * x2 + y * y * y2) / along).sqrt() } else { x };
+        let (least, most) = if x < y { (x, y) } else { (y, x) };
+        let root = ((width - least) / (most - least)).clamp(0.0, 1.0).sqrt() * (TURNS - 1) as f64;
+        let index = (root as usize).min(TURNS - 2);
+        Between { index, share: root - index as f64 }
+    }
+
+    /// The direction of the cosine `mu` that lies at `place`, in nodes.
+    pub(super) fn direction(self, mu: f64, place: f64) -> Vec3<f64> {
+        let sin = ((1.0 - mu) * (1.0 + mu)).sqrt_nonnegative();
+        let Self::Quarter([x, y]) = self else { return Vec3::new(sin, 0.0, mu) };
+        let (least, most) = if x < y { (x, y) } else { (y, x) };
+        let root = place / (TURNS - 1) as f64;
+        let width = least + (most - least) * root * root;
+        // Of the squared sine, what lies along the axis of the greater width.
+        let across = (width - least) * (width + least) / ((most - least) * (most + least));
+        let (across, rest) = (sin * across.sqrt_nonnegative(), sin * (1.0 - across).sqrt_nonnegative());
+        if x < y { Vec3::new(rest, across, mu) } else { Vec3::new(across, rest, mu) }
+    }
+
+    /// The share of a turn that a node stands for: the hat that is 1 there and 0 at its neighbours, by the midpoints of many azimuths.
+    fn weights(self) -> Vec<f64> {
+        const STEPS: u32 = 4096;
+        let mut weights = vec![0.0; self.count()];
+        if let Self::All = self {
+            return vec![1.0];
+        }
+        for i in 0..STEPS {
+            let (sin, cos) = (FRAC_PI_2 * (f64::from(i) + 0.5) / f64::from(STEPS)).sin_cos();
+            let Between { index, share } = self.place(Vec3::new(cos, sin, 0.0));
+            weights[index] += (1.0 - share) / f64::from(STEPS);
+            weights[index + 1] += share / f64::from(STEPS);
+        }
+        weights
+    }
+}
+
+/// What a table of facets is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Tabulated {
     /// What facets that reflect everything lose.
@@ -41,12 +117,12 @@ pub(crate) enum Tabulated {
     Inside,
 }
 
-/// A table that is a function of a width and a range of indices alone, made once: images of roughness ask for many, and the
+/// A table that is a function of widths and a range of indices alone, made once: images of roughness ask for many, and the
 /// materials of a scene for the same ones.
-pub(crate) fn shared(of: Tabulated, alpha: f64, eta: [f64; 2], make: impl FnOnce() -> LossTable) -> Arc<LossTable> {
-    type SharedTables = HashMap<(Tabulated, u64, [u64; 2]), Arc<LossTable>>;
+pub(crate) fn shared(of: Tabulated, ggx: &Ggx, eta: [f64; 2], make: impl FnOnce() -> LossTable) -> Arc<LossTable> {
+    type SharedTables = HashMap<(Tabulated, [u64; 2], [u64; 2]), Arc<LossTable>>;
     static KNOWN: LazyLock<Mutex<SharedTables>> = LazyLock::new(Mutex::default);
-    let key = (of, alpha.to_bits(), eta.map(f64::to_bits));
+    let key = (of, ggx.alpha().map(f64::to_bits), eta.map(f64::to_bits));
     let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(table) = known().get(&key) {
         return Arc::clone(table);
@@ -58,16 +134,17 @@ pub(crate) fn shared(of: Tabulated, alpha: f64, eta: [f64; 2], make: impl FnOnce
 
 #[derive(Clone, Debug)]
 struct Row {
-    loss: [f64; NODES],
-    /// 2∫ loss·µ dµ, of the interpolated loss.
+    /// At each node in azimuth.
+    loss: Vec<[f64; NODES]>,
+    /// 2∫ loss·µ dµ, of the interpolated loss, the mean over azimuths.
     average: f64,
 }
 
 /// Where an argument lies between nodes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Between {
-    index: usize,
-    share: f64,
+    pub(super) index: usize,
+    pub(super) share: f64,
 }
 
 pub(super) fn node(i: usize) -> f64 {
@@ -76,42 +153,64 @@ pub(super) fn node(i: usize) -> f64 {
 }
 
 impl LossTable {
-    /// Tabulates `loss(µ, η)`, known to the relative error `error`, for relative indices within `eta`.
-    pub(crate) fn new(eta: [f64; 2], error: f64, loss: impl Fn(f64, f64) -> f64 + Sync) -> Self {
+    /// Tabulates `loss(direction, η)`, known to the relative error `error`, for relative indices within `eta`.
+    pub(crate) fn new(
+        azimuths: Azimuths,
+        eta: [f64; 2],
+        error: f64,
+        loss: impl Fn(Vec3<f64>, f64) -> f64 + Sync,
+    ) -> Self {
         let count = if eta[0] == eta[1] { 1 } else { INDICES };
         let step = if count == 1 { 0.0 } else { (eta[1] - eta[0]) / (count - 1) as f64 };
         let at = |r: f64| eta[0] + step * r;
+        let turns = azimuths.count();
         let row = |r: usize| {
-            let values: Vec<f64> =
-                (0..NODES).into_par_iter().map(|i| loss(node(i).max(1e-6), at(r as f64)).max(0.0)).collect();
-            Row { loss: std::array::from_fn(|i| values[i]), average: 0.0 }
+            let value = |k: usize| {
+                let wo = azimuths.direction(node(k % NODES).max(1e-6), (k / NODES) as f64);
+                loss(wo, at(r as f64)).max(0.0)
+            };
+            let values: Vec<f64> = (0..turns * NODES).into_par_iter().map(value).collect();
+            let loss = values.chunks(NODES).map(|values| std::array::from_fn(|i| values[i])).collect();
+            Row { loss, average: 0.0 }
         };
         let rows = (0..count).map(row).collect();
-        let mut table = Self { eta: eta[0], step, rows, cdf: [0.0; NODES] };
+        let mut table = Self { eta: eta[0], step, azimuths, rows, cdf: [0.0; NODES] };
         // Where the table is too high between nodes, these are lowered, which cannot raise it anywhere else.
         for r in 0..count {
             for half in if r + 1 < count { &[0.0, 0.5][..] } else { &[0.0] } {
                 let eta = at(r as f64 + half);
-                let exact = |mu: f64| loss(mu, eta).max(0.0);
-                let cells: Vec<_> = (1..NODES).into_par_iter().map(|i| table.checks(i, eta, exact)).collect();
-                for (i, checks) in (1..NODES).zip(cells) {
-                    let share = |(mu, exact): (f64, f64)| {
-                        let held = table.eval(mu, eta);
-                        if held > exact { exact / held } else { 1.0 }
-                    };
-                    let kept = checks.into_iter().map(share).fold(1.0, f64::min);
-                    let lowered = &mut table.rows[r..(r + 2).min(count)];
-                    lowered.iter_mut().flat_map(|row| &mut row.loss[i - 1..=i]).for_each(|v| *v *= kept);
+                for place in (0..2 * turns - 1).map(|k| 0.5 * k as f64) {
+                    let exact = |mu: f64| loss(azimuths.direction(mu, place), eta).max(0.0);
+                    let cells: Vec<_> =
+                        (1..NODES).into_par_iter().map(|i| table.checks(i, place, eta, exact)).collect();
+                    for (i, checks) in (1..NODES).zip(cells) {
+                        let share = |(mu, exact): (f64, f64)| {
+                            let held = table.eval(azimuths.direction(mu, place), eta);
+                            if held > exact { exact / held } else { 1.0 }
+                        };
+                        let kept = checks.into_iter().map(share).fold(1.0, f64::min);
+                        let lowered = &mut table.rows[r..(r + 2).min(count)];
+                        let turns = place.floor() as usize..=place.ceil() as usize;
+                        lowered
+                            .iter_mut()
+                            .flat_map(|row| &mut row.loss[turns.clone()])
+                            .flat_map(|loss| &mut loss[i - 1..=i])
+                            .for_each(|v| *v *= kept);
+                    }
                 }
             }
         }
+        let weights = azimuths.weights();
+        let mean_cell = |row: &Row, i: usize| -> f64 {
+            weights.iter().zip(&row.loss).map(|(weight, loss)| weight * cell(loss, i)).sum()
+        };
         for row in &mut table.rows {
-            row.loss.iter_mut().for_each(|v| *v *= 1.0 - error);
-            row.average = (1..NODES).map(|i| cell(&row.loss, i)).sum();
+            row.loss.iter_mut().flatten().for_each(|v| *v *= 1.0 - error);
+            row.average = (1..NODES).map(|i| mean_cell(row, i)).sum();
         }
         let mean: f64 = table.rows.iter().map(|row| row.average).sum();
         for i in 1..NODES {
-            let share: f64 = table.rows.iter().map(|row| cell(&row.loss, i)).sum();
+            let share: f64 = table.rows.iter().map(|row| mean_cell(row, i)).sum();
             // Nothing is lost: nothing is ever drawn.
             table.cdf[i] = table.cdf[i - 1] + if mean > 0.0 { share / mean } else { 0.0 };
         }
@@ -123,7 +222,7 @@ impl LossTable {
     ///
     /// A chord of a smooth curve differs from it as a parabola with its top in the middle does, so three cosines tell. Where they do not
     /// lie on one, as at a kink, the place is searched by golden sections.
-    fn checks(&self, i: usize, eta: f64, exact: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    fn checks(&self, i: usize, place: f64, eta: f64, exact: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         const SECTIONS: usize = 8;
         // A third of what a table may hold too much in a single direction.
         const ON_PARABOLA: f64 = 3e-5;
@@ -132,7 +231,7 @@ impl LossTable {
         let mut excess = |share: f64| {
             let mu = node(i - 1) + share * (node(i) - node(i - 1));
             checks.push((mu, exact(mu)));
-            self.eval(mu, eta) - checks[checks.len() - 1].1
+            self.eval(self.azimuths.direction(mu, place), eta) - checks[checks.len() - 1].1
         };
         let found = [0.25, 0.5, 0.75].map(&mut excess);
         if [found[0], found[2]].iter().any(|side| (side - 0.75 * found[1]).abs() > ON_PARABOLA) {
@@ -181,12 +280,17 @@ impl LossTable {
         Between { index, share: x - index as f64 }
     }
 
-    /// The loss at the cosine `mu`, in [0, 1], and the relative index `eta`.
-    pub(crate) fn eval(&self, mu: f64, eta: f64) -> f64 {
+    /// The loss, in [0, 1], in a direction on either side of the surface, at the relative index `eta`.
+    pub(crate) fn eval(&self, w: Vec3<f64>, eta: f64) -> f64 {
+        let mu = w.z.abs();
         let i = cell_of(mu);
         let share = ((mu - node(i)) / (node(i + 1) - node(i))).min(1.0);
-        let along = |row: &Row| row.loss[i] + share * (row.loss[i + 1] - row.loss[i]);
-        self.between(eta, along)
+        let along = |loss: &[f64; NODES]| loss[i] + share * (loss[i + 1] - loss[i]);
+        let turn = self.azimuths.place(w);
+        self.between(eta, |row| {
+            let first = along(&row.loss[turn.index]);
+            if turn.share == 0.0 { first } else { first + turn.share * (along(&row.loss[turn.index + 1]) - first) }
+        })
     }
 
     /// 2∫ loss·µ dµ.

@@ -55,6 +55,7 @@ impl Blend {
             delta_transmission: one.delta_transmission || other.delta_transmission,
             dark: one.dark && other.dark,
             polarising_axis: one.polarising_axis || other.polarising_axis,
+            takes_tangents: one.takes_tangents || other.takes_tangents,
             takes_medium: one.takes_medium || other.takes_medium,
             smooth_name: if one.smooth_name.is_empty() { other.smooth_name } else { one.smooth_name },
         };

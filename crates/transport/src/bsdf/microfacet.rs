@@ -2,51 +2,88 @@
 //! 2007, *Microfacet Models for Refraction through Rough Surfaces*) with Smith's masking.
 //!
 //! Everything is in the surface's frame, z along the normal, in `f64`: near a delta the half vector needs it. The width α is
-//! as Walter et al. define it: the slopes have the density of a Student t with scale α.
+//! as Walter et al. define it: the slopes have the density of a Student t with scale α. A surface with a grain has two widths,
+//! along its tangent x and along y (Heitz 2014, §5.4): the slopes are those of width 1, stretched by each along its axis.
 
+use super::Shading;
 use etalon_optics::{Frame, Real, Vec3};
+use etalon_scene::Microfacets;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::LazyLock;
+
+mod anisotropic;
 
 /// A GGX distribution of microfacet normals.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ggx {
-    alpha: f64,
+    /// Widths along x and y, each above 0.
+    alpha: [f64; 2],
+    /// Cosine and sine of the angle of x from growing u.
+    rotation: [f64; 2],
 }
 
 impl Ggx {
-    /// Facets of width `alpha`, above 0.
-    pub(crate) fn new(alpha: f64) -> Self {
-        Self { alpha }
+    /// The facets of a scene's material.
+    pub(crate) fn new(facets: &Microfacets) -> Self {
+        let (sin, cos) = facets.rotation_rad.sin_cos();
+        Self { alpha: facets.alpha, rotation: [cos, sin] }
     }
 
-    /// Their width.
-    pub(crate) fn alpha(&self) -> f64 {
+    /// Their widths along x and y.
+    pub(crate) fn alpha(&self) -> [f64; 2] {
         self.alpha
     }
 
-    /// Density D of facet normals, sr⁻¹ of normals per unit of surface: 1/(π α² e²), e = sin²θ/α² + cos²θ.
-    pub(crate) fn density(&self, h: Vec3<f64>) -> f64 {
-        let a2 = self.alpha * self.alpha;
-        let e = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
-        FRAC_1_PI / (a2 * e * e)
+    /// Their width, if it is the same along x and y.
+    pub(crate) fn isotropic_alpha(&self) -> Option<f64> {
+        let [x, y] = self.alpha;
+        (x == y).then_some(x)
     }
 
-    /// S = √(cos²θ + α² sin²θ), so that Smith's masking is G₁ = 2c/(c + S), c = |cos θ|.
+    /// Density D of facet normals, sr⁻¹ of normals per unit of surface: 1/(π α_x α_y e²), e = x²/α_x² + y²/α_y² + z².
+    pub(crate) fn density(&self, h: Vec3<f64>) -> f64 {
+        let [x2, y2] = self.alpha.map(|alpha| alpha * alpha);
+        let slopes = if x2 == y2 { (h.x * h.x + h.y * h.y) / x2 } else { h.x * h.x / x2 + h.y * h.y / y2 };
+        let e = slopes + h.z * h.z;
+        FRAC_1_PI / (self.alpha[0] * self.alpha[1] * e * e)
+    }
+
+    /// S = √(z² + α_x² x² + α_y² y²), so that Smith's masking is G₁ = 2c/(c + S), c = |cos θ|.
     pub(crate) fn stretch(&self, w: Vec3<f64>) -> f64 {
-        let a2 = self.alpha * self.alpha;
-        (w.z * w.z + a2 * (w.x * w.x + w.y * w.y)).sqrt()
+        let [x2, y2] = self.alpha.map(|alpha| alpha * alpha);
+        let spread = if x2 == y2 { x2 * (w.x * w.x + w.y * w.y) } else { x2 * w.x * w.x + y2 * w.y * w.y };
+        (w.z * w.z + spread).sqrt()
+    }
+
+    /// The surface's frame at a point, around the normal `n` turned toward `wo`; `None` for a `wo` exactly along the surface.
+    pub(crate) fn facing(&self, at: &Shading<'_>, n: Vec3<f64>, wo: Vec3<f64>) -> Option<Facing> {
+        match self.isotropic_alpha() {
+            Some(_) => Facing::new(n, wo),
+            None => Facing::along(at.rotated_tangent(n, self.rotation), n, wo),
+        }
+    }
+
+    /// A direction at right angles to `w` and the normal `n`, to any length: of facets of two widths as their azimuth in the frame says,
+    /// which still has one where `w` is along the normal.
+    pub(crate) fn s(&self, facing: &Facing, n: Vec3<f64>, w: Vec3<f64>) -> Vec3<f64> {
+        if self.isotropic_alpha().is_some() {
+            return n.cross(w);
+        }
+        let local = facing.local(w);
+        let (x, y) = if local.x == 0.0 && local.y == 0.0 { (1.0, 0.0) } else { (local.x, local.y) };
+        facing.frame.to_world(Vec3::new(-y, x, 0.0))
     }
 
     /// A facet normal that `wo` (z > 0) sees, with density G₁(wo) D(h) (wo·h)/cos θ_o: a cap of the sphere, stretched
     /// (Heitz 2018; in the form of Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical Caps*, listing 3).
     pub(crate) fn visible_normal(&self, wo: Vec3<f64>, u: [f64; 2]) -> Vec3<f64> {
-        let squeezed = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalized();
+        let [x, y] = self.alpha;
+        let squeezed = Vec3::new(x * wo.x, y * wo.y, wo.z).normalized();
         let (sin_phi, cos_phi) = f64::sin_cos_turns(u[0]);
         let z = (1.0 - u[1]) * (1.0 + squeezed.z) - squeezed.z;
         let sin = ((1.0 - z) * (1.0 + z)).sqrt_nonnegative();
         let cap = Vec3::new(sin * cos_phi, sin * sin_phi, z) + squeezed;
-        Vec3::new(self.alpha * cap.x, self.alpha * cap.y, cap.z).normalized()
+        Vec3::new(x * cap.x, y * cap.y, cap.z).normalized()
     }
 
     /// Reflection between two directions on the same side: (D·G₂/(4 cos θ_o cos θ_i), density of drawing `wi` by reflecting
@@ -122,17 +159,19 @@ pub(crate) struct Refraction {
 /// Relative error of the losses that [`mean_over_facets`] finds, where they are above a hundredth of the light: tables are lowered by it.
 pub(crate) const MEAN_ERROR: f64 = 1e-4;
 
-/// Mean over the facets that a direction of cosine `mu` sees of `loss`, to 5e-6. `eta` is the relative index behind the facets, where
-/// light that they refract counts.
+/// Mean over the facets that a direction `wo` (z > 0) sees of `loss`, to 5e-6. `eta` is the relative index behind the facets, where
+/// light that they refract counts. Of facets of one width only the cosine of the direction counts.
 ///
+/// For facets of two widths see [`anisotropic`]. Of one width:
 /// The integral is in polar coordinates about the direction: over the cosine c of incidence on a facet, and along the circle of all facets
 /// of the same c. Fresnel's equations depend on c alone. Kinks and square roots are at known places: total reflection begins at one c,
 /// reflected and refracted light meets the horizon at one place of each circle, and these places begin and end at known c. Gauss's rules
 /// between such places, with nodes that crowd at both ends, converge quickly; along c they are divided where needed.
-pub(crate) fn mean_over_facets(ggx: &Ggx, mu: f64, eta: Option<f64>, loss: impl Fn(&Facet) -> f64) -> f64 {
+pub(crate) fn mean_over_facets(ggx: &Ggx, wo: Vec3<f64>, eta: Option<f64>, loss: impl Fn(&Facet) -> f64) -> f64 {
+    let Some(alpha) = ggx.isotropic_alpha() else { return anisotropic::mean(ggx, wo, eta, loss) };
     // Tables ask hundreds of times each: to make it took a fifth of their time.
     static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_rule(8));
-    let view = View::new(ggx, mu, eta);
+    let view = View::new(ggx, alpha, wo.z, eta);
     let cuts = view.cuts();
     let between = |[first, last]: [f64; 2]| {
         let panel = |a: f64, b: f64| -> f64 {
@@ -142,21 +181,27 @@ pub(crate) fn mean_over_facets(ggx: &Ggx, mu: f64, eta: Option<f64>, loss: impl 
             };
             (b - a) * (last - first) * RULE.iter().map(at).sum::<f64>()
         };
-        // Panels yet to be judged, with their values.
-        let mut waiting = vec![(0.0, 1.0, panel(0.0, 1.0))];
-        let mut sum = 0.0;
-        while let Some((a, b, whole)) = waiting.pop() {
-            let middle = 0.5 * (a + b);
-            let (left, right) = (panel(a, middle), panel(middle, b));
-            if (left + right - whole).abs() <= 1e-7 || b - a < 1e-4 {
-                sum += left + right;
-            } else {
-                waiting.extend([(a, middle, left), (middle, b, right)]);
-            }
-        }
-        sum
+        refined(panel, 1e-7, 1e-4)
     };
     cuts.windows(2).map(|ends| [ends[0], ends[1]]).filter(|[first, last]| first < last).map(between).sum()
+}
+
+/// The integral over [0, 1], of which `panel` says the part between two places: panels are divided until their halves say the same to
+/// `tolerance`, or they are narrower than `least`.
+fn refined(panel: impl Fn(f64, f64) -> f64, tolerance: f64, least: f64) -> f64 {
+    // Panels yet to be judged, with their values.
+    let mut waiting = vec![(0.0, 1.0, panel(0.0, 1.0))];
+    let mut sum = 0.0;
+    while let Some((a, b, whole)) = waiting.pop() {
+        let middle = 0.5 * (a + b);
+        let (left, right) = (panel(a, middle), panel(middle, b));
+        if (left + right - whole).abs() <= tolerance || b - a < least {
+            sum += left + right;
+        } else {
+            waiting.extend([(a, middle, left), (middle, b, right)]);
+        }
+    }
+    sum
 }
 
 /// A map of [0, 1] to itself, and its slope, which is 0 at both ends: nodes crowd there, and square roots become smooth.
@@ -165,8 +210,8 @@ fn crowded(x: f64) -> (f64, f64) {
 }
 
 /// Facets as one direction sees them.
-struct View<'a> {
-    ggx: &'a Ggx,
+struct View {
+    alpha: f64,
     /// The direction, in the xz plane.
     wo: Vec3<f64>,
     stretch: f64,
@@ -174,10 +219,10 @@ struct View<'a> {
     eta: Option<f64>,
 }
 
-impl<'a> View<'a> {
-    fn new(ggx: &'a Ggx, mu: f64, eta: Option<f64>) -> Self {
+impl View {
+    fn new(ggx: &Ggx, alpha: f64, mu: f64, eta: Option<f64>) -> Self {
         let wo = Vec3::new(((1.0 - mu) * (1.0 + mu)).sqrt_nonnegative(), 0.0, mu);
-        Self { ggx, wo, stretch: ggx.stretch(wo), eta: eta.filter(|eta| *eta < 1.0) }
+        Self { alpha, wo, stretch: ggx.stretch(wo), eta: eta.filter(|eta| *eta < 1.0) }
     }
 
     /// The cosines of incidence between which means along circles are smooth, in order.
@@ -202,7 +247,7 @@ impl<'a> View<'a> {
             gauss_rule(24).iter().map(crowd).map(|(x, weight)| (x, 1.0 - x, weight)).collect()
         });
         let (sin, mu) = (self.wo.x, self.wo.z);
-        let (alpha, a2) = (self.ggx.alpha, self.ggx.alpha * self.ggx.alpha);
+        let (alpha, a2) = (self.alpha, self.alpha * self.alpha);
         // The height of a facet is h_z = `level` + `swing`·cos ψ.
         let s = ((1.0 - c) * (1.0 + c)).sqrt_nonnegative();
         let (level, swing) = (c * mu, s * sin);
@@ -295,7 +340,16 @@ pub(crate) struct Facing {
 impl Facing {
     /// The frame of normal `n`, turned toward `wo`; `None` for a `wo` exactly along the surface.
     pub(crate) fn new(n: Vec3<f64>, wo: Vec3<f64>) -> Option<Self> {
-        let frame = Frame::from_normal(if n.dot(wo) < 0.0 { -n } else { n });
+        Self::of(Frame::from_normal(if n.dot(wo) < 0.0 { -n } else { n }), wo)
+    }
+
+    /// The same with x along the unit vector `tangent`, at right angles to `n`.
+    fn along(tangent: Vec3<f64>, n: Vec3<f64>, wo: Vec3<f64>) -> Option<Self> {
+        let n = if n.dot(wo) < 0.0 { -n } else { n };
+        Self::of(Frame { s: tangent, t: n.cross(tangent), n }, wo)
+    }
+
+    fn of(frame: Frame<f64>, wo: Vec3<f64>) -> Option<Self> {
         let wo = frame.to_local(wo);
         (wo.z > 0.0).then_some(Self { frame, wo })
     }

@@ -35,7 +35,7 @@ pub use mueller::Lobe;
 pub use oren_nayar::OrenNayar;
 pub use plastic::Plastic;
 pub use polarising_sheet::PolarisingSheet;
-pub use properties::{Properties, properties};
+pub use properties::Properties;
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
@@ -105,6 +105,24 @@ pub enum Bsdf {
     Black,
 }
 
+/// The properties of a material; of a blend, all that its parts have.
+pub fn properties(kind: &MaterialKind) -> Properties {
+    match kind {
+        MaterialKind::Lambert { reflectance } => Lambert::properties(reflectance),
+        MaterialKind::Mirror { reflectance } => Mirror::properties(reflectance),
+        MaterialKind::Conductor { metal } => Conductor::properties(metal),
+        MaterialKind::Dielectric { .. } => Dielectric::properties(),
+        MaterialKind::RoughConductor { facets, .. } => RoughConductor::properties(facets),
+        MaterialKind::RoughDielectric { facets, .. } => RoughDielectric::properties(facets),
+        MaterialKind::OrenNayar { reflectance, .. } => OrenNayar::properties(reflectance),
+        MaterialKind::Plastic { facets, .. } => Plastic::properties(facets.as_ref()),
+        MaterialKind::ThinDielectric { .. } => ThinDielectric::properties(),
+        MaterialKind::PolarisingSheet { sheet, .. } => PolarisingSheet::properties(sheet),
+        MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
+        MaterialKind::Black => Properties { solid_angle: false, dark: true, ..Properties::SOLID_ANGLE },
+    }
+}
+
 impl Bsdf {
     /// The scattering that a material of a scene stands for, at wavelengths within `range_nm`.
     pub fn new(kind: &MaterialKind, range_nm: [f64; 2]) -> Self {
@@ -117,20 +135,20 @@ impl Bsdf {
             MaterialKind::Dielectric { interior, exterior, .. } => {
                 Self::Dielectric(Dielectric::new(interior.clone(), exterior.clone()))
             }
-            MaterialKind::RoughConductor { metal, alpha, compensated } => {
+            MaterialKind::RoughConductor { metal, facets, compensated } => {
                 let metal = PathMetal::new(metal, range_nm);
-                Self::RoughConductor(RoughConductor::new(metal, *alpha, *compensated, range_nm))
+                Self::RoughConductor(RoughConductor::new(metal, facets, *compensated, range_nm))
             }
-            MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, .. } => {
+            MaterialKind::RoughDielectric { interior, exterior, facets, compensated, .. } => {
                 let (interior, exterior) = (interior.clone(), exterior.clone());
-                Self::RoughDielectric(RoughDielectric::new(interior, exterior, *alpha, *compensated, range_nm))
+                Self::RoughDielectric(RoughDielectric::new(interior, exterior, facets, *compensated, range_nm))
             }
             MaterialKind::OrenNayar { reflectance, roughness } => {
                 Self::OrenNayar(OrenNayar::new(PathTexture::new(reflectance, range_nm), *roughness))
             }
-            MaterialKind::Plastic { reflectance, coat, alpha } => {
+            MaterialKind::Plastic { reflectance, coat, facets } => {
                 let reflectance = PathTexture::new(reflectance, range_nm);
-                Self::Plastic(Plastic::new(reflectance, coat.clone(), *alpha, range_nm))
+                Self::Plastic(Plastic::new(reflectance, coat.clone(), facets.as_ref(), range_nm))
             }
             MaterialKind::ThinDielectric { index } => {
                 Self::ThinDielectric(ThinDielectric::new(index.clone(), range_nm))
@@ -187,10 +205,10 @@ impl Bsdf {
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         match self {
             Self::Lambert(lambert) => lambert.eval(lambda_nm, n, at.uv, wo, wi),
-            Self::RoughConductor(metal) => metal.eval(lambda_nm, n, at.uv, wo, wi),
-            Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, at.media(), wo, wi),
+            Self::RoughConductor(metal) => metal.eval(lambda_nm, n, at, wo, wi),
+            Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, at, wo, wi),
             Self::OrenNayar(rough) => rough.eval(lambda_nm, n, at.uv, wo, wi),
-            Self::Plastic(plastic) => plastic.eval(lambda_nm, n, at.uv, wo, wi),
+            Self::Plastic(plastic) => plastic.eval(lambda_nm, n, at, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
             Self::Mirror(_)
             | Self::Conductor(_)
@@ -216,10 +234,10 @@ impl Bsdf {
             Self::Mirror(mirror) => mirror.sample(lambda_nm, n, at.uv, wo),
             Self::Conductor(conductor) => conductor.sample(lambda_nm, n, at.uv, wo, at.media()),
             Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, n, wo, u[0], at.media()),
-            Self::RoughConductor(metal) => metal.sample(lambda_nm, n, at.uv, wo, u),
-            Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at.media(), wo, u),
+            Self::RoughConductor(metal) => metal.sample(lambda_nm, n, at, wo, u),
+            Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at, wo, u),
             Self::OrenNayar(rough) => rough.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
-            Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at.uv, wo, u),
+            Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at, wo, u),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, n, wo, u[0]),
             Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),

@@ -15,7 +15,7 @@
 //! Around a shading normal ([`Shading`]) the matrix is that of the directions as the BSDF takes them, in the frame of the real
 //! ones: polarisation follows the shading, and stays physical.
 
-use super::albedo::{NODES, node};
+use super::albedo::{Azimuths, NODES, node};
 use super::microfacet::{Facet, Ggx, mean_over_facets};
 use super::{Bsdf, Shading, shading};
 use crate::polarisation::across;
@@ -82,10 +82,10 @@ impl Bsdf {
                 Some(lambda_nm.0.map(|nm| pane.mueller(nm, cos, reflects)))
             }
             Self::PolarisingSheet(sheet) => Some(lambda_nm.0.map(|nm| sheet.mueller(nm))),
-            Self::RoughConductor(metal) => metal.mueller(lambda_nm, n, at.uv, wo, wi),
+            Self::RoughConductor(metal) => metal.mueller(lambda_nm, n, at, wo, wi),
             Self::RoughDielectric(_) if lobe != Lobe::SolidAngle => Some([IDENTITY; N]),
-            Self::RoughDielectric(glass) => glass.mueller(lambda_nm, n, at.media(), (wo, wi, x)),
-            Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, at.uv, (wo, wi, x), lobe),
+            Self::RoughDielectric(glass) => glass.mueller(lambda_nm, n, at, (wo, wi, x)),
+            Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Blend(blend) => blend.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Lambert(_) | Self::OrenNayar(_) | Self::Black => None,
         }
@@ -123,8 +123,9 @@ fn plane_of_incidence(at: &Shading<'_>, wo: Vec3<f64>, wi: Vec3<f64>, lobe: Lobe
     }
 }
 
-/// What single scattering loses of polarised light, for the shares of it that swing across and along the plane of incidence of
-/// the surface: ℓ₁/ℓ₀, where a Stokes vector S loses ℓ₀S₀ + ℓ₁S₁.
+/// What single scattering loses of polarised light: (ℓ₁, ℓ₂)/ℓ₀, where a Stokes vector S loses ℓ₀S₀ + ℓ₁S₁ + ℓ₂S₂. S₁ counts the light that
+/// swings across the plane of incidence of the surface, S₂ that at 45°, turned from there as seen by the light that leaves. Facets of one
+/// width treat both senses of 45° alike: ℓ₂ = 0.
 ///
 /// By energy conservation alone: of each state what is not scattered is lost. Light that met several facets leaves by the loss's
 /// own diattenuation, and comes in by it: then every state keeps its energy, and a white furnace stays white and unpolarised.
@@ -133,7 +134,9 @@ pub(super) struct PolarisedLoss {
     /// The relative index of the first row, and what one row more adds; 0 for a single row.
     eta: f64,
     step: f64,
-    rows: Vec<[f64; NODES]>,
+    azimuths: Azimuths,
+    /// At each node in azimuth.
+    rows: Vec<Vec<[[f64; 2]; NODES]>>,
 }
 
 impl PolarisedLoss {
@@ -141,27 +144,48 @@ impl PolarisedLoss {
     pub(super) fn new(eta: [f64; 2], ggx: &Ggx, loss: impl Fn(&Facet, f64) -> [f64; 2] + Sync) -> Self {
         let count = if eta[0] == eta[1] { 1 } else { 2 };
         let step = eta[1] - eta[0];
+        let azimuths = Azimuths::of(ggx);
         let row = |r: usize| {
             let eta = eta[0] + step * r as f64;
-            let at = |i: usize| {
-                let mu = node(i).max(1e-6);
+            let at = |k: usize| {
+                // Along the normal facets of two widths still prefer a state, by the azimuth from which that is reached.
+                let steepest = if ggx.isotropic_alpha().is_some() { 1.0 } else { 1.0 - 1e-9 };
+                let wo = azimuths.direction(node(k % NODES).clamp(1e-6, steepest), (k / NODES) as f64);
                 // Seen from either side, so cut for the denser one.
-                let mean = |of: &dyn Fn(&Facet) -> f64| mean_over_facets(ggx, mu, Some(eta.min(1.0 / eta)), of);
+                let mean = |of: &dyn Fn(&Facet) -> f64| mean_over_facets(ggx, wo, Some(eta.min(1.0 / eta)), of);
                 let lost = mean(&|facet| loss(facet, eta)[0]);
-                let turned = mean(&|facet| loss(facet, eta)[1] * cos_of_twice_the_turn(facet));
-                if lost > 0.0 { (turned / lost).clamp(-1.0, 1.0) } else { 0.0 }
+                let turned = |component: usize| {
+                    let turned = mean(&|facet| loss(facet, eta)[1] * of_twice_the_turn(facet)[component]);
+                    if lost > 0.0 { (turned / lost).clamp(-1.0, 1.0) } else { 0.0 }
+                };
+                [turned(0), if ggx.isotropic_alpha().is_some() { 0.0 } else { turned(1) }]
             };
-            let values: Vec<f64> = (0..NODES).into_par_iter().map(at).collect();
-            std::array::from_fn(|i| values[i])
+            let values: Vec<[f64; 2]> = (0..azimuths.count() * NODES).into_par_iter().map(at).collect();
+            values.chunks(NODES).map(|values| std::array::from_fn(|i| values[i])).collect()
         };
-        Self { eta: eta[0], step, rows: (0..count).map(row).collect() }
+        Self { eta: eta[0], step, azimuths, rows: (0..count).map(row).collect() }
     }
 
-    /// ℓ₁/ℓ₀ at the cosine `mu`.
-    pub(super) fn eval(&self, mu: f64, eta: f64) -> f64 {
+    /// (ℓ₁, ℓ₂)/ℓ₀ in a direction on either side of the surface.
+    pub(super) fn eval(&self, w: Vec3<f64>, eta: f64) -> [f64; 2] {
+        // One quarter of azimuths is tabulated. Its mirror image, and what is seen from below, turn the other way.
+        let senses = [1.0, if (w.x * w.y < 0.0) != (w.z < 0.0) { -1.0 } else { 1.0 }];
+        [0, 1].map(|component| senses[component] * self.component(component, w, eta))
+    }
+
+    fn component(&self, component: usize, w: Vec3<f64>, eta: f64) -> f64 {
+        let mu = w.z.abs();
         let i = ((mu.sqrt() * (NODES - 1) as f64) as usize).min(NODES - 2);
         let share = ((mu - node(i)) / (node(i + 1) - node(i))).min(1.0);
-        let along = |row: &[f64; NODES]| row[i] + share * (row[i + 1] - row[i]);
+        let turn = self.azimuths.place(w);
+        let along = |row: &Vec<[[f64; 2]; NODES]>| {
+            let at = |turn: usize| {
+                let [a, b] = [row[turn][i][component], row[turn][i + 1][component]];
+                a + share * (b - a)
+            };
+            let first = at(turn.index);
+            if turn.share == 0.0 { first } else { first + turn.share * (at(turn.index + 1) - first) }
+        };
         match self.rows.as_slice() {
             [first, second] => {
                 let between = ((eta - self.eta) / self.step).clamp(0.0, 1.0);
@@ -172,20 +196,35 @@ impl PolarisedLoss {
     }
 }
 
-/// cos 2φ, φ the angle between the facet's plane of incidence and that of the surface, for a direction in the xz plane.
-fn cos_of_twice_the_turn(facet: &Facet) -> f64 {
-    // The surface's s is y; the facet's is at right angles to the direction and the facet's normal.
-    let s = facet.wo.cross(facet.h);
-    let squared = s.length_squared();
+/// cos 2φ and sin 2φ, φ the angle of the facet's s from the surface's, seen by the light that leaves.
+fn of_twice_the_turn(facet: &Facet) -> [f64; 2] {
+    // The surface's s is at right angles to the direction and the surface's normal; the facet's to the direction and the facet's normal.
+    let (wo, s) = (facet.wo, facet.wo.cross(facet.h));
+    let (sin2, squared) = (wo.x * wo.x + wo.y * wo.y, s.length_squared());
     // Met along its normal a facet treats s and p alike.
-    if squared > 0.0 { 2.0 * s.y * s.y / squared - 1.0 } else { 0.0 }
+    if squared == 0.0 {
+        return [0.0; 2];
+    }
+    let across = match wo.y {
+        0.0 => Vec3::new(0.0, 1.0, 0.0),
+        _ => Vec3::new(-wo.y, wo.x, 0.0) * (1.0 / sin2.sqrt()),
+    };
+    let (cos, sin) = (s.dot(across), s.dot(wo.cross(across)));
+    [2.0 * cos * cos / squared - 1.0, 2.0 * cos * sin / squared]
 }
 
-/// The matrix of light that a surface of normal `n` lets in and out with the diattenuations `a_i` and `a_o` and forgets within.
-pub(super) fn forgotten(n: Vec3<f64>, (wo, wi, x): (Vec3<f64>, Vec3<f64>, Vec3<f64>), a_o: f64, a_i: f64) -> Matrix {
-    if a_o == 0.0 && a_i == 0.0 {
+/// The matrix of light that a surface lets in and out with the diattenuations `a_i` and `a_o` and forgets within; `s` says which direction
+/// is at right angles to the plane of incidence of one in the world.
+pub(super) fn forgotten(
+    s: impl Fn(Vec3<f64>) -> Vec3<f64>,
+    (wo, wi, x): (Vec3<f64>, Vec3<f64>, Vec3<f64>),
+    a_o: [f64; 2],
+    a_i: [f64; 2],
+) -> Matrix {
+    if a_o == [0.0; 2] && a_i == [0.0; 2] {
         return DEPOLARISER;
     }
-    let vector = |a: f64, w: Vec3<f64>, k: Vec3<f64>| mueller::linear(a, across(n.cross(w), w), k, across(x, w));
-    mueller::forgotten(vector(a_o, wo, wo), vector(a_i, wi, -wi))
+    let vector = |a: [f64; 2], w: Vec3<f64>, k: Vec3<f64>| mueller::linear(a, across(s(w), w), k, across(x, w));
+    // Light that comes in sees 45° turned the other way.
+    mueller::forgotten(vector(a_o, wo, wo), vector([a_i[0], -a_i[1]], wi, -wi))
 }

@@ -5,7 +5,7 @@
 //! and 1 elsewhere, A = 1/(1 + r(1/2 − 2/3π)) and ρ_ms = ρ²E_avg/(1 − ρ(1 − E_avg)). E is the albedo of the first term for
 //! ρ = 1. At ρ = 1 all light comes back, at r = 0 it is Lambert's.
 
-use super::albedo::LossTable;
+use super::albedo::{Azimuths, LossTable};
 use super::microfacet::Facing;
 use super::{BsdfSample, Properties};
 use crate::texture::PathTexture;
@@ -27,7 +27,9 @@ impl OrenNayar {
     /// A surface of this albedo parameter, and of a roughness in [0, 1].
     pub fn new(reflectance: PathTexture, roughness: f64) -> Self {
         let scale = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * roughness);
-        let loss = Box::new(LossTable::new([1.0, 1.0], 1e-5, |mu, _| 1.0 - albedo(roughness, scale, mu)));
+        let loss = Box::new(LossTable::new(Azimuths::All, [1.0, 1.0], 1e-5, |wo, _| {
+            1.0 - albedo(roughness, scale, wo.z)
+        }));
         Self { reflectance, roughness, scale, loss }
     }
 
@@ -54,7 +56,7 @@ impl OrenNayar {
         let single = self.scale * (1.0 + self.roughness * s / t);
         let mean_loss = self.loss.average(1.0);
         let several =
-            if mean_loss > 0.0 { self.loss.eval(wo.z, 1.0) * self.loss.eval(wi.z, 1.0) / mean_loss } else { 0.0 };
+            if mean_loss > 0.0 { self.loss.eval(wo, 1.0) * self.loss.eval(wi, 1.0) / mean_loss } else { 0.0 };
         let pdf = wi.z * FRAC_1_PI;
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, uv);
         let f_cos = Lanes::from_fn(|lane| {

@@ -6,17 +6,18 @@
 //! that a white ground returns all that the coat lets in (Walsh 1926; Duntley 1942). T is exact for a smooth coat; for a
 //! rough one 1 − R of its facets, tabulated. Facets of the coat that hide each other pass their light to the ground.
 
-use super::albedo::{self, LossTable, Tabulated};
+use super::albedo::{self, Azimuths, LossTable, Tabulated};
 use super::microfacet::{Facet, Facing, Ggx, MEAN_ERROR, mean_over_facets};
 use super::mueller::{Lobe, PolarisedLoss};
 use super::rough_dielectric::mean_transmittance;
-use super::{BsdfSample, Properties};
+use super::{BsdfSample, Properties, Shading};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Lanes, RefractiveIndex, Vec3, fresnel};
+use etalon_scene::Microfacets;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
@@ -46,17 +47,22 @@ struct Rough {
 }
 
 impl Plastic {
-    /// A ground of albedo `reflectance` under a coat of index `coat`, smooth if `alpha` is 0.
-    pub fn new(reflectance: PathTexture, coat: RefractiveIndex, alpha: f64, range_nm: [f64; 2]) -> Self {
+    /// A ground of albedo `reflectance` under a coat of index `coat`, smooth if it has no facets.
+    pub fn new(
+        reflectance: PathTexture,
+        coat: RefractiveIndex,
+        facets: Option<&Microfacets>,
+        range_nm: [f64; 2],
+    ) -> Self {
         let [first, last] = range_nm;
         let steps = || (0..=64).map(move |i| first + (last - first) * f64::from(i) / 64.0);
-        let rough = (alpha > 0.0).then(|| {
-            let ggx = Ggx::new(alpha);
+        let rough = facets.map(|facets| {
+            let ggx = Ggx::new(facets);
             let eta = albedo::extremes(range_nm, |nm| coat.eval(nm));
             let reflected = |facet: f64, eta: f64| fresnel::dielectric(facet, eta).map_or(1.0, |f| f.reflectance);
-            let transmittance = albedo::shared(Tabulated::Coat, alpha, eta, || {
-                LossTable::new(eta, MEAN_ERROR, |mu, eta| {
-                    1.0 - mean_over_facets(&ggx, mu, Some(eta), |facet| reflected(facet.cos, eta) * facet.mirrored)
+            let transmittance = albedo::shared(Tabulated::Coat, &ggx, eta, || {
+                LossTable::new(Azimuths::of(&ggx), eta, MEAN_ERROR, |wo, eta| {
+                    1.0 - mean_over_facets(&ggx, wo, Some(eta), |facet| reflected(facet.cos, eta) * facet.mirrored)
                 })
             });
             Box::new(Rough { ggx, transmittance, eta, polarised: None })
@@ -77,10 +83,10 @@ impl Plastic {
     }
 
     /// See [`Properties`]: a coat without width is a mirror over the diffuse ground. It is made for vacuum.
-    pub(super) fn properties(alpha: f64) -> Properties {
-        match alpha {
-            0.0 => Properties { solid_angle: true, ..Properties::mirror("a smooth coat") },
-            _ => Properties::SOLID_ANGLE,
+    pub(super) fn properties(facets: Option<&Microfacets>) -> Properties {
+        match facets {
+            None => Properties { solid_angle: true, ..Properties::mirror("a smooth coat") },
+            Some(facets) => Properties::of_facets(facets),
         }
     }
 
@@ -90,20 +96,32 @@ impl Plastic {
         rho / (n * n * (1.0 - rho * (1.0 - inward)))
     }
 
-    /// T(µ) of the coat.
-    fn transmittance(&self, mu: f64, index: f64) -> f64 {
+    /// The frame of the coat's facets.
+    fn facing(&self, at: &Shading<'_>, n: Vec3<f64>, wo: Vec3<f64>) -> Option<Facing> {
         match &self.rough {
-            Some(rough) => rough.transmittance.eval(mu, index),
-            None => fresnel::dielectric(mu.min(1.0), index).map_or(0.0, |f| f.transmittance),
+            Some(rough) => rough.ggx.facing(at, n, wo),
+            None => Facing::new(n, wo),
         }
     }
 
-    /// By how much the coat prefers light that swings across the plane of incidence on its way in or out: (T_s − T_p)/(T_s + T_p).
-    fn diattenuation(&self, mu: f64, index: f64) -> f64 {
+    /// T of the coat in a direction of its frame.
+    fn transmittance(&self, w: Vec3<f64>, index: f64) -> f64 {
         match &self.rough {
-            Some(rough) => rough.polarised.as_ref().map_or(0.0, |polarised| polarised.eval(mu, index)),
-            None => fresnel::dielectric(mu.min(1.0), index)
-                .map_or(0.0, |f| mueller::dielectric_transmission(mu.min(1.0), index, f.cos_t)[0][1]),
+            Some(rough) => rough.transmittance.eval(w, index),
+            None => fresnel::dielectric(w.z.min(1.0), index).map_or(0.0, |f| f.transmittance),
+        }
+    }
+
+    /// By how much the coat prefers light that swings across the plane of incidence on its way in or out, (T_s − T_p)/(T_s + T_p), and
+    /// the same of light that swings at 45° to it.
+    fn diattenuation(&self, w: Vec3<f64>, index: f64) -> [f64; 2] {
+        match &self.rough {
+            Some(rough) => rough.polarised.as_ref().map_or([0.0; 2], |polarised| polarised.eval(w, index)),
+            None => {
+                let mu = w.z.min(1.0);
+                let passed = |cos_t: f64| mueller::dielectric_transmission(mu, index, cos_t)[0][1];
+                [fresnel::dielectric(mu, index).map_or(0.0, |f| passed(f.cos_t)), 0.0]
+            }
         }
     }
 
@@ -113,17 +131,17 @@ impl Plastic {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        uv: [f64; 2],
+        at: &Shading<'_>,
         (wo, wi, x): (Vec3<f64>, Vec3<f64>, Vec3<f64>),
         lobe: Lobe,
     ) -> Option<[Matrix; N]> {
-        let facing = Facing::new(n, wo)?;
+        let facing = self.facing(at, n, wo)?;
         let (local_o, local_i) = (facing.wo, facing.local(wi));
         if lobe != Lobe::SolidAngle {
             return Some(lambda_nm.0.map(|nm| mueller::dielectric_reflection(local_o.z.min(1.0), self.coat.eval(nm))));
         }
         let facets = self.rough.as_ref().map(|rough| rough.ggx.reflection(local_o, local_i));
-        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, uv);
+        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.uv);
         Some(std::array::from_fn(|lane| {
             let nm = lambda_nm[lane];
             let index = self.coat.eval(nm);
@@ -132,9 +150,10 @@ impl Plastic {
                 (reflectance * facets.term, mueller::dielectric_reflection(facets.cos, index))
             });
             let [(t_o, a_o), (t_i, a_i)] =
-                [local_o.z, local_i.z].map(|mu| (self.transmittance(mu, index), self.diattenuation(mu, index)));
+                [local_o, local_i].map(|w| (self.transmittance(w, index), self.diattenuation(w, index)));
             let ground = t_o * t_i * self.ground(nm, index, reflectance[lane]) * FRAC_1_PI;
-            mueller::mixed([coat, (ground, super::mueller::forgotten(n, (wo, wi, x), a_o, a_i))])
+            let s = |w: Vec3<f64>| self.rough.as_ref().map_or(n.cross(w), |rough| rough.ggx.s(&facing, n, w));
+            mueller::mixed([coat, (ground, super::mueller::forgotten(s, (wo, wi, x), a_o, a_i))])
         }))
     }
 
@@ -146,8 +165,8 @@ impl Plastic {
     }
 
     /// The probability of the coat's lobe.
-    fn coat_share(&self, mu: f64) -> f64 {
-        let passed = self.transmittance(mu, self.reference);
+    fn coat_share(&self, wo: Vec3<f64>) -> f64 {
+        let passed = self.transmittance(wo, self.reference);
         let (coat, ground) = (1.0 - passed, passed * self.ground);
         // Never 0: at normal incidence an index near 1 reflects next to nothing, but not nothing.
         coat / (coat + ground)
@@ -157,24 +176,24 @@ impl Plastic {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        uv: [f64; 2],
+        at: &Shading<'_>,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
-        let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
+        let Some(facing) = self.facing(at, n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let (wo, wi) = (facing.wo, facing.local(wi));
         if wi.z <= 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
         }
-        let share = self.coat_share(wo.z);
+        let share = self.coat_share(wo);
         let facets = self.rough.as_ref().map(|rough| rough.ggx.reflection(wo, wi));
         let diffuse = wi.z * FRAC_1_PI;
-        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, uv);
+        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.uv);
         let f_cos = Lanes::from_fn(|lane| {
             let nm = lambda_nm[lane];
             let index = self.coat.eval(nm);
             let ground = self.ground(nm, index, reflectance[lane]);
-            let mut f = self.transmittance(wo.z, index) * self.transmittance(wi.z, index) * ground * diffuse;
+            let mut f = self.transmittance(wo, index) * self.transmittance(wi, index) * ground * diffuse;
             if let Some(facets) = &facets {
                 let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
                 f += reflectance * facets.term * wi.z;
@@ -192,14 +211,14 @@ impl Plastic {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        uv: [f64; 2],
+        at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
     ) -> Option<BsdfSample<N>> {
-        let facing = Facing::new(n, wo)?;
+        let facing = self.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
         let mu = facing.wo.z.min(1.0);
-        let share = self.coat_share(facing.wo.z);
+        let share = self.coat_share(facing.wo);
         let wi = match &self.rough {
             _ if u_lobe >= share => facing.world(cosine_hemisphere([u1, u2])),
             Some(rough) => facing.world(facing.wo.reflected_about(rough.ggx.visible_normal(facing.wo, [u1, u2]))),
@@ -214,7 +233,7 @@ impl Plastic {
                 });
             }
         };
-        let (f_cos, density) = self.eval(lambda_nm, n, uv, wo, wi);
+        let (f_cos, density) = self.eval(lambda_nm, n, at, wo, wi);
         BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
 }

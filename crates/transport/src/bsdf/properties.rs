@@ -1,10 +1,6 @@
 //! What the rest of the renderer asks of a material: each file of this folder states it of its own.
 
-use super::{
-    Blend, Conductor, Dielectric, Lambert, Mirror, OrenNayar, Plastic, PolarisingSheet, RoughConductor,
-    RoughDielectric, ThinDielectric,
-};
-use etalon_scene::MaterialKind;
+use etalon_scene::Microfacets;
 
 /// Properties of the scattering at a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,6 +15,8 @@ pub struct Properties {
     pub dark: bool,
     /// It may polarise unpolarised light by an axis of its own.
     pub polarising_axis: bool,
+    /// What it does depends on the directions in which texture coordinates grow.
+    pub takes_tangents: bool,
     /// What it does depends on the medium that it stands in.
     pub takes_medium: bool,
     /// What it is called where a delta is the reason for something.
@@ -33,9 +31,15 @@ impl Properties {
         delta_transmission: false,
         dark: false,
         polarising_axis: false,
+        takes_tangents: false,
         takes_medium: false,
         smooth_name: "",
     };
+
+    /// Of a rough surface.
+    pub(super) fn of_facets(facets: &Microfacets) -> Self {
+        Self { takes_tangents: !facets.is_isotropic(), ..Self::SOLID_ANGLE }
+    }
 
     /// Of a surface that only reflects, in a single direction.
     pub(super) const fn mirror(smooth_name: &'static str) -> Self {
@@ -63,31 +67,13 @@ impl Properties {
     }
 }
 
-/// The properties of a material; of a blend, all that its parts have.
-pub fn properties(kind: &MaterialKind) -> Properties {
-    match kind {
-        MaterialKind::Lambert { reflectance } => Lambert::properties(reflectance),
-        MaterialKind::Mirror { reflectance } => Mirror::properties(reflectance),
-        MaterialKind::Conductor { metal } => Conductor::properties(metal),
-        MaterialKind::Dielectric { .. } => Dielectric::properties(),
-        MaterialKind::RoughConductor { .. } => RoughConductor::properties(),
-        MaterialKind::RoughDielectric { .. } => RoughDielectric::properties(),
-        MaterialKind::OrenNayar { reflectance, .. } => OrenNayar::properties(reflectance),
-        MaterialKind::Plastic { alpha, .. } => Plastic::properties(*alpha),
-        MaterialKind::ThinDielectric { .. } => ThinDielectric::properties(),
-        MaterialKind::PolarisingSheet { sheet, .. } => PolarisingSheet::properties(sheet),
-        MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
-        MaterialKind::Black => Properties { solid_angle: false, dark: true, ..Properties::SOLID_ANGLE },
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::{Bsdf, Shading};
+    use super::super::{Bsdf, Shading, properties};
     use super::*;
     use crate::mis::Density;
     use etalon_optics::{Lanes, RefractiveIndex, Spectrum, Vec3};
-    use etalon_scene::{Metal, PolarisingSheet as Sheet};
+    use etalon_scene::{MaterialKind, Metal, PolarisingSheet as Sheet};
 
     fn kinds() -> Vec<MaterialKind> {
         let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
@@ -99,7 +85,7 @@ mod tests {
             MaterialKind::RoughDielectric {
                 interior: interior.clone(),
                 exterior,
-                alpha: 0.3,
+                facets: 0.3.into(),
                 compensated: false,
                 priority: None,
             },
@@ -113,14 +99,15 @@ mod tests {
                 MaterialKind::Lambert { reflectance: reflectance() },
                 MaterialKind::Mirror { reflectance: reflectance() },
                 MaterialKind::Conductor { metal: metal() },
-                MaterialKind::RoughConductor { metal: metal(), alpha: 0.3, compensated: false },
+                MaterialKind::RoughConductor { metal: metal(), facets: 0.3.into(), compensated: false },
                 MaterialKind::OrenNayar { reflectance: reflectance(), roughness: 0.5 },
                 sheet(polariser(r)),
             ]);
         }
-        for alpha in [0.0, 0.3] {
+        let grained = Microfacets { alpha: [0.1, 0.4], rotation_rad: 0.5 };
+        for facets in [None, Some(0.3.into()), Some(grained)] {
             let (reflectance, coat) = (Spectrum::Constant(0.5).into(), interior.clone());
-            kinds.push(MaterialKind::Plastic { reflectance, coat, alpha });
+            kinds.push(MaterialKind::Plastic { reflectance, coat, facets });
         }
         let both = |first: usize, second: usize| MaterialKind::blend(kinds[first].clone(), kinds[second].clone(), 0.5);
         let blends = [both(0, 1), both(1, 3), both(5, 6), both(0, 0), both(7, 17)];

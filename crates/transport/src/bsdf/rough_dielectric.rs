@@ -14,15 +14,16 @@
 //! Facets bend each wavelength by its own angle, but a rough interface sends every wavelength everywhere: all lanes go on
 //! along the hero's direction, each with its own value and its own density of that direction.
 
-use super::albedo::{self, LossTable, Tabulated};
-use super::microfacet::{Facet, Facing, Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
+use super::albedo::{self, Azimuths, LossTable, Tabulated};
+use super::microfacet::{Facet, Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
-use super::{BsdfSample, Properties};
+use super::{BsdfSample, Properties, Shading};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
 use etalon_optics::{Lanes, RefractiveIndex, Vec3, fresnel, snell};
+use etalon_scene::Microfacets;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
@@ -86,8 +87,8 @@ struct Sides<'a> {
 
 impl Sides<'_> {
     /// Loss in a direction on `side`.
-    fn loss_i(&self, side: usize, mu: f64) -> f64 {
-        self.tables.map_or(0.0, |(eta, tables)| tables[side].eval(mu, eta))
+    fn loss_i(&self, side: usize, wi: Vec3<f64>) -> f64 {
+        self.tables.map_or(0.0, |(eta, tables)| tables[side].eval(wi, eta))
     }
 
     /// Density with which a direction on `side` is drawn for light that meets several facets.
@@ -109,7 +110,7 @@ impl Boundary {
             let ratio = |nm: f64| interior.eval(nm) / exterior.eval(nm);
             let eta = albedo::extremes(range_nm, ratio);
             let table =
-                |of, eta_of: fn(f64) -> f64| albedo::shared(of, ggx.alpha(), eta, || glass_table(&ggx, eta, eta_of));
+                |of, eta_of: fn(f64) -> f64| albedo::shared(of, &ggx, eta, || glass_table(&ggx, eta, eta_of));
             Box::new(Compensation {
                 outside: table(Tabulated::Outside, |eta| eta),
                 inside: table(Tabulated::Inside, f64::recip),
@@ -121,7 +122,7 @@ impl Boundary {
         Self { interior, exterior, dispersive, compensation }
     }
 
-    fn sides(&self, wavelength_nm: f64, from_outside: bool, mu: f64) -> Sides<'_> {
+    fn sides(&self, wavelength_nm: f64, from_outside: bool, wo: Vec3<f64>) -> Sides<'_> {
         let (inside, outside) = (self.interior.eval(wavelength_nm), self.exterior.eval(wavelength_nm));
         let n = if from_outside { [outside, inside] } else { [inside, outside] };
         let Some(tables) = &self.compensation else {
@@ -135,7 +136,7 @@ impl Boundary {
         let from_above = tables.transmittance.eval(wavelength_nm);
         let transmittance = if from_outside { from_above } else { from_above / (eta * eta) };
         let crossing = if larger > 0.0 { transmittance * mean_loss[1] / larger } else { 0.0 };
-        Sides { n, tables: Some((eta, [near, far])), loss_o: near.eval(mu, eta), mean_loss, crossing }
+        Sides { n, tables: Some((eta, [near, far])), loss_o: near.eval(wo, eta), mean_loss, crossing }
     }
 
     fn prepare_polarisation(&mut self, ggx: &Ggx) {
@@ -150,23 +151,23 @@ impl Boundary {
 }
 
 impl RoughDielectric {
-    /// An interface with `interior` behind the outward normal and `exterior` before it, whose facets have the width `alpha`,
-    /// with or without the light that meets several facets.
+    /// An interface with `interior` behind the outward normal and `exterior` before it, with or without the light that
+    /// meets several facets.
     pub fn new(
         interior: RefractiveIndex,
         exterior: RefractiveIndex,
-        alpha: f64,
+        facets: &Microfacets,
         compensated: bool,
         range_nm: [f64; 2],
     ) -> Self {
-        let ggx = Ggx::new(alpha);
+        let ggx = Ggx::new(facets);
         let own = Boundary::new(interior, exterior, ggx, compensated, range_nm);
         Self { ggx, compensated, own, others: Vec::new() }
     }
 
     /// See [`Properties`]. It states its own media, unless it bounds a solid with a priority.
-    pub(super) fn properties() -> Properties {
-        Properties::SOLID_ANGLE
+    pub(super) fn properties(facets: &Microfacets) -> Properties {
+        Properties::of_facets(facets)
     }
 
     /// Makes it the boundary of a solid that may border on any of `media`.
@@ -202,7 +203,7 @@ impl RoughDielectric {
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> Option<Between> {
-        let sides = boundary.sides(wavelength_nm, from_outside, wo.z);
+        let sides = boundary.sides(wavelength_nm, from_outside, wo);
         let eta = sides.n[1] / sides.n[0];
         if eta == 1.0 {
             return None;
@@ -234,7 +235,7 @@ impl RoughDielectric {
         };
         let mut several = 0.0;
         if sides.loss_o > 0.0 {
-            let loss_i = sides.loss_i(side, mu);
+            let loss_i = sides.loss_i(side, wi);
             if sides.mean_loss[side] > 0.0 {
                 several = share * sides.loss_o * loss_i * FRAC_1_PI / (sides.mean_loss[side] * per);
             }
@@ -244,7 +245,7 @@ impl RoughDielectric {
     }
 
     /// f·|cos θ_i| and the density of `wi` at one wavelength.
-    fn at(&self, boundary: (&Boundary, bool), wavelength_nm: f64, wo: Vec3<f64>, wi: Vec3<f64>) -> (f64, f64) {
+    fn of_wavelength(&self, boundary: (&Boundary, bool), wavelength_nm: f64, wo: Vec3<f64>, wi: Vec3<f64>) -> (f64, f64) {
         let Some(Between { facet, several, density, .. }) = self.between(boundary, wavelength_nm, wo, wi) else {
             return (0.0, 0.0);
         };
@@ -257,13 +258,13 @@ impl RoughDielectric {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        interface: Option<Interface<'_>>,
+        at: &Shading<'_>,
         (wo, wi, x): (Vec3<f64>, Vec3<f64>, Vec3<f64>),
     ) -> Option<[Matrix; N]> {
-        let Some((boundary, from_outside)) = self.boundary(interface, n.dot(wo) > 0.0) else {
+        let Some((boundary, from_outside)) = self.boundary(at.media(), n.dot(wo) > 0.0) else {
             return Some([mueller::IDENTITY; N]);
         };
-        let facing = Facing::new(n, wo)?;
+        let facing = self.ggx.facing(at, n, wo)?;
         let (local_o, local_i) = (facing.wo, facing.local(wi));
         Some(lambda_nm.0.map(|nm| {
             let Some(Between { facet, several, eta, .. }) =
@@ -286,8 +287,8 @@ impl RoughDielectric {
                     let side_i = if local_i.z > 0.0 { near } else { far };
                     // The tables are over interior/exterior.
                     let eta = if from_outside { eta } else { 1.0 / eta };
-                    let (a_o, a_i) = (near.eval(local_o.z, eta), side_i.eval(local_i.z.abs(), eta));
-                    super::mueller::forgotten(n, (wo, wi, x), a_o, a_i)
+                    let (a_o, a_i) = (near.eval(local_o, eta), side_i.eval(local_i, eta));
+                    super::mueller::forgotten(|w| self.ggx.s(&facing, n, w), (wo, wi, x), a_o, a_i)
                 }
                 None => mueller::DEPOLARISER,
             };
@@ -306,22 +307,22 @@ impl RoughDielectric {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        interface: Option<Interface<'_>>,
+        at: &Shading<'_>,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
-        let Some(boundary) = self.boundary(interface, n.dot(wo) > 0.0) else { return (Lanes::ZERO, Lanes::ZERO) };
-        let Some(facing) = Facing::new(n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
+        let Some(boundary) = self.boundary(at.media(), n.dot(wo) > 0.0) else { return (Lanes::ZERO, Lanes::ZERO) };
+        let Some(facing) = self.ggx.facing(at, n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let wi = facing.local(wi);
         if wi.z == 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
         }
-        let at = |lane: usize| self.at(boundary, lambda_nm[lane], facing.wo, wi);
+        let of_lane = |lane: usize| self.of_wavelength(boundary, lambda_nm[lane], facing.wo, wi);
         if !boundary.0.dispersive {
-            let (f_cos, density) = at(0);
+            let (f_cos, density) = of_lane(0);
             return (Lanes::splat(f_cos), Lanes::splat(density));
         }
-        let both: [(f64, f64); N] = std::array::from_fn(at);
+        let both: [(f64, f64); N] = std::array::from_fn(of_lane);
         (Lanes::from_fn(|lane| both[lane].0), Lanes::from_fn(|lane| both[lane].1))
     }
 
@@ -329,19 +330,19 @@ impl RoughDielectric {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        interface: Option<Interface<'_>>,
+        at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
     ) -> Option<BsdfSample<N>> {
         let straight_on = |lanes: Lanes<f64, N>| {
             Some(BsdfSample { wi: -wo, weight: lanes, density: Density::Delta, lane_density: lanes, eta: 1.0 })
         };
-        let Some((boundary, from_outside)) = self.boundary(interface, n.dot(wo) > 0.0) else {
+        let Some((boundary, from_outside)) = self.boundary(at.media(), n.dot(wo) > 0.0) else {
             return straight_on(Lanes::ONE);
         };
-        let facing = Facing::new(n, wo)?;
+        let facing = self.ggx.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
-        let hero = boundary.sides(lambda_nm[0], from_outside, facing.wo.z);
+        let hero = boundary.sides(lambda_nm[0], from_outside, facing.wo);
         let eta = hero.n[1] / hero.n[0];
         if eta == 1.0 {
             return straight_on(if boundary.dispersive { Lanes::ONE.hero_only() } else { Lanes::ONE });
@@ -378,22 +379,22 @@ impl RoughDielectric {
         if (facing.local(wi).z < 0.0) != crossed {
             return None;
         }
-        let (f_cos, density) = self.eval(lambda_nm, n, interface, wo, wi);
+        let (f_cos, density) = self.eval(lambda_nm, n, at, wo, wi);
         BsdfSample::scattered(wi, f_cos, density, if crossed { eta } else { 1.0 })
     }
 }
 
 /// The losses from the side from which the relative index is `eta_of` that of the table, for n_interior/n_exterior within `eta`.
 pub(super) fn glass_table(ggx: &Ggx, eta: [f64; 2], eta_of: fn(f64) -> f64) -> LossTable {
-    LossTable::new(eta, MEAN_ERROR, |mu, eta| loss(ggx, mu, eta_of(eta)))
+    LossTable::new(Azimuths::of(ggx), eta, MEAN_ERROR, |wo, eta| loss(ggx, wo, eta_of(eta)))
 }
 
 /// What one scattering loses of light from above, for η = n_below/n_above.
-pub(super) fn loss(ggx: &Ggx, mu: f64, eta: f64) -> f64 {
+pub(super) fn loss(ggx: &Ggx, wo: Vec3<f64>, eta: f64) -> f64 {
     if eta == 1.0 {
         return 0.0;
     }
-    mean_over_facets(ggx, mu, Some(eta), |facet| {
+    mean_over_facets(ggx, wo, Some(eta), |facet| {
         let Some(f) = fresnel::dielectric(facet.cos, eta) else { return 1.0 - facet.mirrored };
         f.reflectance * (1.0 - facet.mirrored) + f.transmittance * (1.0 - passed(ggx, facet, eta, f.cos_t))
     })

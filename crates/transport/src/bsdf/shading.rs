@@ -21,7 +21,7 @@
 use super::{Bsdf, BsdfSample};
 use crate::media::Interface;
 use crate::mis::Density;
-use etalon_optics::{Lanes, Vec3};
+use etalon_optics::{Frame, Lanes, Vec3};
 
 /// A surface point as scattering sees it.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +34,10 @@ pub struct Shading<'a> {
     pub uv: [f64; 2],
     /// The axis of a polarising sheet; 0 on other surfaces.
     pub axis: Vec3<f64>,
+    /// The unit direction of growing u, for materials with a grain; 0 where there is none.
+    tangent: Vec3<f64>,
+    /// Whether v grows to the right of it, seen from outside.
+    mirrored: bool,
     /// The media on both sides, where the place decides them and not the material.
     media: Option<Interface<'a>>,
 }
@@ -41,7 +45,8 @@ pub struct Shading<'a> {
 impl<'a> Shading<'a> {
     /// Of a surface that is what it looks like, without texture coordinates.
     pub fn flat(normal: Vec3<f64>) -> Self {
-        Self { normal, bent: None, uv: [0.0; 2], axis: Vec3::new(0.0, 0.0, 0.0), media: None }
+        let none = Vec3::new(0.0, 0.0, 0.0);
+        Self { normal, bent: None, uv: [0.0; 2], axis: none, tangent: none, mirrored: false, media: None }
     }
 
     /// The same with texture coordinates.
@@ -54,6 +59,26 @@ impl<'a> Shading<'a> {
     #[must_use]
     pub fn with_axis(self, axis: Vec3<f64>) -> Self {
         Self { axis, ..self }
+    }
+
+    /// The same with the directions in which the point moves with u and with v, of any length.
+    #[must_use]
+    pub fn with_tangents(self, [u, v]: [Vec3<f64>; 2]) -> Self {
+        let mirrored = self.normal.cross(u).dot(v) < 0.0;
+        Self { tangent: u.normalized(), mirrored, ..self }
+    }
+
+    /// The unit tangent at right angles to the normal `n`, which is on the outward side, turned from growing u toward growing v by an
+    /// angle of this cosine and sine. Where u has no direction, as at the pole of a sphere, any tangent stands for it.
+    pub(super) fn rotated_tangent(&self, n: Vec3<f64>, [cos, sin]: [f64; 2]) -> Vec3<f64> {
+        let tangent = self.tangent - n * n.dot(self.tangent);
+        // Along the normal but for rounding it has no direction.
+        let along_u = match tangent.length_squared() > f64::EPSILON {
+            true => tangent.normalized(),
+            false => Frame::from_normal(n).s,
+        };
+        let left = n.cross(along_u);
+        (along_u * cos + left * if self.mirrored { -sin } else { sin }).normalized()
     }
 
     /// The same between two media.

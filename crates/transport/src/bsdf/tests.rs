@@ -1,6 +1,6 @@
 //! The rules and tables that materials are prepared with, against closed forms and independent quadrature.
 
-use super::albedo::{LossTable, NODES, extremes, node};
+use super::albedo::{Azimuths, LossTable, NODES, extremes, node};
 use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
@@ -15,7 +15,19 @@ use etalon_scene::{MaterialKind, Metal};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
+mod anisotropic;
+
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
+
+/// Facets of one width.
+fn ggx(alpha: f64) -> Ggx {
+    Ggx::new(&alpha.into())
+}
+
+/// A direction of this cosine: of facets of one width no more of it counts.
+fn toward(mu: f64) -> Vec3<f64> {
+    Vec3::new(((1.0 - mu) * (1.0 + mu)).sqrt(), 0.0, mu)
+}
 
 #[test]
 fn rules_integrate_polynomials_up_to_their_degree() {
@@ -53,18 +65,18 @@ fn what_facets_lose_is_what_an_independent_quadrature_misses() {
         (1.0, 0.745),
     ];
     for (alpha, mu) in pairs {
-        let ggx = Ggx::new(alpha);
+        let ggx = ggx(alpha);
         for eta in [None, Some(1.5), Some(1.0 / 1.5)] {
             let truth = ggx_albedo(alpha, mu, eta, Masking::Correlated);
             let truth = 1.0 - truth.reflected - truth.refracted;
             let read = match eta {
-                None => mean_over_facets(&ggx, mu, None, |facet| 1.0 - facet.mirrored),
-                Some(eta) => loss(&ggx, mu, eta),
+                None => mean_over_facets(&ggx, toward(mu), None, |facet| 1.0 - facet.mirrored),
+                Some(eta) => loss(&ggx, toward(mu), eta),
             };
             assert!((read - truth).abs() < 2e-5, "η {eta:?}, α {alpha} µ {mu}: {read} is not {truth}");
         }
         // What is the same on both sides is no interface.
-        assert_eq!(loss(&ggx, mu, 1.0), 0.0);
+        assert_eq!(loss(&ggx, toward(mu), 1.0), 0.0);
     }
 }
 
@@ -74,7 +86,7 @@ fn the_facets_that_a_direction_sees_together_fill_it() {
     for alpha in [1e-4, 1e-3, 0.03, 0.3, 1.0] {
         for mu in [1e-6, 1e-3, 0.1, 0.7, 1.0] {
             for eta in [None, Some(1.5), Some(1.0 / 1.5), Some(1.0 / 2.4), Some(0.999), Some(1e-9), Some(1e9)] {
-                let all = mean_over_facets(&Ggx::new(alpha), mu, eta, |_| 1.0);
+                let all = mean_over_facets(&ggx(alpha), toward(mu), eta, |_| 1.0);
                 assert!((all - 1.0).abs() < 5e-6, "η {eta:?}, α {alpha} µ {mu}: {all}");
             }
         }
@@ -91,11 +103,11 @@ proptest! {
         alpha in 0.05..1.0_f64, n in 1.1..2.6_f64, mu in 0.02..1.0_f64, dispersion in 0.0..0.05_f64, inside: bool,
     ) {
         let of: fn(f64) -> f64 = if inside { f64::recip } else { |n| n };
-        let table = glass_table(&Ggx::new(alpha), [n, n + dispersion], of);
+        let table = glass_table(&ggx(alpha), [n, n + dispersion], of);
         for n in [n, n + 0.4 * dispersion] {
             let truth = ggx_albedo(alpha, mu, Some(of(n)), Masking::Correlated);
             let truth = 1.0 - truth.reflected - truth.refracted;
-            let over = table.eval(mu, n) - truth;
+            let over = table.eval(toward(mu), n) - truth;
             prop_assert!(over < 1e-4 && over > -1e-3, "α {}, n {}, µ {}: {} too much of {}", alpha, n, mu, over, truth);
         }
     }
@@ -111,7 +123,7 @@ fn gives_back_all_but_little(what: &str, table: &LossTable, eta: f64, loss: impl
     let missing = lost - table.average(eta);
     assert!((0.0..1.5e-4).contains(&missing), "{what}: {missing} of {lost}");
     for i in 0..400 {
-        let over = table.eval(at(i).powi(2), eta) - losses[i as usize];
+        let over = table.eval(toward(at(i).powi(2)), eta) - losses[i as usize];
         assert!(over < 1e-4, "{what}, µ {}: {over} too much", at(i).powi(2));
     }
 }
@@ -119,14 +131,14 @@ fn gives_back_all_but_little(what: &str, table: &LossTable, eta: f64, loss: impl
 #[test]
 fn tables_of_rough_surfaces_give_back_all_but_little_of_diffuse_light_and_never_more() {
     for alpha in [1e-3, 0.01, 0.1, 0.5, 1.0] {
-        let ggx = Ggx::new(alpha);
-        let mirrors = |mu: f64| mean_over_facets(&ggx, mu, None, |facet| 1.0 - facet.mirrored);
-        let table = LossTable::new([1.0, 1.0], MEAN_ERROR, |mu, _| mirrors(mu));
+        let ggx = ggx(alpha);
+        let mirrors = |mu: f64| mean_over_facets(&ggx, toward(mu), None, |facet| 1.0 - facet.mirrored);
+        let table = LossTable::new(Azimuths::All, [1.0, 1.0], MEAN_ERROR, |wo, _| mirrors(wo.z));
         gives_back_all_but_little(&format!("mirrors, α {alpha}"), &table, 1.0, mirrors);
         for n in [1.5, 2.4] {
             for of in [(|n| n) as fn(f64) -> f64, f64::recip] {
                 let what = format!("α {alpha}, η {}", of(n));
-                gives_back_all_but_little(&what, &glass_table(&ggx, [n, n], of), n, |mu| loss(&ggx, mu, of(n)));
+                gives_back_all_but_little(&what, &glass_table(&ggx, [n, n], of), n, |mu| loss(&ggx, toward(mu), of(n)));
             }
         }
     }
@@ -166,7 +178,11 @@ fn rough_diffuse_surfaces_have_the_albedo_of_their_scattering() {
 }
 
 /// A loss of which all is known: 2∫ℓµ dµ = (η − 1)/20 + 1/20.
-fn known_loss(mu: f64, eta: f64) -> f64 {
+fn known_loss(wo: Vec3<f64>, eta: f64) -> f64 {
+    known_loss_at(wo.z, eta)
+}
+
+fn known_loss_at(mu: f64, eta: f64) -> f64 {
     0.3 * (eta - 1.0) * (1.0 - mu) * (1.0 - mu) + 0.05
 }
 
@@ -176,25 +192,25 @@ fn known_loss(mu: f64, eta: f64) -> f64 {
 #[test]
 fn a_table_of_losses_lies_just_below_them() {
     for (range, error) in [([1.5, 1.5], 0.0), ([1.4, 1.8], 0.0), ([1.4, 1.8], 0.02)] {
-        let table = LossTable::new(range, error, known_loss);
+        let table = LossTable::new(Azimuths::All, range, error, known_loss);
         for eta in [range[0], 0.7 * range[0] + 0.3 * range[1], range[1]] {
             for i in 0..=1000 {
                 let mu = f64::from(i) / 1000.0;
-                let (read, truth) = (table.eval(mu, eta) / (1.0 - error), known_loss(mu, eta));
+                let (read, truth) = (table.eval(toward(mu), eta) / (1.0 - error), known_loss_at(mu, eta));
                 assert!(read <= truth * (1.0 + 3e-5) && read > truth - 3e-4, "µ {mu}, η {eta}: {read} is not {truth}");
             }
             let (read, truth) = (table.average(eta) / (1.0 - error), 0.05 * eta);
             assert!(read <= truth && read > truth - 3e-4, "η {eta}: {read} is not {truth}");
         }
         // Beyond its indices it goes on as at their end.
-        assert_eq!(table.eval(0.3, 9.0), table.eval(0.3, range[1]));
+        assert_eq!(table.eval(toward(0.3), 9.0), table.eval(toward(0.3), range[1]));
     }
     // Nor above them in the middle of its cells where the chord between two indices is, by .004 of the loss.
-    let convex = |mu: f64, eta: f64| known_loss(mu, eta) * (1.0 + 0.1 * (eta - 1.6) * (eta - 1.6));
-    let table = LossTable::new([1.4, 1.8], 0.0, convex);
+    let convex = |wo: Vec3<f64>, eta: f64| known_loss(wo, eta) * (1.0 + 0.1 * (eta - 1.6) * (eta - 1.6));
+    let table = LossTable::new(Azimuths::All, [1.4, 1.8], 0.0, convex);
     for i in 1..NODES {
         let mu = 0.5 * (node(i - 1) + node(i));
-        let (read, truth) = (table.eval(mu, 1.6), convex(mu, 1.6));
+        let (read, truth) = (table.eval(toward(mu), 1.6), convex(toward(mu), 1.6));
         assert!(read <= truth * (1.0 + 1e-12) && read > truth * (1.0 - 4e-3), "µ {mu}: {read} is not {truth}");
     }
 }
@@ -210,7 +226,7 @@ fn share_below(table: &LossTable, mu: f64) -> f64 {
 
 #[test]
 fn directions_are_drawn_as_their_density_and_the_loss_say() {
-    let table = LossTable::new([1.4, 1.8], 0.0, known_loss);
+    let table = LossTable::new(Azimuths::All, [1.4, 1.8], 0.0, known_loss);
     assert!((share_below(&table, 1.0) - 1.0).abs() < 1e-12);
     for i in 0..200 {
         let u = [(f64::from(i) + 0.3) / 200.0, f64::from(i % 8) / 8.0];
@@ -229,7 +245,7 @@ fn directions_are_drawn_as_their_density_and_the_loss_say() {
     // The table lies up to 3e-4 of 0.05 or more below.
     assert!((share_below(&table, 0.5) - below(0.5) / below(1.0)).abs() < 3e-3);
     // Where nothing is lost nothing is drawn.
-    assert_eq!(LossTable::new([1.0, 1.0], 0.0, |_, _| 0.0).density(0.5), 0.0);
+    assert_eq!(LossTable::new(Azimuths::All, [1.0, 1.0], 0.0, |_, _| 0.0).density(0.5), 0.0);
 }
 
 /// By steps of √R, between which it is linear.
@@ -295,14 +311,14 @@ fn diattenuation(alpha: f64, mu: f64, eta: f64, of: impl Fn(OfState) -> f64) -> 
 fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
     let lost = |of: OfState| of.r * (1.0 - of.mirrored) + of.t * (1.0 - of.passed);
     for alpha in [0.3, 1.0] {
-        let ggx = Ggx::new(alpha);
+        let ggx = ggx(alpha);
         for inside in [false, true] {
             let side = |eta: f64| if inside { 1.0 / eta } else { eta };
             let of = |range| PolarisedLoss::new(range, &ggx, |facet, eta| polarised_loss(&ggx, facet, side(eta)));
             let (one, two) = (of([1.5, 1.5]), of([1.4, 1.6]));
             for mu in [0.9, 0.5, 0.2] {
                 for (table, eta) in [(&one, 1.5), (&two, 1.4), (&two, 1.45), (&two, 1.6)] {
-                    let (read, truth) = (table.eval(mu, eta), diattenuation(alpha, mu, side(eta), lost));
+                    let (read, truth) = (table.eval(toward(mu), eta)[0], diattenuation(alpha, mu, side(eta), lost));
                     assert!((read - truth).abs() < 1.5e-2, "α {alpha} µ {mu} η {eta} {inside}: {read} is not {truth}");
                 }
             }
@@ -314,9 +330,9 @@ fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
 #[test]
 fn a_coat_lets_in_of_polarised_light_what_an_independent_quadrature_finds() {
     for (alpha, eta) in [0.3, 1.0].into_iter().flat_map(|alpha| [1.5, 1.0 / 1.5].map(|eta| (alpha, eta))) {
-        let table = PolarisedLoss::new([eta, eta], &Ggx::new(alpha), let_in);
+        let table = PolarisedLoss::new([eta, eta], &ggx(alpha), let_in);
         for mu in [0.9, 0.6, 0.4, 0.2] {
-            let (read, truth) = (table.eval(mu, eta), diattenuation(alpha, mu, eta, |of| 1.0 - of.r * of.mirrored));
+            let (read, truth) = (table.eval(toward(mu), eta)[0], diattenuation(alpha, mu, eta, |of| 1.0 - of.r * of.mirrored));
             // As for what is lost.
             assert!((read - truth).abs() < 1e-2, "α {alpha} µ {mu} η {eta}: {read} is not {truth}");
         }
@@ -326,14 +342,14 @@ fn a_coat_lets_in_of_polarised_light_what_an_independent_quadrature_finds() {
 /// Between two nodes, in the cosine and in the index, it is the mean of what it is at them half way.
 #[test]
 fn what_is_lost_of_polarised_light_is_linear_between_nodes() {
-    let ggx = Ggx::new(0.5);
+    let ggx = ggx(0.5);
     let table = PolarisedLoss::new([1.4, 1.6], &ggx, |facet, eta| polarised_loss(&ggx, facet, eta));
     for i in 1..NODES {
-        let ends = [node(i - 1), node(i)].map(|mu| table.eval(mu, 1.4));
-        let middle = table.eval(0.5 * (node(i - 1) + node(i)), 1.4);
+        let ends = [node(i - 1), node(i)].map(|mu| table.eval(toward(mu), 1.4)[0]);
+        let middle = table.eval(toward(0.5 * (node(i - 1) + node(i))), 1.4)[0];
         assert!((middle - 0.5 * (ends[0] + ends[1])).abs() < 1e-12, "{i}: {middle} between {ends:?}");
-        let between = table.eval(node(i), 1.5);
-        assert!((between - 0.5 * (ends[1] + table.eval(node(i), 1.6))).abs() < 1e-12, "{i}");
+        let between = table.eval(toward(node(i)), 1.5)[0];
+        assert!((between - 0.5 * (ends[1] + table.eval(toward(node(i)), 1.6)[0])).abs() < 1e-12, "{i}");
     }
 }
 
@@ -344,7 +360,7 @@ fn what_several_facets_of_a_metal_add_is_coloured_by_as_many_reflections() {
     let (alpha, n, k) = (0.8, 1.5, 3.0);
     let bsdf = |compensated| {
         let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![n; 2], vec![k; 2]).unwrap();
-        let kind = MaterialKind::RoughConductor { metal: Metal::Index(index), alpha, compensated };
+        let kind = MaterialKind::RoughConductor { metal: Metal::Index(index), facets: alpha.into(), compensated };
         Bsdf::new(&kind, RANGE_NM)
     };
     let at = |i: u32, steps: u32| (f64::from(i) + 0.5) / f64::from(steps);

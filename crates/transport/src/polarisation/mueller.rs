@@ -57,12 +57,17 @@ pub(crate) fn mixed<const K: usize>(parts: [(f64, Matrix); K]) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| parts.iter().map(|(weight, m)| weight / sum * m[i][j]).sum()))
 }
 
-/// The Stokes vector over its first element of light that travels along `k` and of which the share (1 + a)/2 swings along
-/// `along`, the rest across, in the frame of `x`; both vectors are unit vectors at right angles to `k`.
-pub(crate) fn linear(a: f64, along: Vec3<f64>, k: Vec3<f64>, x: Vec3<f64>) -> [f64; 4] {
+/// The Stokes vector over its first element, in the frame of `x`, of light that travels along `k` and has S₁ and S₂ in the frame of
+/// `along`; both vectors are unit vectors at right angles to `k`.
+pub(crate) fn linear([s1, s2]: [f64; 2], along: Vec3<f64>, k: Vec3<f64>, x: Vec3<f64>) -> [f64; 4] {
     let (cos, sin) = (x.dot(along), k.cross(x).dot(along));
     let squared = cos * cos + sin * sin;
-    [1.0, a * (cos * cos - sin * sin) / squared, a * 2.0 * cos * sin / squared, 0.0]
+    let turned = [s1 * (cos * cos - sin * sin) / squared, s1 * 2.0 * cos * sin / squared];
+    if s2 == 0.0 {
+        return [1.0, turned[0], turned[1], 0.0];
+    }
+    let also = [-s2 * 2.0 * cos * sin / squared, s2 * (cos * cos - sin * sin) / squared];
+    [1.0, turned[0] + also[0], turned[1] + also[1], 0.0]
 }
 
 /// Light that forgot its polarisation within: `out` is what the way out makes of unpolarised light, `on_way_in` the Stokes

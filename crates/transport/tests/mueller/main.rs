@@ -2,7 +2,7 @@
 
 use etalon_optics::{ComplexIndex, Lanes, RefractiveIndex, Spectrum, Vec3};
 use etalon_oracle::laws::{self, Polarises};
-use etalon_scene::{MaterialKind, Metal, PolarisingSheet};
+use etalon_scene::{MaterialKind, Metal, Microfacets, PolarisingSheet};
 use etalon_transport::bsdf::{Bsdf, BsdfSample, Lobe, Shading};
 use etalon_transport::mis::Density;
 use etalon_transport::polarisation::mueller::{DEPOLARISER, Matrix, Mueller};
@@ -29,20 +29,25 @@ fn metal(n: f64, k: f64) -> Metal {
 
 fn rough_glass(alpha: f64, compensated: bool) -> MaterialKind {
     let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
-    MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority: None }
+    MaterialKind::RoughDielectric { interior, exterior, facets: alpha.into(), compensated, priority: None }
 }
 
 fn rough_metal(n: f64, k: f64, alpha: f64) -> MaterialKind {
-    MaterialKind::RoughConductor { metal: metal(n, k), alpha, compensated: true }
+    MaterialKind::RoughConductor { metal: metal(n, k), facets: alpha.into(), compensated: true }
+}
+
+/// Facets of a coat; 0 is smooth.
+fn facets(alpha: f64) -> Option<Microfacets> {
+    (alpha > 0.0).then(|| alpha.into())
 }
 
 fn plastic(rho: f64, alpha: f64) -> MaterialKind {
-    MaterialKind::Plastic { reflectance: Spectrum::Constant(rho).into(), coat: RefractiveIndex::Constant(1.5), alpha }
+    MaterialKind::Plastic { reflectance: Spectrum::Constant(rho).into(), coat: RefractiveIndex::Constant(1.5), facets: facets(alpha) }
 }
 
 /// Plastic in a medium denser than its coat.
 fn plastic_in_glass(alpha: f64) -> MaterialKind {
-    MaterialKind::Plastic { reflectance: Spectrum::Constant(1.0).into(), coat: RefractiveIndex::Constant(0.8), alpha }
+    MaterialKind::Plastic { reflectance: Spectrum::Constant(1.0).into(), coat: RefractiveIndex::Constant(0.8), facets: facets(alpha) }
 }
 
 fn pane() -> MaterialKind {
@@ -244,7 +249,7 @@ fn pairs() -> impl Iterator<Item = (Vec3<f64>, Vec3<f64>)> {
 #[test]
 fn a_facet_does_to_polarised_light_what_a_smooth_surface_in_its_place_does() {
     let conductor = MaterialKind::Conductor { metal: metal(0.2, 3.0) };
-    let rough_conductor = MaterialKind::RoughConductor { metal: metal(0.2, 3.0), alpha: 0.4, compensated: false };
+    let rough_conductor = MaterialKind::RoughConductor { metal: metal(0.2, 3.0), facets: 0.4.into(), compensated: false };
     let mut compared = [0; 2];
     for (rough, smooth, coated) in [
         (rough_conductor, conductor, false),
@@ -278,7 +283,7 @@ fn dispersive_rough_glass_polarises_as_glass_of_each_index_does() {
         bsdf(&MaterialKind::RoughDielectric {
             interior,
             exterior: exterior.clone(),
-            alpha: 0.6,
+            facets: 0.6.into(),
             compensated: true,
             priority: None,
         })
@@ -344,7 +349,7 @@ fn around_a_shading_normal_frames_belong_to_both_rays() {
 /// f times the matrix adds up over the parts of a surface: what several facets of a metal add is unpolarised, and a mixture is its parts.
 #[test]
 fn what_parts_of_a_surface_do_to_polarised_light_adds_up() {
-    let rough = |compensated| MaterialKind::RoughConductor { metal: metal(0.2, 3.0), alpha: 0.8, compensated };
+    let rough = |compensated| MaterialKind::RoughConductor { metal: metal(0.2, 3.0), facets: 0.8.into(), compensated };
     let (single, whole) = (bsdf(&rough(false)), bsdf(&rough(true)));
     let (first, second) = (bsdf(&rough_metal(0.2, 3.0, 0.3)), bsdf(&plastic(0.6, 0.2)));
     let mixed = bsdf(&blend());

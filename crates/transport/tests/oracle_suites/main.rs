@@ -67,7 +67,7 @@ fn more_than_two_hundred_instances_of_laws_hold() {
         MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9).into() },
         MaterialKind::Conductor { metal: Metal::Reflectance(colour.into()) },
         MaterialKind::OrenNayar { reflectance: grey(), roughness: 0.5 },
-        MaterialKind::Plastic { reflectance: grey(), coat: RefractiveIndex::Constant(1.5), alpha: 0.0 },
+        MaterialKind::Plastic { reflectance: grey(), coat: RefractiveIndex::Constant(1.5), facets: None },
         MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5) },
         MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet: polariser },
     ];

@@ -32,10 +32,15 @@ impl Material {
         Self { bsdf: Bsdf::new(&kind, RANGE_NM), kind }
     }
 
+    /// A place whose u grows along x, its v along y.
+    fn place() -> Shading<'static> {
+        Shading::flat(Vec3::from_f64(UP)).with_tangents([Vec3::from_f64([1.0, 0.0, 0.0]), Vec3::from_f64([0.0, 1.0, 0.0])])
+    }
+
     fn eval(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> (f64, f64) {
         let lambda = Lanes([wavelength_nm]);
         let (f_cos, pdf) =
-            self.bsdf.eval(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), Vec3::from_f64(wi));
+            self.bsdf.eval(&lambda, &Self::place(), Vec3::from_f64(wo), Vec3::from_f64(wi));
         (f_cos[0], pdf[0])
     }
 }
@@ -52,7 +57,7 @@ impl Scatters for Material {
 
     fn sample(&self, wo: [f64; 3], u: [f64; 3], wavelength_nm: f64) -> Option<Scattered> {
         let lambda = Lanes([wavelength_nm]);
-        let s = self.bsdf.sample(&lambda, &Shading::flat(Vec3::from_f64(UP)), Vec3::from_f64(wo), u)?;
+        let s = self.bsdf.sample(&lambda, &Self::place(), Vec3::from_f64(wo), u)?;
         let wi = s.wi.to_array();
         let density = match s.density {
             mis::Density::SolidAngle(pdf) => Density::SolidAngle(pdf),
@@ -110,7 +115,7 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
             };
             vec![DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight, probability: 1.0 }]
         }
-        MaterialKind::Plastic { alpha, .. } if *alpha > 0.0 => Vec::new(),
+        MaterialKind::Plastic { facets: Some(_), .. } => Vec::new(),
         MaterialKind::Plastic { reflectance, coat, .. } => {
             let (n, rho) = (coat.eval(wavelength_nm), uniform(reflectance).eval(wavelength_nm));
             let weight = laws::fresnel_exact(cos, n).reflectance();

@@ -2,7 +2,7 @@
 
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
-use etalon_scene::{Image, ImageTexture, MaterialKind, Metal, NumberTexture, PolarisingSheet, SpectrumTexture, Texels};
+use etalon_scene::{Image, ImageTexture, MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, SpectrumTexture, Texels};
 
 use crate::material::Material;
 
@@ -21,19 +21,19 @@ fn glass(interior: &str, exterior: &str) -> Material {
 
 fn rough_metal(name: &str, alpha: f64, compensated: bool) -> Material {
     let metal = Metal::Index(ComplexIndex::named(name).unwrap());
-    Material::new(MaterialKind::RoughConductor { metal, alpha, compensated })
+    Material::new(MaterialKind::RoughConductor { metal, facets: alpha.into(), compensated })
 }
 
 /// Reflects everything: n → 0 with k > 0.
 fn lossless_metal(alpha: f64) -> Material {
     let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
-    Material::new(MaterialKind::RoughConductor { metal: Metal::Index(index), alpha, compensated: true })
+    Material::new(MaterialKind::RoughConductor { metal: Metal::Index(index), facets: alpha.into(), compensated: true })
 }
 
 fn rough_glass(interior: &str, exterior: &str, alpha: f64, compensated: bool) -> Material {
     let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
     let (interior, exterior) = (index(interior), index(exterior));
-    Material::new(MaterialKind::RoughDielectric { interior, exterior, alpha, compensated, priority: None })
+    Material::new(MaterialKind::RoughDielectric { interior, exterior, facets: alpha.into(), compensated, priority: None })
 }
 
 scatters_suite!(lambert, lambert());
@@ -47,7 +47,7 @@ scatters_suite!(very_rough_diamond_in_water, rough_glass("diamond", "water", 1.0
 
 fn plastic(rho: f64, alpha: f64) -> Material {
     let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(1.5));
-    Material::new(MaterialKind::Plastic { reflectance, coat, alpha })
+    Material::new(MaterialKind::Plastic { reflectance, coat, facets: (alpha > 0.0).then(|| alpha.into()) })
 }
 
 fn oren_nayar(rho: f64, roughness: f64) -> Material {
@@ -72,7 +72,7 @@ fn texel(rgb: [f32; 3]) -> ImageTexture {
 /// Smooth below a roughness of 0.2, rougher from there on; at 0.7 now, between two rough ones.
 fn metal_of_varied_roughness() -> Material {
     let metal = Metal::Reflectance(Spectrum::rgb_reflectance([0.9, 0.6, 0.3]).unwrap().into());
-    let rough = |alpha| MaterialKind::RoughConductor { metal: metal.clone(), alpha, compensated: true };
+    let rough = |alpha: f64| MaterialKind::RoughConductor { metal: metal.clone(), facets: alpha.into(), compensated: true };
     let parts = vec![(0.2, MaterialKind::Conductor { metal: metal.clone() }), (0.55, rough(0.3)), (0.9, rough(0.81))];
     Material::new(MaterialKind::Blend { parts, by: NumberTexture::Image(texel([0.7; 3])) })
 }
@@ -82,7 +82,7 @@ fn glass_of_varied_roughness() -> Material {
     let index = |name: &str| RefractiveIndex::named(name).unwrap();
     let (interior, exterior) = (index("N-BK7"), index("water"));
     let smooth = MaterialKind::Dielectric { interior: interior.clone(), exterior: exterior.clone(), priority: None };
-    let rough = MaterialKind::RoughDielectric { interior, exterior, alpha: 0.5, compensated: true, priority: None };
+    let rough = MaterialKind::RoughDielectric { interior, exterior, facets: 0.5.into(), compensated: true, priority: None };
     Material::new(MaterialKind::Blend {
         parts: vec![(0.0, smooth), (0.7, rough)],
         by: NumberTexture::Image(texel([0.5; 3])),
@@ -92,13 +92,13 @@ fn glass_of_varied_roughness() -> Material {
 /// A ground and a coat by images.
 fn painted_plastic() -> Material {
     let reflectance = SpectrumTexture::Image(texel([0.9, 0.2, 0.4]));
-    Material::new(MaterialKind::Plastic { reflectance, coat: RefractiveIndex::Constant(1.5), alpha: 0.3 })
+    Material::new(MaterialKind::Plastic { reflectance, coat: RefractiveIndex::Constant(1.5), facets: Some(0.3.into()) })
 }
 
 /// Metal that reflects all that a metal of a given reflectance can.
 fn white_metal(alpha: f64) -> Material {
     let metal = Metal::Reflectance(Spectrum::Constant(1.0).into());
-    Material::new(MaterialKind::RoughConductor { metal, alpha, compensated: true })
+    Material::new(MaterialKind::RoughConductor { metal, facets: alpha.into(), compensated: true })
 }
 
 scatters_suite!(varied_metal, metal_of_varied_roughness());
@@ -123,7 +123,59 @@ fn polariser() -> Material {
 scatters_suite!(polariser, polariser());
 scatters_suite!(mirror_and_clay, mixture());
 
-/// None of ours has a grain but for the sheets, whose axis is in their Mueller matrices alone.
+/// Facets of two widths, turned.
+fn brushed(u: f64, v: f64) -> Microfacets {
+    Microfacets { alpha: [u, v], rotation_rad: 0.6 }
+}
+
+fn brushed_gold(compensated: bool) -> Material {
+    let metal = Metal::Index(ComplexIndex::named("Au").unwrap());
+    Material::new(MaterialKind::RoughConductor { metal, facets: brushed(0.15, 0.5), compensated })
+}
+
+/// Reflects everything: n → 0 with k > 0.
+fn lossless_brushed_metal() -> Material {
+    let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
+    let metal = Metal::Index(index);
+    Material::new(MaterialKind::RoughConductor { metal, facets: brushed(1.0, 0.2), compensated: true })
+}
+
+fn brushed_glass() -> Material {
+    let (interior, exterior) = (RefractiveIndex::named("N-BK7").unwrap(), RefractiveIndex::VACUUM);
+    let facets = brushed(0.6, 0.2);
+    Material::new(MaterialKind::RoughDielectric { interior, exterior, facets, compensated: true, priority: None })
+}
+
+fn brushed_plastic() -> Material {
+    let (reflectance, coat) = (Spectrum::Constant(1.0).into(), RefractiveIndex::Constant(1.5));
+    Material::new(MaterialKind::Plastic { reflectance, coat, facets: Some(brushed(0.2, 0.6)) })
+}
+
+/// Two grains that cross.
+fn cross_brushed() -> Material {
+    let metal = Metal::Reflectance(Spectrum::Constant(0.8).into());
+    let part = |rotation_rad| MaterialKind::RoughConductor {
+        metal: metal.clone(),
+        facets: Microfacets { alpha: [0.4, 0.15], rotation_rad },
+        compensated: true,
+    };
+    Material::new(MaterialKind::blend(part(0.0), part(1.2), 0.5))
+}
+
+scatters_suite!(brushed_gold, brushed_gold(true));
+scatters_suite!(brushed_gold_without_compensation, brushed_gold(false));
+scatters_suite!(lossless_brushed_metal_furnace, lossless_brushed_metal());
+scatters_suite!(brushed_glass, brushed_glass());
+scatters_suite!(white_brushed_plastic, brushed_plastic());
+scatters_suite!(cross_brushed, cross_brushed());
+
+#[test]
+fn brushed_materials_are_others_turned_about_their_normal() {
+    let subjects: [&dyn Scatters; 4] = [&brushed_gold(true), &brushed_gold(false), &brushed_glass(), &brushed_plastic()];
+    subjects.into_iter().for_each(|subject| assert!(!laws::is_isotropic(subject, 1).pass));
+}
+
+/// No other has a grain but the sheets, whose axis is in their Mueller matrices alone.
 #[test]
 fn every_material_is_the_same_turned_about_its_normal() {
     let subjects: [&dyn Scatters; 10] = [

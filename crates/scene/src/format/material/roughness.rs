@@ -1,10 +1,10 @@
 //! How rough a surface is: a width of facets, or an image of widths.
 
 use super::super::detail::{RoughnessImageForm, RoughnessQuantity, roughness_image};
-use super::Alpha;
+use super::{Alpha, Width};
 use crate::files::Files;
 use crate::json::{Code, Optional, Reader, Spanned};
-use crate::model::{LEAST_ALPHA, MaterialKind, NumberTexture};
+use crate::model::{LEAST_ALPHA, MaterialKind, Microfacets, NumberTexture};
 use crate::texture::ImageTexture;
 
 /// Neighbouring widths of an image have roughnesses √α in this ratio. The peak of a highlight, in proportion to 1/α², is then at
@@ -16,8 +16,8 @@ pub(super) const MOST_WIDTHS: usize = 97;
 
 /// How rough a surface is.
 pub(super) enum Roughness {
-    /// α, the same everywhere.
-    Width(f64),
+    /// The same everywhere; `None` is smooth.
+    Uniform(Option<Microfacets>),
     /// A number that says it, by an image.
     Image(ImageTexture, RoughnessQuantity),
 }
@@ -35,15 +35,15 @@ impl RoughnessQuantity {
 }
 
 impl Roughness {
-    /// The material, of what it is for each width α: a blend of the neighbours among some widths where an image says it.
-    pub(super) fn material(self, of: impl Fn(f64) -> MaterialKind) -> MaterialKind {
+    /// The material, of what it is for facets of each width: a blend of the neighbours among some widths where an image says it.
+    pub(super) fn material(self, of: impl Fn(Option<Microfacets>) -> MaterialKind) -> MaterialKind {
         match self {
-            Self::Width(alpha) => of(alpha),
+            Self::Uniform(facets) => of(facets),
             Self::Image(texture, quantity) => {
                 let range = texture.image.linear_texels().map(|[texel, ..]| texel * texture.factor[0]);
                 let [least, most] = range.fold([1.0_f64, 0.0], |[least, most], r| [least.min(r), most.max(r)]);
                 let nodes = nodes(least, most, quantity).into_iter();
-                let parts: Vec<_> = nodes.map(|r| (quantity.of(r), of(r * r))).collect();
+                let parts: Vec<_> = nodes.map(|r| (quantity.of(r), of(of_width(r * r)))).collect();
                 MaterialKind::Blend { parts, by: NumberTexture::Image(texture) }
             }
         }
@@ -63,19 +63,36 @@ fn nodes(least: f64, most: f64, quantity: RoughnessQuantity) -> Vec<f64> {
     all[first..=last].to_vec()
 }
 
+/// Facets of the width `alpha`; 0 is smooth.
+fn of_width(alpha: f64) -> Option<Microfacets> {
+    (alpha > 0.0).then(|| alpha.into())
+}
+
+/// The keys of a form that say how rough it is.
+pub(super) struct RoughnessKeys<'f> {
+    pub alpha: Option<&'f Spanned<Alpha>>,
+    /// Along the tangent and across it.
+    pub widths: [&'f Optional<Width>; 2],
+    pub rotation_deg: &'f Optional<f64>,
+    pub image: &'f Optional<RoughnessImageForm>,
+}
+
 /// The roughness of a form.
-pub(super) fn roughness(
-    alpha: Option<&Spanned<Alpha>>,
-    image: &Optional<RoughnessImageForm>,
-    files: &mut Files,
-    reader: &mut Reader<'_>,
-) -> Option<Roughness> {
-    match image {
-        Optional::Absent => width(alpha, reader).map(Roughness::Width),
-        Optional::Given(image) => {
+pub(super) fn roughness(keys: &RoughnessKeys<'_>, files: &mut Files, reader: &mut Reader<'_>) -> Option<Roughness> {
+    match (keys.image, keys.widths) {
+        (Optional::Absent, [Optional::Absent, Optional::Absent]) => {
+            width(keys.alpha, reader).map(|alpha| Roughness::Uniform(of_width(alpha)))
+        }
+        (Optional::Absent, [Optional::Given(u), Optional::Given(v)]) => {
+            let rotation_deg = keys.rotation_deg.clone().checked()?.unwrap_or(0.0);
+            let facets = Microfacets { alpha: [u.0, v.0], rotation_rad: rotation_deg.to_radians() };
+            Some(Roughness::Uniform(Some(facets)))
+        }
+        (Optional::Given(image), _) => {
             roughness_image(image, files, reader).map(|(image, quantity)| Roughness::Image(image, quantity))
         }
-        Optional::Invalid => None,
+        // Reported where the keys were read.
+        _ => None,
     }
 }
 
