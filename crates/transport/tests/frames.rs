@@ -6,9 +6,11 @@ use etalon_transport::{Control, Film, Prepared, Study, prepare_frame, prepare_st
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-#[path = "common/rendering.rs"]
-mod rendering;
-use rendering::parse;
+/// The scene of a text that has no mistake.
+fn parse(json: &str) -> Scene {
+    etalon_scene::parse(json, "test").unwrap_or_else(|errors| panic!("{errors}")).0
+}
+
 
 /// Keyframes that turn about the vertical and move along x, from 0 s to 2 s.
 fn rolling() -> Value {
