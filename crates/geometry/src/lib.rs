@@ -42,12 +42,13 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `vec4`, `ray`, `query` | four lanes of any instruction set; rays and hits; a ray prepared for the tests in `f64` |
+//! | `aabb`, `double_double`, `pages`, `level` | boxes; the arithmetic behind `f64`; arrays in large pages; the instruction set to use |
+//! | `vec4`, `ray`, `passed`, `lanes` | four lanes of any instruction set; rays and hits; hits that a walk has passed; eight rays |
+//! | `query` | a ray prepared for the tests in `f64` |
 //! | `shapes` | the shapes, one a file, with their intersection tests; [`ShapeSampler`]: directions toward them |
 //! | [`warp`] | maps from the unit square to disks, hemispheres and spheres |
 //! | `placement`, `motion` | where a geometry is placed, also as a function of time |
 //! | `frame` | the accelerator's frame, and conservative box tests in `f32` |
-//! | `level` | the instruction set to use |
 //! | `bvh` | the tree: its two builders, an optimiser, the choice of nodes of sixteen children and of leaves |
 //! | `small_scene` | up to 128 primitives in blocks, instead of a tree |
 //! | `geometry` | primitives, instances, and what is built over them |

@@ -99,7 +99,7 @@ impl<E: Eight> Prepared<E> {
     }
 }
 
-/// The id of a surface as a number, if it is one of a flat geometry's.
+/// The id of a surface as a number, if it is one of a small scene's.
 #[inline(always)]
 fn id_of(SurfaceId { instance, primitive }: SurfaceId) -> f32 {
     let id = if instance == 0 { primitive.0 } else { PrimitiveId::NONE.0 };
