@@ -28,6 +28,8 @@
 //! | [`Imported::parse`] | the imported scene as an [`etalon_scene::Scene`] |
 //! | [`Imported::left_out`] | each thing that the model says and the scene does not, with its place in the file |
 //!
+//! The example `convert` writes the scene of a model to a folder.
+//!
 //! Each format has its module. All of them fill one `Builder`, which writes the scene's JSON, and spend from one `Budget`, which bounds
 //! what a small file can ask for.
 

@@ -1,23 +1,44 @@
-//! Pure light physics, free of scenes, files and randomness.
+//! Pure light physics: spectra, colours, refractive indices, Fresnel's formulas, Snell's law. It knows no scenes, files or random numbers.
 //!
-//! | module | what it holds |
+//! A [`Spectrum`] is a function of the wavelength, kept as its formula. [`colour`] makes a colour of it, [`RefractiveIndex`] and
+//! [`ComplexIndex`] hold what glasses and metals do to each wavelength, [`fresnel`] and [`snell`] say how much light goes where.
+//!
+//! Blue light is turned more than red when it enters glass, and the surface sends back about 4 % of both:
+//!
+//! ```
+//! use etalon_optics::fresnel::dielectric_reflectance;
+//! use etalon_optics::snell::refract;
+//! use etalon_optics::{RefractiveIndex, Vec3};
+//!
+//! let glass = RefractiveIndex::named("N-BK7").expect("a glass of the list");
+//! // Light from above, 45° from the normal. Directions leave the surface.
+//! let (normal, wi) = (Vec3::new(0.0, 0.0, 1.0), Vec3::new(1.0, 0.0, 1.0).normalized());
+//! let angle_deg = |nm: f64| {
+//!     let inside = refract(wi, normal, glass.eval(nm)).expect("light always enters glass");
+//!     (-inside.z).acos().to_degrees()
+//! };
+//! assert!(angle_deg(450.0) < angle_deg(650.0));
+//! let (s, p) = dielectric_reflectance(1.0, glass.eval(550.0));
+//! assert!((s - 0.042).abs() < 0.001 && s == p);
+//! ```
+//!
+//! | for | see |
 //! |---|---|
-//! | [`real`] | [`Real`]: the scalar a kernel computes in, `f32` or `f64` |
-//! | [`vec3`] | [`Vec3`]: a vector over any [`Real`], and orthonormal frames |
-//! | [`lanes`] | [`Lanes`]: one value for each wavelength a path carries |
-//! | [`angle`] | the angle of a vector |
-//! | [`spectrum`] | [`Spectrum`]: symbolic spectra, RGB colours made into spectra, CIE illuminants |
-//! | [`colour`] | the CIE 1931 2° observer, XYZ, linear Rec. 709, the sRGB transfer function |
-//! | [`index`] | [`RefractiveIndex`] of glasses and [`ComplexIndex`] of metals, with the range each is known for |
-//! | [`exponential`] | e⁻ˣ |
-//! | [`fresnel`] | how much is reflected and transmitted, in forms that do not cancel |
-//! | [`snell`] | where refracted light goes |
-//! | [`error`] | [`OpticsError`]: what can be wrong with the numbers above |
+//! | spectra: constants, tables, black bodies, illuminants, RGB made into spectra | [`spectrum`] |
+//! | the CIE 1931 2° observer, XYZ, linear Rec. 709, sRGB, adaptation, CIELAB | [`colour`] |
+//! | glasses and metals, with the range that each is known for | [`index`] |
+//! | reflectance and transmittance, in forms that do not cancel | [`fresnel`] |
+//! | where refracted light goes | [`snell`] |
+//! | vectors and frames over `f32` or `f64` | [`Vec3`], [`Frame`], [`Real`] |
+//! | one value for each wavelength of a path | [`Lanes`] |
+//! | e⁻ˣ and angles by operations that round alike everywhere | [`exponential`], [`angle`] |
+//! | what can be wrong with the numbers above | [`OpticsError`] |
 //!
-//! Arithmetic here uses only operations that IEEE 754 rounds correctly (+ − × ÷ √), never a fused multiply-add and
-//! never the platform's mathematics library inside a path, so that a result has the same bits on every machine. Two kinds
-//! of spectra need an exponential, [`spectrum::Blackbody`] and illuminant A, and so does sRGB: whoever renders tabulates
-//! those before the paths start.
+//! The example `prism` prints what a prism does to four spectral lines.
+//!
+//! Arithmetic here uses only operations that IEEE 754 rounds correctly (+ − × ÷ √). It uses no fused multiply-add, and inside a path never
+//! the platform's mathematics library. So a result has the same bits on every machine. Two kinds of spectra need an exponential,
+//! [`spectrum::Blackbody`] and illuminant A, and so does sRGB. A renderer tabulates those before its paths start.
 
 pub mod angle;
 pub mod colour;

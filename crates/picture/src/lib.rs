@@ -1,14 +1,34 @@
-//! Pictures: buffers of named channels, to and from EXR and PNG, and how far apart two of them are.
+//! Pictures: buffers of named channels, to and from EXR and PNG files, and how far apart two of them are.
 //!
-//! - [`Picture`] holds samples by channel name, row after row from the top, in `f32` or `f64`.
-//! - [`write_exr`] and [`read_exr`] keep every channel and every attribute; [`RenderInfo`] is how a render describes
-//!   itself. EXR is the file that keeps the radiometric truth.
-//! - [`encode_srgb8`] and [`write_png`] make the picture that a screen shows, and say what was lost on the way.
-//! - [`develop`](mod@develop) holds what stands between the two: exposure, white balance, tone curves, crop and scale, false colour, maps
-//!   of the error, spectra.
-//! - Files appear under their name whole or not at all ([`write_atomically`]), and [`check_writable`] finds out before
-//!   an hour of rendering whether they can.
-//! - [`compare`] measures RMSE and relMSE, [`flip`](fn@flip) what the eye sees.
+//! A [`Picture`] holds samples by channel name, row after row from the top, in `f32` or `f64`. EXR is the file that keeps the radiometric
+//! truth: every channel and every attribute. A PNG is the picture that a screen shows, and making it says what was lost:
+//!
+//! ```
+//! use etalon_picture::{Attributes, Picture, encode_srgb8, read_exr, write_exr, write_png};
+//!
+//! // Two pixels: a grey, and a red too bright for a screen.
+//! let picture = Picture::from_rgb(2, 1, &[[0.5_f32; 3], [4.0, 0.1, 0.1]])?;
+//! let folder = tempfile::tempdir()?;
+//! write_exr(&folder.path().join("two.exr"), &picture, &Attributes::default())?;
+//! assert_eq!(read_exr(&folder.path().join("two.exr"))?.picture, picture);
+//!
+//! let (shown, clipping) = encode_srgb8(&picture, 0.0)?;
+//! write_png(&folder.path().join("two.png"), &shown, &[])?;
+//! assert_eq!((clipping.above, clipping.of), (1, 2));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | for | see |
+//! |---|---|
+//! | channels of a picture, and where it lies in a larger frame | [`Picture`], [`Channel`], [`Window`] |
+//! | EXR files, and how a render describes itself in them | [`write_exr`], [`read_exr`], [`Attributes`], [`RenderInfo`] |
+//! | the picture that a screen shows | [`encode_srgb8`], [`write_png`], [`read_png`] |
+//! | exposure, white balance, tone curves, crop and scale, false colour, maps of the error, spectra | [`develop`](mod@develop) |
+//! | the distance of two pictures | [`compare`] (RMSE and relMSE), [`flip`](fn@flip) (what the eye sees) |
+//! | files that appear whole or not at all | [`write_atomically`], [`check_writable`] |
+//! | files that claim to be larger than they may be | [`check_exr_size`], [`open_plain`] |
+//!
+//! The example `distance` compares two pictures.
 //!
 //! Nothing here prints. Every error names the file and carries the cause as its source.
 

@@ -4,9 +4,6 @@
 //! ([`SceneErrors`]), each with its JSON path, line, column and a hint. [`schema`] is the JSON Schema of such files, made
 //! from the same declarations as the reader. The format is described in `docs/scene-format.md`.
 //!
-//! [`json`] is the reader itself, free of scenes, for any other JSON format. Models of other programs (glTF, Mitsuba, pbrt) become
-//! scenes by the crate `etalon-import`.
-//!
 //! ```
 //! let (scene, warnings) = etalon_scene::parse(r#"{
 //!     "etalon": 1,
@@ -17,8 +14,25 @@
 //! }"#, "ball.json")?;
 //! assert_eq!(scene.objects.len(), 1);
 //! assert!(warnings.is_empty());
+//!
+//! // A word that is no key is an error with its place, and a hint where one is near.
+//! let errors = etalon_scene::parse(r#"{ "etalon": 1, "camra": {} }"#, "typo.json").unwrap_err();
+//! assert!(errors.errors().any(|problem| problem.message.contains("camra") && problem.line == 1));
 //! # Ok::<(), etalon_scene::SceneErrors>(())
 //! ```
+//!
+//! | for | see |
+//! |---|---|
+//! | reading a file, a text, or a text with its files in memory | [`load`], [`parse`], [`parse_with_files`] |
+//! | what a scene holds | [`Scene`] and [`model`] |
+//! | what is wrong, and where | [`Problem`], [`SceneErrors`] |
+//! | completion and checks in an editor | [`schema`] |
+//! | meshes and textures in files | [`mesh`], [`ImageTexture`] |
+//! | transforms beyond those of glam | [`linear`] |
+//! | the reader alone, for any other JSON format | [`json`] |
+//! | models of other programs (glTF, OBJ, Mitsuba, pbrt) | the crate `etalon-import` |
+//!
+//! The example `check` prints what is in a scene file, or everything that is wrong with it.
 
 mod files;
 mod format;

@@ -1,19 +1,36 @@
-//! Instruction sets: which the processor has, which one to use, and safe doors to vector instructions.
+//! Instruction sets: which the processor has, which one to use, and vector instructions as safe functions.
 //!
-//! | item | what it is |
+//! A function is written once. [`dispatch!`] compiles it for each instruction set and calls the version for a [`Level`]:
+//!
+//! ```
+//! use etalon_simd::{Level, dispatch};
+//!
+//! fn largest(level: Level, numbers: &[f32]) -> f32 {
+//!     dispatch!(level; fn largest(numbers: &[f32]) -> f32 {
+//!         numbers.iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a })
+//!     })
+//! }
+//!
+//! assert_eq!(largest(Level::best(), &[1.0, 3.0, 2.0]), 3.0);
+//! assert!(Level::available().into_iter().all(|level| largest(level, &[1.0, 3.0, 2.0]) == 3.0));
+//! ```
+//!
+//! | for | see |
 //! |---|---|
-//! | [`Avx2`], [`Avx512`] | tokens: a value proves that the processor has every feature of the set |
-//! | [`Level`] | one instruction set of this processor, with its token |
-//! | [`call_compiled!`] | compiles a function for a set and calls it, given the token |
-//! | [`dispatch!`] | the same for each [`Level`], and calls the one for a level |
-//! | methods of the tokens | vector instructions as safe functions, named as in [`std::arch`] |
+//! | one instruction set of this processor, with its token | [`Level`] |
+//! | a value that proves that the processor has every feature of a set | [`Avx2`], [`Avx512`] |
+//! | a function compiled for each level | [`dispatch!`] |
+//! | a function compiled for one set, given the token | [`call_compiled!`] |
+//! | vector instructions as safe functions | methods of the tokens, named as in [`std::arch`] |
 //!
-//! The features of each set stand in one list (`with_features!` in `features.rs`). Detection, the attribute
-//! `target_feature` and the methods of the tokens all read it, so that code is never compiled for a feature that was not
-//! detected. The macros write the only `unsafe` that their users need; users need no `unsafe` of their own.
+//! The example `sum` times one loop on each instruction set.
 //!
-//! The environment variable [`VARIABLE`] makes [`Level::best`] a lower set than the processor has. Results do not depend
-//! on the set: it is there to test just that.
+//! The features of each set stand in one list (`with_features!` in `features.rs`). Detection, the attribute `target_feature` and the methods
+//! of the tokens all read it. So no code is compiled for a feature that was not detected. The macros write the only `unsafe` that their users
+//! need.
+//!
+//! The environment variable [`VARIABLE`] makes [`Level::best`] a lower set than the processor has. Results do not depend on the set. The
+//! variable is there to test that.
 
 #[cfg(target_arch = "x86_64")]
 mod features;

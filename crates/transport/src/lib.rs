@@ -4,6 +4,31 @@
 //! Scene ──prepare──▶ Prepared (with its Plan) ──render──▶ Film
 //! ```
 //!
+//! A grey ball under an even sky of radiance 1 shows its reflectance, here 0.5, in every pixel:
+//!
+//! ```
+//! use etalon_transport::{Control, prepare};
+//!
+//! let (scene, _) = etalon_scene::parse(r#"{
+//!     "etalon": 1,
+//!     "camera": { "type": "perspective", "position_m": [0, 0, 4], "look_at_m": [0, 0, 0], "vertical_fov_deg": 20 },
+//!     "film": { "width": 16, "height": 16 },
+//!     "integrator": { "spp": 64 },
+//!     "objects": [{ "shape": { "type": "sphere", "radius_m": 1 }, "material": { "type": "lambert", "reflectance": 0.5 } }],
+//!     "lights": [{ "type": "environment", "radiance": 1 }]
+//! }"#, "ball.json")?;
+//! let prepared = prepare(&scene)?;
+//! let film = prepared.render(&prepared.whole(None), &|_| Control::Continue)?;
+//! let pixel = film.pixel(8, 8);
+//! let ([variance], _) = pixel.variance(|xyz| [xyz[1]]).expect("more than one replicate");
+//! // Five standard errors, and the rounding of the sums.
+//! assert!((pixel.xyz()[1] - 0.5).abs() <= 5.0 * variance.sqrt() + 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The example `radiance` prints a grid of pixels with their errors. Programs that render use the crate `etalon`, which reads files, ends at
+//! an error that is asked for, and writes pictures.
+//!
 //! | module | what it holds |
 //! |---|---|
 //! | [`prepare`](mod@prepare), [`tune`](mod@tune) | shapes in world space, lights, the accelerator; a trial before the picture |

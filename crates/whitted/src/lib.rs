@@ -15,6 +15,17 @@
 //! let rgb = render(&figure.scene(), &settings).to_rgb8();
 //! assert_eq!(rgb[..3], [77, 77, 229]);
 //! ```
+//!
+//! | for | see |
+//! |---|---|
+//! | what a scene holds, and the published one | [`Scene`], [`Scene::seven_spheres`] |
+//! | the sixteen pictures | [`Figure::ALL`] |
+//! | size, rays a pixel, the distance that shadow rays keep | [`Settings`] |
+//! | pixels as numbers and as bytes | [`Film`] |
+//! | other roundings, other formulas of refraction | [`render_with`], [`RefractionRule`] |
+//!
+//! The example `picture` renders a scene that is made in code. `shadow_epsilon` and `depth_of_field` measure what the published numbers
+//! trade, `assignment_images` draws the pictures of `docs/assignment.md`.
 
 pub mod random;
 mod refraction;
