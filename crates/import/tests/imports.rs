@@ -253,7 +253,10 @@ fn anisotropy_of_gltf_arrives() {
     assert!((found.alpha[0] - 0.52).abs() < 1e-7 && (found.alpha[1] - 0.25).abs() < 1e-7, "{found:?}");
     assert!((found.rotation_rad - 0.5).abs() < 1e-12, "{found:?}");
     let mean = (0.52_f64 * 0.25).sqrt();
-    assert!(without.is_some_and(|facets| facets.is_isotropic() && (facets.alpha[0] - mean).abs() < 1e-7), "{without:?}");
+    assert!(
+        without.is_some_and(|facets| facets.is_isotropic() && (facets.alpha[0] - mean).abs() < 1e-7),
+        "{without:?}"
+    );
     assert!(said.contains("geometric mean of both widths") && !said.contains("honoured"), "{said}");
     // Nothing without strength.
     let ([found, _], said) = with(json!({ "anisotropyRotation": 0.5 }), false);
@@ -272,7 +275,9 @@ fn glb_materials_lights_and_cameras_arrive() {
     let scene = scene(&imported(&model()).unwrap());
     let part = |i: usize| &scene.groups[scene.instances[i].group].objects[0];
     let kind = |i: usize| &scene.materials[part(i).material].kind;
-    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), coat, facets } = kind(0) else { panic!("an image") };
+    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), coat, facets } = kind(0) else {
+        panic!("an image")
+    };
     assert_eq!(*facets, Some(1.0.into()));
     assert_eq!(coat.eval(550.0), 1.5);
     assert_eq!((image.wrap, image.filter), ([Wrap::Clamp, Wrap::Mirror], TextureFilter::Nearest));

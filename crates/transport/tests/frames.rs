@@ -11,7 +11,6 @@ fn parse(json: &str) -> Scene {
     etalon_scene::parse(json, "test").unwrap_or_else(|errors| panic!("{errors}")).0
 }
 
-
 /// Keyframes that turn about the vertical and move along x, from 0 s to 2 s.
 fn rolling() -> Value {
     let key = |time_s: f64, angle_deg: f64, x: f64| json!({"time_s": time_s, "transform": [{"rotate": {"axis": [0, 1, 0], "angle_deg": angle_deg}}, {"translate_m": [x, 0, 0]}]});

@@ -16,7 +16,10 @@ fn mirrors(alpha: f64, compensated: bool) -> Bsdf {
 
 fn glass(interior: RefractiveIndex, alpha: f64, compensated: bool) -> Bsdf {
     let exterior = RefractiveIndex::VACUUM;
-    Bsdf::new(&MaterialKind::RoughDielectric { interior, exterior, facets: alpha.into(), compensated, priority: None }, RANGE_NM)
+    Bsdf::new(
+        &MaterialKind::RoughDielectric { interior, exterior, facets: alpha.into(), compensated, priority: None },
+        RANGE_NM,
+    )
 }
 
 fn up() -> Vec3<f64> {

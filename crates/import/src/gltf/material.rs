@@ -330,12 +330,7 @@ struct Anisotropy {
 }
 
 impl Anisotropy {
-    fn of(
-        material: &gltf::Material<'_>,
-        roughness: &Number,
-        place: &str,
-        builder: &mut Builder<'_>,
-    ) -> Option<Self> {
+    fn of(material: &gltf::Material<'_>, roughness: &Number, place: &str, builder: &mut Builder<'_>) -> Option<Self> {
         let value = material.extension_value("KHR_materials_anisotropy")?;
         let number = |key: &str| value[key].as_f64().unwrap_or(0.0);
         let place = format!("{place}.extensions.KHR_materials_anisotropy");

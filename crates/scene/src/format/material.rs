@@ -359,9 +359,7 @@ pub(crate) fn material<'f>(
                 let (interior, exterior) = (interior.clone(), exterior.clone());
                 match facets {
                     None => MaterialKind::Dielectric { interior, exterior, priority },
-                    Some(facets) => {
-                        MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority }
-                    }
+                    Some(facets) => MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority },
                 }
             });
             return Some(Made { kind, absorption: absorption? });

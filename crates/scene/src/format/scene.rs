@@ -342,7 +342,8 @@ fn check_coordinates(image: Option<&ImageTexture>, shape: &Shape, at: Span, read
 /// Reports facets of two widths on a shape that has no texture coordinates.
 fn check_tangents(shape: &Shape, at: Span, reader: &mut Reader<'_>) {
     if !shape.has_texture_coordinates() {
-        let message = "the shape has no texture coordinates, from which \"alpha_u\" and \"alpha_v\" have their directions";
+        let message =
+            "the shape has no texture coordinates, from which \"alpha_u\" and \"alpha_v\" have their directions";
         reader.error_hint(Code::NoTextureCoordinates, at, message, GIVE_COORDINATES);
     }
 }

@@ -27,9 +27,8 @@ impl OrenNayar {
     /// A surface of this albedo parameter, and of a roughness in [0, 1].
     pub fn new(reflectance: PathTexture, roughness: f64) -> Self {
         let scale = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * roughness);
-        let loss = Box::new(LossTable::new(Azimuths::All, [1.0, 1.0], 1e-5, |wo, _| {
-            1.0 - albedo(roughness, scale, wo.z)
-        }));
+        let loss =
+            Box::new(LossTable::new(Azimuths::All, [1.0, 1.0], 1e-5, |wo, _| 1.0 - albedo(roughness, scale, wo.z)));
         Self { reflectance, roughness, scale, loss }
     }
 
@@ -55,8 +54,7 @@ impl OrenNayar {
         let t = if s > 0.0 { wo.z.max(wi.z) } else { 1.0 };
         let single = self.scale * (1.0 + self.roughness * s / t);
         let mean_loss = self.loss.average(1.0);
-        let several =
-            if mean_loss > 0.0 { self.loss.eval(wo, 1.0) * self.loss.eval(wi, 1.0) / mean_loss } else { 0.0 };
+        let several = if mean_loss > 0.0 { self.loss.eval(wo, 1.0) * self.loss.eval(wi, 1.0) / mean_loss } else { 0.0 };
         let pdf = wi.z * FRAC_1_PI;
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, uv);
         let f_cos = Lanes::from_fn(|lane| {

@@ -126,9 +126,7 @@ impl RoughConductor {
         let facing = self.ggx.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
         let wi = match &self.compensation {
-            Some(compensation) if u_lobe < compensation.loss.eval(facing.wo, 1.0) => {
-                compensation.loss.sample([u1, u2])
-            }
+            Some(compensation) if u_lobe < compensation.loss.eval(facing.wo, 1.0) => compensation.loss.sample([u1, u2]),
             _ => facing.wo.reflected_about(self.ggx.visible_normal(facing.wo, [u1, u2])),
         };
         let wi = facing.world(wi);

@@ -109,8 +109,7 @@ impl Boundary {
         let compensation = compensated.then(|| {
             let ratio = |nm: f64| interior.eval(nm) / exterior.eval(nm);
             let eta = albedo::extremes(range_nm, ratio);
-            let table =
-                |of, eta_of: fn(f64) -> f64| albedo::shared(of, &ggx, eta, || glass_table(&ggx, eta, eta_of));
+            let table = |of, eta_of: fn(f64) -> f64| albedo::shared(of, &ggx, eta, || glass_table(&ggx, eta, eta_of));
             Box::new(Compensation {
                 outside: table(Tabulated::Outside, |eta| eta),
                 inside: table(Tabulated::Inside, f64::recip),
@@ -245,7 +244,13 @@ impl RoughDielectric {
     }
 
     /// f·|cos θ_i| and the density of `wi` at one wavelength.
-    fn of_wavelength(&self, boundary: (&Boundary, bool), wavelength_nm: f64, wo: Vec3<f64>, wi: Vec3<f64>) -> (f64, f64) {
+    fn of_wavelength(
+        &self,
+        boundary: (&Boundary, bool),
+        wavelength_nm: f64,
+        wo: Vec3<f64>,
+        wi: Vec3<f64>,
+    ) -> (f64, f64) {
         let Some(Between { facet, several, density, .. }) = self.between(boundary, wavelength_nm, wo, wi) else {
             return (0.0, 0.0);
         };

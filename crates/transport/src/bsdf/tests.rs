@@ -332,7 +332,8 @@ fn a_coat_lets_in_of_polarised_light_what_an_independent_quadrature_finds() {
     for (alpha, eta) in [0.3, 1.0].into_iter().flat_map(|alpha| [1.5, 1.0 / 1.5].map(|eta| (alpha, eta))) {
         let table = PolarisedLoss::new([eta, eta], &ggx(alpha), let_in);
         for mu in [0.9, 0.6, 0.4, 0.2] {
-            let (read, truth) = (table.eval(toward(mu), eta)[0], diattenuation(alpha, mu, eta, |of| 1.0 - of.r * of.mirrored));
+            let (read, truth) =
+                (table.eval(toward(mu), eta)[0], diattenuation(alpha, mu, eta, |of| 1.0 - of.r * of.mirrored));
             // As for what is lost.
             assert!((read - truth).abs() < 1e-2, "α {alpha} µ {mu} η {eta}: {read} is not {truth}");
         }

@@ -42,12 +42,20 @@ fn facets(alpha: f64) -> Option<Microfacets> {
 }
 
 fn plastic(rho: f64, alpha: f64) -> MaterialKind {
-    MaterialKind::Plastic { reflectance: Spectrum::Constant(rho).into(), coat: RefractiveIndex::Constant(1.5), facets: facets(alpha) }
+    MaterialKind::Plastic {
+        reflectance: Spectrum::Constant(rho).into(),
+        coat: RefractiveIndex::Constant(1.5),
+        facets: facets(alpha),
+    }
 }
 
 /// Plastic in a medium denser than its coat.
 fn plastic_in_glass(alpha: f64) -> MaterialKind {
-    MaterialKind::Plastic { reflectance: Spectrum::Constant(1.0).into(), coat: RefractiveIndex::Constant(0.8), facets: facets(alpha) }
+    MaterialKind::Plastic {
+        reflectance: Spectrum::Constant(1.0).into(),
+        coat: RefractiveIndex::Constant(0.8),
+        facets: facets(alpha),
+    }
 }
 
 fn pane() -> MaterialKind {
@@ -249,7 +257,8 @@ fn pairs() -> impl Iterator<Item = (Vec3<f64>, Vec3<f64>)> {
 #[test]
 fn a_facet_does_to_polarised_light_what_a_smooth_surface_in_its_place_does() {
     let conductor = MaterialKind::Conductor { metal: metal(0.2, 3.0) };
-    let rough_conductor = MaterialKind::RoughConductor { metal: metal(0.2, 3.0), facets: 0.4.into(), compensated: false };
+    let rough_conductor =
+        MaterialKind::RoughConductor { metal: metal(0.2, 3.0), facets: 0.4.into(), compensated: false };
     let mut compared = [0; 2];
     for (rough, smooth, coated) in [
         (rough_conductor, conductor, false),

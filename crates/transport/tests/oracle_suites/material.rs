@@ -34,13 +34,13 @@ impl Material {
 
     /// A place whose u grows along x, its v along y.
     fn place() -> Shading<'static> {
-        Shading::flat(Vec3::from_f64(UP)).with_tangents([Vec3::from_f64([1.0, 0.0, 0.0]), Vec3::from_f64([0.0, 1.0, 0.0])])
+        Shading::flat(Vec3::from_f64(UP))
+            .with_tangents([Vec3::from_f64([1.0, 0.0, 0.0]), Vec3::from_f64([0.0, 1.0, 0.0])])
     }
 
     fn eval(&self, wo: [f64; 3], wi: [f64; 3], wavelength_nm: f64) -> (f64, f64) {
         let lambda = Lanes([wavelength_nm]);
-        let (f_cos, pdf) =
-            self.bsdf.eval(&lambda, &Self::place(), Vec3::from_f64(wo), Vec3::from_f64(wi));
+        let (f_cos, pdf) = self.bsdf.eval(&lambda, &Self::place(), Vec3::from_f64(wo), Vec3::from_f64(wi));
         (f_cos[0], pdf[0])
     }
 }

@@ -2,7 +2,9 @@
 
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
-use etalon_scene::{Image, ImageTexture, MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, SpectrumTexture, Texels};
+use etalon_scene::{
+    Image, ImageTexture, MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, SpectrumTexture, Texels,
+};
 
 use crate::material::Material;
 
@@ -33,7 +35,13 @@ fn lossless_metal(alpha: f64) -> Material {
 fn rough_glass(interior: &str, exterior: &str, alpha: f64, compensated: bool) -> Material {
     let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
     let (interior, exterior) = (index(interior), index(exterior));
-    Material::new(MaterialKind::RoughDielectric { interior, exterior, facets: alpha.into(), compensated, priority: None })
+    Material::new(MaterialKind::RoughDielectric {
+        interior,
+        exterior,
+        facets: alpha.into(),
+        compensated,
+        priority: None,
+    })
 }
 
 scatters_suite!(lambert, lambert());
@@ -72,7 +80,8 @@ fn texel(rgb: [f32; 3]) -> ImageTexture {
 /// Smooth below a roughness of 0.2, rougher from there on; at 0.7 now, between two rough ones.
 fn metal_of_varied_roughness() -> Material {
     let metal = Metal::Reflectance(Spectrum::rgb_reflectance([0.9, 0.6, 0.3]).unwrap().into());
-    let rough = |alpha: f64| MaterialKind::RoughConductor { metal: metal.clone(), facets: alpha.into(), compensated: true };
+    let rough =
+        |alpha: f64| MaterialKind::RoughConductor { metal: metal.clone(), facets: alpha.into(), compensated: true };
     let parts = vec![(0.2, MaterialKind::Conductor { metal: metal.clone() }), (0.55, rough(0.3)), (0.9, rough(0.81))];
     Material::new(MaterialKind::Blend { parts, by: NumberTexture::Image(texel([0.7; 3])) })
 }
@@ -82,7 +91,8 @@ fn glass_of_varied_roughness() -> Material {
     let index = |name: &str| RefractiveIndex::named(name).unwrap();
     let (interior, exterior) = (index("N-BK7"), index("water"));
     let smooth = MaterialKind::Dielectric { interior: interior.clone(), exterior: exterior.clone(), priority: None };
-    let rough = MaterialKind::RoughDielectric { interior, exterior, facets: 0.5.into(), compensated: true, priority: None };
+    let rough =
+        MaterialKind::RoughDielectric { interior, exterior, facets: 0.5.into(), compensated: true, priority: None };
     Material::new(MaterialKind::Blend {
         parts: vec![(0.0, smooth), (0.7, rough)],
         by: NumberTexture::Image(texel([0.5; 3])),
@@ -171,7 +181,8 @@ scatters_suite!(cross_brushed, cross_brushed());
 
 #[test]
 fn brushed_materials_are_others_turned_about_their_normal() {
-    let subjects: [&dyn Scatters; 4] = [&brushed_gold(true), &brushed_gold(false), &brushed_glass(), &brushed_plastic()];
+    let subjects: [&dyn Scatters; 4] =
+        [&brushed_gold(true), &brushed_gold(false), &brushed_glass(), &brushed_plastic()];
     subjects.into_iter().for_each(|subject| assert!(!laws::is_isotropic(subject, 1).pass));
 }
 

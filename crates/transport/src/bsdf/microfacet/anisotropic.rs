@@ -188,7 +188,10 @@ mod tests {
                     let truth = mean_over_facets(&ggx, toward(mu, 0.0), eta, loss);
                     for turns in [0.0, 0.1, 0.25, 0.6] {
                         let read = mean(&ggx, toward(mu, turns), eta, loss);
-                        assert!((read - truth).abs() < 1e-5, "η {eta:?}, α {alpha} µ {mu} turns {turns}: {read} {truth}");
+                        assert!(
+                            (read - truth).abs() < 1e-5,
+                            "η {eta:?}, α {alpha} µ {mu} turns {turns}: {read} {truth}"
+                        );
                     }
                 }
             }

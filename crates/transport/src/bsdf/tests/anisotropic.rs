@@ -162,7 +162,10 @@ fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
             let wo = toward(mu, turn);
             let (read, truth) = (table.eval(wo, eta), lost_of_polarised_light(alpha, wo, eta));
             for i in 0..2 {
-                assert!((read[i] - truth[i]).abs() < 1.5e-2, "α {alpha:?} µ {mu} turn {turn}: {read:?} is not {truth:?}");
+                assert!(
+                    (read[i] - truth[i]).abs() < 1.5e-2,
+                    "α {alpha:?} µ {mu} turn {turn}: {read:?} is not {truth:?}"
+                );
             }
             largest = largest.max(truth[1].abs());
             // Turned by half a turn about x, the surface is the same, seen from its other side.
