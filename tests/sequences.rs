@@ -195,7 +195,7 @@ fn finished_frames_are_kept_and_those_of_other_settings_refused() {
         ("--frames 0:3 --fps 12 --seed 9", "seed"),
         ("--frames 0:3 --fps 12 --fixed-seed", "seed"),
         ("--frames 0:3 --fps 12 --max-depth 2", "options"),
-        ("--frames 0:3 --fps 12 --error 50%", "--error"),
+        ("--frames 0:3 --fps 12 --error 50%", "--adaptive"),
         ("--frames 0:3 --fps 12 --crop 0,8,0,8", "crop"),
         ("--frames 0:3 --fps 12 --aov depth", "--aov"),
     ] {
@@ -235,9 +235,10 @@ fn a_signal_keeps_the_finished_frames_and_the_sums_of_the_one_under_way() {
     for _ in 0..20 {
         let resumed = format!("{line} --resume");
         let mut child = command(words(&resumed, [&scene(TURNTABLE), &in_folder(broken.path())])).spawn().unwrap();
-        let (start, before) = (Instant::now(), entries(broken.path()).len());
+        let finished = || entries(broken.path()).iter().filter(|name| name.ends_with(".exr")).count();
+        let (start, before) = (Instant::now(), finished());
         // In the midst of the frame after the next that is finished.
-        while entries(broken.path()).len() <= before && start.elapsed() < Duration::from_secs(60) {
+        while finished() <= before && start.elapsed() < Duration::from_secs(60) {
             if child.try_wait().unwrap().is_some() {
                 break;
             }
@@ -292,12 +293,23 @@ fn mistakes_in_frames_and_names_are_found_before_anything_is_rendered() {
     }
     etalon_line("render {} --frames 0:3 --pixel 1,1", [&scene(TURNTABLE)]).expect(2).says(["one frame"]);
     assert_eq!(entries(folder.path()), [""; 0]);
-    // A path of one frame is one of its picture.
-    let path =
-        |options: &str| etalon_line(&format!("render {{}} --pixel 240,160 {options}"), [&scene(TURNTABLE)]).expect(0);
-    assert_eq!(path("--frames 12 --seed 2").stdout, path("--frames 12 --seed 2 --fps 24/1").stdout);
-    assert_ne!(path("--frames 12 --fixed-seed").stdout, path("").stdout);
-    assert_eq!(path("--frames 0").stdout, path("").stdout);
+}
+
+/// The disk is in the middle of the picture at 1.5 s, in frame 12, and not in frame 0.
+#[test]
+fn a_path_of_a_frame_is_one_of_its_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("disk.json");
+    let camera = json!({"type": "orthographic", "position_m": [0, 0, 6], "look_at_m": [0, 0, 0], "height_m": 3});
+    let key = |time_s: f64, x: f64| json!({"time_s": time_s, "transform": [{"translate_m": [x, 0, 0]}]});
+    disk_scene(&path, &camera, &json!([key(0.5, -1.0), key(2.5, 1.0)]));
+    let path_of =
+        |options: &str| etalon_line(&format!("render {{}} --pixel 32,24 {options}"), [&path]).expect(0).stdout;
+    let there = path_of("--frames 12 --fps 8 --seed 2");
+    assert!(there.contains("groups.disk.objects[0]"), "{there}");
+    assert_eq!(there, path_of("--frames 12 --fps 24/3 --seed 14 --fixed-seed"));
+    assert!(!path_of("").contains("groups.disk.objects[0]"));
+    assert_eq!(path_of("--frames 0"), path_of(""));
 }
 
 #[test]

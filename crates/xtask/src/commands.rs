@@ -142,7 +142,7 @@ const COMMANDS: &[(&str, &[Named])] = &[
                 "turntable",
                 "[ETALON]",
                 "renders scenes/turntable.json and makes the animation of docs/how-to/sequences.md",
-                "15 min",
+                "5 min",
                 Script("docs/turntable.py"),
             ),
             named(

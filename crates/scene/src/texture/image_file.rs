@@ -13,7 +13,6 @@ pub const MAX_IMAGE_SIDE: u32 = 65_536;
 pub const MAX_IMAGE_BYTES: u64 = 4 << 30;
 
 /// An image of three channels, rows from the top.
-/// No number is NaN, so equality is reflexive. Two [`Arc`](std::sync::Arc)s of one image are therefore equal at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     /// Width in texels, at least 1.
@@ -26,6 +25,9 @@ pub struct Image {
     mean: [f64; 3],
     grey: bool,
 }
+
+/// No number is NaN. Two [`Arc`](std::sync::Arc)s of one image are therefore equal at once, without a look at its texels.
+impl Eq for Image {}
 
 /// Texels, as they are stored.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Who watches a render: the bar, and the signals that may end it.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use etalon_control::{Prediction, Watch};
 use etalon_transport::{Control, Counters, Film, PixelRect, TileSums};
@@ -25,7 +26,7 @@ pub(super) struct Watcher<'a> {
     display: Option<&'a Display>,
     said: AtomicBool,
     /// Per mille that were last told to a farm.
-    told: Option<AtomicU64>,
+    told: Option<Mutex<u64>>,
     /// How many pictures of how many are done.
     position: [usize; 2],
 }
@@ -38,7 +39,7 @@ impl<'a> Watcher<'a> {
         display: Option<&'a Display>,
         openjd: Option<[usize; 2]>,
     ) -> Self {
-        let (told, position) = (openjd.map(|_| AtomicU64::default()), openjd.unwrap_or([0, 1]));
+        let (told, position) = (openjd.map(|_| Mutex::default()), openjd.unwrap_or([0, 1]));
         Self { bar, interrupt, display, said: AtomicBool::new(false), told, position }
     }
 
@@ -48,13 +49,16 @@ impl<'a> Watcher<'a> {
     }
 
     fn tell(&self) {
-        if let (Some(told), Some(share)) = (&self.told, self.bar.share()) {
-            let [done, of] = self.position.map(|count| count as f64);
-            let permille = (1000.0 * (done + share) / of) as u64;
-            let new = told.fetch_max(permille, Ordering::Relaxed) < permille;
-            if new && !crate::print::line_if_read(&format!("openjd_progress: {:.1}", 0.1 * permille as f64)) {
+        let (Some(told), Some(share)) = (&self.told, self.bar.share()) else { return };
+        let [done, of] = self.position.map(|count| count as f64);
+        let permille = (1000.0 * (done + share) / of) as u64;
+        // Locked until it is printed, so that the lines come in order.
+        let Ok(mut told) = told.lock() else { return };
+        if permille > *told {
+            *told = permille;
+            if !crate::print::line_if_read(&format!("openjd_progress: {:.1}", 0.1 * permille as f64)) {
                 // Nobody reads it any more; the render is worth finishing all the same.
-                told.store(u64::MAX, Ordering::Relaxed);
+                *told = u64::MAX;
             }
         }
     }
