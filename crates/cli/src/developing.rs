@@ -8,7 +8,10 @@ use etalon_picture::{Attribute, Clipping, ExrFile, PictureError, RenderInfo, wri
 use miette::{Report, Severity, miette};
 use std::path::Path;
 
-use crate::{args, frame_settings};
+use crate::args;
+
+/// The attribute of an EXR file and the keyword of a PNG file under which the settings of a frame of a sequence stand, as JSON.
+pub(crate) const FRAME_SETTINGS: &str = "frameSettings";
 
 /// The heading of these options in `--help`.
 const HEADING: &str = "How PNG files look (an EXR keeps the linear picture)";
@@ -170,8 +173,8 @@ impl Developing {
         let software = info.as_ref().map(|info| info.software.as_str()).filter(|name| name.starts_with("etalon "));
         let comment = self.comment(file, info.as_ref(), &developed, crop);
         let mut texts = vec![("Software", software.unwrap_or(own)), ("Comment", comment.as_str())];
-        if let Some(Attribute::Text(settings)) = file.attributes.get(frame_settings::KEY) {
-            texts.push((frame_settings::KEY, settings));
+        if let Some(Attribute::Text(settings)) = file.attributes.get(FRAME_SETTINGS) {
+            texts.push((FRAME_SETTINGS, settings));
         }
         write_png(path, &developed.image, &texts)?;
         Ok(developed)

@@ -11,11 +11,9 @@ use miette::miette;
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::developing::FRAME_SETTINGS;
 use crate::failure::Failure;
 use crate::output::{Format, Output};
-
-/// The attribute of an EXR file and the keyword of a PNG file under which the settings stand, as JSON.
-pub(crate) const KEY: &str = "frameSettings";
 
 /// All that decides a frame's picture.
 #[derive(Clone, Debug, Serialize)]
@@ -96,11 +94,11 @@ impl FrameSettings {
 /// What the file says, if it says anything.
 fn stated(path: &Path, format: Format) -> Result<Option<String>, PictureError> {
     Ok(match format {
-        Format::Exr => match read_exr(path)?.attributes.remove(KEY) {
+        Format::Exr => match read_exr(path)?.attributes.remove(FRAME_SETTINGS) {
             Some(Attribute::Text(text)) => Some(text),
             _ => None,
         },
-        Format::Png => read_png_text(path, KEY)?,
+        Format::Png => read_png_text(path, FRAME_SETTINGS)?,
         // Sequences write none.
         Format::Part => None,
     })

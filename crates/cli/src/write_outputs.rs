@@ -6,9 +6,9 @@ use etalon_picture::{Attribute, ExrFile, PictureError};
 use etalon_transport::{Features, Film, ImageError, PixelRect};
 use miette::Report;
 
-use crate::developing::Developing;
+use crate::developing::{Developing, FRAME_SETTINGS};
 use crate::failure::Failure;
-use crate::frame_settings::{self, FrameSettings};
+use crate::frame_settings::FrameSettings;
 use crate::output::{self, Format, Output, Written};
 use crate::state::{self, Header};
 
@@ -57,7 +57,7 @@ impl Delivery<'_> {
             let mut shown = ExrFile { picture, attributes: whole.attributes.clone() };
             if let Some(frame) = self.frame {
                 for (file, format) in [(&mut whole, Format::Exr), (&mut shown, Format::Png)] {
-                    file.attributes.insert(frame_settings::KEY.to_owned(), Attribute::Text(frame.text(format)));
+                    file.attributes.insert(FRAME_SETTINGS.to_owned(), Attribute::Text(frame.text(format)));
                 }
             }
             Ok::<_, PictureError>((whole, shown))
