@@ -312,7 +312,7 @@ fn a_render_refuses_what_its_png_could_not_show_before_it_begins() {
         ("--white-balance patch:500,0,20,1", "512 × 512"),
         ("--scale 1000", "pixels"),
         ("--false-colour --range 0:1", "--range"),
-        ("--crop 0,8,0,8 --white-balance patch:8,0,1,1", "8 × 8"),
+        ("--crop 0,0,8,8 --white-balance patch:8,0,1,1", "8 × 8"),
     ] {
         etalon_that_ends(&format!("render {{}} -o {{}} {long} {options}"), [&cornell, &png]).expect(2).says([says]);
     }

@@ -74,7 +74,7 @@ fn a_study_that_contradicts_the_scene_or_itself_is_refused() {
         ("--force lens --without lens", "lens cannot be forced and left out at once"),
         ("--force specular-chains", "specular-chains cannot be forced"),
         ("--force mis --light-sampling light", "integrator.light_sampling is \"light\""),
-        ("--force blur", "there is no effect \"blur\"; there are wavelengths, dispersion"),
+        ("--force blur", "there is no effect \"blur\"; the effects are wavelengths, dispersion"),
     ] {
         etalon_line(&format!("explain {{}} {flags}"), [&cornell]).expect(2).says([says]);
     }

@@ -166,7 +166,7 @@ fn many_pairs_are_told_in_few_lines() {
     let folder = tempfile::tempdir().unwrap();
     let lamp = json!({"type": "point", "position_m": [0, 3, 0], "intensity": 1});
     let ran = etalon_line("explain {}", [&prism(folder.path(), Value::from(vec![lamp; 300]))]).expect(0);
-    assert_eq!(ran.stderr.matches("of light").count(), 8, "{}", ran.stderr);
+    assert_eq!(ran.stderr.matches("light of \"").count(), 8, "{}", ran.stderr);
     assert!(
         ran.stderr.contains("and 292 more pairs of a lamp and a surface") && ran.stderr.len() < 2000,
         "{}",

@@ -255,7 +255,7 @@ mod tests {
         };
         let said = verdict(&[one("box", Some(2.0)), one("fog", Some(0.96)), one("glass", Some(0.9)), one("sky", None)]);
         assert!(
-            said.contains("1 of 3") && said.contains("5 %: glass (0.90).") && said.ends_with("poorly: glass."),
+            said.contains("1 of 3") && said.contains("5 %: glass (0.90).") && said.ends_with("inaccurate: glass."),
             "{said}"
         );
         assert_eq!(one("sky", None).cells(), ["sky", "–", "–", "–"]);
