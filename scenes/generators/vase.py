@@ -87,7 +87,6 @@ if __name__ == "__main__":
     write_ply(os.path.join(FOLDER, "vase.ply"), *mesh())
     write_png(os.path.join(FOLDER, "tiles.png"), tiles())
     scene_text.write("vase", {
-        "$schema": "etalon.schema.json",
         "etalon": 1,
         "comment": [
             "A vase from a mesh file: its normals make it round, an image covers it, and it stands on the same tiles.",
