@@ -29,15 +29,17 @@ ODD: list[Any] = [
 ]
 
 
-def places(value: Any, level: int = 0) -> list[tuple[Any, Any]]:
-    """Every container with every key or index of it, down to a level that no scene has."""
+def places(value: Any, seen: set[int] | None = None) -> list[tuple[Any, Any]]:
+    """Every container, once, with every key or index of it."""
     found: list[tuple[Any, Any]] = []
-    if level > 30:
+    seen = set() if seen is None else seen
+    if id(value) in seen:
         return found
+    seen.add(id(value))
     keys = list(value) if isinstance(value, dict) else range(len(value)) if isinstance(value, list) else ()
     for key in keys:
         found.append((value, key))
-        found += places(value[key], level + 1)
+        found += places(value[key], seen)
     return found
 
 
@@ -68,7 +70,7 @@ def mutate(scene: dict[str, Any], words: list[str], rng: random.Random) -> Any:
             case 2 if isinstance(container, dict):
                 container[rng.choice(words)] = container.pop(key)
             case 3 if isinstance(container, dict):
-                container[rng.choice(words)] = rng.choice(ODD)
+                container[rng.choice(words)] = copy.deepcopy(rng.choice(ODD))
             case 4 if isinstance(container[key], (int, float)) and abs(container[key]) < 10**300:
                 container[key] = container[key] * rng.choice((-1, 0, 1e-9, 1e9, 1e-200, 1e200, 1 + 1e-15))
             case 5 if isinstance(container[key], list) and len(container[key]) < 1000:
@@ -76,7 +78,7 @@ def mutate(scene: dict[str, Any], words: list[str], rng: random.Random) -> Any:
             case 6:
                 container[key] = rng.choice(words)
             case _:
-                container[key] = rng.choice(ODD)
+                container[key] = copy.deepcopy(rng.choice(ODD))
     return scene
 
 

@@ -72,7 +72,25 @@ def test_dicts_may_hold_numpy_numbers_and_arrays(ball):
 
 def test_a_dict_that_holds_itself_is_refused(ball):
     ball["objects"][0]["material"]["reflectance"] = ball
+    ball["lights"].append(ball["lights"])
+    found = {problem.path: problem.code for problem in errors(ball)}
+    assert found["$.objects[0].material.reflectance"] == found["$.lights[1]"] == "circular"
+
+
+def test_a_dict_that_is_far_larger_as_text_is_refused(ball, monkeypatch):
+    from etalon import _decode
+
+    monkeypatch.setattr(_decode, "MOST_VALUES", 10_000)
+    laughs: list = []
+    for _ in range(40):
+        laughs = [laughs, laughs]
+    ball["comment"] = laughs
     assert any(problem.code == "limit" for problem in errors(ball))
+    deep: list = []
+    for _ in range(500):
+        deep = [deep]
+    ball["comment"] = deep
+    assert any(problem.code == "limit" and "levels" in problem.message for problem in errors(ball))
 
 
 def test_a_file_that_is_not_there_is_no_scene(tmp_path):

@@ -11,8 +11,10 @@ import numpy as np
 
 from ._errors import Problem
 
-MOST_LEVELS = 100
-"""Deepest nesting; scene files are nested less deeply."""
+MOST_LEVELS = 64
+"""Deepest nesting, as in scene files."""
+MOST_VALUES = 10_000_000
+"""Most values: a dict with lists that share parts may be far larger as text than it is in memory."""
 
 
 class Plain:
@@ -23,6 +25,9 @@ class Plain:
 
     def __init__(self, value: Any) -> None:
         self.problems = []
+        self._count = 0
+        # The containers from the root to here, by identity.
+        self._open: set[int] = set()
         self.text = json.dumps(self._plain(value, "$", 0), indent=2, allow_nan=False)
 
     def _refuse(self, path: str, code: str, message: str) -> None:
@@ -30,7 +35,12 @@ class Plain:
 
     def _plain(self, value: Any, path: str, level: int) -> Any:
         if level > MOST_LEVELS:
-            self._refuse(path, "limit", f"is nested more than {MOST_LEVELS} levels deep")
+            self._refuse(path, "limit", f"nested deeper than {MOST_LEVELS} levels")
+            return None
+        self._count += 1
+        if self._count > MOST_VALUES:
+            if self._count == MOST_VALUES + 1:
+                self._refuse(path, "limit", f"the scene has more than {MOST_VALUES} values")
             return None
         if value is None or isinstance(value, bool):
             return value
@@ -49,10 +59,14 @@ class Plain:
             return None
         if isinstance(value, os.PathLike):
             return self._string(os.fsdecode(value), path)
-        if isinstance(value, dict):
-            return self._object(value, path, level)
-        if isinstance(value, (list, tuple)):
-            return [self._plain(item, f"{path}[{index}]", level + 1) for index, item in enumerate(value)]
+        if isinstance(value, (dict, list, tuple)):
+            if id(value) in self._open:
+                self._refuse(path, "circular", "the value holds itself")
+                return None
+            self._open.add(id(value))
+            plain = self._object(value, path, level) if isinstance(value, dict) else self._list(value, path, level)
+            self._open.discard(id(value))
+            return plain
         self._refuse(path, "wrong-type", f"a value of type {type(value).__name__} is no JSON value")
         return None
 
@@ -68,6 +82,9 @@ class Plain:
             return value
         self._refuse(path, "out-of-range", "the integer has more than 1024 bits")
         return None
+
+    def _list(self, value: list[Any] | tuple[Any, ...], path: str, level: int) -> list[Any]:
+        return [self._plain(item, f"{path}[{index}]", level + 1) for index, item in enumerate(value)]
 
     def _object(self, value: dict[Any, Any], path: str, level: int) -> dict[str, Any]:
         plain = {}
