@@ -63,7 +63,7 @@ def load(
     ... })
     """
     if isinstance(scene, Mapping):
-        source = _Source("the scene", None, dict(scene), os.fspath(folder))
+        source = _Source("the scene", None, scene if isinstance(scene, dict) else dict(scene), os.fspath(folder))
     elif isinstance(scene, (str, os.PathLike)):
         text = os.fspath(scene)
         if not isinstance(text, str):
