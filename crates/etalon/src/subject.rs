@@ -184,7 +184,7 @@ impl Subject {
 /// A frame in words.
 fn frame_name(frame: Option<Frame>) -> String {
     frame.map_or_else(
-        || "a picture by itself".to_owned(),
+        || "a single picture".to_owned(),
         |Frame { number, rate }| format!("frame {number} of a sequence with {rate} frames a second"),
     )
 }
@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(with(&|s| s.seed = 4), "its seed is 3, not 4");
         assert_eq!(
             with(&|s| s.frame = Some(Frame { number: 7, rate: FrameRate::default() })),
-            "it is a picture by itself, not frame 7 of a sequence with 24 frames a second"
+            "it is a single picture, not frame 7 of a sequence with 24 frames a second"
         );
         assert_eq!(
             with(&|s| s.guided_targets[1] = (0.5, 2)),

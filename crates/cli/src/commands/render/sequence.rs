@@ -130,7 +130,7 @@ fn frame(
     if args.json {
         progress.reports.push(report_of(args, &job, &rendered));
     } else if !args.quiet && rendered.failure.is_empty() {
-        let left = format!(", {} to go", duration(mean_s(progress) * after as f64));
+        let left = format!(", remaining {}", duration(mean_s(progress) * after as f64));
         let summary = report::summary(&job, &rendered.done, &rendered.written);
         // The picture is written, whether anybody reads about it or not.
         print::line_if_read(&format!("{label}{}: {summary}", if after > 0 { &left } else { "" }));
@@ -150,7 +150,7 @@ fn set_up(args: &mut Args, names_itself: bool) -> Result<(LoadedScene, Plan, Fir
     if numbers.is_empty() {
         failure.add(Failure::input(miette!(
             code = "shard-empty",
-            "{} frames cannot be divided into so many shares: this one would have none",
+            "this share has no frame: there are more shares than the {} frames",
             list.numbers().len()
         )));
     }
