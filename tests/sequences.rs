@@ -320,7 +320,10 @@ fn a_sequence_without_a_name_for_its_pictures_has_that_of_its_scene() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(entries(folder.path()), ["turntable-0000.exr", "turntable-0001.exr"]);
     let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.contains("frame 0, 1 of 2,") && said.contains("frame 1, 2 of 2:") && said.contains("remaining"), "{said}");
+    assert!(
+        said.contains("frame 0, 1 of 2,") && said.contains("frame 1, 2 of 2:") && said.contains("remaining"),
+        "{said}"
+    );
     fs::write(folder.path().join("turntable-0001.exr"), "mine").unwrap();
     let ran = crate::support::ends({
         let mut again = command(words(&format!("render {{}} {SMALL} --frames 0:1"), [&scene(TURNTABLE)]));

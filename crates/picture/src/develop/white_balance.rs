@@ -195,9 +195,11 @@ mod tests {
         let matrix = matrix_for(rect(1, 1, 2, 2), &picture).unwrap().unwrap();
         let [r, g, b] = multiply(&matrix, grey.map(f64::from));
         assert!((r - g).abs() < 1e-12 && (g - b).abs() < 1e-12, "{r} {g} {b}");
-        for (balance, says) in
-            [(rect(0, 0, 1, 1), "cannot be the white"), (rect(1, 2, 1, 1), "no finite pixel"), (rect(3, 3, 2, 1), "4 × 4")]
-        {
+        for (balance, says) in [
+            (rect(0, 0, 1, 1), "cannot be the white"),
+            (rect(1, 2, 1, 1), "no finite pixel"),
+            (rect(3, 3, 2, 1), "4 × 4"),
+        ] {
             let error = matrix_for(balance, &picture).unwrap_err().to_string();
             assert!(error.contains(says), "{error}");
         }

@@ -29,6 +29,8 @@ pub struct Plastic {
     /// T_avg of the coat from outside.
     mean_transmittance: PathSpectrum,
     rough: Option<Box<Rough>>,
+    /// Whether the coat's index depends on the wavelength.
+    dispersive: bool,
     /// Index of the coat by which the lobe is chosen, and the ground's share in it: every wavelength chooses alike.
     reference: f64,
     /// (at the mean of an image).
@@ -72,8 +74,15 @@ impl Plastic {
             None => mean_transmittance(coat.eval(nm)),
         });
         let middle = 0.5 * (first + last);
-        let mut plastic =
-            Self { reference: coat.eval(middle), ground: 0.0, reflectance, coat, mean_transmittance, rough };
+        let mut plastic = Self {
+            dispersive: coat.is_dispersive(),
+            reference: coat.eval(middle),
+            ground: 0.0,
+            reflectance,
+            coat,
+            mean_transmittance,
+            rough,
+        };
         let ground = |nm: f64| {
             let rho = plastic.reflectance.mean(nm);
             plastic.ground(nm, plastic.coat.eval(nm), rho) * plastic.mean_transmittance.eval(nm)
@@ -189,16 +198,22 @@ impl Plastic {
         let facets = self.rough.as_ref().map(|rough| rough.ggx.reflection(wo, wi));
         let diffuse = wi.z * FRAC_1_PI;
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.uv);
+        // T(µ_o) T(µ_i), and f·|cos θ_i| of the coat's facets.
+        let coat = |index: f64| {
+            let passed = self.transmittance(wo, index) * self.transmittance(wi, index);
+            let reflected = facets.as_ref().map_or(0.0, |facets| {
+                let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
+                reflectance * facets.term * wi.z
+            });
+            (passed, reflected)
+        };
+        // Without dispersion, the coat does the same in every lane.
+        let of_all = (!self.dispersive).then(|| coat(self.reference));
         let f_cos = Lanes::from_fn(|lane| {
             let nm = lambda_nm[lane];
-            let index = self.coat.eval(nm);
-            let ground = self.ground(nm, index, reflectance[lane]);
-            let mut f = self.transmittance(wo, index) * self.transmittance(wi, index) * ground * diffuse;
-            if let Some(facets) = &facets {
-                let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
-                f += reflectance * facets.term * wi.z;
-            }
-            f
+            let index = if self.dispersive { self.coat.eval(nm) } else { self.reference };
+            let (passed, reflected) = of_all.unwrap_or_else(|| coat(index));
+            passed * self.ground(nm, index, reflectance[lane]) * diffuse + reflected
         });
         let mut density = (1.0 - share) * diffuse;
         if let Some(facets) = &facets {
