@@ -53,7 +53,7 @@ pub(crate) fn judge(
     if standard_error < 0.0 || standard_error.is_nan() {
         return Err(setting(py, format!("the standard error is {standard_error}; it must not be below 0")));
     }
-    if degrees_of_freedom.is_some_and(|freedom| !(freedom > 0.0)) {
+    if degrees_of_freedom.is_some_and(|freedom| freedom <= 0.0 || freedom.is_nan()) {
         return Err(setting(py, "there must be more than 0 degrees of freedom"));
     }
     if tests == 0 {

@@ -17,6 +17,9 @@ use serde_json::json;
 
 use crate::errors::{of_picture, setting};
 
+/// A band over some pixels: wavelength, mean, standard error, pixels left out.
+type Mean = (f64, f64, Option<f64>, usize);
+
 /// Named channels of 32-bit floats, and attributes.
 #[pyclass(frozen, module = "etalon._etalon")]
 pub(crate) struct Picture {
@@ -241,7 +244,7 @@ impl Picture {
     }
 
     /// Means of the bands over a rectangle (column, row, width, height): wavelength, mean, standard error, pixels left out.
-    fn spectrum(&self, py: Python<'_>, rect: [usize; 4]) -> PyResult<Vec<(f64, f64, Option<f64>, usize)>> {
+    fn spectrum(&self, py: Python<'_>, rect: [usize; 4]) -> PyResult<Vec<Mean>> {
         let [x, y, width, height] = rect;
         let bands = spectrum_of(&self.file, Rect { x, y, width, height }).map_err(|error| of_picture(py, &error))?;
         Ok(bands.iter().map(|band| (band.centre_nm, band.mean, band.error, band.left_out)).collect())

@@ -113,6 +113,6 @@ impl Scene {
         }
         let study = etalon::Study { polarised, ..etalon::Study::default() };
         let renderer = py.detach(|| scene.prepare_study(&study));
-        renderer.map(|renderer| Renderer::new(renderer)).map_err(|error| of_prepare(py, &scene.file_name, &error))
+        renderer.map(Renderer::new).map_err(|error| of_prepare(py, &scene.file_name, &error))
     }
 }
