@@ -8,6 +8,7 @@
 use etalon_geometry::{Aabb, Instance, Placement, Primitive, ShapeError, ShapeMap};
 use etalon_optics::Vec3;
 use etalon_scene::{Camera, Projection, ThinLens, Transform};
+use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
 
 /// World coordinates ⇄ those of the frame.
@@ -109,26 +110,32 @@ impl ShapeMap for SceneFrame {
     }
 }
 
+/// The image of a vector under a linear map.
+#[inline]
+pub(crate) fn mapped(matrix: &DMat3, v: Vec3<f64>) -> Vec3<f64> {
+    Vec3::from_array((*matrix * DVec3::from_array(v.to_array())).to_array())
+}
+
 /// An affine map of points, vectors and orientations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Affine {
-    matrix: glam::DAffine3,
+    matrix: DAffine3,
     mirrors: bool,
 }
 
 impl Affine {
-    pub(crate) const IDENTITY: Self = Self { matrix: glam::DAffine3::IDENTITY, mirrors: false };
+    pub(crate) const IDENTITY: Self = Self { matrix: DAffine3::IDENTITY, mirrors: false };
 
     pub(crate) fn new(transform: &Transform) -> Self {
         Self::of_rows(transform.linear, transform.translation_m)
     }
 
     fn of_rows(linear: [[f64; 3]; 3], translation: [f64; 3]) -> Self {
-        let matrix3 = glam::DMat3::from_cols_array_2d(&linear).transpose();
+        let matrix3 = DMat3::from_cols_array_2d(&linear).transpose();
         // Lengths near 1 first, so that the determinant neither overflows nor underflows.
         let largest = matrix3.to_cols_array().into_iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let mirrors = (matrix3 * largest.recip()).determinant() < 0.0;
-        Self { matrix: glam::DAffine3::from_mat3_translation(matrix3, translation.into()), mirrors }
+        Self { matrix: DAffine3::from_mat3_translation(matrix3, translation.into()), mirrors }
     }
 
     /// This map after the placement `inner`.
@@ -142,22 +149,21 @@ impl Affine {
         self.mirrors
     }
 
-    /// Rows of the linear part.
-    pub(crate) fn linear(&self) -> [Vec3<f64>; 3] {
-        let m = self.matrix.matrix3.transpose();
-        [m.x_axis, m.y_axis, m.z_axis].map(|row| Vec3::from_array(row.into()))
+    /// The linear part.
+    pub(crate) fn matrix(&self) -> &DMat3 {
+        &self.matrix.matrix3
     }
 
-    /// Rows of the inverse transpose of the linear part, times its determinant: positive multiples of world normals, or
+    /// The inverse transpose of the linear part, times its determinant: it gives positive multiples of world normals, or
     /// negative ones if the transform mirrors.
-    pub(crate) fn normal_matrix(&self) -> [Vec3<f64>; 3] {
+    pub(crate) fn normal_matrix(&self) -> DMat3 {
         let m = &self.matrix.matrix3;
         let columns = [m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis)];
         let sign = if self.mirrors { -1.0 } else { 1.0 };
         // Scaled so that neither it nor what it maps leaves the numbers of double precision.
         let largest = columns.iter().map(|c| c.abs().max_element()).fold(0.0, f64::max);
-        let row = |k: usize| Vec3::from_array(columns.map(|c| sign * c[k] / largest));
-        [row(0), row(1), row(2)]
+        let [x, y, z] = columns.map(|column| sign * column / largest);
+        DMat3::from_cols(x, y, z)
     }
 
     pub(crate) fn point(&self, p: [f64; 3]) -> Vec3<f64> {

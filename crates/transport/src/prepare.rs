@@ -5,7 +5,7 @@ use crate::bsdf::{Bsdf, properties};
 use crate::camera::{Camera, Moving};
 use crate::caustics::GuidedTargets;
 use crate::filter::FilterSampler;
-use crate::frame::{Affine, SceneFrame};
+use crate::frame::{Affine, SceneFrame, mapped};
 use crate::light::{Environment, Light, LightTable};
 use crate::media::{Absorption, Interior, Media, Solid};
 use crate::motion::motion;
@@ -186,8 +186,7 @@ fn camera_motion(camera: &etalon_scene::Camera, frame: SceneFrame) -> Result<Opt
 /// The axis of an object that is a polarising sheet, in the coordinates of its group.
 fn axis(object: &Object, kind: &MaterialKind) -> Option<Vec3<f64>> {
     let MaterialKind::PolarisingSheet { axis, .. } = kind else { return None };
-    let rows = Affine::new(&object.transform).normal_matrix();
-    Some(Vec3::from_array(rows.map(|row| row.dot(Vec3::from_array(*axis)))))
+    Some(mapped(&Affine::new(&object.transform).normal_matrix(), Vec3::from_array(*axis)))
 }
 
 /// The solids that carry priorities.

@@ -3,19 +3,18 @@
 //! Each is a unit shape under an affine map: the unit ball, the unit disk and the unit tube of height 1 about z, the disk
 //! and the tube in a frame about their axis. Transforms carry the image along.
 
-use crate::frame::{Affine, SceneFrame};
+use crate::frame::{Affine, SceneFrame, mapped};
 use etalon_optics::{Frame, Vec3, atan2_turns};
+use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// A round shape's map to its unit shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundCoordinates {
     kind: Round,
-    /// To the unit shape: rows, and what is added.
-    rows: [Vec3<f64>; 3],
-    offset: Vec3<f64>,
-    /// Images of the unit shape's axes.
-    columns: [Vec3<f64>; 3],
+    to_unit: DAffine3,
+    /// From vectors of the unit shape.
+    from_unit: DMat3,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -54,23 +53,25 @@ impl RoundCoordinates {
         let [x, y, z] = columns;
         // The rows of the inverse of the matrix with these columns.
         let determinant = x.dot(y.cross(z));
-        let rows = [y.cross(z), z.cross(x), x.cross(y)].map(|row| row / determinant);
-        let offset = -Vec3::from_array(rows.map(|row| row.dot(origin)));
-        Self { kind, rows, offset, columns }
+        let rows = [y.cross(z), z.cross(x), x.cross(y)].map(|row| (row / determinant).to_array());
+        let linear = DMat3::from_cols_array_2d(&rows).transpose();
+        let offset = -mapped(&linear, origin);
+        let from_unit = DMat3::from_cols_array_2d(&columns.map(Vec3::to_array));
+        Self { kind, to_unit: DAffine3::from_mat3_translation(linear, offset.to_array().into()), from_unit }
     }
 
     pub(crate) fn framed(self, frame: &SceneFrame) -> Self {
-        let world_origin = frame.to_world_m(Vec3::ZERO);
+        let DAffine3 { matrix3, translation } = self.to_unit;
+        let offset = translation + matrix3 * DVec3::from_array(frame.to_world_m(Vec3::ZERO).to_array());
         Self {
-            offset: self.offset + Vec3::from_array(self.rows.map(|row| row.dot(world_origin))),
-            rows: self.rows.map(|row| row / frame.per_m()),
-            columns: self.columns.map(|column| column * frame.per_m()),
+            to_unit: DAffine3::from_mat3_translation(matrix3 * frame.per_m().recip(), offset),
+            from_unit: self.from_unit * frame.per_m(),
             ..self
         }
     }
 
     fn unit(&self, p: Vec3<f64>) -> Vec3<f64> {
-        Vec3::from_array(self.rows.map(|row| row.dot(p))) + self.offset
+        Vec3::from_array(self.to_unit.transform_point3(p.to_array().into()).to_array())
     }
 
     /// Texture coordinates of a point.
@@ -108,8 +109,7 @@ impl RoundCoordinates {
                 [Vec3::new(-q.y, q.x, 0.0) * TAU, Vec3::new(0.0, 0.0, 1.0)]
             }
         };
-        let [x, y, z] = self.columns;
-        Some([along_u, along_v].map(|v| x * v.x + y * v.y + z * v.z))
+        Some([along_u, along_v].map(|v| mapped(&self.from_unit, v)))
     }
 }
 

@@ -1,11 +1,12 @@
 //! What a surface carries besides its shape: normals to shade by and texture coordinates.
 
 use crate::bsdf::Shading;
-use crate::frame::SceneFrame;
+use crate::frame::{SceneFrame, mapped};
 use crate::quadric_uv::RoundCoordinates;
 use etalon_geometry::{Geometry, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
 use etalon_scene::{ImageTexture, Mesh};
+use glam::DMat3;
 use std::sync::Arc;
 
 /// How the points of an object come by their texture coordinates and shading normals.
@@ -47,10 +48,10 @@ pub(crate) struct MeshCoordinates {
     pub first: u32,
     /// For each primitive its triangle, if they are not all there.
     pub kept: Option<Vec<u32>>,
-    /// Rows of the inverse transpose of the object's transform, to any scale.
-    pub normal_to_world: [Vec3<f64>; 3],
-    /// Rows of the linear part of the object's transform.
-    pub linear: [Vec3<f64>; 3],
+    /// The inverse transpose of the object's transform, to any scale.
+    pub normal_to_world: DMat3,
+    /// The linear part of the object's transform.
+    pub linear: DMat3,
     /// Whether the transform mirrors: then the second and third corner of each primitive are swapped.
     pub swapped: bool,
 }
@@ -64,9 +65,7 @@ impl Coordinates {
                 Self::Parallelogram { swapped, edges: edges.map(|edge| edge * frame.per_m()) }
             }
             Self::Round(round) => Self::Round(round.framed(frame)),
-            Self::Mesh(mesh) => {
-                Self::Mesh(MeshCoordinates { linear: mesh.linear.map(|row| row * frame.per_m()), ..mesh })
-            }
+            Self::Mesh(mesh) => Self::Mesh(MeshCoordinates { linear: mesh.linear * frame.per_m(), ..mesh }),
         }
     }
 
@@ -183,7 +182,7 @@ impl MeshCoordinates {
         let weights = self.weights(uv);
         let [a, b, c] = self.corners(primitive).map(|i| Vec3::from_array(self.mesh.normals[i].map(f64::from)));
         let local = a * weights[0] + b * weights[1] + c * weights[2];
-        Some(Vec3::from_array(self.normal_to_world.map(|row| row.dot(local))))
+        Some(mapped(&self.normal_to_world, local))
     }
 
     /// The same all over a triangle: (e₁, e₂) = (∂p/∂u, ∂p/∂v)·(Δuv₁, Δuv₂), solved for the derivatives.
@@ -194,8 +193,7 @@ impl MeshCoordinates {
         let corners = self.corners(primitive);
         let [a, b, c] = corners.map(|i| Vec3::from_array(self.mesh.vertices[i]));
         let [s, t, r] = corners.map(|i| self.mesh.uvs[i].map(f64::from));
-        let placed = |edge: Vec3<f64>| Vec3::from_array(self.linear.map(|row| row.dot(edge)));
-        let (first, second) = (placed(b - a), placed(c - a));
+        let (first, second) = (mapped(&self.linear, b - a), mapped(&self.linear, c - a));
         let ([du1, dv1], [du2, dv2]) = ([t[0] - s[0], t[1] - s[1]], [r[0] - s[0], r[1] - s[1]]);
         let determinant = du1 * dv2 - du2 * dv1;
         let along = [(first * dv2 - second * dv1) / determinant, (second * du1 - first * du2) / determinant];
@@ -209,8 +207,6 @@ mod tests {
     use super::*;
     use etalon_scene::{Image, Texels, TextureFilter};
 
-    const UNTURNED: [Vec3<f64>; 3] = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
-
     fn image(width: u32, height: u32, uv_scale: [f64; 2], of: impl Fn(u32, u32) -> [f32; 3]) -> ImageTexture {
         let texels = (0..width * height).map(|i| of(i % width, i / width)).collect();
         ImageTexture {
@@ -220,10 +216,10 @@ mod tests {
         }
     }
 
-    fn mesh(vertices: Vec<[f64; 3]>, uvs: Vec<[f32; 2]>, linear: [Vec3<f64>; 3]) -> MeshCoordinates {
+    fn mesh(vertices: Vec<[f64; 3]>, uvs: Vec<[f32; 2]>, linear: DMat3) -> MeshCoordinates {
         let triangles = vec![[0, 1, 2]];
         let mesh = Arc::new(Mesh { vertices, triangles, normals: Vec::new(), uvs });
-        MeshCoordinates { mesh, first: 5, kept: None, normal_to_world: UNTURNED, linear, swapped: false }
+        MeshCoordinates { mesh, first: 5, kept: None, normal_to_world: DMat3::IDENTITY, linear, swapped: false }
     }
 
     const THE_TRIANGLE: PrimitiveId = PrimitiveId(5);
@@ -258,7 +254,7 @@ mod tests {
             (vec![[0.25, 0.75], [0.45, 1.0], [0.45, 0.5]], false, 0.0),
             (vec![[0.25, 0.5], [0.75, 0.75], [0.75, 0.25]], true, 0.5),
         ] {
-            let coordinates = Coordinates::Mesh(mesh(vec![[0.0; 3]; 3], uvs.clone(), UNTURNED));
+            let coordinates = Coordinates::Mesh(mesh(vec![[0.0; 3]; 3], uvs.clone(), DMat3::IDENTITY));
             let got = coordinates.mean_luminance(THE_TRIANGLE, &half(by_row));
             // A grid of 64² at most, of which a line cuts off cells along its length.
             assert!((got - want).abs() < 0.03, "{uvs:?}: {got} is not {want}");
@@ -267,20 +263,20 @@ mod tests {
 
     #[test]
     fn a_triangle_moves_with_u_and_v_as_its_corners_say() {
-        let linear = [Vec3::new(1.0, 0.5, 0.0), Vec3::new(-0.5, 2.0, 0.3), Vec3::new(0.0, 0.1, 1.5)];
+        let linear = DMat3::from_cols_array(&[1.0, -0.5, 0.0, 0.5, 2.0, 0.1, 0.0, 0.3, 1.5]);
         // p = o + u·a + v·b at each corner, for any a and b and corners anywhere.
         let (origin, a, b) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.5, 1.0, -0.25), Vec3::new(-1.0, 0.75, 2.0));
         let uvs = vec![[0.25, 0.5], [1.0, 0.75], [0.5, 2.0]];
         let vertices = uvs.iter().map(|[u, v]: &[f32; 2]| (origin + a * f64::from(*u) + b * f64::from(*v)).to_array());
         let got = mesh(vertices.collect(), uvs.clone(), linear).tangents(THE_TRIANGLE).unwrap();
         for (got, want) in got.into_iter().zip([a, b]) {
-            let want = Vec3::from_array(linear.map(|row| row.dot(want)));
+            let want = mapped(&linear, want);
             assert!((got - want).length() < 1e-12, "{got:?} is not {want:?}");
         }
         // Coordinates on a line, or all the same, say nothing of a direction.
         for flat in [vec![[0.0, 0.0], [0.5, 0.5], [1.0, 1.0]], vec![[0.5; 2]; 3]] {
             let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-            assert!(mesh(vertices, flat, UNTURNED).tangents(THE_TRIANGLE).is_none());
+            assert!(mesh(vertices, flat, DMat3::IDENTITY).tangents(THE_TRIANGLE).is_none());
         }
     }
 }

@@ -281,7 +281,7 @@ impl Collected {
                             (0..mesh.triangles.len() as u32).filter(|i| dropped.binary_search(i).is_err()).collect()
                         }),
                         normal_to_world: to_world.normal_matrix(),
-                        linear: to_world.linear(),
+                        linear: *to_world.matrix(),
                         swapped: to_world.mirrors(),
                     });
                 }
