@@ -31,75 +31,55 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`prepare`](mod@prepare), [`tune`](mod@tune) | shapes in world space, lights, the accelerator; a trial before the picture |
 //! | [`plan`] | which effects the scene calls for, and why |
-//! | [`frame`] | centring and scaling |
-//! | `integrator` | the path loop and its steps |
-//! | `batch` | the same steps for many paths at once: the same film, bit for bit |
-//! | `world`, `interaction`, `media`, [`polarisation`] | the scene as paths see it; what they meet; which medium they are in; the Stokes vector that they carry |
-//! | `shading_geometry` | shading normals and texture coordinates |
+//! | `scene` | shapes in world space, lights, the accelerator; what a path meets next |
+//! | `surface` | what primitives are made of: normals, texture coordinates, emission |
 //! | [`bsdf`], [`light`], [`camera`] | one material, one light, one camera model a piece |
-//! | [`wavelength`], [`sampler`], [`warp`], [`mis`], [`filter`], [`spectral`], [`texture`] | what the estimates are made of |
-//! | `kernel`, `tracer`, `wavelength_lanes`, [`mod@render`], [`film`] | the table of kernels, where samples begin, what their lanes stand for, tiles over all cores, sums |
-//! | [`features`] | what camera rays meet first |
-//! | [`accuracy`] | how wrong a film is |
-//! | [`replay`] | one path, vertex by vertex |
+//! | `media` | the media that a path is in, and absorption |
+//! | [`wavelength`], [`spectral`], [`texture`] | hero wavelengths, spectra, and images as paths look them up |
+//! | [`sampler`], [`warp`], [`mis`] | random numbers, directions made of them, weights |
+//! | [`polarisation`] | the Stokes vector that a path carries |
+//! | `guiding` | directions toward objects that cast caustics |
+//! | `integrator` | the path loop and its steps; where samples begin, and how they enter the film; path reuse; one path, vertex by vertex |
+//! | `batch` | the same steps for many paths at once: the same film, bit for bit |
+//! | [`film`] | sums of samples; how wrong a film is |
+//! | [`mod@render`] | the table of kernels; tiles over all cores; features of first hits; the trial before the picture |
+//! | [`frame`] | centring and scaling |
+//!
+//! A module imports only from modules below it in this order: `render`, `batch`, `integrator`, `scene`, `guiding`, `surface`, then all others.
 //!
 //! Each (pixel, sample) is a pure function of the scene and its seed: no order of tiles, number of threads or division
 //! into stages can change a film.
 
-pub mod accuracy;
 mod batch;
 pub mod bsdf;
-mod bump_mapping;
 pub mod camera;
-mod caustics;
-mod cells;
-mod coincidence;
-pub mod features;
 pub mod film;
-mod film_entry;
-pub mod filter;
 pub mod frame;
+mod guiding;
 mod integrator;
-mod interaction;
-mod kernel;
 pub mod light;
 mod media;
 pub mod mis;
-mod motion;
-pub mod observer;
 pub mod plan;
 pub mod polarisation;
-pub mod prepare;
-mod prepare_error;
-mod quadric_uv;
 pub mod render;
-pub mod replay;
-mod reuse;
 pub mod sampler;
-mod shading_geometry;
-mod shading_tables;
-mod shapes;
+mod scene;
 pub mod spectral;
-mod starting_media;
 mod surface;
 pub mod texture;
-mod tracer;
-mod trial;
-pub mod tune;
 pub mod wavelength;
-mod wavelength_lanes;
-mod world;
 
-pub use accuracy::ImageError;
 pub use etalon_geometry::warp;
-pub use features::Features;
+pub use film::accuracy::{self, ImageError};
 pub use film::{Band, Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
+pub use integrator::tracer::PixelSamples;
+pub use integrator::{observer, replay};
 pub use media::DEPTH as MOST_SOLIDS_AT_ONCE;
 pub use plan::{Carried, Effect, EffectName, PathLoop, Plan, Study, StudyError};
-pub use prepare::Prepared;
-pub use prepare_error::PrepareError;
+pub use render::features::Features;
+pub use render::tune::{prepare, prepare_frame, prepare_study};
 pub use render::{Control, Extent, ThreadError};
-pub use tracer::PixelSamples;
-pub use tune::{prepare, prepare_frame, prepare_study};
+pub use scene::prepare::Prepared;
+pub use scene::prepare_error::PrepareError;

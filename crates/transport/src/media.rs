@@ -7,7 +7,7 @@
 //! priorities, the object that comes later in the scene. Both depend on the place alone, so a path and its reverse see the
 //! same media. A boundary that does not change the medium is no surface at all: paths and shadow rays go through it, and it
 //! is no vertex. Boundaries of solids may coincide, as where glass holds water. They are met together
-//! ([`interaction`](crate::interaction)), as one interface between the medium before all of them and the medium behind.
+//! ([`interaction`](crate::scene::interaction)), as one interface between the medium before all of them and the medium behind.
 //!
 //! **A dielectric that states both its sides** says it itself: a path that meets it from within has come through its interior, and one
 //! that goes through it goes on in there, or leaves it. What such a body holds is surrounded by its interior as long as it is not itself

@@ -1,6 +1,6 @@
 //! Spectra as paths meet them: tabulated once, so that no path calls the platform's mathematics library.
 
-use crate::cells::CellTable;
+use crate::wavelength::cells::CellTable;
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{Lanes, Spectrum};
 

@@ -4,7 +4,7 @@ use etalon_scene::{PathReuse, Scene};
 use etalon_transport::{Control, Extent, Film, PathLoop, PixelRect, Prepared, Study, prepare_study};
 
 mod common;
-#[path = "../src/reuse/room.rs"]
+#[path = "../src/integrator/reuse/room.rs"]
 mod room;
 
 const REPLICATES: u32 = 16;

@@ -4,10 +4,10 @@ use super::Batch;
 use super::paths::vertex;
 use super::rows::{GROUPS, Mask, W, group_of, lanes};
 use crate::integrator::Arrival;
-use crate::interaction::SurfaceInteraction;
+use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
-use crate::wavelength_lanes::WavelengthModel;
-use crate::world::World;
+use crate::scene::interaction::SurfaceInteraction;
+use crate::scene::world::World;
 use etalon_geometry::{Hit, LANES, SurfaceId, SurfacePoint};
 use etalon_optics::Vec3;
 

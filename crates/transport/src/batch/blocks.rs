@@ -4,11 +4,11 @@ use super::Batch;
 use super::rows::lanes;
 use super::stream::{Cursor, Window};
 use crate::film::{Counters, Sums};
+use crate::integrator::reuse::{BlockEntry, Blocks, MAX_BLOCK_PIXELS, ReusePath, redistribute};
+use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
-use crate::prepare::Prepared;
-use crate::reuse::{BlockEntry, Blocks, MAX_BLOCK_PIXELS, ReusePath, redistribute};
+use crate::scene::prepare::Prepared;
 use crate::wavelength::Wavelengths;
-use crate::wavelength_lanes::WavelengthModel;
 use etalon_geometry::{Geometry, LANES, Ray, Rays};
 use etalon_optics::Lanes;
 

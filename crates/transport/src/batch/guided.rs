@@ -3,7 +3,7 @@
 use super::level::{Level, stages};
 use super::rows::{Mask, Row, Rows3, W, lanes};
 use crate::bsdf::lambert;
-use crate::caustics::{
+use crate::guiding::{
     Aimed, Ball, DirectionTarget, Eye, GuidedTarget, GuidedTargets, MAX_SPECULAR_IMAGES, MOST_BODIES, Mixture, Shows,
     SpecularImage, VisibleImages, density_of, is_within, place_within, share_of, specular_image_share,
 };

@@ -3,11 +3,11 @@
 use super::arrive::of_group;
 use super::rows::{Mask, Row, Rows3, W};
 use crate::integrator::Path;
-use crate::interaction::SurfaceInteraction;
+use crate::integrator::reuse::ReusePath;
+use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
-use crate::reuse::ReusePath;
 use crate::sampler::{Sampler, Samplers};
-use crate::wavelength_lanes::WavelengthModel;
+use crate::scene::interaction::SurfaceInteraction;
 use etalon_geometry::{LANES, Ray, Rays, SurfaceId};
 
 /// All paths of a set.

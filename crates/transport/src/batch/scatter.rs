@@ -8,9 +8,9 @@ use super::rows::{Mask, Row, Rows3, W, lanes, surface_point};
 use crate::bsdf::dielectric::{self, Turn};
 use crate::bsdf::lambert;
 use crate::integrator::Direction;
+use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
-use crate::shading_tables::BsdfKind;
-use crate::wavelength_lanes::WavelengthModel;
+use crate::scene::shading_tables::BsdfKind;
 use etalon_optics::Vec3;
 
 impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, N> {

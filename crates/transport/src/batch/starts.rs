@@ -7,13 +7,13 @@ use super::stream::Cursor;
 use crate::camera::Camera;
 use crate::film::Counters;
 use crate::integrator::Start;
+use crate::integrator::reuse::ReusePath;
+use crate::integrator::tracer::Tracer;
+use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
-use crate::reuse::ReusePath;
 use crate::sampler::{Samplers, Wanted};
-use crate::tracer::Tracer;
+use crate::scene::world::World;
 use crate::wavelength::Wavelengths;
-use crate::wavelength_lanes::WavelengthModel;
-use crate::world::World;
 use etalon_geometry::SurfaceId;
 
 /// See the module.

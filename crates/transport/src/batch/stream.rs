@@ -2,8 +2,8 @@
 //!
 //! Paths end in any order, but a pixel's sums are in the order of its samples: what is finished early waits.
 
-use crate::film_entry::SampleId;
-use crate::tracer::PixelSamples;
+use crate::integrator::film_entry::SampleId;
+use crate::integrator::tracer::PixelSamples;
 
 /// Most samples that may be under way or wait for others: many times the paths in a set, so that one long path does not hold up
 /// the rest.

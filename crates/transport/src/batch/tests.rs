@@ -1,13 +1,13 @@
 //! Every instruction set of this machine leaves the film of the scalar driver.
 
 use super::render_on;
-use crate::caustics::GuidedBy;
 use crate::film::{Counters, Film, PixelRect, TileSums};
+use crate::guiding::GuidedBy;
+use crate::integrator::tracer::PixelSamples;
+use crate::integrator::wavelength_lanes::{Hero, OneLane, Shared, WavelengthModel};
 use crate::plan::{EffectName, LaneModel, PathLoop};
 use crate::polarisation::Averaged;
-use crate::prepare::Prepared;
-use crate::tracer::PixelSamples;
-use crate::wavelength_lanes::{Hero, OneLane, Shared, WavelengthModel};
+use crate::scene::prepare::Prepared;
 use crate::{Control, Study, prepare_study};
 use etalon_simd::Level;
 

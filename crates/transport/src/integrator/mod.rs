@@ -10,7 +10,7 @@
 //! estimator is in these steps, once.
 //!
 //! **Wavelengths.** All lanes follow the path that the hero drew. `beta` is f/p along it with the hero's p, and `lanes`
-//! ([`WavelengthModel`](crate::wavelength_lanes::WavelengthModel)) knows each lane's own density of the same path relative to the hero's, where
+//! ([`WavelengthModel`](crate::integrator::wavelength_lanes::WavelengthModel)) knows each lane's own density of the same path relative to the hero's, where
 //! they can differ. The balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5) then weighs lane j by
 //! N·beta_j / Σ densities: plain `beta` as long as all lanes sample alike, N·beta_hero once dispersion has left the hero
 //! alone.
@@ -19,10 +19,17 @@
 //! must not depend on which lane is the hero, or the two no longer add up to one for the lanes together. So what meets a
 //! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
+pub(crate) mod film_entry;
 mod next_event;
+pub mod observer;
 mod path;
+pub mod replay;
+pub(crate) mod reuse;
 mod scalar;
 mod scatter;
+pub(crate) mod tracer;
+pub(crate) mod trial;
+pub(crate) mod wavelength_lanes;
 
 pub(crate) use next_event::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
 pub(crate) use path::{Arrival, Path, Start};

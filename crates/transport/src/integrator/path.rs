@@ -2,18 +2,18 @@
 
 use super::MOST_VERTICES;
 use crate::film::Counters;
-use crate::film_entry::Received;
-use crate::interaction::{SurfaceInteraction, Walk};
+use crate::integrator::film_entry::Received;
+use crate::integrator::observer::{End, Found, Observer};
+use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::light::{EnvironmentRadiance, Light, Look};
 use crate::media::MediumStack;
 use crate::mis::power_heuristic;
-use crate::observer::{End, Found, Observer};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
-use crate::shading_tables::SpectrumCache;
+use crate::scene::interaction::{SurfaceInteraction, Walk};
+use crate::scene::shading_tables::SpectrumCache;
+use crate::scene::world::World;
 use crate::wavelength::Wavelengths;
-use crate::wavelength_lanes::WavelengthModel;
-use crate::world::World;
 use etalon_geometry::{Ray, SurfaceId};
 use etalon_optics::{Lanes, Vec3};
 use etalon_scene::LightSampling;

@@ -2,12 +2,12 @@
 
 use super::{Arrival, Path};
 use crate::film::Counters;
-use crate::interaction::SurfaceInteraction;
-use crate::observer::{End, Observer};
+use crate::integrator::observer::{End, Observer};
+use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
-use crate::wavelength_lanes::WavelengthModel;
-use crate::world::World;
+use crate::scene::interaction::SurfaceInteraction;
+use crate::scene::world::World;
 use etalon_geometry::Ray;
 
 /// Follows `path` from its camera ray to its end; its radiance is then what arrives at the camera.

@@ -4,15 +4,15 @@ use super::path::Step;
 use super::{Path, ROULETTE_FROM_VERTEX, ROULETTE_THROUGHPUT, THROUGHPUT_FLOOR};
 use crate::bsdf::dielectric::{Turn, turn};
 use crate::bsdf::{BsdfSample, Lobe, lambert};
-use crate::caustics::Mixture;
-use crate::interaction::SurfaceInteraction;
+use crate::guiding::Mixture;
+use crate::integrator::observer::{End, Observer};
+use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::media::MediumStack;
 use crate::mis::Density;
-use crate::observer::{End, Observer};
 use crate::polarisation::Polarisation;
-use crate::shading_tables::BsdfKind;
-use crate::wavelength_lanes::WavelengthModel;
-use crate::world::World;
+use crate::scene::interaction::SurfaceInteraction;
+use crate::scene::shading_tables::BsdfKind;
+use crate::scene::world::World;
 use etalon_optics::{Lanes, Vec3};
 
 /// A direction that was drawn from a surface.

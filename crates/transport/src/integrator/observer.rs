@@ -1,0 +1,49 @@
+//! Watching a single path, for replays and for counting; costs nothing when nobody watches.
+
+use crate::guiding::Mixture;
+use etalon_optics::{Lanes, Vec3};
+
+/// What ended a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// It left the scene.
+    Escaped,
+    /// The surface scattered nothing on.
+    Absorbed,
+    /// Its throughput fell below the floor.
+    Vanished,
+    /// Russian roulette.
+    Roulette,
+    /// The limit on depth.
+    Depth,
+    /// Its throughput is no longer a finite number.
+    NonFinite,
+}
+
+/// A watcher of a path. Every method does nothing unless it is implemented.
+pub(crate) trait Observer<const N: usize> {
+    /// The path meets a surface: vertex number `vertex` (0 is the first), where, which object, and its throughput so far.
+    fn vertex(&mut self, _vertex: u32, _position: Vec3<f64>, _object: u32, _beta: Lanes<f64, N>) {}
+    /// Light is added: at which vertex, how, and how much in each lane.
+    fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<f64, N>) {}
+    /// A direction is drawn from a mixture.
+    fn direction(&mut self, _mixture: &Mixture) {}
+    /// The path ends.
+    fn end(&mut self, _end: End) {}
+}
+
+/// How light was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Found {
+    /// The path ran into an emitting surface.
+    Emitter,
+    /// The path left the scene into the environment.
+    Environment,
+    /// A shadow ray reached the light of this index.
+    ShadowRay {
+        /// Index into the table of lights.
+        light: u32,
+    },
+}
+
+impl<const N: usize> Observer<N> for () {}

@@ -1,0 +1,209 @@
+//! Camera paths: where the samples of pixels begin.
+
+use crate::camera::Camera;
+use crate::film::{Counters, PixelRect};
+use crate::integrator::observer::Observer;
+use crate::integrator::wavelength_lanes::WavelengthModel;
+use crate::integrator::{MOST_VERTICES, Path, Start, trace};
+use crate::media::MediumStack;
+use crate::plan::EffectName;
+use crate::polarisation::Polarisation;
+use crate::sampler::Sampler;
+use crate::scene::interaction::Walk;
+use crate::scene::prepare::Prepared;
+use crate::scene::world::World;
+use crate::surface::Scattering;
+use etalon_geometry::Ray;
+use etalon_optics::Vec3;
+use std::ops::Range;
+
+/// Some samples of one pixel.
+#[derive(Clone, Debug)]
+pub struct PixelSamples {
+    /// Column.
+    pub x: u32,
+    /// Row.
+    pub y: u32,
+    /// Their numbers.
+    pub samples: Range<u32>,
+}
+
+impl PixelSamples {
+    /// The same samples of each pixel of a tile.
+    pub(crate) fn of_tile(tile: PixelRect, samples: &Range<u32>) -> Vec<Self> {
+        tile.pixels().map(|(x, y)| Self { x, y, samples: samples.clone() }).collect()
+    }
+
+    /// How many.
+    pub fn count(&self) -> u32 {
+        self.samples.end.saturating_sub(self.samples.start)
+    }
+}
+
+/// What a camera ray meets first.
+pub(crate) struct FirstSurface<'a> {
+    /// Number of the object.
+    pub object: u32,
+    /// In the frame.
+    pub position: Vec3<f64>,
+    /// Toward the camera.
+    pub wo: Vec3<f64>,
+    /// Cosine between that and the surface's own normal: negative from behind.
+    pub geometric_cos: f64,
+    pub scattering: Scattering<'a>,
+    /// The numbers by which the path draws its next direction.
+    pub u: [f64; 3],
+}
+
+/// One scene.
+pub(crate) struct Tracer<'a> {
+    pub(crate) prepared: &'a Prepared,
+    pub(crate) camera: Camera,
+    pub(crate) world: World<'a>,
+    /// The block of pixels that share paths: alone, one.
+    block: [u32; 2],
+}
+
+impl<'a> Tracer<'a> {
+    pub(crate) fn new(prepared: &'a Prepared) -> Self {
+        let integrator = &prepared.scene.integrator;
+        let plan = prepared.plan();
+        // Forced on a scene without solids, they are nothing to walk through.
+        let media = prepared.media.as_ref().filter(|media| media.solids.iter().any(Option::is_some));
+        let masks = plan.runs(EffectName::Masks);
+        Self {
+            prepared,
+            camera: prepared.tracing_camera(),
+            block: prepared.path_reuse().unwrap_or([1, 1]),
+            world: World {
+                geometry: &prepared.geometry,
+                surfaces: &prepared.surfaces,
+                lights: &prepared.lights,
+                environments: &prepared.environments,
+                media,
+                absorption: prepared.absorption(),
+                light_sampling: integrator.light_sampling,
+                shadow_rays: prepared.shadow_rays(),
+                masks,
+                meets_groups: masks || media.is_some(),
+                moves: plan.runs(EffectName::Motion),
+                weigh_hits: prepared.lights.can_be_met() || plan.runs(EffectName::Mis),
+                max_depth: integrator.max_depth.unwrap_or(MOST_VERTICES).min(MOST_VERTICES),
+                roulette: integrator.roulette,
+                tables: &prepared.tables,
+                plain_skies: prepared.environments.iter().all(|sky| sky.light.is_none()),
+                guided_targets: &prepared.guided_targets,
+            },
+        }
+    }
+
+    pub(crate) fn sampler(&self, x: u32, y: u32, sample: u32) -> Sampler {
+        let integrator = &self.prepared.scene.integrator;
+        let pixel = u64::from(y) << 32 | u64::from(x);
+        Sampler::new(integrator.sampler, integrator.seed, pixel, sample, integrator.replicates)
+    }
+
+    /// The sampler of what the pixels of a block have in common.
+    #[inline]
+    pub(crate) fn of_block(&self, x: u32, y: u32, sample: u32) -> Sampler {
+        let [width, height] = self.block;
+        self.sampler(x / width * width, y / height * height, sample)
+    }
+
+    /// The point of the film, in [−1, 1]², that two numbers draw for a pixel.
+    #[inline]
+    pub(crate) fn film_point(&self, x: u32, y: u32, u: [f64; 2]) -> [f64; 2] {
+        let film = &self.prepared.scene.film;
+        let (width, height) = (f64::from(film.width), f64::from(film.height));
+        let column = f64::from(x) + 0.5 + self.prepared.filter.offset(u[0]);
+        let row = f64::from(y) + 0.5 + self.prepared.filter.offset(u[1]);
+        [2.0 * column / width - 1.0, 1.0 - 2.0 * row / height]
+    }
+
+    /// The ray of a sample.
+    fn camera_ray(&self, x: u32, y: u32, sampler: &Sampler, counters: &mut Counters) -> Ray<f64> {
+        let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
+        let film = self.film_point(x, y, [film_x, film_y]);
+        counters.lens_draws += u64::from(self.camera.has_lens());
+        let time = if self.world.moves {
+            counters.time_draws += 1;
+            let [_, time, ..] = sampler.set(1);
+            time
+        } else {
+            0.0
+        };
+        self.camera.ray_at(film, [lens_1, lens_2], time)
+    }
+
+    /// The first surface that the path of a sample meets, masks passed as the path passes them.
+    pub(crate) fn first_surface(
+        &self,
+        x: u32,
+        y: u32,
+        sample: u32,
+        counters: &mut Counters,
+    ) -> Option<FirstSurface<'_>> {
+        let sampler = self.sampler(x, y, sample);
+        let ray = self.camera_ray(x, y, &sampler, counters);
+        let mut stack = self.world.media_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
+        let mut walk = Walk::default();
+        let [.., mut u_mask] = sampler.vertex_set(0, 1);
+        for _ in 0..MOST_VERTICES {
+            let met = self.world.intersect(&ray, &mut walk, &mut stack, counters)?;
+            let (hit, point, surface) = (&met.hit, &met.point, &met.surface);
+            let opacity = if self.world.masks { surface.opacity(&self.prepared.geometry, point, hit) } else { 1.0 };
+            if u_mask >= opacity {
+                u_mask = (u_mask - opacity) / (1.0 - opacity);
+                walk.pass(&met, &mut stack);
+                continue;
+            }
+            let [u_lobe, u1, u2, _] = sampler.vertex_set(0, 0);
+            let wo = met.wo;
+            return Some(FirstSurface {
+                object: surface.object,
+                position: point.position,
+                wo,
+                geometric_cos: point.normal.dot(wo),
+                scattering: surface.scattering(self.world.geometry, point, hit, met.interface),
+                u: [u_lobe, u1, u2],
+            });
+        }
+        None
+    }
+
+    /// One camera path: a pure function of the scene, its seed, the pixel and the number of the sample.
+    pub(crate) fn sample<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        x: u32,
+        y: u32,
+        sample: u32,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) -> Path<'a, M, P, N> {
+        let sampler = self.sampler(x, y, sample);
+        let start = self.start::<M, P, N>(x, y, sample, &sampler, counters);
+        let mut path = Path::idle();
+        path.begin(&self.world, &start);
+        trace(&self.world, &mut path, start.ray, &sampler, counters, observer);
+        path
+    }
+
+    /// Where the path of a sample begins.
+    pub(crate) fn start<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        x: u32,
+        y: u32,
+        sample: u32,
+        sampler: &Sampler,
+        counters: &mut Counters,
+    ) -> Start<'a, P, N> {
+        let wavelengths = M::wavelengths(self.prepared, || {
+            let [wavelength, ..] = self.of_block(x, y, sample).set(1);
+            wavelength
+        });
+        let ray = self.camera_ray(x, y, sampler, counters);
+        let stack = self.world.media_around(&ray, counters);
+        let polarisation = P::at_camera(ray.direction, self.camera.right(ray.time));
+        Start { ray, stack, wavelengths, polarisation }
+    }
+}

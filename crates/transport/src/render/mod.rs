@@ -1,0 +1,174 @@
+//! Rendering: tiles over all cores, the same bytes whatever their number.
+
+pub mod features;
+pub(crate) mod kernel;
+pub mod tune;
+
+use crate::film::{Counters, Film, PixelRect, Sums, TileSums, XyzSum};
+use crate::integrator::replay::Replay;
+use crate::integrator::tracer::PixelSamples;
+use crate::plan::{LaneModel, PathLoop};
+use crate::render::kernel::RenderPixels;
+use crate::scene::prepare::Prepared;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Side of a tile, pixels.
+pub const TILE: u32 = 16;
+
+/// A stage of a render: which pixels, which samples, on how many threads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Pixels.
+    pub rect: PixelRect,
+    /// Numbers of the samples.
+    pub samples: Range<u32>,
+    /// Threads; `None` is one for each core.
+    pub threads: Option<usize>,
+}
+
+/// Whether to go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Begin no further tile.
+    Stop,
+}
+
+/// No thread pool could be had.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot start the threads of the render: {0}")]
+pub struct ThreadError(#[from] rayon::ThreadPoolBuildError);
+
+impl Prepared {
+    /// The whole film at the scene's own number of samples.
+    pub fn whole(&self, threads: Option<usize>) -> Extent {
+        let film = &self.scene.film;
+        Extent {
+            rect: PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height },
+            samples: 0..self.scene.integrator.spp,
+            threads,
+        }
+    }
+
+    /// A black film for this scene.
+    pub fn film(&self) -> Film {
+        let film = &self.scene.film;
+        let film = Film::with_bands(film.width, film.height, self.scene.integrator.replicates, self.band_sums())
+            .sharing(self.path_reuse());
+        if self.records_stokes() { film.recording_stokes() } else { film }
+    }
+
+    /// Sums that a film keeps for its bands: one for each, or one for all where one lane stands for all wavelengths; where the film
+    /// holds Stokes parameters, those of S₀ band by band, then those of S₁, S₂ and S₃.
+    pub fn band_sums(&self) -> u32 {
+        match (&self.scene.film.bands, self.plan().lane_model) {
+            // Channels have no wavelengths.
+            (None, _) | (_, LaneModel::ThreeChannels) => 0,
+            (Some(_), LaneModel::One) => 1,
+            (Some(bands), LaneModel::Shared | LaneModel::Hero) => bands.count * self.band_parameters(),
+        }
+    }
+
+    /// Stokes parameters that each band has: four, or S₀ alone.
+    pub(crate) fn band_parameters(&self) -> u32 {
+        if self.records_stokes() { 4 } else { 1 }
+    }
+
+    /// Where one sum stands for all bands: what it is to be multiplied by for each.
+    pub fn band_factors(&self) -> Option<Vec<f64>> {
+        let bands = self.scene.film.bands.as_ref().filter(|_| self.plan().lane_model == LaneModel::One)?;
+        Some(
+            (0..bands.count)
+                .map(|band| self.one_lane.mean_of_unit([bands.edge_nm(band), bands.edge_nm(band + 1)]))
+                .collect(),
+        )
+    }
+
+    /// Traces sample number `sample` of pixel (`x`, `y`) once more and says what happened.
+    pub fn replay(&self, x: u32, y: u32, sample: u32) -> Replay {
+        (self.kernel().replay)(self, x, y, sample)
+    }
+
+    /// Adds samples to the sums of a tile, by the loop that the plan chose.
+    pub fn render_tile(&self, tile: PixelRect, samples: Range<u32>, sums: &mut TileSums) -> Counters {
+        self.renderer()(self, &PixelSamples::of_tile(tile, &samples), sums.borrow(), &mut [])
+    }
+
+    /// Adds samples to the colours of pixels, pixel by pixel, in each replicate by replicate; and to `rays` the rays of all kinds that
+    /// each entry of `all_samples` took.
+    pub fn render_pixels(&self, all_samples: &[PixelSamples], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
+        self.renderer()(self, all_samples, Sums { xyz, stokes: &mut [], bands: &mut [] }, rays)
+    }
+
+    /// The loop that the plan chose.
+    fn renderer(&self) -> RenderPixels {
+        let kernel = self.kernel();
+        match (self.plan().path_loop.name, self.path_reuse()) {
+            (PathLoop::Batch, _) => kernel.render_batch,
+            (PathLoop::Scalar, None) => kernel.render_scalar,
+            (PathLoop::Scalar, Some(_)) => kernel.render_reused.expect("the plan knows which kernels share paths"),
+        }
+    }
+
+    /// Renders `extent` onto a new film. `on_tile` hears what a finished tile took.
+    pub fn render(
+        &self,
+        extent: &Extent,
+        on_tile: &(dyn Fn(&Counters) -> Control + Sync),
+    ) -> Result<Film, ThreadError> {
+        let mut film = self.film();
+        self.render_onto(&mut film, extent, on_tile)?;
+        Ok(film)
+    }
+
+    /// Adds `extent` to a film of the scene's size. Samples given in ascending ranges leave the same bytes as one
+    /// range. A tile is added whole or not at all.
+    pub fn render_onto(
+        &self,
+        film: &mut Film,
+        extent: &Extent,
+        on_tile: &(dyn Fn(&Counters) -> Control + Sync),
+    ) -> Result<(), ThreadError> {
+        let tiles = extent.rect.tiles(TILE).into_iter().map(|tile| (tile, extent.samples.clone()));
+        self.render_tiles_onto(film, &tiles.collect::<Vec<_>>(), extent.threads, on_tile)
+    }
+
+    /// As [`Prepared::render_onto`], with samples for each tile.
+    pub fn render_tiles_onto(
+        &self,
+        film: &mut Film,
+        tiles: &[(PixelRect, Range<u32>)],
+        threads: Option<usize>,
+        on_tile: &(dyn Fn(&Counters) -> Control + Sync),
+    ) -> Result<(), ThreadError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
+        let stopped = AtomicBool::new(false);
+        let before: &Film = film;
+        let finished: Vec<_> = pool.install(|| {
+            tiles
+                .par_iter()
+                .map(|(tile, samples)| {
+                    if stopped.load(Ordering::Relaxed) {
+                        return None;
+                    }
+                    let mut sums = before.tile(*tile);
+                    let counters = self.render_tile(*tile, samples.clone(), &mut sums);
+                    if on_tile(&counters) == Control::Stop {
+                        stopped.store(true, Ordering::Relaxed);
+                    }
+                    Some((sums, counters))
+                })
+                .collect()
+        });
+        for ((tile, _), done) in tiles.iter().zip(finished) {
+            if let Some((sums, counters)) = done {
+                film.put(*tile, &sums);
+                film.counters.merge(&counters);
+            }
+        }
+        Ok(())
+    }
+}

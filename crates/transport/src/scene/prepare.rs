@@ -1,0 +1,305 @@
+//! From a scene to what the kernels trace. After this nothing fails.
+
+mod earlier;
+use crate::bsdf::{Bsdf, properties};
+use crate::camera::{Camera, Moving};
+use crate::film::filter::FilterSampler;
+use crate::frame::{Affine, SceneFrame, mapped};
+use crate::guiding::GuidedTargets;
+use crate::light::{Environment, Light, LightTable};
+use crate::media::{Absorption, Interior, Media, Solid};
+use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
+use crate::scene::motion::motion;
+use crate::scene::prepare_error::PrepareError;
+use crate::scene::shading_tables::ShadingTables;
+use crate::scene::shapes::{self, GroupShapes, SceneShapes};
+use crate::scene::world::ShadowRays;
+use crate::spectral::PathSpectrum;
+use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
+use crate::wavelength::WavelengthDistribution;
+use etalon_geometry::{Geometry, SurfaceId};
+use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
+use etalon_scene::{EnvironmentImage, LightSampling, MaterialKind, Object, Scene};
+use etalon_simd::Level;
+use std::sync::Arc;
+
+/// A scene that is ready to be rendered.
+pub struct Prepared {
+    pub(crate) scene: Scene,
+    pub(crate) frame: SceneFrame,
+    /// In the frame.
+    pub(crate) camera: etalon_scene::Camera,
+    camera_motion: Option<Moving>,
+    pub(crate) geometry: Geometry,
+    pub(crate) surfaces: Surfaces,
+    pub(crate) lights: LightTable,
+    pub(crate) environments: Vec<Environment>,
+    pub(crate) media: Option<Media>,
+    pub(crate) wavelengths: WavelengthDistribution,
+    pub(crate) one_lane: OneLaneFilm,
+    pub(crate) filter: FilterSampler,
+    pub(crate) tables: ShadingTables,
+    pub(crate) guided_targets: GuidedTargets,
+    plan: Plan,
+    /// Those of the shapes, then those of the view.
+    pub(crate) warnings: Vec<String>,
+    shape_warnings: usize,
+    /// What a later frame of a sequence may take over.
+    groups: Vec<Arc<GroupShapes>>,
+    study: Study,
+}
+
+/// Prepares a scene: its frame, the shapes and the accelerator in it, the table of lights and the plan. Renders nothing. What is the
+/// same in an earlier frame of a sequence is taken over from it.
+pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> Result<Prepared, PrepareError> {
+    Level::chosen()?;
+    scene.check_references()?;
+    let plan = Plan::new(scene, study)?;
+    let simulated = simulated(scene, study);
+    let scene = &simulated;
+    let mut earlier = earlier.filter(|earlier| earlier.study == *study);
+    if let Some(earlier) = earlier.take_if(|earlier| earlier.is_the_same_world(scene, &plan)) {
+        return earlier.seen_anew(simulated, plan);
+    }
+    let range_nm = scene.integrator.wavelength_range_nm;
+    let spectrum = |s: &Spectrum| PathSpectrum::new(s, range_nm);
+    let groups = earlier.as_ref().map(|earlier| (&earlier.scene, earlier.groups.as_slice()));
+    let SceneShapes { frame, geometry, object_of, mut emitters, coordinates, warnings, groups } =
+        shapes::build(scene, range_nm, groups)?;
+    let radius = geometry.bounds().map_or(0.0, |b| 0.5 * b.extent().length());
+
+    if scene.integrator.light_sampling == LightSampling::Bsdf {
+        emitters.clear();
+    }
+    let mut environments = Vec::new();
+    for light in &scene.lights {
+        let known = |image: &EnvironmentImage| earlier.as_ref()?.image_environment(image, range_nm);
+        let (target, sky) = Light::of_scene(&light.kind, &frame, range_nm, known);
+        environments.extend(sky);
+        if light.kind.is_delta() || scene.integrator.light_sampling != LightSampling::Bsdf {
+            emitters.extend(target);
+        }
+    }
+    if plan.forces(EffectName::Environment) {
+        environments.push(PathSpectrum::Constant(0.0).into());
+    }
+    let lights = LightTable::new(emitters, radius, range_nm, scene.integrator.light_selection);
+    Environment::number(&mut environments, lights.lights());
+    let mut light_of: Vec<(SurfaceId, u32)> = lights
+        .lights()
+        .iter()
+        .enumerate()
+        .filter_map(|(index, light)| light.emitter().map(|emitter| (emitter.surface, index as u32)))
+        .collect();
+    light_of.sort_unstable();
+    let mut bsdfs: Vec<Bsdf> = scene.materials.iter().map(|material| Bsdf::new(&material.kind, range_nm)).collect();
+    if plan.runs(EffectName::NestedDielectrics) {
+        let mut media: Vec<RefractiveIndex> = Vec::new();
+        for (index, _) in scene.materials.iter().filter_map(|material| material.kind.solid()) {
+            if !media.contains(index) {
+                media.push(index.clone());
+            }
+        }
+        for (bsdf, material) in bsdfs.iter_mut().zip(&scene.materials) {
+            if let (Bsdf::RoughDielectric(glass), Some(_)) = (bsdf, material.kind.solid()) {
+                glass.prepare_media(&media, range_nm);
+            }
+        }
+    }
+    if plan.runs(EffectName::Polarisation) {
+        bsdfs.iter_mut().for_each(Bsdf::prepare_polarisation);
+    }
+    let surfaces = Surfaces {
+        bsdfs,
+        properties: scene.materials.iter().map(|material| properties(&material.kind)).collect(),
+        interiors: scene
+            .materials
+            .iter()
+            .map(|material| {
+                material.kind.media().map(|_| {
+                    let absorption = material.absorption.as_ref().filter(|absorption| !absorption.is_zero());
+                    Interior { absorption: absorption.map(spectrum) }
+                })
+            })
+            .collect(),
+        objects: shapes::objects(scene)
+            .zip(coordinates)
+            .map(|(o, coordinates)| ObjectSurface {
+                material: o.material,
+                emission: o.emission.as_ref().map(|e| Emission {
+                    radiance: spectrum(&e.radiance),
+                    sides: e.sides,
+                    image: e.image.clone(),
+                }),
+                opacity: o.opacity,
+                opacity_image: o.opacity_image.clone(),
+                relief: o.relief.clone().map(|image| Relief { image, per_m: frame.per_m() }),
+                coordinates,
+                axis: axis(o, &scene.materials[o.material].kind),
+            })
+            .collect(),
+        object_of,
+        light_of,
+    };
+    let camera_motion = camera_motion(&scene.camera, frame)?;
+    let guided_targets = match study.carried {
+        None => GuidedTargets::new(&surfaces, &geometry, &lights, range_nm),
+        _ => GuidedTargets::default(),
+    };
+    let wavelengths = match &scene.film.bands {
+        Some(bands) => WavelengthDistribution::for_bands(range_nm, bands),
+        None => WavelengthDistribution::new(range_nm),
+    };
+    let drawn = matches!(plan.lane_model, LaneModel::Shared | LaneModel::Hero).then_some(&wavelengths);
+    let tables = ShadingTables::new(&surfaces, &lights, &environments, drawn, plan.runs(EffectName::Polarisation));
+    let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene)).transpose()?;
+    Ok(Prepared {
+        frame,
+        camera: frame.camera(&scene.camera),
+        camera_motion,
+        media,
+        geometry,
+        surfaces,
+        lights,
+        environments,
+        wavelengths,
+        one_lane: OneLaneFilm::new(scene),
+        filter: FilterSampler::new(&scene.film.filter),
+        tables,
+        guided_targets,
+        plan,
+        shape_warnings: warnings.len(),
+        warnings,
+        groups,
+        study: study.clone(),
+        scene: simulated,
+    })
+}
+
+/// How the camera moves, if it does while the shutter is open.
+fn camera_motion(camera: &etalon_scene::Camera, frame: SceneFrame) -> Result<Option<Moving>, PrepareError> {
+    let Some(moves) = camera.motion.as_ref().filter(|moves| moves.moves(camera.shutter_s)) else { return Ok(None) };
+    let motion = motion(&moves.motion, camera.shutter_s).map_err(PrepareError::Camera)?;
+    Ok(Some(Moving { motion, eye_m: Vec3::from_array(moves.position_m), frame }))
+}
+
+/// The axis of an object that is a polarising sheet, in the coordinates of its group.
+fn axis(object: &Object, kind: &MaterialKind) -> Option<Vec3<f64>> {
+    let MaterialKind::PolarisingSheet { axis, .. } = kind else { return None };
+    Some(mapped(&Affine::new(&object.transform).normal_matrix(), Vec3::from_array(*axis)))
+}
+
+/// The solids that carry priorities.
+fn media(scene: &Scene) -> Result<Media, PrepareError> {
+    let range_nm = scene.integrator.wavelength_range_nm;
+    let solid = |object: &Object| {
+        let Some((index, priority)) = scene.materials[object.material].kind.solid() else { return Ok(None) };
+        match object.shape.open_edges() {
+            None => {
+                let absorption = &scene.materials[object.material].absorption;
+                let absorption = absorption.as_ref().filter(|spectrum| !spectrum.is_zero());
+                let absorption = absorption.map(|spectrum| PathSpectrum::new(spectrum, range_nm));
+                Ok(Some(Solid { priority, index: index.clone(), absorption }))
+            }
+            Some(why) => Err(PrepareError::OpenSolid { object: object.name.clone(), why }),
+        }
+    };
+    Ok(Media { solids: shapes::objects(scene).map(solid).collect::<Result<_, _>>()? })
+}
+
+impl Prepared {
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Other random numbers for the same scene. Nothing that is prepared depends on the seed: what is rendered from now on has every
+    /// bit that it has in a scene of this seed.
+    pub fn reseed(&mut self, seed: u64) {
+        self.scene.integrator.seed = seed;
+    }
+
+    /// What will be simulated, and why.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// How many lights shadow rays aim at, and whether those near and bright are chosen for each point anew.
+    pub fn lights(&self) -> (usize, bool) {
+        (self.lights.lights().len(), self.lights.chooses_by_place())
+    }
+
+    /// The camera that makes the rays.
+    pub(crate) fn tracing_camera(&self) -> Camera {
+        let film = &self.scene.film;
+        let made = |camera: &etalon_scene::Camera| {
+            Camera::new(camera, film.width, film.height, self.plan.runs(EffectName::Lens))
+        };
+        match (&self.camera_motion, &self.scene.camera.motion) {
+            (Some(moving), Some(unmoved)) => {
+                let (forward, up) = (unmoved.forward, unmoved.up);
+                let own = etalon_scene::Camera { position_m: [0.0; 3], forward, up, ..self.camera.clone() };
+                made(&own).moving(moving.clone())
+            }
+            _ => made(&self.camera),
+        }
+    }
+
+    /// Whether films hold S₁, S₂ and S₃: where they are asked for, and polarisation is carried.
+    pub fn records_stokes(&self) -> bool {
+        self.plan.stokes
+    }
+
+    /// Absorption along paths, if it is simulated.
+    pub(crate) fn absorption(&self) -> Option<Absorption> {
+        self.plan.runs(EffectName::Absorption).then(|| Absorption { unit_m: 1.0 / self.frame.per_m() })
+    }
+
+    /// Width and height of the blocks of pixels that share paths, if any do.
+    pub fn path_reuse(&self) -> Option<[u32; 2]> {
+        self.plan.path_reuse
+    }
+
+    /// From which surfaces shadow rays are sent.
+    pub(crate) fn shadow_rays(&self) -> ShadowRays {
+        match () {
+            () if self.plan.forces(EffectName::ShadowRays) => ShadowRays::Everywhere,
+            // A lamp may shine in no wavelength that is rendered.
+            () if self.plan.runs(EffectName::ShadowRays) && !self.lights.is_empty() => ShadowRays::WhereUseful,
+            () => ShadowRays::Never,
+        }
+    }
+
+    /// What was noticed and is not an error, such as triangles without area that were left out.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// The share of the directions of diffuse surfaces that is drawn toward mirrors and bodies of glass where all of them are seen, and
+    /// the number of these; 0 where that does not pay. Beside images of lamps only bodies of glass.
+    pub fn guided_targets(&self) -> (f64, usize) {
+        let (bodies, each) = self.guided_targets.bodies_aimed_at();
+        (each * bodies.len() as f64, bodies.len())
+    }
+
+    /// The largest share that is drawn toward images of lamps in smooth balls, and the number of images; 0 where that does not pay.
+    pub fn specular_light_images(&self) -> (f64, usize) {
+        let images = self.guided_targets.specular_images_aimed_at().len();
+        (if images > 0 { self.guided_targets.share } else { 0.0 }, images)
+    }
+
+    /// The frame in which the scene is rendered; the geometry is in it.
+    pub fn frame(&self) -> &SceneFrame {
+        &self.frame
+    }
+
+    /// An object by its number on a path: the scene's own, then those of each group.
+    pub(crate) fn object(&self, number: u32) -> Option<&Object> {
+        shapes::objects(&self.scene).nth(number as usize)
+    }
+
+    /// The geometry.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+}

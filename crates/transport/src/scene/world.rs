@@ -1,0 +1,58 @@
+//! The scene as paths see it.
+
+use crate::guiding::GuidedTargets;
+use crate::light::{Environment, LightTable};
+use crate::media::{Absorption, Media};
+use crate::scene::shading_tables::ShadingTables;
+use crate::surface::Surfaces;
+use etalon_geometry::Geometry;
+use etalon_scene::LightSampling;
+
+/// All that a path meets.
+#[derive(Clone, Copy)]
+pub(crate) struct World<'a> {
+    pub geometry: &'a Geometry,
+    pub surfaces: &'a Surfaces,
+    pub lights: &'a LightTable,
+    pub environments: &'a [Environment],
+    /// The media, if the scene's solids are nested.
+    pub media: Option<&'a Media>,
+    /// Absorption in media, if there is any.
+    pub absorption: Option<Absorption>,
+    pub light_sampling: LightSampling,
+    pub shadow_rays: ShadowRays,
+    /// Whether some surface lets a part of the light pass as if it were not there.
+    pub masks: bool,
+    /// Whether surfaces that coincide are met as one group: masks let paths pass, or solids share interfaces.
+    pub meets_groups: bool,
+    /// Whether something moves while the shutter is open.
+    pub moves: bool,
+    /// Whether light that the walk runs into may have been found by a shadow ray too.
+    pub weigh_hits: bool,
+    /// Most path edges from the camera to a light, at most [`MOST_VERTICES`](crate::integrator::MOST_VERTICES).
+    pub max_depth: u32,
+    pub roulette: bool,
+    pub tables: &'a ShadingTables,
+    /// Whether no shadow ray aims at any of the skies.
+    pub plain_skies: bool,
+    /// What diffuse surfaces draw directions toward.
+    pub guided_targets: &'a GuidedTargets,
+}
+
+impl World<'_> {
+    /// Whether it matters which media hold a path.
+    #[inline(always)]
+    pub(crate) fn follows_media(&self) -> bool {
+        self.media.is_some() || self.absorption.is_some()
+    }
+}
+
+/// From which surfaces shadow rays are sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ShadowRays {
+    Never,
+    /// From those that can scatter what arrives from a given direction.
+    WhereUseful,
+    /// From every surface, although some can make nothing of it: for the study of what that costs.
+    Everywhere,
+}
