@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 
 use crate::budget::{Budget, FreshNames};
 use crate::matrix::steps;
+use crate::number::change_sides;
 use crate::relief::turn_over;
 use crate::{Imported, LeftOut};
 use files::KnownImage;
@@ -193,6 +194,15 @@ impl<'a> Builder<'a> {
                 material = own.clone();
                 material["interior"] = own.get("exterior").cloned().unwrap_or(json!(1));
                 material["exterior"] = own["interior"].clone();
+            }
+            let mut turned = own.clone();
+            change_sides(&mut turned, &|sides| match sides {
+                "front" => "back",
+                "back" => "front",
+                _ => "both",
+            });
+            if turned != own {
+                material = turned;
             }
             if let Some(emission) = &mut emission {
                 emission["sides"] = json!(if emission["sides"] == "back" { "front" } else { "back" });

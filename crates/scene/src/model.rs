@@ -23,7 +23,7 @@ pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES,
 pub use light::{Light, LightCone, LightKind};
 pub use material::{
     LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets, NumberTexture, Parameter, ParameterMut, PolarisingSheet,
-    SpectrumTexture,
+    Side, SpectrumTexture,
 };
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use references::ReferenceError;

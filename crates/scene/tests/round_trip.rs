@@ -7,6 +7,7 @@ use etalon_optics::index::SellmeierTerm;
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{ComplexIndex, Illuminant, OutsideFit, RefractiveIndex, Spectrum};
 use etalon_scene::*;
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 fn scene(text: &str) -> Scene {
@@ -118,7 +119,9 @@ fn materials_and_spectra() {
         &MaterialKind::RoughConductor { metal: Metal::Index(gold), facets: 0.25.into(), compensated: false }
     );
     let own = ComplexIndex::tabulated(vec![300.0, 900.0], vec![0.2, 0.3], vec![3.0, 4.0]).expect("right");
-    assert_eq!(kind(&scene, "own metal"), &MaterialKind::Conductor { metal: Metal::Index(own) });
+    let facets = Microfacets { alpha: [0.125, 0.5], rotation_rad: FRAC_PI_2 };
+    let own = MaterialKind::RoughConductor { metal: Metal::Index(own), facets, compensated: true };
+    assert_eq!(kind(&scene, "own metal"), &own);
     let glass = |name| RefractiveIndex::named(name).expect("a glass");
     assert_eq!(
         kind(&scene, "glass"),
@@ -151,7 +154,7 @@ fn materials_and_spectra() {
     );
     assert_eq!(kind(&scene, "black"), &MaterialKind::Black);
     let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
-    assert_eq!(kind(&scene, "clay"), &clay);
+    assert_eq!(kind(&scene, "clay"), &MaterialKind::OneSided { kind: Box::new(clay), side: Side::Back });
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
     let toy = MaterialKind::Plastic { reflectance, coat, facets: Some(0.1.into()) };
     assert_eq!(kind(&scene, "toy"), &toy);

@@ -372,7 +372,11 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
             for material in &scene.materials {
                 use etalon_scene::{MaterialKind as M, Metal, PolarisingSheet, SpectrumTexture};
                 for nm in [first, 0.5 * (first + last), last] {
-                    let good = match &material.kind {
+                    let kind = match &material.kind {
+                        M::OneSided { kind, .. } => kind,
+                        kind => kind,
+                    };
+                    let good = match kind {
                         M::Lambert { reflectance }
                         | M::Mirror { reflectance }
                         | M::OrenNayar { reflectance, .. }
@@ -406,6 +410,8 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                                 && (0.0..=1.0).contains(&by.eval([0.3, 0.7]))
                         }
                         M::Black => true,
+                        // One side has no sides of its own.
+                        M::OneSided { .. } => false,
                     };
                     prop_assert!(good, "{material:?} at {nm}");
                 }

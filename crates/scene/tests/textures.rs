@@ -216,7 +216,10 @@ fn numbers_and_colours_of_materials_come_from_images() {
 fn what_is_wrong_with_an_image_of_numbers_is_said() {
     let bare = r#"{"type": "box", "min_m": [0, 0, 0], "max_m": [1, 1, 1]}"#;
     let rough = r#"{"type": "plastic", "reflectance": 0.5, "roughness_image": {"file": "files/chequers.png"}}"#;
-    assert!(material(rough, SQUARE).is_ok());
+    let brushed = r#"{"type": "plastic", "reflectance": 0.5, "alpha_u": 0.1, "alpha_v": 0.4}"#;
+    assert!(material(rough, SQUARE).is_ok() && material(brushed, SQUARE).is_ok());
+    // Equal widths have no directions.
+    assert!(material(&brushed.replace("0.4", "0.1"), bare).is_ok());
     let blend = |keys: &str| {
         format!(r#"{{"type": "blend", "first": {{"type": "black"}}, "second": {{"type": "black"}}{keys}}}"#)
     };
@@ -231,6 +234,12 @@ fn what_is_wrong_with_an_image_of_numbers_is_said() {
             SQUARE,
             Code::KeyConflict,
         ),
+        (brushed.to_owned(), bare, Code::NoTextureCoordinates),
+        (brushed.replace(", \"alpha_v\": 0.4", ""), SQUARE, Code::MissingKey),
+        (brushed.replace("0.5,", "0.5, \"alpha\": 0.1,"), SQUARE, Code::KeyConflict),
+        (brushed.replace("0.4", "0"), SQUARE, Code::OutOfRange),
+        (rough.replace("0.5,", "0.5, \"alpha_u\": 0.1, \"alpha_v\": 0.2,"), SQUARE, Code::KeyConflict),
+        (rough.replace("0.5,", "0.5, \"tangent_rotation_deg\": 20,"), SQUARE, Code::MissingKey),
         (blend(""), SQUARE, Code::MissingKey),
         (blend(r#", "weight": 0.5, "weight_image": {"file": "files/chequers.png"}"#), SQUARE, Code::KeyConflict),
         (r#"{"type": "conductor", "reflectance": 1.5}"#.to_owned(), SQUARE, Code::Reflectance),

@@ -293,3 +293,42 @@ fn a_material_by_images_is_the_material_that_they_say() {
         }
     }
 }
+
+/// Seen and lit from the side that the normal points into or away from, a plate shows ρE cos/π where it reflects and nothing elsewhere.
+#[test]
+fn a_one_sided_plate_is_black_from_behind() {
+    let shown = |material: &Value, z: f64| {
+        let scene = json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 2.0 * z], "look_at_m": [0, 0, 0], "height_m": 0.1},
+            "film": {"width": 2, "height": 2},
+            "objects": [{"shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 0, 1], "radius_m": 1}, "material": material}],
+            "lights": [{"type": "directional", "direction": [0.6, 0, -0.8 * z], "irradiance": 1}],
+            "integrator": {"spp": 4}
+        });
+        let (scene, _) = etalon_scene::parse(&scene.to_string(), "test").unwrap();
+        let prepared = prepare(&scene).unwrap();
+        let film = prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap();
+        film.xyz().map(|xyz| xyz[1]).sum::<f64>() / 4.0
+    };
+    for (kind, number) in [("lambert", 0.5), ("plastic", 0.5), ("conductor", 0.5), ("oren-nayar", 0.5)] {
+        let material = |sides: &str| {
+            let mut material = json!({"type": kind, "reflectance": number, "sides": sides});
+            match kind {
+                "conductor" => material["alpha"] = json!(0.5),
+                "oren-nayar" => material["roughness"] = json!(0.3),
+                _ => {}
+            }
+            material
+        };
+        let both = [1.0, -1.0].map(|z| shown(&material("both"), z));
+        assert!(both[0] > 0.0 && (both[0] / both[1] - 1.0).abs() < 1e-12, "{kind}: {both:?}");
+        for (sides, expected) in [("front", [both[0], 0.0]), ("back", [0.0, both[1]])] {
+            assert_eq!([1.0, -1.0].map(|z| shown(&material(sides), z)), expected, "{kind} {sides}");
+        }
+    }
+    // ρ cos/π, by the constant spectrum's own Y.
+    let white = shown(&json!({"type": "lambert", "reflectance": 1}), 1.0);
+    let half = shown(&json!({"type": "lambert", "reflectance": 0.5, "sides": "front"}), 1.0);
+    assert!((half / white - 0.5).abs() < 1e-12, "{half} of {white}");
+}

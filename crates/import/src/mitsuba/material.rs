@@ -6,7 +6,7 @@ use super::Walk;
 use super::colour::Of;
 use super::element::Element;
 use crate::budget::BlendSize;
-use crate::number::{Number, Rough};
+use crate::number::{Number, Rough, change_sides};
 use crate::relief::{has_map, without_map};
 use crate::table::{Table, metal};
 
@@ -85,7 +85,9 @@ impl Walk<'_, '_, '_> {
                 if nested.len() > 1 {
                     self.builder.leave_out(&place, "both sides have the first of its materials");
                 }
-                self.first(&nested, &place)?
+                let mut look = self.first(&nested, &place)?;
+                change_sides(&mut look.material, &|_| "both");
+                look
             }
             "mask" => {
                 let mut look = self.nested_look(element)?;
@@ -137,7 +139,14 @@ impl Walk<'_, '_, '_> {
                 self.builder.spend(&material, &place)?;
                 Look { size, ..Look::plain(material, (1.0 - mean) * first.opacity + mean * second.opacity) }
             }
-            plugin => Look::of(self.material(element, plugin, &place)?),
+            plugin => {
+                let mut material = self.material(element, plugin, &place)?;
+                // What reflects only is black from behind there.
+                if matches!(plugin, "diffuse" | "conductor" | "roughconductor" | "plastic" | "roughplastic") {
+                    material["sides"] = json!("front");
+                }
+                Look::of(material)
+            }
         };
         element.list_unused(self.builder);
         Ok(look)

@@ -72,7 +72,11 @@ impl<'a> Walk<'a, '_, '_> {
         let map = self.placement(element)?;
         let look = match element.nested("bsdf", self.ids)?.first() {
             Some(bsdf) => self.known_look(bsdf)?,
-            None => Look::of(grey()),
+            None => {
+                let mut material = grey();
+                material["sides"] = json!("front");
+                Look::of(material)
+            }
         };
         let emission = self.emission(element)?;
         let flipped = element.flag("flip_normals")?.unwrap_or(false);

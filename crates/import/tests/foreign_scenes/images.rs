@@ -1,6 +1,6 @@
 //! Images that say what shines, how rough it is, how much of it is there.
 
-use super::{imported, said, scene};
+use super::{imported, on_its_side, said, scene};
 use etalon_scene::{MaterialKind, NumberTexture};
 
 #[test]
@@ -23,6 +23,7 @@ fn surfaces_that_shine_by_an_image_arrive() {
 
 /// What a roughness by an image becomes: the numbers at which parts of a blend stand, each with the width of its part.
 fn widths(kind: &MaterialKind) -> Vec<(f64, f64)> {
+    let kind = on_its_side(kind);
     let MaterialKind::Blend { parts, by: NumberTexture::Image(_) } = kind else { panic!("{kind:?}") };
     let width = |kind: &MaterialKind| match kind {
         MaterialKind::RoughConductor { facets, .. }

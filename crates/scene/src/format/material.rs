@@ -14,7 +14,7 @@ use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
 use crate::json::{Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole};
-use crate::model::{LEAST_ALPHA, Material, MaterialKind, Metal, PolarisingSheet};
+use crate::model::{LEAST_ALPHA, Material, MaterialKind, Metal, PolarisingSheet, Side};
 pub(crate) use blend::Before;
 pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
@@ -22,18 +22,22 @@ use index::{IndexForm, NamedMetal, complex_index, index};
 use roughness::{RoughnessKeys, roughness};
 
 crate::record! {
-    /// Ideal diffuse reflection, on both sides.
+    /// Ideal diffuse reflection, on both sides unless "sides" says otherwise.
     pub(crate) struct LambertMaterial + comment {
         /// Share of light reflected, from 0 to 1.
         reflectance: Required<SpectrumForm>,
+        /// Which sides reflect; another is black.
+        sides: Required<MaterialSides> = r#""both""#,
     }
 }
 
 crate::record! {
-    /// Ideal mirror, on both sides.
+    /// Ideal mirror, on both sides unless "sides" says otherwise.
     pub(crate) struct MirrorMaterial + comment {
         /// Share of light reflected, from 0 to 1, the same at every angle.
         reflectance: Required<SpectrumForm> = "1",
+        /// Which sides reflect; another is black.
+        sides: Required<MaterialSides> = r#""both""#,
     }
 }
 
@@ -65,6 +69,8 @@ crate::record! {
         roughness_image: Optional<RoughnessImageForm>,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
         multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
+        /// Which sides reflect; another is black.
+        sides: Required<MaterialSides> = r#""both""#,
     } with [
         Rule::OneOf(&["metal", "wavelengths_nm", "reflectance"]),
         Rule::NotBoth("alpha", "roughness_image"),
@@ -87,6 +93,35 @@ crate::number! {
 crate::number! {
     /// A width of a distribution of facets: one that directions can resolve, at most 1.
     pub(crate) struct Width in (Bound::Included(LEAST_ALPHA), Bound::Included(1.0));
+}
+
+/// Which sides of a surface reflect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MaterialSides {
+    Both,
+    Front,
+    Back,
+}
+
+crate::keywords!(MaterialSides {
+    /// Both.
+    "both" => Self::Both,
+    /// The side that the surface normal points into.
+    "front" => Self::Front,
+    /// The side that the surface normal points away from.
+    "back" => Self::Back,
+});
+
+impl MaterialSides {
+    /// The material that reflects on these sides.
+    fn of(self, kind: MaterialKind) -> MaterialKind {
+        let side = match self {
+            Self::Both => return kind,
+            Self::Front => Side::Front,
+            Self::Back => Side::Back,
+        };
+        MaterialKind::OneSided { kind: Box::new(kind), side }
+    }
 }
 
 /// What becomes of light that meets several facets of a rough surface.
@@ -152,17 +187,19 @@ crate::number! {
 }
 
 crate::record! {
-    /// Rough diffuse reflection, on both sides: chalk, clay, the moon.
+    /// Rough diffuse reflection, on both sides unless "sides" says otherwise: chalk, clay, the moon.
     pub(crate) struct OrenNayarMaterial + comment {
         /// Albedo parameter, from 0 to 1: what a white surface multiplies at each bounce within its roughness.
         reflectance: Required<SpectrumForm>,
         /// Roughness, from 0 (as `lambert`) to 1.
         roughness: Required<Share>,
+        /// Which sides reflect; another is black.
+        sides: Required<MaterialSides> = r#""both""#,
     }
 }
 
 crate::record! {
-    /// A diffuse ground under a clear coat, seen from vacuum, on both sides.
+    /// A diffuse ground under a clear coat, seen from vacuum, on both sides unless "sides" says otherwise.
     pub(crate) struct PlasticMaterial + comment {
         /// Share of light that the ground reflects, from 0 to 1.
         reflectance: Required<SpectrumForm>,
@@ -178,6 +215,8 @@ crate::record! {
         tangent_rotation_deg: Optional<f64>,
         /// Instead: an image that says the coat's width at each place.
         roughness_image: Optional<RoughnessImageForm>,
+        /// Which sides reflect; another is black.
+        sides: Required<MaterialSides> = r#""both""#,
     } with [
         Rule::NotBoth("alpha", "roughness_image"),
         Rule::NotBoth("alpha", "alpha_u"),
@@ -325,12 +364,12 @@ pub(crate) fn material<'f>(
         MaterialForm::Lambert(lambert) => {
             let reflectance =
                 spectra.resolve_texture(lambert.reflectance.as_ref()?, Role::Reflectance, files, reader)?;
-            Some(MaterialKind::Lambert { reflectance })
+            Some(lambert.sides?.of(MaterialKind::Lambert { reflectance }))
         }
         MaterialForm::Mirror(mirror) => {
             let reflectance =
                 spectra.resolve_texture(mirror.reflectance.as_ref()?, Role::Reflectance, files, reader)?;
-            Some(MaterialKind::Mirror { reflectance })
+            Some(mirror.sides?.of(MaterialKind::Mirror { reflectance }))
         }
         MaterialForm::Conductor(conductor) => {
             let metal = match &conductor.reflectance {
@@ -342,10 +381,11 @@ pub(crate) fn material<'f>(
             let roughness = roughness(&roughness_keys!(conductor), files, reader);
             let compensated = conductor.multiple_scattering? == MultipleScattering::Compensated;
             let metal = metal?;
-            Some(roughness?.material(|facets| match facets {
+            let kind = roughness?.material(|facets| match facets {
                 None => MaterialKind::Conductor { metal: metal.clone() },
                 Some(facets) => MaterialKind::RoughConductor { metal: metal.clone(), facets, compensated },
-            }))
+            });
+            Some(conductor.sides?.of(kind))
         }
         MaterialForm::Dielectric(dielectric) => {
             let interior = dielectric.interior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
@@ -366,7 +406,7 @@ pub(crate) fn material<'f>(
         }
         MaterialForm::OrenNayar(rough) => {
             let reflectance = spectra.resolve_texture(rough.reflectance.as_ref()?, Role::Reflectance, files, reader)?;
-            Some(MaterialKind::OrenNayar { reflectance, roughness: rough.roughness?.0 })
+            Some(rough.sides?.of(MaterialKind::OrenNayar { reflectance, roughness: rough.roughness?.0 }))
         }
         MaterialForm::Plastic(plastic) => {
             let reflectance = plastic
@@ -376,11 +416,12 @@ pub(crate) fn material<'f>(
             let coat = plastic.coat.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let roughness = roughness(&roughness_keys!(plastic), files, reader);
             let (reflectance, coat) = (reflectance?, coat?);
-            Some(roughness?.material(|facets| MaterialKind::Plastic {
+            let kind = roughness?.material(|facets| MaterialKind::Plastic {
                 reflectance: reflectance.clone(),
                 coat: coat.clone(),
                 facets,
-            }))
+            });
+            Some(plastic.sides?.of(kind))
         }
         MaterialForm::ThinDielectric(pane) => {
             let index = pane.index.as_ref().and_then(|form| index(form, spectra.range_nm, reader))?;

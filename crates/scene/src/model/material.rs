@@ -125,8 +125,24 @@ pub enum MaterialKind {
         /// The number.
         by: NumberTexture,
     },
+    /// A material that reflects on one side of the surface and is black on the other.
+    OneSided {
+        /// What it does there.
+        kind: Box<MaterialKind>,
+        /// The side.
+        side: Side,
+    },
     /// Reflects nothing (an emitter that is only a light, an absorber).
     Black,
+}
+
+/// A side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The one that the surface normal points into.
+    Front,
+    /// The one that the surface normal points away from.
+    Back,
 }
 
 /// What a metal reflects.
@@ -186,7 +202,7 @@ macro_rules! parameters {
                 }
                 Self::ThinDielectric { index } => vec![$of::Coat(index)],
                 Self::PolarisingSheet { sheet, .. } => vec![$of::Sheet(sheet)],
-                Self::Blend { .. } | Self::Black => Vec::new(),
+                Self::Blend { .. } | Self::OneSided { .. } | Self::Black => Vec::new(),
             });
             parameters.collect()
         }
@@ -233,10 +249,11 @@ impl MaterialKind {
         Self::Blend { parts: vec![(0.0, first), (1.0, second)], by: weight.into() }
     }
 
-    /// The materials that it is made of: of a blend those of its parts, of any other itself.
+    /// The materials that it is made of: of a blend those of its parts, of a one-sided one what it is on that side, of any other itself.
     pub fn parts(&self) -> Vec<&Self> {
         match self {
             Self::Blend { parts, .. } => parts.iter().flat_map(|(_, part)| part.parts()).collect(),
+            Self::OneSided { kind, .. } => kind.parts(),
             other => vec![other],
         }
     }
@@ -245,6 +262,7 @@ impl MaterialKind {
     pub fn parts_mut(&mut self) -> Vec<&mut Self> {
         match self {
             Self::Blend { parts, .. } => parts.iter_mut().flat_map(|(_, part)| part.parts_mut()).collect(),
+            Self::OneSided { kind, .. } => kind.parts_mut(),
             other => vec![other],
         }
     }
@@ -263,6 +281,7 @@ impl MaterialKind {
     pub fn image(&self) -> Option<&ImageTexture> {
         match self {
             Self::Blend { parts, by } => parts.iter().find_map(|(_, part)| part.image()).or_else(|| by.image()),
+            Self::OneSided { kind, .. } => kind.image(),
             kind => kind.parameters().into_iter().find_map(|parameter| parameter.reflectance()?.image()),
         }
     }
@@ -279,6 +298,9 @@ impl MaterialKind {
     }
 
     fn flatten_shares(&mut self) {
+        if let Self::OneSided { kind, .. } = self {
+            kind.flatten_shares();
+        }
         if let Self::Blend { parts, by } = self {
             parts.iter_mut().for_each(|(_, part)| part.flatten_shares());
             if let NumberTexture::Image(image) = by {

@@ -109,6 +109,9 @@ impl Scene {
 /// A kind of a material, or of a part of it.
 fn check_material(kind: &MaterialKind, material: &Material) -> Result<(), ReferenceError> {
     let owner = || format!("material \"{}\"", material.name);
+    if let MaterialKind::OneSided { kind, .. } = kind {
+        return check_material(kind, material);
+    }
     if let MaterialKind::Blend { parts, by } = kind {
         if parts.is_empty() {
             return Err(ReferenceError::EmptyBlend { material: material.name.clone() });

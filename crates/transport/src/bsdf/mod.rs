@@ -14,6 +14,7 @@ mod metal;
 mod microfacet;
 mod mirror;
 mod mueller;
+mod one_sided;
 mod oren_nayar;
 mod plastic;
 mod polarising_sheet;
@@ -32,6 +33,7 @@ pub use lambert::Lambert;
 pub use metal::PathMetal;
 pub use mirror::Mirror;
 pub use mueller::Lobe;
+pub use one_sided::OneSided;
 pub use oren_nayar::OrenNayar;
 pub use plastic::Plastic;
 pub use polarising_sheet::PolarisingSheet;
@@ -101,6 +103,8 @@ pub enum Bsdf {
     PolarisingSheet(PolarisingSheet),
     /// A mixture of others.
     Blend(Blend),
+    /// Another on one side.
+    OneSided(OneSided),
     /// No scattering at all.
     Black,
 }
@@ -118,6 +122,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::Plastic { facets, .. } => Plastic::properties(facets.as_ref()),
         MaterialKind::ThinDielectric { .. } => ThinDielectric::properties(),
         MaterialKind::PolarisingSheet { sheet, .. } => PolarisingSheet::properties(sheet),
+        MaterialKind::OneSided { kind, .. } => OneSided::properties(properties(kind)),
         MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
         MaterialKind::Black => Properties { solid_angle: false, dark: true, ..Properties::SOLID_ANGLE },
     }
@@ -158,6 +163,7 @@ impl Bsdf {
                 let parts = parts.iter().map(|(place, part)| (*place, Self::new(part, range_nm)));
                 Self::Blend(Blend::new(parts, by.clone()))
             }
+            MaterialKind::OneSided { kind, side } => Self::OneSided(OneSided::new(Self::new(kind, range_nm), *side)),
             MaterialKind::Black => Self::Black,
         }
     }
@@ -210,6 +216,7 @@ impl Bsdf {
             Self::OrenNayar(rough) => rough.eval(lambda_nm, n, at.uv, wo, wi),
             Self::Plastic(plastic) => plastic.eval(lambda_nm, n, at, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
+            Self::OneSided(one) => one.eval(lambda_nm, n, at, wo, wi),
             Self::Mirror(_)
             | Self::Conductor(_)
             | Self::Dielectric(_)
@@ -241,6 +248,7 @@ impl Bsdf {
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, n, wo, u[0]),
             Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
+            Self::OneSided(one) => one.sample(lambda_nm, n, at, wo, u),
             Self::Black => None,
         }
     }

@@ -87,6 +87,7 @@ impl Bsdf {
             Self::RoughDielectric(glass) => glass.mueller(lambda_nm, n, at, (wo, wi, x)),
             Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Blend(blend) => blend.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
+            Self::OneSided(one) => one.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Lambert(_) | Self::OrenNayar(_) | Self::Black => None,
         }
     }
@@ -97,6 +98,7 @@ impl Bsdf {
             Self::RoughDielectric(glass) => glass.prepare_polarisation(),
             Self::Plastic(plastic) => plastic.prepare_polarisation(),
             Self::Blend(blend) => blend.prepare_polarisation(),
+            Self::OneSided(one) => one.prepare_polarisation(),
             Self::Lambert(_)
             | Self::Mirror(_)
             | Self::Conductor(_)

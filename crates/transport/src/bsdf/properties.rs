@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use crate::mis::Density;
     use etalon_optics::{Lanes, RefractiveIndex, Spectrum, Vec3};
-    use etalon_scene::{MaterialKind, Metal, PolarisingSheet as Sheet};
+    use etalon_scene::{MaterialKind, Metal, PolarisingSheet as Sheet, Side};
 
     fn kinds() -> Vec<MaterialKind> {
         let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
@@ -108,6 +108,9 @@ mod tests {
         for facets in [None, Some(0.3.into()), Some(grained)] {
             let (reflectance, coat) = (Spectrum::Constant(0.5).into(), interior.clone());
             kinds.push(MaterialKind::Plastic { reflectance, coat, facets });
+        }
+        for (kind, side) in [(11, Side::Front), (12, Side::Back), (14, Side::Front)] {
+            kinds.push(MaterialKind::OneSided { kind: Box::new(kinds[kind].clone()), side });
         }
         let both = |first: usize, second: usize| MaterialKind::blend(kinds[first].clone(), kinds[second].clone(), 0.5);
         let blends = [both(0, 1), both(1, 3), both(5, 6), both(0, 0), both(7, 17)];

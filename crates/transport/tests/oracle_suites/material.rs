@@ -5,7 +5,7 @@ use etalon_oracle::{
     laws,
     subjects::{DeltaLobe, Density, Scattered, Scatters},
 };
-use etalon_scene::{MaterialKind, Metal, PolarisingSheet, SpectrumTexture};
+use etalon_scene::{MaterialKind, Metal, PolarisingSheet, Side, SpectrumTexture};
 use etalon_transport::{
     bsdf::{Bsdf, Shading},
     mis,
@@ -155,6 +155,13 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
                 lobes.into_iter().filter(|_| share > 0.0).map(scaled).collect::<Vec<_>>()
             };
             (0..parts.len()).flat_map(part).collect()
+        }
+        MaterialKind::OneSided { kind, side } => {
+            if (*side == Side::Front) == (wo[2] > 0.0) {
+                deltas(kind, wo, wavelength_nm)
+            } else {
+                Vec::new()
+            }
         }
         MaterialKind::Mirror { reflectance } => {
             vec![DeltaLobe { wi: mirrored, weight: uniform(reflectance).eval(wavelength_nm), probability: 1.0 }]

@@ -3,7 +3,8 @@
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
 use etalon_scene::{
-    Image, ImageTexture, MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, SpectrumTexture, Texels,
+    Image, ImageTexture, MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, Side, SpectrumTexture,
+    Texels,
 };
 
 use crate::material::Material;
@@ -185,6 +186,21 @@ fn brushed_materials_are_others_turned_about_their_normal() {
         [&brushed_gold(true), &brushed_gold(false), &brushed_glass(), &brushed_plastic()];
     subjects.into_iter().for_each(|subject| assert!(!laws::is_isotropic(subject, 1).pass));
 }
+
+fn one_sided(kind: MaterialKind, side: Side) -> Material {
+    Material::new(MaterialKind::OneSided { kind: Box::new(kind), side })
+}
+
+fn clay() -> MaterialKind {
+    MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.6).into(), roughness: 0.5 }
+}
+
+fn silvered() -> MaterialKind {
+    MaterialKind::Mirror { reflectance: Spectrum::Constant(0.8).into() }
+}
+
+scatters_suite!(clay_from_the_front, one_sided(clay(), Side::Front));
+scatters_suite!(mirror_from_the_back, one_sided(silvered(), Side::Back));
 
 /// No other has a grain but the sheets, whose axis is in their Mueller matrices alone.
 #[test]
