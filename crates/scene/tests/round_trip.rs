@@ -161,7 +161,7 @@ fn materials_and_spectra() {
     assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7") });
     let sheet = PolarisingSheet::Polariser { transmittance: Spectrum::Constant(0.75), extinction: 0.125 };
     assert_eq!(kind(&scene, "film"), &MaterialKind::PolarisingSheet { axis: [0.0, 1.0, 0.0], sheet });
-    let sheet = PolarisingSheet::Retarder { retardance_rad: std::f64::consts::FRAC_PI_2, at_nm: Some(550.0) };
+    let sheet = PolarisingSheet::Retarder { retardance_rad: FRAC_PI_2, at_nm: Some(550.0) };
     assert_eq!(kind(&scene, "quarter"), &MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet });
     let dusty = MaterialKind::blend(toy, MaterialKind::Black, 0.125);
     assert_eq!(kind(&scene, "dusty"), &dusty);
@@ -211,7 +211,7 @@ fn objects_and_lights() {
             &LightKind::Spot {
                 position_m: [0.0, 3.0, 0.0],
                 axis: [0.0, -1.0, 0.0],
-                half_angles_rad: [std::f64::consts::FRAC_PI_4, std::f64::consts::FRAC_PI_2],
+                half_angles_rad: [std::f64::consts::FRAC_PI_4, FRAC_PI_2],
                 intensity: Spectrum::Constant(2.0),
             },
         ]
@@ -262,16 +262,16 @@ fn the_angle_of_view_can_be_said_in_four_ways() {
             format!("{{\"type\": \"perspective\", \"position_m\": [0, 0, 5], \"look_at_m\": [0, 0, 0], {rest}}}");
         fov_rad(&camera(&text, "{\"width\": 200, \"height\": 100}"))
     };
-    assert_eq!(view("\"vertical_fov_deg\": 90"), std::f64::consts::FRAC_PI_2);
+    assert_eq!(view("\"vertical_fov_deg\": 90"), FRAC_PI_2);
     // A few roundings.
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} {b}");
     near(view("\"horizontal_fov_deg\": 90"), 2.0 * 0.5_f64.atan());
-    near(view("\"focal_length_m\": 0.05, \"sensor_height_m\": 0.1"), std::f64::consts::FRAC_PI_2);
+    near(view("\"focal_length_m\": 0.05, \"sensor_height_m\": 0.1"), FRAC_PI_2);
     near(view("\"focal_length_m\": 0.05, \"sensor_width_m\": 0.1"), 2.0 * 0.5_f64.atan());
     // A lens of radius 0 focuses all the same: the sensor stands where the image is.
     near(
         view("\"focal_length_m\": 1, \"sensor_height_m\": 4, \"lens\": {\"radius_m\": 0, \"focus_distance_m\": 2}"),
-        std::f64::consts::FRAC_PI_2,
+        FRAC_PI_2,
     );
 }
 
