@@ -75,6 +75,9 @@ impl FromStr for FrameRate {
         let [frames, seconds] = if let Some((frames, seconds)) = text.split_once('/') {
             [whole(frames)?, whole(seconds)?]
         } else if let Some((units, decimals)) = text.split_once('.') {
+            if !digits(units) || !digits(decimals) {
+                return Err(bad());
+            }
             let seconds = 10_u32.checked_pow(decimals.len() as u32).ok_or_else(bad)?;
             [whole(&format!("{units}{decimals}"))?, seconds]
         } else {
@@ -111,9 +114,22 @@ mod tests {
             assert_eq!((read, read.to_string().as_str()), (FrameRate(rate), shown));
             assert_eq!(shown.parse(), Ok(read));
         }
-        for text in
-            ["", "0", "-24", "x", "24/0", "0/1", "1e3", "24.", "1/2/3", "+1", "4294967296", "1.00000000001", "nan"]
-        {
+        for text in [
+            "",
+            "0",
+            "-24",
+            "x",
+            "24/0",
+            "0/1",
+            "1e3",
+            "24.",
+            ".5",
+            "1/2/3",
+            "+1",
+            "4294967296",
+            "1.00000000001",
+            "nan",
+        ] {
             assert!(text.parse::<FrameRate>().is_err(), "{text}");
         }
     }
