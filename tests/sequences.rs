@@ -196,7 +196,7 @@ fn finished_frames_are_kept_and_those_of_other_settings_refused() {
         ("--frames 0:3 --fps 12 --fixed-seed", "seed"),
         ("--frames 0:3 --fps 12 --max-depth 2", "options"),
         ("--frames 0:3 --fps 12 --error 50%", "--adaptive"),
-        ("--frames 0:3 --fps 12 --crop 0,8,0,8", "crop"),
+        ("--frames 0:3 --fps 12 --crop 0,0,8,8", "crop"),
         ("--frames 0:3 --fps 12 --aov depth", "--aov"),
     ] {
         let ran = render(folder.path(), &format!("{change} --resume")).expect(2);
@@ -285,7 +285,7 @@ fn mistakes_in_frames_and_names_are_found_before_anything_is_rendered() {
         ("--frames 0:3", &names[2], "{frame:q}"),
         ("--frames 0:3", &part, "not rendered in parts"),
         ("", &names[0], "--frames is not given"),
-        ("--frames 0:3 --shard 5/5", &names[0], "none"),
+        ("--frames 0:3 --shard 5/5", &names[0], "no frame"),
         ("--frames 0:3 --shard 5/4", &names[0], "share"),
     ] {
         let line = format!("render {{}} {options} -o {{}}");
