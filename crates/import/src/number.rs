@@ -91,7 +91,7 @@ pub(crate) fn without_directions(value: &mut Value) -> bool {
                 return true;
             }
             // Each of them, not the first alone.
-            map.values_mut().fold(false, |found, value| without_directions(value) || found)
+            map.values_mut().map(without_directions).filter(|found| *found).count() > 0
         }
         _ => false,
     }

@@ -237,7 +237,7 @@ fn animations_that_are_not_asked_for_are_listed() {
     let none = said(&at(&model, None).unwrap());
     assert_eq!(none.len(), 2, "{none:?}");
     assert!(
-        none[0].starts_with("$.animations[0]: the animation \"walk\" is not followed: no time is asked for"),
+        none[0].starts_with("$.animations[0]: the animation \"walk\" is ignored: no time is asked for"),
         "{none:?}"
     );
     let one = said(&at(&model, Some(&moment(0.0, 0.0))).unwrap());
@@ -285,6 +285,6 @@ fn what_cannot_be_followed_is_said() {
     );
     let vanishing = single("scale", &[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
     let imported = at(&vanishing, Some(&moment(0.0, 1.0))).unwrap();
-    assert!(said(&imported)[0].contains("its scale goes through 0: it rests"), "{:?}", said(&imported));
+    assert!(said(&imported)[0].contains("its scale goes through 0: it stays as it is"), "{:?}", said(&imported));
     assert!(scene(&imported).instances.is_empty());
 }

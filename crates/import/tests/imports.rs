@@ -521,11 +521,7 @@ fn glowing_cube(share: f64, glow: f64) -> Imported {
 fn a_model_without_light_stands_in_a_studio() {
     // The only light is a decal of 1 % of a face.
     let imported = glowing_cube(0.1, 1.0);
-    assert!(
-        imported.added.iter().any(|a| a.contains("grey studio") && a.contains("too little")),
-        "{:?}",
-        imported.added
-    );
+    assert!(imported.added.iter().any(|a| a.contains("grey studio") && a.contains("too weak")), "{:?}", imported.added);
     let scene = scene(&imported);
     let object =
         |name: &str| scene.objects.iter().find(|object| object.name == name).unwrap_or_else(|| panic!("{name}"));

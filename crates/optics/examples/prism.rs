@@ -3,7 +3,7 @@
 
 #![allow(clippy::print_stdout)]
 
-use etalon_optics::fresnel::dielectric_reflectance;
+use etalon_optics::fresnel::dielectric;
 use etalon_optics::snell::refract;
 use etalon_optics::{RefractiveIndex, Vec3};
 
@@ -19,22 +19,20 @@ fn main() -> Result<(), String> {
     // Normals of the two faces, 60° apart, both away from the glass.
     let (sin, cos) = 30_f64.to_radians().sin_cos();
     let [first, second] = [Vec3::new(-cos, sin, 0.0), Vec3::new(cos, sin, 0.0)];
-    // Light that goes right and up, 50° from the first normal. `wi` leaves the surface toward where light comes from.
-    let (sin, cos) = (150_f64 + 50.0).to_radians().sin_cos();
+    // Light that goes right and up, 60° from the first normal. `wi` leaves the surface toward where light comes from.
+    let (sin, cos) = (150_f64 + 60.0).to_radians().sin_cos();
     let wi = Vec3::new(cos, sin, 0.0);
     for (line, nm) in LINES {
         let n = glass.eval(nm);
-        let reflectance = |cosine: f64, eta: f64| {
-            let (s, p) = dielectric_reflectance(cosine.abs(), eta);
-            0.5 * (s + p)
-        };
+        let transmittance =
+            |cosine: f64, eta| dielectric(cosine.abs(), eta).map_or(0.0, |fresnel| fresnel.transmittance);
         let inside = refract(wi, first, n).ok_or("light always enters glass")?;
         let Some(out) = refract(-inside, second, 1.0 / n) else {
             println!("{line} {nm} nm: n {n:.5}, totally reflected");
             continue;
         };
         let turned = (-wi).dot(out).acos().to_degrees();
-        let through = (1.0 - reflectance(wi.dot(first), n)) * (1.0 - reflectance(inside.dot(second), 1.0 / n));
+        let through = transmittance(wi.dot(first), n) * transmittance(inside.dot(second), 1.0 / n);
         println!("{line} {nm} nm: n {n:.5}, turned by {turned:.3}°, {:.1} % passes", 100.0 * through);
     }
     Ok(())

@@ -6,7 +6,7 @@
 //! Blue light is turned more than red when it enters glass, and the surface sends back about 4 % of both:
 //!
 //! ```
-//! use etalon_optics::fresnel::dielectric_reflectance;
+//! use etalon_optics::fresnel::dielectric;
 //! use etalon_optics::snell::refract;
 //! use etalon_optics::{RefractiveIndex, Vec3};
 //!
@@ -18,8 +18,8 @@
 //!     (-inside.z).acos().to_degrees()
 //! };
 //! assert!(angle_deg(450.0) < angle_deg(650.0));
-//! let (s, p) = dielectric_reflectance(1.0, glass.eval(550.0));
-//! assert!((s - 0.042).abs() < 0.001 && s == p);
+//! let straight = dielectric(1.0, glass.eval(550.0)).expect("light always enters glass");
+//! assert!((straight.reflectance - 0.042).abs() < 0.001);
 //! ```
 //!
 //! | for | see |

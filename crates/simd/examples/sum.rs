@@ -7,13 +7,13 @@ use std::time::Instant;
 
 use etalon_simd::{Level, dispatch};
 
-/// The sum of the squares of some numbers, in eight sums that a vector can hold.
+/// The sum of the squares of some numbers, in sixteen sums, as many as the widest vector holds.
 fn sum_of_squares(level: Level, numbers: &[f32]) -> f32 {
     dispatch!(level; fn sum(numbers: &[f32]) -> f32 {
-        let mut sums = [0.0; 8];
-        for eight in numbers.as_chunks::<8>().0 {
-            for (sum, number) in sums.iter_mut().zip(eight) {
-                *sum += number * number;
+        let mut sums = [0.0; 16];
+        for row in numbers.as_chunks::<16>().0 {
+            for i in 0..16 {
+                sums[i] += row[i] * row[i];
             }
         }
         sums.iter().sum()

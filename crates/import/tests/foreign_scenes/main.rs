@@ -363,7 +363,7 @@ fn a_damaged_pbrt_scene_is_refused_with_its_line() {
         ("WorldBegin\nShape \"sphere\" \"float radius\" [ 1 2 ]", "line 2: \"radius\" is not one number"),
         ("WorldBegin\nTranslate 1 2", "line 2: 3 numbers should follow"),
         ("WorldBegin\nShape \"sphere", "line 2: a quote is not closed"),
-        ("WorldBegin\nAttributeEnd", "line 2: no matching begin"),
+        ("WorldBegin\nAttributeEnd", "line 2: this end has no matching begin"),
         ("WorldBegin\nNamedMaterial \"x\"", "line 2: there is no material \"x\""),
         (
             "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 7 ]",

@@ -9,12 +9,13 @@ use etalon_oracle::{
 
 use crate::renderer::Tracer;
 
-/// Truths that a renderer without polarisation, without thermal spectra and with the media on both sides of each surface
-/// stated, instead of priorities, in which nothing moves, can be held to.
+/// Truths that apply to a renderer without polarisation, thermal spectra, priorities, motion and facets of two widths.
 fn readable() -> Vec<Truth> {
     let claims: Vec<_> = Claim::UNPOLARISED
         .into_iter()
-        .filter(|claim| ![Claim::Priorities, Claim::Absorption, Claim::Motion].contains(claim))
+        .filter(|claim| {
+            ![Claim::Priorities, Claim::Absorption, Claim::Motion, Claim::AnisotropicFacets].contains(claim)
+        })
         .collect();
     let applies = |truth: &Truth| truth.applies_to(&claims) && !truth.scene.contains("blackbody");
     truths().into_iter().filter(applies).collect()
