@@ -13,8 +13,8 @@ use serde_json::{Map, Value, json};
 
 use crate::budget::{Budget, FreshNames};
 use crate::matrix::steps;
-use crate::number::change_sides;
 use crate::relief::turn_over;
+use crate::sides::change_sides;
 use crate::{Imported, LeftOut};
 use files::KnownImage;
 pub(crate) use groups::Outside;

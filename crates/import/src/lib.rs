@@ -42,6 +42,7 @@ mod number;
 mod obj;
 mod pbrt;
 mod relief;
+mod sides;
 mod table;
 
 use std::path::{Path, PathBuf};

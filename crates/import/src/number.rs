@@ -97,15 +97,6 @@ pub(crate) fn without_directions(value: &mut Value) -> bool {
     }
 }
 
-/// Changes which sides of a surface reflect, in a material of the format and in its parts.
-pub(crate) fn change_sides(value: &mut Value, change: &impl Fn(&str) -> &'static str) {
-    let Value::Object(map) = value else { return };
-    if let Some(sides) = map.get_mut("sides") {
-        *sides = json!(change(sides.as_str().unwrap_or("both")));
-    }
-    map.values_mut().for_each(|value| change_sides(value, change));
-}
-
 /// What is said where facets lose their directions.
 pub(crate) const WITHOUT_DIRECTIONS: &str =
     "it has no texture coordinates for the directions of its roughness: the geometric mean of both widths is taken";

@@ -95,7 +95,7 @@ fn what_is_wrong_with_a_ply_file_is_said_with_its_line_and_element() {
         (ascii("0 0 0\n1 x 0\n0 1 0\n", "3 0 1 2\n", ["3", "1"]), "line 11: Couldn't read element line."),
         (
             ascii(corners, "", ["3", "99999999999"]),
-            "its header says 99999999999 elements \"face\", for which 0 bytes are too few",
+            "its header promises 99999999999 elements \"face\", but 0 bytes are too few for them",
         ),
         (ascii(corners, "4000000000 0\n", ["3", "1"]), "line 13: Couldn't read element line."),
         (
@@ -226,7 +226,7 @@ fn a_scene_says_where_it_names_a_file_that_is_missing_or_wrong() {
     for (file, code, message) in [
         ("no.ply", Code::File, "no.ply"),
         ("folder.ply", Code::File, "not a plain file"),
-        ("short.ply", Code::MeshFile, "short.ply: its header says"),
+        ("short.ply", Code::MeshFile, "short.ply: its header promises"),
         ("short.stl", Code::FileFormat, "short.stl"),
     ] {
         let errors = scene_with(&format!(r#"{{"type": "mesh", "file": "{file}"}}"#), folder.path()).unwrap_err();

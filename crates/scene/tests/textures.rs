@@ -41,7 +41,7 @@ fn an_exr_image_of_a_few_bytes_cannot_claim_memory_for_texels_that_it_does_not_h
     assert!(Image::decode(small, Encoding::Auto).is_ok());
     let key = b"dataWindow\0box2i\0";
     let place = small.windows(key.len()).position(|window| window == key).unwrap() + key.len() + 12;
-    for (last, said) in [([109_457_407, 0], "109457408 × 1 pixels"), ([70_000, 3], "at most 65536 a side")] {
+    for (last, said) in [([109_457_407, 0], "109457408 × 1 pixels"), ([70_000, 3], "a side has at most 65536")] {
         let mut bytes = small.to_vec();
         for (k, last) in last.into_iter().enumerate() {
             bytes[place + 4 * k..place + 4 * k + 4].copy_from_slice(&i32::to_le_bytes(last));

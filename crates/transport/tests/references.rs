@@ -63,14 +63,14 @@ fn broken(change: impl FnOnce(&mut Scene)) -> ReferenceError {
 #[test]
 fn a_number_out_of_range_is_an_error_that_names_who_has_it() {
     let error = broken(|scene| scene.objects[0].material = 3);
-    assert_eq!(error.to_string(), r#"object "ball" has material 3, and the scene has 3"#);
+    assert_eq!(error.to_string(), r#"object "ball" has material 3, but the scene has 3"#);
     let error = broken(|scene| scene.materials.clear());
     assert!(matches!(error, ReferenceError::Material { count: 0, .. }), "{error}");
     let error = broken(|scene| scene.groups[0].objects[0].material = usize::MAX);
     assert!(matches!(&error, ReferenceError::Material { object, .. } if object == "kernel"), "{error}");
 
     let error = broken(|scene| scene.instances[0].group = 2);
-    assert_eq!(error.to_string(), r#"instance "placed" places group 2, and there are 2 that it may place"#);
+    assert_eq!(error.to_string(), r#"instance "placed" places group 2, but it may only place the first 2"#);
     // A group that places itself, and one after it.
     for group in [1, 2] {
         let error = broken(|scene| scene.groups[1].instances[0].group = group);
@@ -82,7 +82,7 @@ fn a_number_out_of_range_is_an_error_that_names_who_has_it() {
 fn meshes_whose_arrays_do_not_fit_are_an_error() {
     let with = |mesh: Mesh| broken(|scene| scene.objects[0].shape = Shape::Mesh(Arc::new(mesh)));
     let error = with(Mesh { triangles: vec![[0, 1, 2], [0, 3, 1]], ..triangle() });
-    assert_eq!(error.to_string(), r#"object "ball": triangle 1 has vertex 3, and the mesh has 3"#);
+    assert_eq!(error.to_string(), r#"object "ball": triangle 1 has vertex 3, but the mesh has 3"#);
     let error = with(Mesh { normals: vec![[0.0, 0.0, 1.0]; 2], ..triangle() });
     assert_eq!(error.to_string(), r#"object "ball": 2 normals for 3 vertices"#);
     let error = with(Mesh { uvs: vec![[0.0; 2]; 4], ..triangle() });

@@ -6,8 +6,9 @@ use super::Walk;
 use super::colour::Of;
 use super::element::Element;
 use crate::budget::BlendSize;
-use crate::number::{Number, Rough, change_sides};
+use crate::number::{Number, Rough};
 use crate::relief::{has_map, without_map};
+use crate::sides::change_sides;
 use crate::table::{Table, metal};
 
 /// Indices of refraction that Mitsuba has names for, as its documentation lists them.

@@ -42,7 +42,7 @@ fn liberties_with_json_are_errors_and_hide_nothing() {
         ("{\"wavelength_range_nm\": [«0400», 700]}", "needless 0"),
         ("{\"comment\": \"a«\\x»41\"}", "escape"),
         ("{\"comment\": \"a«\t»b\"}", "control character"),
-        ("{\"comment\":«\u{a0}»\"\"}", "blank"),
+        ("{\"comment\":«\u{a0}»\"\"}", "space character"),
     ] {
         let problem = error_anywhere(Code::Syntax, integrator);
         assert!(problem.message.contains(message), "{problem}");

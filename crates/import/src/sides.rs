@@ -1,0 +1,12 @@
+//! The sides of a surface that reflect.
+
+use serde_json::{Value, json};
+
+/// Changes which sides of a surface reflect, in a material of the format and in its parts.
+pub(crate) fn change_sides(value: &mut Value, change: &impl Fn(&str) -> &'static str) {
+    let Value::Object(map) = value else { return };
+    if let Some(sides) = map.get_mut("sides") {
+        *sides = json!(change(sides.as_str().unwrap_or("both")));
+    }
+    map.values_mut().for_each(|value| change_sides(value, change));
+}
