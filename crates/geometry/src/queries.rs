@@ -36,7 +36,7 @@ impl Geometry {
     }
 
     /// The closest hit that a walk along a ray has not yet passed; of several at the same distance, that of the lowest
-    /// [`SurfaceId`].
+    /// [`SurfaceId`](crate::SurfaceId).
     ///
     /// The ray stays as it is, so what lies at the same distance as a surface that the walk passes is still ahead of it: each
     /// surface is met exactly once, however many coincide.

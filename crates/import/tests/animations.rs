@@ -242,7 +242,7 @@ fn animations_that_are_not_asked_for_are_listed() {
     );
     let one = said(&at(&model, Some(&moment(0.0, 0.0))).unwrap());
     assert_eq!(one.len(), 1, "{one:?}");
-    assert!(one[0].starts_with("$.animations[1]: the animation \"run\" is not followed: another one"), "{one:?}");
+    assert!(one[0].starts_with("$.animations[1]: the animation \"run\" is ignored: another one"), "{one:?}");
     for (name, listed) in [("run", "$.animations[0]"), ("1", "$.animations[0]"), ("walk", "$.animations[1]")] {
         let moment = Moment { animation: Some(name.to_owned()), ..moment(0.0, 0.0) };
         assert!(said(&at(&model, Some(&moment)).unwrap())[0].starts_with(listed), "{name}");
