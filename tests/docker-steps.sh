@@ -8,7 +8,7 @@ trap 'rm -rf "$folder"' EXIT
 
 # What `COPY . .` copies: the files of the repository but those of .dockerignore.
 mkdir "$folder/source" "$folder/opt" "$folder/work"
-git -C "$root" ls-files -z | tar -C "$root" --null -T - --exclude=rust-toolchain.toml -cf - | tar -C "$folder/source" -xf -
+git -C "$root" ls-files -z | tar -C "$root" --exclude=rust-toolchain.toml --null -cf - -T - | tar -C "$folder/source" -xf -
 
 sed -n 's/^RUN //p' "$root/Dockerfile" | while read -r step; do
     step=${step//\/opt\/etalon/$folder\/opt\/etalon}
