@@ -175,9 +175,12 @@ fn material(material: &str, shape: &str) -> Result<MaterialKind, SceneErrors> {
     Ok(scene.materials[scene.objects[0].material].kind.clone())
 }
 
+fn right(text: &str) -> MaterialKind {
+    material(text, SQUARE).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
 #[test]
 fn numbers_and_colours_of_materials_come_from_images() {
-    let right = |text: &str| material(text, SQUARE).unwrap_or_else(|errors| panic!("{errors}"));
     let kind = right(
         r#"{"type": "blend", "first": {"type": "black"}, "second": {"type": "oren-nayar", "roughness": 0.5,
             "reflectance": {"type": "image", "file": "files/chequers.png"}},
@@ -217,7 +220,18 @@ fn what_is_wrong_with_an_image_of_numbers_is_said() {
     let bare = r#"{"type": "box", "min_m": [0, 0, 0], "max_m": [1, 1, 1]}"#;
     let rough = r#"{"type": "plastic", "reflectance": 0.5, "roughness_image": {"file": "files/chequers.png"}}"#;
     let brushed = r#"{"type": "plastic", "reflectance": 0.5, "alpha_u": 0.1, "alpha_v": 0.4}"#;
-    assert!(material(rough, SQUARE).is_ok() && material(brushed, SQUARE).is_ok());
+    let glass =
+        r#"{"type": "dielectric", "interior": 1.5, "alpha_u": 0.1, "alpha_v": 0.4, "multiple_scattering": "lost"}"#;
+    assert!([rough, brushed, glass].iter().all(|text| material(text, SQUARE).is_ok()));
+    for (text, counted) in [
+        (glass.to_owned(), false),
+        (glass.replace(", \"multiple_scattering\": \"lost\"", ""), false),
+        (glass.replace("lost", "compensated").replace("0.4", "0.1"), true),
+        (r#"{"type": "dielectric", "interior": 1.5, "alpha": 0.1}"#.to_owned(), true),
+    ] {
+        let kind = right(&text);
+        assert!(matches!(kind, MaterialKind::RoughDielectric { compensated, .. } if compensated == counted), "{text}");
+    }
     // Equal widths have no directions.
     assert!(material(&brushed.replace("0.4", "0.1"), bare).is_ok());
     let blend = |keys: &str| {
@@ -239,6 +253,9 @@ fn what_is_wrong_with_an_image_of_numbers_is_said() {
         (brushed.replace("0.5,", "0.5, \"alpha\": 0.1,"), SQUARE, Code::KeyConflict),
         (brushed.replace("0.4", "0"), SQUARE, Code::OutOfRange),
         (rough.replace("0.5,", "0.5, \"alpha_u\": 0.1, \"alpha_v\": 0.2,"), SQUARE, Code::KeyConflict),
+        // Where total reflection begins, tables of two widths cannot say.
+        (brushed.replace("0.4", "0.4, \"coat\": 0.99"), SQUARE, Code::OutOfRange),
+        (glass.replace("lost", "compensated"), SQUARE, Code::KeyConflict),
         (rough.replace("0.5,", "0.5, \"tangent_rotation_deg\": 20,"), SQUARE, Code::MissingKey),
         (blend(""), SQUARE, Code::MissingKey),
         (blend(r#", "weight": 0.5, "weight_image": {"file": "files/chequers.png"}"#), SQUARE, Code::KeyConflict),

@@ -1,6 +1,7 @@
 //! Materials.
 
 mod blend;
+mod dielectric;
 mod index;
 mod roughness;
 
@@ -13,13 +14,15 @@ use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
-use crate::json::{Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole};
+use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned};
 use crate::model::{LEAST_ALPHA, Material, MaterialKind, Metal, PolarisingSheet, Side};
 pub(crate) use blend::Before;
 pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
-use index::{IndexForm, NamedMetal, complex_index, index};
-use roughness::{RoughnessKeys, roughness};
+pub(crate) use dielectric::DielectricMaterial;
+use dielectric::dielectric;
+use index::{IndexForm, NamedMetal, complex_index, index, least};
+use roughness::{RoughnessKeys, roughness, roughness_keys};
 
 crate::record! {
     /// Ideal diffuse reflection, on both sides unless "sides" says otherwise.
@@ -95,6 +98,11 @@ crate::number! {
     pub(crate) struct Width in (Bound::Included(LEAST_ALPHA), Bound::Included(1.0));
 }
 
+crate::number! {
+    /// A share, from 0 to 1.
+    pub(crate) struct Share in (Bound::Included(0.0), Bound::Included(1.0));
+}
+
 /// Which sides of a surface reflect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MaterialSides {
@@ -137,54 +145,6 @@ crate::keywords!(MultipleScattering {
     /// Single scattering only, as most renderers do: rough surfaces are too dark.
     "lost" => Self::Lost,
 });
-
-crate::record! {
-    /// Interface between two transparent media, with dispersion.
-    pub(crate) struct DielectricMaterial + comment {
-        /// Medium on the side that the surface normal points away from (inside a sphere or a closed mesh).
-        interior: Required<IndexForm>,
-        /// Medium on the side that the surface normal points into.
-        exterior: Required<IndexForm> = "1",
-        /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
-        alpha: Required<Spanned<Alpha>> = "0",
-        /// Instead: the width along the tangent, the direction in which u grows, from 0.0001 to 1.
-        alpha_u: Optional<Width>,
-        /// And the width across the tangent, from 0.0001 to 1.
-        alpha_v: Optional<Width>,
-        /// By how much the tangent is turned from growing u toward growing v, degrees.
-        tangent_rotation_deg: Optional<f64>,
-        /// Instead: an image that says the width at each place.
-        roughness_image: Optional<RoughnessImageForm>,
-        /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
-        multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
-        /// For a closed solid that touches, overlaps or holds other solids: where several overlap, the one of the highest
-        /// priority fills the place; of equal priorities, the object that comes later. It replaces `exterior`.
-        priority: Optional<Whole<0, { u32::MAX as u64 }>>,
-        /// Absorption coefficient σ of the interior, 1/m: over d metres e^(−σd) of the light is left.
-        absorption_per_m: Optional<SpectrumForm>,
-        /// Instead: the share of light that `transmittance_depth_m` of the interior let through, above 0 to 1.
-        transmittance: Optional<SpectrumForm>,
-        /// The depth at which `transmittance` holds, m.
-        transmittance_depth_m: Optional<Positive>,
-    } with [
-        Rule::NotBoth("alpha", "roughness_image"),
-        Rule::NotBoth("alpha", "alpha_u"),
-        Rule::NotBoth("alpha_u", "roughness_image"),
-        Rule::Needs("alpha_u", &["alpha_v"]),
-        Rule::Needs("alpha_v", &["alpha_u"]),
-        Rule::Needs("tangent_rotation_deg", &["alpha_u"]),
-        Rule::NotBoth("exterior", "priority"),
-        Rule::NotBoth("roughness_image", "priority"),
-        Rule::NotBoth("absorption_per_m", "transmittance"),
-        Rule::Needs("transmittance", &["transmittance_depth_m"]),
-        Rule::Needs("transmittance_depth_m", &["transmittance"]),
-    ]
-}
-
-crate::number! {
-    /// A share, from 0 to 1.
-    pub(crate) struct Share in (Bound::Included(0.0), Bound::Included(1.0));
-}
 
 crate::record! {
     /// Rough diffuse reflection, on both sides unless "sides" says otherwise: chalk, clay, the moon.
@@ -318,18 +278,6 @@ impl MaterialForm {
     }
 }
 
-/// The keys of a form that say how rough it is.
-macro_rules! roughness_keys {
-    ($form:ident) => {
-        RoughnessKeys {
-            alpha: $form.alpha.as_ref(),
-            widths: [&$form.alpha_u, &$form.alpha_v],
-            rotation_deg: &$form.tangent_rotation_deg,
-            image: &$form.roughness_image,
-        }
-    };
-}
-
 /// What a form says.
 #[derive(Clone, Debug)]
 pub(crate) struct Made {
@@ -387,23 +335,7 @@ pub(crate) fn material<'f>(
             });
             Some(conductor.sides?.of(kind))
         }
-        MaterialForm::Dielectric(dielectric) => {
-            let interior = dielectric.interior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
-            let exterior = dielectric.exterior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
-            let roughness = roughness(&roughness_keys!(dielectric), files, reader);
-            let compensated = dielectric.multiple_scattering? == MultipleScattering::Compensated;
-            let priority = dielectric.priority.clone().checked()?.map(|priority| priority.0 as u32);
-            let absorption = absorption(dielectric, spectra, reader);
-            let (interior, exterior) = (interior?, exterior?);
-            let kind = roughness?.material(|facets| {
-                let (interior, exterior) = (interior.clone(), exterior.clone());
-                match facets {
-                    None => MaterialKind::Dielectric { interior, exterior, priority },
-                    Some(facets) => MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority },
-                }
-            });
-            return Some(Made { kind, absorption: absorption? });
-        }
+        MaterialForm::Dielectric(form) => return dielectric(form, spectra, files, reader),
         MaterialForm::OrenNayar(rough) => {
             let reflectance = spectra.resolve_texture(rough.reflectance.as_ref()?, Role::Reflectance, files, reader)?;
             Some(rough.sides?.of(MaterialKind::OrenNayar { reflectance, roughness: rough.roughness?.0 }))
@@ -415,8 +347,15 @@ pub(crate) fn material<'f>(
                 .and_then(|form| spectra.resolve_texture(form, Role::Reflectance, files, reader));
             let coat = plastic.coat.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let roughness = roughness(&roughness_keys!(plastic), files, reader);
-            let (reflectance, coat) = (reflectance?, coat?);
-            let kind = roughness?.material(|facets| MaterialKind::Plastic {
+            let (reflectance, coat, roughness) = (reflectance?, coat?, roughness?);
+            // As in glass from inside: where total reflection begins, tables of two widths cannot say.
+            if roughness.has_two_widths() && spectra.range_nm.is_some_and(|range_nm| least(&coat, range_nm) < 1.0) {
+                let message = "a coat of two widths must have an index of at least 1";
+                let hint = "give one width \"alpha\"";
+                reader.error_hint(Code::OutOfRange, plastic.at.head(), message, hint);
+                return None;
+            }
+            let kind = roughness.material(|facets| MaterialKind::Plastic {
                 reflectance: reflectance.clone(),
                 coat: coat.clone(),
                 facets,
@@ -442,23 +381,4 @@ pub(crate) fn material<'f>(
         MaterialForm::Black(_) => Some(MaterialKind::Black),
     };
     kind.map(Made::from)
-}
-
-/// The absorption of a dielectric's interior; `Some(None)` if it has none.
-fn absorption<'f>(
-    form: &'f DielectricMaterial,
-    spectra: &mut Spectra<'f>,
-    reader: &mut Reader<'_>,
-) -> Option<Option<Spectrum>> {
-    match (&form.absorption_per_m, &form.transmittance) {
-        (Optional::Absent, Optional::Absent) => Some(None),
-        (Optional::Given(coefficient), _) => spectra.resolve(coefficient, Role::Absorption, reader).map(Some),
-        (_, Optional::Given(share)) => {
-            let depth_m = form.transmittance_depth_m.given()?.0;
-            let at = share.at().head();
-            let share = spectra.resolve(share, Role::Reflectance, reader)?;
-            spectra.absorption_of(&share, depth_m, at, reader).map(Some)
-        }
-        _ => None,
-    }
 }

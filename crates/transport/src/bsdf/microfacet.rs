@@ -162,13 +162,14 @@ pub(crate) const MEAN_ERROR: f64 = 1e-4;
 /// Mean over the facets that a direction `wo` (z > 0) sees of `loss`, to 5e-6. `eta` is the relative index behind the facets, where
 /// light that they refract counts. Of facets of one width only the cosine of the direction counts.
 ///
-/// For facets of two widths see [`anisotropic`]. Of one width:
+/// For facets of two widths see [`anisotropic`]: there `loss` must be smooth but for `mirrored`, as that of facets with no total reflection
+/// is. Of one width:
 /// The integral is in polar coordinates about the direction: over the cosine c of incidence on a facet, and along the circle of all facets
 /// of the same c. Fresnel's equations depend on c alone. Kinks and square roots are at known places: total reflection begins at one c,
 /// reflected and refracted light meets the horizon at one place of each circle, and these places begin and end at known c. Gauss's rules
 /// between such places, with nodes that crowd at both ends, converge quickly; along c they are divided where needed.
 pub(crate) fn mean_over_facets(ggx: &Ggx, wo: Vec3<f64>, eta: Option<f64>, loss: impl Fn(&Facet) -> f64) -> f64 {
-    let Some(alpha) = ggx.isotropic_alpha() else { return anisotropic::mean(ggx, wo, eta, loss) };
+    let Some(alpha) = ggx.isotropic_alpha() else { return anisotropic::mean(ggx, wo, loss) };
     // Tables ask hundreds of times each: to make it took a fifth of their time.
     static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_rule(8));
     let view = View::new(ggx, alpha, wo.z, eta);

@@ -160,7 +160,9 @@ impl PolarisedLoss {
                     let turned = mean(&|facet| loss(facet, eta)[1] * of_twice_the_turn(facet)[component]);
                     if lost > 0.0 { (turned / lost).clamp(-1.0, 1.0) } else { 0.0 }
                 };
-                [turned(0), if ggx.isotropic_alpha().is_some() { 0.0 } else { turned(1) }]
+                // Along an axis of the surface both senses of 45° are alike, too.
+                let on_axis = [0, azimuths.count() - 1].contains(&(k / NODES));
+                [turned(0), if on_axis { 0.0 } else { turned(1) }]
             };
             let values: Vec<[f64; 2]> = (0..azimuths.count() * NODES).into_par_iter().map(at).collect();
             values.chunks(NODES).map(|values| std::array::from_fn(|i| values[i])).collect()

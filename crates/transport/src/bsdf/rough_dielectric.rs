@@ -151,7 +151,8 @@ impl Boundary {
 
 impl RoughDielectric {
     /// An interface with `interior` behind the outward normal and `exterior` before it, with or without the light that
-    /// meets several facets.
+    /// meets several facets. Of facets of two widths it is always without: from the denser side total reflection begins at another cosine
+    /// for each azimuth, and a table that blurs this would return more than it receives in single directions.
     pub fn new(
         interior: RefractiveIndex,
         exterior: RefractiveIndex,
@@ -160,6 +161,7 @@ impl RoughDielectric {
         range_nm: [f64; 2],
     ) -> Self {
         let ggx = Ggx::new(facets);
+        let compensated = compensated && ggx.isotropic_alpha().is_some();
         let own = Boundary::new(interior, exterior, ggx, compensated, range_nm);
         Self { ggx, compensated, own, others: Vec::new() }
     }
@@ -293,7 +295,7 @@ impl RoughDielectric {
                     // The tables are over interior/exterior.
                     let eta = if from_outside { eta } else { 1.0 / eta };
                     let (a_o, a_i) = (near.eval(local_o, eta), side_i.eval(local_i, eta));
-                    super::mueller::forgotten(|w| self.ggx.s(&facing, n, w), (wo, wi, x), a_o, a_i)
+                    super::mueller::forgotten(|w| n.cross(w), (wo, wi, x), a_o, a_i)
                 }
                 None => mueller::DEPOLARISER,
             };
@@ -391,7 +393,7 @@ impl RoughDielectric {
 
 /// The losses from the side from which the relative index is `eta_of` that of the table, for n_interior/n_exterior within `eta`.
 pub(super) fn glass_table(ggx: &Ggx, eta: [f64; 2], eta_of: fn(f64) -> f64) -> LossTable {
-    LossTable::new(Azimuths::of(ggx), eta, MEAN_ERROR, |wo, eta| loss(ggx, wo, eta_of(eta)))
+    LossTable::new(Azimuths::All, eta, MEAN_ERROR, |wo, eta| loss(ggx, wo, eta_of(eta)))
 }
 
 /// What one scattering loses of light from above, for η = n_below/n_above.

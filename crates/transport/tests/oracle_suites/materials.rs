@@ -154,7 +154,7 @@ fn lossless_brushed_metal() -> Material {
 fn brushed_glass() -> Material {
     let (interior, exterior) = (RefractiveIndex::named("N-BK7").unwrap(), RefractiveIndex::VACUUM);
     let facets = brushed(0.6, 0.2);
-    Material::new(MaterialKind::RoughDielectric { interior, exterior, facets, compensated: true, priority: None })
+    Material::new(MaterialKind::RoughDielectric { interior, exterior, facets, compensated: false, priority: None })
 }
 
 fn brushed_plastic() -> Material {

@@ -241,6 +241,11 @@ pub(super) fn index(form: &IndexForm, range_nm: Option<[f64; 2]>, reader: &mut R
     (reader.error_count() == before).then_some(index)
 }
 
+/// The least of an index within a range, at 65 wavelengths.
+pub(super) fn least(index: &RefractiveIndex, [first, last]: [f64; 2]) -> f64 {
+    (0..=64).map(|i| index.eval(first + (last - first) * f64::from(i) / 64.0)).fold(f64::INFINITY, f64::min)
+}
+
 fn sellmeier(form: &SellmeierIndex, reader: &mut Reader<'_>) -> Option<RefractiveIndex> {
     // So that a hostile file cannot make the check over the range take for ever.
     const MOST_TERMS: usize = 16;

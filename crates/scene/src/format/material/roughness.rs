@@ -35,6 +35,11 @@ impl RoughnessQuantity {
 }
 
 impl Roughness {
+    /// Whether facets are wider along one direction than across it.
+    pub(super) fn has_two_widths(&self) -> bool {
+        matches!(self, Self::Uniform(Some(facets)) if facets.alpha[0] != facets.alpha[1])
+    }
+
     /// The material, of what it is for facets of each width: a blend of the neighbours among some widths where an image says it.
     pub(super) fn material(self, of: impl Fn(Option<Microfacets>) -> MaterialKind) -> MaterialKind {
         match self {
@@ -76,6 +81,20 @@ pub(super) struct RoughnessKeys<'f> {
     pub rotation_deg: &'f Optional<f64>,
     pub image: &'f Optional<RoughnessImageForm>,
 }
+
+/// The keys of a form that say how rough it is.
+macro_rules! roughness_keys {
+    ($form:ident) => {
+        RoughnessKeys {
+            alpha: $form.alpha.as_ref(),
+            widths: [&$form.alpha_u, &$form.alpha_v],
+            rotation_deg: &$form.tangent_rotation_deg,
+            image: &$form.roughness_image,
+        }
+    };
+}
+
+pub(super) use roughness_keys;
 
 /// The roughness of a form.
 pub(super) fn roughness(keys: &RoughnessKeys<'_>, files: &mut Files, reader: &mut Reader<'_>) -> Option<Roughness> {

@@ -1,0 +1,114 @@
+//! Interfaces between two transparent media.
+
+use super::super::detail::RoughnessImageForm;
+use super::super::spectra::{Role, Spectra};
+use super::super::spectrum::SpectrumForm;
+use super::index::{IndexForm, index};
+use super::roughness::{Roughness, RoughnessKeys, roughness, roughness_keys};
+use super::{Alpha, Made, MultipleScattering, Width};
+use crate::files::Files;
+use crate::json::{Code, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
+use crate::model::MaterialKind;
+use etalon_optics::Spectrum;
+
+crate::record! {
+    /// Interface between two transparent media, with dispersion.
+    pub(crate) struct DielectricMaterial + comment {
+        /// Medium on the side that the surface normal points away from (inside a sphere or a closed mesh).
+        interior: Required<IndexForm>,
+        /// Medium on the side that the surface normal points into.
+        exterior: Required<IndexForm> = "1",
+        /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
+        alpha: Required<Spanned<Alpha>> = "0",
+        /// Instead: the width along the tangent, the direction in which u grows, from 0.0001 to 1.
+        alpha_u: Optional<Width>,
+        /// And the width across the tangent, from 0.0001 to 1.
+        alpha_v: Optional<Width>,
+        /// By how much the tangent is turned from growing u toward growing v, degrees.
+        tangent_rotation_deg: Optional<f64>,
+        /// Instead: an image that says the width at each place.
+        roughness_image: Optional<RoughnessImageForm>,
+        /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost"). The default is
+        /// "compensated", of two widths "lost".
+        multiple_scattering: Optional<Spanned<MultipleScattering>>,
+        /// For a closed solid that touches, overlaps or holds other solids: where several overlap, the one of the highest
+        /// priority fills the place; of equal priorities, the object that comes later. It replaces `exterior`.
+        priority: Optional<Whole<0, { u32::MAX as u64 }>>,
+        /// Absorption coefficient σ of the interior, 1/m: over d metres e^(−σd) of the light is left.
+        absorption_per_m: Optional<SpectrumForm>,
+        /// Instead: the share of light that `transmittance_depth_m` of the interior let through, above 0 to 1.
+        transmittance: Optional<SpectrumForm>,
+        /// The depth at which `transmittance` holds, m.
+        transmittance_depth_m: Optional<Positive>,
+    } with [
+        Rule::NotBoth("alpha", "roughness_image"),
+        Rule::NotBoth("alpha", "alpha_u"),
+        Rule::NotBoth("alpha_u", "roughness_image"),
+        Rule::Needs("alpha_u", &["alpha_v"]),
+        Rule::Needs("alpha_v", &["alpha_u"]),
+        Rule::Needs("tangent_rotation_deg", &["alpha_u"]),
+        Rule::NotBoth("exterior", "priority"),
+        Rule::NotBoth("roughness_image", "priority"),
+        Rule::NotBoth("absorption_per_m", "transmittance"),
+        Rule::Needs("transmittance", &["transmittance_depth_m"]),
+        Rule::Needs("transmittance_depth_m", &["transmittance"]),
+    ]
+}
+
+/// The interface of a form, and what its interior absorbs.
+pub(super) fn dielectric<'f>(
+    form: &'f DielectricMaterial,
+    spectra: &mut Spectra<'f>,
+    files: &mut Files,
+    reader: &mut Reader<'_>,
+) -> Option<Made> {
+    let interior = form.interior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
+    let exterior = form.exterior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
+    let roughness = roughness(&roughness_keys!(form), files, reader);
+    let priority = form.priority.clone().checked()?.map(|priority| priority.0 as u32);
+    let absorption = absorption(form, spectra, reader);
+    let (interior, exterior, roughness) = (interior?, exterior?, roughness?);
+    let compensated = compensated(form, &roughness, reader)?;
+    let kind = roughness.material(|facets| {
+        let (interior, exterior) = (interior.clone(), exterior.clone());
+        match facets {
+            None => MaterialKind::Dielectric { interior, exterior, priority },
+            Some(facets) => MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority },
+        }
+    });
+    Some(Made { kind, absorption: absorption? })
+}
+
+/// Whether light that meets several facets is counted. Of facets of two widths it cannot be.
+fn compensated(form: &DielectricMaterial, roughness: &Roughness, reader: &mut Reader<'_>) -> Option<bool> {
+    let stated = form.multiple_scattering.clone().checked()?;
+    match stated {
+        None => Some(!roughness.has_two_widths()),
+        Some(stated) if stated.value == MultipleScattering::Compensated && roughness.has_two_widths() => {
+            let message = "light that meets several facets cannot be counted for a dielectric of two widths";
+            let hint = "leave \"multiple_scattering\" out, which is \"lost\" here, or give one width \"alpha\"";
+            reader.error_hint(Code::KeyConflict, stated.at, message, hint);
+            None
+        }
+        Some(stated) => Some(stated.value == MultipleScattering::Compensated),
+    }
+}
+
+/// The absorption of a dielectric's interior; `Some(None)` if it has none.
+fn absorption<'f>(
+    form: &'f DielectricMaterial,
+    spectra: &mut Spectra<'f>,
+    reader: &mut Reader<'_>,
+) -> Option<Option<Spectrum>> {
+    match (&form.absorption_per_m, &form.transmittance) {
+        (Optional::Absent, Optional::Absent) => Some(None),
+        (Optional::Given(coefficient), _) => spectra.resolve(coefficient, Role::Absorption, reader).map(Some),
+        (_, Optional::Given(share)) => {
+            let depth_m = form.transmittance_depth_m.given()?.0;
+            let at = share.at().head();
+            let share = spectra.resolve(share, Role::Reflectance, reader)?;
+            spectra.absorption_of(&share, depth_m, at, reader).map(Some)
+        }
+        _ => None,
+    }
+}
