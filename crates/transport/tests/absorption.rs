@@ -64,6 +64,40 @@ fn each_wavelength_is_absorbed_by_its_own_coefficient() {
     assert!(got / white > (-0.8_f64 * 1.5).exp() && got / white < 1.0, "{got} of {white}");
 }
 
+/// What passes a hole in the surface of an absorbing body is in the body, as what goes through its surface is: paths and shadow rays.
+#[test]
+fn a_hole_in_an_absorbing_body_leads_into_it() {
+    let body = |opacity: f64, core: Value| {
+        let material = json!({"type": "dielectric", "interior": 1, "absorption_per_m": 2});
+        let mut scene: Value = json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 0, 3], "direction": [0, 0, -1], "height_m": 0.5},
+            "film": {"width": 4, "height": 4},
+            "objects": [
+                {"shape": {"type": "box", "min_m": [-3, -3, -2], "max_m": [3, 3, 0]}, "material": material, "opacity": opacity},
+                {"shape": {"type": "box", "min_m": [-1, -1, -1.5], "max_m": [1, 1, -0.5]}}
+            ],
+            "lights": [{"type": "directional", "direction": [0, 0.6, -0.8], "irradiance": 1}],
+            "integrator": {"spp": 16}
+        });
+        for (key, value) in core.as_object().unwrap() {
+            scene["objects"][1][key] = value.clone();
+        }
+        mean_y(&render(&parse(&scene.to_string()), &Study::default()))
+    };
+    // Half a metre of it lies before the core.
+    let lamp = |opacity| body(opacity, json!({"material": {"type": "black"}, "emission": {"radiance": 1}}));
+    let white = |opacity| body(opacity, json!({"material": {"type": "lambert", "reflectance": 1}}));
+    let seen = lamp(1.0);
+    for opacity in [0.0, 0.5] {
+        assert!((lamp(opacity) / seen - 1.0).abs() < 1e-9, "{opacity}: {} is not {seen}", lamp(opacity));
+    }
+    // The light comes in aslant, 0.5 m/0.8. Through a hole it finds the core; through the surface itself shadow rays do not go.
+    let bare = json!({"material": {"type": "lambert", "reflectance": 1}, "transform": [{"translate_m": [0, 0, 1]}]});
+    let share = white(0.0) / body(0.0, bare);
+    assert!((share / (-2.0 * (0.5 + 0.5 / 0.8_f64)).exp() - 1.0).abs() < 1e-9, "{share}");
+}
+
 /// A material whose roughness an image says, 0.5 everywhere, among others of which none has a share.
 fn at_one_half(of: impl Fn(f64) -> MaterialKind) -> MaterialKind {
     let image = ImageTexture::new(Image::new(1, 1, Texels::F32(vec![[0.5; 3]])));

@@ -150,13 +150,12 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Passes a surface as if it were not there; a boundary together with those that coincide with it. `stack` is brought behind it.
-    pub(crate) fn pass(&mut self, met: &SurfaceInteraction<'_>, stack: &mut MediumStack<'a>) {
+    /// Passes a surface as if it were not there; a boundary together with those that coincide with it. `stack` is brought behind it: a hole
+    /// in the surface of a body is a way into it.
+    pub(crate) fn pass(&mut self, met: &SurfaceInteraction<'a>, stack: &mut MediumStack<'a>) {
+        *stack = self.behind(met, stack);
         match met.crosses {
-            true => {
-                self.pass_group();
-                *stack = self.beyond;
-            }
+            true => self.pass_group(),
             false => self.passed.pass(&met.hit, self.first_distance()),
         }
     }
