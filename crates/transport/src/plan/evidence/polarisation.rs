@@ -37,7 +37,9 @@ pub(in crate::plan) fn polarisation(scene: &Scene, asked_for: bool) -> Result<St
         .reduce(|worst, other| if other.0 > worst.0 { other } else { worst });
     match worst {
         None => Err(UNPOLARISED.to_owned()),
-        Some((_, found)) => Err(format!("not asked for (--polarised); s and p are averaged at {found}")),
+        Some((_, found)) => {
+            Err(format!("not asked for (--polarised); s and p are averaged, which errs most at {found}"))
+        }
     }
 }
 
@@ -79,7 +81,7 @@ fn metal(range_nm: [f64; 2], index: impl Fn(f64) -> (f64, f64)) -> Option<(f64, 
     }
     let (most, nm, cos) = worst;
     let (share, degrees) = (most * most, cos.acos().to_degrees());
-    Some((share, format!("up to {:.2} % after two reflections, at {degrees:.0}° and {nm} nm", 100.0 * share)))
+    Some((share, format!("by up to {:.2} % after two reflections, at {degrees:.0}° and {nm} nm", 100.0 * share)))
 }
 
 /// The wavelengths of a range that count for what the eye sees, at least a hundredth of the most; all, if none does.
@@ -98,8 +100,8 @@ fn glass(n: f64) -> Option<(f64, String)> {
     let plate = |reflectance: f64| (1.0 - reflectance) / (1.0 + reflectance);
     let behind = fresnel::dielectric(75_f64.to_radians().cos(), n).map(|f| {
         let polarised = 0.5 * (plate(f.r_s * f.r_s) + plate(f.r_p * f.r_p));
-        format!(", {:.1} % behind a plate at 75°", 100.0 * (polarised / plate(f.reflectance) - 1.0))
+        format!(", by {:.1} % behind a plate at 75°", 100.0 * (polarised / plate(f.reflectance) - 1.0))
     });
     let behind = behind.unwrap_or_default();
-    Some((1.0, format!("up to a factor of 2 after two reflections at {brewster:.1}°{behind} (n {n:.3})")))
+    Some((1.0, format!("by up to a factor of 2 after two reflections at {brewster:.1}°{behind} (n {n:.3})")))
 }
