@@ -121,7 +121,7 @@ pub(crate) fn run(args: Args, program: Option<PathBuf>) -> Outcome {
     let text = match frames.map(|list| args.frames.words(list.text())) {
         None if args.slurm => slurm::script(&job),
         None => openjd::template(&job),
-        Some(frames) if args.slurm => sequence::slurm(&job, &frames),
+        Some(frames) if args.slurm => sequence::script(&job, &frames),
         Some(frames) => sequence::openjd(&job, &frames),
     };
     match &args.output {

@@ -2,11 +2,11 @@
 
 use serde_json::json;
 
-use super::{CHECKPOINT, Job, check_length};
+use super::{CHECKPOINT, Job, check_length, slurm};
 use crate::failure::Failure;
 use crate::frames::{FrameList, patterns};
 use crate::output::Format;
-use crate::shell::{self, quoted};
+use crate::shell;
 use crate::state;
 use miette::miette;
 
@@ -44,38 +44,23 @@ pub(super) fn check(job: &Job, list: &FrameList) -> Failure {
 }
 
 /// The script for Slurm: it submits itself as an array of renders.
-pub(super) fn slurm(job: &Job, frames: &[String]) -> String {
-    let Job { name, shards, .. } = job;
-    let [program, scene, picture] =
-        [&job.program, &job.scene, &job.picture].map(|path| quoted(&path.display().to_string()));
+pub(super) fn script(job: &Job, frames: &[String]) -> String {
+    let shards = job.shards;
     let frames = shell::words(frames.to_vec());
     let options = shell::words(job.options.iter().cloned());
-    let comment_name: String =
-        name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
-    let cpus = job.threads.map_or_else(String::new, |threads| format!("#SBATCH --cpus-per-task={threads}\n"));
-    let threads = job.threads.map_or_else(
-        || "${SLURM_CPUS_PER_TASK:+--threads \"$SLURM_CPUS_PER_TASK\"}".to_owned(),
-        |threads| format!("--threads {threads}"),
-    );
-    format!(
-        r#"#!/bin/sh
-# Renders the frames of a sequence in {shards} tasks. Run it where jobs are submitted, with any options for sbatch:
+    let threads = slurm::threads(job);
+    let head = slurm::head(
+        job,
+        &format!(
+            "# Renders the frames of a sequence in {shards} tasks. Run it where jobs are submitted, with any options for sbatch:
 #   sh THIS [--partition=...] [--time=...]
 # A task that is stopped, or moved to another machine, keeps its finished frames and goes on from its checkpoint. A task that failed is run
 # again by
-#   sbatch --array=K THIS
-#SBATCH --job-name={comment_name}
-#SBATCH --requeue
-#SBATCH --open-mode=append
-#SBATCH --signal=B:TERM@120
-{cpus}set -eu
-
-etalon=${{ETALON:-{program}}}
-scene={scene}
-picture={picture}
-shares={shards}
-
-if [ -n "${{SLURM_ARRAY_TASK_ID:-}}" ]; then
+#   sbatch --array=K THIS"
+        ),
+    );
+    format!(
+        r#"{head}if [ -n "${{SLURM_ARRAY_TASK_ID:-}}" ]; then
     # The render takes the shell's place, so that signals reach it.
     exec "$etalon" render "$scene" {frames} --shard "$SLURM_ARRAY_TASK_ID/$shares" -o "$picture" \
         --checkpoint {CHECKPOINT} --resume {threads} {options}
