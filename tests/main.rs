@@ -18,6 +18,7 @@ mod refusals;
 mod renders;
 mod scenes;
 mod sequences;
+mod study;
 mod support;
 mod surviving;
 mod usage;
