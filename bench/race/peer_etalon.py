@@ -104,9 +104,11 @@ class Peer:
         self.import_s = time.perf_counter() - t
 
     def load(self, s):
-        self.scene = os.path.join(self.folder.name, s["name"] + ".json")
-        with open(self.scene, "w") as f:
-            json.dump(convert(s), f)
+        self.scene = s.get("xml")
+        if self.scene is None:
+            self.scene = os.path.join(self.folder.name, s["name"] + ".json")
+            with open(self.scene, "w") as f:
+                json.dump(convert(s), f)
         # What a process does before the first sample: reading, building, preparing.
         t = time.perf_counter()
         self.render(1, 0)

@@ -3,6 +3,10 @@
 
     python3 bench/race/race.py                                   # all scenes, all that is installed
     python3 bench/race/race.py --scenes cornell,dof --entries etalon,mitsuba-spectral --spp 16,64 --rounds 4
+    python3 bench/race/race.py --draw 12                         # twelve scenes drawn from the commit, see draw.py
+
+A drawn race takes the entries that read files of Mitsuba 3. It adds its scenes and figures to docs/log/drawn-races.jsonl, whatever
+they are: one line for each draw.
 
 Writes OUT/race.json and OUT/race.md (--out, default out/race). Needs numpy and OpenEXR, and target/release/etalon (or the
 variable ETALON); see README.md beside this file for the peers.
@@ -26,6 +30,8 @@ import tempfile
 
 import numpy as np
 
+import draw
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 EPS = 0.01
@@ -42,6 +48,11 @@ ENTRIES = {
     "cycles": ("cycles", "cpu", {}, ("prism",)),
 }
 SPP = {"cornell": [16, 64], "glass": [16, 64], "prism": [64, 256], "prism-plain": [64, 256], "dof": [16, 64], "mesh1m": [16, 64]}
+
+
+READ_XML = ("etalon", "mitsuba")
+DRAWN_ENTRIES = ["etalon", "mitsuba-spectral", "mitsuba-rgb"]
+LOG = ROOT / "docs/log/drawn-races.jsonl"
 
 
 class Worker:
@@ -106,7 +117,7 @@ def time_to(levels, target):
 def run_scene(scene, names, args, folder):
     workers, missing = [], {}
     for name in names:
-        if scene in ENTRIES[name][3]:
+        if scene in ENTRIES[name][3] or (scene.endswith(".xml") and ENTRIES[name][0] not in READ_XML):
             continue
         worker = Worker(name, scene, args.threads, folder)
         if "missing" in worker.about:
@@ -114,7 +125,7 @@ def run_scene(scene, names, args, folder):
             print("  %s is left out: %s" % (name, worker.about["missing"]), flush=True)
             continue
         workers.append(worker)
-    spps = args.spp or SPP[scene]
+    spps = args.spp or SPP.get(scene, [16, 64])
     kept = {w.name: {spp: Level() for spp in spps} for w in workers}
     for spp in spps:
         for w in workers:
@@ -146,7 +157,7 @@ def run_scene(scene, names, args, folder):
                 noise = noise + (weight[spp] / sum(weight.values())) ** 2 * level.variance().mean((0, 1)) / pixels / level.n
         entries[w.name] = {"about": w.about, "levels": rows, "peak_mib": last["peak_mib"], "extra": last["extra"],
                            "mean_rgb": mean.tolist(), "mean_rgb_error": np.sqrt(noise).tolist()}
-        np.save(os.path.join(args.out, "%s-%s.npy" % (scene, w.name)), ref.astype(np.float32))
+        np.save(os.path.join(args.out, "%s-%s.npy" % (os.path.basename(scene), w.name)), ref.astype(np.float32))
         entries[w.name]["ref"] = ref
         entries[w.name]["ref_variance"] = sum((weight[spp] / sum(weight.values())) ** 2 * level.variance() / level.n
                                               for spp, level in levels.items()) if args.rounds > 1 else None
@@ -194,8 +205,8 @@ def report(result):
         "efficiency = relMSE × CPU seconds at the largest number of samples, lower is better; × first: that over the first entry's.",
         "", "| scene | entry | M paths/CPU s | relMSE at spp | t(target) CPU s | efficiency | × first | start s | load s | peak MiB |",
         "|---|---|---|---|---|---|---|---|---|---|"]
-    for scene, done in result["scenes"].items():
-        first = None
+    for path, done in result["scenes"].items():
+        scene, first = os.path.basename(path), None
         for name, e in done["entries"].items():
             last = e["levels"][-1]
             first = first or last
@@ -210,7 +221,8 @@ def report(result):
     lines += ["", "## Are the pictures the same?", "",
               "Against the first entry of each scene: ratio of the mean R, G, B, and over blocks of 16 × 16 pixels the root mean square of z,",
               "1 where only noise differs.", "", "| scene | entry | ratio of means | z of means | rms z | largest z |", "|---|---|---|---|---|---|"]
-    for scene, done in result["scenes"].items():
+    for path, done in result["scenes"].items():
+        scene = os.path.basename(path)
         for name, e in done["entries"].items():
             if "same" in e:
                 s = e["same"]
@@ -222,16 +234,56 @@ def report(result):
     return "\n".join(lines) + "\n"
 
 
+def ratios(result):
+    """Each entry's efficiency in multiples of the first's: what Etalon needs of an entry's time for the same error, scene by scene."""
+    of = {}
+    for scene, done in result["scenes"].items():
+        efficiency = {name: e["levels"][-1]["efficiency"] for name, e in done["entries"].items()}
+        first = next(iter(efficiency.values()), None)
+        for name, value in list(efficiency.items())[1:]:
+            of.setdefault(name, {})[scene] = first / value
+    return of
+
+
+def log_draw(result, seed, drawn):
+    """Adds a draw to the log, and says its median and its worst."""
+    against = ratios(result)
+    line = {"seed": seed, "machine": result["machine"], "rounds": result["rounds"], "scenes": [
+        {**about, "ratio": {name: round(of[about["path"]], 3) for name, of in against.items() if about["path"] in of},
+         "means": {name: [round(v, 4) for v in e["same"]["ratio_of_means"]]
+                   for name, e in result["scenes"][about["path"]]["entries"].items() if "same" in e}}
+        for about in drawn if about["path"] in result["scenes"]]}
+    for scene in line["scenes"]:
+        del scene["path"]
+    with open(LOG, "a") as f:
+        f.write(json.dumps(line) + "\n")
+    text = ["", "Time for the same error over that of each entry, lower is better:", ""]
+    for name, of in against.items():
+        values = sorted(of.values())
+        text.append("| %s | median %.2f | worst %.2f | best %.2f | of %d |" % (
+            name, float(np.median(values)), values[-1], values[0], len(values)))
+    return "\n".join(text) + "\n"
+
+
+def commit_seed():
+    """The first eight hex digits of the commit that is measured."""
+    done = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "HEAD"], capture_output=True, text=True, check=True)
+    return done.stdout[:8]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     split = lambda text: text.split(",")
     parser.add_argument("--scenes", type=split, default=list(SPP), help="of " + ", ".join(SPP))
-    parser.add_argument("--entries", type=split, default=list(ENTRIES), help="of " + ", ".join(ENTRIES))
+    parser.add_argument("--entries", type=split, help="of " + ", ".join(ENTRIES))
+    parser.add_argument("--draw", type=int, metavar="N", help="draw N scenes instead, and log them")
+    parser.add_argument("--seed", help="seed of the draw; default: the first eight digits of the commit")
     parser.add_argument("--spp", type=lambda text: [int(n) for n in text.split(",")], help="samples a pixel, the same for each scene")
     parser.add_argument("--rounds", type=int, default=5, help="independent renders at each number of samples, at least 2")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--out", default=str(ROOT / "out/race"))
     args = parser.parse_args()
+    args.entries = args.entries or (DRAWN_ENTRIES if args.draw else list(ENTRIES))
     for given, known in ((args.scenes, SPP), (args.entries, ENTRIES)):
         unknown = [name for name in given if name not in known]
         if unknown:
@@ -240,6 +292,13 @@ def main():
         parser.error("the error of a level is known from at least two rounds")
     os.makedirs(args.out, exist_ok=True)
     result = {"machine": machine(), "threads": args.threads, "rounds": args.rounds, "scenes": {}}
+    drawn, seed = [], args.seed or (commit_seed() if args.draw else None)
+    if args.draw:
+        folder = os.path.join(args.out, "drawn")
+        drawn = draw.draw(seed, args.draw, folder)
+        for about in drawn:
+            about["path"] = os.path.join(folder, about["name"] + ".xml")
+        args.scenes = [about["path"] for about in drawn]
     with tempfile.TemporaryDirectory(prefix="race-") as folder:
         for scene in args.scenes:
             print(scene, flush=True)
@@ -251,6 +310,8 @@ def main():
                     f.write(text)
                 os.replace(path + ".tmp", path)
     print(report(result))
+    if args.draw:
+        print(log_draw(result, seed, drawn))
 
 
 if __name__ == "__main__":

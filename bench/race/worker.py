@@ -42,7 +42,8 @@ def main():
         answer(missing="%s: %s" % (type(error).__name__, error))
         return
     ready_s = process_age()
-    scene = scenes.SCENES[scene_name]()
+    # A drawn scene is a file.
+    scene = {"xml": scene_name} if scene_name.endswith(".xml") else scenes.SCENES[scene_name]()
     load_s = peer.load(scene)
     t = time.perf_counter()
     image, *_ = peer.render(1, 99)
