@@ -1,5 +1,6 @@
 //! An image of everything around the scene: what it shows in each direction, and directions drawn by its luminance.
 
+mod cumulative;
 mod equal_area;
 mod meridians;
 
@@ -8,7 +9,7 @@ use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use equal_area::EqualArea;
 use etalon_geometry::SurfaceId;
-use etalon_optics::{Real, Vec3};
+use etalon_optics::Vec3;
 use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image};
 use meridians::Meridians;
 use std::f64::consts::PI;
@@ -133,20 +134,4 @@ impl LightSource for EnvironmentLight {
 /// Luminance of linear Rec. 709: zero for black only.
 fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
-}
-
-/// Makes a cumulative sum end at 1; one of nothing stays 0.
-fn normalise(cumulative: &mut [f64]) {
-    let whole = cumulative.last().copied().unwrap_or(0.0);
-    if whole > 0.0 {
-        cumulative.iter_mut().for_each(|sum| *sum /= whole);
-    }
-}
-
-/// The entry that `u` in [0, 1) chooses, and where between its ends `u` lies, in [0, 1).
-fn choose(cumulative: &[f64], u: f64) -> (usize, f64) {
-    let i = cumulative.partition_point(|&c| c <= u).min(cumulative.len() - 1);
-    let start = if i == 0 { 0.0 } else { cumulative[i - 1] };
-    let within = (u - start) / (cumulative[i] - start);
-    (i, if within.is_finite() { within.clamp(0.0, f64::ONE_MINUS_EPSILON) } else { 0.5 })
 }

@@ -5,7 +5,8 @@
 //! the whole, constant in each texel: a texel is chosen by its luminance and a place in it evenly, and shadow rays have no
 //! variance but that of what they meet.
 
-use super::{Along, Look, choose, luminance, normalise};
+use super::cumulative::Cumulative;
+use super::{Along, Look, luminance};
 use etalon_optics::{Real, atan2_turns};
 use etalon_scene::Image;
 use std::f64::consts::PI;
@@ -15,10 +16,10 @@ use std::f64::consts::PI;
 pub(super) struct EqualArea {
     /// Texels along an edge.
     side: usize,
-    /// Cumulative share of each row of texels; the last is 1.
-    rows: Vec<f64>,
-    /// Cumulative share of each texel in its row, row after row.
-    columns: Vec<f64>,
+    /// The rows of texels, by their share.
+    rows: Cumulative,
+    /// The texels of each row.
+    columns: Cumulative,
     /// ∫ of the luminance over all directions, sr.
     total: f64,
 }
@@ -26,23 +27,12 @@ pub(super) struct EqualArea {
 impl EqualArea {
     pub(super) fn new(image: &Image) -> Self {
         let side = image.width as usize;
-        let mut map =
-            Self { side, rows: Vec::with_capacity(side), columns: Vec::with_capacity(side * side), total: 0.0 };
-        let mut whole = 0.0;
-        for row in 0..side {
-            let first = map.columns.len();
-            let mut sum = 0.0;
-            for column in 0..side {
-                sum += luminance(image.texel(column, row));
-                map.columns.push(sum);
-            }
-            normalise(&mut map.columns[first..]);
-            whole += sum;
-            map.rows.push(whole);
-        }
-        normalise(&mut map.rows);
-        map.total = whole * (4.0 * PI / (side * side) as f64);
-        map
+        let mut columns = Cumulative::new(side, side);
+        let of_rows: Vec<f64> =
+            (0..side).map(|row| columns.push((0..side).map(|column| luminance(image.texel(column, row))))).collect();
+        let mut rows = Cumulative::new(side, 1);
+        let whole = rows.push(of_rows.into_iter());
+        Self { side, rows, columns, total: whole * (4.0 * PI / (side * side) as f64) }
     }
 
     /// ∫ of the luminance over all directions, sr.
@@ -61,8 +51,8 @@ impl EqualArea {
 
     /// The direction that `u` in [0, 1)² draws.
     pub(super) fn sample(&self, u: [f64; 2]) -> Along {
-        let (row, down) = choose(&self.rows, u[1]);
-        let (column, across) = choose(&self.columns[row * self.side..(row + 1) * self.side], u[0]);
+        let (row, down) = self.rows.choose(0, u[1]);
+        let (column, across) = self.columns.choose(row, u[0]);
         let share = |texel: usize, within: f64| (texel as f64 + within) / self.side as f64;
         direction([share(column, across), share(row, down)])
     }

@@ -11,7 +11,8 @@
 //! form, and where the image is not black the density is not zero. Within a cell the two functions differ by how the polar
 //! angle and its cosine run between two rows: by at most a factor of two, next to the poles.
 
-use super::{Along, Look, choose, luminance, normalise};
+use super::cumulative::Cumulative;
+use super::{Along, Look, luminance};
 use etalon_optics::{Real, atan2_turns};
 use etalon_scene::Image;
 use std::f64::consts::{PI, TAU};
@@ -28,10 +29,10 @@ pub(super) struct Meridians {
     last: usize,
     /// Cosines of the polar angles between the rows of cells, from 1 to −1.
     cosines: Vec<f64>,
-    /// Cumulative share of each row of cells; the last is 1.
-    rows: Vec<f64>,
-    /// Cumulative share of each cell in its row, row after row.
-    columns: Vec<f64>,
+    /// The rows of cells, by their share.
+    rows: Cumulative,
+    /// The cells of each row.
+    columns: Cumulative,
     /// ∫ of the function that the density is proportional to: luminance · sr.
     total: f64,
 }
@@ -57,39 +58,24 @@ impl Meridians {
         let mut cosines: Vec<f64> = (0..height).map(|row| (PI * (row as f64 + first) / intervals).cos()).collect();
         cosines.insert(0, 1.0);
         cosines.push(-1.0);
-        let mut cells = Self {
-            width,
-            height,
-            intervals,
-            before,
-            last,
-            cosines,
-            rows: Vec::with_capacity(height + 1),
-            columns: Vec::with_capacity((height + 1) * width),
-            total: 0.0,
-        };
+        let mut columns = Cumulative::new(width, height + 1);
         let luminances_of =
             |row: usize| -> Vec<f64> { (0..width).map(|column| luminance(image.texel(column, row))).collect() };
         let mut luminances: [Vec<f64>; 2] = [Vec::new(), luminances_of(0)];
-        let mut whole = 0.0;
+        let mut of_rows = Vec::with_capacity(height + 1);
         for row in 0..=height {
             luminances.swap(0, 1);
             luminances[1] = luminances_of(row.min(height - 1));
             let [upper, lower] = &luminances;
-            let first = cells.columns.len();
-            let mut sum = 0.0;
-            for j in 0..width {
+            let sum = columns.push((0..width).map(|j| {
                 let k = if j + 1 == width { 0 } else { j + 1 };
-                sum += 0.25 * (upper[j] + upper[k] + lower[j] + lower[k]);
-                cells.columns.push(sum);
-            }
-            normalise(&mut cells.columns[first..]);
-            whole += sum * (TAU / width as f64) * (cells.cosines[row] - cells.cosines[row + 1]);
-            cells.rows.push(whole);
+                0.25 * (upper[j] + upper[k] + lower[j] + lower[k])
+            }));
+            of_rows.push(sum * (TAU / width as f64) * (cosines[row] - cosines[row + 1]));
         }
-        normalise(&mut cells.rows);
-        cells.total = whole;
-        cells
+        let mut rows = Cumulative::new(height + 1, 1);
+        let total = rows.push(of_rows.into_iter());
+        Self { width, height, intervals, before, last, cosines, rows, columns, total }
     }
 
     /// ∫ of the luminance over all directions, sr.
@@ -115,8 +101,8 @@ impl Meridians {
     /// The direction that `u` in [0, 1)² draws.
     pub(super) fn sample(&self, image: &Image, u: [f64; 2]) -> Along {
         let width = self.width;
-        let (row, u1) = choose(&self.rows, u[1]);
-        let (j, u0) = choose(&self.columns[row * width..(row + 1) * width], u[0]);
+        let (row, u1) = self.rows.choose(0, u[1]);
+        let (j, u0) = self.columns.choose(row, u[0]);
         let k = if j + 1 == width { 0 } else { j + 1 };
         let [upper, lower] = self.rows_around(row);
         let corner = |column, row| luminance(image.texel(column, row));
