@@ -275,7 +275,7 @@ fn glb_materials_lights_and_cameras_arrive() {
     let scene = scene(&imported(&model()).unwrap());
     let part = |i: usize| &scene.groups[scene.instances[i].group].objects[0];
     let kind = |i: usize| &scene.materials[part(i).material].kind;
-    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), coat, facets } = kind(0) else {
+    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), coat, facets, .. } = kind(0) else {
         panic!("an image")
     };
     assert_eq!(*facets, Some(1.0.into()));

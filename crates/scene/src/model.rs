@@ -22,8 +22,8 @@ pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
 pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
 pub use light::{Light, LightCone, LightKind};
 pub use material::{
-    LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets, NumberTexture, Parameter, ParameterMut, PolarisingSheet,
-    Side, SpectrumTexture,
+    InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets, NumberTexture, Parameter,
+    ParameterMut, PolarisingSheet, Side, SpectrumTexture,
 };
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use references::ReferenceError;

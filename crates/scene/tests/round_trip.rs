@@ -156,7 +156,12 @@ fn materials_and_spectra() {
     let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
     assert_eq!(kind(&scene, "clay"), &MaterialKind::OneSided { kind: Box::new(clay), side: Side::Back });
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
-    let toy = MaterialKind::Plastic { reflectance, coat, facets: Some(0.1.into()) };
+    let toy = MaterialKind::Plastic {
+        reflectance,
+        coat,
+        facets: Some(0.1.into()),
+        internal_reflection: InternalReflection::Uncoloured,
+    };
     assert_eq!(kind(&scene, "toy"), &toy);
     assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7") });
     let sheet = PolarisingSheet::Polariser { transmittance: Spectrum::Constant(0.75), extinction: 0.125 };

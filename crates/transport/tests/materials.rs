@@ -4,7 +4,9 @@ use etalon_optics::{ComplexIndex, Lanes, RefractiveIndex, Spectrum, Vec3};
 use etalon_oracle::laws::fresnel_exact;
 use etalon_oracle::statistics::Welford;
 use etalon_oracle::truths::walsh_reflectance;
-use etalon_scene::{Image, ImageTexture, MaterialKind, Metal, NumberTexture, SpectrumTexture, Texels};
+use etalon_scene::{
+    Image, ImageTexture, InternalReflection, MaterialKind, Metal, NumberTexture, SpectrumTexture, Texels,
+};
 use etalon_transport::bsdf::{Bsdf, Shading};
 use etalon_transport::light::{Light, PointLight, SpotLight};
 use etalon_transport::spectral::PathSpectrum;
@@ -38,11 +40,17 @@ fn albedo(bsdf: &Bsdf, mu: f64) -> f64 {
 fn smooth_plastic_has_the_albedo_of_its_closed_form() {
     let n = 1.5;
     for rho in [0.2, 0.8, 1.0] {
-        let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(n));
-        let bsdf = Bsdf::new(&MaterialKind::Plastic { reflectance, coat, facets: None }, RANGE_NM);
+        let plastic = |internal_reflection| {
+            let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(n));
+            Bsdf::new(&MaterialKind::Plastic { reflectance, coat, facets: None, internal_reflection }, RANGE_NM)
+        };
+        let (bsdf, uncoloured) = (plastic(InternalReflection::Coloured), plastic(InternalReflection::Uncoloured));
         for mu in [1.0, 0.5, 0.1] {
             let passed = fresnel_exact(mu, n).transmittance();
             let mean = 1.0 - walsh_reflectance(n);
+            // As if the ground were white from the second time on, the geometric series sums to n²/T_avg: T(µ)ρ is left.
+            let read = albedo(&uncoloured, mu);
+            assert!((read - passed * rho).abs() < 3e-4, "uncoloured, ρ {rho} µ {mu}: {read} is not {}", passed * rho);
             let series = |r_i: f64| passed * mean * rho / (n * n * (1.0 - rho * r_i));
             // Inside, a diffuse ray meets 1 − (1 − r)/n² = 0.596 of mirror.
             let truth = series(1.0 - mean / (n * n));
@@ -249,6 +257,7 @@ fn a_material_by_images_is_the_material_that_they_say() {
         reflectance: Spectrum::Constant(0.5).into(),
         coat: RefractiveIndex::Constant(1.5),
         facets: Some(alpha.into()),
+        internal_reflection: InternalReflection::Coloured,
     };
     let places = [0.25, 0.5, 1.0];
     let varied = |roughness: f32| MaterialKind::Blend {
@@ -276,6 +285,7 @@ fn a_material_by_images_is_the_material_that_they_say() {
             reflectance,
             coat: RefractiveIndex::Constant(1.5),
             facets: None,
+            internal_reflection: InternalReflection::Coloured,
         };
         let image = || SpectrumTexture::Image(texel(0.5));
         let uniform = || SpectrumTexture::from(Spectrum::Constant(0.5));

@@ -192,11 +192,15 @@ impl Walk<'_, '_, '_> {
                 let coat = self.index(element, "int_ior", 1.49)? / self.index(element, "ext_ior", 1.000_277)?;
                 self.untinted(element, &["specular_reflectance"])?;
                 let rough = if plugin == "plastic" { Rough::Alpha(0.0) } else { self.alpha(element)? };
-                if !element.flag("nonlinear")?.unwrap_or(false) {
-                    let what = "light reflected inside the coat gets the colour of the ground (nonlinear)";
+                if plugin == "roughplastic" {
+                    let what = "the rough coat loses no light, unlike Mitsuba's: at an alpha of 0.2 over a base of 0.5 it is 2 to 26 % \
+                                brighter";
                     self.builder.leave_out(place, what);
                 }
-                let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat });
+                let nonlinear = element.flag("nonlinear")?.unwrap_or(false);
+                let internal_reflection = if nonlinear { "coloured" } else { "uncoloured" };
+                let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat,
+                    "internal_reflection": internal_reflection });
                 rough.put(&mut plastic);
                 plastic
             }

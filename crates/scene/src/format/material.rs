@@ -15,7 +15,7 @@ use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
 use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned};
-use crate::model::{LEAST_ALPHA, Material, MaterialKind, Metal, PolarisingSheet, Side};
+use crate::model::{InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, PolarisingSheet, Side};
 pub(crate) use blend::Before;
 pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
@@ -175,6 +175,8 @@ crate::record! {
         tangent_rotation_deg: Optional<f64>,
         /// Instead: an image that says the coat's width at each place.
         roughness_image: Optional<RoughnessImageForm>,
+        /// Whether the base colours light each time that the coat reflects it back down ("coloured") or only once ("uncoloured").
+        internal_reflection: Required<InternalReflection> = r#""coloured""#,
         /// Which sides reflect; another is black.
         sides: Required<MaterialSides> = r#""both""#,
     } with [
@@ -186,6 +188,13 @@ crate::record! {
         Rule::Needs("tangent_rotation_deg", &["alpha_u"]),
     ]
 }
+
+crate::keywords!(InternalReflection {
+    /// Each reflection colours it: ρ/(1 − ρ rᵢ).
+    "coloured" => Self::Coloured,
+    /// As if the base were white from the second time on, as other renderers have it: ρ/(1 − rᵢ).
+    "uncoloured" => Self::Uncoloured,
+});
 
 crate::record! {
     /// A pane of glass without thickness: mirrors light, or lets it pass straight on.
@@ -348,6 +357,7 @@ pub(crate) fn material<'f>(
             let coat = plastic.coat.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let roughness = roughness(&roughness_keys!(plastic), files, reader);
             let (reflectance, coat, roughness) = (reflectance?, coat?, roughness?);
+            let internal_reflection = plastic.internal_reflection?;
             // As in glass from inside: where total reflection begins, tables of two widths cannot say.
             if roughness.has_two_widths() && spectra.range_nm.is_some_and(|range_nm| least(&coat, range_nm) < 1.0) {
                 let message = "a coat of two widths must have an index of at least 1";
@@ -359,6 +369,7 @@ pub(crate) fn material<'f>(
                 reflectance: reflectance.clone(),
                 coat: coat.clone(),
                 facets,
+                internal_reflection,
             });
             Some(plastic.sides?.of(kind))
         }

@@ -39,6 +39,16 @@ impl From<f64> for Microfacets {
     }
 }
 
+/// What becomes of light that a coat reflects back down to its ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum InternalReflection {
+    /// The ground colours it again each time: ρ/(1 − ρ rᵢ) in all, rᵢ the share that the coat reflects back.
+    #[default]
+    Coloured,
+    /// The ground colours it once, as if it were white for what comes after: ρ/(1 − rᵢ) in all.
+    Uncoloured,
+}
+
 /// What a surface does to light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialKind {
@@ -104,6 +114,8 @@ pub enum MaterialKind {
         coat: RefractiveIndex,
         /// The coat's facets; `None` is a smooth coat.
         facets: Option<Microfacets>,
+        /// What becomes of light that the coat reflects back down.
+        internal_reflection: InternalReflection,
     },
     /// A pane without thickness.
     ThinDielectric {

@@ -151,9 +151,10 @@ impl Bsdf {
             MaterialKind::OrenNayar { reflectance, roughness } => {
                 Self::OrenNayar(OrenNayar::new(PathTexture::new(reflectance, range_nm), *roughness))
             }
-            MaterialKind::Plastic { reflectance, coat, facets } => {
+            MaterialKind::Plastic { reflectance, coat, facets, internal_reflection } => {
                 let reflectance = PathTexture::new(reflectance, range_nm);
-                Self::Plastic(Plastic::new(reflectance, coat.clone(), facets.as_ref(), range_nm))
+                let facets = facets.as_ref();
+                Self::Plastic(Plastic::new(reflectance, coat.clone(), facets, *internal_reflection, range_nm))
             }
             MaterialKind::ThinDielectric { index } => {
                 Self::ThinDielectric(ThinDielectric::new(index.clone(), range_nm))

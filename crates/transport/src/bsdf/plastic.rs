@@ -17,7 +17,7 @@ use crate::spectral::PathSpectrum;
 use crate::texture::PathTexture;
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Lanes, RefractiveIndex, Vec3, fresnel};
-use etalon_scene::Microfacets;
+use etalon_scene::{InternalReflection, Microfacets};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
 
@@ -28,6 +28,7 @@ pub struct Plastic {
     coat: RefractiveIndex,
     /// T_avg of the coat from outside.
     mean_transmittance: PathSpectrum,
+    internal_reflection: InternalReflection,
     rough: Option<Box<Rough>>,
     /// Whether the coat's index depends on the wavelength.
     dispersive: bool,
@@ -54,6 +55,7 @@ impl Plastic {
         reflectance: PathTexture,
         coat: RefractiveIndex,
         facets: Option<&Microfacets>,
+        internal_reflection: InternalReflection,
         range_nm: [f64; 2],
     ) -> Self {
         let [first, last] = range_nm;
@@ -78,6 +80,7 @@ impl Plastic {
             dispersive: coat.is_dispersive(),
             reference: coat.eval(middle),
             ground: 0.0,
+            internal_reflection,
             reflectance,
             coat,
             mean_transmittance,
@@ -99,10 +102,13 @@ impl Plastic {
         }
     }
 
-    /// ρ/(n²(1 − ρ r_i)) of a coat of index `n`.
+    /// ρ/(n²(1 − ρ r_i)) of a coat of index `n`; where the ground colours light only once, ρ/(n²(1 − r_i)).
     fn ground(&self, wavelength_nm: f64, n: f64, rho: f64) -> f64 {
         let inward = self.mean_transmittance.eval(wavelength_nm) / (n * n);
-        rho / (n * n * (1.0 - rho * (1.0 - inward)))
+        match self.internal_reflection {
+            InternalReflection::Coloured => rho / (n * n * (1.0 - rho * (1.0 - inward))),
+            InternalReflection::Uncoloured => rho / (n * n * inward),
+        }
     }
 
     /// The frame of the coat's facets.

@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use crate::mis::Density;
     use etalon_optics::{Lanes, RefractiveIndex, Spectrum, Vec3};
-    use etalon_scene::{MaterialKind, Metal, PolarisingSheet as Sheet, Side};
+    use etalon_scene::{InternalReflection, MaterialKind, Metal, PolarisingSheet as Sheet, Side};
 
     fn kinds() -> Vec<MaterialKind> {
         let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
@@ -107,7 +107,8 @@ mod tests {
         let grained = Microfacets { alpha: [0.1, 0.4], rotation_rad: 0.5 };
         for facets in [None, Some(0.3.into()), Some(grained)] {
             let (reflectance, coat) = (Spectrum::Constant(0.5).into(), interior.clone());
-            kinds.push(MaterialKind::Plastic { reflectance, coat, facets });
+            let internal_reflection = InternalReflection::Coloured;
+            kinds.push(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection });
         }
         for (kind, side) in [(11, Side::Front), (12, Side::Back), (14, Side::Front)] {
             kinds.push(MaterialKind::OneSided { kind: Box::new(kinds[kind].clone()), side });

@@ -2,7 +2,7 @@
 
 use etalon_optics::{ComplexIndex, Lanes, RefractiveIndex, Spectrum, Vec3};
 use etalon_oracle::laws::{self, Polarises};
-use etalon_scene::{MaterialKind, Metal, Microfacets, PolarisingSheet};
+use etalon_scene::{InternalReflection, MaterialKind, Metal, Microfacets, PolarisingSheet};
 use etalon_transport::bsdf::{Bsdf, BsdfSample, Lobe, Shading};
 use etalon_transport::mis::Density;
 use etalon_transport::polarisation::mueller::{DEPOLARISER, Matrix, Mueller};
@@ -46,6 +46,7 @@ fn plastic(rho: f64, alpha: f64) -> MaterialKind {
         reflectance: Spectrum::Constant(rho).into(),
         coat: RefractiveIndex::Constant(1.5),
         facets: facets(alpha),
+        internal_reflection: InternalReflection::Coloured,
     }
 }
 
@@ -55,6 +56,7 @@ fn plastic_in_glass(alpha: f64) -> MaterialKind {
         reflectance: Spectrum::Constant(1.0).into(),
         coat: RefractiveIndex::Constant(0.8),
         facets: facets(alpha),
+        internal_reflection: InternalReflection::Coloured,
     }
 }
 

@@ -3,7 +3,7 @@
 use etalon_optics::{ComplexIndex, Frame, Real, RefractiveIndex, Spectrum, Vec3, fresnel};
 use etalon_oracle::laws::{self, FresnelPowers, SINGLE};
 use etalon_oracle::{Verdict, suite};
-use etalon_scene::{MaterialKind, Metal, PolarisingSheet};
+use etalon_scene::{InternalReflection, MaterialKind, Metal, PolarisingSheet};
 use etalon_transport::mis;
 
 mod lamp;
@@ -67,7 +67,12 @@ fn more_than_two_hundred_instances_of_laws_hold() {
         MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9).into() },
         MaterialKind::Conductor { metal: Metal::Reflectance(colour.into()) },
         MaterialKind::OrenNayar { reflectance: grey(), roughness: 0.5 },
-        MaterialKind::Plastic { reflectance: grey(), coat: RefractiveIndex::Constant(1.5), facets: None },
+        MaterialKind::Plastic {
+            reflectance: grey(),
+            coat: RefractiveIndex::Constant(1.5),
+            facets: None,
+            internal_reflection: InternalReflection::Coloured,
+        },
         MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5) },
         MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet: polariser },
     ];

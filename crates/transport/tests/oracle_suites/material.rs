@@ -5,7 +5,7 @@ use etalon_oracle::{
     laws,
     subjects::{DeltaLobe, Density, Scattered, Scatters},
 };
-use etalon_scene::{MaterialKind, Metal, PolarisingSheet, Side, SpectrumTexture};
+use etalon_scene::{InternalReflection, MaterialKind, Metal, PolarisingSheet, Side, SpectrumTexture};
 use etalon_transport::{
     bsdf::{Bsdf, Shading},
     mis,
@@ -116,11 +116,15 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
             vec![DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight, probability: 1.0 }]
         }
         MaterialKind::Plastic { facets: Some(_), .. } => Vec::new(),
-        MaterialKind::Plastic { reflectance, coat, .. } => {
+        MaterialKind::Plastic { reflectance, coat, internal_reflection, .. } => {
             let (n, rho) = (coat.eval(wavelength_nm), uniform(reflectance).eval(wavelength_nm));
             let weight = laws::fresnel_exact(cos, n).reflectance();
             let passed = 1.0 - etalon_oracle::truths::walsh_reflectance(n);
-            let ground = passed * rho / (n * n * (1.0 - rho * (1.0 - passed / (n * n))));
+            let again = match internal_reflection {
+                InternalReflection::Coloured => rho,
+                InternalReflection::Uncoloured => 1.0,
+            };
+            let ground = passed * rho / (n * n * (1.0 - again * (1.0 - passed / (n * n))));
             let probability = weight / (weight + (1.0 - weight) * ground);
             vec![DeltaLobe { wi: mirrored, weight, probability }]
         }

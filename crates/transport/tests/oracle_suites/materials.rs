@@ -3,8 +3,8 @@
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
 use etalon_scene::{
-    Image, ImageTexture, MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, Side, SpectrumTexture,
-    Texels,
+    Image, ImageTexture, InternalReflection, MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, Side,
+    SpectrumTexture, Texels,
 };
 
 use crate::material::Material;
@@ -56,7 +56,19 @@ scatters_suite!(very_rough_diamond_in_water, rough_glass("diamond", "water", 1.0
 
 fn plastic(rho: f64, alpha: f64) -> Material {
     let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(1.5));
-    Material::new(MaterialKind::Plastic { reflectance, coat, facets: (alpha > 0.0).then(|| alpha.into()) })
+    Material::new(MaterialKind::Plastic {
+        reflectance,
+        coat,
+        facets: (alpha > 0.0).then(|| alpha.into()),
+        internal_reflection: InternalReflection::Coloured,
+    })
+}
+
+/// As if its ground were white from the second reflection on.
+fn coloured_once(rho: f64, alpha: f64) -> Material {
+    let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(1.5));
+    let (facets, internal_reflection) = ((alpha > 0.0).then(|| alpha.into()), InternalReflection::Uncoloured);
+    Material::new(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection })
 }
 
 fn oren_nayar(rho: f64, roughness: f64) -> Material {
@@ -103,7 +115,12 @@ fn glass_of_varied_roughness() -> Material {
 /// A ground and a coat by images.
 fn painted_plastic() -> Material {
     let reflectance = SpectrumTexture::Image(texel([0.9, 0.2, 0.4]));
-    Material::new(MaterialKind::Plastic { reflectance, coat: RefractiveIndex::Constant(1.5), facets: Some(0.3.into()) })
+    Material::new(MaterialKind::Plastic {
+        reflectance,
+        coat: RefractiveIndex::Constant(1.5),
+        facets: Some(0.3.into()),
+        internal_reflection: InternalReflection::Coloured,
+    })
 }
 
 /// Metal that reflects all that a metal of a given reflectance can.
@@ -120,6 +137,8 @@ scatters_suite!(white_metal, white_metal(0.7));
 scatters_suite!(smooth_plastic, plastic(0.7, 0.0));
 scatters_suite!(white_smooth_plastic, plastic(1.0, 0.0));
 scatters_suite!(white_rough_plastic, plastic(1.0, 0.4));
+scatters_suite!(smooth_plastic_coloured_once, coloured_once(0.7, 0.0));
+scatters_suite!(rough_plastic_coloured_once, coloured_once(0.7, 0.4));
 scatters_suite!(oren_nayar, oren_nayar(0.5, 0.4));
 scatters_suite!(white_oren_nayar, oren_nayar(1.0, 1.0));
 scatters_suite!(pane, pane());
@@ -159,7 +178,12 @@ fn brushed_glass() -> Material {
 
 fn brushed_plastic() -> Material {
     let (reflectance, coat) = (Spectrum::Constant(1.0).into(), RefractiveIndex::Constant(1.5));
-    Material::new(MaterialKind::Plastic { reflectance, coat, facets: Some(brushed(0.2, 0.6)) })
+    Material::new(MaterialKind::Plastic {
+        reflectance,
+        coat,
+        facets: Some(brushed(0.2, 0.6)),
+        internal_reflection: InternalReflection::Coloured,
+    })
 }
 
 /// Two grains that cross.
