@@ -232,6 +232,14 @@ impl From<Adaptive> for Adaptivity {
     }
 }
 
+/// A parameter and its value: `NAME=VALUE`.
+pub(crate) fn parameter(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("expected NAME=VALUE, such as spp=64".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

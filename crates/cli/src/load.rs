@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use etalon::{LoadError, Scene, SceneError};
-use etalon_import::{Imported, Moment, import};
+use etalon_import::{Imported, Options, import};
 use miette::{Report, Severity, miette};
 
 use crate::failure::Failure;
@@ -25,14 +25,20 @@ pub(crate) struct LoadedScene {
 
 /// Reads a scene. A file that cannot be read is bad input as much as one that makes no sense. `film_size`, if given, stands
 /// for the file's width and height in pixels, so that a stated horizontal field of view stays what it says.
-pub(crate) fn load(path: &Path, film_size: Option<[u32; 2]>) -> Result<LoadedScene, Failure> {
+///
+/// `parameters` are those of a scene of Mitsuba.
+pub(crate) fn load(
+    path: &Path,
+    film_size: Option<[u32; 2]>,
+    parameters: &[(String, String)],
+) -> Result<LoadedScene, Failure> {
     let scene = if is_standard_input(path) {
         let name = "standard input";
         etalon_scene::json::read_text(std::io::stdin().lock(), Path::new(name))
             .map_err(SceneError::from)
             .and_then(|text| Scene::parse_in(text, name, Some(Path::new("")), film_size))
     } else {
-        Scene::load_sized(path, film_size)
+        Scene::load_with(path, film_size, &Options { moment: None, parameters: parameters.to_vec() })
     };
     let Scene { model, warnings: problems, added, left_out, file_name, text, sha256 } = scene.map_err(refused)?;
     // What a model does not say is added, what is not converted is listed, both as warnings.
@@ -64,7 +70,7 @@ pub(crate) fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// A model as a scene, as it is at a moment, with a folder's name before the names of its files.
-pub(crate) fn import_model(path: &Path, prefix: &str, moment: Option<&Moment>) -> Result<Imported, Failure> {
-    import(path, prefix, moment).map_err(|error| refused(error.into()))
+/// A model as a scene, with a folder's name before the names of its files.
+pub(crate) fn import_model(path: &Path, prefix: &str, options: &Options) -> Result<Imported, Failure> {
+    import(path, prefix, options).map_err(|error| refused(error.into()))
 }

@@ -38,6 +38,9 @@ pub(crate) struct Settings {
     /// Width and height of the picture in pixels, such as 640x480.
     #[arg(long, value_name = "WxH", help_heading = SETTINGS)]
     size: Option<Size>,
+    /// Value of a parameter of a Mitsuba scene, in the place of its <default>. The option may be repeated.
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", help_heading = SETTINGS, value_parser = crate::args::parameter)]
+    define: Vec<(String, String)>,
     /// Sequence of random numbers.
     #[arg(long, value_enum, help_heading = SETTINGS)]
     sampler: Option<SamplerArg>,
@@ -214,6 +217,11 @@ impl Settings {
             path_loop: self.path_loop.map(PathLoop::from),
             by_cosine_alone: self.by_cosine,
         }
+    }
+
+    /// Parameters of a Mitsuba scene.
+    pub(crate) fn parameters(&self) -> &[(String, String)] {
+        &self.settings.define
     }
 
     /// The film's width and height in pixels, which the reader of the scene must know: a camera's angle may follow them.

@@ -72,7 +72,7 @@ pub use channels::{Aov, Channels};
 pub use compare::{ChannelTest, CompareSettings, Comparison, NoiseTest, NonFinitePixels, TileTest, Verdict, compare};
 pub use error::RenderError;
 pub use etalon_control::{Adaptivity, CostEstimate, Ended, Prediction, Reached, Settled, Watch};
-pub use etalon_import::{ImportError, LeftOut};
+pub use etalon_import::{ImportError, LeftOut, Moment, Options as ImportOptions};
 pub use etalon_optics as optics;
 pub use etalon_picture as picture_files;
 pub use etalon_scene as scene_model;

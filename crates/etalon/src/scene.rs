@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use etalon_import::{ImportError, LeftOut, import, is_model};
+use etalon_import::{ImportError, LeftOut, Options, import, is_model};
 use etalon_scene::{Bands, BandsError, FileUse, LoadError, Loaded, NamedFile, Problem, SceneErrors};
 use etalon_transport::{PrepareError, Study, prepare_study};
 use serde_json::Value;
@@ -74,9 +74,21 @@ impl Scene {
     /// # Errors
     /// As [`Scene::load`].
     pub fn load_sized(path: impl AsRef<Path>, size: Option<[u32; 2]>) -> Result<Self, SceneError> {
+        Self::load_with(path, size, &Options::default())
+    }
+
+    /// As [`Scene::load_sized`], with what a model is asked for: a moment of its animation, parameters. A scene file has neither.
+    ///
+    /// # Errors
+    /// As [`Scene::load`]; also if the file knows nothing of what is asked for.
+    pub fn load_with(path: impl AsRef<Path>, size: Option<[u32; 2]>, options: &Options) -> Result<Self, SceneError> {
         let path = path.as_ref();
+        if !is_model(path) && *options != Options::default() {
+            let message = "it is a scene file: it has no animations of glTF and no parameters of Mitsuba".to_owned();
+            return Err(ImportError { path: path.to_owned(), message }.into());
+        }
         if is_model(path) {
-            let imported = import(path, "", None)?;
+            let imported = import(path, "", options)?;
             let name = format!("{} as a scene", path.display());
             let loaded = imported.parse(&name, size)?;
             let mut scene = Self::new(loaded, name, imported.text);

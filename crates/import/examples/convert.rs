@@ -5,14 +5,14 @@
 
 use std::path::Path;
 
-use etalon_import::import;
+use etalon_import::{Options, import};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let (Some(model), Some(folder)) = (arguments.next(), arguments.next()) else {
         return Err("usage: convert MODEL FOLDER".into());
     };
-    let imported = import(Path::new(&model), "", None)?;
+    let imported = import(Path::new(&model), "", &Options::default())?;
 
     let folder = Path::new(&folder);
     std::fs::create_dir_all(folder)?;

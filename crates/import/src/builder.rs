@@ -4,6 +4,7 @@ mod files;
 mod groups;
 mod studio;
 
+use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
 use etalon_scene::linear::is_similarity;
@@ -26,6 +27,8 @@ const MAX_LEFT_OUT: usize = 1000;
 /// A scene that is being made.
 pub(crate) struct Builder<'a> {
     pub(crate) near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>,
+    /// Folders in which `near` looks too.
+    pub(crate) folders: &'a RefCell<Vec<String>>,
     pub(crate) prefix: String,
     pub(crate) materials: Map<String, Value>,
     pub(crate) objects: Vec<Value>,
@@ -86,9 +89,14 @@ pub(crate) struct Placed {
 }
 
 impl<'a> Builder<'a> {
-    pub(crate) fn new(near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>, prefix: &str) -> Self {
+    pub(crate) fn new(
+        near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>,
+        folders: &'a RefCell<Vec<String>>,
+        prefix: &str,
+    ) -> Self {
         Self {
             near,
+            folders,
             prefix: prefix.to_owned(),
             materials: Map::new(),
             objects: Vec::new(),

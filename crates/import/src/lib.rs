@@ -24,7 +24,7 @@
 //! | item | what it does |
 //! |---|---|
 //! | [`import`] | imports a file from the disk |
-//! | [`import_bytes`], [`import_bytes_at`] | import bytes in memory, the latter at a [`Moment`] of an animation |
+//! | [`import_bytes`], [`import_bytes_with`] | import bytes in memory, the latter with [`Options`]: a moment, parameters |
 //! | [`Imported::parse`] | the imported scene as an [`etalon_scene::Scene`] |
 //! | [`Imported::left_out`] | each thing that the model says and the scene does not, with its place in the file |
 //!
@@ -45,6 +45,7 @@ mod relief;
 mod sides;
 mod table;
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use etalon_scene::mesh::read_ply;
@@ -96,6 +97,15 @@ pub struct Moment {
     pub shutter_s: f64,
 }
 
+/// What a file may be asked for beyond itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// When an animation of glTF is seen; left out, the model is as its nodes place it.
+    pub moment: Option<Moment>,
+    /// Names and values of parameters of a scene of Mitsuba, which stand for its `<default>`s. Of two of a name the last counts.
+    pub parameters: Vec<(String, String)>,
+}
+
 /// Why a model cannot be imported.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {message}", path.display())]
@@ -121,24 +131,24 @@ fn extension(path: &Path) -> String {
 }
 
 /// Imports a model. `prefix` comes before the names of all files of the scene: the name of their folder and a slash, or
-/// nothing. Of a `moment` that is left out, the model is as its nodes place it.
+/// nothing.
 ///
 /// # Errors
-/// If the file, or one that it cannot be understood without, is missing or damaged, or knows nothing of moments.
-pub fn import(path: &Path, prefix: &str, moment: Option<&Moment>) -> Result<Imported, ImportError> {
+/// If the file, or one that it cannot be understood without, is missing or damaged, or knows nothing of the options.
+pub fn import(path: &Path, prefix: &str, options: &Options) -> Result<Imported, ImportError> {
     let fail = |message: String| ImportError { path: path.to_owned(), message };
     let bytes = read_file(path).map_err(|why| fail(format!("cannot be read: {why}")))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let near = |name: &str| read_file(&folder.join(name));
     let kind = extension(path);
     let source = path.file_name().unwrap_or_default().to_string_lossy();
-    import_bytes_at(&kind, &bytes, &near, prefix, &source, moment).map_err(fail)
+    import_bytes_with(&kind, &bytes, &near, prefix, &source, options).map_err(fail)
 }
 
-/// As [`import_bytes_at`], without a moment.
+/// As [`import_bytes_with`], without options.
 ///
 /// # Errors
-/// As [`import_bytes_at`].
+/// As [`import_bytes_with`].
 pub fn import_bytes(
     kind: &str,
     bytes: &[u8],
@@ -146,32 +156,41 @@ pub fn import_bytes(
     prefix: &str,
     source: &str,
 ) -> Result<Imported, String> {
-    import_bytes_at(kind, bytes, near, prefix, source, None)
+    import_bytes_with(kind, bytes, near, prefix, source, &Options::default())
 }
 
-/// Imports a model of a kind (`glb`, `gltf`, `obj`, `ply`, `xml`, `pbrt`) from its bytes, as it is at a moment; `near` gives the bytes
-/// of a file by the name that the model has for it.
+/// Imports a model of a kind (`glb`, `gltf`, `obj`, `ply`, `xml`, `pbrt`) from its bytes; `near` gives the bytes of a file by the name that
+/// the model has for it.
 ///
 /// # Errors
 /// A sentence that says what is wrong, with its place.
-pub fn import_bytes_at(
+pub fn import_bytes_with(
     kind: &str,
     bytes: &[u8],
     near: &dyn Fn(&str) -> Result<Vec<u8>, String>,
     prefix: &str,
     source: &str,
-    moment: Option<&Moment>,
+    options: &Options,
 ) -> Result<Imported, String> {
-    if moment.is_some() && !matches!(kind, "gltf" | "glb") {
+    if options.moment.is_some() && !matches!(kind, "gltf" | "glb") {
         return Err("a time is asked for, but only animations of glTF can be read".to_owned());
     }
-    let mut builder = Builder::new(near, prefix);
+    if let Some((name, _)) = options.parameters.first().filter(|_| kind != "xml") {
+        return Err(format!("the parameter \"{name}\" is given, but only scenes of Mitsuba have parameters"));
+    }
+    // Folders that the scene names come before its own, the last one first.
+    let folders = RefCell::new(Vec::new());
+    let search = |name: &str| {
+        let found = folders.borrow().iter().rev().find_map(|folder: &String| near(&format!("{folder}/{name}")).ok());
+        found.map_or_else(|| near(name), Ok)
+    };
+    let mut builder = Builder::new(&search, &folders, prefix);
     builder.is_bare = matches!(kind, "ply" | "obj" | "gltf" | "glb");
-    let read = read(kind, bytes, moment, &mut builder);
+    let read = read(kind, bytes, options, &mut builder);
     read.and_then(|()| builder.finish(source)).map_err(shortened)
 }
 
-fn read(kind: &str, bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder<'_>) -> Result<(), String> {
+fn read(kind: &str, bytes: &[u8], options: &Options, builder: &mut Builder<'_>) -> Result<(), String> {
     match kind {
         "ply" => {
             let part = read_ply(bytes).map_err(|error| error.to_string())?;
@@ -180,8 +199,8 @@ fn read(kind: &str, bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder
             builder.add_mesh("mesh", part.mesh, &json!("grey"), None)
         }
         "obj" => obj::import(bytes, builder),
-        "gltf" | "glb" => gltf::import(bytes, moment, builder),
-        "xml" => mitsuba::import(bytes, builder),
+        "gltf" | "glb" => gltf::import(bytes, options.moment.as_ref(), builder),
+        "xml" => mitsuba::import(bytes, &options.parameters, builder),
         "pbrt" => pbrt::import(bytes, builder),
         other => Err(format!(
             "models of the kind .{other} cannot be read. Export the model as glTF (.glb), or as .gltf, .obj or .ply. Scenes of Mitsuba 3 \

@@ -1,7 +1,7 @@
 //! Animations of glTF: what nodes do while a shutter is open arrives in the scene's motion, everything else is listed.
 
 use base64::Engine as _;
-use etalon_import::{Imported, Moment, import_bytes_at};
+use etalon_import::{Imported, Moment, Options, import_bytes_with};
 use etalon_scene::{Scene, Transform};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -44,8 +44,12 @@ fn model(nodes: Value, roots: &[usize], channels: &[Channel<'_>]) -> Value {
     })
 }
 
+fn options(moment: Option<&Moment>) -> Options {
+    Options { moment: moment.cloned(), ..Options::default() }
+}
+
 fn at(model: &Value, moment: Option<&Moment>) -> Result<Imported, String> {
-    import_bytes_at("gltf", model.to_string().as_bytes(), &nothing, "", "m.gltf", moment)
+    import_bytes_with("gltf", model.to_string().as_bytes(), &nothing, "", "m.gltf", &options(moment))
 }
 
 fn moment(opens_s: f64, shutter_s: f64) -> Moment {
@@ -254,7 +258,11 @@ fn animations_that_are_not_asked_for_are_listed() {
 #[test]
 fn what_cannot_be_followed_is_said() {
     let ply = b"ply\nformat ascii 1.0\nelement vertex 0\nend_header\n";
-    assert!(import_bytes_at("ply", ply, &nothing, "", "a", Some(&moment(0.0, 0.0))).unwrap_err().contains("glTF"));
+    assert!(
+        import_bytes_with("ply", ply, &nothing, "", "a", &options(Some(&moment(0.0, 0.0))))
+            .unwrap_err()
+            .contains("glTF")
+    );
     let single =
         |path, values: &[f32]| model(json!([{ "mesh": 0 }]), &[0], &[(0, path, "LINEAR", &[0.0, 1.0], values)]);
     for (model, part) in [

@@ -65,7 +65,7 @@ struct Cost {
 }
 
 pub(crate) fn run(args: Args) -> Outcome {
-    let mut loaded = load(&args.scene, args.overrides.film_size())?;
+    let mut loaded = load(&args.scene, args.overrides.film_size(), args.overrides.parameters())?;
     args.overrides.apply(&mut loaded.scene)?;
     print::warnings(&loaded.warnings);
     let study = args.overrides.study();

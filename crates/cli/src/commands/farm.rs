@@ -92,7 +92,7 @@ const CHECKPOINT: &str = "60s";
 
 pub(crate) fn run(args: Args, program: Option<PathBuf>) -> Outcome {
     // A scene with mistakes is found here, not on a hundred machines.
-    let mut loaded = load(&args.scene, args.overrides.film_size())?;
+    let mut loaded = load(&args.scene, args.overrides.film_size(), args.overrides.parameters())?;
     args.overrides.apply(&mut loaded.scene)?;
     print::warnings(&loaded.warnings);
     let stem = args.scene.file_stem().map_or_else(|| "picture".into(), |stem| stem.to_string_lossy().into_owned());

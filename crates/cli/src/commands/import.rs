@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use etalon_import::Moment;
+use etalon_import::{Moment, Options};
 use etalon_picture::write_atomically;
 use miette::{Report, miette};
 use serde::Serialize;
@@ -33,6 +33,9 @@ pub(crate) struct Args {
     /// Name of the animation, or its index from 0. Default: the first.
     #[arg(long, value_name = "NAME", requires = "time")]
     animation: Option<String>,
+    /// Value of a parameter of a Mitsuba scene, in the place of its <default>. The option may be repeated.
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = crate::args::parameter)]
+    define: Vec<(String, String)>,
     /// Print one JSON object on standard output, with the files and what was not converted.
     #[arg(long)]
     json: bool,
@@ -87,7 +90,7 @@ pub(crate) fn run(args: Args) -> Outcome {
     let prefix = format!("{stem}-files/");
     let moment =
         args.time.map(|opens_s| Moment { animation: args.animation.clone(), opens_s, shutter_s: args.shutter });
-    let imported = import_model(&args.model, &prefix, moment.as_ref())?;
+    let imported = import_model(&args.model, &prefix, &Options { moment, parameters: args.define })?;
     // What would not load is not written.
     let name = args.output.display().to_string();
     imported.parse(&name, None).map_err(refused_scene)?;

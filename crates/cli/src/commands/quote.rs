@@ -108,7 +108,7 @@ struct CostEstimateJson {
 }
 
 pub(crate) fn run(args: Args) -> Outcome {
-    let mut loaded = load(&args.scene, args.overrides.film_size())?;
+    let mut loaded = load(&args.scene, args.overrides.film_size(), args.overrides.parameters())?;
     args.overrides.apply(&mut loaded.scene)?;
     print::warnings(&loaded.warnings);
     if let Some(list) = &args.frames.frames {

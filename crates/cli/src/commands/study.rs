@@ -159,9 +159,9 @@ fn all_scenes() -> Result<Vec<String>, Failure> {
 }
 
 fn of_file(path: &Path, width: u32) -> Result<Subject, Failure> {
-    let film = load(path, None)?.scene.film;
+    let film = load(path, None, &[])?.scene.film;
     let height = (f64::from(width) * f64::from(film.height) / f64::from(film.width)).round().max(1.0) as u32;
-    let scene = load(path, Some([width, height]))?.scene;
+    let scene = load(path, Some([width, height]), &[])?.scene;
     let name = path.file_stem().map_or_else(|| path.display().to_string(), |stem| stem.to_string_lossy().into_owned());
     Ok(Subject { name, scene, truth: None })
 }

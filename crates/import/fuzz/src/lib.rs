@@ -1,6 +1,6 @@
 //! What the targets share: a model is imported and, if that succeeds, read as the scene that it became.
 
-use etalon_import::{Moment, import_bytes_at};
+use etalon_import::{Moment, Options, import_bytes_with};
 
 /// Two by two texels.
 const PNG: &[u8] = include_bytes!("../../../scene/fuzz/seeds/image/chequers.png");
@@ -11,9 +11,10 @@ pub fn import(kind: &str, bytes: &[u8]) {
     let near = |name: &str| Ok(if name.ends_with(".png") { PNG } else { bytes }.to_vec());
     // As it stands, and, of what can move, as it moves.
     let moment = Moment { animation: None, opens_s: 0.25, shutter_s: 0.5 };
-    let moments: &[Option<&Moment>] = if matches!(kind, "gltf" | "glb") { &[None, Some(&moment)] } else { &[None] };
-    for moment in moments {
-        if let Ok(imported) = import_bytes_at(kind, bytes, &near, "files/", "model", *moment) {
+    let moves = matches!(kind, "gltf" | "glb");
+    for moment in [None].into_iter().chain(moves.then_some(Some(moment))) {
+        let options = Options { moment, ..Options::default() };
+        if let Ok(imported) = import_bytes_with(kind, bytes, &near, "files/", "model", &options) {
             // It may be no right scene, but saying so must not fail.
             let _ = imported.parse("scene.json", None);
         }

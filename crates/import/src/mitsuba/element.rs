@@ -1,7 +1,7 @@
 //! The tree of a Mitsuba file: parameters put in, includes followed, and each element knowing whether it has been used.
 
-use std::cell::Cell;
-use std::collections::HashMap;
+use std::cell::{Cell, RefCell};
+use std::collections::{HashMap, HashSet};
 
 use roxmltree::{Document, ParsingOptions};
 
@@ -15,6 +15,9 @@ pub(super) const MAX_ELEMENTS: usize = 4_000_000;
 const MAX_SUBSTITUTED: usize = 16 << 20;
 /// Most files that are included, each counted as often as it is.
 const MAX_INCLUDES: usize = 1000;
+
+/// Most folders in which files are looked for: each costs a look for each file.
+const MAX_FOLDERS: usize = 32;
 
 /// An element, with `$names` replaced by their values.
 #[derive(Debug)]
@@ -186,10 +189,21 @@ impl<'a> Ids<'a> {
     }
 }
 
-/// Reads a file into a tree.
-pub(super) fn read(bytes: &[u8], near: &dyn Fn(&str) -> Result<Vec<u8>, String>) -> Result<Element, String> {
-    let mut reading = Reading { near, parameters: HashMap::new(), count: 0, includes: 0, substituted: 0 };
+/// Reads a file into a tree, with values of some of its parameters.
+pub(super) fn read(bytes: &[u8], given: &[(String, String)], builder: &Builder<'_>) -> Result<Element, String> {
+    let mut reading = Reading {
+        near: builder.near,
+        folders: builder.folders,
+        parameters: given.iter().cloned().collect(),
+        asked_for: HashSet::new(),
+        count: 0,
+        includes: 0,
+        substituted: 0,
+    };
     let mut root = reading.file(bytes, None, 0)?;
+    if let Some((name, _)) = given.iter().find(|(name, _)| !reading.asked_for.contains(name)) {
+        return Err(format!("the parameter \"{name}\" is given, but nothing in the scene asks for it"));
+    }
     match root.len() {
         1 => Ok(root.remove(0)),
         _ => Err("it has no <scene>".to_owned()),
@@ -198,8 +212,12 @@ pub(super) fn read(bytes: &[u8], near: &dyn Fn(&str) -> Result<Vec<u8>, String>)
 
 struct Reading<'a> {
     near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>,
+    /// Further folders of files.
+    folders: &'a RefCell<Vec<String>>,
     /// What `$name` stands for.
     parameters: HashMap<String, String>,
+    /// Names of parameters that the scene has.
+    asked_for: HashSet<String>,
     count: usize,
     includes: usize,
     /// Bytes that parameters have been replaced by.
@@ -238,7 +256,17 @@ impl Reading<'_> {
         match tag.as_str() {
             "default" => {
                 let name = attributes.remove("name").ok_or_else(|| format!("{place}: a <default> without a name"))?;
+                self.asked_for.insert(name.clone());
                 self.parameters.entry(name).or_insert(attributes.remove("value").unwrap_or_default());
+                return Ok(Vec::new());
+            }
+            "path" => {
+                let folder = attributes.remove("value").ok_or_else(|| format!("{place}: a <path> without a value"))?;
+                let mut folders = self.folders.borrow_mut();
+                if folders.len() == MAX_FOLDERS {
+                    return Err(format!("{place}: more than {MAX_FOLDERS} folders to look for files in"));
+                }
+                folders.push(folder);
                 return Ok(Vec::new());
             }
             "include" => {
@@ -271,6 +299,7 @@ impl Reading<'_> {
             let end = tail.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(tail.len());
             let name = &tail[..end];
             let value = self.parameters.get(name).ok_or_else(|| format!("no <default> gives ${name} a value"))?;
+            self.asked_for.insert(name.to_owned());
             self.substituted += value.len();
             if self.substituted > MAX_SUBSTITUTED {
                 return Err(format!("with ${name} the values of parameters are longer than {MAX_SUBSTITUTED} bytes"));

@@ -17,8 +17,8 @@ use super::Builder;
 use element::{Element, Ids, MAX_DEPTH, MAX_ELEMENTS};
 use material::Look;
 
-pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
-    let root = element::read(bytes, builder.near)?;
+pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mut Builder<'_>) -> Result<(), String> {
+    let root = element::read(bytes, parameters, builder)?;
     if root.tag != "scene" {
         return Err(format!("{}: <{}> is not a Mitsuba scene", root.place, root.tag));
     }

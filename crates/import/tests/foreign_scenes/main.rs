@@ -3,6 +3,7 @@
 mod bounds;
 mod brushed;
 mod images;
+mod parameters;
 mod relief;
 mod sides;
 

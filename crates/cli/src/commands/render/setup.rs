@@ -49,7 +49,7 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
 
 /// The scene, as the options have it.
 pub(super) fn load_scene(args: &Args) -> Result<LoadedScene, Failure> {
-    let mut loaded = load(&args.scene, args.overrides.film_size())?;
+    let mut loaded = load(&args.scene, args.overrides.film_size(), args.overrides.parameters())?;
     args.overrides.apply(&mut loaded.scene)?;
     Ok(loaded)
 }
