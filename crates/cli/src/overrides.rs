@@ -221,7 +221,7 @@ impl Settings {
 
     /// Parameters of a Mitsuba scene.
     pub(crate) fn parameters(&self) -> &[(String, String)] {
-        &self.settings.define
+        &self.define
     }
 
     /// The film's width and height in pixels, which the reader of the scene must know: a camera's angle may follow them.
