@@ -7,6 +7,7 @@ use etalon_oracle::subjects::Reading;
 use etalon_oracle::truths as known;
 use etalon_oracle::truths::Truth;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use serde_json::{Value, json};
 
 use crate::errors::setting;
@@ -18,7 +19,8 @@ static TRUTHS: LazyLock<Vec<Truth>> = LazyLock::new(known::truths);
 pub(crate) fn truths(py: Python<'_>) -> String {
     py.detach(|| {
         let files = known::exchange_files(&TRUTHS);
-        let text = |path: &str| files.iter().find(|file| file.path == path).map(|file| file.text.as_str());
+        let text =
+            |path: &str| files.iter().find(|file| file.path == path).and_then(|file| str::from_utf8(&file.bytes).ok());
         let json = |path: &str| text(path).and_then(|text| serde_json::from_str::<Value>(text).ok());
         let mut list = json("truths.json").map_or(Value::Null, |mut list| list["truths"].take());
         for truth in list.as_array_mut().into_iter().flatten() {
@@ -30,10 +32,11 @@ pub(crate) fn truths(py: Python<'_>) -> String {
     })
 }
 
-/// The exchange folder: the path and the text of each file.
+/// The exchange folder: the path and the bytes of each file.
 #[pyfunction]
-pub(crate) fn exchange_files(py: Python<'_>) -> Vec<(String, String)> {
-    py.detach(|| known::exchange_files(&TRUTHS).into_iter().map(|file| (file.path, file.text)).collect())
+pub(crate) fn exchange_files(py: Python<'_>) -> Vec<(String, Bound<'_, PyBytes>)> {
+    let files = py.detach(|| known::exchange_files(&TRUTHS));
+    files.into_iter().map(|file| (file.path, PyBytes::new(py, &file.bytes))).collect()
 }
 
 /// Holds a reading to a truth; the verdict is JSON.

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use etalon_oracle::truths::{Claim, truths};
 use etalon_picture::write_atomically;
-use etalon_scene::Scene;
+use etalon_scene::{NamedFile, Scene};
 use miette::{Report, miette};
 use serde::Serialize;
 
@@ -174,7 +174,10 @@ fn of_truth(name: &str) -> Result<Subject, Failure> {
     let truth = truth.filter(|truth| truth.band_nm.is_none()).ok_or_else(|| {
         Failure::input(miette!(code = "unknown-truth", "there is no truth `{name}` of a mean luminance"))
     })?;
-    let (scene, _) = etalon_scene::parse(&truth.scene, name).map_err(|e| Failure::run(miette!("{}", e.summary())))?;
+    let files: Vec<_> =
+        truth.files.iter().map(|file| NamedFile { name: file.name.clone(), bytes: file.bytes.clone() }).collect();
+    let loaded = etalon_scene::parse_with_files(&truth.scene, name, &files, None);
+    let scene = loaded.map_err(|e| Failure::run(miette!("{}", e.summary())))?.scene;
     Ok(Subject { name: name.to_owned(), scene, truth: Some(truth.value) })
 }
 

@@ -5,7 +5,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Claim, Truth};
+use super::{Claim, SceneFile, Truth};
 use crate::{
     statistics::{Estimate, Welford},
     subjects::Reading,
@@ -16,15 +16,18 @@ use crate::{
 pub struct ExchangeFile {
     /// Its path in the folder, with `/` between names.
     pub path: String,
-    /// Its text.
-    pub text: String,
+    /// Its contents: text in UTF-8, or an image that a scene names.
+    pub bytes: Vec<u8>,
 }
 
 /// The folder with which a renderer joins: a README, the JSON Schema of the neutral form, the list of truths, and a scene
-/// for each.
+/// for each, with the files that it names.
+///
+/// # Panics
+/// If two scenes name different files alike.
 #[must_use]
 pub fn exchange_files(truths: &[Truth]) -> Vec<ExchangeFile> {
-    let file = |path: &str, text: &str| ExchangeFile { path: path.to_owned(), text: text.to_owned() };
+    let file = |path: &str, text: &str| ExchangeFile { path: path.to_owned(), bytes: text.as_bytes().to_vec() };
     let list = json!({ "format": 1, "truths": truths.iter().map(entry).collect::<Vec<_>>() });
     let list = serde_json::to_string_pretty(&list).expect("a JSON value always prints") + "\n";
     let mut files = vec![
@@ -33,6 +36,13 @@ pub fn exchange_files(truths: &[Truth]) -> Vec<ExchangeFile> {
         file("truths.json", &list),
     ];
     for truth in truths {
+        for SceneFile { name, bytes } in &truth.files {
+            let path = format!("scenes/{name}");
+            match files.iter().find(|file| file.path == path) {
+                Some(other) => assert_eq!(&other.bytes, bytes, "{}: another file is named {name}", truth.name),
+                None => files.push(ExchangeFile { path, bytes: bytes.clone() }),
+            }
+        }
         files.push(file(&format!("scenes/{}.json", truth.name), &(truth.scene.clone() + "\n")));
         if truth.band_nm.is_some() {
             files.push(file(&format!("scenes/{}.white.json", truth.name), &(truth.white_scene() + "\n")));
@@ -88,6 +98,7 @@ impl Claim {
             Self::LosslessRoughMetal => "lossless-rough-metal",
             Self::AnisotropicFacets => "anisotropic-facets",
             Self::CorrelatedMasking => "correlated-masking",
+            Self::WholeFormat => "whole-format",
         }
     }
 }

@@ -164,7 +164,7 @@ fn eyes() -> Vec<Truth> {
 }
 
 /// Reflectance of a conductor n + ik for unpolarised light, by complex arithmetic on Fresnel's equations.
-fn conductor_reflectance(n: f64, k: f64, cosine: f64) -> f64 {
+pub(super) fn conductor_reflectance(n: f64, k: f64, cosine: f64) -> f64 {
     // cosθₜ·(n + ik) = √((n + ik)² − sin²θ), principal root.
     let (re, im) = (n * n - k * k - (1.0 - cosine * cosine), 2.0 * n * k);
     let modulus = re.hypot(im);

@@ -16,15 +16,22 @@ mod facets;
 mod furnaces;
 mod glass;
 mod illumination;
+mod instruments;
 mod irradiance;
 mod judge;
 mod lamps;
 mod masks;
 mod motion;
+mod named;
 mod polarised;
 mod prisms;
+mod relief;
 mod scene;
+mod skies;
 mod solids;
+mod sources;
+mod surfaces;
+mod textures;
 mod tubes;
 mod view_factors;
 mod water;
@@ -78,11 +85,13 @@ pub enum Claim {
     AnisotropicFacets,
     /// Facets hide each other in reflection by Smith's masking that is correlated in height.
     CorrelatedMasking,
+    /// Reads the whole scene format of Etalon, with its files, not the neutral form alone.
+    WholeFormat,
 }
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 15] = [
+    pub const UNPOLARISED: [Self; 16] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -98,6 +107,7 @@ impl Claim {
         Self::LosslessRoughMetal,
         Self::AnisotropicFacets,
         Self::CorrelatedMasking,
+        Self::WholeFormat,
     ];
 }
 
@@ -141,13 +151,25 @@ impl fmt::Debug for SecondOpinion {
     }
 }
 
+/// A file that a scene names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneFile {
+    /// Its name, as the scene writes it.
+    pub name: String,
+    /// Its contents.
+    pub bytes: Vec<u8>,
+}
+
 /// A scene with a known answer.
 #[derive(Clone, Debug)]
 pub struct Truth {
     /// Its name: words joined by hyphens, unique.
     pub name: String,
-    /// The scene as JSON text in the neutral form, version 1: SI units, camera, film, materials, objects, lights, integrator.
+    /// The scene as JSON text in the neutral form, version 1: SI units, camera, film, materials, objects, lights, integrator. With
+    /// [`Claim::WholeFormat`] it uses keys of Etalon's own format that the neutral form lacks.
     pub scene: String,
+    /// The files that the scene names, which lie beside it.
+    pub files: Vec<SceneFile>,
     /// What the mean over all pixels must be.
     pub value: f64,
     /// The formula, with the numbers of this scene.
@@ -182,6 +204,7 @@ impl Truth {
         Self {
             name: name.into(),
             scene: scene.to_json(),
+            files: scene.files(),
             value,
             formula: formula.into(),
             derivation: "",
@@ -304,6 +327,13 @@ pub fn truths() -> Vec<Truth> {
         cameras::truths(),
         motion::truths(),
         masks::truths(),
+        textures::truths(),
+        relief::truths(),
+        instruments::truths(),
+        sources::truths(),
+        named::truths(),
+        skies::truths(),
+        surfaces::truths(),
     ]
     .into_iter()
     .flatten()

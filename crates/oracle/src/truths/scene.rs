@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::Claim;
+use super::{Claim, SceneFile};
 use crate::vector::{Vec3, add, cross, length, normalize, sub};
 
 /// A scene in the making.
@@ -18,6 +18,11 @@ pub(super) struct Scene {
     max_depth: Option<u32>,
     light_sampling: Option<&'static str>,
     band_nm: Option<[f64; 2]>,
+    /// Values of the whole format, by the names of the two keys that lead to them; a whole part has no second.
+    further: Vec<([&'static str; 2], Value)>,
+    files: Vec<SceneFile>,
+    /// Whether the scene uses keys that the neutral form lacks.
+    whole_format: bool,
 }
 
 /// Plate that a light meter looks at: its albedo and half side.
@@ -37,7 +42,54 @@ impl Scene {
             max_depth: None,
             light_sampling: None,
             band_nm: None,
+            further: Vec::new(),
+            files: Vec::new(),
+            whole_format: false,
         }
+    }
+
+    /// A camera of Etalon's whole format.
+    pub(super) fn camera(camera: Value) -> Self {
+        Self { whole_format: true, ..Self::new(camera) }
+    }
+
+    /// Sets a key of the whole format in one of the scene's parts, such as `"film"` and `"filter"`.
+    pub(super) fn set(mut self, part: &'static str, key: &'static str, value: Value) -> Self {
+        self.further.push(([part, key], value));
+        self.whole_format = true;
+        self
+    }
+
+    /// Sets a whole part of the scene, such as `"instances"`.
+    pub(super) fn whole(mut self, part: &'static str, value: Value) -> Self {
+        self.further.push(([part, ""], value));
+        self.whole_format = true;
+        self
+    }
+
+    /// An object of the whole format.
+    pub(super) fn thing(mut self, object: Value) -> Self {
+        self.objects.push(object);
+        self.whole_format = true;
+        self
+    }
+
+    /// A light of the whole format.
+    pub(super) fn light(mut self, light: Value) -> Self {
+        self.lights.push(light);
+        self.whole_format = true;
+        self
+    }
+
+    /// A file that the scene names.
+    pub(super) fn file(mut self, name: &str, bytes: Vec<u8>) -> Self {
+        self.files.push(SceneFile { name: name.to_owned(), bytes });
+        self.whole_format = true;
+        self
+    }
+
+    pub(super) fn files(&self) -> Vec<SceneFile> {
+        self.files.clone()
     }
 
     /// Parallel rays from a plane through `position`.
@@ -202,6 +254,9 @@ impl Scene {
         if self.band_nm.is_some() {
             claims.push(Claim::NarrowBand);
         }
+        if self.whole_format {
+            claims.push(Claim::WholeFormat);
+        }
         claims
     }
 
@@ -233,8 +288,37 @@ impl Scene {
                 self.moving.iter().enumerate().map(|(i, (_, keys))| json!({ "group": name(i), "keyframes": keys }));
             scene["instances"] = instances.collect();
         }
+        for ([part, key], value) in &self.further {
+            match *key {
+                "" => scene[*part] = value.clone(),
+                key => scene[*part][key] = value.clone(),
+            }
+        }
         serde_json::to_string_pretty(&scene).expect("a JSON value always prints")
     }
+}
+
+/// An image in the form of Radiance, rows from the top, of numbers that are multiples of 1/256 below 1, or powers of two: these are exact.
+pub(super) fn radiance_hdr(width: usize, texels: &[[f64; 3]]) -> Vec<u8> {
+    let height = texels.len() / width;
+    let mut bytes = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes();
+    for texel in texels {
+        let most = texel.iter().copied().fold(0.0, f64::max);
+        // A common exponent e, so that each channel is its byte times 2^(e − 136).
+        let mut exponent = 128_i32;
+        while most * 256.0 >= 256.0 * f64::from(exponent - 128).exp2() {
+            exponent += 1;
+        }
+        let channel = |value: f64| (value * f64::from(136 - exponent).exp2()).round() as u8;
+        bytes.extend(texel.map(channel));
+        bytes.push(exponent as u8);
+    }
+    bytes
+}
+
+/// The same in grey.
+pub(super) fn grey_hdr(width: usize, texels: &[f64]) -> Vec<u8> {
+    radiance_hdr(width, &texels.iter().map(|&value| [value; 3]).collect::<Vec<_>>())
 }
 
 /// An upward direction well across the view.

@@ -9,12 +9,14 @@ use etalon_oracle::{
 
 use crate::renderer::Tracer;
 
-/// Truths that apply to a renderer without polarisation, thermal spectra, priorities, motion and facets of two widths.
+/// Truths in the neutral form that apply to a renderer without polarisation, thermal spectra, priorities, motion and facets of two widths.
 fn readable() -> Vec<Truth> {
     let claims: Vec<_> = Claim::UNPOLARISED
         .into_iter()
         .filter(|claim| {
-            ![Claim::Priorities, Claim::Absorption, Claim::Motion, Claim::AnisotropicFacets].contains(claim)
+            let beyond =
+                [Claim::Priorities, Claim::Absorption, Claim::Motion, Claim::AnisotropicFacets, Claim::WholeFormat];
+            !beyond.contains(claim)
         })
         .collect();
     let applies = |truth: &Truth| truth.applies_to(&claims) && !truth.scene.contains("blackbody");

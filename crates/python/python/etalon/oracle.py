@@ -179,13 +179,13 @@ def export(folder: str | os.PathLike[str], names: Iterable[str] | None = None) -
     """
     wanted = None if names is None else {truth(name).name for name in names}
     written = []
-    for path, text in _etalon.exchange_files():
+    for path, contents in _etalon.exchange_files():
         stem = os.path.basename(path).removesuffix(".json").removesuffix(".white")
-        if wanted is not None and path.startswith("scenes/") and stem not in wanted:
+        if wanted is not None and path.startswith("scenes/") and path.endswith(".json") and stem not in wanted:
             continue
         target = os.path.join(os.fspath(folder), *path.split("/"))
         os.makedirs(os.path.dirname(target), exist_ok=True)
-        with open(target, "w", encoding="utf-8") as file:
-            file.write(text)
+        with open(target, "wb") as file:
+            file.write(contents)
         written.append(target)
     return written

@@ -17,7 +17,7 @@ pub(super) fn run(folder: &Path, truths: &[Truth]) -> Outcome {
         .map_err(|error| Failure::run(miette!(code = "export", "cannot make `{}`: {error}", scenes.display())))?;
     let files = exchange_files(truths);
     for file in &files {
-        write_atomically(&folder.join(&file.path), |out| out.write_all(file.text.as_bytes()))
+        write_atomically(&folder.join(&file.path), |out| out.write_all(&file.bytes))
             .map_err(|error| Failure::run(Report::from_err(error)))?;
     }
     print::line(&format!(

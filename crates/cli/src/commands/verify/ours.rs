@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::Reading;
-use etalon_oracle::truths::{Claim, Truth, judge};
-use etalon_scene::Scene;
+use etalon_oracle::truths::{Claim, SceneFile, Truth, judge};
+use etalon_scene::{NamedFile, Scene};
 use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
 
@@ -42,7 +42,7 @@ struct Measurement<'a> {
 
 impl<'a> Measurement<'a> {
     fn new(truth: &'a Truth, args: &Args) -> Result<Self, String> {
-        let scene = |json: &str| Self::scene(json, args);
+        let scene = |json: &str| Self::scene(json, truth, args);
         let threads = args.threads.map(|threads| threads as usize);
         // Distinct for each pair: fewer replicates than 2¹⁶.
         let seeds: Vec<u64> = (0..REPLICATES).map(|replicate| args.seed << 16 | u64::from(replicate)).collect();
@@ -55,8 +55,11 @@ impl<'a> Measurement<'a> {
     }
 
     /// The scene as each replicate renders it.
-    fn scene(json: &str, args: &Args) -> Result<Scene, String> {
-        let (mut scene, _) = etalon_scene::parse(json, "truth").map_err(|errors| errors.summary())?;
+    fn scene(json: &str, truth: &Truth, args: &Args) -> Result<Scene, String> {
+        let named = |file: &SceneFile| NamedFile { name: file.name.clone(), bytes: file.bytes.clone() };
+        let files: Vec<NamedFile> = truth.files.iter().map(named).collect();
+        let loaded = etalon_scene::parse_with_files(json, "truth", &files, None).map_err(|errors| errors.summary())?;
+        let mut scene = loaded.scene;
         // Each film is one replicate here.
         scene.integrator.replicates = 1;
         if args.thorough {

@@ -1,0 +1,403 @@
+//! Materials beyond the neutral form: one-sided, coated, rough diffuse, thin; roughness and reflectance as scenes state them.
+
+use std::f64::consts::PI;
+
+use serde_json::{Value, json};
+
+use super::{
+    Claim, Truth,
+    furnaces::conductor_reflectance,
+    scene::{Scene, black, disk, grey_hdr, level_square, parallelogram, sphere},
+    walsh_reflectance,
+};
+use crate::{
+    laws::{Masking, anisotropic_ggx_albedo, anisotropic_ggx_mirrors, fresnel_exact, ggx_albedo},
+    quadrature::interval,
+};
+
+pub(super) fn truths() -> Vec<Truth> {
+    let mut list = sides();
+    list.extend(coated());
+    list.extend(rough_diffuse());
+    list.extend(panes());
+    list.extend(rough_metal());
+    list.extend(rough_glass());
+    list
+}
+
+/// A plate under a sky of radiance 1, seen from `tilt_deg` off its normal, from before or from behind.
+fn plate(tilt_deg: f64, behind: bool) -> Scene {
+    let (sine, cosine) = tilt_deg.to_radians().sin_cos();
+    let z = if behind { -2.0 * cosine } else { 2.0 * cosine };
+    Scene::orthographic([2.0 * sine, 0.0, z], [0.0; 3], 0.1).sky(1.0).film(16, 16).spp(1024)
+}
+
+fn square() -> Value {
+    level_square([0.0; 3], 1.0, true)
+}
+
+fn thing(material: Value) -> Value {
+    json!({ "shape": square(), "material": material })
+}
+
+fn sides() -> Vec<Truth> {
+    let kinds = [
+        ("lambert", json!({ "type": "lambert", "reflectance": 0.8 }), 0.8),
+        ("mirror", json!({ "type": "mirror", "reflectance": 0.9 }), 0.9),
+        ("conductor", json!({ "type": "conductor", "reflectance": 0.6 }), 0.6),
+        ("oren-nayar", json!({ "type": "oren-nayar", "reflectance": 1, "roughness": 0.7 }), 1.0),
+        ("plastic", json!({ "type": "plastic", "reflectance": 1 }), 1.0),
+    ];
+    let mut list = Vec::new();
+    for (name, material, albedo) in kinds {
+        for (sides, seen, behind) in [
+            ("front", "front", false),
+            ("front", "back", true),
+            ("back", "front", false),
+            ("back", "back", true),
+            ("both", "back", true),
+        ] {
+            let mut material = material.clone();
+            material["sides"] = json!(sides);
+            let value = if sides == seen || sides == "both" { albedo } else { 0.0 };
+            let truth = Truth::new(
+                format!("{name}-of-side-{sides}-seen-from-the-{seen}"),
+                &plate(0.0, behind).thing(thing(material)).spp(256),
+                value,
+                if value == 0.0 { "0" } else { "the albedo at normal incidence" },
+            )
+            .because(
+                "Under a sky of radiance 1 a plate shows its albedo. A side that does not reflect is black and lets no light through.",
+            )
+            .or_else("the other side", if value == 0.0 { albedo } else { 0.0 });
+            list.push(truth.sees(0.005));
+        }
+    }
+    list
+}
+
+/// Share of diffuse light that a smooth interface to index n reflects, from outside.
+fn transmitted(n: f64, mu: f64) -> f64 {
+    1.0 - fresnel_exact(mu, n).reflectance()
+}
+
+fn coated() -> Vec<Truth> {
+    const N: f64 = 1.5;
+    let mu = 60.0_f64.to_radians().cos();
+    let plastic = |rho: f64| json!({ "type": "plastic", "reflectance": rho, "coat": N });
+    // Of diffuse light the coat lets in 1 − Walsh; of what would leave, it reflects 1 − that/n².
+    let (enters, returns) = (1.0 - walsh_reflectance(N), 1.0 - (1.0 - walsh_reflectance(N)) / (N * N));
+    let shown =
+        move |rho: f64| 1.0 - transmitted(N, mu) + transmitted(N, mu) * enters * rho / (N * N * (1.0 - rho * returns));
+    let half = Truth::new(
+        "plastic-under-a-sky",
+        &plate(60.0, false).thing(thing(plastic(0.5))),
+        shown(0.5),
+        "R + T(µ) ρ T_avg/(n²(1 − ρ rᵢ)), rᵢ = 1 − T_avg/n², T_avg by Walsh's closed form, 60°, n = 1.5, ρ = ½",
+    )
+    .because(
+        "The coat mirrors R of a sky of radiance 1. The base gets T_avg of diffuse light, and all that it sends up and that the coat \
+         reflects again; T/n² of its radiance leaves (Saunderson 1942 without further terms).",
+    )
+    .confirmed("adding up the light between base and coat, T_avg by quadrature", 1e-6, move || {
+        let mean = interval(|mu| 2.0 * mu * transmitted(N, mu), 0.0, 1.0, 1e-10).value;
+        let back = 1.0 - mean / (N * N);
+        let base: f64 = (0..200).map(|k| mean * 0.5 * (0.5 * back).powi(k)).sum();
+        1.0 - transmitted(N, mu) + transmitted(N, mu) * base / (N * N)
+    })
+    .or_else("light between coat and base left out", 1.0 - transmitted(N, mu) + transmitted(N, mu) * enters * 0.5 / (N * N))
+    .or_else("without 1/n²", 1.0 - transmitted(N, mu) + transmitted(N, mu) * enters * 0.5 / (1.0 - 0.5 * returns))
+    .or_else("an albedo of base and coat added", 0.5 + 1.0 - transmitted(N, mu))
+    .claims(Claim::AveragesPolarisation)
+    .sees(2e-3);
+    let light = 40.0_f64.to_radians();
+    let seen = 60.0_f64.to_radians();
+    let direct = |rho: f64| {
+        transmitted(N, light.cos()) * transmitted(N, seen.cos()) * rho * light.cos()
+            / (PI * N * N * (1.0 - rho * returns))
+    };
+    let lit = Scene::orthographic([2.0 * seen.sin(), 0.0, 2.0 * seen.cos()], [0.0; 3], 0.1)
+        .thing(thing(plastic(0.5)))
+        .directional_light([0.0, light.sin(), -light.cos()], 1.0)
+        .film(16, 16)
+        .spp(64);
+    let by_light = Truth::new("plastic-in-parallel-light", &lit, direct(0.5), "T(µₒ)T(µᵢ)ρ cos θᵢ/(π n²(1 − ρ rᵢ))")
+        .because("The mirrored light goes elsewhere; what the base scatters passes the coat on the way in and on the way out.")
+        .confirmed("rᵢ from inside by quadrature: total reflection and Fresnel's equations of n → 1", 1e-5, move || {
+            let inside = interval(|mu| 2.0 * mu * (1.0 - transmitted(1.0 / N, mu)), 0.0, 1.0, 1e-9).value;
+            let part = transmitted(N, light.cos()) * transmitted(N, seen.cos());
+            part * 0.5 * light.cos() / (PI * N * N * (1.0 - 0.5 * inside))
+        })
+        .or_else("the coat left out", 0.5 * light.cos() / PI)
+        .or_else("light between coat and base left out", direct(0.5) * (1.0 - 0.5 * returns))
+        .claims(Claim::AveragesPolarisation)
+        .sees(1e-3);
+    let mut list = vec![half, by_light];
+    for (name, further) in [
+        ("plastic-white-under-a-smooth-coat", json!({})),
+        ("plastic-white-under-a-rough-coat", json!({ "alpha": 0.3 })),
+        ("plastic-white-under-a-brushed-coat", json!({ "alpha_u": 0.5, "alpha_v": 0.1, "tangent_rotation_deg": 30 })),
+    ] {
+        let mut material = json!({ "type": "plastic", "reflectance": 1, "coat": N });
+        for (key, value) in further.as_object().into_iter().flatten() {
+            material[key] = value.clone();
+        }
+        let truth = Truth::new(name, &plate(60.0, false).thing(thing(material)), 1.0, "L = 1")
+            .because("A white base under a coat that absorbs nothing returns all light, whatever the coat.")
+            .or_else("light that the coat reflects down again is lost", 1.0 - transmitted(N, mu) * (1.0 - enters / (N * N)))
+            .allows(1e-3, "tables of the coat's albedo: single directions are within 3e-4, interpolation included; and single precision")
+            .sees(5e-3);
+        list.push(truth);
+    }
+    list
+}
+
+/// Albedo of Fujii's form with ρ = 1, by quadrature over the hemisphere.
+fn fujii_albedo(r: f64, mu_o: f64) -> f64 {
+    let a = 1.0 / (1.0 + r * (0.5 - 2.0 / (3.0 * PI)));
+    let sine = (1.0 - mu_o * mu_o).sqrt();
+    let f = move |mu: f64, phi: f64| {
+        let s = sine * (1.0 - mu * mu).sqrt() * phi.cos();
+        let t = if s > 0.0 { mu.max(mu_o) } else { 1.0 };
+        a / PI * (1.0 + r * s / t) * mu
+    };
+    // Corners at cos φ = 0 and at µ = µₒ.
+    let over = |from: f64, to: f64, first: f64, last: f64| {
+        crate::quadrature::rectangle(f, [from, to], [first, last], 1e-9, 400_000).value
+    };
+    let halves = |from: f64, to: f64| over(from, to, 0.0, 0.5 * PI) + over(from, to, 0.5 * PI, PI);
+    2.0 * (halves(0.0, mu_o) + halves(mu_o, 1.0))
+}
+
+/// The same in closed form, and its mean over directions (Portsmouth, Kutz and Hill 2024).
+fn fujii_closed(r: f64, mu: f64) -> [f64; 2] {
+    let a = 1.0 / (1.0 + r * (0.5 - 2.0 / (3.0 * PI)));
+    let sine = (1.0 - mu * mu).sqrt();
+    let g = sine * (mu.acos() - sine * mu - 2.0 / 3.0) + 2.0 / 3.0 * sine / mu * (1.0 - sine.powi(3));
+    [a * (1.0 + r / PI * g), a * (1.0 + r * (2.0 / 3.0 - 28.0 / (15.0 * PI)))]
+}
+
+/// Light at 40° from the side opposite to the viewer and at 60°, turned by 30°.
+fn rough_diffuse() -> Vec<Truth> {
+    const R: f64 = 0.7;
+    const RHO: f64 = 0.6;
+    let (light, seen, turn) = (40.0_f64.to_radians(), 60.0_f64.to_radians(), 30.0_f64.to_radians());
+    let material = |rho: f64| json!({ "type": "oren-nayar", "reflectance": rho, "roughness": R });
+    let make = |name: &str, back: bool| {
+        let side = if back { 1.0 } else { -1.0 };
+        let to_light = [side * light.sin() * turn.cos(), light.sin() * turn.sin(), light.cos()];
+        let scene = Scene::orthographic([2.0 * seen.sin(), 0.0, 2.0 * seen.cos()], [0.0; 3], 0.1)
+            .thing(thing(material(RHO)))
+            .directional_light(to_light.map(|x| -x), 1.0)
+            .film(16, 16)
+            .spp(64);
+        let value = move |of_o: f64, of_i: f64, mean: f64| {
+            let s = side * light.sin() * seen.sin() * turn.cos();
+            let t = if s > 0.0 { light.cos().max(seen.cos()) } else { 1.0 };
+            let a = 1.0 / (1.0 + R * (0.5 - 2.0 / (3.0 * PI)));
+            let single = RHO * a / PI * (1.0 + R * s / t);
+            let several = RHO * RHO * mean / (1.0 - RHO * (1.0 - mean));
+            let lobe = several / PI * (1.0 - of_o) * (1.0 - of_i) / (1.0 - mean);
+            [(single + lobe) * light.cos(), single * light.cos()]
+        };
+        let [of_o, mean] = fujii_closed(R, seen.cos());
+        let of_i = fujii_closed(R, light.cos())[0];
+        let [all, single] = value(of_o, of_i, mean);
+        Truth::new(name, &scene, all, "(ρA/π(1 + r s/t) + lobe of several meetings) cos θᵢ, ρ = 0.6, r = 0.7")
+            .because("Fujii's improved form of Oren and Nayar, and a lobe for light that is scattered several times (Portsmouth, Kutz and Hill 2024).")
+            .confirmed("albedos by quadrature over the hemisphere", 1e-5, move || {
+                let mean = interval(|mu| 2.0 * mu * fujii_closed(R, mu)[0], 1e-9, 1.0, 1e-9).value;
+                value(fujii_albedo(R, seen.cos()), fujii_albedo(R, light.cos()), mean)[0]
+            })
+            .or_else("without the lobe", single)
+            .or_else("Lambert's law", RHO / PI * light.cos())
+            .sees(1e-3)
+    };
+    let white = Truth::new("oren-nayar-white", &plate(60.0, false).thing(thing(material(1.0))), 1.0, "L = 1")
+        .because(
+            "A rough surface that absorbs nothing returns all light, once what meets it several times is given back.",
+        )
+        .or_else("without the lobe", fujii_closed(R, seen.cos())[0])
+        .sees(2e-3);
+    vec![make("oren-nayar-lit-from-behind-the-viewer", true), make("oren-nayar-lit-against-the-viewer", false), white]
+}
+
+/// A pane without thickness before a lamp.
+fn panes() -> Vec<Truth> {
+    let n = 1.5;
+    [0.0, 60.0]
+        .map(|tilt_deg: f64| {
+            let (sine, cosine) = tilt_deg.to_radians().sin_cos();
+            let scene = Scene::orthographic([2.0 * sine, 0.0, 2.0 * cosine], [0.0; 3], 0.1)
+                .thing(thing(json!({ "type": "thin-dielectric", "index": n })))
+                .lamp(disk([-sine, 0.0, -cosine], [sine, 0.0, cosine], 0.5), black(), 1.0, "front")
+                .film(16, 16)
+                .spp(1024);
+            let powers = fresnel_exact(cosine, n);
+            let through = |r: f64| (1.0 - r) / (1.0 + r);
+            let value = 0.5 * (through(powers.r_s) + through(powers.r_p));
+            let mean = powers.reflectance();
+            let mut truth = Truth::new(format!("thin-pane-at-{tilt_deg}-degrees"), &scene, value, "½Σ (1 − R)/(1 + R) of s and p")
+                .because("The internal reflections of a pane add up to 2R/(1 + R), for each polarisation; the rest passes straight on.")
+                .confirmed("adding up the beams one by one", 1e-12, move || {
+                    let beams = |r: f64| (0..200).map(|k| (1.0 - r).powi(2) * r.powi(2 * k)).sum::<f64>();
+                    0.5 * (beams(powers.r_s) + beams(powers.r_p))
+                })
+                .or_else("one face only", 1.0 - mean)
+                .or_else("two faces without reflections between them", (1.0 - mean).powi(2))
+                .sees(1e-3);
+            if tilt_deg > 0.0 {
+                truth = truth.or_else("the mean of s and p reflected to and fro", through(mean));
+            }
+            truth
+        })
+        .into()
+}
+
+fn rough_metal() -> Vec<Truth> {
+    let (tilt_deg, mu) = (60.0_f64, 0.5);
+    // n + ik that reflects everything at every angle.
+    let perfect = |further: Value| {
+        let mut metal = json!({ "type": "conductor", "wavelengths_nm": [300, 900], "n": [1e-12, 1e-12], "k": [3, 3] });
+        for (key, value) in further.as_object().into_iter().flatten() {
+            metal[key] = value.clone();
+        }
+        metal
+    };
+    let mut list = Vec::new();
+    for alpha in [0.3, 0.9] {
+        let lost = ggx_albedo(alpha, mu, None, Masking::Correlated).reflected;
+        let scene = |how: &str| {
+            plate(tilt_deg, false).thing(thing(perfect(json!({ "alpha": alpha, "multiple_scattering": how }))))
+        };
+        list.push(
+            Truth::new(format!("rough-metal-of-{alpha}-lost"), &scene("lost"), lost, "∫ D(h) (o·h)/cos θₒ G(o, r) dω_h")
+                .because("Facets that reflect everything, met once: the directional albedo of GGX with Smith's masking, correlated in height.")
+                .allows(2e-5, "the quadrature over facets is known to 1e-5; and single precision")
+                .or_else("masking not correlated", ggx_albedo(alpha, mu, None, Masking::Separable).reflected)
+                .or_else("what meets several facets given back", 1.0)
+                .claims(Claim::CorrelatedMasking)
+                .sees(2e-3),
+        );
+        list.push(
+            Truth::new(format!("rough-metal-of-{alpha}-compensated"), &scene("compensated"), 1.0, "L = 1")
+                .because("A metal that reflects everything returns all light once what meets several facets is given back.")
+                .allows(1e-3, "a single direction is returned to 1e-4 and diffuse light to 1.5e-4, by tables; and single precision")
+                .or_else("lost", lost)
+                .claims(Claim::LosslessRoughMetal)
+                .sees(3e-3),
+        );
+    }
+    // A constant roughness by an image, and by number, in parallel light.
+    let highlight = |alpha: f64| {
+        let tilt = 20.0_f64.to_radians();
+        anisotropic_ggx_mirrors([alpha; 2], [0.0, 0.0, 1.0], [tilt.sin(), 0.0, tilt.cos()]) * tilt.cos()
+    };
+    let lit = |material: Value| {
+        let tilt = 20.0_f64.to_radians();
+        Scene::orthographic([0.0, 0.0, 2.0], [0.0; 3], 0.1)
+            .thing(thing(material))
+            .directional_light([-tilt.sin(), 0.0, -tilt.cos()], 1.0)
+            .film(16, 16)
+            .spp(256)
+    };
+    for (name, further, image) in [
+        ("roughness-by-number", json!({ "alpha": 0.25 }), None),
+        ("roughness-by-an-image-of-roughness", json!({ "roughness_image": { "file": "half.hdr" } }), Some(0.5)),
+        (
+            "roughness-by-an-image-of-alpha",
+            json!({ "roughness_image": { "file": "half.hdr", "quantity": "alpha", "factor": 0.5 } }),
+            Some(0.5),
+        ),
+        (
+            "roughness-by-an-image-of-alpha-squared",
+            json!({ "roughness_image": { "file": "half.hdr", "quantity": "alpha-squared", "factor": 0.125 } }),
+            Some(0.5),
+        ),
+    ] {
+        let mut further = further;
+        further["multiple_scattering"] = json!("lost");
+        let mut scene = lit(perfect(further));
+        if let Some(grey) = image {
+            scene = scene.file("half.hdr", grey_hdr(1, &[grey]));
+        }
+        let value = highlight(0.25);
+        let mut truth = Truth::new(name, &scene, value, "D(h) G₁/4, α = 0.25, light 20° off the normal")
+            .because("Seen along the normal, light from one direction shows the density of the facets half way, and Smith's G₁ of the light.")
+            .or_else("α taken for roughness", highlight(0.5))
+            .or_else("roughness taken for α", highlight(0.0625))
+            .sees(0.01);
+        if image.is_some() {
+            truth = truth.allows(0.01 * value, "each place is a blend of two widths of a series in the ratio 1.05²: up to 1 % at the peak; and single precision");
+            truth.must_see = 0.03;
+        }
+        list.push(truth);
+    }
+    // A reflectance at normal incidence, seen at a slant.
+    let tilt = 75.0_f64;
+    let (r, cosine) = (0.6_f64, tilt.to_radians().cos());
+    let k = 2.0 * (r / (1.0 - r)).sqrt();
+    list.push(
+        Truth::new(
+            "metal-by-its-reflectance",
+            &plate(tilt, false).thing(thing(json!({ "type": "conductor", "reflectance": r }))),
+            conductor_reflectance(1.0, k, cosine),
+            "Fresnel's (R_s + R_p)/2 of n = 1, k = 2√(R/(1 − R)) at 75°, R = 0.6",
+        )
+        .because("The metal of index 1 + ik that reflects R at normal incidence: R = k²/(4 + k²).")
+        .or_else("the same at every angle", r)
+        .claims(Claim::AveragesPolarisation)
+        .sees(1e-3),
+    );
+    list
+}
+
+/// The outer face of a half space of rough glass over black: what it reflects of a sky of radiance 1.
+fn rough_glass() -> Vec<Truth> {
+    let tilt = 60.0_f64.to_radians();
+    let (o, mu) = ([tilt.sin(), 0.0, tilt.cos()], tilt.cos());
+    let scene = |further: Value| {
+        let mut glass = json!({ "type": "dielectric", "interior": 1.5, "multiple_scattering": "lost" });
+        for (key, value) in further.as_object().into_iter().flatten() {
+            glass[key] = value.clone();
+        }
+        plate(60.0, false)
+            .thing(json!({ "shape": level_square([0.0; 3], 50.0, true), "material": glass }))
+            .object(parallelogram([-60.0, -60.0, -0.01], [120.0, 0.0, 0.0], [0.0, 120.0, 0.0]), black())
+    };
+    let because = "What facets of glass reflect at the first meeting, by Fresnel's equations and Smith's masking; what they refract is absorbed behind.";
+    let round = ggx_albedo(0.4, mu, Some(1.5), Masking::Correlated).reflected;
+    let wide = anisotropic_ggx_albedo([0.6, 0.15], o, Some(1.5), Masking::Correlated).reflected;
+    let across = anisotropic_ggx_albedo([0.15, 0.6], o, Some(1.5), Masking::Correlated).reflected;
+    let smooth = fresnel_exact(mu, 1.5).reflectance();
+    let truth = |name: &str, scene: &Scene, value: f64| {
+        Truth::new(name, scene, value, "∫ D(h) (o·h)/cos θₒ R G(o, r) dω_h")
+            .because(because)
+            .allows(2e-5, "the quadrature over facets is known to 1e-5; and single precision")
+            .or_else("smooth", smooth)
+            .claims(Claim::CorrelatedMasking)
+            .claims(Claim::AveragesPolarisation)
+            .sees(0.01)
+    };
+    let brushed = |turn: f64| scene(json!({ "alpha_u": 0.6, "alpha_v": 0.15, "tangent_rotation_deg": turn }));
+    let ball = Scene::pinhole([0.0, 0.0, 5.0], [0.0; 3], 16.0)
+        .thing(json!({
+            "shape": sphere([0.0; 3], 1.0),
+            "material": { "type": "dielectric", "interior": 1.5, "roughness_image": { "file": "half.hdr" } },
+        }))
+        .file("half.hdr", grey_hdr(1, &[0.5]))
+        .sky(1.0)
+        .film(16, 16)
+        .spp(512);
+    vec![
+        truth("rough-glass-reflects", &scene(json!({ "alpha": 0.4 })), round),
+        truth("brushed-glass-reflects-along-the-grain", &brushed(0.0), wide).or_else("widths exchanged", across),
+        truth("brushed-glass-reflects-across-the-grain", &brushed(90.0), across).or_else("not turned", wide),
+        Truth::new("furnace-glass-of-roughness-by-an-image", &ball, 1.0, "L = 1")
+            .because("A rough interface that absorbs nothing sends all light somewhere; in uniform light that is L.")
+            .or_else("n² of the way in not undone", 2.25)
+            .allows(1e-3, "tables of lost light give back up to 1.5e-4 too little at each of some seven meetings with the surface")
+            .claims(Claim::LosslessRoughGlass)
+            .sees(0.01),
+    ]
+}
