@@ -124,6 +124,22 @@ fn cameras() -> Vec<Truth> {
             .or_else("taken for its width", 0.32),
         truth("camera-by-the-width-of-its-sensor", wide(view(json!({ "sensor_width_m": 0.024, "focal_length_m": 0.024 }))), 0.2, "0.4 · 0.25/½: the picture cuts the square")
             .or_else("taken for its height", 0.08),
+        {
+            // From x = −1 to x = 1 m while the shutter is open, past a lamp from 0.25 to 0.75 m.
+            let scene = Scene::camera(json!({
+                "type": "perspective", "position_m": [-1, 0, 0], "direction": [0, 0, -1], "vertical_fov_deg": 1e-4, "shutter_s": [0, 2],
+                "keyframes": [{ "time_s": 0 }, { "time_s": 2, "transform": [{ "translate_m": [2, 0, 0] }] }],
+            }))
+            .lamp(parallelogram([0.25, -1.0, -1.0], [0.5, 0.0, 0.0], [0.0, 2.0, 0.0]), black(), 1.0, "front")
+            .film(16, 16)
+            .spp(1024);
+            Truth::new("camera-that-moves-past-a-lamp", &scene, 0.25, "0.5/2")
+                .because("A camera that moves at 1 m/s for two seconds is before a lamp half a metre wide for a quarter of the time.")
+                .or_else("it stands still", 0.0)
+                .or_else("it stands in the middle", 1.0)
+                .claims(super::Claim::Motion)
+                .sees(0.01)
+        },
         truth(
             "camera-turned-by-its-up",
             wide(view(json!({ "vertical_fov_deg": fov, "up": [1, 0, 0] }))),

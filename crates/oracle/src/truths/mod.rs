@@ -16,6 +16,7 @@ mod facets;
 mod furnaces;
 mod glass;
 mod illumination;
+mod images;
 mod instruments;
 mod irradiance;
 mod judge;
@@ -27,6 +28,7 @@ mod polarised;
 mod prisms;
 mod relief;
 mod scene;
+mod sheets;
 mod skies;
 mod solids;
 mod sources;
@@ -329,6 +331,8 @@ pub fn truths() -> Vec<Truth> {
         masks::truths(),
         textures::truths(),
         relief::truths(),
+        sheets::truths(),
+        images::truths(),
         instruments::truths(),
         sources::truths(),
         named::truths(),

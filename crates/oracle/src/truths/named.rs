@@ -73,6 +73,20 @@ fn glasses() -> Vec<Truth> {
     .into_iter()
     .map(|(truth, _)| truth)
     .collect();
+    for name in ["N-BK7", "N-SF11", "fused-silica", "water"] {
+        let published = [("N-BK7", 1.516_80), ("N-SF11", 1.784_72), ("fused-silica", 1.458_46), ("water", 1.333_4)];
+        let n = published.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, n)| *n);
+        let glass = json!({ "type": "glass", "name": name });
+        let title = format!("eye-in-a-glass-named-{}", name.to_lowercase());
+        list.push(eye(
+            title,
+            glass,
+            D,
+            n,
+            if name == "water" { 1e-4 } else { 1e-5 },
+            "the digits of the published index",
+        ));
+    }
     // Diamond's fit ends at 760 nm; beyond it the index stays.
     let edge = sellmeier(&[0.3306, 4.3356], &[0.175 * 0.175, 0.106 * 0.106], 760.0);
     let clamped = json!({ "type": "glass", "name": "diamond", "outside_fit": "clamp" });

@@ -128,8 +128,8 @@ fn seen() -> Vec<Truth> {
                 .spp(1024);
             let own = image.clone();
             let exact = if projection == "equal-area" { 3e-3 } else { 2e-4 };
-            let with = |pose: Pose| factor * mean(300, look, &image, pose);
-            let value = factor * mean(1200, look, &image, pose);
+            let with = |pose: Pose| factor * mean(80, look, &image, pose);
+            let value = factor * mean(if projection == "equal-area" { 1200 } else { 400 }, look, &image, pose);
             let mut truth = Truth::new(name, &scene, value, "mean over the picture of the image in the direction of each ray")
                 .because(
                     "A ray that meets nothing shows the image where its direction lies on it: longitude and latitude, between the centres of \
