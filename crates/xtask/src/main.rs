@@ -19,6 +19,7 @@ mod parts;
 mod slowest;
 mod source;
 mod targets;
+mod vocabulary;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -411,9 +411,10 @@ fn numbers() -> Vec<Truth> {
             .or_else("another channel", 0.2 + 0.7 * if share == 0.5 { 0.25 } else { 0.5 })
             .sees(0.005)
     };
-    let encoded =
-        seen(matte(json!({ "type": "image", "file": "two-greys.hdr", "encoding": "srgb", "filter": "nearest" })));
-    let encoded = encoded.file("two-greys.hdr", grey_hdr(1, &[0.5]));
+    let encoded = json!({ "type": "image", "file": "one-grey.hdr", "encoding": "srgb", "filter": "nearest" });
+    let encoded = view([0.4, 0.45], 0.4)
+        .thing(json!({ "shape": square(), "material": matte(encoded) }))
+        .file("one-grey.hdr", grey_hdr(1, &[0.5]));
     vec![
         Truth::new("blend-of-two-albedos", &plain, 0.41, "0.7·0.2 + 0.3·0.9")
             .because("A blend of two Lambert surfaces has the mixed albedo.")

@@ -2,7 +2,7 @@
 
 use super::Action::{Cargo, Ignored, Own, Script};
 use super::{Named, named};
-use crate::{allowed, architecture, glossary, import_cycles, messages, pages, slowest, targets};
+use crate::{allowed, architecture, glossary, import_cycles, messages, pages, slowest, targets, vocabulary};
 
 const INTEGRATION: &[&str] = &["--test", "integration"];
 
@@ -81,6 +81,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 "every text that the program may print, to be read as a list",
                 "1 s",
                 Own(messages::print),
+            ),
+            named(
+                "vocabulary",
+                "[--write]",
+                "every key of a scene that can change light has a truth: table of docs/vocabulary.md",
+                "2 min",
+                Own(vocabulary::run),
             ),
             named(
                 "links",
