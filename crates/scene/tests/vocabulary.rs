@@ -87,11 +87,9 @@ impl Schema {
         if !schema.is_object() {
             return;
         }
-        if let Some(reference) = schema["$ref"].as_str() {
-            if seen.insert(reference.to_owned()) {
-                let (definition, name) = self.definition(reference);
-                self.rows(definition, &name, seen, rows);
-            }
+        if let Some(reference) = schema["$ref"].as_str().filter(|reference| seen.insert((*reference).to_owned())) {
+            let (definition, name) = self.definition(reference);
+            self.rows(definition, &name, seen, rows);
         }
         for (key, value) in schema["properties"].as_object().into_iter().flatten() {
             let words: Vec<&str> = value["enum"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
