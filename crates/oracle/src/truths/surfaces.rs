@@ -132,7 +132,27 @@ fn coated() -> Vec<Truth> {
         .or_else("light between coat and base left out", direct(0.5) * (1.0 - 0.5 * returns))
         .claims(Claim::AveragesPolarisation)
         .sees(1e-3);
-    let mut list = vec![half, by_light];
+    let mut once = plastic(0.5);
+    once["internal_reflection"] = json!("uncoloured");
+    let coloured_once = Truth::new(
+        "plastic-coloured-once-under-a-sky",
+        &plate(60.0, false).thing(thing(once)),
+        1.0 - transmitted(N, mu) + 0.5 * transmitted(N, mu),
+        "R + T(µ) ρ, 60°, n = 1.5, ρ = ½",
+    )
+    .because(
+        "The base colours light once and is white for all that the coat reflects again. So of what the coat lets in, ρ leaves, whatever the \
+         share that it reflects again.",
+    )
+    .confirmed("adding up the light between base and coat, T_avg by quadrature", 1e-6, move || {
+        let mean = interval(|mu| 2.0 * mu * transmitted(N, mu), 0.0, 1.0, 1e-10).value;
+        let base: f64 = (0..200).map(|k| mean * 0.5 * (1.0 - mean / (N * N)).powi(k)).sum();
+        1.0 - transmitted(N, mu) + transmitted(N, mu) * base / (N * N)
+    })
+    .or_else("coloured at each reflection", shown(0.5))
+    .claims(Claim::AveragesPolarisation)
+    .sees(2e-3);
+    let mut list = vec![half, by_light, coloured_once];
     for (name, further) in [
         ("plastic-white-under-a-smooth-coat", json!({})),
         ("plastic-white-under-a-coat-of-an-image", json!({ "roughness_image": { "file": "half.hdr" } })),

@@ -29,7 +29,7 @@ pub(super) fn mean(ggx: &Ggx, wo: Vec3<f64>, loss: impl Fn(&Facet) -> f64) -> f6
     let azimuths = view.azimuths();
     let between = |ends: &[Azimuth]| {
         let middle = 0.5 * (ends[0].angle + ends[1].angle);
-        view.from_azimuth(ends[0], middle, &loss) + view.from_azimuth(ends[1], middle, &loss)
+        view.beside_azimuth(ends[0], middle, &loss) + view.beside_azimuth(ends[1], middle, &loss)
     };
     azimuths.windows(2).filter(|ends| ends[0].angle < ends[1].angle).map(between).sum()
 }
@@ -88,7 +88,7 @@ impl<'a> View<'a> {
     }
 
     /// Integral over the azimuths between one of [`View::azimuths`] and `to`: with φ = from ± scale·(e^t − 1), nodes are even in t.
-    fn from_azimuth(&self, from: Azimuth, to: f64, loss: &impl Fn(&Facet) -> f64) -> f64 {
+    fn beside_azimuth(&self, from: Azimuth, to: f64, loss: &impl Fn(&Facet) -> f64) -> f64 {
         static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_rule(6));
         let span = to - from.angle;
         let scale = from.scale.copysign(span);
