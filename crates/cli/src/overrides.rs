@@ -249,10 +249,12 @@ impl Overrides {
             let name = option.get_id().as_str();
             let given = matches.value_source(name) == Some(ValueSource::CommandLine);
             let (Some(long), true) = (option.get_long(), given) else { continue };
-            words.push(format!("--{long}"));
-            if option.get_action().takes_values() {
-                let values = matches.get_raw(name).into_iter().flatten().map(|value| value.to_string_lossy());
-                words.push(values.collect::<Vec<_>>().join(","));
+            let long = format!("--{long}");
+            let values = matches.get_raw(name).into_iter().flatten().map(|value| value.to_string_lossy());
+            match (option.get_action().takes_values(), option.get_value_delimiter()) {
+                (false, _) => words.push(long),
+                (true, Some(_)) => words.extend([long, values.collect::<Vec<_>>().join(",")]),
+                (true, None) => words.extend(values.flat_map(|value| [long.clone(), value.into_owned()])),
             }
         }
         words
@@ -313,7 +315,8 @@ mod tests {
             let long = format!("--{}", option.get_long().unwrap());
             let choices: Vec<String> =
                 option.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
-            let values = choices.into_iter().chain(["7", "64x48", "400:700:10", "lens,masks"].map(str::to_owned));
+            let values =
+                choices.into_iter().chain(["7", "64x48", "400:700:10", "lens,masks", "a=1,2"].map(str::to_owned));
             let lines = std::iter::once(vec![long.clone()]).chain(values.map(|value| vec![long.clone(), value]));
             let line = lines.into_iter().find(|line| words(line).is_some());
             let line = line.unwrap_or_else(|| panic!("no value for {long}"));
@@ -323,6 +326,8 @@ mod tests {
         assert_eq!(words(&all).unwrap(), all);
         assert!(all.join(" ").contains("--loop scalar"), "{all:?}");
         assert_eq!(words(&[]).unwrap(), [""; 0]);
+        let twice = ["--define", "a=1,2", "--define", "b= 3"].map(str::to_owned);
+        assert_eq!(words(&twice).unwrap(), twice);
         // A value keeps its spaces, and a list of values its order.
         let line = ["--bands", "400: 700:10", "--without", "lens", "--without", "masks"].map(str::to_owned);
         assert_eq!(words(&line).unwrap(), ["--bands", "400: 700:10", "--without", "lens,masks"]);
