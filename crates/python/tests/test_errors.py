@@ -128,7 +128,7 @@ def test_a_solid_that_is_open_is_refused(ball):
             "material": {"type": "dielectric", "interior": 1.5, "priority": 1},
         }
     ]
-    with pytest.raises(SceneError, match="bounds no solid"):
+    with pytest.raises(SceneError, match="not a closed solid"):
         etalon.load(ball).render(spp=1)
 
 
@@ -162,6 +162,13 @@ def test_settings_that_make_no_sense_say_what_would(ball, arguments, hint):
     with pytest.raises(SettingError) as caught:
         etalon.load(ball).render(**arguments)
     assert hint in str(caught.value)
+
+
+def test_an_argument_that_is_none_gets_those_that_are(ball):
+    scene = etalon.load(ball)
+    for call in (scene.render, scene.passes):
+        with pytest.raises(TypeError, match="no argument 'samples': error, spp, time"):
+            call(samples=16)
 
 
 def test_a_scene_of_another_type_is_refused():

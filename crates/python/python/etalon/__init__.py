@@ -41,7 +41,7 @@ from ._results import (
     Quote,
     Replay,
 )
-from ._scene import Progress, Scene, load, schema
+from ._scene import Progress, Scene, Settings, load, schema
 
 __all__ = [
     "ChannelTest",
@@ -61,6 +61,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "SettingError",
+    "Settings",
     "Spectrum",
     "__version__",
     "compare",

@@ -9,7 +9,7 @@ import time as clock
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from ._errors import Problem, RenderInterrupted, SceneError, SettingError, probl
 from ._picture import Picture
 from ._progress import Bar
 from ._results import Cost, Effect, Explanation, Quote, Replay, known, pair
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 Bands = tuple[float, float, float]
 
@@ -35,6 +38,23 @@ class Progress:
     """Camera paths of the whole picture; None as long as a pilot finds out how many."""
     seconds: float
     """Seconds since the render began."""
+
+
+class Settings(TypedDict, total=False):
+    """What :meth:`Scene.render` and :meth:`Scene.passes` take by name, beside the error; :meth:`Scene.render` says what each means."""
+
+    spp: int | None
+    time: float | None
+    bands: Bands | str | None
+    aov: str | Sequence[str]
+    size: tuple[int, int] | None
+    crop: tuple[int, int, int, int] | None
+    seed: int | None
+    max_depth: int | None
+    replicates: int | None
+    polarised: bool
+    adaptive: Literal["auto", "always", "never"]
+    threads: int | None
 
 
 def load(
@@ -180,25 +200,28 @@ class Scene:
             self._ready = (key, renderer)
         return self._ready[1]
 
+    def _begin(self, error: float | None, settings: Settings) -> tuple[_etalon.Renderer, dict[str, Any]]:
+        """The scene, ready, and the settings of a render as the native half takes them."""
+        for name in settings.keys() - Settings.__annotations__.keys():
+            raise TypeError(f"there is no argument {name!r}: error, {', '.join(Settings.__annotations__)}")
+        renderer = self._renderer(
+            settings.get("size"),
+            settings.get("bands"),
+            settings.get("seed"),
+            settings.get("max_depth"),
+            settings.get("replicates"),
+            settings.get("polarised", False),
+        )
+        return renderer, _wanted(error, settings)
+
     def render(
         self,
         error: float | None = None,
         *,
-        spp: int | None = None,
-        time: float | None = None,
-        bands: Bands | str | None = None,
-        aov: str | Sequence[str] = (),
-        size: tuple[int, int] | None = None,
-        crop: tuple[int, int, int, int] | None = None,
-        seed: int | None = None,
-        max_depth: int | None = None,
-        replicates: int | None = None,
-        polarised: bool = False,
-        adaptive: Literal["auto", "always", "never"] = "auto",
-        threads: int | None = None,
         progress: bool | Callable[[Progress], object] | None = None,
+        **settings: Unpack[Settings],
     ) -> Picture:
-        """Renders the scene. The first limit that is reached ends the render.
+        """Renders the scene. The first limit that is reached ends the render: ``error``, ``spp`` or ``time``.
 
         :param error: the relative error that is enough, such as 0.01: the root mean square over all pixels of the standard error of
             luminance, in units of the picture's mean luminance.
@@ -214,7 +237,8 @@ class Scene:
         :param max_depth: most path edges from the camera to a light.
         :param replicates: independent replicates, whose scatter is the error; 1 is without.
         :param polarised: follow light with its polarisation; the picture then has :attr:`Picture.stokes`.
-        :param adaptive: whether regions with more error take more samples.
+        :param adaptive: whether regions with more error take more samples: ``"auto"`` decides by what it would save, ``"always"`` and
+            ``"never"`` do as they say.
         :param threads: threads; all cores if not given. The pixels are the same for any number.
         :param progress: True shows a bar, False none, None shows one in a terminal or in Jupyter. A function is called with
             :class:`Progress`; an exception that it raises ends the render.
@@ -225,8 +249,7 @@ class Scene:
         :raises SettingError: if an argument makes no sense.
         :raises NoLightError: if only the error is to end the render, and no light is found.
         """
-        renderer = self._renderer(size, bands, seed, max_depth, replicates, polarised)
-        wanted = _wanted(error, spp, time, aov, crop, adaptive, threads)
+        renderer, wanted = self._begin(error, settings)
         start = clock.monotonic()
         if callable(progress):
             tell = progress
@@ -244,23 +267,7 @@ class Scene:
             warnings.warn(text, RenderInterrupted, stacklevel=2)
         return picture
 
-    def passes(
-        self,
-        error: float | None = None,
-        *,
-        spp: int | None = None,
-        time: float | None = None,
-        bands: Bands | str | None = None,
-        aov: str | Sequence[str] = (),
-        size: tuple[int, int] | None = None,
-        crop: tuple[int, int, int, int] | None = None,
-        seed: int | None = None,
-        max_depth: int | None = None,
-        replicates: int | None = None,
-        polarised: bool = False,
-        adaptive: Literal["auto", "always", "never"] = "auto",
-        threads: int | None = None,
-    ) -> Iterator[Picture]:
+    def passes(self, error: float | None = None, **settings: Unpack[Settings]) -> Iterator[Picture]:
         """Renders the scene and gives the picture after each pass; the last is that of :meth:`render`.
 
         The arguments are those of :meth:`render`. Each picture is that of all samples so far. Only the last has the AOVs of the first
@@ -270,9 +277,8 @@ class Scene:
         ...     if picture.relative_error < 0.02:
         ...         break
         """
-        renderer = self._renderer(size, bands, seed, max_depth, replicates, polarised)
-        passes = renderer.passes(_wanted(error, spp, time, aov, crop, adaptive, threads))
-        return _pictures(passes)
+        renderer, wanted = self._begin(error, settings)
+        return _pictures(renderer.passes(wanted))
 
     def quote(
         self,
@@ -355,26 +361,19 @@ def _array(values: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     return np.asarray(values, dtype=np.float64)
 
 
-def _wanted(
-    error: float | None,
-    spp: int | None,
-    time: float | None,
-    aov: str | Sequence[str],
-    crop: tuple[int, int, int, int] | None,
-    adaptive: str,
-    threads: int | None,
-) -> dict[str, Any]:
-    """The settings of a render, as the native half takes them."""
+def _wanted(error: float | None, settings: Settings) -> dict[str, Any]:
+    adaptive = settings.get("adaptive", "auto")
     if not isinstance(adaptive, str):
         raise SettingError('adaptive is "auto", "always" or "never"')
+    time, crop = settings.get("time"), settings.get("crop")
     return {
-        "samples": _count(spp, "spp", 1, 2**31 - 1),
+        "samples": _count(settings.get("spp"), "spp", 1, 2**31 - 1),
         "error": None if error is None else _relative(error),
         "seconds": None if time is None else _number(time, "time"),
         "adaptive": adaptive,
-        "threads": _count(threads, "threads", 1, MOST_THREADS),
+        "threads": _count(settings.get("threads"), "threads", 1, MOST_THREADS),
         "crop": None if crop is None else _list(crop, "crop", 4, lambda value: _count(value, "crop", 0, 2**32 - 1)),
-        "channels": _names(aov),
+        "channels": _names(settings.get("aov", ())),
         "only": False,
     }
 
