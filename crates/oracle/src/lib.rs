@@ -8,6 +8,7 @@ mod random;
 pub mod statistics;
 pub mod subjects;
 pub mod suite;
+pub mod transfer;
 pub mod truths;
 mod vector;
 mod verdict;

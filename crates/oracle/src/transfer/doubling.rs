@@ -1,0 +1,265 @@
+//! Slabs, by doubling: two layers on each other reflect and transmit what goes to and fro between them.
+//!
+//! Van de Hulst (1963); Hansen & Travis, *Light Scattering in Planetary Atmospheres*, Space Science Reviews 16 (1974), §3. Only means over
+//! the azimuth are followed, which is all that fluxes, and beams along the normal, need.
+
+use super::phase::legendre;
+use crate::quadrature::gauss_legendre;
+
+/// Directions of the quadrature in each hemisphere.
+const NODES: usize = 48;
+/// The first layer has the slab's depth over two to this power. What the trapezoidal rule errs in it falls as the square of its depth;
+/// rounding doubles with each step, to about 2e-9.
+const DOUBLINGS: i32 = 24;
+
+/// The shares of light that a slab reflects and transmits; what is missing to 1 is absorbed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fluxes {
+    /// Comes back.
+    pub reflected: f64,
+    /// Comes through, scattered or not.
+    pub transmitted: f64,
+}
+
+/// A layer between two planes, without interfaces.
+#[derive(Clone, Debug)]
+pub struct Slab {
+    /// Cosine and weight of each direction: ∫₀¹ f dμ = Σ w f. The last is that of a beam, of the weight 0.
+    nodes: Vec<(f64, f64)>,
+    /// Radiance that leaves along a direction, for each radiance that comes in along another; weights are included.
+    reflection: Matrix,
+    transmission: Matrix,
+}
+
+impl Slab {
+    /// Of this optical depth, albedo and Legendre moments of its phase function (of the mean 1), for a beam of this cosine to the normal.
+    #[must_use]
+    pub fn new(depth: f64, albedo: f64, moments: &[f64], beam_cosine: f64) -> Self {
+        let mut nodes: Vec<(f64, f64)> =
+            gauss_legendre(NODES).iter().map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect();
+        nodes.push((beam_cosine, 0.0));
+        let mut slab = Self::thin(nodes, depth * f64::from(-DOUBLINGS).exp2(), albedo, moments);
+        (0..DOUBLINGS).for_each(|_| slab.double());
+        slab
+    }
+
+    /// A thin layer, by the trapezoidal rule: radiance in it is the mean of that at its faces. What scatters without loss loses nothing.
+    fn thin(nodes: Vec<(f64, f64)>, depth: f64, albedo: f64, moments: &[f64]) -> Self {
+        let count = nodes.len();
+        // Nodes resolve polynomials of the degree 2·NODES − 1.
+        let moments = &moments[..moments.len().min(2 * NODES)];
+        let polynomials: Vec<Vec<f64>> = nodes.iter().map(|node| legendre(node.0, moments.len())).collect();
+        // The phase function averaged over the azimuth, light going on to the same side or turned to the other.
+        let phase = |i: usize, j: usize, turned: bool| -> f64 {
+            let terms = moments.iter().zip(&polynomials[i]).zip(&polynomials[j]).enumerate();
+            terms
+                .map(|(k, ((moment, a), b))| {
+                    let sign = if turned && k % 2 == 1 { -1.0 } else { 1.0 };
+                    sign * (2.0 * k as f64 + 1.0) * moment * a * b
+                })
+                .sum()
+        };
+        // μ dD/dτ = −D + S₊D + S₋U for light D that goes down and U that goes up, and the same the other way round. Over a layer of the
+        // depth δ, with a = 1 + ½δ(1 − S₊)/μ and b = ½δS₋/μ: aD₁ = (2 − a)D₀ + b(U₀ + U₁), aU₀ = (2 − a)U₁ + b(D₀ + D₁).
+        let (mut a, mut b) = (Matrix::zero(count), Matrix::zero(count));
+        for i in 0..count {
+            let half = 0.5 * depth / nodes[i].0;
+            for j in 0..count {
+                let scattered = 0.5 * albedo * nodes[j].1;
+                *a.at(i, j) = -half * scattered * phase(i, j, false);
+                *b.at(i, j) = half * scattered * phase(i, j, true);
+            }
+            *a.at(i, i) += 1.0 + half;
+        }
+        // No light comes in from below: U₀ = a⁻¹b(D₀ + D₁), and gD₁ = (2 − g)D₀ with g = a − ba⁻¹b.
+        let turned = a.solve(&b);
+        let g = a.minus(&b.times(&turned));
+        let twice_inverse = g.solve(&Matrix::one(count).scaled(2.0));
+        Self { reflection: turned.times(&twice_inverse), transmission: twice_inverse.minus(&Matrix::one(count)), nodes }
+    }
+
+    /// Puts two of it on each other.
+    fn double(&mut self) {
+        let (r, t) = (&self.reflection, &self.transmission);
+        // Down between them, D = (1 − RR)⁻¹T; up, U = RD.
+        let down = Matrix::one(r.size).minus(&r.times(r)).solve(t);
+        let up = r.times(&down);
+        (self.reflection, self.transmission) = (t.times(&up).plus(r), t.times(&down));
+    }
+
+    /// What becomes of diffuse light, the same from all directions.
+    #[must_use]
+    pub fn of_diffuse_light(&self) -> Fluxes {
+        let flux = |matrix: &Matrix| {
+            let leaving = (0..matrix.size).map(|i| matrix.row(i).iter().sum::<f64>());
+            self.nodes.iter().zip(leaving).map(|((mu, w), radiance)| 2.0 * w * mu * radiance).sum()
+        };
+        Fluxes { reflected: flux(&self.reflection), transmitted: flux(&self.transmission) }
+    }
+
+    /// What becomes of the beam: by reciprocity what an eye sees along it of diffuse light of radiance 1, on the side of the light and on
+    /// the other.
+    #[must_use]
+    pub fn of_beam(&self) -> Fluxes {
+        let seen = |matrix: &Matrix| matrix.row(self.nodes.len() - 1).iter().sum();
+        Fluxes { reflected: seen(&self.reflection), transmitted: seen(&self.transmission) }
+    }
+}
+
+/// A square matrix, by rows.
+#[derive(Clone, Debug)]
+struct Matrix {
+    size: usize,
+    values: Vec<f64>,
+}
+
+impl Matrix {
+    fn zero(size: usize) -> Self {
+        Self { size, values: vec![0.0; size * size] }
+    }
+
+    fn at(&mut self, row: usize, column: usize) -> &mut f64 {
+        &mut self.values[row * self.size + column]
+    }
+
+    fn row(&self, row: usize) -> &[f64] {
+        &self.values[row * self.size..][..self.size]
+    }
+
+    fn plus(mut self, other: &Self) -> Self {
+        self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a += b);
+        self
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        let mut product = Self::zero(self.size);
+        for i in 0..self.size {
+            for k in 0..self.size {
+                let factor = self.values[i * self.size + k];
+                let row = &mut product.values[i * self.size..][..self.size];
+                row.iter_mut().zip(other.row(k)).for_each(|(sum, value)| *sum += factor * value);
+            }
+        }
+        product
+    }
+
+    fn one(size: usize) -> Self {
+        let mut one = Self::zero(size);
+        (0..size).for_each(|i| *one.at(i, i) = 1.0);
+        one
+    }
+
+    fn scaled(mut self, factor: f64) -> Self {
+        self.values.iter_mut().for_each(|value| *value *= factor);
+        self
+    }
+
+    fn minus(mut self, other: &Self) -> Self {
+        self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a -= b);
+        self
+    }
+
+    /// The solution X of self·X = right, by elimination. The matrices here are 1 and smaller numbers beside it: no pivots are needed.
+    fn solve(&self, right: &Self) -> Self {
+        let (mut left, mut right) = (self.clone(), right.clone());
+        let size = self.size;
+        for column in 0..size {
+            let pivot = left.values[column * size + column];
+            for row in 0..size {
+                let factor = left.values[row * size + column] / pivot;
+                if row == column || factor == 0.0 {
+                    continue;
+                }
+                for k in 0..size {
+                    left.values[row * size + k] -= factor * left.values[column * size + k];
+                    right.values[row * size + k] -= factor * right.values[column * size + k];
+                }
+            }
+        }
+        for row in 0..size {
+            let pivot = left.values[row * size + row];
+            right.values[row * size..][..size].iter_mut().for_each(|value| *value /= pivot);
+        }
+        right
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{HalfSpace, by_scattering_orders, henyey_greenstein, legendre_moments};
+    use super::*;
+
+    fn slab(depth: f64, albedo: f64, g: f64) -> Slab {
+        Slab::new(depth, albedo, &legendre_moments(|x| henyey_greenstein(g, x), 2 * NODES), 1.0)
+    }
+
+    fn near(found: f64, known: f64, what: &str) {
+        assert!((found - known).abs() < 1.01e-6, "{what}: {found} is not {known}");
+    }
+
+    #[test]
+    fn isotropic_slabs_have_their_known_fluxes() {
+        let diffuse = [
+            (0.1, 0.915_703),
+            (0.5, 0.704_169),
+            (1.0, 0.553_406),
+            (2.0, 0.390_060),
+            (5.0, 0.207_657),
+            (10.0, 0.116_745),
+        ];
+        for (depth, transmitted) in diffuse {
+            let found = slab(depth, 1.0, 0.0).of_diffuse_light();
+            near(found.transmitted, transmitted, &format!("diffuse, {depth}"));
+            near(found.reflected + found.transmitted, 1.0, "nothing is absorbed");
+        }
+        for (depth, transmitted) in [(1.0, 0.658_671), (2.0, 0.482_485), (5.0, 0.261_279), (10.0, 0.146_995)] {
+            let found = slab(depth, 1.0, 0.0).of_beam();
+            near(found.transmitted, transmitted, &format!("beam, {depth}"));
+            near(found.reflected + found.transmitted, 1.0, "nothing is absorbed");
+        }
+        for (depth, transmitted, reflected) in [(1.0, 0.474_746, 0.352_712), (5.0, 0.053_421, 0.476_339)] {
+            let found = slab(depth, 0.9, 0.0).of_diffuse_light();
+            near(found.transmitted, transmitted, "absorbs, transmitted");
+            near(found.reflected, reflected, "absorbs, reflected");
+        }
+    }
+
+    #[test]
+    fn slabs_of_henyey_and_greenstein_have_their_known_fluxes() {
+        for (g, depth, albedo, reflected, transmitted) in [
+            (0.75, 2.0, 0.9, 0.097_395, 0.660_958),
+            (0.5, 8.0, 0.99, 0.600_127, 0.243_831),
+            (0.85, 8.0, 0.99, 0.302_149, 0.558_941),
+            (0.85, 8.0, 1.0, 0.358_432, 0.641_568),
+        ] {
+            let found = slab(depth, albedo, g).of_beam();
+            near(found.reflected, reflected, &format!("{g} {depth} {albedo}, reflected"));
+            near(found.transmitted, transmitted, &format!("{g} {depth} {albedo}, transmitted"));
+        }
+    }
+
+    #[test]
+    fn a_thick_slab_is_a_half_space() {
+        for albedo in [0.5, 0.9, 0.99] {
+            let (slab, half_space) = (slab(300.0, albedo, 0.0), HalfSpace::new(albedo));
+            near(slab.of_beam().reflected, half_space.plane_albedo(1.0), "plane albedo");
+            near(slab.of_diffuse_light().reflected, half_space.diffuse_albedo(), "diffuse albedo");
+        }
+    }
+
+    #[test]
+    fn doubling_agrees_with_the_transfer_equation_order_by_order() {
+        for (depth, albedo, g) in [(0.5, 0.9, 0.0), (1.0, 1.0, 0.0), (2.0, 0.9, 0.75), (1.0, 0.8, -0.4)] {
+            let (doubled, summed) =
+                (slab(depth, albedo, g), by_scattering_orders(depth, albedo, |x| henyey_greenstein(g, x)));
+            for (a, b) in [
+                (doubled.of_beam().reflected, summed[0].reflected),
+                (doubled.of_beam().transmitted, summed[0].transmitted),
+                (doubled.of_diffuse_light().reflected, summed[1].reflected),
+                (doubled.of_diffuse_light().transmitted, summed[1].transmitted),
+            ] {
+                assert!((a - b).abs() < 2e-5, "{depth} {albedo} {g}: {a} is not {b}");
+            }
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! Radiative transfer: how much light comes back from media that scatter and absorb, without random numbers.
+//!
+//! | for | see | second evaluation |
+//! |---|---|---|
+//! | a half-space that scatters alike in all directions | [`HalfSpace`]: Chandrasekhar's H-function as an integral | his equation for H, by iteration |
+//! | a slab of any phase function that depends on one angle | [`Slab`]: doubling of thin layers | [`by_scattering_orders`]: the transfer equation on a grid of depths, order by order |
+//! | light that is scattered once | [`scattered_once`], [`glow_of_point_lamp`] | quadrature |
+//! | a ball that absorbs | [`ball_transmittance`] | quadrature over its chords |
+//!
+//! Optical depths τ are along the normal of a layer. Angles are given by the cosines μ to it. ϖ is the albedo of a single scattering. The
+//! phase functions here have the mean 1 over the sphere.
+
+mod doubling;
+mod half_space;
+mod orders;
+mod phase;
+mod single;
+
+pub use doubling::{Fluxes, Slab};
+pub use half_space::HalfSpace;
+pub use orders::by_scattering_orders;
+pub use phase::{henyey_greenstein, legendre_moments};
+pub use single::{ball_transmittance, glow_of_point_lamp, scattered_once};
