@@ -13,6 +13,9 @@ pub(crate) fn describe(path: &Replay) -> String {
             Event::Vertex { vertex, object, position_m, beta } => {
                 writeln!(text, "vertex {vertex}: \"{object}\" at {} m, throughput {}", list(position_m), list(beta))
             }
+            Event::Scattering { vertex, position_m, beta } => {
+                writeln!(text, "vertex {vertex}: medium at {} m, throughput {}", list(position_m), list(beta))
+            }
             Event::Light { vertex, found, radiance } => {
                 writeln!(text, "  light at vertex {vertex} by {found}: {}", list(radiance))
             }

@@ -55,7 +55,7 @@ pub mod vec3;
 
 pub use angle::atan2_turns;
 pub use error::{INDEX_RANGE, OpticsError};
-pub use exponential::exp_neg;
+pub use exponential::{exp_neg, neg_ln, one_minus_exp_neg};
 pub use index::{ComplexIndex, OutsideFit, RefractiveIndex};
 pub use lanes::Lanes;
 pub use real::Real;

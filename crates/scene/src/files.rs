@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
+use crate::grid::{self, Grid};
 use crate::json::{Code, Reader, Spanned};
 use crate::mesh::Shading;
 use crate::model::Mesh;
@@ -51,6 +52,7 @@ pub(crate) struct Files {
     meshes: HashMap<MeshKey, Option<Arc<Mesh>>>,
     images: HashMap<(String, Encoding), Option<Arc<Image>>>,
     data: HashMap<(String, Channel, Encoding), Option<Arc<Image>>>,
+    grids: HashMap<String, Option<Grid>>,
     /// What of images is not used as colours.
     left_out: Vec<(Spanned<String>, String)>,
     used: Vec<FileUse>,
@@ -66,6 +68,7 @@ impl Files {
             meshes: HashMap::new(),
             images: HashMap::new(),
             data: HashMap::new(),
+            grids: HashMap::new(),
             left_out: Vec::new(),
             used: Vec::new(),
             noted: HashSet::new(),
@@ -158,6 +161,20 @@ impl Files {
                 .map(Arc::new)
         });
         self.data.insert(key, made.clone());
+        made
+    }
+
+    /// The grid of a .vol file; why there is none is reported at the name.
+    pub(crate) fn grid(&mut self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Grid> {
+        if let Some(known) = self.grids.get(&name.value) {
+            return known.clone();
+        }
+        let made = self.bytes(name, reader).and_then(|bytes| {
+            grid::read_vol(&bytes)
+                .map_err(|why| reader.error(Code::File, name.at, format!("{}: {why}", name.value)))
+                .ok()
+        });
+        self.grids.insert(name.value.clone(), made.clone());
         made
     }
 

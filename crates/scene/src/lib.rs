@@ -36,6 +36,7 @@
 
 mod files;
 mod format;
+mod grid;
 pub mod json;
 pub mod linear;
 pub mod mesh;

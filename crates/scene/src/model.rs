@@ -10,6 +10,7 @@ mod film;
 mod integrator;
 mod light;
 mod material;
+mod medium;
 mod motion;
 mod references;
 mod shape;
@@ -25,6 +26,7 @@ pub use material::{
     InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets, NumberTexture, Parameter,
     ParameterMut, PolarisingSheet, Side, SpectrumTexture,
 };
+pub use medium::{Density, DensityGrid, ExponentialDensity, Medium, PhaseFunction, PhaseTable};
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use references::ReferenceError;
 pub use shape::{Mesh, Shape};
@@ -51,6 +53,8 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// Lights without a surface.
     pub lights: Vec<Light>,
+    /// What fills the space outside of all bodies, if it does anything to light.
+    pub medium: Option<Medium>,
     /// How to integrate, as far as the file says; the command line may override it.
     pub integrator: Integrator,
 }

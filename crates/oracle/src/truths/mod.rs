@@ -22,6 +22,7 @@ mod irradiance;
 mod judge;
 mod lamps;
 mod masks;
+mod media;
 mod motion;
 mod named;
 mod polarised;
@@ -75,6 +76,8 @@ pub enum Claim {
     Priorities,
     /// Media absorb what goes through them.
     Absorption,
+    /// Media scatter what goes through them, emit, and may change from place to place.
+    Scattering,
     /// Things move while the shutter is open.
     Motion,
     /// Surfaces let a part of the light pass, also where they coincide with others.
@@ -93,7 +96,7 @@ pub enum Claim {
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 16] = [
+    pub const UNPOLARISED: [Self; 17] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -103,6 +106,7 @@ impl Claim {
         Self::PhotometricSensor,
         Self::Priorities,
         Self::Absorption,
+        Self::Scattering,
         Self::Motion,
         Self::Masks,
         Self::LosslessRoughGlass,
@@ -302,7 +306,7 @@ impl Truth {
         let mut scene: Value = serde_json::from_str(&self.scene).expect("a truth's scene is JSON");
         scene["objects"] = json!([]);
         if let Some(scene) = scene.as_object_mut() {
-            scene.retain(|key, _| key != "groups" && key != "instances");
+            scene.retain(|key, _| key != "groups" && key != "instances" && key != "medium");
         }
         scene["lights"] = json!([{ "type": "environment", "radiance": 1.0 }]);
         serde_json::to_string_pretty(&scene).expect("a JSON value always prints")
@@ -338,6 +342,7 @@ pub fn truths() -> Vec<Truth> {
         named::truths(),
         skies::truths(),
         surfaces::truths(),
+        media::truths(),
     ]
     .into_iter()
     .flatten()

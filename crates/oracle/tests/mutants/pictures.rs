@@ -14,8 +14,14 @@ fn readable() -> Vec<Truth> {
     let claims: Vec<_> = Claim::UNPOLARISED
         .into_iter()
         .filter(|claim| {
-            let beyond =
-                [Claim::Priorities, Claim::Absorption, Claim::Motion, Claim::AnisotropicFacets, Claim::WholeFormat];
+            let beyond = [
+                Claim::Priorities,
+                Claim::Absorption,
+                Claim::Scattering,
+                Claim::Motion,
+                Claim::AnisotropicFacets,
+                Claim::WholeFormat,
+            ];
             !beyond.contains(claim)
         })
         .collect();

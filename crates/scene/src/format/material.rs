@@ -5,17 +5,18 @@ mod dielectric;
 mod index;
 mod roughness;
 
-use etalon_optics::{OutsideFit, Spectrum};
+use etalon_optics::OutsideFit;
 
 use std::ops::Bound;
 
 use super::detail::{NumberImageForm, RoughnessImageForm};
+use super::medium::{MediumForm, medium};
 use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
 use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned};
-use crate::model::{InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, PolarisingSheet, Side};
+use crate::model::{InternalReflection, LEAST_ALPHA, Material, MaterialKind, Medium, Metal, PolarisingSheet, Side};
 pub(crate) use blend::Before;
 pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
@@ -247,6 +248,14 @@ crate::record! {
 }
 
 crate::record! {
+    /// No surface at all, only the boundary of a medium: fog, smoke, a cloud. Light passes it as if it were not there.
+    pub(crate) struct BoundaryMaterial + comment {
+        /// What fills the side that the surface normal points away from (the inside of a sphere or a closed mesh).
+        medium: Required<Box<MediumForm>>,
+    }
+}
+
+crate::record! {
     /// Reflects nothing: for a lamp that is only a light, or an absorber.
     pub(crate) struct BlackMaterial + comment {}
 }
@@ -264,6 +273,7 @@ crate::variants! {
         "polariser" => Polariser(PolariserMaterial),
         "retarder" => Retarder(RetarderMaterial),
         "blend" => Blend(BlendMaterial),
+        "boundary" => Boundary(BoundaryMaterial),
         "black" => Black(BlackMaterial),
     }
 }
@@ -282,6 +292,7 @@ impl MaterialForm {
             Self::Polariser(m) => m.at,
             Self::Retarder(m) => m.at,
             Self::Blend(m) => m.at,
+            Self::Boundary(m) => m.at,
             Self::Black(m) => m.at,
         }
     }
@@ -292,20 +303,20 @@ impl MaterialForm {
 pub(crate) struct Made {
     /// What the surface does.
     pub(crate) kind: MaterialKind,
-    /// Absorption coefficient of its interior, m⁻¹.
-    pub(crate) absorption: Option<Spectrum>,
+    /// What fills its interior.
+    pub(crate) medium: Option<Medium>,
 }
 
 impl Made {
     /// With this name.
     pub(crate) fn named(self, name: String) -> Material {
-        Material { name, kind: self.kind, absorption: self.absorption }
+        Material { name, kind: self.kind, medium: self.medium }
     }
 }
 
 impl From<MaterialKind> for Made {
     fn from(kind: MaterialKind) -> Self {
-        Self { kind, absorption: None }
+        Self { kind, medium: None }
     }
 }
 
@@ -389,6 +400,10 @@ pub(crate) fn material<'f>(
             Some(MaterialKind::PolarisingSheet { axis: retarder.axis?.0, sheet })
         }
         MaterialForm::Blend(form) => blend(form, before, spectra, files, reader),
+        MaterialForm::Boundary(boundary) => {
+            let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;
+            return Some(Made { kind: MaterialKind::Boundary, medium: Some(medium) });
+        }
         MaterialForm::Black(_) => Some(MaterialKind::Black),
     };
     kind.map(Made::from)

@@ -10,6 +10,7 @@ mod group;
 mod integrator;
 mod light;
 mod material;
+mod medium;
 mod mesh;
 mod motion;
 mod names;

@@ -9,6 +9,7 @@ use super::group::{GroupForm, InstanceForm, groups};
 use super::integrator::{IntegratorForm, integrator, wavelength_range_nm};
 use super::light::{LightForm, light};
 use super::material::{Before, MaterialForm, Share, material};
+use super::medium::{MediumForm, medium};
 use super::names::Names;
 use super::spectra::Spectra;
 use super::spectrum::SpectrumForm;
@@ -67,6 +68,8 @@ crate::record! {
         instances: Required<List<Box<InstanceForm>>> = "[]",
         /// Lights without a surface.
         lights: Required<List<Box<LightForm>>> = "[]",
+        /// What fills the space outside of all bodies: fog, smoke, air. Left out, it is clear.
+        medium: Optional<Box<MediumForm>>,
         /// How to integrate.
         integrator: Required<IntegratorForm> = "{}",
     }
@@ -195,6 +198,12 @@ pub(crate) fn scene(
         lights.push(form.as_ref().and_then(|form| light(form, i, &mut spectra, files, reader)));
     }
 
+    let medium = match &form.medium {
+        Optional::Absent => Some(None),
+        Optional::Given(form) => medium(form, &mut spectra, files, reader).map(Some),
+        Optional::Invalid => None,
+    };
+
     files.warn_of_what_is_left_out(reader);
 
     // Whatever is wrong has been reported by now; a wrong list has not become an empty one.
@@ -209,6 +218,7 @@ pub(crate) fn scene(
         groups,
         instances,
         lights: lights.complete()?,
+        medium: medium?,
         integrator: integrator?,
     };
     warn(&scene, form, reader);
@@ -358,7 +368,9 @@ fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {
     }
     let lit = scene.lights.iter().any(|light| !light.kind.is_zero());
     let glowing = scene.placed_objects().filter_map(|o| o.emission.as_ref()).any(|e| !e.is_zero());
-    if !lit && !glowing {
+    let media = scene.medium.iter().chain(scene.materials.iter().filter_map(|material| material.medium.as_ref()));
+    let shining = media.filter_map(|medium| medium.shines()).next().is_some();
+    if !lit && !glowing && !shining {
         let hint = "give an object an \"emission\", or add to \"lights\"".to_owned();
         let message = "nothing emits light: the picture will be black";
         reader.warning(Code::NoLight, form.at.head(), message, Some(hint));

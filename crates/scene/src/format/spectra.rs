@@ -25,8 +25,8 @@ pub(crate) enum Role {
     Reflectance,
     /// A density of light, 0 or above.
     Emission,
-    /// A coefficient of absorption, 0 or above.
-    Absorption,
+    /// A coefficient of absorption or scattering, 0 or above.
+    Coefficient,
 }
 
 /// How a spectrum is used.
@@ -196,8 +196,8 @@ impl<'f> Spectra<'f> {
                 (Code::Reflectance, format!("a reflectance must be from 0 to 1, but this is {value}"))
             }
             Role::Emission if value < 0.0 => (Code::NegativeEmission, format!("an emission of {value} is below 0")),
-            Role::Absorption if value < 0.0 => {
-                (Code::OutOfRange, format!("an absorption of {value} is below 0: light would be amplified"))
+            Role::Coefficient if value < 0.0 => {
+                (Code::OutOfRange, format!("a coefficient of {value} is below 0: light would be amplified"))
             }
             _ => return true,
         };
@@ -213,9 +213,10 @@ impl<'f> Spectra<'f> {
         if used.role == Role::Emission {
             return Some(());
         }
-        if used.role == Role::Absorption {
-            let hint = "an absorption is a number or a table; for a colour use \"transmittance\"";
-            let message = format!("{what} cannot give an absorption");
+        if used.role == Role::Coefficient {
+            let hint =
+                "an absorption or a scattering is a number or a table; for the colour of glass use \"transmittance\"";
+            let message = format!("{what} cannot give an absorption or a scattering");
             self.complain(Code::KeyConflict, at.head(), message, hint, used, reader);
             return None;
         }
@@ -251,7 +252,7 @@ impl<'f> Spectra<'f> {
     }
 
     fn rgb(&mut self, colour: &RgbSpectrum, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
-        if used.role == Role::Absorption {
+        if used.role == Role::Coefficient {
             self.light_only("a colour", colour.at, used, reader)?;
         }
         if used.role == Role::Reflectance {

@@ -1,5 +1,6 @@
 //! Materials: what surfaces do to light.
 
+use super::Medium;
 use crate::texture::ImageTexture;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 
@@ -13,8 +14,8 @@ pub struct Material {
     pub name: String,
     /// What it is.
     pub kind: MaterialKind,
-    /// Absorption coefficient, m⁻¹, of the medium that the surface normal points away from, if it absorbs.
-    pub absorption: Option<Spectrum>,
+    /// What fills the side that the surface normal points away from, if it does anything to light.
+    pub medium: Option<Medium>,
 }
 
 /// The facets of a rough surface: GGX normals.
@@ -144,6 +145,8 @@ pub enum MaterialKind {
         /// The side.
         side: Side,
     },
+    /// No surface at all, only the boundary of a medium: light passes as if it were not there.
+    Boundary,
     /// Reflects nothing (an emitter that is only a light, an absorber).
     Black,
 }
@@ -214,7 +217,7 @@ macro_rules! parameters {
                 }
                 Self::ThinDielectric { index } => vec![$of::Coat(index)],
                 Self::PolarisingSheet { sheet, .. } => vec![$of::Sheet(sheet)],
-                Self::Blend { .. } | Self::OneSided { .. } | Self::Black => Vec::new(),
+                Self::Blend { .. } | Self::OneSided { .. } | Self::Boundary | Self::Black => Vec::new(),
             });
             parameters.collect()
         }
@@ -247,6 +250,7 @@ impl MaterialKind {
         match self {
             Self::Dielectric { interior, exterior, priority: None }
             | Self::RoughDielectric { interior, exterior, priority: None, .. } => Some([exterior, interior]),
+            Self::Boundary => Some([&RefractiveIndex::VACUUM; 2]),
             Self::Blend { parts, .. } => {
                 let (_, first) = parts.first()?;
                 let media = first.media()?;

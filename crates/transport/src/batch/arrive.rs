@@ -131,6 +131,16 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
                 return 1 << lane;
             }
             Arrival::Passed => {}
+            Arrival::Collides(collision) => {
+                let before = self.counters.rays + self.counters.shadow_rays;
+                let next = path.scatter_in_medium(world, &collision, sampler, &mut self.counters, &mut ());
+                paths.ray_count[lane] += (self.counters.rays + self.counters.shadow_rays - before) as u32;
+                paths.vertex[lane] = path.vertex;
+                match next {
+                    Some(ray) => paths.put_ray(lane, &ray),
+                    None => paths.alive &= !(1 << lane),
+                }
+            }
             Arrival::Ended => paths.alive &= !(1 << lane),
             Arrival::Escaped => {
                 if paths.shares {

@@ -155,7 +155,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         if world.meets_groups || world.moves {
             // Where only boundaries of solids may let light pass and nothing absorbs it, what meets nothing needs no walk.
             let mut meets = asks;
-            if world.media.is_some() && world.absorption.is_none() && !world.moves {
+            if world.media.is_some() && world.participating.is_none() && !world.moves {
                 meets = asks & !self.unoccluded(asks, beyond_target);
             }
             let (paths, draws) = (&mut self.paths, &self.lights);

@@ -75,6 +75,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Paths<'a, M,
         }
     }
 
+    /// Gives a path another ray, at the same time.
+    pub(super) fn put_ray(&mut self, lane: usize, ray: &Ray<f64>) {
+        self.origin.set(lane, ray.origin);
+        self.direction.set(lane, ray.direction);
+        self.leaves[lane] = ray.leaves;
+    }
+
     /// The ray of a path.
     #[inline(always)]
     pub(super) fn ray(&self, lane: usize) -> Ray<f64> {

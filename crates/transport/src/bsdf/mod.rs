@@ -124,7 +124,9 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::PolarisingSheet { sheet, .. } => PolarisingSheet::properties(sheet),
         MaterialKind::OneSided { kind, .. } => OneSided::properties(properties(kind)),
         MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
-        MaterialKind::Black => Properties { solid_angle: false, dark: true, ..Properties::SOLID_ANGLE },
+        MaterialKind::Boundary | MaterialKind::Black => {
+            Properties { solid_angle: false, dark: true, ..Properties::SOLID_ANGLE }
+        }
     }
 }
 
@@ -165,7 +167,8 @@ impl Bsdf {
                 Self::Blend(Blend::new(parts, by.clone()))
             }
             MaterialKind::OneSided { kind, side } => Self::OneSided(OneSided::new(Self::new(kind, range_nm), *side)),
-            MaterialKind::Black => Self::Black,
+            // Paths pass a boundary before they ask what it does.
+            MaterialKind::Boundary | MaterialKind::Black => Self::Black,
         }
     }
 

@@ -20,6 +20,7 @@
 //! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
 pub(crate) mod film_entry;
+mod medium;
 mod next_event;
 pub mod observer;
 mod path;
@@ -29,6 +30,7 @@ mod scalar;
 mod scatter;
 pub(crate) mod tracer;
 pub(crate) mod trial;
+mod vertex;
 pub(crate) mod wavelength_lanes;
 
 pub(crate) use next_event::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};

@@ -1,18 +1,19 @@
 //! Next-event estimation: ∫ f Le |cos θ| dω over the lights, estimated by one direction toward one of them.
 
+use super::vertex::Vertex;
 use super::{MOST_VERTICES, Path};
-use crate::bsdf::{Lobe, lambert};
+use crate::bsdf::lambert;
 use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::light::{LightSample, Target};
-use crate::media::{Absorption, MediumStack};
+use crate::media::{MediumStack, Participating, Way};
 use crate::mis::{Density, power_heuristic};
 use crate::polarisation::Polarisation;
 use crate::scene::interaction::{SurfaceInteraction, Walk};
 use crate::scene::shading_tables::BsdfKind;
 use crate::scene::world::World;
-use etalon_geometry::Ray;
+use etalon_geometry::{Ray, SurfacePoint};
 use etalon_optics::Lanes;
 use etalon_scene::LightSampling;
 
@@ -55,15 +56,14 @@ pub(crate) struct Visibility<const N: usize> {
 }
 
 impl World<'_> {
-    /// Chooses a light for a vertex and draws a direction toward it; `None` where none of its light arrives.
+    /// Chooses a light for a point and draws a direction toward it; `None` where none of its light arrives.
     #[inline(always)]
-    pub(crate) fn sample_light(&self, vertex: &SurfaceInteraction<'_>, u_light: f64, u: [f64; 2]) -> Option<LightDraw> {
+    pub(crate) fn sample_light(&self, point: &SurfacePoint<f64>, u_light: f64, u: [f64; 2]) -> Option<LightDraw> {
         if self.lights.is_empty() {
             return None;
         }
-        let from = vertex.point.position;
-        let (light, probability) = self.lights.choose(from, u_light)?;
-        let sample = self.lights.lights()[light].sample(from, u, vertex.point.time)?;
+        let (light, probability) = self.lights.choose(point.position, u_light)?;
+        let sample = self.lights.lights()[light].sample(point.position, u, point.time)?;
         Some(LightDraw { light: light as u32, probability, sample, lambert: None })
     }
 }
@@ -127,20 +127,20 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     pub(crate) fn visibility(
         &self,
         world: &World<'a>,
-        vertex: &SurfaceInteraction<'a>,
+        vertex: &impl Vertex<'a>,
         sample: &LightSample,
         counters: &mut Counters,
     ) -> Option<Visibility<N>> {
         counters.shadow_rays += 1;
         let shadow_ray = match sample.target {
-            Target::Point(target) => vertex.point.spawn_to(target, sample.surface),
-            Target::Infinity => vertex.point.spawn(sample.wi),
+            Target::Point(target) => vertex.point().spawn_to(target, sample.surface),
+            Target::Infinity => vertex.point().spawn(sample.wi),
         };
         if !world.meets_groups {
             return (!world.geometry.occluded(&shadow_ray)).then(|| self.unobstructed(world, vertex, sample));
         }
         let ray = Ray { t_max: beyond_target(shadow_ray.t_max), ..shadow_ray };
-        let visibility = if world.media.is_none() && world.absorption.is_none() {
+        let visibility = if world.media.is_none() && world.participating.is_none() {
             Visibility { share: world.share_through_masks(&ray, shadow_ray.t_max, counters), transmittance: None }
         } else {
             self.through_media(world, vertex, sample, &ray, shadow_ray.t_max, counters)
@@ -153,13 +153,14 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     pub(crate) fn unobstructed(
         &self,
         world: &World<'a>,
-        vertex: &SurfaceInteraction<'a>,
+        vertex: &impl Vertex<'a>,
         sample: &LightSample,
     ) -> Visibility<N> {
-        let transmittance = world.absorption.as_ref().map(|absorption| {
-            let length = sample.target.distance(vertex.point.position);
-            let stack = self.media_toward(vertex, sample.wi);
-            absorption.transmittance(world.media, &stack, &self.wavelengths.lambda_nm, length)
+        let transmittance = world.participating.as_ref().map(|participating| {
+            let length = sample.target.distance(vertex.point().position);
+            let stack = vertex.media_toward(self, sample.wi);
+            let way = Way { origin: vertex.point().position, direction: sample.wi, length };
+            participating.transmittance(world.media, &stack, &self.wavelengths.lambda_nm, &way)
         });
         Visibility { share: 1.0, transmittance }
     }
@@ -168,22 +169,25 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     fn through_media(
         &self,
         world: &World<'a>,
-        vertex: &SurfaceInteraction<'a>,
+        vertex: &impl Vertex<'a>,
         sample: &LightSample,
         ray: &Ray<f64>,
         arrives: f64,
         counters: &mut Counters,
     ) -> Visibility<N> {
-        let mut stack = self.media_toward(vertex, sample.wi);
+        let mut stack = vertex.media_toward(self, sample.wi);
         let (mut walk, mut share, mut start) = (Walk::default(), 1.0, ray.origin);
         let mut transmittance = Lanes::ONE;
         for _ in 0..MOST_VERTICES {
             let met = world.intersect(ray, &mut walk, &mut stack, counters);
             let length = match &met {
-                Some(met) => (met.point.position - start).length(),
+                Some(met) => {
+                    stack.meet(met.surface.interior(), met.meets_front());
+                    (met.point.position - start).length()
+                }
                 None => sample.target.distance(start),
             };
-            transmittance *= self.transmittance(world, &stack, length);
+            transmittance *= self.transmittance(world, &stack, &Way { origin: start, direction: sample.wi, length });
             let Some(met) = met else { return Visibility { share, transmittance: Some(transmittance) } };
             let opacity = met.surface.opacity(world.geometry, &met.point, &met.hit);
             if met.point.surface == ray.aims_at || met.hit.t >= arrives && opacity == 1.0 {
@@ -200,10 +204,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         Visibility { share: 0.0, transmittance: None }
     }
 
-    fn transmittance(&self, world: &World<'a>, stack: &MediumStack<'a>, length: f64) -> Lanes<f64, N> {
+    fn transmittance(&self, world: &World<'a>, stack: &MediumStack<'a>, way: &Way) -> Lanes<f64, N> {
         let lambda_nm = &self.wavelengths.lambda_nm;
-        let through = |absorption: &Absorption| absorption.transmittance(world.media, stack, lambda_nm, length);
-        world.absorption.as_ref().map_or(Lanes::ONE, through)
+        let through =
+            |participating: &Participating<'a>| participating.transmittance(world.media, stack, lambda_nm, way);
+        world.participating.as_ref().map_or(Lanes::ONE, through)
     }
 
     /// Adds the light of a next event that has come through.
@@ -211,14 +216,14 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     pub(crate) fn add_light(
         &mut self,
         world: &World<'a>,
-        vertex: &SurfaceInteraction<'a>,
+        vertex: &impl Vertex<'a>,
         draw: &LightDraw,
         next: &NextEvent<N>,
         visible: &Visibility<N>,
         observer: &mut impl Observer<N>,
     ) {
         let LightDraw { light, sample: LightSample { wi, target, colour, .. }, .. } = *draw;
-        let colour = colour.or_else(|| world.colour_of_emitter(light, target, vertex.point.time));
+        let colour = colour.or_else(|| world.colour_of_emitter(light, target, vertex.point().time));
         let white = self.spectrum_of_light(world, light);
         let arriving = self.coloured(white, colour);
         let mut direct = next.f_cos * arriving * (next.weight * visible.share);
@@ -226,9 +231,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             direct *= transmittance;
         }
         let lambda_nm = &self.wavelengths.lambda_nm;
-        let mueller = || vertex.scattering().mueller(lambda_nm, vertex.wo, wi, Lobe::SolidAngle);
+        let mueller = || vertex.mueller(lambda_nm, wi);
         let found = self.beta * direct * self.lanes.weight();
-        let found = self.polarisation.receive_scattered(vertex.wo, wi, mueller, found);
+        let found = self.polarisation.receive_scattered(vertex.wo(), wi, mueller, found);
         observer.light(self.vertex, Found::ShadowRay { light }, found);
         self.radiance += found;
     }

@@ -24,6 +24,8 @@ pub(crate) enum End {
 pub(crate) trait Observer<const N: usize> {
     /// The path meets a surface: vertex number `vertex` (0 is the first), where, which object, and its throughput so far.
     fn vertex(&mut self, _vertex: u32, _position: Vec3<f64>, _object: u32, _beta: Lanes<f64, N>) {}
+    /// A medium scatters the path: vertex number `vertex`, where, and its throughput so far.
+    fn scattering(&mut self, _vertex: u32, _position: Vec3<f64>, _beta: Lanes<f64, N>) {}
     /// Light is added: at which vertex, how, and how much in each lane.
     fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<f64, N>) {}
     /// A direction is drawn from a mixture.
@@ -39,6 +41,8 @@ pub(crate) enum Found {
     Emitter,
     /// The path left the scene into the environment.
     Environment,
+    /// A medium that the path went through emits.
+    Medium,
     /// A shadow ray reached the light of this index.
     ShadowRay {
         /// Index into the table of lights.

@@ -6,7 +6,7 @@ use crate::integrator::film_entry::Received;
 use crate::integrator::observer::{End, Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::light::{EnvironmentRadiance, Light, Look};
-use crate::media::MediumStack;
+use crate::media::{MediumInteraction, MediumStack};
 use crate::mis::power_heuristic;
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
@@ -42,9 +42,11 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
     pub walk: Walk<'a>,
     /// Surfaces passed as if they were not there, which are no vertices of the path, and where the last one was on this ray.
     passes: u32,
-    passed_at: Option<Vec3<f64>>,
+    pub(super) passed_at: Option<Vec3<f64>>,
     /// The number that decides whether the next surface is passed, once one was.
     u_mask: Option<f64>,
+    /// The optical depth on its ray, from where it is, at which a medium scatters it, once one was met that scatters.
+    pub(super) optical_depth: Option<f64>,
     spectra: SpectrumCache<N>,
 }
 
@@ -67,8 +69,8 @@ pub(super) enum Step {
 }
 
 /// What becomes of a path at the end of its ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Arrival {
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Arrival<'a> {
     /// It has left the scene and ended.
     Escaped,
     /// It ends at the surface that it has met.
@@ -77,6 +79,8 @@ pub(crate) enum Arrival {
     Passed,
     /// The surface scatters it: the next vertex of the path.
     Scatters,
+    /// A medium scatters it before it comes to the surface.
+    Collides(MediumInteraction<'a>),
 }
 
 impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
@@ -98,6 +102,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             passes: 0,
             passed_at: None,
             u_mask: None,
+            optical_depth: None,
             spectra: SpectrumCache::new(),
         }
     }
@@ -128,7 +133,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         Received { wavelengths: self.wavelengths, radiance: self.radiance, stokes: self.polarisation.received() }
     }
 
-    /// Arrives at what the ray has met: light is absorbed on the way, and found there.
+    /// Arrives at what the ray has met, unless a medium scatters the path before: light is absorbed on the way, and found there.
     #[inline(always)]
     pub(crate) fn arrive(
         &mut self,
@@ -138,8 +143,15 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         sampler: &Sampler,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
-    ) -> Arrival {
-        self.absorb(world, ray, met.as_deref());
+    ) -> Arrival<'a> {
+        if let Some(participating) = &world.participating
+            && let Some(collision) = self.travel(world, participating, ray, met.as_deref(), sampler, observer)
+        {
+            return match self.is_too_deep(world, counters, observer) {
+                true => Arrival::Ended,
+                false => Arrival::Collides(collision),
+            };
+        }
         let Some(vertex) = met else {
             self.add_environments(world, ray, counters, observer);
             observer.end(End::Escaped);
@@ -150,28 +162,24 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if world.masks && self.passes(world, vertex, sampler) {
             return Arrival::Passed;
         }
-        if self.vertex + 1 >= world.max_depth || self.vertex + 1 == MOST_VERTICES {
-            if self.vertex + 1 == MOST_VERTICES {
-                counters.record_cut(self.beta.max_lane() * self.lanes.weight());
-            }
-            observer.end(End::Depth);
+        if self.is_too_deep(world, counters, observer) {
             return Arrival::Ended;
         }
         vertex.prepare_scattering(world);
         Arrival::Scatters
     }
 
-    /// Multiplies throughput by the transmittance of the way along the ray.
+    /// Whether it ends here because it has as many vertices as it may have.
     #[inline(always)]
-    fn absorb(&mut self, world: &World<'a>, ray: &Ray<f64>, met: Option<&SurfaceInteraction<'a>>) {
-        let Some(absorption) = &world.absorption else { return };
-        let mut length = f64::INFINITY;
-        if let Some(vertex) = met {
-            self.stack.meet(vertex.surface.interior(), vertex.meets_front());
-            length = (vertex.point.position - self.passed_at.unwrap_or(ray.origin)).length();
+    fn is_too_deep(&self, world: &World<'a>, counters: &mut Counters, observer: &mut impl Observer<N>) -> bool {
+        if self.vertex + 1 < world.max_depth && self.vertex + 1 != MOST_VERTICES {
+            return false;
         }
-        let lambda_nm = &self.wavelengths.lambda_nm;
-        self.beta *= absorption.transmittance(world.media, &self.stack, lambda_nm, length);
+        if self.vertex + 1 == MOST_VERTICES {
+            counters.record_cut(self.beta.max_lane() * self.lanes.weight());
+        }
+        observer.end(End::Depth);
+        true
     }
 
     /// Adds the light from infinity.
@@ -190,7 +198,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 EnvironmentRadiance::Uniform(_) => (white, 1.0),
                 EnvironmentRadiance::Image(image) => {
                     let Look { colour, density } = image.look(ray.direction);
-                    let mis = self.weight_of_hit(world, SurfaceId::NONE, || sky.light, |_, _| density);
+                    let mis = self.weight_of_hit(world, None, || sky.light, |_, _| density);
                     (self.coloured(white, Some(colour)), mis)
                 }
             };
@@ -210,7 +218,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let SurfaceInteraction { hit, point, surface, wo, .. } = vertex;
         let Some(emitted) = surface.emission_along(world.geometry, point, hit, *wo) else { return };
         let density = |light: &Light, from| light.density(from, ray.direction, ray.time);
-        let mis = self.weight_of_hit(world, point.surface, || surface.light(point.surface), density);
+        let mis = self.weight_of_hit(world, Some(point.surface), || surface.light(point.surface), density);
         let slot = world.tables.objects[surface.object as usize].emission;
         let white = self.spectra.of(slot, emitted.radiance, world.tables, &self.wavelengths);
         let radiance = self.coloured(white, emitted.colour);
@@ -219,7 +227,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     /// Adds light that the walk has run into.
     #[inline(always)]
-    fn add(&mut self, observer: &mut impl Observer<N>, how: Found, radiance: Lanes<f64, N>, mis: f64) {
+    pub(super) fn add(&mut self, observer: &mut impl Observer<N>, how: Found, radiance: Lanes<f64, N>, mis: f64) {
         let light = self.polarisation.receive(self.beta * radiance * (self.lanes.weight() * mis));
         observer.light(self.vertex, how, light);
         self.radiance += light;
@@ -252,6 +260,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             self.walk.restart();
             (self.passed_at, self.u_mask) = (None, None);
         }
+        if world.participating.is_some() {
+            self.optical_depth = None;
+        }
     }
 
     /// A spectrum of the tables at the path's wavelengths.
@@ -276,19 +287,19 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
     }
 
-    /// The MIS weight of light that the walk ran into `on` a surface. `light` finds its number, if shadow rays aim at it, and
+    /// The MIS weight of light that the walk ran into, `on` a surface or at infinity. `light` finds its number, if shadow rays aim at it, and
     /// `density_of` the density with which they take the direction of the walk from a point.
     #[inline(always)]
     fn weight_of_hit(
         &self,
         world: &World<'a>,
-        on: SurfaceId,
+        on: Option<SurfaceId>,
         light: impl Fn() -> Option<u32>,
         density_of: impl Fn(&Light, Vec3<f64>) -> f64,
     ) -> f64 {
         let Step::Shared { from, leaves, density } = self.step else { return 1.0 };
         // The far side of the sphere that it left: see `next_event`.
-        if !world.weigh_hits || leaves == on {
+        if !world.weigh_hits || on == Some(leaves) {
             return 1.0;
         }
         let Some(light) = light() else { return 1.0 };

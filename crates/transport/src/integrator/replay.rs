@@ -42,11 +42,20 @@ pub enum Event {
         /// Throughput of the path up to here at each wavelength.
         beta: Vec<f64>,
     },
+    /// A medium scattered the path.
+    Scattering {
+        /// Its number along the path, from 0.
+        vertex: u32,
+        /// Position, m.
+        position_m: [f64; 3],
+        /// Throughput of the path up to here at each wavelength.
+        beta: Vec<f64>,
+    },
     /// Light was added.
     Light {
         /// At which vertex.
         vertex: u32,
-        /// How it was found: `emitter`, `environment` or `shadow-ray to light k`.
+        /// How it was found: `emitter`, `environment`, `medium` or `shadow-ray to light k`.
         found: String,
         /// How much, at each wavelength.
         radiance: Vec<f64>,
@@ -97,10 +106,16 @@ impl<const N: usize> Observer<N> for Recorder<'_> {
         });
     }
 
+    fn scattering(&mut self, vertex: u32, position: Vec3<f64>, beta: Lanes<f64, N>) {
+        let position_m = self.prepared.frame.to_world_m(position).to_array();
+        self.events.push(Event::Scattering { vertex, position_m, beta: widen(beta) });
+    }
+
     fn light(&mut self, vertex: u32, how: Found, radiance: Lanes<f64, N>) {
         let found = match how {
             Found::Emitter => "emitter".to_owned(),
             Found::Environment => "environment".to_owned(),
+            Found::Medium => "medium".to_owned(),
             Found::ShadowRay { light } => format!("shadow-ray to light {light}"),
         };
         self.events.push(Event::Light { vertex, found, radiance: widen(radiance) });

@@ -25,10 +25,17 @@ pub(crate) fn trace<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
         let mut met = world.intersect(&ray, &mut path.walk, &mut path.stack, counters);
 
-        // Emission: what shines there, or at infinity? Masks let the ray pass.
+        // Emission: what shines there, or at infinity, or on the way? Masks let the ray pass, media may scatter it before.
         match path.arrive(world, &ray, met.as_mut(), sampler, counters, observer) {
             Arrival::Scatters => {}
             Arrival::Passed => continue,
+            Arrival::Collides(collision) => {
+                match path.scatter_in_medium(world, &collision, sampler, counters, observer) {
+                    Some(next) => ray = next,
+                    None => break,
+                }
+                continue;
+            }
             Arrival::Escaped | Arrival::Ended => break,
         }
         let Some(vertex) = met else { break };
@@ -66,7 +73,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         observer: &mut impl Observer<N>,
     ) {
         let [u_light, u1, u2, _] = sampler.vertex_set(self.vertex, 1);
-        if let Some(draw) = world.sample_light(vertex, u_light, [u1, u2])
+        if let Some(draw) = world.sample_light(&vertex.point, u_light, [u1, u2])
             && let Some(next) = self.next_event(world, vertex, &draw)
             && let Some(visible) = self.visibility(world, vertex, &draw.sample, counters)
         {

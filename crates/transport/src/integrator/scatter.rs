@@ -7,7 +7,6 @@ use crate::bsdf::{BsdfSample, Lobe, lambert};
 use crate::guiding::Mixture;
 use crate::integrator::observer::{End, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::media::MediumStack;
 use crate::mis::Density;
 use crate::polarisation::Polarisation;
 use crate::scene::interaction::SurfaceInteraction;
@@ -170,15 +169,6 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             self.stack = self.walk.behind(vertex, &self.stack);
         }
         Taken { wi, guiding, delta }
-    }
-
-    /// The media on the side of a surface to which a direction leads.
-    #[inline(always)]
-    pub(super) fn media_toward(&self, vertex: &SurfaceInteraction<'a>, wi: Vec3<f64>) -> MediumStack<'a> {
-        match vertex.goes_through(wi) {
-            true => self.walk.behind(vertex, &self.stack),
-            false => self.stack,
-        }
     }
 
     /// Applies the guiding weight of a step, and plays Russian roulette with the throughput. False if the path ends.

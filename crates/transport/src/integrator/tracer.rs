@@ -70,7 +70,7 @@ impl<'a> Tracer<'a> {
         let plan = prepared.plan();
         // Forced on a scene without solids, they are nothing to walk through.
         let media = prepared.media.as_ref().filter(|media| media.solids.iter().any(Option::is_some));
-        let masks = plan.runs(EffectName::Masks);
+        let masks = plan.runs(EffectName::Masks) || prepared.has_boundaries();
         Self {
             prepared,
             camera: prepared.tracing_camera(),
@@ -81,7 +81,7 @@ impl<'a> Tracer<'a> {
                 lights: &prepared.lights,
                 environments: &prepared.environments,
                 media,
-                absorption: prepared.absorption(),
+                participating: prepared.participating(),
                 light_sampling: integrator.light_sampling,
                 shadow_rays: prepared.shadow_rays(),
                 masks,

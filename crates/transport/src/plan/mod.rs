@@ -43,8 +43,10 @@ pub enum EffectName {
     SpecularChains,
     /// Solids of different media touch, overlap or hold each other.
     NestedDielectrics,
-    /// Media absorb light on its way.
+    /// Media absorb light on its way, or emit some.
     Absorption,
+    /// Media scatter light on its way.
+    Scattering,
     /// Light is polarised by what reflects and refracts it.
     Polarisation,
     /// Images vary what surfaces reflect.
@@ -65,7 +67,7 @@ pub enum EffectName {
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Lens,
@@ -75,6 +77,7 @@ impl EffectName {
         Self::SpecularChains,
         Self::NestedDielectrics,
         Self::Absorption,
+        Self::Scattering,
         Self::Polarisation,
         Self::Textures,
         Self::ShadingNormals,
@@ -97,6 +100,7 @@ impl EffectName {
             Self::SpecularChains => "specular-chains",
             Self::NestedDielectrics => "nested-dielectrics",
             Self::Absorption => "absorption",
+            Self::Scattering => "scattering",
             Self::Polarisation => "polarisation",
             Self::Textures => "textures",
             Self::ShadingNormals => "shading-normals",
@@ -121,7 +125,8 @@ impl EffectName {
             Self::Environment => "light from infinity is left out",
             Self::SpecularChains => "mirrors, metals and glass are black",
             Self::NestedDielectrics => "each solid is treated as if it stood in vacuum",
-            Self::Absorption => "glass is clear, however thick",
+            Self::Absorption => "media take no light away and emit none, however thick they are",
+            Self::Scattering => "light goes straight through media: no fog, no milk",
             Self::Polarisation => "light is treated as unpolarised at every surface",
             Self::Textures => "each image is replaced by its mean colour",
             Self::ShadingNormals => "meshes show their triangles",
@@ -147,7 +152,8 @@ impl EffectName {
             | Self::Masks
             | Self::Instances
             | Self::WideFilter
-            | Self::Bands => false,
+            | Self::Bands
+            | Self::Scattering => false,
         }
     }
 }
@@ -282,6 +288,7 @@ fn reuse_unsupported(kernel: &KernelKind, runs: impl Fn(EffectName) -> bool) -> 
         () if !kernel.shares_paths => Some("a study decides what paths carry"),
         () if runs(EffectName::NestedDielectrics) => Some("dielectrics are nested"),
         () if runs(EffectName::Absorption) => Some("media absorb"),
+        () if runs(EffectName::Scattering) => Some("media scatter"),
         () if runs(EffectName::Motion) => Some("something moves while the shutter is open"),
         () if runs(EffectName::Masks) => Some("surfaces have an opacity below 1"),
         () => None,
@@ -329,7 +336,9 @@ impl Plan {
             .collect();
         let runs = |name| effects.iter().any(|effect: &Effect| effect.name == name && effect.on);
         // Without wavelengths there is none that could go another way.
-        let lane_model = if runs(EffectName::Dispersion) {
+        let lane_model = if runs(EffectName::Dispersion)
+            || runs(EffectName::Scattering) && evidence::parts_lanes(&simulated(scene, study))
+        {
             LaneModel::Hero
         } else if runs(EffectName::Wavelengths) || runs(EffectName::Polarisation) {
             LaneModel::Shared

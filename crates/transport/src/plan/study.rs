@@ -7,8 +7,8 @@ use crate::texture;
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_scene::{
-    Filter, Image, ImageTexture, LightSampling, MaterialKind, Mesh, Metal, Object, ParameterMut, PolarisingSheet,
-    Projection, Scene, Shape, SpectrumTexture, Texels,
+    Filter, Image, ImageTexture, LightSampling, MaterialKind, Medium, Mesh, Metal, Object, ParameterMut,
+    PolarisingSheet, Projection, Scene, Shape, SpectrumTexture, Texels,
 };
 use std::sync::Arc;
 
@@ -131,8 +131,11 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::Wavelengths => {
             for material in &mut scene.materials {
                 turn_grey(&mut material.kind, range_nm);
-                if let Some(absorption) = &mut material.absorption {
-                    *absorption = grey(absorption, range_nm);
+            }
+            for medium in media_mut(scene) {
+                let Medium { absorption, scattering, source, .. } = medium;
+                for spectrum in [absorption, scattering].into_iter().chain(source) {
+                    *spectrum = grey(spectrum, range_nm);
                 }
             }
             leave_out(EffectName::Dispersion, scene);
@@ -167,7 +170,8 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 }
             }
         }
-        EffectName::Absorption => scene.materials.iter_mut().for_each(|material| material.absorption = None),
+        EffectName::Absorption => media_mut(scene).for_each(|medium| medium.absorption = Spectrum::Constant(0.0)),
+        EffectName::Scattering => media_mut(scene).for_each(|medium| medium.scattering = Spectrum::Constant(0.0)),
         // Sheets do to unpolarised light what they do, and no more.
         EffectName::Polarisation => scene.film.stokes = false,
         EffectName::Textures => {
@@ -202,6 +206,11 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::WideFilter => scene.film.filter = Filter::Box,
         EffectName::Bands => scene.film.bands = None,
     }
+}
+
+/// Every medium.
+fn media_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Medium> {
+    scene.materials.iter_mut().filter_map(|material| material.medium.as_mut()).chain(&mut scene.medium)
 }
 
 /// Every object, where it is defined.

@@ -120,11 +120,14 @@ pub(crate) struct Walk<'a> {
     group: Vec<Member>,
     /// The media behind the interface of solids that it met last.
     beyond: MediumStack<'a>,
+    /// Boundaries of solids on the way to what it met last that change no medium, by their distance, and the media before each. Kept where
+    /// a medium may scatter the path before them.
+    crossed: Vec<(f64, MediumStack<'a>)>,
 }
 
 impl Default for Walk<'_> {
     fn default() -> Self {
-        Self { passed: Passed::default(), group: Vec::new(), beyond: MediumStack::NOTHING }
+        Self { passed: Passed::default(), group: Vec::new(), beyond: MediumStack::NOTHING, crossed: Vec::new() }
     }
 }
 
@@ -147,6 +150,7 @@ impl<'a> Walk<'a> {
     pub(crate) fn restart(&mut self) {
         if !self.passed.is_nothing() {
             self.passed.clear();
+            self.crossed.clear();
         }
     }
 
@@ -158,6 +162,11 @@ impl<'a> Walk<'a> {
             true => self.pass_group(),
             false => self.passed.pass(&met.hit, self.first_distance()),
         }
+    }
+
+    /// The media at a distance on the way to what it met last, if those that were found there are others.
+    pub(crate) fn media_before(&self, distance: f64) -> Option<MediumStack<'a>> {
+        self.crossed.iter().find(|(crossed, _)| *crossed > distance).map(|(_, before)| *before)
     }
 
     /// The media behind what it has met last, before which there are those of `stack`.
@@ -212,6 +221,7 @@ impl<'w> World<'w> {
         counters: &mut Counters,
     ) -> Option<SurfaceInteraction<'w>> {
         let media = self.media;
+        walk.crossed.clear();
         loop {
             self.gather(ray, walk, first);
             if let Some(number) = self.first_of_group(&walk.group, media) {
@@ -243,6 +253,9 @@ impl<'w> World<'w> {
                     crosses: true,
                     ..SurfaceInteraction::new(ray.direction, hit, point, surface)
                 });
+            }
+            if self.participating.is_some() {
+                walk.crossed.push((first.t, *stack));
             }
             *stack = walk.beyond;
             walk.pass_group();

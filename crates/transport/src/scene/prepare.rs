@@ -7,7 +7,7 @@ use crate::film::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame, mapped};
 use crate::guiding::GuidedTargets;
 use crate::light::{Environment, Light, LightTable};
-use crate::media::{Absorption, Interior, Media, Solid};
+use crate::media::{Interior, Media, Medium, Participating, Solid};
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
 use crate::scene::motion::motion;
 use crate::scene::prepare_error::PrepareError;
@@ -35,6 +35,8 @@ pub struct Prepared {
     pub(crate) lights: LightTable,
     pub(crate) environments: Vec<Environment>,
     pub(crate) media: Option<Media>,
+    /// What fills the space outside of all bodies.
+    surrounding: Option<Medium>,
     pub(crate) wavelengths: WavelengthDistribution,
     pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
@@ -116,10 +118,8 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
             .materials
             .iter()
             .map(|material| {
-                material.kind.media().map(|_| {
-                    let absorption = material.absorption.as_ref().filter(|absorption| !absorption.is_zero());
-                    Interior { absorption: absorption.map(spectrum) }
-                })
+                let medium = || material.medium.as_ref().and_then(|medium| Medium::new(medium, range_nm, &frame));
+                material.kind.media().map(|_| Interior { medium: medium() })
             })
             .collect(),
         objects: shapes::objects(scene)
@@ -131,7 +131,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
                     sides: e.sides,
                     image: e.image.clone(),
                 }),
-                opacity: o.opacity,
+                opacity: if scene.materials[o.material].kind == MaterialKind::Boundary { 0.0 } else { o.opacity },
                 opacity_image: o.opacity_image.clone(),
                 relief: o.relief.clone().map(|image| Relief { image, per_m: frame.per_m() }),
                 coordinates,
@@ -152,12 +152,13 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     };
     let drawn = matches!(plan.lane_model, LaneModel::Shared | LaneModel::Hero).then_some(&wavelengths);
     let tables = ShadingTables::new(&surfaces, &lights, &environments, drawn, plan.runs(EffectName::Polarisation));
-    let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene)).transpose()?;
+    let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene, &frame)).transpose()?;
     Ok(Prepared {
         frame,
         camera: frame.camera(&scene.camera),
         camera_motion,
         media,
+        surrounding: scene.medium.as_ref().and_then(|medium| Medium::new(medium, range_nm, &frame)),
         geometry,
         surfaces,
         lights,
@@ -190,16 +191,15 @@ fn axis(object: &Object, kind: &MaterialKind) -> Option<Vec3<f64>> {
 }
 
 /// The solids that carry priorities.
-fn media(scene: &Scene) -> Result<Media, PrepareError> {
+fn media(scene: &Scene, frame: &SceneFrame) -> Result<Media, PrepareError> {
     let range_nm = scene.integrator.wavelength_range_nm;
     let solid = |object: &Object| {
         let Some((index, priority)) = scene.materials[object.material].kind.solid() else { return Ok(None) };
         match object.shape.open_edges() {
             None => {
-                let absorption = &scene.materials[object.material].absorption;
-                let absorption = absorption.as_ref().filter(|spectrum| !spectrum.is_zero());
-                let absorption = absorption.map(|spectrum| PathSpectrum::new(spectrum, range_nm));
-                Ok(Some(Solid { priority, index: index.clone(), absorption }))
+                let medium = scene.materials[object.material].medium.as_ref();
+                let medium = medium.and_then(|medium| Medium::new(medium, range_nm, frame));
+                Ok(Some(Solid { priority, index: index.clone(), medium }))
             }
             Some(why) => Err(PrepareError::OpenSolid { object: object.name.clone(), why }),
         }
@@ -250,9 +250,15 @@ impl Prepared {
         self.plan.stokes
     }
 
-    /// Absorption along paths, if it is simulated.
-    pub(crate) fn absorption(&self) -> Option<Absorption> {
-        self.plan.runs(EffectName::Absorption).then(|| Absorption { unit_m: 1.0 / self.frame.per_m() })
+    /// What media do to light along paths, if that is simulated.
+    pub(crate) fn participating(&self) -> Option<Participating<'_>> {
+        let acts = self.plan.runs(EffectName::Absorption) || self.plan.runs(EffectName::Scattering);
+        acts.then(|| Participating { unit_m: 1.0 / self.frame.per_m(), surrounding: self.surrounding.as_ref() })
+    }
+
+    /// Whether some surface is only the boundary of a medium.
+    pub(crate) fn has_boundaries(&self) -> bool {
+        self.scene.placed_objects().any(|object| self.scene.materials[object.material].kind == MaterialKind::Boundary)
     }
 
     /// Width and height of the blocks of pixels that share paths, if any do.

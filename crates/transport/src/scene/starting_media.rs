@@ -15,7 +15,7 @@ impl<'a> World<'a> {
     fn find_media_around(&self, ray: &Ray<f64>, counters: &mut Counters) -> MediumStack<'a> {
         let solids = self.media.map(|media| self.entered_solids(media, ray, counters));
         let mut stack = solids.unwrap_or(MediumStack::NOTHING);
-        stack.meet(self.absorption.and_then(|_| self.entered_body(ray)), false);
+        stack.meet(self.participating.and_then(|_| self.entered_body(ray)), false);
         stack
     }
 

@@ -2,7 +2,7 @@
 
 use crate::guiding::GuidedTargets;
 use crate::light::{Environment, LightTable};
-use crate::media::{Absorption, Media};
+use crate::media::{Media, Participating};
 use crate::scene::shading_tables::ShadingTables;
 use crate::surface::Surfaces;
 use etalon_geometry::Geometry;
@@ -17,11 +17,11 @@ pub(crate) struct World<'a> {
     pub environments: &'a [Environment],
     /// The media, if the scene's solids are nested.
     pub media: Option<&'a Media>,
-    /// Absorption in media, if there is any.
-    pub absorption: Option<Absorption>,
+    /// What media do to light on its way, if they do anything.
+    pub participating: Option<Participating<'a>>,
     pub light_sampling: LightSampling,
     pub shadow_rays: ShadowRays,
-    /// Whether some surface lets a part of the light pass as if it were not there.
+    /// Whether some surface lets light, or a part of it, pass as if it were not there.
     pub masks: bool,
     /// Whether surfaces that coincide are met as one group: masks let paths pass, or solids share interfaces.
     pub meets_groups: bool,
@@ -43,7 +43,7 @@ impl World<'_> {
     /// Whether it matters which media hold a path.
     #[inline(always)]
     pub(crate) fn follows_media(&self) -> bool {
-        self.media.is_some() || self.absorption.is_some()
+        self.media.is_some() || self.participating.is_some()
     }
 }
 

@@ -65,9 +65,9 @@ pub(super) fn blend<'f>(
         _ => None,
     };
     let (first, second, by) = (first?, second?, by?);
-    if first.absorption.is_some() || second.absorption.is_some() {
-        let message = "a dielectric inside a blend cannot have an absorption";
-        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "use the dielectric without a blend");
+    if first.medium.is_some() || second.medium.is_some() {
+        let message = "what is inside a blend cannot have an absorption or a medium";
+        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "use the material without a blend");
         return None;
     }
     let (first, second) = (first.kind, second.kind);

@@ -1,6 +1,7 @@
 //! Interfaces between two transparent media.
 
 use super::super::detail::RoughnessImageForm;
+use super::super::medium::{MediumForm, medium};
 use super::super::spectra::{Role, Spectra};
 use super::super::spectrum::SpectrumForm;
 use super::index::{IndexForm, index};
@@ -8,8 +9,7 @@ use super::roughness::{Roughness, RoughnessKeys, roughness, roughness_keys};
 use super::{Alpha, Made, MultipleScattering, Width};
 use crate::files::Files;
 use crate::json::{Code, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
-use crate::model::MaterialKind;
-use etalon_optics::Spectrum;
+use crate::model::{MaterialKind, Medium};
 
 crate::record! {
     /// Interface between two transparent media, with dispersion.
@@ -40,6 +40,8 @@ crate::record! {
         transmittance: Optional<SpectrumForm>,
         /// The depth at which `transmittance` holds, m.
         transmittance_depth_m: Optional<Positive>,
+        /// Instead of an absorption: all that the interior does to light.
+        medium: Optional<Box<MediumForm>>,
     } with [
         Rule::NotBoth("alpha", "roughness_image"),
         Rule::NotBoth("alpha", "alpha_u"),
@@ -50,12 +52,14 @@ crate::record! {
         Rule::NotBoth("exterior", "priority"),
         Rule::NotBoth("roughness_image", "priority"),
         Rule::NotBoth("absorption_per_m", "transmittance"),
+        Rule::NotBoth("absorption_per_m", "medium"),
+        Rule::NotBoth("transmittance", "medium"),
         Rule::Needs("transmittance", &["transmittance_depth_m"]),
         Rule::Needs("transmittance_depth_m", &["transmittance"]),
     ]
 }
 
-/// The interface of a form, and what its interior absorbs.
+/// The interface of a form, and what fills its interior.
 pub(super) fn dielectric<'f>(
     form: &'f DielectricMaterial,
     spectra: &mut Spectra<'f>,
@@ -66,7 +70,7 @@ pub(super) fn dielectric<'f>(
     let exterior = form.exterior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
     let roughness = roughness(&roughness_keys!(form), files, reader);
     let priority = form.priority.clone().checked()?.map(|priority| priority.0 as u32);
-    let absorption = absorption(form, spectra, reader);
+    let medium = interior_medium(form, spectra, files, reader);
     let (interior, exterior, roughness) = (interior?, exterior?, roughness?);
     let compensated = compensated(form, &roughness, reader)?;
     let kind = roughness.material(|facets| {
@@ -76,7 +80,7 @@ pub(super) fn dielectric<'f>(
             Some(facets) => MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority },
         }
     });
-    Some(Made { kind, absorption: absorption? })
+    Some(Made { kind, medium: medium? })
 }
 
 /// Whether light that meets several facets is counted. Of facets of two widths it cannot be.
@@ -94,21 +98,24 @@ fn compensated(form: &DielectricMaterial, roughness: &Roughness, reader: &mut Re
     }
 }
 
-/// The absorption of a dielectric's interior; `Some(None)` if it has none.
-fn absorption<'f>(
+/// What fills a dielectric's interior; `Some(None)` if it is clear.
+fn interior_medium<'f>(
     form: &'f DielectricMaterial,
     spectra: &mut Spectra<'f>,
+    files: &mut Files,
     reader: &mut Reader<'_>,
-) -> Option<Option<Spectrum>> {
-    match (&form.absorption_per_m, &form.transmittance) {
-        (Optional::Absent, Optional::Absent) => Some(None),
-        (Optional::Given(coefficient), _) => spectra.resolve(coefficient, Role::Absorption, reader).map(Some),
-        (_, Optional::Given(share)) => {
+) -> Option<Option<Medium>> {
+    let absorption = match (&form.absorption_per_m, &form.transmittance, &form.medium) {
+        (Optional::Absent, Optional::Absent, Optional::Absent) => return Some(None),
+        (_, _, Optional::Given(form)) => return medium(form, spectra, files, reader).map(Some),
+        (Optional::Given(coefficient), ..) => spectra.resolve(coefficient, Role::Coefficient, reader),
+        (_, Optional::Given(share), _) => {
             let depth_m = form.transmittance_depth_m.given()?.0;
             let at = share.at().head();
             let share = spectra.resolve(share, Role::Reflectance, reader)?;
-            spectra.absorption_of(&share, depth_m, at, reader).map(Some)
+            spectra.absorption_of(&share, depth_m, at, reader)
         }
         _ => None,
-    }
+    };
+    absorption.map(|absorption| Some(Medium::absorbing(absorption)))
 }

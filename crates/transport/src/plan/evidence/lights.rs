@@ -1,6 +1,6 @@
 //! What lights call for, and the surfaces that they shine on.
 
-use super::{materials::is_diffuse, surface};
+use super::{materials::is_diffuse, media, surface};
 use etalon_optics::Spectrum;
 use etalon_scene::{Light, LightKind, LightSampling, Object, Scene};
 
@@ -22,17 +22,18 @@ fn emitter(scene: &Scene) -> Option<&Object> {
     scene.placed_objects().find(|object| object.emission.as_ref().is_some_and(|e| !e.is_zero()))
 }
 
-/// A diffuse surface, one that does not shine itself if there is any.
+/// A diffuse surface, one that does not shine itself if there is any; without one, a medium that scatters.
 fn diffuse_surface(scene: &Scene) -> Option<String> {
     let diffuse = |object: &&Object| is_diffuse(&scene.materials[object.material].kind);
     let lit = scene.placed_objects().filter(|object| object.emission.is_none()).find(diffuse);
-    let object = lit.or_else(|| scene.placed_objects().find(diffuse))?;
-    Some(surface(object, &scene.materials[object.material]))
+    let object = lit.or_else(|| scene.placed_objects().find(diffuse));
+    let found = object.map(|object| surface(object, &scene.materials[object.material]));
+    found.or_else(|| media::scatters_everywhere(scene))
 }
 
 pub(super) fn shadow_rays(scene: &Scene) -> Result<String, String> {
     let Some(diffuse) = diffuse_surface(scene) else {
-        return Err("no diffuse surface on which a shadow ray could find light".to_owned());
+        return Err("no diffuse surface and no medium in which a shadow ray could find light".to_owned());
     };
     if let Some(light) = scene.lights.iter().find(|light| is_target(&light.kind)) {
         return Ok(format!("light \"{}\" on {diffuse}", light.name));
@@ -57,7 +58,9 @@ pub(super) fn mis(scene: &Scene) -> Result<String, String> {
         (LightSampling::Light, ..) => Err("integrator.light_sampling is \"light\"".to_owned()),
         (LightSampling::Bsdf, ..) => Err("integrator.light_sampling is \"bsdf\"".to_owned()),
         (LightSampling::Mis, None, _) => Err("no lamp that a path could hit".to_owned()),
-        (LightSampling::Mis, _, None) => Err("no diffuse surface, where shadow rays and paths compete".to_owned()),
+        (LightSampling::Mis, _, None) => {
+            Err("no diffuse surface and no medium, where shadow rays and paths compete".to_owned())
+        }
         (LightSampling::Mis, Some(lamp), Some(diffuse)) => {
             Ok(format!("{lamp} is found from {diffuse} by shadow rays and by paths"))
         }
@@ -70,5 +73,5 @@ pub(in crate::plan) fn sources(scene: &Scene) -> Vec<(String, &Spectrum)> {
         .placed_objects()
         .filter_map(|object| Some((format!("emission of \"{}\"", object.name), &object.emission.as_ref()?.radiance)));
     let lights = scene.lights.iter().map(|light| (format!("light \"{}\"", light.name), light.kind.spectrum()));
-    emitters.chain(lights).filter(|(_, spectrum)| !spectrum.is_zero()).collect()
+    emitters.chain(lights).chain(media::sources(scene)).filter(|(_, spectrum)| !spectrum.is_zero()).collect()
 }

@@ -3,7 +3,7 @@
 use crate::bsdf::{Properties, properties};
 use crate::plan::grey::steps;
 use etalon_optics::{ComplexIndex, RefractiveIndex};
-use etalon_scene::{Material, MaterialKind, Metal, Parameter, PolarisingSheet, SpectrumTexture};
+use etalon_scene::{MaterialKind, Metal, Parameter, PolarisingSheet, SpectrumTexture};
 
 /// The index by which wavelengths go different ways, if there is one.
 pub(super) fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
@@ -42,12 +42,6 @@ fn colour_of_texture(reflectance: &SpectrumTexture, range_nm: [f64; 2]) -> Optio
     })
 }
 
-/// What the medium within a surface absorbs, if it does.
-pub(super) fn absorption(material: &Material, range_nm: [f64; 2]) -> Option<String> {
-    let absorption = material.absorption.as_ref().filter(|absorption| !absorption.is_zero())?;
-    Some(format!("σ {}", spread(range_nm, |nm| absorption.eval(nm)).replace(" over", " m⁻¹ over")))
-}
-
 pub(super) fn nested(kind: &MaterialKind) -> Option<String> {
     kind.solid().map(|(_, priority)| format!("priority {priority}"))
 }
@@ -75,7 +69,7 @@ fn metal_range(index: &ComplexIndex, range_nm: [f64; 2]) -> String {
 }
 
 /// `1.61–1.66 over 380–780 nm`.
-fn spread(range_nm: [f64; 2], value: impl Fn(f64) -> f64) -> String {
+pub(super) fn spread(range_nm: [f64; 2], value: impl Fn(f64) -> f64) -> String {
     let [low, high] = extremes(range_nm, value);
     format!("{low:.3}–{high:.3} over {}–{} nm", range_nm[0], range_nm[1])
 }

@@ -2,17 +2,20 @@
 
 mod lights;
 mod materials;
+mod media;
 mod motion;
 mod polarisation;
 
 pub(super) use lights::{is_target, sources};
+pub(super) use media::parts_lanes;
 pub(super) use polarisation::{UNPOLARISED, polarisation};
 
 use super::EffectName;
 use super::grey::same_shape;
 use etalon_scene::{Filter, ImageTexture, Light, Material, Object, Projection, Scene, Shape};
 use lights::{is_environment, mis, shadow_rays};
-use materials::{absorption, colour, dispersion, nested, specular};
+use materials::{colour, dispersion, nested, specular};
+use media::{absorption, coloured, scattering};
 
 /// What calls for an effect (`Ok`), or why nothing does (`Err`).
 pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
@@ -44,10 +47,8 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             Some(found) => Ok(found),
             None => nothing("no dielectric carries a priority"),
         },
-        EffectName::Absorption => match first_surface(scene, absorption) {
-            Some(found) => Ok(found),
-            None => nothing("no medium absorbs"),
-        },
+        EffectName::Absorption => absorption(scene).ok_or_else(|| "no medium absorbs".to_owned()),
+        EffectName::Scattering => scattering(scene).ok_or_else(|| "no medium scatters".to_owned()),
         EffectName::Polarisation => polarisation(scene, false),
         EffectName::Textures => match first_surface(scene, |material, _| material.kind.image().map(size)) {
             Some(found) => Ok(found),
@@ -151,10 +152,7 @@ fn wavelengths(scene: &Scene) -> Result<String, String> {
     if let Some(found) = first_surface(scene, |material, range| colour(&material.kind, range)) {
         return Ok(found);
     }
-    let coloured = |material: &Material| material.absorption.as_ref().is_some_and(|a| !a.is_constant());
-    if let Some(found) =
-        first_surface(scene, |material, range| coloured(material).then(|| absorption(material, range)).flatten())
-    {
+    if let Some(found) = coloured(scene) {
         return Ok(found);
     }
     for light in &scene.lights {

@@ -1,6 +1,6 @@
 //! Whether light is polarised, and by how much it matters that it is not.
 
-use super::{first_surface, middle, surface};
+use super::{first_surface, media, middle, surface};
 use crate::bsdf::properties;
 use crate::plan::grey::steps;
 use crate::texture;
@@ -8,7 +8,7 @@ use etalon_optics::{colour::colour_matching, fresnel};
 use etalon_scene::{MaterialKind, Metal, Parameter, Scene};
 
 /// Why polarisation is not carried where it could make no difference.
-pub(in crate::plan) const UNPOLARISED: &str = "no surface polarises light";
+pub(in crate::plan) const UNPOLARISED: &str = "nothing polarises light";
 
 /// Whether polarisation is carried. Where it is not but could matter, how much it could.
 pub(in crate::plan) fn polarisation(scene: &Scene, asked_for: bool) -> Result<String, String> {
@@ -25,16 +25,15 @@ pub(in crate::plan) fn polarisation(scene: &Scene, asked_for: bool) -> Result<St
     if scene.film.stokes {
         return Ok("film: stokes".to_owned());
     }
-    let worst = scene
-        .placed_objects()
-        .filter_map(|object| {
-            let material = &scene.materials[object.material];
-            let range_nm = scene.integrator.wavelength_range_nm;
-            let (share, how) = polarises(&material.kind, range_nm)?;
-            Some((share, format!("{}: {how}", surface(object, material))))
-        })
-        // The first of the worst.
-        .reduce(|worst, other| if other.0 > worst.0 { other } else { worst });
+    let of_surfaces = scene.placed_objects().filter_map(|object| {
+        let material = &scene.materials[object.material];
+        let range_nm = scene.integrator.wavelength_range_nm;
+        let (share, how) = polarises(&material.kind, range_nm)?;
+        Some((share, format!("{}: {how}", surface(object, material))))
+    });
+    let of_media = media::polarises(scene).map(|found| (1.0, found));
+    // The first of the worst.
+    let worst = of_surfaces.chain(of_media).reduce(|worst, other| if other.0 > worst.0 { other } else { worst });
     match worst {
         None => Err(UNPOLARISED.to_owned()),
         Some((_, found)) => {

@@ -24,6 +24,7 @@ impl Prepared {
             && still(scene)
             && own.materials == scene.materials
             && own.lights == scene.lights
+            && own.medium == scene.medium
             && own.groups == scene.groups
             && own.objects == scene.objects
             && simulates_the_same(&self.plan, plan)

@@ -13,8 +13,18 @@
 //! that goes through it goes on in there, or leaves it. What such a body holds is surrounded by its interior as long as it is not itself
 //! such a body.
 
-use crate::spectral::PathSpectrum;
-use etalon_optics::{Lanes, RefractiveIndex, exp_neg};
+mod density;
+mod interaction;
+mod medium;
+mod participating;
+mod phase;
+
+pub(crate) use density::Way;
+pub(crate) use interaction::MediumInteraction;
+pub(crate) use medium::Medium;
+pub(crate) use participating::{Participating, Stretch, optical_depth};
+
+use etalon_optics::RefractiveIndex;
 
 static VACUUM: RefractiveIndex = RefractiveIndex::VACUUM;
 
@@ -26,8 +36,8 @@ pub const DEPTH: usize = 16;
 pub(crate) struct Solid {
     pub priority: u32,
     pub index: RefractiveIndex,
-    /// Absorption coefficient, m⁻¹, if it absorbs.
-    pub absorption: Option<PathSpectrum>,
+    /// What fills it, if that does anything to light.
+    pub medium: Option<Medium>,
 }
 
 /// A solid where it is placed: its object's number, and the instance (0 if it is in none).
@@ -39,18 +49,18 @@ pub(crate) struct MediumStack<'a> {
     /// The solids with priorities, in no order.
     places: [PlacedSolid; DEPTH],
     len: usize,
-    /// The absorption coefficient of the body around it that states both its sides, m⁻¹, if it absorbs.
-    body_absorption: Option<&'a PathSpectrum>,
+    /// What the body around it holds that states both its sides.
+    body: Option<&'a Interior>,
 }
 
 impl<'a> MediumStack<'a> {
-    pub(crate) const NOTHING: Self = Self { places: [(0, 0); DEPTH], len: 0, body_absorption: None };
+    pub(crate) const NOTHING: Self = Self { places: [(0, 0); DEPTH], len: 0, body: None };
 
     /// Corrects it before a dielectric that states both its sides. Met from within, it is known to be its interior.
     #[inline(always)]
     pub(crate) fn meet(&mut self, interior: Option<&'a Interior>, from_front: bool) {
         if let Some(interior) = interior.filter(|_| !from_front) {
-            self.body_absorption = interior.absorption.as_ref();
+            self.body = Some(interior);
         }
     }
 
@@ -59,7 +69,7 @@ impl<'a> MediumStack<'a> {
     pub(crate) fn behind(&self, interior: Option<&'a Interior>, from_front: bool) -> Self {
         let mut behind = *self;
         if let Some(interior) = interior {
-            behind.body_absorption = interior.absorption.as_ref().filter(|_| from_front);
+            behind.body = from_front.then_some(interior);
         }
         behind
     }
@@ -114,8 +124,8 @@ impl<'a> MediumStack<'a> {
 /// What a dielectric that states both its sides holds.
 #[derive(Clone, Debug)]
 pub(crate) struct Interior {
-    /// Absorption coefficient, m⁻¹, if it absorbs.
-    pub absorption: Option<PathSpectrum>,
+    /// What fills it, if that does anything to light.
+    pub medium: Option<Medium>,
 }
 
 /// The two media at an interface, along the walk from the camera.
@@ -149,14 +159,15 @@ impl Media {
         (self.solid(place.0).map(|solid| solid.priority), place)
     }
 
-    /// The medium that fills a place.
-    pub(crate) fn medium(&self, stack: &MediumStack<'_>) -> &RefractiveIndex {
-        self.filling(stack).and_then(|place| self.solid(place.0)).map_or(&VACUUM, |solid| &solid.index)
+    /// The solid that fills a place, if one does.
+    #[inline]
+    fn filling_solid(&self, stack: &MediumStack<'_>) -> Option<&Solid> {
+        self.filling(stack).and_then(|place| self.solid(place.0))
     }
 
-    /// The absorption coefficient of the solid that fills a place, m⁻¹, if it absorbs.
-    fn absorption(&self, stack: &MediumStack<'_>) -> Option<&PathSpectrum> {
-        self.filling(stack).and_then(|place| self.solid(place.0))?.absorption.as_ref()
+    /// The index of what fills a place.
+    pub(crate) fn medium(&self, stack: &MediumStack<'_>) -> &RefractiveIndex {
+        self.filling_solid(stack).map_or(&VACUUM, |solid| &solid.index)
     }
 
     /// Whether an object is the boundary of a solid.
@@ -176,36 +187,5 @@ impl Media {
         let entered = far.filter(|&place| !before.holds(place));
         let deciding = left.into_iter().chain(entered).max_by_key(|&place| self.rank(place));
         Some(deciding.map(|(object, _)| object))
-    }
-}
-
-/// Absorption along paths: light that goes d metres through a medium is multiplied by e^(−σd), σ the absorption coefficient in m⁻¹ at its
-/// wavelength (Bouguer 1729, Lambert 1760, Beer 1852).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Absorption {
-    /// Metres in a unit of the frame.
-    pub unit_m: f64,
-}
-
-impl Absorption {
-    /// The share of light that comes through a stretch of this `length`, in units of the frame, in each lane.
-    #[inline]
-    pub(crate) fn transmittance<const N: usize>(
-        &self,
-        media: Option<&Media>,
-        stack: &MediumStack<'_>,
-        lambda_nm: &Lanes<f64, N>,
-        length: f64,
-    ) -> Lanes<f64, N> {
-        let Some(coefficient) = stack.body_absorption.or_else(|| media.and_then(|media| media.absorption(stack)))
-        else {
-            return Lanes::ONE;
-        };
-        let length_m = length * self.unit_m;
-        Lanes::from_fn(|lane| {
-            let per_m = coefficient.eval(lambda_nm[lane]);
-            // Nothing is lost on an endless way through what is clear.
-            if per_m > 0.0 { exp_neg(per_m * length_m) } else { 1.0 }
-        })
     }
 }

@@ -1,0 +1,214 @@
+//! Media.
+
+use std::ops::Bound;
+
+use super::geometry::{Step, transform};
+use super::material::Share;
+use super::spectra::{Role, Spectra};
+use super::spectrum::SpectrumForm;
+use crate::files::Files;
+use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Spanned};
+use crate::model::{Density, DensityGrid, ExponentialDensity, Medium, PhaseFunction, PhaseTable};
+
+crate::record! {
+    /// What fills a space, and what it does to light on its way.
+    pub(crate) struct MediumForm + comment {
+        /// Absorption coefficient σₐ, 1/m.
+        absorption_per_m: Required<SpectrumForm> = "0",
+        /// Scattering coefficient σₛ, 1/m: its inverse is the mean way between two scatterings.
+        scattering_per_m: Required<SpectrumForm> = "0",
+        /// Where scattered light goes.
+        phase: Required<PhaseForm> = r#"{"type": "isotropic"}"#,
+        /// What both coefficients are multiplied by at each place: the medium is the same everywhere if this is left out.
+        density: Optional<DensityForm>,
+        /// Source radiance B, W·m⁻²·sr⁻¹·nm⁻¹: the medium emits σₐB a metre. A hot gas has the radiance of a black body.
+        source_radiance: Optional<SpectrumForm>,
+    }
+}
+
+crate::variants! {
+    /// Where scattered light goes.
+    pub(crate) enum PhaseForm by "type" {
+        "isotropic" => Isotropic(IsotropicPhase),
+        "henyey-greenstein" => HenyeyGreenstein(HenyeyGreensteinPhase),
+        "double-henyey-greenstein" => DoubleHenyeyGreenstein(DoubleHenyeyGreensteinPhase),
+        "rayleigh" => Rayleigh(RayleighPhase),
+        "tabulated" => Tabulated(TabulatedPhase),
+    }
+}
+
+crate::record! {
+    /// The same in every direction.
+    pub(crate) struct IsotropicPhase + comment {}
+}
+
+crate::number! {
+    /// A mean cosine: directions cannot resolve sharper peaks.
+    pub(crate) struct MeanCosine in (Bound::Included(-0.9999), Bound::Included(0.9999));
+}
+
+crate::record! {
+    /// Henyey and Greenstein's: (1 − g²)/(1 + g² − 2g cos θ)^(3/2)/4π.
+    pub(crate) struct HenyeyGreensteinPhase + comment {
+        /// Mean cosine of the angle of scattering: above 0 light goes on forward, below 0 back.
+        g: Required<MeanCosine>,
+    }
+}
+
+crate::record! {
+    /// Two of Henyey and Greenstein's, as clouds and tissue have them: a peak forward and one back.
+    pub(crate) struct DoubleHenyeyGreensteinPhase + comment {
+        /// Mean cosines of both.
+        g: Required<[MeanCosine; 2]>,
+        /// Share of the first, from 0 to 1.
+        weight: Required<Share>,
+    }
+}
+
+crate::record! {
+    /// Of molecules and whatever else is much smaller than the wavelength: 3(1 + cos²θ)/16π. Followed with --polarised.
+    pub(crate) struct RayleighPhase + comment {}
+}
+
+crate::number! {
+    /// An angle of scattering in degrees.
+    pub(crate) struct ScatteringAngle in (Bound::Included(0.0), Bound::Included(180.0));
+}
+
+crate::record! {
+    /// A table, such as Mie's theory gives: linear in the cosine between its rows, and scaled so that no light is lost.
+    pub(crate) struct TabulatedPhase + comment {
+        /// Angles of scattering in degrees, increasing from 0 (forward) to 180 (back).
+        angles_deg: Required<Spanned<List<ScatteringAngle>>>,
+        /// Values at these angles, in any unit.
+        values: Required<Spanned<List<NonNegative>>>,
+    }
+}
+
+crate::variants! {
+    /// How dense a medium is at each place of the world.
+    pub(crate) enum DensityForm by "type" {
+        "exponential" => Exponential(ExponentialForm),
+        "grid" => Grid(GridForm),
+    }
+}
+
+crate::record! {
+    /// A density that falls exponentially with the height, as that of air: e^(−h/H).
+    pub(crate) struct ExponentialForm + comment {
+        /// A point at which it is 1, m.
+        base_m: Required<[f64; 3]> = "[0, 0, 0]",
+        /// The direction in which heights count; only the direction counts.
+        up: Required<Direction> = "[0, 1, 0]",
+        /// Scale height H, m: the density falls to 1/e over this height.
+        scale_height_m: Required<Positive>,
+    }
+}
+
+crate::record! {
+    /// Densities of a grid, in trilinear proportion between the middles of its cells, and 0 outside of its box.
+    pub(crate) struct GridForm + comment {
+        /// A .vol file, relative to this file's folder.
+        file: Required<Spanned<String>>,
+        /// Factor on its numbers.
+        scale: Required<NonNegative> = "1",
+        /// From the coordinates of the file's box to the world: steps, the first of which is applied first.
+        transform: Required<Spanned<List<Box<Step>>>> = "[]",
+    }
+}
+
+/// The medium of a form.
+pub(super) fn medium<'f>(
+    form: &'f MediumForm,
+    spectra: &mut Spectra<'f>,
+    files: &mut Files,
+    reader: &mut Reader<'_>,
+) -> Option<Medium> {
+    let mut coefficient = |form: &'f Required<SpectrumForm>, reader: &mut Reader<'_>| {
+        spectra.resolve(form.as_ref()?, Role::Coefficient, reader)
+    };
+    let absorption = coefficient(&form.absorption_per_m, reader);
+    let scattering = coefficient(&form.scattering_per_m, reader);
+    let source = match &form.source_radiance {
+        Optional::Absent => Some(None),
+        Optional::Given(source) => spectra.resolve(source, Role::Emission, reader).map(Some),
+        Optional::Invalid => None,
+    };
+    let phase = form.phase.as_ref().and_then(|form| phase(form, reader));
+    let density = match &form.density {
+        Optional::Absent => Some(Density::Uniform),
+        Optional::Given(form) => density(form, files, reader),
+        Optional::Invalid => None,
+    };
+    Some(Medium { absorption: absorption?, scattering: scattering?, phase: phase?, source: source?, density: density? })
+}
+
+fn density(form: &DensityForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<Density> {
+    match form {
+        DensityForm::Exponential(form) => Some(Density::Exponential(ExponentialDensity {
+            base_m: form.base_m?,
+            up: form.up?.0,
+            scale_height_m: form.scale_height_m?.0,
+        })),
+        DensityForm::Grid(form) => {
+            let transform = form.transform.as_ref().and_then(|steps| transform(&steps.value, steps.at.head(), reader));
+            let grid = form.file.as_ref().and_then(|name| files.grid(name, reader));
+            let (grid, scale) = (grid?, form.scale?.0);
+            let values = match scale {
+                1.0 => grid.values,
+                scale => grid.values.iter().map(|value| (f64::from(*value) * scale) as f32).collect(),
+            };
+            if values.iter().any(|value| !value.is_finite()) {
+                reader.error(
+                    Code::OutOfRange,
+                    form.at.head(),
+                    "the densities are too large for single precision".to_owned(),
+                );
+                return None;
+            }
+            Some(Density::Grid(DensityGrid { values, transform: transform?, cells: grid.cells, box_m: grid.box_m }))
+        }
+    }
+}
+
+fn phase(form: &PhaseForm, reader: &mut Reader<'_>) -> Option<PhaseFunction> {
+    Some(match form {
+        PhaseForm::Isotropic(_) => PhaseFunction::Isotropic,
+        PhaseForm::HenyeyGreenstein(form) => PhaseFunction::HenyeyGreenstein { g: form.g?.0 },
+        PhaseForm::DoubleHenyeyGreenstein(form) => {
+            PhaseFunction::DoubleHenyeyGreenstein { g: form.g?.map(|g| g.0), weight: form.weight?.0 }
+        }
+        PhaseForm::Rayleigh(_) => PhaseFunction::Rayleigh,
+        PhaseForm::Tabulated(form) => PhaseFunction::Tabulated(table(form, reader)?),
+    })
+}
+
+fn table(form: &TabulatedPhase, reader: &mut Reader<'_>) -> Option<PhaseTable> {
+    let (angles, values) = (form.angles_deg.as_ref()?, form.values.as_ref()?);
+    let degrees = angles.value.0.iter().map(|angle| angle.map(|angle| angle.0)).collect::<Option<Vec<_>>>()?;
+    let numbers = values.value.0.iter().map(|value| value.map(|value| value.0)).collect::<Option<Vec<_>>>()?;
+    let ends = [degrees.first().copied(), degrees.last().copied()];
+    if ends != [Some(0.0), Some(180.0)] || degrees.windows(2).any(|pair| pair[0] >= pair[1]) {
+        let message = "the angles of a phase function must increase from 0 to 180";
+        reader.error(Code::OutOfRange, angles.at, message.to_owned());
+        return None;
+    }
+    if degrees.len() != numbers.len() {
+        let message = format!("{} angles have {} values", degrees.len(), numbers.len());
+        reader.error(Code::WrongLength, values.at, message);
+        return None;
+    }
+    if numbers.iter().all(|value| *value == 0.0) {
+        reader.error(Code::OutOfRange, values.at, "a phase function of nothing but 0 scatters nowhere".to_owned());
+        return None;
+    }
+    let cosine = |degrees: f64| match degrees {
+        0.0 => 1.0,
+        180.0 => -1.0,
+        other => other.to_radians().cos(),
+    };
+    Some(PhaseTable {
+        cosines: degrees.iter().rev().map(|degrees| cosine(*degrees)).collect(),
+        values: numbers.into_iter().rev().collect(),
+    })
+}

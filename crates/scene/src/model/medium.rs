@@ -1,0 +1,122 @@
+//! Media: what fills a space, and what it does to light on its way.
+
+use super::Transform;
+use etalon_optics::Spectrum;
+use std::sync::Arc;
+
+/// What fills a space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Medium {
+    /// Absorption coefficient σₐ, m⁻¹.
+    pub absorption: Spectrum,
+    /// Scattering coefficient σₛ, m⁻¹.
+    pub scattering: Spectrum,
+    /// Where scattered light goes.
+    pub phase: PhaseFunction,
+    /// Source radiance B, W·m⁻²·sr⁻¹·nm⁻¹, if it emits: it emits σₐB a metre, and a piece too thick to see through that does not scatter
+    /// shows B.
+    pub source: Option<Spectrum>,
+    /// What both coefficients are multiplied by at each place.
+    pub density: Density,
+}
+
+/// How dense a medium is at each place, relative to what its coefficients say.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Density {
+    /// 1 everywhere.
+    Uniform,
+    /// It falls exponentially with the height, as in air that is in equilibrium.
+    Exponential(ExponentialDensity),
+    /// A grid in a box.
+    Grid(DensityGrid),
+}
+
+/// The density e^(−h/H), h the height above a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExponentialDensity {
+    /// A point where it is 1, m.
+    pub base_m: [f64; 3],
+    /// Unit vector along which heights count.
+    pub up: [f64; 3],
+    /// Scale height H, m.
+    pub scale_height_m: f64,
+}
+
+/// Densities at the middles of the cells of a box, in trilinear proportion between them and the same from the outermost middles to the faces
+/// of the box; 0 outside of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DensityGrid {
+    /// Cells along x, y and z; at least one each.
+    pub cells: [u32; 3],
+    /// Their densities, 0 or above; x runs first, then y.
+    pub values: Arc<[f32]>,
+    /// Corners of the box in its own coordinates, m.
+    pub box_m: [[f64; 3]; 2],
+    /// From these to the world.
+    pub transform: Transform,
+}
+
+/// The distribution of the directions into which a medium scatters light; its integral over the sphere is 1.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PhaseFunction {
+    /// The same in every direction: 1/4π.
+    Isotropic,
+    /// Henyey & Greenstein (*Diffuse Radiation in the Galaxy*, ApJ 93, 1941).
+    HenyeyGreenstein {
+        /// Mean cosine of the angle of scattering, in (−1, 1).
+        g: f64,
+    },
+    /// Two of these: the first with the share `weight`, the second with the rest.
+    DoubleHenyeyGreenstein {
+        /// Mean cosines, each in (−1, 1).
+        g: [f64; 2],
+        /// Share of the first, in [0, 1].
+        weight: f64,
+    },
+    /// Scattering by what is much smaller than the wavelength: 3(1 + cos²θ)/16π. It polarises light.
+    Rayleigh,
+    /// A table.
+    Tabulated(PhaseTable),
+}
+
+/// A phase function given at some angles, in linear proportion to the cosine between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhaseTable {
+    /// Cosines of the angles of scattering, increasing from −1 to 1; at least two.
+    pub cosines: Vec<f64>,
+    /// Values there, 0 or above and not all 0, in any unit.
+    pub values: Vec<f64>,
+}
+
+impl Medium {
+    /// A medium that only absorbs.
+    pub fn absorbing(absorption: Spectrum) -> Self {
+        Self {
+            absorption,
+            scattering: Spectrum::Constant(0.0),
+            phase: PhaseFunction::Isotropic,
+            source: None,
+            density: Density::Uniform,
+        }
+    }
+
+    /// Whether it does nothing to light.
+    pub fn is_clear(&self) -> bool {
+        !self.absorbs() && !self.scatters()
+    }
+
+    /// Whether it absorbs light.
+    pub fn absorbs(&self) -> bool {
+        !self.absorption.is_zero()
+    }
+
+    /// Whether it scatters light.
+    pub fn scatters(&self) -> bool {
+        !self.scattering.is_zero()
+    }
+
+    /// What it emits where it is too thick to see through, if it emits.
+    pub fn shines(&self) -> Option<&Spectrum> {
+        self.source.as_ref().filter(|source| self.absorbs() && !source.is_zero())
+    }
+}

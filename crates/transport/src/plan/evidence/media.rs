@@ -1,0 +1,82 @@
+//! What media call for.
+
+use super::first_surface;
+use super::materials::spread;
+use etalon_optics::Spectrum;
+use etalon_scene::{Medium, PhaseFunction, Scene};
+
+/// What the first medium has to say that has something to say: that of a surface, then that outside of all bodies.
+fn first_medium(scene: &Scene, says: impl Fn(&Medium, [f64; 2]) -> Option<String>) -> Option<String> {
+    let of_surfaces = first_surface(scene, |material, range_nm| says(material.medium.as_ref()?, range_nm));
+    let surrounding = || {
+        let said = says(scene.medium.as_ref()?, scene.integrator.wavelength_range_nm)?;
+        Some(format!("medium of the scene: {said}"))
+    };
+    of_surfaces.or_else(surrounding)
+}
+
+/// Media that some object holds, and that outside of all.
+fn present(scene: &Scene) -> impl Iterator<Item = &Medium> {
+    let held = scene.placed_objects().filter_map(|object| scene.materials[object.material].medium.as_ref());
+    held.chain(&scene.medium)
+}
+
+fn coefficient(symbol: &str, spectrum: &Spectrum, range_nm: [f64; 2]) -> String {
+    format!("{symbol} {}", spread(range_nm, |nm| spectrum.eval(nm)).replace(" over", " m⁻¹ over"))
+}
+
+/// What absorbs.
+pub(super) fn absorption(scene: &Scene) -> Option<String> {
+    first_medium(scene, |medium, range_nm| medium.absorbs().then(|| coefficient("σ", &medium.absorption, range_nm)))
+}
+
+/// What scatters.
+pub(super) fn scattering(scene: &Scene) -> Option<String> {
+    first_medium(scene, |medium, range_nm| medium.scatters().then(|| coefficient("σₛ", &medium.scattering, range_nm)))
+}
+
+/// What treats wavelengths differently.
+pub(super) fn coloured(scene: &Scene) -> Option<String> {
+    first_medium(scene, |medium, range_nm| match () {
+        () if !medium.absorption.is_constant() => Some(coefficient("σ", &medium.absorption, range_nm)),
+        () if !medium.scattering.is_constant() => Some(coefficient("σₛ", &medium.scattering, range_nm)),
+        () => None,
+    })
+}
+
+/// The first place where a medium scatters light to the camera, which shadow rays find.
+pub(super) fn scatters_everywhere(scene: &Scene) -> Option<String> {
+    let of_surfaces = first_surface(scene, |material, _| {
+        material.medium.as_ref().is_some_and(Medium::scatters).then(|| "its medium".to_owned())
+    });
+    let surrounding =
+        || scene.medium.as_ref().filter(|medium| medium.scatters()).map(|_| "the medium of the scene".to_owned());
+    of_surfaces.or_else(surrounding)
+}
+
+/// The first medium that polarises what it scatters, and by how much it matters: light that is scattered twice by right angles comes through
+/// where the planes of scattering are parallel, and not where they are crossed.
+pub(super) fn polarises(scene: &Scene) -> Option<String> {
+    let polarises = |medium: &Medium, _| {
+        let rayleigh = medium.scatters() && medium.phase == PhaseFunction::Rayleigh;
+        rayleigh.then(|| "by up to a factor of 2 after two scatterings by right angles".to_owned())
+    };
+    first_medium(scene, polarises)
+}
+
+/// Whether wavelengths are scattered at different places, so that paths need each lane's own density.
+pub(in crate::plan) fn parts_lanes(scene: &Scene) -> bool {
+    present(scene)
+        .any(|medium| medium.scatters() && !(medium.absorption.is_constant() && medium.scattering.is_constant()))
+}
+
+/// The first medium that shines, and what it shows where it is too thick to see through.
+pub(super) fn sources(scene: &Scene) -> impl Iterator<Item = (String, &Spectrum)> {
+    let held = scene.placed_objects().filter_map(|object| {
+        let medium = scene.materials[object.material].medium.as_ref()?;
+        Some((format!("medium of \"{}\"", object.name), medium.shines()?))
+    });
+    let surrounding =
+        scene.medium.as_ref().and_then(|medium| Some(("medium of the scene".to_owned(), medium.shines()?)));
+    held.chain(surrounding)
+}
