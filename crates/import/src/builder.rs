@@ -41,6 +41,8 @@ pub(crate) struct Builder<'a> {
     /// When the shutter opens and when it closes, s; an instant if left out.
     pub(crate) shutter_s: Option<[f64; 2]>,
     pub(crate) film: Value,
+    /// What fills the space outside of all bodies.
+    pub(crate) medium: Option<Value>,
     pub(crate) integrator: Map<String, Value>,
     pub(crate) files: Vec<NamedFile>,
     /// Names of files by what they were made from.
@@ -107,6 +109,7 @@ impl<'a> Builder<'a> {
             camera: None,
             shutter_s: None,
             film: json!({ "width": 1280, "height": 720 }),
+            medium: None,
             integrator: Map::new(),
             files: Vec::new(),
             known: HashMap::new(),
@@ -252,6 +255,15 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    /// Fills the space outside of all bodies. All say the same: what is said first holds.
+    pub(crate) fn surround(&mut self, medium: Value, place: &str) {
+        match &self.medium {
+            None => self.medium = Some(medium),
+            Some(known) if *known == medium => {}
+            Some(_) => self.leave_out(place, "another medium than elsewhere fills the space outside: it is left out"),
+        }
+    }
+
     /// Counts a copy of something toward what a scene can hold.
     ///
     /// # Errors
@@ -311,6 +323,9 @@ impl<'a> Builder<'a> {
             if !part.is_empty() {
                 scene[key] = json!(part);
             }
+        }
+        if let Some(medium) = &self.medium {
+            scene["medium"] = medium.clone();
         }
         if !self.instances.is_empty() {
             scene["instances"] = json!(self.instances);

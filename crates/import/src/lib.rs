@@ -37,6 +37,7 @@ mod budget;
 mod builder;
 mod gltf;
 mod matrix;
+mod medium;
 mod mitsuba;
 mod number;
 mod obj;

@@ -10,7 +10,7 @@ use super::element::{Element, numbers};
 /// The diagonal of the 35 mm film that a stated focal length is for, mm.
 const DIAGONAL_35_MM: f64 = 43.266_615_305_567_87;
 
-impl Walk<'_, '_, '_> {
+impl<'a> Walk<'a, '_, '_> {
     pub(super) fn integrator(&mut self, element: &Element) -> Result<(), String> {
         self.within(element, |walk| walk.read_integrator(element))
     }
@@ -45,11 +45,14 @@ impl Walk<'_, '_, '_> {
         Ok(())
     }
 
-    pub(super) fn sensor(&mut self, element: &Element) -> Result<(), String> {
+    pub(super) fn sensor(&mut self, element: &'a Element) -> Result<(), String> {
         let place = element.place.clone();
         if self.builder.camera.is_some() {
             self.builder.leave_out(place, "only the first sensor is used");
             return Ok(());
+        }
+        if let Some(medium) = self.medium(element, "medium")? {
+            self.builder.surround(medium, &place);
         }
         let aspect = self.film(element)?;
         let to_world = self.placement(element)?;

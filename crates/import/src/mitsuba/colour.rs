@@ -19,6 +19,8 @@ pub(super) enum Of {
     Texture,
     /// The same, where no image may stand.
     Reflectance,
+    /// A coefficient of a medium, 0 or above.
+    Coefficient,
     /// Light.
     Emission,
     /// Light of a surface; images may stand here.
@@ -66,7 +68,7 @@ impl Walk<'_, '_, '_> {
         })))
     }
 
-    fn colour_of(&mut self, element: &Element, of: Of) -> Result<Value, String> {
+    pub(super) fn colour_of(&mut self, element: &Element, of: Of) -> Result<Value, String> {
         let place = &element.place;
         let value = match element.tag.as_str() {
             "ref" => {
@@ -106,6 +108,12 @@ impl Walk<'_, '_, '_> {
                 }
                 light(rgb.map(|v| v.max(0.0)), 1.0)
             }
+            Of::Coefficient => {
+                if rgb.iter().any(|v| *v < 0.0) {
+                    self.builder.leave_out(place, "negative coefficients become 0");
+                }
+                json!({ "type": "rgb", "rgb": rgb.map(|v| v.max(0.0)) })
+            }
             Of::Texture | Of::Reflectance => {
                 if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
                     self.builder.leave_out(place, format!("{rgb:?} is not a reflectance: it is clamped to 0 to 1"));
@@ -116,7 +124,7 @@ impl Walk<'_, '_, '_> {
     }
 
     fn constant(&mut self, value: f64, place: &str, of: Of) -> Value {
-        let (low, high) = if of.is_light() { (0.0, f64::MAX) } else { (0.0, 1.0) };
+        let (low, high) = if of.is_light() || of == Of::Coefficient { (0.0, f64::MAX) } else { (0.0, 1.0) };
         if !(low..=high).contains(&value) {
             self.builder.leave_out(place, format!("{value} is clamped to {low} to {high}"));
         }

@@ -7,6 +7,7 @@ mod colour;
 mod element;
 mod emitter;
 mod material;
+mod medium;
 mod relief;
 mod shape;
 mod transform;

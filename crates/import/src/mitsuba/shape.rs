@@ -11,6 +11,7 @@ use super::colour::kind;
 use super::element::Element;
 use super::material::{Look, grey};
 use crate::Placed;
+use crate::medium::fill;
 use crate::number::{WITHOUT_DIRECTIONS, has_image, without_directions};
 use crate::relief::without_map;
 
@@ -78,6 +79,7 @@ impl<'a> Walk<'a, '_, '_> {
                 Look::of(material)
             }
         };
+        let look = self.filled(element, look)?;
         let emission = self.emission(element)?;
         let flipped = element.flag("flip_normals")?.unwrap_or(false);
         let mut dressed = Dressed { name, look, emission, map, flipped };
@@ -141,6 +143,25 @@ impl<'a> Walk<'a, '_, '_> {
             look.material = json!(name);
         }
         self.named_looks.insert(key, look.clone());
+        Ok(look)
+    }
+
+    /// The material with what fills the shape. What stands outside of it surrounds everything.
+    fn filled(&mut self, element: &'a Element, mut look: Look) -> Result<Look, String> {
+        if let Some(medium) = self.medium(element, "exterior")? {
+            self.builder.surround(medium, &element.place);
+        }
+        if let Some(medium) = self.medium(element, "interior")? {
+            let own = look.material.as_str().and_then(|name| self.builder.materials.get(name));
+            let mut material = own.unwrap_or(&look.material).clone();
+            if fill(&mut material, &mut look.opacity, &medium) {
+                self.builder.spend(&material, &element.place)?;
+                look.material = material;
+            } else {
+                let what = "its medium is left out: only glass and \"null\" let light in";
+                self.builder.leave_out(&element.place, what);
+            }
+        }
         Ok(look)
     }
 

@@ -10,6 +10,7 @@ use crate::matrix::inverse;
 
 impl Reading<'_, '_> {
     pub(super) fn camera(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
+        self.surround(place);
         let from_camera =
             inverse(&self.state.transform).ok_or_else(|| format!("{place}: its transform flattens it"))?;
         self.systems.insert("camera".to_owned(), from_camera);

@@ -5,6 +5,7 @@
 mod camera;
 mod light;
 mod material;
+mod medium;
 mod parameters;
 mod relief;
 mod shape;
@@ -38,6 +39,7 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         systems: HashMap::new(),
         materials: HashMap::new(),
         textures: HashMap::new(),
+        media: HashMap::new(),
         meshes: HashMap::new(),
         object: None,
         includes: 0,
@@ -65,6 +67,9 @@ struct State {
     /// What the shapes from here on emit.
     emission: Option<Rc<Value>>,
     reversed: bool,
+    /// What fills the shapes from here on, and what stands outside of them.
+    inside: Option<Rc<Value>>,
+    outside: Option<Rc<Value>>,
 }
 
 /// What a surface is made of.
@@ -82,7 +87,14 @@ impl Default for State {
     fn default() -> Self {
         let value = serde_json::json!({ "type": "lambert", "reflectance": 0.5 });
         let material = Look { value, opacity: 1.0, detail: Map::new(), size: BlendSize::ONE };
-        Self { transform: DAffine3::IDENTITY, material: Rc::new(material), emission: None, reversed: false }
+        Self {
+            transform: DAffine3::IDENTITY,
+            material: Rc::new(material),
+            emission: None,
+            reversed: false,
+            inside: None,
+            outside: None,
+        }
     }
 }
 
@@ -96,6 +108,7 @@ struct Reading<'r, 'b> {
     systems: HashMap<String, DAffine3>,
     materials: HashMap<String, Rc<Look>>,
     textures: HashMap<String, Value>,
+    media: HashMap<String, Rc<Value>>,
     /// Mesh files that have been read: what is placed of each, the box around it, and whether it has texture coordinates.
     meshes: HashMap<String, shape::Placeable>,
     /// The object that is being defined, and what is outside of it.
@@ -185,6 +198,16 @@ impl Reading<'_, '_> {
                 self.state.transform = DAffine3::IDENTITY;
                 self.systems.insert("world".to_owned(), DAffine3::IDENTITY);
                 self.in_world = true;
+            }
+            "MakeNamedMedium" => {
+                let (name, list) = (arguments.quoted()?, arguments.parameters()?);
+                self.named_medium(name, &list, &place)?;
+            }
+            "MediumInterface" => {
+                let inside = arguments.quoted()?;
+                // One name stands for both.
+                let outside = arguments.quoted().unwrap_or_else(|_| inside.clone());
+                self.medium_interface(&inside, &outside, &place);
             }
             "Camera" => self.camera(&arguments.quoted()?, &arguments.parameters()?, &place)?,
             "Film" => self.film(&arguments.quoted()?, &arguments.parameters()?, &place)?,

@@ -9,6 +9,7 @@ use super::Reading;
 use super::parameters::Parameters;
 use super::spectrum::kind;
 use crate::Placed;
+use crate::medium::fill;
 use crate::number::{Number, WITHOUT_DIRECTIONS, has_image, without_directions};
 use crate::relief::without_map;
 
@@ -80,7 +81,16 @@ impl Reading<'_, '_> {
             }
         }
         list.list_unused(self.builder);
-        let material = self.untextured(has_uvs, place);
+        let mut material = self.untextured(has_uvs, place);
+        self.surround(place);
+        if let Some(medium) = self.state.inside.clone() {
+            let own = material.as_str().and_then(|name| self.builder.materials.get(name)).unwrap_or(&material);
+            let mut filled = own.clone();
+            if fill(&mut filled, &mut opacity, &medium) {
+                self.builder.spend(&filled, place)?;
+                material = filled;
+            }
+        }
         let mut emission = self.state.emission.as_deref().cloned();
         if !has_uvs && emission.as_ref().is_some_and(has_image) {
             if matches!(shape, "disk" | "sphere" | "cylinder") {

@@ -92,6 +92,7 @@ impl Claim {
             Self::PhotometricSensor => "photometric-sensor",
             Self::Priorities => "priorities",
             Self::Absorption => "absorption",
+            Self::Scattering => "scattering",
             Self::Motion => "motion",
             Self::Masks => "masks",
             Self::LosslessRoughGlass => "lossless-rough-glass",

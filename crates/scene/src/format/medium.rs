@@ -6,8 +6,10 @@ use super::geometry::{Step, transform};
 use super::material::Share;
 use super::spectra::{Role, Spectra};
 use super::spectrum::SpectrumForm;
+use etalon_optics::Spectrum;
+
 use crate::files::Files;
-use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Spanned};
+use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned};
 use crate::model::{Density, DensityGrid, ExponentialDensity, Medium, PhaseFunction, PhaseTable};
 
 crate::record! {
@@ -17,13 +19,22 @@ crate::record! {
         absorption_per_m: Required<SpectrumForm> = "0",
         /// Scattering coefficient σₛ, 1/m: its inverse is the mean way between two scatterings.
         scattering_per_m: Required<SpectrumForm> = "0",
+        /// Instead of both: extinction coefficient σₜ = σₐ + σₛ, 1/m.
+        extinction_per_m: Optional<SpectrumForm>,
+        /// With it: the share of extinction that is scattering, from 0 to 1.
+        albedo: Optional<SpectrumForm>,
         /// Where scattered light goes.
         phase: Required<PhaseForm> = r#"{"type": "isotropic"}"#,
         /// What both coefficients are multiplied by at each place: the medium is the same everywhere if this is left out.
         density: Optional<DensityForm>,
         /// Source radiance B, W·m⁻²·sr⁻¹·nm⁻¹: the medium emits σₐB a metre. A hot gas has the radiance of a black body.
         source_radiance: Optional<SpectrumForm>,
-    }
+    } with [
+        Rule::NotBoth("extinction_per_m", "absorption_per_m"),
+        Rule::NotBoth("extinction_per_m", "scattering_per_m"),
+        Rule::Needs("extinction_per_m", &["albedo"]),
+        Rule::Needs("albedo", &["extinction_per_m"]),
+    ]
 }
 
 crate::variants! {
@@ -124,11 +135,21 @@ pub(super) fn medium<'f>(
     files: &mut Files,
     reader: &mut Reader<'_>,
 ) -> Option<Medium> {
-    let mut coefficient = |form: &'f Required<SpectrumForm>, reader: &mut Reader<'_>| {
-        spectra.resolve(form.as_ref()?, Role::Coefficient, reader)
+    let coefficients = match (&form.extinction_per_m, &form.albedo) {
+        (Optional::Absent, Optional::Absent) => {
+            let mut coefficient = |form: &'f Required<SpectrumForm>, reader: &mut Reader<'_>| {
+                spectra.resolve(form.as_ref()?, Role::Coefficient, reader)
+            };
+            let absorption = coefficient(&form.absorption_per_m, reader);
+            absorption.zip(coefficient(&form.scattering_per_m, reader))
+        }
+        (Optional::Given(extinction), Optional::Given(albedo)) => {
+            let extinction = spectra.resolve(extinction, Role::Coefficient, reader);
+            let albedo = spectra.resolve(albedo, Role::Reflectance, reader);
+            extinction.zip(albedo).and_then(|(extinction, albedo)| by_albedo(&extinction, &albedo, spectra))
+        }
+        _ => None,
     };
-    let absorption = coefficient(&form.absorption_per_m, reader);
-    let scattering = coefficient(&form.scattering_per_m, reader);
     let source = match &form.source_radiance {
         Optional::Absent => Some(None),
         Optional::Given(source) => spectra.resolve(source, Role::Emission, reader).map(Some),
@@ -140,7 +161,15 @@ pub(super) fn medium<'f>(
         Optional::Given(form) => density(form, files, reader),
         Optional::Invalid => None,
     };
-    Some(Medium { absorption: absorption?, scattering: scattering?, phase: phase?, source: source?, density: density? })
+    let (absorption, scattering) = coefficients?;
+    Some(Medium { absorption, scattering, phase: phase?, source: source?, density: density? })
+}
+
+/// Absorption and scattering of an extinction by the share that is scattering.
+fn by_albedo(extinction: &Spectrum, albedo: &Spectrum, spectra: &Spectra<'_>) -> Option<(Spectrum, Spectrum)> {
+    let absorption = spectra.combined(extinction, albedo, |extinction, albedo| extinction * (1.0 - albedo))?;
+    let scattering = spectra.combined(extinction, albedo, |extinction, albedo| extinction * albedo)?;
+    Some((absorption, scattering))
 }
 
 fn density(form: &DensityForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<Density> {

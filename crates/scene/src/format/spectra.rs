@@ -214,8 +214,7 @@ impl<'f> Spectra<'f> {
             return Some(());
         }
         if used.role == Role::Coefficient {
-            let hint =
-                "an absorption or a scattering is a number or a table; for the colour of glass use \"transmittance\"";
+            let hint = "an absorption or a scattering is a number, a table or an rgb colour";
             let message = format!("{what} cannot give an absorption or a scattering");
             self.complain(Code::KeyConflict, at.head(), message, hint, used, reader);
             return None;
@@ -252,19 +251,15 @@ impl<'f> Spectra<'f> {
     }
 
     fn rgb(&mut self, colour: &RgbSpectrum, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
-        if used.role == Role::Coefficient {
-            self.light_only("a colour", colour.at, used, reader)?;
-        }
-        if used.role == Role::Reflectance {
-            let stray = [
-                ("white", colour.white.given().map(|white| white.at)),
-                ("scale", colour.scale.given().map(|scale| scale.at)),
-            ];
-            for (key, at) in stray {
-                if let Some(at) = at {
-                    let message = format!("\"{key}\" belongs to an emission, and this colour is used as a reflectance");
-                    self.complain(Code::KeyConflict, at, message, "remove it", used, reader);
-                }
+        let stray = [
+            ("white", used.role != Role::Emission, colour.white.given().map(|white| white.at)),
+            ("scale", used.role == Role::Reflectance, colour.scale.given().map(|scale| scale.at)),
+        ];
+        for (key, is_stray, at) in stray {
+            if let (true, Some(at)) = (is_stray, at) {
+                let is_used = if used.role == Role::Reflectance { "a reflectance" } else { "a coefficient" };
+                let message = format!("\"{key}\" belongs to an emission, and this colour is used as {is_used}");
+                self.complain(Code::KeyConflict, at, message, "remove it", used, reader);
             }
         }
         let channels = colour.rgb.as_ref()?;
@@ -282,8 +277,29 @@ impl<'f> Spectra<'f> {
         }
         let white = colour.white.clone().checked()?.map_or(Illuminant::D65, |white| white.value);
         let scale = colour.scale.clone().checked()?.map_or(1.0, |scale| scale.value.0);
+        if used.role == Role::Coefficient {
+            // As a reflectance whose largest channel is ½: with that, spectra are smooth.
+            let twice = 2.0 * rgb.into_iter().fold(0.0, f64::max);
+            if twice == 0.0 {
+                return Some(Spectrum::Constant(0.0));
+            }
+            let shape = accept(Spectrum::rgb_reflectance(rgb.map(|v| v / twice)), colour.at, reader)?;
+            return accept(shape.scaled(scale * twice), colour.at, reader);
+        }
         self.covered(illuminant_range_nm(white), colour.at, "the white", "", used, reader);
         accept(Spectrum::rgb_emission(rgb.map(|v| v * scale), white), colour.at, reader)
+    }
+
+    /// What `of` makes of two spectra at each nanometre of the rendered range; between them it is taken for linear.
+    pub(crate) fn combined(&self, a: &Spectrum, b: &Spectrum, of: impl Fn(f64, f64) -> f64) -> Option<Spectrum> {
+        let [first, last] = self.range_nm?;
+        if a.is_constant() && b.is_constant() {
+            return Some(Spectrum::Constant(of(a.eval(first), b.eval(first))));
+        }
+        let inner = (1..).map(|i| first.floor() + f64::from(i)).take_while(|nm| *nm < last);
+        let wavelengths_nm: Vec<f64> = std::iter::once(first).chain(inner).chain(std::iter::once(last)).collect();
+        let values = wavelengths_nm.iter().map(|nm| of(a.eval(*nm), b.eval(*nm))).collect();
+        Spectrum::tabulated(wavelengths_nm, values, Outside::Hold).ok()
     }
 
     /// Reports wavelengths of the rendered range for which there are no data.

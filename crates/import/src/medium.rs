@@ -1,0 +1,55 @@
+//! Parts of media that scenes of several programs have.
+
+use serde_json::{Value, json};
+
+/// Puts the grid of a .vol file into the box from (0, 0, 0) to (1, 1, 1).
+///
+/// # Errors
+/// If the file is too short to have a box.
+pub(crate) fn in_unit_box(vol: &mut [u8]) -> Result<(), String> {
+    let corners = vol.get_mut(24..48).ok_or("it is no .vol file")?;
+    for (number, bytes) in [0.0, 0.0, 0.0, 1.0, 1.0, 1.0_f32].iter().zip(corners.chunks_exact_mut(4)) {
+        bytes.copy_from_slice(&number.to_le_bytes());
+    }
+    Ok(())
+}
+
+/// A .vol file of densities, x running first.
+pub(crate) fn vol(cells: [u32; 3], box_m: [[f64; 3]; 2], densities: &[f64]) -> Vec<u8> {
+    let mut bytes = b"VOL\x03".to_vec();
+    for word in [1, cells[0], cells[1], cells[2], 1] {
+        bytes.extend(word.to_le_bytes());
+    }
+    for number in box_m.as_flattened().iter().chain(densities) {
+        bytes.extend((*number as f32).to_le_bytes());
+    }
+    bytes
+}
+
+/// Two phase functions, the second with this share, if the format has their blend.
+pub(crate) fn blended(first: &Value, second: &Value, weight: f64) -> Option<Value> {
+    let g = |phase: &Value| match phase["type"].as_str()? {
+        "isotropic" => Some(0.0),
+        "henyey-greenstein" => phase["g"].as_f64(),
+        _ => None,
+    };
+    let (first, second) = (g(first)?, g(second)?);
+    Some(json!({ "type": "double-henyey-greenstein", "g": [first, second], "weight": 1.0 - weight }))
+}
+
+/// Fills the interior of a material with a medium: glass, or the boundary of the medium. False if the material has no interior.
+pub(crate) fn fill(material: &mut Value, opacity: &mut f64, medium: &Value) -> bool {
+    if material["type"] == "dielectric" {
+        if let Some(keys) = material.as_object_mut() {
+            keys.remove("absorption_per_m");
+            keys.insert("medium".to_owned(), medium.clone());
+        }
+        return true;
+    }
+    if material["type"] == "black" && *opacity == 0.0 {
+        *material = json!({ "type": "boundary", "medium": medium });
+        *opacity = 1.0;
+        return true;
+    }
+    false
+}

@@ -1,0 +1,173 @@
+//! Media of Mitsuba.
+
+use serde_json::{Value, json};
+
+use super::Walk;
+use super::colour::Of;
+use super::element::Element;
+use crate::matrix::steps;
+use crate::medium::{blended, in_unit_box};
+
+impl<'a> Walk<'a, '_, '_> {
+    /// The medium that an element has under a name, such as "interior".
+    pub(super) fn medium(&mut self, element: &'a Element, name: &str) -> Result<Option<Value>, String> {
+        let stated = element
+            .children
+            .iter()
+            .find(|child| child.attribute("name") == Some(name) && (child.tag == "medium" || child.tag == "ref"));
+        let Some(stated) = stated else { return Ok(None) };
+        stated.mark();
+        let medium = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
+        medium.mark();
+        if medium.tag != "medium" {
+            return Err(format!("{}: a <{}> stands where a medium should", stated.place, medium.tag));
+        }
+        self.within(medium, |walk| walk.read_medium(medium)).map(Some)
+    }
+
+    fn read_medium(&mut self, element: &'a Element) -> Result<Value, String> {
+        let place = &element.place;
+        let scale = element.number("scale")?.unwrap_or(1.0);
+        let mut made = json!({});
+        let albedo = match element.property("albedo") {
+            None => json!(0.75),
+            Some(stated) => self.uniform(stated, Of::Reflectance)?,
+        };
+        made["albedo"] = albedo;
+        made["extinction_per_m"] = match element.plugin() {
+            "homogeneous" => match element.property("sigma_t") {
+                None => json!(scale),
+                Some(stated) => scaled(self.uniform(stated, Of::Coefficient)?, scale),
+            },
+            "heterogeneous" => {
+                let stated = element.property("sigma_t").ok_or_else(|| format!("{place}: it has no \"sigma_t\""))?;
+                match self.grid(stated)? {
+                    Some(density) => {
+                        made["density"] = density;
+                        json!(scale)
+                    }
+                    None => scaled(self.uniform(stated, Of::Coefficient)?, scale),
+                }
+            }
+            other => return Err(format!("{place}: the medium \"{other}\" is not known")),
+        };
+        if let Some(phase) = element.nested("phase", self.ids)?.first() {
+            made["phase"] = self.phase(phase)?;
+        }
+        // How it samples does not matter here.
+        element.property("sample_emitters");
+        element.property("has_spectral_extinction");
+        element.property("majorant_resolution_factor");
+        element.list_unused(self.builder);
+        Ok(made)
+    }
+
+    /// A spectrum that is the same everywhere, as itself or as a volume.
+    fn uniform(&mut self, stated: &'a Element, of: Of) -> Result<Value, String> {
+        let target = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
+        target.mark();
+        if target.tag != "volume" {
+            return self.colour_of(target, of);
+        }
+        if target.plugin() != "constvolume" {
+            let what = format!("the volume \"{}\" becomes the same everywhere, 0.75", target.plugin());
+            self.builder.leave_out(&target.place, what);
+            target.children.iter().for_each(Element::mark);
+            return Ok(json!(0.75));
+        }
+        let value = target.property("value").ok_or_else(|| format!("{}: it has no \"value\"", target.place))?;
+        self.colour_of(value, of)
+    }
+
+    /// The density of a grid of numbers; `None` of what is the same everywhere.
+    fn grid(&mut self, stated: &'a Element) -> Result<Option<Value>, String> {
+        let volume = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
+        if volume.tag != "volume" || volume.plugin() != "gridvolume" {
+            return Ok(None);
+        }
+        volume.mark();
+        let place = &volume.place;
+        let name = volume.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+        let mut bytes = self.builder.bytes_of(&name, place)?;
+        if !volume.flag("use_grid_bbox")?.unwrap_or(false) {
+            in_unit_box(&mut bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
+        }
+        if volume.string("filter_type").is_some_and(|filter| filter != "trilinear") {
+            self.builder.leave_out(place, "densities become trilinear");
+        }
+        volume.string("wrap_mode");
+        volume.flag("raw")?;
+        let map = self.placement(volume)?;
+        let file = self.builder.add_file("density", "vol", bytes);
+        volume.list_unused(self.builder);
+        let mut density = json!({ "type": "grid", "file": file });
+        let transform = steps(&map);
+        if !transform.is_null() {
+            density["transform"] = transform;
+        }
+        Ok(Some(density))
+    }
+
+    fn phase(&mut self, element: &'a Element) -> Result<Value, String> {
+        let place = &element.place;
+        let phase = match element.plugin() {
+            "isotropic" => json!({ "type": "isotropic" }),
+            "rayleigh" => json!({ "type": "rayleigh" }),
+            "hg" => json!({ "type": "henyey-greenstein", "g": element.number("g")?.unwrap_or(0.8) }),
+            "tabphase" => {
+                let text = element.string("values").unwrap_or("").to_owned();
+                let values = super::element::numbers(&text).map_err(|why| format!("{place}: {why}"))?;
+                if values.len() < 2 {
+                    return Err(format!("{place}: a table has at least two values"));
+                }
+                // Evenly spaced in the cosine, from −1; with the light's way reversed against what is meant here.
+                let last = values.len() - 1;
+                let degrees = |i: usize| match i {
+                    0 => 0.0,
+                    i if i == last => 180.0,
+                    i => (1.0 - 2.0 * i as f64 / last as f64).acos().to_degrees(),
+                };
+                let angles: Vec<f64> = (0..=last).map(degrees).collect();
+                let values: Vec<f64> = values.into_iter().rev().collect();
+                json!({ "type": "tabulated", "angles_deg": angles, "values": values })
+            }
+            "blendphase" => {
+                let parts = element.nested("phase", self.ids)?;
+                let [first, second] = parts[..] else {
+                    return Err(format!("{place}: a blend has two phase functions, not {}", parts.len()));
+                };
+                let (first, second) = (self.phase(first)?, self.phase(second)?);
+                let weight = element.number("weight")?.unwrap_or(0.5);
+                match blended(&first, &second, weight) {
+                    Some(phase) => phase,
+                    None => {
+                        self.builder.leave_out(
+                            place,
+                            "a blend with another than Henyey and Greenstein's becomes its first part",
+                        );
+                        first
+                    }
+                }
+            }
+            other => {
+                self.builder.leave_out(place, format!("the phase function \"{other}\" becomes isotropic"));
+                element.children.iter().for_each(Element::mark);
+                json!({ "type": "isotropic" })
+            }
+        };
+        element.list_unused(self.builder);
+        Ok(phase)
+    }
+}
+
+/// A spectrum times a factor.
+fn scaled(spectrum: Value, factor: f64) -> Value {
+    if let Some(number) = spectrum.as_f64() {
+        return json!(number * factor);
+    }
+    let mut scaled = spectrum;
+    if factor != 1.0 {
+        scaled["scale"] = json!(scaled["scale"].as_f64().unwrap_or(1.0) * factor);
+    }
+    scaled
+}
