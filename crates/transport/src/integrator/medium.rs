@@ -5,7 +5,10 @@ use super::{LightDraw, NextEvent, Path, light_weight};
 use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::media::{MediumInteraction, Participating, Stretch, Way, optical_depth};
+use crate::light::Light;
+use crate::media::{
+    Coefficients, Equiangular, Medium, MediumInteraction, Participating, Stretch, Way, free_point, optical_depth,
+};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::SurfaceInteraction;
@@ -24,6 +27,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         ray: &Ray<f64>,
         met: Option<&SurfaceInteraction<'a>>,
         sampler: &Sampler,
+        counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) -> Option<MediumInteraction<'a>> {
         let start = self.passed_at.unwrap_or(ray.origin);
@@ -43,27 +47,87 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             self.beta *= coefficients.transmittance(column_m);
             return None;
         }
-        let depth = self.optical_depth.get_or_insert_with(|| {
-            // Sets from the other end than those of surfaces, which are what they are without media.
-            let [coarse, fine, ..] = sampler.set(u32::MAX - self.vertex);
-            optical_depth([coarse, fine])
-        });
-        match Stretch::follow(&coefficients, column_m, depth) {
+        // Sets from the other end than those of surfaces, which are what they are without media.
+        let [coarse, fine, u_light, u_place] = sampler.set(u32::MAX - self.vertex);
+        let lit = MediumWay { medium, coefficients, way, unit_m: participating.unit_m };
+        if world.point_lights && self.vertex + 1 < world.max_depth {
+            self.add_light_beside(world, &lit, ray, [u_light, u_place], counters, observer);
+        }
+        let depth = self.optical_depth.get_or_insert_with(|| optical_depth([coarse, fine]));
+        match Stretch::follow(&lit.coefficients, column_m, depth) {
             Stretch::Passed { weight, lane_density } => {
                 self.beta *= weight;
                 self.lanes.follow(lane_density);
                 None
             }
             Stretch::Scattered { column_m, weight, lane_density } => {
+                let distance = medium.distance(&way, column_m / participating.unit_m);
+                let vertex = self.medium_interaction(world, &lit, ray, distance);
                 self.beta *= weight;
                 self.lanes.follow(lane_density);
-                let position = start + ray.direction * medium.distance(&way, column_m / participating.unit_m);
-                if let Some(before) = self.walk.media_before((position - ray.origin).length()) {
-                    self.stack = before;
-                }
-                observer.scattering(self.vertex, position, self.beta);
-                Some(MediumInteraction::new(position, ray.time, -ray.direction, medium))
+                self.stack = vertex.stack;
+                observer.scattering(self.vertex, vertex.point.position, self.beta);
+                Some(vertex)
             }
+        }
+    }
+
+    /// The place at a distance along a way.
+    fn medium_interaction(
+        &self,
+        world: &World<'a>,
+        lit: &MediumWay<'a, N>,
+        ray: &Ray<f64>,
+        distance: f64,
+    ) -> MediumInteraction<'a> {
+        let MediumWay { medium, way, .. } = *lit;
+        let position = way.origin + way.direction * distance;
+        // Boundaries that change no medium may lie between the place and what the ray has met.
+        let stack = self.walk.media_before((position - ray.origin).length()).unwrap_or(self.stack);
+        let density = if world.point_lights { self.lanes.mean_density(lit.scattered_at(distance)) } else { 0.0 };
+        MediumInteraction {
+            point: free_point(position, ray.time),
+            wo: -ray.direction,
+            medium,
+            stack,
+            way,
+            distance,
+            density,
+        }
+    }
+
+    /// Adds the light of a point lamp that a place of the way sends on toward the path's origin. The place is chosen by the angle at which the
+    /// lamp sees it. The balance heuristic weighs it against places where the path is scattered.
+    fn add_light_beside(
+        &mut self,
+        world: &World<'a>,
+        lit: &MediumWay<'a, N>,
+        ray: &Ray<f64>,
+        [u_light, u_place]: [f64; 2],
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) {
+        let Some((light, probability)) = world.lights.choose(lit.way.origin, u_light) else { return };
+        let Some(seen) = beside(&world.lights.lights()[light], &lit.coefficients, &lit.way, lit.unit_m) else { return };
+        let distance = seen.distance(u_place);
+        if !(distance > 0.0 && distance < lit.way.length) {
+            return;
+        }
+        let vertex = self.medium_interaction(world, lit, ray, distance);
+        let Some(sample) = world.lights.lights()[light].sample(vertex.point.position, [0.0; 2], ray.time) else {
+            return;
+        };
+        let phase = vertex.medium.phase.density(-vertex.wo.dot(sample.wi));
+        let by_angle = probability * seen.density(distance);
+        let by_scattering = vertex.density * world.lights.probability(light, vertex.point.position);
+        let weight = sample.scale / (by_angle + by_scattering);
+        let f_cos = lit.scattered_toward(distance) * phase;
+        if f_cos.is_zero() {
+            return;
+        }
+        let draw = LightDraw { light: light as u32, probability, sample, lambert: None };
+        if let Some(visible) = self.visibility(world, &vertex, &sample, counters) {
+            self.add_light(world, &vertex, &draw, &NextEvent { f_cos, weight }, &visible, observer);
         }
     }
 
@@ -82,7 +146,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if sees_lights {
             let [u_light, u1, u2, _] = sampler.vertex_set(self.vertex, 1);
             if let Some(draw) = world.sample_light(&vertex.point, u_light, [u1, u2])
-                && let Some(next) = Self::next_event_in_medium(world, vertex, &draw)
+                && let Some(next) = self.next_event_in_medium(world, vertex, &draw)
                 && let Some(visible) = self.visibility(world, vertex, &draw.sample, counters)
             {
                 self.add_light(world, vertex, &draw, &next, &visible, observer);
@@ -103,12 +167,63 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     /// What a light adds at a point of a medium, if nothing is in the way.
     fn next_event_in_medium(
+        &self,
         world: &World<'a>,
         vertex: &MediumInteraction<'a>,
-        LightDraw { probability, sample, .. }: &LightDraw,
+        LightDraw { light, probability, sample, .. }: &LightDraw,
     ) -> Option<NextEvent<N>> {
         let density = vertex.medium.phase.density(-vertex.wo.dot(sample.wi));
-        let weight = light_weight(world.light_sampling, sample.density, sample.scale, *probability, density);
+        let mut weight = light_weight(world.light_sampling, sample.density, sample.scale, *probability, density);
+        let lamp = &world.lights.lights()[*light as usize];
+        let coefficients = || vertex.medium.coefficients(&self.wavelengths.lambda_nm);
+        if let (true, Some(participating)) = (lamp.position().is_some(), &world.participating)
+            && let Some(seen) = beside(lamp, &coefficients(), &vertex.way, participating.unit_m)
+        {
+            let by_angle = world.lights.probability(*light as usize, vertex.way.origin) * seen.density(vertex.distance);
+            weight /= 1.0 + by_angle / (vertex.density * probability);
+        }
         (density > 0.0).then(|| NextEvent { f_cos: Lanes::splat(density), weight })
     }
+}
+
+/// A way through a medium that scatters.
+struct MediumWay<'a, const N: usize> {
+    medium: &'a Medium,
+    coefficients: Coefficients<N>,
+    way: Way,
+    /// Metres in a unit of the frame.
+    unit_m: f64,
+}
+
+impl<const N: usize> MediumWay<'_, N> {
+    /// The share of light that comes through from a distance, times the density of the medium there and a unit's length.
+    fn through(&self, distance: f64) -> Lanes<f64, N> {
+        let column_m = self.medium.column(&Way { length: distance, ..self.way }) * self.unit_m;
+        let density = self.medium.density(self.way.origin + self.way.direction * distance);
+        self.coefficients.transmittance(column_m) * (density * self.unit_m)
+    }
+
+    /// The density with which paths are scattered at a distance, in each lane, per unit of the frame.
+    fn scattered_at(&self, distance: f64) -> Lanes<f64, N> {
+        self.through(distance) * self.coefficients.extinction
+    }
+
+    /// The share of light that a unit's length scatters at a distance and that comes to the beginning.
+    fn scattered_toward(&self, distance: f64) -> Lanes<f64, N> {
+        self.through(distance) * self.coefficients.scattering
+    }
+}
+
+/// A way as a point lamp sees it that is not too deep in the medium: light that is scattered too often to come from there is found as well
+/// without its place.
+fn beside<const N: usize>(
+    light: &Light,
+    coefficients: &Coefficients<N>,
+    way: &Way,
+    unit_m: f64,
+) -> Option<Equiangular> {
+    /// Optical depth between the lamp and the way.
+    const DEEPEST: f64 = 4.0;
+    let seen = Equiangular::new(way, light.position()?)?;
+    (coefficients.extinction.max_lane() * seen.beside() * unit_m < DEEPEST).then_some(seen)
 }

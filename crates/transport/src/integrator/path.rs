@@ -145,7 +145,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         observer: &mut impl Observer<N>,
     ) -> Arrival<'a> {
         if let Some(participating) = &world.participating
-            && let Some(collision) = self.travel(world, participating, ray, met.as_deref(), sampler, observer)
+            && let Some(collision) = self.travel(world, participating, ray, met.as_deref(), sampler, counters, observer)
         {
             return match self.is_too_deep(world, counters, observer) {
                 true => Arrival::Ended,

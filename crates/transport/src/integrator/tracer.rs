@@ -11,7 +11,7 @@ use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::Walk;
 use crate::scene::prepare::Prepared;
-use crate::scene::world::World;
+use crate::scene::world::{ShadowRays, World};
 use crate::surface::Scattering;
 use etalon_geometry::Ray;
 use etalon_optics::Vec3;
@@ -87,6 +87,8 @@ impl<'a> Tracer<'a> {
                 masks,
                 meets_groups: masks || media.is_some(),
                 moves: plan.runs(EffectName::Motion),
+                point_lights: prepared.shadow_rays() != ShadowRays::Never
+                    && prepared.lights.lights().iter().any(|light| light.position().is_some()),
                 weigh_hits: prepared.lights.can_be_met() || plan.runs(EffectName::Mis),
                 max_depth: integrator.max_depth.unwrap_or(MOST_VERTICES).min(MOST_VERTICES),
                 roulette: integrator.roulette,

@@ -69,10 +69,10 @@ impl<'a> Vertex<'a> for MediumInteraction<'a> {
 
     fn media_toward<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         &self,
-        path: &Path<'a, M, P, N>,
+        _: &Path<'a, M, P, N>,
         _: Vec3<f64>,
     ) -> MediumStack<'a> {
-        path.stack
+        self.stack
     }
 
     fn mueller<const N: usize>(&self, _: &Lanes<f64, N>, wi: Vec3<f64>) -> Option<Mueller<N>> {

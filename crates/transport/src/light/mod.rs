@@ -88,6 +88,11 @@ trait LightSource {
         self.emitter().is_some()
     }
 
+    /// Its position, if it is a point.
+    fn position(&self) -> Option<Vec3<f64>> {
+        None
+    }
+
     /// Where it is and where it shines, with a power of 1; `None` if it is nowhere, or not always at one place.
     fn bounds(&self) -> Option<LightBounds> {
         None
@@ -145,6 +150,12 @@ impl Light {
     /// The spectrum that [`LightSample::scale`] multiplies; of an image, that of its white.
     pub fn spectrum(&self) -> &PathSpectrum {
         each!(self, light => LightSource::spectrum(light))
+    }
+
+    /// Its position, if it is a point.
+    #[inline]
+    pub(crate) fn position(&self) -> Option<Vec3<f64>> {
+        each!(self, light => LightSource::position(light))
     }
 
     /// What an emitting surface emits; `None` for a light without a surface.

@@ -46,6 +46,10 @@ impl LightSource for PointLight {
         &self.intensity
     }
 
+    fn position(&self) -> Option<Vec3<f64>> {
+        Some(self.position)
+    }
+
     fn bounds(&self) -> Option<LightBounds> {
         Some(LightBounds {
             bounds: Aabb { min: self.position, max: self.position },

@@ -51,6 +51,10 @@ impl LightSource for SpotLight {
         &self.point.intensity
     }
 
+    fn position(&self) -> Option<Vec3<f64>> {
+        Some(self.point.position)
+    }
+
     fn bounds(&self) -> Option<LightBounds> {
         Some(LightBounds {
             axis: self.axis,

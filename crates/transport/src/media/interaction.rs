@@ -1,6 +1,7 @@
 //! Where a medium scatters a path.
 
 use super::medium::Medium;
+use super::{MediumStack, Way};
 use etalon_geometry::{SurfaceId, SurfacePoint};
 use etalon_optics::Vec3;
 
@@ -12,11 +13,17 @@ pub(crate) struct MediumInteraction<'a> {
     /// Toward where the path came from; a unit vector.
     pub wo: Vec3<f64>,
     pub medium: &'a Medium,
+    /// The media that hold it.
+    pub stack: MediumStack<'a>,
+    /// The way through the medium on which it lies, and how far along it.
+    pub way: Way,
+    pub distance: f64,
+    /// The density with which the path is scattered there, the mean over the lanes, per unit of the frame; 0 where no lamp is a point.
+    pub density: f64,
 }
 
-impl<'a> MediumInteraction<'a> {
-    pub(crate) fn new(position: Vec3<f64>, time: f64, wo: Vec3<f64>, medium: &'a Medium) -> Self {
-        let (surface, normal) = (SurfaceId::NONE, Vec3::ZERO);
-        Self { point: SurfacePoint { position, position_error: 0.0, normal, surface, label: 0, time }, wo, medium }
-    }
+/// A point of no surface.
+pub(crate) fn free_point(position: Vec3<f64>, time: f64) -> SurfacePoint<f64> {
+    let (surface, normal) = (SurfaceId::NONE, Vec3::ZERO);
+    SurfacePoint { position, position_error: 0.0, normal, surface, label: 0, time }
 }

@@ -4,7 +4,7 @@ use super::density::{Density, Way};
 use super::phase::Phase;
 use crate::frame::SceneFrame;
 use crate::spectral::PathSpectrum;
-use etalon_optics::{Lanes, exp_neg, one_minus_exp_neg};
+use etalon_optics::{Lanes, Vec3, exp_neg, one_minus_exp_neg};
 
 /// What fills a space.
 #[derive(Clone, Debug)]
@@ -61,6 +61,12 @@ impl Medium {
     #[inline]
     pub(crate) fn column(&self, way: &Way) -> f64 {
         self.density.column(way)
+    }
+
+    /// Its density at a place.
+    #[inline]
+    pub(crate) fn density(&self, place: Vec3<f64>) -> f64 {
+        self.density.at(place)
     }
 
     /// How far along a way a column is reached that is less than that of the whole way.

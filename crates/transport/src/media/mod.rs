@@ -14,14 +14,16 @@
 //! such a body.
 
 mod density;
+mod equiangular;
 mod interaction;
 mod medium;
 mod participating;
 mod phase;
 
 pub(crate) use density::Way;
-pub(crate) use interaction::MediumInteraction;
-pub(crate) use medium::Medium;
+pub(crate) use equiangular::Equiangular;
+pub(crate) use interaction::{MediumInteraction, free_point};
+pub(crate) use medium::{Coefficients, Medium};
 pub(crate) use participating::{Participating, Stretch, optical_depth};
 
 use etalon_optics::RefractiveIndex;

@@ -14,7 +14,7 @@ pub(crate) struct Exponential {
 }
 
 /// e^(−h) for any h; infinity where it is too large.
-fn at(height: f64) -> f64 {
+fn of_height(height: f64) -> f64 {
     if height >= 0.0 { exp_neg(height) } else { exp_neg(-height).recip() }
 }
 
@@ -22,6 +22,10 @@ impl Exponential {
     pub(super) fn new(density: &ExponentialDensity, frame: &SceneFrame) -> Self {
         let scale_height = density.scale_height_m * frame.per_m();
         Self { base: frame.point(Vec3::from_array(density.base_m)), up: Vec3::from_array(density.up) / scale_height }
+    }
+
+    pub(super) fn at(&self, place: Vec3<f64>) -> f64 {
+        of_height((place - self.base).dot(self.up))
     }
 
     /// In scale heights: where a way begins, and by how much it rises in each unit of length.
@@ -33,11 +37,11 @@ impl Exponential {
     pub(super) fn column(&self, way: &Way) -> f64 {
         let (height, rise) = self.heights(way);
         if rise == 0.0 {
-            let density = at(height);
+            let density = of_height(height);
             return if density > 0.0 { density * way.length } else { 0.0 };
         }
         let low = if rise > 0.0 { height } else { height + rise * way.length };
-        let density = at(low);
+        let density = of_height(low);
         if density == 0.0 {
             return 0.0;
         }
@@ -47,7 +51,7 @@ impl Exponential {
     /// Upward 1 − e^(−x) = y, downward e^x − 1 = y, y the column over the density and the scale height along the way.
     pub(super) fn distance(&self, way: &Way, column: f64) -> f64 {
         let (height, rise) = self.heights(way);
-        let density = at(height);
+        let density = of_height(height);
         if rise == 0.0 {
             return column / density;
         }

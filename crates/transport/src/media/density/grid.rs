@@ -5,6 +5,7 @@
 
 use super::Way;
 use crate::frame::{Affine, SceneFrame};
+use etalon_optics::Vec3;
 use etalon_scene::DensityGrid;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
@@ -202,6 +203,16 @@ impl Grid {
         let origin = self.to_cells.transform_point3(DVec3::from_array(way.origin.to_array()));
         let direction = self.to_cells.transform_vector3(DVec3::from_array(way.direction.to_array()));
         Line { origin: origin.to_array(), direction: direction.to_array() }
+    }
+
+    pub(super) fn at(&self, place: Vec3<f64>) -> f64 {
+        let at = self.to_cells.transform_point3(DVec3::from_array(place.to_array())).to_array();
+        if (0..3).any(|k| at[k] < -0.5 || at[k] > self.cells[k] as f64 - 0.5) {
+            return 0.0;
+        }
+        let cube = std::array::from_fn(|k| ((at[k] + 1.0).floor() as i64).clamp(0, self.cells[k]));
+        let still = Line { origin: at, direction: [0.0; 3] };
+        self.piece(cube, [0.0, 0.0]).density(&still, 0.0)
     }
 
     pub(super) fn column(&self, way: &Way) -> f64 {

@@ -53,6 +53,16 @@ impl Density {
         }
     }
 
+    /// The density at a place.
+    #[inline]
+    pub(crate) fn at(&self, place: Vec3<f64>) -> f64 {
+        match self {
+            Self::Uniform => 1.0,
+            Self::Exponential(one) => one.at(place),
+            Self::Grid(grid) => grid.at(place),
+        }
+    }
+
     /// How far along a way a column is reached that is less than that of the whole way.
     #[inline]
     pub(crate) fn distance(&self, way: &Way, column: f64) -> f64 {

@@ -107,6 +107,20 @@ fn columns_are_sums_over_many_points() {
 }
 
 #[test]
+fn densities_at_places_are_those_of_the_formula() {
+    for density in all() {
+        let prepared = Density::new(&density, &SceneFrame::WORLD);
+        for way in ways() {
+            for i in 0..20 {
+                let place = way.origin + way.direction * (way.length * (f64::from(i) + 0.5) / 20.0);
+                let (found, known) = (prepared.at(place), density_of(&density, place));
+                assert!((found - known).abs() <= 1e-12 * known.max(1.0), "{place:?}: {found} is not {known}");
+            }
+        }
+    }
+}
+
+#[test]
 fn the_place_of_a_column_has_that_column() {
     for density in all() {
         let prepared = Density::new(&density, &SceneFrame::WORLD);
