@@ -120,7 +120,7 @@ impl<'a> Walk<'a, '_, '_> {
                 if values.len() < 2 {
                     return Err(format!("{place}: a table has at least two values"));
                 }
-                // Evenly spaced in the cosine, from −1; with the light's way reversed against what is meant here.
+                // Evenly spaced in the cosine, from −1: straight back.
                 let last = values.len() - 1;
                 let degrees = |i: usize| match i {
                     0 => 0.0,

@@ -3,6 +3,7 @@
 mod bounds;
 mod brushed;
 mod images;
+mod media;
 mod parameters;
 mod relief;
 mod sides;
@@ -22,6 +23,11 @@ fn near(name: &str) -> Result<Vec<u8>, String> {
         "chequers.png" => Ok(PNG.to_vec()),
         "a.obj" => Ok(OBJ.to_vec()),
         "normals.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n".to_vec()),
+        "smoke.vol" => {
+            let head = [1, 1, 1, 2, 1_i32].iter().flat_map(|word| word.to_le_bytes());
+            let numbers = [0.0, 0.0, 0.0, 9.0, 9.0, 9.0, 0.5, 1.5_f32].iter().flat_map(|number| number.to_le_bytes());
+            Ok(b"VOL\x03".iter().copied().chain(head).chain(numbers).collect())
+        }
         "inc.xml" => Ok(INCLUDED.to_vec()),
         "inc.pbrt" => Ok(b"Shape \"sphere\" \"float radius\" 2\n".to_vec()),
         "itself.xml" => Ok(br#"<scene version="3.0.0"><include filename="itself.xml"/></scene>"#.to_vec()),

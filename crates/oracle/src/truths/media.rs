@@ -107,6 +107,7 @@ fn furnaces() -> Vec<Truth> {
         truth("eye-in-fog-in-a-furnace", inside.sky(1.0)),
         within("milk-in-glass-in-a-furnace", glass(1.5)).claims(Claim::AveragesPolarisation),
         within("milk-in-rough-glass-in-a-furnace", rough_glass(1.5, 0.3))
+            .allows(2e-3, "tables of what facets lose err by up to 5e-4 at each of a few crossings; single precision")
             .claims(Claim::AveragesPolarisation)
             .claims(Claim::LosslessRoughGlass),
         truth("milk-by-priority-in-a-furnace", nested).claims(Claim::AveragesPolarisation).claims(Claim::Priorities),
@@ -153,7 +154,7 @@ fn half_spaces() -> Vec<Truth> {
         Truth::new("half-space-in-parallel-light", &lit, factor, "ϖ H(μ)H(μ₀)/(4(μ + μ₀)), ϖ = 0.9, μ = 1, μ₀ = 0.6")
             .because("Chandrasekhar's law of diffuse reflection, for an irradiance of π on the surface.")
             .or_else("light scattered once alone", scattered_once(200.0, 0.9, 1.0, 1.0, 0.6))
-            .sees(0.01)
+            .sees(0.03)
             .allows(1e-6, WIDE);
     list.push(truth);
     list
@@ -168,7 +169,7 @@ fn of_half_space(name: &str, scene: &Scene, albedo: f64, mu: f64, value: f64) ->
         })
         .or_else("light scattered once alone", single(mu))
         .or_else("the albedo applied twice", HalfSpace::new(albedo * albedo).plane_albedo(mu))
-        .sees(0.01)
+        .sees(0.03)
         .allows(1e-6, WIDE)
         .no_brighter_than(1.0)
 }
@@ -192,7 +193,7 @@ fn slabs() -> Vec<Truth> {
         let truth = |what: &str, scene: &Scene, value: f64| {
             Truth::new(format!("{name}-{what}"), scene, value, format!("doubling: τ = {depth}, ϖ = {albedo}, g = {g}"))
                 .because("By reciprocity an eye sees of light of 1 on one side the share of a beam along its sight that goes to that side.")
-                .sees(0.01)
+                .sees(0.04)
                 .allows(1e-4, "light from between the black square and the slab, 2·10⁴ m wide; single precision")
                 .no_brighter_than(1.0)
         };
@@ -223,7 +224,7 @@ fn scattered_once_in_slabs() -> Vec<Truth> {
         slab(depth, &medium(albedo, 1.0 - albedo, phase), mu)
             .directional_light([-sine(mu_0), 0.0, -mu_0], PI / mu_0)
             .depth(2)
-            .spp(256)
+            .spp(64)
     };
     let truth = |name: &str, phase: &Value, value: f64, reversed: f64| {
         let once = |phase: f64| scattered_once(depth, albedo, phase, mu, mu_0);
@@ -232,7 +233,7 @@ fn scattered_once_in_slabs() -> Vec<Truth> {
             .or_else("nothing lost on the way to the eye", 0.25 * albedo * value * -(-depth / mu_0).exp_m1() / mu)
             .or_else("the albedo left out", once(value) / albedo)
             .or_else("the angle of scattering reversed", once(reversed))
-            .sees(2e-3)
+            .sees(5e-3)
             .allows(1e-6, WIDE)
     };
     let rayleigh = |cosine: f64| 0.75 * (1.0 + cosine * cosine);
@@ -393,7 +394,7 @@ fn polarised_by_air() -> Vec<Truth> {
             }))
             .directional_light([1.0, 0.0, 0.0], PI)
             .depth(3)
-            .spp(256)
+            .spp(64)
     };
     let truth = |name: &str, degrees: f64| {
         let across = degrees.to_radians().sin().powi(2);

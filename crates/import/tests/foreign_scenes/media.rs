@@ -1,0 +1,100 @@
+//! Media: what fills bodies and the space around them.
+
+use etalon_scene::{Density, MaterialKind, Medium, PhaseFunction, Scene};
+
+use super::{imported, said, scene};
+
+/// The medium of an object.
+fn within(scene: &Scene, object: usize) -> &Medium {
+    scene.materials[scene.objects[object].material].medium.as_ref().expect("it has a medium")
+}
+
+/// Absorption and scattering at a wavelength.
+fn coefficients(medium: &Medium, nm: f64) -> [f64; 2] {
+    [medium.absorption.eval(nm), medium.scattering.eval(nm)]
+}
+
+fn near(found: [f64; 2], known: [f64; 2]) {
+    assert!((0..2).all(|k| (found[k] - known[k]).abs() < 1e-12), "{found:?} is not {known:?}");
+}
+
+#[test]
+fn media_of_mitsuba_arrive() {
+    let text = r#"<scene version="3.0.0">
+  <sensor type="perspective"><ref name="medium" id="haze"/></sensor>
+  <medium type="homogeneous" id="haze"><float name="albedo" value="0.5"/><float name="sigma_t" value="0.02"/></medium>
+  <shape type="sphere"><bsdf type="null"/>
+    <medium name="interior" type="homogeneous"><float name="albedo" value="0.8"/><float name="sigma_t" value="2"/><float name="scale" value="3"/>
+      <phase type="hg"><float name="g" value="0.6"/></phase></medium></shape>
+  <shape type="sphere"><bsdf type="dielectric"><float name="int_ior" value="1.4"/><float name="ext_ior" value="1"/></bsdf>
+    <medium name="interior" type="homogeneous"><spectrum name="albedo" value="400:0.5, 700:1"/><rgb name="sigma_t" value="1, 1, 1"/>
+      <phase type="blendphase"><float name="weight" value="0.25"/><phase type="hg"><float name="g" value="0.9"/></phase><phase type="isotropic"/></phase>
+    </medium></shape>
+  <shape type="cube"><bsdf type="null"/>
+    <medium name="interior" type="heterogeneous"><float name="scale" value="5"/><float name="albedo" value="1"/>
+      <volume name="sigma_t" type="gridvolume"><string name="filename" value="smoke.vol"/>
+        <transform name="to_world"><scale value="2"/></transform></volume>
+      <phase type="tabphase"><string name="values" value="1, 2, 5"/></phase></medium></shape>
+  <shape type="sphere"><bsdf type="diffuse"/><ref name="interior" id="haze"/></shape>
+</scene>"#;
+    let imported = imported("xml", text);
+    let scene = scene(&imported);
+    near(coefficients(scene.medium.as_ref().expect("haze"), 500.0), [0.01, 0.01]);
+    let fog = within(&scene, 0);
+    assert_eq!(scene.materials[scene.objects[0].material].kind, MaterialKind::Boundary);
+    near(coefficients(fog, 500.0), [6.0 * 0.2, 6.0 * 0.8]);
+    assert_eq!(fog.phase, PhaseFunction::HenyeyGreenstein { g: 0.6 });
+    let glass = within(&scene, 1);
+    let kind = &scene.materials[scene.objects[1].material].kind;
+    assert!(matches!(kind, MaterialKind::Dielectric { priority: None, .. }), "{kind:?}");
+    near(coefficients(glass, 550.0), [0.25, 0.75]);
+    assert_eq!(glass.phase, PhaseFunction::DoubleHenyeyGreenstein { g: [0.9, 0.0], weight: 0.75 });
+    let smoke = within(&scene, 2);
+    near(coefficients(smoke, 550.0), [0.0, 5.0]);
+    let Density::Grid(grid) = &smoke.density else { panic!("{:?}", smoke.density) };
+    assert_eq!((grid.cells, grid.box_m), ([1, 1, 2], [[0.0; 3], [1.0; 3]]));
+    assert_eq!((&grid.values[..], grid.transform.linear[0][0]), (&[0.5, 1.5][..], 2.0));
+    let PhaseFunction::Tabulated(table) = &smoke.phase else { panic!("{:?}", smoke.phase) };
+    // Backward is first there: −1, 0 and 1 are the cosines.
+    assert_eq!(table.values, [1.0, 2.0, 5.0]);
+    assert!((table.cosines[0], table.cosines[2]) == (-1.0, 1.0) && table.cosines[1].abs() < 1e-15, "{table:?}");
+    let said = said(&imported);
+    assert!(said.len() == 1 && said[0].contains("only glass and \"null\" let light in"), "{said:?}");
+}
+
+#[test]
+fn media_of_pbrt_arrive() {
+    let text = r#"MakeNamedMedium "haze" "string type" "homogeneous" "float sigma_a" 0.25 "float sigma_s" 0.5 "float g" -0.3
+MediumInterface "" "haze"
+Camera "perspective"
+WorldBegin
+MakeNamedMedium "smoke" "string type" "uniformgrid" "integer nx" 2 "integer ny" 1 "integer nz" 1 "float density" [ 0.5 1 ]
+  "point3 p0" [ 0 0 0 ] "point3 p1" [ 2 1 1 ] "float sigma_a" 0 "float sigma_s" 4 "float scale" 0.5
+AttributeBegin
+MediumInterface "smoke" "haze"
+Material "interface"
+Shape "sphere"
+AttributeEnd
+AttributeBegin
+MediumInterface "smoke" ""
+Material "dielectric" "float eta" 1.33
+Shape "sphere"
+AttributeEnd
+"#;
+    let imported = imported("pbrt", text);
+    let scene = scene(&imported);
+    let haze = scene.medium.as_ref().expect("haze");
+    near(coefficients(haze, 500.0), [0.25, 0.5]);
+    assert_eq!(haze.phase, PhaseFunction::HenyeyGreenstein { g: -0.3 });
+    for object in 0..2 {
+        let smoke = within(&scene, object);
+        near(coefficients(smoke, 500.0), [0.0, 2.0]);
+        let Density::Grid(grid) = &smoke.density else { panic!("{:?}", smoke.density) };
+        assert_eq!((grid.cells, &grid.values[..]), ([2, 1, 1], &[0.5, 1.0][..]));
+        assert_eq!(grid.box_m, [[0.0; 3], [2.0, 1.0, 1.0]]);
+        // The world is mirrored, as its camera does not.
+        assert_eq!(grid.transform.linear[0][0], -1.0);
+    }
+    assert_eq!(scene.materials[scene.objects[0].material].kind, MaterialKind::Boundary);
+    assert_eq!(said(&imported), Vec::<String>::new());
+}
