@@ -69,6 +69,7 @@ enum Command {
     Quote(commands::quote::Args),
     Compare(commands::compare::Args),
     Develop(commands::develop::Args),
+    View(Box<commands::view::ViewArgs>),
     #[cfg(feature = "denoise")]
     Denoise(commands::denoise::Args),
     Study(commands::study::Args),
@@ -101,6 +102,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: Option<PathBuf>) 
         Command::Quote(args) => commands::quote::run(args),
         Command::Compare(args) => commands::compare::run(args),
         Command::Develop(args) => commands::develop::run(args),
+        Command::View(args) => commands::view::run(*args),
         #[cfg(feature = "denoise")]
         Command::Denoise(args) => commands::denoise::run(args),
         Command::Study(args) => commands::study::run(args),

@@ -21,6 +21,8 @@ pub(crate) struct LoadedScene {
     pub warnings: Vec<Report>,
     /// SHA-256 of the file's bytes and of those of all files that it refers to, in hex.
     pub sha256: String,
+    /// Names of the files that it refers to, as it writes them.
+    pub files: Vec<String>,
 }
 
 /// Reads a scene. A file that cannot be read is bad input as much as one that makes no sense. `film_size`, if given, stands
@@ -40,7 +42,7 @@ pub(crate) fn load(
     } else {
         Scene::load_with(path, film_size, &Options { moment: None, parameters: parameters.to_vec() })
     };
-    let Scene { model, warnings: problems, added, left_out, file_name, text, sha256 } = scene.map_err(refused)?;
+    let Scene { model, warnings: problems, added, left_out, file_name, text, sha256, files } = scene.map_err(refused)?;
     // What a model does not say is added, what is not converted is listed, both as warnings.
     let note = |code: &str, text: String| miette!(severity = Severity::Warning, code = code.to_owned(), "{text}");
     let mut warnings: Vec<Report> = added.into_iter().map(|added| note("added", added)).collect();
@@ -51,7 +53,7 @@ pub(crate) fn load(
         warnings.push(note("not-converted", format!("{more} more are not shown; `etalon import` lists them")));
     }
     warnings.extend(scene_warnings(&file_name, &text, problems));
-    Ok(LoadedScene { scene: model, warnings, sha256 })
+    Ok(LoadedScene { scene: model, warnings, sha256, files })
 }
 
 /// Why there is no scene.

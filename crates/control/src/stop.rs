@@ -5,7 +5,7 @@
 
 use crate::adaptive::{Adaptivity, Exploration, Goal, WORTHWHILE, explore};
 use crate::canvas::{Canvas, Shard};
-use crate::cost_estimate::{CostEstimate, between, next_step};
+use crate::cost_estimate::{CostEstimate, PilotPoint, between, next_step};
 use crate::pilot::Pilot;
 use crate::sample_allocation::SampleAllocation;
 use etalon_transport::{Control, Counters, Film, PixelRect, Prepared, ThreadError, TileSums};
@@ -140,6 +140,10 @@ pub trait Watch: Sync {
     /// Work was done: camera paths and rays, of an exploration, the pilot or the picture.
     fn work(&self, counters: &Counters) {
         let _ = counters;
+    }
+    /// The pilot took a step: what it has seen so far, by the number of samples.
+    fn pilot(&self, points: &[PilotPoint]) {
+        let _ = points;
     }
     /// The picture begins; it will take so many camera paths, or fewer if time is up.
     fn planned(&self, paths: u64, predicted: Option<&Prediction>) {
@@ -328,6 +332,7 @@ impl Pilot<'_> {
         let mut next = replicates;
         loop {
             self.advance(next, clock, &|counters| watch.work(counters));
+            watch.pilot(self.points());
             let &point = self.points().last().expect("it has just advanced");
             if point.reaches(target) {
                 // Whole rounds of replicates, so that all weigh alike.

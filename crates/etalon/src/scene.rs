@@ -31,6 +31,8 @@ pub struct Scene {
     pub text: String,
     /// SHA-256, in hex, of the text and of all files that it refers to.
     pub sha256: String,
+    /// Names of the files that the scene refers to, as it writes them, in the order in which they were read.
+    pub files: Vec<String>,
 }
 
 /// Why there is no scene.
@@ -148,8 +150,9 @@ impl Scene {
 
     fn new(loaded: Loaded, file_name: String, text: String) -> Self {
         let sha256 = scene_sha256(&text, &loaded.files);
-        let Loaded { scene: model, warnings, .. } = loaded;
-        Self { model, warnings, added: Vec::new(), left_out: Vec::new(), file_name, text, sha256 }
+        let Loaded { scene: model, warnings, files } = loaded;
+        let files = files.into_iter().map(|file| file.name).collect();
+        Self { model, warnings, added: Vec::new(), left_out: Vec::new(), file_name, text, sha256, files }
     }
 
     /// Keeps bands of wavelengths beside the colour: the centres of the first and of the last band and the step between centres, nm.

@@ -16,4 +16,5 @@ pub(crate) mod render;
 pub(crate) mod schema;
 pub(crate) mod study;
 pub(crate) mod verify;
+pub(crate) mod view;
 pub(crate) mod whitted;

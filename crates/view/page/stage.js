@@ -1,0 +1,193 @@
+// The picture with what lies over it, and where the cursor is.
+
+import { askPicture, latest } from "./server.js";
+import { digits, percent, svg } from "./format.js";
+import { log } from "./log.js";
+
+const element = (id) => document.getElementById(id);
+
+export class Stage {
+  constructor(look) {
+    this.look = look;
+    this.size = [1, 1];
+    this.shown = 0;
+    this.stageNumber = 0;
+    this.mapKind = "";
+    this.split = 0.5;
+    this.picture = element("picture");
+    this.frame = element("frame");
+    this.fetchPicture = latest(async (number) => this.#fetchPicture(number));
+    this.fetchMap = latest(async () => this.#fetchMap());
+    this.fetchPinned = latest(async () => this.#fetchPinned());
+    new ResizeObserver(() => this.fit()).observe(this.frame);
+    this.onLook = () => {};
+    this.#splitHandle();
+  }
+
+  // The place of the picture in the page: as large as there is room, pixels square.
+  fit() {
+    const room = this.frame.getBoundingClientRect();
+    const [width, height] = this.size;
+    const scale = Math.min(room.width / width, room.height / height);
+    this.scale = scale;
+    const box = { left: (room.width - width * scale) / 2, top: (room.height - height * scale) / 2, width: width * scale, height: height * scale };
+    this.box = box;
+    for (const id of ["picture", "pinned", "map", "overlay"]) {
+      const { style } = element(id);
+      for (const side of ["left", "top", "width", "height"]) style[side] = `${box[side]}px`;
+      style.imageRendering = scale >= 2.5 ? "pixelated" : "auto";
+    }
+    element("overlay").setAttribute("viewBox", `0 0 ${width} ${height}`);
+    element("overlay").setAttribute("preserveAspectRatio", "none");
+    this.#placeSplit();
+  }
+
+  // Takes over what the server says, and asks for the picture if there is a new one.
+  update(status) {
+    if (status.size[0] !== this.size[0] || status.size[1] !== this.size[1]) {
+      this.size = status.size;
+      this.fit();
+    }
+    if (status.picture > 0 && status.picture !== this.asked) {
+      this.asked = status.picture;
+      this.fetchPicture(status.picture);
+    }
+  }
+
+  redraw() {
+    if (this.asked) this.fetchPicture(this.asked);
+    if (!element("pinned").hidden) this.fetchPinned();
+  }
+
+  async #fetchPicture() {
+    const begun = performance.now();
+    try {
+      const { bitmap, about } = await askPicture("picture.png", this.look());
+      const [width, height] = this.size;
+      this.#paint(this.picture, bitmap, width, height);
+      this.shown = about.picture;
+      this.stageNumber = about.stage;
+      this.about = about;
+      element("waiting").hidden = true;
+      this.onLook(about);
+      log("picture", { ...about, fetch_ms: performance.now() - begun });
+      if (this.mapKind) this.fetchMap();
+    } catch (error) {
+      log("picture-refused", { message: error.message });
+      this.onLook({ refused: error.message });
+    }
+  }
+
+  #paint(canvas, bitmap, width, height) {
+    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+    const context = canvas.getContext("2d");
+    context.imageSmoothingEnabled = true;
+    context.imageSmoothingQuality = "high";
+    // The pixels of a coarse picture stand for whole blocks, of which the last may reach beyond the film.
+    const block = canvas === element("picture") || canvas === element("map") ? Math.max(1, Math.ceil(width / bitmap.width)) : 1;
+    const exact = block > 1 ? 2 ** Math.round(Math.log2(block)) : 1;
+    context.drawImage(bitmap, 0, 0, bitmap.width * exact, bitmap.height * exact);
+    bitmap.close();
+  }
+
+  showMap(kind) {
+    this.mapKind = kind;
+    element("map").hidden = true;
+    element("legend").hidden = true;
+    if (kind) this.fetchMap();
+  }
+
+  async #fetchMap() {
+    if (!this.mapKind) return;
+    const kind = this.mapKind;
+    try {
+      const { bitmap, about } = await askPicture("map.png", { kind });
+      if (kind !== this.mapKind) return;
+      this.#paint(element("map"), bitmap, this.size[0], this.size[1]);
+      element("map").hidden = false;
+      element("legend").hidden = false;
+      this.#drawLegend(about.legend);
+      log("map", { kind, picture: about.picture, rms: about.legend.rms, range: about.legend.range });
+    } catch (error) {
+      element("map").hidden = true;
+      element("legend").hidden = false;
+      element("legend-title").textContent = error.message;
+      element("legend-bar").replaceChildren();
+    }
+  }
+
+  #drawLegend(legend) {
+    const titles = {
+      relative: `Standard error of each pixel, in percent of the pixel. Root mean square ${percent(legend.rms)}.`,
+      "of-mean": `Standard error of each pixel, in percent of the mean brightness. Its root mean square, ${percent(legend.rms)}, is the error of the picture.`,
+      samples: "Samples of each pixel, in units of their mean.",
+      difference: "This picture less the pinned one, in standard errors. Beyond ± 3 is rarely chance.",
+    };
+    let title = titles[legend.kind];
+    if (legend.unknown) title += ` Green: unknown (${legend.unknown} pixels).`;
+    element("legend-title").textContent = title;
+    const bar = element("legend-bar");
+    const [left, width] = [16, 308];
+    const parts = legend.colours.map((colour, i) =>
+      svg("rect", { x: left + (i * width) / legend.colours.length, y: 2, width: width / legend.colours.length + 0.6, height: 12, fill: `rgb(${colour.join(" ")})` }));
+    const [low, high] = legend.range;
+    const isLog = legend.kind !== "difference";
+    const place = (v) => (isLog ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low));
+    const name = (v) => (legend.kind === "relative" || legend.kind === "of-mean" ? percent(v) : digits(v, 2));
+    let end = -Infinity;
+    for (const tick of legend.ticks) {
+      const x = left + place(tick) * width;
+      const words = name(tick);
+      const half = 3.4 * words.length;
+      if (x - half < end) continue;
+      end = x + half + 4;
+      parts.push(svg("line", { x1: x, x2: x, y1: 14, y2: 18, stroke: "#a3a6ab" }), svg("text", { x, y: 30, "text-anchor": "middle" }, words));
+    }
+    bar.replaceChildren(...parts);
+  }
+
+  // The pixel under a pointer, or null outside of the picture.
+  pixelAt(event) {
+    const room = this.frame.getBoundingClientRect();
+    const x = Math.floor((event.clientX - room.left - this.box.left) / this.scale);
+    const y = Math.floor((event.clientY - room.top - this.box.top) / this.scale);
+    return x >= 0 && y >= 0 && x < this.size[0] && y < this.size[1] ? [x, y] : null;
+  }
+
+  // The pinned picture on the left of the split.
+  showPinned(on) {
+    element("pinned").hidden = !on;
+    element("split").hidden = !on;
+    if (on) this.fetchPinned();
+    this.#placeSplit();
+  }
+
+  async #fetchPinned() {
+    try {
+      const { bitmap } = await askPicture("picture.png", { ...this.look(), pinned: true });
+      this.#paint(element("pinned"), bitmap, bitmap.width, bitmap.height);
+    } catch {
+      element("pinned").hidden = true;
+    }
+  }
+
+  #placeSplit() {
+    if (!this.box) return;
+    const handle = element("split");
+    handle.style.left = `${this.box.left + this.split * this.box.width}px`;
+    handle.style.top = `${this.box.top}px`;
+    handle.style.height = `${this.box.height}px`;
+    element("pinned").style.clipPath = `inset(0 ${100 * (1 - this.split)}% 0 0)`;
+  }
+
+  #splitHandle() {
+    const handle = element("split");
+    handle.addEventListener("pointerdown", (event) => handle.setPointerCapture(event.pointerId));
+    handle.addEventListener("pointermove", (event) => {
+      if (!handle.hasPointerCapture(event.pointerId)) return;
+      const room = this.frame.getBoundingClientRect();
+      this.split = Math.min(1, Math.max(0, (event.clientX - room.left - this.box.left) / this.box.width));
+      this.#placeSplit();
+    });
+  }
+}

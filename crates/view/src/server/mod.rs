@@ -1,0 +1,65 @@
+//! The server: one page and what it asks for, for whoever knows the token.
+
+pub(crate) mod answers;
+pub(crate) mod guard;
+pub(crate) mod page;
+pub(crate) mod routes;
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::net::TcpListener;
+use tokio::sync::Semaphore;
+
+use guard::Token;
+use routes::App;
+
+/// Connections at once. A page holds one for events and some for pictures.
+pub(crate) const MOST_CONNECTIONS: usize = 64;
+/// Pages that look on at once.
+pub(crate) const MOST_PAGES: usize = 16;
+/// Bytes of what a page sends.
+pub(crate) const MOST_BODY: usize = 16 << 10;
+/// Bytes of the head of a request.
+const MOST_HEAD: usize = 16 << 10;
+/// How long a client may take to send the head of a request.
+const HEAD_TIME: Duration = Duration::from_secs(10);
+
+/// Answers requests as long as the program runs.
+pub(crate) async fn run(listener: TcpListener, app: Arc<App>) -> std::io::Result<()> {
+    let router = routes::router(app);
+    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    loop {
+        let (stream, _) = match listener.accept().await {
+            Ok(accepted) => accepted,
+            Err(_) => {
+                // Such as no more file descriptors: others may be free soon.
+                tokio::time::sleep(Duration::from_millis(100)).await;
+                continue;
+            }
+        };
+        // Who finds no place is sent away at once, so that those who have one are served.
+        let Ok(place) = Arc::clone(&places).try_acquire_owned() else { continue };
+        let service = TowerToHyperService::new(router.clone());
+        tokio::spawn(async move {
+            let mut server = http1::Builder::new();
+            server.timer(TokioTimer::new()).header_read_timeout(HEAD_TIME).max_buf_size(MOST_HEAD);
+            // A connection that breaks is no news: its page asks again.
+            let _ = server.serve_connection(TokioIo::new(stream), service).await;
+            drop(place);
+        });
+    }
+}
+
+/// The address that a browser opens.
+pub(crate) fn address_of(bound: SocketAddr, token: &Token) -> String {
+    let host = match bound.ip() {
+        ip if ip.is_unspecified() => format!("127.0.0.1:{}", bound.port()),
+        _ => bound.to_string(),
+    };
+    format!("http://{host}/{}/", token.as_str())
+}
