@@ -39,7 +39,7 @@ def page_loads_and_picture_sharpens(context):
     with context.viewer(SCENES / "cornell.json", "--size", "160x160", "--error", "3%") as viewer, context.page(viewer) as page:
         page.wait("a picture", "window.etalonLog?.some(e => e.what === 'picture')", 20)
         settled(page)
-        page.wait("the stated error", "document.getElementById('phase').innerText.includes('reached')", 120)
+        page.wait("the stated error", "document.getElementById('phase')?.innerText.includes('reached')", 120)
         time.sleep(0.3)
         errors = [e for e in page.log("error") if e["relative_rmse"]]
         own = [e["relative_rmse"] for e in errors if e["block"] == 1]
@@ -60,7 +60,7 @@ def map_lies_over_the_picture(context):
     """The error map of the mean has the error of the picture as its root mean square."""
     with context.viewer(SCENES / "cornell.json", "--size", "160x160", "--error", "3%") as viewer, context.page(viewer) as page:
         settled(page)
-        page.wait("the stated error", "document.getElementById('phase').innerText.includes('reached')", 120)
+        page.wait("the stated error", "document.getElementById('phase')?.innerText.includes('reached')", 120)
         page.choose("input[name=map][value=of-mean]")
         page.wait("the map", "window.etalonLog.some(e => e.what === 'map' && e.kind === 'of-mean')")
         time.sleep(0.3)
@@ -78,7 +78,7 @@ def cursor_tells_pixel_and_spectrum(context):
     """Under the cursor: object, material, value with error, spectrum with errors."""
     with context.viewer(SCENES / "cornell.json", "--size", "160x160") as viewer, context.page(viewer) as page:
         settled(page)
-        page.move(0.04, 0.5)
+        page.move(0.3, 0.94)
         page.wait("the spectrum", "window.etalonLog.some(e => e.what === 'spectrum')")
         pixel, spectrum = page.log("pixel")[-1], page.log("spectrum")[-1]
         assert pixel["object"] and pixel["material"] and pixel["luminance_error"] > 0, pixel
@@ -181,7 +181,7 @@ def two_pages_see_the_same(context):
 def effects_are_switched_and_compared(context):
     """An effect is switched off: the plan says so, and the picture differs from the pinned one by more than noise."""
     with context.viewer(SCENES / "metals.json", "--size", "192x96", "--error", "5%") as viewer, context.page(viewer) as page:
-        page.wait("the stated error", "document.getElementById('phase').innerText.includes('reached')", 120)
+        page.wait("the stated error", "document.getElementById('phase')?.innerText.includes('reached')", 120)
         page.choose("#pin")
         page.wait("the pin", "!document.getElementById('unpin').hidden")
         before = page.run("window.etalonLog.length")

@@ -44,9 +44,7 @@ const EXPONENTS: [f64; 3] = [1.0, 1.5, 3.0];
 /// Two-sided 95 % of the normal distribution.
 const Z_95: f64 = 1.959_963_984_540_054;
 
-/// The cost of the relative error `target`, from the points of a pilot by increasing number of samples; `fewest` are the samples a pixel
-/// that give every replicate one. [`Pilot::cost_estimate`](crate::Pilot::cost_estimate) is the same for a pilot under way.
-pub fn cost_estimate(points: &[PilotPoint], target: f64, sampler: SamplerKind, fewest: u32) -> CostEstimate {
+pub(crate) fn cost_estimate(points: &[PilotPoint], target: f64, sampler: SamplerKind, fewest: u32) -> CostEstimate {
     // What found no light knows no error.
     let known: Vec<PilotPoint> = points.iter().filter(|point| point.relative_rmse.is_finite()).copied().collect();
     let points = known.as_slice();

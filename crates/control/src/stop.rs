@@ -5,7 +5,7 @@
 
 use crate::adaptive::{Adaptivity, Exploration, Goal, WORTHWHILE, explore};
 use crate::canvas::{Canvas, Shard};
-use crate::cost_estimate::{CostEstimate, PilotPoint, between, next_step};
+use crate::cost_estimate::{CostEstimate, between, next_step};
 use crate::pilot::Pilot;
 use crate::sample_allocation::SampleAllocation;
 use etalon_transport::{Control, Counters, Film, PixelRect, Prepared, ThreadError, TileSums};
@@ -140,10 +140,6 @@ pub trait Watch: Sync {
     /// Work was done: camera paths and rays, of an exploration, the pilot or the picture.
     fn work(&self, counters: &Counters) {
         let _ = counters;
-    }
-    /// The pilot took a step: what it has seen so far, by the number of samples.
-    fn pilot(&self, points: &[PilotPoint]) {
-        let _ = points;
     }
     /// The picture begins; it will take so many camera paths, or fewer if time is up.
     fn planned(&self, paths: u64, predicted: Option<&Prediction>) {
@@ -328,17 +324,11 @@ impl Pilot<'_> {
         clock: &(dyn Fn() -> f64 + Sync),
         watch: &dyn Watch,
     ) -> Option<u32> {
-        let replicates = self.first_step();
-        let mut next = replicates;
         loop {
-            self.advance(next, clock, &|counters| watch.work(counters));
-            watch.pilot(self.points());
-            let &point = self.points().last().expect("it has just advanced");
-            if point.reaches(target) {
-                // Whole rounds of replicates, so that all weigh alike.
-                let samples = between(self.points(), target).unwrap_or(f64::from(point.samples));
-                return Some((samples / f64::from(replicates)).ceil() as u32 * replicates);
+            if let Some(samples) = self.step_toward(target, most, clock, &|counters| watch.work(counters)) {
+                return Some(samples);
             }
+            let &point = self.points().last().expect("it has just advanced");
             if watch.control() == Control::Stop
                 || point.samples >= most
                 || self.found_no_light()
@@ -346,13 +336,34 @@ impl Pilot<'_> {
             {
                 return None;
             }
-            // No further than the law of the error says, and over no step of an octave, for that law is a guess, and a whole power of
-            // two may have an error that no number before it has.
-            let predicted = self.cost_estimate(target).samples / f64::from(replicates);
-            let rounds = point.samples / replicates;
-            let predicted = (predicted.ceil().min(f64::from(u32::MAX)) as u32).max(rounds + rounds.div_ceil(16));
-            let rounds = predicted.min(next_step(rounds));
-            next = rounds.saturating_mul(replicates).min(most.max(replicates));
         }
+    }
+
+    /// Takes one step on the way to the error `target`, and returns the number of samples a pixel for it once a step has reached it; steps
+    /// that were taken before count. `most` bounds the samples of the step.
+    pub fn step_toward(
+        &mut self,
+        target: f64,
+        most: u32,
+        clock: &(dyn Fn() -> f64 + Sync),
+        on_work: &(dyn Fn(&Counters) + Sync),
+    ) -> Option<u32> {
+        let replicates = self.first_step();
+        if !self.points().iter().any(|point| point.reaches(target)) {
+            let next = self.points().last().map_or(replicates, |point| {
+                // No further than the law of the error says, and over no step of an octave, for that law is a guess, and a whole power
+                // of two may have an error that no number before it has.
+                let predicted = self.cost_estimate(target).samples / f64::from(replicates);
+                let rounds = point.samples / replicates;
+                let predicted = (predicted.ceil().min(f64::from(u32::MAX)) as u32).max(rounds + rounds.div_ceil(16));
+                let rounds = predicted.min(next_step(rounds));
+                rounds.saturating_mul(replicates).min(most.max(replicates))
+            });
+            self.advance(next, clock, on_work);
+        }
+        let &point = self.points().iter().find(|point| point.reaches(target))?;
+        // Whole rounds of replicates, so that all weigh alike.
+        let samples = between(self.points(), target).unwrap_or(f64::from(point.samples));
+        Some((samples / f64::from(replicates)).ceil() as u32 * replicates)
     }
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use etalon_control::{
-    Adaptivity, Canvas, Ended, Limits, PilotPoint, Prediction, Reached, Settled, Shard, Watch, render_canvas, settle,
+    Adaptivity, Canvas, Ended, Limits, Prediction, Reached, Settled, Shard, Watch, render_canvas, settle,
 };
 use etalon_transport::replay::Replay;
 use etalon_transport::{Control, Counters, Film, ImageError, PixelRect, Plan, Prepared, TileSums};
@@ -320,10 +320,6 @@ struct Passes<'a, F> {
 impl<F: Fn(Render) -> Control + Sync> Watch for Passes<'_, F> {
     fn work(&self, counters: &Counters) {
         self.watch.work(counters);
-    }
-
-    fn pilot(&self, points: &[PilotPoint]) {
-        self.watch.pilot(points);
     }
 
     fn planned(&self, paths: u64, predicted: Option<&Prediction>) {

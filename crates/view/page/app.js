@@ -34,7 +34,7 @@ const inspector = new Inspector((object) => effects.point(object));
 const PHASES = {
   preparing: "preparing the scene",
   coarse: "first coarse picture",
-  pilot: "measuring how fast the error falls, before the picture begins",
+  pilot: "looking where the error is, before the picture begins",
   rendering: "rendering",
   done: "the stated error is reached",
   paused: "paused",
@@ -47,8 +47,9 @@ function update(now) {
   const before = status;
   status = now;
   if (before === null) log("status", { scene: now.name });
-  document.title = `${now.error ? `${percent(now.error.relative_rmse)} · ` : ""}${now.name}`;
-  element("name").textContent = now.name;
+  document.title = `${now.error ? `${percent(now.error.relative_rmse)} · ` : ""}${now.name.split(/[\\/]/).at(-1)}`;
+  element("name").textContent = now.name.split(/[\\/]/).at(-1);
+  element("name").title = now.name;
   element("phase").textContent = PHASES[now.phase];
   element("pause").hidden = !now.is_scene;
   element("pause").textContent = now.phase === "paused" ? "Go on" : "Pause";
@@ -393,5 +394,7 @@ setUpPointer();
 setUpKeys();
 setUpPanel();
 relook();
+// Not waiting for news: there may be a picture already.
+stage.begin();
 listen(update, () => (element("phase").textContent = "the connection to the server is lost; it is tried again"));
 window.addEventListener("resize", () => status && showAccuracy(status));

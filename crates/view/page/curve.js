@@ -7,7 +7,7 @@ const SPACE = { left: 42, right: 12, top: 10, bottom: 26 };
 
 // Seconds and errors that are named on the axes.
 const TIMES = [0.01, 0.1, 1, 10, 60, 600, 3600, 36000, 360000];
-const ERRORS = [0.001, 0.01, 0.1, 1, 10];
+const ERRORS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
 
 export function drawCurve(element, status) {
   const { width, height } = element.getBoundingClientRect();
@@ -31,13 +31,13 @@ export function drawCurve(element, status) {
     line([x(t), SPACE.top], [x(t), bottom], { stroke: "#2c2f33" });
     text([x(t), height - 10], seconds(t), { "text-anchor": "middle" });
   }
+  let free = Infinity;
   for (const e of ERRORS.filter((e) => e >= e0 && e <= e1)) {
-    line([SPACE.left, y(e)], [width - SPACE.right, y(e)], { stroke: "#2c2f33" });
-    text([SPACE.left - 6, y(e) + 4], percent(e), { "text-anchor": "end" });
-  }
-  for (const e of MARKS.filter((e) => e >= e0 && e <= e1)) {
-    line([SPACE.left, y(e)], [width - SPACE.right, y(e)], { stroke: "#4a4d52", "stroke-dasharray": "1 4" });
-    if (e !== 0.01) text([SPACE.left - 6, y(e) + 4], percent(e), { "text-anchor": "end", class: e === target ? "strong" : "" });
+    const isMark = MARKS.includes(e);
+    line([SPACE.left, y(e)], [width - SPACE.right, y(e)], isMark ? { stroke: "#5a5d62", "stroke-dasharray": "1 4" } : { stroke: "#2c2f33" });
+    if (free - y(e) < 13) continue;
+    free = y(e);
+    text([SPACE.left - 6, y(e) + 4], percent(e), { "text-anchor": "end", class: isMark ? "strong" : "" });
   }
 
   // The prediction with its interval.
@@ -92,6 +92,9 @@ export function whenReached(status, error) {
   const passed = status.curve.find((p) => p.block === 1 && p.relative_rmse <= error);
   const reached = status.error?.relative_rmse <= error && status.block === 1;
   if (reached && passed) return { words: `reached after ${seconds(passed.seconds)}`, reached: true };
+  if (status.phase === "done" && error === status.target) {
+    return { words: `its predicted ${status.samples} samples are taken`, reached: true };
+  }
   const predicted = between(status.predicted, error);
   if (predicted === null) return { words: status.phase === "pilot" || status.phase === "coarse" ? "finding out …" : "unknown", reached: false };
   const left = (predicted - status.samples * (status.block === 1 ? 1 : 0)) * status.size[0] * status.size[1];

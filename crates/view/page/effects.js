@@ -77,5 +77,5 @@ function inWords(cost) {
   const perPath = `With it a path takes ${times(cost.path_time)}`;
   if (cost.time_to_error === null) return `${perPath}.`;
   const sure = cost.uncertainty === null ? "" : ` (± ${percent(cost.uncertainty)})`;
-  return `${perPath}, and the same relative error ${times(cost.time_to_error)}${sure}.`;
+  return `${perPath}, and reaching the same error takes ${times(cost.time_to_error)}${sure}.`;
 }

@@ -54,6 +54,11 @@ export class Stage {
     }
   }
 
+  // The first picture, if there is one.
+  begin() {
+    this.fetchPicture();
+  }
+
   redraw() {
     if (this.asked) this.fetchPicture(this.asked);
     if (!element("pinned").hidden) this.fetchPinned();
@@ -63,9 +68,14 @@ export class Stage {
     const begun = performance.now();
     try {
       const { bitmap, about } = await askPicture("picture.png", this.look());
+      if (about.film[0] !== this.size[0] || about.film[1] !== this.size[1]) {
+        this.size = about.film;
+        this.fit();
+      }
       const [width, height] = this.size;
       this.#paint(this.picture, bitmap, width, height);
       this.shown = about.picture;
+      this.asked = Math.max(this.asked ?? 0, about.picture);
       this.stageNumber = about.stage;
       this.about = about;
       element("waiting").hidden = true;
@@ -74,7 +84,7 @@ export class Stage {
       if (this.mapKind) this.fetchMap();
     } catch (error) {
       log("picture-refused", { message: error.message });
-      this.onLook({ refused: error.message });
+      if (this.shown) this.onLook({ refused: error.message });
     }
   }
 
@@ -100,6 +110,13 @@ export class Stage {
   async #fetchMap() {
     if (!this.mapKind) return;
     const kind = this.mapKind;
+    if (kind === "difference" && this.about?.block !== 1) {
+      element("map").hidden = true;
+      element("legend").hidden = false;
+      element("legend-title").textContent = "A coarse picture is not compared: wait for all pixels.";
+      element("legend-bar").replaceChildren();
+      return;
+    }
     try {
       const { bitmap, about } = await askPicture("map.png", { kind });
       if (kind !== this.mapKind) return;

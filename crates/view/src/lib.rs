@@ -123,30 +123,26 @@ fn begin(source: Source) -> Result<Arc<Live>, ViewError> {
             };
             let status =
                 Status { name, size: [width, height], stage: 1, phase: Phase::Picture, plan, ..Status::default() };
-            let live = Arc::new(Live::new(status, Wish { stage: 1, ..Wish::default() }));
+            let live = Arc::new(Live::new(status, Wish { stage: 1, ..Wish::default() }, None));
             put(&live, snapshot);
             Ok(live)
         }
-        Source::Scene(mut source) => {
-            let film = &source.first.scene.film;
-            let status = Status {
-                name: source.name.clone(),
-                is_scene: true,
-                size: [film.width, film.height],
-                target: Some(source.error),
-                ..Status::default()
-            };
-            let wish = Wish { stage: 1, target: Some(source.error), ..Wish::default() };
-            let live = Arc::new(Live::new(status, wish));
-            reload::start(&live, std::mem::take(&mut source.files)).map_err(failed)?;
+        Source::Scene(source) => {
+            let SceneSource { name, first, load, study, error, threads } = *source;
+            let film = &first.scene.film;
+            let size = [film.width, film.height];
+            let status = Status { name, is_scene: true, size, target: Some(error), ..Status::default() };
+            let wish = Wish { stage: 1, target: Some(error), ..Wish::default() };
+            let files = first.files.clone();
+            let live = Arc::new(Live::new(status, wish, Some(first)));
+            reload::start(&live, load, files).map_err(failed)?;
             let publisher = Publisher::start(&live).map_err(failed)?;
             let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(source.threads.unwrap_or(0))
+                .num_threads(threads.unwrap_or(0))
                 .thread_name(|index| format!("view-render-{index}"))
                 .build()
                 .map_err(|error| ViewError::Start(error.to_string()))?;
-            let scene = source.first.clone();
-            let painter = Painter { live: Arc::clone(&live), source: *source, scene, publisher, pool };
+            let painter = Painter { live: Arc::clone(&live), study, error, publisher, pool };
             std::thread::Builder::new().name("view-painter".to_owned()).spawn(move || painter.run()).map_err(failed)?;
             Ok(live)
         }

@@ -21,6 +21,8 @@ pub(crate) struct Snapshot {
     pub file: ExrFile,
     /// The luminance of each pixel, and its standard error; infinite where that is unknown.
     pub luminance: Luminance,
+    /// Columns and rows of the film.
+    pub film: [u32; 2],
     /// Side, in pixels of the film, of the blocks that its pixels stand for: 1 but for first coarse pictures.
     pub block: u32,
     /// Samples of each of its pixels, in the mean.
@@ -113,6 +115,7 @@ pub(crate) fn of_film(
         stage,
         file,
         luminance,
+        film: [film.width(), film.height()],
         block: 1,
         samples,
         seconds,
@@ -136,6 +139,8 @@ pub(crate) fn whole([width, height]: [u32; 2]) -> PixelRect {
 pub(crate) struct CoarsePixels {
     pub width: u32,
     pub height: u32,
+    /// Columns and rows of the film.
+    pub film: [u32; 2],
     pub block: u32,
     pub replicates: u32,
     pub samples: u32,
@@ -185,6 +190,7 @@ pub(crate) fn of_coarse(coarse: &CoarsePixels, about: About) -> Result<Snapshot,
         stage,
         file: ExrFile { picture: file, attributes: Attributes::new() },
         luminance: Luminance::of(pixels()),
+        film: coarse.film,
         block: coarse.block,
         samples: coarse.samples,
         seconds,
@@ -230,6 +236,7 @@ pub(crate) fn of_file(file: ExrFile, title: String) -> Result<Snapshot, PictureE
         number: 1,
         stage: 1,
         luminance,
+        film: [file.picture.width() as u32, file.picture.height() as u32],
         block: 1,
         samples: info.as_ref().map_or(0, |info| info.samples_per_pixel),
         seconds: info.as_ref().map_or(0.0, |info| info.render_time_s),

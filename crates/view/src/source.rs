@@ -16,6 +16,8 @@ pub struct LoadedScene {
     pub sha256: String,
     /// What is odd in it and not an error, in sentences.
     pub warnings: Vec<String>,
+    /// The files that it was read from, which are looked at for edits.
+    pub files: Vec<PathBuf>,
 }
 
 /// Reads a scene anew. Problems are JSON objects with `message` and, where they are in a file, `file`, `line`, `column` and `json_path`.
@@ -29,8 +31,6 @@ pub struct SceneSource {
     pub first: LoadedScene,
     /// Reads it anew, after an edit.
     pub load: Box<LoadScene>,
-    /// The files that are looked at for edits.
-    pub files: Vec<PathBuf>,
     /// What to simulate otherwise than the scene calls for.
     pub study: Study,
     /// The relative error at which the picture is good enough, until a page says otherwise.

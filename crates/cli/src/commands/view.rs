@@ -103,19 +103,19 @@ fn source(args: ViewArgs) -> Result<Source, Failure> {
     let study = args.overrides.study();
     let (error, threads) = (args.error, args.threads.map(|threads| threads as usize));
     let read = move || load_scene(&path, &args.overrides);
-    let (first, files) = read()?;
-    let load = Box::new(move || read().map(|(scene, _)| scene).map_err(|failure| problems(&failure)));
-    Ok(Source::Scene(Box::new(SceneSource { name, first, load, files, study, error, threads })))
+    let first = read()?;
+    let load = Box::new(move || read().map_err(|failure| problems(&failure)));
+    Ok(Source::Scene(Box::new(SceneSource { name, first, load, study, error, threads })))
 }
 
 /// A scene, and the files that it was read from.
-fn load_scene(path: &Path, overrides: &Overrides) -> Result<(LoadedScene, Vec<PathBuf>), Failure> {
+fn load_scene(path: &Path, overrides: &Overrides) -> Result<LoadedScene, Failure> {
     let mut loaded = load(path, overrides.film_size(), overrides.parameters())?;
     overrides.apply(&mut loaded.scene)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let files = std::iter::once(path.to_owned()).chain(loaded.files.iter().map(|name| folder.join(name))).collect();
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
-    Ok((LoadedScene { scene: loaded.scene, sha256: loaded.sha256, warnings }, files))
+    Ok(LoadedScene { scene: loaded.scene, sha256: loaded.sha256, warnings, files })
 }
 
 fn problems(failure: &Failure) -> Vec<Value> {

@@ -154,6 +154,7 @@ mod tests {
             stage: 1,
             file: ExrFile { picture, attributes: Attributes::new() },
             luminance: Luminance { values: values.to_vec(), errors: errors.to_vec() },
+            film: [values.len() as u32, 1],
             block: 1,
             samples: 4,
             seconds: 1.0,

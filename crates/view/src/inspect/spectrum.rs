@@ -39,7 +39,7 @@ pub(crate) struct Spectrum {
     pub bands: Vec<BandInfo>,
     /// Paths that were traced for it; `None` if it is that of the picture.
     pub samples: Option<u32>,
-    /// Seconds that this took.
+    /// Seconds that they took.
     pub seconds: f64,
 }
 
@@ -75,6 +75,7 @@ struct UnderWay {
     at: [u32; 2],
     sums: TileSums,
     samples: u32,
+    seconds: f64,
 }
 
 impl SpectralProbe {
@@ -83,7 +84,6 @@ impl SpectralProbe {
     /// # Errors
     /// A sentence that says why there is none.
     pub(crate) fn ask(&self, live: &Live, at: [u32; 2], samples: u32) -> Result<Spectrum, String> {
-        let start = Instant::now();
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let stage = live.stage.read().unwrap_or_else(PoisonError::into_inner);
         let stage = stage.as_ref().ok_or("the scene is not ready")?;
@@ -99,15 +99,17 @@ impl SpectralProbe {
         let corner = rect_of([0, 0]);
         let under_way = match under_way {
             Some(under_way) if under_way.at == at => under_way,
-            place => place.insert(UnderWay { at, sums: film.tile(corner), samples: 0 }),
+            place => place.insert(UnderWay { at, sums: film.tile(corner), samples: 0, seconds: 0.0 }),
         };
         let replicates = prepared.scene().integrator.replicates;
         let goal = samples.clamp(SAMPLES[0], SAMPLES[1]).next_multiple_of(replicates);
+        let start = Instant::now();
         while under_way.samples < goal && (under_way.samples == 0 || start.elapsed().as_secs_f64() < MOST_S) {
             let next = (2 * under_way.samples).max(64).next_multiple_of(replicates).min(goal);
             prepared.render_tile(rect_of(at), under_way.samples..next, &mut under_way.sums);
             under_way.samples = next;
         }
+        under_way.seconds += start.elapsed().as_secs_f64();
         film.put(corner, &under_way.sums);
         let info = |index| {
             let band = bands.of_pixel(&film, 0, 0, 0, index);
@@ -120,7 +122,7 @@ impl SpectralProbe {
         Ok(Spectrum {
             bands: (0..bands.count).map(info).collect(),
             samples: Some(under_way.samples),
-            seconds: start.elapsed().as_secs_f64(),
+            seconds: under_way.seconds,
         })
     }
 }

@@ -71,7 +71,7 @@ pub(crate) fn trace(
             prepared.render_pixels(&all, sums, &mut vec![0; all.len()]);
         });
     });
-    (!stopped.into_inner()).then_some(CoarsePixels { width, height, block, replicates, samples, sums })
+    (!stopped.into_inner()).then_some(CoarsePixels { width, height, film: [film.width, film.height], block, replicates, samples, sums })
 }
 
 #[cfg(test)]

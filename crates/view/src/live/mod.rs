@@ -4,10 +4,11 @@ pub(crate) mod coarse;
 pub(crate) mod costs;
 pub(crate) mod painter;
 pub(crate) mod publish;
+pub(crate) mod refine;
 pub(crate) mod reload;
 pub(crate) mod status;
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, RwLock};
 use std::time::Duration;
 
@@ -17,6 +18,7 @@ use tokio::sync::watch;
 
 use crate::camera::CameraView;
 use crate::picture::Snapshot;
+use crate::source::LoadedScene;
 use status::Status;
 
 /// What the pages wish. The painter looks at it after each piece of work.
@@ -36,8 +38,6 @@ pub(crate) struct Wish {
     pub paused: bool,
     /// Whether the cost of each effect is to be found out.
     pub costs: bool,
-    /// Whether the scene's file has changed.
-    pub reload: bool,
     /// Added to the seed of the scene, so that two pictures that are compared have noise of their own.
     pub seed_offset: u64,
 }
@@ -77,12 +77,16 @@ pub(crate) struct Live {
     /// Read while something is traced, written while another scene is prepared.
     pub stage: RwLock<Option<Stage>>,
     snapshots: AtomicU64,
+    /// The scene as its file has it now; `None` for a picture from a file.
+    pub scene: Mutex<Option<LoadedScene>>,
+    /// Whether any page has had a picture yet.
+    is_watched: AtomicBool,
     /// Time that is spent on showing instead of rendering.
     pub overhead: publish::Overhead,
 }
 
 impl Live {
-    pub(crate) fn new(status: Status, wish: Wish) -> Self {
+    pub(crate) fn new(status: Status, wish: Wish, scene: Option<LoadedScene>) -> Self {
         Self {
             wish: Mutex::new(wish),
             woken: Condvar::new(),
@@ -90,6 +94,8 @@ impl Live {
             news: watch::Sender::new(1),
             stage: RwLock::new(None),
             snapshots: AtomicU64::new(0),
+            scene: Mutex::new(scene),
+            is_watched: AtomicBool::new(false),
             overhead: publish::Overhead::default(),
         }
     }
@@ -135,5 +141,17 @@ impl Live {
     /// The number of a new snapshot.
     pub(crate) fn next_snapshot(&self) -> u64 {
         self.snapshots.fetch_add(1, Ordering::Relaxed) + 1
+    }
+
+    /// A page has got a picture.
+    pub(crate) fn is_looked_at(&self) {
+        if !self.is_watched.swap(true, Ordering::Relaxed) {
+            self.woken.notify_all();
+        }
+    }
+
+    /// Waits until a page has got a picture, or for this time.
+    pub(crate) fn wait_for_page(&self, most: Duration) {
+        self.wait(|_| !self.is_watched.load(Ordering::Relaxed), most);
     }
 }

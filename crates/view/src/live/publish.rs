@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Instant;
 
 use etalon::Subject;
@@ -70,12 +70,9 @@ impl Publisher {
         Ok(Self { films })
     }
 
-    /// Shows a film. Where the one before is not shown yet, it waits if this is the `last`, and else leaves it.
-    pub(crate) fn show(&self, shown: Shown, last: bool) {
-        if last {
-            // The thread ends with the program.
-            let _ = self.films.send(shown);
-        } else if let Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) = self.films.try_send(shown) {}
+    /// Shows a film, and says whether it will be. Where the one before is not shown yet, it waits if this is the `last`, and else leaves it.
+    pub(crate) fn show(&self, shown: Shown, last: bool) -> bool {
+        if last { self.films.send(shown).is_ok() } else { self.films.try_send(shown).is_ok() }
     }
 }
 

@@ -60,6 +60,7 @@ fn json(value: &impl serde::Serialize) -> Response {
 /// A developed picture. The header says its number, its size, and what was clipped.
 pub(crate) fn picture(app: &App, query: &PictureQuery) -> Result<Response, Refusal> {
     let (snapshot, look) = (snapshot(app, query.pinned)?, query.look());
+    app.live.is_looked_at();
     let answer = |png: &[u8], about: &str| {
         ([(header::CONTENT_TYPE, "image/png".to_owned()), (ABOUT, about.to_owned())], png.to_vec()).into_response()
     };
@@ -79,7 +80,9 @@ pub(crate) fn picture(app: &App, query: &PictureQuery) -> Result<Response, Refus
         "picture": snapshot.number,
         "stage": snapshot.stage,
         "size": snapshot.size(),
+        "film": snapshot.film,
         "block": snapshot.block,
+        "relative_rmse": snapshot.error.as_ref().and_then(|error| error.relative_rmse),
         "exposure_ev": exposure_ev,
         "clipped": clipping.any,
         "pixels": clipping.of,
