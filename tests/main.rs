@@ -23,3 +23,4 @@ mod support;
 mod surviving;
 mod usage;
 mod verify;
+mod view;

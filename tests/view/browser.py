@@ -17,7 +17,7 @@ import urllib.request
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-SIZE = (1440, 900)
+SIZE = (1280, 780)
 
 
 class WebSocket:

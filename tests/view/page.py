@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Does with the page of `etalon view` what people do, in a headless Chromium.
 
-    tests/view/page.py ETALON [--shots FOLDER] [--measure] [TEST …]
+    tests/view/page.py ETALON [--shots FOLDER] [--measure | --pictures] [TEST …]
 
 Each test says what it saw. With --shots, screenshots are kept in FOLDER. With --measure, the program prints the figures of
-docs/how-to/view.md instead. CHROMIUM names the browser where it is not found.
+docs/how-to/view.md instead; with --pictures, it makes the screenshots of that page. CHROMIUM names the browser where it is not found.
 """
 
 import argparse
@@ -293,6 +293,7 @@ def main():
     parser.add_argument("etalon")
     parser.add_argument("--shots", type=Path)
     parser.add_argument("--measure", action="store_true")
+    parser.add_argument("--pictures", action="store_true")
     parser.add_argument("tests", nargs="*")
     options = parser.parse_args()
     context = Context(options.etalon, options.shots)
@@ -301,6 +302,10 @@ def main():
         if options.measure:
             from measure import measure
             measure(context)
+            return
+        if options.pictures:
+            from pictures import pictures
+            pictures(context, options.tests)
             return
         chosen = [t for t in TESTS if not options.tests or t.__name__ in options.tests]
         for function in chosen:

@@ -138,7 +138,7 @@ export class Stage {
       relative: `Standard error of each pixel, in percent of the pixel. Root mean square ${percent(legend.rms)}.`,
       "of-mean": `Standard error of each pixel, in percent of the mean brightness. Its root mean square, ${percent(legend.rms)}, is the error of the picture.`,
       samples: "Samples of each pixel, in units of their mean.",
-      difference: "This picture less the pinned one, in standard errors. Beyond ± 3 is rarely chance.",
+      difference: "This picture less the pinned one, in standard errors. Single pixels of strong colour come by chance; regions of one colour do not.",
     };
     let title = titles[legend.kind];
     if (legend.unknown) title += ` Green: unknown (${legend.unknown} pixels).`;

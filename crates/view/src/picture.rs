@@ -19,6 +19,8 @@ pub(crate) struct Snapshot {
     pub stage: u64,
     /// Channels and attributes, as an EXR file has them.
     pub file: ExrFile,
+    /// Its colour as linear Rec. 709, where the file has other channels or primaries.
+    pub colour: Option<Picture<f32>>,
     /// The luminance of each pixel, and its standard error; infinite where that is unknown.
     pub luminance: Luminance,
     /// Columns and rows of the film.
@@ -114,6 +116,7 @@ pub(crate) fn of_film(
         number,
         stage,
         file,
+        colour: None,
         luminance,
         film: [film.width(), film.height()],
         block: 1,
@@ -189,6 +192,7 @@ pub(crate) fn of_coarse(coarse: &CoarsePixels, about: About) -> Result<Snapshot,
         number,
         stage,
         file: ExrFile { picture: file, attributes: Attributes::new() },
+        colour: None,
         luminance: Luminance::of(pixels()),
         film: coarse.film,
         block: coarse.block,
@@ -236,6 +240,7 @@ pub(crate) fn of_file(file: ExrFile, title: String) -> Result<Snapshot, PictureE
         number: 1,
         stage: 1,
         luminance,
+        colour: Some(colour),
         film: [file.picture.width() as u32, file.picture.height() as u32],
         block: 1,
         samples: info.as_ref().map_or(0, |info| info.samples_per_pixel),

@@ -49,6 +49,10 @@ const PARTS: &[&str] = &[
     "bench/race/peer_mitsuba.py",
     "bench/race/scenes.py",
     "bench/race/worker.py",
+    "tests/view/browser.py",
+    "tests/view/measure.py",
+    "tests/view/page.py",
+    "tests/view/pictures.py",
 ];
 
 fn all() -> impl Iterator<Item = &'static Named> {

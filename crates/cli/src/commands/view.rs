@@ -5,15 +5,27 @@ use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 
 use etalon_picture::read_exr;
+use etalon_scene::{Film, Scene};
+use etalon_transport::Film as Sums;
 use etalon_view::{LoadedScene, SceneSource, Source, Token, ViewError, Viewer};
 use miette::{Report, miette};
 use serde_json::Value;
 
 use crate::failure::{Failure, Outcome};
 use crate::load::{is_standard_input, load};
+use crate::machine_limits::{bytes, memory_available};
 use crate::overrides::Overrides;
 use crate::print;
 use crate::problem_json::problems_json;
+
+/// Films at once: the one that is rendered, one that waits to be shown, and one that is being shown.
+const FILMS: u64 = 3;
+/// Pictures at once: the one that is shown, the one before, and a pinned one.
+const PICTURES: u64 = 3;
+/// Bytes of a pixel of a picture: colour, errors, samples, luminance; and of a band of it.
+const OF_PIXEL: u64 = 9 * 4;
+/// See [`OF_PIXEL`].
+const OF_BAND: u64 = 3 * 4;
 
 /// Show a scene in the browser while it is rendered, or a picture from a file.
 ///
@@ -112,10 +124,31 @@ fn source(args: ViewArgs) -> Result<Source, Failure> {
 fn load_scene(path: &Path, overrides: &Overrides) -> Result<LoadedScene, Failure> {
     let mut loaded = load(path, overrides.film_size(), overrides.parameters())?;
     overrides.apply(&mut loaded.scene)?;
+    check_memory(&loaded.scene)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let files = std::iter::once(path.to_owned()).chain(loaded.files.iter().map(|name| folder.join(name))).collect();
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
     Ok(LoadedScene { scene: loaded.scene, sha256: loaded.sha256, warnings, files })
+}
+
+/// Refuses a picture that memory cannot hold, also where an edit makes it so large.
+fn check_memory(scene: &Scene) -> Outcome {
+    let &Film { width, height, ref bands, stokes, .. } = &scene.film;
+    let (replicates, bands) = (scene.integrator.replicates, bands.map_or(0, |bands| bands.count * if stokes { 4 } else { 1 }));
+    let stokes = if stokes { Sums::stokes_bytes(width, height, replicates) } else { 0 };
+    let pixels = u64::from(width) * u64::from(height);
+    let pictures = PICTURES * pixels * (OF_PIXEL + u64::from(bands) * OF_BAND);
+    let needed = FILMS * (Sums::bytes(width, height, replicates, bands) + stokes) + pictures;
+    match memory_available() {
+        Some(available) if needed > available => Err(Failure::input(miette!(
+            code = "too-large",
+            help = "make it smaller with --size, or keep fewer bands or replicates",
+            "to view a picture of {width} × {height} pixels takes {} of memory, and {} are free",
+            bytes(needed),
+            bytes(available)
+        ))),
+        _ => Ok(()),
+    }
 }
 
 fn problems(failure: &Failure) -> Vec<Value> {

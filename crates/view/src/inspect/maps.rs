@@ -153,6 +153,7 @@ mod tests {
             number: 1,
             stage: 1,
             file: ExrFile { picture, attributes: Attributes::new() },
+            colour: None,
             luminance: Luminance { values: values.to_vec(), errors: errors.to_vec() },
             film: [values.len() as u32, 1],
             block: 1,

@@ -1,6 +1,6 @@
 //! What is known of one pixel: its value with its error, and what is seen there.
 
-use etalon_picture::{Attribute, ERROR_PREFIX};
+use etalon_picture::{Attribute, ERROR_PREFIX, Picture};
 use etalon_scene::Scene;
 use etalon_transport::{PixelRect, Prepared};
 use serde::Serialize;
@@ -49,8 +49,9 @@ pub(crate) fn of_picture(snapshot: &Snapshot, at: [u32; 2]) -> Option<PixelInfo>
     let index = snapshot.pixel_of(at)?;
     let picture = &snapshot.file.picture;
     let value = |name: &str| picture.channel(name).map(|samples| f64::from(samples[index]));
-    let three = |prefix: &str| {
-        let [r, g, b] = ["R", "G", "B"].map(|name| value(&format!("{prefix}{name}")));
+    let three = |picture: &Picture<f32>, prefix: &str| {
+        let of = |name| picture.channel(&format!("{prefix}{name}")).map(|samples| f64::from(samples[index]));
+        let [r, g, b] = ["R", "G", "B"].map(of);
         Some([r?, g?, b?])
     };
     let luminance = f64::from(snapshot.luminance.values[index]);
@@ -58,8 +59,8 @@ pub(crate) fn of_picture(snapshot: &Snapshot, at: [u32; 2]) -> Option<PixelInfo>
     let even = (snapshot.samples > 0).then_some(f64::from(snapshot.samples));
     Some(PixelInfo {
         at,
-        rgb: three("").unwrap_or([luminance; 3]),
-        rgb_error: three(ERROR_PREFIX),
+        rgb: three(snapshot.colour.as_ref().unwrap_or(picture), "").unwrap_or([luminance; 3]),
+        rgb_error: three(picture, ERROR_PREFIX),
         luminance,
         luminance_error: luminance_error.filter(|error| error.is_finite()),
         samples: value("samples").or(even),

@@ -225,6 +225,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("tests/editor.sh"),
             ),
             named(
+                "view",
+                "[--shots FOLDER] [--measure | --pictures] [TEST …]",
+                "the page of `etalon view` in a headless Chromium, or the figures of its how-to page; needs Chromium and Python",
+                "1 min",
+                Script("tests/view.sh"),
+            ),
+            named(
                 "python",
                 "[--fuzz [COUNT [SEED]]]",
                 "wheel, types, tests and notebooks of the Python package, or arbitrary dicts for it; needs Python 3.10 and pip",
