@@ -237,9 +237,10 @@ class Viewer:
             return error.code, error.read()
 
     def cpu_seconds(self):
-        """Processor time of each thread, by name (Linux)."""
-        times = {}
+        """Processor time of the whole program and of each thread that is still there, by name (Linux)."""
         tick = os.sysconf("SC_CLK_TCK")
+        fields = Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
+        times = {"all": (int(fields[11]) + int(fields[12])) / tick}
         for task in Path(f"/proc/{self.process.pid}/task").iterdir():
             try:
                 text = (task / "stat").read_text()

@@ -35,8 +35,8 @@ def against_command_line(context, path, error, rounds=3):
             page.wait("the stated error", "document.getElementById('phase').innerText.includes('reached')", 600)
             ours.append(time.monotonic() - start)
             threads = viewer.cpu_seconds()
-            render = sum(v for name, v in threads.items() if not re.match(r"view-(answer|picture|files)|etalon$", name))
-            shares.append((sum(threads.values()) - render) / sum(threads.values()))
+            server = sum(v for name, v in threads.items() if re.match(r"view-(answer|picture|files)|etalon$", name))
+            shares.append(server / threads["all"])
             reached = page.log("error")[-1]
         start = time.monotonic()
         out = subprocess.run([context.etalon, "render", path, "--error", error, "-o", f"{context.folder.name}/x.exr", "--json"],

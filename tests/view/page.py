@@ -267,7 +267,7 @@ class Context:
         def __exit__(self, kind, *_):
             self.thing.close()
             if self.errors and kind is None and self.thing.errors:
-                raise AssertionError("the page reports: " + "; ".join(self.thing.errors))
+                raise AssertionError("the page reports: " + "; ".join(self.thing.errors[:3]))
 
     def viewer(self, *words):
         return self._Open(Viewer(self.etalon, *words), False)

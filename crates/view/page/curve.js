@@ -89,9 +89,9 @@ function widened(low, high, factor) {
 
 // When each mark is reached, in words: from the samples that it is predicted to take and the rate of now.
 export function whenReached(status, error) {
-  const passed = status.curve.find((p) => p.block === 1 && p.relative_rmse <= error);
+  const passed = crossing(status.curve.filter((p) => p.block === 1), error);
   const reached = status.error?.relative_rmse <= error && status.block === 1;
-  if (reached && passed) return { words: `reached after ${seconds(passed.seconds)}`, reached: true };
+  if (reached && passed !== null) return { words: `reached after ${seconds(passed)}`, reached: true };
   if (status.phase === "done" && error === status.target) {
     return { words: `its predicted ${status.samples} samples are taken`, reached: true };
   }
@@ -102,6 +102,15 @@ export function whenReached(status, error) {
   if (rate > 0 && status.block === 1 && left > 0) return { words: `in ${seconds(left / rate)}`, reached: false };
   const known = status.predicted.find((p) => p.relative_rmse === error);
   return { words: known ? `about ${seconds(Math.max(0, known.seconds - status.seconds))} more` : "soon", reached: false };
+}
+
+// When the curve passed an error, as a power of it between the two points about it.
+function crossing(own, error) {
+  const index = own.findIndex((p) => p.relative_rmse <= error);
+  if (index <= 0) return index === 0 ? own[0].seconds : null;
+  const [a, b] = [own[index - 1], own[index]];
+  const share = Math.log(a.relative_rmse / error) / Math.log(a.relative_rmse / b.relative_rmse);
+  return a.seconds * (b.seconds / a.seconds) ** share;
 }
 
 // Samples for an error, as a power of it between those that are predicted.

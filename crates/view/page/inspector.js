@@ -81,6 +81,7 @@ export class Inspector {
   #draw(spectrum) {
     const chart = element("spectrum");
     const { width, height } = chart.getBoundingClientRect();
+    if (width === 0) return;
     const [left, right, top, bottom] = [46, 8, 8, 30];
     const { bands } = spectrum;
     const step = bands.length > 1 ? bands[1].centre_nm - bands[0].centre_nm : 10;

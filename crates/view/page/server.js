@@ -16,9 +16,10 @@ export async function ask(path, parameters = {}) {
   return response.json();
 }
 
-// Asks for a picture: a bitmap, and what the server says of it.
+// Asks for a picture: a bitmap, and what the server says of it; null if there is none yet.
 export async function askPicture(path, parameters = {}) {
   const response = await checked(await fetch(address(`ask/${path}`, parameters)));
+  if (response.status === 204) return null;
   const about = JSON.parse(response.headers.get("etalon-about"));
   const bitmap = await createImageBitmap(await response.blob());
   return { bitmap, about };

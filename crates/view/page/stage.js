@@ -67,7 +67,9 @@ export class Stage {
   async #fetchPicture() {
     const begun = performance.now();
     try {
-      const { bitmap, about } = await askPicture("picture.png", this.look());
+      const found = await askPicture("picture.png", this.look());
+      if (!found) return;
+      const { bitmap, about } = found;
       if (about.film[0] !== this.size[0] || about.film[1] !== this.size[1]) {
         this.size = about.film;
         this.fit();

@@ -19,24 +19,47 @@ const CREDIT_S: f64 = 0.3;
 /// Points that the curve keeps at most.
 const MOST_POINTS: usize = 240;
 
-/// Counts the time that is spent on showing a picture instead of rendering it.
+/// What showing a picture takes from rendering it. Other programs may slow down single looks, so each counts as the shortest of its kind.
 #[derive(Debug, Default)]
 pub(crate) struct Overhead {
-    nanoseconds: AtomicU64,
+    /// How many looks, and the nanoseconds of the shortest, by kind.
+    looks: [(AtomicU64, AtomicU64); 2],
+}
+
+/// A kind of look.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Glance {
+    /// From sums to a picture.
+    Publish,
+    /// From a picture to what a page shows.
+    Answer,
 }
 
 impl Overhead {
-    /// Does something and counts its time.
-    pub(crate) fn count<T>(&self, work: impl FnOnce() -> T) -> T {
+    /// Does something and counts it.
+    pub(crate) fn count<T>(&self, glance: Glance, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let done = work();
-        self.nanoseconds.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+        let nanoseconds = start.elapsed().as_nanos() as u64;
+        let (count, least) = &self.looks[glance as usize];
+        if count.fetch_add(1, Ordering::Relaxed) == 0 {
+            least.store(nanoseconds, Ordering::Relaxed);
+        }
+        least.fetch_min(nanoseconds, Ordering::Relaxed);
         done
     }
 
-    /// Seconds so far.
+    /// Seconds since the last reset.
     pub(crate) fn seconds(&self) -> f64 {
-        self.nanoseconds.load(Ordering::Relaxed) as f64 * 1e-9
+        let of = |(count, least): &(AtomicU64, AtomicU64)| {
+            count.load(Ordering::Relaxed) as f64 * least.load(Ordering::Relaxed) as f64
+        };
+        1e-9 * self.looks.iter().map(of).sum::<f64>()
+    }
+
+    /// Begins again, for another picture.
+    pub(crate) fn reset(&self) {
+        self.looks.iter().for_each(|(count, _)| count.store(0, Ordering::Relaxed));
     }
 }
 
@@ -70,28 +93,40 @@ impl Publisher {
         Ok(Self { films })
     }
 
-    /// Shows a film, and says whether it will be. Where the one before is not shown yet, it waits if this is the `last`, and else leaves it.
-    pub(crate) fn show(&self, shown: Shown, last: bool) -> bool {
-        if last { self.films.send(shown).is_ok() } else { self.films.try_send(shown).is_ok() }
+    /// Shows a film, and says whether it will be: not where the one before is not shown yet.
+    pub(crate) fn show(&self, shown: Shown) -> bool {
+        self.films.try_send(shown).is_ok()
+    }
+
+    /// Shows a film before it returns: the last one for now.
+    pub(crate) fn show_now(live: &Live, Shown { film, subject, samples, about }: Shown) {
+        show(live, &film, &subject, samples, about);
     }
 }
 
 fn show_all(live: &Live, films: &Receiver<Shown>) {
     for Shown { film, subject, samples, about } in films {
-        live.overhead.count(|| match of_film(&film, &subject, samples, about) {
-            Ok(snapshot) => put(live, snapshot),
-            Err(error) => live.show(|seen| seen.status.notes = vec![error.to_string()]),
-        });
+        live.overhead.count(Glance::Publish, || show(live, &film, &subject, samples, about));
     }
 }
 
-/// Puts a picture where pages find it, with its point on the curve.
+fn show(live: &Live, film: &Film, subject: &Subject, samples: u32, about: About) {
+    match of_film(film, subject, samples, about) {
+        Ok(snapshot) => put(live, snapshot),
+        Err(error) => live.show(|seen| seen.status.notes = vec![error.to_string()]),
+    }
+}
+
+/// Puts a picture where pages find it, with its point on the curve. One that a later one overtook is left out.
 pub(crate) fn put(live: &Live, snapshot: Snapshot) {
     if snapshot.stage != live.wish().stage {
         return;
     }
     live.show(|seen| {
         let status = &mut seen.status;
+        if seen.snapshot.as_ref().is_some_and(|shown| shown.number > snapshot.number) {
+            return;
+        }
         status.picture = snapshot.number;
         status.picture_size = snapshot.size();
         status.block = snapshot.block;

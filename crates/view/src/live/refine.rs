@@ -12,7 +12,7 @@ use etalon_control::{Canvas, Limits, Pilot, SampleAllocation, Shard};
 use etalon_transport::{Control, PixelRect, ThreadError};
 
 use super::painter::{Halt, Paint};
-use super::publish::{Shown, may_look};
+use super::publish::{Publisher, Shown, may_look};
 use super::status::{Phase, Predicted};
 use super::{Wish, costs};
 
@@ -56,8 +56,6 @@ struct Progress {
     /// Seconds of passes.
     seconds: f64,
     is_shown: bool,
-    /// Seconds that were spent on looking before it began.
-    looked: f64,
 }
 
 impl Paint<'_> {
@@ -83,8 +81,8 @@ impl Paint<'_> {
             rate: 0.0,
             seconds: 0.0,
             is_shown: true,
-            looked: self.live().overhead.seconds(),
         };
+        self.live().overhead.reset();
         loop {
             self.check()?;
             let wish = self.live().wish();
@@ -257,17 +255,23 @@ impl Paint<'_> {
         let is_first = progress.done == 0;
         progress.done = reach;
         progress.is_shown = false;
-        let looking = self.live().overhead.seconds() - progress.looked;
-        if is_first || may_look(progress.seconds, looking, self.threads()) {
+        if is_first || may_look(progress.seconds, self.live().overhead.seconds(), self.threads()) {
             self.publish(progress, false);
         }
         Ok(())
     }
 
-    fn publish(&self, progress: &mut Progress, last: bool) {
-        let film = self.live().overhead.count(|| film_of(&progress.canvas));
+    /// Shows what there is, now or, where the render goes on, beside it.
+    fn publish(&self, progress: &mut Progress, now: bool) {
+        let film = film_of(&progress.canvas);
         let (subject, samples) = (Arc::clone(&progress.subject), progress.done);
-        progress.is_shown = self.painter.publisher.show(Shown { film, subject, samples, about: self.about() }, last);
+        let shown = Shown { film, subject, samples, about: self.about() };
+        progress.is_shown = if now {
+            Publisher::show_now(self.live(), shown);
+            true
+        } else {
+            self.painter.publisher.show(shown)
+        };
     }
 
     /// Finds out what each effect costs.

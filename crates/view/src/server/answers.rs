@@ -12,6 +12,7 @@ use super::routes::{App, PictureQuery, Refusal};
 use crate::inspect::maps::{MapKind, comparison as compare, map as map_of};
 use crate::inspect::{paths as drawn, pixel as of_pixel, spectrum as spectra};
 use crate::live::Stage;
+use crate::live::publish::Glance;
 use crate::look::{Look, fast_png};
 use crate::picture::Snapshot;
 
@@ -57,8 +58,11 @@ fn json(value: &impl serde::Serialize) -> Response {
     axum::Json(value).into_response()
 }
 
-/// A developed picture. The header says its number, its size, and what was clipped.
+/// A developed picture; nothing if there is none yet. The header says its number, its size, and what was clipped.
 pub(crate) fn picture(app: &App, query: &PictureQuery) -> Result<Response, Refusal> {
+    if !query.pinned && app.live.seen().snapshot.is_none() {
+        return Ok(StatusCode::NO_CONTENT.into_response());
+    }
     let (snapshot, look) = (snapshot(app, query.pinned)?, query.look());
     app.live.is_looked_at();
     let answer = |png: &[u8], about: &str| {
@@ -69,7 +73,7 @@ pub(crate) fn picture(app: &App, query: &PictureQuery) -> Result<Response, Refus
         return Ok(answer(&kept.png, &kept.about));
     }
     let settings = look.settings().map_err(cannot)?;
-    let (developed, png) = app.live.overhead.count(|| -> Result<_, Refusal> {
+    let (developed, png) = app.live.overhead.count(Glance::Answer, || -> Result<_, Refusal> {
         let developed = develop(&snapshot.file, &settings).map_err(cannot)?;
         let image = &developed.image;
         let png = fast_png(image.width, image.height, &image.pixels);
@@ -100,7 +104,7 @@ pub(crate) fn picture(app: &App, query: &PictureQuery) -> Result<Response, Refus
 pub(crate) fn map(app: &App, kind: MapKind) -> Result<Response, Refusal> {
     let current = snapshot(app, false)?;
     let pinned = snapshot(app, true).ok();
-    let map = app.live.overhead.count(|| map_of(kind, &current, pinned.as_deref())).map_err(cannot)?;
+    let map = app.live.overhead.count(Glance::Answer, || map_of(kind, &current, pinned.as_deref())).map_err(cannot)?;
     let about = serde_json::json!({ "picture": current.number, "size": current.size(), "legend": map.legend }).to_string();
     Ok(([(header::CONTENT_TYPE, "image/png".to_owned()), (ABOUT, about)], map.png).into_response())
 }
@@ -151,7 +155,7 @@ pub(crate) fn paths(app: &App, at: [u32; 2], count: u32) -> Result<Response, Ref
 /// Whether the picture and the pinned one differ beyond their noise.
 pub(crate) fn comparison(app: &App) -> Result<Response, Refusal> {
     let (current, pinned) = (snapshot(app, false)?, snapshot(app, true)?);
-    Ok(json(&app.live.overhead.count(|| compare(&current, &pinned)).map_err(cannot)?))
+    Ok(json(&app.live.overhead.count(Glance::Answer, || compare(&current, &pinned)).map_err(cannot)?))
 }
 
 fn download(kind: &'static str, name: &str, bytes: Vec<u8>) -> Response {
