@@ -173,7 +173,7 @@ def two_pages_see_the_same(context):
             bright, plain = one.run(mean), other.run(mean)
             assert bright > plain + 30, (bright, plain)
             other.key(" ")
-            one.wait("the pause", "document.getElementById('phase').innerText === 'paused'")
+            one.wait("the pause", "document.getElementById('phase')?.innerText === 'paused'")
             return f"mean levels {bright:.0f} and {plain:.0f}; a pause of one is seen by the other"
 
 
@@ -295,7 +295,7 @@ def main():
     parser.add_argument("--measure", action="store_true")
     parser.add_argument("--pictures", action="store_true")
     parser.add_argument("tests", nargs="*")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     context = Context(options.etalon, options.shots)
     failed = []
     try:

@@ -49,7 +49,7 @@ def metals(context, page):
     page.run("[...document.querySelectorAll('#effects-on li')].find(e => e.innerText.startsWith('specular chains')).querySelector('input').click()")
     before = page.run("window.etalonLog.length")
     page.wait("the comparison", f"window.etalonLog.slice({before}).some(e => e.what === 'comparison')", 120)
-    page.wait("the stated error", "document.getElementById('phase').innerText.includes('reached')", 120)
+    page.wait("the stated error", "document.getElementById('phase')?.innerText.includes('reached')", 120)
     page.choose("#split-on")
     page.run("(() => { const e = document.getElementById('map-opacity'); e.value = 0.5; e.dispatchEvent(new Event('input')); })()")
     page.choose("input[name=map][value=difference]")
@@ -59,7 +59,7 @@ def metals(context, page):
 
 
 # Shares of the width and height: light behind the prism, and the glass ball.
-SPECTRUM_AT = (0.62, 0.5)
+SPECTRUM_AT = (0.605, 0.42)
 PATHS_AT = (0.68, 0.7)
 SHOTS = [("cornell", "1%", cornell), ("vase", "1%", vase), ("spectroscope", "1%", spectroscope),
          ("cornell-glass", "1%", cornell_glass), ("metals", "3%", metals)]

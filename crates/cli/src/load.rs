@@ -42,7 +42,8 @@ pub(crate) fn load(
     } else {
         Scene::load_with(path, film_size, &Options { moment: None, parameters: parameters.to_vec() })
     };
-    let Scene { model, warnings: problems, added, left_out, file_name, text, sha256, files } = scene.map_err(refused)?;
+    let Scene { model, warnings: problems, added, left_out, file_name, text, sha256, files } =
+        scene.map_err(refused)?;
     // What a model does not say is added, what is not converted is listed, both as warnings.
     let note = |code: &str, text: String| miette!(severity = Severity::Warning, code = code.to_owned(), "{text}");
     let mut warnings: Vec<Report> = added.into_iter().map(|added| note("added", added)).collect();

@@ -34,7 +34,7 @@ const inspector = new Inspector((object) => effects.point(object));
 const PHASES = {
   preparing: "preparing the scene",
   coarse: "first coarse picture",
-  pilot: "looking where the error is, before the picture begins",
+  pilot: "looking where the error is, before all pixels go on",
   rendering: "rendering",
   done: "the stated error is reached",
   paused: "paused",
@@ -164,8 +164,8 @@ const compareNow = latest(async (pinned) => {
     }[comparison.verdict];
     const worst = comparison.test?.channels.map((c) => c.worst).filter(Boolean).sort((a, b) => Math.abs(b.t) - Math.abs(a.t))[0];
     const most = worst ? ` Largest: ${digits(Math.abs(worst.t), 2)} standard errors, in columns ${worst.crop[0]} to ${worst.crop[1] - 1}, rows ${worst.crop[2]} to ${worst.crop[3] - 1}.` : "";
-    const false_alarm = comparison.test ? ` (one false alarm in ${Math.round(1 / comparison.test.significance)})` : "";
-    element("verdict").textContent = `${words}${false_alarm}${most}${comparison.note ? ` Note: ${comparison.note}.` : ""}`;
+    const falseAlarm = comparison.test ? ` The test gives a false alarm once in ${Math.round(1 / comparison.test.significance)}.` : "";
+    element("verdict").textContent = `${words}${falseAlarm}${most}${comparison.note ? ` Note: ${comparison.note}.` : ""}`;
     log("comparison", { verdict: comparison.verdict });
   } catch (error) {
     element("verdict").textContent = `Pinned: ${pinned.title}. ${error.message}.`;

@@ -1,6 +1,5 @@
 //! How a picture is developed: the words of `etalon develop`, from the query of an address.
 
-
 use etalon_picture::develop::{Exposure, MAX_STOPS, Rect, Settings, ToneCurve, White, WhiteBalance};
 use serde::Deserialize;
 
@@ -99,9 +98,14 @@ mod tests {
         assert_eq!(look("auto", "none", "filmic").unwrap().exposure, Exposure::Auto);
         let patch = look("", "patch:1,2,3,4", "").unwrap().white_balance;
         assert_eq!(patch, WhiteBalance::Patch(Rect { x: 1, y: 2, width: 3, height: 4 }));
-        for (exposure, white, curve) in
-            [("x", "", ""), ("nan", "", ""), ("1e9", "", ""), ("", "lamp", ""), ("", "patch:1,2,0,4", ""), ("", "", "log")]
-        {
+        for (exposure, white, curve) in [
+            ("x", "", ""),
+            ("nan", "", ""),
+            ("1e9", "", ""),
+            ("", "lamp", ""),
+            ("", "patch:1,2,0,4", ""),
+            ("", "", "log"),
+        ] {
             assert!(look(exposure, white, curve).is_err(), "{exposure} {white} {curve}");
         }
     }

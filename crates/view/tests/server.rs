@@ -106,7 +106,14 @@ fn the_page_and_its_files_come_with_a_policy_that_forbids_all_else() {
 #[test]
 fn without_the_token_there_is_nothing() {
     let port = picture_port();
-    for path in ["/", "/index.html", "/ask/picture.png", "/0123456789abcdef-for-testz/", "//", "/0123456789abcdef-for-tests%2f/"] {
+    for path in [
+        "/",
+        "/index.html",
+        "/ask/picture.png",
+        "/0123456789abcdef-for-testz/",
+        "//",
+        "/0123456789abcdef-for-tests%2f/",
+    ] {
         let (status, _, body) = request(port, "GET", path, &[], "");
         let body = String::from_utf8_lossy(&body);
         assert!(status == 403 && body.contains("token") && !body.contains("<html"), "{path}: {status} {body}");
@@ -129,7 +136,14 @@ fn other_hosts_and_origins_are_refused() {
 
 #[test]
 fn no_path_leads_to_a_file() {
-    for path in ["../Cargo.toml", "..%2f..%2fCargo.toml", "%2e%2e/Cargo.toml", "ask/../../Cargo.toml", "/etc/passwd", "page/app.js"] {
+    for path in [
+        "../Cargo.toml",
+        "..%2f..%2fCargo.toml",
+        "%2e%2e/Cargo.toml",
+        "ask/../../Cargo.toml",
+        "/etc/passwd",
+        "page/app.js",
+    ] {
         let (status, _, body) = get(picture_port(), path);
         assert!(status == 404 && !String::from_utf8_lossy(&body).contains("workspace"), "{path}: {status}");
     }
@@ -190,11 +204,20 @@ fn a_spectral_picture_of_another_program_has_colour_and_spectra() {
     assert_eq!(get(port, "ask/picture.png").0, 200);
     let json = |path: &str| -> serde_json::Value { serde_json::from_slice(&get(port, path).2).unwrap() };
     let bands = json("ask/spectrum?x=0&y=0");
-    let told: Vec<(f64, f64)> = bands["bands"].as_array().unwrap().iter().map(|band| {
-        assert!(band["error"].is_null());
-        (band["centre_nm"].as_f64().unwrap(), band["radiance"].as_f64().unwrap())
-    }).collect();
-    assert!(told.iter().zip([(450.0, 0.1), (550.0, 0.2), (650.0, 0.9)]).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() < 1e-6));
+    let told: Vec<(f64, f64)> = bands["bands"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|band| {
+            assert!(band["error"].is_null());
+            (band["centre_nm"].as_f64().unwrap(), band["radiance"].as_f64().unwrap())
+        })
+        .collect();
+    assert!(
+        told.iter()
+            .zip([(450.0, 0.1), (550.0, 0.2), (650.0, 0.9)])
+            .all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() < 1e-6)
+    );
     let rgb = json("ask/pixel?x=0&y=0")["rgb"].clone();
     assert!(rgb[0].as_f64() > rgb[2].as_f64() && rgb[0].as_f64() > Some(0.1), "{rgb}");
 }
@@ -208,7 +231,8 @@ fn status_when(port: u16, is_enough: impl Fn(&serde_json::Value) -> bool) -> ser
     while start.elapsed() < Duration::from_secs(30) {
         let read = stream.read(&mut bytes).unwrap();
         text += &String::from_utf8_lossy(&bytes[..read]);
-        let events = text.split("data: ").skip(1).filter_map(|event| serde_json::from_str(event.split_once("\n\n")?.0).ok());
+        let events =
+            text.split("data: ").skip(1).filter_map(|event| serde_json::from_str(event.split_once("\n\n")?.0).ok());
         if let Some(status) = events.into_iter().find(&is_enough) {
             return status;
         }
@@ -239,7 +263,8 @@ fn a_scene_is_rendered_to_its_error_and_inspected() {
     let paths = paths.as_array().unwrap();
     assert!(paths.len() == 5 && paths.iter().all(|path| path["vertices"][0]["object"] == "ball"), "{paths:?}");
     assert!(paths.iter().all(|path| {
-        let pixel: Vec<f64> = path["vertices"][0]["pixel"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+        let pixel: Vec<f64> =
+            path["vertices"][0]["pixel"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
         (7.0..=10.0).contains(&pixel[0]) && (7.0..=10.0).contains(&pixel[1])
     }));
     assert!(get(port, "ask/map.png?kind=of-mean").2.starts_with(b"\x89PNG"));

@@ -134,7 +134,8 @@ fn load_scene(path: &Path, overrides: &Overrides) -> Result<LoadedScene, Failure
 /// Refuses a picture that memory cannot hold, also where an edit makes it so large.
 fn check_memory(scene: &Scene) -> Outcome {
     let &Film { width, height, ref bands, stokes, .. } = &scene.film;
-    let (replicates, bands) = (scene.integrator.replicates, bands.map_or(0, |bands| bands.count * if stokes { 4 } else { 1 }));
+    let (replicates, bands) =
+        (scene.integrator.replicates, bands.map_or(0, |bands| bands.count * if stokes { 4 } else { 1 }));
     let stokes = if stokes { Sums::stokes_bytes(width, height, replicates) } else { 0 };
     let pixels = u64::from(width) * u64::from(height);
     let pictures = PICTURES * pixels * (OF_PIXEL + u64::from(bands) * OF_BAND);
@@ -152,7 +153,10 @@ fn check_memory(scene: &Scene) -> Outcome {
 }
 
 fn problems(failure: &Failure) -> Vec<Value> {
-    problems_json(failure).iter().map(|problem| serde_json::to_value(problem).expect("a problem is plain data")).collect()
+    problems_json(failure)
+        .iter()
+        .map(|problem| serde_json::to_value(problem).expect("a problem is plain data"))
+        .collect()
 }
 
 fn not_started(error: ViewError, port: u16) -> Failure {

@@ -93,9 +93,7 @@ fn draw(prepared: &Prepared, view: &CameraView, size: [u32; 2], sample: u32, rep
     }
     let ends = vertices.windows(2).enumerate();
     let pieces = ends
-        .filter_map(|(index, pair)| {
-            Some((index + 1, view.segment(pair[0].position_m, pair[1].position_m, size)?))
-        })
+        .filter_map(|(index, pair)| Some((index + 1, view.segment(pair[0].position_m, pair[1].position_m, size)?)))
         .collect();
     DrawnPath {
         sample,

@@ -21,7 +21,7 @@ pub(crate) struct Level {
 }
 
 /// Camera paths of each coarse picture, and the smallest side of its blocks.
-const PATHS: [(u64, u32); 4] = [(1 << 14, 8), (1 << 16, 4), (1 << 18, 4), (1 << 20, 2)];
+const PATHS: [(u64, u32); 3] = [(1 << 14, 8), (1 << 16, 4), (1 << 18, 4)];
 
 /// The coarse pictures of a film of this size, each with more paths than the one before: first smaller blocks, then more samples. Films
 /// that are hardly larger than their blocks have fewer.
@@ -55,9 +55,8 @@ pub(crate) fn trace(
     let [width, height] = [film.width, film.height].map(|side| side.div_ceil(block));
     // The middle of each block that is within the film.
     let middle = |index: u32, side: u32| (index * block + block / 2).min(side - 1);
-    let pixels: Vec<(u32, u32)> = (0..height)
-        .flat_map(|y| (0..width).map(move |x| (middle(x, film.width), middle(y, film.height))))
-        .collect();
+    let pixels: Vec<(u32, u32)> =
+        (0..height).flat_map(|y| (0..width).map(move |x| (middle(x, film.width), middle(y, film.height)))).collect();
     let mut sums = vec![XyzSum::default(); pixels.len() * replicates as usize];
     let stopped = AtomicBool::new(false);
     pool.install(|| {
@@ -71,7 +70,15 @@ pub(crate) fn trace(
             prepared.render_pixels(&all, sums, &mut vec![0; all.len()]);
         });
     });
-    (!stopped.into_inner()).then_some(CoarsePixels { width, height, film: [film.width, film.height], block, replicates, samples, sums })
+    (!stopped.into_inner()).then_some(CoarsePixels {
+        width,
+        height,
+        film: [film.width, film.height],
+        block,
+        replicates,
+        samples,
+        sums,
+    })
 }
 
 #[cfg(test)]
@@ -87,7 +94,10 @@ mod tests {
                 u64::from(size[0].div_ceil(level.block) * size[1].div_ceil(level.block) * level.samples)
             };
             assert!(levels.windows(2).all(|pair| paths(&pair[0]) < paths(&pair[1])), "{size:?}: {levels:?}");
-            assert!(levels.iter().zip(PATHS).all(|(level, (most, _))| paths(level) <= 2 * most), "{size:?}: {levels:?}");
+            assert!(
+                levels.iter().zip(PATHS).all(|(level, (most, _))| paths(level) <= 2 * most),
+                "{size:?}: {levels:?}"
+            );
         }
         assert_eq!(levels([2, 2], 4), []);
     }

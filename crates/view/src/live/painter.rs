@@ -14,10 +14,6 @@ use crate::picture::{About, of_coarse};
 
 /// How long the camera must rest before more than a coarse picture is rendered.
 const AT_REST: Duration = Duration::from_millis(250);
-/// How long the first pictures wait for a page, so that its browser has the processor to itself while it starts.
-const FIRST_PAGE: Duration = Duration::from_secs(1);
-/// Stated error from which on the finest coarse picture takes a small part of the time.
-const PAYS_BELOW: f64 = 0.02;
 
 /// What the painter works with.
 pub(crate) struct Painter {
@@ -203,15 +199,8 @@ impl Paint<'_> {
             levels([film.width, film.height], self.prepared.scene().integrator.replicates)
         };
         for (index, level) in all.into_iter().enumerate() {
-            let wish = self.live().wish();
-            // The finest of them pays where the picture itself takes long.
-            let is_enough = wish.moving || index == 3 && wish.target.is_some_and(|target| target > PAYS_BELOW);
-            if index >= 2 && is_enough {
+            if index >= 2 && self.live().wish().moving {
                 break;
-            }
-            if index == 3 && self.stage == 1 {
-                let live = Arc::clone(&self.painter.live);
-                self.clock.pause(|| live.wait_for_page(FIRST_PAGE));
             }
             let stop = || !self.is_wanted();
             let coarse = trace(self.prepared, &self.painter.pool, level, &stop).ok_or(Halt::Unwanted)?;

@@ -20,6 +20,10 @@ use crate::picture::{film_of, whole};
 
 /// Seconds that a pass over the picture takes, at least and at most.
 const PASS_S: [f64; 2] = [0.25, 2.0];
+/// How long the first pass waits for a page, so that its browser has the processor to itself while it starts.
+const FIRST_PAGE: Duration = Duration::from_secs(1);
+/// Stated error below which the first pass takes a small part of the time.
+const PAYS_BELOW: f64 = 0.035;
 /// Seconds that an exploration may take before it takes no further step: without it there is no picture of all pixels.
 const EXPLORING_S: f64 = 2.5;
 /// Errors whose cost the page shows.
@@ -58,31 +62,59 @@ struct Progress {
     is_shown: bool,
 }
 
-impl Paint<'_> {
-    /// Renders the picture until it is good enough, and further where a page wants more.
-    pub(crate) fn refine(&mut self, scene_sha256: &str) -> Result<(), Halt> {
-        let film = &self.prepared.scene().film;
-        let rect = whole([film.width, film.height]);
-        // Where pixels share paths, no pilot knows the error.
-        let has_pilot = self.prepared.path_reuse().is_none();
-        let allocation = if has_pilot { self.explore(rect)? } else { None };
-        let threads = Some(self.threads());
-        let mut lookahead = None;
-        if has_pilot {
-            let pilot = Pilot::new(self.prepared, rect, allocation.clone(), threads)?;
-            lookahead = Some(Lookahead { pilot, known: None, told: None });
-        }
-        let mut progress = Progress {
-            canvas: Canvas::new(self.prepared, rect, Shard::WHOLE, allocation.as_deref()),
-            subject: Arc::new(Subject::new(self.prepared, scene_sha256, rect)),
+impl Progress {
+    /// Nothing yet of a picture whose samples are spread so.
+    fn new(
+        paint: &Paint<'_>,
+        rect: PixelRect,
+        subject: &Arc<Subject>,
+        allocation: Option<Arc<SampleAllocation>>,
+    ) -> Self {
+        Self {
+            canvas: Canvas::new(paint.prepared, rect, Shard::WHOLE, allocation.as_deref()),
+            subject: Arc::clone(subject),
             allocation,
             done: 0,
             reach: 0,
             rate: 0.0,
             seconds: 0.0,
             is_shown: true,
-        };
+        }
+    }
+}
+
+impl Paint<'_> {
+    /// Renders the picture until it is good enough, and further where a page wants more.
+    pub(crate) fn refine(&mut self, scene_sha256: &str) -> Result<(), Halt> {
+        let film = &self.prepared.scene().film;
+        let rect = whole([film.width, film.height]);
+        let subject = Arc::new(Subject::new(self.prepared, scene_sha256, rect));
         self.live().overhead.reset();
+        if self.stage == 1 {
+            let live = Arc::clone(&self.painter.live);
+            self.clock.pause(|| live.wait_for_page(FIRST_PAGE));
+        }
+        // Where pixels share paths, no pilot knows the error.
+        let has_pilot = self.prepared.path_reuse().is_none();
+        let mut progress = Progress::new(self, rect, &subject, None);
+        let mut lookahead = None;
+        if has_pilot {
+            // An exploration takes as long as the first pass at least. So the first pass comes before it, and is thrown away if samples
+            // are then spread otherwise.
+            if self.live().wish().target.is_none_or(|target| target < PAYS_BELOW) {
+                let goal = self.prepared.scene().integrator.replicates;
+                while progress.done < goal && !self.live().wish().paused {
+                    self.check()?;
+                    self.pass(goal, &mut progress)?;
+                }
+            }
+            let allocation = self.explore(rect)?;
+            let pilot = Pilot::new(self.prepared, rect, allocation.clone(), Some(self.threads()))?;
+            lookahead = Some(Lookahead { pilot, known: None, told: None });
+            if allocation.is_some() {
+                progress = Progress::new(self, rect, &subject, allocation);
+            }
+        }
         loop {
             self.check()?;
             let wish = self.live().wish();
@@ -143,7 +175,9 @@ impl Paint<'_> {
             lookahead.known = Some((target, Limits::ANY_SAMPLES));
             let paths = lookahead.pilot.paths();
             self.live().show(|seen| {
-                seen.status.notes.push(format!("No light was found in {paths} paths of a pilot, so the error is unknown."));
+                seen.status
+                    .notes
+                    .push(format!("No light was found in {paths} paths of a pilot, so the error is unknown."));
             });
             return;
         }
@@ -185,9 +219,10 @@ impl Paint<'_> {
     /// Samples a pixel at which the picture is good enough, as far as that is known.
     fn goal(&self, wish: &Wish, lookahead: Option<&Lookahead<'_>>, progress: &Progress) -> u32 {
         let replicates = self.prepared.scene().integrator.replicates;
-        let most = progress.allocation.as_ref().map_or(Limits::ANY_SAMPLES, |allocation| {
-            allocation.largest_mean(Limits::ANY_SAMPLES, replicates)
-        });
+        let most = progress
+            .allocation
+            .as_ref()
+            .map_or(Limits::ANY_SAMPLES, |allocation| allocation.largest_mean(Limits::ANY_SAMPLES, replicates));
         let known = wish.target.zip(lookahead.and_then(|lookahead| lookahead.known));
         let goal = known.filter(|(target, (error, _))| target == error).map(|(_, (_, samples))| samples.min(most));
         let is_new = self.live().seen().status.goal_samples != goal;
@@ -211,9 +246,8 @@ impl Paint<'_> {
         }
         self.phase(if wish.paused { Phase::Paused } else { Phase::Done });
         let (stage, live) = (self.stage, Arc::clone(&self.painter.live));
-        let is_same = |now: &Wish| {
-            now.stage == stage && !now.costs && (now.paused, now.target) == (wish.paused, wish.target)
-        };
+        let is_same =
+            |now: &Wish| now.stage == stage && !now.costs && (now.paused, now.target) == (wish.paused, wish.target);
         self.clock.pause(|| live.wait(is_same, Duration::from_secs(3600)));
     }
 
@@ -230,9 +264,8 @@ impl Paint<'_> {
         }
         let allocation = progress.allocation.clone();
         let reach = progress.reach;
-        let target = |tile: PixelRect| {
-            allocation.as_ref().map_or(reach, |a| a.samples(tile.x0, tile.y0, reach, replicates))
-        };
+        let target =
+            |tile: PixelRect| allocation.as_ref().map_or(reach, |a| a.samples(tile.x0, tile.y0, reach, replicates));
         let start = Instant::now();
         let paths = |progress: &Progress| progress.canvas.with_film(|film| film.counters.paths);
         let before = paths(progress);

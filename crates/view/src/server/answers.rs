@@ -105,7 +105,8 @@ pub(crate) fn map(app: &App, kind: MapKind) -> Result<Response, Refusal> {
     let current = snapshot(app, false)?;
     let pinned = snapshot(app, true).ok();
     let map = app.live.overhead.count(Glance::Answer, || map_of(kind, &current, pinned.as_deref())).map_err(cannot)?;
-    let about = serde_json::json!({ "picture": current.number, "size": current.size(), "legend": map.legend }).to_string();
+    let about =
+        serde_json::json!({ "picture": current.number, "size": current.size(), "legend": map.legend }).to_string();
     Ok(([(header::CONTENT_TYPE, "image/png".to_owned()), (ABOUT, about)], map.png).into_response())
 }
 
@@ -159,7 +160,8 @@ pub(crate) fn comparison(app: &App) -> Result<Response, Refusal> {
 }
 
 fn download(kind: &'static str, name: &str, bytes: Vec<u8>) -> Response {
-    let name: String = name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
+    let name: String =
+        name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect();
     let disposition = format!("attachment; filename=\"{name}\"");
     ([(header::CONTENT_TYPE, kind.to_owned()), (header::CONTENT_DISPOSITION, disposition)], bytes).into_response()
 }

@@ -59,7 +59,12 @@ impl Token {
 ///
 /// # Errors
 /// The status and a sentence.
-pub(crate) fn check(method: &Method, path: &str, headers: &HeaderMap, token: &Token) -> Result<(), (StatusCode, String)> {
+pub(crate) fn check(
+    method: &Method,
+    path: &str,
+    headers: &HeaderMap,
+    token: &Token,
+) -> Result<(), (StatusCode, String)> {
     let refuse = |status, text: &str| Err((status, text.to_owned()));
     let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
     let Some(host) = host.filter(|host| is_address(host)) else {
@@ -129,9 +134,8 @@ mod tests {
     }
 
     fn ask(method: Method, path: &str, headers: &[(&'static str, &str)]) -> Result<(), StatusCode> {
-        let headers = headers.iter().map(|(name, value)| {
-            (name.parse().unwrap(), HeaderValue::from_str(value).unwrap())
-        });
+        let headers =
+            headers.iter().map(|(name, value)| (name.parse().unwrap(), HeaderValue::from_str(value).unwrap()));
         check(&method, path, &headers.collect(), &token()).map_err(|(status, _)| status)
     }
 
@@ -156,7 +160,8 @@ mod tests {
         for host in ["127.0.0.1:8420", "localhost", "LOCALHOST:9", "[::1]:8420", "[::1]", "192.0.2.7:80"] {
             assert_eq!(ask(Method::GET, PAGE, &[("host", host)]), Ok(()), "{host}");
         }
-        for host in ["example.org", "localhost.example.org:8420", "127.0.0.1.example.org", "", "127.0.0.1:x", "[::1", "[::1]x"]
+        for host in
+            ["example.org", "localhost.example.org:8420", "127.0.0.1.example.org", "", "127.0.0.1:x", "[::1", "[::1]x"]
         {
             assert_eq!(ask(Method::GET, PAGE, &[("host", host)]), Err(StatusCode::MISDIRECTED_REQUEST), "{host}");
         }

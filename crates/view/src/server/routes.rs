@@ -288,7 +288,12 @@ async fn effects(State(app): Shared, Json(order): Json<EffectsOrder>) -> Begun {
     let names: Result<Vec<EffectName>, String> = order.without.iter().map(|name| name.parse()).collect();
     let mut names = names.map_err(|why| (StatusCode::UNPROCESSABLE_ENTITY, why))?;
     let mut seen = Vec::new();
-    names.retain(|name| !seen.contains(name) && { seen.push(*name); true });
+    names.retain(|name| {
+        !seen.contains(name) && {
+            seen.push(*name);
+            true
+        }
+    });
     change(&app, |wish| {
         if wish.without != names {
             wish.without = names;
