@@ -409,11 +409,16 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                                 && parts.is_sorted_by(|a, b| a.0 < b.0)
                                 && (0.0..=1.0).contains(&by.eval([0.3, 0.7]))
                         }
+                        M::Boundary => material.medium.is_some(),
                         M::Black => true,
                         // One side has no sides of its own.
                         M::OneSided { .. } => false,
                     };
                     prop_assert!(good, "{material:?} at {nm}");
+                    for medium in material.medium.iter().chain(&scene.medium) {
+                        let both = [&medium.absorption, &medium.scattering].map(|spectrum| spectrum.eval(nm));
+                        prop_assert!(both.iter().all(|v| *v >= 0.0 && v.is_finite()), "{medium:?} at {nm}");
+                    }
                 }
             }
             warnings

@@ -33,7 +33,7 @@ pub(crate) struct DrawnPath {
 /// A vertex of a path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct DrawnVertex {
-    /// Name of the object.
+    /// Name of the object; "medium" where a medium scattered the path.
     pub object: String,
     /// Name of its material.
     pub material: Option<String>,
@@ -74,16 +74,20 @@ fn draw(prepared: &Prepared, view: &CameraView, size: [u32; 2], sample: u32, rep
     let (mut vertices, mut end) = (Vec::<DrawnVertex>::new(), "");
     // What is found before any surface, such as the sky behind everything.
     let mut before = Vec::new();
+    let vertex = |object: &str, material, position_m: [f64; 3], beta: &[f64]| DrawnVertex {
+        object: object.to_owned(),
+        material,
+        position_m,
+        pixel: view.pixel(view.local(position_m), size),
+        throughput: mean(beta),
+        light: Vec::new(),
+    };
     for event in &replay.events {
         match event {
-            Event::Vertex { object, position_m, beta, .. } => vertices.push(DrawnVertex {
-                object: object.clone(),
-                material: material_of(prepared.scene(), object),
-                position_m: *position_m,
-                pixel: view.pixel(view.local(*position_m), size),
-                throughput: mean(beta),
-                light: Vec::new(),
-            }),
+            Event::Vertex { object, position_m, beta, .. } => {
+                vertices.push(vertex(object, material_of(prepared.scene(), object), *position_m, beta));
+            }
+            Event::Scattering { position_m, beta, .. } => vertices.push(vertex("medium", None, *position_m, beta)),
             Event::Light { found, radiance, .. } => {
                 let light = vertices.last_mut().map_or(&mut before, |vertex| &mut vertex.light);
                 light.push((found.clone(), mean(radiance)));
