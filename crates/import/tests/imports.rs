@@ -138,7 +138,7 @@ fn the_roughness_of_glass_comes_from_the_image_of_its_material() {
     let image = Image::decode(PNG, Encoding::Linear).unwrap().0;
     let greens = || image.linear_texels().map(|texel| 0.5 * texel[1]);
     assert!(widths[0].0 <= greens().fold(1.0, f64::min) && widths[widths.len() - 1].0 >= greens().fold(0.0, f64::max));
-    assert!(material.absorption.is_some());
+    assert!(material.medium.is_some());
     assert!(!imported.left_out.iter().any(|left| left.what.contains("image")), "{:?}", imported.left_out);
 }
 
@@ -367,8 +367,8 @@ fn opacity_normals_and_absorption_arrive() {
     assert_eq!((object.opacity, object.opacity_image.and_then(|image| image.cutoff)), (1.0, Some(0.625)));
     let object = textured(&with("OPAQUE", 0.5));
     assert!(object.opacity == 1.0 && object.opacity_image.is_none());
-    let glass = blend.materials.iter().find(|m| m.absorption.is_some()).expect("glass that absorbs");
-    let per_m = glass.absorption.as_ref().map(|absorption| absorption.eval(550.0)).unwrap();
+    let glass = blend.materials.iter().find(|m| m.medium.is_some()).expect("glass that absorbs");
+    let per_m = glass.medium.as_ref().map(|medium| medium.absorption.eval(550.0)).unwrap();
     assert!((per_m - 4.0_f64.ln() / 0.5).abs() < 1e-12, "{per_m}");
 }
 

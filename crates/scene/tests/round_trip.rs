@@ -170,11 +170,24 @@ fn materials_and_spectra() {
     assert_eq!(kind(&scene, "quarter"), &MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet });
     let dusty = MaterialKind::blend(toy, MaterialKind::Black, 0.125);
     assert_eq!(kind(&scene, "dusty"), &dusty);
-    let absorption = |name: &str| scene.materials.iter().find(|m| m.name == name).and_then(|m| m.absorption.clone());
-    assert_eq!(absorption("solid"), Some(Spectrum::Constant(0.5)));
+    let medium = |name: &str| scene.materials.iter().find(|m| m.name == name).and_then(|m| m.medium.clone());
+    let absorbing = |per_m| Some(Medium::absorbing(Spectrum::Constant(per_m)));
+    assert_eq!(medium("solid"), absorbing(0.5));
     // −ln ¼ over 2 m.
-    assert_eq!(absorption("own glass"), Some(Spectrum::Constant(4.0_f64.ln() / 2.0)));
-    assert_eq!(absorption("dispersive"), None);
+    assert_eq!(medium("own glass"), absorbing(4.0_f64.ln() / 2.0));
+    assert_eq!(medium("dispersive"), None);
+    let cloud = Medium {
+        absorption: Spectrum::Constant(0.25),
+        scattering: Spectrum::Constant(50.0),
+        phase: PhaseFunction::DoubleHenyeyGreenstein { g: [0.875, -0.25], weight: 0.75 },
+        source: Some(Spectrum::blackbody(5000.0, 1e-3).expect("right")),
+        density: Density::Uniform,
+    };
+    assert_eq!((medium("cloud"), kind(&scene, "cloud")), (Some(cloud), &MaterialKind::Boundary));
+    let air = scene.medium.as_ref().expect("it has one");
+    assert_eq!((&air.scattering, &air.phase), (&Spectrum::Constant(1e-5), &PhaseFunction::Rayleigh));
+    let exponential = ExponentialDensity { base_m: [0.0, -1.0, 0.0], up: [0.0, 0.0, 1.0], scale_height_m: 8000.0 };
+    assert_eq!(air.density, Density::Exponential(exponential));
     assert_eq!((scene.objects[0].opacity, scene.objects[1].opacity), (0.75, 1.0));
     assert_eq!(kind(&scene, "objects[3].material"), &reflects(Spectrum::Constant(1.0)));
 }

@@ -128,7 +128,7 @@ fn glass_whose_roughness_an_image_says_absorbs_as_glass_of_that_roughness() {
     let own = render(&scene, &Study::default());
     scene.materials[0].kind = at_one_half(glass(1.5));
     assert_eq!(render(&scene, &Study::default()).linear_rec709(), own.linear_rec709());
-    scene.materials[0].absorption = None;
+    scene.materials[0].medium = None;
     assert!(mean_y(&render(&scene, &Study::default())) > 1.2 * mean_y(&own));
 }
 
