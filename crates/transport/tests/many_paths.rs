@@ -100,6 +100,24 @@ impl Chance {
         }
     }
 
+    fn medium(&mut self) -> Value {
+        let phase = match self.below(3) {
+            0 => json!({"type": "rayleigh"}),
+            1 => json!({"type": "henyey-greenstein", "g": self.within(-0.8, 0.9)}),
+            _ => json!({"type": "isotropic"}),
+        };
+        let mut medium =
+            json!({"scattering_per_m": self.spectrum(3.0), "absorption_per_m": self.spectrum(0.5), "phase": phase});
+        if self.below(2) == 0 {
+            medium["density"] =
+                json!({"type": "exponential", "scale_height_m": self.within(0.3, 3.0), "up": self.point(1.0)});
+        }
+        if self.below(3) == 0 {
+            medium["source_radiance"] = json!(self.within(0.1, 1.0));
+        }
+        medium
+    }
+
     fn shape(&mut self) -> Value {
         match self.below(5) {
             0 => json!({"type": "sphere", "center_m": self.point(1.0), "radius_m": self.within(0.1, 0.6)}),
@@ -131,9 +149,13 @@ impl Chance {
                     // Solids that may overlap, some of which absorb.
                     let (interior, priority) = (self.within(1.1, 1.8), self.below(3));
                     object["material"] = json!({"type": "dielectric", "interior": interior, "priority": priority});
-                    if self.below(2) == 0 {
-                        object["material"]["absorption_per_m"] = json!(self.within(0.0, 3.0));
+                    match self.below(4) {
+                        0 | 1 => object["material"]["absorption_per_m"] = json!(self.within(0.0, 3.0)),
+                        2 => object["material"]["medium"] = self.medium(),
+                        _ => {}
                     }
+                } else if object["shape"]["type"] == "box" && self.below(3) == 0 {
+                    object["material"] = json!({"type": "boundary", "medium": self.medium()});
                 }
                 if index == 0 || self.below(4) == 0 {
                     let sides = ["front", "back", "both"][self.below(3)];
@@ -170,7 +192,11 @@ impl Chance {
         if self.below(2) == 0 {
             integrator["max_depth"] = json!(1 + self.below(9));
         }
-        json!({"etalon": 1, "camera": camera, "film": film, "integrator": integrator, "objects": objects, "lights": lights})
+        let mut scene = json!({"etalon": 1, "camera": camera, "film": film, "integrator": integrator, "objects": objects, "lights": lights});
+        if self.below(4) == 0 {
+            scene["medium"] = self.medium();
+        }
+        scene
     }
 }
 

@@ -105,7 +105,8 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
         | MaterialKind::RoughConductor { .. }
         | MaterialKind::RoughDielectric { .. }
         | MaterialKind::OrenNayar { .. }
-        | MaterialKind::Boundary | MaterialKind::Black => Vec::new(),
+        | MaterialKind::Boundary
+        | MaterialKind::Black => Vec::new(),
         MaterialKind::PolarisingSheet { sheet, .. } => {
             let weight = match sheet {
                 PolarisingSheet::Polariser { transmittance, extinction } => {
