@@ -31,6 +31,11 @@ impl Of {
     fn is_light(self) -> bool {
         matches!(self, Self::Emission | Self::Shining)
     }
+
+    /// The largest value that it may have.
+    fn most(self) -> f64 {
+        if self.is_light() || self == Self::Coefficient { f64::MAX } else { 1.0 }
+    }
 }
 
 impl Walk<'_, '_, '_> {
@@ -124,7 +129,7 @@ impl Walk<'_, '_, '_> {
     }
 
     fn constant(&mut self, value: f64, place: &str, of: Of) -> Value {
-        let (low, high) = if of.is_light() || of == Of::Coefficient { (0.0, f64::MAX) } else { (0.0, 1.0) };
+        let (low, high) = (0.0, of.most());
         if !(low..=high).contains(&value) {
             self.builder.leave_out(place, format!("{value} is clamped to {low} to {high}"));
         }
@@ -213,7 +218,7 @@ impl Walk<'_, '_, '_> {
         let table = Table::of_pairs(pairs);
         let mut table = table
             .ok_or_else(|| format!("{place}: {} numbers are not a table of wavelengths and values", pairs.len()))?;
-        let highest = if of.is_light() { f64::MAX } else { 1.0 };
+        let highest = of.most();
         if table.0.iter().any(|(_, v)| !(0.0..=highest).contains(v)) {
             self.builder.leave_out(place, format!("values are clamped to 0 to {highest}"));
             table.0.iter_mut().for_each(|(_, v)| *v = v.clamp(0.0, highest));
