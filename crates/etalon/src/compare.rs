@@ -1,28 +1,36 @@
 //! How far apart two pictures are, and whether that is more than their noise.
 
+mod power;
+mod scales;
+#[cfg(test)]
+mod tests;
 mod tiles;
 
+use etalon_oracle::statistics::sidak;
 use etalon_picture::{ExrFile, PIXELS_PER_DEGREE, PictureError, RenderInfo, flip};
 use serde::Serialize;
 
-pub use tiles::{ChannelTest, TileTest};
+pub use power::{POWER as COMPARE_POWER, Seen};
+pub use scales::{ChannelTest, ScaleTest};
+pub use tiles::TileTest;
 
 /// How two pictures are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareSettings {
     /// Probability of calling two pictures of the same thing different.
     pub significance: f64,
-    /// Side of the tiles that are compared, pixels. Each counts as the sum of so many pixels, whose noise is taken for normally
-    /// distributed: of fewer than 4 it is not, and pictures of the same thing are called different too often.
+    /// Side of the smallest tiles that are compared, pixels. Tiles of two, four and eight times that are compared as well, where the picture
+    /// has several, and the whole picture. A change inside a smallest tile is not seen. The noise of a tile is taken for normally
+    /// distributed: of fewer than 4 pixels a side it is not, and pictures of the same thing are called different too often.
     pub tile: usize,
     /// Exposure for FLIP, in stops.
     pub exposure_ev: f64,
 }
 
 impl Default for CompareSettings {
-    /// One false alarm in a thousand, tiles of 16 × 16 pixels.
+    /// One false alarm in a thousand, tiles from 4 × 4 pixels.
     fn default() -> Self {
-        Self { significance: 1e-3, tile: 16, exposure_ev: 0.0 }
+        Self { significance: 1e-3, tile: 4, exposure_ev: 0.0 }
     }
 }
 
@@ -33,7 +41,8 @@ pub struct NoiseTest {
     pub significance: f64,
     /// Whether the pictures differ beyond their noise.
     pub differ: bool,
-    /// Below this p a single question is answered "different".
+    /// Below this p a single question is answered "different". There are one or two questions for each channel and size of tiles, see
+    /// [`ScaleTest`]; together they have `significance` (Šidák 1967).
     pub accepted_from: f64,
     /// The test of each channel.
     pub channels: Vec<ChannelTest>,
@@ -157,6 +166,11 @@ fn non_finite(image: &ExrFile, reference: &ExrFile) -> Option<NonFinitePixels> {
     Some(NonFinitePixels { pixels: 1 + pixels.count(), first: [first % width, first / width] })
 }
 
+/// Significance of each question, so that all questions of all channels together have `significance`.
+fn each(significance: f64, channels: &[ChannelTest]) -> f64 {
+    sidak(significance, channels.iter().map(ChannelTest::questions).sum::<usize>().max(1))
+}
+
 fn test(
     image: &ExrFile,
     reference: &ExrFile,
@@ -172,9 +186,10 @@ fn test(
             let note = format!("`{lacking}` has no channel Error.{name}, so noise cannot be told from difference");
             return (None, Some(note));
         };
-        channels.push(tiles::test(name, &a, &b, image.picture.width(), settings.tile));
+        channels.push(scales::test(name, &a, &b, image.picture.width(), settings.tile));
     }
-    let accepted_from = tiles::each(settings.significance, channels.len());
+    let accepted_from = each(settings.significance, &channels);
+    channels.iter_mut().for_each(|channel| channel.set_power(accepted_from));
     let differ = channels.iter().any(|channel| channel.p() < accepted_from);
     let note = same_numbers.then(|| {
         "both were rendered from the same scene with the same seed: their noise is not independent, and the test sees too \

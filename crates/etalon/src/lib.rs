@@ -69,7 +69,10 @@ mod subject;
 
 pub use builder::SceneBuilder;
 pub use channels::{Aov, Channels};
-pub use compare::{ChannelTest, CompareSettings, Comparison, NoiseTest, NonFinitePixels, TileTest, Verdict, compare};
+pub use compare::{
+    COMPARE_POWER, ChannelTest, CompareSettings, Comparison, NoiseTest, NonFinitePixels, ScaleTest, Seen, TileTest,
+    Verdict, compare,
+};
 pub use error::RenderError;
 pub use etalon_control::{Adaptivity, CostEstimate, Ended, Prediction, Reached, Settled, Watch};
 pub use etalon_import::{ImportError, LeftOut, Moment, Options as ImportOptions};

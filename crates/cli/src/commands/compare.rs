@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use etalon::{CompareSettings, Comparison, NonFinitePixels, Verdict, compare};
+use etalon::{
+    COMPARE_POWER, ChannelTest, CompareSettings, Comparison, NoiseTest, NonFinitePixels, Seen, Verdict, compare,
+};
 use etalon_picture::{Attributes, ExrFile, Picture, PictureError, encode_srgb8, read_exr, read_png, write_png};
 use miette::{Report, miette};
 use serde::Serialize;
@@ -27,9 +29,9 @@ pub(crate) struct Args {
     /// Probability of a false alarm, for two renders of the same scene with different seeds.
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = probability)]
     significance: f64,
-    /// Side of the tiles that are compared, in pixels. The test assumes that the mean of a tile has a normal distribution, so take 4 or
-    /// more. Smaller tiles give more false alarms.
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
+    /// Side of the smallest tiles that are compared, in pixels. Tiles of two, four and eight times that are compared too, and the whole
+    /// picture. The test assumes that the mean of a tile has a normal distribution, so take 4 or more. Smaller tiles give more false alarms.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
     tile: u32,
     /// Exposure in stops, for FLIP and --diff.
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = crate::args::finite)]
@@ -115,8 +117,7 @@ fn describe(comparison: &Comparison) -> String {
             if let Some(tile) = &channel.worst {
                 let [x0, x1, y0, y1] = tile.crop;
                 text.push_str(&format!(
-                    "worst of {} tiles is columns {x0} to {}, rows {y0} to {}: {:.6} against {:.6}, t {:.2}, ",
-                    channel.tiles,
+                    "the worst tile is columns {x0} to {}, rows {y0} to {}: {:.6} against {:.6}, t {:.2}, ",
                     x1 - 1,
                     y1 - 1,
                     tile.means[0],
@@ -129,7 +130,11 @@ fn describe(comparison: &Comparison) -> String {
                 text.push_str(&format!("; {} tiles without known errors", channel.untested_tiles));
             }
         }
-        text.push_str(&format!("\n  the probability of a false alarm is {}", test.significance));
+        text.push_str(&seen(test));
+        text.push_str(&format!(
+            "\n  pictures differ if a p is below {:.1e}; the probability of a false alarm is {}",
+            test.accepted_from, test.significance
+        ));
     }
     text.push_str(match comparison.verdict {
         Verdict::Equal => "\n  all values are equal",
@@ -141,6 +146,37 @@ fn describe(comparison: &Comparison) -> String {
         text.push_str(&format!("\n  {note}"));
     }
     text
+}
+
+/// What the test would have seen in each size of tiles: the least sensitive of the channels.
+fn seen(test: &NoiseTest) -> String {
+    let mut text = String::new();
+    for (size, scale) in test.channels[0].scales.iter().enumerate() {
+        let least = |change: fn(&Seen) -> Option<f64>| -> Option<f64> {
+            let of = |channel: &ChannelTest| change(&channel.scales[size].seen);
+            test.channels.iter().map(of).try_fold(0.0_f64, |most, change| Some(most.max(change?)))
+        };
+        let one = least(|seen| seen.in_one_tile).map(percent);
+        let all = least(|seen| seen.in_all_tiles).map(percent);
+        let what = match (scale.side, one, all) {
+            (None, Some(one), _) => format!("a change of {one} of the whole picture"),
+            (Some(side), Some(one), None) => format!("a change of {one} in one region of {side} × {side}"),
+            (Some(side), None, Some(all)) => format!("a change of {all} in all regions of {side} × {side}"),
+            (Some(side), Some(one), Some(all)) => {
+                format!("a change of {one} in one region of {side} × {side}, or of {all} in all of them")
+            }
+            (_, None, None) | (None, ..) => continue,
+        };
+        text.push_str(&format!("\n  would have seen {what} with probability {COMPARE_POWER}"));
+    }
+    text
+}
+
+/// A part in per cent, with two digits.
+fn percent(part: f64) -> String {
+    let percent = 100.0 * part;
+    let decimals = (1.0 - percent.log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{percent:.decimals$} %")
 }
 
 /// The map in colours whose lightness grows with the difference.

@@ -171,7 +171,7 @@ fn of_truth(name: &str) -> Result<Subject, Failure> {
     // Those for polarised light too: the study says what averaging s and p gets wrong there.
     let claims: Vec<Claim> = Claim::UNPOLARISED.into_iter().chain([Claim::CarriesPolarisation]).collect();
     let truth = truths().into_iter().find(|truth| truth.name == name && truth.applies_to(&claims));
-    let truth = truth.filter(|truth| truth.band_nm.is_none()).ok_or_else(|| {
+    let truth = truth.filter(|truth| truth.band_nm.is_none() && truth.crop_px.is_none()).ok_or_else(|| {
         Failure::input(miette!(code = "unknown-truth", "there is no truth `{name}` of a mean luminance"))
     })?;
     let files: Vec<_> =

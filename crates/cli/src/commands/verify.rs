@@ -15,8 +15,9 @@ use crate::failure::{Failure, Outcome};
 
 /// Test Etalon, or another renderer, with scenes whose answer is known in closed form.
 ///
-/// For each scene it prints the measured value, its standard error, and the smallest bias that the test would have found. The exit status is
-/// 1 if a scene fails.
+/// For each scene it prints the measured value, its standard error, and the smallest bias that the test would have found, and for all of them
+/// how many would have shown a bias of 5, 1, 0.2 and 0.02 %. A run of all scenes takes about three minutes of two cores. It measures again
+/// what sees the least. The exit status is 1 if a scene fails.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   etalon verify eye-in-glass
@@ -37,8 +38,8 @@ pub(crate) struct Args {
     /// Seed of the random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Take enough samples to find a relative bias of 10⁻⁴: from 32 million to 256 million rays per scene. Each film is then one pixel whose
-    /// samples cover the whole picture.
+    /// Take enough samples to find a relative bias of 0.2 % in every scene, or of 0.02 % in scenes that are named: from 32 million to 4 billion
+    /// rays per scene. Each film is then one pixel whose samples cover the whole picture.
     #[arg(long)]
     thorough: bool,
     /// Number of threads. Default: all cores.

@@ -13,9 +13,9 @@ pub use chi_square::{ChiSquare, Expected, chi_square, chi_square_verdict};
 pub use estimate::{Estimate, Welford};
 pub use power::{Budget, POWER, SUITE_SIGNIFICANCE, resolvable_bias, samples_needed, sidak};
 pub use tails::{
-    chi_square_upper_tail, chi_square_upper_tail_quantile, kolmogorov_upper_tail, normal_two_sided_quantile,
-    normal_two_sided_tail, normal_upper_tail, normal_upper_tail_quantile, poisson_mean_bound,
-    student_two_sided_quantile, student_two_sided_tail,
+    binomial_upper_tail, chi_square_upper_tail, chi_square_upper_tail_quantile, kolmogorov_upper_tail,
+    normal_two_sided_quantile, normal_two_sided_tail, normal_upper_tail, normal_upper_tail_quantile,
+    poisson_mean_bound, student_two_sided_quantile, student_two_sided_tail,
 };
 pub use welch::{WelchT, tiles_agree, uniformity, welch_t};
 

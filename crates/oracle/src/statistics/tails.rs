@@ -60,6 +60,21 @@ pub fn chi_square_upper_tail_quantile(p: f64, degrees_of_freedom: f64) -> f64 {
     invert_falling(|x| chi_square_upper_tail(x, degrees_of_freedom), p, 0.0, far)
 }
 
+/// P(N ≥ `count`) of the number N of `trials` that succeed, each with `probability` in [0, 1].
+#[must_use]
+pub fn binomial_upper_tail(count: u64, trials: u64, probability: f64) -> f64 {
+    if count == 0 {
+        return 1.0;
+    }
+    if count > trials || probability <= 0.0 {
+        return 0.0;
+    }
+    if probability >= 1.0 {
+        return 1.0;
+    }
+    beta_reg(count as f64, (trials - count + 1) as f64, probability)
+}
+
 /// The mean of a Poisson distribution by which as few as `count` come with this probability, in (0, 1): whoever has counted so few can
 /// exclude what is more frequent.
 #[must_use]
@@ -137,6 +152,26 @@ mod tests {
             });
             close((-mean).exp() * terms.sum::<f64>(), significance, 1e-8);
         }
+    }
+
+    #[test]
+    fn so_many_successes_have_the_probability_of_their_terms() {
+        for (trials, probability) in [(16_u64, 0.1_f64), (40, 0.5)] {
+            let mut term = (1.0 - probability).powi(trials as i32);
+            let mut below = 0.0;
+            for count in 0..=trials {
+                close(binomial_upper_tail(count, trials, probability), 1.0 - below, 1e-6);
+                below += term;
+                term *= (trials - count) as f64 / (count + 1) as f64 * probability / (1.0 - probability);
+                if below > 0.999 {
+                    break;
+                }
+            }
+        }
+        assert_eq!(
+            [binomial_upper_tail(5, 4, 0.3), binomial_upper_tail(0, 4, 0.0), binomial_upper_tail(1, 4, 0.0)],
+            [0.0, 1.0, 0.0]
+        );
     }
 
     #[test]

@@ -25,6 +25,22 @@ fn segment(x: f64) -> f64 {
     (x.acos() - x * (1.0 - x * x).sqrt()) / PI
 }
 
+/// A wide view of eight by eight pixels, and a lamp in the plane of focus that fills the upper right one. Some pixels of it are read.
+fn plane_of_focus(name: &str, crop_px: [u32; 4], value: f64) -> Truth {
+    let scene = Scene::lens([0.0; 3], [0.0, 0.0, -1.0], 90.0, 0.1, 1.0).film(8, 8).spp(1024).lamp(
+        parallelogram([0.75, 0.75, -1.0], [0.25, 0.0, 0.0], [0.0, 0.25, 0.0]),
+        black(),
+        1.0,
+        "front",
+    );
+    Truth::new(name, &scene, value, if value == 0.125 { "1/8" } else if value == 1.0 { "1" } else { "0" })
+        .because(
+            "All rays of a pixel meet in the plane of focus within its square there, also far from the axis: a lamp of that square is seen by \
+             this pixel alone, whole and sharp.",
+        )
+        .reads_pixels(crop_px)
+}
+
 pub(super) fn truths() -> Vec<Truth> {
     let because = "Rays from a lens point p through the focus point on the axis pass depth z at p(1 − z/z_f): over the lens they fill a circle of \
          radius a|z − z_f|/z_f evenly.";
@@ -108,6 +124,11 @@ pub(super) fn truths() -> Vec<Truth> {
         Truth::new("lens-in-focus", &sharp, 1.0, "1")
             .because("All rays of the lens meet in the plane of focus: a spot a hundredth of the lens wide fills the ray's picture.")
             .or_else("focus distance off by 1 %", (1e-4 / (LENS_M * 0.01)).powi(2)),
+        plane_of_focus("lens-focus-in-a-corner", [7, 8, 0, 1], 1.0)
+            .or_else("a sphere in focus", 0.808)
+            .or_else("rows counted from below", 0.0),
+        plane_of_focus("lens-focus-beside-a-corner", [6, 7, 0, 1], 0.0).or_else("a sphere in focus", 0.040),
+        plane_of_focus("lens-focus-on-an-edge", [0, 8, 0, 1], 0.125).or_else("a sphere in focus", 0.106),
         Truth::new("lens-closed", &closed, 1.0, "1")
             .because("A lens of radius 0 is a pinhole; nothing divides by it.")
             .or_else("0/0", 0.0),

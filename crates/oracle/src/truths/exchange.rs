@@ -65,6 +65,8 @@ fn entry(truth: &Truth) -> Value {
         "width": width,
         "height": height,
         "band_nm": truth.band_nm,
+        "quantity": truth.quantity.name(),
+        "crop_px": truth.crop_px,
         "value": truth.value,
         "formula": truth.formula,
         "derivation": truth.derivation,
@@ -100,6 +102,8 @@ impl Claim {
             Self::AnisotropicFacets => "anisotropic-facets",
             Self::CorrelatedMasking => "correlated-masking",
             Self::WholeFormat => "whole-format",
+            Self::StatedPixels => "stated-pixels",
+            Self::StokesParameters => "stokes-parameters",
         }
     }
 }

@@ -4,12 +4,13 @@
 //! number comes from, a second evaluation by other means, and what plausible mistakes would show instead. [`truths`] lists
 //! them all, [`judge`] holds a reading to one, [`exchange_files`] writes them down for a renderer in another language.
 //!
-//! The quantity is always the mean over all pixels of the radiance (W·m⁻²·sr⁻¹·nm⁻¹) that arrives at the pixel, as a linear
-//! sensor reads it whose answer to a constant spectrum of radiance 1 is 1: CIE Y, if normalised that way. Irradiance E is read
+//! The quantity is a mean over pixels, all of them unless the truth names some ([`Truth::crop_px`]), of the radiance (W·m⁻²·sr⁻¹·nm⁻¹) that
+//! arrives at the pixel, or of one of its other Stokes parameters ([`Truth::quantity`]), as a linear sensor reads it whose answer to a constant spectrum of radiance 1 is 1: CIE Y, if normalised that way. Irradiance E is read
 //! off a small Lambert plate of albedo ρ, which shows ρE/π.
 
 mod absorption;
 mod cameras;
+mod dimensions;
 mod enclosures;
 mod exchange;
 mod facets;
@@ -33,6 +34,7 @@ mod sheets;
 mod skies;
 mod solids;
 mod sources;
+mod stokes;
 mod surfaces;
 mod textures;
 mod tubes;
@@ -92,6 +94,10 @@ pub enum Claim {
     CorrelatedMasking,
     /// Reads the whole scene format of Etalon, with its files, not the neutral form alone.
     WholeFormat,
+    /// Is read where the truth says, not over the whole picture: [`Truth::crop_px`].
+    StatedPixels,
+    /// Says S₁, S₂ and S₃ of the light that arrives: [`Truth::quantity`].
+    StokesParameters,
 }
 
 impl Claim {
@@ -114,7 +120,35 @@ impl Claim {
         Self::AnisotropicFacets,
         Self::CorrelatedMasking,
         Self::WholeFormat,
+        Self::StatedPixels,
     ];
+}
+
+/// What is read off a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quantity {
+    /// The radiance, S₀.
+    #[default]
+    Radiance,
+    /// S₁: light that oscillates along the rows of the picture, less light that oscillates along its columns.
+    Stokes1,
+    /// S₂: light along the diagonal from the lower left to the upper right, less light along the other.
+    Stokes2,
+    /// S₃: light whose field turns clockwise seen against the light, less light of the other hand.
+    Stokes3,
+}
+
+impl Quantity {
+    /// Its name in files: `S0` to `S3`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Radiance => "S0",
+            Self::Stokes1 => "S1",
+            Self::Stokes2 => "S2",
+            Self::Stokes3 => "S3",
+        }
+    }
 }
 
 /// A mistake that a renderer might make, and what the picture would show.
@@ -176,8 +210,12 @@ pub struct Truth {
     pub scene: String,
     /// The files that the scene names, which lie beside it.
     pub files: Vec<SceneFile>,
-    /// What the mean over all pixels must be.
+    /// What the mean over the pixels must be. It may be negative only if it is no radiance.
     pub value: f64,
+    /// What is read off the picture.
+    pub quantity: Quantity,
+    /// The pixels that are read: columns x0 to x1, rows y0 to y1 from the top, the second of each excluded. All if `None`.
+    pub crop_px: Option<[u32; 4]>,
     /// The formula, with the numbers of this scene.
     pub formula: String,
     /// Why it holds.
@@ -212,6 +250,8 @@ impl Truth {
             scene: scene.to_json(),
             files: scene.files(),
             value,
+            quantity: Quantity::Radiance,
+            crop_px: None,
             formula: formula.into(),
             derivation: "",
             second_opinion: None,
@@ -250,6 +290,18 @@ impl Truth {
         self
     }
 
+    /// Reads another quantity than the radiance.
+    fn reads(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self.claims(Claim::StokesParameters)
+    }
+
+    /// Reads only some pixels: columns x0 to x1, rows y0 to y1.
+    fn reads_pixels(mut self, crop_px: [u32; 4]) -> Self {
+        self.crop_px = Some(crop_px);
+        self.claims(Claim::StatedPixels)
+    }
+
     /// Sets the relative bias that a reading must be able to see.
     fn sees(mut self, relative: f64) -> Self {
         self.must_see = relative;
@@ -279,7 +331,7 @@ impl Truth {
     /// distance of the nearest known mistake. A dark picture is held to its mistakes alone.
     #[must_use]
     pub fn must_resolve(&self) -> f64 {
-        let relative = if self.value == 0.0 { f64::INFINITY } else { self.must_see * self.value };
+        let relative = if self.value == 0.0 { f64::INFINITY } else { self.must_see * self.value.abs() };
         self.mistakes.iter().map(|mistake| (mistake.value - self.value).abs()).fold(relative, f64::min)
     }
 
@@ -331,11 +383,13 @@ pub fn truths() -> Vec<Truth> {
         water::truths(),
         prisms::truths(),
         cameras::truths(),
+        dimensions::truths(),
         motion::truths(),
         masks::truths(),
         textures::truths(),
         relief::truths(),
         sheets::truths(),
+        stokes::truths(),
         images::truths(),
         instruments::truths(),
         sources::truths(),

@@ -9,7 +9,8 @@ use etalon_oracle::{
 
 use crate::renderer::Tracer;
 
-/// Truths in the neutral form that apply to a renderer without polarisation, thermal spectra, priorities, motion and facets of two widths.
+/// Truths in the neutral form of whole pictures that apply to a renderer without polarisation, thermal spectra, priorities, motion and
+/// facets of two widths.
 fn readable() -> Vec<Truth> {
     let claims: Vec<_> = Claim::UNPOLARISED
         .into_iter()
@@ -21,6 +22,7 @@ fn readable() -> Vec<Truth> {
                 Claim::Motion,
                 Claim::AnisotropicFacets,
                 Claim::WholeFormat,
+                Claim::StatedPixels,
             ];
             !beyond.contains(claim)
         })

@@ -390,7 +390,7 @@ def compare(
     reference: Picture | str | os.PathLike[str],
     *,
     significance: float = 1e-3,
-    tile: int = 16,
+    tile: int = 4,
     exposure: float = 0.0,
 ) -> Comparison:
     """How far apart two pictures are, and whether that is more than their noise, by Welch's t-test on tiles.
@@ -398,7 +398,7 @@ def compare(
     :param image: a picture or a file.
     :param reference: the picture that it is held against: relative measures are in units of this one.
     :param significance: probability of calling two pictures of the same thing different.
-    :param tile: side of the tiles, pixels.
+    :param tile: side of the smallest tiles, pixels. Tiles of two, four and eight times that are tested too, and the whole picture.
     :param exposure: exposure for FLIP, stops.
 
     :raises PictureError: if the sizes differ, or there is no colour.

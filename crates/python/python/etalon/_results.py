@@ -145,13 +145,19 @@ class ChannelTest:
 
     channel: str
     tiles: int
+    """Smallest tiles that were tested."""
     untested_tiles: int
+    """Smallest tiles in which the error of a pixel is not known."""
     worst: dict[str, Any] | None
     """The tile with the smallest p-value: ``crop`` (columns x0 to x1, rows y0 to y1), ``means``, ``t``, ``p``."""
     p_worst: float
     """Probability that the worst tile is that bad if the pictures show the same."""
     p_spread: float
     """Probability that so many tiles are that bad together if the pictures show the same."""
+    scales: list[dict[str, Any]]
+    """The test of each size of tiles: ``side`` in pixels (None for the whole picture), ``tiles``, ``untested_tiles``, ``skewed_tiles``,
+    ``worst``, ``p_worst``, ``p_spread`` and ``seen``, the relative change ``in_one_tile`` or ``in_all_tiles`` that would have been found with
+    probability 0.9."""
 
 
 @dataclass(frozen=True, eq=False)

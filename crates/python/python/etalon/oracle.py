@@ -38,7 +38,11 @@ class Truth:
     scene: dict[str, Any]
     """The scene in the neutral form, which is a part of the scene format: ``etalon.load(truth.scene)`` reads it."""
     value: float
-    """What the mean over all pixels must be."""
+    """What the mean over the pixels must be."""
+    quantity: str
+    """What is read: ``"S0"``, the radiance, or the Stokes parameter ``"S1"``, ``"S2"`` or ``"S3"``."""
+    crop_px: tuple[int, int, int, int] | None
+    """The pixels that are read, columns x0 to x1 and rows y0 to y1; all if None."""
     formula: str
     """The formula, with the numbers of this scene."""
     derivation: str
@@ -93,6 +97,8 @@ def _all() -> dict[str, Truth]:
         names = Truth.__dataclass_fields__
         plain = {name: entry[name] for name in names if name in entry}
         plain["band_nm"] = None if band is None else (band[0], band[1])
+        crop = entry["crop_px"]
+        plain["crop_px"] = None if crop is None else tuple(crop)
         _TRUTHS[entry["name"]] = Truth(**plain)
     return _TRUTHS
 

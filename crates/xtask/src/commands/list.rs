@@ -151,6 +151,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Ignored { package: "etalon-oracle", target: &["--test", "mutants"], name: "hundred" },
             ),
             named(
+                "faults",
+                "list | check | build | run [NAME …] | table",
+                "wrong expressions of tests/faults, one at a time: whether verify or the tests notice",
+                "hours",
+                Script("tests/faults.py"),
+            ),
+            named(
                 "room-scales",
                 "",
                 "rooms of 1 µm to 1000 km show their radiance to 10⁻³",

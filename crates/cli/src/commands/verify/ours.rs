@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::Reading;
-use etalon_oracle::truths::{Claim, SceneFile, Truth, judge};
+use etalon_oracle::truths::{Claim, Quantity, SceneFile, Truth, judge};
 use etalon_scene::{NamedFile, Scene};
 use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
@@ -24,11 +24,15 @@ const FIRST: u32 = 4;
 /// A reading too noisy to count goes on to this many times the paths, so many times.
 const MORE: u32 = 4;
 const STEPS: u32 = 4;
-/// What a thorough run wants to see of each truth, relative; how many rays it spends on that of every truth, and how many where as many
-/// will do. In rays, not in seconds, so that what is read is the same on every machine.
-const THOROUGH_SEES: f64 = 1e-4;
+/// What a thorough run wants to see of each truth, relative: of all, and of those that were asked for by name. How many rays it spends on
+/// that of every truth, and how many where as many will do. In rays, not in seconds, so that what is read is the same on every machine.
+const THOROUGH_SEES: f64 = 2e-3;
+const THOROUGH_SEES_BY_NAME: f64 = 2e-4;
 const THOROUGH_RAYS: u64 = 32_000_000;
-const THOROUGH_REACH_RAYS: u64 = 256_000_000;
+const THOROUGH_REACH_RAYS: u64 = 4_096_000_000;
+/// Rays of a run of all truths: about three minutes of two cores. What the truths do not need for their mistakes goes to those that see the
+/// least.
+const RAYS_OF_ALL: u64 = 400_000_000;
 
 /// A truth's picture by our integrator, taken with many seeds.
 struct Measurement<'a> {
@@ -62,7 +66,7 @@ impl<'a> Measurement<'a> {
         let mut scene = loaded.scene;
         // Each film is one replicate here.
         scene.integrator.replicates = 1;
-        if args.thorough {
+        if args.thorough && truth.crop_px.is_none() {
             // The whole film as one pixel, with the samples of all: points that are spread evenly over it and over whatever follows,
             // where each of a thousand pixels would have a handful. Another picture than by default, with the same mean.
             let film = &mut scene.film;
@@ -79,11 +83,12 @@ impl<'a> Measurement<'a> {
             series.render_to(self.first_spp.saturating_mul(effort), interrupt)?;
         }
         let white: Vec<f64> = match &self.of_white {
-            Some(series) => series.means().collect(),
+            Some(series) => series.means(Quantity::Radiance, self.truth.crop_px).collect(),
             None => vec![1.0; REPLICATES as usize],
         };
         let mut moments = Welford::new();
-        self.of_truth.means().zip(white).for_each(|(mean, white)| moments.push(mean / white));
+        let means = self.of_truth.means(self.truth.quantity, self.truth.crop_px);
+        means.zip(white).for_each(|(mean, white)| moments.push(mean / white));
         let counted = |counter: fn(&Counters) -> u64| self.of_truth.counted(counter);
         let cut_bias = match self.cut_paths() {
             // A quotient of two pictures is not bounded here.
@@ -123,35 +128,94 @@ pub(super) fn run(args: &Args, chosen: Vec<Truth>) -> Outcome {
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::run(Problem::from_err(error).wrap_err("cannot listen to signals")))?;
     // Plain radiance with polarisations averaged at every interface, or with polarisation, each where a truth wants it.
-    let claims = [&Claim::UNPOLARISED[..], &[Claim::CarriesPolarisation]].concat();
+    let claims = [&Claim::UNPOLARISED[..], &[Claim::CarriesPolarisation, Claim::StokesParameters]].concat();
     let chosen: Vec<Truth> = chosen.into_iter().filter(|truth| truth.applies_to(&claims)).collect();
-    let budget = Budget::for_tests(chosen.len());
+    // Of all truths some are judged a second time, by more samples.
+    let again = args.names.is_empty() && !args.thorough;
+    let significance = Budget::for_tests(chosen.len() * if again { 2 } else { 1 }).each();
     let mut report = Report::new(!args.json).with_seed(args.seed).of(chosen.len());
+    let mut costs = Vec::with_capacity(chosen.len());
+    let signal = || interrupt.signal().expect("nothing else ends a measurement early");
     for (index, truth) in chosen.iter().enumerate() {
-        match judged(args, truth, budget.each(), &interrupt) {
-            Some(row) => report.push(row),
-            None => {
-                let signal = interrupt.signal().expect("nothing else ends a measurement early");
-                return report.interrupted(signal, &chosen[index..]);
-            }
-        }
+        let Some((row, cost)) = judged(args, truth, None, significance, &interrupt) else {
+            return report.interrupted(signal(), &chosen[index..]);
+        };
+        costs.push(Cost { sees: row.relative_resolution().filter(|_| row.passes()), ..cost });
+        report.push(row);
+    }
+    let finer = if again { finer(&costs, RAYS_OF_ALL) } else { Vec::new() };
+    report.announce_finer(finer.len());
+    for (index, effort) in finer {
+        let Some((row, _)) = judged(args, &chosen[index], Some(effort), significance, &interrupt) else {
+            return report.interrupted(signal(), &[]);
+        };
+        report.replace(index, row);
     }
     report.finish()
 }
 
-/// Renders and judges one truth. `None` if the program was asked to end before.
-fn judged(args: &Args, truth: &Truth, significance: f64, interrupt: &Interrupt) -> Option<Row> {
+/// What the measurement of a truth has cost, and what it saw.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cost {
+    /// Rays of all kinds.
+    rays: u64,
+    /// Times the samples of the first step.
+    effort: u32,
+    /// Relative bias that it would have seen; `None` if more samples are of no use.
+    sees: Option<f64>,
+}
+
+/// Which truths are measured again so that the least of what is seen is the best that so many rays in all give, and with how many times
+/// the samples of the first step: always the one that sees the least next, taken to see twice as much by four times the samples. What is
+/// measured again begins anew.
+fn finer(costs: &[Cost], rays_of_all: u64) -> Vec<(usize, u32)> {
+    let mut left = rays_of_all.saturating_sub(costs.iter().map(|cost| cost.rays).sum());
+    let mut planned: Vec<Cost> = costs.to_vec();
+    loop {
+        let open = planned.iter().enumerate().filter_map(|(index, cost)| Some((index, cost.sees?)));
+        let Some((worst, sees)) = open.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        let cost = &mut planned[worst];
+        // What is planned already is not rendered then.
+        let instead = if cost.effort > costs[worst].effort { cost.rays } else { 0 };
+        let (rays, effort) = (cost.rays.saturating_mul(u64::from(MORE)), cost.effort.saturating_mul(MORE));
+        if rays - instead > left || sees <= THOROUGH_SEES_BY_NAME {
+            cost.sees = None;
+            continue;
+        }
+        left -= rays - instead;
+        *cost = Cost { rays, effort, sees: Some(0.5 * sees) };
+    }
+    let changed = planned.iter().zip(costs).enumerate().filter(|(_, (planned, cost))| planned.effort > cost.effort);
+    changed.map(|(index, (planned, _))| (index, planned.effort)).collect()
+}
+
+/// Renders and judges one truth, with so many times the samples of the first step, or as many as it takes. `None` if the program was asked
+/// to end before.
+fn judged(
+    args: &Args,
+    truth: &Truth,
+    effort: Option<u32>,
+    significance: f64,
+    interrupt: &Interrupt,
+) -> Option<(Row, Cost)> {
     let start = Instant::now();
     let measured = Measurement::new(truth, args).map_err(Stop::Failed).and_then(|mut measurement| {
-        let reading = measured(args, &mut measurement, significance, interrupt)?;
-        Ok((reading, measurement.paths(), measurement.cut_paths()))
+        let (reading, effort) = match effort {
+            Some(effort) => (measurement.render_to(effort, significance, interrupt)?, effort),
+            None => measured(args, &mut measurement, significance, interrupt)?,
+        };
+        let cost = Cost { rays: measurement.rays(), effort, sees: None };
+        Ok((reading, measurement.paths(), measurement.cut_paths(), cost))
     });
     let seconds = || start.elapsed().as_secs_f64();
     match measured {
-        Ok((reading, paths, cut)) => {
-            Some(Row::new(truth, Ok(reading), significance).took(seconds(), Some(paths)).cut(cut, reading.cut_bias))
+        Ok((reading, paths, cut, cost)) => {
+            let row = Row::new(truth, Ok(reading), significance).took(seconds(), Some(paths));
+            Some((row.cut(cut, reading.cut_bias), cost))
         }
-        Err(Stop::Failed(why)) => Some(Row::new(truth, Err(why), significance).took(seconds(), None)),
+        Err(Stop::Failed(why)) => {
+            Some((Row::new(truth, Err(why), significance).took(seconds(), None), Cost::default()))
+        }
         Err(Stop::Interrupted) => None,
     }
 }
@@ -163,20 +227,21 @@ fn measured(
     measurement: &mut Measurement<'_>,
     significance: f64,
     interrupt: &Interrupt,
-) -> Result<Reading, Stop> {
+) -> Result<(Reading, u32), Stop> {
     let truth = measurement.truth;
+    let wanted = if args.names.is_empty() { THOROUGH_SEES } else { THOROUGH_SEES_BY_NAME } * truth.value.abs();
     let (mut step, mut seen_before) = (0, f64::INFINITY);
     loop {
         let reading = measurement.render_to(MORE.pow(step), significance, interrupt)?;
         if reading.cut_bias.is_infinite() {
             // No number of paths bounds it.
-            break Ok(reading);
+            break Ok((reading, MORE.pow(step)));
         }
         let seen = judge(truth, &reading, significance).resolvable_bias;
         let enough = seen <= truth.must_resolve() || step >= STEPS;
-        let thorough = || is_worth_more(measurement.rays(), seen_before, seen, truth.value);
+        let thorough = || is_worth_more(measurement.rays(), seen_before, seen, wanted);
         if enough && !(args.thorough && thorough()) {
-            break Ok(reading);
+            break Ok((reading, MORE.pow(step)));
         }
         (step, seen_before) = (step + 1, seen);
     }
@@ -185,8 +250,7 @@ fn measured(
 /// Whether a thorough run goes on that saw `seen` by so many rays, and `before` by the step before: to [`THOROUGH_RAYS`] as long as it
 /// does not see what it wants to, and beyond only if it will see that by [`THOROUGH_REACH_RAYS`], at the rate of the last step or at
 /// 1/√n.
-fn is_worth_more(mut rays: u64, before: f64, seen: f64, value: f64) -> bool {
-    let wanted = THOROUGH_SEES * value;
+fn is_worth_more(mut rays: u64, before: f64, seen: f64, wanted: f64) -> bool {
     if rays * u64::from(MORE) <= THOROUGH_RAYS {
         // What is not a number is judged as it is.
         return seen > wanted;
@@ -205,20 +269,35 @@ mod tests {
 
     #[test]
     fn a_thorough_run_spends_rays_where_they_will_show_what_it_wants_to_see() {
-        let seen_enough = is_worth_more(1_000, f64::INFINITY, 0.9e-4, 1.0);
-        let cheap = is_worth_more(8_000_000, 2e-2, 1e-2, 1.0);
-        let hopeless = is_worth_more(9_000_000, 2e-2, 1e-2, 1.0);
-        // Two steps at 1/√n end at 225 million rays and 1e-4; at the rate 4 they come from 1.6e-3.
+        let wanted = 1e-4;
+        let seen_enough = is_worth_more(1_000, f64::INFINITY, 0.9e-4, wanted);
+        let cheap = is_worth_more(8_000_000, 2e-2, 1e-2, wanted);
+        let hopeless = is_worth_more(9_000_000, 2e-2, 1e-2, wanted);
+        // Four steps at 1/√n end at 3.6 billion rays and 1e-4; at the rate 4 they come from 2.56e-2.
         let (near, too_far) =
-            (is_worth_more(14_000_000, 5e-4, 4e-4, 1.0), is_worth_more(14_000_000, 8e-4, 4.1e-4, 1.0));
-        let steep = is_worth_more(14_000_000, 6.4e-3, 1.6e-3, 1.0);
-        let too_dear = is_worth_more(65_000_000, 2e-4, 1.1e-4, 1.0);
+            (is_worth_more(14_000_000, 2e-3, 1.6e-3, wanted), is_worth_more(14_000_000, 2e-3, 1.61e-3, wanted));
+        let steep = is_worth_more(14_000_000, 0.1, 2.5e-2, wanted);
+        let too_dear = is_worth_more(1_100_000_000, 2e-4, 1.1e-4, wanted);
         assert_eq!(
             [seen_enough, cheap, hopeless, near, too_far, steep, too_dear],
             [false, true, false, true, false, true, false]
         );
         // A black picture has no relative error, and a reading that is no number is not improved by more.
         assert!(is_worth_more(1_000, f64::INFINITY, 1e-9, 0.0) && !is_worth_more(9_000_000, 2e-9, 1e-9, 0.0));
-        assert!(!is_worth_more(1_000, f64::INFINITY, f64::NAN, 1.0));
+        assert!(!is_worth_more(1_000, f64::INFINITY, f64::NAN, wanted));
+    }
+
+    #[test]
+    fn rays_that_are_left_go_to_what_sees_the_least() {
+        let cost = |rays, sees| Cost { rays, effort: 1, sees };
+        // 30 are spent. The second is the worst by far: 4 times 10 more, then 16 times instead of 4 times, to a quarter of 8 %.
+        let costs = [cost(10, Some(0.01)), cost(10, Some(0.08)), cost(10, None)];
+        assert_eq!(finer(&costs, 30 + 39), []);
+        assert_eq!(finer(&costs, 30 + 40), [(1, 4)]);
+        assert_eq!(finer(&costs, 30 + 160), [(1, 16)]);
+        // At 1 % both are alike, and the rest goes to either as far as it lasts.
+        assert_eq!(finer(&costs, 30 + 640 + 40), [(0, 4), (1, 64)]);
+        // Fine enough.
+        assert_eq!(finer(&[cost(10, Some(1e-4))], 1000), []);
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use etalon_oracle::statistics::Budget;
 use etalon_oracle::subjects::Reading;
-use etalon_oracle::truths::{Truth, truths};
+use etalon_oracle::truths::{Quantity, Truth, truths};
 use etalon_picture::{Picture, read_exr};
 use miette::miette;
 
@@ -108,21 +108,20 @@ impl Files {
 
 /// Reads what a truth asks for off its pictures; relative to white, if there is a picture of it.
 fn reading(truth: &Truth, pictures: &Pictures, white: Option<&Pictures>) -> Result<Reading, String> {
-    let size = truth.film_px();
-    let reading = read(pictures, size)?;
+    let reading = read(pictures, truth, truth.quantity)?;
     match white {
         None => Ok(reading),
-        Some(white) => Ok(reading.relative_to(read(white, size)?)),
+        Some(white) => Ok(reading.relative_to(read(white, truth, Quantity::Radiance)?)),
     }
 }
 
-fn read(pictures: &Pictures, size: [usize; 2]) -> Result<Reading, String> {
+fn read(pictures: &Pictures, truth: &Truth, quantity: Quantity) -> Result<Reading, String> {
     match (&pictures.one, pictures.several.as_slice()) {
         (Some(_), [_, ..]) => {
             Err("there is a picture without a number, and there are numbered ones: keep one kind".to_owned())
         }
         (Some(path), []) => {
-            let (values, errors) = pixels(path, size)?;
+            let (values, errors) = pixels(path, truth, quantity)?;
             let errors = errors.ok_or_else(|| {
                 format!(
                     "`{}` does not say how noisy it is: it needs Error.Y or Variance.Y (or of R, G and B), or more pictures \
@@ -138,7 +137,7 @@ fn read(pictures: &Pictures, size: [usize; 2]) -> Result<Reading, String> {
         (None, several) => {
             let (mut means, mut nonfinite) = (Vec::new(), 0);
             for path in several {
-                let values = pixels(path, size)?.0;
+                let values = pixels(path, truth, quantity)?.0;
                 // The errors that such a picture may state are not needed: the scatter of several sees more kinds of noise.
                 let alone = Reading::from_pixels(&values, &vec![0.0; values.len()]);
                 means.push(alone.estimate.mean);
@@ -150,31 +149,42 @@ fn read(pictures: &Pictures, size: [usize; 2]) -> Result<Reading, String> {
 }
 
 /// What a linear sensor reads at each pixel, and its standard error if the picture has it.
-fn pixels(path: &Path, [width, height]: [usize; 2]) -> Result<(Vec<f64>, Option<Vec<f64>>), String> {
+fn pixels(path: &Path, truth: &Truth, quantity: Quantity) -> Result<(Vec<f64>, Option<Vec<f64>>), String> {
+    let [width, height] = truth.film_px();
     let picture = read_exr(path).map_err(|error| error.with_causes())?.picture;
     if [picture.width(), picture.height()] != [width, height] {
         let (w, h) = (picture.width(), picture.height());
         return Err(format!("`{}` is {w} × {h} pixels, the truth's film is {width} × {height}", path.display()));
     }
-    let sensor: &[(&str, f64)] = match picture.channel("Y") {
-        Some(_) => &[("Y", 1.0)],
-        None => &LUMINANCE,
+    let prefix = match quantity {
+        Quantity::Radiance => String::new(),
+        stokes => format!("{}.", stokes.name()),
     };
-    let values = weighed(&picture, sensor, |name| picture.require(name).map(widened).map_err(|e| e.to_string()))
-        .map_err(|error| format!("`{}`: {error} (Y, or R, G and B, is needed)", path.display()))?;
+    let sensor: Vec<(String, f64)> = match picture.channel(&format!("{prefix}Y")) {
+        Some(_) => vec![(format!("{prefix}Y"), 1.0)],
+        None => LUMINANCE.iter().map(|(name, weight)| (format!("{prefix}{name}"), *weight)).collect(),
+    };
+    let values = weighed(&picture, &sensor, |name| picture.require(name).map(widened).map_err(|e| e.to_string()))
+        .map_err(|error| {
+            format!("`{}`: {error} ({prefix}Y, or {prefix}R, {prefix}G and {prefix}B, is needed)", path.display())
+        })?;
     let has_errors = sensor.iter().all(|(name, _)| error_channel(&picture, name).is_some());
     let errors = has_errors.then(|| {
         // The errors of the three colours may go together, so they add up plainly.
-        weighed(&picture, sensor, |name| Ok(error_channel(&picture, name).expect("it was just seen")))
+        weighed(&picture, &sensor, |name| Ok(error_channel(&picture, name).expect("it was just seen")))
             .expect("nothing fails here")
     });
-    Ok((values, errors))
+    let Some([x0, x1, y0, y1]) = truth.crop_px.map(|crop| crop.map(|side| side as usize)) else {
+        return Ok((values, errors));
+    };
+    let cropped = |all: Vec<f64>| (y0..y1).flat_map(|y| all[y * width + x0..y * width + x1].to_vec()).collect();
+    Ok((cropped(values), errors.map(cropped)))
 }
 
 /// Σ weight × channel, pixel by pixel.
 fn weighed(
     picture: &Picture,
-    sensor: &[(&str, f64)],
+    sensor: &[(String, f64)],
     channel: impl Fn(&str) -> Result<Vec<f64>, String>,
 ) -> Result<Vec<f64>, String> {
     let mut sum = vec![0.0; picture.width() * picture.height()];

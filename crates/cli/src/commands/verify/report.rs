@@ -39,6 +39,17 @@ pub(super) struct Row {
 }
 
 impl Row {
+    /// Whether the truth holds.
+    pub(super) fn passes(&self) -> bool {
+        self.pass
+    }
+
+    /// The smallest bias that would have been caught, relative to the truth; `None` of a truth of 0, and without a reading.
+    pub(super) fn relative_resolution(&self) -> Option<f64> {
+        let relative = self.resolvable_bias / self.truth.abs();
+        (self.truth != 0.0 && relative.is_finite()).then_some(relative)
+    }
+
     /// Judges a reading, or says why there is none.
     pub(super) fn new(truth: &Truth, reading: Result<Reading, String>, significance: f64) -> Self {
         let (estimate, verdict) = match reading {
@@ -72,6 +83,23 @@ impl Row {
     }
 }
 
+/// How finely all truths together were seen.
+#[derive(Serialize)]
+pub(super) struct Resolution {
+    /// Truths whose value is not 0, so that a bias has a relative size.
+    truths: usize,
+    /// How many of them would have shown a relative bias of 5, 1, 0.2 and 0.02 %.
+    saw_5_percent: usize,
+    saw_1_percent: usize,
+    saw_0_2_percent: usize,
+    saw_0_02_percent: usize,
+    /// The relative bias that half of them would have shown, and that all would.
+    median: f64,
+    worst: f64,
+    /// The names of those that see the least, the worst first.
+    least_fine: Vec<String>,
+}
+
 /// Everything that was judged together.
 #[derive(Serialize)]
 pub(super) struct Report {
@@ -89,6 +117,9 @@ pub(super) struct Report {
     passed: usize,
     failed: usize,
     truths: Vec<Row>,
+    /// Absent if no truth was judged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    resolution: Option<Resolution>,
     /// Truths that a signal left unjudged.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unjudged: Vec<String>,
@@ -123,6 +154,7 @@ impl Report {
             passed: 0,
             failed: 0,
             truths: Vec::new(),
+            resolution: None,
             unjudged: Vec::new(),
             missing: None,
             start: Instant::now(),
@@ -178,6 +210,39 @@ impl Report {
         self.truths.push(row);
     }
 
+    /// Says that so many truths are judged again by more samples.
+    pub(super) fn announce_finer(&self, count: usize) {
+        if count > 0 && self.table {
+            print::line(&format!("the {count} that see the least, by more samples:"));
+        }
+    }
+
+    /// Puts a finer reading in the place of the truth's first.
+    pub(super) fn replace(&mut self, index: usize, row: Row) {
+        self.push(row);
+        let row = self.truths.pop().expect("it was just pushed");
+        let first = std::mem::replace(&mut self.truths[index], row);
+        *if first.pass { &mut self.passed } else { &mut self.failed } -= 1;
+    }
+
+    /// What all truths together would have seen.
+    fn resolve(&self) -> Option<Resolution> {
+        let mut seen: Vec<(&str, f64)> =
+            self.truths.iter().filter_map(|row| Some((row.name.as_str(), row.relative_resolution()?))).collect();
+        seen.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let below = |bias: f64| seen.iter().filter(|(_, sees)| *sees <= bias).count();
+        Some(Resolution {
+            truths: seen.len(),
+            saw_5_percent: below(0.05),
+            saw_1_percent: below(0.01),
+            saw_0_2_percent: below(2e-3),
+            saw_0_02_percent: below(2e-4),
+            median: seen.get(seen.len() / 2)?.1,
+            worst: seen.first()?.1,
+            least_fine: seen.iter().take(5).map(|(name, _)| (*name).to_owned()).collect(),
+        })
+    }
+
     pub(super) fn push_missing(&mut self, truth: &Truth) {
         if self.table {
             print::line(&format!("{:<44} {:>14.10} {:>14}", truth.name, truth.value, "no picture"));
@@ -209,6 +274,7 @@ impl Report {
     /// Prints what is left to say; a failure if any truth does not hold.
     pub(super) fn finish(mut self) -> Outcome {
         self.seconds = self.start.elapsed().as_secs_f64();
+        self.resolution = self.resolve();
         if self.table {
             let missing = match &self.missing {
                 Some(missing) if !missing.is_empty() => format!(", {} without a picture", missing.len()),
@@ -222,6 +288,20 @@ impl Report {
                 "{} passed, {} failed{missing}{unjudged}, in {:.1} s; a correct renderer fails one of them with probability {:.0e}",
                 self.passed, self.failed, self.seconds, SUITE_SIGNIFICANCE
             ));
+            if let Some(seen) = &self.resolution {
+                print::line(&format!(
+                    "a bias of 5 % would have been seen in {} of {} truths, of 1 % in {}, of 0.2 % in {}, of 0.02 % in {}; half see {:.2} %, the \
+                     worst {:.2} %",
+                    seen.saw_5_percent,
+                    seen.truths,
+                    seen.saw_1_percent,
+                    seen.saw_0_2_percent,
+                    seen.saw_0_02_percent,
+                    100.0 * seen.median,
+                    100.0 * seen.worst
+                ));
+                print::line(&format!("least fine: {}", seen.least_fine.join(", ")));
+            }
             if let Some(slowest) = self.slowest() {
                 print::line(&format!("slowest: {slowest}"));
             }

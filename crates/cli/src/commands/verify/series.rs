@@ -4,8 +4,9 @@ use std::num::NonZero;
 use std::sync::Mutex;
 use std::thread;
 
+use etalon_oracle::truths::Quantity;
 use etalon_scene::Scene;
-use etalon_transport::{Control, Counters, Extent, Film, Prepared, Study, prepare_study};
+use etalon_transport::{Control, Counters, Extent, Film, PixelRect, Prepared, Study, prepare_study};
 
 use crate::interrupt::Interrupt;
 
@@ -68,10 +69,16 @@ impl Series {
         Ok(())
     }
 
-    /// Mean Y of each film.
-    pub(super) fn means(&self) -> impl Iterator<Item = f64> {
-        let rect = self.prepared[0].whole(None).rect;
-        self.films.iter().map(move |film| film.mean_y(rect))
+    /// What a truth reads off each film: the mean of Y, or of the Y of a Stokes parameter.
+    pub(super) fn means(&self, quantity: Quantity, crop_px: Option<[u32; 4]>) -> impl Iterator<Item = f64> {
+        let whole = self.prepared[0].whole(None).rect;
+        let rect = crop_px.map_or(whole, |[x0, x1, y0, y1]| PixelRect { x0, y0, x1, y1 });
+        self.films.iter().map(move |film| match quantity {
+            Quantity::Radiance => film.mean_y(rect),
+            Quantity::Stokes1 => mean_stokes(film, rect, 0),
+            Quantity::Stokes2 => mean_stokes(film, rect, 1),
+            Quantity::Stokes3 => mean_stokes(film, rect, 2),
+        })
     }
 
     /// The largest throughput of a path that was cut in any film.
@@ -83,6 +90,17 @@ impl Series {
     pub(super) fn counted(&self, counter: impl Fn(&Counters) -> u64) -> u64 {
         self.films.iter().map(|film| counter(&film.counters)).sum()
     }
+}
+
+/// Mean Y of one of S₁, S₂ and S₃; not a number where the film does not record them.
+fn mean_stokes(film: &Film, rect: PixelRect, parameter: usize) -> f64 {
+    let y = |(column, row): (u32, u32)| {
+        let stokes = film.stokes_rec709(column, row)?;
+        let [value, _] = stokes[parameter];
+        Some(etalon_optics::colour::rec709_to_xyz(value.map(f64::from))[1])
+    };
+    let sum: Option<f64> = rect.pixels().map(y).sum();
+    sum.map_or(f64::NAN, |sum| sum / rect.area() as f64)
 }
 
 /// Processors that there are for us.
