@@ -117,7 +117,7 @@ impl SceneBuilder {
         if self.files.is_empty() {
             return Scene::parse(self.to_json(), NAME);
         }
-        Scene::parse_with_files(self.to_json(), NAME, &self.files)
+        Scene::parse_with_files(self.to_json(), NAME, &self.files, None)
     }
 
     /// Reads the scene, with names of files relative to a folder.

@@ -126,17 +126,19 @@ impl Scene {
         Ok(Self::new(loaded, name, text))
     }
 
-    /// As [`Scene::parse`], with the files that the scene refers to in memory.
+    /// As [`Scene::parse`], with the files that the scene refers to in memory, each at most 4 GiB, and with another width and height of
+    /// the film, in pixels, if they are given. No file is read from the disk.
     ///
     /// # Errors
-    /// As [`Scene::parse`]; also if the scene refers to a file that is not among `files`.
+    /// As [`Scene::parse`]; also if the scene refers to a file that is not among `files`, or is too large.
     pub fn parse_with_files(
         text: impl Into<String>,
         file_name: impl Into<String>,
         files: &[NamedFile],
+        size: Option<[u32; 2]>,
     ) -> Result<Self, SceneError> {
         let (text, name) = (text.into(), file_name.into());
-        let loaded = etalon_scene::parse_with_files(&text, &name, files, None)?;
+        let loaded = etalon_scene::parse_with_files(&text, &name, files, size)?;
         Ok(Self::new(loaded, name, text))
     }
 

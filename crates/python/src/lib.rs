@@ -25,13 +25,13 @@ mod _etalon {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use crate::oracle::{exchange_files, judge, truths};
+    use crate::oracle::{exchange_files, judge, truth_files, truths};
     #[pymodule_export]
     use crate::picture::{Picture, compare, read};
     #[pymodule_export]
     use crate::renderer::{Passes, Renderer};
     #[pymodule_export]
-    use crate::scene::{Scene, load, parse, schema};
+    use crate::scene::{Scene, load, parse, parse_with_files, schema};
     #[pymodule_export]
     use crate::spectra::{
         abbe_number, blackbody, colour_matching, emission_of_rgb, glass, glasses, illuminant, illuminants, metal,

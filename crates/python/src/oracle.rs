@@ -1,5 +1,6 @@
 //! The truths of the oracle, and readings held to them.
 
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use etalon_oracle::statistics::{Budget, Estimate};
@@ -30,6 +31,17 @@ pub(crate) fn truths(py: Python<'_>) -> String {
         }
         list.to_string()
     })
+}
+
+/// The files that the scene of each truth names, if it names any.
+#[pyfunction]
+pub(crate) fn truth_files(py: Python<'_>) -> BTreeMap<&str, BTreeMap<&str, Bound<'_, PyBytes>>> {
+    let truths = py.detach(|| &*TRUTHS);
+    let files = |truth: &'static Truth| {
+        let named = truth.files.iter().map(|file| (file.name.as_str(), PyBytes::new(py, &file.bytes)));
+        (truth.name.as_str(), named.collect())
+    };
+    truths.iter().filter(|truth| !truth.files.is_empty()).map(files).collect()
 }
 
 /// The exchange folder: the path and the bytes of each file.

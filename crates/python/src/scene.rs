@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use etalon::NamedFile;
 use etalon::scene_model::MOST_REPLICATES;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use serde_json::{Value, json};
 
 use crate::errors::{of_prepare, of_scene, problem, setting};
@@ -23,7 +25,7 @@ pub(crate) fn load(py: Python<'_>, path: PathBuf, size: Option<[u32; 2]>) -> PyR
     scene.map(|scene| Scene { scene }).map_err(|error| of_scene(py, &path.display().to_string(), &error))
 }
 
-/// Reads the text of a scene file; names of files are relative to `folder`.
+/// Reads the text of a scene file. Names of files are relative to `folder`.
 #[pyfunction]
 #[pyo3(signature = (text, name, folder, size))]
 pub(crate) fn parse(
@@ -34,6 +36,22 @@ pub(crate) fn parse(
     size: Option<[u32; 2]>,
 ) -> PyResult<Scene> {
     let scene = py.detach(|| etalon::Scene::parse_in(text, name.clone(), Some(&folder), size));
+    scene.map(|scene| Scene { scene }).map_err(|error| of_scene(py, &name, &error))
+}
+
+/// Reads the text of a scene file whose files are in memory.
+#[pyfunction]
+#[pyo3(signature = (text, name, files, size))]
+pub(crate) fn parse_with_files(
+    py: Python<'_>,
+    text: String,
+    name: String,
+    files: Vec<(String, Bound<'_, PyBytes>)>,
+    size: Option<[u32; 2]>,
+) -> PyResult<Scene> {
+    let named = |(name, bytes): (String, Bound<'_, PyBytes>)| NamedFile { name, bytes: bytes.as_bytes().to_vec() };
+    let files: Vec<NamedFile> = files.into_iter().map(named).collect();
+    let scene = py.detach(|| etalon::Scene::parse_with_files(text, name.clone(), &files, size));
     scene.map(|scene| Scene { scene }).map_err(|error| of_scene(py, &name, &error))
 }
 

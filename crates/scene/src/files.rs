@@ -1,5 +1,6 @@
 //! Files that a scene refers to: each read once, and remembered by its hash.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use std::io::Read;
@@ -9,7 +10,7 @@ use std::sync::Arc;
 use sha2::{Digest, Sha256};
 
 use crate::grid::{self, Grid};
-use crate::json::{Code, Reader, Spanned};
+use crate::json::{Code, Reader, Spanned, did_you_mean, listed};
 use crate::mesh::Shading;
 use crate::model::Mesh;
 use crate::texture::{Channel, Encoding, Image};
@@ -43,12 +44,21 @@ pub(crate) struct MeshKey {
     pub(crate) shading: Shading,
 }
 
+/// Where the files of a scene are.
+#[derive(Debug)]
+enum Source<'f> {
+    /// Nowhere: the scene is a text alone.
+    Nowhere,
+    /// In a folder, to which names are relative.
+    Folder(PathBuf),
+    /// In memory.
+    Memory(&'f [NamedFile]),
+}
+
 /// The files of one scene.
 #[derive(Debug)]
-pub(crate) struct Files {
-    folder: Option<PathBuf>,
-    /// Files in memory, by name.
-    given: HashMap<String, Vec<u8>>,
+pub(crate) struct Files<'f> {
+    source: Source<'f>,
     meshes: HashMap<MeshKey, Option<Arc<Mesh>>>,
     images: HashMap<(String, Encoding), Option<Arc<Image>>>,
     data: HashMap<(String, Channel, Encoding), Option<Arc<Image>>>,
@@ -60,11 +70,20 @@ pub(crate) struct Files {
     noted: HashSet<String>,
 }
 
-impl Files {
+impl<'f> Files<'f> {
+    /// Files of a folder; of none without one.
     pub(crate) fn new(folder: Option<&Path>) -> Self {
+        Self::of(folder.map_or(Source::Nowhere, |folder| Source::Folder(folder.to_owned())))
+    }
+
+    /// Files that are in memory. Of two with the same name the last counts.
+    pub(crate) fn given(files: &'f [NamedFile]) -> Self {
+        Self::of(Source::Memory(files))
+    }
+
+    fn of(source: Source<'f>) -> Self {
         Self {
-            folder: folder.map(Path::to_owned),
-            given: HashMap::new(),
+            source,
             meshes: HashMap::new(),
             images: HashMap::new(),
             data: HashMap::new(),
@@ -75,59 +94,61 @@ impl Files {
         }
     }
 
-    /// Files that are in memory.
-    pub(crate) fn given(files: &[NamedFile]) -> Self {
-        let given = files.iter().map(|file| (file.name.clone(), file.bytes.clone())).collect();
-        Self { given, ..Self::new(None) }
-    }
-
     /// The files that have been read.
     pub(crate) fn used(self) -> Vec<FileUse> {
         self.used
     }
 
     /// The bytes of a file; why there are none is reported at the name.
-    pub(crate) fn bytes(&mut self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Vec<u8>> {
-        if let Some(bytes) = self.given.get_mut(&name.value).map(std::mem::take) {
-            self.note(name, &bytes);
-            return Some(bytes);
-        }
-        let Some(folder) = &self.folder else {
-            let message = format!("\"{}\" cannot be found: this scene has no folder", name.value);
-            reader.error(Code::File, name.at, message);
-            return None;
-        };
-        let path = folder.join(&name.value);
-        match read_file(&path) {
+    pub(crate) fn bytes(&mut self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Cow<'f, [u8]>> {
+        match self.find(&name.value) {
             Ok(bytes) => {
-                self.note(name, &bytes);
+                if self.noted.insert(name.value.clone()) {
+                    self.used.push(FileUse { name: name.value.clone(), sha256: sha256(&bytes) });
+                }
                 Some(bytes)
             }
-            Err(why) => {
-                let hint = "names of files are relative to the folder of the scene";
-                reader.error_hint(Code::File, name.at, format!("cannot read {}: {why}", path.display()), hint);
+            Err((message, hint)) => {
+                reader.error_hint(Code::File, name.at, message, hint);
                 None
             }
         }
     }
 
+    /// The bytes of a file.
+    ///
+    /// # Errors
+    /// Why there are none, and a hint, which may be empty.
+    fn find(&self, name: &str) -> Result<Cow<'f, [u8]>, (String, String)> {
+        let files = match &self.source {
+            Source::Nowhere => {
+                return Err((format!("\"{name}\" cannot be found: this scene has no folder"), String::new()));
+            }
+            Source::Folder(folder) => {
+                let path = folder.join(name);
+                let hint = "names of files are relative to the folder of the scene";
+                let refuse = |why| (format!("cannot read {}: {why}", path.display()), hint.to_owned());
+                return read_file(&path).map(Cow::Owned).map_err(refuse);
+            }
+            Source::Memory(files) => files,
+        };
+        let Some(file) = files.iter().rfind(|file| file.name == name) else {
+            let names = || files.iter().map(|file| file.name.as_str());
+            let hint = match did_you_mean(name, names()) {
+                Some(meant) => format!("did you mean \"{meant}\"?"),
+                None if files.is_empty() => "there are none".to_owned(),
+                None => format!("there are {}", listed(names())),
+            };
+            return Err((format!("\"{name}\" is not among the files in memory"), hint));
+        };
+        check_size(file.bytes.len() as u64).map_err(|why| (format!("{name}: {why}"), String::new()))?;
+        Ok(Cow::Borrowed(&file.bytes))
+    }
+
     /// Whether a name, which is not the address of a page, leads to no file from the scene's folder. A scene without a folder lacks none.
     pub(crate) fn lacks_beside_the_scene(&self, name: &str) -> bool {
         let is_address = name.contains("://");
-        self.folder.as_ref().is_some_and(|folder| !is_address && !folder.join(name).exists())
-    }
-
-    fn note(&mut self, name: &Spanned<String>, bytes: &[u8]) {
-        if self.noted.insert(name.value.clone()) {
-            self.used.push(FileUse { name: name.value.clone(), sha256: sha256(bytes) });
-        }
-    }
-
-    /// Keeps the bytes of a file in memory that may be asked for once more: an image can be colours and data.
-    fn put_back(&mut self, name: &str, bytes: Vec<u8>) {
-        if let Some(given) = self.given.get_mut(name) {
-            *given = bytes;
-        }
+        matches!(&self.source, Source::Folder(folder) if !is_address && !folder.join(name).exists())
     }
 
     /// Warns of what images hold and nothing uses, once everything has been read.
@@ -153,9 +174,7 @@ impl Files {
             return known.clone();
         }
         let made = self.bytes(name, reader).and_then(|bytes| {
-            let decoded = Image::decode_data(&bytes, channel, encoding);
-            self.put_back(&name.value, bytes);
-            decoded
+            Image::decode_data(&bytes, channel, encoding)
                 .map_err(|why| reader.error(Code::ImageFile, name.at, format!("{}: {why}", name.value)))
                 .ok()
                 .map(Arc::new)
@@ -199,20 +218,16 @@ impl Files {
         if let Some(known) = self.images.get(&key) {
             return known.clone();
         }
-        let made = self.bytes(name, reader).and_then(|bytes| {
-            let decoded = Image::decode(&bytes, encoding);
-            self.put_back(&name.value, bytes);
-            match decoded {
-                Ok((image, left_out)) => {
-                    if let Some(what) = left_out {
-                        self.left_out.push((name.clone(), what));
-                    }
-                    Some(Arc::new(image))
+        let made = self.bytes(name, reader).and_then(|bytes| match Image::decode(&bytes, encoding) {
+            Ok((image, left_out)) => {
+                if let Some(what) = left_out {
+                    self.left_out.push((name.clone(), what));
                 }
-                Err(why) => {
-                    reader.error(Code::ImageFile, name.at, format!("{}: {why}", name.value));
-                    None
-                }
+                Some(Arc::new(image))
+            }
+            Err(why) => {
+                reader.error(Code::ImageFile, name.at, format!("{}: {why}", name.value));
+                None
             }
         });
         self.images.insert(key, made.clone());
@@ -227,12 +242,19 @@ impl Files {
 pub fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     let file = etalon_picture::open_plain(path).map_err(|error| error.to_string())?;
     let kind = file.metadata().map_err(|error| error.to_string())?;
-    if kind.len() > MAX_FILE_BYTES {
-        return Err(format!("it has {} bytes; at most {MAX_FILE_BYTES} are read", kind.len()));
-    }
+    check_size(kind.len())?;
     let mut bytes = Vec::with_capacity(kind.len() as usize);
     file.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
     Ok(bytes)
+}
+
+/// Whether a file of so many bytes may be read.
+fn check_size(bytes: u64) -> Result<(), String> {
+    if bytes <= MAX_FILE_BYTES {
+        Ok(())
+    } else {
+        Err(format!("it has {bytes} bytes; at most {MAX_FILE_BYTES} are read"))
+    }
 }
 
 fn sha256(bytes: &[u8]) -> String {
@@ -241,4 +263,15 @@ fn sha256(bytes: &[u8]) -> String {
         let _ = write!(hex, "{byte:02x}");
         hex
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_may_have_4_gib() {
+        assert_eq!(check_size(4 << 30), Ok(()));
+        assert!(check_size((4 << 30) + 1).is_err_and(|why| why.contains("at most 4294967296 are read")));
+    }
 }

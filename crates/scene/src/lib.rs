@@ -110,10 +110,11 @@ pub fn parse_in(
     read_scene(text, file_name, files::Files::new(folder), size)
 }
 
-/// As [`parse_with_size`], with the files that the scene refers to in memory. No file is read from the disk.
+/// As [`parse_with_size`], with the files that the scene refers to in memory, each at most [`MAX_FILE_BYTES`] long. No file is read
+/// from the disk. Files that the scene does not refer to are ignored.
 ///
 /// # Errors
-/// As [`parse`]; also if the scene refers to a file that is not among `files`.
+/// As [`parse`]; also if the scene refers to a file that is not among `files`, or is too long.
 pub fn parse_with_files(
     text: &str,
     file_name: &str,
@@ -126,7 +127,7 @@ pub fn parse_with_files(
 fn read_scene(
     text: &str,
     file_name: &str,
-    mut files: files::Files,
+    mut files: files::Files<'_>,
     size: Option<[u32; 2]>,
 ) -> Result<Loaded, SceneErrors> {
     let read =

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Parts, RIGHT};
 use etalon_scene::mesh::{Part, read_obj, read_ply, write_ply};
-use etalon_scene::{Code, Loaded, Mesh, SceneErrors, Shape};
+use etalon_scene::{Code, Loaded, Mesh, NamedFile, SceneErrors, Shape};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -239,6 +239,30 @@ fn a_scene_says_where_it_names_a_file_that_is_missing_or_wrong() {
     let text =
         Parts { objects: r#"[{"shape": {"type": "mesh", "file": "a.ply"}, "material": "white"}]"#, ..RIGHT }.text();
     assert_eq!(etalon_scene::parse(&text, "test.json").unwrap_err().problems[0].code, Code::File);
+}
+
+#[test]
+fn files_in_memory_may_be_used_twice_and_those_that_lack_get_a_hint() {
+    let file = |name: &str, bytes: &[u8]| NamedFile { name: name.to_owned(), bytes: bytes.to_vec() };
+    let files = [file("square.ply", b"an older one"), file("square.ply", &square("ascii")), file("unused.obj", b"")];
+    let object = |name: &str, shading: &str| {
+        format!(r#"{{"shape": {{"type": "mesh", "file": "{name}", "shading": "{shading}"}}, "material": "white"}}"#)
+    };
+    let parse = |objects: String| {
+        etalon_scene::parse_with_files(&Parts { objects: &objects, ..RIGHT }.text(), "test.json", &files, Some([6, 4]))
+    };
+    // Two meshes are made of one file.
+    let both = format!("[{}, {}]", object("square.ply", "flat"), object("square.ply", "smooth"));
+    let loaded = parse(both).unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!((loaded.scene.objects.len(), loaded.scene.film.width, loaded.files.len()), (2, 6, 1));
+
+    for (name, hint) in [("sqare.ply", r#"did you mean "square.ply"?"#), ("sky.obj", r#"there are "square.ply""#)] {
+        let errors = parse(format!("[{}]", object(name, "flat"))).unwrap_err();
+        let problem = &errors.problems[0];
+        assert_eq!((problem.code, problem.json_path.as_str()), (Code::File, "$.objects[0].shape.file"));
+        assert!(problem.message.contains("not among the files in memory"), "{}", problem.message);
+        assert!(problem.hint.as_ref().is_some_and(|text| text.starts_with(hint)), "{:?}", problem.hint);
+    }
 }
 
 #[test]

@@ -102,7 +102,7 @@ pub enum Claim {
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 17] = [
+    pub const UNPOLARISED: [Self; 18] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,

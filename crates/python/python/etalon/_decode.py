@@ -71,7 +71,7 @@ class Plain:
         return None
 
     def _string(self, value: str, path: str) -> Any:
-        if _is_unicode(value):
+        if is_unicode(value):
             return value
         self._refuse(path, "not-utf-8", "the text has half of a surrogate pair")
         return None
@@ -89,14 +89,15 @@ class Plain:
     def _object(self, value: dict[Any, Any], path: str, level: int) -> dict[str, Any]:
         plain = {}
         for key, item in value.items():
-            if not isinstance(key, str) or not _is_unicode(key):
+            if not isinstance(key, str) or not is_unicode(key):
                 self._refuse(path, "wrong-type", f"a key of type {type(key).__name__} is no text")
                 continue
             plain[str(key)] = self._plain(item, path + _step(key), level + 1)
         return plain
 
 
-def _is_unicode(text: str) -> bool:
+def is_unicode(text: str) -> bool:
+    """Whether text can be written as UTF-8: it has no half of a surrogate pair."""
     try:
         text.encode()
     except UnicodeEncodeError:

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _etalon
+from ._development import DEFAULTS, Rect, development, rect_of
 from ._errors import PictureError, SettingError
 from ._results import ChannelTest, Comparison
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 
 Pixels = npt.NDArray[np.float32]
 Exposure = float | Literal["auto"]
-Rect = tuple[int, int, int, int]
 
 _COLOURS = ("R", "G", "B")
 _AOVS: dict[str, tuple[str, ...]] = {
@@ -242,7 +242,7 @@ class Picture:
 
         :raises PictureError: if the picture has no bands, or the pixels are not in it.
         """
-        rows = self._native.spectrum(_rect((x, y, width, height), "the rectangle"))
+        rows = self._native.spectrum(rect_of((x, y, width, height), "the rectangle"))
         errors = [error for _, _, error, _ in rows if error is not None]
         return Spectrum(
             np.array([nm for nm, _, _, _ in rows]),
@@ -278,9 +278,8 @@ class Picture:
         :param range: the values at the two ends of the colour bar.
         :param axis: how values are spread over the colour bar.
         """
-        given = _development(
-            exposure, white_balance, curve, scale, crop, band_nm, false_colour, error_map, range, axis
-        )
+        values = (exposure, white_balance, curve, scale, crop, band_nm, false_colour, error_map, range, axis)
+        given = development(dict(zip(DEFAULTS, values)))
         width, height, pixels, _ = self._native.develop(given)
         return np.frombuffer(pixels, dtype=np.uint8).reshape(height, width, 3)
 
@@ -294,7 +293,7 @@ class Picture:
                 raise SettingError("an EXR file keeps the linear picture: development is for .png")
             self._native.write_exr(name)
         elif ending == ".png":
-            self._native.write_png(name, _developed(development))
+            self._native.write_png(name, development(development))
         else:
             raise SettingError(f"a picture is saved as .exr or .png, not as {os.path.basename(name)!r}")
 
@@ -357,7 +356,7 @@ class Picture:
 
     def _repr_png_(self) -> bytes | None:
         try:
-            return self._native.png(_developed({}))
+            return self._native.png(development({}))
         except PictureError:
             return None
 
@@ -365,7 +364,7 @@ class Picture:
         images = []
         for title, development in (("", {}), ("relative standard error", {"error_map": "relative"})):
             try:
-                data = base64.b64encode(self._native.png(_developed(development))).decode()
+                data = base64.b64encode(self._native.png(development(development))).decode()
             except PictureError:
                 # A picture without colour, or without errors.
                 continue
@@ -436,62 +435,3 @@ def _as_pixels(values: npt.ArrayLike, name: str, last: tuple[int, ...]) -> Pixel
         wanted = "(y, x, 3)" if last else "(y, x)"
         raise PictureError(f"{name} has the shape {pixels.shape}, not {wanted}")
     return pixels
-
-
-def _rect(values: Any, name: str) -> Rect:
-    try:
-        x, y, width, height = (int(value) for value in values)
-    except (TypeError, ValueError, OverflowError):
-        raise SettingError(f"{name} is column, row, width and height in pixels") from None
-    if x < 0 or y < 0 or width < 1 or height < 1 or max(x, y, width, height) >= 2**31:
-        raise SettingError(f"{name} is column, row, width and height in pixels, all of them within the picture")
-    return x, y, width, height
-
-
-_DEFAULTS: dict[str, Any] = {
-    "exposure": 0.0,
-    "white_balance": None,
-    "curve": "linear",
-    "scale": 1.0,
-    "crop": None,
-    "band_nm": None,
-    "false_colour": False,
-    "error_map": None,
-    "range": None,
-    "axis": "log",
-}
-
-
-def _development(*values: Any) -> dict[str, Any]:
-    return _developed(dict(zip(_DEFAULTS, values)))
-
-
-def _developed(given: Mapping[str, Any]) -> dict[str, Any]:
-    """The arguments of a development, as the native half takes them."""
-    for name in given:
-        if name not in _DEFAULTS:
-            raise SettingError(f"there is no argument {name!r}: {', '.join(_DEFAULTS)}")
-    options = _DEFAULTS | dict(given)
-    for name in ("exposure", "scale", "band_nm"):
-        value = options[name]
-        if value is None or (name == "exposure" and value == "auto"):
-            continue
-        try:
-            options[name] = float(value)
-        except (TypeError, ValueError, OverflowError):
-            also = ' or "auto"' if name == "exposure" else ""
-            raise SettingError(f"{name} is a number{also}, not {value!r:.40}") from None
-    for name in ("curve", "error_map", "axis"):
-        if options[name] is not None and not isinstance(options[name], str):
-            raise SettingError(f"{name} is a word, not {type(options[name]).__name__}")
-    if options["crop"] is not None:
-        options["crop"] = _rect(options["crop"], "crop")
-    if options["white_balance"] is not None and not isinstance(options["white_balance"], str):
-        options["white_balance"] = _rect(options["white_balance"], "white_balance")
-    if options["range"] is not None:
-        try:
-            low, high = (float(value) for value in options["range"])
-        except (TypeError, ValueError, OverflowError):
-            raise SettingError("range is two numbers: the values at the ends of the colour bar") from None
-        options["range"] = (low, high)
-    return options

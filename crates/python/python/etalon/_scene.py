@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import os
 import time as clock
@@ -14,16 +13,15 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict
 import numpy as np
 
 from . import _etalon
-from ._decode import Plain
-from ._errors import Problem, RenderInterrupted, SceneError, SettingError, problems_of
+from ._arguments import Bands, bands_of, count, index, listed, names, number, relative_error, size_of
+from ._errors import Problem, RenderInterrupted, SettingError, problems_of
 from ._picture import Picture
 from ._progress import Bar
 from ._results import Cost, Effect, Explanation, Quote, Replay, known, pair
+from ._source import Source
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
-
-Bands = tuple[float, float, float]
 
 MOST_THREADS = 4096
 
@@ -60,7 +58,8 @@ class Settings(TypedDict, total=False):
 def load(
     scene: str | os.PathLike[str] | Mapping[str, Any],
     *,
-    folder: str | os.PathLike[str] = ".",
+    folder: str | os.PathLike[str] | None = None,
+    files: Mapping[str, bytes] | None = None,
     size: tuple[int, int] | None = None,
 ) -> Scene:
     """Reads a scene.
@@ -69,9 +68,13 @@ def load(
     pbrt-v4), a dict with what a scene file says, or the text of a scene file: a str that begins with ``{``, or has several lines.
     Numbers and lists in a dict may be numpy arrays.
 
-    ``folder`` is where a dict or text finds the files that it names. ``size`` is another width and height of the film in pixels.
+    :param folder: where a dict or text finds the meshes and images that it names; the current folder if not given.
+    :param files: the meshes and images that a dict or text names, in memory: contents by name, each at most 4 GiB. No file is read from
+        the disk then.
+    :param size: another width and height of the film, pixels.
 
     :raises SceneError: if the scene is not valid; it has every error at once, each with its JSON path.
+    :raises SettingError: if an argument makes no sense.
     :raises OSError: if the file cannot be read.
 
     >>> scene = etalon.load({
@@ -82,17 +85,8 @@ def load(
     ...     "lights": [{"type": "environment", "radiance": 1}],
     ... })
     """
-    if isinstance(scene, Mapping):
-        source = _Source("the scene", None, scene if isinstance(scene, dict) else dict(scene), os.fspath(folder))
-    elif isinstance(scene, (str, os.PathLike)):
-        text = os.fspath(scene)
-        if not isinstance(text, str):
-            raise SettingError("a path is text, not bytes")
-        is_text = isinstance(scene, str) and (text.lstrip().startswith("{") or "\n" in text)
-        source = _Source("the scene", text, None, os.fspath(folder)) if is_text else _Source(text, None, None, None)
-    else:
-        raise SettingError(f"a scene is a path, a dict or the text of a scene file, not {type(scene).__name__}")
-    return Scene(source.read(_size(size)), source)
+    source = Source(scene, folder, files)
+    return Scene(source.read(size_of(size)), source)
 
 
 def schema() -> dict[str, Any]:
@@ -101,37 +95,10 @@ def schema() -> dict[str, Any]:
     return found
 
 
-class _Source:
-    """Where a scene is from, so that it can be read with another size: a horizontal angle of view then stays what it is."""
-
-    def __init__(self, name: str, text: str | None, value: dict[str, Any] | None, folder: str | None) -> None:
-        self.name, self.text, self.folder = name, text, folder
-        self.problems: list[Problem] = []
-        if value is not None:
-            plain = Plain(value)
-            self.text, self.problems = plain.text, plain.problems
-
-    def read(self, size: tuple[int, int] | None) -> _etalon.Scene:
-        if self.text is None or self.folder is None:
-            if not os.path.exists(self.name):
-                raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self.name)
-            return _etalon.load(self.name, size)
-        if not self.problems:
-            return _etalon.parse(self.text, self.name, self.folder, size)
-        # What JSON cannot say stands as null in the text: the reader finds all other errors.
-        problems = list(self.problems)
-        paths = {problem.path for problem in problems}
-        try:
-            _etalon.parse(self.text, self.name, self.folder, size)
-        except SceneError as error:
-            problems += [problem for problem in error.problems if problem.path not in paths]
-        raise SceneError(self.name, problems)
-
-
 class Scene:
     """A scene without errors: see :func:`load`."""
 
-    def __init__(self, native: _etalon.Scene, source: _Source) -> None:
+    def __init__(self, native: _etalon.Scene, source: Source) -> None:
         self._native, self._source = native, source
         self._ready: tuple[Any, _etalon.Renderer] | None = None
         self._notes: dict[str, Any] = json.loads(native.notes())
@@ -185,16 +152,16 @@ class Scene:
         polarised: bool = False,
     ) -> _etalon.Renderer:
         """The scene, ready with these settings. The last one is kept, for to make a scene ready may take long."""
-        wanted = _size(size)
-        kept = _bands(bands)
+        wanted = size_of(size)
+        kept = bands_of(bands)
         key = (wanted, kept, seed, max_depth, replicates, bool(polarised))
         if self._ready is None or self._ready[0] != key:
             native = self._native if wanted in (None, self.size) else self._source.read(wanted)
             renderer = native.prepare(
                 bands=kept,
-                seed=_count(seed, "seed", 0, 2**64 - 1),
-                max_depth=_count(max_depth, "max_depth", 1, 2**32 - 1),
-                replicates=_count(replicates, "replicates", 1, 2**32 - 1),
+                seed=count(seed, "seed", 0, 2**64 - 1),
+                max_depth=count(max_depth, "max_depth", 1, 2**32 - 1),
+                replicates=count(replicates, "replicates", 1, 2**32 - 1),
                 polarised=bool(polarised),
             )
             self._ready = (key, renderer)
@@ -301,10 +268,10 @@ class Scene:
         wanted = [errors] if isinstance(errors, (int, float)) else list(errors)
         found = json.loads(
             renderer.quote(
-                errors=[_relative(error) for error in wanted],
-                pilot_seconds=_number(pilot, "pilot"),
+                errors=[relative_error(error) for error in wanted],
+                pilot_seconds=number(pilot, "pilot"),
                 adaptive=adaptive,
-                threads=_count(threads, "threads", 1, MOST_THREADS),
+                threads=count(threads, "threads", 1, MOST_THREADS),
             )
         )
         costs = [
@@ -338,7 +305,7 @@ class Scene:
     ) -> Replay:
         """One path of the pixel in column ``x`` and row ``y``, vertex by vertex; ``sample`` counts from 0."""
         renderer = self._renderer(size=size, seed=seed, polarised=polarised)
-        found = json.loads(renderer.replay(_index(x, "x"), _index(y, "y"), _index(sample, "sample")))
+        found = json.loads(renderer.replay(index(x, "x"), index(y, "y"), index(sample, "sample")))
         stokes = found.get("stokes")
         return Replay(
             _array(found["wavelengths_nm"]),
@@ -367,85 +334,12 @@ def _wanted(error: float | None, settings: Settings) -> dict[str, Any]:
         raise SettingError('adaptive is "auto", "always" or "never"')
     time, crop = settings.get("time"), settings.get("crop")
     return {
-        "samples": _count(settings.get("spp"), "spp", 1, 2**31 - 1),
-        "error": None if error is None else _relative(error),
-        "seconds": None if time is None else _number(time, "time"),
+        "samples": count(settings.get("spp"), "spp", 1, 2**31 - 1),
+        "error": None if error is None else relative_error(error),
+        "seconds": None if time is None else number(time, "time"),
         "adaptive": adaptive,
-        "threads": _count(settings.get("threads"), "threads", 1, MOST_THREADS),
-        "crop": None if crop is None else _list(crop, "crop", 4, lambda value: _count(value, "crop", 0, 2**32 - 1)),
-        "channels": _names(settings.get("aov", ())),
+        "threads": count(settings.get("threads"), "threads", 1, MOST_THREADS),
+        "crop": None if crop is None else listed(crop, "crop", 4, lambda value: count(value, "crop", 0, 2**32 - 1)),
+        "channels": names(settings.get("aov", ())),
         "only": False,
     }
-
-
-def _names(aov: str | Sequence[str]) -> list[str]:
-    names = aov.split(",") if isinstance(aov, str) else aov
-    try:
-        return [name.strip() for name in names if name.strip()]
-    except (AttributeError, TypeError):
-        raise SettingError('aov is a name such as "depth", or a list of names') from None
-
-
-def _size(size: Any) -> tuple[int, int] | None:
-    if size is None:
-        return None
-    width, height = _list(size, "size", 2, lambda side: _count(side, "size", 1, 2**31 - 1))
-    return width, height
-
-
-def _bands(bands: Any) -> Bands | None:
-    if bands is None:
-        return None
-    parts = bands.split(":") if isinstance(bands, str) else bands
-    first, last, step = _list(parts, "bands", 3, lambda value: _number(value, "bands"))
-    return first, last, step
-
-
-def _list(values: Any, name: str, length: int, each: Callable[[Any], Any]) -> list[Any]:
-    try:
-        found = list(values)
-    except TypeError:
-        found = []
-    if len(found) != length:
-        raise SettingError(f"{name} has {length} numbers")
-    return [each(value) for value in found]
-
-
-def _count(value: Any, name: str, least: int, most: int) -> int | None:
-    """A whole number within bounds."""
-    if value is None:
-        return None
-    try:
-        whole = int(value)
-        same = whole == value and not isinstance(value, (bool, str))
-    except (TypeError, ValueError, OverflowError):
-        raise SettingError(f"{name} is a whole number, not {type(value).__name__}") from None
-    if not same:
-        raise SettingError(f"{name} is a whole number, not {value!r:.40}")
-    if not least <= whole <= most:
-        raise SettingError(f"{name} is from {least} to {most}")
-    return whole
-
-
-def _index(value: Any, name: str) -> int:
-    index = _count(value, name, 0, 2**32 - 1)
-    if index is None:
-        raise SettingError(f"{name} is a whole number, not None")
-    return index
-
-
-def _number(value: Any, name: str) -> float:
-    if isinstance(value, bool):
-        raise SettingError(f"{name} is a number, not a bool")
-    try:
-        return float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise SettingError(f"{name} is a number, not {value!r:.40}") from None
-
-
-def _relative(value: Any) -> float:
-    """A relative error. 1 and more is nearly always meant in percent."""
-    error = _number(value, "error")
-    if error >= 1:
-        raise SettingError(f"error is {error:g}; it is a share of the mean luminance: {error / 100:g} for {error:g} %")
-    return error

@@ -36,7 +36,9 @@ class Truth:
     name: str
     """Words joined by hyphens, unique."""
     scene: dict[str, Any]
-    """The scene in the neutral form, which is a part of the scene format: ``etalon.load(truth.scene)`` reads it."""
+    """The scene in the neutral form, which is a part of the scene format: ``etalon.load(truth.scene, files=truth.files)`` reads it."""
+    files: dict[str, bytes]
+    """Meshes and images that the scene names: contents by name. Most scenes name none."""
     value: float
     """What the mean over the pixels must be."""
     quantity: str
@@ -92,10 +94,12 @@ def _all() -> dict[str, Truth]:
     """All truths by name, made when they are asked for first."""
     if _TRUTHS:
         return _TRUTHS
+    files = _etalon.truth_files()
     for entry in json.loads(_etalon.truths()):
         band = entry["band_nm"]
         names = Truth.__dataclass_fields__
         plain = {name: entry[name] for name in names if name in entry}
+        plain["files"] = files.get(entry["name"], {})
         plain["band_nm"] = None if band is None else (band[0], band[1])
         crop = entry["crop_px"]
         plain["crop_px"] = None if crop is None else tuple(crop)
@@ -179,15 +183,18 @@ def judge_means(name: str | Truth, means: npt.ArrayLike, *, nonfinite: int = 0, 
 
 def export(folder: str | os.PathLike[str], names: Iterable[str] | None = None) -> list[str]:
     """Writes the folder with which a renderer in another language joins: a README, the schema of the scenes, the list of truths, a
-    scene for each. Gives the paths that were written.
+    scene for each with the files that it names. Gives the paths that were written.
 
     :param names: truths whose scenes are written; all if not given.
     """
-    wanted = None if names is None else {truth(name).name for name in names}
+    wanted = None
+    if names is not None:
+        chosen = [truth(name) for name in names]
+        wanted = {f"scenes/{one.name}{ending}" for one in chosen for ending in (".json", ".white.json")}
+        wanted |= {f"scenes/{file}" for one in chosen for file in one.files}
     written = []
     for path, contents in _etalon.exchange_files():
-        stem = os.path.basename(path).removesuffix(".json").removesuffix(".white")
-        if wanted is not None and path.startswith("scenes/") and path.endswith(".json") and stem not in wanted:
+        if wanted is not None and path.startswith("scenes/") and path not in wanted:
             continue
         target = os.path.join(os.fspath(folder), *path.split("/"))
         os.makedirs(os.path.dirname(target), exist_ok=True)

@@ -131,9 +131,9 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
                 return 1 << lane;
             }
             Arrival::Passed => {}
-            Arrival::Collides(collision) => {
+            Arrival::Collides => {
                 let before = self.counters.rays + self.counters.shadow_rays;
-                let next = path.scatter_in_medium(world, &collision, sampler, &mut self.counters, &mut ());
+                let next = path.scatter_in_medium(world, sampler, &mut self.counters, &mut ());
                 paths.ray_count[lane] += (self.counters.rays + self.counters.shadow_rays - before) as u32;
                 paths.vertex[lane] = path.vertex;
                 match next {

@@ -18,7 +18,7 @@ use etalon_optics::Lanes;
 
 impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
     /// Goes along the ray through the medium that is there, up to what the ray has met. What the medium emits on this way is added, what it
-    /// takes away is taken from throughput. Returns where it scatters the path, if it does so before.
+    /// takes away is taken from throughput. Whether it scatters the path before: at `collision`.
     #[inline]
     pub(super) fn travel(
         &mut self,
@@ -29,14 +29,14 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         sampler: &Sampler,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
-    ) -> Option<MediumInteraction<'a>> {
+    ) -> bool {
         let start = self.passed_at.unwrap_or(ray.origin);
         let mut length = f64::INFINITY;
         if let Some(vertex) = met {
             self.stack.meet(vertex.surface.interior(), vertex.meets_front());
             length = (vertex.point.position - start).length();
         }
-        let medium = participating.around(world.media, &self.stack)?;
+        let Some(medium) = participating.around(world.media, &self.stack) else { return false };
         let coefficients = medium.coefficients(&self.wavelengths.lambda_nm);
         let way = Way { origin: start, direction: ray.direction, length };
         let column_m = medium.column(&way) * participating.unit_m;
@@ -45,7 +45,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         if !medium.scatters() {
             self.beta *= coefficients.transmittance(column_m);
-            return None;
+            return false;
         }
         // Sets from the other end than those of surfaces, which are what they are without media.
         let [coarse, fine, u_light, u_place] = sampler.set(u32::MAX - self.vertex);
@@ -58,7 +58,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             Stretch::Passed { weight, lane_density } => {
                 self.beta *= weight;
                 self.lanes.follow(lane_density);
-                None
+                false
             }
             Stretch::Scattered { column_m, weight, lane_density } => {
                 let distance = medium.distance(&way, column_m / participating.unit_m);
@@ -67,7 +67,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 self.lanes.follow(lane_density);
                 self.stack = vertex.stack;
                 observer.scattering(self.vertex, vertex.point.position, self.beta);
-                Some(vertex)
+                self.collision = Some(vertex);
+                true
             }
         }
     }
@@ -131,17 +132,17 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
     }
 
-    /// The walk's step from a point of a medium: direct light by one shadow ray, a direction by the phase function, Russian roulette. Returns
+    /// The walk's step from where a medium scatters it: direct light by one shadow ray, a direction by the phase function, Russian roulette. Returns
     /// the ray on which the path goes on.
     #[inline]
     pub(crate) fn scatter_in_medium(
         &mut self,
         world: &World<'a>,
-        vertex: &MediumInteraction<'a>,
         sampler: &Sampler,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) -> Option<Ray<f64>> {
+        let vertex = &self.collision.take().expect("it is asked for where a medium scatters the path");
         let sees_lights = world.shadow_rays != ShadowRays::Never;
         if sees_lights {
             let [u_light, u1, u2, _] = sampler.vertex_set(self.vertex, 1);

@@ -47,6 +47,8 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
     u_mask: Option<f64>,
     /// The optical depth on its ray, from where it is, at which a medium scatters it, once one was met that scatters.
     pub(super) optical_depth: Option<f64>,
+    /// Where a medium scatters it, once it does.
+    pub(super) collision: Option<MediumInteraction<'a>>,
     spectra: SpectrumCache<N>,
 }
 
@@ -69,8 +71,8 @@ pub(super) enum Step {
 }
 
 /// What becomes of a path at the end of its ray.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Arrival<'a> {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Arrival {
     /// It has left the scene and ended.
     Escaped,
     /// It ends at the surface that it has met.
@@ -80,7 +82,7 @@ pub(crate) enum Arrival<'a> {
     /// The surface scatters it: the next vertex of the path.
     Scatters,
     /// A medium scatters it before it comes to the surface.
-    Collides(MediumInteraction<'a>),
+    Collides,
 }
 
 impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
@@ -103,6 +105,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             passed_at: None,
             u_mask: None,
             optical_depth: None,
+            collision: None,
             spectra: SpectrumCache::new(),
         }
     }
@@ -143,13 +146,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         sampler: &Sampler,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
-    ) -> Arrival<'a> {
+    ) -> Arrival {
         if let Some(participating) = &world.participating
-            && let Some(collision) = self.travel(world, participating, ray, met.as_deref(), sampler, counters, observer)
+            && self.travel(world, participating, ray, met.as_deref(), sampler, counters, observer)
         {
             return match self.is_too_deep(world, counters, observer) {
                 true => Arrival::Ended,
-                false => Arrival::Collides(collision),
+                false => Arrival::Collides,
             };
         }
         let Some(vertex) = met else {

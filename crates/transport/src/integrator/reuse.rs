@@ -317,7 +317,7 @@ fn trace_gathering<'a, M: WavelengthModel<N>, const N: usize>(
         match path.arrive(world, &ray, met.as_mut(), sampler, counters, observer) {
             Arrival::Scatters => {}
             Arrival::Passed => continue,
-            Arrival::Collides(_) => unreachable!("no plan shares paths where media scatter"),
+            Arrival::Collides => unreachable!("no plan shares paths where media scatter"),
             Arrival::Ended => break,
             Arrival::Escaped => {
                 reuse_path.escape(world, ray.direction);

@@ -29,8 +29,8 @@ pub(crate) fn trace<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         match path.arrive(world, &ray, met.as_mut(), sampler, counters, observer) {
             Arrival::Scatters => {}
             Arrival::Passed => continue,
-            Arrival::Collides(collision) => {
-                match path.scatter_in_medium(world, &collision, sampler, counters, observer) {
+            Arrival::Collides => {
+                match path.scatter_in_medium(world, sampler, counters, observer) {
                     Some(next) => ray = next,
                     None => break,
                 }
