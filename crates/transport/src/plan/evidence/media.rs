@@ -3,7 +3,7 @@
 use super::first_surface;
 use super::materials::spread;
 use etalon_optics::Spectrum;
-use etalon_scene::{Medium, PhaseFunction, Scene};
+use etalon_scene::{Medium, Object, PhaseFunction, Scene};
 
 /// What the first medium has to say that has something to say: that of a surface, then that outside of all bodies.
 fn first_medium(scene: &Scene, says: impl Fn(&Medium, [f64; 2]) -> Option<String>) -> Option<String> {
@@ -44,14 +44,15 @@ pub(super) fn coloured(scene: &Scene) -> Option<String> {
     })
 }
 
-/// The first place where a medium scatters light to the camera, which shadow rays find.
+/// The first medium that scatters light, to which shadow rays are of use.
 pub(super) fn scatters_everywhere(scene: &Scene) -> Option<String> {
-    let of_surfaces = first_surface(scene, |material, _| {
-        material.medium.as_ref().is_some_and(Medium::scatters).then(|| "its medium".to_owned())
-    });
+    let scatters = |object: &Object| {
+        let medium = scene.materials[object.material].medium.as_ref()?;
+        medium.scatters().then(|| format!("the medium of \"{}\"", object.name))
+    };
     let surrounding =
         || scene.medium.as_ref().filter(|medium| medium.scatters()).map(|_| "the medium of the scene".to_owned());
-    of_surfaces.or_else(surrounding)
+    scene.placed_objects().find_map(scatters).or_else(surrounding)
 }
 
 /// The first medium that polarises what it scatters, and by how much it matters: light that is scattered twice by right angles comes through
