@@ -133,7 +133,12 @@ fn half_spaces() -> Vec<Truth> {
         (0.99, 0.5, "half-space-of-albedo-0.99-at-60-degrees"),
     ] {
         let value = HalfSpace::new(albedo).plane_albedo(mu);
-        let scene = slab(200.0, &medium(albedo, 1.0 - albedo, &isotropic()), mu).sky(1.0);
+        // The same in two ways.
+        let filled = match mu == 1.0 {
+            true => medium(albedo, 1.0 - albedo, &isotropic()),
+            false => json!({ "extinction_per_m": 1, "albedo": albedo }),
+        };
+        let scene = slab(200.0, &filled, mu).sky(1.0);
         list.push(of_half_space(name, &scene, albedo, mu, value));
     }
     // From 2 to 9 times as thick from violet to red, which a half-space does not show.
@@ -145,6 +150,7 @@ fn half_spaces() -> Vec<Truth> {
     list.push(
         of_half_space("half-space-of-coloured-extinction", &scene, 0.9, 1.0, value).claims(Claim::PhotometricSensor),
     );
+    let coloured = json!({ "extinction_per_m": table(1.0), "albedo": 0.9 });
     let blue = slab(100.0, &coloured, 1.0).sky(1.0).band([400.0, 410.0]);
     list.push(of_half_space("half-space-of-coloured-extinction-in-violet", &blue, 0.9, 1.0, value));
     // Parallel light of irradiance π.
