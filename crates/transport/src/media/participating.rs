@@ -74,8 +74,9 @@ impl<const N: usize> Stretch<N> {
         }
         let column_m = *optical_depth / hero;
         let transmittance = coefficients.transmittance(column_m);
-        let relative = transmittance / (hero * transmittance[0]);
-        Self::Scattered { column_m, weight: *scattering * relative, lane_density: *extinction * relative }
+        // Divided one by one, so that lanes of the hero's extinction have exactly its density.
+        let relative = transmittance / transmittance[0];
+        Self::Scattered { column_m, weight: *scattering / hero * relative, lane_density: *extinction / hero * relative }
     }
 }
 
