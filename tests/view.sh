@@ -4,5 +4,5 @@
 set -eu
 
 here=$(cd "$(dirname "$0")/.." && pwd)
-cargo build --quiet --release --manifest-path "$here/Cargo.toml" -p etalon-cli --bin etalon
+cargo build --quiet --release --manifest-path "$here/Cargo.toml" --workspace --bin etalon
 exec python3 "$here/tests/view/page.py" "$here/target/release/etalon" "$@"
