@@ -6,9 +6,7 @@ use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::light::Light;
-use crate::media::{
-    Coefficients, Equiangular, Medium, MediumInteraction, Participating, Stretch, Way, free_point, optical_depth,
-};
+use crate::media::{Coefficients, Equiangular, Medium, MediumInteraction, Stretch, Way, free_point, optical_depth};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::SurfaceInteraction;
@@ -23,13 +21,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     pub(super) fn travel(
         &mut self,
         world: &World<'a>,
-        participating: &Participating<'a>,
         ray: &Ray<f64>,
         met: Option<&SurfaceInteraction<'a>>,
         sampler: &Sampler,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) -> bool {
+        let Some(participating) = &world.participating else { return false };
         let start = self.passed_at.unwrap_or(ray.origin);
         let mut length = f64::INFINITY;
         if let Some(vertex) = met {

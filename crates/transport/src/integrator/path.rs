@@ -147,9 +147,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) -> Arrival {
-        if let Some(participating) = &world.participating
-            && self.travel(world, participating, ray, met.as_deref(), sampler, counters, observer)
-        {
+        if world.participating.is_some() && self.travel(world, ray, met.as_deref(), sampler, counters, observer) {
             return match self.is_too_deep(world, counters, observer) {
                 true => Arrival::Ended,
                 false => Arrival::Collides,

@@ -68,7 +68,7 @@ fn directions_have_the_cosines_and_all_turns_around_them() {
                 let (wi, density) = phase.sample(wo, u);
                 assert!((wi.length() - 1.0).abs() < 1e-12);
                 assert_eq!(density, phase.density(-wo.dot(wi)));
-                sum = sum + wi / f64::from(n * n);
+                sum += wi / f64::from(n * n);
             }
         }
         // The mean direction is that of the light as it came, times the mean cosine; 400 rows leave 1e-3 of the sharpest peak.
