@@ -314,6 +314,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("bench/race/race.py"),
             ),
             named(
+                "race-media",
+                "[OPTIONS]",
+                "media against Mitsuba 3: time for the same error, and the pictures",
+                "5 min",
+                Script("bench/media/race.py"),
+            ),
+            named(
                 "race-scenes",
                 "FOLDER",
                 "writes the scenes of the race in our format",
