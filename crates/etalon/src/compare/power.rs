@@ -81,9 +81,12 @@ impl Noise {
 
     /// Probability that a tile changed by this part exceeds its limit, in the mean over all tiles.
     fn mean_power(&self, change: f64, limits: &[f64]) -> f64 {
-        let found = |(&(error, _), &limit): (&(f64, f64), &f64)| {
+        let found = |(&(error, freedom), &limit): (&(f64, f64), &f64)| {
             let shift = change / error;
-            if error == 0.0 { 1.0 } else { normal_upper_tail(limit - shift) + normal_upper_tail(limit + shift) }
+            // The noncentral t, whose spread grows with t where the noise itself is known by few numbers (Abramowitz & Stegun 26.7.10).
+            let (at, spread) = (limit * (1.0 - 0.25 / freedom), (1.0 + 0.5 * limit * limit / freedom).sqrt());
+            let beyond = |shift: f64| normal_upper_tail((at - shift) / spread);
+            if error == 0.0 { 1.0 } else { beyond(shift) + beyond(-shift) }
         };
         let sum: f64 = self.representatives.iter().zip(limits).map(found).sum();
         sum / self.representatives.len().max(1) as f64
