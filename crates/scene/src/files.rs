@@ -51,8 +51,8 @@ enum Source<'f> {
     Nowhere,
     /// In a folder, to which names are relative.
     Folder(PathBuf),
-    /// In memory.
-    Memory(&'f [NamedFile]),
+    /// In memory, with the place of each by its name.
+    Memory(&'f [NamedFile], HashMap<&'f str, usize>),
 }
 
 /// The files of one scene.
@@ -78,7 +78,8 @@ impl<'f> Files<'f> {
 
     /// Files that are in memory. Of two with the same name the last counts.
     pub(crate) fn given(files: &'f [NamedFile]) -> Self {
-        Self::of(Source::Memory(files))
+        let places = files.iter().enumerate().map(|(place, file)| (file.name.as_str(), place));
+        Self::of(Source::Memory(files, places.collect()))
     }
 
     fn of(source: Source<'f>) -> Self {
@@ -120,7 +121,7 @@ impl<'f> Files<'f> {
     /// # Errors
     /// Why there are none, and a hint, which may be empty.
     fn find(&self, name: &str) -> Result<Cow<'f, [u8]>, (String, String)> {
-        let files = match &self.source {
+        let (files, places) = match &self.source {
             Source::Nowhere => {
                 return Err((format!("\"{name}\" cannot be found: this scene has no folder"), String::new()));
             }
@@ -130,9 +131,9 @@ impl<'f> Files<'f> {
                 let refuse = |why| (format!("cannot read {}: {why}", path.display()), hint.to_owned());
                 return read_file(&path).map(Cow::Owned).map_err(refuse);
             }
-            Source::Memory(files) => files,
+            Source::Memory(files, places) => (*files, places),
         };
-        let Some(file) = files.iter().rfind(|file| file.name == name) else {
+        let Some(file) = places.get(name).map(|place| &files[*place]) else {
             let names = || files.iter().map(|file| file.name.as_str());
             let hint = match did_you_mean(name, names()) {
                 Some(meant) => format!("did you mean \"{meant}\"?"),

@@ -70,7 +70,7 @@ impl<'a> Tracer<'a> {
         let plan = prepared.plan();
         // Forced on a scene without solids, they are nothing to walk through.
         let media = prepared.media.as_ref().filter(|media| media.solids.iter().any(Option::is_some));
-        let masks = plan.runs(EffectName::Masks) || prepared.has_boundaries();
+        let masks = plan.runs(EffectName::Masks) || prepared.has_boundaries;
         Self {
             prepared,
             camera: prepared.tracing_camera(),

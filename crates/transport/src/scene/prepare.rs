@@ -37,6 +37,8 @@ pub struct Prepared {
     pub(crate) media: Option<Media>,
     /// What fills the space outside of all bodies.
     surrounding: Option<Medium>,
+    /// Whether some surface is only the boundary of a medium.
+    pub(crate) has_boundaries: bool,
     pub(crate) wavelengths: WavelengthDistribution,
     pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
@@ -152,12 +154,15 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     };
     let drawn = matches!(plan.lane_model, LaneModel::Shared | LaneModel::Hero).then_some(&wavelengths);
     let tables = ShadingTables::new(&surfaces, &lights, &environments, drawn, plan.runs(EffectName::Polarisation));
+    let has_boundaries =
+        scene.placed_objects().any(|object| scene.materials[object.material].kind == MaterialKind::Boundary);
     let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene, &frame)).transpose()?;
     Ok(Prepared {
         frame,
         camera: frame.camera(&scene.camera),
         camera_motion,
         media,
+        has_boundaries,
         surrounding: scene.medium.as_ref().and_then(|medium| Medium::new(medium, range_nm, &frame)),
         geometry,
         surfaces,
@@ -254,11 +259,6 @@ impl Prepared {
     pub(crate) fn participating(&self) -> Option<Participating<'_>> {
         let acts = self.plan.runs(EffectName::Absorption) || self.plan.runs(EffectName::Scattering);
         acts.then(|| Participating { unit_m: 1.0 / self.frame.per_m(), surrounding: self.surrounding.as_ref() })
-    }
-
-    /// Whether some surface is only the boundary of a medium.
-    pub(crate) fn has_boundaries(&self) -> bool {
-        self.scene.placed_objects().any(|object| self.scene.materials[object.material].kind == MaterialKind::Boundary)
     }
 
     /// Width and height of the blocks of pixels that share paths, if any do.
