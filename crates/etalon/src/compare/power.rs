@@ -82,7 +82,8 @@ impl Noise {
     /// Probability that a tile changed by this part exceeds its limit, in the mean over all tiles.
     fn mean_power(&self, change: f64, limits: &[f64]) -> f64 {
         let found = |(&(error, freedom), &limit): (&(f64, f64), &f64)| {
-            let shift = change / error;
+            // What is brighter by a part has more noise by the same part.
+            let shift = change / (error * (0.5 + 0.5 * (1.0 + change) * (1.0 + change)).sqrt());
             // The noncentral t, whose spread grows with t where the noise itself is known by few numbers (Abramowitz & Stegun 26.7.10).
             let (at, spread) = (limit * (1.0 - 0.25 / freedom), (1.0 + 0.5 * limit * limit / freedom).sqrt());
             let beyond = |shift: f64| normal_upper_tail((at - shift) / spread);
