@@ -26,7 +26,7 @@ pub use material::{
     InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets, NumberTexture, Parameter,
     ParameterMut, PolarisingSheet, Side, SpectrumTexture,
 };
-pub use medium::{Density, DensityGrid, ExponentialDensity, Medium, PhaseFunction, PhaseTable};
+pub use medium::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseTable};
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use references::ReferenceError;
 pub use shape::{Mesh, Shape};

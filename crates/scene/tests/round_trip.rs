@@ -184,13 +184,13 @@ fn materials_and_spectra() {
         scattering: Spectrum::Constant(50.0),
         phase: PhaseFunction::DoubleHenyeyGreenstein { g: [0.875, -0.25], weight: 0.75 },
         source: Some(Spectrum::blackbody(5000.0, 1e-3).expect("right")),
-        density: Density::Uniform,
+        density: MediumDensity::Uniform,
     };
     assert_eq!((medium("cloud"), kind(&scene, "cloud")), (Some(cloud), &MaterialKind::Boundary));
     let air = scene.medium.as_ref().expect("it has one");
     assert_eq!((&air.scattering, &air.phase), (&Spectrum::Constant(1e-5), &PhaseFunction::Rayleigh));
     let exponential = ExponentialDensity { base_m: [0.0, -1.0, 0.0], up: [0.0, 0.0, 1.0], scale_height_m: 8000.0 };
-    assert_eq!(air.density, Density::Exponential(exponential));
+    assert_eq!(air.density, MediumDensity::Exponential(exponential));
     assert_eq!((scene.objects[0].opacity, scene.objects[1].opacity), (0.75, 1.0));
     assert_eq!(kind(&scene, "objects[3].material"), &reflects(Spectrum::Constant(1.0)));
 }

@@ -1,6 +1,6 @@
 //! Media: what fills bodies and the space around them.
 
-use etalon_scene::{Density, MaterialKind, Medium, PhaseFunction, Scene};
+use etalon_scene::{MaterialKind, Medium, MediumDensity, PhaseFunction, Scene};
 
 use super::{imported, said, scene};
 
@@ -51,7 +51,7 @@ fn media_of_mitsuba_arrive() {
     assert_eq!(glass.phase, PhaseFunction::DoubleHenyeyGreenstein { g: [0.9, 0.0], weight: 0.75 });
     let smoke = within(&scene, 2);
     near(coefficients(smoke, 550.0), [0.0, 5.0]);
-    let Density::Grid(grid) = &smoke.density else { panic!("{:?}", smoke.density) };
+    let MediumDensity::Grid(grid) = &smoke.density else { panic!("{:?}", smoke.density) };
     assert_eq!((grid.cells, grid.box_m), ([1, 1, 2], [[0.0; 3], [1.0; 3]]));
     assert_eq!((&grid.values[..], grid.transform.linear[0][0]), (&[0.5, 1.5][..], 2.0));
     let PhaseFunction::Tabulated(table) = &smoke.phase else { panic!("{:?}", smoke.phase) };
@@ -89,7 +89,7 @@ AttributeEnd
     for object in 0..2 {
         let smoke = within(&scene, object);
         near(coefficients(smoke, 500.0), [0.0, 2.0]);
-        let Density::Grid(grid) = &smoke.density else { panic!("{:?}", smoke.density) };
+        let MediumDensity::Grid(grid) = &smoke.density else { panic!("{:?}", smoke.density) };
         assert_eq!((grid.cells, &grid.values[..]), ([2, 1, 1], &[0.5, 1.0][..]));
         assert_eq!(grid.box_m, [[0.0; 3], [2.0, 1.0, 1.0]]);
         // The world is mirrored, as its camera does not.

@@ -10,7 +10,7 @@ use etalon_optics::Spectrum;
 
 use crate::files::Files;
 use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned};
-use crate::model::{Density, DensityGrid, ExponentialDensity, Medium, PhaseFunction, PhaseTable};
+use crate::model::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseTable};
 
 crate::record! {
     /// What fills a space, and what it does to light on its way.
@@ -157,7 +157,7 @@ pub(super) fn medium<'f>(
     };
     let phase = form.phase.as_ref().and_then(|form| phase(form, reader));
     let density = match &form.density {
-        Optional::Absent => Some(Density::Uniform),
+        Optional::Absent => Some(MediumDensity::Uniform),
         Optional::Given(form) => density(form, files, reader),
         Optional::Invalid => None,
     };
@@ -172,9 +172,9 @@ fn by_albedo(extinction: &Spectrum, albedo: &Spectrum, spectra: &Spectra<'_>) ->
     Some((absorption, scattering))
 }
 
-fn density(form: &DensityForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<Density> {
+fn density(form: &DensityForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<MediumDensity> {
     match form {
-        DensityForm::Exponential(form) => Some(Density::Exponential(ExponentialDensity {
+        DensityForm::Exponential(form) => Some(MediumDensity::Exponential(ExponentialDensity {
             base_m: form.base_m?,
             up: form.up?.0,
             scale_height_m: form.scale_height_m?.0,
@@ -195,7 +195,12 @@ fn density(form: &DensityForm, files: &mut Files, reader: &mut Reader<'_>) -> Op
                 );
                 return None;
             }
-            Some(Density::Grid(DensityGrid { values, transform: transform?, cells: grid.cells, box_m: grid.box_m }))
+            Some(MediumDensity::Grid(DensityGrid {
+                values,
+                transform: transform?,
+                cells: grid.cells,
+                box_m: grid.box_m,
+            }))
         }
     }
 }

@@ -17,12 +17,12 @@ pub struct Medium {
     /// shows B.
     pub source: Option<Spectrum>,
     /// What both coefficients are multiplied by at each place.
-    pub density: Density,
+    pub density: MediumDensity,
 }
 
 /// How dense a medium is at each place, relative to what its coefficients say.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Density {
+pub enum MediumDensity {
     /// 1 everywhere.
     Uniform,
     /// It falls exponentially with the height, as in air that is in equilibrium.
@@ -96,7 +96,7 @@ impl Medium {
             scattering: Spectrum::Constant(0.0),
             phase: PhaseFunction::Isotropic,
             source: None,
-            density: Density::Uniform,
+            density: MediumDensity::Uniform,
         }
     }
 

@@ -1,6 +1,6 @@
 //! A medium as paths meet it.
 
-use super::density::{Density, Way};
+use super::density::{MediumDensity, Way};
 use super::phase::Phase;
 use crate::frame::SceneFrame;
 use crate::spectral::PathSpectrum;
@@ -17,7 +17,7 @@ pub(crate) struct Medium {
     source: Option<PathSpectrum>,
     /// Where it scatters light.
     pub phase: Phase,
-    density: Density,
+    density: MediumDensity,
 }
 
 /// Coefficients of a medium in each lane where its density is 1, m⁻¹.
@@ -39,7 +39,7 @@ impl Medium {
             scatters: medium.scatters(),
             source: medium.shines().map(spectrum),
             phase: Phase::new(&medium.phase),
-            density: Density::new(&medium.density, frame),
+            density: MediumDensity::new(&medium.density, frame),
         })
     }
 

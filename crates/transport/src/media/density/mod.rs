@@ -1,4 +1,4 @@
-//! How dense media are along a way: one kind a file, one door, [`Density`].
+//! How dense media are along a way: one kind a file, one door, [`MediumDensity`].
 //!
 //! Both coefficients of a medium are multiplied by its density ρ, so all that light meets on a way depends on its **column**, the integral of
 //! ρ over the way: a column c takes as much light away as the length c of the medium where ρ is 1. For each kind here the column is known in
@@ -27,19 +27,19 @@ pub(crate) struct Way {
 
 /// How dense a medium is at each place.
 #[derive(Clone, Debug)]
-pub(crate) enum Density {
+pub(crate) enum MediumDensity {
     Uniform,
     Exponential(Exponential),
     Grid(Box<Grid>),
 }
 
-impl Density {
+impl MediumDensity {
     /// The density of a scene, in its frame.
-    pub(crate) fn new(density: &etalon_scene::Density, frame: &SceneFrame) -> Self {
+    pub(crate) fn new(density: &etalon_scene::MediumDensity, frame: &SceneFrame) -> Self {
         match density {
-            etalon_scene::Density::Uniform => Self::Uniform,
-            etalon_scene::Density::Exponential(one) => Self::Exponential(Exponential::new(one, frame)),
-            etalon_scene::Density::Grid(grid) => Self::Grid(Box::new(Grid::new(grid, frame))),
+            etalon_scene::MediumDensity::Uniform => Self::Uniform,
+            etalon_scene::MediumDensity::Exponential(one) => Self::Exponential(Exponential::new(one, frame)),
+            etalon_scene::MediumDensity::Grid(grid) => Self::Grid(Box::new(Grid::new(grid, frame))),
         }
     }
 

@@ -1,21 +1,21 @@
 //! Columns against sums over many points, and the way back from a column to its place.
 
 use super::*;
-use etalon_scene::{Density as SceneDensity, DensityGrid, ExponentialDensity, Transform};
+use etalon_scene::{DensityGrid, ExponentialDensity, Transform};
 
 fn way(origin: [f64; 3], toward: [f64; 3], length: f64) -> Way {
     Way { origin: Vec3::from_array(origin), direction: Vec3::from_array(toward).normalized(), length }
 }
 
 /// The density at a point, by a formula of its own.
-fn density_of(density: &SceneDensity, p: Vec3<f64>) -> f64 {
+fn density_of(density: &etalon_scene::MediumDensity, p: Vec3<f64>) -> f64 {
     match density {
-        SceneDensity::Uniform => 1.0,
-        SceneDensity::Exponential(one) => {
+        etalon_scene::MediumDensity::Uniform => 1.0,
+        etalon_scene::MediumDensity::Exponential(one) => {
             let height = (p - Vec3::from_array(one.base_m)).dot(Vec3::from_array(one.up));
             (-height / one.scale_height_m).exp()
         }
-        SceneDensity::Grid(grid) => {
+        etalon_scene::MediumDensity::Grid(grid) => {
             let cells = grid.cells;
             let p = p.to_array();
             let mut at = [0.0; 3];
@@ -45,14 +45,14 @@ fn density_of(density: &SceneDensity, p: Vec3<f64>) -> f64 {
     }
 }
 
-fn grid(cells: [u32; 3], holes: bool) -> SceneDensity {
+fn grid(cells: [u32; 3], holes: bool) -> etalon_scene::MediumDensity {
     let count = cells.iter().product::<u32>();
     // Numbers without a pattern; where there are holes, most of the far half is empty.
     let value = |i: u32| match holes && i % cells[0] > 2 && i % 97 != 5 {
         true => 0.0,
         false => f64::from((i * 7919 + i * i * 31) % 101) as f32 / 50.0,
     };
-    SceneDensity::Grid(DensityGrid {
+    etalon_scene::MediumDensity::Grid(DensityGrid {
         cells,
         values: (0..count).map(value).collect(),
         box_m: [[-1.0, 0.0, -0.5], [1.0, 1.5, 0.75]],
@@ -60,11 +60,15 @@ fn grid(cells: [u32; 3], holes: bool) -> SceneDensity {
     })
 }
 
-fn all() -> Vec<SceneDensity> {
+fn all() -> Vec<etalon_scene::MediumDensity> {
     let up = Vec3::new(1.0, 2.0, 0.5).normalized().to_array();
     vec![
-        SceneDensity::Uniform,
-        SceneDensity::Exponential(ExponentialDensity { base_m: [0.1, 0.2, 0.3], up, scale_height_m: 0.4 }),
+        etalon_scene::MediumDensity::Uniform,
+        etalon_scene::MediumDensity::Exponential(ExponentialDensity {
+            base_m: [0.1, 0.2, 0.3],
+            up,
+            scale_height_m: 0.4,
+        }),
         grid([1, 1, 1], false),
         grid([2, 3, 4], false),
         grid([20, 17, 9], false),
@@ -93,7 +97,7 @@ fn ways() -> Vec<Way> {
 #[test]
 fn columns_are_sums_over_many_points() {
     for density in all() {
-        let prepared = Density::new(&density, &SceneFrame::WORLD);
+        let prepared = MediumDensity::new(&density, &SceneFrame::WORLD);
         for way in ways() {
             let n = 20_000;
             let step = way.length / f64::from(n);
@@ -109,7 +113,7 @@ fn columns_are_sums_over_many_points() {
 #[test]
 fn densities_at_places_are_those_of_the_formula() {
     for density in all() {
-        let prepared = Density::new(&density, &SceneFrame::WORLD);
+        let prepared = MediumDensity::new(&density, &SceneFrame::WORLD);
         for way in ways() {
             for i in 0..20 {
                 let place = way.origin + way.direction * (way.length * (f64::from(i) + 0.5) / 20.0);
@@ -123,7 +127,7 @@ fn densities_at_places_are_those_of_the_formula() {
 #[test]
 fn the_place_of_a_column_has_that_column() {
     for density in all() {
-        let prepared = Density::new(&density, &SceneFrame::WORLD);
+        let prepared = MediumDensity::new(&density, &SceneFrame::WORLD);
         for way in ways() {
             let whole = prepared.column(&way);
             for share in [1e-9, 0.1, 0.37, 0.999] {
@@ -142,7 +146,7 @@ fn the_place_of_a_column_has_that_column() {
 #[test]
 fn an_atmosphere_is_known_to_its_end() {
     let density = ExponentialDensity { base_m: [0.0; 3], up: [0.0, 1.0, 0.0], scale_height_m: 8.0 };
-    let air = Density::new(&SceneDensity::Exponential(density), &SceneFrame::WORLD);
+    let air = MediumDensity::new(&etalon_scene::MediumDensity::Exponential(density), &SceneFrame::WORLD);
     let up = way([0.0; 3], [0.0, 1.0, 0.0], f64::INFINITY);
     assert_eq!(air.column(&up), 8.0);
     assert!((air.column(&way([0.0; 3], [1.0, 1.0, 0.0], f64::INFINITY)) / 8.0 - 2.0_f64.sqrt()).abs() < 1e-15);
@@ -159,11 +163,12 @@ fn an_atmosphere_is_known_to_its_end() {
 
 #[test]
 fn a_grid_lies_where_its_transform_puts_it() {
-    let SceneDensity::Grid(plain) = grid([20, 17, 9], false) else { unreachable!("it is a grid") };
+    let etalon_scene::MediumDensity::Grid(plain) = grid([20, 17, 9], false) else { unreachable!("it is a grid") };
     // Twice as large, turned by 90° about z, and moved.
     let linear = [[0.0, -2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0]];
     let placed = DensityGrid { transform: Transform { linear, translation_m: [5.0, 6.0, 7.0] }, ..plain.clone() };
-    let [plain, placed] = [plain, placed].map(|grid| Density::new(&SceneDensity::Grid(grid), &SceneFrame::WORLD));
+    let [plain, placed] =
+        [plain, placed].map(|grid| MediumDensity::new(&etalon_scene::MediumDensity::Grid(grid), &SceneFrame::WORLD));
     let there = |[x, y, z]: [f64; 3]| [5.0 - 2.0 * y, 6.0 + 2.0 * x, 7.0 + 2.0 * z];
     let [a, b] = [[-1.2, 0.1, -0.3], [0.9, 1.4, 0.7]].map(Vec3::from_array);
     let length = (b - a).length();
