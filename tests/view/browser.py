@@ -183,7 +183,7 @@ class Page:
         self.mouse("mousePressed", x, y, button="left", clickCount=1)
         self.mouse("mouseReleased", x, y, button="left", clickCount=1)
 
-    def drag(self, start, end, steps=8, **more):
+    def drag(self, start, end, steps=8, after_step=lambda: time.sleep(0.04), **more):
         (x0, y0), (x1, y1) = self.at(*start), self.at(*end)
         self.mouse("mouseMoved", x0, y0)
         time.sleep(0.3)
@@ -191,7 +191,7 @@ class Page:
         for i in range(1, steps + 1):
             t = i / steps
             self.mouse("mouseMoved", x0 + t * (x1 - x0), y0 + t * (y1 - y0), button="left", buttons=1, **more)
-            time.sleep(0.04)
+            after_step()
         self.mouse("mouseReleased", x1, y1, button="left", clickCount=1, **more)
 
     def key(self, key):

@@ -114,7 +114,15 @@ def mouse_orbits(context):
     with context.viewer(SCENES / "cornell.json", "--size", "256x256") as viewer, context.page(viewer) as page:
         settled(page)
         before = page.run("window.etalonLog.length")
-        page.drag((0.5, 0.6), (0.62, 0.55))
+
+        seen = before
+
+        def a_coarse_picture():
+            nonlocal seen
+            page.wait("a coarse picture", f"window.etalonLog.slice({seen}).some(e => e.what === 'picture' && e.block > 1)", 20)
+            seen = page.run("window.etalonLog.length")
+
+        page.drag((0.5, 0.6), (0.62, 0.55), steps=4, after_step=a_coarse_picture)
         page.wait("a picture from there", f"window.etalonLog.slice({before}).some(e => e.what === 'error' && e.block === 1)", 60)
         after = page.run(f"window.etalonLog.slice({before})")
         stages = {e["stage"] for e in after if e["what"] == "error"}

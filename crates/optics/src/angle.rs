@@ -23,10 +23,8 @@ const EIGHTHS: [f64; 9] = [
 pub fn atan2_turns(y: f64, x: f64) -> f64 {
     let (ax, ay) = (x.abs(), y.abs());
     let (small, large) = if ay > ax { (ax, ay) } else { (ay, ax) };
-    if large == 0.0 {
-        return 0.0;
-    }
-    let t = small / large;
+    // Without branches, so that a loop over vectors is vectorised.
+    let t = if large > 0.0 { small / large } else { 0.0 };
     let k = (t * 8.0 + 0.5) as usize;
     let c = k as f64 * 0.125;
     let d = (t - c) / (1.0 + t * c);
@@ -34,7 +32,7 @@ pub fn atan2_turns(y: f64, x: f64) -> f64 {
     let series = [-1.0 / 15.0, 1.0 / 13.0, -1.0 / 11.0, 1.0 / 9.0, -1.0 / 7.0, 0.2, -1.0 / 3.0, 1.0]
         .into_iter()
         .fold(0.0, |sum, coefficient| sum * d2 + coefficient);
-    let eighth = EIGHTHS[k] + d * series * (0.5 / PI);
+    let eighth = EIGHTHS[k.min(8)] + d * series * (0.5 / PI);
     let quarter = if ay > ax { 0.25 - eighth } else { eighth };
     let half = if x < 0.0 { 0.5 - quarter } else { quarter };
     half.copysign(y)

@@ -132,6 +132,8 @@ function showPinned(now) {
   const { pinned } = now;
   element("unpin").hidden = !pinned;
   element("split-label").hidden = !pinned;
+  // A coarse picture has fewer pixels than those that follow, so the two cannot be compared.
+  element("pin").disabled = now.block !== 1;
   element("pin").textContent = pinned ? "Pin this one instead" : "Pin this picture";
   document.querySelector("input[name=map][value=difference]").disabled = !pinned;
   document.querySelector("input[name=map][value=samples]").disabled = !now.adaptive_gain && now.is_scene;
@@ -156,6 +158,11 @@ function showPinned(now) {
 const compareNow = latest(async (pinned) => {
   try {
     const comparison = await ask("comparison");
+    // The render began again meanwhile: the next picture of all pixels is compared.
+    if (!comparison) {
+      comparedPicture = 0;
+      return;
+    }
     const words = {
       equal: "The two pictures are equal.",
       "within-noise": "The two pictures differ by no more than their noise.",

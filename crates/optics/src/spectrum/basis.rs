@@ -39,21 +39,21 @@ impl RgbBasis {
 
     /// What one unit of red, green and blue reflect at a wavelength in nm; the first and the last value hold outside
     /// 360 to 830 nm.
-    #[inline]
+    #[inline(always)]
     pub fn eval(&self, wavelength_nm: f64) -> [f64; 3] {
         let x = (wavelength_nm.clamp(RANGE_NM[0], RANGE_NM[1]) - RANGE_NM[0]) / STEP_NM;
         let i = (x as usize).min(self.rows.len() - 2);
         let (low, high, share) = (&self.rows[i], &self.rows[i + 1], x - i as f64);
-        [0, 1, 2].map(|k| low[k] + share * (high[k] - low[k]))
+        [low[0] + share * (high[0] - low[0]), low[1] + share * (high[1] - low[1]), low[2] + share * (high[2] - low[2])]
     }
 
     /// What one unit of red, green and blue reflect in each lane.
-    #[inline]
+    #[inline(always)]
     pub fn lanes<const N: usize>(&self, wavelengths_nm: &Lanes<f64, N>) -> [Lanes<f64, N>; 3] {
         let mut lanes = [Lanes::ZERO; 3];
         for lane in 0..N {
-            let of_lane = self.eval(wavelengths_nm[lane]);
-            (0..3).for_each(|k| lanes[k][lane] = of_lane[k]);
+            let [red, green, blue] = self.eval(wavelengths_nm[lane]);
+            (lanes[0][lane], lanes[1][lane], lanes[2][lane]) = (red, green, blue);
         }
         lanes
     }

@@ -231,13 +231,24 @@ impl Image {
     }
 
     /// The texel in a column and a row, counted from 0 at the top left, in linear numbers.
-    #[inline]
+    #[inline(always)]
     pub fn texel(&self, column: usize, row: usize) -> [f64; 3] {
         let i = row * self.width as usize + column;
+        // Written out: the library's `map` is not always made part of its caller, and this is called for every corner of every look-up.
         match &self.texels {
-            Texels::Srgb8(texels) => texels[i].map(|v| SRGB[usize::from(v)]),
-            Texels::Linear8(texels) => texels[i].map(|v| f64::from(v) / 255.0),
-            Texels::F32(texels) => texels[i].map(f64::from),
+            Texels::Srgb8(texels) => {
+                let [r, g, b] = texels[i];
+                let curve = &*SRGB;
+                [curve[usize::from(r)], curve[usize::from(g)], curve[usize::from(b)]]
+            }
+            Texels::Linear8(texels) => {
+                let [r, g, b] = texels[i];
+                [f64::from(r) / 255.0, f64::from(g) / 255.0, f64::from(b) / 255.0]
+            }
+            Texels::F32(texels) => {
+                let [r, g, b] = texels[i];
+                [f64::from(r), f64::from(g), f64::from(b)]
+            }
         }
     }
 

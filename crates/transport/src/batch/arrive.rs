@@ -3,8 +3,10 @@
 use super::Batch;
 use super::paths::vertex;
 use super::rows::{GROUPS, Mask, W, group_of, lanes};
+use super::skies::{FEWEST_LOOKS, look_at_sky};
 use crate::integrator::Arrival;
 use crate::integrator::wavelength_lanes::WavelengthModel;
+use crate::light::Look;
 use crate::polarisation::Polarisation;
 use crate::scene::interaction::SurfaceInteraction;
 use crate::scene::world::World;
@@ -61,9 +63,15 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
                 none => *none = Some(SurfaceInteraction::new(direction, hit, point, surface)),
             }
         }
+        let escapes = active & !hits.mask;
+        let mut looks = [Look::BLACK; LANES];
+        let sky = if escapes.count_ones() >= FEWEST_LOOKS { world.first_image_of_the_sky() } else { None };
+        if let Some(sky) = sky {
+            look_at_sky(self.level, sky, &rays.direction, &mut looks);
+        }
         let mut scatters = 0;
         for lane in lanes(active.into()) {
-            scatters |= self.arrive_path(first + lane, hits.mask >> lane & 1 == 1);
+            scatters |= self.arrive_path(first + lane, hits.mask >> lane & 1 == 1, sky.map(|_| looks[lane % LANES]));
         }
         scatters
     }
@@ -112,18 +120,18 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             paths.normal.set(lane, met.point.normal);
         }
         let meets = paths.at[lane].is_some();
-        self.arrive_path(lane, meets)
+        self.arrive_path(lane, meets, None)
     }
 
-    /// Lets a path arrive at what it has met, if it has met something. Its bit if it scatters.
+    /// Lets a path arrive at what it has met, if it has met something. Its bit if it scatters. See [`Path::arrive`](crate::integrator::Path::arrive) for `known`.
     #[inline(always)]
-    fn arrive_path(&mut self, lane: usize, meets: bool) -> Mask {
+    fn arrive_path(&mut self, lane: usize, meets: bool, known: Option<Look>) -> Mask {
         let (paths, world) = (&mut self.paths, self.world);
         paths.ray_count[lane] += 1;
         let ray = paths.ray(lane);
         let (path, sampler) = (&mut paths.paths[lane], paths.samplers.lane(lane));
         let met = if meets { paths.at[lane].as_mut() } else { None };
-        match path.arrive(world, &ray, met, sampler, &mut self.counters, &mut ()) {
+        match path.arrive(world, &ray, met, known, sampler, &mut self.counters, &mut ()) {
             Arrival::Scatters => {
                 if paths.shares {
                     paths.reuse_path[lane].arrive(world, vertex(&paths.at, lane), &mut path.radiance);

@@ -1,8 +1,8 @@
 //! Many paths at once: the steps of [`integrator`](crate::integrator) for [`W`](rows::W) paths side by side.
 //!
 //! The steps are those of the scalar driver, so the film and the counts are the same bit for bit. Before each step, what most paths need is
-//! computed for all of them with vector instructions: random numbers, closest hits and shadow rays, directions toward flat lights, disks and
-//! spheres, directions from Lambertian surfaces, mirrors and smooth interfaces, guided directions, origins of rays. These are functions
+//! computed for all of them with vector instructions: random numbers, closest hits and shadow rays, directions toward flat lights, disks,
+//! spheres and images of the sky, directions from Lambertian surfaces, mirrors and smooth interfaces, guided directions, origins of rays. These are functions
 //! over rows, one number a path ([`level`]). Whatever has no such function is asked path by path, by the very functions of the scalar
 //! driver. A path that ends makes room for the next sample ([`stream`]).
 
@@ -15,6 +15,7 @@ mod next_event;
 mod paths;
 mod rows;
 mod scatter;
+mod skies;
 mod starts;
 mod stream;
 #[cfg(test)]

@@ -5,16 +5,17 @@ use super::arrive::of_group;
 use super::lamps::{LightSamples, PlanarLights, SphereLights, aim, aim_at_disks, aim_at_spheres};
 use super::level::{Level, stages};
 use super::paths::vertex;
+use super::skies::{FEWEST_LOOKS, SkyLights, aim_at_sky};
 use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes, surface_point};
 use crate::bsdf::lambert;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
-use crate::light::{LightSample, LightTable, Target};
+use crate::light::{Light, LightSample, LightTable, Target};
 use crate::mis::Density;
 use crate::polarisation::Polarisation;
 use crate::sampler::{CAMERA_SETS, SETS_PER_VERTEX, Samplers, Wanted};
 use etalon_geometry::{LANES, Rays, SurfaceId};
-use etalon_optics::Lanes;
+use etalon_optics::{Lanes, Vec3};
 use etalon_scene::LightSampling;
 
 /// The lights that paths look at, and how they are seen. Kept from vertex to vertex.
@@ -26,6 +27,7 @@ pub(super) struct Lights {
     surface: [SurfaceId; W],
     planar: PlanarLights,
     spheres: SphereLights,
+    skies: SkyLights,
     light_samples: LightSamples,
     /// What Lambertian surfaces make of them.
     cos: Row,
@@ -51,6 +53,7 @@ impl Lights {
             surface: [SurfaceId::NONE; W],
             planar: PlanarLights::NONE,
             spheres: SphereLights::NONE,
+            skies: SkyLights::NONE,
             light_samples: LightSamples::NONE,
             cos: Row::ZERO,
             weight: Row::ZERO,
@@ -66,7 +69,10 @@ impl Lights {
         let (light, probability) = (self.light[lane], self.probability.0[lane]);
         if self.rows >> lane & 1 == 1 {
             let lambert = Some(LambertTerms { cos: self.cos.0[lane], weight: self.weight.0[lane] });
-            let sample = self.light_samples.sample(lane, self.surface[lane])?;
+            let sample = match self.skies.mask >> lane & 1 {
+                1 => self.skies.sample(lane, self.light_samples.wi.at(lane)),
+                _ => self.light_samples.sample(lane, self.surface[lane]),
+            }?;
             return Some(LightDraw { light, probability, sample, lambert });
         }
         let sample = self.others[lane]?;
@@ -88,6 +94,7 @@ impl Lights {
         self.spheres.forget(lane);
         self.planar.put(lane, light);
         self.spheres.put(lane, light);
+        self.skies.put(lane, light);
     }
 }
 
@@ -134,6 +141,18 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             );
             // Those within a sphere are asked for one by one.
             rows |= lanes(draws.spheres.mask).fold(0, |mask, lane| mask | Mask::from(outside[lane]) << lane);
+        }
+        let mut skies = draws.skies.mask & shared;
+        while skies != 0 {
+            let index = draws.light[skies.trailing_zeros() as usize];
+            let same = lanes(skies)
+                .filter(|&lane| draws.light[lane] == index)
+                .fold(0, |mask: Mask, lane| mask | 1 << lane);
+            skies &= !same;
+            if let (Light::Environment(sky), FEWEST_LOOKS..) = (&lights[index as usize], same.count_ones()) {
+                aim_at_sky(self.level, sky, [u1, u2], same, &mut draws.skies, &mut draws.light_samples);
+                rows |= same;
+            }
         }
         lambert_cosines(self.level, (&paths.normal, &paths.direction, &draws.light_samples.wi), &mut draws.cos);
         let Lights { cos, light_samples, probability, weight, .. } = draws;
@@ -199,24 +218,27 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             leaves[lane] = vertex(&paths.at, lane).point.surface;
             surfaces[lane] = draws.surface[lane];
             if draws.rows >> lane & 1 == 1 {
+                endless |= draws.skies.mask & 1 << lane;
                 continue;
             }
             let Some(sample) = &draws.others[lane] else { continue };
             surfaces[lane] = sample.surface;
             match sample.target {
                 Target::Point(point) => draws.light_samples.point.set(lane, point),
-                Target::Infinity => endless |= 1 << lane,
+                Target::Infinity => {
+                    draws.light_samples.wi.set(lane, sample.wi);
+                    endless |= 1 << lane;
+                }
             }
         }
-        let Lights { rays, light_samples, others, .. } = draws;
-        shadow_rays(self.level, (&paths.position, &paths.error, &paths.normal), &light_samples.point, rays);
-        for lane in lanes(endless) {
-            let Some(sample) = &others[lane] else { continue };
-            let ray = vertex(&paths.at, lane).point.spawn(sample.wi);
-            rays.origin.set(lane, ray.origin);
-            rays.direction.set(lane, ray.direction);
-            rays.t_max.0[lane] = ray.t_max;
-            surfaces[lane] = SurfaceId::NONE;
+        let (rays, light_samples) = (&mut draws.rays, &draws.light_samples);
+        let from = (&paths.position, &paths.error, &paths.normal);
+        if endless != asks {
+            shadow_rays(self.level, from, &light_samples.point, rays);
+        }
+        if endless != 0 {
+            endless_rays(self.level, from, &light_samples.wi, endless, rays);
+            lanes(endless).for_each(|lane| surfaces[lane] = SurfaceId::NONE);
         }
         for t_max in &mut rays.t_max.0 {
             *t_max = end(*t_max);
@@ -305,6 +327,19 @@ stages! {
             rays.origin.set(lane, ray.origin);
             rays.direction.set(lane, ray.direction);
             rays.t_max.0[lane] = ray.t_max;
+        }
+    }
+    /// Rays from surfaces that never end, of the paths of `mask`, in place of those that are there.
+    fn endless_rays(from: (&Rows3, &Row, &Rows3), wi: &Rows3, mask: Mask, rays: &mut ShadowRows) {
+        for lane in 0..W {
+            let ray = surface_point(from, lane).spawn(wi.at(lane));
+            let choose = |new: f64, there: f64| if mask >> lane & 1 == 1 { new } else { there };
+            let mix = |new: Vec3<f64>, there: Vec3<f64>| {
+                Vec3::new(choose(new.x, there.x), choose(new.y, there.y), choose(new.z, there.z))
+            };
+            rays.origin.set(lane, mix(ray.origin, rays.origin.at(lane)));
+            rays.direction.set(lane, mix(ray.direction, rays.direction.at(lane)));
+            rays.t_max.0[lane] = choose(ray.t_max, rays.t_max.0[lane]);
         }
     }
 }

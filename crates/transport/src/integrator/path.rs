@@ -136,13 +136,15 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         Received { wavelengths: self.wavelengths, radiance: self.radiance, stokes: self.polarisation.received() }
     }
 
-    /// Arrives at what the ray has met, unless a medium scatters the path before: light is absorbed on the way, and found there.
+    /// Arrives at what the ray has met, unless a medium scatters the path before: light is absorbed on the way, and found there. `known` is
+    /// what the first image of the sky shows along the ray, if the driver has looked.
     #[inline(always)]
     pub(crate) fn arrive(
         &mut self,
         world: &World<'a>,
         ray: &Ray<f64>,
         met: Option<&mut SurfaceInteraction<'a>>,
+        known: Option<Look>,
         sampler: &Sampler,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
@@ -154,7 +156,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             };
         }
         let Some(vertex) = met else {
-            self.add_environments(world, ray, counters, observer);
+            self.add_environments(world, ray, known, counters, observer);
             observer.end(End::Escaped);
             return Arrival::Escaped;
         };
@@ -189,6 +191,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         &mut self,
         world: &World<'a>,
         ray: &Ray<f64>,
+        mut known: Option<Look>,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
@@ -198,7 +201,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             let (radiance, mis) = match &sky.radiance {
                 EnvironmentRadiance::Uniform(_) => (white, 1.0),
                 EnvironmentRadiance::Image(image) => {
-                    let Look { colour, density } = image.look(ray.direction);
+                    let Look { colour, density } = known.take().unwrap_or_else(|| image.look(ray.direction));
                     let mis = self.weight_of_hit(world, None, || sky.light, |_, _| density);
                     (self.coloured(white, Some(colour)), mis)
                 }

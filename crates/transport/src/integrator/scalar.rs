@@ -26,7 +26,7 @@ pub(crate) fn trace<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         let mut met = world.intersect(&ray, &mut path.walk, &mut path.stack, counters);
 
         // Emission: what shines there, or at infinity, or on the way? Masks let the ray pass, media may scatter it before.
-        match path.arrive(world, &ray, met.as_mut(), sampler, counters, observer) {
+        match path.arrive(world, &ray, met.as_mut(), None, sampler, counters, observer) {
             Arrival::Scatters => {}
             Arrival::Passed => continue,
             Arrival::Collides => {

@@ -50,6 +50,10 @@ struct Along {
     up: f64,
 }
 
+impl Along {
+    const UP: Self = Self { forward: 0.0, right: 0.0, up: 1.0 };
+}
+
 impl EnvironmentLight {
     /// The light of an image, at wavelengths within `range_nm`.
     pub fn new(image: &EnvironmentImage, range_nm: [f64; 2]) -> Self {
@@ -85,32 +89,62 @@ impl EnvironmentLight {
     /// What the image shows in the direction `wi`.
     #[inline]
     pub fn look(&self, wi: Vec3<f64>) -> Look {
-        let along = Along { forward: wi.dot(self.forward), right: wi.dot(self.right), up: wi.dot(self.up) };
-        match &self.map {
-            Map::Meridians(map) => map.look(&self.image, along),
-            Map::EqualArea(map) => map.look(&self.image, along),
+        let [look] = self.look_row(&[wi]);
+        look
+    }
+
+    /// What the image shows in each of these directions.
+    #[inline(always)]
+    pub(crate) fn look_row<const W: usize>(&self, wi: &[Vec3<f64>; W]) -> [Look; W] {
+        let (forward, right, up) = (self.forward, self.right, self.up);
+        let mut along = [Along::UP; W];
+        for k in 0..W {
+            along[k] = Along { forward: wi[k].dot(forward), right: wi[k].dot(right), up: wi[k].dot(up) };
         }
+        match &self.map {
+            Map::Meridians(map) => map.look(&self.image, &along),
+            Map::EqualArea(map) => map.look(&self.image, &along),
+        }
+    }
+
+    /// Directions that each `u` in [0, 1)² draws, and what the image shows there. Where its density is 0 there is no sample: rounding
+    /// may put the edge of a cell into a black neighbour.
+    #[inline(always)]
+    pub(crate) fn sample_row<const W: usize>(&self, u: [&[f64; W]; 2]) -> ([Vec3<f64>; W], [Look; W]) {
+        let along = match &self.map {
+            Map::Meridians(map) => map.sample(&self.image, u),
+            Map::EqualArea(map) => map.sample(u),
+        };
+        let mut wi = [Vec3::ZERO; W];
+        for k in 0..W {
+            let along = along[k];
+            wi[k] = (self.up * along.up + (self.forward * along.forward + self.right * along.right)).renormalized();
+        }
+        (wi, self.look_row(&wi))
+    }
+}
+
+impl Look {
+    pub(crate) const BLACK: Self = Self { colour: [0.0; 3], density: 0.0 };
+
+    /// The sample of a direction in which the image shows this; `None` where it is black.
+    #[inline(always)]
+    pub(crate) fn sample(self, wi: Vec3<f64>) -> Option<LightSample> {
+        (self.density > 0.0).then_some(LightSample {
+            colour: Some(self.colour),
+            wi,
+            density: Density::SolidAngle(self.density),
+            target: Target::Infinity,
+            surface: SurfaceId::NONE,
+            scale: 1.0,
+        })
     }
 }
 
 impl LightSource for EnvironmentLight {
     fn sample(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
-        let Along { forward, right, up } = match &self.map {
-            Map::Meridians(map) => map.sample(&self.image, u),
-            Map::EqualArea(map) => map.sample(u),
-        };
-        let wi = self.up * up + (self.forward * forward + self.right * right);
-        let wi = wi.renormalized();
-        let Look { colour, density } = self.look(wi);
-        // Rounding may put the edge of a cell into a black neighbour.
-        (density > 0.0).then_some(LightSample {
-            colour: Some(colour),
-            wi,
-            density: Density::SolidAngle(density),
-            target: Target::Infinity,
-            surface: SurfaceId::NONE,
-            scale: 1.0,
-        })
+        let ([wi], [look]) = self.sample_row([&[u[0]], &[u[1]]]);
+        look.sample(wi)
     }
 
     fn density(&self, _from: Vec3<f64>, wi: Vec3<f64>, _time: f64) -> f64 {
@@ -132,6 +166,7 @@ impl LightSource for EnvironmentLight {
 }
 
 /// Luminance of linear Rec. 709: zero for black only.
+#[inline(always)]
 fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }

@@ -255,6 +255,15 @@ impl Environment {
 }
 
 impl EnvironmentRadiance {
+    /// The image, if it is one.
+    #[inline(always)]
+    pub(crate) fn image(&self) -> Option<&EnvironmentLight> {
+        match self {
+            Self::Uniform(_) => None,
+            Self::Image(light) => Some(light),
+        }
+    }
+
     /// The spectrum, of an image that of its white.
     pub(crate) fn spectrum(&self) -> &PathSpectrum {
         match self {

@@ -214,8 +214,11 @@ impl<const N: usize> SpectrumCache<N> {
     /// A colour of an image as a reflectance.
     #[inline(always)]
     pub(crate) fn colour(&mut self, [r, g, b]: [f64; 3], lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
-        let [red, green, blue] = self.primaries.get_or_insert_with(|| RgbBasis::get().lanes(lambda_nm));
-        *red * r + *green * g + *blue * b
+        let [red, green, blue] = match self.primaries {
+            Some(primaries) => primaries,
+            None => *self.primaries.insert(RgbBasis::get().lanes(lambda_nm)),
+        };
+        red * r + green * g + blue * b
     }
 
     /// A spectrum at the wavelengths of the path, with a place or not.

@@ -1,7 +1,7 @@
 //! The scene as paths see it.
 
 use crate::guiding::GuidedTargets;
-use crate::light::{Environment, LightTable};
+use crate::light::{Environment, EnvironmentLight, LightTable};
 use crate::media::{Media, Participating};
 use crate::scene::shading_tables::ShadingTables;
 use crate::surface::Surfaces;
@@ -46,6 +46,12 @@ impl World<'_> {
     #[inline(always)]
     pub(crate) fn follows_media(&self) -> bool {
         self.media.is_some() || self.participating.is_some()
+    }
+
+    /// The first sky that is an image.
+    #[inline(always)]
+    pub(crate) fn first_image_of_the_sky(&self) -> Option<&EnvironmentLight> {
+        self.environments.iter().find_map(|sky| sky.radiance.image())
     }
 }
 

@@ -153,9 +153,12 @@ pub(crate) fn paths(app: &App, at: [u32; 2], count: u32) -> Result<Response, Ref
     })
 }
 
-/// Whether the picture and the pinned one differ beyond their noise.
+/// Whether the picture and the pinned one differ beyond their noise; null while the picture is a coarse one, which has fewer pixels.
 pub(crate) fn comparison(app: &App) -> Result<Response, Refusal> {
     let (current, pinned) = (snapshot(app, false)?, snapshot(app, true)?);
+    if current.block > 1 {
+        return Ok(json(&serde_json::Value::Null));
+    }
     Ok(json(&app.live.overhead.count(Glance::Answer, || compare(&current, &pinned)).map_err(cannot)?))
 }
 

@@ -40,17 +40,24 @@ impl EqualArea {
         self.total
     }
 
-    /// The colour in a direction, and its density.
-    #[inline]
-    pub(super) fn look(&self, image: &Image, wi: Along) -> Look {
+    /// The colours in some directions, and their densities.
+    #[inline(always)]
+    pub(super) fn look<const W: usize>(&self, image: &Image, wi: &[Along; W]) -> [Look; W] {
         let texel = |share: f64| ((share * self.side as f64) as usize).min(self.side - 1);
-        let [u, v] = square(wi);
-        let colour = image.texel(texel(u), texel(v));
-        Look { colour, density: luminance(colour) / self.total }
+        wi.map(|wi| {
+            let [u, v] = square(wi);
+            let colour = image.texel(texel(u), texel(v));
+            Look { colour, density: luminance(colour) / self.total }
+        })
     }
 
-    /// The direction that `u` in [0, 1)² draws.
-    pub(super) fn sample(&self, u: [f64; 2]) -> Along {
+    /// The directions that each `u` in [0, 1)² draws.
+    #[inline(always)]
+    pub(super) fn sample<const W: usize>(&self, u: [&[f64; W]; 2]) -> [Along; W] {
+        std::array::from_fn(|k| self.sample_one([u[0][k], u[1][k]]))
+    }
+
+    fn sample_one(&self, u: [f64; 2]) -> Along {
         let (row, down) = self.rows.choose(0, u[1]);
         let (column, across) = self.columns.choose(row, u[0]);
         let share = |texel: usize, within: f64| (texel as f64 + within) / self.side as f64;

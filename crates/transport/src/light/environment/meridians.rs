@@ -83,51 +83,78 @@ impl Meridians {
         self.total
     }
 
-    /// The colour in a direction, and its density.
-    #[inline]
-    pub(super) fn look(&self, image: &Image, wi: Along) -> Look {
-        let place = self.place(wi);
-        let [left, right] = place.columns;
-        // The image along both rows of texels, from which the colour mixes by angle and the density by cosine.
-        let [upper, lower] = self.rows_around(place.row).map(|row| {
-            let (left, right) = (image.texel(left, row), image.texel(right, row));
-            [0, 1, 2].map(|k| left[k] + place.across * (right[k] - left[k]))
-        });
-        let colour = [0, 1, 2].map(|k| upper[k] + place.down * (lower[k] - upper[k]));
-        let [upper, lower] = [luminance(upper), luminance(lower)];
-        Look { colour, density: (upper + place.down_by_cosine * (lower - upper)) / self.total }
+    /// The colours in some directions, and their densities.
+    #[inline(always)]
+    pub(super) fn look<const W: usize>(&self, image: &Image, wi: &[Along; W]) -> [Look; W] {
+        let (mut columns, mut rows) = ([0.0; W], [0.0; W]);
+        for k in 0..W {
+            [columns[k], rows[k]] = self.coordinates(wi[k]);
+        }
+        let mut looks = [Look::BLACK; W];
+        for k in 0..W {
+            looks[k] = self.interpolate(image, self.place([columns[k], rows[k]], wi[k].up));
+        }
+        looks
     }
 
-    /// The direction that `u` in [0, 1)² draws.
-    pub(super) fn sample(&self, image: &Image, u: [f64; 2]) -> Along {
-        let width = self.width;
-        let (row, u1) = self.rows.choose(0, u[1]);
-        let (j, u0) = self.columns.choose(row, u[0]);
-        let k = if j + 1 == width { 0 } else { j + 1 };
-        let [upper, lower] = self.rows_around(row);
-        let corner = |column, row| luminance(image.texel(column, row));
-        let [a, b, c, d] = [corner(j, upper), corner(k, upper), corner(j, lower), corner(k, lower)];
-        let down = linear(u1, a + b, c + d);
-        let across = linear(u0, a + down * (c - a), b + down * (d - b));
-        let cos = self.cosines[row] + down * (self.cosines[row + 1] - self.cosines[row]);
-        let sin = ((1.0 - cos) * (1.0 + cos)).sqrt_nonnegative();
-        // Half a turn from the middle of the image.
-        let turns = (j as f64 + 0.5 + across) / width as f64;
-        let (sin_phi, cos_phi) = f64::sin_cos_turns(if turns > 1.0 { turns - 1.0 } else { turns });
-        Along { forward: -cos_phi * sin, right: -sin_phi * sin, up: cos }
+    /// The directions that each `u` in [0, 1)² draws.
+    #[inline(always)]
+    pub(super) fn sample<const W: usize>(&self, image: &Image, u: [&[f64; W]; 2]) -> [Along; W] {
+        // In several loops: those without branches become vector instructions, and what misses the cache is asked for at once.
+        let (mut cells, mut within) = ([[0; 2]; W], [[0.0; 2]; W]);
+        for k in 0..W {
+            let (row, u1) = self.rows.choose(0, u[1][k]);
+            (cells[k][0], within[k][1]) = (row, u1);
+        }
+        for k in 0..W {
+            let (column, u0) = self.columns.choose(cells[k][0], u[0][k]);
+            (cells[k][1], within[k][0]) = (column, u0);
+        }
+        let (mut corners, mut cosines, mut left) = ([[0.0; W]; 4], [[0.0; W]; 2], [0.0; W]);
+        for k in 0..W {
+            let [row, j] = cells[k];
+            let right = if j + 1 == self.width { 0 } else { j + 1 };
+            let [upper, lower] = self.rows_around(row);
+            for (corner, (column, row)) in
+                corners.iter_mut().zip([(j, upper), (right, upper), (j, lower), (right, lower)])
+            {
+                corner[k] = luminance(image.texel(column, row));
+            }
+            (cosines[0][k], cosines[1][k], left[k]) = (self.cosines[row], self.cosines[row + 1], j as f64);
+        }
+        let mut wi = [Along::UP; W];
+        for k in 0..W {
+            let [a, b, c, d] = [corners[0][k], corners[1][k], corners[2][k], corners[3][k]];
+            let [u0, u1] = within[k];
+            let down = linear(u1, a + b, c + d);
+            let across = linear(u0, a + down * (c - a), b + down * (d - b));
+            let cos = cosines[0][k] + down * (cosines[1][k] - cosines[0][k]);
+            let sin = ((1.0 - cos) * (1.0 + cos)).sqrt_nonnegative();
+            // Half a turn from the middle of the image.
+            let turns = (left[k] + 0.5 + across) / self.width as f64;
+            let (sin_phi, cos_phi) = f64::sin_cos_turns(if turns > 1.0 { turns - 1.0 } else { turns });
+            wi[k] = Along { forward: -cos_phi * sin, right: -sin_phi * sin, up: cos };
+        }
+        wi
     }
 
-    fn place(&self, wi: Along) -> Place {
+    /// Where a direction stands: the column, from the centre of the last one, which stands before the seam (0 to the width), and the row
+    /// of cells.
+    #[inline(always)]
+    fn coordinates(&self, wi: Along) -> [f64; 2] {
         let (x, y, z) = (wi.forward, wi.right, wi.up);
-        // From the centre of the last column, which stands before the seam: 0 to width.
         let column = (0.5 + atan2_turns(y, x)) * self.width as f64 + 0.5;
+        // In half turns.
+        let polar = 2.0 * atan2_turns((x * x + y * y).sqrt(), z);
+        [column, polar * self.intervals + self.before]
+    }
+
+    #[inline(always)]
+    fn place(&self, [column, from_centre]: [f64; 2], up: f64) -> Place {
         let left = (column as usize).min(self.width);
         let across = column - left as f64;
         let left = if left == 0 { self.width - 1 } else { left - 1 };
         let right = if left + 1 == self.width { 0 } else { left + 1 };
-        // In half turns.
-        let polar = 2.0 * atan2_turns((x * x + y * y).sqrt(), z);
-        let from_centre = polar * self.intervals + self.before;
         let row = (from_centre as usize).min(self.last);
         let [above, below] = [self.cosines[row], self.cosines[row + 1]];
         Place {
@@ -135,17 +162,37 @@ impl Meridians {
             row,
             across,
             down: from_centre - row as f64,
-            down_by_cosine: ((above - z) / (above - below)).clamp(0.0, 1.0),
+            down_by_cosine: ((above - up) / (above - below)).clamp(0.0, 1.0),
         }
     }
 
+    #[inline(always)]
+    fn interpolate(&self, image: &Image, place: Place) -> Look {
+        let [left, right] = place.columns;
+        let [above, below] = self.rows_around(place.row);
+        // The image along both rows of texels, from which the colour mixes by angle and the density by cosine.
+        let upper = mix(image.texel(left, above), image.texel(right, above), place.across);
+        let lower = mix(image.texel(left, below), image.texel(right, below), place.across);
+        let colour = mix(upper, lower, place.down);
+        let (upper, lower) = (luminance(upper), luminance(lower));
+        Look { colour, density: (upper + place.down_by_cosine * (lower - upper)) / self.total }
+    }
+
     /// The rows of texels above and below a row of cells.
+    #[inline(always)]
     fn rows_around(&self, row: usize) -> [usize; 2] {
         [row.saturating_sub(1), row.min(self.height - 1)]
     }
 }
 
+/// The colour at a share of the way from `a` to `b`.
+#[inline(always)]
+fn mix(a: [f64; 3], b: [f64; 3], share: f64) -> [f64; 3] {
+    [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])]
+}
+
 /// The number in [0, 1] that `u` draws with a density that runs linearly from `a` to `b`, up to a factor.
+#[inline(always)]
 fn linear(u: f64, a: f64, b: f64) -> f64 {
     let root = (a * a + u * (b * b - a * a)).sqrt_nonnegative();
     let sum = a + root;
