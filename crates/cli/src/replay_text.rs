@@ -16,7 +16,7 @@ pub(crate) fn describe(path: &Replay) -> String {
             Event::Scattering { vertex, position_m, beta } => {
                 writeln!(text, "vertex {vertex}: medium at {} m, throughput {}", list(position_m), list(beta))
             }
-            Event::Light { vertex, found, radiance } => {
+            Event::Light { vertex, found, radiance, .. } => {
                 writeln!(text, "  light at vertex {vertex} by {found}: {}", list(radiance))
             }
             Event::End { because } => writeln!(text, "end: {because}"),

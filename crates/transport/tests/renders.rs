@@ -3,6 +3,7 @@
 use etalon_oracle::statistics::Welford;
 use etalon_scene::{LightSampling, SamplerKind, Scene};
 use etalon_transport::film::PixelRect;
+use etalon_transport::replay::Event;
 use etalon_transport::{Control, Extent, Film, PathLoop, Prepared, Study, prepare, prepare_study};
 use serde_json::{Value, json};
 
@@ -110,6 +111,10 @@ fn threads_stages_and_replays_give_the_same_bytes() {
                 let replay = prepared.replay(x, y, sample);
                 (0..3).for_each(|c| sums[sample as usize % 4][c] += replay.xyz[c]);
                 assert!(!replay.events.is_empty());
+                // What the path found adds up to what it brings, but for rounding.
+                let light = |event: &Event| if let Event::Light { luminance, .. } = event { *luminance } else { 0.0 };
+                let found: f64 = replay.events.iter().map(light).sum();
+                assert!((found - replay.xyz[1]).abs() <= 1e-12 * replay.xyz[1], "{found} is not {}", replay.xyz[1]);
             }
             assert!(film.pixel(x, y).sums().iter().zip(sums).all(|(sum, expected)| sum.xyz == expected));
         }

@@ -1,7 +1,7 @@
 // The page: what it shows follows from the status that the server sends; what is done goes to the server as orders.
 
 import { Camera } from "./camera.js";
-import { Effects } from "./effects.js";
+import { Effects, spoken } from "./effects.js";
 import { Inspector } from "./inspector.js";
 import { Paths } from "./paths.js";
 import { Stage } from "./stage.js";
@@ -34,11 +34,11 @@ const inspector = new Inspector((object) => effects.point(object));
 const PHASES = {
   preparing: "preparing the scene",
   coarse: "first coarse picture",
-  pilot: "looking where the error is, before all pixels go on",
+  pilot: "trial samples, which find the noisy places",
   rendering: "rendering",
-  done: "the stated error is reached",
+  done: "the samples planned for the stated error are taken",
   paused: "paused",
-  costs: "measuring what each effect costs",
+  costs: "measuring what each effect costs; the picture waits",
   picture: "a picture from a file",
   refused: "the scene cannot be rendered",
 };
@@ -50,8 +50,9 @@ function update(now) {
   document.title = `${now.error ? `${percent(now.error.relative_rmse)} · ` : ""}${now.name.split(/[\\/]/).at(-1)}`;
   element("name").textContent = now.name.split(/[\\/]/).at(-1);
   element("name").title = now.name;
-  element("phase").textContent = PHASES[now.phase];
-  element("pause").hidden = !now.is_scene;
+  const isReached = now.phase === "done" && now.target !== null && now.error?.relative_rmse <= now.target;
+  element("phase").textContent = isReached ? "the stated error is reached" : PHASES[now.phase];
+  element("pause").hidden = !now.is_scene || now.phase === "done";
   element("pause").textContent = now.phase === "paused" ? "Go on" : "Pause";
   element("home").hidden = !now.is_moved;
   if (now.camera) {
@@ -75,11 +76,12 @@ function showAccuracy(now) {
   const error = now.error;
   element("error").textContent = percent(error?.relative_rmse);
   const interval = error?.interval_95;
-  element("error-interval").textContent = interval ? `95 % sure: ${percent(interval[0])} to ${percent(interval[1])}` : "";
+  const ends = interval?.map(percent);
+  element("error-interval").textContent = !interval || error.heavy_tailed ? "" : ends[0] === ends[1] ? "known to two digits" : `between ${ends[0]} and ${ends[1]}, 95 % sure`;
   const share = percent(error?.relative_rmse);
   const kind = now.block > 1 ? `of a coarse picture, whose pixels stand for ${now.block} × ${now.block}` : "of the picture";
   element("error-words").textContent = error?.relative_rmse != null
-    ? `relative error ${kind}: a pixel is off by about ${share} of the mean brightness.`
+    ? `noise ${kind}: a pixel, dark or bright, is off by about ${share} of the mean brightness, which is ${digits(error.mean_y, 3)}.`
     : now.phase === "picture" ? "This file does not say how wrong its pixels are." : "Nothing is known of the error yet.";
   element("curve").toggleAttribute("hidden", !now.is_scene);
   if (now.is_scene) drawCurve(element("curve"), now);
@@ -90,9 +92,11 @@ function showAccuracy(now) {
   if (now.paths_per_second > 0 && now.is_scene) parts.push(`${count(now.paths_per_second)} paths a second on ${now.threads} threads`);
   if (now.pages > 1) parts.push(`${now.pages} pages look on`);
   element("counts").textContent = parts.join(" · ");
+  element("missing").hidden = now.without.length === 0;
+  element("missing").textContent = `The number is noise alone. It does not count what is switched off: ${now.without.map(spoken).join(", ")}.`;
   const notes = [...now.notes];
-  if (error?.heavy_tailed) notes.push("Rare bright paths carry much of the error: it is probably larger than stated.");
-  else if (error?.heavy_tailed_pixels) notes.push("Rare bright paths: the errors of single pixels are too small, that of the picture is right.");
+  if (error?.heavy_tailed) notes.push("A few very bright samples make up much of the noise: it is probably larger than stated.");
+  else if (error?.heavy_tailed_pixels) notes.push("A few samples are very bright: the ± of single pixels understates their error. The number of the whole picture can be trusted.");
   for (const lost of now.plan?.approximations ?? []) notes.push(`An approximation, without ${lost}.`);
   element("notes").replaceChildren(...notes.map((note) => html("li", {}, note)));
 }
@@ -118,12 +122,12 @@ function showProblems(now) {
   const banner = element("banner");
   banner.hidden = now.problems.length === 0;
   if (banner.hidden) return;
-  const kept = now.picture > 0 ? " The picture is of the scene before." : "";
+  const kept = now.picture > 0 ? " You see the last version without." : "";
   const lines = now.problems.map((p) => {
     const place = p.line ? `line ${p.line}, column ${p.column}: ` : "";
     return html("div", {}, `${place}${p.message}${p.hint ? `. ${p.hint}` : ""}`);
   });
-  banner.replaceChildren(html("b", {}, `The scene has ${lines.length === 1 ? "an error" : `${lines.length} errors`}.${kept}`), ...lines);
+  banner.replaceChildren(html("b", {}, `The scene file has ${lines.length === 1 ? "a mistake" : `${lines.length} mistakes`}.${kept}`), ...lines);
 }
 
 let pinnedNumber = 0;
@@ -171,7 +175,7 @@ const compareNow = latest(async (pinned) => {
     }[comparison.verdict];
     const worst = comparison.test?.channels.map((c) => c.worst).filter(Boolean).sort((a, b) => Math.abs(b.t) - Math.abs(a.t))[0];
     const most = worst ? ` Largest: ${digits(Math.abs(worst.t), 2)} standard errors, in columns ${worst.crop[0]} to ${worst.crop[1] - 1}, rows ${worst.crop[2]} to ${worst.crop[3] - 1}.` : "";
-    const falseAlarm = comparison.test ? ` The test gives a false alarm once in ${Math.round(1 / comparison.test.significance)}.` : "";
+    const falseAlarm = comparison.test ? ` Where nothing differs, this test says so wrongly once in ${Math.round(1 / comparison.test.significance)} times.` : "";
     element("verdict").textContent = `${words}${falseAlarm}${most}${comparison.note ? ` Note: ${comparison.note}.` : ""}`;
     log("comparison", { verdict: comparison.verdict });
   } catch (error) {

@@ -13,8 +13,8 @@ export function drawCurve(element, status) {
   const { width, height } = element.getBoundingClientRect();
   if (width === 0) return;
   const measured = status.curve.filter((p) => p.relative_rmse > 0 && p.seconds > 0);
-  const predicted = status.predicted.filter((p) => p.seconds > 0);
   const target = status.target ?? 0.01;
+  const predicted = ahead(status);
   const times = [...measured.map((p) => p.seconds), ...predicted.filter((p) => p.relative_rmse >= 0.7 * Math.min(target, 0.01)).map((p) => p.seconds)];
   const errors = measured.map((p) => p.relative_rmse);
   const [t0, t1] = widened(times.length ? Math.min(...times) : 0.1, times.length ? Math.max(...times) : 10, 1.25);
@@ -27,7 +27,8 @@ export function drawCurve(element, status) {
   const line = (a, b, more) => parts.push(svg("line", { x1: a[0], y1: a[1], x2: b[0], y2: b[1], ...more }));
   const bottom = height - SPACE.bottom;
 
-  for (const t of TIMES.filter(shown)) {
+  text([width - SPACE.right, height - 10], "time", { "text-anchor": "end", class: "strong" });
+  for (const t of TIMES.filter((t) => shown(t) && x(t) < width - 56)) {
     line([x(t), SPACE.top], [x(t), bottom], { stroke: "#2c2f33" });
     text([x(t), height - 10], seconds(t), { "text-anchor": "middle" });
   }
@@ -51,7 +52,7 @@ export function drawCurve(element, status) {
     parts.push(svg("polygon", { points: [...upper, ...lower].join(" "), fill: "#7fb2d6", opacity: 0.1, "clip-path": "url(#inside)" }));
     const points = predicted.map((p) => `${x(p.seconds)},${y(p.relative_rmse)}`).join(" ");
     parts.push(svg("polyline", { points, fill: "none", stroke: "#7fb2d6", "stroke-dasharray": "5 4", "stroke-width": 1.5, "clip-path": "url(#inside)" }));
-    for (const p of predicted.filter((p) => MARKS.includes(p.relative_rmse) && shown(p.seconds))) {
+    for (const p of predicted.filter((p) => (MARKS.includes(p.relative_rmse) || p.relative_rmse === status.target) && shown(p.seconds))) {
       parts.push(svg("circle", { cx: x(p.seconds), cy: y(p.relative_rmse), r: 3, fill: "#7fb2d6" }));
       line([x(p.seconds), y(p.relative_rmse)], [x(p.seconds), bottom], { stroke: "#7fb2d6", opacity: 0.35 });
     }
@@ -73,14 +74,35 @@ export function drawCurve(element, status) {
   if (last) parts.push(svg("circle", { cx: x(last.seconds), cy: y(last.relative_rmse), r: 4, fill: "#e0a458" }));
 
   // What the lines are.
-  const names = [["#e0a458", "measured", ""]];
-  if (predicted.length > 1) names.push(["#7fb2d6", "predicted", "5 4"]);
+  const names = [["#e0a458", "error so far", ""]];
+  if (measured.some((p) => p.block > 1)) names.push(["#e0a458", "coarse pictures", null]);
+  if (predicted.length > 1) names.push(["#7fb2d6", "predicted, 95 % sure", "5 4"]);
   names.forEach(([colour, name, dash], index) => {
     const at = SPACE.top + 8 + 15 * index;
-    line([width - 96, at], [width - 76, at], { stroke: colour, "stroke-width": 2, "stroke-dasharray": dash });
-    text([width - 70, at + 4], name);
+    if (dash === null) parts.push(svg("circle", { cx: width - 142, cy: at, r: 3, fill: "none", stroke: colour }));
+    else line([width - 152, at], [width - 132, at], { stroke: colour, "stroke-width": 2, "stroke-dasharray": dash });
+    text([width - 126, at + 4], name, { class: "backed" });
   });
   element.replaceChildren(...parts);
+}
+
+// The prediction from now on: at the rate of now, and with the stated error as one of its points. The pilot knew only its own rate.
+function ahead(status) {
+  const begun = status.block === 1 && status.paths_per_second > 0 && status.samples > 0;
+  const pixels = status.size[0] * status.size[1];
+  const points = [...status.predicted];
+  const samples = status.target ? between(points, status.target) : null;
+  if (samples !== null && !points.some((p) => p.relative_rmse === status.target)) {
+    const after = points.findIndex((p) => p.relative_rmse < status.target);
+    const like = points[after];
+    const share = samples / like.samples;
+    points.splice(after, 0, { relative_rmse: status.target, samples, seconds: like.seconds * share, seconds_interval: like.seconds_interval.map((t) => t * share) });
+  }
+  if (!begun) return points.filter((p) => p.seconds > 0);
+  return points.filter((p) => p.samples > status.samples).map((p) => {
+    const seconds = status.seconds + ((p.samples - status.samples) * pixels) / status.paths_per_second;
+    return { ...p, seconds, seconds_interval: p.seconds_interval.map((t) => Math.max(status.seconds, (t * seconds) / p.seconds)) };
+  });
 }
 
 function widened(low, high, factor) {
@@ -93,13 +115,13 @@ export function whenReached(status, error) {
   const reached = status.error?.relative_rmse <= error && status.block === 1;
   if (reached && passed !== null) return { words: `reached after ${seconds(passed)}`, reached: true };
   if (status.phase === "done" && error === status.target) {
-    return { words: `its predicted ${status.samples} samples are taken`, reached: true };
+    return { words: `stopped: its planned ${status.samples} samples gave ${percent(status.error?.relative_rmse)}`, reached: false };
   }
   const predicted = between(status.predicted, error);
-  if (predicted === null) return { words: status.phase === "pilot" || status.phase === "coarse" ? "finding out …" : "unknown", reached: false };
+  if (predicted === null) return { words: status.phase === "pilot" || status.phase === "coarse" ? "estimate follows" : "no estimate", reached: false };
   const left = (predicted - status.samples * (status.block === 1 ? 1 : 0)) * status.size[0] * status.size[1];
   const rate = status.paths_per_second;
-  if (rate > 0 && status.block === 1 && left > 0) return { words: `in ${seconds(left / rate)}`, reached: false };
+  if (rate > 0 && status.block === 1 && left > 0) return { words: `in ${seconds(left / rate)}, at ${seconds(status.seconds + left / rate)}`, reached: false };
   const known = status.predicted.find((p) => p.relative_rmse === error);
   return { words: known ? `about ${seconds(Math.max(0, known.seconds - status.seconds))} more` : "soon", reached: false };
 }

@@ -60,7 +60,7 @@ export class Effects {
   }
 }
 
-function spoken(name) {
+export function spoken(name) {
   return name === "mis" ? "multiple importance sampling" : name.replaceAll("-", " ");
 }
 

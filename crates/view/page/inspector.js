@@ -1,7 +1,7 @@
 // What is known of the pixel under the cursor: its value, what is seen there, its spectrum with standard errors.
 
 import { ask, latest } from "./server.js";
-import { count, cssColour, digits, html, seconds, svg, withError } from "./format.js";
+import { count, cssColour, digits, html, percent, seconds, svg, withError } from "./format.js";
 import { log } from "./log.js";
 
 const element = (id) => document.getElementById(id);
@@ -53,9 +53,13 @@ export class Inspector {
     element("pixel-what").replaceChildren(swatch, ...words);
     const rows = [["pixel", `column ${at[0]}, row ${at[1]}${info.block > 1 ? `, of a coarse picture (${info.block} × ${info.block})` : ""}`]];
     rows.push(["brightness Y", withError(info.luminance, info.luminance_error)]);
+    if (info.luminance_error > 0 && info.luminance > 0) {
+      const ofMean = info.mean_luminance > 0 ? `, ${percent(info.luminance_error / info.mean_luminance)} of the mean` : "";
+      rows.push(["± is", `one standard error: ${percent(info.luminance_error / info.luminance)} of the pixel${ofMean}`]);
+    }
     ["red", "green", "blue"].forEach((name, c) => rows.push([name, withError(info.rgb[c], info.rgb_error?.[c])]));
     if (info.samples !== null) rows.push(["samples", count(info.samples)]);
-    if (info.object?.depth_m) rows.push(["distance", `${digits(info.object.depth_m, 4)} m`]);
+    if (info.object?.depth_m) rows.push(["distance from the eye", `${digits(info.object.depth_m, 4)} m`]);
     const cells = rows.map(([name, value]) => html("tr", {}, html("td", {}, name), html("td", {}, value)));
     element("pixel-values").replaceChildren(...cells);
     this.onObject(info.object);
@@ -96,7 +100,7 @@ export class Inspector {
       parts.push(svg("text", { x: left - 5, y: y(value) + 4, "text-anchor": "end" }, digits(value, 2)));
     }
     for (let nm = Math.ceil(low / 100) * 100; nm <= high; nm += 100) {
-      parts.push(svg("text", { x: x(nm), y: height - 4, "text-anchor": "middle" }, `${nm} nm`));
+      parts.push(svg("text", { x: x(nm), y: height - 4, "text-anchor": "middle" }, nm + 60 > high ? `${nm}` : `${nm} nm`));
     }
     for (const band of bands) {
       const [a, b] = [x(band.centre_nm - step / 2), x(band.centre_nm + step / 2)];
@@ -114,8 +118,8 @@ export class Inspector {
     chart.replaceChildren(...parts);
     const unit = "Radiance in W/(m² sr nm).";
     element("spectrum-words").textContent = spectrum.samples === null
-      ? `${unit} Bands of the picture; vertical bars are one standard error.`
-      : `${unit} ${spectrum.samples} paths of this pixel alone, traced in ${seconds(spectrum.seconds)}; vertical bars are one standard error. Rest here, and they shrink.`;
+      ? `${unit} Bands of the picture; thin vertical lines are one standard error.`
+      : `${unit} ${spectrum.samples} paths of this pixel alone, traced in ${seconds(spectrum.seconds)}; thin vertical lines are one standard error. Rest here, and they shrink.`;
   }
 }
 

@@ -1,11 +1,17 @@
 // The paths of a pixel, drawn over the picture and listed vertex by vertex.
 
 import { ask } from "./server.js";
-import { cssColour, digits, html, svg } from "./format.js";
+import { cssColour, digits, html, percent, svg } from "./format.js";
 import { log } from "./log.js";
 
 const element = (id) => document.getElementById(id);
 const COUNT = 24;
+// Why a path ended.
+const ENDS = {
+  escaped: "left the scene",
+  roulette: "dropped by chance (roulette)",
+  absorbed: "absorbed",
+};
 
 export class Paths {
   constructor() {
@@ -30,9 +36,9 @@ export class Paths {
     this.chosen = null;
     this.brightest = Math.max(...paths.map((p) => p.luminance), 1e-30);
     element("paths").hidden = false;
-    element("paths-at").textContent = at.join(", ");
+    element("paths-at").textContent = `in column ${at[0]}, row ${at[1]}`;
     const found = paths.filter((p) => p.luminance > 0).length;
-    element("paths-words").textContent = `The first ${paths.length} of its paths, as the render traced them. ${found} of them found light. Dots are places where a path met a surface; filled dots are places where light was found.`;
+    element("paths-words").textContent = `The first ${paths.length} paths of this pixel, traced here once more; the picture takes the same ones in the same order. ${found} of them found light. Dots are places where a path met a surface; filled dots are places where light was found. A line has the colour of what its path brings.`;
     this.#list();
     this.#draw();
     element("paths").scrollIntoView({ block: "nearest" });
@@ -55,7 +61,7 @@ export class Paths {
       const dot = html("span", { class: "dot" });
       dot.style.background = path.luminance > 0 ? this.#colour(path) : "transparent";
       const words = path.luminance > 0 ? `brings Y = ${digits(path.luminance, 3)}` : "found no light";
-      const head = html("div", { class: "head" }, dot, html("span", {}, `path ${path.sample}`), html("span", { class: path.luminance > 0 ? "" : "lost" }, `${words}; ${path.vertices.length} ${path.vertices.length === 1 ? "vertex" : "vertices"}, ended: ${path.end}`));
+      const head = html("div", { class: "head" }, dot, html("span", {}, `path ${path.sample}`), html("span", { class: path.luminance > 0 ? "" : "lost" }, `${words}; ${path.vertices.length} ${path.vertices.length === 1 ? "vertex" : "vertices"}, ${ENDS[path.end] ?? path.end}`));
       const item = html("li", {}, head);
       item.addEventListener("pointerenter", () => this.#choose(index, item));
       item.addEventListener("click", () => this.#open(path, item));
@@ -72,9 +78,9 @@ export class Paths {
       return;
     }
     const vertices = path.vertices.map((vertex) => {
-      const line = html("li", {}, html("b", {}, vertex.object), vertex.material ? ` (${vertex.material})` : "", `, carries ${digits(vertex.throughput, 3)}`);
+      const line = html("li", {}, html("b", {}, vertex.object), vertex.material ? ` (${vertex.material})` : "", `, with ${percent(vertex.throughput)} of the light left`);
       for (const [how, radiance] of vertex.light) {
-        line.append(html("span", { class: "found" }, ` + ${digits(radiance, 3)} by ${how.replace("-", " ")}`));
+        line.append(html("span", { class: "found" }, `; brings ${digits(radiance, 3)} ${how === "emitter" ? "as a lamp" : `by ${how.replace("-", " ")}`}`));
       }
       return line;
     });

@@ -5,8 +5,8 @@ use super::arrive::of_group;
 use super::lamps::{LightSamples, PlanarLights, SphereLights, aim, aim_at_disks, aim_at_spheres};
 use super::level::{Level, stages};
 use super::paths::vertex;
-use super::skies::{FEWEST_LOOKS, SkyLights, aim_at_sky};
 use super::rows::{GROUPS, Mask, Row, Rows3, W, group_of, lanes, surface_point};
+use super::skies::{FEWEST_LOOKS, SkyLights, aim_at_sky};
 use crate::bsdf::lambert;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
@@ -145,9 +145,8 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         let mut skies = draws.skies.mask & shared;
         while skies != 0 {
             let index = draws.light[skies.trailing_zeros() as usize];
-            let same = lanes(skies)
-                .filter(|&lane| draws.light[lane] == index)
-                .fold(0, |mask: Mask, lane| mask | 1 << lane);
+            let same =
+                lanes(skies).filter(|&lane| draws.light[lane] == index).fold(0, |mask: Mask, lane| mask | 1 << lane);
             skies &= !same;
             if let (Light::Environment(sky), FEWEST_LOOKS..) = (&lights[index as usize], same.count_ones()) {
                 aim_at_sky(self.level, sky, [u1, u2], same, &mut draws.skies, &mut draws.light_samples);

@@ -59,6 +59,8 @@ pub enum Event {
         found: String,
         /// How much, at each wavelength.
         radiance: Vec<f64>,
+        /// Its part of the sample's Y: those of all light add up to it.
+        luminance: f64,
     },
     /// The path ended.
     End {
@@ -78,6 +80,11 @@ pub(crate) fn replay<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     let tracer = Tracer::new(prepared);
     let path = tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut recorder);
     let Received { wavelengths, radiance, stokes } = path.received();
+    for event in &mut recorder.events {
+        if let Event::Light { radiance, luminance, .. } = event {
+            *luminance = M::to_xyz(prepared, &wavelengths, Lanes::from_fn(|lane| radiance[lane]))[1];
+        }
+    }
     Replay {
         wavelengths_nm: wavelengths.lambda_nm.0.to_vec(),
         events: recorder.events,
@@ -118,7 +125,8 @@ impl<const N: usize> Observer<N> for Recorder<'_> {
             Found::Medium => "medium".to_owned(),
             Found::ShadowRay { light } => format!("shadow-ray to light {light}"),
         };
-        self.events.push(Event::Light { vertex, found, radiance: widen(radiance) });
+        // The luminance follows once the wavelengths are known that the path has kept.
+        self.events.push(Event::Light { vertex, found, radiance: widen(radiance), luminance: 0.0 });
     }
 
     fn end(&mut self, end: End) {

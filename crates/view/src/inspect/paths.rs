@@ -43,7 +43,7 @@ pub(crate) struct DrawnVertex {
     pub pixel: Option<[f64; 2]>,
     /// Throughput of the path up to here, mean over its wavelengths.
     pub throughput: f64,
-    /// Light that was added here: how it was found, and how much, as mean over the wavelengths.
+    /// Light that was added here: how it was found, and its part of the luminance Y.
     pub light: Vec<(String, f64)>,
 }
 
@@ -88,9 +88,9 @@ fn draw(prepared: &Prepared, view: &CameraView, size: [u32; 2], sample: u32, rep
                 vertices.push(vertex(object, material_of(prepared.scene(), object), *position_m, beta));
             }
             Event::Scattering { position_m, beta, .. } => vertices.push(vertex("medium", None, *position_m, beta)),
-            Event::Light { found, radiance, .. } => {
+            Event::Light { found, luminance, .. } => {
                 let light = vertices.last_mut().map_or(&mut before, |vertex| &mut vertex.light);
-                light.push((found.clone(), mean(radiance)));
+                light.push((found.clone(), *luminance));
             }
             Event::End { because } => end = because,
         }

@@ -23,6 +23,8 @@ pub(crate) struct PixelInfo {
     pub luminance: f64,
     /// Its standard error.
     pub luminance_error: Option<f64>,
+    /// Mean luminance of the picture.
+    pub mean_luminance: Option<f64>,
     /// Samples of the pixel; of a picture from a file only where it says so.
     pub samples: Option<f64>,
     /// Side of the block that the pixel stands for.
@@ -63,6 +65,7 @@ pub(crate) fn of_picture(snapshot: &Snapshot, at: [u32; 2]) -> Option<PixelInfo>
         rgb_error: three(picture, ERROR_PREFIX),
         luminance,
         luminance_error: luminance_error.filter(|error| error.is_finite()),
+        mean_luminance: snapshot.error.as_ref().map(|error| error.mean_y),
         samples: value("samples").or(even),
         block: snapshot.block,
         object: named_in_file(snapshot, index),
