@@ -45,6 +45,7 @@
 //! | whether two pictures differ beyond their noise | [`compare()`] |
 //! | what is said about a render, as JSON | [`RenderReport`] |
 //! | colours, errors, bands, Stokes parameters, depth, normals | [`Render`] |
+//! | irradiance, illuminance, flux, luminance at stated places | [`MeterReader`] |
 //! | channels of EXR files | [`Channels`], [`Aov`] |
 //! | one path, vertex by vertex | [`Renderer::replay`] |
 //! | frames of a sequence | [`Frame`], `scene.model.set_shutter` |
@@ -59,6 +60,7 @@ mod error;
 mod film_file;
 mod frame;
 mod matrices;
+mod measure;
 mod picture;
 mod quote;
 mod renderer;
@@ -86,6 +88,9 @@ pub use etalon_transport::{
 };
 pub use film_file::FilmFile;
 pub use frame::{Frame, FrameRate};
+pub use measure::{
+    METER_REPLICATES, MOST_METER_SAMPLES, MeasureSettings, Measured, Measurement, MeterError, MeterReader, Reading,
+};
 pub use picture::Render;
 pub use quote::{Quote, QuoteSettings, QuotedExploration};
 pub use renderer::{Progress, Renderer, Settings};

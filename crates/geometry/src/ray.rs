@@ -27,6 +27,9 @@ impl SurfaceId {
     /// No surface: a ray that starts in free space, a shadow ray toward no surface.
     pub const NONE: Self = Self { instance: 0, primitive: PrimitiveId::NONE };
 
+    /// A surface that is no part of the geometry: no ray meets it, and no light is on it.
+    pub const OUTSIDE: Self = Self { instance: u32::MAX, primitive: PrimitiveId::NONE };
+
     /// The primitive among those that are not within an instance.
     #[inline(always)]
     pub(crate) fn own(self) -> PrimitiveId {

@@ -11,6 +11,7 @@ mod integrator;
 mod light;
 mod material;
 mod medium;
+mod meter;
 mod motion;
 mod references;
 mod shape;
@@ -27,6 +28,7 @@ pub use material::{
     ParameterMut, PolarisingSheet, Side, SpectrumTexture,
 };
 pub use medium::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseTable};
+pub use meter::{Meter, MeterKind, MeterQuantity, Receiver};
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use references::ReferenceError;
 pub use shape::{Mesh, Shape};
@@ -55,11 +57,29 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// What fills the space outside of all bodies, if it does anything to light.
     pub medium: Option<Medium>,
+    /// What is measured beside the picture: [`Scene::measured`].
+    pub meters: Vec<Meter>,
+    /// Where paths begin instead of at the camera: column by column of the film. Empty where the scene is a picture.
+    pub receivers: Vec<Receiver>,
     /// How to integrate, as far as the file says; the command line may override it.
     pub integrator: Integrator,
 }
 
 impl Scene {
+    /// The scene as its meters see it: a film with a column for each reading, in the order of the meters, and `rows` rows that are
+    /// independent of each other. It keeps one band, all wavelengths rendered. `None` if there are no meters.
+    ///
+    /// A row is a replicate, so that each has a place of its own on the film, and all of them can be rendered at the same time.
+    pub fn measured(&self, rows: u32) -> Option<Self> {
+        let receivers: Vec<Receiver> = self.meters.iter().flat_map(|meter| meter.kind.receivers()).collect();
+        let width = u32::try_from(receivers.len()).ok().filter(|&width| width > 0)?;
+        let [first, last] = self.integrator.wavelength_range_nm;
+        let all = Bands { first_nm: 0.5 * (first + last), step_nm: last - first, count: 1 };
+        let film = Film { width, height: rows, filter: Filter::Box, stokes: false, bands: Some(all) };
+        let integrator = Integrator { replicates: 1, path_reuse: PathReuse::None, ..self.integrator.clone() };
+        Some(Self { film, integrator, receivers, ..self.clone() })
+    }
+
     /// Every object that is somewhere in the scene, once however often it is placed: the scene's own, then those of each
     /// group that an instance places.
     pub fn placed_objects(&self) -> impl Iterator<Item = &Object> {

@@ -447,3 +447,38 @@ fn a_camera_moves_as_a_thing_does_in_a_group_so_placed() {
     assert!(near(scene.camera.position_m, [5.0 * half, 0.0, 5.0 * half]), "{:?}", scene.camera);
     assert!(near(scene.camera.forward, [-half, 0.0, -half]) && near(scene.camera.up, [0.0, 1.0, 0.0]));
 }
+
+#[test]
+fn meters() {
+    let scene = scene(EVERYTHING);
+    let kinds: Vec<&MeterKind> = scene.meters.iter().map(|meter| &meter.kind).collect();
+    let [irradiance, grid, flux, radiance] = kinds[..] else { panic!("four meters") };
+    assert_eq!(irradiance, &MeterKind::Irradiance { position_m: [0.0, 0.75, 0.0], normal: [0.0, 1.0, 0.0] });
+    let edges_m = [[0.0, 0.0, 2.0], [1.0, 0.0, 0.0]];
+    assert_eq!(grid, &MeterKind::IrradianceGrid { origin_m: [0.0; 3], edges_m, cells: [3, 2] });
+    assert_eq!(flux, &MeterKind::Flux { origin_m: [0.0; 3], edges_m: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] });
+    let MeterKind::Radiance { half_angle_rad, direction, .. } = radiance else { panic!("radiance") };
+    assert_eq!((*half_angle_rad, *direction), (1.0_f64.to_radians(), [0.0, 0.0, -1.0]));
+    let names: Vec<&str> = scene.meters.iter().map(|meter| meter.name.as_str()).collect();
+    assert_eq!(names, ["desk", "floor", "meters[2]", "meters[3]"]);
+
+    // Centres of cells along u, then along v; the normal along u × v.
+    let places: Vec<[f64; 3]> = grid
+        .receivers()
+        .iter()
+        .map(|receiver| match receiver {
+            Receiver::Plane { origin_m, edges_m, normal } => {
+                assert_eq!((*edges_m, *normal), ([[0.0; 3]; 2], [0.0, 1.0, 0.0]));
+                *origin_m
+            }
+            Receiver::Cone { .. } => panic!("a plane"),
+        })
+        .collect();
+    assert_eq!(places[0], [0.25, 0.0, 2.0 / 6.0]);
+    assert_eq!(places[3], [0.75, 0.0, 2.0 / 6.0]);
+    assert_eq!(places.len(), 6);
+
+    let measured = scene.measured(32).unwrap();
+    assert_eq!((measured.film.width, measured.film.height, measured.integrator.replicates), (9, 32, 1));
+    assert!(Scene { meters: Vec::new(), ..scene }.measured(32).is_none());
+}

@@ -10,6 +10,7 @@ pub(crate) mod farm;
 pub(crate) mod figures;
 pub(crate) mod import;
 pub(crate) mod man;
+pub(crate) mod measure;
 pub(crate) mod merge;
 pub(crate) mod quote;
 pub(crate) mod render;

@@ -20,6 +20,9 @@ static D65: LazyLock<Vec<f64>> = LazyLock::new(|| {
     rows.into_iter().map(|[_, power]| power).collect()
 });
 
+/// The maximum luminous efficacy of radiation by the SI's 683 lm/W at 540 THz: 683.002 lm/W at the wavelength where ȳ is 1.
+pub const LUMINOUS_EFFICACY: f64 = 683.002;
+
 static Y_INTEGRAL_NM: LazyLock<f64> = LazyLock::new(|| COLOUR_MATCHING.iter().map(|row| row[1]).sum());
 
 pub(crate) fn colour_matching_rows() -> &'static [[f64; 3]] {
@@ -52,7 +55,7 @@ pub fn cie_y_integral_nm() -> f64 {
 /// XYZ of a spectrum: Σ S(λ)·(x̄, ȳ, z̄)(λ) over 1 nm from 360 to 830 nm (the summation of CIE 15:2018, §7.1), divided by
 /// Σ ȳ, so that the constant spectrum 1 has Y = 1.
 ///
-/// For a spectral radiance in W·m⁻²·sr⁻¹·nm⁻¹ the luminance is 683.002 lm/W · [`cie_y_integral_nm`] · Y.
+/// For a spectral radiance in W·m⁻²·sr⁻¹·nm⁻¹ the luminance is [`LUMINOUS_EFFICACY`] · [`cie_y_integral_nm`] · Y.
 pub fn xyz_of(spectrum: impl Fn(f64) -> f64) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for (i, row) in COLOUR_MATCHING.iter().enumerate() {

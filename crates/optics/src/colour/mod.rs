@@ -10,7 +10,10 @@ mod rec709;
 
 pub use adaptation::adaptation;
 pub(crate) use cie::colour_matching_rows;
-pub use cie::{CIE_RANGE_NM, cie_y_integral_nm, colour_matching, illuminant_a, illuminant_d65, luminance_of, xyz_of};
+pub use cie::{
+    CIE_RANGE_NM, LUMINOUS_EFFICACY, cie_y_integral_nm, colour_matching, illuminant_a, illuminant_d65, luminance_of,
+    xyz_of,
+};
 pub use daylight::daylight_chromaticity;
 pub use lab::{lab_from_xyz, xyz_from_lab};
 pub use matrix::{Matrix, inverse, multiply, product};

@@ -104,6 +104,7 @@ impl Claim {
             Self::WholeFormat => "whole-format",
             Self::StatedPixels => "stated-pixels",
             Self::StokesParameters => "stokes-parameters",
+            Self::Meters => "meters",
         }
     }
 }

@@ -24,6 +24,7 @@ mod judge;
 mod lamps;
 mod masks;
 mod media;
+mod meters;
 mod motion;
 mod named;
 mod polarised;
@@ -98,6 +99,8 @@ pub enum Claim {
     StatedPixels,
     /// Says S₁, S₂ and S₃ of the light that arrives: [`Truth::quantity`].
     StokesParameters,
+    /// Reads the meters of a scene: [`Quantity::Meters`].
+    Meters,
 }
 
 impl Claim {
@@ -136,10 +139,13 @@ pub enum Quantity {
     Stokes2,
     /// S₃: light whose field turns clockwise seen against the light, less light of the other hand.
     Stokes3,
+    /// The mean of the readings of the scene's meters, in the units of [`Quantity::Radiance`] times those of the meter: irradiance
+    /// (W·m⁻²·nm⁻¹), flux (W·nm⁻¹) or radiance.
+    Meters,
 }
 
 impl Quantity {
-    /// Its name in files: `S0` to `S3`.
+    /// Its name in files: `S0` to `S3`, `meters`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -147,6 +153,7 @@ impl Quantity {
             Self::Stokes1 => "S1",
             Self::Stokes2 => "S2",
             Self::Stokes3 => "S3",
+            Self::Meters => "meters",
         }
     }
 }
@@ -250,7 +257,7 @@ impl Truth {
             scene: scene.to_json(),
             files: scene.files(),
             value,
-            quantity: Quantity::Radiance,
+            quantity: if scene.has_meters() { Quantity::Meters } else { Quantity::Radiance },
             crop_px: None,
             formula: formula.into(),
             derivation: "",
@@ -397,6 +404,7 @@ pub fn truths() -> Vec<Truth> {
         skies::truths(),
         surfaces::truths(),
         media::truths(),
+        meters::truths(),
     ]
     .into_iter()
     .flatten()

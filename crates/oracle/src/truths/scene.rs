@@ -242,6 +242,11 @@ impl Scene {
         self.band_nm
     }
 
+    /// Whether it is measured, not seen.
+    pub(super) fn has_meters(&self) -> bool {
+        self.further.iter().any(|([part, _], _)| *part == "meters")
+    }
+
     /// What the scene itself asks of a renderer.
     pub(super) fn claims(&self) -> Vec<Claim> {
         let mut claims = Vec::new();
@@ -256,6 +261,9 @@ impl Scene {
         }
         if self.whole_format {
             claims.push(Claim::WholeFormat);
+        }
+        if self.has_meters() {
+            claims.push(Claim::Meters);
         }
         claims
     }

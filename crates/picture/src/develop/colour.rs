@@ -1,14 +1,15 @@
 //! The colour that a file holds, as linear Rec. 709, and its unit.
 
 use etalon_optics::colour::{
-    REC709_FROM_XYZ, XYZ_FROM_REC709, cie_y_integral_nm, multiply, product, rec709_from_xyz, xyz_from_rgb,
+    LUMINOUS_EFFICACY, REC709_FROM_XYZ, XYZ_FROM_REC709, cie_y_integral_nm, multiply, product, rec709_from_xyz,
+    xyz_from_rgb,
 };
 
 use super::band;
 use crate::{Attribute, Attributes, Chromaticities, ExrFile, Picture, PictureError, Sample};
 
 /// Luminous efficacy of radiation at 540 THz as CIE 018:2019 states it for the maximum of the photopic V(λ), lm/W.
-const LUMINOUS_EFFICACY_LM_W: f64 = 683.002;
+const LUMINOUS_EFFICACY_LM_W: f64 = LUMINOUS_EFFICACY;
 
 /// The colour of a file as linear Rec. 709, in channels `R`, `G`, `B`. It is, in this order of preference:
 ///

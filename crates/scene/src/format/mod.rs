@@ -12,6 +12,7 @@ mod light;
 mod material;
 mod medium;
 mod mesh;
+mod meter;
 mod motion;
 mod names;
 mod scene;

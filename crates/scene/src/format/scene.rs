@@ -10,6 +10,7 @@ use super::integrator::{IntegratorForm, integrator, wavelength_range_nm};
 use super::light::{LightForm, light};
 use super::material::{Before, MaterialForm, Share, material};
 use super::medium::{MediumForm, medium};
+use super::meter::{MeterForm, meters};
 use super::names::Names;
 use super::spectra::Spectra;
 use super::spectrum::SpectrumForm;
@@ -70,6 +71,8 @@ crate::record! {
         lights: Required<List<Box<LightForm>>> = "[]",
         /// What fills the space outside of all bodies: fog, smoke, air. Left out, it is clear.
         medium: Optional<Box<MediumForm>>,
+        /// What `etalon measure` measures.
+        meters: Required<Spanned<List<Box<MeterForm>>>> = "[]",
         /// How to integrate.
         integrator: Required<IntegratorForm> = "{}",
     }
@@ -204,6 +207,8 @@ pub(crate) fn scene(
         Optional::Invalid => None,
     };
 
+    let meters = form.meters.as_ref().and_then(|forms| meters(forms, reader));
+
     files.warn_of_what_is_left_out(reader);
 
     // Whatever is wrong has been reported by now; a wrong list has not become an empty one.
@@ -219,6 +224,8 @@ pub(crate) fn scene(
         instances,
         lights: lights.complete()?,
         medium: medium?,
+        meters: meters?,
+        receivers: Vec::new(),
         integrator: integrator?,
     };
     warn(&scene, form, reader);

@@ -40,28 +40,41 @@ pub(crate) fn trace<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         }
         let Some(vertex) = met else { break };
 
-        // Direct light: one shadow ray toward one light.
-        if vertex.sees_lights {
-            path.direct_light(world, &vertex, sampler, counters, observer);
+        match path.go_on(world, &vertex, sampler, counters, observer) {
+            Some(next) => ray = next,
+            None => break,
         }
-
-        // Scattering: in which direction does the walk go on?
-        let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
-        let Some(direction) = path.sample_direction(world, &vertex, [u_lobe, u1, u2], observer) else {
-            observer.end(End::Absorbed);
-            break;
-        };
-        let taken = path.scatter(world, &vertex, direction, u_lobe);
-
-        // Russian roulette.
-        if !path.survives(world, taken.guiding, u_roulette, observer) {
-            break;
-        }
-        ray = vertex.point.spawn(taken.wi);
     }
 }
 
 impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
+    /// Finds the direct light at a vertex, and takes the step from there: the next ray, or `None` where the path ends.
+    #[inline(always)]
+    pub(crate) fn go_on(
+        &mut self,
+        world: &World<'a>,
+        vertex: &SurfaceInteraction<'a>,
+        sampler: &Sampler,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) -> Option<Ray<f64>> {
+        // Direct light: one shadow ray toward one light.
+        if vertex.sees_lights {
+            self.direct_light(world, vertex, sampler, counters, observer);
+        }
+
+        // Scattering: in which direction does the walk go on?
+        let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(self.vertex, 0);
+        let Some(direction) = self.sample_direction(world, vertex, [u_lobe, u1, u2], observer) else {
+            observer.end(End::Absorbed);
+            return None;
+        };
+        let taken = self.scatter(world, vertex, direction, u_lobe);
+
+        // Russian roulette.
+        self.survives(world, taken.guiding, u_roulette, observer).then(|| vertex.point.spawn(taken.wi))
+    }
+
     /// Adds the light of one direction toward one light, where the shadow ray comes through.
     #[inline(always)]
     pub(crate) fn direct_light(

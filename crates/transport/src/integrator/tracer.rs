@@ -9,12 +9,13 @@ use crate::media::MediumStack;
 use crate::plan::EffectName;
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
-use crate::scene::interaction::Walk;
+use crate::scene::interaction::{SurfaceInteraction, Walk};
 use crate::scene::prepare::Prepared;
+use crate::scene::receiver::Departure;
 use crate::scene::world::{ShadowRays, World};
 use crate::surface::Scattering;
 use etalon_geometry::Ray;
-use etalon_optics::Vec3;
+use etalon_optics::{Frame, Vec3};
 use std::ops::Range;
 
 /// Some samples of one pixel.
@@ -70,6 +71,9 @@ impl<'a> Tracer<'a> {
         let plan = prepared.plan();
         // Forced on a scene without solids, they are nothing to walk through.
         let media = prepared.media.as_ref().filter(|media| media.solids.iter().any(Option::is_some));
+        // A meter's plate is a vertex that the limit on depth does not count.
+        let of_receiver = u32::from(!prepared.receivers.is_empty());
+        let max_depth = integrator.max_depth.map_or(MOST_VERTICES, |depth| depth.saturating_add(of_receiver));
         let masks = plan.runs(EffectName::Masks) || prepared.has_boundaries;
         Self {
             prepared,
@@ -90,7 +94,7 @@ impl<'a> Tracer<'a> {
                 point_lights: prepared.shadow_rays() != ShadowRays::Never
                     && prepared.lights.lights().iter().any(|light| light.position().is_some()),
                 weigh_hits: prepared.lights.can_be_met() || plan.runs(EffectName::Mis),
-                max_depth: integrator.max_depth.unwrap_or(MOST_VERTICES).min(MOST_VERTICES),
+                max_depth: max_depth.min(MOST_VERTICES),
                 roulette: integrator.roulette,
                 tables: &prepared.tables,
                 plain_skies: prepared.environments.iter().all(|sky| sky.light.is_none()),
@@ -127,13 +131,7 @@ impl<'a> Tracer<'a> {
         let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
         let film = self.film_point(x, y, [film_x, film_y]);
         counters.lens_draws += u64::from(self.camera.has_lens());
-        let time = if self.world.moves {
-            counters.time_draws += 1;
-            let [_, time, ..] = sampler.set(1);
-            time
-        } else {
-            0.0
-        };
+        let time = self.time(sampler, counters);
         self.camera.ray_at(film, [lens_1, lens_2], time)
     }
 
@@ -183,11 +181,65 @@ impl<'a> Tracer<'a> {
         observer: &mut impl Observer<N>,
     ) -> Path<'a, M, P, N> {
         let sampler = self.sampler(x, y, sample);
+        if !self.prepared.receivers.is_empty() {
+            return self.measured(x, y, sample, &sampler, counters, observer);
+        }
         let start = self.start::<M, P, N>(x, y, sample, &sampler, counters);
         let mut path = Path::idle();
         path.begin(&self.world, &start);
         trace(&self.world, &mut path, start.ray, &sampler, counters, observer);
         path
+    }
+
+    /// One path that begins at the receiver of a column of the film, the same after its first vertex.
+    fn measured<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        x: u32,
+        y: u32,
+        sample: u32,
+        sampler: &Sampler,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) -> Path<'a, M, P, N> {
+        let wavelengths = M::wavelengths(self.prepared, || {
+            let [wavelength, ..] = self.of_block(x, y, sample).set(1);
+            wavelength
+        });
+        let time = self.time(sampler, counters);
+        let departure = self.prepared.receivers[x as usize].depart(sampler.set(0), time);
+        let ray = departure.first_ray();
+        let stack = self.world.media_around(&ray, counters);
+        let mut path = Path::idle();
+        // Light that a white plate depolarises has no preferred axis; a cone shows it as an eye with this axis to its right.
+        let polarisation = P::at_camera(ray.direction, Frame::from_normal(ray.direction).s);
+        path.begin(&self.world, &Start { ray, stack, wavelengths, polarisation });
+        let first = match departure {
+            Departure::Plane(point) => {
+                let surface = self.world.surfaces.white_receiver();
+                let mut vertex = SurfaceInteraction::of_receiver(point, surface);
+                vertex.prepare_scattering(&self.world);
+                path.go_on(&self.world, &vertex, sampler, counters, observer)
+            }
+            Departure::Free(ray) => {
+                // The plane of a plate is a vertex of its own, so that both count edges alike.
+                path.vertex = 1;
+                Some(ray)
+            }
+        };
+        if let Some(ray) = first {
+            trace(&self.world, &mut path, ray, sampler, counters, observer);
+        }
+        path
+    }
+
+    /// The time of a sample, from 0 as the shutter opens to 1 as it closes.
+    fn time(&self, sampler: &Sampler, counters: &mut Counters) -> f64 {
+        if !self.world.moves {
+            return 0.0;
+        }
+        counters.time_draws += 1;
+        let [_, time, ..] = sampler.set(1);
+        time
     }
 
     /// Where the path of a sample begins.

@@ -64,7 +64,9 @@ pub enum Lost {
 /// What a scene asks for that no path finds.
 pub(super) fn of(scene: &Scene) -> MissingLight {
     let mut missing = MissingLight::default();
-    if scene.integrator.max_depth.is_some_and(|depth| depth < FEWEST_EDGES) {
+    // A meter's plate stands for the other surface.
+    let fewest = FEWEST_EDGES - u32::from(!scene.receivers.is_empty());
+    if scene.integrator.max_depth.is_some_and(|depth| depth < fewest) {
         // No picture of so few edges shows it.
         return missing;
     }

@@ -296,8 +296,11 @@ fn reuse_unsupported(kernel: &KernelKind, runs: impl Fn(EffectName) -> bool) -> 
 }
 
 /// Many paths at once, unless the study wants otherwise.
-fn chosen_loop(study: &Study) -> ChosenLoop {
+fn chosen_loop(scene: &Scene, study: &Study) -> ChosenLoop {
     match study.path_loop {
+        _ if !scene.receivers.is_empty() => {
+            ChosenLoop { name: PathLoop::Scalar, because: "paths begin at meters, not at a camera" }
+        }
         Some(name) => ChosenLoop { name, because: "chosen by --loop" },
         None => ChosenLoop { name: PathLoop::Batch, because: "it is the fastest" },
     }
@@ -355,7 +358,7 @@ impl Plan {
         if kernel.lanes == LaneModel::ThreeChannels {
             approximations.push("spectra: light and surfaces have three channels instead".to_owned());
         }
-        let path_loop = chosen_loop(study);
+        let path_loop = chosen_loop(scene, study);
         let path_reuse = i.path_reuse.block_px();
         if let (Some(_), Some(because)) = (path_reuse, reuse_unsupported(kernel, runs)) {
             return Err(StudyError::PathReuse(because));

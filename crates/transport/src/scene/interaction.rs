@@ -54,6 +54,12 @@ impl<'a> SurfaceInteraction<'a> {
         }
     }
 
+    /// The white plate of a meter, seen along its normal. No ray has found it.
+    pub(crate) fn of_receiver(point: SurfacePoint<f64>, surface: Surface<'a>) -> Self {
+        let hit = Hit { t: 0.0, surface: point.surface, uv: [0.0; 2] };
+        Self::new(-point.normal, hit, point, surface)
+    }
+
     /// Becomes another one, as [`SurfaceInteraction::new`] has it.
     #[inline(always)]
     pub(crate) fn renew(

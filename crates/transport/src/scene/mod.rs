@@ -6,6 +6,7 @@
 //! | [`shapes`] | geometry and lamps made from objects, groups and instances |
 //! | [`world`] | all that a path meets |
 //! | [`interaction`] | what a path meets next: surfaces, masks, solids that coincide |
+//! | [`receiver`] | where paths of meters begin |
 //! | [`starting_media`] | the media that hold the camera |
 //! | [`shading_tables`] | spectra and kinds of materials by object, looked up on paths |
 //! | [`coincidence`] | warnings about interfaces that coincide |
@@ -15,6 +16,7 @@ pub(crate) mod interaction;
 mod motion;
 pub(crate) mod prepare;
 pub(crate) mod prepare_error;
+pub(crate) mod receiver;
 pub(crate) mod shading_tables;
 mod shapes;
 mod starting_media;

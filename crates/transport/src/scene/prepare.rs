@@ -11,6 +11,7 @@ use crate::media::{Interior, Media, Medium, Participating, Solid};
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
 use crate::scene::motion::motion;
 use crate::scene::prepare_error::PrepareError;
+use crate::scene::receiver::{self, PreparedReceiver};
 use crate::scene::shading_tables::ShadingTables;
 use crate::scene::shapes::{self, GroupShapes, SceneShapes};
 use crate::scene::world::ShadowRays;
@@ -31,6 +32,8 @@ pub struct Prepared {
     pub(crate) camera: etalon_scene::Camera,
     camera_motion: Option<Moving>,
     pub(crate) geometry: Geometry,
+    /// Where paths begin instead of at the camera, column by column; empty where the scene is a picture.
+    pub(crate) receivers: Vec<PreparedReceiver>,
     pub(crate) surfaces: Surfaces,
     pub(crate) lights: LightTable,
     pub(crate) environments: Vec<Environment>,
@@ -113,7 +116,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     if plan.runs(EffectName::Polarisation) {
         bsdfs.iter_mut().for_each(Bsdf::prepare_polarisation);
     }
-    let surfaces = Surfaces {
+    let mut surfaces = Surfaces {
         bsdfs,
         properties: scene.materials.iter().map(|material| properties(&material.kind)).collect(),
         interiors: scene
@@ -143,6 +146,9 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         object_of,
         light_of,
     };
+    if !scene.receivers.is_empty() {
+        receiver::add_white(&mut surfaces, range_nm);
+    }
     let camera_motion = camera_motion(&scene.camera, frame)?;
     let guided_targets = match study.carried {
         None => GuidedTargets::new(&surfaces, &geometry, &lights, range_nm),
@@ -165,6 +171,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         has_boundaries,
         surrounding: scene.medium.as_ref().and_then(|medium| Medium::new(medium, range_nm, &frame)),
         geometry,
+        receivers: scene.receivers.iter().map(|receiver| PreparedReceiver::new(receiver, &frame)).collect(),
         surfaces,
         lights,
         environments,

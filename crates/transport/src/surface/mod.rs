@@ -102,6 +102,13 @@ impl Surfaces {
 }
 
 impl Surfaces {
+    /// The surface of a meter's white plate: the last object, where there are meters.
+    pub(crate) fn white_receiver(&self) -> Surface<'_> {
+        let object = self.objects.len() - 1;
+        let of_object = &self.objects[object];
+        Surface { object: object as u32, material: of_object.material, own: of_object, surfaces: self }
+    }
+
     /// What an object emits at a point of one of its surfaces that a shadow ray aims at.
     pub(crate) fn emitted(
         &self,

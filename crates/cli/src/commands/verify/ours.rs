@@ -66,6 +66,9 @@ impl<'a> Measurement<'a> {
         let mut scene = loaded.scene;
         // Each film is one replicate here.
         scene.integrator.replicates = 1;
+        if truth.quantity == Quantity::Meters {
+            return scene.measured(1).ok_or_else(|| "the scene has no meters".to_owned());
+        }
         if args.thorough && truth.crop_px.is_none() {
             // The whole film as one pixel, with the samples of all: points that are spread evenly over it and over whatever follows,
             // where each of a thousand pixels would have a handful. Another picture than by default, with the same mean.
@@ -128,7 +131,8 @@ pub(super) fn run(args: &Args, chosen: Vec<Truth>) -> Outcome {
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::run(Problem::from_err(error).wrap_err("cannot listen to signals")))?;
     // Plain radiance with polarisations averaged at every interface, or with polarisation, each where a truth wants it.
-    let claims = [&Claim::UNPOLARISED[..], &[Claim::CarriesPolarisation, Claim::StokesParameters]].concat();
+    let claims =
+        [&Claim::UNPOLARISED[..], &[Claim::CarriesPolarisation, Claim::StokesParameters, Claim::Meters]].concat();
     let chosen: Vec<Truth> = chosen.into_iter().filter(|truth| truth.applies_to(&claims)).collect();
     // Of all truths some are judged a second time, by more samples.
     let again = args.names.is_empty() && !args.thorough;

@@ -78,7 +78,17 @@ impl Series {
             Quantity::Stokes1 => mean_stokes(film, rect, 0),
             Quantity::Stokes2 => mean_stokes(film, rect, 1),
             Quantity::Stokes3 => mean_stokes(film, rect, 2),
+            Quantity::Meters => self.mean_reading(film, rect),
         })
+    }
+
+    /// Mean over the readings of all meters, in units of the sensor.
+    fn mean_reading(&self, film: &Film, rect: PixelRect) -> f64 {
+        let meters = &self.prepared[0].scene().meters;
+        let factors = meters.iter().flat_map(|meter| (0..meter.kind.reading_count()).map(|_| meter.kind.factor()));
+        let factors: Vec<f64> = factors.collect();
+        let sum: f64 = rect.pixels().map(|(x, y)| film.pixel(x, y).xyz()[1] * factors[x as usize]).sum();
+        sum / rect.area() as f64
     }
 
     /// The largest throughput of a path that was cut in any film.

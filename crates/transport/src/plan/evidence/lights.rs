@@ -2,7 +2,7 @@
 
 use super::{materials::is_diffuse, media, surface};
 use etalon_optics::Spectrum;
-use etalon_scene::{Light, LightKind, LightSampling, Object, Scene};
+use etalon_scene::{Light, LightKind, LightSampling, Object, Receiver, Scene};
 
 pub(super) fn is_environment(kind: &LightKind) -> bool {
     !kind.is_delta() && !kind.is_zero()
@@ -22,13 +22,14 @@ fn emitter(scene: &Scene) -> Option<&Object> {
     scene.placed_objects().find(|object| object.emission.as_ref().is_some_and(|e| !e.is_zero()))
 }
 
-/// A diffuse surface, one that does not shine itself if there is any; without one, a medium that scatters.
+/// A diffuse surface, one that does not shine itself if there is any; without one, a medium that scatters, or the plate of a meter.
 fn diffuse_surface(scene: &Scene) -> Option<String> {
     let diffuse = |object: &&Object| is_diffuse(&scene.materials[object.material].kind);
     let lit = scene.placed_objects().filter(|object| object.emission.is_none()).find(diffuse);
     let object = lit.or_else(|| scene.placed_objects().find(diffuse));
     let found = object.map(|object| surface(object, &scene.materials[object.material]));
-    found.or_else(|| media::scatters_everywhere(scene))
+    let plate = || scene.receivers.iter().any(|receiver| matches!(receiver, Receiver::Plane { .. }));
+    found.or_else(|| media::scatters_everywhere(scene)).or_else(|| plate().then(|| "the plate of a meter".to_owned()))
 }
 
 pub(super) fn shadow_rays(scene: &Scene) -> Result<String, String> {

@@ -19,6 +19,7 @@ impl Prepared {
         };
         own.integrator == integrator
             && own.film == scene.film
+            && own.receivers == scene.receivers
             && own.instances == scene.instances
             && still(own)
             && still(scene)
