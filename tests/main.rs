@@ -12,6 +12,7 @@ mod explain;
 mod farm;
 mod hostile;
 mod instruction_sets;
+mod measure;
 mod missing_light;
 mod outputs;
 mod refusals;

@@ -11,6 +11,7 @@ use sha2::{Digest, Sha256};
 
 use crate::grid::{self, Grid};
 use crate::json::{Code, Reader, Spanned, did_you_mean, listed};
+use crate::luminaire::{Photometry, read_photometry};
 use crate::mesh::Shading;
 use crate::model::Mesh;
 use crate::texture::{Channel, Encoding, Image};
@@ -63,6 +64,7 @@ pub(crate) struct Files<'f> {
     images: HashMap<(String, Encoding), Option<Arc<Image>>>,
     data: HashMap<(String, Channel, Encoding), Option<Arc<Image>>>,
     grids: HashMap<String, Option<Grid>>,
+    photometries: HashMap<String, Option<Arc<Photometry>>>,
     /// What of images is not used as colours.
     left_out: Vec<(Spanned<String>, String)>,
     used: Vec<FileUse>,
@@ -89,6 +91,7 @@ impl<'f> Files<'f> {
             images: HashMap::new(),
             data: HashMap::new(),
             grids: HashMap::new(),
+            photometries: HashMap::new(),
             left_out: Vec::new(),
             used: Vec::new(),
             noted: HashSet::new(),
@@ -195,6 +198,21 @@ impl<'f> Files<'f> {
                 .ok()
         });
         self.grids.insert(name.value.clone(), made.clone());
+        made
+    }
+
+    /// The intensities of an IES or EULUMDAT file; why there are none is reported at the name.
+    pub(crate) fn photometry(&mut self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Arc<Photometry>> {
+        if let Some(known) = self.photometries.get(&name.value) {
+            return known.clone();
+        }
+        let made = self.bytes(name, reader).and_then(|bytes| {
+            read_photometry(&name.value, &bytes)
+                .map_err(|why| reader.error(Code::File, name.at, format!("{}: {why}", name.value)))
+                .ok()
+                .map(Arc::new)
+        });
+        self.photometries.insert(name.value.clone(), made.clone());
         made
     }
 

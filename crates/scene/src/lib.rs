@@ -39,6 +39,7 @@ mod format;
 mod grid;
 pub mod json;
 pub mod linear;
+mod luminaire;
 pub mod mesh;
 pub mod model;
 mod problem;
@@ -48,6 +49,7 @@ use std::path::Path;
 
 pub use files::{FileUse, MAX_FILE_BYTES, NamedFile, read_file};
 pub use format::MOST_BLEND_PARTS;
+pub use luminaire::Photometry;
 pub use model::*;
 pub use problem::{Code, LoadError, Problem, Related, SceneErrors, Severity, Span, shortened};
 pub use texture::{

@@ -16,6 +16,7 @@ mod motion;
 mod references;
 mod shape;
 mod shutter;
+mod sky;
 
 pub use detail::{Bitangent, OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
@@ -33,6 +34,7 @@ pub use motion::{CameraMotion, Keyframe, Motion};
 pub use references::ReferenceError;
 pub use shape::{Mesh, Shape};
 pub(crate) use shutter::middle_s;
+pub use sky::{CieSky, SkyCoefficients};
 
 use glam::DAffine3;
 

@@ -198,7 +198,8 @@ fn materials_and_spectra() {
 #[test]
 fn objects_and_lights() {
     let scene = scene(EVERYTHING);
-    let [ball, sheet, disk, pyramid, block] = scene.objects.as_slice() else { panic!("five") };
+    let [ball, sheet, disk, panel, pyramid, block] = scene.objects.as_slice() else { panic!("six") };
+    assert_eq!(panel.name, "panel");
     assert_eq!((ball.name.as_str(), ball.material), ("ball", 0));
     assert_eq!(ball.shape, Shape::Sphere { center: [1.0, 0.0, 0.0], radius_m: 0.5 });
     assert_eq!(sheet.shape, Shape::Parallelogram { origin: [0.0; 3], u: [1.0, 0.0, 0.0], v: [0.0, 2.0, 0.0] });
@@ -220,7 +221,7 @@ fn objects_and_lights() {
     assert_eq!(pyramid.transform, Transform { linear, translation_m: [25.0, 16.0, 37.0] });
     assert_eq!(block.material, 7);
 
-    let kinds: Vec<&LightKind> = scene.lights.iter().map(|l| &l.kind).collect();
+    let kinds: Vec<&LightKind> = scene.lights[..4].iter().map(|l| &l.kind).collect();
     let day = Spectrum::illuminant(Illuminant::D65, 3.0).expect("right");
     let within = Spectrum::tabulated(vec![400.0, 700.0], vec![1.0, 1.0], Outside::Zero).expect("right");
     assert_eq!(
@@ -244,7 +245,7 @@ fn objects_and_lights() {
 #[test]
 fn a_box_is_a_closed_mesh_whose_normals_point_outward() {
     let scene = scene(EVERYTHING);
-    let Shape::Mesh(mesh) = &scene.objects[4].shape else { panic!("a mesh") };
+    let Shape::Mesh(mesh) = &scene.objects[5].shape else { panic!("a mesh") };
     let Mesh { vertices, triangles, .. } = &**mesh;
     assert_eq!((vertices.len(), triangles.len()), (8, 12));
     let mut edges = std::collections::HashMap::new();
@@ -481,4 +482,26 @@ fn meters() {
     let measured = scene.measured(32).unwrap();
     assert_eq!((measured.film.width, measured.film.height, measured.integrator.replicates), (9, 32, 1));
     assert!(Scene { meters: Vec::new(), ..scene }.measured(32).is_none());
+}
+
+#[test]
+fn light_in_photometric_units() {
+    let scene = scene(EVERYTHING);
+    // Y of a spectrum, in cd or lm.
+    let of = |spectrum: &Spectrum| 683.002 * 106.856_917 * etalon_optics::colour::luminance_of(|nm| spectrum.eval(nm));
+    let close = |got: f64, want: f64| assert!((got / want - 1.0).abs() < 1e-8, "{got} is not {want}");
+    let values: Vec<f64> = scene.lights[4..].iter().map(|light| of(light.kind.spectrum())).collect();
+    let whole = 4.0 * std::f64::consts::PI;
+    // The spot's inner angle is four fifths of 90°.
+    let spot = 0.5 * whole * (1.0 - 0.5 * 72_f64.to_radians().cos());
+    for (value, want) in values.iter().zip([100.0, 800.0 / whole, 800.0 / spot, 5e4, 100.0, 3000.0]) {
+        close(*value, want);
+    }
+    let LightKind::Sky(sky) = &scene.lights[9].kind else { panic!("a sky") };
+    assert_eq!((sky.number, sky.up, sky.ground), (12, [0.0, 1.0, 0.0], 0.125));
+    close(sky.sun[1], 0.6);
+    assert!(sky.needs_sun());
+    let panel = scene.objects.iter().find(|object| object.name == "panel").expect("it is there");
+    close(of(&panel.emission.as_ref().expect("it shines").radiance), 500.0);
+    assert!(!scene.lights[5].kind.spectrum().is_zero() && scene.lights[5].kind.spectrum().is_constant());
 }

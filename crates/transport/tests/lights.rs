@@ -2,11 +2,13 @@
 
 use etalon_geometry::{Cylinder, Disk, Parallelogram, Primitive, PrimitiveId, Sphere, Triangle};
 use etalon_optics::Vec3;
-use etalon_transport::light::{AreaLight, DirectionalLight, Emitter, Light, PointLight, Target};
+use etalon_scene::Photometry;
+use etalon_transport::light::{AreaLight, DirectionalLight, Emitter, Light, LuminaireLight, PointLight, Target};
 use etalon_transport::mis::Density;
 use etalon_transport::spectral::PathSpectrum;
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 fn emitter() -> Emitter {
     Emitter {
@@ -217,5 +219,60 @@ proptest! {
             let tolerance = 8.0 * f64::EPSILON * (1.0 + reach / (target - from).length());
             prop_assert!((toward - sample.wi).length() <= tolerance, "{:?} {:?}", toward, sample.wi);
         }
+    }
+}
+
+/// A luminaire at a place, its table uneven all around.
+fn luminaire() -> (LuminaireLight, Arc<Photometry>) {
+    let table = [50.0, 40.0, 10.0, 50.0, 80.0, 30.0, 50.0, 20.0, 0.0, 50.0, 60.0, 5.0, 50.0, 40.0, 10.0];
+    let azimuths = [0.0, 90.0, 180.0, 270.0, 360.0];
+    let table = Arc::new(Photometry::new(&[0.0, 50.0, 120.0], &azimuths, &table).unwrap());
+    let (nadir, forward) = (Vec3::new(0.0, 0.6, -0.8), Vec3::new(1.0, 0.0, 0.0));
+    let light = LuminaireLight {
+        point: PointLight { position: Vec3::new(1.0, 2.0, 3.0), intensity: PathSpectrum::Constant(1.0), per_m: 1.0 },
+        nadir,
+        planes: [forward, forward.cross(nadir)],
+        flux_lm: table.flux_lm(),
+        cos_reach: table.reach_rad().cos(),
+        table: Arc::clone(&table),
+    };
+    (light, table)
+}
+
+#[test]
+fn a_luminaire_sends_its_flux() {
+    // Irradiance times area over a sphere of radius 2 about it, by midpoints of equal areas.
+    let (light, table) = luminaire();
+    let light = Light::Luminaire(light);
+    let n = 600;
+    let at = |i: usize| (i as f64 + 0.5) / n as f64;
+    let of = |i: usize| {
+        let away = etalon_transport::warp::uniform_sphere([at(i % n), at(i / n)]);
+        let from = Vec3::new(1.0, 2.0, 3.0) + away * 2.0;
+        light.sample(from, [0.5; 2], 0.0).map_or(0.0, |sample| {
+            assert!((sample.wi + away).length() < 1e-14);
+            sample.scale
+        })
+    };
+    let flux = (0..n * n).map(of).sum::<f64>() / (n * n) as f64 * 16.0 * PI;
+    close(flux, table.flux_lm(), 1e-3, "flux");
+}
+
+proptest! {
+    #[test]
+    fn a_luminaire_is_its_table_at_the_angles_of_the_library(x in -1.0..1.0_f64, y in -1.0..1.0_f64, z in -1.0..1.0_f64) {
+        let way = Vec3::new(x, y, z);
+        prop_assume!(way.length() > 0.1);
+        let (light, table) = luminaire();
+        let away = way.normalized();
+        let polar = away.dot(light.nadir).clamp(-1.0, 1.0).acos();
+        let [along, across] = light.planes.map(|plane| away.dot(plane));
+        let azimuth = across.atan2(along).rem_euclid(2.0 * PI);
+        // Near the edge of the table rounding decides.
+        prop_assume!((polar - 120_f64.to_radians()).abs() > 1e-9);
+        let want = table.eval(polar / (2.0 * PI), azimuth / (2.0 * PI)) / way.length_squared();
+        let position = light.point.position;
+        let got = Light::Luminaire(light).sample(position + way, [0.0; 2], 0.0).map_or(0.0, |sample| sample.scale);
+        prop_assert!((got - want).abs() <= 1e-6 * (1.0 + want), "{got} is not {want}");
     }
 }

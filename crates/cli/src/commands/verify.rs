@@ -5,10 +5,11 @@ mod ours;
 mod pictures;
 mod report;
 mod series;
+mod suite;
 
 use std::path::PathBuf;
 
-use etalon_oracle::truths::{Truth, truths};
+use etalon_oracle::truths::{SuiteCase, Truth, truths};
 use miette::miette;
 
 use crate::failure::{Failure, Outcome};
@@ -21,6 +22,7 @@ use crate::failure::{Failure, Outcome};
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   etalon verify eye-in-glass
+  etalon verify --suite cie171
   etalon verify --export truths
   etalon verify --images pictures")]
 pub(crate) struct Args {
@@ -32,6 +34,12 @@ pub(crate) struct Args {
     /// Render nothing. Write the scenes and the expected values to this folder, for another renderer.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["images", "json", "seed", "thorough", "threads"])]
     export: Option<PathBuf>,
+    /// Test a public suite of test cases instead of our own.
+    #[arg(long, value_enum, value_name = "SUITE")]
+    suite: Option<suite::Suite>,
+    /// Write a page with what was read of the suite to this file.
+    #[arg(long, value_name = "FILE", requires = "suite", conflicts_with_all = ["export", "images"])]
+    page: Option<PathBuf>,
     /// Print one JSON object on standard output instead of a table.
     #[arg(long)]
     json: bool,
@@ -50,7 +58,12 @@ pub(crate) struct Args {
 pub(crate) fn run(args: Args) -> Outcome {
     let named =
         |truth: &Truth| args.names.is_empty() || args.names.iter().any(|name| truth.name.contains(name.as_str()));
-    let chosen: Vec<Truth> = truths().into_iter().filter(named).collect();
+    let cases: Option<Vec<SuiteCase>> = args.suite.map(suite::Suite::cases);
+    let cases = cases.map(|cases| cases.into_iter().filter(|case| named(&case.truth)).collect::<Vec<_>>());
+    let chosen: Vec<Truth> = match &cases {
+        Some(cases) => cases.iter().map(|case| case.truth.clone()).collect(),
+        None => truths().into_iter().filter(named).collect(),
+    };
     match (&args.export, &args.images) {
         _ if chosen.is_empty() => Err(Failure::input(miette!(
             code = "unknown-truth",
@@ -59,6 +72,9 @@ pub(crate) fn run(args: Args) -> Outcome {
         ))),
         (Some(folder), _) => export::run(folder, &chosen),
         (None, Some(folder)) => pictures::run(folder, &chosen, args.json),
-        (None, None) => ours::run(&args, chosen),
+        (None, None) => match &cases {
+            Some(cases) => suite::run(&args, cases, args.page.as_deref()),
+            None => ours::run(&args, chosen),
+        },
     }
 }

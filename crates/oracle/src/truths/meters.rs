@@ -25,7 +25,7 @@ fn at(position: Vec3, normal: Vec3) -> Value {
 }
 
 /// A scene that is only measured: its camera takes no part.
-fn measured(meters: &[Value]) -> Scene {
+pub(super) fn measured(meters: &[Value]) -> Scene {
     Scene::camera(
         json!({ "type": "perspective", "position_m": [0, 0, 9], "direction": [0, 0, -1], "vertical_fov_deg": 30 }),
     )

@@ -10,6 +10,7 @@
 
 mod absorption;
 mod cameras;
+mod cie171;
 mod dimensions;
 mod enclosures;
 mod exchange;
@@ -22,6 +23,7 @@ mod instruments;
 mod irradiance;
 mod judge;
 mod lamps;
+mod luminous;
 mod masks;
 mod media;
 mod meters;
@@ -33,6 +35,7 @@ mod relief;
 mod scene;
 mod sheets;
 mod skies;
+mod skylight;
 mod solids;
 mod sources;
 mod stokes;
@@ -47,6 +50,7 @@ use std::{fmt, sync::Arc};
 use serde_json::{Value, json};
 
 use crate::statistics::poisson_mean_bound;
+pub use cie171::{LUX, SuiteCase, cie171, section_title};
 pub use exchange::{ExchangeFile, exchange_files};
 pub use irradiance::{
     cylinder_factor, disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
@@ -405,6 +409,7 @@ pub fn truths() -> Vec<Truth> {
         surfaces::truths(),
         media::truths(),
         meters::truths(),
+        luminous::truths(),
     ]
     .into_iter()
     .flatten()

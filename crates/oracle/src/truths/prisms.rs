@@ -131,7 +131,7 @@ pub(super) fn truths() -> Vec<Truth> {
 }
 
 /// ȳ of the CIE 1931 2° observer at 360, 361, …, 830 nm.
-static CIE_Y: LazyLock<Vec<f64>> = LazyLock::new(|| {
+pub(super) static CIE_Y: LazyLock<Vec<f64>> = LazyLock::new(|| {
     let rows = include_str!("cie-y-1nm.csv").lines().filter(|line| !line.starts_with('#'));
     rows.map(|row| row.parse().expect("a number a line")).collect()
 });

@@ -1,15 +1,17 @@
 //! Lights without a surface.
 
+use std::f64::consts::TAU;
 use std::ops::Bound;
 
 use glam::DVec3;
 
-use super::spectra::{BRIGHTEST, Role, Spectra};
+use super::photometric::{photometric, stated};
+use super::spectra::{BRIGHTEST, Spectra};
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
-use crate::json::{Code, Direction, NonNegative, Optional, Reader, Required, Rule, Spanned};
+use crate::json::{Code, Direction, NonNegative, Optional, Reader, Required, Rule, Spanned, Whole};
 use crate::linear::unit;
-use crate::model::{EnvironmentImage, EnvironmentProjection, Light, LightKind};
+use crate::model::{CieSky, EnvironmentImage, EnvironmentProjection, Light, LightKind};
 use crate::texture::Encoding;
 
 crate::record! {
@@ -19,9 +21,15 @@ crate::record! {
         name: Optional<String>,
         /// Position, m.
         position_m: Required<[f64; 3]>,
-        /// Radiant intensity, W·sr⁻¹·nm⁻¹.
-        intensity: Required<SpectrumForm>,
-    }
+        /// Radiant intensity, W·sr⁻¹·nm⁻¹. Either this, `intensity_cd` or `flux_lm`.
+        intensity: Optional<Box<SpectrumForm>>,
+        /// Luminous intensity, cd.
+        intensity_cd: Optional<Spanned<NonNegative>>,
+        /// Luminous flux into all directions, lm.
+        flux_lm: Optional<Spanned<NonNegative>>,
+        /// The spectrum of what is stated in photometric units, to any scale; the same at every wavelength if left out.
+        spectrum: Optional<Box<SpectrumForm>>,
+    } with [Rule::OneOf(&["intensity", "intensity_cd", "flux_lm"]), Rule::NotBoth("intensity", "spectrum")]
 }
 
 crate::number! {
@@ -43,12 +51,38 @@ crate::record! {
         position_m: Required<[f64; 3]>,
         /// The direction of the cone's axis; only the direction counts.
         direction: Required<Direction>,
-        /// Radiant intensity along the axis, W·sr⁻¹·nm⁻¹.
-        intensity: Required<SpectrumForm>,
+        /// Radiant intensity along the axis, W·sr⁻¹·nm⁻¹. Either this, `intensity_cd` or `flux_lm`.
+        intensity: Optional<Box<SpectrumForm>>,
+        /// Luminous intensity along the axis, cd.
+        intensity_cd: Optional<Spanned<NonNegative>>,
+        /// Luminous flux of the whole cone, lm.
+        flux_lm: Optional<Spanned<NonNegative>>,
+        /// The spectrum of what is stated in photometric units, to any scale; the same at every wavelength if left out.
+        spectrum: Optional<Box<SpectrumForm>>,
         /// Angle from the axis at which nothing is left of the intensity, degrees.
         half_angle_deg: Required<HalfAngle>,
         /// Angle from the axis at which the intensity begins to fall, degrees; four fifths of the other if left out.
         inner_half_angle_deg: Optional<Spanned<InnerAngle>>,
+    } with [Rule::OneOf(&["intensity", "intensity_cd", "flux_lm"]), Rule::NotBoth("intensity", "spectrum")]
+}
+
+crate::record! {
+    /// A point whose luminous intensity a file says for each direction.
+    pub(crate) struct LuminaireLight + comment {
+        /// Its name, for messages.
+        name: Optional<String>,
+        /// An IES file (LM-63, photometry of type C) or a EULUMDAT file (`.ldt`), relative to this file's folder.
+        file: Required<Spanned<String>>,
+        /// Position, m.
+        position_m: Required<[f64; 3]>,
+        /// Where its vertical angle is 0: down, as it usually hangs; only the direction counts.
+        nadir: Required<Spanned<Direction>> = "[0, -1, 0]",
+        /// Where its horizontal angle is 0; only its part across `nadir` counts. Seen from above, horizontal angles run counter-clockwise.
+        forward: Required<Spanned<Direction>> = "[0, 0, -1]",
+        /// Factor on the intensities of the file.
+        scale: Required<NonNegative> = "1",
+        /// The spectrum of its light, to any scale; the same at every wavelength if left out.
+        spectrum: Optional<Box<SpectrumForm>>,
     }
 }
 
@@ -59,21 +93,57 @@ crate::record! {
         name: Optional<String>,
         /// The direction in which the light travels; only the direction counts.
         direction: Required<Direction>,
-        /// Irradiance on a plane at right angles to it, W·m⁻²·nm⁻¹.
-        irradiance: Required<SpectrumForm>,
-    }
+        /// Irradiance on a plane at right angles to it, W·m⁻²·nm⁻¹. Either this or `illuminance_lx`.
+        irradiance: Optional<Box<SpectrumForm>>,
+        /// Illuminance on a plane at right angles to it, lx.
+        illuminance_lx: Optional<Spanned<NonNegative>>,
+        /// The spectrum of what is stated in photometric units, to any scale; the same at every wavelength if left out.
+        spectrum: Optional<Box<SpectrumForm>>,
+    } with [Rule::OneOf(&["irradiance", "illuminance_lx"]), Rule::NotBoth("irradiance", "spectrum")]
 }
 
 crate::record! {
-    /// Radiance from infinitely far: the same from every direction, or as an image says.
+    /// Radiance from infinitely far: the same from every direction, as an image says, or as a standard sky.
     pub(crate) struct EnvironmentLight + comment {
         /// Its name, for messages.
         name: Optional<String>,
-        /// Radiance from every direction, W·m⁻²·sr⁻¹·nm⁻¹. Either this or `image`.
-        radiance: Optional<SpectrumForm>,
-        /// An image of all directions. Either this or `radiance`.
+        /// Radiance from every direction, W·m⁻²·sr⁻¹·nm⁻¹. Either this, `luminance_cd_per_m2`, `image` or `sky`.
+        radiance: Optional<Box<SpectrumForm>>,
+        /// Luminance from every direction, cd·m⁻².
+        luminance_cd_per_m2: Optional<Spanned<NonNegative>>,
+        /// The spectrum of a luminance, to any scale; the same at every wavelength if left out.
+        spectrum: Optional<Box<SpectrumForm>>,
+        /// An image of all directions.
         image: Optional<EnvironmentImageForm>,
-    } with [Rule::OneOf(&["radiance", "image"])]
+        /// A standard sky of the CIE.
+        sky: Optional<SkyForm>,
+    } with [
+        Rule::OneOf(&["radiance", "luminance_cd_per_m2", "image", "sky"]),
+        Rule::Needs("spectrum", &["luminance_cd_per_m2"]),
+    ]
+}
+
+crate::record! {
+    /// One of the sixteen standard skies (CIE S 011, ISO 15469), without the sun itself.
+    pub(crate) struct SkyForm + comment {
+        /// Its number: 1 to 15, or 16, the traditional overcast sky.
+        cie_type: Required<Whole<1, 16>>,
+        /// Toward the sun; only the direction counts. The skies 1, 3, 5 and 16 do without it.
+        sun_direction: Optional<Spanned<Direction>>,
+        /// Toward the zenith; only the direction counts.
+        up: Required<Direction> = "[0, 1, 0]",
+        /// Radiance of the zenith, W·m⁻²·sr⁻¹·nm⁻¹. Either this or `zenith_luminance_cd_per_m2`.
+        zenith_radiance: Optional<Box<SpectrumForm>>,
+        /// Luminance of the zenith, cd·m⁻².
+        zenith_luminance_cd_per_m2: Optional<Spanned<NonNegative>>,
+        /// The spectrum of a luminance, to any scale; the same at every wavelength if left out.
+        spectrum: Optional<Box<SpectrumForm>>,
+        /// Radiance from below the horizon, in units of that of the zenith.
+        ground: Required<Spanned<NonNegative>> = "0",
+    } with [
+        Rule::OneOf(&["zenith_radiance", "zenith_luminance_cd_per_m2"]),
+        Rule::Needs("spectrum", &["zenith_luminance_cd_per_m2"]),
+    ]
 }
 
 crate::record! {
@@ -104,6 +174,7 @@ crate::variants! {
     pub(crate) enum LightForm by "type" {
         "point" => Point(PointLight),
         "spot" => Spot(SpotLight),
+        "luminaire" => Luminaire(LuminaireLight),
         "directional" => Directional(DirectionalLight),
         "environment" => Environment(EnvironmentLight),
     }
@@ -119,11 +190,11 @@ pub(crate) fn light<'f>(
 ) -> Option<Light> {
     let (name, kind) = match form {
         LightForm::Point(point) => {
-            let intensity = spectra.resolve(point.intensity.as_ref()?, Role::Emission, reader)?;
+            let keys = [(&point.intensity_cd, 1.0), (&point.flux_lm, 0.5 / TAU)];
+            let intensity = stated(&point.intensity, &keys, &point.spectrum, spectra, reader)?;
             (&point.name, LightKind::Point { position_m: point.position_m?, intensity })
         }
         LightForm::Spot(spot) => {
-            let intensity = spectra.resolve(spot.intensity.as_ref()?, Role::Emission, reader)?;
             let outer = spot.half_angle_deg?.0;
             let inner = match spot.inner_half_angle_deg.clone().checked()? {
                 Some(inner) if inner.value.0 > outer => {
@@ -135,20 +206,32 @@ pub(crate) fn light<'f>(
                 None => 0.8 * outer,
             };
             let half_angles_rad = [inner, outer].map(f64::to_radians);
+            // 2π(1 − ½cos inner − ½cos outer), as a sum of squares that loses no digits of narrow cones.
+            let of_cones: f64 = half_angles_rad.iter().map(|angle| (0.5 * angle).sin().powi(2)).sum();
+            let keys = [(&spot.intensity_cd, 1.0), (&spot.flux_lm, 1.0 / (TAU * of_cones))];
+            let intensity = stated(&spot.intensity, &keys, &spot.spectrum, spectra, reader)?;
             let (position_m, axis) = (spot.position_m?, spot.direction?.0);
             (&spot.name, LightKind::Spot { position_m, axis, half_angles_rad, intensity })
         }
+        LightForm::Luminaire(light) => (&light.name, luminaire(light, spectra, files, reader)?),
         LightForm::Directional(light) => {
-            let irradiance = spectra.resolve(light.irradiance.as_ref()?, Role::Emission, reader)?;
+            let keys = [(&light.illuminance_lx, 1.0)];
+            let irradiance = stated(&light.irradiance, &keys, &light.spectrum, spectra, reader)?;
             (&light.name, LightKind::Directional { direction: light.direction?.0, irradiance })
         }
         LightForm::Environment(light) => {
-            let kind = match (&light.radiance, &light.image) {
-                (Optional::Given(radiance), Optional::Absent) => {
-                    LightKind::Environment { radiance: spectra.resolve(radiance, Role::Emission, reader)? }
+            let given = [light.radiance.is_present(), light.luminance_cd_per_m2.is_present()];
+            let kind = match (given, &light.image, &light.sky) {
+                ([true, false] | [false, true], Optional::Absent, Optional::Absent) => {
+                    let keys = [(&light.luminance_cd_per_m2, 1.0)];
+                    let radiance = stated(&light.radiance, &keys, &light.spectrum, spectra, reader)?;
+                    LightKind::Environment { radiance }
                 }
-                (Optional::Absent, Optional::Given(image)) => {
+                ([false, false], Optional::Given(image), Optional::Absent) => {
                     LightKind::ImageEnvironment(environment_image(image, spectra, files, reader)?)
+                }
+                ([false, false], Optional::Absent, Optional::Given(form)) => {
+                    LightKind::Sky(sky(form, spectra, reader)?)
                 }
                 _ => return None,
             };
@@ -171,6 +254,76 @@ crate::keywords!(EnvironmentProjection {
 /// Below this sine of the angle between `up` and `forward`, the turn of an image hangs on digits that nobody meant.
 const PARALLEL: f64 = 1e-6;
 
+/// The unit vector of the part of `forward` across the unit vector `axis`, a key of this name.
+fn across(axis: DVec3, key: &str, forward: Spanned<Direction>, reader: &mut Reader<'_>) -> Option<DVec3> {
+    let toward = DVec3::from(forward.value.0);
+    let across = toward - axis * toward.dot(axis);
+    if across.length() < PARALLEL {
+        let hint = format!("give a \"forward\" across \"{key}\"");
+        reader.error_hint(Code::DegenerateView, forward.at, format!("\"forward\" is along \"{key}\""), hint);
+        return None;
+    }
+    // Once more, since rounding left a little along the axis.
+    let across = unit(across)?;
+    unit(across - axis * across.dot(axis))
+}
+
+fn luminaire<'f>(
+    form: &'f LuminaireLight,
+    spectra: &mut Spectra<'f>,
+    files: &mut Files,
+    reader: &mut Reader<'_>,
+) -> Option<LightKind> {
+    let photometry = files.photometry(form.file.as_ref()?, reader);
+    let axes = form.nadir.zip(form.forward).and_then(|(nadir, forward)| {
+        let nadir = DVec3::from(nadir.value.0);
+        let forward = across(nadir, "nadir", forward, reader)?;
+        // A quarter turn on, counter-clockwise seen from above.
+        Some([nadir, forward, forward.cross(nadir)].map(|axis| axis.to_array()))
+    });
+    let intensity = photometric(form.scale?.0, form.at, &form.spectrum, spectra, reader);
+    let ([nadir, forward, left], photometry) = (axes?, photometry?);
+    let brightest = intensity.as_ref()?.max_over(spectra.range_nm?) * photometry.most_cd();
+    if brightest > BRIGHTEST {
+        let message = format!("an intensity of {brightest:e} is more than {BRIGHTEST:e}");
+        reader.error(Code::OutOfRange, form.at.head(), message);
+        return None;
+    }
+    Some(LightKind::Luminaire {
+        position_m: form.position_m?,
+        nadir,
+        planes: [forward, left],
+        photometry,
+        intensity: intensity?,
+    })
+}
+
+fn sky<'f>(form: &'f SkyForm, spectra: &mut Spectra<'f>, reader: &mut Reader<'_>) -> Option<CieSky> {
+    let keys = [(&form.zenith_luminance_cd_per_m2, 1.0)];
+    let zenith = stated(&form.zenith_radiance, &keys, &form.spectrum, spectra, reader);
+    let up = form.up?.0;
+    let sun = form.sun_direction.clone().checked()?;
+    let number = form.cie_type?.0 as u8;
+    let sky =
+        CieSky { number, up, sun: sun.map_or(up, |sun| sun.value.0), zenith: zenith?, ground: form.ground?.value.0 };
+    if sky.needs_sun() && sun.is_none() {
+        let message = format!("the sky {number} depends on where the sun is");
+        reader.error_hint(Code::MissingKey, form.at.head(), message, "add \"sun_direction\"");
+        return None;
+    }
+    let height = DVec3::from(sky.sun).dot(DVec3::from(up));
+    if let Some(sun) = sun.filter(|_| height < 0.0) {
+        let hint = "the standard describes skies by day";
+        reader.error_hint(Code::OutOfRange, sun.at, "the sun is below the horizon", hint);
+        return None;
+    }
+    if sky.ground * sky.zenith.max_over(spectra.range_nm?) > BRIGHTEST {
+        reader.error(Code::OutOfRange, form.ground?.at, format!("the ground is brighter than {BRIGHTEST:e}"));
+        return None;
+    }
+    Some(sky)
+}
+
 fn environment_image(
     form: &EnvironmentImageForm,
     spectra: &mut Spectra<'_>,
@@ -180,16 +333,8 @@ fn environment_image(
     let file = form.file.as_ref()?;
     let image = form.encoding.and_then(|encoding| files.image(file, encoding, reader));
     let axes = form.up.zip(form.forward).and_then(|(up, forward)| {
-        let (up, toward) = (DVec3::from(up.value.0), DVec3::from(forward.value.0));
-        let across = toward - up * toward.dot(up);
-        if across.length() < PARALLEL {
-            let hint = "give a \"forward\" across \"up\"";
-            reader.error_hint(Code::DegenerateView, forward.at, "\"forward\" is along \"up\"", hint);
-            return None;
-        }
-        // Once more, since rounding left a little along `up`.
-        let across = unit(across)?;
-        let forward = unit(across - up * across.dot(up))?;
+        let up = DVec3::from(up.value.0);
+        let forward = across(up, "up", forward, reader)?;
         let right = forward.cross(up);
         let (sin, cos) = form.rotation_deg?.to_radians().sin_cos();
         let turned = |along: f64, across: f64| forward * along + right * across;

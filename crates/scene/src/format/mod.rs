@@ -15,6 +15,7 @@ mod mesh;
 mod meter;
 mod motion;
 mod names;
+mod photometric;
 mod scene;
 mod spectra;
 mod spectrum;

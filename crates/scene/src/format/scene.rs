@@ -12,12 +12,13 @@ use super::material::{Before, MaterialForm, Share, material};
 use super::medium::{MediumForm, medium};
 use super::meter::{MeterForm, meters};
 use super::names::Names;
+use super::photometric::stated;
 use super::spectra::Spectra;
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{
-    Code, Decode, Kind, List, Named, Node, Optional, Place, Reader, Required, Rule, SchemaBuilder, SchemaValue, Span,
-    Spanned, by_json_type,
+    Code, Decode, Kind, List, Named, Node, NonNegative, Optional, Place, Reader, Required, Rule, SchemaBuilder,
+    SchemaValue, Span, Spanned, by_json_type,
 };
 use crate::model::{Emission, EmissionSides, Material, Object, Scene, Shape};
 use crate::texture::ImageTexture;
@@ -105,11 +106,16 @@ crate::record! {
 crate::record! {
     /// Diffuse emission: the same radiance in every direction.
     pub(crate) struct EmissionForm + comment {
-        /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹, perhaps an image: of 1, white (1, 1, 1) has the luminance of the constant spectrum 1.
-        radiance: Required<SpectrumForm>,
+        /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹, perhaps an image: of 1, white (1, 1, 1) has the luminance of the constant spectrum 1. Either this or
+        /// `luminance_cd_per_m2`.
+        radiance: Optional<Box<SpectrumForm>>,
+        /// Luminance, cd·m⁻².
+        luminance_cd_per_m2: Optional<Spanned<NonNegative>>,
+        /// The spectrum of a luminance, to any scale; the same at every wavelength if left out.
+        spectrum: Optional<Box<SpectrumForm>>,
         /// Which sides emit.
         sides: Required<EmissionSides> = r#""front""#,
-    }
+    } with [Rule::OneOf(&["radiance", "luminance_cd_per_m2"]), Rule::NotBoth("radiance", "spectrum")]
 }
 
 crate::keywords!(EmissionSides {
@@ -322,7 +328,15 @@ fn object<'f>(
         Optional::Absent => Some(None),
         Optional::Invalid => None,
         Optional::Given(emission) => {
-            let radiance = emission.radiance.as_ref().and_then(|form| spectra.resolve_emission(form, files, reader));
+            let radiance = match &emission.radiance {
+                Optional::Given(form) => spectra.resolve_emission(form, files, reader),
+                Optional::Invalid => None,
+                Optional::Absent => {
+                    let keys = [(&emission.luminance_cd_per_m2, 1.0)];
+                    stated(&emission.radiance, &keys, &emission.spectrum, spectra, reader)
+                        .map(|radiance| (radiance, None))
+                }
+            };
             radiance.zip(emission.sides).map(|((radiance, image), sides)| Some(Emission { radiance, image, sides }))
         }
     };

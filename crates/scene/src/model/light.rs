@@ -1,8 +1,11 @@
 //! Lights without a surface, and what the rest of the renderer asks of them.
 
+use std::sync::Arc;
+
 use etalon_optics::Spectrum;
 
-use super::EnvironmentImage;
+use super::{CieSky, EnvironmentImage};
+use crate::luminaire::Photometry;
 
 /// A light without a surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +37,19 @@ pub enum LightKind {
         /// Radiant intensity along the axis, W·sr⁻¹·nm⁻¹.
         intensity: Spectrum,
     },
+    /// A point whose intensity a table says for each direction.
+    Luminaire {
+        /// Position, m.
+        position_m: [f64; 3],
+        /// Unit vector along which the polar angle of the table is 0.
+        nadir: [f64; 3],
+        /// Unit vectors across it: where the azimuth is 0, and a quarter turn.
+        planes: [[f64; 3]; 2],
+        /// The table, cd.
+        photometry: Arc<Photometry>,
+        /// Radiant intensity that 1 cd of the table stands for, W·sr⁻¹·nm⁻¹.
+        intensity: Spectrum,
+    },
     /// Parallel light.
     Directional {
         /// Unit vector in which the light travels.
@@ -48,6 +64,8 @@ pub enum LightKind {
     },
     /// Radiance from infinity that an image says for each direction.
     ImageEnvironment(EnvironmentImage),
+    /// A standard sky of the CIE.
+    Sky(CieSky),
 }
 
 /// A cone that holds all the light of a point.
@@ -65,20 +83,26 @@ impl LightKind {
     /// The spectrum of what it sends; of an image, that of its white.
     pub fn spectrum(&self) -> &Spectrum {
         match self {
-            Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity,
+            Self::Point { intensity, .. } | Self::Spot { intensity, .. } | Self::Luminaire { intensity, .. } => {
+                intensity
+            }
             Self::Directional { irradiance, .. } => irradiance,
             Self::Environment { radiance } => radiance,
             Self::ImageEnvironment(image) => &image.white,
+            Self::Sky(sky) => &sky.zenith,
         }
     }
 
     /// The same, to be changed.
     pub fn spectrum_mut(&mut self) -> &mut Spectrum {
         match self {
-            Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity,
+            Self::Point { intensity, .. } | Self::Spot { intensity, .. } | Self::Luminaire { intensity, .. } => {
+                intensity
+            }
             Self::Directional { irradiance, .. } => irradiance,
             Self::Environment { radiance } => radiance,
             Self::ImageEnvironment(image) => &mut image.white,
+            Self::Sky(sky) => &mut sky.zenith,
         }
     }
 
@@ -86,8 +110,8 @@ impl LightKind {
     /// other light without a surface is at infinity, where paths find it that leave the scene.
     pub fn is_delta(&self) -> bool {
         match self {
-            Self::Point { .. } | Self::Spot { .. } | Self::Directional { .. } => true,
-            Self::Environment { .. } | Self::ImageEnvironment(_) => false,
+            Self::Point { .. } | Self::Spot { .. } | Self::Luminaire { .. } | Self::Directional { .. } => true,
+            Self::Environment { .. } | Self::ImageEnvironment(_) | Self::Sky(_) => false,
         }
     }
 
@@ -113,12 +137,24 @@ impl LightKind {
             Self::Spot { position_m, axis, half_angles_rad: [_, half_angle_rad], .. } => {
                 Some(LightCone { position_m, axis, half_angle_rad })
             }
+            // Files end beyond the last lit angle, where the intensity may have fallen to nothing.
+            Self::Luminaire { position_m, nadir, ref photometry, .. } => {
+                Some(LightCone { position_m, axis: nadir, half_angle_rad: photometry.reach_rad() })
+            }
             _ => None,
         }
     }
 
+    /// Whether shadow rays aim at it although it is everywhere at infinity: it is not the same from all directions.
+    pub fn is_uneven_sky(&self) -> bool {
+        matches!(self, Self::ImageEnvironment(_) | Self::Sky(_))
+    }
+
     /// Whether it sends nothing.
     pub fn is_zero(&self) -> bool {
+        if matches!(self, Self::Luminaire { photometry, .. } if photometry.most_cd() == 0.0) {
+            return true;
+        }
         self.image().map_or_else(|| self.spectrum().is_zero(), EnvironmentImage::is_zero)
     }
 }

@@ -5,7 +5,7 @@ use crate::film::Counters;
 use crate::integrator::film_entry::Received;
 use crate::integrator::observer::{End, Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::light::{EnvironmentRadiance, Light, Look};
+use crate::light::{EnvironmentRadiance, Light, Look, SkyLook};
 use crate::media::{MediumInteraction, MediumStack};
 use crate::mis::power_heuristic;
 use crate::polarisation::Polarisation;
@@ -204,6 +204,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                     let Look { colour, density } = known.take().unwrap_or_else(|| image.look(ray.direction));
                     let mis = self.weight_of_hit(world, None, || sky.light, |_, _| density);
                     (self.coloured(white, Some(colour)), mis)
+                }
+                EnvironmentRadiance::Sky(of) => {
+                    let SkyLook { relative, density } = of.look(ray.direction);
+                    let mis = self.weight_of_hit(world, None, || sky.light, |_, _| density);
+                    (white * relative, mis)
                 }
             };
             self.add(observer, Found::Environment, radiance, mis);

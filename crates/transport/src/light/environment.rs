@@ -2,7 +2,7 @@
 
 mod cumulative;
 mod equal_area;
-mod meridians;
+pub(super) mod meridians;
 
 use super::{LightSample, LightSource, Target};
 use crate::mis::Density;
@@ -44,10 +44,10 @@ enum Map {
 
 /// The parts of a unit vector along the axes of an image.
 #[derive(Clone, Copy, Debug)]
-struct Along {
-    forward: f64,
-    right: f64,
-    up: f64,
+pub(super) struct Along {
+    pub forward: f64,
+    pub right: f64,
+    pub up: f64,
 }
 
 impl Along {

@@ -6,8 +6,10 @@
 mod area;
 mod directional;
 mod environment;
+mod luminaire;
 mod moving;
 mod point;
+mod sky;
 mod spot;
 mod table;
 mod tree;
@@ -15,8 +17,10 @@ mod tree;
 pub use area::{AreaLight, Emitter, ImageOf};
 pub use directional::DirectionalLight;
 pub use environment::{EnvironmentLight, Look};
+pub use luminaire::LuminaireLight;
 pub use moving::MovingLight;
 pub use point::PointLight;
+pub use sky::{SkyLight, SkyLook};
 pub use spot::SpotLight;
 pub use table::LightTable;
 
@@ -111,10 +115,14 @@ pub enum Light {
     Point(PointLight),
     /// A point that shines into a cone.
     Spot(SpotLight),
+    /// A point with a table of intensities.
+    Luminaire(LuminaireLight),
     /// Parallel light.
     Directional(DirectionalLight),
     /// An image of everything around.
     Environment(Arc<EnvironmentLight>),
+    /// A standard sky.
+    Sky(Arc<SkyLight>),
     /// A shape whose surface emits and that moves.
     Moving(MovingLight),
 }
@@ -125,8 +133,13 @@ macro_rules! each {
             Light::Area($light) => $result,
             Light::Point($light) => $result,
             Light::Spot($light) => $result,
+            Light::Luminaire($light) => $result,
             Light::Directional($light) => $result,
             Light::Environment($light) => {
+                let $light = $light.as_ref();
+                $result
+            }
+            Light::Sky($light) => {
                 let $light = $light.as_ref();
                 $result
             }
@@ -204,12 +217,28 @@ impl Light {
                 axis: Vec3::from_array(*axis),
                 cosines: half_angles_rad.map(f64::cos),
             }),
+            LightKind::Luminaire { position_m, nadir, planes, photometry, intensity } if !kind.is_zero() => {
+                Self::Luminaire(LuminaireLight {
+                    point: PointLight::new(*position_m, spectrum(intensity), frame),
+                    nadir: Vec3::from_array(*nadir),
+                    planes: planes.map(Vec3::from_array),
+                    table: Arc::clone(photometry),
+                    flux_lm: photometry.flux_lm(),
+                    cos_reach: photometry.reach_rad().cos(),
+                })
+            }
             LightKind::Directional { direction, irradiance } => Self::Directional(DirectionalLight {
                 toward: -Vec3::from_array(*direction),
                 irradiance: spectrum(irradiance),
             }),
-            // A black sky is none.
+            // A black sky is none, nor is a dark luminaire.
             _ if kind.is_zero() => return (None, None),
+            LightKind::Luminaire { .. } => return (None, None),
+            LightKind::Sky(sky) => {
+                let light = Arc::new(SkyLight::new(sky, range_nm));
+                let radiance = EnvironmentRadiance::Sky(Arc::clone(&light));
+                return (Some(Self::Sky(light)), Some(Environment { radiance, light: None }));
+            }
             LightKind::Environment { radiance } => return (None, Some(spectrum(radiance).into())),
             LightKind::ImageEnvironment(image) => {
                 let light = known(image).unwrap_or_else(|| Arc::new(EnvironmentLight::new(image, range_nm)));
@@ -237,6 +266,8 @@ pub(crate) enum EnvironmentRadiance {
     Uniform(PathSpectrum),
     /// As an image says.
     Image(Arc<EnvironmentLight>),
+    /// As a standard sky.
+    Sky(Arc<SkyLight>),
 }
 
 impl Environment {
@@ -244,9 +275,11 @@ impl Environment {
     pub(crate) fn number(skies: &mut [Self], lights: &[Light]) {
         let mut skies = skies.iter_mut();
         for (index, light) in lights.iter().enumerate() {
-            let Light::Environment(light) = light else { continue };
-            let is_same =
-                |sky: &&mut Self| matches!(&sky.radiance, EnvironmentRadiance::Image(of) if Arc::ptr_eq(of, light));
+            let is_same = |sky: &&mut Self| match (&sky.radiance, light) {
+                (EnvironmentRadiance::Image(of), Light::Environment(light)) => Arc::ptr_eq(of, light),
+                (EnvironmentRadiance::Sky(of), Light::Sky(light)) => Arc::ptr_eq(of, light),
+                _ => false,
+            };
             if let Some(sky) = skies.find(is_same) {
                 sky.light = Some(index as u32);
             }
@@ -259,8 +292,8 @@ impl EnvironmentRadiance {
     #[inline(always)]
     pub(crate) fn image(&self) -> Option<&EnvironmentLight> {
         match self {
-            Self::Uniform(_) => None,
             Self::Image(light) => Some(light),
+            Self::Uniform(_) | Self::Sky(_) => None,
         }
     }
 
@@ -269,6 +302,7 @@ impl EnvironmentRadiance {
         match self {
             Self::Uniform(spectrum) => spectrum,
             Self::Image(light) => light.white(),
+            Self::Sky(light) => light.zenith(),
         }
     }
 }

@@ -160,7 +160,7 @@ pub(super) fn run(args: &Args, chosen: Vec<Truth>) -> Outcome {
 
 /// What the measurement of a truth has cost, and what it saw.
 #[derive(Clone, Copy, Debug, Default)]
-struct Cost {
+pub(super) struct Cost {
     /// Rays of all kinds.
     rays: u64,
     /// Times the samples of the first step.
@@ -195,7 +195,7 @@ fn finer(costs: &[Cost], rays_of_all: u64) -> Vec<(usize, u32)> {
 
 /// Renders and judges one truth, with so many times the samples of the first step, or as many as it takes. `None` if the program was asked
 /// to end before.
-fn judged(
+pub(super) fn judged(
     args: &Args,
     truth: &Truth,
     effort: Option<u32>,

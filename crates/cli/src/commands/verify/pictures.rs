@@ -18,7 +18,7 @@ use crate::print;
 const LUMINANCE: [(&str, f64); 3] = [("R", 0.2126), ("G", 0.7152), ("B", 0.0722)];
 
 pub(super) fn run(folder: &Path, chosen: &[Truth], json: bool) -> Outcome {
-    let files = Files::in_folder(folder)?;
+    let files = Files::in_folder(folder, chosen)?;
     let found = chosen.iter().filter(|truth| files.pictures.contains_key(&truth.name)).count();
     if found == 0 {
         return Err(Failure::input(miette!(
@@ -76,10 +76,12 @@ struct Files {
 }
 
 impl Files {
-    fn in_folder(folder: &Path) -> Result<Self, Failure> {
+    /// `chosen` may be of a suite, which the list of all truths does not hold.
+    fn in_folder(folder: &Path, chosen: &[Truth]) -> Result<Self, Failure> {
         let failed = |error| Failure::input(miette!(code = "folder", "cannot list `{}`: {error}", folder.display()));
         let known: Vec<String> = truths()
             .into_iter()
+            .chain(chosen.iter().cloned())
             .flat_map(|truth| truth.band_nm.map(|_| white(&truth.name)).into_iter().chain([truth.name]))
             .collect();
         let mut files = Self { pictures: BTreeMap::new(), strangers: Vec::new() };

@@ -38,7 +38,30 @@ pub(super) struct Row {
     cut_bias: Option<f64>,
 }
 
+/// The numbers of a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Figures {
+    pub truth: f64,
+    pub measured: f64,
+    pub standard_error: f64,
+    pub resolvable_bias: f64,
+    pub pass: bool,
+}
+
+impl Figures {
+    /// The difference over the standard error.
+    pub(super) fn deviation(&self) -> f64 {
+        (self.measured - self.truth) / self.standard_error
+    }
+}
+
 impl Row {
+    /// Its numbers.
+    pub(super) fn figures(&self) -> Figures {
+        let Self { truth, measured, standard_error, resolvable_bias, pass, .. } = *self;
+        Figures { truth, measured, standard_error, resolvable_bias, pass }
+    }
+
     /// Whether the truth holds.
     pub(super) fn passes(&self) -> bool {
         self.pass

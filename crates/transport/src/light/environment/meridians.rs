@@ -19,7 +19,7 @@ use std::f64::consts::{PI, TAU};
 
 /// The cells of an image.
 #[derive(Clone, Debug)]
-pub(super) struct Meridians {
+pub(in crate::light) struct Meridians {
     width: usize,
     height: usize,
     /// Distances of rows in half a turn, and how many of them the first centre lies before the pole's cell ends.
@@ -51,7 +51,7 @@ struct Place {
 
 impl Meridians {
     /// `at_poles`: the first and the last row of texels lie at the poles, not half a row from them.
-    pub(super) fn new(image: &Image, at_poles: bool) -> Self {
+    pub(in crate::light) fn new(image: &Image, at_poles: bool) -> Self {
         let (width, height) = (image.width as usize, image.height as usize);
         let (intervals, first, before, last) =
             if at_poles { (height as f64 - 1.0, 0.0, 1.0, height - 1) } else { (height as f64, 0.5, 0.5, height) };
@@ -79,13 +79,13 @@ impl Meridians {
     }
 
     /// ∫ of the luminance over all directions, sr.
-    pub(super) fn total(&self) -> f64 {
+    pub(in crate::light) fn total(&self) -> f64 {
         self.total
     }
 
     /// The colours in some directions, and their densities.
     #[inline(always)]
-    pub(super) fn look<const W: usize>(&self, image: &Image, wi: &[Along; W]) -> [Look; W] {
+    pub(in crate::light) fn look<const W: usize>(&self, image: &Image, wi: &[Along; W]) -> [Look; W] {
         let (mut columns, mut rows) = ([0.0; W], [0.0; W]);
         for k in 0..W {
             [columns[k], rows[k]] = self.coordinates(wi[k]);
@@ -99,7 +99,7 @@ impl Meridians {
 
     /// The directions that each `u` in [0, 1)² draws.
     #[inline(always)]
-    pub(super) fn sample<const W: usize>(&self, image: &Image, u: [&[f64; W]; 2]) -> [Along; W] {
+    pub(in crate::light) fn sample<const W: usize>(&self, image: &Image, u: [&[f64; W]; 2]) -> [Along; W] {
         // In several loops: those without branches become vector instructions, and what misses the cache is asked for at once.
         let (mut cells, mut within) = ([[0; 2]; W], [[0.0; 2]; W]);
         for k in 0..W {

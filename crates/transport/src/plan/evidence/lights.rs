@@ -13,9 +13,9 @@ pub(in crate::plan) fn is_target(kind: &LightKind) -> bool {
     kind.is_delta() && !kind.is_zero()
 }
 
-/// An image of everything around, which shadow rays aim at and paths run into.
+/// A sky that is not the same everywhere, which shadow rays aim at and paths run into.
 fn sky(scene: &Scene) -> Option<&Light> {
-    scene.lights.iter().find(|light| light.kind.image().is_some_and(|image| !image.is_zero()))
+    scene.lights.iter().find(|light| light.kind.is_uneven_sky() && !light.kind.is_zero())
 }
 
 fn emitter(scene: &Scene) -> Option<&Object> {

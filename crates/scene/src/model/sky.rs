@@ -1,0 +1,74 @@
+//! Skies by the CIE's standard: luminance by direction, relative to the zenith.
+
+use etalon_optics::Spectrum;
+
+/// One of the sixteen standard skies (CIE S 011/E:2003, ISO 15469:2004), without the sun itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CieSky {
+    /// Its number: 1 to 15, or 16, the traditional overcast sky.
+    pub number: u8,
+    /// Unit vector toward the zenith.
+    pub up: [f64; 3],
+    /// Unit vector toward the sun, not below the horizon. Five of the skies do not depend on it.
+    pub sun: [f64; 3],
+    /// Radiance of the zenith, W·m⁻²·sr⁻¹·nm⁻¹: the spectrum of the whole sky.
+    pub zenith: Spectrum,
+    /// Radiance from below the horizon, in units of that of the zenith.
+    pub ground: f64,
+}
+
+/// The numbers of a standard sky: the luminance at the angle Z from the zenith and χ from the sun is in proportion to
+/// (1 + a e^(b/cos Z)) (1 + c (e^(dχ) − e^(dπ/2)) + e cos²χ).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkyCoefficients {
+    /// Gradation from the zenith to the horizon.
+    pub a: f64,
+    /// See `a`; below 0.
+    pub b: f64,
+    /// Indicatrix about the sun.
+    pub c: f64,
+    /// See `c`; below 0.
+    pub d: f64,
+    /// See `c`.
+    pub e: f64,
+}
+
+/// a and b of the six gradations.
+const GRADATIONS: [[f64; 2]; 6] = [[4.0, -0.7], [1.1, -0.8], [0.0, -1.0], [-1.0, -0.55], [-1.0, -0.32], [-1.0, -0.15]];
+
+/// c, d and e of the six indicatrices.
+const INDICATRICES: [[f64; 3]; 6] =
+    [[0.0, -1.0, 0.0], [2.0, -1.5, 0.15], [5.0, -2.5, 0.3], [10.0, -3.0, 0.45], [16.0, -3.0, 0.3], [24.0, -2.8, 0.15]];
+
+/// Gradation and indicatrix of the skies 1 to 15, counted from 1 as the standard does.
+const SKIES: [[usize; 2]; 15] = [
+    [1, 1],
+    [1, 2],
+    [2, 1],
+    [2, 2],
+    [3, 1],
+    [3, 2],
+    [3, 3],
+    [3, 4],
+    [4, 2],
+    [4, 3],
+    [4, 4],
+    [5, 4],
+    [5, 5],
+    [6, 5],
+    [6, 6],
+];
+
+impl CieSky {
+    /// The numbers of the skies 1 to 15; `None` of the traditional overcast sky, (1 + 2 cos Z)/3.
+    pub fn coefficients(&self) -> Option<SkyCoefficients> {
+        let [gradation, indicatrix] = SKIES.get(usize::from(self.number).wrapping_sub(1))?;
+        let ([a, b], [c, d, e]) = (GRADATIONS[gradation - 1], INDICATRICES[indicatrix - 1]);
+        Some(SkyCoefficients { a, b, c, d, e })
+    }
+
+    /// Whether it depends on where the sun is.
+    pub fn needs_sun(&self) -> bool {
+        self.coefficients().is_some_and(|k| k.c != 0.0 || k.e != 0.0)
+    }
+}
