@@ -64,7 +64,7 @@ impl Sky {
             let toward = [level * azimuth.cos(), level * azimuth.sin(), height];
             2.0 * sin * self.relative(toward) * dot(toward, normal).max(0.0)
         };
-        rectangle(over, [0.0, 1.0], [0.0, TAU], 1e-7, 4_000_000).value
+        rectangle(over, [0.0, 1.0], [0.0, TAU], 1e-6, 4_000_000).value
     }
 
     /// The same by midpoints over the angles.
@@ -97,7 +97,7 @@ impl Opening {
     /// point outward, and of its cosine to the opening's normal.
     pub(super) fn irradiance(&self, point: Vec3, normal: Vec3, radiance: impl Fn(Vec3, f64) -> f64) -> f64 {
         let over = self.integrand(point, normal, radiance);
-        rectangle(over, [0.0, 1.0], [0.0, 1.0], 1e-8, 4_000_000).value
+        rectangle(over, [0.0, 1.0], [0.0, 1.0], 1e-6, 4_000_000).value
     }
 
     /// The same by midpoints.

@@ -74,6 +74,8 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     let SceneShapes { frame, geometry, object_of, mut emitters, coordinates, warnings, groups } =
         shapes::build(scene, range_nm, groups)?;
     let radius = geometry.bounds().map_or(0.0, |b| 0.5 * b.extent().length());
+    // A meter alone has no extent, and parallel light would have no power.
+    let radius = if radius == 0.0 && !scene.receivers.is_empty() { 1.0 } else { radius };
 
     if scene.integrator.light_sampling == LightSampling::Bsdf {
         emitters.clear();

@@ -69,7 +69,7 @@ found. *z* is the difference over the standard error, `–` where the reading ha
 const NOTES: &str = "
 ## What differs from the report
 
-- In 5.4 the light comes from an even sky, not from luminaires; what is tested is that what enters arrives.
+- In 5.4 the opening itself is evenly luminous; what is tested is that what enters arrives.
 - In 5.5 and behind glass the glass has the index 1.52. In 5.5 it is 6 mm thick and absorbs 10 m⁻¹; s and p are carried apart (`--polarised`).
   In 5.10 and 5.12 it is a pane that absorbs nothing.
 - In 5.8 the readings are means over all faces with the direct light. Of E = Φ/(96 (1 − ρ)) lx the part Φ/96 = 104.17 lx is direct; what is left,

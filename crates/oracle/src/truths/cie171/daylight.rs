@@ -95,12 +95,7 @@ fn roofs(day: &Day) -> Vec<SuiteCase> {
         |side: f64| Opening { origin: [-0.5 * side, -0.5 * side, 3.0], edges: [[side, 0.0, 0.0], [0.0, side, 0.0]] };
     let wall: Vec3 = [1.0, 0.0, 0.0];
     let floor = ([0.0, 0.0, 0.0], UP);
-    let places = [
-        ("1 m opening, floor", 1.0, floor),
-        ("1 m opening, wall at 1.5 m", 1.0, ([-2.0, 0.0, 1.5], wall)),
-        ("4 m opening, floor", 4.0, floor),
-        ("4 m opening, wall at 2.75 m", 4.0, ([-2.0, 0.0, 2.75], wall)),
-    ];
+    let places = [("1 m opening, floor", 1.0, floor), ("4 m opening, wall at 2.75 m", 4.0, ([-2.0, 0.0, 2.75], wall))];
     let mut list = Vec::new();
     for (place, side, (point, normal)) in places {
         let scene = || roof_room(measured(&[at(point, normal)]), side);
@@ -137,15 +132,12 @@ fn facade_room(scene: Scene) -> Scene {
 /// 5.11 and 5.12: sky on the floor, the ground on the ceiling.
 fn facades(day: &Day) -> Vec<SuiteCase> {
     let mut list = Vec::new();
-    for (place, point, normal) in [
-        ("floor at 1.5 m", [1.5, 0.0, 0.0], UP),
-        ("floor at 3 m", [3.0, 0.0, 0.0], UP),
-        ("ceiling at 1.5 m", [1.5, 0.0, 3.0], DOWN),
-    ] {
+    for (place, point, normal) in [("floor at 1.5 m", [1.5, 0.0, 0.0], UP), ("ceiling at 1.5 m", [1.5, 0.0, 3.0], DOWN)]
+    {
         let scene = || facade_room(measured(&[at(point, normal)]));
         let opening = window(WINDOW[1]);
         list.push(day.truth("5.11", place, (point, normal), opening, false, scene()));
-        if point[0] < 2.0 {
+        if normal == UP {
             list.push(day.truth("5.12", place, (point, normal), opening, true, pane(scene(), &opening)));
         }
     }

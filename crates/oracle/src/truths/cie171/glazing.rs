@@ -28,7 +28,7 @@ pub(super) fn cases() -> Vec<SuiteCase> {
             let scene = measured(&[meter])
                 .object(block([-200.0, -200.0, 0.0], [200.0, 200.0, THICKNESS_M]), glass)
                 .thing(lamp)
-                .spp(1 << 16);
+                .spp(1 << 18);
             let value = slab(cos, INDEX, tau);
             let by_orders = move || {
                 // Order by order: through, twice back and through, …

@@ -85,7 +85,7 @@ fn areas() -> Vec<SuiteCase> {
     list
 }
 
-/// 5.4: what comes through an opening in the roof of a black room of 4 × 4 × 3 m arrives on its floor and walls.
+/// 5.4: what comes through an evenly luminous opening in the roof of a black room of 4 × 4 × 3 m arrives on its floor and walls.
 fn conservation() -> Vec<SuiteCase> {
     let mut list = Vec::new();
     for side in [1.0, 2.0, 3.0, 4.0] {
@@ -100,20 +100,23 @@ fn conservation() -> Vec<SuiteCase> {
         .map(|(origin, u, v): (Vec3, Vec3, Vec3)| json!({ "type": "flux", "origin_m": origin, "u_m": u, "v_m": v }));
         let radiance = 1000.0 / LUX;
         let flux = PI * radiance * side * side;
-        let scene = roof_room(measured(&meters), side).sky(radiance);
+        let opening: Vec3 = [-0.5 * side, -0.5 * side, 3.0];
+        let (u, v) = ([0.0, side, 0.0], [side, 0.0, 0.0]);
+        let lamp = json!({
+            "shape": parallelogram(opening, u, v), "material": black(),
+            "emission": { "luminance_cd_per_m2": 1000, "sides": "front" },
+        });
+        let scene = roof_room(measured(&meters), side).thing(lamp);
         let exchanged = move || {
-            // Through the opening by the factors of small squares of the floor and of the walls.
-            let opening = [-0.5 * side, -0.5 * side, 3.0];
-            let from = |point: Vec3, normal: Vec3| {
-                radiance * lambert_polygon(&corners(opening, [0.0, side, 0.0], [side, 0.0, 0.0], point), normal)
-            };
-            let floor = rectangle(|x, y| from([x, y, 0.0], UP), [-2.0, 2.0], [-2.0, 2.0], 1e-7, 200_000).value;
+            // Through the opening by Lambert's formula at places of the floor and of a wall.
+            let from = |point: Vec3, normal: Vec3| radiance * lambert_polygon(&corners(opening, u, v, point), normal);
+            let floor = rectangle(|x, y| from([x, y, 0.0], UP), [-2.0, 2.0], [-2.0, 2.0], 1e-6, 200_000).value;
             let wall =
-                rectangle(|y, z| from([2.0, y, z], [-1.0, 0.0, 0.0]), [-2.0, 2.0], [0.0, 3.0], 1e-7, 400_000).value;
+                rectangle(|y, z| from([2.0, y, z], [-1.0, 0.0, 0.0]), [-2.0, 2.0], [0.0, 3.0], 1e-6, 400_000).value;
             0.2 * (floor + 4.0 * wall)
         };
         let truth = Truth::new(format!("cie171-5.4-{side}"), &scene, 0.2 * flux, "π L A/5")
-            .because("An even sky sends πLA through an opening; the room is closed below, so all of it arrives on the floor and the walls.")
+            .because("An evenly luminous opening sends πLA; the room is closed, so all of it arrives on the floor and the walls.")
             .confirmed("quadrature of Lambert's formula over the floor and the walls", 1e-3, exchanged);
         list.push(case("5.4", format!("opening of {side} × {side} m, floor and walls"), "lm", 5.0 * LUX, truth));
     }

@@ -55,7 +55,9 @@ fn factors() -> Vec<SuiteCase> {
         let ceiling = [0.5, 2.0, 3.5].map(|x| ([x, 0.0, 4.0], DOWN, format!("ceiling at 4 m, x = {x} m")));
         for (point, normal, place) in walls.into_iter().chain(ceiling) {
             let value = reflected(origin, sides, point, normal);
-            let scene = lit(measured(&[at(point, normal)]), origin, sides);
+            // A small surface is found by few paths.
+            let scene =
+                lit(measured(&[at(point, normal)]), origin, sides).spp(if sides[0] < 1.0 { 1 << 20 } else { 1 << 18 });
             let truth = Truth::new(
                 format!("cie171-5.6-{}-{}-{}", sides[0] * sides[1], point[0], point[2]),
                 &scene,
