@@ -27,7 +27,7 @@
 //! | spectra: constants, tables, black bodies, illuminants, RGB made into spectra | [`spectrum`] |
 //! | the CIE 1931 2° observer, XYZ, linear Rec. 709, sRGB, adaptation, CIELAB | [`colour`] |
 //! | glasses and metals, with the range that each is known for | [`index`] |
-//! | reflectance and transmittance, in forms that do not cancel | [`fresnel`] |
+//! | reflectance and transmittance, in forms that do not cancel; thin films | [`fresnel`] |
 //! | where refracted light goes | [`snell`] |
 //! | vectors and frames over `f32` or `f64` | [`Vec3`], [`Frame`], [`Real`] |
 //! | one value for each wavelength of a path | [`Lanes`] |
@@ -42,6 +42,7 @@
 
 pub mod angle;
 pub mod colour;
+pub mod complex;
 pub mod error;
 pub mod exponential;
 pub mod fresnel;
@@ -54,6 +55,7 @@ mod table;
 pub mod vec3;
 
 pub use angle::atan2_turns;
+pub use complex::Complex;
 pub use error::{INDEX_RANGE, OpticsError};
 pub use exponential::{exp_neg, neg_ln, one_minus_exp_neg};
 pub use index::{ComplexIndex, OutsideFit, RefractiveIndex};
