@@ -17,6 +17,8 @@ mod references;
 mod shape;
 mod shutter;
 mod sky;
+mod thin_film;
+mod varying;
 
 pub use detail::{Bitangent, OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
@@ -25,8 +27,8 @@ pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
 pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
 pub use light::{Light, LightCone, LightKind};
 pub use material::{
-    InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets, NumberTexture, Parameter,
-    ParameterMut, PolarisingSheet, Side, SpectrumTexture,
+    InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets, Parameter, ParameterMut,
+    PolarisingSheet, Side,
 };
 pub use medium::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseTable};
 pub use meter::{Meter, MeterKind, MeterQuantity, Receiver};
@@ -35,6 +37,8 @@ pub use references::ReferenceError;
 pub use shape::{Mesh, Shape};
 pub(crate) use shutter::middle_s;
 pub use sky::{CieSky, SkyCoefficients};
+pub use thin_film::{FilmIndex, FilmLayer, ThinFilm};
+pub use varying::{NumberTexture, SpectrumTexture};
 
 use glam::DAffine3;
 

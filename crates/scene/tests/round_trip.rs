@@ -103,6 +103,9 @@ fn materials_and_spectra() {
             "clay",
             "toy",
             "pane",
+            "coated",
+            "bubble",
+            "coated pane",
             "film",
             "quarter",
             "dusty",
@@ -119,16 +122,26 @@ fn materials_and_spectra() {
     let gold = ComplexIndex::named("Au").expect("gold").with_outside(OutsideFit::Clamp);
     assert_eq!(
         kind(&scene, "gold"),
-        &MaterialKind::RoughConductor { metal: Metal::Index(gold), facets: 0.25.into(), compensated: false }
+        &MaterialKind::RoughConductor {
+            metal: Metal::Index(gold),
+            facets: 0.25.into(),
+            compensated: false,
+            film: None
+        }
     );
     let own = ComplexIndex::tabulated(vec![300.0, 900.0], vec![0.2, 0.3], vec![3.0, 4.0]).expect("right");
     let facets = Microfacets { alpha: [0.125, 0.5], rotation_rad: FRAC_PI_2 };
-    let own = MaterialKind::RoughConductor { metal: Metal::Index(own), facets, compensated: true };
+    let own = MaterialKind::RoughConductor { metal: Metal::Index(own), facets, compensated: true, film: None };
     assert_eq!(kind(&scene, "own metal"), &own);
     let glass = |name| RefractiveIndex::named(name).expect("a glass");
     assert_eq!(
         kind(&scene, "glass"),
-        &MaterialKind::Dielectric { interior: glass("N-BK7"), exterior: RefractiveIndex::VACUUM, priority: None }
+        &MaterialKind::Dielectric {
+            interior: glass("N-BK7"),
+            exterior: RefractiveIndex::VACUUM,
+            priority: None,
+            film: None
+        }
     );
     assert_eq!(
         kind(&scene, "dispersive"),
@@ -138,6 +151,7 @@ fn materials_and_spectra() {
             facets: 1.0.into(),
             compensated: true,
             priority: None,
+            film: None
         }
     );
     let terms = vec![SellmeierTerm { b: 1.039_612_12, c_um2: 0.006_000_698_67 }];
@@ -149,13 +163,43 @@ fn materials_and_spectra() {
                 .expect("right")
                 .with_outside(OutsideFit::Clamp),
             priority: None,
+            film: None
         }
     );
     assert_eq!(
         kind(&scene, "solid"),
-        &MaterialKind::Dielectric { interior: glass("water"), exterior: RefractiveIndex::VACUUM, priority: Some(7) }
+        &MaterialKind::Dielectric {
+            interior: glass("water"),
+            exterior: RefractiveIndex::VACUUM,
+            priority: Some(7),
+            film: None
+        }
     );
     assert_eq!(kind(&scene, "black"), &MaterialKind::Black);
+    let layer = |thickness_nm: f64, index| FilmLayer { thickness_nm: thickness_nm.into(), index };
+    let film = |layers| Some(ThinFilm { layers, at_nm: None });
+    let clear = |index| FilmIndex::Transparent(index);
+    let metal = |name| ComplexIndex::named(name).expect("a metal").with_outside(OutsideFit::Clamp);
+    let table = ComplexIndex::tabulated(vec![300.0, 900.0], vec![2.0, 3.0], vec![0.0, 1.0]).expect("right");
+    let layers = vec![
+        layer(60.0, clear(RefractiveIndex::Constant(2.4))),
+        layer(12.5, FilmIndex::Absorbing(metal("Au"))),
+        layer(0.0, FilmIndex::Absorbing(table)),
+    ];
+    let coated = MaterialKind::Conductor { metal: Metal::Index(metal("Ag")), film: film(layers) };
+    assert_eq!(kind(&scene, "coated"), &coated);
+    let bubble = MaterialKind::Dielectric {
+        interior: RefractiveIndex::VACUUM,
+        exterior: RefractiveIndex::VACUUM,
+        priority: None,
+        film: film(vec![layer(300.0, clear(glass("water")))]),
+    };
+    assert_eq!(kind(&scene, "bubble"), &bubble);
+    let pane = MaterialKind::ThinDielectric {
+        index: RefractiveIndex::Constant(1.5),
+        film: film(vec![layer(100.0, clear(RefractiveIndex::Constant(1.38)))]),
+    };
+    assert_eq!(kind(&scene, "coated pane"), &pane);
     let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
     assert_eq!(kind(&scene, "clay"), &MaterialKind::OneSided { kind: Box::new(clay), side: Side::Back });
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
@@ -166,7 +210,7 @@ fn materials_and_spectra() {
         internal_reflection: InternalReflection::Uncoloured,
     };
     assert_eq!(kind(&scene, "toy"), &toy);
-    assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7") });
+    assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7"), film: None });
     let sheet = PolarisingSheet::Polariser { transmittance: Spectrum::Constant(0.75), extinction: 0.125 };
     assert_eq!(kind(&scene, "film"), &MaterialKind::PolarisingSheet { axis: [0.0, 1.0, 0.0], sheet });
     let sheet = PolarisingSheet::Retarder { retardance_rad: FRAC_PI_2, at_nm: Some(550.0) };

@@ -162,6 +162,7 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
         "quantity",
         "roughness_image",
         "strength",
+        "thickness_image",
         "weight_image",
     ];
     let of_skies = ["forward", "image", "mirrored", "projection", "rotation_deg"];
@@ -381,18 +382,18 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                         | M::Mirror { reflectance }
                         | M::OrenNayar { reflectance, .. }
                         | M::Plastic { reflectance, .. }
-                        | M::Conductor { metal: Metal::Reflectance(reflectance) }
+                        | M::Conductor { metal: Metal::Reflectance(reflectance), .. }
                         | M::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => match reflectance {
                             SpectrumTexture::Uniform(spectrum) => (0.0..=1.0).contains(&spectrum.eval(nm)),
                             // This scene names no files.
                             SpectrumTexture::Image(_) => false,
                         },
-                        M::Conductor { metal: Metal::Index(index) }
+                        M::Conductor { metal: Metal::Index(index), .. }
                         | M::RoughConductor { metal: Metal::Index(index), .. } => index.eval(nm).0 > 0.0,
                         M::Dielectric { interior, exterior, .. } | M::RoughDielectric { interior, exterior, .. } => {
                             interior.eval(nm) > 0.0 && exterior.eval(nm) > 0.0
                         }
-                        M::ThinDielectric { index } => index.eval(nm) > 0.0,
+                        M::ThinDielectric { index, .. } => index.eval(nm) > 0.0,
                         M::PolarisingSheet { axis, sheet } => {
                             let good = match sheet {
                                 PolarisingSheet::Polariser { transmittance, extinction } => {

@@ -209,6 +209,14 @@ fn numbers_and_colours_of_materials_come_from_images() {
         };
         assert_eq!(facets.alpha, [roughness * roughness; 2]);
     }
+    // A film whose thickness is a share of 400 nm.
+    let kind = right(
+        r#"{"type": "dielectric", "interior": 1, "thin_film": [{"thickness_nm": 400, "index": 1.33,
+            "thickness_image": {"file": "files/chequers.png", "channel": "blue", "filter": "nearest"}}]}"#,
+    );
+    let film = kind.film().expect("a film");
+    assert!((film.layers[0].thickness_nm.eval([0.75, 0.75]) - 400.0 * 60.0 / 255.0).abs() < 1e-4, "{film:?}");
+    assert!(kind.image().is_some());
     // Of one roughness everywhere.
     let kind = right(r#"{"type": "conductor", "reflectance": 0.5, "alpha": 0.25}"#);
     let MaterialKind::RoughConductor { metal: Metal::Reflectance(_), facets, .. } = kind else { panic!("{kind:?}") };
@@ -237,6 +245,12 @@ fn what_is_wrong_with_an_image_of_numbers_is_said() {
     let blend = |keys: &str| {
         format!(r#"{{"type": "blend", "first": {{"type": "black"}}, "second": {{"type": "black"}}{keys}}}"#)
     };
+    let film = |keys: &str| {
+        format!(r#"{{"type": "dielectric", "interior": 1.5, "thin_film": [{{"thickness_nm": 100{keys}}}]}}"#)
+    };
+    let rough_film = film(r#", "index": 1.4"#).replace("1.5", "1.5, \"alpha\": 0.1");
+    let kind = right(&rough_film);
+    assert!(matches!(kind, MaterialKind::RoughDielectric { compensated: false, film: Some(_), .. }), "{kind:?}");
     for (text, shape, code) in [
         (rough.to_owned(), bare, Code::NoTextureCoordinates),
         (rough.replace("chequers", "no"), SQUARE, Code::File),
@@ -257,6 +271,23 @@ fn what_is_wrong_with_an_image_of_numbers_is_said() {
         (brushed.replace("0.4", "0.4, \"coat\": 0.99"), SQUARE, Code::OutOfRange),
         (glass.replace("lost", "compensated"), SQUARE, Code::KeyConflict),
         (rough.replace("0.5,", "0.5, \"tangent_rotation_deg\": 20,"), SQUARE, Code::MissingKey),
+        (film(""), SQUARE, Code::MissingKey),
+        (film(r#", "index": 1.4, "metal": "Au""#), SQUARE, Code::KeyConflict),
+        (film(r#", "index": 1.4, "thickness_image": {"file": "files/no.png"}"#), SQUARE, Code::File),
+        (film(r#", "index": 1.4, "thickness_image": {"file": "files/chequers.png"}"#), bare, Code::NoTextureCoordinates),
+        (film(r#", "index": 1.4"#).replace("100", "-1"), SQUARE, Code::OutOfRange),
+        (film(r#", "index": 1.4"#).replace("100", "1e7"), SQUARE, Code::OutOfRange),
+        (film(r#", "wavelengths_nm": [300, 900], "n": [1, 2]"#), SQUARE, Code::MissingKey),
+        (film(r#", "index": "diamond""#), SQUARE, Code::OutsideFit),
+        (r#"{"type": "conductor", "metal": "Ag", "thin_film": []}"#.to_owned(), SQUARE, Code::WrongLength),
+        // A rough film passes straight on what facets cannot say, and no table holds what several facets do.
+        (film(r#", "index": 1.4"#).replace("1.5", "1.5, \"alpha\": 0.1, \"priority\": 1"), SQUARE, Code::KeyConflict),
+        (film(r#", "index": 1.4"#).replace("1.5", "1, \"alpha\": 0.1"), SQUARE, Code::KeyConflict),
+        (
+            film(r#", "index": 1.4"#).replace("1.5", "1.5, \"alpha\": 0.1, \"multiple_scattering\": \"compensated\""),
+            SQUARE,
+            Code::KeyConflict,
+        ),
         (blend(""), SQUARE, Code::MissingKey),
         (blend(r#", "weight": 0.5, "weight_image": {"file": "files/chequers.png"}"#), SQUARE, Code::KeyConflict),
         (r#"{"type": "conductor", "reflectance": 1.5}"#.to_owned(), SQUARE, Code::Reflectance),

@@ -114,6 +114,7 @@ fn glass_whose_roughness_an_image_says_absorbs_as_glass_of_that_roughness() {
             facets: alpha.into(),
             compensated: true,
             priority: None,
+            film: None,
         }
     };
     let material = json!({"type": "dielectric", "interior": 1, "absorption_per_m": 2});

@@ -20,12 +20,15 @@ fn facets([alpha_u, alpha_v]: [f64; 2], rotation_deg: f64) -> Microfacets {
 /// Reflects everything: n → 0 with k > 0.
 fn mirrors(facets: Microfacets, compensated: bool) -> Bsdf {
     let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
-    Bsdf::new(&MaterialKind::RoughConductor { metal: Metal::Index(index), facets, compensated }, RANGE_NM)
+    Bsdf::new(&MaterialKind::RoughConductor { metal: Metal::Index(index), facets, compensated, film: None }, RANGE_NM)
 }
 
 fn glass(facets: Microfacets, compensated: bool) -> Bsdf {
     let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
-    Bsdf::new(&MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority: None }, RANGE_NM)
+    Bsdf::new(
+        &MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority: None, film: None },
+        RANGE_NM,
+    )
 }
 
 /// Of this cosine, turned from x toward y.

@@ -22,7 +22,7 @@ fn mirror() -> Bsdf {
 
 fn glass(interior: RefractiveIndex) -> Bsdf {
     let exterior = RefractiveIndex::constant(1.0).unwrap();
-    Bsdf::new(&MaterialKind::Dielectric { interior, exterior, priority: None }, RANGE_NM)
+    Bsdf::new(&MaterialKind::Dielectric { interior, exterior, priority: None, film: None }, RANGE_NM)
 }
 
 fn sample(bsdf: &Bsdf, n: Vec3<f64>, wo: Vec3<f64>, u: [f64; 3]) -> Option<BsdfSample<4>> {
@@ -58,8 +58,10 @@ fn a_refraction_that_bends_the_wrong_way_is_rejected() {
 
 #[test]
 fn mirrors_metals_and_glass_obey_the_law_of_reflection() {
-    let metal =
-        Bsdf::new(&MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named("Au").unwrap()) }, RANGE_NM);
+    let metal = Bsdf::new(
+        &MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named("Au").unwrap()), film: None },
+        RANGE_NM,
+    );
     for bsdf in [mirror(), metal, glass(RefractiveIndex::constant(1.5).unwrap())] {
         let reflect = |direction: [f64; 3], normal: [f64; 3]| {
             let wo = -Vec3::<f64>::from_f64(direction);

@@ -291,11 +291,20 @@ fn a_material_by_images_is_the_material_that_they_say() {
         let uniform = || SpectrumTexture::from(Spectrum::Constant(0.5));
         let (a, b) = (eval(&painted(image()), pair), eval(&painted(uniform()), pair));
         assert!((a.0[0] - b.0[0]).abs() < 1e-12 * b.0[0], "{a:?} {b:?}");
-        let metal =
-            |r| MaterialKind::RoughConductor { metal: Metal::Reflectance(r), facets: 0.3.into(), compensated: true };
+        let metal = |r| MaterialKind::RoughConductor {
+            metal: Metal::Reflectance(r),
+            facets: 0.3.into(),
+            compensated: true,
+            film: None,
+        };
         // k²/(4 + k²) is one half.
         let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1.0; 2], vec![2.0; 2]).unwrap();
-        let exact = MaterialKind::RoughConductor { metal: Metal::Index(index), facets: 0.3.into(), compensated: true };
+        let exact = MaterialKind::RoughConductor {
+            metal: Metal::Index(index),
+            facets: 0.3.into(),
+            compensated: true,
+            film: None,
+        };
         let (a, b, c) = (eval(&metal(image()), pair), eval(&metal(uniform()), pair), eval(&exact, pair));
         // What light that meets several facets adds is tabulated in steps of 1/256 of √R.
         for found in [a, b] {

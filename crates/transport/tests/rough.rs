@@ -11,13 +11,23 @@ const RANGE_NM: [f64; 2] = [380.0, 780.0];
 /// Reflects everything: n → 0 with k > 0.
 fn mirrors(alpha: f64, compensated: bool) -> Bsdf {
     let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
-    Bsdf::new(&MaterialKind::RoughConductor { metal: Metal::Index(index), facets: alpha.into(), compensated }, RANGE_NM)
+    Bsdf::new(
+        &MaterialKind::RoughConductor { metal: Metal::Index(index), facets: alpha.into(), compensated, film: None },
+        RANGE_NM,
+    )
 }
 
 fn glass(interior: RefractiveIndex, alpha: f64, compensated: bool) -> Bsdf {
     let exterior = RefractiveIndex::VACUUM;
     Bsdf::new(
-        &MaterialKind::RoughDielectric { interior, exterior, facets: alpha.into(), compensated, priority: None },
+        &MaterialKind::RoughDielectric {
+            interior,
+            exterior,
+            facets: alpha.into(),
+            compensated,
+            priority: None,
+            film: None,
+        },
         RANGE_NM,
     )
 }

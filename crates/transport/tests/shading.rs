@@ -78,7 +78,7 @@ proptest! {
         let s = mirror.sample::<4>(&LAMBDA_NM, &at, wo, [u, 0.5, 0.5]).unwrap();
         prop_assert!(s.wi.z * wo.z > 0.0 && s.weight[0] == 1.0);
         let (interior, exterior) = (RefractiveIndex::constant(1.5).unwrap(), RefractiveIndex::constant(1.0).unwrap());
-        let glass = Bsdf::new(&MaterialKind::Dielectric { interior, exterior, priority: None }, [380.0, 780.0]);
+        let glass = Bsdf::new(&MaterialKind::Dielectric { interior, exterior, priority: None, film: None }, [380.0, 780.0]);
         let s = glass.sample::<4>(&LAMBDA_NM, &at, wo, [u, 0.5, 0.5]).unwrap();
         let crosses = s.wi.z * wo.z < 0.0;
         let eta = if wo.z > 0.0 { 1.5 } else { 1.0 / 1.5 };

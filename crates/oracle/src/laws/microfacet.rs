@@ -42,13 +42,31 @@ const STEPS: usize = 640;
 #[must_use]
 pub fn ggx_albedo(alpha: f64, mu: f64, eta: Option<f64>, masking: Masking) -> SingleScattering {
     // In its own plane of incidence a direction sees both halves of all azimuths alike.
-    albedo([alpha; 2], [(1.0 - mu * mu).sqrt(), 0.0, mu], facets([alpha; 2], PI), eta, masking)
+    albedo([alpha; 2], [(1.0 - mu * mu).sqrt(), 0.0, mu], facets([alpha; 2], PI), (eta, shares_of(eta)), masking)
+}
+
+/// The same of coated facets, which reflect and transmit the shares that a function of the cosine says; without `eta` they only reflect.
+#[must_use]
+pub fn coated_ggx_albedo(alpha: f64, mu: f64, eta: Option<f64>, shares: impl Fn(f64) -> [f64; 2]) -> SingleScattering {
+    let o = [(1.0 - mu * mu).sqrt(), 0.0, mu];
+    albedo([alpha; 2], o, facets([alpha; 2], PI), (eta, shares), Masking::Correlated)
+}
+
+/// What bare facets reflect and transmit.
+fn shares_of(eta: Option<f64>) -> impl Fn(f64) -> [f64; 2] {
+    move |cos| match eta {
+        None => [1.0, 0.0],
+        Some(eta) => {
+            let fresnel = fresnel_exact(cos, eta);
+            [fresnel.reflectance(), fresnel.transmittance()]
+        }
+    }
 }
 
 /// The same for facets of widths `alpha` along x and y, and light from the direction `o`.
 #[must_use]
 pub fn anisotropic_ggx_albedo(alpha: [f64; 2], o: Vec3, eta: Option<f64>, masking: Masking) -> SingleScattering {
-    albedo(alpha, o, facets(alpha, 2.0 * PI), eta, masking)
+    albedo(alpha, o, facets(alpha, 2.0 * PI), (eta, shares_of(eta)), masking)
 }
 
 /// The BRDF of GGX facets of widths `alpha` along x and y that reflect everything: D G/(4 cos θ_o cos θ_i) with Smith's masking, correlated
@@ -65,7 +83,7 @@ fn albedo(
     alpha: [f64; 2],
     o: Vec3,
     facets: impl Iterator<Item = (Vec3, f64)>,
-    eta: Option<f64>,
+    (eta, shares): (Option<f64>, impl Fn(f64) -> [f64; 2]),
     masking: Masking,
 ) -> SingleScattering {
     let mu = o[2];
@@ -84,17 +102,17 @@ fn albedo(
             continue;
         }
         let seen = weight * c / (mu * h[2]);
-        let fresnel = eta.map(|eta| (eta, fresnel_exact(c.min(1.0), eta)));
+        let [reflected, refracted] = shares(c.min(1.0));
         let r = add(scale(2.0 * c, h), scale(-1.0, o));
         if r[2] > 0.0 {
-            sum.reflected += seen * fresnel.map_or(1.0, |(_, f)| f.reflectance()) * together(r, true);
+            sum.reflected += seen * reflected * together(r, true);
         }
-        let Some((eta, fresnel)) = fresnel else { continue };
+        let Some(eta) = eta else { continue };
         let square = 1.0 - (1.0 - c * c) / (eta * eta);
         if square > 0.0 {
             let t = add(scale(-1.0 / eta, o), scale(c / eta - square.sqrt(), h));
             if t[2] < 0.0 {
-                sum.refracted += seen * fresnel.transmittance() * together(t, false);
+                sum.refracted += seen * refracted * together(t, false);
             }
         }
     }

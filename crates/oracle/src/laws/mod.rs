@@ -16,6 +16,7 @@ mod polarisation;
 mod refraction;
 mod sampling;
 mod scattering;
+mod thin_film;
 mod trees;
 
 pub use fresnel::{
@@ -28,7 +29,9 @@ pub use light::{
     light_laws, light_pdf_integrates_to_one, light_sample_is_consistent, light_samples_follow_pdf,
     rectangle_solid_angle, sphere_solid_angle, triangle_solid_angle,
 };
-pub use microfacet::{Masking, SingleScattering, anisotropic_ggx_albedo, anisotropic_ggx_mirrors, ggx_albedo};
+pub use microfacet::{
+    Masking, SingleScattering, anisotropic_ggx_albedo, anisotropic_ggx_mirrors, coated_ggx_albedo, ggx_albedo,
+};
 pub use numerics::{film_mean_is_exact, frame_is_orthonormal, mis_weights_add_up, wavelengths_follow_density};
 pub use polarisation::{
     Polarises, Turn, TurnedBy, mueller_is_physical, mueller_is_reciprocal, stokes_along, stokes_along_paths_is_exact,
@@ -36,6 +39,7 @@ pub use polarisation::{
 pub use refraction::{Crossing, mirror_reflection, snell, snell_sweep, total_internal_reflection};
 pub use sampling::{energy_is_not_created, furnace_agrees, pdf_integrates_to_one, samples_follow_pdf};
 pub use scattering::{etendue_is_conserved, f_and_pdf_are_proper, is_isotropic, is_reciprocal, sample_is_consistent};
+pub use thin_film::{CoatedInterface, FilmLayer, FilmWaves};
 pub use trees::{built_mesh_is_tight, near_surfaces_are_hit, needles_are_hit_where_they_are, neighbours_change_no_hit};
 
 /// Machine epsilon of an f32 subject, as an `f64`.

@@ -95,6 +95,7 @@ impl Claim {
             Self::Priorities => "priorities",
             Self::Absorption => "absorption",
             Self::Scattering => "scattering",
+            Self::ThinFilms => "thin-films",
             Self::Motion => "motion",
             Self::Masks => "masks",
             Self::LosslessRoughGlass => "lossless-rough-glass",

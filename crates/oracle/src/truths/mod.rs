@@ -15,6 +15,7 @@ mod dimensions;
 mod enclosures;
 mod exchange;
 mod facets;
+mod films;
 mod furnaces;
 mod glass;
 mod illumination;
@@ -85,6 +86,8 @@ pub enum Claim {
     Absorption,
     /// Media scatter what goes through them, emit, and may change from place to place.
     Scattering,
+    /// Interfaces carry thin films, in which waves interfere.
+    ThinFilms,
     /// Things move while the shutter is open.
     Motion,
     /// Surfaces let a part of the light pass, also where they coincide with others.
@@ -109,7 +112,7 @@ pub enum Claim {
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 18] = [
+    pub const UNPOLARISED: [Self; 19] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -120,6 +123,7 @@ impl Claim {
         Self::Priorities,
         Self::Absorption,
         Self::Scattering,
+        Self::ThinFilms,
         Self::Motion,
         Self::Masks,
         Self::LosslessRoughGlass,
@@ -400,6 +404,7 @@ pub fn truths() -> Vec<Truth> {
         textures::truths(),
         relief::truths(),
         sheets::truths(),
+        films::truths(),
         stokes::truths(),
         images::truths(),
         instruments::truths(),

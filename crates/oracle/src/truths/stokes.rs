@@ -17,11 +17,11 @@ pub(super) fn truths() -> Vec<Truth> {
     list.into_iter().map(|truth| truth.claims(Claim::CarriesPolarisation)).collect()
 }
 
-const PARAMETERS: [Quantity; 3] = [Quantity::Stokes1, Quantity::Stokes2, Quantity::Stokes3];
+pub(super) const PARAMETERS: [Quantity; 3] = [Quantity::Stokes1, Quantity::Stokes2, Quantity::Stokes3];
 
 /// S₁, S₂ and S₃ of a field (x to the right, y up, seen against the light) whose intensity is 1 at amplitude 1, by its values over a period.
 /// A field that turns clockwise has x·dy/dt − y·dx/dt below 0.
-fn stokes_of(field: impl Fn(f64) -> [f64; 2]) -> [f64; 3] {
+pub(super) fn stokes_of(field: impl Fn(f64) -> [f64; 2]) -> [f64; 3] {
     const STEPS: u32 = 4096;
     let at = |i: u32| field(TAU * f64::from(i) / f64::from(STEPS));
     let mut sums = [0.0; 3];

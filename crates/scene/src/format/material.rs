@@ -4,6 +4,7 @@ mod blend;
 mod dielectric;
 mod index;
 mod roughness;
+mod thin_film;
 
 use etalon_optics::OutsideFit;
 
@@ -22,8 +23,9 @@ pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
 pub(crate) use dielectric::DielectricMaterial;
 use dielectric::dielectric;
-use index::{IndexForm, NamedMetal, complex_index, index, least};
+use index::{IndexForm, NamedMetal, complex_index, complex_keys, index, least};
 use roughness::{RoughnessKeys, roughness, roughness_keys};
+use thin_film::{FilmLayerForm, thin_film};
 
 crate::record! {
     /// Ideal diffuse reflection, on both sides unless "sides" says otherwise.
@@ -73,6 +75,8 @@ crate::record! {
         roughness_image: Optional<RoughnessImageForm>,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
         multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
+        /// Layers that coat it, in which light interferes with itself: from the outermost to the innermost.
+        thin_film: Optional<Spanned<List<FilmLayerForm>>>,
         /// Which sides reflect; another is black.
         sides: Required<MaterialSides> = r#""both""#,
     } with [
@@ -202,6 +206,9 @@ crate::record! {
     pub(crate) struct ThinDielectricMaterial + comment {
         /// Index relative to what surrounds it.
         index: Required<IndexForm> = "1.5",
+        /// Layers that coat both of its faces, in which light interferes with itself: from the outermost to the innermost. Their indices,
+        /// too, are relative to what surrounds the pane.
+        thin_film: Optional<Spanned<List<FilmLayerForm>>>,
     }
 }
 
@@ -344,14 +351,18 @@ pub(crate) fn material<'f>(
                 Optional::Given(reflectance) => {
                     spectra.resolve_texture(reflectance, Role::Reflectance, files, reader).map(Metal::Reflectance)
                 }
-                _ => complex_index(conductor, spectra.range_nm, reader).map(Metal::Index),
+                _ => complex_index(&complex_keys!(conductor), spectra.range_nm, reader).map(Metal::Index),
             };
             let roughness = roughness(&roughness_keys!(conductor), files, reader);
             let compensated = conductor.multiple_scattering? == MultipleScattering::Compensated;
-            let metal = metal?;
-            let kind = roughness?.material(|facets| match facets {
-                None => MaterialKind::Conductor { metal: metal.clone() },
-                Some(facets) => MaterialKind::RoughConductor { metal: metal.clone(), facets, compensated },
+            let film = thin_film(&conductor.thin_film, spectra.range_nm, files, reader);
+            let (metal, film) = (metal?, film?);
+            let kind = roughness?.material(|facets| {
+                let (metal, film) = (metal.clone(), film.clone());
+                match facets {
+                    None => MaterialKind::Conductor { metal, film },
+                    Some(facets) => MaterialKind::RoughConductor { metal, facets, compensated, film },
+                }
             });
             Some(conductor.sides?.of(kind))
         }
@@ -385,8 +396,9 @@ pub(crate) fn material<'f>(
             Some(plastic.sides?.of(kind))
         }
         MaterialForm::ThinDielectric(pane) => {
-            let index = pane.index.as_ref().and_then(|form| index(form, spectra.range_nm, reader))?;
-            Some(MaterialKind::ThinDielectric { index })
+            let index = pane.index.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
+            let film = thin_film(&pane.thin_film, spectra.range_nm, files, reader);
+            Some(MaterialKind::ThinDielectric { index: index?, film: film? })
         }
         MaterialForm::Polariser(polariser) => {
             let transmittance = spectra.resolve(polariser.transmittance.as_ref()?, Role::Reflectance, reader);

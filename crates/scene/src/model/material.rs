@@ -1,8 +1,9 @@
 //! Materials: what surfaces do to light.
 
-use super::Medium;
+use super::{Medium, NumberTexture, SpectrumTexture, ThinFilm};
 use crate::texture::ImageTexture;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
+use std::iter;
 
 /// The least width α of a rough surface's facets. Tests check lobes down to this width.
 pub const LEAST_ALPHA: f64 = 1e-4;
@@ -67,6 +68,8 @@ pub enum MaterialKind {
     Conductor {
         /// Its index.
         metal: Metal,
+        /// What coats it.
+        film: Option<ThinFilm>,
     },
     /// Smooth interface between two transparent media.
     Dielectric {
@@ -77,6 +80,8 @@ pub enum MaterialKind {
         /// Given, the object is a closed solid of `interior` that is tracked among others: where several overlap, the
         /// highest priority fills the place, of equal ones the later object. `exterior` is then vacuum and means nothing.
         priority: Option<u32>,
+        /// What lies between the two.
+        film: Option<ThinFilm>,
     },
     /// Rough metal, seen from vacuum.
     RoughConductor {
@@ -86,6 +91,8 @@ pub enum MaterialKind {
         facets: Microfacets,
         /// Whether light that meets several facets is counted.
         compensated: bool,
+        /// What coats each facet.
+        film: Option<ThinFilm>,
     },
     /// Rough interface between two transparent media.
     RoughDielectric {
@@ -99,6 +106,8 @@ pub enum MaterialKind {
         compensated: bool,
         /// As of a smooth one.
         priority: Option<u32>,
+        /// What lies between the two on each facet; `compensated` is then false.
+        film: Option<ThinFilm>,
     },
     /// Rough diffuse reflection on both sides (EON).
     OrenNayar {
@@ -122,6 +131,8 @@ pub enum MaterialKind {
     ThinDielectric {
         /// Index relative to what surrounds it.
         index: RefractiveIndex,
+        /// What coats both of its faces, each with the first layer outermost.
+        film: Option<ThinFilm>,
     },
     /// A sheet without thickness that passes light straight on, what swings along its axis in another way than the rest.
     PolarisingSheet {
@@ -211,11 +222,17 @@ macro_rules! parameters {
                     vec![$of::Reflectance(reflectance)]
                 }
                 Self::Plastic { reflectance, coat, .. } => vec![$of::Reflectance(reflectance), $of::Coat(coat)],
-                Self::Conductor { metal } | Self::RoughConductor { metal, .. } => vec![$of::Metal(metal)],
-                Self::Dielectric { interior, exterior, .. } | Self::RoughDielectric { interior, exterior, .. } => {
-                    vec![$of::Interface([interior, exterior])]
+                Self::Conductor { metal, film } | Self::RoughConductor { metal, film, .. } => {
+                    iter::once($of::Metal(metal)).chain(film.into_iter().map($of::Film)).collect()
                 }
-                Self::ThinDielectric { index } => vec![$of::Coat(index)],
+                Self::Dielectric { interior, exterior, film, .. }
+                | Self::RoughDielectric { interior, exterior, film, .. } => {
+                    let interface = iter::once($of::Interface([interior, exterior]));
+                    interface.chain(film.into_iter().map($of::Film)).collect()
+                }
+                Self::ThinDielectric { index, film } => {
+                    iter::once($of::Coat(index)).chain(film.into_iter().map($of::Film)).collect()
+                }
                 Self::PolarisingSheet { sheet, .. } => vec![$of::Sheet(sheet)],
                 Self::Blend { .. } | Self::OneSided { .. } | Self::Boundary | Self::Black => Vec::new(),
             });
@@ -248,7 +265,7 @@ impl MaterialKind {
     /// interfaces of the same.
     pub fn media(&self) -> Option<[&RefractiveIndex; 2]> {
         match self {
-            Self::Dielectric { interior, exterior, priority: None }
+            Self::Dielectric { interior, exterior, priority: None, .. }
             | Self::RoughDielectric { interior, exterior, priority: None, .. } => Some([exterior, interior]),
             Self::Boundary => Some([&RefractiveIndex::VACUUM; 2]),
             Self::Blend { parts, .. } => {
@@ -298,7 +315,29 @@ impl MaterialKind {
         match self {
             Self::Blend { parts, by } => parts.iter().find_map(|(_, part)| part.image()).or_else(|| by.image()),
             Self::OneSided { kind, .. } => kind.image(),
-            kind => kind.parameters().into_iter().find_map(|parameter| parameter.reflectance()?.image()),
+            kind => kind.parameters().into_iter().find_map(Parameter::image),
+        }
+    }
+
+    /// The film that coats it, or one of its parts.
+    pub fn film(&self) -> Option<&ThinFilm> {
+        self.parameters().into_iter().find_map(|parameter| match parameter {
+            Parameter::Film(film) => Some(film),
+            _ => None,
+        })
+    }
+
+    /// Takes every film away.
+    pub fn remove_films(&mut self) {
+        for part in self.parts_mut() {
+            if let Self::Conductor { film, .. }
+            | Self::RoughConductor { film, .. }
+            | Self::Dielectric { film, .. }
+            | Self::RoughDielectric { film, .. }
+            | Self::ThinDielectric { film, .. } = part
+            {
+                *film = None;
+            }
         }
     }
 
@@ -306,8 +345,12 @@ impl MaterialKind {
     /// mean of their texels.
     pub fn flatten(&mut self, mean: &dyn Fn(&ImageTexture) -> Spectrum) {
         self.flatten_shares();
-        for reflectance in self.parameters_mut().into_iter().filter_map(ParameterMut::reflectance) {
-            if let Some(image) = reflectance.image() {
+        for parameter in self.parameters_mut() {
+            if let ParameterMut::Film(film) = parameter {
+                film.flatten();
+            } else if let Some(reflectance) = parameter.reflectance()
+                && let Some(image) = reflectance.image()
+            {
                 *reflectance = mean(image).into();
             }
         }
@@ -319,10 +362,7 @@ impl MaterialKind {
         }
         if let Self::Blend { parts, by } = self {
             parts.iter_mut().for_each(|(_, part)| part.flatten_shares());
-            if let NumberTexture::Image(image) = by {
-                let [number, ..] = image.image.mean();
-                *by = NumberTexture::Uniform(number * image.factor[0]);
-            }
+            *by = by.mean().into();
         }
     }
 }
@@ -341,6 +381,8 @@ pub enum Parameter<'a> {
     Coat(&'a RefractiveIndex),
     /// A polarising sheet.
     Sheet(&'a PolarisingSheet),
+    /// A thin film, which decides how much light goes each way.
+    Film(&'a ThinFilm),
 }
 
 /// [`Parameter`], to be changed.
@@ -356,9 +398,19 @@ pub enum ParameterMut<'a> {
     Coat(&'a mut RefractiveIndex),
     /// See [`Parameter::Sheet`].
     Sheet(&'a mut PolarisingSheet),
+    /// See [`Parameter::Film`].
+    Film(&'a mut ThinFilm),
 }
 
 impl<'a> Parameter<'a> {
+    /// The image that varies it over a surface; of a film the first.
+    pub fn image(self) -> Option<&'a ImageTexture> {
+        match self {
+            Self::Film(film) => film.images().next(),
+            other => other.reflectance()?.image(),
+        }
+    }
+
     /// The share of light that it says is reflected, if it says one.
     pub fn reflectance(self) -> Option<&'a SpectrumTexture> {
         match self {
@@ -375,81 +427,5 @@ impl<'a> ParameterMut<'a> {
             Self::Reflectance(reflectance) | Self::Metal(Metal::Reflectance(reflectance)) => Some(reflectance),
             _ => None,
         }
-    }
-}
-
-/// A number that may vary over a surface.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NumberTexture {
-    /// The same everywhere.
-    Uniform(f64),
-    /// An image; its first channel counts.
-    Image(ImageTexture),
-}
-
-impl NumberTexture {
-    /// The number at texture coordinates.
-    #[inline]
-    pub fn eval(&self, uv: [f64; 2]) -> f64 {
-        match self {
-            Self::Uniform(number) => *number,
-            Self::Image(texture) => texture.eval(uv)[0],
-        }
-    }
-
-    /// Its image, if it has one.
-    pub fn image(&self) -> Option<&ImageTexture> {
-        match self {
-            Self::Uniform(_) => None,
-            Self::Image(texture) => Some(texture),
-        }
-    }
-}
-
-impl From<f64> for NumberTexture {
-    fn from(number: f64) -> Self {
-        Self::Uniform(number)
-    }
-}
-
-/// A spectrum that may vary over a surface.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SpectrumTexture {
-    /// The same everywhere.
-    Uniform(Spectrum),
-    /// An image, whose colours are reflectances of a linear Rec. 709 colour under D65 in [0, 1]
-    /// ([`RgbBasis`](etalon_optics::spectrum::RgbBasis)).
-    Image(ImageTexture),
-}
-
-impl SpectrumTexture {
-    /// Whether it is known to be zero everywhere.
-    pub fn is_zero(&self) -> bool {
-        match self {
-            Self::Uniform(spectrum) => spectrum.is_zero(),
-            Self::Image(texture) => texture.factor == [0.0; 3],
-        }
-    }
-
-    /// Whether it is the same at every wavelength, as far as is known.
-    pub fn is_grey(&self) -> bool {
-        match self {
-            Self::Uniform(spectrum) => spectrum.is_constant(),
-            Self::Image(texture) => texture.is_grey(),
-        }
-    }
-
-    /// Its image, if it has one.
-    pub fn image(&self) -> Option<&ImageTexture> {
-        match self {
-            Self::Uniform(_) => None,
-            Self::Image(texture) => Some(texture),
-        }
-    }
-}
-
-impl From<Spectrum> for SpectrumTexture {
-    fn from(spectrum: Spectrum) -> Self {
-        Self::Uniform(spectrum)
     }
 }

@@ -1,6 +1,6 @@
 //! What refers to something else by number, and arrays that go together.
 
-use super::{Group, Instance, Material, MaterialKind, Mesh, Motion, Object, Scene, Shape};
+use super::{Group, Instance, Material, MaterialKind, Mesh, Motion, Object, Parameter, Scene, Shape};
 use crate::texture::{Image, Texels};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -119,8 +119,11 @@ fn check_material(kind: &MaterialKind, material: &Material) -> Result<(), Refere
         by.image().map_or(Ok(()), |texture| check_image(&texture.image, owner))?;
         parts.iter().try_for_each(|(_, part)| check_material(part, material))?;
     }
-    let mut images = kind.parameters().into_iter().filter_map(|parameter| parameter.reflectance()?.image());
-    images.try_for_each(|texture| check_image(&texture.image, owner))
+    let images = kind.parameters().into_iter().flat_map(|parameter| match parameter {
+        Parameter::Film(film) => film.images().collect(),
+        other => Vec::from_iter(other.image()),
+    });
+    images.into_iter().try_for_each(|texture| check_image(&texture.image, owner))
 }
 
 /// An object, one of `materials`. Its mesh is looked at unless it is one of those `checked`.

@@ -1,30 +1,33 @@
 //! Smooth metal: Fresnel reflection from a complex refractive index n + ik, relative to the medium it stands in (vacuum, if
 //! media are not tracked), s and p averaged.
 
+use super::film::PathFilm;
 use super::metal::PathMetal;
 use super::{BsdfSample, Properties};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
-use etalon_optics::{Lanes, Vec3, fresnel};
+use etalon_optics::fresnel::StackFresnel;
+use etalon_optics::{Complex, Lanes, Vec3, fresnel};
 use etalon_scene::Metal;
 
 /// Smooth metal.
 #[derive(Clone, Debug)]
 pub struct Conductor {
     metal: PathMetal,
+    film: Option<PathFilm>,
 }
 
 impl Conductor {
-    /// A smooth surface of this metal.
-    pub fn new(metal: PathMetal) -> Self {
-        Self { metal }
+    /// A smooth surface of this metal, perhaps coated.
+    pub fn new(metal: PathMetal, film: Option<PathFilm>) -> Self {
+        Self { metal, film }
     }
 
     /// See [`Properties`].
-    pub(super) fn properties(metal: &Metal) -> Properties {
+    pub(super) fn properties(metal: &Metal, coated: bool) -> Properties {
         let dark = match metal {
-            Metal::Reflectance(reflectance) => reflectance.is_zero(),
+            Metal::Reflectance(reflectance) => !coated && reflectance.is_zero(),
             Metal::Index(_) => false,
         };
         Properties { dark, takes_medium: true, ..Properties::mirror("smooth metal") }
@@ -47,6 +50,24 @@ impl Conductor {
         index
     }
 
+    /// What the coated metal does at the cosine `cos`, in every lane.
+    fn coated<const N: usize>(
+        &self,
+        film: &PathFilm,
+        lambda_nm: &Lanes<f64, N>,
+        uv: [f64; 2],
+        cos: f64,
+        interface: Option<Interface<'_>>,
+    ) -> [StackFresnel; N] {
+        let index = self.metal.lanes(lambda_nm, uv);
+        std::array::from_fn(|lane| {
+            let (nm, (n, k)) = (lambda_nm[lane], index[lane]);
+            let around = interface.map_or(1.0, |media| media.incident.eval(nm));
+            // Both sides are coated alike.
+            film.fresnel(nm, cos, (around, Complex::new(n, k)), true, uv)
+        })
+    }
+
     /// What reflection at the cosine `cos` does to polarised light.
     pub(super) fn mueller<const N: usize>(
         &self,
@@ -55,6 +76,9 @@ impl Conductor {
         cos: f64,
         interface: Option<Interface<'_>>,
     ) -> [Matrix; N] {
+        if let Some(film) = &self.film {
+            return self.coated(film, lambda_nm, uv, cos, interface).map(|f| mueller::of_waves(&f.reflection));
+        }
         self.relative_index(lambda_nm, uv, interface).map(|(n, k)| mueller::conductor_reflection(cos, n, k))
     }
 
@@ -68,13 +92,16 @@ impl Conductor {
     ) -> Option<BsdfSample<N>> {
         // Rounding may carry the product of two unit vectors past 1.
         let cos_o = n.dot(wo).abs().min(1.0);
-        let index = self.relative_index(lambda_nm, uv, interface);
+        let weight = match &self.film {
+            Some(film) => Lanes(self.coated(film, lambda_nm, uv, cos_o, interface).map(|f| f.reflection.power())),
+            None => {
+                let index = self.relative_index(lambda_nm, uv, interface);
+                Lanes(index.map(|(n, k)| fresnel::conductor(cos_o, n, k).reflectance))
+            }
+        };
         Some(BsdfSample {
             wi: wo.reflected_about(n).renormalized(),
-            weight: Lanes::from_fn(|lane| {
-                let (n, k) = index[lane];
-                fresnel::conductor(cos_o, n, k).reflectance
-            }),
+            weight,
             density: Density::Delta,
             lane_density: Lanes::ONE,
             eta: 1.0,

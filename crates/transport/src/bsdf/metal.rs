@@ -68,6 +68,24 @@ impl OfMetal {
         }
     }
 
+    /// Of a function of the wavelength, nm, and the index there; `None` of a metal that may be another one at each place.
+    pub(super) fn by_wavelength(
+        metal: &PathMetal,
+        range_nm: [f64; 2],
+        function: impl Fn(f64, f64, f64) -> f64,
+    ) -> Option<Self> {
+        let index = |nm: f64| match metal {
+            PathMetal::Index(index) => Some(index.eval(nm)),
+            PathMetal::Reflectance(PathTexture::Uniform(spectrum)) => Some((1.0, Metal::k_of(spectrum.eval(nm)))),
+            PathMetal::Reflectance(PathTexture::Image { .. }) => None,
+        };
+        index(range_nm[0])?;
+        Some(Self::Spectrum(PathSpectrum::tabulate(range_nm, |nm| {
+            let (n, k) = index(nm).unwrap_or((1.0, 0.0));
+            function(nm, n, k)
+        })))
+    }
+
     /// The value for a metal of n + ik at a wavelength, nm.
     #[inline]
     pub(super) fn eval(&self, wavelength_nm: f64, k: f64) -> f64 {

@@ -9,6 +9,7 @@ mod albedo;
 mod blend;
 mod conductor;
 pub(crate) mod dielectric;
+mod film;
 pub(crate) mod lambert;
 mod metal;
 mod microfacet;
@@ -29,6 +30,7 @@ mod thin_dielectric;
 pub use blend::Blend;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
+pub use film::PathFilm;
 pub use lambert::Lambert;
 pub use metal::PathMetal;
 pub use mirror::Mirror;
@@ -114,7 +116,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
     match kind {
         MaterialKind::Lambert { reflectance } => Lambert::properties(reflectance),
         MaterialKind::Mirror { reflectance } => Mirror::properties(reflectance),
-        MaterialKind::Conductor { metal } => Conductor::properties(metal),
+        MaterialKind::Conductor { metal, film } => Conductor::properties(metal, film.is_some()),
         MaterialKind::Dielectric { .. } => Dielectric::properties(),
         MaterialKind::RoughConductor { facets, .. } => RoughConductor::properties(facets),
         MaterialKind::RoughDielectric { facets, .. } => RoughDielectric::properties(facets),
@@ -138,17 +140,23 @@ impl Bsdf {
                 Self::Lambert(Lambert::new(PathTexture::new(reflectance, range_nm)))
             }
             MaterialKind::Mirror { reflectance } => Self::Mirror(Mirror::new(PathTexture::new(reflectance, range_nm))),
-            MaterialKind::Conductor { metal } => Self::Conductor(Conductor::new(PathMetal::new(metal, range_nm))),
-            MaterialKind::Dielectric { interior, exterior, .. } => {
-                Self::Dielectric(Dielectric::new(interior.clone(), exterior.clone()))
+            MaterialKind::Conductor { metal, film } => {
+                let film = PathFilm::of(film.as_ref());
+                Self::Conductor(Conductor::new(PathMetal::new(metal, range_nm), film))
             }
-            MaterialKind::RoughConductor { metal, facets, compensated } => {
-                let metal = PathMetal::new(metal, range_nm);
-                Self::RoughConductor(RoughConductor::new(metal, facets, *compensated, range_nm))
+            MaterialKind::Dielectric { interior, exterior, film, .. } => {
+                let film = PathFilm::of(film.as_ref());
+                Self::Dielectric(Dielectric::new(interior.clone(), exterior.clone(), film))
             }
-            MaterialKind::RoughDielectric { interior, exterior, facets, compensated, .. } => {
-                let (interior, exterior) = (interior.clone(), exterior.clone());
-                Self::RoughDielectric(RoughDielectric::new(interior, exterior, facets, *compensated, range_nm))
+            MaterialKind::RoughConductor { metal, facets, compensated, film } => {
+                let (metal, film) = (PathMetal::new(metal, range_nm), PathFilm::of(film.as_ref()));
+                Self::RoughConductor(RoughConductor::new(metal, film, facets, *compensated, range_nm))
+            }
+            MaterialKind::RoughDielectric { interior, exterior, facets, compensated, film, .. } => {
+                let (interior, exterior, film) = (interior.clone(), exterior.clone(), PathFilm::of(film.as_ref()));
+                let compensated = *compensated && film.is_none();
+                let glass = RoughDielectric::new(interior, exterior, facets, compensated, range_nm);
+                Self::RoughDielectric(glass.coated(film))
             }
             MaterialKind::OrenNayar { reflectance, roughness } => {
                 Self::OrenNayar(OrenNayar::new(PathTexture::new(reflectance, range_nm), *roughness))
@@ -158,8 +166,9 @@ impl Bsdf {
                 let facets = facets.as_ref();
                 Self::Plastic(Plastic::new(reflectance, coat.clone(), facets, *internal_reflection, range_nm))
             }
-            MaterialKind::ThinDielectric { index } => {
-                Self::ThinDielectric(ThinDielectric::new(index.clone(), range_nm))
+            MaterialKind::ThinDielectric { index, film } => {
+                let film = PathFilm::of(film.as_ref());
+                Self::ThinDielectric(ThinDielectric::new(index.clone(), film, range_nm))
             }
             MaterialKind::PolarisingSheet { sheet, .. } => Self::PolarisingSheet(PolarisingSheet::new(sheet, range_nm)),
             MaterialKind::Blend { parts, by } => {
@@ -244,12 +253,12 @@ impl Bsdf {
             Self::Lambert(lambert) => lambert.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
             Self::Mirror(mirror) => mirror.sample(lambda_nm, n, at.uv, wo),
             Self::Conductor(conductor) => conductor.sample(lambda_nm, n, at.uv, wo, at.media()),
-            Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, n, wo, u[0], at.media()),
+            Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, (n, at.uv), wo, u[0], at.media()),
             Self::RoughConductor(metal) => metal.sample(lambda_nm, n, at, wo, u),
             Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at, wo, u),
             Self::OrenNayar(rough) => rough.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
             Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at, wo, u),
-            Self::ThinDielectric(pane) => pane.sample(lambda_nm, n, wo, u[0]),
+            Self::ThinDielectric(pane) => pane.sample(lambda_nm, (n, at.uv), wo, u[0]),
             Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
             Self::OneSided(one) => one.sample(lambda_nm, n, at, wo, u),

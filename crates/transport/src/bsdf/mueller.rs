@@ -7,6 +7,7 @@
 //! | facets of a rough one | the same at the facet that turns one direction into the other: masking is no matter of polarisation |
 //! | light that met several facets | forgets its polarisation, but for what lets it in and out ([`PolarisedLoss`]) |
 //! | thin pane | the orders of reflection between its faces, added as Stokes vectors |
+//! | thin film | that of the stack's complex amplitudes, in place of the bare interface's |
 //! | plastic | its coat's, and light that its ground depolarised, which the coat polarises on its way out |
 //! | polariser, retarder | by its axis, whatever the plane of incidence |
 //! | diffuse surface | depolarises |
@@ -75,11 +76,11 @@ impl Bsdf {
             Self::Conductor(metal) => Some(metal.mueller(lambda_nm, at.uv, cos, at.media())),
             Self::Dielectric(glass) => {
                 let side = (n.dot(wo) > 0.0, n.dot(wo) * n.dot(wi) > 0.0);
-                Some(lambda_nm.0.map(|nm| glass.mueller(nm, cos, side, at.media())))
+                Some(lambda_nm.0.map(|nm| glass.mueller(nm, (cos, at.uv), side, at.media())))
             }
             Self::ThinDielectric(pane) => {
                 let reflects = n.dot(wo) * n.dot(wi) > 0.0;
-                Some(lambda_nm.0.map(|nm| pane.mueller(nm, cos, reflects)))
+                Some(lambda_nm.0.map(|nm| pane.mueller(nm, (cos, at.uv), reflects)))
             }
             Self::PolarisingSheet(sheet) => Some(lambda_nm.0.map(|nm| sheet.mueller(nm))),
             Self::RoughConductor(metal) => metal.mueller(lambda_nm, n, at, wo, wi),

@@ -81,15 +81,21 @@ mod tests {
         let polariser = |t| Sheet::Polariser { transmittance: Spectrum::Constant(t), extinction: 0.0 };
         let mut kinds = vec![
             MaterialKind::Black,
-            MaterialKind::Dielectric { interior: interior.clone(), exterior: exterior.clone(), priority: None },
+            MaterialKind::Dielectric {
+                interior: interior.clone(),
+                exterior: exterior.clone(),
+                priority: None,
+                film: None,
+            },
             MaterialKind::RoughDielectric {
                 interior: interior.clone(),
                 exterior,
                 facets: 0.3.into(),
                 compensated: false,
                 priority: None,
+                film: None,
             },
-            MaterialKind::ThinDielectric { index: interior.clone() },
+            MaterialKind::ThinDielectric { index: interior.clone(), film: None },
             sheet(Sheet::Retarder { retardance_rad: 1.0, at_nm: None }),
         ];
         for r in [0.0, 0.5] {
@@ -98,8 +104,8 @@ mod tests {
             kinds.extend([
                 MaterialKind::Lambert { reflectance: reflectance() },
                 MaterialKind::Mirror { reflectance: reflectance() },
-                MaterialKind::Conductor { metal: metal() },
-                MaterialKind::RoughConductor { metal: metal(), facets: 0.3.into(), compensated: false },
+                MaterialKind::Conductor { metal: metal(), film: None },
+                MaterialKind::RoughConductor { metal: metal(), facets: 0.3.into(), compensated: false, film: None },
                 MaterialKind::OrenNayar { reflectance: reflectance(), roughness: 0.5 },
                 sheet(polariser(r)),
             ]);

@@ -5,11 +5,13 @@
 //! which cannot escape. E is the albedo of the same facets if they reflected everything.
 
 use super::albedo::{self, Azimuths, LossTable, Tabulated};
+use super::film::PathFilm;
 use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::{BsdfSample, Properties, Shading};
 use crate::polarisation::mueller::{self, Matrix};
-use etalon_optics::{Lanes, Vec3, fresnel};
+use etalon_optics::fresnel::Amplitudes;
+use etalon_optics::{Complex, Lanes, Vec3, fresnel};
 use etalon_scene::Microfacets;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
@@ -18,6 +20,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct RoughConductor {
     metal: PathMetal,
+    film: Option<PathFilm>,
     ggx: Ggx,
     compensation: Option<Box<Compensation>>,
 }
@@ -25,13 +28,31 @@ pub struct RoughConductor {
 #[derive(Clone, Debug)]
 struct Compensation {
     loss: Arc<LossTable>,
-    /// F_ms/(π(1 − E_avg)).
-    factor: OfMetal,
+    /// F_ms/(π(1 − E_avg)), unless it is to be computed where it is needed: each place has another film then, or another metal beneath
+    /// it.
+    factor: Option<OfMetal>,
+    /// 1 − E_avg.
+    missing: f64,
+}
+
+impl Compensation {
+    /// F_ms/(π(1 − E_avg)) of facets that reflect `reflectance` at a cosine.
+    fn several(missing: f64, rule: &[(f64, f64)], reflectance: impl Fn(f64) -> f64) -> f64 {
+        let mean: f64 = rule.iter().map(|(mu, w)| 2.0 * w * mu * reflectance(*mu)).sum();
+        let several = mean * mean * (1.0 - missing) / (1.0 - mean * missing);
+        if missing > 0.0 { several * FRAC_1_PI / missing } else { 0.0 }
+    }
 }
 
 impl RoughConductor {
-    /// A metal with or without the light that meets several facets.
-    pub fn new(metal: PathMetal, facets: &Microfacets, compensated: bool, range_nm: [f64; 2]) -> Self {
+    /// A metal, perhaps coated, with or without the light that meets several facets.
+    pub fn new(
+        metal: PathMetal,
+        film: Option<PathFilm>,
+        facets: &Microfacets,
+        compensated: bool,
+        range_nm: [f64; 2],
+    ) -> Self {
         let ggx = Ggx::new(facets);
         let compensation = compensated.then(|| {
             let loss = albedo::shared(Tabulated::Mirrors, &ggx, [1.0, 1.0], || {
@@ -40,20 +61,41 @@ impl RoughConductor {
             });
             let missing = loss.average(1.0);
             let rule = gauss_rule(24);
-            let factor = OfMetal::new(&metal, range_nm, |n, k| {
-                let mean: f64 =
-                    rule.iter().map(|(mu, w)| 2.0 * w * mu * fresnel::conductor(*mu, n, k).reflectance).sum();
-                let several = mean * mean * (1.0 - missing) / (1.0 - mean * missing);
-                if missing > 0.0 { several * FRAC_1_PI / missing } else { 0.0 }
-            });
-            Box::new(Compensation { loss, factor })
+            let factor = match &film {
+                None => Some(OfMetal::new(&metal, range_nm, |n, k| {
+                    Compensation::several(missing, &rule, |mu| fresnel::conductor(mu, n, k).reflectance)
+                })),
+                Some(film) if !film.varies() => OfMetal::by_wavelength(&metal, range_nm, |nm, n, k| {
+                    Compensation::several(missing, &rule, |mu| on_metal(film, nm, mu, (n, k), [0.0; 2]).power())
+                }),
+                Some(_) => None,
+            };
+            Box::new(Compensation { loss, factor, missing })
         });
-        Self { metal, ggx, compensation }
+        Self { metal, film, ggx, compensation }
     }
 
     /// See [`Properties`]. Its tables are made for vacuum.
     pub(super) fn properties(facets: &Microfacets) -> Properties {
         Properties::of_facets(facets)
+    }
+
+    /// What a facet reflects at a cosine.
+    fn reflectance(&self, wavelength_nm: f64, cos: f64, (n, k): (f64, f64), uv: [f64; 2]) -> f64 {
+        match &self.film {
+            Some(film) => on_metal(film, wavelength_nm, cos, (n, k), uv).power(),
+            None => fresnel::conductor(cos, n, k).reflectance,
+        }
+    }
+
+    /// [`Compensation::factor`] at a place.
+    fn several(&self, compensation: &Compensation, wavelength_nm: f64, index: (f64, f64), uv: [f64; 2]) -> f64 {
+        match &compensation.factor {
+            Some(factor) => factor.eval(wavelength_nm, index.1),
+            None => Compensation::several(compensation.missing, &COARSE_RULE, |mu| {
+                self.reflectance(wavelength_nm, mu, index, uv)
+            }),
+        }
     }
 
     fn loss(&self, w: Vec3<f64>) -> f64 {
@@ -78,10 +120,9 @@ impl RoughConductor {
         let several = loss * self.loss(wi);
         let index = self.metal.lanes(lambda_nm, at.uv);
         let f_cos = Lanes::from_fn(|lane| {
-            let (eta, k) = index[lane];
-            let mut f = fresnel::conductor(single.cos, eta, k).reflectance * single.term;
+            let mut f = self.reflectance(lambda_nm[lane], single.cos, index[lane], at.uv) * single.term;
             if let Some(compensation) = &self.compensation {
-                f += several * compensation.factor.eval(lambda_nm[lane], k);
+                f += several * self.several(compensation, lambda_nm[lane], index[lane], at.uv);
             }
             f * wi.z
         });
@@ -105,13 +146,17 @@ impl RoughConductor {
         let several = self.loss(wo) * self.loss(wi);
         let index = self.metal.lanes(lambda_nm, at.uv);
         Some(std::array::from_fn(|lane| {
-            let (eta, k) = index[lane];
-            let facet = fresnel::conductor(single.cos, eta, k).reflectance * single.term;
-            let forgotten = self.compensation.as_ref().map_or(0.0, |c| several * c.factor.eval(lambda_nm[lane], k));
-            mueller::mixed([
-                (facet, mueller::conductor_reflection(single.cos, eta, k)),
-                (forgotten, mueller::DEPOLARISER),
-            ])
+            let (nm, (eta, k)) = (lambda_nm[lane], index[lane]);
+            let facet = self.reflectance(nm, single.cos, (eta, k), at.uv) * single.term;
+            let forgotten = match &self.compensation {
+                Some(compensation) => several * self.several(compensation, nm, (eta, k), at.uv),
+                None => 0.0,
+            };
+            let matrix = match &self.film {
+                Some(film) => mueller::of_waves(&on_metal(film, nm, single.cos, (eta, k), at.uv)),
+                None => mueller::conductor_reflection(single.cos, eta, k),
+            };
+            mueller::mixed([(facet, matrix), (forgotten, mueller::DEPOLARISER)])
         }))
     }
 
@@ -135,3 +180,16 @@ impl RoughConductor {
         BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
 }
+
+/// What a film on a metal of n + ik in vacuum reflects.
+fn on_metal(film: &PathFilm, wavelength_nm: f64, cos: f64, (n, k): (f64, f64), uv: [f64; 2]) -> Amplitudes {
+    film.fresnel(wavelength_nm, cos, (1.0, Complex::new(n, k)), true, uv).reflection
+}
+
+/// Gauss's rule of four points on [0, 1], nodes and weights: what is computed at each place takes no more.
+const COARSE_RULE: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_13, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_29, 0.173_927_422_568_726_93),
+];

@@ -15,6 +15,7 @@
 //! along the hero's direction, each with its own value and its own density of that direction.
 
 use super::albedo::{self, Azimuths, LossTable, Tabulated};
+use super::film::{PathFilm, Shares};
 use super::microfacet::{Facet, Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use super::{BsdfSample, Properties, Shading};
@@ -22,7 +23,7 @@ use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
-use etalon_optics::{Lanes, RefractiveIndex, Vec3, fresnel, snell};
+use etalon_optics::{Complex, Lanes, RefractiveIndex, Vec3, fresnel, snell};
 use etalon_scene::Microfacets;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
@@ -32,6 +33,8 @@ use std::sync::Arc;
 pub struct RoughDielectric {
     ggx: Ggx,
     compensated: bool,
+    /// What coats each facet; then nothing is compensated.
+    film: Option<Box<PathFilm>>,
     /// What the interface is by itself.
     own: Boundary,
     /// What it is between the same interior and other media, if it bounds a solid among others.
@@ -58,6 +61,14 @@ struct Compensation {
     eta: [f64; 2],
     /// What losses do to polarised light, from outside and from inside, where that is carried.
     polarised: Option<Box<[PolarisedLoss; 2]>>,
+}
+
+/// Where and how a facet is met: the wavelength, nm, texture coordinates, and whether from the exterior.
+#[derive(Clone, Copy)]
+struct Place {
+    nm: f64,
+    uv: [f64; 2],
+    from_outside: bool,
 }
 
 /// What [`RoughDielectric::between`] finds.
@@ -163,7 +174,27 @@ impl RoughDielectric {
         let ggx = Ggx::new(facets);
         let compensated = compensated && ggx.isotropic_alpha().is_some();
         let own = Boundary::new(interior, exterior, ggx, compensated, range_nm);
-        Self { ggx, compensated, own, others: Vec::new() }
+        Self { ggx, compensated, film: None, own, others: Vec::new() }
+    }
+
+    /// The same with a film on each facet; of facets that are not compensated.
+    #[must_use]
+    pub fn coated(self, film: Option<PathFilm>) -> Self {
+        debug_assert!(film.is_none() || !self.compensated, "a film reflects each angle otherwise than the tables say");
+        Self { film: film.map(Box::new), ..self }
+    }
+
+    /// What a facet does to light that it meets at the cosine `cos` from the side of `n[0]`; `eta` = n[1]/n[0].
+    fn facet(&self, place: Place, cos: f64, (n, eta): ([f64; 2], f64)) -> Shares {
+        match &self.film {
+            Some(film) => {
+                Shares::of(&film.fresnel(place.nm, cos, (n[0], Complex::real(n[1])), place.from_outside, place.uv))
+            }
+            None => match fresnel::dielectric(cos, eta) {
+                Some(f) => Shares { reflected: f.reflectance, transmitted: f.transmittance },
+                None => Shares { reflected: 1.0, transmitted: 0.0 },
+            },
+        }
     }
 
     /// See [`Properties`]. It states its own media, unless it bounds a solid with a priority.
@@ -201,6 +232,7 @@ impl RoughDielectric {
         &self,
         (boundary, from_outside): (&Boundary, bool),
         wavelength_nm: f64,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> Option<Between> {
@@ -209,13 +241,15 @@ impl RoughDielectric {
         if eta == 1.0 {
             return None;
         }
+        let place = Place { nm: wavelength_nm, uv, from_outside };
         let mu = wi.z.abs();
         let (mut facet, mut density) = (None, 0.0);
         let (side, share, per) = if wi.z > 0.0 {
             let facets = self.ggx.reflection(wo, wi);
-            let reflectance = fresnel::dielectric(facets.cos, eta).map_or(1.0, |f| f.reflectance);
-            facet = Some((reflectance * facets.term, facets.cos));
-            density = reflectance * facets.density;
+            let shares = self.facet(place, facets.cos, (sides.n, eta));
+            facet = Some((shares.reflected * facets.term, facets.cos));
+            let chosen = if self.film.is_some() { shares.reflection_probability() } else { shares.reflected };
+            density = chosen * facets.density;
             (0, 1.0 - sides.crossing, 1.0)
         } else {
             // In an order that does not depend on which of the two is `wo`, so that the BSDF is reciprocal to the last bits.
@@ -227,10 +261,21 @@ impl RoughDielectric {
             if let Some(facets) = facets {
                 let (eta_above, g_o) =
                     if from_outside { (eta, facets.g_above) } else { (sides.n[0] / sides.n[1], facets.g_below) };
-                let transmittance = fresnel::dielectric(facets.cos_above, eta_above).map_or(0.0, |f| f.transmittance);
+                let n_above = if from_outside { sides.n } else { [sides.n[1], sides.n[0]] };
+                let above = self.facet(Place { from_outside: true, ..place }, facets.cos_above, (n_above, eta_above));
+                let transmittance = above.transmitted;
                 let f = transmittance * facets.common * facets.g_above * facets.g_below * (sides.n[0] * sides.n[0]);
                 facet = Some((f, facets.cos_above));
-                density = transmittance * facets.common * g_o * (sides.n[1] * sides.n[1]);
+                let chosen = match &self.film {
+                    None => transmittance,
+                    Some(_) if from_outside => above.transmission_probability(),
+                    // A film that absorbs reflects otherwise from below.
+                    Some(_) => {
+                        let cos_below = fresnel::refracted_cosine(facets.cos_above, eta_above).unwrap_or(0.0);
+                        self.facet(place, cos_below, (sides.n, eta)).transmission_probability()
+                    }
+                };
+                density = chosen * facets.common * g_o * (sides.n[1] * sides.n[1]);
             }
             (1, sides.crossing, eta * eta)
         };
@@ -250,10 +295,11 @@ impl RoughDielectric {
         &self,
         boundary: (&Boundary, bool),
         wavelength_nm: f64,
+        uv: [f64; 2],
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (f64, f64) {
-        let Some(Between { facet, several, density, .. }) = self.between(boundary, wavelength_nm, wo, wi) else {
+        let Some(Between { facet, several, density, .. }) = self.between(boundary, wavelength_nm, uv, wo, wi) else {
             return (0.0, 0.0);
         };
         ((facet.map_or(0.0, |(f, _)| f) + several) * wi.z.abs(), density)
@@ -275,12 +321,20 @@ impl RoughDielectric {
         let (local_o, local_i) = (facing.wo, facing.local(wi));
         Some(lambda_nm.0.map(|nm| {
             let Some(Between { facet, several, eta, .. }) =
-                self.between((boundary, from_outside), nm, local_o, local_i)
+                self.between((boundary, from_outside), nm, at.uv, local_o, local_i)
             else {
                 return mueller::IDENTITY;
             };
             let (single, cos) = facet.unwrap_or((0.0, 1.0));
-            let matrix = if local_i.z > 0.0 {
+            let matrix = if let Some(film) = &self.film {
+                let reflects = local_i.z > 0.0;
+                let (inside, outside) = (boundary.interior.eval(nm), boundary.exterior.eval(nm));
+                // Both ways pass the same waves, and the facet's cosine is then that above.
+                let from_outside = from_outside || !reflects;
+                let [near, far] = if from_outside { [outside, inside] } else { [inside, outside] };
+                let waves = film.fresnel(nm, cos, (near, Complex::real(far)), from_outside, at.uv);
+                mueller::of_waves(if reflects { &waves.reflection } else { &waves.transmission })
+            } else if local_i.z > 0.0 {
                 mueller::dielectric_reflection(cos, eta)
             } else {
                 // The facet's cosine is that above.
@@ -324,8 +378,8 @@ impl RoughDielectric {
         if wi.z == 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
         }
-        let of_lane = |lane: usize| self.of_wavelength(boundary, lambda_nm[lane], facing.wo, wi);
-        if !boundary.0.dispersive {
+        let of_lane = |lane: usize| self.of_wavelength(boundary, lambda_nm[lane], at.uv, facing.wo, wi);
+        if !boundary.0.dispersive && self.film.is_none() {
             let (f_cos, density) = of_lane(0);
             return (Lanes::splat(f_cos), Lanes::splat(density));
         }
@@ -362,9 +416,16 @@ impl RoughDielectric {
             let u_facet = (u_lobe - hero.loss_o) / (1.0 - hero.loss_o);
             let h = self.ggx.visible_normal(facing.wo, [u1, u2]);
             let cos_o = facing.wo.dot(h).min(1.0);
-            match fresnel::dielectric(cos_o, eta) {
-                Some(f) if u_facet >= f.reflectance => {
-                    let wi = snell::refract_with_cosines(facing.wo, h, eta, cos_o, f.cos_t);
+            let refracted = match &self.film {
+                Some(_) => fresnel::refracted_cosine(cos_o, eta).map(|cos_t| {
+                    let place = Place { nm: lambda_nm[0], uv: at.uv, from_outside };
+                    (self.facet(place, cos_o, (hero.n, eta)).reflection_probability(), cos_t)
+                }),
+                None => fresnel::dielectric(cos_o, eta).map(|f| (f.reflectance, f.cos_t)),
+            };
+            match refracted {
+                Some((reflection, cos_t)) if u_facet >= reflection => {
+                    let wi = snell::refract_with_cosines(facing.wo, h, eta, cos_o, cos_t);
                     // A facet may refract back to the side that the light came from, where the model has no light.
                     if wi.z >= 0.0 {
                         return None;

@@ -361,7 +361,8 @@ fn what_several_facets_of_a_metal_add_is_coloured_by_as_many_reflections() {
     let (alpha, n, k) = (0.8, 1.5, 3.0);
     let bsdf = |compensated| {
         let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![n; 2], vec![k; 2]).unwrap();
-        let kind = MaterialKind::RoughConductor { metal: Metal::Index(index), facets: alpha.into(), compensated };
+        let kind =
+            MaterialKind::RoughConductor { metal: Metal::Index(index), facets: alpha.into(), compensated, film: None };
         Bsdf::new(&kind, RANGE_NM)
     };
     let at = |i: u32, steps: u32| (f64::from(i) + 0.5) / f64::from(steps);

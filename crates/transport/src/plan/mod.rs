@@ -31,6 +31,8 @@ pub enum EffectName {
     Wavelengths,
     /// Wavelengths go different ways.
     Dispersion,
+    /// Thin films reflect some wavelengths more than others: their waves interfere.
+    Interference,
     /// The camera's aperture has an extent.
     Lens,
     /// Shadow rays look for direct light.
@@ -67,9 +69,10 @@ pub enum EffectName {
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Wavelengths,
         Self::Dispersion,
+        Self::Interference,
         Self::Lens,
         Self::ShadowRays,
         Self::Mis,
@@ -93,6 +96,7 @@ impl EffectName {
         match self {
             Self::Wavelengths => "wavelengths",
             Self::Dispersion => "dispersion",
+            Self::Interference => "interference",
             Self::Lens => "lens",
             Self::ShadowRays => "shadow-rays",
             Self::Mis => "mis",
@@ -117,6 +121,7 @@ impl EffectName {
         match self {
             Self::Wavelengths => "every spectrum is replaced by its mean, weighted by the eye: no colours",
             Self::Dispersion => "every index of refraction is that of one wavelength",
+            Self::Interference => "thin films are left out: what they coat is bare",
             Self::Lens => "everything is in focus",
             Self::ShadowRays => {
                 "lights without a surface are left out; the others are found by chance, with more noise"
@@ -147,6 +152,7 @@ impl EffectName {
             Self::NestedDielectrics | Self::Absorption | Self::Polarisation | Self::Motion => true,
             // They are what the surfaces, or the film, are made of.
             Self::SpecularChains
+            | Self::Interference
             | Self::Textures
             | Self::ShadingNormals
             | Self::Masks
@@ -339,8 +345,10 @@ impl Plan {
             .collect();
         let runs = |name| effects.iter().any(|effect: &Effect| effect.name == name && effect.on);
         // Without wavelengths there is none that could go another way.
+        let parts_lanes = |name, of: fn(&Scene) -> bool| runs(name) && of(&simulated(scene, study));
         let lane_model = if runs(EffectName::Dispersion)
-            || runs(EffectName::Scattering) && evidence::parts_lanes(&simulated(scene, study))
+            || parts_lanes(EffectName::Interference, evidence::films_part_lanes)
+            || parts_lanes(EffectName::Scattering, evidence::media_part_lanes)
         {
             LaneModel::Hero
         } else if runs(EffectName::Wavelengths) || runs(EffectName::Polarisation) {

@@ -152,6 +152,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::Dispersion => {
             scene.materials.iter_mut().for_each(|material| fix_indices(&mut material.kind, range_nm));
         }
+        EffectName::Interference => scene.materials.iter_mut().for_each(|material| material.kind.remove_films()),
         EffectName::Lens => match &mut scene.camera.projection {
             Projection::Perspective { lens, .. } => *lens = None,
             Projection::Orthographic { .. } => {}
@@ -244,6 +245,7 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
                     *retardance_rad *= at_nm / middle(range_nm);
                 }
             }
+            ParameterMut::Film(film) => film.at_nm = Some(middle(range_nm)),
             // See `fix_indices`.
             ParameterMut::Interface(_) => {}
         }

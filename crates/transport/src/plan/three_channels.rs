@@ -53,7 +53,11 @@ fn colour(kind: &mut MaterialKind, range_nm: [f64; 2]) {
                 }
             }
             ParameterMut::Coat(index) => *index = index_at_middle(index, range_nm),
-            ParameterMut::Metal(Metal::Index(_)) | ParameterMut::Interface(_) | ParameterMut::Sheet(_) => {}
+            // A film is what it is at the wavelengths of the channels.
+            ParameterMut::Metal(Metal::Index(_))
+            | ParameterMut::Interface(_)
+            | ParameterMut::Sheet(_)
+            | ParameterMut::Film(_) => {}
         }
     }
 }

@@ -6,7 +6,8 @@
 //! forgets all but what the ways in and out do to it: e_out e_inᵀ. Sums of them, each by its share, are what mixtures and
 //! incoherent orders of reflection do.
 
-use etalon_optics::{Lanes, Vec3, fresnel};
+use etalon_optics::fresnel::{Amplitudes, StackFresnel};
+use etalon_optics::{Complex, Lanes, Vec3, fresnel};
 
 /// A Mueller matrix, row by row.
 pub type Matrix = [[f64; 4]; 4];
@@ -76,37 +77,6 @@ pub(crate) fn forgotten(out: [f64; 4], on_way_in: [f64; 4]) -> Matrix {
     out.map(|o| on_way_in.map(|i| o * i))
 }
 
-/// A complex number.
-#[derive(Clone, Copy)]
-struct Complex(f64, f64);
-
-impl Complex {
-    fn over(self, o: Self) -> Self {
-        let d = o.0 * o.0 + o.1 * o.1;
-        Self((self.0 * o.0 + self.1 * o.1) / d, (self.1 * o.0 - self.0 * o.1) / d)
-    }
-
-    fn times(self, o: Self) -> Self {
-        Self(self.0 * o.0 - self.1 * o.1, self.0 * o.1 + self.1 * o.0)
-    }
-
-    fn plus(self, o: Self) -> Self {
-        Self(self.0 + o.0, self.1 + o.1)
-    }
-
-    fn minus(self, o: Self) -> Self {
-        Self(self.0 - o.0, self.1 - o.1)
-    }
-
-    fn conjugate(self) -> Self {
-        Self(self.0, -self.1)
-    }
-
-    fn squared(self) -> f64 {
-        self.0 * self.0 + self.1 * self.1
-    }
-}
-
 /// The matrix of two complex amplitudes.
 fn of_amplitudes(s: Complex, p: Complex) -> Matrix {
     let (ss, pp) = (s.squared(), p.squared());
@@ -115,8 +85,8 @@ fn of_amplitudes(s: Complex, p: Complex) -> Matrix {
         // Nothing is reflected: no light, whatever its state.
         return IDENTITY;
     }
-    let product = s.times(p.conjugate());
-    pair((ss - pp) / sum, 2.0 * product.0 / sum, 2.0 * product.1 / sum)
+    let product = s * p.conjugate();
+    pair((ss - pp) / sum, 2.0 * product.re / sum, 2.0 * product.im / sum)
 }
 
 /// An ideal mirror, which is a perfect conductor.
@@ -127,10 +97,10 @@ pub(crate) const MIRROR: Matrix = pair(0.0, -1.0, 0.0);
 /// Beyond the critical angle the refracted wave decays: n·cos_t = i√(sin² − n²) (Born & Wolf, *Principles of Optics*, §1.5.4).
 pub fn dielectric_reflection(cos: f64, eta: f64) -> Matrix {
     match fresnel::dielectric(cos, eta) {
-        Some(fresnel) => of_amplitudes(Complex(fresnel.r_s, 0.0), Complex(fresnel.r_p, 0.0)),
+        Some(fresnel) => of_amplitudes(Complex::real(fresnel.r_s), Complex::real(fresnel.r_p)),
         None => {
             let g = ((1.0 - cos) * (1.0 + cos) - eta * eta).max(0.0).sqrt();
-            let ratio = |real: f64| Complex(real, -g).over(Complex(real, g));
+            let ratio = |real: f64| Complex::new(real, -g).over(Complex::new(real, g));
             of_amplitudes(ratio(cos), ratio(eta * eta * cos))
         }
     }
@@ -140,20 +110,21 @@ pub fn dielectric_reflection(cos: f64, eta: f64) -> Matrix {
 /// k = c + n·c_t and l = n·c + c_t. The same in both directions.
 pub fn dielectric_transmission(cos: f64, eta: f64, cos_t: f64) -> Matrix {
     let (k, l) = (cos + eta * cos_t, eta * cos + cos_t);
-    of_amplitudes(Complex(l, 0.0), Complex(k, 0.0))
+    of_amplitudes(Complex::real(l), Complex::real(k))
 }
 
 /// Reflection at a metal of relative index `n` + i`k`, from r_s = (c − q)/(c + q) and r_p = (m²c − q)/(m²c + q) with m = n + ik
 /// and q = √(m² − sin²), its real part not negative.
 pub fn conductor_reflection(cos: f64, n: f64, k: f64) -> Matrix {
-    let m2 = Complex((n - k) * (n + k), 2.0 * n * k);
-    let w = Complex(m2.0 - (1.0 - cos) * (1.0 + cos), m2.1);
-    let length = w.squared().sqrt();
-    let larger = (0.5 * (length + w.0.abs())).sqrt();
-    let smaller = if larger == 0.0 { 0.0 } else { 0.5 * w.1 / larger };
-    let q = if w.0 >= 0.0 { Complex(larger, smaller) } else { Complex(smaller, larger) };
-    let ratio = |u: Complex| u.minus(q).over(u.plus(q));
-    of_amplitudes(ratio(Complex(cos, 0.0)), ratio(Complex(m2.0 * cos, m2.1 * cos)))
+    let m2 = Complex::new((n - k) * (n + k), 2.0 * n * k);
+    let q = Complex::new(m2.re - (1.0 - cos) * (1.0 + cos), m2.im).sqrt_upper();
+    let ratio = |u: Complex| (u - q).over(u + q);
+    of_amplitudes(ratio(Complex::real(cos)), ratio(m2.scaled(cos)))
+}
+
+/// The waves that a coated interface reflects, or those that it transmits.
+pub fn of_waves(amplitudes: &Amplitudes) -> Matrix {
+    of_amplitudes(amplitudes.s, amplitudes.p)
 }
 
 /// What a thin pane of relative index `eta` makes of light that meets it at `cos`.
@@ -201,6 +172,36 @@ pub fn pane(cos: f64, eta: f64) -> Pane {
         transmittance: 0.5 * (passed_s + passed_p),
         reflection: matrix(reflected_s, reflected_p, q * (1.0 + passed)),
         transmission: matrix(passed_s, passed_p, passed),
+    }
+}
+
+/// [`pane()`] of a pane whose faces are coated alike: `outer` is what a face does to light from without, `inner` what it does to light that
+/// has got in. Both pass the same waves, and absorb what they do not return.
+///
+/// R_o + T²R_i/(1 − R_i²) and T²/(1 − R_i²) for s and p each; for what is coherent between them the same sums of the complex
+/// products a_s a_p*.
+pub fn coated_pane(outer: &StackFresnel, inner: &StackFresnel) -> Pane {
+    let orders = |outer: f64, inner: f64, passed: f64| {
+        let left = (1.0 - inner) * (1.0 + inner);
+        let through = if left > 0.0 { passed * passed / left } else { 0.0 };
+        (outer + through * inner, through)
+    };
+    let of_each =
+        |of: fn(&Amplitudes) -> f64| orders(of(&outer.reflection), of(&inner.reflection), of(&outer.transmission));
+    let ((r_s, t_s), (r_p, t_p)) = (of_each(|a| a.s.squared()), of_each(|a| a.p.squared()));
+    let product = |a: &Amplitudes| a.s * a.p.conjugate();
+    let (inside, passed) = (product(&inner.reflection), product(&outer.transmission));
+    let left = Complex::ONE - inside * inside;
+    let through = if left.squared() > 0.0 { (passed * passed).over(left) } else { Complex::ZERO };
+    let matrix = |s: f64, p: f64, coherent: Complex| {
+        let sum = s + p;
+        if sum > 0.0 { pair((s - p) / sum, 2.0 * coherent.re / sum, 2.0 * coherent.im / sum) } else { IDENTITY }
+    };
+    Pane {
+        reflectance: 0.5 * (r_s + r_p),
+        transmittance: 0.5 * (t_s + t_p),
+        reflection: matrix(r_s, r_p, product(&outer.reflection) + through * inside),
+        transmission: matrix(t_s, t_p, through),
     }
 }
 

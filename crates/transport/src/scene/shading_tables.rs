@@ -139,7 +139,8 @@ fn kind(bsdf: &Bsdf, spectra: &mut Vec<PathSpectrum>, interfaces: &mut Vec<Smoot
     match bsdf {
         Bsdf::Lambert(lambert) => of(lambert.uniform().and_then(|spectrum| slot(spectrum, spectra)), BsdfKind::Lambert),
         Bsdf::Mirror(mirror) => of(mirror.uniform().and_then(|spectrum| slot(spectrum, spectra)), BsdfKind::Mirror),
-        Bsdf::Dielectric(glass) if interfaces.len() < INTERFACES => {
+        // The general way knows what films do.
+        Bsdf::Dielectric(glass) if interfaces.len() < INTERFACES && !glass.is_coated() => {
             interfaces.push(SmoothInterface { glass: glass.clone(), constant: glass.constant_indices() });
             BsdfKind::Dielectric((interfaces.len() - 1) as u8)
         }

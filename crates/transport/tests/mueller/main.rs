@@ -20,7 +20,7 @@ fn bsdf(kind: &MaterialKind) -> Bsdf {
 
 fn glass(interior: f64, exterior: f64) -> MaterialKind {
     let (interior, exterior) = (RefractiveIndex::Constant(interior), RefractiveIndex::Constant(exterior));
-    MaterialKind::Dielectric { interior, exterior, priority: None }
+    MaterialKind::Dielectric { interior, exterior, priority: None, film: None }
 }
 
 fn metal(n: f64, k: f64) -> Metal {
@@ -29,11 +29,11 @@ fn metal(n: f64, k: f64) -> Metal {
 
 fn rough_glass(alpha: f64, compensated: bool) -> MaterialKind {
     let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
-    MaterialKind::RoughDielectric { interior, exterior, facets: alpha.into(), compensated, priority: None }
+    MaterialKind::RoughDielectric { interior, exterior, facets: alpha.into(), compensated, priority: None, film: None }
 }
 
 fn rough_metal(n: f64, k: f64, alpha: f64) -> MaterialKind {
-    MaterialKind::RoughConductor { metal: metal(n, k), facets: alpha.into(), compensated: true }
+    MaterialKind::RoughConductor { metal: metal(n, k), facets: alpha.into(), compensated: true, film: None }
 }
 
 /// Facets of a coat; 0 is smooth.
@@ -61,7 +61,7 @@ fn plastic_in_glass(alpha: f64) -> MaterialKind {
 }
 
 fn pane() -> MaterialKind {
-    MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5) }
+    MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5), film: None }
 }
 
 fn up() -> Vec3<f64> {
@@ -184,7 +184,7 @@ fn rough_surfaces_join_smooth_ones() {
     let (smooth_plastic, rough_plastic) = (plastic(0.0, 0.0), plastic(0.0, alpha));
     for (smooth, rough) in [
         (glass(1.5, 1.0), rough_glass(alpha, true)),
-        (MaterialKind::Conductor { metal: metal(0.2, 3.0) }, rough_metal(0.2, 3.0, alpha)),
+        (MaterialKind::Conductor { metal: metal(0.2, 3.0), film: None }, rough_metal(0.2, 3.0, alpha)),
         (smooth_plastic, rough_plastic),
     ] {
         let (smooth, rough) = (bsdf(&smooth), bsdf(&rough));
@@ -258,9 +258,9 @@ fn pairs() -> impl Iterator<Item = (Vec3<f64>, Vec3<f64>)> {
 /// What meets one facet leaves it as it leaves a smooth surface that lies as the facet does.
 #[test]
 fn a_facet_does_to_polarised_light_what_a_smooth_surface_in_its_place_does() {
-    let conductor = MaterialKind::Conductor { metal: metal(0.2, 3.0) };
+    let conductor = MaterialKind::Conductor { metal: metal(0.2, 3.0), film: None };
     let rough_conductor =
-        MaterialKind::RoughConductor { metal: metal(0.2, 3.0), facets: 0.4.into(), compensated: false };
+        MaterialKind::RoughConductor { metal: metal(0.2, 3.0), facets: 0.4.into(), compensated: false, film: None };
     let mut compared = [0; 2];
     for (rough, smooth, coated) in [
         (rough_conductor, conductor, false),
@@ -297,6 +297,7 @@ fn dispersive_rough_glass_polarises_as_glass_of_each_index_does() {
             facets: 0.6.into(),
             compensated: true,
             priority: None,
+            film: None,
         })
     };
     let dispersive = RefractiveIndex::cauchy(1.25, 0.08, 0.0, None).unwrap();
@@ -320,7 +321,7 @@ fn around_a_shading_normal_frames_belong_to_both_rays() {
     let (mut compared, mut turned) = (0, 0);
     for kind in [
         glass(1.5, 1.0),
-        MaterialKind::Conductor { metal: metal(0.2, 3.0) },
+        MaterialKind::Conductor { metal: metal(0.2, 3.0), film: None },
         rough_metal(0.2, 3.0, 0.3),
         rough_glass(0.3, true),
         plastic(0.5, 0.3),
@@ -360,7 +361,12 @@ fn around_a_shading_normal_frames_belong_to_both_rays() {
 /// f times the matrix adds up over the parts of a surface: what several facets of a metal add is unpolarised, and a mixture is its parts.
 #[test]
 fn what_parts_of_a_surface_do_to_polarised_light_adds_up() {
-    let rough = |compensated| MaterialKind::RoughConductor { metal: metal(0.2, 3.0), facets: 0.8.into(), compensated };
+    let rough = |compensated| MaterialKind::RoughConductor {
+        metal: metal(0.2, 3.0),
+        facets: 0.8.into(),
+        compensated,
+        film: None,
+    };
     let (single, whole) = (bsdf(&rough(false)), bsdf(&rough(true)));
     let (first, second) = (bsdf(&rough_metal(0.2, 3.0, 0.3)), bsdf(&plastic(0.6, 0.2)));
     let mixed = bsdf(&blend());

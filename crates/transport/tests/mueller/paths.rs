@@ -17,7 +17,7 @@ fn stokes_of_bsdfs(turns: &[Turn], right: [f64; 3]) -> [f64; 4] {
         let (wo, wi, normal) = (turn.wo, turn.wi, turn.normal).map_all(Vec3::from_array);
         let (kind, normal) = match turn.by {
             TurnedBy::Reflection { n, k: 0.0 } => (glass(n, 1.0), normal),
-            TurnedBy::Reflection { n, k } => (MaterialKind::Conductor { metal: metal(n, k) }, normal),
+            TurnedBy::Reflection { n, k } => (MaterialKind::Conductor { metal: metal(n, k), film: None }, normal),
             // The outward side is the light's.
             TurnedBy::Refraction { n } => (glass(n, 1.0), normal),
         };
@@ -55,7 +55,9 @@ fn paths_whose_matrices_are_wrong_are_noticed() {
                 for turn in turns {
                     let (wo, wi, normal) = (turn.wo, turn.wi, turn.normal).map_all(Vec3::from_array);
                     let kind = match turn.by {
-                        TurnedBy::Reflection { n, k } if k > 0.0 => MaterialKind::Conductor { metal: metal(n, k) },
+                        TurnedBy::Reflection { n, k } if k > 0.0 => {
+                            MaterialKind::Conductor { metal: metal(n, k), film: None }
+                        }
                         TurnedBy::Reflection { n, .. } | TurnedBy::Refraction { n } => glass(n, 1.0),
                     };
                     let at = Shading::flat(normal);

@@ -57,6 +57,7 @@ fn more_than_two_hundred_instances_of_laws_hold() {
         interior: index(interior),
         exterior: index(exterior),
         priority: None,
+        film: None,
     };
     let colour = Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap();
     let grey = || Spectrum::Constant(0.7).into();
@@ -65,7 +66,7 @@ fn more_than_two_hundred_instances_of_laws_hold() {
         MaterialKind::Black,
         MaterialKind::Lambert { reflectance: colour.clone().into() },
         MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9).into() },
-        MaterialKind::Conductor { metal: Metal::Reflectance(colour.into()) },
+        MaterialKind::Conductor { metal: Metal::Reflectance(colour.into()), film: None },
         MaterialKind::OrenNayar { reflectance: grey(), roughness: 0.5 },
         MaterialKind::Plastic {
             reflectance: grey(),
@@ -73,12 +74,14 @@ fn more_than_two_hundred_instances_of_laws_hold() {
             facets: None,
             internal_reflection: InternalReflection::Coloured,
         },
-        MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5) },
+        MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5), film: None },
         MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet: polariser },
     ];
     kinds.extend(
-        ["Ag", "Al", "Au", "Cu"]
-            .map(|name| MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named(name).unwrap()) }),
+        ["Ag", "Al", "Au", "Cu"].map(|name| MaterialKind::Conductor {
+            metal: Metal::Index(ComplexIndex::named(name).unwrap()),
+            film: None,
+        }),
     );
     kinds.extend(["N-BK7", "N-SF11", "fused-silica", "diamond", "water"].map(|name| dielectric(name, "vacuum")));
     kinds.extend(

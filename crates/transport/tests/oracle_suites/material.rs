@@ -5,7 +5,7 @@ use etalon_oracle::{
     laws,
     subjects::{DeltaLobe, Density, Scattered, Scatters},
 };
-use etalon_scene::{InternalReflection, MaterialKind, Metal, PolarisingSheet, Side, SpectrumTexture};
+use etalon_scene::{InternalReflection, MaterialKind, Metal, PolarisingSheet, Side, SpectrumTexture, ThinFilm};
 use etalon_transport::{
     bsdf::{Bsdf, Shading},
     mis,
@@ -129,7 +129,24 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
             let probability = weight / (weight + (1.0 - weight) * ground);
             vec![DeltaLobe { wi: mirrored, weight, probability }]
         }
-        MaterialKind::ThinDielectric { index } => {
+        MaterialKind::ThinDielectric { index, film: Some(film) } => {
+            let n = index.eval(wavelength_nm);
+            let face = coated(film, 1.0, [n, 0.0], wavelength_nm);
+            let within = (1.0 - (1.0 - cos * cos) / (n * n)).sqrt();
+            let (outer, inner) = (face.waves(wavelength_nm, cos), face.from_behind().waves(wavelength_nm, within));
+            let share = |[re, im]: [f64; 2]| re * re + im * im;
+            let of = |p: usize| {
+                let (r, inside, t) =
+                    (share(outer.reflected[p]), share(inner.reflected[p]), share(outer.transmitted[p]));
+                let through = t * t / (1.0 - inside * inside);
+                [r + through * inside, through]
+            };
+            let [weight, through] = [0, 1].map(|k| 0.5 * (of(0)[k] + of(1)[k]));
+            let lobe = |wi, weight, both: f64| DeltaLobe { wi, weight, probability: weight / both };
+            let both = weight + through;
+            vec![lobe(mirrored, weight, both), lobe([-wo[0], -wo[1], -wo[2]], through, both)]
+        }
+        MaterialKind::ThinDielectric { index, .. } => {
             // s and p each go their way between the faces.
             let face = laws::fresnel_exact(cos, index.eval(wavelength_nm));
             let weight = face.r_s / (1.0 + face.r_s) + face.r_p / (1.0 + face.r_p);
@@ -171,7 +188,7 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
         MaterialKind::Mirror { reflectance } => {
             vec![DeltaLobe { wi: mirrored, weight: uniform(reflectance).eval(wavelength_nm), probability: 1.0 }]
         }
-        MaterialKind::Conductor { metal } => {
+        MaterialKind::Conductor { metal, film } => {
             let (n, k) = match metal {
                 Metal::Index(index) => index.eval(wavelength_nm),
                 Metal::Reflectance(reflectance) => {
@@ -180,24 +197,48 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
                     (1.0, (4.0 * share / (1.0 - share)).sqrt())
                 }
             };
-            let weight = fresnel::conductor(cos, n, k).reflectance;
+            let weight = match film {
+                Some(film) => coated(film, 1.0, [n, k], wavelength_nm).waves(wavelength_nm, cos).reflectance(),
+                None => fresnel::conductor(cos, n, k).reflectance,
+            };
             vec![DeltaLobe { wi: mirrored, weight, probability: 1.0 }]
         }
-        MaterialKind::Dielectric { .. } => {
+        MaterialKind::Dielectric { film, .. } => {
             let (above, below) = (index(kind, true, wavelength_nm), index(kind, false, wavelength_nm));
             let eta = if wo[2] > 0.0 { below / above } else { above / below };
-            let reflected = laws::fresnel_exact(cos, eta).reflectance();
-            let mut lobes = vec![DeltaLobe { wi: mirrored, weight: reflected, probability: reflected }];
-            if reflected < 1.0 {
+            let [reflected, passed] = match film {
+                Some(film) => {
+                    let stack = coated(film, above, [below, 0.0], wavelength_nm);
+                    let stack = if wo[2] > 0.0 { stack } else { stack.from_behind() };
+                    let waves = stack.waves(wavelength_nm, cos);
+                    [waves.reflectance(), waves.transmittance()]
+                }
+                None => {
+                    let reflected = laws::fresnel_exact(cos, eta).reflectance();
+                    [reflected, 1.0 - reflected]
+                }
+            };
+            let probability = reflected / (reflected + passed);
+            let mut lobes = vec![DeltaLobe { wi: mirrored, weight: reflected, probability }];
+            if passed > 0.0 {
                 let sin2 = (1.0 - cos * cos) / (eta * eta);
                 let z = -(1.0 - sin2).max(0.0).sqrt().copysign(wo[2]);
-                let weight = (1.0 - reflected) / (eta * eta);
+                let weight = passed / (eta * eta);
                 let wi = [-wo[0] / eta, -wo[1] / eta, z];
-                lobes.push(DeltaLobe { wi, weight, probability: 1.0 - reflected });
+                lobes.push(DeltaLobe { wi, weight, probability: 1.0 - probability });
             }
             lobes
         }
     }
+}
+
+/// The oracle's form of a film between media, seen from its outer side.
+fn coated(film: &ThinFilm, incident: f64, substrate: [f64; 2], wavelength_nm: f64) -> laws::CoatedInterface {
+    let layers = film.layers.iter().map(|layer| {
+        let index = layer.index.eval(wavelength_nm);
+        [index.re, index.im, layer.thickness_nm.eval([0.0; 2])]
+    });
+    laws::CoatedInterface { incident, layers: layers.collect(), substrate }
 }
 
 /// Index of refraction above or below a material.

@@ -3,8 +3,8 @@
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
 use etalon_scene::{
-    Image, ImageTexture, InternalReflection, MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, Side,
-    SpectrumTexture, Texels,
+    FilmIndex, FilmLayer, Image, ImageTexture, InternalReflection, MaterialKind, Metal, Microfacets, NumberTexture,
+    PolarisingSheet, Side, SpectrumTexture, Texels, ThinFilm,
 };
 
 use crate::material::Material;
@@ -14,23 +14,33 @@ fn lambert() -> Material {
 }
 
 fn metal(name: &str) -> Material {
-    Material::new(MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named(name).unwrap()) })
+    Material::new(MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named(name).unwrap()), film: None })
 }
 
 fn glass(interior: &str, exterior: &str) -> Material {
     let index = |name: &str| RefractiveIndex::named(name).unwrap_or(RefractiveIndex::VACUUM);
-    Material::new(MaterialKind::Dielectric { interior: index(interior), exterior: index(exterior), priority: None })
+    Material::new(MaterialKind::Dielectric {
+        interior: index(interior),
+        exterior: index(exterior),
+        priority: None,
+        film: None,
+    })
 }
 
 fn rough_metal(name: &str, alpha: f64, compensated: bool) -> Material {
     let metal = Metal::Index(ComplexIndex::named(name).unwrap());
-    Material::new(MaterialKind::RoughConductor { metal, facets: alpha.into(), compensated })
+    Material::new(MaterialKind::RoughConductor { metal, facets: alpha.into(), compensated, film: None })
 }
 
 /// Reflects everything: n → 0 with k > 0.
 fn lossless_metal(alpha: f64) -> Material {
     let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
-    Material::new(MaterialKind::RoughConductor { metal: Metal::Index(index), facets: alpha.into(), compensated: true })
+    Material::new(MaterialKind::RoughConductor {
+        metal: Metal::Index(index),
+        facets: alpha.into(),
+        compensated: true,
+        film: None,
+    })
 }
 
 fn rough_glass(interior: &str, exterior: &str, alpha: f64, compensated: bool) -> Material {
@@ -42,8 +52,50 @@ fn rough_glass(interior: &str, exterior: &str, alpha: f64, compensated: bool) ->
         facets: alpha.into(),
         compensated,
         priority: None,
+        film: None,
     })
 }
+
+/// A layer that absorbs and two that do not.
+fn film() -> Option<ThinFilm> {
+    let layer = |thickness_nm: f64, index| FilmLayer { thickness_nm: thickness_nm.into(), index };
+    let clear = |n| FilmIndex::Transparent(RefractiveIndex::Constant(n));
+    let metal = FilmIndex::Absorbing(ComplexIndex::named("Ag").unwrap());
+    Some(ThinFilm { layers: vec![layer(90.0, clear(1.38)), layer(8.0, metal), layer(140.0, clear(2.1))], at_nm: None })
+}
+
+fn coated_glass(alpha: Option<f64>) -> Material {
+    let (interior, exterior) = (RefractiveIndex::Constant(1.52), RefractiveIndex::named("water").unwrap());
+    Material::new(match alpha {
+        None => MaterialKind::Dielectric { interior, exterior, priority: None, film: film() },
+        Some(alpha) => MaterialKind::RoughDielectric {
+            interior,
+            exterior,
+            facets: alpha.into(),
+            compensated: false,
+            priority: None,
+            film: film(),
+        },
+    })
+}
+
+fn coated_metal(alpha: Option<f64>) -> Material {
+    let metal = Metal::Index(ComplexIndex::named("Al").unwrap());
+    Material::new(match alpha {
+        None => MaterialKind::Conductor { metal, film: film() },
+        Some(alpha) => MaterialKind::RoughConductor { metal, facets: alpha.into(), compensated: true, film: film() },
+    })
+}
+
+fn coated_pane() -> Material {
+    Material::new(MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5), film: film() })
+}
+
+scatters_suite!(coated_glass, coated_glass(None));
+scatters_suite!(coated_rough_glass, coated_glass(Some(0.3)));
+scatters_suite!(coated_metal, coated_metal(None));
+scatters_suite!(coated_rough_metal, coated_metal(Some(0.3)));
+scatters_suite!(coated_pane, coated_pane());
 
 scatters_suite!(lambert, lambert());
 scatters_suite!(gold, metal("Au"));
@@ -76,7 +128,7 @@ fn oren_nayar(rho: f64, roughness: f64) -> Material {
 }
 
 fn pane() -> Material {
-    Material::new(MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5) })
+    Material::new(MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5), film: None })
 }
 
 fn mixture() -> Material {
@@ -93,9 +145,17 @@ fn texel(rgb: [f32; 3]) -> ImageTexture {
 /// Smooth below a roughness of 0.2, rougher from there on; at 0.7 now, between two rough ones.
 fn metal_of_varied_roughness() -> Material {
     let metal = Metal::Reflectance(Spectrum::rgb_reflectance([0.9, 0.6, 0.3]).unwrap().into());
-    let rough =
-        |alpha: f64| MaterialKind::RoughConductor { metal: metal.clone(), facets: alpha.into(), compensated: true };
-    let parts = vec![(0.2, MaterialKind::Conductor { metal: metal.clone() }), (0.55, rough(0.3)), (0.9, rough(0.81))];
+    let rough = |alpha: f64| MaterialKind::RoughConductor {
+        metal: metal.clone(),
+        facets: alpha.into(),
+        compensated: true,
+        film: None,
+    };
+    let parts = vec![
+        (0.2, MaterialKind::Conductor { metal: metal.clone(), film: None }),
+        (0.55, rough(0.3)),
+        (0.9, rough(0.81)),
+    ];
     Material::new(MaterialKind::Blend { parts, by: NumberTexture::Image(texel([0.7; 3])) })
 }
 
@@ -103,9 +163,16 @@ fn metal_of_varied_roughness() -> Material {
 fn glass_of_varied_roughness() -> Material {
     let index = |name: &str| RefractiveIndex::named(name).unwrap();
     let (interior, exterior) = (index("N-BK7"), index("water"));
-    let smooth = MaterialKind::Dielectric { interior: interior.clone(), exterior: exterior.clone(), priority: None };
-    let rough =
-        MaterialKind::RoughDielectric { interior, exterior, facets: 0.5.into(), compensated: true, priority: None };
+    let smooth =
+        MaterialKind::Dielectric { interior: interior.clone(), exterior: exterior.clone(), priority: None, film: None };
+    let rough = MaterialKind::RoughDielectric {
+        interior,
+        exterior,
+        facets: 0.5.into(),
+        compensated: true,
+        priority: None,
+        film: None,
+    };
     Material::new(MaterialKind::Blend {
         parts: vec![(0.0, smooth), (0.7, rough)],
         by: NumberTexture::Image(texel([0.5; 3])),
@@ -126,7 +193,7 @@ fn painted_plastic() -> Material {
 /// Metal that reflects all that a metal of a given reflectance can.
 fn white_metal(alpha: f64) -> Material {
     let metal = Metal::Reflectance(Spectrum::Constant(1.0).into());
-    Material::new(MaterialKind::RoughConductor { metal, facets: alpha.into(), compensated: true })
+    Material::new(MaterialKind::RoughConductor { metal, facets: alpha.into(), compensated: true, film: None })
 }
 
 scatters_suite!(varied_metal, metal_of_varied_roughness());
@@ -160,20 +227,27 @@ fn brushed(u: f64, v: f64) -> Microfacets {
 
 fn brushed_gold(compensated: bool) -> Material {
     let metal = Metal::Index(ComplexIndex::named("Au").unwrap());
-    Material::new(MaterialKind::RoughConductor { metal, facets: brushed(0.15, 0.5), compensated })
+    Material::new(MaterialKind::RoughConductor { metal, facets: brushed(0.15, 0.5), compensated, film: None })
 }
 
 /// Reflects everything: n → 0 with k > 0.
 fn lossless_brushed_metal() -> Material {
     let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
     let metal = Metal::Index(index);
-    Material::new(MaterialKind::RoughConductor { metal, facets: brushed(1.0, 0.2), compensated: true })
+    Material::new(MaterialKind::RoughConductor { metal, facets: brushed(1.0, 0.2), compensated: true, film: None })
 }
 
 fn brushed_glass() -> Material {
     let (interior, exterior) = (RefractiveIndex::named("N-BK7").unwrap(), RefractiveIndex::VACUUM);
     let facets = brushed(0.6, 0.2);
-    Material::new(MaterialKind::RoughDielectric { interior, exterior, facets, compensated: false, priority: None })
+    Material::new(MaterialKind::RoughDielectric {
+        interior,
+        exterior,
+        facets,
+        compensated: false,
+        priority: None,
+        film: None,
+    })
 }
 
 fn brushed_plastic() -> Material {
@@ -193,6 +267,7 @@ fn cross_brushed() -> Material {
         metal: metal.clone(),
         facets: Microfacets { alpha: [0.4, 0.15], rotation_rad },
         compensated: true,
+        film: None,
     };
     Material::new(MaterialKind::blend(part(0.0), part(1.2), 0.5))
 }

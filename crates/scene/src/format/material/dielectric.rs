@@ -6,9 +6,10 @@ use super::super::spectra::{Role, Spectra};
 use super::super::spectrum::SpectrumForm;
 use super::index::{IndexForm, index};
 use super::roughness::{Roughness, RoughnessKeys, roughness, roughness_keys};
+use super::thin_film::{FilmLayerForm, thin_film};
 use super::{Alpha, Made, MultipleScattering, Width};
 use crate::files::Files;
-use crate::json::{Code, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
+use crate::json::{Code, List, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
 use crate::model::{MaterialKind, Medium};
 
 crate::record! {
@@ -29,8 +30,10 @@ crate::record! {
         /// Instead: an image that says the width at each place.
         roughness_image: Optional<RoughnessImageForm>,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost"). The default is
-        /// "compensated", of two widths "lost".
+        /// "compensated", of two widths or with a thin film "lost".
         multiple_scattering: Optional<Spanned<MultipleScattering>>,
+        /// Layers between the two media, in which light interferes with itself: the first is met first from the exterior.
+        thin_film: Optional<Spanned<List<FilmLayerForm>>>,
         /// For a closed solid that touches, overlaps or holds other solids: where several overlap, the one of the highest
         /// priority fills the place; of equal priorities, the object that comes later. It replaces `exterior`.
         priority: Optional<Whole<0, { u32::MAX as u64 }>>,
@@ -71,23 +74,48 @@ pub(super) fn dielectric<'f>(
     let roughness = roughness(&roughness_keys!(form), files, reader);
     let priority = form.priority.clone().checked()?.map(|priority| priority.0 as u32);
     let medium = interior_medium(form, spectra, files, reader);
-    let (interior, exterior, roughness) = (interior?, exterior?, roughness?);
-    let compensated = compensated(form, &roughness, reader)?;
+    let film = thin_film(&form.thin_film, spectra.range_nm, files, reader);
+    let (interior, exterior, roughness, film) = (interior?, exterior?, roughness?, film?);
+    if film.is_some() && roughness.is_rough() && (interior == exterior || priority.is_some()) {
+        // What a rough film would pass on between equal media goes straight on, which facets cannot say.
+        let (message, hint) = match priority {
+            None => ("a rough thin film between two equal media", "leave the roughness out"),
+            Some(_) => (
+                "a rough thin film on a dielectric with a priority",
+                "leave the roughness out, or state the \"exterior\" instead of the \"priority\"",
+            ),
+        };
+        reader.error_hint(Code::KeyConflict, form.at.head(), message, hint);
+        return None;
+    }
+    let compensated = compensated(form, &roughness, film.is_some(), reader)?;
     let kind = roughness.material(|facets| {
-        let (interior, exterior) = (interior.clone(), exterior.clone());
+        let (interior, exterior, film) = (interior.clone(), exterior.clone(), film.clone());
         match facets {
-            None => MaterialKind::Dielectric { interior, exterior, priority },
-            Some(facets) => MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority },
+            None => MaterialKind::Dielectric { interior, exterior, priority, film },
+            Some(facets) => MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority, film },
         }
     });
     Some(Made { kind, medium: medium? })
 }
 
-/// Whether light that meets several facets is counted. Of facets of two widths it cannot be.
-fn compensated(form: &DielectricMaterial, roughness: &Roughness, reader: &mut Reader<'_>) -> Option<bool> {
+/// Whether light that meets several facets is counted. Of facets of two widths it cannot be, nor where a film reflects each wavelength and
+/// each angle otherwise.
+fn compensated(
+    form: &DielectricMaterial,
+    roughness: &Roughness,
+    has_film: bool,
+    reader: &mut Reader<'_>,
+) -> Option<bool> {
     let stated = form.multiple_scattering.clone().checked()?;
     match stated {
-        None => Some(!roughness.has_two_widths()),
+        None => Some(!roughness.has_two_widths() && !has_film),
+        Some(stated) if stated.value == MultipleScattering::Compensated && has_film && roughness.is_rough() => {
+            let message = "light that meets several facets cannot be counted for a dielectric with a thin film";
+            let hint = "leave \"multiple_scattering\" out, which is \"lost\" here";
+            reader.error_hint(Code::KeyConflict, stated.at, message, hint);
+            None
+        }
         Some(stated) if stated.value == MultipleScattering::Compensated && roughness.has_two_widths() => {
             let message = "light that meets several facets cannot be counted for a dielectric of two widths";
             let hint = "leave \"multiple_scattering\" out, which is \"lost\" here, or give one width \"alpha\"";

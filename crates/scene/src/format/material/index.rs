@@ -6,7 +6,6 @@ use serde_json::json;
 
 use super::super::spectra::{accept, outside_message, plain};
 use super::super::spectrum::{Wavelength, check_increasing, check_same_length};
-use super::ConductorMaterial;
 use crate::json::{
     Code, Decode, Kind, List, Node, NonNegative, Optional, Place, Positive, Reader, Required, SchemaBuilder,
     SchemaValue, Span, Spanned, by_json_type, did_you_mean, listed, neighbour,
@@ -177,13 +176,38 @@ impl Decode for IndexForm {
     }
 }
 
-/// The metal that a material names or tabulates, known all over the rendered range.
+/// The keys by which a metal is named or tabulated.
+pub(super) struct ComplexKeys<'f> {
+    pub(super) at: Span,
+    pub(super) metal: &'f Optional<Spanned<NamedMetal>>,
+    pub(super) wavelengths_nm: &'f Optional<List<Spanned<Wavelength>>>,
+    pub(super) n: &'f Optional<List<Spanned<Positive>>>,
+    pub(super) k: &'f Optional<List<Spanned<NonNegative>>>,
+    pub(super) outside_fit: Option<OutsideFit>,
+}
+
+/// The [`ComplexKeys`] of a form.
+macro_rules! complex_keys {
+    ($form:expr) => {
+        $crate::format::material::index::ComplexKeys {
+            at: $form.at,
+            metal: &$form.metal,
+            wavelengths_nm: &$form.wavelengths_nm,
+            n: &$form.n,
+            k: &$form.k,
+            outside_fit: $form.outside_fit,
+        }
+    };
+}
+pub(super) use complex_keys;
+
+/// The metal that they name or tabulate, known all over the rendered range.
 pub(super) fn complex_index(
-    form: &ConductorMaterial,
+    form: &ComplexKeys<'_>,
     range_nm: Option<[f64; 2]>,
     reader: &mut Reader<'_>,
 ) -> Option<ComplexIndex> {
-    if let Optional::Given(wavelengths) = &form.wavelengths_nm {
+    if let Optional::Given(wavelengths) = form.wavelengths_nm {
         check_increasing(wavelengths, form.at, reader);
         for (key, length) in [("n", form.n.given().map(|n| n.0.len())), ("k", form.k.given().map(|k| k.0.len()))] {
             if let Some(length) = length {

@@ -40,6 +40,11 @@ impl Roughness {
         matches!(self, Self::Uniform(Some(facets)) if facets.alpha[0] != facets.alpha[1])
     }
 
+    /// Whether it is rough anywhere.
+    pub(super) fn is_rough(&self) -> bool {
+        !matches!(self, Self::Uniform(None))
+    }
+
     /// The material, of what it is for facets of each width: a blend of the neighbours among some widths where an image says it.
     pub(super) fn material(self, of: impl Fn(Option<Microfacets>) -> MaterialKind) -> MaterialKind {
         match self {

@@ -3,7 +3,7 @@
 use crate::bsdf::{Properties, properties};
 use crate::plan::grey::steps;
 use etalon_optics::{ComplexIndex, RefractiveIndex};
-use etalon_scene::{MaterialKind, Metal, Parameter, PolarisingSheet, SpectrumTexture};
+use etalon_scene::{MaterialKind, Metal, Parameter, PolarisingSheet, SpectrumTexture, ThinFilm};
 
 /// The index by which wavelengths go different ways, if there is one.
 pub(super) fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
@@ -31,7 +31,32 @@ pub(super) fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> 
         Parameter::Sheet(PolarisingSheet::Retarder { retardance_rad, at_nm }) => at_nm.map(|at_nm| {
             format!("retardance in degrees {}", spread(range_nm, |nm| retardance_rad.to_degrees() * at_nm / nm))
         }),
+        // What fixes the wavelength treats all alike.
+        Parameter::Film(film) => film.at_nm.is_none().then(|| thickness(film)),
     })
+}
+
+/// The film on a material, if there is one.
+pub(super) fn interference(kind: &MaterialKind) -> Option<String> {
+    kind.film().map(thickness)
+}
+
+/// `thin film of 2 layers, 480 nm thick`.
+fn thickness(film: &ThinFilm) -> String {
+    let layers = if film.layers.len() == 1 { "1 layer" } else { &format!("{} layers", film.layers.len()) };
+    let mean = if film.images().next().is_some() { "on average " } else { "" };
+    format!("thin film of {layers}, {mean}{:.1} nm thick", film.mean_thickness_nm())
+}
+
+/// Whether a film gives each wavelength another chance to go one of two ways.
+pub(super) fn parts_lanes(kind: &MaterialKind) -> bool {
+    let of_part = |part: &MaterialKind| match part {
+        MaterialKind::Dielectric { film, .. }
+        | MaterialKind::RoughDielectric { film, .. }
+        | MaterialKind::ThinDielectric { film, .. } => film.as_ref().is_some_and(|film| film.at_nm.is_none()),
+        _ => false,
+    };
+    kind.parts().into_iter().any(of_part)
 }
 
 /// How a reflectance depends on the wavelength, if it does.

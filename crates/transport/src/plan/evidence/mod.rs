@@ -7,14 +7,14 @@ mod motion;
 mod polarisation;
 
 pub(super) use lights::{is_target, sources};
-pub(super) use media::parts_lanes;
+pub(super) use media::parts_lanes as media_part_lanes;
 pub(super) use polarisation::{UNPOLARISED, polarisation};
 
 use super::EffectName;
 use super::grey::same_shape;
 use etalon_scene::{Filter, ImageTexture, Light, Material, Object, Projection, Scene, Shape};
 use lights::{is_environment, mis, shadow_rays};
-use materials::{colour, dispersion, nested, specular};
+use materials::{colour, dispersion, interference, nested, specular};
 use media::{absorption, coloured, scattering};
 
 /// What calls for an effect (`Ok`), or why nothing does (`Err`).
@@ -25,6 +25,10 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         EffectName::Dispersion => match first_surface(scene, |material, range| dispersion(&material.kind, range)) {
             Some(found) => Ok(found),
             None => nothing("no index of refraction varies"),
+        },
+        EffectName::Interference => match first_surface(scene, |material, _| interference(&material.kind)) {
+            Some(found) => Ok(found),
+            None => nothing("no surface has a thin film"),
         },
         EffectName::Lens => lens(&scene.camera.projection),
         EffectName::ShadowRays => shadow_rays(scene),
@@ -86,6 +90,11 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             }
         },
     }
+}
+
+/// Whether a thin film sends wavelengths different ways, each with a probability of its own.
+pub(super) fn films_part_lanes(scene: &Scene) -> bool {
+    scene.placed_objects().any(|object| materials::parts_lanes(&scene.materials[object.material].kind))
 }
 
 /// The first object whose material has something to say, which it says. Materials that no object is made of are silent.

@@ -1,10 +1,11 @@
 //! Whether light is polarised, and by how much it matters that it is not.
 
 use super::{first_surface, media, middle, surface};
+use crate::bsdf::PathFilm;
 use crate::bsdf::properties;
 use crate::plan::grey::steps;
 use crate::texture;
-use etalon_optics::{colour::colour_matching, fresnel};
+use etalon_optics::{Complex, RefractiveIndex, colour::colour_matching, fresnel};
 use etalon_scene::{MaterialKind, Metal, Parameter, Scene};
 
 /// Why polarisation is not carried where it could make no difference.
@@ -58,21 +59,31 @@ fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
         }
         Parameter::Metal(Metal::Index(index)) => metal(range_nm, |nm| index.eval(nm)),
         // What states a reflectance treats s and p alike; sheets call for polarisation themselves.
-        Parameter::Reflectance(_) | Parameter::Sheet(_) => None,
+        // Films are looked at with what they coat.
+        Parameter::Reflectance(_) | Parameter::Sheet(_) | Parameter::Film(_) => None,
     };
-    let worst = kind.parameters().into_iter().filter_map(of_parameter);
+    let coated = kind.parts().into_iter().filter_map(|part| film(part, range_nm));
+    let worst = kind.parameters().into_iter().filter_map(of_parameter).chain(coated);
     worst.reduce(|worst, other| if other.0 > worst.0 { other } else { worst })
 }
 
 /// [`polarises`] of a metal of n + ik at each wavelength.
 fn metal(range_nm: [f64; 2], index: impl Fn(f64) -> (f64, f64)) -> Option<(f64, String)> {
+    worst_angle(range_nm, |nm, cos| {
+        let (n, k) = index(nm);
+        let f = fresnel::conductor(cos, n, k);
+        [f.reflectance_s, f.reflectance_p]
+    })
+}
+
+/// [`polarises`] of a surface that reflects the shares of s and p that a function of the wavelength and the cosine says.
+fn worst_angle(range_nm: [f64; 2], reflectances: impl Fn(f64, f64) -> [f64; 2]) -> Option<(f64, String)> {
     let mut worst = (0.0, 0.0, 1.0);
     for nm in seen(range_nm) {
-        let (n, k) = index(nm);
         for cos in (1..100).map(|i| f64::from(i) / 100.0) {
-            let f = fresnel::conductor(cos, n, k);
-            let sum = f.reflectance_s + f.reflectance_p;
-            let most = ((f.reflectance_s - f.reflectance_p) / sum).abs();
+            let [s, p] = reflectances(nm, cos);
+            let sum = s + p;
+            let most = if sum > 0.0 { ((s - p) / sum).abs() } else { 0.0 };
             if most > worst.0 {
                 worst = (most, nm, cos);
             }
@@ -81,6 +92,41 @@ fn metal(range_nm: [f64; 2], index: impl Fn(f64) -> (f64, f64)) -> Option<(f64, 
     let (most, nm, cos) = worst;
     let (share, degrees) = (most * most, cos.acos().to_degrees());
     Some((share, format!("by up to {:.2} % after two reflections, at {degrees:.0}° and {nm} nm", 100.0 * share)))
+}
+
+/// [`polarises`] of a part that is coated, by what it reflects from its outer side.
+fn film(part: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
+    let transparent = |index: &RefractiveIndex, nm: f64| Complex::real(index.eval(nm));
+    let vacuum = RefractiveIndex::VACUUM;
+    let (film, incident): (_, &RefractiveIndex) = match part {
+        MaterialKind::Conductor { film, .. }
+        | MaterialKind::RoughConductor { film, .. }
+        | MaterialKind::ThinDielectric { film, .. } => (film, &vacuum),
+        MaterialKind::Dielectric { exterior, film, .. } | MaterialKind::RoughDielectric { exterior, film, .. } => {
+            (film, exterior)
+        }
+        _ => return None,
+    };
+    let film = PathFilm::of(film.as_ref())?;
+    let mean = part.parameters().into_iter().find_map(|parameter| parameter.reflectance()).map(texture::mean);
+    let substrate = |nm: f64| match part {
+        MaterialKind::Dielectric { interior, .. } | MaterialKind::RoughDielectric { interior, .. } => {
+            transparent(interior, nm)
+        }
+        MaterialKind::ThinDielectric { index, .. } => transparent(index, nm),
+        MaterialKind::Conductor { metal, .. } | MaterialKind::RoughConductor { metal, .. } => match metal {
+            Metal::Index(index) => {
+                let (n, k) = index.eval(nm);
+                Complex::new(n, k)
+            }
+            Metal::Reflectance(_) => Complex::new(1.0, mean.as_ref().map_or(0.0, |mean| Metal::k_of(mean.eval(nm)))),
+        },
+        _ => Complex::ONE,
+    };
+    worst_angle(range_nm, |nm, cos| {
+        let wave = film.fresnel(nm, cos, (incident.eval(nm), substrate(nm)), true, [0.5; 2]).reflection;
+        [wave.s.squared(), wave.p.squared()]
+    })
 }
 
 /// The wavelengths of a range that count for what the eye sees, at least a hundredth of the most; all, if none does.
