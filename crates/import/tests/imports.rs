@@ -270,6 +270,53 @@ fn anisotropy_of_gltf_arrives() {
     assert!(said.contains("since an image says the roughness"), "{said}");
 }
 
+/// `KHR_materials_iridescence`: a film on metal, and on glass.
+#[test]
+fn iridescence_of_gltf_arrives_as_a_thin_film() {
+    let with = |extension: Value, metallic: f64, transmits: bool| {
+        let mut model = model();
+        let mut material = json!({
+            "pbrMetallicRoughness": { "metallicFactor": metallic, "roughnessFactor": 0 },
+            "extensions": { "KHR_materials_iridescence": extension },
+        });
+        if transmits {
+            material["extensions"]["KHR_materials_transmission"] = json!({ "transmissionFactor": 1 });
+        }
+        model["extensionsUsed"].as_array_mut().unwrap().push(json!("KHR_materials_iridescence"));
+        model["materials"][0] = material;
+        let imported = imported(&model).unwrap();
+        let scene = scene(&imported);
+        let kind = scene.materials[scene.groups[scene.instances[0].group].objects[0].material].kind.clone();
+        let said: Vec<_> = imported.left_out.iter().map(|l| l.what.clone()).collect();
+        (kind, said.join("\n"))
+    };
+    let layer = |kind: &MaterialKind| {
+        let film = kind.film().expect("a film");
+        assert_eq!(film.layers.len(), 1);
+        (film.layers[0].thickness_nm.mean(), film.layers[0].index.eval(550.0).re)
+    };
+    let whole = json!({ "iridescenceFactor": 1, "iridescenceIor": 1.8, "iridescenceThicknessMaximum": 550 });
+    let (metal, said) = with(whole.clone(), 1.0, false);
+    assert!(matches!(metal, MaterialKind::Conductor { film: Some(_), .. }), "{metal:?}");
+    assert_eq!(layer(&metal), (550.0, 1.8));
+    assert!(!said.contains("film") && !said.contains("ignored"), "{said}");
+    // The defaults of the extension; half of the surface carries the film.
+    let (half, _) = with(json!({ "iridescenceFactor": 0.5 }), 1.0, false);
+    let MaterialKind::Blend { parts, by } = &half else { panic!("{half:?}") };
+    assert_eq!((parts[0].1.film(), layer(&parts[1].1), by.mean()), (None, (400.0, 1.3), 0.5));
+    let (glass, _) = with(whole.clone(), 0.0, true);
+    assert!(matches!(glass, MaterialKind::Dielectric { film: Some(_), .. }), "{glass:?}");
+    // What has none, or cannot have one.
+    let (bare, said) = with(json!({ "iridescenceFactor": 0 }), 1.0, false);
+    assert!(bare.film().is_none() && !said.contains("film"), "{said}");
+    let (plastic, said) = with(whole.clone(), 0.0, false);
+    assert!(plastic.film().is_none() && said.contains("has no film"), "{said}");
+    let mut textured = whole;
+    textured["iridescenceThicknessTexture"] = json!({ "index": 0 });
+    let (metal, said) = with(textured, 1.0, false);
+    assert!(layer(&metal).0 == 325.0 && said.contains("half-way"), "{said}");
+}
+
 #[test]
 fn glb_materials_lights_and_cameras_arrive() {
     let scene = scene(&imported(&model()).unwrap());

@@ -3,8 +3,10 @@
 
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{RefractiveIndex, Spectrum};
-use etalon_scene::{Image, ImageTexture, MaterialKind, ParameterMut, Scene, SpectrumTexture, Texels, TextureFilter};
-use etalon_transport::{EffectName, Study, prepare};
+use etalon_scene::{
+    Image, ImageTexture, MaterialKind, NumberTexture, ParameterMut, Scene, SpectrumTexture, Texels, TextureFilter,
+};
+use etalon_transport::{EffectName, LaneModel, Study, prepare};
 use serde_json::{Value, json};
 
 #[path = "common/rendering.rs"]
@@ -100,6 +102,63 @@ fn what_is_left_out_is_not_in_the_picture() {
         }
         same(effect, &parse(&whole.to_string()), &parse(&edited.to_string()));
     }
+}
+
+/// A film on glass and one on metal, whose images go with the other images, and whose colours go with the wavelengths.
+#[test]
+fn films_that_are_left_out_leave_bare_surfaces() {
+    let bare = room();
+    let mut whole = bare.clone();
+    let film = json!([{"thickness_nm": 120, "index": 1.9}, {"thickness_nm": 250, "index": "water"}]);
+    whole["materials"]["glass"]["thin_film"] = film.clone();
+    let metal = json!({"type": "conductor", "wavelengths_nm": [300, 900], "n": [2, 2], "k": [3, 3]});
+    whole["materials"]["mirror"] = metal.clone();
+    whole["materials"]["mirror"]["thin_film"] = film;
+    let mut plain = bare;
+    plain["materials"]["mirror"] = metal;
+    let (whole, plain) = (parse(&whole.to_string()), parse(&plain.to_string()));
+    same(EffectName::Interference, &whole, &plain);
+
+    let image = || ImageTexture {
+        filter: TextureFilter::Nearest,
+        factor: [400.0; 3],
+        ..ImageTexture::new(Image::new(2, 1, Texels::F32(vec![[0.25; 3], [0.75; 3]])))
+    };
+    let with = |thickness: NumberTexture| {
+        let mut scene = whole.clone();
+        for material in &mut scene.materials {
+            for parameter in material.kind.parameters_mut() {
+                if let ParameterMut::Film(film) = parameter {
+                    film.layers[0].thickness_nm = thickness.clone();
+                }
+            }
+        }
+        scene
+    };
+    same(EffectName::Textures, &with(NumberTexture::Image(image())), &with(200.0.into()));
+
+    // Grey light on what is grey but for its films: without wavelengths all pictures are grey.
+    let grey = json!({
+        "etalon": 1,
+        "camera": {"type": "orthographic", "position_m": [0, 0, 2], "look_at_m": [0, 0, 0], "height_m": 1},
+        "film": {"width": 2, "height": 2},
+        "materials": {"soap": {"type": "dielectric", "interior": 1, "thin_film": [{"thickness_nm": 300, "index": 1.33}]}},
+        "objects": [
+            {"shape": {"type": "disk", "normal": [0, 0, 1], "radius_m": 3}, "material": "soap"},
+            {"shape": {"type": "disk", "center_m": [0, 0, -1], "normal": [0, 0, 1], "radius_m": 9}, "material": {"type": "black"}}
+        ],
+        "lights": [{"type": "environment", "radiance": 1}],
+        "integrator": {"spp": 64}
+    });
+    let scene = parse(&grey.to_string());
+    let plan = |study: &Study| etalon_transport::prepare_study(&scene, study).unwrap().plan().clone();
+    assert_eq!(plan(&Study::default()).lane_model, LaneModel::Hero);
+    assert_eq!(plan(&without(EffectName::Wavelengths)).lane_model, LaneModel::One);
+    let film = etalon_oracle::laws::CoatedInterface::single(1.0, [1.33, 0.0, 300.0], 1.0);
+    let reflected = film.waves(587.5618, 1.0).reflectance();
+    let grey = mean_y(&render(&scene, &without(EffectName::Wavelengths)));
+    // 256 paths of a probability near 0.06.
+    assert!((grey - reflected).abs() < 6.0 * (reflected / 256.0).sqrt(), "{grey} {reflected}");
 }
 
 /// An image of two by one texels on the floor, and one on the lamp.

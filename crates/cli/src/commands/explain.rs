@@ -153,7 +153,8 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
         LaneModel::Hero if plan.runs(EffectName::Dispersion) => {
             format!("{} wavelengths; dispersion may separate them", plan.lanes)
         }
-        LaneModel::Shared | LaneModel::Hero => format!("{} wavelengths that share the whole path", plan.lanes),
+        LaneModel::Hero => format!("{} wavelengths, each with its own density of the path", plan.lanes),
+        LaneModel::Shared => format!("{} wavelengths that share the whole path", plan.lanes),
         LaneModel::ThreeChannels => format!("{}: red, green and blue", plan.lanes),
     };
     let paths = match plan.path_loop.name {

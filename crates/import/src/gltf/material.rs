@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 
 use super::accessor::bytes_of;
 use super::file::resource;
+use super::iridescence::Iridescence;
 use crate::{Builder, light, reflectance};
 
 /// The least share of light that a medium of an imported model lets through.
@@ -103,6 +104,9 @@ impl Materials {
                 glass["transmittance"] = reflectance(colour);
                 glass["transmittance_depth_m"] = json!(decimal(volume.attenuation_distance()));
             }
+            if let Some(iridescence) = Iridescence::of(material, place, builder) {
+                iridescence.put_on_glass(&mut glass, place, builder);
+            }
             return (glass, uv_set);
         }
         let at = format!("{place}.pbrMetallicRoughness");
@@ -131,15 +135,22 @@ impl Materials {
         {
             ground = json!({ "type": "lambert", "reflectance": colour });
         }
-        let value = match Number::new(decimal(metallic), "blue", numbers.as_ref()) {
+        let iridescence = Iridescence::of(material, place, builder);
+        let metal = || {
+            let bare = part("conductor", &roughness);
+            iridescence.as_ref().map_or(bare.clone(), |iridescence| iridescence.on_metal(bare))
+        };
+        let metallic = Number::new(decimal(metallic), "blue", numbers.as_ref());
+        if iridescence.is_some() && !matches!(metallic, Number::Value(1.0)) {
+            let at = format!("{place}.extensions.KHR_materials_iridescence");
+            builder.leave_out(at, "what is not metal and transmits no light has no film");
+        }
+        let value = match metallic {
             Number::Value(0.0) => ground,
-            Number::Value(1.0) => part("conductor", &roughness),
-            Number::Value(share) => {
-                json!({ "type": "blend", "first": ground, "second": part("conductor", &roughness), "weight": share })
-            }
+            Number::Value(1.0) => metal(),
+            Number::Value(share) => json!({ "type": "blend", "first": ground, "second": metal(), "weight": share }),
             Number::Image(image) => {
-                let second = part("conductor", &roughness);
-                json!({ "type": "blend", "first": ground, "second": second, "weight_image": image })
+                json!({ "type": "blend", "first": ground, "second": metal(), "weight_image": image })
             }
         };
         (value, uv_set)
@@ -416,7 +427,7 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
     list(weak && opaque, "extensions.KHR_materials_transmission", "a factor below 0.5 becomes opaque");
     let coloured = material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite());
     list(coloured && opaque, "extensions.KHR_materials_volume", "it is ignored: the material does not transmit light");
-    const KNOWN: [&str; 2] = ["KHR_materials_anisotropy", "KHR_materials_dispersion"];
+    const KNOWN: [&str; 3] = ["KHR_materials_anisotropy", "KHR_materials_dispersion", "KHR_materials_iridescence"];
     for key in material.extensions().into_iter().flat_map(|map| map.keys()) {
         list(!KNOWN.contains(&key.as_str()), &format!("extensions.{key}"), no);
     }

@@ -5,6 +5,7 @@ mod animation;
 mod camera;
 mod file;
 mod image;
+mod iridescence;
 mod material;
 
 use std::collections::HashMap;

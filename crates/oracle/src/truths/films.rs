@@ -332,10 +332,10 @@ fn rough() -> Vec<Truth> {
         .sees(0.01),
     ];
     let (mu, alpha) = (0.7, 0.3);
-    let mut rough = coated(glass(1.5), &[[2.0, 0.0, 120.0], [1.38, 0.0, 80.0]]);
+    let mut rough = coated(glass(1.5), &[[2.35, 0.0, 60.0], [1.46, 0.0, 90.0]]);
     rough["alpha"] = json!(alpha);
     let stack =
-        CoatedInterface { incident: 1.0, layers: vec![[2.0, 0.0, 120.0], [1.38, 0.0, 80.0]], substrate: [1.5, 0.0] };
+        CoatedInterface { incident: 1.0, layers: vec![[2.35, 0.0, 60.0], [1.46, 0.0, 90.0]], substrate: [1.5, 0.0] };
     let of_glass = |stack: &CoatedInterface| {
         coated_ggx_albedo(alpha, mu, Some(1.5), |cos| {
             let waves = stack.waves(nm, cos);
@@ -346,7 +346,7 @@ fn rough() -> Vec<Truth> {
     let (found, mistaken) = (of_glass(&stack), of_glass(&turned));
     let (again, once_more) = (stack.clone(), stack);
     let name = "coated-glass-that-is-rough";
-    let formula = "∫ D (o·h)/cos θ_o [R G₂(o, r) or T G₁G₁(o, t)] dω: α = 0.3, n 1, 2 (120 nm), 1.38 (80 nm), 1.5 at 480 nm, cos θ = 0.7";
+    let formula = "∫ D (o·h)/cos θ_o [R G₂(o, r) or T G₁G₁(o, t)] dω: α = 0.3, n 1, 2.35 (60 nm), 1.46 (90 nm), 1.5 at 480 nm, cos θ = 0.7";
     list.push(
         Truth::new(name, &reflecting(rough.clone(), mu, true).band(at(nm)), found.reflected, formula)
             .because(BECAUSE)

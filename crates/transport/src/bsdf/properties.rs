@@ -72,8 +72,10 @@ mod tests {
     use super::super::{Bsdf, Shading, properties};
     use super::*;
     use crate::mis::Density;
-    use etalon_optics::{Lanes, RefractiveIndex, Spectrum, Vec3};
-    use etalon_scene::{InternalReflection, MaterialKind, Metal, PolarisingSheet as Sheet, Side};
+    use etalon_optics::{ComplexIndex, Lanes, RefractiveIndex, Spectrum, Vec3};
+    use etalon_scene::{
+        FilmIndex, FilmLayer, InternalReflection, MaterialKind, Metal, PolarisingSheet as Sheet, Side, ThinFilm,
+    };
 
     fn kinds() -> Vec<MaterialKind> {
         let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
@@ -122,6 +124,27 @@ mod tests {
         let both = |first: usize, second: usize| MaterialKind::blend(kinds[first].clone(), kinds[second].clone(), 0.5);
         let blends = [both(0, 1), both(1, 3), both(5, 6), both(0, 0), both(7, 17)];
         kinds.extend(blends);
+        // Some nanometres of silver pass a part and reflect a part; also on a metal that would reflect nothing.
+        let film = || {
+            let index = FilmIndex::Absorbing(ComplexIndex::named("Ag").unwrap());
+            Some(ThinFilm { layers: vec![FilmLayer { thickness_nm: 20.0.into(), index }], at_nm: None })
+        };
+        let (vacuum, dark) = (RefractiveIndex::VACUUM, || Metal::Reflectance(Spectrum::Constant(0.0).into()));
+        let (interior, exterior) = (vacuum.clone(), vacuum);
+        kinds.extend([
+            MaterialKind::Dielectric { interior, exterior: exterior.clone(), priority: None, film: film() },
+            MaterialKind::RoughDielectric {
+                interior: RefractiveIndex::Constant(1.5),
+                exterior,
+                facets: 0.3.into(),
+                compensated: false,
+                priority: None,
+                film: film(),
+            },
+            MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5), film: film() },
+            MaterialKind::Conductor { metal: dark(), film: film() },
+            MaterialKind::RoughConductor { metal: dark(), facets: 0.3.into(), compensated: true, film: film() },
+        ]);
         kinds
     }
 

@@ -1,0 +1,65 @@
+//! `KHR_materials_iridescence`: a thin film on metals and on glass.
+
+use serde_json::{Value, json};
+
+use crate::Builder;
+
+/// A film of a material.
+pub(super) struct Iridescence {
+    /// The share of the surface that carries it.
+    factor: f64,
+    film: Value,
+}
+
+impl Iridescence {
+    /// That of a material, if it has one that shows. Its images are left out: the film is as thick as without one, at its maximum, or where
+    /// one says the thickness half-way between minimum and maximum.
+    pub(super) fn of(material: &gltf::Material<'_>, place: &str, builder: &mut Builder<'_>) -> Option<Self> {
+        let value = material.extension_value("KHR_materials_iridescence")?;
+        let number = |key: &str, default: f64| value[key].as_f64().filter(|n| n.is_finite()).unwrap_or(default);
+        let factor = number("iridescenceFactor", 0.0).clamp(0.0, 1.0);
+        if factor == 0.0 {
+            return None;
+        }
+        let at = format!("{place}.extensions.KHR_materials_iridescence");
+        let [least, most] = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)]
+            .map(|(key, default)| number(key, default).clamp(0.0, 1e6));
+        let thickness_nm = if value.get("iridescenceThicknessTexture").is_some() {
+            builder
+                .leave_out(&at, "the image of its thickness is left out: it is half-way between its limits everywhere");
+            0.5 * (least + most)
+        } else {
+            most
+        };
+        if value.get("iridescenceTexture").is_some() {
+            builder.leave_out(&at, "its image is left out: the film is the same everywhere");
+        }
+        let film = json!([{ "thickness_nm": thickness_nm, "index": number("iridescenceIor", 1.3).max(1.0) }]);
+        Some(Self { factor, film })
+    }
+
+    /// A metal with it.
+    pub(super) fn on_metal(&self, bare: Value) -> Value {
+        let mut coated = bare.clone();
+        coated["thin_film"] = self.film.clone();
+        if self.factor == 1.0 {
+            return coated;
+        }
+        json!({ "type": "blend", "first": bare, "second": coated, "weight": self.factor })
+    }
+
+    /// Puts it on glass, all of it or none: what is inside a blend cannot absorb.
+    pub(super) fn put_on_glass(&self, glass: &mut Value, place: &str, builder: &mut Builder<'_>) {
+        if self.factor < 1.0 {
+            let what = if self.factor < 0.5 {
+                "a factor below 0.5 on glass becomes 0"
+            } else {
+                "its factor on glass becomes 1"
+            };
+            builder.leave_out(format!("{place}.extensions.KHR_materials_iridescence"), what);
+        }
+        if self.factor >= 0.5 {
+            glass["thin_film"] = self.film.clone();
+        }
+    }
+}
