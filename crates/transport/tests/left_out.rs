@@ -6,7 +6,8 @@ use etalon_optics::{RefractiveIndex, Spectrum};
 use etalon_scene::{
     Image, ImageTexture, MaterialKind, NumberTexture, ParameterMut, Scene, SpectrumTexture, Texels, TextureFilter,
 };
-use etalon_transport::{EffectName, LaneModel, Study, prepare};
+use etalon_transport::plan::LaneModel;
+use etalon_transport::{EffectName, Study, prepare};
 use serde_json::{Value, json};
 
 #[path = "common/rendering.rs"]
