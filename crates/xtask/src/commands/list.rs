@@ -118,6 +118,20 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("docs/turntable.py"),
             ),
             named(
+                "gallery",
+                "[ETALON] [--only NAME,NAME]",
+                "renders the pictures of docs/gallery to 2 % error and writes its page",
+                "1 h",
+                Script("docs/gallery/gallery.py"),
+            ),
+            named(
+                "accuracy-strip",
+                "[ETALON] [OPTIONS]",
+                "renders one scene to 20, 10, 5, 2 and 1 % error and draws the strip of the README",
+                "2 min",
+                Script("docs/accuracy-strip.py"),
+            ),
+            named(
                 "allowed",
                 "[--write]",
                 "compares the lists of what is to go with the sources; --write deletes what is gone",
