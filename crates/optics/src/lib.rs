@@ -31,7 +31,7 @@
 //! | where refracted light goes | [`snell`] |
 //! | vectors and frames over `f32` or `f64` | [`Vec3`], [`Frame`], [`Real`] |
 //! | one value for each wavelength of a path | [`Lanes`] |
-//! | e⁻ˣ and angles by operations that round alike everywhere | [`exponential`], [`angle`] |
+//! | e⁻ˣ and angles by operations that round alike everywhere | [`exponential`], [`error_function`], [`angle`] |
 //! | what can be wrong with the numbers above | [`OpticsError`] |
 //!
 //! The example `prism` prints what a prism does to four spectral lines.
@@ -44,6 +44,7 @@ pub mod angle;
 pub mod colour;
 pub mod complex;
 pub mod error;
+pub mod error_function;
 pub mod exponential;
 pub mod fresnel;
 pub mod index;
@@ -57,6 +58,7 @@ pub mod vec3;
 pub use angle::atan2_turns;
 pub use complex::Complex;
 pub use error::{INDEX_RANGE, OpticsError};
+pub use error_function::scaled_erfc;
 pub use exponential::{exp_neg, neg_ln, one_minus_exp_neg};
 pub use index::{ComplexIndex, OutsideFit, RefractiveIndex};
 pub use lanes::Lanes;

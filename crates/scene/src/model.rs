@@ -27,8 +27,8 @@ pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
 pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
 pub use light::{Light, LightCone, LightKind};
 pub use material::{
-    InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets, Parameter, ParameterMut,
-    PolarisingSheet, Side,
+    FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets,
+    Parameter, ParameterMut, PolarisingSheet, Side,
 };
 pub use medium::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseTable};
 pub use meter::{Meter, MeterKind, MeterQuantity, Receiver};

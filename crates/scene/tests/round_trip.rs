@@ -124,13 +124,15 @@ fn materials_and_spectra() {
         kind(&scene, "gold"),
         &MaterialKind::RoughConductor {
             metal: Metal::Index(gold),
-            facets: 0.25.into(),
+            facets: Microfacets { masking: FacetMasking::Separable, ..0.25.into() },
             compensated: false,
-            film: None
+            film: None,
         }
     );
     let own = ComplexIndex::tabulated(vec![300.0, 900.0], vec![0.2, 0.3], vec![3.0, 4.0]).expect("right");
-    let facets = Microfacets { alpha: [0.125, 0.5], rotation_rad: FRAC_PI_2 };
+    let gaussian = |facets| Microfacets { distribution: FacetDistribution::Beckmann, ..facets };
+    let apart = |facets| Microfacets { masking: FacetMasking::Separable, ..gaussian(facets) };
+    let facets = gaussian(Microfacets::ggx([0.125, 0.5], FRAC_PI_2));
     let own = MaterialKind::RoughConductor { metal: Metal::Index(own), facets, compensated: true, film: None };
     assert_eq!(kind(&scene, "own metal"), &own);
     let glass = |name| RefractiveIndex::named(name).expect("a glass");
@@ -148,7 +150,7 @@ fn materials_and_spectra() {
         &MaterialKind::RoughDielectric {
             interior: glass("N-SF11").with_outside(OutsideFit::Clamp),
             exterior: RefractiveIndex::Constant(1.33),
-            facets: 1.0.into(),
+            facets: apart(1.0.into()),
             compensated: true,
             priority: None,
             film: None
@@ -206,7 +208,7 @@ fn materials_and_spectra() {
     let toy = MaterialKind::Plastic {
         reflectance,
         coat,
-        facets: Some(0.1.into()),
+        facets: Some(apart(0.1.into())),
         internal_reflection: InternalReflection::Uncoloured,
     };
     assert_eq!(kind(&scene, "toy"), &toy);

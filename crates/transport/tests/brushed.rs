@@ -14,7 +14,7 @@ use rendering::{mean_y, parse, render};
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
 
 fn facets([alpha_u, alpha_v]: [f64; 2], rotation_deg: f64) -> Microfacets {
-    Microfacets { alpha: [alpha_u, alpha_v], rotation_rad: rotation_deg.to_radians() }
+    Microfacets::ggx([alpha_u, alpha_v], rotation_deg.to_radians())
 }
 
 /// Reflects everything: n → 0 with k > 0.

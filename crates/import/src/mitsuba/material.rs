@@ -177,8 +177,9 @@ impl Walk<'_, '_, '_> {
                 self.untinted(element, &["specular_reflectance", "specular_transmittance"])?;
                 let mut glass = json!({ "type": "dielectric", "interior": interior, "exterior": exterior,
                     "multiple_scattering": "lost" });
-                let rough = if plugin == "dielectric" { Rough::Alpha(0.0) } else { self.alpha(element)? };
-                rough.put(&mut glass);
+                if plugin == "roughdielectric" {
+                    self.put_facets(element, &mut glass)?;
+                }
                 glass
             }
             "thindielectric" => {
@@ -191,7 +192,6 @@ impl Walk<'_, '_, '_> {
                 let reflectance = self.colour(element, "diffuse_reflectance", Of::Texture)?.unwrap_or(json!(0.5));
                 let coat = self.index(element, "int_ior", 1.49)? / self.index(element, "ext_ior", 1.000_277)?;
                 self.untinted(element, &["specular_reflectance"])?;
-                let rough = if plugin == "plastic" { Rough::Alpha(0.0) } else { self.alpha(element)? };
                 if plugin == "roughplastic" {
                     let what = "the rough coat loses no light, unlike Mitsuba's: at an alpha of 0.2 over a base of 0.5 it is 2 to 26 % \
                                 brighter";
@@ -201,7 +201,9 @@ impl Walk<'_, '_, '_> {
                 let internal_reflection = if nonlinear { "coloured" } else { "uncoloured" };
                 let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat,
                     "internal_reflection": internal_reflection });
-                rough.put(&mut plastic);
+                if plugin == "roughplastic" {
+                    self.put_facets(element, &mut plastic)?;
+                }
                 plastic
             }
             "principled" | "principledthin" => {
@@ -219,15 +221,19 @@ impl Walk<'_, '_, '_> {
 
     fn conductor(&mut self, element: &Element, rough: bool) -> Result<Value, String> {
         let place = &element.place;
-        let facets = if rough { self.alpha(element)? } else { Rough::Alpha(0.0) };
         let tint = self.colour(element, "specular_reflectance", Of::Reflectance)?;
         let mut value = match element.string("material") {
-            Some("none") => {
-                if rough {
-                    self.builder.leave_out(place, "a perfect mirror cannot be rough: it becomes smooth");
+            Some("none") if rough => {
+                if tint.is_some() {
+                    self.builder
+                        .leave_out(place, "a rough mirror's tint is that of a metal: at grazing angles it pales");
                 }
-                return Ok(json!({ "type": "mirror", "reflectance": tint.unwrap_or(json!(1.0)) }));
+                let mut value = json!({ "type": "conductor", "reflectance": tint.unwrap_or(json!(1.0)) });
+                self.put_facets(element, &mut value)?;
+                value["multiple_scattering"] = json!("lost");
+                return Ok(value);
             }
+            Some("none") => return Ok(json!({ "type": "mirror", "reflectance": tint.unwrap_or(json!(1.0)) })),
             Some(metal @ ("Ag" | "Al" | "Au" | "Cu")) => json!({ "type": "conductor", "metal": metal }),
             Some(other) => {
                 self.builder.leave_out(place, format!("the metal \"{other}\" is not known: it becomes aluminium"));
@@ -238,7 +244,9 @@ impl Walk<'_, '_, '_> {
         if tint.is_some_and(|tint| tint != json!(1.0)) {
             self.builder.leave_out(place, "specular_reflectance is ignored");
         }
-        facets.put(&mut value);
+        if rough {
+            self.put_facets(element, &mut value)?;
+        }
         value["outside_fit"] = json!("clamp");
         // As in the program.
         value["multiple_scattering"] = json!("lost");
@@ -275,12 +283,23 @@ impl Walk<'_, '_, '_> {
         }
     }
 
+    /// Says of a rough material how its facets are distributed and how they hide each other.
+    fn put_facets(&mut self, element: &Element, material: &mut Value) -> Result<(), String> {
+        let distribution = match element.string("distribution").unwrap_or("beckmann") {
+            known @ ("beckmann" | "ggx") => known,
+            other => return Err(format!("{}: \"{other}\" is not a distribution of facets", element.place)),
+        };
+        // Which facets a sampler prefers changes the noise alone.
+        element.string("sample_visible");
+        element.flag("sample_visible")?;
+        self.alpha(element)?.put(material);
+        material["distribution"] = json!(distribution);
+        material["masking"] = json!("separable");
+        Ok(())
+    }
+
     fn alpha(&mut self, element: &Element) -> Result<Rough, String> {
         let place = &element.place;
-        if element.string("distribution").unwrap_or("beckmann") != "ggx" {
-            self.builder.leave_out(place, "the distribution of facets becomes GGX with the same alpha");
-        }
-        element.string("sample_visible");
         let both = (self.number(element, "alpha_u")?, self.number(element, "alpha_v")?);
         let alpha = match (self.number(element, "alpha")?, both) {
             (_, (Some(u), Some(v))) => {

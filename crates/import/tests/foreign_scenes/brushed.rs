@@ -14,7 +14,7 @@ fn facets(kind: &str, text: &str) -> (Option<Microfacets>, Vec<String>) {
 }
 
 fn widths(u: f64, v: f64) -> Option<Microfacets> {
-    Some(Microfacets { alpha: [u, v], rotation_rad: 0.0 })
+    Some(Microfacets::ggx([u, v], 0.0))
 }
 
 fn mitsuba(shape: &str, bsdf: &str, numbers: &str) -> String {

@@ -29,8 +29,21 @@ pub struct SingleScattering {
 
 /// Smith's Λ for GGX facets of widths `alpha` along x and y.
 fn lambda(alpha: [f64; 2], w: Vec3) -> f64 {
-    let slope2 = (alpha[0] * w[0]).powi(2) + (alpha[1] * w[1]).powi(2);
-    0.5 * ((1.0 + slope2 / (w[2] * w[2])).sqrt() - 1.0)
+    0.5 * ((1.0 + stretched_tangent2(alpha, w)).sqrt() - 1.0)
+}
+
+/// Smith's Λ for Beckmann's facets (Walter et al. 2007, equation (26) without their approximation; Heitz 2014, equation (72)).
+fn beckmann_lambda(alpha: [f64; 2], w: Vec3) -> f64 {
+    let a = 1.0 / stretched_tangent2(alpha, w).sqrt();
+    if a > 20.0 {
+        return 0.0;
+    }
+    0.5 * ((-a * a).exp() / (a * PI.sqrt()) - statrs::function::erf::erfc(a))
+}
+
+/// The squared tangent of the angle of `w` to the normal, each axis stretched by its width.
+fn stretched_tangent2(alpha: [f64; 2], w: Vec3) -> f64 {
+    ((alpha[0] * w[0]).powi(2) + (alpha[1] * w[1]).powi(2)) / (w[2] * w[2])
 }
 
 /// Steps in slope and in azimuth of the rule for [`ggx_albedo`].
@@ -42,14 +55,15 @@ const STEPS: usize = 640;
 #[must_use]
 pub fn ggx_albedo(alpha: f64, mu: f64, eta: Option<f64>, masking: Masking) -> SingleScattering {
     // In its own plane of incidence a direction sees both halves of all azimuths alike.
-    albedo([alpha; 2], [(1.0 - mu * mu).sqrt(), 0.0, mu], facets([alpha; 2], PI), (eta, shares_of(eta)), masking)
+    let (widths, o) = ([alpha; 2], [(1.0 - mu * mu).sqrt(), 0.0, mu]);
+    albedo(&|w| lambda(widths, w), o, facets(widths, PI, ggx_slope2), (eta, shares_of(eta)), masking)
 }
 
 /// The same of coated facets, which reflect and transmit the shares that a function of the cosine says; without `eta` they only reflect.
 #[must_use]
 pub fn coated_ggx_albedo(alpha: f64, mu: f64, eta: Option<f64>, shares: impl Fn(f64) -> [f64; 2]) -> SingleScattering {
-    let o = [(1.0 - mu * mu).sqrt(), 0.0, mu];
-    albedo([alpha; 2], o, facets([alpha; 2], PI), (eta, shares), Masking::Correlated)
+    let (widths, o) = ([alpha; 2], [(1.0 - mu * mu).sqrt(), 0.0, mu]);
+    albedo(&|w| lambda(widths, w), o, facets(widths, PI, ggx_slope2), (eta, shares), Masking::Correlated)
 }
 
 /// What bare facets reflect and transmit.
@@ -66,7 +80,13 @@ fn shares_of(eta: Option<f64>) -> impl Fn(f64) -> [f64; 2] {
 /// The same for facets of widths `alpha` along x and y, and light from the direction `o`.
 #[must_use]
 pub fn anisotropic_ggx_albedo(alpha: [f64; 2], o: Vec3, eta: Option<f64>, masking: Masking) -> SingleScattering {
-    albedo(alpha, o, facets(alpha, 2.0 * PI), (eta, shares_of(eta)), masking)
+    albedo(&|w| lambda(alpha, w), o, facets(alpha, 2.0 * PI, ggx_slope2), (eta, shares_of(eta)), masking)
+}
+
+/// The same for Beckmann's facets.
+#[must_use]
+pub fn beckmann_albedo(alpha: [f64; 2], o: Vec3, eta: Option<f64>, masking: Masking) -> SingleScattering {
+    albedo(&|w| beckmann_lambda(alpha, w), o, facets(alpha, 2.0 * PI, beckmann_slope2), (eta, shares_of(eta)), masking)
 }
 
 /// The BRDF of GGX facets of widths `alpha` along x and y that reflect everything: D G/(4 cos θ_o cos θ_i) with Smith's masking, correlated
@@ -79,17 +99,31 @@ pub fn anisotropic_ggx_mirrors(alpha: [f64; 2], o: Vec3, i: Vec3) -> f64 {
     density / (1.0 + lambda(alpha, o) + lambda(alpha, i)) / (4.0 * o[2] * i[2])
 }
 
+/// The same of Beckmann's facets, of either masking: D = e^(−x²/α_x² − y²/α_y²)/(π α_x α_y cos⁴θ_h) of the slopes x and y.
+#[must_use]
+pub fn beckmann_mirrors(alpha: [f64; 2], o: Vec3, i: Vec3, masking: Masking) -> f64 {
+    let h = normalize(add(o, i));
+    let slope2 = ((h[0] / alpha[0]).powi(2) + (h[1] / alpha[1]).powi(2)) / (h[2] * h[2]);
+    let density = (-slope2).exp() / (PI * alpha[0] * alpha[1] * h[2].powi(4));
+    let (of_o, of_i) = (beckmann_lambda(alpha, o), beckmann_lambda(alpha, i));
+    let hidden = match masking {
+        Masking::Correlated => 1.0 + of_o + of_i,
+        Masking::Separable => (1.0 + of_o) * (1.0 + of_i),
+    };
+    density / hidden / (4.0 * o[2] * i[2])
+}
+
 fn albedo(
-    alpha: [f64; 2],
+    lambda: &dyn Fn(Vec3) -> f64,
     o: Vec3,
     facets: impl Iterator<Item = (Vec3, f64)>,
     (eta, shares): (Option<f64>, impl Fn(f64) -> [f64; 2]),
     masking: Masking,
 ) -> SingleScattering {
     let mu = o[2];
-    let lambda_o = lambda(alpha, o);
+    let lambda_o = lambda(o);
     let together = |w: Vec3, reflection: bool| {
-        let other = lambda(alpha, w);
+        let other = lambda(w);
         match masking {
             Masking::Correlated if reflection => 1.0 / (1.0 + lambda_o + other),
             Masking::Correlated | Masking::Separable => 1.0 / ((1.0 + lambda_o) * (1.0 + other)),
@@ -121,17 +155,26 @@ fn albedo(
 
 /// Normals of facets of the azimuths up to `turn` with the share of the surface, projected, that each stands for; together 1.
 ///
-/// Slopes are those of width 1, stretched by the widths: tan²θ = α²x/(1 − x) spreads D cos θ dω evenly over x in [0, 1] and the azimuth, and x = 1 − y⁴ spreads the steepest facets out, which grazing
-/// light sees as 1/√(1 − x).
-fn facets(alpha: [f64; 2], turn: f64) -> impl Iterator<Item = (Vec3, f64)> {
+/// Slopes are those of width 1, stretched by the widths: `slope2` spreads D cos θ dω evenly over x in [0, 1] and the azimuth, and x = 1 − y⁴
+/// spreads the steepest facets out, which grazing light sees as 1/√(1 − x) of GGX.
+fn facets(alpha: [f64; 2], turn: f64, slope2: fn(f64) -> f64) -> impl Iterator<Item = (Vec3, f64)> {
     let step = |i: usize| (i as f64 + 0.5) / STEPS as f64;
     (0..STEPS * STEPS).map(move |i| {
         let (y, phi) = (step(i % STEPS), step(i / STEPS) * turn);
-        let rest = y.powi(4);
-        let tan = ((1.0 - rest) / rest).sqrt();
+        let tan = slope2(y.powi(4)).sqrt();
         let slope = [alpha[0] * tan * phi.cos(), alpha[1] * tan * phi.sin()];
         (normalize([slope[0], slope[1], 1.0]), 4.0 * y.powi(3) / (STEPS * STEPS) as f64)
     })
+}
+
+/// The squared slope that the share `rest` of GGX's facets of width 1 exceeds: 1/(1 + tan²θ).
+fn ggx_slope2(rest: f64) -> f64 {
+    (1.0 - rest) / rest
+}
+
+/// The same of Beckmann's facets, e^(−tan²θ).
+fn beckmann_slope2(rest: f64) -> f64 {
+    -rest.ln()
 }
 
 #[cfg(test)]
@@ -157,7 +200,8 @@ mod tests {
         for alpha in [0.03, 0.3, 1.0] {
             for mu in [1.0, 0.3, 0.02] {
                 let o = [(1.0_f64 - mu * mu).sqrt(), 0.0, mu];
-                let whole: f64 = facets([alpha; 2], PI).map(|(h, weight)| weight * dot(o, h).max(0.0) / h[2]).sum();
+                let whole: f64 =
+                    facets([alpha; 2], PI, ggx_slope2).map(|(h, weight)| weight * dot(o, h).max(0.0) / h[2]).sum();
                 let whole = whole / (mu * (1.0 + lambda([alpha; 2], o)));
                 assert!((whole - 1.0).abs() < 2e-5, "α {alpha} µ {mu}: {whole}");
             }
@@ -170,7 +214,8 @@ mod tests {
         for (alpha, mu, phi) in [([0.05, 0.5], 0.3, 0.4_f64), ([1.0, 0.2], 0.05, 1.3), ([0.1, 0.9], 0.9, 2.0)] {
             let s = (1.0_f64 - mu * mu).sqrt();
             let o = [s * phi.cos(), s * phi.sin(), mu];
-            let whole: f64 = facets(alpha, 2.0 * PI).map(|(h, weight)| weight * dot(o, h).max(0.0) / h[2]).sum();
+            let whole: f64 =
+                facets(alpha, 2.0 * PI, ggx_slope2).map(|(h, weight)| weight * dot(o, h).max(0.0) / h[2]).sum();
             let whole = whole / (mu * (1.0 + lambda(alpha, o)));
             assert!((whole - 1.0).abs() < 5e-5, "α {alpha:?} µ {mu}: {whole}");
             let [a, b] = [(alpha, o), ([alpha[1], alpha[0]], [-o[1], o[0], o[2]])]
@@ -201,6 +246,31 @@ mod tests {
             let sum = (0..steps * steps).map(of).sum::<f64>() * 2.0 * PI / (steps * steps) as f64;
             let albedo = anisotropic_ggx_albedo(alpha, o, None, Masking::Correlated).reflected;
             assert!((sum - albedo).abs() < 1e-4, "{mu} {phi}: {sum} {albedo}");
+        }
+    }
+
+    /// What a direction sees of all of Beckmann's facets is itself, and their BRDF over directions of light has the albedo of the facets.
+    #[test]
+    fn beckmann_s_facets_fill_what_sees_them_and_reflect_what_they_are_seen_to() {
+        for (alpha, mu, phi) in [([0.3, 0.3], 0.7, 0.0_f64), ([0.3, 0.7], 0.4, 1.2), ([0.9, 0.2], 0.1, 0.5)] {
+            let s = (1.0_f64 - mu * mu).sqrt();
+            let o = [s * phi.cos(), s * phi.sin(), mu];
+            let seen = |(h, weight): (Vec3, f64)| weight * dot(o, h).max(0.0) / h[2];
+            let whole: f64 = facets(alpha, 2.0 * PI, beckmann_slope2).map(seen).sum();
+            let whole = whole / (mu * (1.0 + beckmann_lambda(alpha, o)));
+            assert!((whole - 1.0).abs() < 5e-5, "α {alpha:?} µ {mu}: {whole}");
+            let steps = 1000;
+            let place = |k: usize| (k as f64 + 0.5) / steps as f64;
+            for masking in [Masking::Correlated, Masking::Separable] {
+                let of = |k: usize| {
+                    let (z, turn) = (place(k % steps), 2.0 * PI * place(k / steps));
+                    let s = (1.0 - z * z).sqrt();
+                    beckmann_mirrors(alpha, o, [s * turn.cos(), s * turn.sin(), z], masking) * z
+                };
+                let sum = (0..steps * steps).map(of).sum::<f64>() * 2.0 * PI / (steps * steps) as f64;
+                let albedo = beckmann_albedo(alpha, o, None, masking).reflected;
+                assert!((sum - albedo).abs() < 1e-4, "{mu} {phi} {masking:?}: {sum} {albedo}");
+            }
         }
     }
 

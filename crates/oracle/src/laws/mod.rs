@@ -30,7 +30,8 @@ pub use light::{
     rectangle_solid_angle, sphere_solid_angle, triangle_solid_angle,
 };
 pub use microfacet::{
-    Masking, SingleScattering, anisotropic_ggx_albedo, anisotropic_ggx_mirrors, coated_ggx_albedo, ggx_albedo,
+    Masking, SingleScattering, anisotropic_ggx_albedo, anisotropic_ggx_mirrors, beckmann_albedo, beckmann_mirrors,
+    coated_ggx_albedo, ggx_albedo,
 };
 pub use numerics::{film_mean_is_exact, frame_is_orthonormal, mis_weights_add_up, wavelengths_follow_density};
 pub use polarisation::{

@@ -9,6 +9,7 @@
 //! off a small Lambert plate of albedo ρ, which shows ρE/π.
 
 mod absorption;
+mod beckmann;
 mod cameras;
 mod cie171;
 mod dimensions;
@@ -385,6 +386,7 @@ impl Truth {
 pub fn truths() -> Vec<Truth> {
     [
         furnaces::truths(),
+        beckmann::truths(),
         facets::truths(),
         enclosures::truths(),
         illumination::truths(),

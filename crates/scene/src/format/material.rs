@@ -17,7 +17,10 @@ use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
 use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned};
-use crate::model::{InternalReflection, LEAST_ALPHA, Material, MaterialKind, Medium, Metal, PolarisingSheet, Side};
+use crate::model::{
+    FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Medium, Metal,
+    PolarisingSheet, Side,
+};
 pub(crate) use blend::Before;
 pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
@@ -63,7 +66,7 @@ crate::record! {
         reflectance: Optional<SpectrumForm>,
         /// What holds at wavelengths for which there are no values.
         outside_fit: Required<OutsideFit> = r#""error""#,
-        /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
+        /// Roughness: the width α of the distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
         /// Instead: the width along the tangent, the direction in which u grows, from 0.0001 to 1.
         alpha_u: Optional<Width>,
@@ -73,6 +76,10 @@ crate::record! {
         tangent_rotation_deg: Optional<f64>,
         /// Instead: an image that says the width at each place.
         roughness_image: Optional<RoughnessImageForm>,
+        /// How the slopes of facets are distributed.
+        distribution: Required<FacetDistribution> = r#""ggx""#,
+        /// How facets hide each other from reflected light.
+        masking: Required<FacetMasking> = r#""correlated""#,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost").
         multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
         /// Layers that coat it, in which light interferes with itself: from the outermost to the innermost.
@@ -137,6 +144,20 @@ impl MaterialSides {
     }
 }
 
+crate::keywords!(FacetDistribution {
+    /// Of Trowbridge and Reitz: long tails around a highlight.
+    "ggx" => Self::Ggx,
+    /// Beckmann's: a Gaussian of slopes, without tails.
+    "beckmann" => Self::Beckmann,
+});
+
+crate::keywords!(FacetMasking {
+    /// By their heights, as of a real surface.
+    "correlated" => Self::Correlated,
+    /// Each direction by itself, as some renderers have it: darker at grazing angles.
+    "separable" => Self::Separable,
+});
+
 /// What becomes of light that meets several facets of a rough surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MultipleScattering {
@@ -170,7 +191,7 @@ crate::record! {
         reflectance: Required<SpectrumForm>,
         /// Index of the coat.
         coat: Required<IndexForm> = "1.5",
-        /// Roughness of the coat: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
+        /// Roughness of the coat: the width α of the distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
         /// Instead: the coat's width along the tangent, the direction in which u grows, from 0.0001 to 1.
         alpha_u: Optional<Width>,
@@ -180,6 +201,10 @@ crate::record! {
         tangent_rotation_deg: Optional<f64>,
         /// Instead: an image that says the coat's width at each place.
         roughness_image: Optional<RoughnessImageForm>,
+        /// How the slopes of facets are distributed.
+        distribution: Required<FacetDistribution> = r#""ggx""#,
+        /// How facets hide each other from reflected light.
+        masking: Required<FacetMasking> = r#""correlated""#,
         /// Whether the base colours light each time that the coat reflects it back down ("coloured") or only once ("uncoloured").
         internal_reflection: Required<InternalReflection> = r#""coloured""#,
         /// Which sides reflect; another is black.

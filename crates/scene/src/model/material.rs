@@ -19,16 +19,45 @@ pub struct Material {
     pub medium: Option<Medium>,
 }
 
-/// The facets of a rough surface: GGX normals.
+/// How the slopes of facets are distributed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FacetDistribution {
+    /// That of Trowbridge & Reitz (1975), with long tails.
+    #[default]
+    Ggx,
+    /// Beckmann's: a Gaussian of variance α²/2 along each axis.
+    Beckmann,
+}
+
+/// How facets hide each other from light that comes in and goes out on the same side: by Smith's masking of both directions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FacetMasking {
+    /// A facet of some height is seen from one direction where it is likely to be seen from the other.
+    #[default]
+    Correlated,
+    /// As if the height of a facet for one direction were not that for the other: the product of both, which is darker at grazing angles.
+    Separable,
+}
+
+/// The facets of a rough surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Microfacets {
     /// Widths α along the tangent and across it, each in [[`LEAST_ALPHA`], 1].
     pub alpha: [f64; 2],
     /// Angle of the tangent from the direction of growing u toward that of growing v, rad.
     pub rotation_rad: f64,
+    /// How their slopes are distributed.
+    pub distribution: FacetDistribution,
+    /// How they hide each other.
+    pub masking: FacetMasking,
 }
 
 impl Microfacets {
+    /// GGX facets of these widths along the tangent and across it, the tangent turned by an angle.
+    pub fn ggx(alpha: [f64; 2], rotation_rad: f64) -> Self {
+        Self { alpha, rotation_rad, distribution: FacetDistribution::Ggx, masking: FacetMasking::Correlated }
+    }
+
     /// Whether the surface is the same when it is turned about its normal: then it needs no tangent.
     pub fn is_isotropic(&self) -> bool {
         self.alpha[0] == self.alpha[1]
@@ -37,7 +66,7 @@ impl Microfacets {
 
 impl From<f64> for Microfacets {
     fn from(alpha: f64) -> Self {
-        Self { alpha: [alpha; 2], rotation_rad: 0.0 }
+        Self::ggx([alpha; 2], 0.0)
     }
 }
 

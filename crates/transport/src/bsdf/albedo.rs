@@ -6,8 +6,9 @@
 //! loss. The table lies below the loss between its nodes too, so that no energy is created: what a lossless surface fails to
 //! return is what the table's interpolation misses, which a test bounds.
 
-use super::microfacet::Ggx;
+use super::microfacet::Distribution;
 use etalon_optics::{Real, Vec3};
+use etalon_scene::{FacetDistribution, FacetMasking};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
@@ -46,10 +47,10 @@ pub(crate) enum Azimuths {
 }
 
 impl Azimuths {
-    pub(super) fn of(ggx: &Ggx) -> Self {
-        match ggx.isotropic_alpha() {
+    pub(super) fn of(distribution: &Distribution) -> Self {
+        match distribution.isotropic_alpha() {
             Some(_) => Self::All,
-            None => Self::Quarter(ggx.alpha()),
+            None => Self::Quarter(distribution.alpha()),
         }
     }
 
@@ -117,12 +118,18 @@ pub(crate) enum Tabulated {
     Inside,
 }
 
-/// A table that is a function of widths and a range of indices alone, made once: images of roughness ask for many, and the
+/// A table that is a function of the facets and a range of indices alone, made once: images of roughness ask for many, and the
 /// materials of a scene for the same ones.
-pub(crate) fn shared(of: Tabulated, ggx: &Ggx, eta: [f64; 2], make: impl FnOnce() -> LossTable) -> Arc<LossTable> {
-    type SharedTables = HashMap<(Tabulated, [u64; 2], [u64; 2]), Arc<LossTable>>;
+pub(crate) fn shared(
+    of: Tabulated,
+    distribution: &Distribution,
+    eta: [f64; 2],
+    make: impl FnOnce() -> LossTable,
+) -> Arc<LossTable> {
+    type Kind = (FacetDistribution, FacetMasking);
+    type SharedTables = HashMap<(Tabulated, Kind, [u64; 2], [u64; 2]), Arc<LossTable>>;
     static KNOWN: LazyLock<Mutex<SharedTables>> = LazyLock::new(Mutex::default);
-    let key = (of, ggx.alpha().map(f64::to_bits), eta.map(f64::to_bits));
+    let key = (of, distribution.kind(), distribution.alpha().map(f64::to_bits), eta.map(f64::to_bits));
     let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(table) = known().get(&key) {
         return Arc::clone(table);

@@ -1,37 +1,45 @@
 //! Rough surfaces as mirrors too small to see: the GGX distribution of their normals (Trowbridge & Reitz 1975; Walter et al.
-//! 2007, *Microfacet Models for Refraction through Rough Surfaces*) with Smith's masking.
+//! 2007, *Microfacet Models for Refraction through Rough Surfaces*) or [Beckmann's](beckmann), with Smith's masking.
 //!
 //! Everything is in the surface's frame, z along the normal, in `f64`: near a delta the half vector needs it. The width α is
-//! as Walter et al. define it: the slopes have the density of a Student t with scale α. A surface with a grain has two widths,
-//! along its tangent x and along y (Heitz 2014, §5.4): the slopes are those of width 1, stretched by each along its axis.
+//! as Walter et al. define it: the slopes have the density of a Student t with scale α, or of a Gaussian of variance α²/2. A surface with a
+//! grain has two widths, along its tangent x and along y (Heitz 2014, §5.4): the slopes are those of width 1, stretched by each along its axis.
 
 use super::Shading;
 use etalon_optics::{Frame, Real, Vec3};
-use etalon_scene::Microfacets;
+use etalon_scene::{FacetDistribution, FacetMasking, Microfacets};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::LazyLock;
 
 mod anisotropic;
+mod beckmann;
 
-/// A GGX distribution of microfacet normals.
+/// A distribution of microfacet normals, and how facets hide each other.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ggx {
+pub(crate) struct Distribution {
     /// Widths along x and y, each above 0.
     alpha: [f64; 2],
     /// Cosine and sine of the angle of x from growing u.
     rotation: [f64; 2],
+    kind: FacetDistribution,
+    masking: FacetMasking,
 }
 
-impl Ggx {
+impl Distribution {
     /// The facets of a scene's material.
     pub(crate) fn new(facets: &Microfacets) -> Self {
         let (sin, cos) = facets.rotation_rad.sin_cos();
-        Self { alpha: facets.alpha, rotation: [cos, sin] }
+        Self { alpha: facets.alpha, rotation: [cos, sin], kind: facets.distribution, masking: facets.masking }
     }
 
     /// Their widths along x and y.
     pub(crate) fn alpha(&self) -> [f64; 2] {
         self.alpha
+    }
+
+    /// Of what kind they are.
+    pub(crate) fn kind(&self) -> (FacetDistribution, FacetMasking) {
+        (self.kind, self.masking)
     }
 
     /// Their width, if it is the same along x and y.
@@ -40,19 +48,33 @@ impl Ggx {
         (x == y).then_some(x)
     }
 
-    /// Density D of facet normals, sr⁻¹ of normals per unit of surface: 1/(π α_x α_y e²), e = x²/α_x² + y²/α_y² + z².
+    /// Density D of facet normals, sr⁻¹ of normals per unit of surface: GGX's is 1/(π α_x α_y e²), e = x²/α_x² + y²/α_y² + z².
     pub(crate) fn density(&self, h: Vec3<f64>) -> f64 {
+        if self.kind == FacetDistribution::Beckmann {
+            return beckmann::of_normal(self.alpha, h);
+        }
         let [x2, y2] = self.alpha.map(|alpha| alpha * alpha);
         let slopes = if x2 == y2 { (h.x * h.x + h.y * h.y) / x2 } else { h.x * h.x / x2 + h.y * h.y / y2 };
         let e = slopes + h.z * h.z;
         FRAC_1_PI / (self.alpha[0] * self.alpha[1] * e * e)
     }
 
-    /// S = √(z² + α_x² x² + α_y² y²), so that Smith's masking is G₁ = 2c/(c + S), c = |cos θ|.
+    /// S = c(1 + 2Λ), so that Smith's masking is G₁ = 2c/(c + S), c = |cos θ|; of GGX √(z² + α_x² x² + α_y² y²).
     pub(crate) fn stretch(&self, w: Vec3<f64>) -> f64 {
         let [x2, y2] = self.alpha.map(|alpha| alpha * alpha);
         let spread = if x2 == y2 { x2 * (w.x * w.x + w.y * w.y) } else { x2 * w.x * w.x + y2 * w.y * w.y };
-        (w.z * w.z + spread).sqrt()
+        match self.kind {
+            FacetDistribution::Ggx => (w.z * w.z + spread).sqrt(),
+            FacetDistribution::Beckmann => beckmann::stretch(w.z.abs(), spread.sqrt()),
+        }
+    }
+
+    /// G₂/G₁ of the direction from which facets are seen, of another on the same side: of the cosines `mu` and `mu_i` > 0 and stretches.
+    fn mirrored(&self, (mu, stretch): (f64, f64), (mu_i, stretch_i): (f64, f64)) -> f64 {
+        match self.masking {
+            FacetMasking::Correlated => mu_i * (mu + stretch) / (mu * stretch_i + mu_i * stretch),
+            FacetMasking::Separable => 2.0 * mu_i / (mu_i + stretch_i),
+        }
     }
 
     /// The surface's frame at a point, around the normal `n` turned toward `wo`; `None` for a `wo` exactly along the surface.
@@ -74,11 +96,15 @@ impl Ggx {
         facing.frame.to_world(Vec3::new(-y, x, 0.0))
     }
 
-    /// A facet normal that `wo` (z > 0) sees, with density G₁(wo) D(h) (wo·h)/cos θ_o: a cap of the sphere, stretched
+    /// A facet normal that `wo` (z > 0) sees, with density G₁(wo) D(h) (wo·h)/cos θ_o: of GGX a cap of the sphere, stretched
     /// (Heitz 2018; in the form of Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical Caps*, listing 3).
     pub(crate) fn visible_normal(&self, wo: Vec3<f64>, u: [f64; 2]) -> Vec3<f64> {
         let [x, y] = self.alpha;
         let squeezed = Vec3::new(x * wo.x, y * wo.y, wo.z).normalized();
+        if self.kind == FacetDistribution::Beckmann {
+            let h = beckmann::visible_normal(squeezed, u);
+            return Vec3::new(x * h.x, y * h.y, h.z).normalized();
+        }
         let (sin_phi, cos_phi) = f64::sin_cos_turns(u[0]);
         let z = (1.0 - u[1]) * (1.0 + squeezed.z) - squeezed.z;
         let sin = ((1.0 - z) * (1.0 + z)).sqrt_nonnegative();
@@ -89,8 +115,9 @@ impl Ggx {
     /// Reflection between two directions on the same side: (D·G₂/(4 cos θ_o cos θ_i), density of drawing `wi` by reflecting
     /// `wo` about a visible normal, cosine between either and the normal they share).
     ///
-    /// Smith's G₂ is height-correlated (Heitz 2014): with S as in [`Ggx::stretch`] the first is D/(2(c_o S_i + c_i S_o)) and
-    /// the second D/(2(c_o + S_o)). The first is symmetric in the directions, bit for bit.
+    /// Where Smith's G₂ is height-correlated (Heitz 2014), with S as in [`Distribution::stretch`], the first is D/(2(c_o S_i + c_i S_o)),
+    /// where it is G₁G₁ it is D/((c_o + S_o)(c_i + S_i)). The second is D/(2(c_o + S_o)). The first is symmetric in the directions, bit for
+    /// bit.
     pub(crate) fn reflection(&self, wo: Vec3<f64>, wi: Vec3<f64>) -> Reflection {
         let sum = wo + wi;
         let length = sum.length();
@@ -98,7 +125,10 @@ impl Ggx {
         let (s_o, s_i) = (self.stretch(wo), self.stretch(wi));
         let (c_o, c_i) = (wo.z.abs(), wi.z.abs());
         Reflection {
-            term: 0.5 * d / (c_o * s_i + c_i * s_o),
+            term: match self.masking {
+                FacetMasking::Correlated => 0.5 * d / (c_o * s_i + c_i * s_o),
+                FacetMasking::Separable => d / ((c_o + s_o) * (c_i + s_i)),
+            },
             density: 0.5 * d / (c_o + s_o),
             cos: (0.5 * length).min(1.0),
         }
@@ -131,7 +161,7 @@ impl Ggx {
     }
 }
 
-/// What [`Ggx::reflection`] finds.
+/// What [`Distribution::reflection`] finds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reflection {
     /// D·G₂/(4 cos θ_o cos θ_i), sr⁻¹: the BRDF of perfect mirrors.
@@ -142,7 +172,7 @@ pub(crate) struct Reflection {
     pub(crate) cos: f64,
 }
 
-/// What [`Ggx::refraction`] finds, up to indices and Fresnel's T, which the caller knows.
+/// What [`Distribution::refraction`] finds, up to indices and Fresnel's T, which the caller knows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Refraction {
     /// D·|wo·h||wi·h|/(n_o wo·h + n_i wi·h)²: times T·G₁G₁/(cos θ_o cos θ_i)·n_o² it is the BSDF, times T·(G₁/cos θ_o)·n_i² the
@@ -168,11 +198,16 @@ pub(crate) const MEAN_ERROR: f64 = 1e-4;
 /// of the same c. Fresnel's equations depend on c alone. Kinks and square roots are at known places: total reflection begins at one c,
 /// reflected and refracted light meets the horizon at one place of each circle, and these places begin and end at known c. Gauss's rules
 /// between such places, with nodes that crowd at both ends, converge quickly; along c they are divided where needed.
-pub(crate) fn mean_over_facets(ggx: &Ggx, wo: Vec3<f64>, eta: Option<f64>, loss: impl Fn(&Facet) -> f64) -> f64 {
-    let Some(alpha) = ggx.isotropic_alpha() else { return anisotropic::mean(ggx, wo, loss) };
+pub(crate) fn mean_over_facets(
+    distribution: &Distribution,
+    wo: Vec3<f64>,
+    eta: Option<f64>,
+    loss: impl Fn(&Facet) -> f64,
+) -> f64 {
+    let Some(alpha) = distribution.isotropic_alpha() else { return anisotropic::mean(distribution, wo, loss) };
     // Tables ask hundreds of times each: to make it took a fifth of their time.
     static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_rule(8));
-    let view = View::new(ggx, alpha, wo.z, eta);
+    let view = View::new(distribution, alpha, wo.z, eta);
     let cuts = view.cuts();
     let between = |[first, last]: [f64; 2]| {
         let panel = |a: f64, b: f64| -> f64 {
@@ -211,7 +246,8 @@ fn crowded(x: f64) -> (f64, f64) {
 }
 
 /// Facets as one direction sees them.
-struct View {
+struct View<'a> {
+    distribution: &'a Distribution,
     alpha: f64,
     /// The direction, in the xz plane.
     wo: Vec3<f64>,
@@ -220,14 +256,14 @@ struct View {
     eta: Option<f64>,
 }
 
-impl View {
-    fn new(ggx: &Ggx, alpha: f64, mu: f64, eta: Option<f64>) -> Self {
+impl<'a> View<'a> {
+    fn new(distribution: &'a Distribution, alpha: f64, mu: f64, eta: Option<f64>) -> Self {
         let wo = Vec3::new(((1.0 - mu) * (1.0 + mu)).sqrt_nonnegative(), 0.0, mu);
-        Self { alpha, wo, stretch: ggx.stretch(wo), eta: eta.filter(|eta| *eta < 1.0) }
+        Self { distribution, alpha, wo, stretch: distribution.stretch(wo), eta: eta.filter(|eta| *eta < 1.0) }
     }
 
     /// The cosines of incidence between which means along circles are smooth, in order.
-    fn cuts(&self) -> [f64; 8] {
+    fn cuts(&self) -> Vec<f64> {
         let (sin, mu) = (self.wo.x, self.wo.z);
         // Where the circle is cut off at the horizon, where facets are densest, where reflected light meets the horizon on either side,
         // where total reflection begins and refracted light meets the horizon.
@@ -236,7 +272,14 @@ impl View {
             [(1.0 - eta * eta).sqrt(), along / (along * along + eta * eta * mu * mu).sqrt()]
         });
         let reflected = [1.0 + sin, 1.0 - sin].map(|square| (0.5 * square).sqrt_nonnegative());
-        let mut cuts = [0.0, 1.0, sin, mu, reflected[0], reflected[1], total, refracted];
+        let mut cuts = vec![0.0, 1.0, sin, mu, reflected[0], reflected[1], total, refracted];
+        if self.distribution.kind == FacetDistribution::Beckmann {
+            // Without tails that would lead to it, the peak is where slopes are a few widths long.
+            for slope in [1.5, 3.0, 6.5].map(|widths| widths * self.alpha) {
+                let cos = 1.0 / (1.0 + slope * slope).sqrt();
+                cuts.extend([1.0, -1.0].map(|side| (cos * (mu + side * slope * sin)).clamp(0.0, 1.0)));
+            }
+        }
         cuts.sort_by(f64::total_cmp);
         cuts
     }
@@ -282,11 +325,22 @@ impl View {
                 let (cos, sin_psi) = ((turned * turned - t * t) * per, 2.0 * t * turned * per);
                 let z = level + swing * cos;
                 let wi_z = 2.0 * c * z - mu;
-                let s_i = (wi_z * wi_z + a2 * (1.0 - wi_z * wi_z)).sqrt();
-                let mirrored =
-                    if wi_z <= 0.0 { 0.0 } else { wi_z * (mu + self.stretch) / (mu * s_i + wi_z * self.stretch) };
+                let mirrored = if wi_z <= 0.0 {
+                    0.0
+                } else {
+                    let s_i = match self.distribution.kind {
+                        FacetDistribution::Ggx => (wi_z * wi_z + a2 * (1.0 - wi_z * wi_z)).sqrt(),
+                        FacetDistribution::Beckmann => {
+                            beckmann::stretch(wi_z, alpha * (1.0 - wi_z * wi_z).sqrt_nonnegative())
+                        }
+                    };
+                    self.distribution.mirrored((mu, self.stretch), (wi_z, s_i))
+                };
                 let h = Vec3::new(c * sin - s * mu * cos, s * sin_psi, z);
-                let density = 1.0 / ((least + k * swing * (1.0 - cos)) * (1.0 + k * z) * (1.0 + k * z));
+                let mut density = 1.0 / ((least + k * swing * (1.0 - cos)) * (1.0 + k * z) * (1.0 + k * z));
+                if self.distribution.kind == FacetDistribution::Beckmann {
+                    density *= beckmann::over_ggx((1.0 - z) * (1.0 + z) / (a2 * z * z));
+                }
                 let dx = (ends[1] - ends[0]) * weight / (turned * turned + x * x);
                 sum += dx * density * loss(&Facet { cos: c, mirrored, h, wo: self.wo });
             }

@@ -17,7 +17,7 @@
 //! ones: polarisation follows the shading, and stays physical.
 
 use super::albedo::{Azimuths, NODES, node};
-use super::microfacet::{Facet, Ggx, mean_over_facets};
+use super::microfacet::{Distribution, Facet, mean_over_facets};
 use super::{Bsdf, Shading, shading};
 use crate::polarisation::across;
 use crate::polarisation::mueller::{self, DEPOLARISER, IDENTITY, Matrix, Mueller};
@@ -144,18 +144,23 @@ pub(super) struct PolarisedLoss {
 
 impl PolarisedLoss {
     /// Of facets that lose `loss` of each, (ℓ₀, ℓ₁) with s and p those of the facet, for relative indices within `eta`.
-    pub(super) fn new(eta: [f64; 2], ggx: &Ggx, loss: impl Fn(&Facet, f64) -> [f64; 2] + Sync) -> Self {
+    pub(super) fn new(
+        eta: [f64; 2],
+        distribution: &Distribution,
+        loss: impl Fn(&Facet, f64) -> [f64; 2] + Sync,
+    ) -> Self {
         let count = if eta[0] == eta[1] { 1 } else { 2 };
         let step = eta[1] - eta[0];
-        let azimuths = Azimuths::of(ggx);
+        let azimuths = Azimuths::of(distribution);
         let row = |r: usize| {
             let eta = eta[0] + step * r as f64;
             let at = |k: usize| {
                 // Along the normal facets of two widths still prefer a state, by the azimuth from which that is reached.
-                let steepest = if ggx.isotropic_alpha().is_some() { 1.0 } else { 1.0 - 1e-9 };
+                let steepest = if distribution.isotropic_alpha().is_some() { 1.0 } else { 1.0 - 1e-9 };
                 let wo = azimuths.direction(node(k % NODES).clamp(1e-6, steepest), (k / NODES) as f64);
                 // Seen from either side, so cut for the denser one.
-                let mean = |of: &dyn Fn(&Facet) -> f64| mean_over_facets(ggx, wo, Some(eta.min(1.0 / eta)), of);
+                let mean =
+                    |of: &dyn Fn(&Facet) -> f64| mean_over_facets(distribution, wo, Some(eta.min(1.0 / eta)), of);
                 let lost = mean(&|facet| loss(facet, eta)[0]);
                 let turned = |component: usize| {
                     let turned = mean(&|facet| loss(facet, eta)[1] * of_twice_the_turn(facet)[component]);

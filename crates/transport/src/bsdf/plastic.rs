@@ -7,7 +7,7 @@
 //! rough one 1 − R of its facets, tabulated. Facets of the coat that hide each other pass their light to the ground.
 
 use super::albedo::{self, Azimuths, LossTable, Tabulated};
-use super::microfacet::{Facet, Facing, Ggx, MEAN_ERROR, mean_over_facets};
+use super::microfacet::{Distribution, Facet, Facing, MEAN_ERROR, mean_over_facets};
 use super::mueller::{Lobe, PolarisedLoss};
 use super::rough_dielectric::mean_transmittance;
 use super::{BsdfSample, Properties, Shading};
@@ -40,7 +40,7 @@ pub struct Plastic {
 
 #[derive(Clone, Debug)]
 struct Rough {
-    ggx: Ggx,
+    distribution: Distribution,
     /// T(µ).
     transmittance: Arc<LossTable>,
     /// The least and the largest index.
@@ -61,15 +61,17 @@ impl Plastic {
         let [first, last] = range_nm;
         let steps = || (0..=64).map(move |i| first + (last - first) * f64::from(i) / 64.0);
         let rough = facets.map(|facets| {
-            let ggx = Ggx::new(facets);
+            let distribution = Distribution::new(facets);
             let eta = albedo::extremes(range_nm, |nm| coat.eval(nm));
             let reflected = |facet: f64, eta: f64| fresnel::dielectric(facet, eta).map_or(1.0, |f| f.reflectance);
-            let transmittance = albedo::shared(Tabulated::Coat, &ggx, eta, || {
-                LossTable::new(Azimuths::of(&ggx), eta, MEAN_ERROR, |wo, eta| {
-                    1.0 - mean_over_facets(&ggx, wo, Some(eta), |facet| reflected(facet.cos, eta) * facet.mirrored)
+            let transmittance = albedo::shared(Tabulated::Coat, &distribution, eta, || {
+                LossTable::new(Azimuths::of(&distribution), eta, MEAN_ERROR, |wo, eta| {
+                    1.0 - mean_over_facets(&distribution, wo, Some(eta), |facet| {
+                        reflected(facet.cos, eta) * facet.mirrored
+                    })
                 })
             });
-            Box::new(Rough { ggx, transmittance, eta, polarised: None })
+            Box::new(Rough { distribution, transmittance, eta, polarised: None })
         });
         let mean_transmittance = PathSpectrum::tabulate(range_nm, |nm| match &rough {
             Some(rough) => rough.transmittance.average(coat.eval(nm)),
@@ -114,7 +116,7 @@ impl Plastic {
     /// The frame of the coat's facets.
     fn facing(&self, at: &Shading<'_>, n: Vec3<f64>, wo: Vec3<f64>) -> Option<Facing> {
         match &self.rough {
-            Some(rough) => rough.ggx.facing(at, n, wo),
+            Some(rough) => rough.distribution.facing(at, n, wo),
             None => Facing::new(n, wo),
         }
     }
@@ -155,7 +157,7 @@ impl Plastic {
         if lobe != Lobe::SolidAngle {
             return Some(lambda_nm.0.map(|nm| mueller::dielectric_reflection(local_o.z.min(1.0), self.coat.eval(nm))));
         }
-        let facets = self.rough.as_ref().map(|rough| rough.ggx.reflection(local_o, local_i));
+        let facets = self.rough.as_ref().map(|rough| rough.distribution.reflection(local_o, local_i));
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.uv);
         Some(std::array::from_fn(|lane| {
             let nm = lambda_nm[lane];
@@ -167,7 +169,7 @@ impl Plastic {
             let [(t_o, a_o), (t_i, a_i)] =
                 [local_o, local_i].map(|w| (self.transmittance(w, index), self.diattenuation(w, index)));
             let ground = t_o * t_i * self.ground(nm, index, reflectance[lane]) * FRAC_1_PI;
-            let s = |w: Vec3<f64>| self.rough.as_ref().map_or(n.cross(w), |rough| rough.ggx.s(&facing, n, w));
+            let s = |w: Vec3<f64>| self.rough.as_ref().map_or(n.cross(w), |rough| rough.distribution.s(&facing, n, w));
             mueller::mixed([coat, (ground, super::mueller::forgotten(s, (wo, wi, x), a_o, a_i))])
         }))
     }
@@ -175,7 +177,7 @@ impl Plastic {
     /// Makes the table that [`Plastic::mueller`] needs: what the facets of a rough coat do not reflect of each state they let in.
     pub(super) fn prepare_polarisation(&mut self) {
         if let Some(rough) = &mut self.rough {
-            rough.polarised = Some(PolarisedLoss::new(rough.eta, &rough.ggx, let_in));
+            rough.polarised = Some(PolarisedLoss::new(rough.eta, &rough.distribution, let_in));
         }
     }
 
@@ -201,7 +203,7 @@ impl Plastic {
             return (Lanes::ZERO, Lanes::ZERO);
         }
         let share = self.coat_share(wo);
-        let facets = self.rough.as_ref().map(|rough| rough.ggx.reflection(wo, wi));
+        let facets = self.rough.as_ref().map(|rough| rough.distribution.reflection(wo, wi));
         let diffuse = wi.z * FRAC_1_PI;
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.uv);
         // T(µ_o) T(µ_i), and f·|cos θ_i| of the coat's facets.
@@ -242,7 +244,9 @@ impl Plastic {
         let share = self.coat_share(facing.wo);
         let wi = match &self.rough {
             _ if u_lobe >= share => facing.world(cosine_hemisphere([u1, u2])),
-            Some(rough) => facing.world(facing.wo.reflected_about(rough.ggx.visible_normal(facing.wo, [u1, u2]))),
+            Some(rough) => {
+                facing.world(facing.wo.reflected_about(rough.distribution.visible_normal(facing.wo, [u1, u2])))
+            }
             None => {
                 let reflected = |nm: f64| fresnel::dielectric(mu, self.coat.eval(nm)).map_or(1.0, |f| f.reflectance);
                 return Some(BsdfSample {

@@ -112,7 +112,7 @@ mod tests {
                 sheet(polariser(r)),
             ]);
         }
-        let grained = Microfacets { alpha: [0.1, 0.4], rotation_rad: 0.5 };
+        let grained = Microfacets::ggx([0.1, 0.4], 0.5);
         for facets in [None, Some(0.3.into()), Some(grained)] {
             let (reflectance, coat) = (Spectrum::Constant(0.5).into(), interior.clone());
             let internal_reflection = InternalReflection::Coloured;

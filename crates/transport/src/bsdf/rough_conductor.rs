@@ -7,7 +7,7 @@
 use super::albedo::{self, Azimuths, LossTable, Tabulated};
 use super::film::PathFilm;
 use super::metal::{OfMetal, PathMetal};
-use super::microfacet::{Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
+use super::microfacet::{Distribution, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::{BsdfSample, Properties, Shading};
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::fresnel::Amplitudes;
@@ -21,7 +21,7 @@ use std::sync::Arc;
 pub struct RoughConductor {
     metal: PathMetal,
     film: Option<PathFilm>,
-    ggx: Ggx,
+    distribution: Distribution,
     compensation: Option<Box<Compensation>>,
 }
 
@@ -53,11 +53,11 @@ impl RoughConductor {
         compensated: bool,
         range_nm: [f64; 2],
     ) -> Self {
-        let ggx = Ggx::new(facets);
+        let distribution = Distribution::new(facets);
         let compensation = compensated.then(|| {
-            let loss = albedo::shared(Tabulated::Mirrors, &ggx, [1.0, 1.0], || {
-                let lost = |wo, _| mean_over_facets(&ggx, wo, None, |facet| 1.0 - facet.mirrored);
-                LossTable::new(Azimuths::of(&ggx), [1.0, 1.0], MEAN_ERROR, lost)
+            let loss = albedo::shared(Tabulated::Mirrors, &distribution, [1.0, 1.0], || {
+                let lost = |wo, _| mean_over_facets(&distribution, wo, None, |facet| 1.0 - facet.mirrored);
+                LossTable::new(Azimuths::of(&distribution), [1.0, 1.0], MEAN_ERROR, lost)
             });
             let missing = loss.average(1.0);
             let rule = gauss_rule(24);
@@ -72,7 +72,7 @@ impl RoughConductor {
             };
             Box::new(Compensation { loss, factor, missing })
         });
-        Self { metal, film, ggx, compensation }
+        Self { metal, film, distribution, compensation }
     }
 
     /// See [`Properties`]. Its tables are made for vacuum.
@@ -110,12 +110,12 @@ impl RoughConductor {
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
-        let Some(facing) = self.ggx.facing(at, n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
+        let Some(facing) = self.distribution.facing(at, n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let (wo, wi) = (facing.wo, facing.local(wi));
         if wi.z <= 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
         }
-        let single = self.ggx.reflection(wo, wi);
+        let single = self.distribution.reflection(wo, wi);
         let loss = self.loss(wo);
         let several = loss * self.loss(wi);
         let index = self.metal.lanes(lambda_nm, at.uv);
@@ -140,9 +140,9 @@ impl RoughConductor {
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> Option<[Matrix; N]> {
-        let facing = self.ggx.facing(at, n, wo)?;
+        let facing = self.distribution.facing(at, n, wo)?;
         let (wo, wi) = (facing.wo, facing.local(wi));
-        let single = self.ggx.reflection(wo, wi);
+        let single = self.distribution.reflection(wo, wi);
         let several = self.loss(wo) * self.loss(wi);
         let index = self.metal.lanes(lambda_nm, at.uv);
         Some(std::array::from_fn(|lane| {
@@ -168,11 +168,11 @@ impl RoughConductor {
         wo: Vec3<f64>,
         u: [f64; 3],
     ) -> Option<BsdfSample<N>> {
-        let facing = self.ggx.facing(at, n, wo)?;
+        let facing = self.distribution.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
         let wi = match &self.compensation {
             Some(compensation) if u_lobe < compensation.loss.eval(facing.wo, 1.0) => compensation.loss.sample([u1, u2]),
-            _ => facing.wo.reflected_about(self.ggx.visible_normal(facing.wo, [u1, u2])),
+            _ => facing.wo.reflected_about(self.distribution.visible_normal(facing.wo, [u1, u2])),
         };
         let wi = facing.world(wi);
         // Of the direction as it came out, rounding included: below the surface the light is lost.

@@ -16,7 +16,7 @@
 
 use super::albedo::{self, Azimuths, LossTable, Tabulated};
 use super::film::{PathFilm, Shares};
-use super::microfacet::{Facet, Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
+use super::microfacet::{Distribution, Facet, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use super::{BsdfSample, Properties, Shading};
 use crate::media::Interface;
@@ -31,7 +31,7 @@ use std::sync::Arc;
 /// Rough interface of two transparent media.
 #[derive(Clone, Debug)]
 pub struct RoughDielectric {
-    ggx: Ggx,
+    distribution: Distribution,
     compensated: bool,
     /// What coats each facet; then nothing is compensated.
     film: Option<Box<PathFilm>>,
@@ -112,7 +112,7 @@ impl Boundary {
     fn new(
         interior: RefractiveIndex,
         exterior: RefractiveIndex,
-        ggx: Ggx,
+        distribution: Distribution,
         compensated: bool,
         range_nm: [f64; 2],
     ) -> Self {
@@ -120,7 +120,9 @@ impl Boundary {
         let compensation = compensated.then(|| {
             let ratio = |nm: f64| interior.eval(nm) / exterior.eval(nm);
             let eta = albedo::extremes(range_nm, ratio);
-            let table = |of, eta_of: fn(f64) -> f64| albedo::shared(of, &ggx, eta, || glass_table(&ggx, eta, eta_of));
+            let table = |of, eta_of: fn(f64) -> f64| {
+                albedo::shared(of, &distribution, eta, || glass_table(&distribution, eta, eta_of))
+            };
             Box::new(Compensation {
                 outside: table(Tabulated::Outside, |eta| eta),
                 inside: table(Tabulated::Inside, f64::recip),
@@ -149,12 +151,12 @@ impl Boundary {
         Sides { n, tables: Some((eta, [near, far])), loss_o: near.eval(wo, eta), mean_loss, crossing }
     }
 
-    fn prepare_polarisation(&mut self, ggx: &Ggx) {
+    fn prepare_polarisation(&mut self, distribution: &Distribution) {
         if let Some(compensation) = &mut self.compensation {
             let eta = compensation.eta;
             compensation.polarised = Some(Box::new([
-                PolarisedLoss::new(eta, ggx, |facet, eta| polarised_loss(ggx, facet, eta)),
-                PolarisedLoss::new(eta, ggx, |facet, eta| polarised_loss(ggx, facet, 1.0 / eta)),
+                PolarisedLoss::new(eta, distribution, |facet, eta| polarised_loss(distribution, facet, eta)),
+                PolarisedLoss::new(eta, distribution, |facet, eta| polarised_loss(distribution, facet, 1.0 / eta)),
             ]));
         }
     }
@@ -171,10 +173,10 @@ impl RoughDielectric {
         compensated: bool,
         range_nm: [f64; 2],
     ) -> Self {
-        let ggx = Ggx::new(facets);
-        let compensated = compensated && ggx.isotropic_alpha().is_some();
-        let own = Boundary::new(interior, exterior, ggx, compensated, range_nm);
-        Self { ggx, compensated, film: None, own, others: Vec::new() }
+        let distribution = Distribution::new(facets);
+        let compensated = compensated && distribution.isotropic_alpha().is_some();
+        let own = Boundary::new(interior, exterior, distribution, compensated, range_nm);
+        Self { distribution, compensated, film: None, own, others: Vec::new() }
     }
 
     /// The same with a film on each facet; of facets that are not compensated.
@@ -207,7 +209,7 @@ impl RoughDielectric {
         let interior = &self.own.interior;
         let others = media.iter().filter(|medium| *medium != interior && **medium != self.own.exterior);
         let boundary = |medium: &RefractiveIndex| {
-            Boundary::new(interior.clone(), medium.clone(), self.ggx, self.compensated, range_nm)
+            Boundary::new(interior.clone(), medium.clone(), self.distribution, self.compensated, range_nm)
         };
         self.others = others.map(boundary).collect();
     }
@@ -245,7 +247,7 @@ impl RoughDielectric {
         let mu = wi.z.abs();
         let (mut facet, mut density) = (None, 0.0);
         let (side, share, per) = if wi.z > 0.0 {
-            let facets = self.ggx.reflection(wo, wi);
+            let facets = self.distribution.reflection(wo, wi);
             let shares = self.facet(place, facets.cos, (sides.n, eta));
             facet = Some((shares.reflected * facets.term, facets.cos));
             let chosen = if self.film.is_some() { shares.reflection_probability() } else { shares.reflected };
@@ -254,9 +256,9 @@ impl RoughDielectric {
         } else {
             // In an order that does not depend on which of the two is `wo`, so that the BSDF is reciprocal to the last bits.
             let facets = if from_outside {
-                self.ggx.refraction(wo, sides.n[0], wi, sides.n[1])
+                self.distribution.refraction(wo, sides.n[0], wi, sides.n[1])
             } else {
-                self.ggx.refraction(-wi, sides.n[1], -wo, sides.n[0])
+                self.distribution.refraction(-wi, sides.n[1], -wo, sides.n[0])
             };
             if let Some(facets) = facets {
                 let (eta_above, g_o) =
@@ -317,7 +319,7 @@ impl RoughDielectric {
         let Some((boundary, from_outside)) = self.boundary(at.media(), n.dot(wo) > 0.0) else {
             return Some([mueller::IDENTITY; N]);
         };
-        let facing = self.ggx.facing(at, n, wo)?;
+        let facing = self.distribution.facing(at, n, wo)?;
         let (local_o, local_i) = (facing.wo, facing.local(wi));
         Some(lambda_nm.0.map(|nm| {
             let Some(Between { facet, several, eta, .. }) =
@@ -359,9 +361,9 @@ impl RoughDielectric {
 
     /// Makes the tables that [`RoughDielectric::mueller`] needs.
     pub(super) fn prepare_polarisation(&mut self) {
-        let ggx = self.ggx;
-        self.own.prepare_polarisation(&ggx);
-        self.others.iter_mut().for_each(|boundary| boundary.prepare_polarisation(&ggx));
+        let distribution = self.distribution;
+        self.own.prepare_polarisation(&distribution);
+        self.others.iter_mut().for_each(|boundary| boundary.prepare_polarisation(&distribution));
     }
 
     pub(super) fn eval<const N: usize>(
@@ -373,7 +375,7 @@ impl RoughDielectric {
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let Some(boundary) = self.boundary(at.media(), n.dot(wo) > 0.0) else { return (Lanes::ZERO, Lanes::ZERO) };
-        let Some(facing) = self.ggx.facing(at, n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
+        let Some(facing) = self.distribution.facing(at, n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
         let wi = facing.local(wi);
         if wi.z == 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
@@ -401,7 +403,7 @@ impl RoughDielectric {
         let Some((boundary, from_outside)) = self.boundary(at.media(), n.dot(wo) > 0.0) else {
             return straight_on(Lanes::ONE);
         };
-        let facing = self.ggx.facing(at, n, wo)?;
+        let facing = self.distribution.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
         let hero = boundary.sides(lambda_nm[0], from_outside, facing.wo);
         let eta = hero.n[1] / hero.n[0];
@@ -414,7 +416,7 @@ impl RoughDielectric {
             if crosses { -tables[1].sample([u1, u2]) } else { tables[0].sample([u1, u2]) }
         } else {
             let u_facet = (u_lobe - hero.loss_o) / (1.0 - hero.loss_o);
-            let h = self.ggx.visible_normal(facing.wo, [u1, u2]);
+            let h = self.distribution.visible_normal(facing.wo, [u1, u2]);
             let cos_o = facing.wo.dot(h).min(1.0);
             let refracted = match &self.film {
                 Some(_) => fresnel::refracted_cosine(cos_o, eta).map(|cos_t| {
@@ -453,33 +455,33 @@ impl RoughDielectric {
 }
 
 /// The losses from the side from which the relative index is `eta_of` that of the table, for n_interior/n_exterior within `eta`.
-pub(super) fn glass_table(ggx: &Ggx, eta: [f64; 2], eta_of: fn(f64) -> f64) -> LossTable {
-    LossTable::new(Azimuths::All, eta, MEAN_ERROR, |wo, eta| loss(ggx, wo, eta_of(eta)))
+pub(super) fn glass_table(distribution: &Distribution, eta: [f64; 2], eta_of: fn(f64) -> f64) -> LossTable {
+    LossTable::new(Azimuths::All, eta, MEAN_ERROR, |wo, eta| loss(distribution, wo, eta_of(eta)))
 }
 
 /// What one scattering loses of light from above, for η = n_below/n_above.
-pub(super) fn loss(ggx: &Ggx, wo: Vec3<f64>, eta: f64) -> f64 {
+pub(super) fn loss(distribution: &Distribution, wo: Vec3<f64>, eta: f64) -> f64 {
     if eta == 1.0 {
         return 0.0;
     }
-    mean_over_facets(ggx, wo, Some(eta), |facet| {
+    mean_over_facets(distribution, wo, Some(eta), |facet| {
         let Some(f) = fresnel::dielectric(facet.cos, eta) else { return 1.0 - facet.mirrored };
-        f.reflectance * (1.0 - facet.mirrored) + f.transmittance * (1.0 - passed(ggx, facet, eta, f.cos_t))
+        f.reflectance * (1.0 - facet.mirrored) + f.transmittance * (1.0 - passed(distribution, facet, eta, f.cos_t))
     })
 }
 
 /// Share of the light refracted by a facet that no other one stops.
-fn passed(ggx: &Ggx, facet: &Facet, eta: f64, cos_t: f64) -> f64 {
+fn passed(distribution: &Distribution, facet: &Facet, eta: f64, cos_t: f64) -> f64 {
     let wi = snell::refract_with_cosines(facet.wo, facet.h, eta, facet.cos, cos_t);
-    if wi.z < 0.0 { -2.0 * wi.z / (-wi.z + ggx.stretch(wi)) } else { 0.0 }
+    if wi.z < 0.0 { -2.0 * wi.z / (-wi.z + distribution.stretch(wi)) } else { 0.0 }
 }
 
 /// What a facet loses of unpolarised light, and of S₁ in its own frame: T_s − T_p = R_p − R_s.
-pub(super) fn polarised_loss(ggx: &Ggx, facet: &Facet, eta: f64) -> [f64; 2] {
+pub(super) fn polarised_loss(distribution: &Distribution, facet: &Facet, eta: f64) -> [f64; 2] {
     let Some(f) = fresnel::dielectric(facet.cos, eta).filter(|_| eta != 1.0) else {
         return [1.0 - facet.mirrored, 0.0];
     };
-    let passed = passed(ggx, facet, eta, f.cos_t);
+    let passed = passed(distribution, facet, eta, f.cos_t);
     let lost = f.reflectance * (1.0 - facet.mirrored) + f.transmittance * (1.0 - passed);
     [lost, 0.5 * (f.r_s * f.r_s - f.r_p * f.r_p) * (passed - facet.mirrored)]
 }

@@ -2,7 +2,7 @@
 
 use super::albedo::{Azimuths, LossTable, NODES, extremes, node};
 use super::metal::{OfMetal, PathMetal};
-use super::microfacet::{Ggx, MEAN_ERROR, gauss_rule, mean_over_facets};
+use super::microfacet::{Distribution, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use super::oren_nayar::albedo;
 use super::plastic::let_in;
@@ -16,12 +16,13 @@ use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 mod anisotropic;
+mod beckmann;
 
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
 
 /// Facets of one width.
-fn ggx(alpha: f64) -> Ggx {
-    Ggx::new(&alpha.into())
+fn ggx(alpha: f64) -> Distribution {
+    Distribution::new(&alpha.into())
 }
 
 /// A direction of this cosine: of facets of one width no more of it counts.
@@ -113,15 +114,15 @@ proptest! {
     }
 }
 
-/// On the mean over diffuse light the tables give back less than is lost, by at most 1.5e-4 of all light: what the many times that light
+/// On the mean over diffuse light the tables give back less than is lost, by at most `most` of all light: what the many times that light
 /// meets the surface from inside a body may add up. In no direction do they give back more than 1e-4 too much, also between their nodes.
-fn gives_back_all_but_little(what: &str, table: &LossTable, eta: f64, loss: impl Fn(f64) -> f64) {
+fn gives_back_all_but(most: f64, what: &str, table: &LossTable, eta: f64, loss: impl Fn(f64) -> f64) {
     // In √µ the loss of a narrow width is smooth enough for midpoints.
     let at = |i: u32| (f64::from(i) + 0.5) / 400.0;
     let losses: Vec<f64> = (0..400).map(|i| loss(at(i).powi(2))).collect();
     let lost = (0..400).map(|i| at(i).powi(3) * 4.0 / 400.0 * losses[i as usize]).sum::<f64>();
     let missing = lost - table.average(eta);
-    assert!((0.0..1.5e-4).contains(&missing), "{what}: {missing} of {lost}");
+    assert!((0.0..most).contains(&missing), "{what}: {missing} of {lost}");
     for i in 0..400 {
         let over = table.eval(toward(at(i).powi(2)), eta) - losses[i as usize];
         assert!(over < 1e-4, "{what}, µ {}: {over} too much", at(i).powi(2));
@@ -134,11 +135,13 @@ fn tables_of_rough_surfaces_give_back_all_but_little_of_diffuse_light_and_never_
         let ggx = ggx(alpha);
         let mirrors = |mu: f64| mean_over_facets(&ggx, toward(mu), None, |facet| 1.0 - facet.mirrored);
         let table = LossTable::new(Azimuths::All, [1.0, 1.0], MEAN_ERROR, |wo, _| mirrors(wo.z));
-        gives_back_all_but_little(&format!("mirrors, α {alpha}"), &table, 1.0, mirrors);
+        gives_back_all_but(1.5e-4, &format!("mirrors, α {alpha}"), &table, 1.0, mirrors);
         for n in [1.5, 2.4] {
             for of in [(|n| n) as fn(f64) -> f64, f64::recip] {
                 let what = format!("α {alpha}, η {}", of(n));
-                gives_back_all_but_little(&what, &glass_table(&ggx, [n, n], of), n, |mu| loss(&ggx, toward(mu), of(n)));
+                gives_back_all_but(1.5e-4, &what, &glass_table(&ggx, [n, n], of), n, |mu| {
+                    loss(&ggx, toward(mu), of(n))
+                });
             }
         }
     }

@@ -3,8 +3,8 @@
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
 use etalon_scene::{
-    FilmIndex, FilmLayer, Image, ImageTexture, InternalReflection, MaterialKind, Metal, Microfacets, NumberTexture,
-    PolarisingSheet, Side, SpectrumTexture, Texels, ThinFilm,
+    FacetDistribution, FacetMasking, FilmIndex, FilmLayer, Image, ImageTexture, InternalReflection, MaterialKind,
+    Metal, Microfacets, NumberTexture, PolarisingSheet, Side, SpectrumTexture, Texels, ThinFilm,
 };
 
 use crate::material::Material;
@@ -222,7 +222,7 @@ scatters_suite!(mirror_and_clay, mixture());
 
 /// Facets of two widths, turned.
 fn brushed(u: f64, v: f64) -> Microfacets {
-    Microfacets { alpha: [u, v], rotation_rad: 0.6 }
+    Microfacets::ggx([u, v], 0.6)
 }
 
 fn brushed_gold(compensated: bool) -> Material {
@@ -265,7 +265,7 @@ fn cross_brushed() -> Material {
     let metal = Metal::Reflectance(Spectrum::Constant(0.8).into());
     let part = |rotation_rad| MaterialKind::RoughConductor {
         metal: metal.clone(),
-        facets: Microfacets { alpha: [0.4, 0.15], rotation_rad },
+        facets: Microfacets::ggx([0.4, 0.15], rotation_rad),
         compensated: true,
         film: None,
     };
@@ -278,6 +278,45 @@ scatters_suite!(lossless_brushed_metal_furnace, lossless_brushed_metal());
 scatters_suite!(brushed_glass, brushed_glass());
 scatters_suite!(white_brushed_plastic, brushed_plastic());
 scatters_suite!(cross_brushed, cross_brushed());
+
+/// Facets of Beckmann's distribution.
+fn gaussian(facets: Microfacets, masking: FacetMasking) -> Microfacets {
+    Microfacets { distribution: FacetDistribution::Beckmann, masking, ..facets }
+}
+
+fn beckmann_metal(facets: Microfacets, compensated: bool) -> Material {
+    let index = ComplexIndex::tabulated(vec![300.0, 900.0], vec![1e-12; 2], vec![3.0; 2]).unwrap();
+    Material::new(MaterialKind::RoughConductor { metal: Metal::Index(index), facets, compensated, film: None })
+}
+
+fn beckmann_glass(alpha: f64, masking: FacetMasking, compensated: bool) -> Material {
+    let (interior, exterior) = (RefractiveIndex::named("N-BK7").unwrap(), RefractiveIndex::VACUUM);
+    let facets = gaussian(alpha.into(), masking);
+    Material::new(MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority: None, film: None })
+}
+
+fn beckmann_plastic() -> Material {
+    Material::new(MaterialKind::Plastic {
+        reflectance: Spectrum::Constant(1.0).into(),
+        coat: RefractiveIndex::Constant(1.5),
+        facets: Some(gaussian(0.4.into(), FacetMasking::Correlated)),
+        internal_reflection: InternalReflection::Coloured,
+    })
+}
+
+scatters_suite!(beckmann_metal, beckmann_metal(gaussian(0.8.into(), FacetMasking::Correlated), true));
+scatters_suite!(
+    beckmann_metal_of_separable_masking,
+    beckmann_metal(gaussian(0.8.into(), FacetMasking::Separable), true)
+);
+scatters_suite!(brushed_beckmann_metal, beckmann_metal(gaussian(brushed(0.2, 0.6), FacetMasking::Correlated), true));
+scatters_suite!(beckmann_glass, beckmann_glass(0.4, FacetMasking::Correlated, true));
+scatters_suite!(beckmann_glass_of_separable_masking, beckmann_glass(0.4, FacetMasking::Separable, false));
+scatters_suite!(white_beckmann_plastic, beckmann_plastic());
+scatters_suite!(
+    ggx_metal_of_separable_masking,
+    beckmann_metal(Microfacets { masking: FacetMasking::Separable, ..0.6.into() }, true)
+);
 
 #[test]
 fn brushed_materials_are_others_turned_about_their_normal() {

@@ -10,7 +10,7 @@ use super::thin_film::{FilmLayerForm, thin_film};
 use super::{Alpha, Made, MultipleScattering, Width};
 use crate::files::Files;
 use crate::json::{Code, List, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
-use crate::model::{MaterialKind, Medium};
+use crate::model::{FacetDistribution, FacetMasking, MaterialKind, Medium};
 
 crate::record! {
     /// Interface between two transparent media, with dispersion.
@@ -19,7 +19,7 @@ crate::record! {
         interior: Required<IndexForm>,
         /// Medium on the side that the surface normal points into.
         exterior: Required<IndexForm> = "1",
-        /// Roughness: the width α of the GGX distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
+        /// Roughness: the width α of the distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
         alpha: Required<Spanned<Alpha>> = "0",
         /// Instead: the width along the tangent, the direction in which u grows, from 0.0001 to 1.
         alpha_u: Optional<Width>,
@@ -29,6 +29,10 @@ crate::record! {
         tangent_rotation_deg: Optional<f64>,
         /// Instead: an image that says the width at each place.
         roughness_image: Optional<RoughnessImageForm>,
+        /// How the slopes of facets are distributed.
+        distribution: Required<FacetDistribution> = r#""ggx""#,
+        /// How facets hide each other from reflected light.
+        masking: Required<FacetMasking> = r#""correlated""#,
         /// For a rough surface, whether light that meets several facets is counted ("compensated") or lost ("lost"). The default is
         /// "compensated", of two widths or with a thin film "lost".
         multiple_scattering: Optional<Spanned<MultipleScattering>>,

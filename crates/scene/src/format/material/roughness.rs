@@ -4,7 +4,7 @@ use super::super::detail::{RoughnessImageForm, RoughnessQuantity, roughness_imag
 use super::{Alpha, Width};
 use crate::files::Files;
 use crate::json::{Code, Optional, Reader, Spanned};
-use crate::model::{LEAST_ALPHA, MaterialKind, Microfacets, NumberTexture};
+use crate::model::{FacetDistribution, FacetMasking, LEAST_ALPHA, MaterialKind, Microfacets, NumberTexture};
 use crate::texture::ImageTexture;
 
 /// Neighbouring widths of an image have roughnesses √α in this ratio. The peak of a highlight, in proportion to 1/α², is then at
@@ -14,12 +14,30 @@ const RATIO: f64 = 1.05;
 /// The most widths that an image of roughness makes: from [`LEAST_ALPHA`] to 1, and a smooth one.
 pub(super) const MOST_WIDTHS: usize = 97;
 
+/// Of what kind facets are, of any width.
+#[derive(Clone, Copy)]
+pub(super) struct Kind {
+    distribution: FacetDistribution,
+    masking: FacetMasking,
+}
+
+impl Kind {
+    /// Facets of the width `alpha`; 0 is smooth.
+    fn of_width(self, alpha: f64) -> Option<Microfacets> {
+        (alpha > 0.0).then(|| self.of_widths([alpha; 2], 0.0))
+    }
+
+    fn of_widths(self, alpha: [f64; 2], rotation_rad: f64) -> Microfacets {
+        Microfacets { alpha, rotation_rad, distribution: self.distribution, masking: self.masking }
+    }
+}
+
 /// How rough a surface is.
 pub(super) enum Roughness {
     /// The same everywhere; `None` is smooth.
     Uniform(Option<Microfacets>),
-    /// A number that says it, by an image.
-    Image(ImageTexture, RoughnessQuantity),
+    /// A number that says it, by an image, and what facets are but wide.
+    Image(ImageTexture, RoughnessQuantity, Kind),
 }
 
 impl RoughnessQuantity {
@@ -49,11 +67,11 @@ impl Roughness {
     pub(super) fn material(self, of: impl Fn(Option<Microfacets>) -> MaterialKind) -> MaterialKind {
         match self {
             Self::Uniform(facets) => of(facets),
-            Self::Image(texture, quantity) => {
+            Self::Image(texture, quantity, kind) => {
                 let range = texture.image.linear_texels().map(|[texel, ..]| texel * texture.factor[0]);
                 let [least, most] = range.fold([1.0_f64, 0.0], |[least, most], r| [least.min(r), most.max(r)]);
                 let nodes = nodes(least, most, quantity).into_iter();
-                let parts: Vec<_> = nodes.map(|r| (quantity.of(r), of(of_width(r * r)))).collect();
+                let parts: Vec<_> = nodes.map(|r| (quantity.of(r), of(kind.of_width(r * r)))).collect();
                 MaterialKind::Blend { parts, by: NumberTexture::Image(texture) }
             }
         }
@@ -73,11 +91,6 @@ fn nodes(least: f64, most: f64, quantity: RoughnessQuantity) -> Vec<f64> {
     all[first..=last].to_vec()
 }
 
-/// Facets of the width `alpha`; 0 is smooth.
-fn of_width(alpha: f64) -> Option<Microfacets> {
-    (alpha > 0.0).then(|| alpha.into())
-}
-
 /// The keys of a form that say how rough it is.
 pub(super) struct RoughnessKeys<'f> {
     pub alpha: Option<&'f Spanned<Alpha>>,
@@ -85,6 +98,8 @@ pub(super) struct RoughnessKeys<'f> {
     pub widths: [&'f Optional<Width>; 2],
     pub rotation_deg: &'f Optional<f64>,
     pub image: &'f Optional<RoughnessImageForm>,
+    pub distribution: Option<FacetDistribution>,
+    pub masking: Option<FacetMasking>,
 }
 
 /// The keys of a form that say how rough it is.
@@ -95,6 +110,8 @@ macro_rules! roughness_keys {
             widths: [&$form.alpha_u, &$form.alpha_v],
             rotation_deg: &$form.tangent_rotation_deg,
             image: &$form.roughness_image,
+            distribution: $form.distribution,
+            masking: $form.masking,
         }
     };
 }
@@ -103,17 +120,17 @@ pub(super) use roughness_keys;
 
 /// The roughness of a form.
 pub(super) fn roughness(keys: &RoughnessKeys<'_>, files: &mut Files, reader: &mut Reader<'_>) -> Option<Roughness> {
+    let kind = Kind { distribution: keys.distribution?, masking: keys.masking? };
     match (keys.image, keys.widths) {
         (Optional::Absent, [Optional::Absent, Optional::Absent]) => {
-            width(keys.alpha, reader).map(|alpha| Roughness::Uniform(of_width(alpha)))
+            width(keys.alpha, reader).map(|alpha| Roughness::Uniform(kind.of_width(alpha)))
         }
         (Optional::Absent, [Optional::Given(u), Optional::Given(v)]) => {
             let rotation_deg = keys.rotation_deg.clone().checked()?.unwrap_or(0.0);
-            let facets = Microfacets { alpha: [u.0, v.0], rotation_rad: rotation_deg.to_radians() };
-            Some(Roughness::Uniform(Some(facets)))
+            Some(Roughness::Uniform(Some(kind.of_widths([u.0, v.0], rotation_deg.to_radians()))))
         }
         (Optional::Given(image), _) => {
-            roughness_image(image, files, reader).map(|(image, quantity)| Roughness::Image(image, quantity))
+            roughness_image(image, files, reader).map(|(image, quantity)| Roughness::Image(image, quantity, kind))
         }
         // Reported where the keys were read.
         _ => None,

@@ -1,7 +1,8 @@
 //! Means over the facets that a direction sees, for facets of two widths that reflect.
 //!
 //! Divided by the widths along x and y, the facets become those of width 1, whose normals h′ fill the hemisphere evenly: a direction whose
-//! own image is w′ sees them with the density 2(w′·h′)⁺/(π(1 + w′_z)) (Heitz 2018). The integral is over the azimuth of h′ and, along each
+//! own image is w′ sees them with the density 2(w′·h′)⁺/(π(1 + w′_z)) (Heitz 2018). Beckmann's of width 1 are these, weighted by the ratio of
+//! both densities of slopes, and S of the image stands for 1. The integral is over the azimuth of h′ and, along each
 //! azimuth, over its polar angle. There P = (α_x p_x, α_y p_y) is the slope of the facet itself, and the places where something begins or
 //! ends are conics of P: each azimuth meets them where a quadratic equation says.
 //!
@@ -15,8 +16,9 @@
 //!
 //! Over the azimuth the integrand changes fastest in two places: where s·P changes its sign, and where P is shortest. Nodes crowd there.
 
-use super::{Facet, Ggx, crowded, gauss_rule, refined};
+use super::{Distribution, Facet, beckmann, crowded, gauss_rule, refined};
 use etalon_optics::Vec3;
+use etalon_scene::FacetDistribution;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::sync::LazyLock;
 
@@ -24,8 +26,8 @@ use std::sync::LazyLock;
 const MOST_CUTS: usize = 7;
 
 /// See [`mean_over_facets`](super::mean_over_facets).
-pub(super) fn mean(ggx: &Ggx, wo: Vec3<f64>, loss: impl Fn(&Facet) -> f64) -> f64 {
-    let view = View::new(ggx, wo);
+pub(super) fn mean(distribution: &Distribution, wo: Vec3<f64>, loss: impl Fn(&Facet) -> f64) -> f64 {
+    let view = View::new(distribution, wo);
     let azimuths = view.azimuths();
     let between = |ends: &[Azimuth]| {
         let middle = 0.5 * (ends[0].angle + ends[1].angle);
@@ -44,24 +46,30 @@ struct Azimuth {
 
 /// Facets as one direction sees them.
 struct View<'a> {
-    ggx: &'a Ggx,
+    distribution: &'a Distribution,
     wo: Vec3<f64>,
     stretch: f64,
     /// Its image among facets of width 1.
     image: Vec3<f64>,
+    /// S of the image.
+    image_stretch: f64,
 }
 
 impl<'a> View<'a> {
-    fn new(ggx: &'a Ggx, wo: Vec3<f64>) -> Self {
-        let [x, y] = ggx.alpha;
+    fn new(distribution: &'a Distribution, wo: Vec3<f64>) -> Self {
+        let [x, y] = distribution.alpha;
         let image = Vec3::new(x * wo.x, y * wo.y, wo.z).normalized();
-        Self { ggx, wo, stretch: ggx.stretch(wo), image }
+        let image_stretch = match distribution.kind {
+            FacetDistribution::Ggx => 1.0,
+            FacetDistribution::Beckmann => beckmann::stretch(image.z, (image.x * image.x + image.y * image.y).sqrt()),
+        };
+        Self { distribution, wo, stretch: distribution.stretch(wo), image, image_stretch }
     }
 
     /// Azimuths in turn between which means are smooth: the axes of the surface, and facets that turn toward the direction, away from it
     /// and neither.
     fn azimuths(&self) -> [Azimuth; 9] {
-        let [x, y] = self.ggx.alpha;
+        let [x, y] = self.distribution.alpha;
         let of_image = self.image.y.atan2(self.image.x);
         let toward = of_image.rem_euclid(FRAC_PI_2);
         std::array::from_fn(|i| {
@@ -80,7 +88,7 @@ impl<'a> View<'a> {
 
     /// By how much an azimuth at right angles to the direction is turned until s·P is as large as µ, or as µP if that is less.
     fn scale_across(&self, angle: f64) -> f64 {
-        let [x, y] = self.ggx.alpha;
+        let [x, y] = self.distribution.alpha;
         let (sin, cos) = angle.sin_cos();
         let turning = (x * self.wo.x).hypot(y * self.wo.y);
         let scale = self.wo.z * (x * cos).hypot(y * sin).min(1.0) / turning;
@@ -110,7 +118,7 @@ impl<'a> View<'a> {
             gauss_rule(10).iter().map(crowd).collect()
         });
         let (sin_phi, cos_phi) = azimuth.sin_cos();
-        let (mu, [x, y]) = (self.wo.z, self.ggx.alpha);
+        let (mu, [x, y]) = (self.wo.z, self.distribution.alpha);
         let (a, b) = (x * cos_phi, y * sin_phi);
         // P² = `square`·tan², s·P = `toward`·tan.
         let (square, toward) = (a * a + b * b, self.wo.x * a + self.wo.y * b);
@@ -126,18 +134,21 @@ impl<'a> View<'a> {
         for ends in cuts.sorted().windows(2).filter(|ends| ends[0] < ends[1]) {
             for (share, weight) in RULE.iter() {
                 let (sin, cos) = (ends[0] + (ends[1] - ends[0]) * share).sin_cos();
-                let seen = (self.image.z * cos + along_image * sin).max(0.0);
+                let mut seen = (self.image.z * cos + along_image * sin).max(0.0);
+                if self.distribution.kind == FacetDistribution::Beckmann {
+                    seen *= beckmann::over_ggx(sin * sin / (cos * cos));
+                }
                 let h = Vec3::new(a * sin, b * sin, cos).normalized();
                 let c = self.wo.dot(h).clamp(0.0, 1.0);
                 let wi = self.wo.reflected_about(h);
                 let mirrored = match wi.z > 0.0 {
-                    true => wi.z * (mu + self.stretch) / (mu * self.ggx.stretch(wi) + wi.z * self.stretch),
+                    true => self.distribution.mirrored((mu, self.stretch), (wi.z, self.distribution.stretch(wi))),
                     false => 0.0,
                 };
                 sum += (ends[1] - ends[0]) * weight * seen * sin * loss(&Facet { cos: c, mirrored, h, wo: self.wo });
             }
         }
-        2.0 * FRAC_1_PI / (1.0 + self.image.z) * sum
+        2.0 * FRAC_1_PI / (self.image_stretch + self.image.z) * sum
     }
 }
 
@@ -182,8 +193,8 @@ mod tests {
     use etalon_scene::Microfacets;
     use std::f64::consts::TAU;
 
-    fn facets(alpha: [f64; 2]) -> Ggx {
-        Ggx::new(&Microfacets { alpha, rotation_rad: 0.0 })
+    fn facets(alpha: [f64; 2]) -> Distribution {
+        Distribution::new(&Microfacets::ggx(alpha, 0.0))
     }
 
     fn toward(mu: f64, turns: f64) -> Vec3<f64> {
@@ -209,7 +220,7 @@ mod tests {
     #[test]
     fn equal_widths_have_the_mean_of_one() {
         for alpha in [0.01, 0.1, 0.5, 1.0] {
-            let ggx = facets([alpha; 2]);
+            let distribution = facets([alpha; 2]);
             for mu in [1e-3, 0.05, 0.3, 0.745, 0.95] {
                 for eta in [None, Some(1.5), Some(2.4)] {
                     let loss = |facet: &Facet| {
@@ -218,9 +229,9 @@ mod tests {
                         });
                         1.0 - reflected * facet.mirrored
                     };
-                    let truth = mean_over_facets(&ggx, toward(mu, 0.0), eta, loss);
+                    let truth = mean_over_facets(&distribution, toward(mu, 0.0), eta, loss);
                     for turns in [0.0, 0.1, 0.25, 0.6] {
-                        let read = mean(&ggx, toward(mu, turns), loss);
+                        let read = mean(&distribution, toward(mu, turns), loss);
                         assert!(
                             (read - truth).abs() < 1e-5,
                             "η {eta:?}, α {alpha} µ {mu} turns {turns}: {read} {truth}"

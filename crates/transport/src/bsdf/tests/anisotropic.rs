@@ -1,7 +1,7 @@
 //! Tables of facets of two widths, against independent quadrature.
 
 use super::super::albedo::{Azimuths, LossTable};
-use super::super::microfacet::{Ggx, MEAN_ERROR, mean_over_facets};
+use super::super::microfacet::{Distribution, MEAN_ERROR, mean_over_facets};
 use super::super::mueller::PolarisedLoss;
 use super::super::plastic::let_in;
 use etalon_optics::Vec3;
@@ -9,8 +9,8 @@ use etalon_oracle::laws::{Masking, anisotropic_ggx_albedo, fresnel_exact};
 use etalon_scene::Microfacets;
 use std::f64::consts::{PI, TAU};
 
-fn ggx(alpha: [f64; 2]) -> Ggx {
-    Ggx::new(&Microfacets { alpha, rotation_rad: 0.0 })
+fn ggx(alpha: [f64; 2]) -> Distribution {
+    Distribution::new(&Microfacets::ggx(alpha, 0.0))
 }
 
 /// Of this cosine, `turn` radians from x toward y.
@@ -19,12 +19,12 @@ fn toward(mu: f64, turn: f64) -> Vec3<f64> {
     Vec3::new(along * cos, along * sin, mu)
 }
 
-fn mirrors(ggx: &Ggx, wo: Vec3<f64>) -> f64 {
+fn mirrors(ggx: &Distribution, wo: Vec3<f64>) -> f64 {
     mean_over_facets(ggx, wo, None, |facet| 1.0 - facet.mirrored)
 }
 
 /// What a coat of this index lets in.
-fn coat(ggx: &Ggx, wo: Vec3<f64>, eta: f64) -> f64 {
+fn coat(ggx: &Distribution, wo: Vec3<f64>, eta: f64) -> f64 {
     mean_over_facets(ggx, wo, Some(eta), |facet| let_in(facet, eta)[0])
 }
 
