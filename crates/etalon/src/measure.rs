@@ -132,7 +132,7 @@ impl MeterReader {
         if settings.samples == 0 {
             return Err(RenderError::Setting("a reading needs at least one sample".to_owned()));
         }
-        if settings.error.is_some_and(|error| !(error > 0.0)) {
+        if settings.error.is_some_and(|error| error <= 0.0 || error.is_nan()) {
             return Err(RenderError::Setting("the error of a reading is above 0".to_owned()));
         }
         let most = settings.samples.div_ceil(METER_REPLICATES);

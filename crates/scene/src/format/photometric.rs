@@ -31,7 +31,7 @@ pub(crate) fn photometric<'f>(
     }
     let scaled = spectrum.scaled(factor).ok()?;
     let largest = scaled.max_over(spectra.range_nm?);
-    if !(largest <= BRIGHTEST) {
+    if largest > BRIGHTEST || largest.is_nan() {
         reader.error(Code::OutOfRange, at, format!("an emission of {largest:e} is more than {BRIGHTEST:e}"));
         return None;
     }

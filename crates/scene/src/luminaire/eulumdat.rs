@@ -24,7 +24,7 @@ pub(crate) fn read_eulumdat(bytes: &[u8]) -> Result<Photometry, String> {
     };
     let count = |line: usize, what: &str, most: usize| -> Result<usize, String> {
         let value = number(line, what)?;
-        let possible = value >= 0.0 && value <= most as f64 && value.fract() == 0.0;
+        let possible = (0.0..=most as f64).contains(&value) && value.fract() == 0.0;
         possible.then_some(value as usize).ok_or_else(|| format!("line {line}, {what}, is {value}"))
     };
     let symmetry = count(3, "the symmetry", 4)?;

@@ -80,7 +80,7 @@ impl Numbers<'_> {
 
     fn count(&mut self, what: &str) -> Result<usize, String> {
         let number = self.next(&format!("the number of {what}"))?;
-        if !(number >= 1.0 && number <= MOST_VALUES as f64 && number.fract() == 0.0) {
+        if !((1.0..=MOST_VALUES as f64).contains(&number) && number.fract() == 0.0) {
             return Err(format!("it says that it has {number} {what}"));
         }
         Ok(number as usize)

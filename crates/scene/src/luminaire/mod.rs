@@ -58,7 +58,7 @@ impl Photometry {
             [] => return Err("there are no horizontal angles".to_owned()),
         };
         let columns = match (first, last) {
-            (0.0, 0.0 | 360.0) => columns(azimuth_deg, |a| Some(a)),
+            (0.0, 0.0 | 360.0) => columns(azimuth_deg, Some),
             (0.0, 90.0) => [
                 columns(azimuth_deg, Some),
                 mirrored(azimuth_deg, 180.0),
@@ -80,18 +80,28 @@ impl Photometry {
         Ok(Self::of_columns(columns, polar_deg, intensity_cd))
     }
 
-    /// Columns of the table at angles in degrees, in any order, those at the same angle the same.
+    /// Columns of the table at angles in degrees, in any order, those at the same angle the same. They reach over the whole circle, or are
+    /// one.
     fn of_columns(mut columns: Vec<(f64, usize)>, polar_deg: &[f64], intensity_cd: &[f64]) -> Self {
-        columns.retain(|(angle, _)| (0.0..=360.0).contains(angle));
         columns.sort_by(|a, b| a.0.total_cmp(&b.0));
         columns.dedup_by(|a, b| a.0 == b.0);
         let count = polar_deg.len();
         let of = |column: usize| intensity_cd[column * count..][..count].iter().copied();
-        Self {
+        let reaching = Self {
             polar_turns: polar_deg.iter().map(|angle| angle / 360.0).collect(),
             azimuth_turns: columns.iter().map(|(angle, _)| angle / 360.0).collect(),
             intensity_cd: columns.iter().flat_map(|(_, column)| of(*column)).collect(),
+        };
+        if columns.len() == 1 {
+            return reaching;
         }
+        // From 0 to a whole turn; a plane of symmetry need not be a column.
+        let inner = reaching.azimuth_turns.iter().copied().filter(|turns| *turns > 0.0 && *turns < 1.0);
+        let azimuth_turns: Vec<f64> = std::iter::once(0.0).chain(inner).chain([1.0]).collect();
+        let at = |azimuth: f64| reaching.polar_turns.iter().map(move |polar| (*polar, azimuth));
+        let intensity_cd =
+            azimuth_turns.iter().flat_map(|azimuth| at(*azimuth)).map(|(p, a)| reaching.eval(p, a)).collect();
+        Self { polar_turns: reaching.polar_turns.clone(), azimuth_turns, intensity_cd }
     }
 
     /// Intensity, cd, at an angle from the nadir, from 0 to ½ turn, and one about it, from 0 to 1 turn.
@@ -151,7 +161,7 @@ impl Photometry {
 #[inline]
 fn place(angles: &[f64], angle: f64) -> Option<(usize, f64)> {
     let last = angles.len() - 1;
-    if last == 0 || !(angle >= angles[0] && angle <= angles[last]) {
+    if last == 0 || !(angles[0]..=angles[last]).contains(&angle) {
         return None;
     }
     let row = angles.partition_point(|a| *a <= angle).clamp(1, last) - 1;
@@ -189,6 +199,11 @@ mod tests {
         assert_eq!([half.eval(0.25, 0.25), half.eval(0.25, 0.75), half.eval(0.125, 0.5)], [3.0, 3.0, 2.5]);
         let other = Photometry::new(&polar, &[90.0, 180.0, 270.0], &[1.0, 2.0, 1.0, 4.0, 1.0, 6.0]).unwrap();
         assert_eq!([0.25, 0.5, 0.75, 0.0, 1.0].map(|turns| other.eval(0.25, turns)), [2.0, 4.0, 6.0, 4.0, 4.0]);
+        // Without a column in the plane of symmetry.
+        let open =
+            Photometry::new(&polar, &[90.0, 150.0, 210.0, 270.0], &[1.0, 2.0, 1.0, 4.0, 1.0, 6.0, 1.0, 2.0]).unwrap();
+        assert!((open.eval(0.25, 0.0) - 5.0).abs() < 1e-14 && (open.eval(0.25, 0.5) - 5.0).abs() < 1e-14);
+        assert!((open.eval(0.25, 30.0 / 360.0) - 4.0).abs() < 1e-14, "{}", open.eval(0.25, 30.0 / 360.0));
         let all_around = Photometry::new(&[0.0, 60.0], &[0.0], &[8.0, 4.0]).unwrap();
         assert_eq!([all_around.eval(30.0 / 360.0, 0.7), all_around.eval(0.17, 0.1)], [6.0, 0.0]);
         assert!((all_around.reach_rad() - TAU / 6.0).abs() < 1e-15);
