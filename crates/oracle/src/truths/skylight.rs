@@ -93,6 +93,17 @@ pub(super) struct Opening {
 }
 
 impl Opening {
+    /// The opening in two parts, one above the other, if this height lies within it and its second edge is upright; else itself.
+    pub(super) fn split_at(self, height: f64) -> Vec<Self> {
+        let Self { origin, edges: [u, v] } = self;
+        let share = (height - origin[2]) / v[2];
+        if u[2] != 0.0 || !(share > 0.0 && share < 1.0) {
+            return vec![self];
+        }
+        let [low, high] = [scale(share, v), scale(1.0 - share, v)];
+        vec![Self { origin, edges: [u, low] }, Self { origin: add(origin, low), edges: [u, high] }]
+    }
+
     /// Irradiance at a point on a plane of this unit normal, of light that comes through the opening: `radiance` of the direction from the
     /// point outward, and of its cosine to the opening's normal.
     pub(super) fn irradiance(&self, point: Vec3, normal: Vec3, radiance: impl Fn(Vec3, f64) -> f64) -> f64 {

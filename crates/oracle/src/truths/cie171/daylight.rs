@@ -65,7 +65,10 @@ impl Day {
         let radiance = move |toward: Vec3, cos: f64| {
             zenith * sky.relative(toward) * if glass { slab(cos, INDEX, 0.0) } else { 1.0 }
         };
-        let value = opening.irradiance(point, normal, radiance);
+        // What is seen jumps at the horizon.
+        let parts = opening.split_at(point[2]);
+        let of_parts = move |of: &dyn Fn(&Opening) -> f64| parts.iter().map(of).sum::<f64>();
+        let value = of_parts(&|part| part.irradiance(point, normal, radiance));
         let name = format!("cie171-{section}-{}-sky-{}", place.replace(' ', "-").replace(',', ""), sky.number);
         let truth = Truth::new(
             name,
@@ -74,7 +77,9 @@ impl Day {
             "∫ L(ω) cos θ dω over the opening, over that of the open sky",
         )
         .because("Through an opening a point sees the sky of the standard, and below the horizon the ground.")
-        .confirmed("midpoints over the opening", 2e-4, move || opening.irradiance_by_midpoints(point, normal, radiance))
+        .confirmed("midpoints over the opening", 2e-4, move || {
+            of_parts(&|part| part.irradiance_by_midpoints(point, normal, radiance))
+        })
         .allows(1e-4 * value, "2e-5 for single precision, 1e-4 for screens that end and for the quadrature");
         case(section, format!("sky {}, {place}", sky.number), "%", 1.0, truth)
     }
@@ -95,12 +100,12 @@ fn roofs(day: &Day) -> Vec<SuiteCase> {
         |side: f64| Opening { origin: [-0.5 * side, -0.5 * side, 3.0], edges: [[side, 0.0, 0.0], [0.0, side, 0.0]] };
     let wall: Vec3 = [1.0, 0.0, 0.0];
     let floor = ([0.0, 0.0, 0.0], UP);
-    let places = [("1 m opening, floor", 1.0, floor), ("4 m opening, wall at 2.75 m", 4.0, ([-2.0, 0.0, 2.75], wall))];
+    let places = [("2 m opening, floor", 2.0, floor), ("4 m opening, wall at 2.75 m", 4.0, ([-2.0, 0.0, 2.75], wall))];
     let mut list = Vec::new();
     for (place, side, (point, normal)) in places {
         let scene = || roof_room(measured(&[at(point, normal)]), side);
         list.push(day.truth("5.9", place, (point, normal), opening(side), false, scene()));
-        if side > 1.0 {
+        if side > 2.0 {
             list.push(day.truth("5.10", place, (point, normal), opening(side), true, pane(scene(), &opening(side))));
         }
     }
@@ -129,39 +134,46 @@ fn facade_room(scene: Scene) -> Scene {
     screen(scene, [0.0, right, low], [0.0, 2.0 - right, 0.0], [0.0, 0.0, high - low])
 }
 
-/// 5.11 and 5.12: sky on the floor, the ground on the ceiling.
+/// A vertical meter at the height of the window's middle that faces it, this far from it.
+fn facing(distance: f64) -> (Vec3, Vec3) {
+    ([distance, 0.0, 1.5], [-1.0, 0.0, 0.0])
+}
+
+/// 5.11 and 5.12: sky on the floor, the ground on the ceiling, both on a plane that faces the window.
 fn facades(day: &Day) -> Vec<SuiteCase> {
     let mut list = Vec::new();
-    for (place, point, normal) in [("floor at 1.5 m", [1.5, 0.0, 0.0], UP), ("ceiling at 1.5 m", [1.5, 0.0, 3.0], DOWN)]
-    {
-        let scene = || facade_room(measured(&[at(point, normal)]));
-        let opening = window(WINDOW[1]);
-        list.push(day.truth("5.11", place, (point, normal), opening, false, scene()));
-        if normal == UP {
-            list.push(day.truth("5.12", place, (point, normal), opening, true, pane(scene(), &opening)));
+    let opening = window(WINDOW[1]);
+    let places = [
+        ("floor at 1 m", ([1.0, 0.0, 0.0], UP)),
+        ("ceiling at 1 m", ([1.0, 0.0, 3.0], DOWN)),
+        ("facing the window at 1 m", facing(1.0)),
+    ];
+    for (place, meter) in places {
+        let scene = || facade_room(measured(&[at(meter.0, meter.1)]));
+        list.push(day.truth("5.11", place, meter, opening, false, scene()));
+        if meter.1 != UP && meter.1 != DOWN {
+            list.push(day.truth("5.12", place, meter, opening, true, pane(scene(), &opening)));
         }
     }
     list
 }
 
-/// 5.13 and 5.14: a roof over the window of 1 m, or a wall of 8 m at a distance of 6 m; both black and without end.
+/// 5.13 and 5.14: a roof over the window of 0.5 m, or a wall up to 3 m at a distance of 6 m; both black and without end.
 fn masks(day: &Day) -> Vec<SuiteCase> {
     let [_, [low, high]] = WINDOW;
-    let mut list = Vec::new();
-    for distance in [1.0, 1.5] {
-        let (point, place) = ([distance, 0.0, 0.0], format!("floor at {distance} m"));
-        let scene = || facade_room(measured(&[at(point, UP)]));
-        // Through heights z the ray comes to the height of the roof at x = −distance (high − z)/z.
-        const DEPTH: f64 = 0.5;
-        let seen = high / (1.0 + DEPTH / distance);
-        let roofed = screen(scene(), [-DEPTH, -FAR, high], [DEPTH, 0.0, 0.0], [0.0, 2.0 * FAR, 0.0]);
-        list.push(day.truth("5.13", &place, (point, UP), window([low, seen.clamp(low, high)]), false, roofed));
-        // And to x = −6 m at the height z (distance + 6)/distance.
-        const AWAY: f64 = 6.0;
-        const WALL: f64 = 8.0;
-        let seen = (WALL * distance / (distance + AWAY)).clamp(low, high);
-        let walled = screen(scene(), [-AWAY, -FAR, -FAR], [0.0, 2.0 * FAR, 0.0], [0.0, 0.0, FAR + WALL]);
-        list.push(day.truth("5.14", &place, (point, UP), window([seen, high]), false, walled));
-    }
-    list
+    let (point, normal) = facing(1.0);
+    let [distance, _, height] = point;
+    let scene = || facade_room(measured(&[at(point, normal)]));
+    // Through the height z of the window a ray comes to that of the roof, the window's upper edge, at x = −distance (high − z)/(z − height).
+    const DEPTH: f64 = 0.5;
+    let seen = (high + DEPTH * height / distance) / (1.0 + DEPTH / distance);
+    let roofed = screen(scene(), [-DEPTH, -FAR, high], [DEPTH, 0.0, 0.0], [0.0, 2.0 * FAR, 0.0]);
+    let below = day.truth("5.13", "facing the window at 1 m", (point, normal), window([low, seen]), false, roofed);
+    // And to the distance of the wall at the height height + (z − height)(distance + away)/distance.
+    const AWAY: f64 = 6.0;
+    const WALL: f64 = 3.0;
+    let seen = height + (WALL - height) * distance / (distance + AWAY);
+    let walled = screen(scene(), [-AWAY, -FAR, -FAR], [0.0, 2.0 * FAR, 0.0], [0.0, 0.0, FAR + WALL]);
+    let above = day.truth("5.14", "facing the window at 1 m", (point, normal), window([seen, high]), false, walled);
+    vec![below, above]
 }
