@@ -87,6 +87,8 @@ fn materials_and_spectra() {
         [
             "lambert",
             "red",
+            "board",
+            "dawn",
             "table",
             "mirror",
             "perfect",

@@ -98,11 +98,13 @@ impl<'f> Spectra<'f> {
             }
             SpectrumForm::Object(SpectrumObject::Tabulated(table)) => self.table(table, used, reader),
             SpectrumForm::Object(SpectrumObject::Rgb(colour)) => self.rgb(colour, used, reader),
-            SpectrumForm::Object(SpectrumObject::Image(image)) => {
+            SpectrumForm::Object(
+                SpectrumObject::Image(_) | SpectrumObject::Checker(_) | SpectrumObject::Gradient(_),
+            ) => {
                 let hint = "an image can give the reflectance of a material or the emission of a surface";
                 self.complain(
                     Code::KeyConflict,
-                    image.at.head(),
+                    form.at().head(),
                     "an image is not allowed here".to_owned(),
                     hint,
                     used,

@@ -135,6 +135,80 @@ crate::record! {
     }
 }
 
+crate::record! {
+    /// A chequerboard over the texture coordinates of a surface, where an image may stand: two by two fields in a unit, repeated.
+    pub(crate) struct CheckerSpectrum + comment {
+        /// The lower left field and the upper right one: a number or a linear Rec. 709 colour.
+        first: Required<TextureColour>,
+        /// The other two.
+        second: Required<TextureColour>,
+        /// Factors on the texture coordinates: 2 shows four by four fields.
+        uv_scale: Required<[f64; 2]> = "[1, 1]",
+        /// Added to the texture coordinates after that.
+        uv_offset: Required<[f64; 2]> = "[0, 0]",
+    }
+}
+
+crate::record! {
+    /// A colour that changes evenly with a texture coordinate from 0 to 1, and stays as it is beyond. It may stand where an image may.
+    pub(crate) struct GradientSpectrum + comment {
+        /// At 0: a number or a linear Rec. 709 colour.
+        from: Required<TextureColour>,
+        /// At 1.
+        to: Required<TextureColour>,
+        /// The coordinate along which it changes.
+        along: Required<TextureAxis> = r#""u""#,
+        /// Factors on the texture coordinates: 2 shows all of it on half a unit.
+        uv_scale: Required<[f64; 2]> = "[1, 1]",
+        /// Added to the texture coordinates after that.
+        uv_offset: Required<[f64; 2]> = "[0, 0]",
+    }
+}
+
+/// A texture coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TextureAxis {
+    U,
+    V,
+}
+
+crate::keywords!(TextureAxis {
+    /// The first.
+    "u" => Self::U,
+    /// The second.
+    "v" => Self::V,
+});
+
+/// A colour of a texture: a number, or three of linear Rec. 709.
+#[derive(Clone, Debug)]
+pub(crate) enum TextureColour {
+    Grey(Spanned<Density>),
+    Rgb(Box<[Spanned<Density>; 3]>),
+}
+
+impl TextureColour {
+    /// Its channels.
+    pub(crate) fn rgb(&self) -> [f64; 3] {
+        match self {
+            Self::Grey(grey) => [grey.value.0; 3],
+            Self::Rgb(rgb) => [0, 1, 2].map(|c| rgb[c].value.0),
+        }
+    }
+}
+
+impl Decode for TextureColour {
+    fn schema(schema: &mut SchemaBuilder) -> SchemaValue {
+        by_json_type(vec![("number", Density::schema(schema)), ("array", <[Density; 3]>::schema(schema))])
+    }
+
+    fn decode(node: Node<'_>, reader: &mut Reader<'_>) -> Option<Self> {
+        match node.kind() {
+            Kind::Array(_) => Decode::decode(node, reader).map(|rgb| Self::Rgb(Box::new(rgb))),
+            _ => Spanned::decode(node, reader).map(Self::Grey),
+        }
+    }
+}
+
 crate::keywords!(Encoding {
     /// As the kind of file has it: "srgb" in PNG and JPEG, "linear" in EXR and HDR.
     "auto" => Self::Auto,
@@ -169,6 +243,8 @@ crate::variants! {
         "illuminant" => Illuminant(IlluminantSpectrum),
         "rgb" => Rgb(RgbSpectrum),
         "image" => Image(ImageSpectrum),
+        "checker" => Checker(CheckerSpectrum),
+        "gradient" => Gradient(GradientSpectrum),
     }
 }
 
@@ -257,6 +333,8 @@ impl SpectrumForm {
             Self::Object(SpectrumObject::Illuminant(s)) => s.at,
             Self::Object(SpectrumObject::Rgb(s)) => s.at,
             Self::Object(SpectrumObject::Image(s)) => s.at,
+            Self::Object(SpectrumObject::Checker(s)) => s.at,
+            Self::Object(SpectrumObject::Gradient(s)) => s.at,
         }
     }
 }
