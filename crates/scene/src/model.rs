@@ -7,6 +7,7 @@ mod detail;
 mod emission;
 mod environment;
 mod film;
+mod grating;
 mod integrator;
 mod light;
 mod material;
@@ -24,6 +25,7 @@ pub use detail::{Bitangent, OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};
 pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
+pub use grating::{Grating, Grooves};
 pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
 pub use light::{Light, LightCone, LightKind};
 pub use material::{

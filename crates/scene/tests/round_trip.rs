@@ -108,6 +108,7 @@ fn materials_and_spectra() {
             "coated",
             "bubble",
             "coated pane",
+            "disc",
             "film",
             "quarter",
             "dusty",
@@ -204,6 +205,15 @@ fn materials_and_spectra() {
         film: film(vec![layer(100.0, clear(RefractiveIndex::Constant(1.38)))]),
     };
     assert_eq!(kind(&scene, "coated pane"), &pane);
+    let grating = Grating {
+        period_nm: 1600.0,
+        orders: vec![(0, 0.5), (-2, 0.25)],
+        grooves: Grooves::Straight(FRAC_PI_2),
+        transmits: true,
+        at_nm: None,
+    };
+    let disc = MaterialKind::Grating { reflectance: Spectrum::Constant(0.75).into(), grating };
+    assert_eq!(kind(&scene, "disc"), &disc);
     let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
     assert_eq!(kind(&scene, "clay"), &MaterialKind::OneSided { kind: Box::new(clay), side: Side::Back });
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));

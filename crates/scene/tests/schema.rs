@@ -405,6 +405,9 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                             };
                             good && (axis.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-12
                         }
+                        M::Grating { grating, .. } => {
+                            grating.period_nm > 0.0 && (0.0..1.0 + 1e-9).contains(&grating.efficiency())
+                        }
                         M::Blend { parts, by } => {
                             parts.len() >= 2
                                 && parts.is_sorted_by(|a, b| a.0 < b.0)

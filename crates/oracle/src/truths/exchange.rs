@@ -96,6 +96,7 @@ impl Claim {
             Self::Absorption => "absorption",
             Self::Scattering => "scattering",
             Self::ThinFilms => "thin-films",
+            Self::Gratings => "gratings",
             Self::Motion => "motion",
             Self::Masks => "masks",
             Self::LosslessRoughGlass => "lossless-rough-glass",

@@ -19,6 +19,7 @@ mod facets;
 mod films;
 mod furnaces;
 mod glass;
+mod gratings;
 mod illumination;
 mod images;
 mod instruments;
@@ -89,6 +90,8 @@ pub enum Claim {
     Scattering,
     /// Interfaces carry thin films, in which waves interfere.
     ThinFilms,
+    /// Gratings send each order of each wavelength in a direction of its own.
+    Gratings,
     /// Things move while the shutter is open.
     Motion,
     /// Surfaces let a part of the light pass, also where they coincide with others.
@@ -113,7 +116,7 @@ pub enum Claim {
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 19] = [
+    pub const UNPOLARISED: [Self; 20] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -125,6 +128,7 @@ impl Claim {
         Self::Absorption,
         Self::Scattering,
         Self::ThinFilms,
+        Self::Gratings,
         Self::Motion,
         Self::Masks,
         Self::LosslessRoughGlass,
@@ -407,6 +411,7 @@ pub fn truths() -> Vec<Truth> {
         relief::truths(),
         sheets::truths(),
         films::truths(),
+        gratings::truths(),
         stokes::truths(),
         images::truths(),
         instruments::truths(),

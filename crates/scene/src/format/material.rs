@@ -2,6 +2,7 @@
 
 mod blend;
 mod dielectric;
+mod grating;
 mod index;
 mod roughness;
 mod thin_film;
@@ -26,6 +27,7 @@ pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
 pub(crate) use dielectric::DielectricMaterial;
 use dielectric::dielectric;
+use grating::{GratingMaterial, grating};
 use index::{IndexForm, NamedMetal, complex_index, complex_keys, index, least};
 use roughness::{RoughnessKeys, roughness, roughness_keys};
 use thin_film::{FilmLayerForm, thin_film};
@@ -304,6 +306,7 @@ crate::variants! {
         "thin-dielectric" => ThinDielectric(ThinDielectricMaterial),
         "polariser" => Polariser(PolariserMaterial),
         "retarder" => Retarder(RetarderMaterial),
+        "grating" => Grating(GratingMaterial),
         "blend" => Blend(BlendMaterial),
         "boundary" => Boundary(BoundaryMaterial),
         "black" => Black(BlackMaterial),
@@ -323,6 +326,7 @@ impl MaterialForm {
             Self::ThinDielectric(m) => m.at,
             Self::Polariser(m) => m.at,
             Self::Retarder(m) => m.at,
+            Self::Grating(m) => m.at,
             Self::Blend(m) => m.at,
             Self::Boundary(m) => m.at,
             Self::Black(m) => m.at,
@@ -436,6 +440,7 @@ pub(crate) fn material<'f>(
             let sheet = PolarisingSheet::Retarder { retardance_rad: retarder.retardance_deg?.to_radians(), at_nm };
             Some(MaterialKind::PolarisingSheet { axis: retarder.axis?.0, sheet })
         }
+        MaterialForm::Grating(form) => grating(form, spectra, files, reader),
         MaterialForm::Blend(form) => blend(form, before, spectra, files, reader),
         MaterialForm::Boundary(boundary) => {
             let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;

@@ -1,6 +1,6 @@
 //! Materials: what surfaces do to light.
 
-use super::{Medium, NumberTexture, SpectrumTexture, ThinFilm};
+use super::{Grating, Medium, NumberTexture, SpectrumTexture, ThinFilm};
 use crate::texture::ImageTexture;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use std::iter;
@@ -170,6 +170,13 @@ pub enum MaterialKind {
         /// What it does.
         sheet: PolarisingSheet,
     },
+    /// A diffraction grating on both sides.
+    Grating {
+        /// Factor on the efficiencies of its orders, in [0, 1] at every wavelength.
+        reflectance: SpectrumTexture,
+        /// What it does.
+        grating: Grating,
+    },
     /// Materials side by side, finer than can be seen: everywhere the two between whose places a number lies, in linear
     /// proportion; the first below its place, the last above.
     Blend {
@@ -263,6 +270,7 @@ macro_rules! parameters {
                     iter::once($of::Coat(index)).chain(film.into_iter().map($of::Film)).collect()
                 }
                 Self::PolarisingSheet { sheet, .. } => vec![$of::Sheet(sheet)],
+                Self::Grating { reflectance, grating } => vec![$of::Reflectance(reflectance), $of::Grating(grating)],
                 Self::Blend { .. } | Self::OneSided { .. } | Self::Boundary | Self::Black => Vec::new(),
             });
             parameters.collect()
@@ -412,6 +420,8 @@ pub enum Parameter<'a> {
     Sheet(&'a PolarisingSheet),
     /// A thin film, which decides how much light goes each way.
     Film(&'a ThinFilm),
+    /// A grating, which sends each wavelength its own way.
+    Grating(&'a Grating),
 }
 
 /// [`Parameter`], to be changed.
@@ -429,6 +439,8 @@ pub enum ParameterMut<'a> {
     Sheet(&'a mut PolarisingSheet),
     /// See [`Parameter::Film`].
     Film(&'a mut ThinFilm),
+    /// See [`Parameter::Grating`].
+    Grating(&'a mut Grating),
 }
 
 impl<'a> Parameter<'a> {

@@ -4,7 +4,7 @@
 //! gone elsewhere. Reflection is shared by all lanes, each with its own probability of having chosen it, which the
 //! balance heuristic over lanes needs (Wilkie et al. 2014, eq. 5). A thin film gives each lane such a probability, too.
 
-use super::film::{PathFilm, Shares, chosen};
+use super::film::{PathFilm, PowerShares, chosen};
 use super::{BsdfSample, Properties};
 use crate::media::Interface;
 use crate::mis::Density;
@@ -150,7 +150,7 @@ impl Dielectric {
         let n = if above { n } else { -n };
         // Rounding may carry the product of two unit vectors past 1.
         let cos = n.dot(wo).min(1.0);
-        let shares = lambda_nm.0.map(|nm| Shares::of(&self.coated(film, (nm, cos, uv), above, interface)));
+        let shares = lambda_nm.0.map(|nm| PowerShares::of(&self.coated(film, (nm, cos, uv), above, interface)));
         let reflects = u < shares[0].reflection_probability();
         let (weight, lane_density) = chosen(&shares, reflects);
         if reflects {

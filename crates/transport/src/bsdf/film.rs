@@ -46,12 +46,12 @@ impl PathFilm {
 
 /// The shares of unpolarised power that go either way.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Shares {
+pub(super) struct PowerShares {
     pub reflected: f64,
     pub transmitted: f64,
 }
 
-impl Shares {
+impl PowerShares {
     pub(super) fn of(fresnel: &StackFresnel) -> Self {
         Self { reflected: fresnel.reflection.power(), transmitted: fresnel.transmission.power() }
     }
@@ -70,9 +70,10 @@ impl Shares {
 }
 
 /// Of a choice between the two that the hero makes: the weights of the lanes, and each lane's own probability of it over the hero's.
-pub(super) fn chosen<const N: usize>(shares: &[Shares; N], reflects: bool) -> (Lanes<f64, N>, Lanes<f64, N>) {
-    let probability =
-        |shares: &Shares| if reflects { shares.reflection_probability() } else { shares.transmission_probability() };
+pub(super) fn chosen<const N: usize>(shares: &[PowerShares; N], reflects: bool) -> (Lanes<f64, N>, Lanes<f64, N>) {
+    let probability = |shares: &PowerShares| {
+        if reflects { shares.reflection_probability() } else { shares.transmission_probability() }
+    };
     let hero = probability(&shares[0]);
     let weight = |lane: usize| if reflects { shares[lane].reflected } else { shares[lane].transmitted };
     (Lanes::from_fn(|lane| weight(lane) / hero), Lanes::from_fn(|lane| probability(&shares[lane]) / hero))

@@ -10,6 +10,7 @@ mod blend;
 mod conductor;
 pub(crate) mod dielectric;
 mod film;
+mod grating;
 pub(crate) mod lambert;
 mod metal;
 mod microfacet;
@@ -31,6 +32,7 @@ pub use blend::Blend;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use film::PathFilm;
+pub use grating::Grating;
 pub use lambert::Lambert;
 pub use metal::PathMetal;
 pub use mirror::Mirror;
@@ -103,6 +105,8 @@ pub enum Bsdf {
     ThinDielectric(ThinDielectric),
     /// A polariser or a retarder.
     PolarisingSheet(PolarisingSheet),
+    /// A diffraction grating.
+    Grating(Grating),
     /// A mixture of others.
     Blend(Blend),
     /// Another on one side.
@@ -124,6 +128,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::Plastic { facets, .. } => Plastic::properties(facets.as_ref()),
         MaterialKind::ThinDielectric { .. } => ThinDielectric::properties(),
         MaterialKind::PolarisingSheet { sheet, .. } => PolarisingSheet::properties(sheet),
+        MaterialKind::Grating { grating, .. } => Grating::properties(grating),
         MaterialKind::OneSided { kind, .. } => OneSided::properties(properties(kind)),
         MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
         MaterialKind::Boundary | MaterialKind::Black => {
@@ -171,6 +176,9 @@ impl Bsdf {
                 Self::ThinDielectric(ThinDielectric::new(index.clone(), film, range_nm))
             }
             MaterialKind::PolarisingSheet { sheet, .. } => Self::PolarisingSheet(PolarisingSheet::new(sheet, range_nm)),
+            MaterialKind::Grating { reflectance, grating } => {
+                Self::Grating(Grating::new(PathTexture::new(reflectance, range_nm), grating.clone()))
+            }
             MaterialKind::Blend { parts, by } => {
                 let parts = parts.iter().map(|(place, part)| (*place, Self::new(part, range_nm)));
                 Self::Blend(Blend::new(parts, by.clone()))
@@ -235,6 +243,7 @@ impl Bsdf {
             | Self::Dielectric(_)
             | Self::ThinDielectric(_)
             | Self::PolarisingSheet(_)
+            | Self::Grating(_)
             | Self::Black => (Lanes::ZERO, Lanes::ZERO),
         }
     }
@@ -260,6 +269,7 @@ impl Bsdf {
             Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at, wo, u),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, (n, at.uv), wo, u[0]),
             Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
+            Self::Grating(grating) => grating.sample(lambda_nm, n, at, wo, u[0]),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
             Self::OneSided(one) => one.sample(lambda_nm, n, at, wo, u),
             Self::Black => None,

@@ -15,7 +15,7 @@
 //! along the hero's direction, each with its own value and its own density of that direction.
 
 use super::albedo::{self, Azimuths, LossTable, Tabulated};
-use super::film::{PathFilm, Shares};
+use super::film::{PathFilm, PowerShares};
 use super::microfacet::{Distribution, Facet, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use super::{BsdfSample, Properties, Shading};
@@ -187,14 +187,14 @@ impl RoughDielectric {
     }
 
     /// What a facet does to light that it meets at the cosine `cos` from the side of `n[0]`; `eta` = n[1]/n[0].
-    fn facet(&self, place: Place, cos: f64, (n, eta): ([f64; 2], f64)) -> Shares {
+    fn facet(&self, place: Place, cos: f64, (n, eta): ([f64; 2], f64)) -> PowerShares {
         match &self.film {
             Some(film) => {
-                Shares::of(&film.fresnel(place.nm, cos, (n[0], Complex::real(n[1])), place.from_outside, place.uv))
+                PowerShares::of(&film.fresnel(place.nm, cos, (n[0], Complex::real(n[1])), place.from_outside, place.uv))
             }
             None => match fresnel::dielectric(cos, eta) {
-                Some(f) => Shares { reflected: f.reflectance, transmitted: f.transmittance },
-                None => Shares { reflected: 1.0, transmitted: 0.0 },
+                Some(f) => PowerShares { reflected: f.reflectance, transmitted: f.transmittance },
+                None => PowerShares { reflected: 1.0, transmitted: 0.0 },
             },
         }
     }

@@ -4,7 +4,7 @@
 //!
 //! A thin film may coat both faces. Then each wavelength has a probability of reflection of its own, by which the hero chooses.
 
-use super::film::{PathFilm, Shares, chosen};
+use super::film::{PathFilm, PowerShares, chosen};
 use super::{BsdfSample, Properties};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix, Pane};
@@ -65,7 +65,7 @@ impl ThinDielectric {
         if let Some(film) = &self.film {
             let shares = lambda_nm.0.map(|nm| {
                 let pane = self.coated(film, nm, cos, uv);
-                Shares { reflected: pane.reflectance, transmitted: pane.transmittance }
+                PowerShares { reflected: pane.reflectance, transmitted: pane.transmittance }
             });
             let reflects = u < shares[0].reflection_probability();
             let (weight, lane_density) = chosen(&shares, reflects);

@@ -245,6 +245,8 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
                     *retardance_rad *= at_nm / middle(range_nm);
                 }
             }
+            // See `fix_indices`.
+            ParameterMut::Grating(_) => {}
             ParameterMut::Film(film) => film.at_nm = Some(middle(range_nm)),
             // See `fix_indices`.
             ParameterMut::Interface(_) => {}
@@ -255,8 +257,12 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
 /// Makes every wavelength that a material refracts take the way of one.
 pub(super) fn fix_indices(kind: &mut MaterialKind, range_nm: [f64; 2]) {
     for parameter in kind.parameters_mut() {
-        if let ParameterMut::Interface(media) = parameter {
-            media.into_iter().for_each(|index| *index = index_at_middle(index, range_nm));
+        match parameter {
+            ParameterMut::Interface(media) => {
+                media.into_iter().for_each(|index| *index = index_at_middle(index, range_nm));
+            }
+            ParameterMut::Grating(grating) => grating.at_nm = Some(middle(range_nm)),
+            _ => {}
         }
     }
 }

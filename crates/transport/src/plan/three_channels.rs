@@ -57,7 +57,8 @@ fn colour(kind: &mut MaterialKind, range_nm: [f64; 2]) {
             ParameterMut::Metal(Metal::Index(_))
             | ParameterMut::Interface(_)
             | ParameterMut::Sheet(_)
-            | ParameterMut::Film(_) => {}
+            | ParameterMut::Film(_)
+            | ParameterMut::Grating(_) => {}
         }
     }
 }

@@ -5,7 +5,9 @@ use etalon_oracle::{
     laws,
     subjects::{DeltaLobe, Density, Scattered, Scatters},
 };
-use etalon_scene::{InternalReflection, MaterialKind, Metal, PolarisingSheet, Side, SpectrumTexture, ThinFilm};
+use etalon_scene::{
+    Grooves, InternalReflection, MaterialKind, Metal, PolarisingSheet, Side, SpectrumTexture, ThinFilm,
+};
 use etalon_transport::{
     bsdf::{Bsdf, Shading},
     mis,
@@ -115,6 +117,18 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
                 PolarisingSheet::Retarder { .. } => 1.0,
             };
             vec![DeltaLobe { wi: [-wo[0], -wo[1], -wo[2]], weight, probability: 1.0 }]
+        }
+        MaterialKind::Grating { reflectance, grating } => {
+            let Grooves::Straight(turned) = grating.grooves else { panic!("its directions are those of a place") };
+            let share = uniform(reflectance).eval(wavelength_nm);
+            let lobe = |&(order, efficiency): &(i32, f64)| {
+                let waves = f64::from(order) * wavelength_nm / grating.period_nm;
+                let (x, y) = (waves * turned.cos() - wo[0], waves * turned.sin() - wo[1]);
+                let z = (1.0 - x * x - y * y).sqrt().copysign(if grating.transmits { -wo[2] } else { wo[2] });
+                let probability = efficiency / grating.efficiency();
+                (!z.is_nan()).then_some(DeltaLobe { wi: [x, y, z], weight: share * efficiency, probability })
+            };
+            grating.orders.iter().filter_map(lobe).collect()
         }
         MaterialKind::Plastic { facets: Some(_), .. } => Vec::new(),
         MaterialKind::Plastic { reflectance, coat, internal_reflection, .. } => {

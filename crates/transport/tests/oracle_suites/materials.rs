@@ -3,8 +3,8 @@
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
 use etalon_scene::{
-    FacetDistribution, FacetMasking, FilmIndex, FilmLayer, Image, ImageTexture, InternalReflection, MaterialKind,
-    Metal, Microfacets, NumberTexture, PolarisingSheet, Side, SpectrumTexture, Texels, ThinFilm,
+    FacetDistribution, FacetMasking, FilmIndex, FilmLayer, Grating, Grooves, Image, ImageTexture, InternalReflection,
+    MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, Side, SpectrumTexture, Texels, ThinFilm,
 };
 
 use crate::material::Material;
@@ -91,6 +91,15 @@ fn coated_pane() -> Material {
     Material::new(MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5), film: film() })
 }
 
+/// Orders that all leave, some that leave at some angles alone, and one that never does.
+fn grating(transmits: bool) -> Material {
+    let orders = vec![(0, 0.3), (1, 0.25), (-1, 0.15), (2, 0.1), (-3, 0.05), (9, 0.05)];
+    let grating = Grating { period_nm: 1600.0, orders, grooves: Grooves::Straight(0.4), transmits, at_nm: None };
+    Material::new(MaterialKind::Grating { reflectance: Spectrum::Constant(0.8).into(), grating })
+}
+
+scatters_suite!(reflection_grating, grating(false));
+scatters_suite!(transmission_grating, grating(true));
 scatters_suite!(coated_glass, coated_glass(None));
 scatters_suite!(coated_rough_glass, coated_glass(Some(0.3)));
 scatters_suite!(coated_metal, coated_metal(None));

@@ -3,12 +3,13 @@
 use crate::bsdf::{Properties, properties};
 use crate::plan::grey::steps;
 use etalon_optics::{ComplexIndex, RefractiveIndex};
-use etalon_scene::{MaterialKind, Metal, Parameter, PolarisingSheet, SpectrumTexture, ThinFilm};
+use etalon_scene::{Grating, MaterialKind, Metal, Parameter, PolarisingSheet, SpectrumTexture, ThinFilm};
 
 /// The index by which wavelengths go different ways, if there is one.
 pub(super) fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
     kind.parameters().iter().find_map(|parameter| match parameter {
         Parameter::Interface(media) => dispersion_of_media(*media, range_nm),
+        Parameter::Grating(grating) => diffraction(grating),
         _ => None,
     })
 }
@@ -31,9 +32,16 @@ pub(super) fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> 
         Parameter::Sheet(PolarisingSheet::Retarder { retardance_rad, at_nm }) => at_nm.map(|at_nm| {
             format!("retardance in degrees {}", spread(range_nm, |nm| retardance_rad.to_degrees() * at_nm / nm))
         }),
+        Parameter::Grating(grating) => diffraction(grating),
         // What fixes the wavelength treats all alike.
         Parameter::Film(film) => film.at_nm.is_none().then(|| thickness(film)),
     })
+}
+
+/// By which period a grating parts wavelengths, if it does.
+fn diffraction(grating: &Grating) -> Option<String> {
+    let parts = grating.at_nm.is_none() && grating.orders.iter().any(|(order, share)| *order != 0 && *share > 0.0);
+    parts.then(|| format!("grating of {} nm", grating.period_nm))
 }
 
 /// The film on a material, if there is one.
