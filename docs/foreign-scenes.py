@@ -63,9 +63,9 @@ EVEN = (
 )
 
 
-def rough_conductor(alpha):
+def rough_conductor(alpha, distribution="ggx"):
     return (
-        f'<bsdf type="roughconductor"><string name="distribution" value="ggx"/><float name="alpha" value="{alpha}"/>'
+        f'<bsdf type="roughconductor"><string name="distribution" value="{distribution}"/><float name="alpha" value="{alpha}"/>'
         '<spectrum name="eta" value="0.2"/><spectrum name="k" value="3"/></bsdf>',
         f'Material "conductor" "spectrum eta" [ 300 0.2 900 0.2 ] "spectrum k" [ 300 3 900 3 ] "float roughness" {alpha} '
         '"bool remaproughness" false',
@@ -98,6 +98,13 @@ BENT = (
     f'<string name="filename" value="normals.exr"/><boolean name="raw" value="true"/></texture>{GREY[0]}</bsdf>',
     f'{GREY[1]} "string normalmap" "normals.exr"',
 )
+# Eight by eight fields; v of the floor is turned over in pbrt.
+CHEQUERS = (
+    '<bsdf type="diffuse"><texture type="checkerboard" name="reflectance"><float name="color0" value="0.8"/>'
+    '<float name="color1" value="0.2"/><transform name="to_uv"><scale value="4"/></transform></texture></bsdf>',
+    'Texture "c" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 8 "rgb tex1" [ 0.2 0.2 0.2 ] "rgb tex2" [ 0.8 0.8 0.8 ]\n'
+    'Material "diffuse" "texture reflectance" "c"',
+)
 BLACK = (
     '<bsdf type="diffuse"><float name="reflectance" value="0"/></bsdf>',
     'Material "diffuse" "float reflectance" 0',
@@ -105,10 +112,14 @@ BLACK = (
 # Light that a bent normal loses there comes from below its horizon: here none does, from the lamp alone.
 DARK = ("", "")
 
+MASKED = "facets of pbrt are masked by their heights, those of Mitsuba by G1·G1"
+
 # Ball, floor, sky, and why the pictures may differ. `None` for pbrt: it has no such thing, or means another.
 SCENES = {
     "diffuse": (GREY, GREY, EVEN, None),
-    "rough-metal": (rough_conductor(0.1), GREY, EVEN, "facets are masked by G1·G1 there, height-correlated here"),
+    "rough-metal": (rough_conductor(0.1), GREY, EVEN, MASKED),
+    "beckmann-metal": ((rough_conductor(0.3, "beckmann")[0], None), GREY, EVEN, None),
+    "chequers": (GREY, CHEQUERS, EVEN, None),
     "rough-glass": (
         (
             '<bsdf type="roughdielectric"><string name="distribution" value="ggx"/><float name="alpha" value="0.1"/>'
@@ -117,7 +128,7 @@ SCENES = {
         ),
         GREY,
         EVEN,
-        "facets are masked by G1·G1 there, height-correlated here",
+        MASKED,
     ),
     "smooth-plastic": (
         (
@@ -129,7 +140,7 @@ SCENES = {
         EVEN,
         None,
     ),
-    "textured-metal": (GREY, textured(0.3), EVEN, "facets are masked by G1·G1 there, height-correlated here"),
+    "textured-metal": (GREY, textured(0.3), EVEN, MASKED),
     "bumps": (BLACK, bumpy(0.3), DARK, None),
     "normals": (BLACK, BENT, DARK, None),
     "sky-image": (

@@ -77,7 +77,7 @@ pub use compare::{
 };
 pub use error::RenderError;
 pub use etalon_control::{Adaptivity, CostEstimate, Ended, Prediction, Reached, Settled, Watch};
-pub use etalon_import::{ImportError, LeftOut, Moment, Options as ImportOptions};
+pub use etalon_import::{ImportError, LeftOut, Loss, Moment, Options as ImportOptions};
 pub use etalon_optics as optics;
 pub use etalon_picture as picture_files;
 pub use etalon_scene as scene_model;

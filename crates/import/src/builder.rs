@@ -16,13 +16,24 @@ use crate::budget::{Budget, FreshNames};
 use crate::matrix::steps;
 use crate::relief::turn_over;
 use crate::sides::change_sides;
-use crate::{Imported, LeftOut};
+use crate::{Imported, LeftOut, Loss, TakenOver};
 use files::KnownImage;
 pub(crate) use groups::Outside;
 use studio::area;
 
 /// Most things that are listed as not honoured; the rest is counted.
 const MAX_LEFT_OUT: usize = 1000;
+
+/// Most of them that are named where there is no scene without them.
+const MOST_NAMED: usize = 5;
+
+/// How something that is listed is introduced.
+fn how(loss: Loss) -> &'static str {
+    match loss {
+        Loss::Approximated => "approximated",
+        Loss::LeftOut => "left out",
+    }
+}
 
 /// A scene that is being made.
 pub(crate) struct Builder<'a> {
@@ -130,8 +141,18 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Lists something that is not in the scene.
     pub(crate) fn leave_out(&mut self, place: impl Into<String>, what: impl Into<String>) {
-        let left_out = LeftOut { place: shortened(place.into()), what: shortened(what.into()) };
+        self.list(Loss::LeftOut, place.into(), what.into());
+    }
+
+    /// Lists something that another stands for.
+    pub(crate) fn approximate(&mut self, place: impl Into<String>, what: impl Into<String>) {
+        self.list(Loss::Approximated, place.into(), what.into());
+    }
+
+    fn list(&mut self, loss: Loss, place: String, what: String) {
+        let left_out = LeftOut { loss, place: shortened(place), what: shortened(what) };
         if self.said.contains(&left_out) {
             return;
         }
@@ -296,11 +317,12 @@ impl<'a> Builder<'a> {
 
     /// The scene, with a camera and a light if the model has none.
     pub(crate) fn finish(mut self, source: &str) -> Result<Imported, String> {
-        let Some([low, high]) = self.bounds else { return Err("it has no surfaces".to_owned()) };
+        let Some([low, high]) = self.bounds else { return Err(self.nothing_to_see()) };
+        let taken_over = self.taken_over();
         let mut added = std::mem::take(&mut self.added);
         if self.uncounted > 0 {
             let what = format!("{} more things are not listed", self.uncounted);
-            self.left_out.push(LeftOut { place: source.to_owned(), what });
+            self.left_out.push(LeftOut { loss: Loss::LeftOut, place: source.to_owned(), what });
         }
         let mut camera = self.camera.take().unwrap_or_else(|| {
             let (camera, distance) = studio::camera([low, high]);
@@ -313,7 +335,7 @@ impl<'a> Builder<'a> {
         added.extend(self.add_light([low, high], &camera));
         let comment: Vec<String> = std::iter::once(format!("Imported from {source}."))
             .chain(added.iter().cloned())
-            .chain(self.left_out.iter().map(|l| format!("not converted: {}: {}", l.place, l.what)))
+            .chain(self.left_out.iter().map(|l| format!("{}: {}: {}", how(l.loss), l.place, l.what)))
             .collect();
         let mut scene = json!({
             "etalon": 1, "comment": comment, "camera": camera, "film": self.film, "materials": self.materials,
@@ -331,6 +353,33 @@ impl<'a> Builder<'a> {
             scene["instances"] = json!(self.instances);
         }
         let text = format!("{scene:#}\n");
-        Ok(Imported { text, files: self.files, left_out: self.left_out, added })
+        Ok(Imported { text, files: self.files, taken_over, left_out: self.left_out, added })
+    }
+
+    /// Why there is no scene: it has no surfaces, and which things were left out.
+    fn nothing_to_see(&self) -> String {
+        let left_out: Vec<&LeftOut> = self.left_out.iter().filter(|l| l.loss == Loss::LeftOut).collect();
+        let mut words: Vec<String> =
+            left_out.iter().take(MOST_NAMED).map(|l| format!("{}: {}", l.place, l.what)).collect();
+        if words.is_empty() {
+            return "it has no surfaces".to_owned();
+        }
+        if left_out.len() > MOST_NAMED {
+            words.push(format!("and {} more", left_out.len() - MOST_NAMED + self.uncounted));
+        }
+        format!("it has no surfaces that can be read ({})", words.join("; "))
+    }
+
+    fn taken_over(&self) -> TakenOver {
+        let of_groups = self.groups.values().filter_map(|group| group["objects"].as_array()).map(Vec::len);
+        let meshes = self.files.iter().filter(|file| file.name.ends_with(".ply")).count();
+        TakenOver {
+            objects: self.objects.len() + of_groups.sum::<usize>(),
+            instances: self.instances.len(),
+            materials: self.materials.len(),
+            lights: self.lights.len(),
+            meshes,
+            images: self.files.len() - meshes,
+        }
     }
 }

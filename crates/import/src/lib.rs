@@ -26,7 +26,8 @@
 //! | [`import`] | imports a file from the disk |
 //! | [`import_bytes`], [`import_bytes_with`] | import bytes in memory, the latter with [`Options`]: a moment, parameters |
 //! | [`Imported::parse`] | the imported scene as an [`etalon_scene::Scene`] |
-//! | [`Imported::left_out`] | each thing that the model says and the scene does not, with its place in the file |
+//! | [`Imported::left_out`] | each thing that the model says and the scene does not, or not exactly, with its place in the file |
+//! | [`Imported::taken_over`] | how much the scene has of the model |
 //!
 //! The example `convert` writes the scene of a model to a folder.
 //!
@@ -35,6 +36,7 @@
 
 mod budget;
 mod builder;
+mod checker;
 mod gltf;
 mod matrix;
 mod medium;
@@ -62,7 +64,9 @@ pub struct Imported {
     pub text: String,
     /// The files that it names.
     pub files: Vec<NamedFile>,
-    /// What the model says and the scene does not: at most 1000 things, and a last one that counts the rest.
+    /// What the scene has of the model.
+    pub taken_over: TakenOver,
+    /// What the model says and the scene does not, or not exactly: at most 1000 things, and a last one that counts the rest.
     pub left_out: Vec<LeftOut>,
     /// What the scene has that the model does not say: a camera, a light.
     pub added: Vec<String>,
@@ -78,9 +82,53 @@ impl Imported {
     }
 }
 
-/// Something that is not honoured.
+/// How many things of each kind a scene has of a model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TakenOver {
+    /// Objects, those of groups once.
+    pub objects: usize,
+    /// Placements of groups.
+    pub instances: usize,
+    /// Materials with a name.
+    pub materials: usize,
+    /// Lights without a surface.
+    pub lights: usize,
+    /// Files of meshes.
+    pub meshes: usize,
+    /// Files of images and of densities.
+    pub images: usize,
+}
+
+impl TakenOver {
+    /// Each kind that there is something of, in words: `3 objects`.
+    pub fn words(&self) -> Vec<String> {
+        let kinds = [
+            (self.objects, "object"),
+            (self.instances, "instance"),
+            (self.materials, "material"),
+            (self.lights, "light"),
+            (self.meshes, "mesh file"),
+            (self.images, "image or grid file"),
+        ];
+        let words = |(count, kind): (usize, &str)| format!("{count} {kind}{}", if count == 1 { "" } else { "s" });
+        kinds.into_iter().filter(|(count, _)| *count > 0).map(words).collect()
+    }
+}
+
+/// What becomes of something that is not honoured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Loss {
+    /// Something else stands for it.
+    Approximated,
+    /// It is not in the scene.
+    LeftOut,
+}
+
+/// Something that is not honoured, or not exactly.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct LeftOut {
+    /// Whether something stands for it.
+    pub loss: Loss,
     /// Where the model says it: a JSON path in glTF, the name of a material in MTL, a line elsewhere.
     pub place: String,
     /// What becomes of it, in a sentence without a full stop.

@@ -19,7 +19,7 @@ impl Number {
         match self {
             Self::Value(value) => value,
             Self::Image(_, mean) => {
-                builder.leave_out(place, format!("the mean of the image of \"{what}\" is used"));
+                builder.approximate(place, format!("the mean of the image of \"{what}\" is used"));
                 mean
             }
         }
@@ -105,7 +105,7 @@ pub(crate) const WITHOUT_DIRECTIONS: &str =
 pub(crate) fn has_image(value: &Value) -> bool {
     match value {
         Value::Object(map) => {
-            map.get("type").is_some_and(|t| t == "image")
+            map.get("type").is_some_and(|t| ["image", "checker", "gradient"].iter().any(|kind| t == kind))
                 || map.iter().any(|(key, value)| key.ends_with("_image") || has_image(value))
         }
         Value::Array(list) => list.iter().any(has_image),

@@ -3,9 +3,11 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use etalon_scene::LEAST_ALPHA;
 use etalon_scene::mesh::{ObjMaterial, read_obj};
 use serde_json::{Value, json};
 
+use crate::number::has_image;
 use crate::{Builder, light, reflectance};
 
 pub(crate) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
@@ -35,7 +37,7 @@ pub(crate) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
             builder.materials.entry(plain.clone()).or_insert(grey);
         }
         let mut material = json!(name_of);
-        if part.mesh.uvs.is_empty() && builder.materials[&name_of]["reflectance"]["type"] == "image" {
+        if part.mesh.uvs.is_empty() && has_image(&builder.materials[&name_of]) {
             builder
                 .leave_out(format!("group \"{name}\""), "it has no texture coordinates for the image of its material");
             material = json!({ "type": "lambert", "reflectance": 0.8 });
@@ -69,7 +71,7 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
     }
     let is_one = |value: &str| value.split_whitespace().all(|number| number.parse() == Ok(1.0));
     for (key, value) in material.unknown_param.iter().collect::<std::collections::BTreeMap<_, _>>() {
-        if key != "Ke" && !(key == "Tf" && is_one(value)) {
+        if !matches!(key.as_str(), "Ke" | "Pr" | "Pm") && !(key == "Tf" && is_one(value)) {
             builder.leave_out(&place, format!("{key} is ignored"));
         }
     }
@@ -80,25 +82,96 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
         return json!({ "type": "dielectric", "interior": index });
     }
     if clear || material.dissolve.is_some_and(|d| d < 1.0) {
-        builder.leave_out(&place, "d: it is transparent but has no index of refraction: it becomes opaque");
+        builder.approximate(&place, "d: it is transparent but has no index of refraction: it becomes opaque");
     }
     if matches!(illumination, 3 | 5) && diffuse.is_none_or(is_black) && !is_black(specular) {
         return json!({ "type": "mirror", "reflectance": reflectance(specular) });
     }
-    if !is_black(specular) {
-        builder.leave_out(&place, "Ks: its gloss is ignored; it becomes diffuse");
+    let gloss = Gloss::of(material, illumination, specular);
+    if let Some(Gloss { metalness: 0.0, words: Some(_), .. }) = gloss
+        && diffuse.is_some_and(is_black)
+    {
+        // All that it reflects is a highlight: a metal of that colour.
+        builder.approximate(&place, "Ks and Ns become a metal of this colour, which is brighter at grazing angles");
+        let mut metal = json!({ "type": "conductor", "reflectance": reflectance(specular) });
+        gloss_of_phong(material, &mut metal);
+        return metal;
     }
     let diffuse = diffuse.unwrap_or([if material.diffuse_texture.is_some() { 1.0 } else { 0.8 }; 3]);
     if diffuse.iter().any(|v| !(0.0..=1.0).contains(v)) {
-        builder.leave_out(&place, format!("Kd {diffuse:?} is not a reflectance: it is clamped to 0 to 1"));
+        builder.approximate(&place, format!("Kd {diffuse:?} is not a reflectance: it is clamped to 0 to 1"));
     }
-    if let Some(words) = &material.diffuse_texture
-        && let Some(image) = image(words, &place, builder)
-    {
-        let factor = diffuse.map(|v| v.clamp(0.0, 1.0));
-        return json!({ "type": "lambert", "reflectance": { "type": "image", "file": image, "factor": factor } });
+    let laid = material.diffuse_texture.as_ref().and_then(|words| image(words, &place, builder));
+    let colour = match laid {
+        Some(image) => json!({ "type": "image", "file": image, "factor": diffuse.map(|v| v.clamp(0.0, 1.0)) }),
+        None => reflectance(diffuse),
+    };
+    let Some(gloss) = gloss else { return json!({ "type": "lambert", "reflectance": colour }) };
+    if let Some(words) = gloss.words {
+        builder.approximate(&place, words);
     }
-    json!({ "type": "lambert", "reflectance": reflectance(diffuse) })
+    let part = |kind: &str| {
+        let mut part = json!({ "type": kind, "reflectance": colour });
+        match gloss.alpha {
+            Some(alpha) => part["alpha"] = json!(alpha),
+            None => gloss_of_phong(material, &mut part),
+        }
+        part
+    };
+    let mut ground = part("plastic");
+    ground["coat"] = json!(gloss.coat);
+    match gloss.metalness {
+        0.0 => ground,
+        1.0 => part("conductor"),
+        share => json!({ "type": "blend", "first": ground, "second": part("conductor"), "weight": share }),
+    }
+}
+
+/// How a material shines beside its diffuse colour.
+struct Gloss {
+    /// Index of its coat.
+    coat: f64,
+    /// Share of metal of its surface, from 0 to 1.
+    metalness: f64,
+    /// Width of GGX facets; `None`: that of Beckmann's by the exponent `Ns`.
+    alpha: Option<f64>,
+    /// What to say, if it is not what the file means.
+    words: Option<&'static str>,
+}
+
+impl Gloss {
+    /// By `Pr` and `Pm`, or by `Ks` and `Ns`; `None` if it does not shine.
+    fn of(material: &ObjMaterial, illumination: u8, specular: [f64; 3]) -> Option<Self> {
+        let number = |key: &str| {
+            let number: f64 = material.unknown_param.get(key)?.trim().parse().ok()?;
+            number.is_finite().then(|| number.clamp(0.0, 1.0))
+        };
+        if let (roughness, metalness) = (number("Pr"), number("Pm"))
+            && (roughness.is_some() || metalness.is_some())
+        {
+            let index = f64::from(material.optical_density.unwrap_or(1.5));
+            let coat = if index > 1.0 && index <= 4.0 { index } else { 1.5 };
+            let alpha = roughness.unwrap_or(0.5).powi(2);
+            let alpha = if alpha < LEAST_ALPHA { 0.0 } else { alpha };
+            return Some(Self { coat, metalness: metalness.unwrap_or(0.0), alpha: Some(alpha), words: None });
+        }
+        let mean = specular.iter().map(|v| v.clamp(0.0, 1.0)).sum::<f64>() / 3.0;
+        // 0 and 1 have no highlights.
+        if illumination < 2 || mean == 0.0 {
+            return None;
+        }
+        // Programs that write MTL of materials with Fresnel reflection say 1 where it is 0.08 head-on.
+        let root = (0.08 * mean).sqrt();
+        let words = "Ks and Ns become a clear coat that reflects 0.08 Ks head-on: the lobe of Phong knows no Fresnel";
+        Some(Self { coat: (1.0 + root) / (1.0 - root), metalness: 0.0, alpha: None, words: Some(words) })
+    }
+}
+
+/// Says of a material the facets whose highlight is that of Phong's exponent n: of Beckmann's with n = 2/α² − 2 (Walter et al. 2007).
+fn gloss_of_phong(material: &ObjMaterial, value: &mut Value) {
+    let exponent = f64::from(material.shininess.unwrap_or(0.0)).max(0.0);
+    value["alpha"] = json!((2.0 / (exponent + 2.0)).sqrt().max(LEAST_ALPHA));
+    value["distribution"] = json!("beckmann");
 }
 
 /// The name in the scene of the image that `map_Kd` names.

@@ -381,7 +381,36 @@ fn what_is_not_honoured_is_listed_with_its_path() {
         assert!(places.contains(&expected), "{expected} is not among {places:#?}");
     }
     // The scene to edit says so too.
-    assert!(imported.text.contains("not converted: $.materials[2].extensions.KHR_materials_clearcoat"));
+    assert!(imported.text.contains("left out: $.materials[2].extensions.KHR_materials_clearcoat"));
+}
+
+/// A model may require whole numbers as positions, with a stride of whole words.
+#[test]
+fn quantised_meshes_arrive_and_compressed_ones_are_refused() {
+    use base64::Engine as _;
+    let corners: [[i16; 4]; 4] = [[-100, 0, 0, 7], [100, 0, 0, 7], [100, 50, 0, 7], [-100, 50, 0, 7]];
+    let bytes: Vec<u8> = corners.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+    let mut model = model();
+    let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
+    let uri = format!("data:application/octet-stream;base64,{data}");
+    model["buffers"].as_array_mut().unwrap().push(json!({ "byteLength": bytes.len(), "uri": uri }));
+    model["bufferViews"][0] = json!({ "buffer": 1, "byteLength": 32, "byteStride": 8 });
+    model["accessors"][0] = json!({ "bufferView": 0, "componentType": 5122, "count": 4, "type": "VEC3", "min": [-100, 0, 0], "max": [100, 50, 0] });
+    for extension in ["KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
+        model["extensionsRequired"] = json!([extension]);
+        model["extensionsUsed"].as_array_mut().unwrap().push(json!(extension));
+        let read = imported(&model);
+        if extension != "KHR_mesh_quantization" {
+            assert!(read.unwrap_err().contains(extension));
+            continue;
+        }
+        let scene = scene(&read.unwrap());
+        let vertices = scene.placed_objects().filter_map(|object| match &object.shape {
+            Shape::Mesh(mesh) => Some(mesh.vertices[2]),
+            _ => None,
+        });
+        assert!(vertices.into_iter().any(|v| v == [100.0, 50.0, 0.0]));
+    }
 }
 
 #[test]
@@ -492,7 +521,7 @@ fn obj_materials_become_paint_mirrors_glass_and_lamps() {
     let imported = import_bytes("obj", obj.as_bytes(), &near, "x/", "a.obj").unwrap();
     let scene = scene(&imported);
     let kind = |i: usize| &scene.materials[scene.objects[i].material].kind;
-    let MaterialKind::Lambert { reflectance: SpectrumTexture::Image(image) } = kind(0) else { panic!("an image") };
+    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), .. } = kind(0) else { panic!("an image") };
     assert_eq!(image.factor, [0.5, 0.25, 1.0]);
     assert!(matches!(kind(1), MaterialKind::Mirror { .. }));
     let MaterialKind::Dielectric { interior, .. } = kind(2) else { panic!("glass") };

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use etalon_import::{Moment, Options};
+use etalon_import::{LeftOut, Loss, Moment, Options};
 use etalon_picture::write_atomically;
 use miette::{Report, miette};
 use serde::Serialize;
@@ -13,8 +13,8 @@ use crate::print;
 
 /// Convert a model, or a scene of Mitsuba 3 or pbrt-v4, into a scene to edit.
 ///
-/// Models are glTF 2.0, OBJ with MTL, and PLY. Meshes and images go into the folder SCENE-files beside the scene. Everything that cannot
-/// be converted exactly is listed with its place.
+/// Models are glTF 2.0, OBJ with MTL, and PLY. Meshes and images go into the folder SCENE-files beside the scene. A table says what was
+/// taken over, what is approximated and what is left out, with the places in the model.
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon import model.glb -o model.json")]
@@ -36,7 +36,10 @@ pub(crate) struct Args {
     /// Value of a parameter of a Mitsuba scene, in the place of its <default>. The option may be repeated.
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = crate::args::parameter)]
     define: Vec<(String, String)>,
-    /// Print one JSON object on standard output, with the files and what was not converted.
+    /// Exit with status 1 if anything is approximated or left out. The scene is written all the same.
+    #[arg(long)]
+    strict: bool,
+    /// Print one JSON object on standard output, with the files and what was taken over, approximated and left out.
     #[arg(long)]
     json: bool,
 }
@@ -69,13 +72,46 @@ struct ReportJson {
     scene: String,
     files: Vec<String>,
     added: Vec<String>,
+    taken_over: TakenOverJson,
+    approximated: Vec<LeftOutJson>,
     left_out: Vec<LeftOutJson>,
+}
+
+#[derive(Serialize)]
+struct TakenOverJson {
+    objects: usize,
+    instances: usize,
+    materials: usize,
+    lights: usize,
+    meshes: usize,
+    images: usize,
 }
 
 #[derive(Serialize)]
 struct LeftOutJson {
     place: String,
     what: String,
+}
+
+/// Most places that a line of the table names.
+const MOST_PLACES: usize = 4;
+
+/// A line for each thing that became the same of things of the model, with their places.
+fn table(left_out: &[LeftOut], loss: Loss) -> Vec<String> {
+    let mut things: Vec<(&str, Vec<&str>)> = Vec::new();
+    for LeftOut { place, what, .. } in left_out.iter().filter(|l| l.loss == loss) {
+        match things.iter_mut().find(|(known, _)| known == what) {
+            Some((_, places)) => places.push(place),
+            None => things.push((what, vec![place])),
+        }
+    }
+    let words = |(what, places): (&str, Vec<&str>)| {
+        let more = places.len().saturating_sub(MOST_PLACES);
+        let named = places[..places.len() - more].join(", ");
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        format!("{named}{more}: {what}")
+    };
+    things.into_iter().map(words).collect()
 }
 
 pub(crate) fn run(args: Args) -> Outcome {
@@ -111,30 +147,64 @@ pub(crate) fn run(args: Args) -> Outcome {
     write_atomically(&args.output, |out| out.write_all(imported.text.as_bytes()))
         .map_err(|e| Failure::run(Report::from_err(e)))?;
 
+    let taken = &imported.taken_over;
     if args.json {
+        let of = |loss: Loss| -> Vec<LeftOutJson> {
+            let lost = imported.left_out.iter().filter(|l| l.loss == loss);
+            lost.map(|l| LeftOutJson { place: l.place.clone(), what: l.what.clone() }).collect()
+        };
         print::json(&ReportJson {
             scene: name,
             files: imported.files.iter().map(|file| file.name.clone()).collect(),
             added: imported.added.clone(),
-            left_out: imported
-                .left_out
-                .iter()
-                .map(|l| LeftOutJson { place: l.place.clone(), what: l.what.clone() })
-                .collect(),
+            taken_over: TakenOverJson {
+                objects: taken.objects,
+                instances: taken.instances,
+                materials: taken.materials,
+                lights: taken.lights,
+                meshes: taken.meshes,
+                images: taken.images,
+            },
+            approximated: of(Loss::Approximated),
+            left_out: of(Loss::LeftOut),
         });
-        return Ok(());
+    } else {
+        print::line(&format!("{name}: {} files beside it in {prefix}", imported.files.len()));
+        imported.added.iter().for_each(|added| print::line(&format!("  added: {added}")));
+        print::line(&format!("  taken over: {}", taken.words().join(", ")));
+        for (loss, title) in [(Loss::Approximated, "approximated"), (Loss::LeftOut, "left out")] {
+            for line in table(&imported.left_out, loss) {
+                print::line(&format!("  {title}: {line}"));
+            }
+        }
     }
-    print::line(&format!("{name}: {} files beside it in {prefix}", imported.files.len()));
-    imported.added.iter().for_each(|added| print::line(&format!("  added: {added}")));
-    for left_out in &imported.left_out {
-        print::line(&format!("  not converted: {}: {}", left_out.place, left_out.what));
+    if args.strict && !imported.left_out.is_empty() {
+        let of = |loss| imported.left_out.iter().filter(|l| l.loss == loss).count();
+        return Err(Failure::run(miette!(
+            code = "not-exact",
+            "of the model {} things are approximated and {} are left out; the scene is written",
+            of(Loss::Approximated),
+            of(Loss::LeftOut)
+        )));
     }
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{instant, shutter};
+    use super::{instant, shutter, table};
+    use etalon_import::{LeftOut, Loss};
+
+    #[test]
+    fn what_becomes_of_several_things_alike_is_one_line() {
+        let of = |loss, place: u32, what: &str| LeftOut { loss, place: format!("line {place}"), what: what.to_owned() };
+        let mut all: Vec<LeftOut> = (1..=6).map(|line| of(Loss::Approximated, line, "it becomes grey")).collect();
+        all.push(of(Loss::LeftOut, 7, "hair is left out"));
+        all.push(of(Loss::Approximated, 8, "it becomes round"));
+        let read = table(&all, Loss::Approximated);
+        assert_eq!(read, ["line 1, line 2, line 3, line 4 and 2 more: it becomes grey", "line 8: it becomes round"]);
+        assert_eq!(table(&all, Loss::LeftOut), ["line 7: hair is left out"]);
+    }
 
     #[test]
     fn times_are_read_as_they_are_written() {

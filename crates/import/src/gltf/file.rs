@@ -9,6 +9,27 @@ use crate::Builder;
 /// Bytes of the header of a binary file.
 const GLB_HEADER: u32 = 12;
 
+/// Extensions that a file may require although the library does not know them.
+const HONOURED: [&str; 3] = ["KHR_mesh_quantization", "KHR_materials_anisotropy", "KHR_materials_dispersion"];
+
+/// Extensions that compress meshes, and what a user may do.
+const COMPRESSED: [&str; 2] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression"];
+
+/// The file, checked by the library.
+pub(super) fn parse(bytes: &[u8]) -> Result<Gltf, String> {
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(|error| error.to_string())?;
+    let mut root = document.into_json();
+    if let Some(name) = root.extensions_required.iter().find(|name| COMPRESSED.contains(&name.as_str())) {
+        return Err(format!(
+            "$.extensionsRequired: its meshes are compressed by {name}, which cannot be read; write the model without compression, for \
+             example with gltf-transform"
+        ));
+    }
+    root.extensions_required.retain(|name| !HONOURED.contains(&name.as_str()));
+    let document = gltf::Document::from_json(root).map_err(|error| error.to_string())?;
+    Ok(Gltf { document, blob })
+}
+
 /// Refuses primitives that name accessors which are not there: the library's own check looks them up before it counts.
 pub(super) fn check_primitives(bytes: &[u8]) -> Result<(), String> {
     let glb;

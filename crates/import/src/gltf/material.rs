@@ -81,7 +81,7 @@ impl Materials {
         {
             let at = format!("{place}.extensions.KHR_materials_transmission");
             if transmission.transmission_factor() < 1.0 || transmission.transmission_texture().is_some() {
-                builder.leave_out(&at, "it becomes fully transmitting");
+                builder.approximate(&at, "it becomes fully transmitting");
             }
             if base != [1.0; 3] || surface.base_color_texture().is_some() {
                 builder.leave_out(format!("{place}.pbrMetallicRoughness"), "clear glass has no base colour");
@@ -171,7 +171,7 @@ impl Materials {
         let (image, set) = self.image(&info, &at, buffers, builder)?;
         let texels = linear(&info.texture(), buffers, builder)?;
         if *uv_set.get_or_insert(set) != set {
-            builder.leave_out(at, "it uses another set of texture coordinates than the colour: its mean is used");
+            builder.approximate(at, "it uses another set of texture coordinates than the colour: its mean is used");
             return Some((None, texels));
         }
         Some((Some(data_image(image)), texels))
@@ -271,8 +271,10 @@ impl Materials {
                 image["factor"] = json!(material.emissive_factor().map(|v| f64::from(v).max(0.0) * strength));
                 return Some(json!({ "radiance": image, "sides": sides }));
             }
-            builder
-                .leave_out(at, "it uses another set of texture coordinates than the first image: its mean is emitted");
+            builder.approximate(
+                at,
+                "it uses another set of texture coordinates than the first image: its mean is emitted",
+            );
         }
         Some(json!({ "radiance": light(rgb, strength), "sides": sides }))
     }
@@ -394,7 +396,7 @@ fn alpha(roughness: f32) -> f64 {
 fn index(material: &gltf::Material<'_>, place: &str, builder: &mut Builder<'_>) -> Value {
     let ior = decimal(material.ior().unwrap_or(1.5));
     if ior < 1.0 {
-        builder.leave_out(format!("{place}.extensions.KHR_materials_ior"), format!("an index of {ior} becomes 1.5"));
+        builder.approximate(format!("{place}.extensions.KHR_materials_ior"), format!("an index of {ior} becomes 1.5"));
         return json!(1.5);
     }
     // 20/V, V the Abbe number (n_d − 1)/(n_F − n_C).

@@ -14,15 +14,15 @@ use etalon_scene::Mesh;
 use etalon_scene::linear::{is_similarity, unit, unit_normal};
 use etalon_scene::mesh::MAX_ELEMENTS;
 use glam::{DAffine3, DVec3};
+use gltf::Node;
 use gltf::mesh::{Mode, Semantic};
-use gltf::{Gltf, Node};
 use serde_json::{Value, json};
 
 use crate::number::{WITHOUT_DIRECTIONS, without_directions};
 use crate::{Builder, Moment, light};
 use accessor::numbers;
 use animation::{Animated, Pose};
-use file::{buffers, check_images, check_lights, check_primitives};
+use file::{buffers, check_images, check_lights, check_primitives, parse};
 use material::Materials;
 
 /// Deepest nesting of nodes.
@@ -33,7 +33,7 @@ const MAX_MOVING: usize = 7;
 
 pub(super) fn import(bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder<'_>) -> Result<(), String> {
     check_primitives(bytes)?;
-    let file = Gltf::from_slice(bytes).map_err(|error| error.to_string())?;
+    let file = parse(bytes)?;
     check_images(&file)?;
     check_lights(&file)?;
     let buffers = buffers(&file, builder)?;
@@ -125,7 +125,7 @@ impl Walk<'_, '_> {
         } else {
             return Some(poses);
         };
-        self.builder.leave_out(place, format!("{why}: it stays as it is when the shutter opens"));
+        self.builder.approximate(place, format!("{why}: it stays as it is when the shutter opens"));
         None
     }
 
@@ -354,7 +354,7 @@ impl Walk<'_, '_> {
             }
             Kind::Point => json!({ "name": name, "type": "point", "position_m": position, "intensity": spectrum }),
             Kind::Spot { inner_cone_angle, outer_cone_angle } => {
-                self.builder.leave_out(&place, "between its two angles the light falls off by another curve");
+                self.builder.approximate(&place, "between its two angles the light falls off by another curve");
                 let outer = f64::from(outer_cone_angle).to_degrees().clamp(1e-3, 180.0);
                 let inner = f64::from(inner_cone_angle).to_degrees().clamp(0.0, outer);
                 json!({

@@ -29,7 +29,7 @@ impl<'a> Walk<'a, '_, '_> {
                 }
             }
             other => {
-                self.builder.leave_out(&element.place, format!("the integrator \"{other}\" becomes a path tracer"))
+                self.builder.approximate(&element.place, format!("the integrator \"{other}\" becomes a path tracer"))
             }
         }
         // −1 is without limit.
@@ -130,7 +130,7 @@ impl<'a> Walk<'a, '_, '_> {
                     json!({ "type": "gaussian", "sigma_px": rfilter.number("stddev")?.unwrap_or(0.5) })
                 }
                 other => {
-                    self.builder.leave_out(&rfilter.place, format!("the filter \"{other}\" becomes a Gaussian"));
+                    self.builder.approximate(&rfilter.place, format!("the filter \"{other}\" becomes a Gaussian"));
                     rfilter.children.iter().for_each(Element::mark);
                     filter
                 }

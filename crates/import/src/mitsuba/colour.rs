@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::Walk;
 use super::element::{Element, numbers};
+use crate::checker::{Checker, channels};
 use crate::matrix::rows;
 use crate::number::Number;
 use crate::table::Table;
@@ -66,7 +67,7 @@ impl Walk<'_, '_, '_> {
             Some(number) => number,
             None => {
                 self.builder
-                    .leave_out(&element.place, format!("\"{name}\" is a colour: the mean of its channels is used"));
+                    .approximate(&element.place, format!("\"{name}\" is a colour: the mean of its channels is used"));
                 let channels = value["rgb"].as_array().map_or(&[][..], Vec::as_slice);
                 channels.iter().filter_map(Value::as_f64).sum::<f64>() / channels.len().max(1) as f64
             }
@@ -109,19 +110,19 @@ impl Walk<'_, '_, '_> {
         Ok(match of {
             Of::Emission | Of::Shining => {
                 if rgb.iter().any(|v| *v < 0.0) {
-                    self.builder.leave_out(place, "negative light becomes 0");
+                    self.builder.approximate(place, "negative light becomes 0");
                 }
                 light(rgb.map(|v| v.max(0.0)), 1.0)
             }
             Of::Coefficient => {
                 if rgb.iter().any(|v| *v < 0.0) {
-                    self.builder.leave_out(place, "negative coefficients become 0");
+                    self.builder.approximate(place, "negative coefficients become 0");
                 }
                 json!({ "type": "rgb", "rgb": rgb.map(|v| v.max(0.0)) })
             }
             Of::Texture | Of::Reflectance => {
                 if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
-                    self.builder.leave_out(place, format!("{rgb:?} is not a reflectance: it is clamped to 0 to 1"));
+                    self.builder.approximate(place, format!("{rgb:?} is not a reflectance: it is clamped to 0 to 1"));
                 }
                 reflectance(rgb)
             }
@@ -131,7 +132,7 @@ impl Walk<'_, '_, '_> {
     fn constant(&mut self, value: f64, place: &str, of: Of) -> Value {
         let (low, high) = (0.0, of.most());
         if !(low..=high).contains(&value) {
-            self.builder.leave_out(place, format!("{value} is clamped to {low} to {high}"));
+            self.builder.approximate(place, format!("{value} is clamped to {low} to {high}"));
         }
         json!(value.clamp(low, high))
     }
@@ -196,7 +197,7 @@ impl Walk<'_, '_, '_> {
                 None => Err(format!("{place}: it has no \"color\"")),
             },
             (other, _) => {
-                self.builder.leave_out(place, format!("the spectrum \"{other}\" is not known: it becomes 0.5"));
+                self.builder.approximate(place, format!("the spectrum \"{other}\" is not known: it becomes 0.5"));
                 Ok(json!(0.5))
             }
         }
@@ -220,7 +221,7 @@ impl Walk<'_, '_, '_> {
             .ok_or_else(|| format!("{place}: {} numbers are not a table of wavelengths and values", pairs.len()))?;
         let highest = of.most();
         if table.0.iter().any(|(_, v)| !(0.0..=highest).contains(v)) {
-            self.builder.leave_out(place, format!("values are clamped to 0 to {highest}"));
+            self.builder.approximate(place, format!("values are clamped to 0 to {highest}"));
             table.0.iter_mut().for_each(|(_, v)| *v = v.clamp(0.0, highest));
         }
         Ok(table.spectrum("zero"))
@@ -228,10 +229,18 @@ impl Walk<'_, '_, '_> {
 
     fn texture(&mut self, element: &Element, of: Of) -> Result<Value, String> {
         let place = &element.place;
+        if element.plugin() == "checkerboard" {
+            let checker = self.checkerboard(element, of)?;
+            if of == Of::Texture || of == Of::Shining {
+                return Ok(checker.value());
+            }
+            self.builder.approximate(place, "the mean of the chequerboard is used");
+            let mean = checker.mean();
+            return Ok(if of.is_light() { light(mean, 1.0) } else { checker.mean_reflectance() });
+        }
         if element.plugin() != "bitmap" {
             let what = element.plugin();
-            // The mean of the usual chequers.
-            self.builder.leave_out(place, format!("the texture \"{what}\" is not known: it becomes 0.5"));
+            self.builder.approximate(place, format!("the texture \"{what}\" is not known: it becomes 0.5"));
             element.mark();
             element.children.iter().for_each(Element::mark);
             return Ok(json!(0.5));
@@ -240,10 +249,32 @@ impl Walk<'_, '_, '_> {
             return Ok(if of.is_light() { json!(0.0) } else { json!(0.5) });
         };
         if of != Of::Texture && of != Of::Shining {
-            self.builder.leave_out(place, "the mean of the image is used");
+            self.builder.approximate(place, "the mean of the image is used");
             return Ok(if of.is_light() { light(mean, 1.0) } else { reflectance(mean) });
         }
         Ok(image)
+    }
+
+    /// The chequerboard that a texture is. As ours, its fields are half a unit wide, the first at (0, 0).
+    fn checkerboard(&mut self, element: &Element, of: Of) -> Result<Checker, String> {
+        let of = if of.is_light() { Of::Emission } else { Of::Reflectance };
+        let mut colours = [[0.4; 3], [0.2; 3]];
+        for (colour, name) in colours.iter_mut().zip(["color0", "color1"]) {
+            let Some(value) = self.colour(element, name, of)? else { continue };
+            *colour = channels(&value).unwrap_or_else(|| {
+                self.builder.approximate(&element.place, format!("\"{name}\" is a spectrum: it becomes a grey of 0.5"));
+                [0.5; 3]
+            });
+        }
+        let (mut uv_scale, mut uv_offset) = ([1.0; 2], [0.0; 2]);
+        if let Some(transform) = element.property("to_uv") {
+            let rows = rows(&super::transform::read(transform)?);
+            if rows[0][1] != 0.0 || rows[1][0] != 0.0 {
+                self.builder.leave_out(&transform.place, "the rotation of texture coordinates is ignored");
+            }
+            (uv_scale, uv_offset) = ([rows[0][0], rows[1][1]], [rows[0][3], rows[1][3]]);
+        }
+        Ok(Checker { colours, uv_scale, uv_offset })
     }
 
     /// The image of the format that a `bitmap` is, and the mean of its texels; `None`, and a note, if it cannot be read.

@@ -45,8 +45,10 @@ impl Walk<'_, '_, '_> {
                 let cutoff = element.number("cutoff_angle")?.unwrap_or(20.0);
                 let inner = element.number("beam_width")?.unwrap_or(0.75 * cutoff);
                 if inner < cutoff {
-                    self.builder
-                        .leave_out(&place, "between beam_width and cutoff_angle the light falls off by another curve");
+                    self.builder.approximate(
+                        &place,
+                        "between beam_width and cutoff_angle the light falls off by another curve",
+                    );
                 }
                 json!({
                     "type": "spot", "position_m": to_world.translation.to_array(), "direction": to_world.matrix3.z_axis.to_array(),

@@ -84,7 +84,7 @@ impl Walk<'_, '_, '_> {
             "twosided" => {
                 let nested = element.nested("bsdf", self.ids)?;
                 if nested.len() > 1 {
-                    self.builder.leave_out(&place, "both sides have the first of its materials");
+                    self.builder.approximate(&place, "both sides have the first of its materials");
                 }
                 let mut look = self.first(&nested, &place)?;
                 change_sides(&mut look.material, &|_| "both");
@@ -195,7 +195,7 @@ impl Walk<'_, '_, '_> {
                 if plugin == "roughplastic" {
                     let what = "the rough coat loses no light, unlike Mitsuba's: at an alpha of 0.2 over a base of 0.5 it is 2 to 26 % \
                                 brighter";
-                    self.builder.leave_out(place, what);
+                    self.builder.approximate(place, what);
                 }
                 let nonlinear = element.flag("nonlinear")?.unwrap_or(false);
                 let internal_reflection = if nonlinear { "coloured" } else { "uncoloured" };
@@ -207,12 +207,12 @@ impl Walk<'_, '_, '_> {
                 plastic
             }
             "principled" | "principledthin" => {
-                self.builder.leave_out(place, format!("\"{plugin}\" becomes diffuse, with its base colour"));
+                self.builder.approximate(place, format!("\"{plugin}\" becomes diffuse, with its base colour"));
                 let reflectance = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
                 json!({ "type": "lambert", "reflectance": reflectance })
             }
             other => {
-                self.builder.leave_out(place, format!("the material \"{other}\" is not known: it becomes grey"));
+                self.builder.approximate(place, format!("the material \"{other}\" is not known: it becomes grey"));
                 element.children.iter().for_each(Element::mark);
                 grey()
             }
@@ -236,7 +236,7 @@ impl Walk<'_, '_, '_> {
             Some("none") => return Ok(json!({ "type": "mirror", "reflectance": tint.unwrap_or(json!(1.0)) })),
             Some(metal @ ("Ag" | "Al" | "Au" | "Cu")) => json!({ "type": "conductor", "metal": metal }),
             Some(other) => {
-                self.builder.leave_out(place, format!("the metal \"{other}\" is not known: it becomes aluminium"));
+                self.builder.approximate(place, format!("the metal \"{other}\" is not known: it becomes aluminium"));
                 json!({ "type": "conductor", "metal": "Al" })
             }
             None => self.own_metal(element)?.unwrap_or_else(|| json!({ "type": "conductor", "metal": "Cu" })),
@@ -258,7 +258,7 @@ impl Walk<'_, '_, '_> {
         let (eta, k) = (self.colour(element, "eta", Of::Emission)?, self.colour(element, "k", Of::Emission)?);
         let (Some(eta), Some(k)) = (eta, k) else { return Ok(None) };
         let (Some(eta), Some(k)) = (Table::of_spectrum(&eta), Table::of_spectrum(&k)) else {
-            self.builder.leave_out(&element.place, "eta and k as colours are ignored: the metal becomes aluminium");
+            self.builder.approximate(&element.place, "eta and k as colours are ignored: the metal becomes aluminium");
             return Ok(Some(json!({ "type": "conductor", "metal": "Al" })));
         };
         Ok(Some(metal(&eta, &k)))

@@ -71,7 +71,7 @@ impl<'a> Walk<'a, '_, '_> {
         }
         if target.plugin() != "constvolume" {
             let what = format!("the volume \"{}\" becomes the same everywhere, 0.75", target.plugin());
-            self.builder.leave_out(&target.place, what);
+            self.builder.approximate(&target.place, what);
             target.children.iter().for_each(Element::mark);
             return Ok(json!(0.75));
         }
@@ -93,7 +93,7 @@ impl<'a> Walk<'a, '_, '_> {
             in_unit_box(&mut bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
         }
         if volume.string("filter_type").is_some_and(|filter| filter != "trilinear") {
-            self.builder.leave_out(place, "densities become trilinear");
+            self.builder.approximate(place, "densities become trilinear");
         }
         volume.string("wrap_mode");
         volume.flag("raw")?;
@@ -141,7 +141,7 @@ impl<'a> Walk<'a, '_, '_> {
                 match blended(&first, &second, weight) {
                     Some(phase) => phase,
                     None => {
-                        self.builder.leave_out(
+                        self.builder.approximate(
                             place,
                             "a blend with another than Henyey and Greenstein's becomes its first part",
                         );
@@ -150,7 +150,7 @@ impl<'a> Walk<'a, '_, '_> {
                 }
             }
             other => {
-                self.builder.leave_out(place, format!("the phase function \"{other}\" becomes isotropic"));
+                self.builder.approximate(place, format!("the phase function \"{other}\" becomes isotropic"));
                 element.children.iter().for_each(Element::mark);
                 json!({ "type": "isotropic" })
             }

@@ -9,6 +9,7 @@ mod emitter;
 mod material;
 mod medium;
 mod relief;
+mod serialized;
 mod shape;
 mod transform;
 

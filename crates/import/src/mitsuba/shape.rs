@@ -10,6 +10,7 @@ use super::Walk;
 use super::colour::kind;
 use super::element::Element;
 use super::material::{Look, grey};
+use super::serialized;
 use crate::Placed;
 use crate::medium::fill;
 use crate::number::{WITHOUT_DIRECTIONS, has_image, without_directions};
@@ -19,6 +20,17 @@ use crate::relief::without_map;
 #[derive(Debug)]
 pub(super) struct Mesh {
     parts: Vec<MeshPart>,
+    /// Whether the file asks for the normals of its faces.
+    flat: bool,
+}
+
+/// How a mesh is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MeshFormat {
+    Obj,
+    Ply,
+    /// The mesh of this number.
+    Serialized(usize),
 }
 
 #[derive(Debug)]
@@ -120,7 +132,7 @@ impl<'a> Walk<'a, '_, '_> {
                 ];
                 self.analytic(dressed, shape, reach, place)?;
             }
-            "obj" | "ply" => self.mesh(element, &mut dressed)?,
+            "obj" | "ply" | "serialized" => self.mesh(element, &mut dressed)?,
             other => {
                 self.builder.leave_out(place, format!("the shape \"{other}\" is not known, and is left out"));
                 element.children.iter().for_each(Element::mark);
@@ -183,10 +195,17 @@ impl<'a> Walk<'a, '_, '_> {
     fn mesh(&mut self, element: &Element, dressed: &mut Dressed) -> Result<(), String> {
         let place = &element.place;
         let file = element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
-        let is_obj = element.plugin() == "obj" || kind(&file) == "obj";
-        let flip_v = element.flag("flip_tex_coords")?.unwrap_or(is_obj);
-        let flat = element.flag("face_normals")?.unwrap_or(false);
-        let mesh = self.read_mesh(&file, is_obj, flip_v, place)?;
+        let format = match element.plugin() {
+            "serialized" => {
+                let index = element.number("shape_index")?.unwrap_or(0.0);
+                MeshFormat::Serialized(index.clamp(0.0, 1e9) as usize)
+            }
+            plugin if plugin == "obj" || kind(&file) == "obj" => MeshFormat::Obj,
+            _ => MeshFormat::Ply,
+        };
+        let flip_v = element.flag("flip_tex_coords")?.unwrap_or(format == MeshFormat::Obj);
+        let mesh = self.read_mesh(&file, format, flip_v, place)?;
+        let flat = element.flag("face_normals")?.unwrap_or(false) || mesh.flat;
         for part in &mesh.parts {
             let mut dressed = dressed.clone();
             if let Some(name) = part.name.as_ref().filter(|_| mesh.parts.len() > 1) {
@@ -213,18 +232,23 @@ impl<'a> Walk<'a, '_, '_> {
         Ok(())
     }
 
-    fn read_mesh(&mut self, file: &str, is_obj: bool, flip_v: bool, place: &str) -> Result<Rc<Mesh>, String> {
-        let key = format!("{flip_v} {file}");
+    fn read_mesh(&mut self, file: &str, format: MeshFormat, flip_v: bool, place: &str) -> Result<Rc<Mesh>, String> {
+        let key = format!("{flip_v} {format:?} {file}");
         if let Some(mesh) = self.meshes.get(&key) {
             return Ok(mesh.clone());
         }
         let bytes = self.builder.bytes_of(file, place)?;
         let refused = |why: &dyn std::fmt::Display| format!("{place}: \"{file}\": {why}");
-        let parts: Vec<Part> = if is_obj {
+        let mut flat = false;
+        let parts: Vec<Part> = match format {
             // Materials of MTL are not asked for: the scene has its own.
-            read_obj(&bytes, |_| Ok(Vec::new())).map_err(|error| refused(&error))?.parts
-        } else {
-            vec![read_ply(&bytes).map_err(|error| refused(&error))?]
+            MeshFormat::Obj => read_obj(&bytes, |_| Ok(Vec::new())).map_err(|error| refused(&error))?.parts,
+            MeshFormat::Ply => vec![read_ply(&bytes).map_err(|error| refused(&error))?],
+            MeshFormat::Serialized(index) => {
+                let (part, of_faces) = serialized::read(&bytes, index).map_err(|why| refused(&why))?;
+                flat = of_faces;
+                vec![part]
+            }
         };
         let mut made = Vec::new();
         for mut part in parts {
@@ -246,7 +270,7 @@ impl<'a> Walk<'a, '_, '_> {
                 has_normals: !part.mesh.normals.is_empty(),
             });
         }
-        let mesh = Rc::new(Mesh { parts: made });
+        let mesh = Rc::new(Mesh { parts: made, flat });
         self.meshes.insert(key, mesh.clone());
         Ok(mesh)
     }
@@ -256,7 +280,7 @@ impl<'a> Walk<'a, '_, '_> {
         let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
         if !has_uvs && has_image(own.unwrap_or(&dressed.look.material)) {
             self.builder
-                .leave_out(place, "it has no texture coordinates for the image of its material: it becomes grey");
+                .approximate(place, "it has no texture coordinates for the image of its material: it becomes grey");
             dressed.look.material = grey();
         }
         if !has_uvs {
@@ -273,7 +297,7 @@ impl<'a> Walk<'a, '_, '_> {
         }
         if !has_uvs && !dressed.look.detail.is_empty() {
             self.builder
-                .leave_out(place, "it has no texture coordinates for the image of its opacity: it becomes opaque");
+                .approximate(place, "it has no texture coordinates for the image of its opacity: it becomes opaque");
             dressed.look.detail.clear();
         }
     }

@@ -117,7 +117,7 @@ impl Reading<'_, '_> {
 
     pub(super) fn integrator(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
         if !matches!(kind, "path" | "volpath" | "simplepath" | "simplevolpath") {
-            self.builder.leave_out(place, format!("the integrator \"{kind}\" becomes a path tracer"));
+            self.builder.approximate(place, format!("the integrator \"{kind}\" becomes a path tracer"));
         }
         // A depth of 0 is light seen directly, which is one edge of a path. What is more than a scene can say stands for no limit.
         let depth = (list.number("maxdepth")?.unwrap_or(5.0).max(0.0) + 1.0).min(f64::from(u32::MAX)) as u32;
@@ -137,7 +137,7 @@ impl Reading<'_, '_> {
             "triangle" => json!({ "type": "tent", "radius_px": list.number("xradius")?.unwrap_or(2.0) }),
             "gaussian" => json!({ "type": "gaussian", "sigma_px": list.number("sigma")?.unwrap_or(0.5) }),
             other => {
-                self.builder.leave_out(place, format!("the filter \"{other}\" becomes a Gaussian"));
+                self.builder.approximate(place, format!("the filter \"{other}\" becomes a Gaussian"));
                 json!({ "type": "gaussian" })
             }
         };

@@ -71,7 +71,7 @@ impl Reading<'_, '_> {
                 json!({ "type": "black" })
             }
             other => {
-                self.builder.leave_out(place, format!("the material \"{other}\" is not known: it becomes grey"));
+                self.builder.approximate(place, format!("the material \"{other}\" is not known: it becomes grey"));
                 list.mark_all();
                 json!({ "type": "lambert", "reflectance": 0.5 })
             }
@@ -99,7 +99,8 @@ impl Reading<'_, '_> {
                 Some("metal-Al-eta") => "Al",
                 Some("metal-Au-eta") => "Au",
                 Some(other) => {
-                    self.builder.leave_out(place, format!("the metal \"{other}\" is not known: it becomes aluminium"));
+                    self.builder
+                        .approximate(place, format!("the metal \"{other}\" is not known: it becomes aluminium"));
                     "Al"
                 }
             };
@@ -138,7 +139,7 @@ impl Reading<'_, '_> {
                 "glass-SF11" => json!({ "type": "glass", "name": "N-SF11", "outside_fit": "clamp" }),
                 other => {
                     self.builder
-                        .leave_out(&place, format!("the glass \"{other}\" is not known: its index becomes 1.5"));
+                        .approximate(&place, format!("the glass \"{other}\" is not known: its index becomes 1.5"));
                     json!(1.5)
                 }
             }),

@@ -30,7 +30,7 @@ impl Reading<'_, '_> {
                     let factor = list.number("Lescale")?.unwrap_or(1.0);
                     // There the coefficient of absorption is no factor of what a medium emits, but for a grid's.
                     self.builder
-                        .leave_out(place, "Le becomes a source radiance: the medium emits it times its absorption");
+                        .approximate(place, "Le becomes a source radiance: the medium emits it times its absorption");
                     medium["source_radiance"] = self.emitted(list, "Le", factor)?;
                 }
             }

@@ -69,7 +69,7 @@ impl Reading<'_, '_> {
             Some(Number::Value(alpha)) => opacity *= alpha,
             Some(Number::Image(..)) if !has_uvs => {
                 self.builder
-                    .leave_out(place, "it has no texture coordinates for the image of its alpha: it becomes opaque");
+                    .approximate(place, "it has no texture coordinates for the image of its alpha: it becomes opaque");
             }
             Some(Number::Image(mut image, _)) => {
                 // The format has the factor beside the image.
@@ -122,7 +122,7 @@ impl Reading<'_, '_> {
         let own = value.as_str().and_then(|name| self.builder.materials.get(name)).unwrap_or(value);
         if !has_uvs && has_image(own) {
             self.builder
-                .leave_out(place, "it has no texture coordinates for the image of its material: it becomes grey");
+                .approximate(place, "it has no texture coordinates for the image of its material: it becomes grey");
             return json!({ "type": "lambert", "reflectance": 0.5 });
         }
         let mut without = own.clone();
@@ -164,7 +164,7 @@ impl Reading<'_, '_> {
         let corners = indices(list, mesh.vertices.len(), 4, place)?;
         // Corners (0, 0), (1, 0), (0, 1) and (1, 1), in this order.
         mesh.triangles = corners.chunks_exact(4).flat_map(|c| [[c[0], c[1], c[3]], [c[0], c[3], c[2]]]).collect();
-        self.builder.leave_out(place, "a bilinear patch becomes two triangles");
+        self.builder.approximate(place, "a bilinear patch becomes two triangles");
         Ok(mesh)
     }
 }

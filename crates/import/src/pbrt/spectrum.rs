@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::Reading;
 use super::parameters::{Parameter, Parameters, Values};
+use crate::checker::{Checker, channels};
 use crate::number::Number;
 use crate::table::Table;
 use crate::{extension, light, reflectance};
@@ -27,26 +28,26 @@ impl Reading<'_, '_> {
             ("rgb" | "color", [r, g, b]) => {
                 let rgb = [*r, *g, *b];
                 if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
-                    self.builder.leave_out(&place, format!("{rgb:?} is not a reflectance: it is clamped to 0 to 1"));
+                    self.builder.approximate(&place, format!("{rgb:?} is not a reflectance: it is clamped to 0 to 1"));
                 }
                 reflectance(rgb)
             }
             ("float", [value]) => {
                 if !(0.0..=1.0).contains(value) {
-                    self.builder.leave_out(&place, format!("{value} is not a reflectance: it is clamped to 0 to 1"));
+                    self.builder.approximate(&place, format!("{value} is not a reflectance: it is clamped to 0 to 1"));
                 }
                 json!(value.clamp(0.0, 1.0))
             }
             ("spectrum", _) => match self.table(parameter)? {
                 Some(mut table) => {
                     if table.0.iter().any(|(_, v)| !(0.0..=1.0).contains(v)) {
-                        self.builder.leave_out(&place, "values are clamped to 0 to 1");
+                        self.builder.approximate(&place, "values are clamped to 0 to 1");
                     }
                     table.0.iter_mut().for_each(|(_, v)| *v = v.clamp(0.0, 1.0));
                     table.spectrum("clamp")
                 }
                 None => {
-                    self.builder.leave_out(&place, "the named spectrum is not known: it becomes 0.5");
+                    self.builder.approximate(&place, "the named spectrum is not known: it becomes 0.5");
                     json!(0.5)
                 }
             },
@@ -55,9 +56,9 @@ impl Reading<'_, '_> {
                 let known = self.textures.get(&name).cloned();
                 let value = known.ok_or_else(|| format!("{place}: there is no texture \"{name}\""))?;
                 self.builder.spend(&value, &place)?;
-                if !textured && value["type"] == "image" {
-                    self.builder.leave_out(&place, "the mean of the image is used");
-                    value["mean"].clone()
+                if !textured && matches!(value["type"].as_str(), Some("image" | "checker")) {
+                    self.builder.approximate(&place, "the mean of the image is used");
+                    value.get("mean").cloned().unwrap_or(json!(0.5))
                 } else {
                     value
                 }
@@ -77,7 +78,7 @@ impl Reading<'_, '_> {
                 if let Number::Image(image, _) = &number
                     && image["factor"].as_f64().is_some_and(|factor| factor < 0.0)
                 {
-                    self.builder.leave_out(&parameter.place, format!("a negative \"{name}\" becomes 0"));
+                    self.builder.approximate(&parameter.place, format!("a negative \"{name}\" becomes 0"));
                     return Ok(Some(Number::Value(0.0)));
                 }
                 return Ok(Some(number));
@@ -87,7 +88,7 @@ impl Reading<'_, '_> {
         let value = self.reflectance(list, name, false)?;
         Ok(value.map(|value| {
             Number::Value(value.as_f64().unwrap_or_else(|| {
-                self.builder.leave_out(&place, format!("\"{name}\" is a colour: the mean of its channels is used"));
+                self.builder.approximate(&place, format!("\"{name}\" is a colour: the mean of its channels is used"));
                 let channels = value["rgb"].as_array().map_or(&[][..], Vec::as_slice);
                 channels.iter().filter_map(Value::as_f64).sum::<f64>() / channels.len().max(1) as f64
             }))
@@ -103,7 +104,7 @@ impl Reading<'_, '_> {
         match (parameter.kind.as_str(), parameter.numbers()) {
             ("rgb" | "color", [r, g, b]) => {
                 if r.min(*g).min(*b) < 0.0 {
-                    self.builder.leave_out(&place, "negative light becomes 0");
+                    self.builder.approximate(&place, "negative light becomes 0");
                 }
                 Ok(light([*r, *g, *b].map(|v| v.max(0.0)), scale))
             }
@@ -132,7 +133,7 @@ impl Reading<'_, '_> {
                     "stdillum-A" => "A",
                     "stdillum-E" => "E",
                     other => {
-                        self.builder.leave_out(&place, format!("the illuminant \"{other}\" becomes D65"));
+                        self.builder.approximate(&place, format!("the illuminant \"{other}\" becomes D65"));
                         "D65"
                     }
                 };
@@ -189,16 +190,21 @@ impl Reading<'_, '_> {
                 let factor = factor.unwrap_or(json!(1.0));
                 match (inner["type"].as_str(), factor.as_f64()) {
                     (Some("image"), Some(factor)) => scaled(inner, factor),
+                    (Some("checker"), Some(factor)) => scaled_fields(inner, factor),
+                    (Some("rgb"), Some(factor)) => {
+                        channels(&inner).map_or(inner, |rgb| reflectance(rgb.map(|v| v * factor)))
+                    }
                     (None, Some(factor)) => json!(inner.as_f64().unwrap_or(1.0) * factor),
                     _ => {
-                        self.builder.leave_out(place, "a product of textures becomes the first of them");
+                        self.builder.approximate(place, "a product of textures becomes the first of them");
                         inner
                     }
                 }
             }
             "imagemap" => self.image(list, place)?,
+            "checkerboard" => self.checkerboard(list, place)?,
             other => {
-                self.builder.leave_out(place, format!("the texture \"{other}\" is not known: it becomes 0.5"));
+                self.builder.approximate(place, format!("the texture \"{other}\" is not known: it becomes 0.5"));
                 list.mark_all();
                 json!(0.5)
             }
@@ -211,13 +217,38 @@ impl Reading<'_, '_> {
         Ok(())
     }
 
+    /// Fields of a unit of the texture coordinates, the first at (0, 0): half as wide as ours.
+    fn checkerboard(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
+        let mut colours = [[1.0; 3], [0.0; 3]];
+        for (colour, name) in colours.iter_mut().zip(["tex1", "tex2"]) {
+            let Some(value) = self.reflectance(list, name, false)? else { continue };
+            *colour = channels(&value).unwrap_or_else(|| {
+                self.builder.approximate(place, format!("\"{name}\" is a spectrum: it becomes a grey of 0.5"));
+                [0.5; 3]
+            });
+        }
+        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
+        let uv_scale = [0.5 * number("uscale", 1.0)?, 0.5 * number("vscale", 1.0)?];
+        let uv_offset = [0.5 * number("udelta", 0.0)?, 0.5 * number("vdelta", 0.0)?];
+        let checker = Checker { colours, uv_scale, uv_offset };
+        let mapping = list.string("mapping").unwrap_or("uv");
+        if mapping != "uv" || list.number("dimension")?.unwrap_or(2.0) != 2.0 {
+            self.builder
+                .approximate(place, "a chequerboard that is not laid over texture coordinates becomes its mean");
+            return Ok(checker.mean_reflectance());
+        }
+        let mut value = checker.value();
+        value["mean"] = checker.mean_reflectance();
+        Ok(value)
+    }
+
     fn image(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
         let file = list.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
         let encoding = match list.string("encoding") {
             None | Some("sRGB") => Encoding::Auto,
             Some("linear") => Encoding::Linear,
             Some(other) => {
-                self.builder.leave_out(place, format!("the encoding \"{other}\" becomes sRGB"));
+                self.builder.approximate(place, format!("the encoding \"{other}\" becomes sRGB"));
                 Encoding::Auto
             }
         };
@@ -235,7 +266,7 @@ impl Reading<'_, '_> {
             "clamp" => "clamp",
             "repeat" => "repeat",
             other => {
-                self.builder.leave_out(place, format!("beyond its edges \"{other}\" becomes \"clamp\""));
+                self.builder.approximate(place, format!("beyond its edges \"{other}\" becomes \"clamp\""));
                 "clamp"
             }
         };
@@ -282,6 +313,17 @@ fn scaled(mut image: Value, factor: f64) -> Value {
         image["factor"] = json!([before * factor, before * factor, before * factor]);
     }
     image
+}
+
+/// A chequerboard times a factor.
+fn scaled_fields(mut checker: Value, factor: f64) -> Value {
+    for field in ["first", "second"] {
+        checker[field] = match &checker[field] {
+            Value::Array(rgb) => rgb.iter().map(|v| factor * v.as_f64().unwrap_or(0.0)).collect(),
+            grey => json!(factor * grey.as_f64().unwrap_or(0.0)),
+        };
+    }
+    checker
 }
 
 /// The format has no key for the mean, which goes along for where no image may stand.

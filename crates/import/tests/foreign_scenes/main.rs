@@ -2,7 +2,9 @@
 
 mod bounds;
 mod brushed;
+mod checkers;
 mod images;
+mod losses;
 mod media;
 mod parameters;
 mod relief;

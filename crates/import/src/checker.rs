@@ -1,0 +1,49 @@
+//! Chequerboards of other programs.
+
+use serde_json::{Value, json};
+
+use crate::reflectance;
+
+/// A chequerboard of the format, two by two fields in a unit of the texture coordinates, and its mean.
+#[derive(Clone, Debug)]
+pub(crate) struct Checker {
+    /// Colours of the lower left field and of its neighbours.
+    pub(crate) colours: [[f64; 3]; 2],
+    pub(crate) uv_scale: [f64; 2],
+    pub(crate) uv_offset: [f64; 2],
+}
+
+impl Checker {
+    /// As a spectrum of the format.
+    pub(crate) fn value(&self) -> Value {
+        let [first, second] = self.colours.map(written);
+        json!({
+            "type": "checker", "first": first, "second": second, "uv_scale": self.uv_scale, "uv_offset": self.uv_offset,
+        })
+    }
+
+    /// What both fields are in the mean.
+    pub(crate) fn mean(&self) -> [f64; 3] {
+        let [first, second] = self.colours;
+        [0, 1, 2].map(|c| 0.5 * (first[c] + second[c]))
+    }
+
+    /// As a reflectance of the format that is the same everywhere.
+    pub(crate) fn mean_reflectance(&self) -> Value {
+        reflectance(self.mean())
+    }
+}
+
+fn written(rgb: [f64; 3]) -> Value {
+    if rgb[0] == rgb[1] && rgb[1] == rgb[2] { json!(rgb[0]) } else { json!(rgb) }
+}
+
+/// The channels of a colour of the format; `None` of another spectrum.
+pub(crate) fn channels(value: &Value) -> Option<[f64; 3]> {
+    if let Some(grey) = value.as_f64() {
+        return Some([grey; 3]);
+    }
+    let list = value["rgb"].as_array()?;
+    let scale = value["scale"].as_f64().unwrap_or(1.0);
+    Some(std::array::from_fn(|c| scale * list.get(c).and_then(Value::as_f64).unwrap_or(0.0)))
+}
