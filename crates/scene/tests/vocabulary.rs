@@ -25,6 +25,7 @@ const WITHOUT_LIGHT: &[(&str, &str, &str)] = &[
     ("integrator", "replicates", "divides the samples; `etalon verify` sets it to 1 and takes 64 films of its own"),
     ("spectrum tabulated", "outside: error", "refuses a scene"),
     ("conductor", "outside_fit: error", "refuses a scene"),
+    ("film layer", "outside_fit: error", "refuses a scene"),
     ("glass", "outside_fit: error", "refuses a scene"),
     ("sellmeier", "outside_fit: error", "refuses a scene"),
     ("cauchy", "outside_fit: error", "refuses a scene"),
