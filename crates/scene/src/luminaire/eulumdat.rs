@@ -121,8 +121,8 @@ mod tests {
         let right = file(1, &[100.0, 50.0, 7.0]);
         wrong("maker\n1\n", "ends before line 3");
         wrong(&right.replace("maker\r\n1\r\n1", "maker\r\n1\r\n9"), "the symmetry, is 9");
-        wrong(&right.replace("\r\n4\r\n90", "\r\n5\r\n90"), "need 52");
-        wrong(&file(4, &[1.0]), "need 53");
+        wrong(&right.replace("\r\n4\r\n90", "\r\n5\r\n90"), "need 53");
+        wrong(&file(4, &[1.0]), "need 55");
         wrong(
             &right.replace("\r\n4\r\n90", "\r\n6\r\n90").replace("maker\r\n1\r\n1", "maker\r\n1\r\n4"),
             "cannot have the symmetry 4",
