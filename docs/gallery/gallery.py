@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renders the pictures of docs/gallery and writes docs/gallery/README.md: each picture with its command, time and error.
 
-    python3 docs/gallery/gallery.py [path of etalon] [--only NAME,NAME] [--threads N]
+    python3 docs/gallery/gallery.py [path of etalon] [--error PERCENT] [--only NAME,NAME] [--threads N]
 
 Renders are kept in target/gallery with their checkpoints. What is finished is not rendered again, and an interrupted render continues.
 Needs nothing but Python.
@@ -13,7 +13,7 @@ import subprocess
 
 here = pathlib.Path(__file__).resolve().parent
 root = here.parent.parent
-SIZE, ERROR = "600x400", "2%"
+SIZE = "540x360"
 # Name, scene, options of the render, options of etalon develop, what to look at.
 PICTURES = [
     ("movement", "scenes/movement.glb", [], ["--exposure", "0.7", "--curve", "agx"],
@@ -38,11 +38,11 @@ def told(seconds):
     return f"{int(seconds // 60)} min {round(seconds % 60)} s"
 
 
-def render(etalon, name, scene, options, develop, threads):
+def render(etalon, name, scene, options, develop, threads, error):
     folder = root / "target/gallery"
     folder.mkdir(parents=True, exist_ok=True)
-    picture, report = folder / f"{name}.exr", folder / f"{name}.json"
-    words = ["render", scene, "--size", SIZE, "--error", ERROR, *options]
+    picture, report = folder / f"{name}.exr", folder / f"{name}-{error.rstrip('%')}.json"
+    words = ["render", scene, "--size", SIZE, "--error", error, *options]
     if not report.exists():
         more = ["--threads", str(threads)] if threads else []
         command = [etalon, *words, *more, "--clock", "cpu", "--checkpoint", "60s", "--resume", "--json", "-o", picture]
@@ -65,6 +65,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("etalon", nargs="?", default=root / "target/release/etalon", type=pathlib.Path)
     parser.add_argument("--only", type=lambda text: text.split(","), help="these pictures; the page is not written")
+    parser.add_argument("--error", default="2%", help="default: 2%%")
     parser.add_argument("--threads", type=int, help="default: all cores; does not change the pictures")
     args = parser.parse_args()
     etalon = args.etalon.resolve()
@@ -72,7 +73,7 @@ def main():
     for name, scene, options, develop, words in PICTURES:
         if args.only and name not in args.only:
             continue
-        command, report = render(etalon, name, scene, options, develop, args.threads)
+        command, report = render(etalon, name, scene, options, develop, args.threads, args.error)
         print(f"{name}: {receipt(report)}")
         sections.append(f"## {name.capitalize()}\n\n![{words.split('.')[0]}]({name}.png)\n\n{words}\n\n```sh illustrative\n{command}\n"
                         f"etalon develop {name}.exr {' '.join(develop)} -o {name}.png\n```\n\n{receipt(report).capitalize()}.\n")

@@ -1,6 +1,6 @@
 //! Roughness that differs along u and across it.
 
-use etalon_scene::{MaterialKind, Microfacets};
+use etalon_scene::{FacetMasking, MaterialKind, Microfacets};
 
 use super::{imported, said, scene};
 
@@ -17,6 +17,11 @@ fn widths(u: f64, v: f64) -> Option<Microfacets> {
     Some(Microfacets::ggx([u, v], 0.0))
 }
 
+/// The same with the masking of Mitsuba, which is that of each direction by itself.
+fn apart(u: f64, v: f64) -> Option<Microfacets> {
+    widths(u, v).map(|facets| Microfacets { masking: FacetMasking::Separable, ..facets })
+}
+
 fn mitsuba(shape: &str, bsdf: &str, numbers: &str) -> String {
     format!(
         r#"<scene version="3.0.0"><shape type="{shape}"><string name="filename" value="normals.obj"/><bsdf type="{bsdf}">
@@ -29,13 +34,13 @@ const TWO: &str = r#"<float name="alpha_u" value="0.04"/><float name="alpha_v" v
 #[test]
 fn widths_of_mitsuba_arrive() {
     for bsdf in ["roughconductor", "roughdielectric"] {
-        assert_eq!(facets("xml", &mitsuba("rectangle", bsdf, TWO)), (widths(0.04, 0.36), vec![]), "{bsdf}");
+        assert_eq!(facets("xml", &mitsuba("rectangle", bsdf, TWO)), (apart(0.04, 0.36), vec![]), "{bsdf}");
     }
     let equal = r#"<float name="alpha_u" value="0.3"/><float name="alpha_v" value="0.3"/>"#;
-    assert_eq!(facets("xml", &mitsuba("rectangle", "roughconductor", equal)), (Some(0.3.into()), vec![]));
+    assert_eq!(facets("xml", &mitsuba("rectangle", "roughconductor", equal)), (apart(0.3, 0.3), vec![]));
     // One of them smooth: the least width that there is.
     let smooth = r#"<float name="alpha_u" value="0"/><float name="alpha_v" value="0.3"/>"#;
-    assert_eq!(facets("xml", &mitsuba("rectangle", "roughconductor", smooth)).0, widths(1e-4, 0.3));
+    assert_eq!(facets("xml", &mitsuba("rectangle", "roughconductor", smooth)).0, apart(1e-4, 0.3));
     // Without texture coordinates it has no directions: √(0.04·0.36).
     let (found, said) = facets("xml", &mitsuba("obj", "roughconductor", TWO));
     assert!((found.unwrap().alpha[0] - 0.12).abs() < 1e-12 && found.unwrap().is_isotropic(), "{found:?}");

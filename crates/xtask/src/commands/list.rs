@@ -119,7 +119,7 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
             ),
             named(
                 "gallery",
-                "[ETALON] [--only NAME,NAME]",
+                "[ETALON] [--error PERCENT]",
                 "renders the pictures of docs/gallery to 2 % error and writes its page",
                 "1 h",
                 Script("docs/gallery/gallery.py"),
