@@ -71,7 +71,7 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
     }
     let is_one = |value: &str| value.split_whitespace().all(|number| number.parse() == Ok(1.0));
     for (key, value) in material.unknown_param.iter().collect::<std::collections::BTreeMap<_, _>>() {
-        if !matches!(key.as_str(), "Ke" | "Pr" | "Pm") && !(key == "Tf" && is_one(value)) {
+        if !(matches!(key.as_str(), "Ke" | "Pr" | "Pm") || key == "Tf" && is_one(value)) {
             builder.leave_out(&place, format!("{key} is ignored"));
         }
     }

@@ -63,7 +63,7 @@ pub(crate) struct MeasureArgs {
 pub(crate) fn run(args: MeasureArgs) -> Outcome {
     let mut failure = Failure::default();
     for path in &args.output {
-        if let Err(problem) = FileKind::of(path).and_then(|_| Ok(check_writable(path).map_err(unwritable)?)) {
+        if let Err(problem) = FileKind::of(path).and_then(|_| check_writable(path).map_err(unwritable)) {
             failure.add(problem);
         }
     }

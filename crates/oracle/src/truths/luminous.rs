@@ -179,7 +179,8 @@ fn luminaires() -> Vec<Truth> {
     let turned = Placed { nadir: [0.2, 0.3, -1.0], forward: [1.0, 0.4, 0.1], position: [0.5, -0.8, 2.0] };
     let symmetric = |fold: fn(f64) -> f64| move |vertical: f64, horizontal: f64| intensity(vertical, fold(horizontal));
     type Table = Box<dyn Fn(f64, f64) -> f64>;
-    let cases: Vec<(&str, Placed, &str, Vec<u8>, Table, f64)> = vec![
+    type Case = (&'static str, Placed, &'static str, Vec<u8>, Table, f64);
+    let cases: Vec<Case> = vec![
         ("luminaire-that-hangs", hanging, "whole.ies", ies(&HORIZONTAL, &INTENSITIES), Box::new(intensity), 1.0),
         ("luminaire-that-is-turned", turned, "whole.ies", ies(&HORIZONTAL, &INTENSITIES), Box::new(intensity), 1.5),
         (

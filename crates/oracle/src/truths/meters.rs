@@ -98,7 +98,7 @@ fn from_surfaces() -> Vec<Truth> {
     let square = |x: f64, y: f64, z: f64, h: f64| {
         lambert_polygon(&[[x - h, y - h, z], [x + h, y - h, z], [x + h, y + h, z], [x - h, y + h, z]], UP)
     };
-    let cells = 0.25 * 2.0 * (2.0 * square(0.5 - 0.5, -0.5, 1.5, 0.25) + 2.0 * square(0.5 - 1.5, -0.5, 1.5, 0.25));
+    let cells = 0.25 * 2.0 * (2.0 * square(0.0, -0.5, 1.5, 0.25) + 2.0 * square(-1.0, -0.5, 1.5, 0.25));
     let cells_by_sum = || {
         let of = |x: f64, y: f64| {
             let point = |a: f64, b: f64| {

@@ -4,8 +4,8 @@ use super::Batch;
 use super::paths::vertex;
 use super::rows::{GROUPS, Mask, W, group_of, lanes};
 use super::skies::{FEWEST_LOOKS, look_at_sky};
-use crate::integrator::Arrival;
 use crate::integrator::wavelength_lanes::WavelengthModel;
+use crate::integrator::{Arrival, Met};
 use crate::light::Look;
 use crate::polarisation::Polarisation;
 use crate::scene::interaction::SurfaceInteraction;
@@ -123,15 +123,18 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         self.arrive_path(lane, meets, None)
     }
 
-    /// Lets a path arrive at what it has met, if it has met something. Its bit if it scatters. See [`Path::arrive`](crate::integrator::Path::arrive) for `known`.
+    /// Lets a path arrive at what it has met, if it has met something. Its bit if it scatters. See [`Met::Nothing`] for `sky`.
     #[inline(always)]
-    fn arrive_path(&mut self, lane: usize, meets: bool, known: Option<Look>) -> Mask {
+    fn arrive_path(&mut self, lane: usize, meets: bool, sky: Option<Look>) -> Mask {
         let (paths, world) = (&mut self.paths, self.world);
         paths.ray_count[lane] += 1;
         let ray = paths.ray(lane);
         let (path, sampler) = (&mut paths.paths[lane], paths.samplers.lane(lane));
-        let met = if meets { paths.at[lane].as_mut() } else { None };
-        match path.arrive(world, &ray, met, known, sampler, &mut self.counters, &mut ()) {
+        let met = match &mut paths.at[lane] {
+            Some(met) if meets => Met::Surface(met),
+            _ => Met::Nothing(sky),
+        };
+        match path.arrive(world, &ray, met, sampler, &mut self.counters, &mut ()) {
             Arrival::Scatters => {
                 if paths.shares {
                     paths.reuse_path[lane].arrive(world, vertex(&paths.at, lane), &mut path.radiance);

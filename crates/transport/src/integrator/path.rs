@@ -70,6 +70,28 @@ pub(super) enum Step {
     Shared { from: Vec3<f64>, leaves: SurfaceId, density: f64 },
 }
 
+/// What a ray meets.
+pub(crate) enum Met<'m, 'a> {
+    Surface(&'m mut SurfaceInteraction<'a>),
+    /// Nothing; and what the first image of the sky shows there, if the driver has looked.
+    Nothing(Option<Look>),
+}
+
+impl<'m, 'a> Met<'m, 'a> {
+    #[inline(always)]
+    pub(crate) fn of(surface: Option<&'m mut SurfaceInteraction<'a>>) -> Self {
+        surface.map_or(Self::Nothing(None), Self::Surface)
+    }
+
+    #[inline(always)]
+    fn surface(&self) -> Option<&SurfaceInteraction<'a>> {
+        match self {
+            Self::Surface(surface) => Some(surface),
+            Self::Nothing(_) => None,
+        }
+    }
+}
+
 /// What becomes of a path at the end of its ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Arrival {
@@ -136,29 +158,30 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         Received { wavelengths: self.wavelengths, radiance: self.radiance, stokes: self.polarisation.received() }
     }
 
-    /// Arrives at what the ray has met, unless a medium scatters the path before: light is absorbed on the way, and found there. `known` is
-    /// what the first image of the sky shows along the ray, if the driver has looked.
+    /// Arrives at what the ray has met, unless a medium scatters the path before: light is absorbed on the way, and found there.
     #[inline(always)]
     pub(crate) fn arrive(
         &mut self,
         world: &World<'a>,
         ray: &Ray<f64>,
-        met: Option<&mut SurfaceInteraction<'a>>,
-        known: Option<Look>,
+        met: Met<'_, 'a>,
         sampler: &Sampler,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) -> Arrival {
-        if world.participating.is_some() && self.travel(world, ray, met.as_deref(), sampler, counters, observer) {
+        if world.participating.is_some() && self.travel(world, ray, met.surface(), sampler, counters, observer) {
             return match self.is_too_deep(world, counters, observer) {
                 true => Arrival::Ended,
                 false => Arrival::Collides,
             };
         }
-        let Some(vertex) = met else {
-            self.add_environments(world, ray, known, counters, observer);
-            observer.end(End::Escaped);
-            return Arrival::Escaped;
+        let vertex = match met {
+            Met::Surface(vertex) => vertex,
+            Met::Nothing(sky) => {
+                self.add_environments(world, ray, sky, counters, observer);
+                observer.end(End::Escaped);
+                return Arrival::Escaped;
+            }
         };
         observer.vertex(self.vertex, vertex.point.position, vertex.surface.object, self.beta);
         self.add_emission(world, ray, vertex, observer);
@@ -191,23 +214,23 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         &mut self,
         world: &World<'a>,
         ray: &Ray<f64>,
-        mut known: Option<Look>,
+        mut sky: Option<Look>,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
-        for (sky, slot) in world.environments.iter().zip(&world.tables.environments) {
+        for (environment, slot) in world.environments.iter().zip(&world.tables.environments) {
             counters.environment_lookups += 1;
-            let white = self.spectra.of(*slot, sky.radiance.spectrum(), world.tables, &self.wavelengths);
-            let (radiance, mis) = match &sky.radiance {
+            let white = self.spectra.of(*slot, environment.radiance.spectrum(), world.tables, &self.wavelengths);
+            let (radiance, mis) = match &environment.radiance {
                 EnvironmentRadiance::Uniform(_) => (white, 1.0),
                 EnvironmentRadiance::Image(image) => {
-                    let Look { colour, density } = known.take().unwrap_or_else(|| image.look(ray.direction));
-                    let mis = self.weight_of_hit(world, None, || sky.light, |_, _| density);
+                    let Look { colour, density } = sky.take().unwrap_or_else(|| image.look(ray.direction));
+                    let mis = self.weight_of_hit(world, None, || environment.light, |_, _| density);
                     (self.coloured(white, Some(colour)), mis)
                 }
                 EnvironmentRadiance::Sky(of) => {
                     let SkyLook { relative, density } = of.look(ray.direction);
-                    let mis = self.weight_of_hit(world, None, || sky.light, |_, _| density);
+                    let mis = self.weight_of_hit(world, None, || environment.light, |_, _| density);
                     (white * relative, mis)
                 }
             };
