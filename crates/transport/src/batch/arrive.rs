@@ -5,7 +5,7 @@ use super::paths::vertex;
 use super::rows::{GROUPS, Mask, W, group_of, lanes};
 use super::skies::{FEWEST_LOOKS, look_at_sky};
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::integrator::{Arrival, Met};
+use crate::integrator::{Arrival, Intersection};
 use crate::light::Look;
 use crate::polarisation::Polarisation;
 use crate::scene::interaction::SurfaceInteraction;
@@ -123,7 +123,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         self.arrive_path(lane, meets, None)
     }
 
-    /// Lets a path arrive at what it has met, if it has met something. Its bit if it scatters. See [`Met::Nothing`] for `sky`.
+    /// Lets a path arrive at what it has met, if it has met something. Its bit if it scatters. See [`Intersection::Nothing`] for `sky`.
     #[inline(always)]
     fn arrive_path(&mut self, lane: usize, meets: bool, sky: Option<Look>) -> Mask {
         let (paths, world) = (&mut self.paths, self.world);
@@ -131,8 +131,8 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         let ray = paths.ray(lane);
         let (path, sampler) = (&mut paths.paths[lane], paths.samplers.lane(lane));
         let met = match &mut paths.at[lane] {
-            Some(met) if meets => Met::Surface(met),
-            _ => Met::Nothing(sky),
+            Some(met) if meets => Intersection::Surface(met),
+            _ => Intersection::Nothing(sky),
         };
         match path.arrive(world, &ray, met, sampler, &mut self.counters, &mut ()) {
             Arrival::Scatters => {

@@ -34,7 +34,7 @@ mod vertex;
 pub(crate) mod wavelength_lanes;
 
 pub(crate) use next_event::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
-pub(crate) use path::{Arrival, Met, Path, Start};
+pub(crate) use path::{Arrival, Intersection, Path, Start};
 pub(crate) use scalar::trace;
 pub(crate) use scatter::Direction;
 

@@ -71,13 +71,13 @@ pub(super) enum Step {
 }
 
 /// What a ray meets.
-pub(crate) enum Met<'m, 'a> {
+pub(crate) enum Intersection<'m, 'a> {
     Surface(&'m mut SurfaceInteraction<'a>),
     /// Nothing; and what the first image of the sky shows there, if the driver has looked.
     Nothing(Option<Look>),
 }
 
-impl<'m, 'a> Met<'m, 'a> {
+impl<'m, 'a> Intersection<'m, 'a> {
     #[inline(always)]
     pub(crate) fn of(surface: Option<&'m mut SurfaceInteraction<'a>>) -> Self {
         surface.map_or(Self::Nothing(None), Self::Surface)
@@ -164,7 +164,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         &mut self,
         world: &World<'a>,
         ray: &Ray<f64>,
-        met: Met<'_, 'a>,
+        met: Intersection<'_, 'a>,
         sampler: &Sampler,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
@@ -176,8 +176,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             };
         }
         let vertex = match met {
-            Met::Surface(vertex) => vertex,
-            Met::Nothing(sky) => {
+            Intersection::Surface(vertex) => vertex,
+            Intersection::Nothing(sky) => {
                 self.add_environments(world, ray, sky, counters, observer);
                 observer.end(End::Escaped);
                 return Arrival::Escaped;

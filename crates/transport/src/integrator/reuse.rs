@@ -28,7 +28,7 @@ use crate::film::{Counters, Sums};
 use crate::integrator::film_entry::{FilmEntry, Received, SampleId};
 use crate::integrator::tracer::{PixelSamples, Tracer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::integrator::{Arrival, Met, Path};
+use crate::integrator::{Arrival, Intersection, Path};
 use crate::polarisation::{Averaged, Polarisation};
 use crate::sampler::Sampler;
 use crate::scene::interaction::SurfaceInteraction;
@@ -314,7 +314,7 @@ fn trace_gathering<'a, M: WavelengthModel<N>, const N: usize>(
         counters.rays += 1;
         counters.lane_weights += u64::from(M::CARRIES_WEIGHTS);
         let mut met = world.intersect(&ray, &mut path.walk, &mut path.stack, counters);
-        match path.arrive(world, &ray, Met::of(met.as_mut()), sampler, counters, observer) {
+        match path.arrive(world, &ray, Intersection::of(met.as_mut()), sampler, counters, observer) {
             Arrival::Scatters => {}
             Arrival::Passed => continue,
             Arrival::Collides => unreachable!("no plan shares paths where media scatter"),

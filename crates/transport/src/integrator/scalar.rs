@@ -1,6 +1,6 @@
 //! One path at a time: the specification of what is rendered.
 
-use super::{Arrival, Met, Path};
+use super::{Arrival, Intersection, Path};
 use crate::film::Counters;
 use crate::integrator::observer::{End, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
@@ -26,7 +26,7 @@ pub(crate) fn trace<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         let mut met = world.intersect(&ray, &mut path.walk, &mut path.stack, counters);
 
         // Emission: what shines there, or at infinity, or on the way? Masks let the ray pass, media may scatter it before.
-        match path.arrive(world, &ray, Met::of(met.as_mut()), sampler, counters, observer) {
+        match path.arrive(world, &ray, Intersection::of(met.as_mut()), sampler, counters, observer) {
             Arrival::Scatters => {}
             Arrival::Passed => continue,
             Arrival::Collides => {
