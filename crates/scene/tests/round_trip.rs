@@ -112,7 +112,7 @@ fn materials_and_spectra() {
             "film",
             "quarter",
             "dusty",
-            "objects[3].material"
+            "objects[4].material"
         ]
     );
     let reflects = |spectrum: Spectrum| MaterialKind::Lambert { reflectance: spectrum.into() };
@@ -250,7 +250,7 @@ fn materials_and_spectra() {
     let exponential = ExponentialDensity { base_m: [0.0, -1.0, 0.0], up: [0.0, 0.0, 1.0], scale_height_m: 8000.0 };
     assert_eq!(air.density, MediumDensity::Exponential(exponential));
     assert_eq!((scene.objects[0].opacity, scene.objects[1].opacity), (0.75, 1.0));
-    assert_eq!(kind(&scene, "objects[3].material"), &reflects(Spectrum::Constant(1.0)));
+    assert_eq!(kind(&scene, "objects[4].material"), &reflects(Spectrum::Constant(1.0)));
 }
 
 #[test]
@@ -263,7 +263,7 @@ fn objects_and_lights() {
     assert_eq!(sheet.shape, Shape::Parallelogram { origin: [0.0; 3], u: [1.0, 0.0, 0.0], v: [0.0, 2.0, 0.0] });
     let radiance = Spectrum::rgb_emission([4.0, 4.0 * 0.8, 2.0], Illuminant::A).expect("right");
     assert_eq!(sheet.emission, Some(Emission { radiance, image: None, sides: EmissionSides::Both }));
-    assert_eq!((sheet.name.as_str(), sheet.material), ("objects[1]", 11));
+    assert_eq!((sheet.name.as_str(), sheet.material), ("objects[1]", 13));
     assert_eq!(disk.shape, Shape::Disk { center: [0.0, 1.0, 0.0], normal: [0.0, -0.6, 0.8], radius_m: 2.0 });
     let radiance = Spectrum::blackbody(5000.0, 1e-3).expect("right");
     assert_eq!(disk.emission, Some(Emission { radiance, image: None, sides: EmissionSides::Front }));
@@ -273,11 +273,11 @@ fn objects_and_lights() {
     let normals = vec![[corner; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let uvs = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5]];
     assert_eq!(pyramid.shape, Shape::Mesh(Arc::new(Mesh { vertices, triangles, normals, uvs })));
-    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 21));
+    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 27));
     // By hand: (x, y, z) → (2x, −2y, 6z) → a quarter turn: (2y, 2x, 6z) → moved → x and y swapped, moved.
     let linear = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]];
     assert_eq!(pyramid.transform, Transform { linear, translation_m: [25.0, 16.0, 37.0] });
-    assert_eq!(block.material, 7);
+    assert_eq!(block.material, 9);
 
     let kinds: Vec<&LightKind> = scene.lights[..4].iter().map(|l| &l.kind).collect();
     let day = Spectrum::illuminant(Illuminant::D65, 3.0).expect("right");
