@@ -164,7 +164,7 @@ pub const NEIGHBOURS: &[Neighbour] = &[
     word("uniform float", "constant"),
     word("spectrum irregular regular sampled piecewise interpolated", "tabulated"),
     word("srgb color colour", "rgb"),
-    word("bitmap imagemap texture imagetexture teximage checkerboard checker", "image"),
+    word("bitmap imagemap texture imagetexture teximage", "image"),
     row(Keyword, "d65", Word("illuminant", "its \"name\" is \"D65\"")),
     word("raw noncolor noncolour", "linear"),
     word("extend clamptoedge", "clamp"),

@@ -98,7 +98,9 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The tables of rough glass hold what an independent quadrature over all facets finds lost: what they give back is never more than
-    /// that by 1e-4 of all light, and never less by 1e-3 of it. Facets narrower than 0.05 are too narrow for the quadrature's grid.
+    /// that by 1e-4 of all light, and never less by 1e-3 of it and a tenth of the dispersion: a table lies below the loss at all of its
+    /// indices, and near an index of 1 the loss at grazing angles grows fast with it. Facets narrower than 0.05 are too narrow for the
+    /// quadrature's grid.
     #[test]
     fn tables_of_rough_glass_hold_what_an_independent_quadrature_finds_lost(
         alpha in 0.05..1.0_f64, n in 1.1..2.6_f64, mu in 0.02..1.0_f64, dispersion in 0.0..0.05_f64, inside: bool,
@@ -109,7 +111,7 @@ proptest! {
             let truth = ggx_albedo(alpha, mu, Some(of(n)), Masking::Correlated);
             let truth = 1.0 - truth.reflected - truth.refracted;
             let over = table.eval(toward(mu), n) - truth;
-            prop_assert!(over < 1e-4 && over > -1e-3, "α {}, n {}, µ {}: {} too much of {}", alpha, n, mu, over, truth);
+            prop_assert!(over < 1e-4 && over > -1e-3 - 0.1 * dispersion, "α {}, n {}, µ {}: {} too much of {}", alpha, n, mu, over, truth);
         }
     }
 }
