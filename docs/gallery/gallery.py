@@ -54,8 +54,8 @@ def render(etalon, name, scene, options, develop, threads, error):
 
 def receipt(report):
     error = report["error"]
-    lines = [f"{100 * error['relative_rmse']:.1f} % error", f"{report['spp']} samples a pixel", f"{told(report['seconds'])} of processor time on each of "
-             f"{report['threads']} threads"]
+    lines = [f"{100 * error['relative_rmse']:.1f} % error", f"{report['spp']} samples a pixel", f"{told(report['seconds'])} of processor time"
+             + (f" on each of {report['threads']} threads" if report["threads"] > 1 else "")]
     if error["heavy_tailed"]:
         lines.append("rare bright paths make up much of the error, which is probably larger")
     return "; ".join(lines)
