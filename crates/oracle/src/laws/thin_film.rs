@@ -101,8 +101,9 @@ impl CoatedInterface {
     /// (n + ik)², and the normal component q of the wave in units of its number in vacuum.
     fn medium(&self, [n, k]: [f64; 2], cos: f64) -> (Wave, Wave) {
         let square = wave(n, k).times(wave(n, k));
-        let tangential = self.incident * self.incident * (1.0 - cos * cos);
-        (square, square.minus(wave(tangential, 0.0)).root())
+        let incident = self.incident * self.incident;
+        // q² = (n + ik)² − n₁²(1 − cos²), in an order that keeps every digit of cos in the first medium.
+        (square, square.minus(wave(incident, 0.0)).plus(wave(incident * cos * cos, 0.0)).root())
     }
 
     /// By the waves that go to and fro in each layer, from the innermost outward.

@@ -16,8 +16,11 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// Nodes in µ, at (i/(NODES−1))²: dense towards grazing, where the loss changes fastest.
 pub(super) const NODES: usize = 65;
-/// Nodes in the relative index where it depends on wavelength.
-const INDICES: usize = 2;
+/// How far nodes in the relative index η may be apart, where it depends on wavelength: by this much of ln |η − 1|, by which losses change
+/// evenly.
+const INDEX_STEP: f64 = 0.1;
+/// Most of these nodes: of indices that are next to 1, or pass it.
+const MOST_INDICES: usize = 17;
 
 /// A loss in [0, 1], linear between nodes in µ, in the relative index η and, of facets of two widths, in the azimuth.
 #[derive(Clone, Debug)]
@@ -167,7 +170,7 @@ impl LossTable {
         error: f64,
         loss: impl Fn(Vec3<f64>, f64) -> f64 + Sync,
     ) -> Self {
-        let count = if eta[0] == eta[1] { 1 } else { INDICES };
+        let count = if eta[0] == eta[1] { 1 } else { indices(eta) };
         let step = if count == 1 { 0.0 } else { (eta[1] - eta[0]) / (count - 1) as f64 };
         let at = |r: f64| eta[0] + step * r;
         let turns = azimuths.count();
@@ -182,27 +185,25 @@ impl LossTable {
         };
         let rows = (0..count).map(row).collect();
         let mut table = Self { eta: eta[0], step, azimuths, rows, cdf: [0.0; NODES] };
-        // Where the table is too high between nodes, these are lowered, which cannot raise it anywhere else.
+        // Where the table is too high between nodes, these are lowered, which cannot raise it anywhere else. A node keeps the lesser of the
+        // shares that its two cells may keep.
         for r in 0..count {
-            for half in if r + 1 < count { &[0.0, 0.5][..] } else { &[0.0] } {
+            for &half in if r + 1 < count { &[0.0, 0.5][..] } else { &[0.0] } {
                 let eta = at(r as f64 + half);
                 for place in (0..2 * turns - 1).map(|k| 0.5 * k as f64) {
                     let exact = |mu: f64| loss(azimuths.direction(mu, place), eta).max(0.0);
-                    let cells: Vec<_> =
-                        (1..NODES).into_par_iter().map(|i| table.checks(i, place, eta, exact)).collect();
-                    for (i, checks) in (1..NODES).zip(cells) {
-                        let share = |(mu, exact): (f64, f64)| {
-                            let held = table.eval(azimuths.direction(mu, place), eta);
-                            if held > exact { exact / held } else { 1.0 }
-                        };
-                        let kept = checks.into_iter().map(share).fold(1.0, f64::min);
-                        let lowered = &mut table.rows[r..(r + 2).min(count)];
-                        let turns = place.floor() as usize..=place.ceil() as usize;
-                        lowered
-                            .iter_mut()
-                            .flat_map(|row| &mut row.loss[turns.clone()])
-                            .flat_map(|loss| &mut loss[i - 1..=i])
-                            .for_each(|v| *v *= kept);
+                    let share = |(mu, exact): (f64, f64)| {
+                        let held = table.eval(azimuths.direction(mu, place), eta);
+                        if held > exact { exact / held } else { 1.0 }
+                    };
+                    let kept_by =
+                        |i: usize| table.checks(i, place, eta, exact).into_iter().map(share).fold(1.0, f64::min);
+                    let cells: Vec<f64> = (1..NODES).into_par_iter().map(kept_by).collect();
+                    let kept = |i: usize| cells[i.max(1) - 1].min(cells[i.min(NODES - 2)]);
+                    let rows = &mut table.rows[r..=if half > 0.0 { r + 1 } else { r }];
+                    let turns = place.floor() as usize..=place.ceil() as usize;
+                    for loss in rows.iter_mut().flat_map(|row| &mut row.loss[turns.clone()]) {
+                        loss.iter_mut().enumerate().for_each(|(i, v)| *v *= kept(i));
                     }
                 }
             }
@@ -318,6 +319,13 @@ pub(super) fn extremes([first, last]: [f64; 2], of: impl Fn(f64) -> f64) -> [f64
     (0..=64)
         .map(|i| of(first + (last - first) * f64::from(i) / 64.0))
         .fold([f64::MAX, 0.0_f64], |[least, most], value| [least.min(value), most.max(value)])
+}
+
+/// Nodes that a range of relative indices needs.
+fn indices([first, last]: [f64; 2]) -> usize {
+    let range = ((last - 1.0) / (first - 1.0)).abs().ln().abs();
+    let passes = (first - 1.0) * (last - 1.0) <= 0.0;
+    if passes { MOST_INDICES } else { (2 + (range / INDEX_STEP) as usize).min(MOST_INDICES) }
 }
 
 /// The cell of a cosine: it lies between nodes `i` and `i + 1`.

@@ -98,9 +98,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The tables of rough glass hold what an independent quadrature over all facets finds lost: what they give back is never more than
-    /// that by 1e-4 of all light, and never less by 1e-3 of it and a tenth of the dispersion: a table lies below the loss at all of its
-    /// indices, and near an index of 1 the loss at grazing angles grows fast with it. Facets narrower than 0.05 are too narrow for the
-    /// quadrature's grid.
+    /// that by 1e-4 of all light, and never less by 1e-3 of it. Facets narrower than 0.05 are too narrow for the quadrature's grid.
     #[test]
     fn tables_of_rough_glass_hold_what_an_independent_quadrature_finds_lost(
         alpha in 0.05..1.0_f64, n in 1.1..2.6_f64, mu in 0.02..1.0_f64, dispersion in 0.0..0.05_f64, inside: bool,
@@ -111,20 +109,20 @@ proptest! {
             let truth = ggx_albedo(alpha, mu, Some(of(n)), Masking::Correlated);
             let truth = 1.0 - truth.reflected - truth.refracted;
             let over = table.eval(toward(mu), n) - truth;
-            prop_assert!(over < 1e-4 && over > -1e-3 - 0.1 * dispersion, "α {}, n {}, µ {}: {} too much of {}", alpha, n, mu, over, truth);
+            prop_assert!(over < 1e-4 && over > -1e-3, "α {}, n {}, µ {}: {} too much of {}", alpha, n, mu, over, truth);
         }
     }
 }
 
-/// On the mean over diffuse light the tables give back less than is lost, by at most `most` of all light: what the many times that light
+/// On the mean over diffuse light the tables give back less than is lost, by at most 1.5e-4 of all light: what the many times that light
 /// meets the surface from inside a body may add up. In no direction do they give back more than 1e-4 too much, also between their nodes.
-fn gives_back_all_but(most: f64, what: &str, table: &LossTable, eta: f64, loss: impl Fn(f64) -> f64) {
+fn gives_back_all_but_little(what: &str, table: &LossTable, eta: f64, loss: impl Fn(f64) -> f64) {
     // In √µ the loss of a narrow width is smooth enough for midpoints.
     let at = |i: u32| (f64::from(i) + 0.5) / 400.0;
     let losses: Vec<f64> = (0..400).map(|i| loss(at(i).powi(2))).collect();
     let lost = (0..400).map(|i| at(i).powi(3) * 4.0 / 400.0 * losses[i as usize]).sum::<f64>();
     let missing = lost - table.average(eta);
-    assert!((0.0..most).contains(&missing), "{what}: {missing} of {lost}");
+    assert!((0.0..1.5e-4).contains(&missing), "{what}: {missing} of {lost}");
     for i in 0..400 {
         let over = table.eval(toward(at(i).powi(2)), eta) - losses[i as usize];
         assert!(over < 1e-4, "{what}, µ {}: {over} too much", at(i).powi(2));
@@ -137,13 +135,11 @@ fn tables_of_rough_surfaces_give_back_all_but_little_of_diffuse_light_and_never_
         let ggx = ggx(alpha);
         let mirrors = |mu: f64| mean_over_facets(&ggx, toward(mu), None, |facet| 1.0 - facet.mirrored);
         let table = LossTable::new(Azimuths::All, [1.0, 1.0], MEAN_ERROR, |wo, _| mirrors(wo.z));
-        gives_back_all_but(1.5e-4, &format!("mirrors, α {alpha}"), &table, 1.0, mirrors);
+        gives_back_all_but_little(&format!("mirrors, α {alpha}"), &table, 1.0, mirrors);
         for n in [1.5, 2.4] {
             for of in [(|n| n) as fn(f64) -> f64, f64::recip] {
                 let what = format!("α {alpha}, η {}", of(n));
-                gives_back_all_but(1.5e-4, &what, &glass_table(&ggx, [n, n], of), n, |mu| {
-                    loss(&ggx, toward(mu), of(n))
-                });
+                gives_back_all_but_little(&what, &glass_table(&ggx, [n, n], of), n, |mu| loss(&ggx, toward(mu), of(n)));
             }
         }
     }

@@ -93,18 +93,8 @@ impl Scatters for Material {
         }
     }
 
-    /// A film multiplies three complex matrices, of phases up to 5, where Fresnel's equations divide once: eight times the roundings. At
-    /// grazing angles both sides lose digits of 1 − R alike.
     fn epsilon(&self) -> f64 {
-        let coated = match &self.kind {
-            MaterialKind::Conductor { film, .. }
-            | MaterialKind::RoughConductor { film, .. }
-            | MaterialKind::Dielectric { film, .. }
-            | MaterialKind::RoughDielectric { film, .. }
-            | MaterialKind::ThinDielectric { film, .. } => film.is_some(),
-            _ => false,
-        };
-        if coated { 8.0 * f64::EPSILON } else { f64::EPSILON }
+        f64::EPSILON
     }
 }
 

@@ -115,6 +115,10 @@ impl Readings {
     }
 }
 
+/// Most digits of a number: readings without noise still differ from the sums of CIE 15 by 2·10⁻⁸, since the film integrates the observer
+/// by the trapezoid rule.
+const MOST_DIGITS: f64 = 7.0;
+
 /// A number and its error, with two digits of the error.
 fn with_error(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {
@@ -123,10 +127,10 @@ fn with_error(value: f64, error: f64) -> String {
     let exponent = |x: f64| x.abs().log10().floor();
     let last = exponent(error) - 1.0;
     let count = if value == 0.0 { 2.0 } else { exponent(value) - last + 1.0 };
-    format!("{} ± {}", digits(value, count.clamp(2.0, 12.0) as usize), digits(error, 2))
+    format!("{} ± {}", digits(value, count.clamp(2.0, MOST_DIGITS) as usize), digits(error, 2))
 }
 
-/// A number with so many significant digits.
+/// A number with `count` significant digits.
 fn digits(value: f64, count: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -180,6 +184,7 @@ mod tests {
         assert_eq!(with_error(1234.5678, 0.123), "1234.57 ± 0.12");
         assert_eq!(with_error(1234.5678, 12.3), "1235 ± 12");
         assert_eq!(with_error(0.0, 0.0), "0 ± 0");
+        assert_eq!(with_error(24.999_999_5, 1.9e-15), "25.00000 ± 1.9e-15");
         assert_eq!(with_error(1.5e-7, 2.5e-9), "1.500e-7 ± 2.5e-9");
         assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
     }

@@ -22,8 +22,11 @@ use etalon_scene::FacetDistribution;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::sync::LazyLock;
 
-/// The most cuts of a polar angle: its ends, the two roots of a quadratic equation, and three where the integrand bends.
-const MOST_CUTS: usize = 7;
+/// The most cuts of a polar angle: its ends, the two roots of a quadratic equation, three where the integrand bends, and two widths within
+/// which a Gaussian falls.
+const MOST_CUTS: usize = 9;
+/// Slopes, in widths, between which Beckmann's facets become few. Beyond the last of them are e⁻⁴² of all.
+const FEWER: [f64; 3] = [1.5, 3.0, 6.5];
 
 /// See [`mean_over_facets`](super::mean_over_facets).
 pub(super) fn mean(distribution: &Distribution, wo: Vec3<f64>, loss: impl Fn(&Facet) -> f64) -> f64 {
@@ -126,6 +129,10 @@ impl<'a> View<'a> {
         cuts.put(if toward < 0.0 { (mu / -toward).atan() } else { FRAC_PI_2 });
         let [below, above] = quadratic_roots(square, -toward / mu, -1.0);
         let steep = 1.0 / square.sqrt();
+        if self.distribution.kind == FacetDistribution::Beckmann {
+            cuts.end_at(FEWER[2]);
+            FEWER[..2].iter().for_each(|tangent| cuts.put_within(*tangent));
+        }
         for tangent in [below, above, 0.1 * steep, steep, (steep * below.max(above)).sqrt()] {
             cuts.put_within(tangent);
         }
@@ -162,6 +169,11 @@ impl Cuts {
     fn put(&mut self, angle: f64) {
         self.places[self.count] = angle;
         self.count += 1;
+    }
+
+    /// The end, if the tangent is not this before.
+    fn end_at(&mut self, tangent: f64) {
+        self.places[1] = self.places[1].min(tangent.atan());
     }
 
     /// Where the tangent is this, if that is between the ends.
