@@ -33,13 +33,18 @@ def settled(page, samples=1, seconds=60):
     page.wait("a picture of all pixels", f"window.etalonLog?.some(e => e.what === 'error' && e.block === 1 && e.samples >= {samples})", seconds)
 
 
+def ended(page):
+    """Waits until the samples that the pilot planned for the stated error are taken."""
+    page.wait("the end of the render", "document.getElementById('phase')?.dataset.phase === 'done'", 120)
+
+
 @test
 def page_loads_and_picture_sharpens(context):
     """The picture appears, grows finer, and its error falls."""
     with context.viewer(SCENES / "cornell.json", "--size", "160x160", "--error", "3%") as viewer, context.page(viewer) as page:
         page.wait("a picture", "window.etalonLog?.some(e => e.what === 'picture')", 20)
         settled(page)
-        page.wait("the stated error", "document.getElementById('phase')?.innerText.includes('reached')", 120)
+        ended(page)
         time.sleep(0.3)
         errors = [e for e in page.log("error") if e["relative_rmse"]]
         own = [e["relative_rmse"] for e in errors if e["block"] == 1]
@@ -60,7 +65,7 @@ def map_lies_over_the_picture(context):
     """The error map of the mean has the error of the picture as its root mean square."""
     with context.viewer(SCENES / "cornell.json", "--size", "160x160", "--error", "3%") as viewer, context.page(viewer) as page:
         settled(page)
-        page.wait("the stated error", "document.getElementById('phase')?.innerText.includes('reached')", 120)
+        ended(page)
         page.choose("input[name=map][value=of-mean]")
         page.wait("the map", "window.etalonLog.some(e => e.what === 'map' && e.kind === 'of-mean')")
         time.sleep(0.3)
@@ -189,7 +194,7 @@ def two_pages_see_the_same(context):
 def effects_are_switched_and_compared(context):
     """An effect is switched off: the plan says so, and the picture differs from the pinned one by more than noise."""
     with context.viewer(SCENES / "metals.json", "--size", "192x96", "--error", "5%") as viewer, context.page(viewer) as page:
-        page.wait("the stated error", "document.getElementById('phase')?.innerText.includes('reached')", 120)
+        ended(page)
         page.choose("#pin")
         page.wait("the pin", "!document.getElementById('unpin').hidden")
         before = page.run("window.etalonLog.length")

@@ -49,7 +49,7 @@ def metals(context, page):
     page.run("[...document.querySelectorAll('#effects-on li')].find(e => e.innerText.startsWith('specular chains')).querySelector('input').click()")
     before = page.run("window.etalonLog.length")
     page.wait("the comparison", f"window.etalonLog.slice({before}).some(e => e.what === 'comparison')", 120)
-    page.wait("the stated error", "document.getElementById('phase')?.innerText.includes('reached')", 120)
+    page.wait("the end of the render", "document.getElementById('phase')?.dataset.phase === 'done'", 120)
     page.choose("#split-on")
     page.run("(() => { const e = document.getElementById('map-opacity'); e.value = 0.5; e.dispatchEvent(new Event('input')); })()")
     page.choose("input[name=map][value=difference]")

@@ -51,6 +51,7 @@ function update(now) {
   element("name").textContent = now.name.split(/[\\/]/).at(-1);
   element("name").title = now.name;
   const isReached = now.phase === "done" && now.target !== null && now.error?.relative_rmse <= now.target;
+  element("phase").dataset.phase = now.phase;
   element("phase").textContent = isReached ? "the stated error is reached" : PHASES[now.phase];
   element("pause").hidden = !now.is_scene || now.phase === "done";
   element("pause").textContent = now.phase === "paused" ? "Go on" : "Pause";

@@ -21,7 +21,7 @@ pub(crate) enum Phase {
     Pilot,
     /// The picture.
     Rendering,
-    /// The stated error is reached.
+    /// The samples that the pilot planned for the stated error are taken: it is reached, or missed by little.
     Done,
     /// Stopped by the page.
     Paused,
