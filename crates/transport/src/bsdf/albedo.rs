@@ -15,7 +15,7 @@ use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// Nodes in µ, at (i/(NODES−1))²: dense towards grazing, where the loss changes fastest.
-pub(super) const NODES: usize = 65;
+pub(super) const NODES: usize = 81;
 /// How far nodes in the relative index η may be apart, where it depends on wavelength: by this much of ln |η − 1|, by which losses change
 /// evenly.
 const INDEX_STEP: f64 = 0.1;
