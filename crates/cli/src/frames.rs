@@ -209,7 +209,7 @@ pub(crate) fn asks_for_number(name: &Path) -> bool {
     name.to_string_lossy().contains("{frame")
 }
 
-/// The outputs of a sequence of so many frames: where there are several, each name must have the number in it.
+/// The outputs of a sequence of this many frames: where there are several, each name must have the number in it.
 pub(crate) fn patterns(names: &[PathBuf], frames: usize) -> Result<Vec<FramePattern>, Failure> {
     let (mut patterns, mut failure) = (Vec::new(), Failure::default());
     for name in names {

@@ -16,7 +16,7 @@ pub(crate) struct Machine {
 }
 
 impl Machine {
-    /// This machine with so many threads.
+    /// This machine with this many threads.
     pub(crate) fn with_threads(threads: usize) -> Self {
         let known = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
             let line = text.lines().find(|line| line.starts_with("model name"))?;

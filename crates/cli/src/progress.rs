@@ -73,7 +73,7 @@ impl RenderBar {
         Self { bar, rect, target, traced, before: AtomicU64::new(0) }
     }
 
-    /// The picture goes on from so many camera paths.
+    /// The picture goes on from this many camera paths.
     pub(crate) fn goes_on_from(&self, paths: u64) {
         self.before.store(paths, Ordering::Relaxed);
     }

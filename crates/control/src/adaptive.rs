@@ -76,7 +76,7 @@ pub struct Exploration {
     pub paths: u64,
 }
 
-/// Explores the pixels of `rect` on so many threads (all cores if `None`). It ends early when `enough` says so.
+/// Explores the pixels of `rect` on this many threads (all cores if `None`). It ends early when `enough` says so.
 pub fn explore(
     prepared: &Prepared,
     rect: PixelRect,

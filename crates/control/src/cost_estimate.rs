@@ -11,7 +11,7 @@ pub struct PilotPoint {
     pub relative_rmse: f64,
     /// Relative standard error of that, by the choice of pixels and by chance. Infinite where it is unknown.
     pub uncertainty: f64,
-    /// Seconds that the whole picture takes for so many samples, by the pilot's rate.
+    /// Seconds that the whole picture takes for this many samples, by the pilot's rate.
     pub seconds: f64,
 }
 
@@ -107,7 +107,7 @@ fn crossing(before: (f64, f64), after: (f64, f64), target: f64) -> f64 {
 /// Steps of an octave of samples at which a law tells apart how the variance falls within it.
 const STEPS_OF_OCTAVE: u32 = 4;
 
-/// The step that follows so many rounds of replicates: 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20 … Every power of two is one.
+/// The step that follows this many rounds of replicates: 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20 … Every power of two is one.
 pub fn next_step(rounds: u32) -> u32 {
     let width = 1 << rounds.max(1).ilog2().saturating_sub(STEPS_OF_OCTAVE.ilog2());
     (rounds / width).saturating_add(1).saturating_mul(width)
@@ -153,7 +153,7 @@ impl Law {
         law
     }
 
-    /// The step of its octave that so many samples are at, and how far they are from it to the next.
+    /// The step of its octave that this many samples are at, and how far they are from it to the next.
     fn step(&self, samples: f64) -> (usize, f64) {
         let rounds = samples / self.round;
         let of_octave = (rounds / rounds.log2().floor().exp2() - 1.0) * f64::from(STEPS_OF_OCTAVE);
@@ -169,7 +169,7 @@ impl Law {
         self.mixture.variance(samples) * self.excess[self.step(samples).0].powf(left)
     }
 
-    /// The number of samples for a relative error that is smaller than that of so many.
+    /// The number of samples for a relative error that is smaller than that of this many.
     fn samples_beyond(&self, samples: f64, relative_rmse: f64, target: f64) -> f64 {
         let mut before = (samples, relative_rmse);
         let mut rounds = (samples / self.round).ceil() as u32;

@@ -14,7 +14,7 @@ use etalon_transport::{Counters, PixelRect, Prepared, ThreadError};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Pixels that a pilot begins with, if the picture has so many.
+/// Pixels that a pilot begins with, if the picture has this many.
 const FIRST_PIXELS: u64 = 8192;
 /// Relative standard error of the picture's error for which more pixels are taken.
 const KNOWN_WELL: f64 = 0.05;
@@ -42,7 +42,7 @@ pub struct Pilot<'a> {
 }
 
 impl<'a> Pilot<'a> {
-    /// A pilot for the pixels of `rect`, which take their samples by `allocation` (the same number each if `None`), on so many
+    /// A pilot for the pixels of `rect`, which take their samples by `allocation` (the same number each if `None`), on this many
     /// threads (all cores if `None`), that has not traced anything yet.
     pub fn new(
         prepared: &'a Prepared,
@@ -89,7 +89,7 @@ impl<'a> Pilot<'a> {
         self.probe.replicates()
     }
 
-    /// Whether it has traced so many paths without finding light that it looks no further.
+    /// Whether it has traced this many paths without finding light that it looks no further.
     pub fn found_no_light(&self) -> bool {
         self.gave_up(&self.error())
     }

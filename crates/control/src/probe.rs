@@ -42,7 +42,7 @@ pub(crate) struct Probe<'a> {
 pub(crate) struct Seen<'a> {
     /// Column and row.
     pub at: (u32, u32),
-    /// The sums of all copies, as so many replicates.
+    /// The sums of all copies, as this many replicates.
     pub pixel: Pixel<'a>,
     /// Camera paths, and rays of all kinds.
     pub paths: u64,
@@ -51,7 +51,7 @@ pub(crate) struct Seen<'a> {
 }
 
 impl<'a> Probe<'a> {
-    /// A probe of no pixels yet, on so many threads (all cores if `None`).
+    /// A probe of no pixels yet, on this many threads (all cores if `None`).
     pub(crate) fn new(prepared: &'a Prepared, purpose: Purpose, threads: Option<usize>) -> Result<Self, ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
         Ok(Self { prepared, pool, purpose, pixels: Vec::new(), sums: Vec::new(), paths: Vec::new(), rays: Vec::new() })

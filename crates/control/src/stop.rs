@@ -141,7 +141,7 @@ pub trait Watch: Sync {
     fn work(&self, counters: &Counters) {
         let _ = counters;
     }
-    /// The picture begins; it will take so many camera paths, or fewer if time is up.
+    /// The picture begins; it will take this many camera paths, or fewer if time is up.
     fn planned(&self, paths: u64, predicted: Option<&Prediction>) {
         let _ = (paths, predicted);
     }

@@ -16,7 +16,7 @@ fn lottery(seed: u64) -> Prepared {
     lottery_of(seed, 8)
 }
 
-/// The same, of so many columns; each eight of them are a region of their own.
+/// The same, of this many columns; each eight of them are a region of their own.
 fn lottery_of(seed: u64, width: u32) -> Prepared {
     let (scene, _) = etalon_scene::parse(
         &json!({

@@ -59,7 +59,7 @@ impl Channels {
         [Aov::Albedo, Aov::Normal, Aov::Position, Aov::Depth, Aov::Uv, Aov::Object].into_iter().any(|aov| self.has(aov))
     }
 
-    /// How many there are, of a film with so many bands and so many Stokes parameters.
+    /// How many there are, of a film with this many bands and this many Stokes parameters.
     pub fn count(&self, bands: u64, parameters: u64) -> u64 {
         let of_bands = if self.has(Aov::Bands) { bands } else { 0 };
         let colours = 3 * u64::from(self.has(Aov::Color)) + (1 + parameters) * of_bands;

@@ -41,7 +41,7 @@ impl Frame {
     }
 }
 
-/// Frames a second, as a fraction: so many frames in so many seconds. `24`, `23.976` and `24000/1001` are read.
+/// Frames a second, as a fraction: a number of frames in a number of seconds. `24`, `23.976` and `24000/1001` are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FrameRate(
     /// Frames, and seconds; neither is 0.

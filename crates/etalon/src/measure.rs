@@ -14,8 +14,8 @@ pub const METER_REPLICATES: u32 = 32;
 /// Most samples of a reading where an error is to be reached.
 pub const MOST_METER_SAMPLES: u32 = 1 << 26;
 
-/// A reading that is below this share of the mean of its meter's readings is held to the error of that share: a cell of a grid where
-/// hardly any light arrives does not decide how long all are measured.
+/// A reading below this share of the mean of its meter's readings is held to the error of a reading of that share. A cell of a grid where
+/// hardly any light arrives would otherwise decide how long all are measured.
 const DARK: f64 = 0.01;
 
 /// Why no meter can be read.

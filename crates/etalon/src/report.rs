@@ -100,7 +100,7 @@ pub fn reached_name(reached: Reached) -> &'static str {
 }
 
 impl ErrorReport {
-    /// Of a picture with so many replicates.
+    /// Of a picture with this many replicates.
     pub fn new(replicates: u32, error: &ImageError) -> Self {
         Self {
             relative_rmse: error.is_known().then_some(error.relative_rmse),

@@ -53,7 +53,7 @@ pub struct KeptBands {
 }
 
 impl KeptBands {
-    /// Sums that the film has for so many Stokes parameters of them.
+    /// Sums that the film has for this many Stokes parameters of them.
     fn sums(&self, parameters: u32) -> u32 {
         // One sum stands for all where nothing is polarised.
         if self.factors.is_some() { 1 } else { self.count * parameters }

@@ -101,7 +101,7 @@ impl Motion {
         if self.uniform { Placement::of_similarity(linear, translation) } else { Placement::of(linear, translation) }
     }
 
-    /// The same motion in coordinates with this origin and so many units, a power of two, in one of its own.
+    /// The same motion in coordinates with this origin and this many units, a power of two, in one of its own.
     #[must_use]
     pub fn framed(&self, origin: Vec3<f64>, per_unit: f64) -> Self {
         let framed = |segment: &Segment| Segment {

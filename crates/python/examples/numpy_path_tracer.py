@@ -64,7 +64,7 @@ def camera_rays(scene, count, rng):
 
 
 def radiance(scene, count, rng, albedo_factor=1.0):
-    """The mean radiance of so many paths. `albedo_factor` is a mistake that can be made on purpose."""
+    """The mean radiance of this many paths. `albedo_factor` is a mistake that can be made on purpose."""
     o, d = camera_rays(scene, count, rng)
     weight, path, total = np.ones(count), np.arange(count), np.zeros(count)
     sky = sum(light["radiance"] for light in scene["lights"])

@@ -267,7 +267,7 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Whether a file of so many bytes may be read.
+/// Whether a file of this many bytes may be read.
 fn check_size(bytes: u64) -> Result<(), String> {
     if bytes <= MAX_FILE_BYTES {
         Ok(())

@@ -127,7 +127,7 @@ fn closed_tubes_fill_their_solid_angle_from_before_a_cap_and_from_within() {
     let up = Vec3::new(0.0, 0.0, 1.0);
     for (length, radius) in [(3.0, 0.7), (5.0, 0.5), (0.9, 1.1)] {
         let tube = |from: f64| area(Cylinder::new(up * from, up * (from + length), radius, true).unwrap(), emitter());
-        // The midpoint rule loses an order where walls end and caps begin, and its cells are skew on both: errors as of so many
+        // The midpoint rule loses an order where walls end and caps begin, and its cells are skew on both: errors as of this many
         // random points, 1/n times a few. The walls are hidden by the near cap.
         let cap = 2.0 * PI * (1.0 - 1.0 / (1.0 + radius * radius).sqrt());
         close(integral(&tube(1.0), 512, |_| 1.0), cap, 1e-2, "a cap");

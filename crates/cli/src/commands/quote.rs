@@ -132,7 +132,7 @@ fn threads(args: &Args) -> usize {
     args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize)
 }
 
-/// Pilots a scene that is ready for so many seconds.
+/// Pilots a scene that is ready for this many seconds.
 fn quote(
     args: &Args,
     loaded: &LoadedScene,

@@ -32,9 +32,9 @@ pub struct ScaleTest {
     pub skewed_tiles: usize,
     /// The tile with the smallest p-value.
     pub worst: Option<TileTest>,
-    /// Probability that the smallest p-value of so many tiles is that small if the pictures show the same.
+    /// Probability that the smallest p-value of this many tiles is that small if the pictures show the same.
     pub p_worst: f64,
-    /// Probability that so many p-values are below 0.1 if the pictures show the same: it sees small differences of many tiles. `None` for
+    /// Probability that this many p-values are below 0.1 if the pictures show the same: it sees small differences of many tiles. `None` for
     /// fewer than 16 tiles.
     pub p_spread: Option<f64>,
     /// What the test would have seen.

@@ -63,7 +63,7 @@ impl Tailed {
     }
 }
 
-/// Two pictures of the same thing, of light and dark parts, whose replicates have so many samples.
+/// Two pictures of the same thing, of light and dark parts, whose replicates have this many samples.
 fn tailed_pair(seed: u64, tailed: Tailed, samples: [u32; 2]) -> [Channel; 2] {
     let mut numbers = Uniform::new(seed);
     let pixel = |pixel: usize| ((pixel % WIDTH) as f64 / 5.0).sin().exp();

@@ -67,7 +67,7 @@ mod tests {
         split(&boxes.collect::<Vec<_>>())
     }
 
-    /// The tree of the tiles of a cubic room, so many along each edge of each wall.
+    /// The tree of the tiles of a cubic room, this many along each edge of each wall.
     fn room(tiles: u32) -> BinaryTree {
         let at = |i: u32| i as f32 / tiles as f32 - 0.5;
         let mut boxes = Vec::new();

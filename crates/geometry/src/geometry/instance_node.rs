@@ -27,7 +27,7 @@ pub(crate) struct InstanceNode {
 }
 
 impl InstanceNode {
-    /// For a tree whose leaves have so many lanes.
+    /// For a tree whose leaves have this many lanes.
     pub(crate) fn new(instance: &Instance, id: PrimitiveId, lanes: usize) -> Self {
         let [x, y, z] = instance.placement().inverse();
         let column = |k: usize| [x[k], y[k], z[k], 0.0];

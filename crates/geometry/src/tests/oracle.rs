@@ -11,7 +11,7 @@ use etalon_oracle::{Verdict, intersects_suite, suite};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
-/// Our geometry, for rays of scalar type `R`; with a tree above so many primitives.
+/// Our geometry, for rays of scalar type `R`; with a tree above this many primitives.
 struct Ours<R> {
     flat_limit: usize,
     scalar: PhantomData<R>,

@@ -10,7 +10,7 @@ use gltf::{Gltf, Node};
 use super::accessor::numbers;
 use crate::{Builder, Moment};
 
-/// A cubic curve is followed by so many straight pieces between two keyframes, or turns about fixed axes: they are off by at most
+/// A cubic curve is followed by this many straight pieces between two keyframes, or turns about fixed axes: they are off by at most
 /// 1/8·(1/16)² of the curve's second derivative over the square of that time, 5·10⁻⁴ of it.
 const CUBIC_PIECES: usize = 16;
 /// A step takes this share of the shutter's time, since what moves cannot jump.

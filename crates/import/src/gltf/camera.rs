@@ -12,7 +12,7 @@ use crate::matrix::rows;
 const OFF: f64 = 1e-6;
 /// Keyframes of the scene between two of the model, at most: 2 to this power.
 const MOST_HALVINGS: usize = 10;
-/// From so many keyframes on none is added.
+/// From this many keyframes on none is added.
 const MOST_FRAMES: usize = 1 << 16;
 
 impl Walk<'_, '_> {

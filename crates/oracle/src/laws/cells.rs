@@ -75,7 +75,7 @@ impl Cells {
     }
 }
 
-/// Counts expected of so many samples, of probabilities.
+/// Counts expected of this many samples, of probabilities.
 pub(super) fn expected(probabilities: &[Integral], samples: u32) -> Vec<Expected> {
     let n = f64::from(samples);
     probabilities.iter().map(|cell| Expected { count: n * cell.value, error: n * cell.error }).collect()

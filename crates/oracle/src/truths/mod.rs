@@ -355,7 +355,7 @@ impl Truth {
         self.mistakes.iter().map(|mistake| (mistake.value - self.value).abs()).fold(relative, f64::min)
     }
 
-    /// A bound on the absolute bias of a reading that took so many paths and cut some, though the scene did not end them, none with
+    /// A bound on the absolute bias of a reading that took this many paths and cut some, though the scene did not end them, none with
     /// more than `throughput` (largest over the wavelengths): what light found beyond would have been multiplied by.
     ///
     /// The mean of what one of them would still have found is at most its throughput times the [`brightest`](Self::brightest) radiance.

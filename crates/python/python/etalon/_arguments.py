@@ -38,7 +38,7 @@ def bands_of(bands: Any) -> Bands | None:
 
 
 def listed(values: Any, name: str, length: int, each: Callable[[Any], Any]) -> list[Any]:
-    """A list of so many values, each made by ``each``."""
+    """A list of this many values, each made by ``each``."""
     try:
         found = list(values)
     except TypeError:

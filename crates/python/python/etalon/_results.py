@@ -153,7 +153,7 @@ class ChannelTest:
     p_worst: float
     """Probability that the worst tile is that bad if the pictures show the same."""
     p_spread: float
-    """Probability that so many tiles are that bad together if the pictures show the same."""
+    """Probability that this many tiles are that bad together if the pictures show the same."""
     scales: list[dict[str, Any]]
     """The test of each size of tiles: ``side`` in pixels (None for the whole picture), ``tiles``, ``untested_tiles``, ``skewed_tiles``,
     ``worst``, ``p_worst``, ``p_spread`` and ``seen``, the relative change ``in_one_tile`` or ``in_all_tiles`` that would have been found with

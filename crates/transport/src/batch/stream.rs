@@ -85,7 +85,7 @@ pub(super) struct Window<T> {
 }
 
 impl<T: Copy> Window<T> {
-    /// A window on so many samples: a power of two, so that numbers may run over.
+    /// A window on this many samples: a power of two, so that numbers may run over.
     pub(super) fn new(size: usize) -> Self {
         Self { waiting: vec![None; size], turn: 0 }
     }

@@ -153,7 +153,7 @@ impl Film {
         Self::with_bands(width, height, replicates, 0)
     }
 
-    /// A black film that keeps so many sums for bands beside those for colour.
+    /// A black film that keeps this many sums for bands beside those for colour.
     pub fn with_bands(width: u32, height: u32, replicates: u32, bands: u32) -> Self {
         let number = width as usize * height as usize * replicates as usize;
         Self {
@@ -269,7 +269,7 @@ mod tests {
         assert_eq!(film().sharing(None).correlated_pixels(), 1);
     }
 
-    /// Numbers that are all different, in a tile of so many sums.
+    /// Numbers that are all different, in a tile of this many sums.
     fn tile(sums: usize, bands: usize) -> TileSums {
         let mut number = 0.0;
         let mut next = || {

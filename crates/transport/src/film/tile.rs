@@ -38,7 +38,7 @@ impl TileSums {
         Sums { xyz: &mut self.xyz, stokes: &mut self.stokes, bands: &mut self.bands }
     }
 
-    /// The sums of the pixels with so many replicates each, row by row.
+    /// The sums of the pixels with this many replicates each, row by row.
     pub fn pixels(&self, replicates: u32) -> impl Iterator<Item = Pixel<'_>> {
         self.xyz.chunks_exact(replicates as usize).map(Pixel)
     }
@@ -58,7 +58,7 @@ impl TileSums {
         bytes
     }
 
-    /// The sums that [`TileSums::to_bytes`] wrote for so many pixels, replicates and bands; `None` if the bytes are not as many
+    /// The sums that [`TileSums::to_bytes`] wrote for this many pixels, replicates and bands; `None` if the bytes are not as many
     /// as that takes.
     pub fn from_bytes(bytes: &[u8], pixels: u64, replicates: u32, bands: u32) -> Option<Self> {
         let sums = usize::try_from(pixels * u64::from(replicates)).ok()?;

@@ -37,7 +37,7 @@ pub(crate) const MOST_BODIES: usize = 8;
 
 /// Most images of lamps that are aimed at, the largest balls' first.
 pub(crate) const MAX_SPECULAR_IMAGES: usize = 16;
-/// The light that comes in otherwise, about: so many steradians of the brightest lamp, times the cosine over π. Where images bring as
+/// The light that comes in otherwise, about: this many steradians of the brightest lamp, times the cosine over π. Where images bring as
 /// much they have half of the share that they may have.
 const LEVEL: f32 = 0.03;
 /// What whole lenses have together beside images, as a part of what images have at most.

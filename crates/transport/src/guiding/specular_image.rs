@@ -215,7 +215,7 @@ impl SpecularImage {
     }
 
     /// The image of the lamp about `axis`, where a turn of the axis by an angle, in the plane and out of it, moves the light that
-    /// arrives at the lamp by so many metres a radian.
+    /// arrives at the lamp by this many metres a radian.
     #[inline(always)]
     fn about(
         &self,

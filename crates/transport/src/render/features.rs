@@ -140,7 +140,7 @@ impl Sums {
             position_m: self.position_m.map(|v| mean(v, hits)),
             depth_m: mean(self.depth_m, hits),
             uv: self.uv.map(|v| mean(v, hits)),
-            // Numbers beyond 2²⁴ are not told apart by 32-bit floats; a scene of so many objects does not fit anywhere.
+            // Numbers beyond 2²⁴ are not told apart by 32-bit floats; a scene of this many objects does not fit anywhere.
             object: self.objects.first().map_or(0.0, |&(number, _)| number as f32),
         }
     }

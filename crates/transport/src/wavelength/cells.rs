@@ -24,7 +24,7 @@ impl Place {
     /// Of wavelengths that are not drawn.
     pub(crate) const NONE: Self = Self { row: 0, turn: 0, fraction: 0.0 };
 
-    /// Drawn by `u` in [0, 1) from so many cells, a power of two.
+    /// Drawn by `u` in [0, 1) from this many cells, a power of two.
     #[inline(always)]
     pub(crate) fn draw(u: f64, cells: u32) -> Self {
         // Exact: a power of two.
@@ -50,7 +50,7 @@ struct Row {
 }
 
 impl CellTable {
-    /// What `of` says of each of so many cells.
+    /// What `of` says of each of this many cells.
     pub(crate) fn new(cells: u32, of: impl Fn(u32) -> [f64; 2]) -> Self {
         let rows = cells / TURNS as u32;
         let row = |row| {

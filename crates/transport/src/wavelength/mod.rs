@@ -272,7 +272,7 @@ mod tests {
     }
 
     /// A nanometre has at least one cell and what is nearest to its probability else; what is drawn there is spread evenly over it. Counted
-    /// over an even comb of numbers with so many in each cell, so nothing is left to chance.
+    /// over an even comb of numbers with this many in each cell, so nothing is left to chance.
     #[test]
     fn densities_are_those_of_the_blurred_sum_to_half_a_cell_and_what_is_drawn_has_them() {
         let range = [360.0, 830.0];

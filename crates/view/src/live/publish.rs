@@ -63,7 +63,7 @@ impl Overhead {
     }
 }
 
-/// Whether a picture may be looked at again, after so many seconds of rendering and of looking.
+/// Whether a picture may be looked at again, after this many seconds of rendering and of looking.
 pub(crate) fn may_look(rendering_s: f64, looking_s: f64, threads: usize) -> bool {
     looking_s <= CREDIT_S + SHARE * rendering_s * threads as f64
 }

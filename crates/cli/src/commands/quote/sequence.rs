@@ -94,7 +94,7 @@ pub(super) fn run(args: &Args, list: &FrameList, mut loaded: LoadedScene) -> Out
     Ok(())
 }
 
-/// Some frames out of so many, evenly spread from the first to the last: the place of each, and how many frames are nearest to it.
+/// Some frames out of this many, evenly spread from the first to the last: the place of each, and how many frames are nearest to it.
 fn spread(frames: usize) -> Vec<(usize, usize)> {
     let pilots = frames.min(MOST_PILOTS);
     let places: Vec<usize> = (0..pilots)

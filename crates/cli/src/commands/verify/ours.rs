@@ -21,8 +21,9 @@ const REPLICATES: u32 = 64;
 /// At first, all replicates together take this part of the samples that the truth's scene suggests: those are meant for independent
 /// numbers.
 const FIRST: u32 = 4;
-/// A reading too noisy to count goes on to this many times the paths, so many times.
+/// A reading too noisy to count takes this many times the paths.
 const MORE: u32 = 4;
+/// It does so at most this many times.
 const STEPS: u32 = 4;
 /// What a thorough run wants to see of each truth, relative: of all, and of those that were asked for by name. How many rays it spends on
 /// that of every truth, and how many where as many will do. In rays, not in seconds, so that what is read is the same on every machine.
@@ -80,7 +81,7 @@ impl<'a> Measurement<'a> {
         Ok(scene)
     }
 
-    /// Goes on to so many times the samples of the first step.
+    /// Goes on to this many times the samples of the first step.
     fn render_to(&mut self, effort: u32, significance: f64, interrupt: &Interrupt) -> Result<Reading, Stop> {
         for series in [Some(&mut self.of_truth), self.of_white.as_mut()].into_iter().flatten() {
             series.render_to(self.first_spp.saturating_mul(effort), interrupt)?;
@@ -169,9 +170,9 @@ pub(super) struct Cost {
     sees: Option<f64>,
 }
 
-/// Which truths are measured again so that the least of what is seen is the best that so many rays in all give, and with how many times
-/// the samples of the first step: always the one that sees the least next, taken to see twice as much by four times the samples. What is
-/// measured again begins anew.
+/// Which truths are measured again when there are this many rays for all of them, and with how many times the samples of the first step.
+/// The next one is always the one that sees the least. Four times the samples are taken to see twice as much. What is measured again
+/// begins anew.
 fn finer(costs: &[Cost], rays_of_all: u64) -> Vec<(usize, u32)> {
     let mut left = rays_of_all.saturating_sub(costs.iter().map(|cost| cost.rays).sum());
     let mut planned: Vec<Cost> = costs.to_vec();
@@ -193,7 +194,7 @@ fn finer(costs: &[Cost], rays_of_all: u64) -> Vec<(usize, u32)> {
     changed.map(|(index, (planned, _))| (index, planned.effort)).collect()
 }
 
-/// Renders and judges one truth, with so many times the samples of the first step, or as many as it takes. `None` if the program was asked
+/// Renders and judges one truth, with this many times the samples of the first step, or as many as it takes. `None` if the program was asked
 /// to end before.
 pub(super) fn judged(
     args: &Args,
@@ -251,9 +252,9 @@ fn measured(
     }
 }
 
-/// Whether a thorough run goes on that saw `seen` by so many rays, and `before` by the step before: to [`THOROUGH_RAYS`] as long as it
-/// does not see what it wants to, and beyond only if it will see that by [`THOROUGH_REACH_RAYS`], at the rate of the last step or at
-/// 1/√n.
+/// Whether a thorough run goes on that saw `seen` by this many rays, and `before` by the step before. Up to [`THOROUGH_RAYS`] it does, as
+/// long as it does not see what it wants to. Beyond, it must be going to see that by [`THOROUGH_REACH_RAYS`], at the rate of the last
+/// step or at 1/√n.
 fn is_worth_more(mut rays: u64, before: f64, seen: f64, wanted: f64) -> bool {
     if rays * u64::from(MORE) <= THOROUGH_RAYS {
         // What is not a number is judged as it is.

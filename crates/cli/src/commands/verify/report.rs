@@ -153,7 +153,7 @@ pub(super) struct Report {
     start: Instant,
     #[serde(skip)]
     table: bool,
-    /// How many truths there will be; of pictures nobody asks.
+    /// How many truths there will be; `None` where pictures are judged.
     #[serde(skip)]
     expected: Option<usize>,
 }
@@ -186,7 +186,7 @@ impl Report {
         }
     }
 
-    /// Says how far a run of so many truths has come, where no table shows it.
+    /// Says how far a run of this many truths has come, where no table shows it.
     pub(super) fn of(self, expected: usize) -> Self {
         Self { expected: Some(expected), ..self }
     }
@@ -233,7 +233,7 @@ impl Report {
         self.truths.push(row);
     }
 
-    /// Says that so many truths are judged again by more samples.
+    /// Says that this many truths are judged again by more samples.
     pub(super) fn announce_finer(&self, count: usize) {
         if count > 0 && self.table {
             print::line(&format!("the {count} that see the least, by more samples:"));

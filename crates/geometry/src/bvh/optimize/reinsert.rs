@@ -9,9 +9,9 @@ use super::links::{Links, NONE};
 
 /// Times that the largest subtrees are looked at.
 const ROUNDS: usize = 4;
-/// One in so many subtrees is looked at: nearly all that can be gained is to be had from the largest.
+/// One of this many subtrees is looked at: nearly all that can be gained is to be had from the largest.
 const SHARE: usize = 32;
-/// At least so many are, if there are.
+/// At least this many are looked at, if there are as many.
 const LEAST: usize = 1024;
 /// Places that are looked at for one subtree, at most: so that no input makes the time more than proportional to its size. Most
 /// searches end after some tens.

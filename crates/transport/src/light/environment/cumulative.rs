@@ -17,7 +17,7 @@ pub(super) struct Cumulative {
 }
 
 impl Cumulative {
-    /// For rows of so many entries.
+    /// For rows of this many entries.
     pub(super) fn new(width: usize, rows: usize) -> Self {
         Self { width, sums: Vec::with_capacity(width * rows), guide: Vec::with_capacity(width * rows) }
     }
