@@ -40,6 +40,7 @@ mod checker;
 mod gltf;
 mod matrix;
 mod medium;
+mod metals;
 mod mitsuba;
 mod number;
 mod obj;

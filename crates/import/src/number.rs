@@ -97,6 +97,14 @@ pub(crate) fn without_directions(value: &mut Value) -> bool {
     }
 }
 
+/// Whether facets of a material of the format have two widths.
+pub(crate) fn has_directions(value: &Value) -> bool {
+    match value {
+        Value::Object(map) => map.contains_key("alpha_u") || map.values().any(has_directions),
+        _ => false,
+    }
+}
+
 /// What is said where facets lose their directions.
 pub(crate) const WITHOUT_DIRECTIONS: &str =
     "it has no texture coordinates for the directions of its roughness: the geometric mean of both widths is taken";

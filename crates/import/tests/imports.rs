@@ -367,21 +367,50 @@ fn what_is_not_honoured_is_listed_with_its_path() {
     model["animations"] = json!([{ "channels": [], "samplers": [] }]);
     model["skins"] = json!([{ "joints": [0] }]);
     model["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] = json!([1, 0, 0, 1]);
-    model["materials"][2]["extensions"]["KHR_materials_clearcoat"] = json!({});
+    model["materials"][2]["extensions"]["KHR_materials_sheen"] = json!({});
     let imported = imported(&model).unwrap();
     let places: Vec<&str> = imported.left_out.iter().map(|l| l.place.as_str()).collect();
     for expected in [
         "$.animations[0]",
         "$.skins",
         "$.materials[1].pbrMetallicRoughness",
-        "$.materials[2].extensions.KHR_materials_clearcoat",
+        "$.materials[2].extensions.KHR_materials_sheen",
         "$.extensions.KHR_lights_punctual.lights[2]",
         "$.meshes[0].primitives[3]",
     ] {
         assert!(places.contains(&expected), "{expected} is not among {places:#?}");
     }
     // The scene to edit says so too.
-    assert!(imported.text.contains("left out: $.materials[2].extensions.KHR_materials_clearcoat"));
+    assert!(imported.text.contains("left out: $.materials[2].extensions.KHR_materials_sheen"));
+}
+
+/// On what is not metal the clear coat is the coat; vertex colours, weights of skins and morph targets are listed.
+#[test]
+fn clear_coats_and_what_meshes_say_beyond_their_shape() {
+    let coated = |factor: f64, metallic: f64| {
+        let mut model = model();
+        model["materials"][0] = json!({
+            "pbrMetallicRoughness": { "metallicFactor": metallic, "roughnessFactor": 0.9 },
+            "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": factor, "clearcoatRoughnessFactor": 0.2 } },
+        });
+        let imported = imported(&model).unwrap();
+        let said = imported.left_out.iter().filter(|l| l.place.ends_with("clearcoat")).map(|l| l.what.clone());
+        (imported.text.contains("\"alpha\": 0.04"), said.collect::<Vec<_>>())
+    };
+    let (shown, said) = coated(1.0, 0.0);
+    assert!(shown && said.len() == 1 && said[0].contains("takes the place"), "{said:?}");
+    for (factor, metallic, listed) in [(0.0, 0.0, 0), (0.3, 0.0, 1), (1.0, 1.0, 1)] {
+        let (shown, said) = coated(factor, metallic);
+        assert!(!shown && said.len() == listed, "{factor} {metallic} {said:?}");
+    }
+    let mut model = model();
+    let positions = model["meshes"][0]["primitives"][0]["attributes"]["POSITION"].clone();
+    model["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = positions.clone();
+    model["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": positions }]);
+    let imported = imported(&model).unwrap();
+    for place in ["$.meshes[0].primitives[0].attributes.COLOR_0", "$.meshes[0].primitives[0].targets"] {
+        assert!(imported.left_out.iter().any(|l| l.place == place), "{place}: {:#?}", imported.left_out);
+    }
 }
 
 /// A model may require whole numbers as positions, with a stride of whole words.

@@ -9,6 +9,7 @@ use gltf::material::AlphaMode;
 use serde_json::{Map, Value, json};
 
 use super::accessor::bytes_of;
+use super::clearcoat;
 use super::file::resource;
 use super::iridescence::Iridescence;
 use crate::{Builder, light, reflectance};
@@ -86,6 +87,7 @@ impl Materials {
             if base != [1.0; 3] || surface.base_color_texture().is_some() {
                 builder.leave_out(format!("{place}.pbrMetallicRoughness"), "clear glass has no base colour");
             }
+            clearcoat::roughness(material, false, place, builder);
             let interior = index(material, place, builder);
             let mut glass = json!({ "type": "dielectric", "interior": interior });
             let mut uv_set = None;
@@ -129,7 +131,10 @@ impl Materials {
             roughness.put_as_roughness(anisotropy.as_ref(), &mut part);
             part
         };
-        let mut ground = part("plastic", &roughness);
+        let metallic = Number::new(decimal(metallic), "blue", numbers.as_ref());
+        let has_coat = !matches!(metallic, Number::Value(1.0));
+        let clear = clearcoat::roughness(material, has_coat, place, builder).map(Number::Value);
+        let mut ground = part("plastic", clear.as_ref().unwrap_or(&roughness));
         ground["coat"] = index(material, place, builder);
         if material.specular().is_some_and(|specular| specular.specular_factor() == 0.0) || ground["coat"] == json!(1.0)
         {
@@ -140,7 +145,6 @@ impl Materials {
             let bare = part("conductor", &roughness);
             iridescence.as_ref().map_or(bare.clone(), |iridescence| iridescence.on_metal(bare))
         };
-        let metallic = Number::new(decimal(metallic), "blue", numbers.as_ref());
         if iridescence.is_some() && !matches!(metallic, Number::Value(1.0)) {
             let at = format!("{place}.extensions.KHR_materials_iridescence");
             builder.leave_out(at, "what is not metal and transmits no light has no film");
@@ -429,7 +433,12 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
     list(weak && opaque, "extensions.KHR_materials_transmission", "a factor below 0.5 becomes opaque");
     let coloured = material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite());
     list(coloured && opaque, "extensions.KHR_materials_volume", "it is ignored: the material does not transmit light");
-    const KNOWN: [&str; 3] = ["KHR_materials_anisotropy", "KHR_materials_dispersion", "KHR_materials_iridescence"];
+    const KNOWN: [&str; 4] = [
+        "KHR_materials_anisotropy",
+        "KHR_materials_clearcoat",
+        "KHR_materials_dispersion",
+        "KHR_materials_iridescence",
+    ];
     for key in material.extensions().into_iter().flat_map(|map| map.keys()) {
         list(!KNOWN.contains(&key.as_str()), &format!("extensions.{key}"), no);
     }

@@ -3,6 +3,7 @@
 mod accessor;
 mod animation;
 mod camera;
+mod clearcoat;
 mod file;
 mod image;
 mod iridescence;

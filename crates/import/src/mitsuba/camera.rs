@@ -22,8 +22,16 @@ impl<'a> Walk<'a, '_, '_> {
             "direct" => {
                 self.builder.integrator.insert("max_depth".to_owned(), json!(2));
             }
-            "stokes" => {
-                self.builder.leave_out(&element.place, "polarisation is an option of the command: --polarised");
+            "stokes" | "aov" | "moment" => {
+                self.builder.leave_out(
+                    &element.place,
+                    match plugin {
+                        "stokes" => "polarisation is an option of the command: --polarised",
+                        "aov" => "channels beyond the colour are an option of the command: --aov",
+                        _ => "moments of the samples are not written: the errors of the picture stand for them",
+                    },
+                );
+                element.property("aovs");
                 for nested in element.nested("integrator", self.ids)? {
                     self.integrator(nested)?;
                 }
@@ -136,6 +144,13 @@ impl<'a> Walk<'a, '_, '_> {
                 }
             };
             rfilter.list_unused(self.builder);
+        }
+        let crop = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
+        if film.property(crop[2]).is_some() || film.property(crop[3]).is_some() {
+            let [x, y] = [film.number(crop[0])?.unwrap_or(0.0), film.number(crop[1])?.unwrap_or(0.0)];
+            let [w, h] = [film.number(crop[2])?.unwrap_or(width), film.number(crop[3])?.unwrap_or(height)];
+            let what = format!("the crop is an option of the command: --crop {x},{y},{w},{h}");
+            self.builder.leave_out(&film.place, what);
         }
         // How the file is written is the command's choice.
         for harmless in ["file_format", "pixel_format", "component_format", "banner", "sample_border"] {

@@ -39,22 +39,7 @@ impl Walk<'_, '_, '_> {
                 };
                 json!({ "type": "point", "position_m": position, "intensity": intensity })
             }
-            "spot" => {
-                let intensity = self.colour(element, "intensity", Of::Emission)?.unwrap_or_else(one);
-                let to_world = self.placement(element)?;
-                let cutoff = element.number("cutoff_angle")?.unwrap_or(20.0);
-                let inner = element.number("beam_width")?.unwrap_or(0.75 * cutoff);
-                if inner < cutoff {
-                    self.builder.approximate(
-                        &place,
-                        "between beam_width and cutoff_angle the light falls off by another curve",
-                    );
-                }
-                json!({
-                    "type": "spot", "position_m": to_world.translation.to_array(), "direction": to_world.matrix3.z_axis.to_array(),
-                    "intensity": intensity, "half_angle_deg": cutoff, "inner_half_angle_deg": inner.min(cutoff),
-                })
-            }
+            "spot" => self.spot(element)?,
             "directional" => {
                 let irradiance = self.colour(element, "irradiance", Of::Emission)?.unwrap_or_else(one);
                 let direction = match element.triple("direction")? {

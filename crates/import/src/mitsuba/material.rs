@@ -6,6 +6,7 @@ use super::Walk;
 use super::colour::Of;
 use super::element::Element;
 use crate::budget::BlendSize;
+use crate::metals;
 use crate::number::{Number, Rough};
 use crate::relief::{has_map, without_map};
 use crate::sides::change_sides;
@@ -206,7 +207,8 @@ impl Walk<'_, '_, '_> {
                 }
                 plastic
             }
-            "principled" | "principledthin" => {
+            "principled" => self.principled(element)?,
+            "principledthin" => {
                 self.builder.approximate(place, format!("\"{plugin}\" becomes diffuse, with its base colour"));
                 let reflectance = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
                 json!({ "type": "lambert", "reflectance": reflectance })
@@ -234,12 +236,8 @@ impl Walk<'_, '_, '_> {
                 return Ok(value);
             }
             Some("none") => return Ok(json!({ "type": "mirror", "reflectance": tint.unwrap_or(json!(1.0)) })),
-            Some(metal @ ("Ag" | "Al" | "Au" | "Cu")) => json!({ "type": "conductor", "metal": metal }),
-            Some(other) => {
-                self.builder.approximate(place, format!("the metal \"{other}\" is not known: it becomes aluminium"));
-                json!({ "type": "conductor", "metal": "Al" })
-            }
-            None => self.own_metal(element)?.unwrap_or_else(|| json!({ "type": "conductor", "metal": "Cu" })),
+            Some(symbol) => self.named_metal(symbol, place),
+            None => self.own_metal(element)?.unwrap_or_else(|| self.named_metal("Cu", place)),
         };
         if tint.is_some_and(|tint| tint != json!(1.0)) {
             self.builder.leave_out(place, "specular_reflectance is ignored");
@@ -251,6 +249,14 @@ impl Walk<'_, '_, '_> {
         // As in the program.
         value["multiple_scattering"] = json!("lost");
         Ok(value)
+    }
+
+    /// A metal by the name that the program has for it.
+    fn named_metal(&mut self, symbol: &str, place: &str) -> Value {
+        metals::named(symbol).unwrap_or_else(|| {
+            self.builder.approximate(place, format!("the metal \"{symbol}\" is not known: it becomes aluminium"));
+            json!({ "type": "conductor", "metal": "Al" })
+        })
     }
 
     /// A metal by its own eta and k.

@@ -4,13 +4,16 @@
 
 mod camera;
 mod colour;
+mod coordinates;
 mod element;
 mod emitter;
 mod material;
 mod medium;
+mod principled;
 mod relief;
 mod serialized;
 mod shape;
+mod spot;
 mod transform;
 
 use std::collections::HashMap;

@@ -37,7 +37,7 @@ enum MeshFormat {
 struct MeshPart {
     file: String,
     name: Option<String>,
-    bounds: Option<[[f64; 3]; 2]>,
+    bounds: Option<Reach>,
     has_uvs: bool,
     has_normals: bool,
 }
@@ -83,8 +83,11 @@ impl<'a> Walk<'a, '_, '_> {
             return Ok(());
         }
         let map = self.placement(element)?;
+        let emission = self.emission(element)?;
         let look = match element.nested("bsdf", self.ids)?.first() {
             Some(bsdf) => self.known_look(bsdf)?,
+            // There, too, what shines reflects nothing unless it says so.
+            None if emission.is_some() => Look::of(json!({ "type": "black" })),
             None => {
                 let mut material = grey();
                 material["sides"] = json!("front");
@@ -92,7 +95,6 @@ impl<'a> Walk<'a, '_, '_> {
             }
         };
         let look = self.filled(element, look)?;
-        let emission = self.emission(element)?;
         let flipped = element.flag("flip_normals")?.unwrap_or(false);
         let mut dressed = Dressed { name, look, emission, map, flipped };
         match element.plugin() {
@@ -177,18 +179,8 @@ impl<'a> Walk<'a, '_, '_> {
         Ok(look)
     }
 
-    fn analytic(
-        &mut self,
-        mut dressed: Dressed,
-        shape: Value,
-        reach: [[f64; 3]; 2],
-        place: &str,
-    ) -> Result<(), String> {
-        let has_uvs = shape["type"] == "parallelogram";
-        self.without_images(&mut dressed, has_uvs, place);
-        if !has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
-            self.builder.leave_out(place, "the image of its emission is laid over another kind of texture coordinates");
-        }
+    fn analytic(&mut self, mut dressed: Dressed, shape: Value, reach: Reach, place: &str) -> Result<(), String> {
+        let (shape, reach) = self.with_coordinates(&mut dressed, shape, reach, place);
         self.builder.place(&dressed.placed(shape, Some(reach)), place)
     }
 
@@ -258,7 +250,7 @@ impl<'a> Walk<'a, '_, '_> {
             if flip_v {
                 part.mesh.uvs.iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);
             }
-            let bounds = part.mesh.vertices.iter().fold(None, |bounds: Option<[[f64; 3]; 2]>, v| {
+            let bounds = part.mesh.vertices.iter().fold(None, |bounds: Option<Reach>, v| {
                 let [low, high] = bounds.unwrap_or([*v, *v]);
                 Some([std::array::from_fn(|k| low[k].min(v[k])), std::array::from_fn(|k| high[k].max(v[k]))])
             });
@@ -305,16 +297,19 @@ impl<'a> Walk<'a, '_, '_> {
 
 /// All of an object but its shape.
 #[derive(Clone, Debug)]
-struct Dressed {
+pub(super) struct Dressed {
     name: String,
-    look: Look,
-    emission: Option<Value>,
-    map: DAffine3,
+    pub look: Look,
+    pub emission: Option<Value>,
+    pub map: DAffine3,
     flipped: bool,
 }
 
+/// Two corners of a box.
+pub(super) type Reach = [[f64; 3]; 2];
+
 impl Dressed {
-    fn placed(&self, shape: Value, reach: Option<[[f64; 3]; 2]>) -> Placed {
+    fn placed(&self, shape: Value, reach: Option<Reach>) -> Placed {
         Placed {
             name: self.name.clone(),
             shape,

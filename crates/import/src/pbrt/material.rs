@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::parameters::Parameters;
 use super::{Look, Reading};
 use crate::budget::BlendSize;
+use crate::metals;
 use crate::number::{Number, Rough};
 use crate::relief::has_map;
 use crate::table::{Table, metal};
@@ -93,18 +94,12 @@ impl Reading<'_, '_> {
         } else if let Some((eta, k)) = self.own_indices(list, prefix)? {
             metal(&eta, &k)
         } else {
-            let name = match eta.as_deref() {
-                None | Some("metal-Cu-eta") => "Cu",
-                Some("metal-Ag-eta") => "Ag",
-                Some("metal-Al-eta") => "Al",
-                Some("metal-Au-eta") => "Au",
-                Some(other) => {
-                    self.builder
-                        .approximate(place, format!("the metal \"{other}\" is not known: it becomes aluminium"));
-                    "Al"
-                }
-            };
-            json!({ "type": "conductor", "metal": name })
+            let name = eta.as_deref().unwrap_or("metal-Cu-eta");
+            let symbol = name.strip_prefix("metal-").and_then(|name| name.strip_suffix("-eta"));
+            symbol.and_then(metals::named).unwrap_or_else(|| {
+                self.builder.approximate(place, format!("the metal \"{name}\" is not known: it becomes aluminium"));
+                json!({ "type": "conductor", "metal": "Al" })
+            })
         };
         rough.put(&mut value);
         value["outside_fit"] = json!("clamp");

@@ -3,12 +3,15 @@
 mod bounds;
 mod brushed;
 mod checkers;
+mod coordinates;
 mod images;
 mod losses;
 mod media;
 mod parameters;
+mod principled;
 mod relief;
 mod sides;
+mod spots;
 
 use etalon_import::{Imported, import_bytes};
 use etalon_scene::{EnvironmentProjection, LightKind, MaterialKind, Projection, Scene, Shape, Side, SpectrumTexture};

@@ -176,12 +176,6 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
         ),
         (
             "xml",
-            bumpy(&bitmap).replace("rectangle", "sphere"),
-            "line 1: it has no texture coordinates for its normal or bump map: the map is left out",
-            false,
-        ),
-        (
-            "xml",
             within("<bsdf type=\"blendbsdf\"><bsdf type=\"diffuse\"/>", "</bsdf>"),
             "line 3: a normal or bump map of a part of a blend is left out",
             false,

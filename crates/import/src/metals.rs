@@ -1,0 +1,61 @@
+//! Metals that Mitsuba and pbrt know by name. They take other measurements than ours: their gold reflects 7 % more green.
+
+use serde_json::Value;
+
+use crate::table::{Table, metal};
+
+const METALS: &str = include_str!("../data/metals.csv");
+
+/// A metal of the format with the constants that both programs have for a chemical symbol.
+pub(crate) fn named(symbol: &str) -> Option<Value> {
+    let rows: Vec<[f64; 3]> = METALS.lines().filter_map(|line| row(line, symbol)).collect();
+    let column = |c: usize| Table(rows.iter().map(|row| (row[0], row[c])).collect());
+    (!rows.is_empty()).then(|| metal(&column(1), &column(2)))
+}
+
+/// Wavelength, n and k of a line, if it is of this metal.
+fn row(line: &str, symbol: &str) -> Option<[f64; 3]> {
+    let (metal, numbers) = line.split_once(',')?;
+    let numbers: Vec<f64> = numbers.split(',').filter_map(|number| number.parse().ok()).collect();
+    (metal == symbol).then_some(numbers)?.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ((n − 1)² + k²)/((n + 1)² + k²) at the row of a wavelength.
+    fn reflectance(metal: &Value, nm: f64) -> f64 {
+        let list = |key: &str| -> Vec<f64> {
+            metal[key].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
+        };
+        let at = list("wavelengths_nm").iter().position(|known| (known - nm).abs() < 0.01).unwrap();
+        let (n, k) = (list("n")[at], list("k")[at]);
+        ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k)
+    }
+
+    #[test]
+    fn every_metal_is_a_table_of_the_visible_range() {
+        for symbol in ["Ag", "Al", "Au", "Cr", "Cu", "W"] {
+            let metal = named(symbol).unwrap();
+            let wavelengths: Vec<f64> =
+                metal["wavelengths_nm"].as_array().unwrap().iter().map(|nm| nm.as_f64().unwrap()).collect();
+            assert!(wavelengths[0] < 360.0 && wavelengths[wavelengths.len() - 1] > 830.0, "{symbol}");
+            assert!(wavelengths.is_sorted_by(|a, b| a < b), "{symbol}");
+            assert_eq!([&metal["n"], &metal["k"]].map(|list| list.as_array().unwrap().len()), [wavelengths.len(); 2]);
+        }
+        let lines = METALS.lines().filter(|line| !line.starts_with('#'));
+        assert!(lines.clone().count() == 305 && lines.clone().all(|line| line.split(',').count() == 4));
+        assert_eq!(named("Unobtainium"), None);
+    }
+
+    /// Gold is yellow, copper red, silver neither: what each reflects head-on near 450 and 650 nm.
+    #[test]
+    fn metals_have_their_colours() {
+        for (symbol, blue, red) in [("Au", 0.38, 0.97), ("Cu", 0.55, 0.95), ("Ag", 0.97, 0.99), ("Al", 0.92, 0.91)] {
+            let metal = named(symbol).unwrap();
+            let found = [450.852, 652.548].map(|nm| reflectance(&metal, nm));
+            assert!((found[0] - blue).abs() < 0.02 && (found[1] - red).abs() < 0.02, "{symbol}: {found:?}");
+        }
+    }
+}

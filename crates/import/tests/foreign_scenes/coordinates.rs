@@ -1,0 +1,74 @@
+//! Images and directions on shapes of Mitsuba that have texture coordinates of another kind than ours.
+
+use etalon_scene::Shape;
+use serde_json::{Value, json};
+
+use super::{imported, said, scene};
+
+const IMAGE: &str = "<bsdf type=\"diffuse\"><texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" value=\"chequers.png\"/></texture></bsdf>";
+
+fn of(shape: &str, look: &str) -> String {
+    format!("<scene version=\"3.0.0\"><shape type=\"{shape}\">{look}</shape></scene>")
+}
+
+fn object(text: &str) -> Value {
+    let json: Value = serde_json::from_str(text).expect("a scene is JSON");
+    json["objects"].as_array().and_then(|objects| objects.last()).expect("an object").clone()
+}
+
+#[test]
+fn images_keep_their_place_on_round_shapes() {
+    // v of a sphere runs from the pole down, that of the image from below in Etalon, that of a bitmap from above.
+    for (shape, scale, offset) in [("sphere", [1.0, 1.0], [0.0, 0.0]), ("cylinder", [1.0, -1.0], [0.0, 1.0])] {
+        let imported = imported("xml", &of(shape, IMAGE));
+        assert_eq!(said(&imported), Vec::<String>::new(), "{shape}");
+        let object = object(&imported.text);
+        assert_eq!((&object["shape"]["type"], object["material"]["type"].as_str()), (&json!(shape), Some("lambert")));
+        let image = &object["material"]["reflectance"];
+        assert_eq!([&image["uv_scale"], &image["uv_offset"]], [&json!(scale), &json!(offset)], "{shape}");
+        scene(&imported);
+    }
+}
+
+#[test]
+fn a_disk_and_a_cube_with_an_image_become_meshes() {
+    for (shape, listed) in [("disk", 1), ("cube", 0)] {
+        let imported = imported("xml", &of(shape, IMAGE));
+        let said = said(&imported);
+        assert_eq!(said.len(), listed, "{said:?}");
+        assert!(said.iter().all(|line| line.contains("polar")), "{said:?}");
+        assert!(matches!(scene(&imported).objects[0].shape, Shape::Mesh { .. }), "{shape}");
+        // Without an image they stay what they are.
+        let plain = super::imported("xml", &of(shape, ""));
+        assert_ne!(object(&plain.text)["shape"]["type"], "mesh");
+    }
+}
+
+#[test]
+fn an_image_moves_with_the_shape_and_what_else_is_laid_over_it() {
+    let look = format!(
+        "<point name=\"center\" x=\"1\" y=\"2\" z=\"3\"/><transform name=\"to_world\"><scale value=\"2\"/></transform>
+        <bsdf type=\"mask\"><texture type=\"bitmap\" name=\"opacity\"><string name=\"filename\" value=\"chequers.png\"/></texture>{IMAGE}</bsdf>
+        <emitter type=\"area\"><texture type=\"bitmap\" name=\"radiance\"><string name=\"filename\" value=\"chequers.png\"/></texture></emitter>"
+    );
+    let imported = imported("xml", &of("sphere", &look));
+    assert_eq!(said(&imported), Vec::<String>::new());
+    let object = object(&imported.text);
+    for image in [&object["opacity_image"], &object["emission"]["radiance"], &object["material"]["reflectance"]] {
+        assert_eq!(image["uv_scale"], json!([1.0, 1.0]), "{object}");
+    }
+    let scene = scene(&imported);
+    assert_eq!(scene.objects[0].transform.translation_m, [2.0, 4.0, 6.0]);
+    assert!(matches!(scene.objects[0].shape, Shape::Sphere { center: [0.0, 0.0, 0.0], .. }));
+}
+
+#[test]
+fn brushed_round_shapes_keep_their_directions() {
+    let brushed = "<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/></bsdf>";
+    for shape in ["sphere", "cylinder", "cube"] {
+        let imported = imported("xml", &of(shape, brushed));
+        assert_eq!(said(&imported), Vec::<String>::new(), "{shape}");
+        assert_eq!(object(&imported.text)["material"]["alpha_u"], 0.1);
+        scene(&imported);
+    }
+}

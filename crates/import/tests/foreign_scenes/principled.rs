@@ -1,0 +1,77 @@
+//! What a `principled` material of Mitsuba becomes, and other things that it has and we have not.
+
+use serde_json::Value;
+
+use super::{imported, said, scene};
+
+fn material(keys: &str) -> (Value, Vec<String>) {
+    let text = format!(
+        "<scene version=\"3.0.0\"><shape type=\"rectangle\"><bsdf type=\"principled\">{keys}</bsdf></shape></scene>"
+    );
+    let imported = imported("xml", &text);
+    scene(&imported);
+    let json: Value = serde_json::from_str(&imported.text).expect("a scene is JSON");
+    (json["objects"][0]["material"].clone(), said(&imported))
+}
+
+fn number(name: &str, value: f64) -> String {
+    format!("<float name=\"{name}\" value=\"{value}\"/>")
+}
+
+#[test]
+fn a_principled_material_becomes_coat_metal_and_glass() {
+    let (plain, said) = material(&number("roughness", 0.5));
+    assert_eq!((&plain["type"], &plain["sides"], said.len()), (&"plastic".into(), &"front".into(), 1), "{said:?}");
+    assert!((plain["coat"].as_f64().unwrap() - 1.5).abs() < 1e-12, "what reflects 4 % head-on");
+    assert_eq!(plain["alpha"], 0.25);
+    assert_eq!(material(&number("metallic", 1.0)).0["type"], "conductor");
+    assert_eq!(material(&number("spec_trans", 1.0)).0["type"], "dielectric");
+    let (mixed, _) = material(&(number("metallic", 0.25) + &number("spec_trans", 0.5)));
+    assert_eq!([&mixed["type"], &mixed["second"]["type"], &mixed["first"]["type"]], ["blend", "conductor", "blend"]);
+    assert_eq!(mixed["weight"], 0.25);
+    // √(1 − 0.9) = 0.316.
+    let (brushed, _) = material(&number("anisotropic", 1.0));
+    let widths = ["alpha_u", "alpha_v"].map(|key| brushed[key].as_f64().unwrap());
+    assert!((widths[0] - 0.790_57).abs() < 1e-4 && (widths[1] - 0.079_057).abs() < 1e-5, "{widths:?}");
+}
+
+#[test]
+fn parts_of_it_that_nothing_stands_for_are_listed() {
+    let (_, said) = material(&(number("sheen", 0.5) + &number("clearcoat", 1.0) + &number("flatness", 0.0)));
+    assert_eq!(said[1..], ["line 1: \"sheen\" is left out", "line 1: \"clearcoat\" is left out"]);
+}
+
+#[test]
+fn materials_and_lights_that_are_not_known_are_listed_by_their_names() {
+    for (element, name) in [
+        (
+            "<shape type=\"sphere\"><bsdf type=\"measured\"><string name=\"filename\" value=\"a.bsdf\"/></bsdf></shape>",
+            "measured",
+        ),
+        ("<shape type=\"sphere\"><bsdf type=\"hair\"/></shape>", "hair"),
+        ("<shape type=\"sphere\"/><emitter type=\"projector\"/>", "projector"),
+        ("<shape type=\"sphere\"/><shape type=\"bsplinecurve\"/>", "bsplinecurve"),
+    ] {
+        let said = said(&imported("xml", &format!("<scene version=\"3.0.0\">{element}</scene>")));
+        assert!(said.len() == 1 && said[0].contains(&format!("\"{name}\"")), "{said:?}");
+    }
+}
+
+#[test]
+fn nested_integrators_and_crops_are_listed_and_keep_the_depth() {
+    let text = r#"<scene version="3.0.0"><integrator type="moment"><integrator type="path"><integer name="max_depth" value="7"/></integrator></integrator>
+        <sensor type="perspective"><float name="fov" value="30"/><film type="hdrfilm"><integer name="width" value="96"/><integer name="height" value="72"/>
+        <integer name="crop_offset_x" value="28"/><integer name="crop_width" value="40"/></film></sensor><shape type="sphere"/></scene>"#;
+    let imported = imported("xml", text);
+    assert_eq!(scene(&imported).integrator.max_depth, Some(7));
+    let said = said(&imported);
+    assert!(said.iter().any(|line| line.contains("--crop 28,0,40,72")) && said.len() == 2, "{said:?}");
+}
+
+/// In Mitsuba, too, a lamp without a material reflects nothing.
+#[test]
+fn a_lamp_without_a_material_is_black() {
+    let lamp = "<scene version=\"3.0.0\"><shape type=\"sphere\"><emitter type=\"area\"/></shape></scene>";
+    let json: Value = serde_json::from_str(&imported("xml", lamp).text).expect("a scene is JSON");
+    assert_eq!(json["objects"][0]["material"]["type"], "black");
+}
