@@ -60,12 +60,17 @@ pub fn decode_exr(bytes: &[u8], path: &Path) -> Result<ExrFile, PictureError> {
         if channel.sampling != exr::math::Vec2(1, 1) {
             return Err(failed(exr::error::Error::NotSupported("subsampled channels".into())));
         }
+        let name = String::from_utf8_lossy(channel.name.as_slice()).into_owned();
+        let half = matches!(channel.sample_data, FlatSamples::F16(_));
         let samples = match channel.sample_data {
             FlatSamples::F16(samples) => samples.into_iter().map(|sample| sample.to_f32()).collect(),
             FlatSamples::F32(samples) => samples,
             FlatSamples::U32(samples) => samples.into_iter().map(|sample| sample as f32).collect(),
         };
-        picture.insert(&String::from_utf8_lossy(channel.name.as_slice()), samples)?;
+        picture.insert(&name, samples)?;
+        if half {
+            picture.mark_half(&name);
+        }
     }
     let attributes = exr_header::collect(image.attributes, layer.attributes).map_err(failed)?;
     Ok(ExrFile { picture, attributes })

@@ -53,6 +53,8 @@ pub struct Channel<T> {
     pub name: String,
     /// Its samples.
     pub samples: Vec<T>,
+    /// Whether the file that it was read from has them as 16-bit floats, which round to eleven binary digits.
+    pub half: bool,
 }
 
 /// Where a picture lies in the whole frame it was cut from.
@@ -136,8 +138,19 @@ impl<T: Sample> Picture<T> {
                 found: samples.len(),
             });
         }
-        self.channels.push(Channel { name: name.to_owned(), samples });
+        self.channels.push(Channel { name: name.to_owned(), samples, half: false });
         Ok(())
+    }
+
+    /// States that a channel was read from 16-bit floats.
+    pub(crate) fn mark_half(&mut self, name: &str) {
+        self.channels.iter_mut().filter(|channel| channel.name == name).for_each(|channel| channel.half = true);
+    }
+
+    /// Whether a channel was read from 16-bit floats.
+    #[must_use]
+    pub fn is_half(&self, name: &str) -> bool {
+        self.channels.iter().any(|channel| channel.name == name && channel.half)
     }
 
     /// Width, pixels.

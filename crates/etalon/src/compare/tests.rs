@@ -2,7 +2,7 @@
 
 use super::each;
 use super::scales::{ChannelTest, test};
-use super::tiles::{Measured, welch};
+use super::tiles::{Measured, rounding, welch};
 use etalon_oracle::Uniform;
 
 const WIDTH: usize = 64;
@@ -83,7 +83,13 @@ fn channel_in_tiles(pair: &[Channel; 2], side: usize, correlated: f64) -> Channe
 
 /// The same without the statement of power, which takes most of the time.
 fn without_power(pair: &[Channel; 2], side: usize, correlated: f64) -> ChannelTest {
-    let [a, b] = [0, 1].map(|i| Measured { values: &pair[i].0, errors: &pair[i].1, freedom: Some(3.0), correlated });
+    let [a, b] = [0, 1].map(|i| Measured {
+        values: &pair[i].0,
+        errors: &pair[i].1,
+        freedom: Some(3.0),
+        correlated,
+        rounding: rounding(false),
+    });
     test("Y", &a, &b, WIDTH, side)
 }
 
@@ -220,7 +226,13 @@ fn one_tile_in_ten_has_a_p_value_below_a_tenth() {
     let below = (0..400)
         .map(|seed| {
             let [a, b] = pair(1000 + seed, 0.1, |_| 0.0);
-            let [a, b] = [&a, &b].map(|p| Measured { values: &p.0, errors: &p.1, freedom: Some(3.0), correlated: 1.0 });
+            let [a, b] = [&a, &b].map(|p| Measured {
+                values: &p.0,
+                errors: &p.1,
+                freedom: Some(3.0),
+                correlated: 1.0,
+                rounding: rounding(false),
+            });
             (0..16)
                 .filter(|tile| {
                     let pixels: Vec<usize> = (0..256).map(|i| tile * 256 + i).collect();
@@ -248,7 +260,8 @@ fn a_bias_in_one_tile_is_found_there_and_a_small_one_everywhere_by_the_whole_pic
 fn rounding_to_f32_is_no_difference_and_unknown_errors_are_not_tested() {
     let (a, b) = (vec![0.1_f32; 256], vec![0.1_f32.next_up(); 256]);
     let exact = vec![0.0_f32; 256];
-    let measured = |values, errors| Measured { values, errors, freedom: Some(3.0), correlated: 1.0 };
+    let measured =
+        |values, errors| Measured { values, errors, freedom: Some(3.0), correlated: 1.0, rounding: rounding(false) };
     assert_eq!(test("R", &measured(&a, &exact), &measured(&b, &exact), 16, 16).p(), 1.0);
     let far = vec![0.2_f32; 256];
     assert_eq!(test("R", &measured(&a, &exact), &measured(&far, &exact), 16, 16).p(), 0.0);
@@ -261,6 +274,29 @@ fn rounding_to_f32_is_no_difference_and_unknown_errors_are_not_tested() {
     assert_eq!((outcome.tiles, outcome.untested_tiles, outcome.p()), (15, 1, 0.0));
 }
 
+/// Pictures without noise that two programs computed, and one that went through a file of 16-bit floats.
+#[test]
+fn what_rounding_explains_is_no_difference() {
+    let exact = vec![0.0_f32; 256];
+    let p = |a: f32, b: f32, halves: [bool; 2]| {
+        let (a, b) = (vec![a; 256], vec![b; 256]);
+        let [a, b] = [(&a, halves[0]), (&b, halves[1])].map(|(values, half)| Measured {
+            values,
+            errors: &exact,
+            freedom: Some(3.0),
+            correlated: 1.0,
+            rounding: rounding(half),
+        });
+        test("R", &a, &b, 16, 16).p()
+    };
+    assert_eq!(p(0.300_001, 0.3, [false; 2]), 1.0, "a part in 300 000");
+    assert_eq!(p(0.300_01, 0.3, [false; 2]), 0.0, "a part in 30 000");
+    // The nearest 16-bit floats to 0.3 and to 0.3003.
+    assert_eq!(p(0.300_048_83, 0.3, [true, false]), 1.0);
+    assert_eq!(p(0.300_292_97, 0.3, [true, false]), 0.0);
+    assert_eq!(p(0.300_048_83, 0.3, [false; 2]), 0.0, "as 32-bit floats they differ");
+}
+
 /// Whatever its error is said to be, also in both pictures alike.
 #[test]
 fn a_value_that_is_not_finite_differs_from_all_values() {
@@ -269,7 +305,13 @@ fn a_value_that_is_not_finite_differs_from_all_values() {
         let with = (0..256).map(|pixel| if pixel == 77 { value } else { 0.1 }).collect::<Vec<_>>();
         for error in [0.0, 0.1, f32::INFINITY, f32::NAN] {
             let errors = vec![error; 256];
-            let measured = |values| Measured { values, errors: &errors, freedom: Some(3.0), correlated: 1.0 };
+            let measured = |values| Measured {
+                values,
+                errors: &errors,
+                freedom: Some(3.0),
+                correlated: 1.0,
+                rounding: rounding(false),
+            };
             for (a, b) in [(&with, &plain), (&plain, &with), (&with, &with)] {
                 let outcome = test("R", &measured(a), &measured(b), 16, 16);
                 assert_eq!((outcome.untested_tiles, outcome.p()), (0, 0.0), "{value} ± {error}");

@@ -5,8 +5,11 @@ use etalon_oracle::statistics::{normal_two_sided_tail, student_two_sided_tail};
 use etalon_picture::{ERROR_PREFIX, ErrorInfo, ExrFile};
 use serde::Serialize;
 
-/// Half a unit in the last place of `f32`, relative: by this the file's values may be off.
-const HALF_ULP: f64 = 1.0 / (1_u64 << 24) as f64;
+/// By how much a value of a file of 32-bit floats may be off, relative: 64 halves of the last place. A single rounding is off by one of
+/// them; a renderer that adds its samples in 32-bit floats rounds each sum, and 4096 roundings that are up as often as down are off by 64.
+const SINGLE: f64 = 64.0 / (1_u64 << 24) as f64;
+/// The same of 16-bit floats: half of the last place. Their samples are added in more digits.
+const HALF: f64 = 1.0 / (1_u64 << 11) as f64;
 
 /// One channel of one picture with the standard errors of its pixels.
 pub(super) struct Measured<'a> {
@@ -16,6 +19,8 @@ pub(super) struct Measured<'a> {
     pub(super) freedom: Option<f64>,
     /// Most pixels whose errors have a part in common.
     pub(super) correlated: f64,
+    /// By how much each value may be off because it is rounded, relative.
+    pub(super) rounding: f64,
 }
 
 impl<'a> Measured<'a> {
@@ -28,6 +33,7 @@ impl<'a> Measured<'a> {
             errors: file.picture.channel(&format!("{ERROR_PREFIX}{name}"))?,
             freedom: replicates.map(|replicates| f64::from(replicates.saturating_sub(1).max(1))),
             correlated: info.map_or(1.0, |info| f64::from(info.correlated_pixels.max(1))),
+            rounding: rounding(file.picture.is_half(name)),
         })
     }
 
@@ -59,6 +65,11 @@ impl<'a> Measured<'a> {
     }
 }
 
+/// By how much a value may be off because it is rounded, relative.
+pub(super) fn rounding(half: bool) -> f64 {
+    if half { HALF } else { SINGLE }
+}
+
 /// The test of one tile in one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TileTest {
@@ -88,10 +99,8 @@ impl TileTest {
 /// `None` where an error is not known. A value that is not finite equals nothing: its tile differs with certainty.
 pub(super) fn welch(a: &Measured<'_>, b: &Measured<'_>, pixels: &[usize], crop: [usize; 4]) -> Option<TileTest> {
     let sum = |values: &[f32]| pixels.iter().map(|&pixel| f64::from(values[pixel])).sum::<f64>();
-    let rounding: f64 = pixels
-        .iter()
-        .map(|&pixel| HALF_ULP * (f64::from(a.values[pixel]).abs() + f64::from(b.values[pixel]).abs()))
-        .sum();
+    let off = |picture: &Measured<'_>, pixel: usize| picture.rounding * f64::from(picture.values[pixel]).abs();
+    let rounding: f64 = pixels.iter().map(|&pixel| off(a, pixel) + off(b, pixel)).sum();
     let (sum_a, sum_b) = (sum(a.values), sum(b.values));
     let ((variance_a, squares_a), (variance_b, squares_b)) = (a.spread(pixels), b.spread(pixels));
     let variance = variance_a + variance_b;
