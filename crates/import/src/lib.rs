@@ -46,6 +46,7 @@ mod number;
 mod obj;
 mod pbrt;
 mod relief;
+mod round;
 mod sides;
 mod table;
 

@@ -120,6 +120,8 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
     };
     let mut ground = part("plastic");
     ground["coat"] = json!(gloss.coat);
+    // `Kd` is what is seen below the highlights.
+    ground["internal_reflection"] = json!("uncoloured");
     match gloss.metalness {
         0.0 => ground,
         1.0 => part("conductor"),

@@ -322,9 +322,13 @@ fn glb_materials_lights_and_cameras_arrive() {
     let scene = scene(&imported(&model()).unwrap());
     let part = |i: usize| &scene.groups[scene.instances[i].group].objects[0];
     let kind = |i: usize| &scene.materials[part(i).material].kind;
-    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), coat, facets, .. } = kind(0) else {
+    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), coat, facets, internal_reflection, .. } =
+        kind(0)
+    else {
         panic!("an image")
     };
+    // glTF mixes the base with what the coat reflects: 1 − F of it remains, and the light within the coat takes nothing of it.
+    assert_eq!(format!("{internal_reflection:?}"), "Uncoloured");
     assert_eq!(*facets, Some(1.0.into()));
     assert_eq!(coat.eval(550.0), 1.5);
     assert_eq!((image.wrap, image.filter), ([Wrap::Clamp, Wrap::Mirror], TextureFilter::Nearest));

@@ -136,6 +136,8 @@ impl Materials {
         let clear = clearcoat::roughness(material, has_coat, place, builder).map(Number::Value);
         let mut ground = part("plastic", clear.as_ref().unwrap_or(&roughness));
         ground["coat"] = index(material, place, builder);
+        // The coat takes away what it reflects, and no more: the base colour is that of the whole.
+        ground["internal_reflection"] = json!("uncoloured");
         if material.specular().is_some_and(|specular| specular.specular_factor() == 0.0) || ground["coat"] == json!(1.0)
         {
             ground = json!({ "type": "lambert", "reflectance": colour });

@@ -4,7 +4,7 @@
 //! the first direction across it. Both are ours after a turn, the sphere's with v turned over. A disk's are polar, and a cube has a
 //! square on each face: these become meshes.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use etalon_scene::Mesh;
 use glam::{DAffine3, DMat3, DVec3};
@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 use super::Walk;
 use super::shape::{Dressed, Reach};
 use crate::number::{has_directions, has_image};
+use crate::round::{DISK_OF_TRIANGLES, disk, sphere_turn};
 
 impl Walk<'_, '_, '_> {
     /// A shape of the format and the box around it, with the texture coordinates of Mitsuba's shape if anything of the object follows them.
@@ -65,11 +66,6 @@ impl Walk<'_, '_, '_> {
     }
 }
 
-/// From our unit sphere to Mitsuba's: our pole is y, and our u is ½ at +z.
-pub(super) fn sphere_turn() -> DAffine3 {
-    DAffine3::from_mat3(DMat3::from_cols(-DVec3::Y, DVec3::Z, -DVec3::X))
-}
-
 /// From a cylinder along z, whose u begins at −x, to Mitsuba's from `start` to `end`; and the length.
 pub(super) fn cylinder_turn(start: DVec3, end: DVec3) -> Option<(DAffine3, f64)> {
     let length = (end - start).length();
@@ -103,42 +99,6 @@ pub(super) fn turn_images_over(map: &mut Map<String, Value>) {
     map.values_mut().for_each(turn_v_over);
 }
 
-/// Sectors and rings of a disk.
-const DISK: [u32; 2] = [256, 16];
-
-/// Why a disk is a mesh, and how well it is one.
-pub(super) const DISK_OF_TRIANGLES: &str =
-    "its texture coordinates are polar: it becomes a mesh of 256 sectors, whose area is 0.01 % smaller";
-
-/// The unit disk with u along the radius and v around the axis.
-pub(super) fn disk() -> Mesh {
-    let [sectors, rings] = DISK;
-    let (mut vertices, mut uvs, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
-    for ring in 0..=rings {
-        for sector in 0..=sectors {
-            let r = f64::from(ring) / f64::from(rings);
-            // In the middle, the coordinates are those of the sector.
-            let middle = if ring == 0 { 0.5 } else { 0.0 };
-            let v = (f64::from(sector) + middle) / f64::from(sectors);
-            let (sin, cos) = (TAU * v).sin_cos();
-            vertices.push([r * cos, r * sin, 0.0]);
-            uvs.push([r, v].map(|x| x as f32));
-        }
-    }
-    let corner = |ring: u32, sector: u32| ring * (sectors + 1) + sector;
-    for ring in 0..rings {
-        for sector in 0..sectors {
-            let [a, b] = [corner(ring, sector), corner(ring, sector + 1)];
-            let [c, d] = [corner(ring + 1, sector), corner(ring + 1, sector + 1)];
-            triangles.push([a, c, d]);
-            if ring > 0 {
-                triangles.push([a, d, b]);
-            }
-        }
-    }
-    Mesh { vertices, uvs, triangles, ..Mesh::default() }
-}
-
 /// The cube from −1 to 1 with a square of coordinates on each face, as Mitsuba has them.
 pub(super) fn cube() -> Mesh {
     // The corners of each face at (0, 1), (1, 1), (1, 0) and (0, 0).
@@ -158,6 +118,8 @@ pub(super) fn cube() -> Mesh {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     #[test]

@@ -61,7 +61,10 @@ impl Walk<'_, '_, '_> {
             }
             bare
         } else {
-            part(json!({ "type": "plastic", "reflectance": base, "coat": index }), rough.clone())
+            // The coat takes away what it reflects, and no more.
+            let coated =
+                json!({ "type": "plastic", "reflectance": base, "coat": index, "internal_reflection": "uncoloured" });
+            part(coated, rough.clone())
         };
         let glass = || {
             let glass =

@@ -1,8 +1,11 @@
 //! Shapes of pbrt.
 
+use std::f64::consts::PI;
+
 use etalon_scene::Mesh;
 use etalon_scene::linear::unit_normal;
 use etalon_scene::mesh::{MAX_ELEMENTS, read_ply};
+use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
 
 use super::Reading;
@@ -10,18 +13,22 @@ use super::parameters::Parameters;
 use super::spectrum::kind;
 use crate::Placed;
 use crate::medium::fill;
-use crate::number::{Number, WITHOUT_DIRECTIONS, has_image, without_directions};
-use crate::relief::without_map;
+use crate::number::{Number, WITHOUT_DIRECTIONS, has_directions, has_image, without_directions};
+use crate::relief::{has_map, without_map};
+use crate::round::{DISK_OF_TRIANGLES, disk, sphere_turn};
+
+/// Two corners of a box.
+type Reach = [[f64; 3]; 2];
 
 /// A shape of the format, the box around it, and whether it has texture coordinates.
-pub(super) type Placeable = (Value, [[f64; 3]; 2], bool);
+pub(super) type Placeable = (Value, Reach, bool);
 
 impl Reading<'_, '_> {
     pub(super) fn shape(&mut self, shape: &str, list: &Parameters, place: &str) -> Result<(), String> {
         self.shapes += 1;
         let name = format!("{shape} {}", self.shapes);
         let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
-        let (value, reach, has_uvs) = match shape {
+        let (mut value, mut reach, mut has_uvs) = match shape {
             "sphere" => {
                 let radius = number("radius", 1.0)?;
                 (json!({ "type": "sphere", "radius_m": radius }), [[-radius; 3], [radius; 3]], false)
@@ -58,6 +65,11 @@ impl Reading<'_, '_> {
                 return Ok(());
             }
         };
+        let mut map = self.to_world();
+        if matches!(shape, "sphere" | "disk" | "cylinder") && self.follows_coordinates(list)? {
+            (value, reach) = self.with_coordinates(&value, reach, &mut map, place);
+            has_uvs = true;
+        }
         let mut opacity = self.state.material.opacity;
         let mut detail = self.state.material.detail.clone();
         if !has_uvs && without_map(&mut detail) {
@@ -93,14 +105,9 @@ impl Reading<'_, '_> {
         }
         let mut emission = self.state.emission.as_deref().cloned();
         if !has_uvs && emission.as_ref().is_some_and(has_image) {
-            if matches!(shape, "disk" | "sphere" | "cylinder") {
-                self.builder
-                    .leave_out(place, "the image of its emission is laid over another kind of texture coordinates");
-            } else {
-                let what = "it has no texture coordinates for the image of its emission: it does not emit";
-                self.builder.leave_out(place, what);
-                emission = None;
-            }
+            let what = "it has no texture coordinates for the image of its emission: it does not emit";
+            self.builder.leave_out(place, what);
+            emission = None;
         }
         let placed = Placed {
             name,
@@ -110,10 +117,46 @@ impl Reading<'_, '_> {
             emission,
             opacity,
             detail,
-            map: self.to_world(),
+            map,
             flipped: self.state.reversed,
         };
         self.builder.place(&placed, place)
+    }
+
+    /// Whether anything that a shape has depends on its texture coordinates.
+    fn follows_coordinates(&mut self, list: &Parameters) -> Result<bool, String> {
+        let known = &self.state.material;
+        let own = known.value.as_str().and_then(|name| self.builder.materials.get(name)).unwrap_or(&known.value);
+        let of_surface = has_image(own) || has_directions(own) || has_map(&known.detail);
+        let of_lamp = self.state.emission.as_deref().is_some_and(has_image);
+        Ok(of_surface || of_lamp || matches!(self.share(list, "alpha")?, Some(Number::Image(..))))
+    }
+
+    /// A round shape with pbrt's texture coordinates. v of a sphere and of a cylinder grows with z, as ours; that of a disk from its edge.
+    fn with_coordinates(&mut self, shape: &Value, reach: Reach, map: &mut DAffine3, place: &str) -> (Value, Reach) {
+        let radius = shape["radius_m"].as_f64().unwrap_or(1.0);
+        match shape["type"].as_str() {
+            Some("sphere") => {
+                *map *= sphere_turn();
+                (shape.clone(), reach)
+            }
+            Some("cylinder") => {
+                let [[.., low], [.., high]] = reach;
+                *map = *map * DAffine3::from_translation(DVec3::Z * low) * DAffine3::from_rotation_z(PI);
+                let length = high - low;
+                let along_z = json!({ "type": "cylinder", "start_m": [0, 0, 0], "end_m": [0, 0, length], "radius_m": radius, "capped": false });
+                (along_z, [[-radius, -radius, 0.0], [radius, radius, length]])
+            }
+            _ => {
+                self.builder.approximate(place, DISK_OF_TRIANGLES);
+                let mut mesh = disk();
+                let height = reach[0][2];
+                mesh.vertices.iter_mut().for_each(|p| *p = [radius * p[0], radius * p[1], height]);
+                mesh.uvs.iter_mut().for_each(|uv| *uv = [uv[1], 1.0 - uv[0]]);
+                let file = self.builder.mesh_file(&mesh);
+                (json!({ "type": "mesh", "file": file, "shading": "flat" }), reach)
+            }
+        }
     }
 
     /// The material in force, or grey where it would show an image and there are no texture coordinates.

@@ -72,3 +72,20 @@ fn brushed_round_shapes_keep_their_directions() {
         scene(&imported);
     }
 }
+
+/// In pbrt, v of spheres and cylinders grows with z, that of disks toward the middle.
+#[test]
+fn round_shapes_of_pbrt_keep_their_images() {
+    let texture = "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"chequers.png\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"";
+    for (shape, kind, listed) in [("sphere", "sphere", 0), ("cylinder", "cylinder", 0), ("disk", "mesh", 1)] {
+        let imported = imported("pbrt", &format!("Scale -1 1 1\nWorldBegin\n{texture}\nShape \"{shape}\"\n"));
+        let said = said(&imported);
+        assert!(said.len() == listed && said.iter().all(|line| line.contains("polar")), "{said:?}");
+        let object = object(&imported.text);
+        assert_eq!(object["shape"]["type"], kind);
+        scene(&imported);
+    }
+    // Without an image nothing is turned.
+    let plain = imported("pbrt", "Scale -1 1 1\nWorldBegin\nShape \"cylinder\"\n");
+    assert_eq!(object(&plain.text)["shape"]["start_m"], json!([0, 0, -1.0]));
+}

@@ -24,6 +24,7 @@ fn a_principled_material_becomes_coat_metal_and_glass() {
     assert_eq!((&plain["type"], &plain["sides"], said.len()), (&"plastic".into(), &"front".into(), 1), "{said:?}");
     assert!((plain["coat"].as_f64().unwrap() - 1.5).abs() < 1e-12, "what reflects 4 % head-on");
     assert_eq!(plain["alpha"], 0.25);
+    assert_eq!(plain["internal_reflection"], "uncoloured", "the base colour is that of the whole");
     assert_eq!(material(&number("metallic", 1.0)).0["type"], "conductor");
     assert_eq!(material(&number("spec_trans", 1.0)).0["type"], "dielectric");
     let (mixed, _) = material(&(number("metallic", 0.25) + &number("spec_trans", 0.5)));

@@ -221,12 +221,6 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
         ),
         (
             "pbrt",
-            format!("WorldBegin\nMaterial \"diffuse\" {named}\nShape \"sphere\"\n"),
-            "line 3: it has no texture coordinates for its normal or bump map: the map is left out",
-            false,
-        ),
-        (
-            "pbrt",
             pbrt(
                 &heights.replace("\"chequers.png\"", "\"chequers.png\" \"float scale\" -1"),
                 "Material \"conductor\" \"texture roughness\" \"h\"",

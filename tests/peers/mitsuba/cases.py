@@ -1,0 +1,108 @@
+"""What is compared: a name, its file in `scenes/`, the parameters of the file, and why the pictures may differ, if they may."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Known:
+    """Why the pictures differ, and the largest ratio minus 1 of the means of the object, to either side."""
+
+    why: str
+    most: float
+
+
+@dataclass(frozen=True)
+class Case:
+    file: str
+    # Parameters of the file.
+    given: dict = field(default_factory=dict)
+    known: Known | None = None
+    # Times the usual number of samples.
+    samples: float = 1
+    # Further options of `etalon render`.
+    options: tuple = ()
+    # Of Mitsuba; the runner's if left out.
+    variant: str | None = None
+
+    @property
+    def name(self):
+        return " ".join([self.file, *map(str, self.given.values()), *([self.variant] if self.variant else [])])
+
+    @property
+    def scene(self):
+        return f"{self.file}.xml"
+
+
+def of(file, known=None, samples=1, options=(), variant=None, **given):
+    return Case(file, given, known, samples, options, variant)
+
+
+LOSES = Known("Mitsuba's rough plastic loses light: a white one in a white furnace reads 0.79, ours 0.999", 0.11)
+BENT = Known("light that a bent normal sends through the surface is lost in Mitsuba; without the sky both agree", 0.006)
+EQUAL_ENERGY = Known(
+    "an image that shines is of equal energy in Mitsuba's spectral variants, of D65 in its RGB variants and here",
+    0.14,
+)
+PRINCIPLED = Known("approximated: no more diffuse light at grazing angles, Fresnel's equations in place of Schlick's", 0.1)
+CLEAR = Known("approximated: glass has no base colour, and light that crosses the ball is multiplied by 0.6 in Mitsuba", 0.67)
+TURNED = Known("the rotation of texture coordinates is left out, and listed", 0.05)
+
+CASES = [
+    of("diffuse", depth=2),
+    of("spectra"),
+    of("sides", sides="one"),
+    of("sides", sides="two"),
+    of("plastic", kind="plastic", nonlinear="false"),
+    of("plastic", kind="plastic", nonlinear="true"),
+    of("rough-plastic", LOSES, alpha=0.2),
+    *(of("metal", metal=metal) for metal in ("Ag", "Al", "Au", "Cr", "Cu", "W")),
+    of("mirror"),
+    *(of("principled", PRINCIPLED, metallic=metal, glass=0) for metal in (0, 1)),
+    of("principled", CLEAR, samples=3, metallic=0, glass=1),
+    *(of("rough-metal", distribution=d, alpha=a) for d in ("ggx", "beckmann") for a in (0.1, 0.4)),
+    of("brushed", samples=2),
+    of("glass", kind="dielectric"),
+    of("glass", kind="thindielectric", samples=3),
+    of("named-glass"),
+    *(of("rough-glass", distribution=d, alpha=0.3) for d in ("ggx", "beckmann")),
+    of("mask", depth=32),
+    of("blend"),
+    of("image"),
+    of("image-srgb", depth=2),
+    of("image-turned", TURNED),
+    of("image-sphere"),
+    of("image-disk"),
+    of("image-cylinder"),
+    of("image-cube"),
+    of("image-mask", depth=32),
+    of("image-blend"),
+    of("image-roughness"),
+    of("image-lamp", variant="llvm_ad_rgb"),
+    of("image-lamp", EQUAL_ENERGY),
+    of("checkerboard"),
+    of("bump", sky=0.0001),
+    of("bump", BENT, sky=0.3),
+    of("normal"),
+    *(of("mesh", format=f) for f in ("obj", "ply", "serialized")),
+    of("flat-mesh"),
+    of("instances"),
+    of("point"),
+    of("spot", beam=16),
+    of("spot", beam=8),
+    of("directional"),
+    of("envmap"),
+    of("envmap-mirror"),
+    of("coloured-light"),
+    of("spectral-light"),
+    of("sphere-lamp"),
+    of("thin-lens"),
+    *(of("fov", axis=axis) for axis in ("x", "y", "smaller", "larger", "diagonal")),
+    of("focal-length"),
+    of("orthographic"),
+    of("film-crop", options=("--crop", "28,12,40,48")),
+    *(of("filter", filter=f) for f in ("tent", "gaussian")),
+    of("nested-integrator"),
+    of("fog", integrator="volpath", depth=32),
+    of("milk", samples=4, integrator="volpath", depth=32),
+    of("cloud", integrator="volpath", depth=32),
+]

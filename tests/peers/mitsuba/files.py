@@ -1,0 +1,88 @@
+"""Images, meshes and a grid that the scenes name. None is symmetric, so that a mirrored or turned picture differs."""
+
+import struct
+import zlib
+
+import numpy as np
+
+
+def write_exr(path, channels):
+    import OpenEXR
+
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with OpenEXR.File(header, {k: np.ascontiguousarray(v, np.float32) for k, v in channels.items()}) as file:
+        file.write(str(path))
+
+
+def write_png(path, texels):
+    """8-bit RGB, rows from the top."""
+    height, width, _ = texels.shape
+    rows = b"".join(b"\0" + row.astype(np.uint8).tobytes() for row in texels)
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def hill():
+    """A hill over a square: points, normals, texture coordinates, triangles."""
+    n = 24
+    u, v = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n))
+    x, z = 2 * u - 1, 1 - 2 * v
+
+    def height(x, z):
+        return 0.6 * np.exp(-3 * ((x - 0.2) ** 2 + (z + 0.1) ** 2)) + 0.1 * np.sin(3 * x + z)
+
+    step = 1e-5
+    slope_x = (height(x + step, z) - height(x - step, z)) / (2 * step)
+    slope_z = (height(x, z + step) - height(x, z - step)) / (2 * step)
+    normals = np.stack([-slope_x, np.ones_like(x), -slope_z], -1).reshape(-1, 3)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    points = np.stack([x, height(x, z), z], -1).reshape(-1, 3)
+    corners = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)[None]).reshape(-1)
+    first = np.stack([corners, corners + 1, corners + n + 1], -1)
+    second = np.stack([corners, corners + n + 1, corners + n], -1)
+    return points, normals, np.stack([u, v], -1).reshape(-1, 2), np.concatenate([first, second])
+
+
+def write_meshes(folder):
+    points, normals, uvs, triangles = hill()
+    lines = ["v {:.7g} {:.7g} {:.7g}".format(*p) for p in points] + ["vt {:.7g} {:.7g}".format(*t) for t in uvs]
+    lines += ["vn {:.7g} {:.7g} {:.7g}".format(*n) for n in normals]
+    lines += ["f " + " ".join(f"{c + 1}/{c + 1}/{c + 1}" for c in corners) for corners in triangles]
+    (folder / "hill.obj").write_text("\n".join(lines) + "\n")
+
+    head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n"
+    head += "".join(f"property float {name}\n" for name in "x y z nx ny nz u v".split())
+    head += f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+    vertices = np.concatenate([points, normals, uvs], 1).astype("<f4").tobytes()
+    faces = b"".join(struct.pack("<B3i", 3, *corners) for corners in triangles)
+    (folder / "hill.ply").write_bytes(head.encode() + vertices + faces)
+
+    # Single precision, with normals and texture coordinates, without a name.
+    body = struct.pack("<I", 0x1000 | 0x1 | 0x2) + b"\0" + struct.pack("<QQ", len(points), len(triangles))
+    body += points.astype("<f4").tobytes() + normals.astype("<f4").tobytes() + uvs.astype("<f4").tobytes()
+    body += triangles.astype("<u4").tobytes()
+    mesh = struct.pack("<HH", 0x041C, 4) + zlib.compress(body)
+    (folder / "hill.serialized").write_bytes(mesh + struct.pack("<QI", 0, 1))
+
+
+def write_all(folder):
+    rng = np.random.default_rng(7)
+    write_exr(folder / "picture.exr", {c: t for t in [rng.uniform(0.1, 0.9, (5, 7))] for c in "RGB"})
+    write_exr(folder / "sky.exr", {c: t for t in [rng.uniform(0.1, 1, (6, 12)) ** 2] for c in "RGB"})
+    write_png(folder / "picture.png", rng.integers(20, 240, (5, 7, 3)))
+    # Hills so fine that their slope hardly changes within a texel, and tilts of up to 8°.
+    turns = 2 * np.pi
+    u, v = np.meshgrid((np.arange(256) + 0.5) / 256, (np.arange(256) + 0.5) / 256)
+    hills = 0.5 + 0.2 * np.sin(2 * turns * u + np.sin(turns * v)) + 0.1 * np.cos(3 * turns * v + 0.5 * np.sin(turns * u))
+    write_exr(folder / "heights.exr", {c: hills for c in "RGB"})
+    x, y = 0.1 * np.sin(turns * u + 2), 0.1 * np.cos(turns * (v + 0.1 * u)) * u
+    vectors = dict(zip("RGB", (x, y, np.sqrt(1 - x * x - y * y))))
+    write_exr(folder / "normals.exr", {c: 0.5 + 0.5 * part for c, part in vectors.items()})
+    write_meshes(folder)
+    cells = rng.uniform(0, 1, (4, 5, 3)).astype("<f4")
+    box = struct.pack("<6f", 0, 0, 0, 1, 1, 1)
+    (folder / "cloud.vol").write_bytes(b"VOL\x03" + struct.pack("<5i", 1, 3, 5, 4, 1) + box + cells.tobytes())
