@@ -49,6 +49,8 @@ const PARTS: &[&str] = &[
     "bench/race/peer_mitsuba.py",
     "bench/race/scenes.py",
     "bench/race/worker.py",
+    "tests/peers/mitsuba/cases.py",
+    "tests/peers/mitsuba/files.py",
     "tests/view/browser.py",
     "tests/view/measure.py",
     "tests/view/page.py",

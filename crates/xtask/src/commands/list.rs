@@ -321,6 +321,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("docs/foreign-scenes.py"),
             ),
             named(
+                "compare-mitsuba",
+                "[--write PAGE] [OPTIONS] [NAME …]",
+                "each construct of Mitsuba that is imported, rendered by both programs; needs mitsuba",
+                "15 min",
+                Script("tests/peers/mitsuba/compare.py"),
+            ),
+            named(
                 "race",
                 "[OPTIONS]",
                 "time to a stated error, against every renderer that is installed",
