@@ -138,7 +138,7 @@ def main():
     kept = folder / "results.json"
     results = json.loads(kept.read_text()) if kept.exists() else {}
     for case in CASES:
-        if args.names and not any(case.name.startswith(name) for name in args.names):
+        if args.names and not any(f"{case.name} ".startswith(f"{name} ") for name in args.names):
             continue
         mi.set_variant(case.variant or args.variant)
         results[case.name], losses = measured(mi, case, folder, args)
