@@ -22,11 +22,11 @@ pub(crate) fn of_camera(camera: &Camera, width: u32, height: u32) -> [[f32; 16];
     let [x, y, z] = [column(right), column(up), column(forward)];
     let one = [0.0, 0.0, 0.0, 1.0];
     let mix = |a: [f64; 4], s: f64, b: [f64; 4], t: f64| -> [f64; 4] { std::array::from_fn(|i| s * a[i] + t * b[i]) };
+    let central = |half: f64| [mix(x, 0.5 / (half * aspect), z, 0.5), mix(y, -0.5 / half, z, 0.5), z, z];
     let ndc = match &camera.projection {
-        Projection::Perspective { vertical_fov_rad, .. } => {
-            let half = (0.5 * vertical_fov_rad).tan();
-            [mix(x, 0.5 / (half * aspect), z, 0.5), mix(y, -0.5 / half, z, 0.5), z, z]
-        }
+        Projection::Perspective { vertical_fov_rad, .. } => central((0.5 * vertical_fov_rad).tan()),
+        // The pinhole of the same view, without distortion.
+        Projection::CompoundLens(lens) => central(lens.half_view()),
         Projection::Orthographic { height_m } => {
             [mix(x, 1.0 / (height_m * aspect), one, 0.5), mix(y, -1.0 / height_m, one, 0.5), z, one]
         }

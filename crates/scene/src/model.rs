@@ -3,6 +3,7 @@
 //! Lengths are metres, angles radians, wavelengths nanometres. World space is right-handed. Whoever holds a [`Scene`]
 //! may rely on everything that `docs/scene-format.md` lists as an error being absent from it.
 
+mod compound_lens;
 mod detail;
 mod emission;
 mod environment;
@@ -21,6 +22,7 @@ mod sky;
 mod thin_film;
 mod varying;
 
+pub use compound_lens::{CompoundLens, LensCoating, LensSurface};
 pub use detail::{Bitangent, OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};
@@ -43,6 +45,7 @@ pub use thin_film::{FilmIndex, FilmLayer, ThinFilm};
 pub use varying::{NumberTexture, SpectrumTexture};
 
 use glam::DAffine3;
+use std::sync::Arc;
 
 use crate::linear::{from_rows, rows};
 
@@ -107,7 +110,7 @@ impl Scene {
 /// A camera in world space: if it has keyframes, as it stands in the middle of the shutter's time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// Position of the eye (the centre of the lens), m.
+    /// Position of the eye (the centre of the lens; the vertex of the first surface of a compound lens), m.
     pub position_m: [f64; 3],
     /// Unit vector of the viewing direction.
     pub forward: [f64; 3],
@@ -136,6 +139,8 @@ pub enum Projection {
         /// Height of the picture in the world, m.
         height_m: f64,
     },
+    /// Through the surfaces of a lens, onto a film. The camera's position is the vertex of the first surface.
+    CompoundLens(Arc<CompoundLens>),
 }
 
 /// An ideal thin lens.

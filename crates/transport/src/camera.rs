@@ -1,7 +1,13 @@
 //! Cameras: from film and lens coordinates to a ray.
 //!
 //! A camera records the radiance along its rays, averaged over the pixel's filter and the lens; there is no cos⁴ fall-off
-//! and no exposure. The ray that belongs to the centre of the lens is the pinhole's ray.
+//! and no exposure. The ray that belongs to the centre of the lens is the pinhole's ray. Compound lenses are the exception: they record
+//! the irradiance on their film ([`compound_lens`]).
+
+mod compound_lens;
+mod exit_pupil;
+
+pub(crate) use compound_lens::PreparedLens;
 
 use crate::frame::SceneFrame;
 use crate::warp::concentric_disk;
@@ -9,6 +15,7 @@ use etalon_geometry::{Motion, Ray};
 use etalon_optics::Vec3;
 use etalon_scene as scene;
 use etalon_scene::Projection;
+use std::sync::Arc;
 
 /// A camera ready to make rays.
 #[derive(Clone, Debug)]
@@ -36,8 +43,36 @@ pub(crate) struct Moving {
 #[derive(Clone, Debug)]
 enum Kind {
     Pinhole,
-    ThinLens { right: Vec3<f64>, up: Vec3<f64>, focus_distance: f64 },
+    ThinLens {
+        right: Vec3<f64>,
+        up: Vec3<f64>,
+        focus_distance: f64,
+    },
     Orthographic,
+    /// `per_m` are the units of the frame in a metre.
+    Compound {
+        lens: Arc<PreparedLens>,
+        right: Vec3<f64>,
+        up: Vec3<f64>,
+        aspect: f64,
+        per_m: f64,
+    },
+}
+
+/// A ray that a camera draws for a wavelength.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CameraRay {
+    pub ray: Ray<f64>,
+    /// What radiance along the ray counts for.
+    pub weight: f64,
+    /// Whether other wavelengths would have gone elsewhere.
+    pub hero_only: bool,
+}
+
+impl CameraRay {
+    fn plain(ray: Ray<f64>) -> Self {
+        Self { ray, weight: 1.0, hero_only: false }
+    }
 }
 
 impl Camera {
@@ -65,6 +100,8 @@ impl Camera {
                 ((0.5 * vertical_fov_rad).tan(), kind)
             }
             Projection::Orthographic { height_m } => (0.5 * height_m, Kind::Orthographic),
+            // See `through`; without its lens it is a pinhole of the same view.
+            Projection::CompoundLens(lens) => (lens.half_view(), Kind::Pinhole),
         };
         Self {
             position: Vec3::from_array(camera.position_m),
@@ -74,6 +111,12 @@ impl Camera {
             kind,
             moving: None,
         }
+    }
+
+    /// The camera with its compound lens, in a frame of so many units in a metre.
+    pub(crate) fn through(self, lens: Arc<PreparedLens>, aspect: f64, per_m: f64) -> Self {
+        let (right, up) = (self.half_right.normalized(), self.half_up.normalized());
+        Self { kind: Kind::Compound { lens, right, up, aspect, per_m }, ..self }
     }
 
     /// The camera, its eye at the origin, as it moves.
@@ -91,7 +134,28 @@ impl Camera {
 
     /// [`Camera::ray`] at a time of the shutter's, from 0 as it opens to 1 as it closes.
     pub(crate) fn ray_at(&self, film: [f64; 2], lens_u: [f64; 2], time: f64) -> Ray<f64> {
-        let ray = self.ray(film, lens_u);
+        self.moved(self.ray(film, lens_u), time)
+    }
+
+    /// As [`Camera::ray_at`], for light of one wavelength; `None` where the lens blocks it.
+    pub(crate) fn ray_of(&self, film: [f64; 2], lens_u: [f64; 2], time: f64, wavelength_nm: f64) -> Option<CameraRay> {
+        let Kind::Compound { lens, right, up, aspect, per_m } = &self.kind else {
+            return Some(CameraRay::plain(self.ray_at(film, lens_u, time)));
+        };
+        let passed = lens.ray(film, *aspect, lens_u, wavelength_nm)?;
+        let world = |v: Vec3<f64>| *right * v.x + *up * v.y + self.forward * v.z;
+        let ray = Ray::free(self.position + world(passed.origin_m) * *per_m, world(passed.direction).normalized());
+        let (weight, hero_only) = (passed.weight, lens.is_dispersive());
+        Some(CameraRay { ray: self.moved(ray, time), weight, hero_only })
+    }
+
+    /// Whether rays depend on their wavelength, and may be blocked: [`Camera::ray_of`].
+    pub(crate) fn is_compound(&self) -> bool {
+        matches!(self.kind, Kind::Compound { .. })
+    }
+
+    /// The camera's own ray where it is at a time.
+    fn moved(&self, ray: Ray<f64>, time: f64) -> Ray<f64> {
         match &self.moving {
             None => Ray { time, ..ray },
             Some(Moving { motion, eye_m, frame }) => {
@@ -106,7 +170,7 @@ impl Camera {
 
     /// Whether [`Camera::ray`] draws a point on a lens.
     pub fn has_lens(&self) -> bool {
-        matches!(self.kind, Kind::ThinLens { .. })
+        matches!(self.kind, Kind::ThinLens { .. } | Kind::Compound { .. })
     }
 
     /// The ray through `film`, in [−1, 1]² with x to the right and y up, and through the lens at `lens_u` in [0, 1)².
@@ -116,7 +180,8 @@ impl Camera {
             Kind::ThinLens { right, up, focus_distance } => {
                 self.through_lens(film, lens_u, (*right, *up, *focus_distance))
             }
-            Kind::Pinhole => self.through_pinhole(film),
+            // A compound lens has its rays by wavelength: `ray_of`.
+            Kind::Pinhole | Kind::Compound { .. } => self.through_pinhole(film),
             Kind::Orthographic => self.parallel(film),
         }
     }
@@ -137,7 +202,7 @@ impl Camera {
                     put(i, self.through_lens(at(film, i), at(lens_u, i), lens));
                 }
             }
-            Kind::Pinhole => {
+            Kind::Pinhole | Kind::Compound { .. } => {
                 for i in 0..W {
                     put(i, self.through_pinhole(at(film, i)));
                 }

@@ -69,6 +69,8 @@ impl SceneFrame {
                 }),
             },
             Projection::Orthographic { height_m } => Projection::Orthographic { height_m: height_m * self.per_m },
+            // Its rays are made in metres, and then brought into the frame.
+            Projection::CompoundLens(lens) => Projection::CompoundLens(lens.clone()),
         };
         let position_m = self.point(Vec3::from_array(camera.position_m)).to_array();
         Camera { position_m, projection, ..camera.clone() }

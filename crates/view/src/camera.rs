@@ -52,6 +52,8 @@ impl CameraView {
                 view.focus_distance_m = lens.as_ref().map(|lens| lens.focus_distance_m);
             }
             Projection::Orthographic { height_m } => view.height_m = Some(*height_m),
+            // Seen as through the pinhole of the same view. Its focus is the scene's.
+            Projection::CompoundLens(lens) => view.vertical_fov_rad = Some(2.0 * lens.half_view().atan()),
         }
         view
     }
@@ -69,6 +71,8 @@ impl CameraView {
                 }
             }
             Projection::Orthographic { height_m } => *height_m = self.height_m.unwrap_or(*height_m),
+            // The page moves it. Its lens and film stay.
+            Projection::CompoundLens(_) => {}
         }
     }
 

@@ -2,8 +2,10 @@
 
 use glam::DVec3;
 
+use super::compound_lens::{CompoundLensCamera, compound_lens_camera};
 use super::motion::{KeyframeForm, Placed, Stretch, given, shutter_s};
 use super::spectrum::Wavelength;
+use crate::files::Files;
 use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
 use crate::linear::unit;
 use crate::model::{Bands, Camera, CameraMotion, Film, Filter, Projection, ThinLens};
@@ -86,6 +88,7 @@ crate::variants! {
     pub(crate) enum CameraForm by "type" {
         "perspective" => Perspective(PerspectiveCamera),
         "orthographic" => Orthographic(OrthographicCamera),
+        "compound-lens" => CompoundLens(CompoundLensCamera),
     }
 }
 
@@ -179,7 +182,7 @@ pub(crate) fn film(
 const PARALLEL: f64 = 1e-6;
 
 /// Viewing direction and the picture's upward direction, orthogonal unit vectors.
-fn orientation(
+pub(super) fn orientation(
     position_m: Option<[f64; 3]>,
     look_at_m: &Optional<Spanned<[f64; 3]>>,
     direction: &Optional<Spanned<Direction>>,
@@ -215,8 +218,15 @@ fn orientation(
 }
 
 /// The camera of a form; `film` gives the shape of the picture.
-pub(crate) fn camera(form: &CameraForm, film: Option<&Film>, reader: &mut Reader<'_>) -> Option<Camera> {
+pub(crate) fn camera(
+    form: &CameraForm,
+    film: Option<&Film>,
+    range_nm: Option<[f64; 2]>,
+    files: &mut Files<'_>,
+    reader: &mut Reader<'_>,
+) -> Option<Camera> {
     match form {
+        CameraForm::CompoundLens(form) => compound_lens_camera(form, range_nm, files, reader),
         CameraForm::Perspective(form) => {
             let view = orientation(form.position_m, &form.look_at_m, &form.direction, form.up, reader);
             let projection = perspective(form, film, reader);
@@ -251,13 +261,14 @@ pub(crate) fn shutter_of(form: Option<&CameraForm>) -> [f64; 2] {
     let shutter = match form {
         Some(CameraForm::Perspective(form)) => form.shutter_s.as_ref(),
         Some(CameraForm::Orthographic(form)) => form.shutter_s.as_ref(),
+        Some(CameraForm::CompoundLens(form)) => form.shutter_s.as_ref(),
         None => None,
     };
     shutter.map(|shutter| shutter.value).filter(|[open, close]| open <= close).unwrap_or_default()
 }
 
 /// A camera where its keyframes put it.
-fn moving(still: Camera, placed: Option<Placed>) -> Camera {
+pub(super) fn moving(still: Camera, placed: Option<Placed>) -> Camera {
     let Some((_, motion)) = placed else { return still };
     let Camera { position_m, forward, up, shutter_s, .. } = still;
     let motion = motion.map(|motion| CameraMotion { motion, position_m, forward, up });

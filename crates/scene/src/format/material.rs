@@ -28,7 +28,8 @@ use blend::blend;
 pub(crate) use dielectric::DielectricMaterial;
 use dielectric::dielectric;
 use grating::{GratingMaterial, grating};
-use index::{IndexForm, NamedMetal, complex_index, complex_keys, index, least};
+pub(super) use index::{IndexForm, index, least};
+use index::{NamedMetal, complex_index, complex_keys};
 use roughness::{RoughnessKeys, roughness, roughness_keys};
 use thin_film::{FilmLayerForm, thin_film};
 

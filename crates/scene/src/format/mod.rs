@@ -4,6 +4,7 @@
 //! them into the model. Declarations hold `None` where something was wrong, so that checks go as far as they can.
 
 mod camera;
+mod compound_lens;
 mod detail;
 mod geometry;
 mod group;

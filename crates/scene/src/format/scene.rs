@@ -173,7 +173,7 @@ pub(crate) fn scene(
 ) -> Option<Scene> {
     let range_nm = form.integrator.as_ref().and_then(|form| wavelength_range_nm(form, reader));
     let film = form.film.as_ref().and_then(|form| film(form, size, range_nm, reader));
-    let camera = form.camera.as_ref().and_then(|form| camera(form, film.as_ref(), reader));
+    let camera = form.camera.as_ref().and_then(|form| camera(form, film.as_ref(), range_nm, files, reader));
     let integrator = form.integrator.as_ref().and_then(|form| integrator(form, range_nm));
     let mut spectra = Spectra::new(form.spectra.as_ref(), range_nm, reader);
 

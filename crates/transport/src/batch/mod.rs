@@ -132,14 +132,22 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
     /// Puts the next samples where no path is.
     #[inline(always)]
     fn begin(&mut self, starts: &mut Starts<'_, N>) {
-        for lane in lanes(!self.paths.alive & paths::ALL) {
-            if !self.finished.window.admits(starts.number()) {
-                break;
+        'lanes: for lane in lanes(!self.paths.alive & paths::ALL) {
+            // Until one is not blocked by the camera's lens.
+            loop {
+                if !self.finished.window.admits(starts.number()) {
+                    break 'lanes;
+                }
+                if !starts.ready::<M>(self.level, &mut self.counters) {
+                    break 'lanes;
+                }
+                if starts.put(lane, self.world, &mut self.paths, &mut self.counters) {
+                    break;
+                }
+                let path = &self.paths.paths[lane];
+                self.finished.put(self.paths.number[lane], ([0.0; 3], 0), || path.received());
+                self.finished.add::<M>(&mut self.counters);
             }
-            if !starts.ready::<M>(self.level, &mut self.counters) {
-                break;
-            }
-            starts.put(lane, self.world, &mut self.paths, &mut self.counters);
         }
     }
 

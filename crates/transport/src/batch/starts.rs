@@ -25,6 +25,8 @@ pub(super) struct Starts<'a, const N: usize> {
     direction: Rows3,
     time: [f64; W],
     wavelengths: [Wavelengths<N>; W],
+    /// What a compound lens does to each ray: its weight, and whether it is the hero's alone; `None` if it is blocked.
+    passed: [Option<(f64, bool)>; W],
     /// How many of the set there are, and the next of them.
     count: usize,
     next: usize,
@@ -42,6 +44,7 @@ impl<'a, const N: usize> Starts<'a, N> {
             direction: Rows3::ZERO,
             time: [0.0; W],
             wavelengths: [Wavelengths::fixed([0.0; N]); W],
+            passed: [Some((1.0, false)); W],
             count: 0,
             next: 0,
             number: 0,
@@ -106,7 +109,19 @@ impl<'a, const N: usize> Starts<'a, N> {
             (film[0].0[lane], film[1].0[lane]) = (column, row);
         }
         let lens = [Row(numbers[2]), Row(numbers[3])];
-        if moves {
+        if camera.is_compound() {
+            for lane in 0..self.count {
+                let at = |rows: &[Row; 2]| [rows[0].0[lane], rows[1].0[lane]];
+                let time = if moves { self.time[lane] } else { 0.0 };
+                let hero_nm = self.wavelengths[lane].lambda_nm[0];
+                let drawn = camera.ray_of(at(&film), at(&lens), time, hero_nm);
+                self.passed[lane] = drawn.map(|drawn| {
+                    self.origin.set(lane, drawn.ray.origin);
+                    self.direction.set(lane, drawn.ray.direction);
+                    (drawn.weight, drawn.hero_only)
+                });
+            }
+        } else if moves {
             for lane in 0..self.count {
                 let at = |rows: &[Row; 2]| [rows[0].0[lane], rows[1].0[lane]];
                 let ray = camera.ray_at(at(&film), at(&lens), self.time[lane]);
@@ -118,7 +133,7 @@ impl<'a, const N: usize> Starts<'a, N> {
         }
     }
 
-    /// Begins the next sample in the place of a path.
+    /// Begins the next sample in the place of a path. False where the camera's lens blocks it: the path has then ended, and brings nothing.
     #[inline(always)]
     pub(super) fn put<'w, M: WavelengthModel<N>, P: Polarisation<N>>(
         &mut self,
@@ -126,9 +141,15 @@ impl<'a, const N: usize> Starts<'a, N> {
         world: &World<'w>,
         paths: &mut Paths<'w, M, P, N>,
         counters: &mut Counters,
-    ) {
+    ) -> bool {
         let start = self.next % W;
         self.next += 1;
+        let Some((weight, hero_only)) = self.passed[start] else {
+            paths.number[lane] = self.number;
+            self.number = self.number.wrapping_add(1);
+            paths.paths[lane].begin(world, &Start::blocked(self.wavelengths[start]));
+            return false;
+        };
         paths.alive |= 1 << lane;
         paths.number[lane] = self.number;
         self.number = self.number.wrapping_add(1);
@@ -146,7 +167,8 @@ impl<'a, const N: usize> Starts<'a, N> {
         let stack = world.media_around(&ray, counters);
         let polarisation = P::at_camera(ray.direction, self.tracer.camera.right(ray.time));
         let wavelengths = self.wavelengths[start];
-        paths.paths[lane].begin(world, &Start { ray, stack, wavelengths, polarisation });
+        paths.paths[lane].begin(world, &Start { ray, stack, wavelengths, polarisation, weight, hero_only });
+        true
     }
 }
 

@@ -29,6 +29,15 @@ impl FilterSampler {
         }
     }
 
+    /// The largest offset from the pixel's centre along one axis, pixels.
+    pub(crate) fn reach_px(filter: &Filter) -> f64 {
+        match *filter {
+            Filter::Box => 0.5,
+            Filter::Tent { radius_px } => radius_px,
+            Filter::Gaussian { sigma_px } => GAUSSIAN_CUT * sigma_px,
+        }
+    }
+
     /// Inverts the distribution of the even function `f`, given on [0, radius].
     fn tabulate(radius: f64, f: impl Fn(f64) -> f64) -> Self {
         let steps = 64 * CELLS;

@@ -8,6 +8,8 @@ use etalon_optics::{Lanes, Vec3};
 pub(crate) enum End {
     /// It left the scene.
     Escaped,
+    /// The camera's lens blocks it, before it begins.
+    Blocked,
     /// The surface scattered nothing on.
     Absorbed,
     /// Its throughput fell below the floor.

@@ -59,6 +59,20 @@ pub(crate) struct Start<'a, P, const N: usize> {
     pub stack: Option<MediumStack<'a>>,
     pub wavelengths: Wavelengths<N>,
     pub polarisation: P,
+    /// What radiance along the ray counts for.
+    pub weight: f64,
+    /// Whether the ray is the hero's alone: the lens of the camera disperses.
+    pub hero_only: bool,
+}
+
+impl<P: Polarisation<N>, const N: usize> Start<'_, P, N> {
+    /// That of a path which the lens of the camera blocks: it brings nothing.
+    #[inline(always)]
+    pub(crate) fn blocked(wavelengths: Wavelengths<N>) -> Self {
+        let ray = Ray::free(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.0));
+        let polarisation = P::at_camera(ray.direction, Vec3::new(1.0, 0.0, 0.0));
+        Self { ray, stack: None, wavelengths, polarisation, weight: 0.0, hero_only: false }
+    }
 }
 
 /// The last step of a walk.
@@ -137,8 +151,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     pub(crate) fn begin(&mut self, world: &World<'a>, start: &Start<'a, P, N>) {
         self.wavelengths = start.wavelengths;
         self.radiance = Lanes::ZERO;
-        self.beta = Lanes::ONE;
+        self.beta = Lanes::splat(start.weight);
         self.lanes = M::start();
+        if start.hero_only {
+            // As behind an interface that disperses.
+            self.beta = self.beta.hero_only();
+            self.lanes.follow(Lanes::ONE.hero_only());
+        }
         self.polarisation = start.polarisation;
         self.vertex = 0;
         self.eta_squared = 1.0;

@@ -132,6 +132,7 @@ impl<const N: usize> Observer<N> for Recorder<'_> {
     fn end(&mut self, end: End) {
         let because = match end {
             End::Escaped => "escaped",
+            End::Blocked => "blocked by the lens",
             End::Absorbed => "absorbed",
             End::Vanished => "throughput below the floor",
             End::Roulette => "roulette",

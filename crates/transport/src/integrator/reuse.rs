@@ -366,7 +366,8 @@ pub(crate) fn render_pixels<M: WavelengthModel<N>, const N: usize>(
             for (mate, pixel) in pixels.iter().enumerate() {
                 let before = counters.rays + counters.shadow_rays;
                 let sampler = tracer.sampler(pixel.x, pixel.y, sample);
-                let start = tracer.start::<M, Averaged, N>(pixel.x, pixel.y, sample, &sampler, &mut counters);
+                // Compound lenses share no paths, so none is blocked.
+                let (start, _) = tracer.start::<M, Averaged, N>(pixel.x, pixel.y, sample, &sampler, &mut counters);
                 path.begin(&tracer.world, &start);
                 reuse_path[mate] = trace_gathering(&tracer.world, &mut path, start.ray, &sampler, &mut counters);
                 rays_of[mate] = counters.rays + counters.shadow_rays - before;

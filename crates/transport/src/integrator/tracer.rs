@@ -1,12 +1,12 @@
 //! Camera paths: where the samples of pixels begin.
 
-use crate::camera::Camera;
+use crate::camera::{Camera, CameraRay};
 use crate::film::{Counters, PixelRect};
-use crate::integrator::observer::Observer;
+use crate::integrator::observer::{End, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{MOST_VERTICES, Path, Start, trace};
 use crate::media::MediumStack;
-use crate::plan::EffectName;
+use crate::plan::{EffectName, reference_nm};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::{SurfaceInteraction, Walk};
@@ -14,7 +14,6 @@ use crate::scene::prepare::Prepared;
 use crate::scene::receiver::Departure;
 use crate::scene::world::{ShadowRays, World};
 use crate::surface::Scattering;
-use etalon_geometry::Ray;
 use etalon_optics::{Frame, Vec3};
 use std::ops::Range;
 
@@ -126,13 +125,20 @@ impl<'a> Tracer<'a> {
         [2.0 * column / width - 1.0, 1.0 - 2.0 * row / height]
     }
 
-    /// The ray of a sample.
-    fn camera_ray(&self, x: u32, y: u32, sampler: &Sampler, counters: &mut Counters) -> Ray<f64> {
+    /// The ray of a sample at a wavelength, if the lens lets it pass.
+    fn camera_ray(
+        &self,
+        x: u32,
+        y: u32,
+        sampler: &Sampler,
+        wavelength_nm: f64,
+        counters: &mut Counters,
+    ) -> Option<CameraRay> {
         let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
         let film = self.film_point(x, y, [film_x, film_y]);
         counters.lens_draws += u64::from(self.camera.has_lens());
         let time = self.time(sampler, counters);
-        self.camera.ray_at(film, [lens_1, lens_2], time)
+        self.camera.ray_of(film, [lens_1, lens_2], time, wavelength_nm)
     }
 
     /// The first surface that the path of a sample meets, masks passed as the path passes them.
@@ -144,7 +150,8 @@ impl<'a> Tracer<'a> {
         counters: &mut Counters,
     ) -> Option<FirstSurface<'_>> {
         let sampler = self.sampler(x, y, sample);
-        let ray = self.camera_ray(x, y, &sampler, counters);
+        let middle_nm = reference_nm(self.prepared.scene.integrator.wavelength_range_nm);
+        let ray = self.camera_ray(x, y, &sampler, middle_nm, counters)?.ray;
         let mut stack = self.world.media_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
         let mut walk = Walk::default();
         let [.., mut u_mask] = sampler.vertex_set(0, 1);
@@ -184,9 +191,13 @@ impl<'a> Tracer<'a> {
         if !self.prepared.receivers.is_empty() {
             return self.measured(x, y, sample, &sampler, counters, observer);
         }
-        let start = self.start::<M, P, N>(x, y, sample, &sampler, counters);
         let mut path = Path::idle();
+        let (start, passes) = self.start::<M, P, N>(x, y, sample, &sampler, counters);
         path.begin(&self.world, &start);
+        if !passes {
+            observer.end(End::Blocked);
+            return path;
+        }
         trace(&self.world, &mut path, start.ray, &sampler, counters, observer);
         path
     }
@@ -212,7 +223,7 @@ impl<'a> Tracer<'a> {
         let mut path = Path::idle();
         // Light that a white plate depolarises has no preferred axis; a cone shows it as an eye with this axis to its right.
         let polarisation = P::at_camera(ray.direction, Frame::from_normal(ray.direction).s);
-        path.begin(&self.world, &Start { ray, stack, wavelengths, polarisation });
+        path.begin(&self.world, &Start { ray, stack, wavelengths, polarisation, weight: 1.0, hero_only: false });
         let first = match departure {
             Departure::Plane(point) => {
                 let surface = self.world.surfaces.white_receiver();
@@ -242,7 +253,7 @@ impl<'a> Tracer<'a> {
         time
     }
 
-    /// Where the path of a sample begins.
+    /// Where the path of a sample begins, and whether the camera's lens lets it.
     pub(crate) fn start<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         &self,
         x: u32,
@@ -250,14 +261,17 @@ impl<'a> Tracer<'a> {
         sample: u32,
         sampler: &Sampler,
         counters: &mut Counters,
-    ) -> Start<'a, P, N> {
+    ) -> (Start<'a, P, N>, bool) {
         let wavelengths = M::wavelengths(self.prepared, || {
             let [wavelength, ..] = self.of_block(x, y, sample).set(1);
             wavelength
         });
-        let ray = self.camera_ray(x, y, sampler, counters);
+        let drawn = self.camera_ray(x, y, sampler, wavelengths.lambda_nm[0], counters);
+        let Some(CameraRay { ray, weight, hero_only }) = drawn else {
+            return (Start::blocked(wavelengths), false);
+        };
         let stack = self.world.media_around(&ray, counters);
         let polarisation = P::at_camera(ray.direction, self.camera.right(ray.time));
-        Start { ray, stack, wavelengths, polarisation }
+        (Start { ray, stack, wavelengths, polarisation, weight, hero_only }, true)
     }
 }

@@ -14,11 +14,12 @@ mod three_channels;
 pub use missing_light::{Lost, MissingLight, MissingPair};
 pub use study::{Carried, Study, StudyError};
 
+pub(crate) use evidence::middle as reference_nm;
 pub(crate) use grey::OneLaneFilm;
 pub(crate) use study::simulated;
 pub(crate) use three_channels::CHANNELS_NM;
 
-use etalon_scene::{LightSampling, SamplerKind, Scene};
+use etalon_scene::{LightSampling, Projection, SamplerKind, Scene};
 use kernels::KernelKind;
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -288,8 +289,9 @@ pub struct Plan {
 }
 
 /// Why the pixels of a scene cannot share paths; `None` if they can.
-fn reuse_unsupported(kernel: &KernelKind, runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
+fn reuse_unsupported(scene: &Scene, kernel: &KernelKind, runs: impl Fn(EffectName) -> bool) -> Option<&'static str> {
     match () {
+        () if matches!(scene.camera.projection, Projection::CompoundLens(_)) => Some("the camera has a compound lens"),
         () if kernel.polarised => Some("polarisation is traced"),
         () if !kernel.shares_paths => Some("a study decides what paths carry"),
         () if runs(EffectName::NestedDielectrics) => Some("dielectrics are nested"),
@@ -368,7 +370,7 @@ impl Plan {
         }
         let path_loop = chosen_loop(scene, study);
         let path_reuse = i.path_reuse.block_px();
-        if let (Some(_), Some(because)) = (path_reuse, reuse_unsupported(kernel, runs)) {
+        if let (Some(_), Some(because)) = (path_reuse, reuse_unsupported(scene, kernel, runs)) {
             return Err(StudyError::PathReuse(because));
         }
         let &KernelKind { name, lanes, lane_count, .. } = kernel;

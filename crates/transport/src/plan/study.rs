@@ -151,11 +151,16 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         }
         EffectName::Dispersion => {
             scene.materials.iter_mut().for_each(|material| fix_indices(&mut material.kind, range_nm));
+            fix_lens(scene);
         }
         EffectName::Interference => scene.materials.iter_mut().for_each(|material| material.kind.remove_films()),
         EffectName::Lens => match &mut scene.camera.projection {
             Projection::Perspective { lens, .. } => *lens = None,
             Projection::Orthographic { .. } => {}
+            Projection::CompoundLens(lens) => {
+                let vertical_fov_rad = 2.0 * lens.half_view().atan();
+                scene.camera.projection = Projection::Perspective { vertical_fov_rad, lens: None };
+            }
         },
         EffectName::ShadowRays => scene.lights.retain(|light| !light.kind.is_delta()),
         // The integrator's setting, which `Study::light_sampling` has changed.
@@ -263,6 +268,16 @@ pub(super) fn fix_indices(kind: &mut MaterialKind, range_nm: [f64; 2]) {
             }
             ParameterMut::Grating(grating) => grating.at_nm = Some(middle(range_nm)),
             _ => {}
+        }
+    }
+}
+
+/// Makes every wavelength take the way of one through the camera's lens.
+pub(super) fn fix_lens(scene: &mut Scene) {
+    let range_nm = scene.integrator.wavelength_range_nm;
+    if let Projection::CompoundLens(lens) = &mut scene.camera.projection {
+        for surface in &mut Arc::make_mut(lens).surfaces {
+            surface.medium = index_at_middle(&surface.medium, range_nm);
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The colours become spectra again, such that each of three wavelengths shows one channel; the kernel looks nowhere else.
 
-use super::study::{StudyError, fix_indices, index_at_middle, lights_mut};
+use super::study::{StudyError, fix_indices, fix_lens, index_at_middle, lights_mut};
 use super::{EffectName, evidence, grey};
 use etalon_optics::colour::rec709_from_xyz;
 use etalon_optics::spectrum::Outside;
@@ -35,6 +35,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), StudyError> {
 /// Replaces every spectrum.
 pub(super) fn replace(scene: &mut Scene) {
     let range_nm = scene.integrator.wavelength_range_nm;
+    fix_lens(scene);
     lights_mut(scene).for_each(|spectrum| *spectrum = channels(grey::xyz_over(spectrum, range_nm), f64::INFINITY));
     scene.materials.iter_mut().for_each(|material| {
         fix_indices(&mut material.kind, range_nm);

@@ -2,7 +2,7 @@
 
 mod earlier;
 use crate::bsdf::{Bsdf, properties};
-use crate::camera::{Camera, Moving};
+use crate::camera::{Camera, Moving, PreparedLens};
 use crate::film::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame, mapped};
 use crate::guiding::GuidedTargets;
@@ -20,7 +20,7 @@ use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
 use crate::wavelength::WavelengthDistribution;
 use etalon_geometry::{Geometry, SurfaceId};
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
-use etalon_scene::{EnvironmentImage, LightSampling, MaterialKind, Object, Scene};
+use etalon_scene::{EnvironmentImage, LightSampling, MaterialKind, Object, Projection, Scene};
 use etalon_simd::Level;
 use std::sync::Arc;
 
@@ -31,6 +31,8 @@ pub struct Prepared {
     /// In the frame.
     pub(crate) camera: etalon_scene::Camera,
     camera_motion: Option<Moving>,
+    /// The camera's compound lens, if it has one.
+    lens: Option<Arc<PreparedLens>>,
     pub(crate) geometry: Geometry,
     /// Where paths begin instead of at the camera, column by column; empty where the scene is a picture.
     pub(crate) receivers: Vec<PreparedReceiver>,
@@ -169,6 +171,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         frame,
         camera: frame.camera(&scene.camera),
         camera_motion,
+        lens: compound_lens(scene)?,
         media,
         has_boundaries,
         surrounding: scene.medium.as_ref().and_then(|medium| Medium::new(medium, range_nm, &frame)),
@@ -196,6 +199,21 @@ fn camera_motion(camera: &etalon_scene::Camera, frame: SceneFrame) -> Result<Opt
     let Some(moves) = camera.motion.as_ref().filter(|moves| moves.moves(camera.shutter_s)) else { return Ok(None) };
     let motion = motion(&moves.motion, camera.shutter_s).map_err(PrepareError::Camera)?;
     Ok(Some(Moving { motion, eye_m: Vec3::from_array(moves.position_m), frame }))
+}
+
+/// The compound lens of the camera, if it has one.
+fn compound_lens(scene: &Scene) -> Result<Option<Arc<PreparedLens>>, PrepareError> {
+    let Projection::CompoundLens(lens) = &scene.camera.projection else { return Ok(None) };
+    // A meter has no film.
+    if !scene.receivers.is_empty() {
+        return Ok(None);
+    }
+    let (width, height) = (f64::from(scene.film.width), f64::from(scene.film.height));
+    // Wide filters look beyond the film.
+    let beyond_px = FilterSampler::reach_px(&scene.film.filter);
+    let reach = [width, height].map(|pixels| 1.0 + (2.0 * beyond_px - 1.0).max(0.0) / pixels);
+    let made = PreparedLens::new(lens, width / height, reach, scene.integrator.wavelength_range_nm);
+    made.map(|lens| Some(Arc::new(lens))).ok_or(PrepareError::DarkLens)
 }
 
 /// The axis of an object that is a polarising sheet, in the coordinates of its group.
@@ -247,7 +265,13 @@ impl Prepared {
     pub(crate) fn tracing_camera(&self) -> Camera {
         let film = &self.scene.film;
         let made = |camera: &etalon_scene::Camera| {
-            Camera::new(camera, film.width, film.height, self.plan.runs(EffectName::Lens))
+            let made = Camera::new(camera, film.width, film.height, self.plan.runs(EffectName::Lens));
+            match &self.lens {
+                None => made,
+                Some(lens) => {
+                    made.through(lens.clone(), f64::from(film.width) / f64::from(film.height), self.frame.per_m())
+                }
+            }
         };
         match (&self.camera_motion, &self.scene.camera.motion) {
             (Some(moving), Some(unmoved)) => {

@@ -27,6 +27,9 @@ pub enum PrepareError {
     /// A camera that cannot move as it should.
     #[error("the camera: {0}")]
     Camera(ShapeError),
+    /// A compound lens through which the middle of the film sees nothing.
+    #[error("the camera's lens: no light reaches the middle of the film")]
+    DarkLens,
     /// The scene as a whole cannot be built.
     #[error("the scene's geometry: {0}")]
     Geometry(#[from] GeometryError),

@@ -238,7 +238,11 @@ pub(super) fn complex_index(
 }
 
 /// The index that a form stands for, known all over the rendered range.
-pub(super) fn index(form: &IndexForm, range_nm: Option<[f64; 2]>, reader: &mut Reader<'_>) -> Option<RefractiveIndex> {
+pub(in crate::format) fn index(
+    form: &IndexForm,
+    range_nm: Option<[f64; 2]>,
+    reader: &mut Reader<'_>,
+) -> Option<RefractiveIndex> {
     let before = reader.error_count();
     let index = match &form.kind {
         IndexKind::Number(n) => accept(RefractiveIndex::constant(*n), form.at, reader)?,
@@ -266,7 +270,7 @@ pub(super) fn index(form: &IndexForm, range_nm: Option<[f64; 2]>, reader: &mut R
 }
 
 /// The least of an index within a range, at 65 wavelengths.
-pub(super) fn least(index: &RefractiveIndex, [first, last]: [f64; 2]) -> f64 {
+pub(in crate::format) fn least(index: &RefractiveIndex, [first, last]: [f64; 2]) -> f64 {
     (0..=64).map(|i| index.eval(first + (last - first) * f64::from(i) / 64.0)).fold(f64::INFINITY, f64::min)
 }
 

@@ -90,7 +90,7 @@ pub(super) fn is_diffuse(kind: &MaterialKind) -> bool {
     kind.parts().into_iter().map(properties).any(|part| part.solid_angle && !part.dark)
 }
 
-fn index_range(index: &RefractiveIndex, range_nm: [f64; 2]) -> String {
+pub(super) fn index_range(index: &RefractiveIndex, range_nm: [f64; 2]) -> String {
     format!("n {}", spread(range_nm, |nm| index.eval(nm)))
 }
 

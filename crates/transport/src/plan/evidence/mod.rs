@@ -24,13 +24,13 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         EffectName::Wavelengths => wavelengths(scene),
         EffectName::Dispersion => match first_surface(scene, |material, range| dispersion(&material.kind, range)) {
             Some(found) => Ok(found),
-            None => nothing("no index of refraction varies"),
+            None => dispersive_lens(scene).ok_or_else(|| "no index of refraction varies".to_owned()),
         },
         EffectName::Interference => match first_surface(scene, |material, _| interference(&material.kind)) {
             Some(found) => Ok(found),
             None => nothing("no surface has a thin film"),
         },
-        EffectName::Lens => lens(&scene.camera.projection),
+        EffectName::Lens => lens(&scene.camera.projection, scene.integrator.wavelength_range_nm),
         EffectName::ShadowRays => shadow_rays(scene),
         EffectName::Mis => mis(scene),
         EffectName::Environment => match scene.lights.iter().find(|light| is_environment(&light.kind)) {
@@ -142,12 +142,25 @@ fn smooth_mesh(object: &Object) -> Option<String> {
 }
 
 /// The helium line d, at which catalogues state indices, or the wavelength of the range nearest to it.
-pub(super) fn middle([first, last]: [f64; 2]) -> f64 {
+pub(crate) fn middle([first, last]: [f64; 2]) -> f64 {
     587.5618_f64.clamp(first, last)
 }
 
-fn lens(projection: &Projection) -> Result<String, String> {
+/// The glass by which the camera's lens parts wavelengths, if it does.
+fn dispersive_lens(scene: &Scene) -> Option<String> {
+    let Projection::CompoundLens(lens) = &scene.camera.projection else { return None };
+    let range_nm = scene.integrator.wavelength_range_nm;
+    lens.dispersive_medium().map(|medium| format!("the camera's lens: {}", materials::index_range(medium, range_nm)))
+}
+
+fn lens(projection: &Projection, range_nm: [f64; 2]) -> Result<String, String> {
     match projection {
+        Projection::CompoundLens(lens) => Ok(format!(
+            "camera: {} surfaces, focal length {:.5} m, film {:.5} m behind the last",
+            lens.surfaces.len(),
+            lens.focal_length_m(middle(range_nm)),
+            lens.film_distance_m
+        )),
         Projection::Perspective { lens: Some(lens), .. } if lens.radius_m > 0.0 => {
             Ok(format!("camera: aperture of radius {:.4} m, in focus at {:.4} m", lens.radius_m, lens.focus_distance_m))
         }
@@ -161,7 +174,7 @@ fn wavelengths(scene: &Scene) -> Result<String, String> {
     if let Some(found) = first_surface(scene, |material, range| colour(&material.kind, range)) {
         return Ok(found);
     }
-    if let Some(found) = coloured(scene) {
+    if let Some(found) = coloured(scene).or_else(|| dispersive_lens(scene)) {
         return Ok(found);
     }
     for light in &scene.lights {

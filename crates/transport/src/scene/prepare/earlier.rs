@@ -1,6 +1,6 @@
 //! What a frame of a sequence takes over from an earlier one. Nothing depends on it but time.
 
-use super::{Prepared, camera_motion};
+use super::{Prepared, camera_motion, compound_lens};
 use crate::light::{EnvironmentLight, EnvironmentRadiance};
 use crate::plan::{EffectName, Plan};
 use crate::scene::prepare_error::PrepareError;
@@ -35,6 +35,9 @@ impl Prepared {
     pub(super) fn seen_anew(mut self, scene: Scene, plan: Plan) -> Result<Self, PrepareError> {
         self.camera = self.frame.camera(&scene.camera);
         self.camera_motion = camera_motion(&scene.camera, self.frame)?;
+        if self.scene.camera.projection != scene.camera.projection {
+            self.lens = compound_lens(&scene)?;
+        }
         self.warnings.truncate(self.shape_warnings);
         Ok(Self { scene, plan, ..self })
     }
