@@ -1,9 +1,10 @@
 //! Where a scene stands, how large it is and how often a part of it is placed must not matter.
 
-use etalon_optics::Spectrum;
-use etalon_scene::{LightKind, Projection, Scene, Transform};
+use etalon_optics::{RefractiveIndex, Spectrum};
+use etalon_scene::{CompoundLens, LensCoating, LensSurface, LightKind, Projection, Scene, Transform};
 use etalon_transport::{Control, Film, Study, prepare, prepare_study};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 fn parse(json: &Value) -> Scene {
     let (scene, warnings) = etalon_scene::parse(&json.to_string(), "test").unwrap_or_else(|e| panic!("{e}"));
@@ -135,6 +136,19 @@ fn scaled(scene: &Scene, factor: f64) -> Scene {
             }
         }
         Projection::Orthographic { height_m } => *height_m *= factor,
+        Projection::CompoundLens(lens) => {
+            let lens = Arc::make_mut(lens);
+            lens.film_distance_m *= factor;
+            lens.film_height_m *= factor;
+            for surface in &mut lens.surfaces {
+                surface.curvature_per_m /= factor;
+                surface.thickness_m *= factor;
+                surface.semi_aperture_m *= factor;
+                // A₄ is in m⁻³, each further one has two powers more.
+                let powers = (3..).step_by(2);
+                surface.aspheric.iter_mut().zip(powers).for_each(|(a, power)| *a /= factor.powi(power));
+            }
+        }
     }
     scene.objects.iter_mut().for_each(|object| grow(&mut object.transform));
     scene.instances.iter_mut().for_each(|instance| grow(&mut instance.transform));
@@ -146,6 +160,27 @@ fn scaled(scene: &Scene, factor: f64) -> Scene {
         }
     }
     scene
+}
+
+/// A biconvex lens, aspheric behind, that sees the room.
+fn compound_lens() -> Projection {
+    let surface = |radius_m: f64, thickness_m: f64, medium: RefractiveIndex, is_stop: bool| LensSurface {
+        curvature_per_m: 1.0 / radius_m,
+        conic: 0.0,
+        aspheric: if is_stop { Vec::new() } else { vec![40.0, -1e4] },
+        thickness_m,
+        medium,
+        semi_aperture_m: 0.01,
+        is_stop,
+    };
+    let glass = RefractiveIndex::named("N-BK7").unwrap();
+    Projection::CompoundLens(Arc::new(CompoundLens {
+        surfaces: vec![surface(0.05, 0.005, glass, true), surface(-0.05, 0.0, RefractiveIndex::VACUUM, false)],
+        coating: LensCoating::Bare,
+        film_distance_m: 0.048,
+        film_height_m: 0.03,
+        reference_nm: 587.5618,
+    }))
 }
 
 /// Scenes of all kinds: shapes, lamps, cameras, instances, a place away from the origin.
@@ -166,7 +201,9 @@ fn scenes() -> Vec<Scene> {
     }
     let mut flat = instanced.clone();
     flat.camera.projection = Projection::Orthographic { height_m: 2.0 };
-    vec![plain, instanced, away, flat]
+    let mut through_glass = plain.clone();
+    through_glass.camera.projection = compound_lens();
+    vec![plain, instanced, away, flat, through_glass]
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod absorption;
 mod beckmann;
 mod cameras;
 mod cie171;
+mod compound_lenses;
 mod dimensions;
 mod enclosures;
 mod exchange;
@@ -26,6 +27,7 @@ mod instruments;
 mod irradiance;
 mod judge;
 mod lamps;
+mod lens_tracer;
 mod luminous;
 mod masks;
 mod media;
@@ -404,6 +406,7 @@ pub fn truths() -> Vec<Truth> {
         water::truths(),
         prisms::truths(),
         cameras::truths(),
+        compound_lenses::truths(),
         dimensions::truths(),
         motion::truths(),
         masks::truths(),

@@ -15,7 +15,7 @@ use crate::{
 const BK7_B: [f64; 3] = [1.039_612_12, 0.231_792_344, 1.010_469_45];
 const BK7_C: [f64; 3] = [0.006_000_698_67, 0.020_017_914_4, 103.560_653];
 
-fn bk7(wavelength_nm: f64) -> f64 {
+pub(super) fn bk7(wavelength_nm: f64) -> f64 {
     let square = (wavelength_nm * 1e-3).powi(2);
     (1.0 + (0..3).map(|i| BK7_B[i] * square / (square - BK7_C[i])).sum::<f64>()).sqrt()
 }

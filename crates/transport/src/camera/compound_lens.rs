@@ -10,6 +10,9 @@
 //!
 //! Coordinates: the middle of the film is the origin, z points toward the scene, lengths are metres.
 
+#[cfg(test)]
+mod tests;
+
 use super::exit_pupil::ExitPupil;
 use etalon_optics::{RefractiveIndex, Vec3, fresnel, snell};
 use etalon_scene::{CompoundLens, LensCoating, LensSurface};
