@@ -184,7 +184,8 @@ impl PreparedLens {
             self.trace(LensRay { origin: Vec3::ZERO, direction }, wavelength_nm).is_some()
         };
         let height_m = |step: u32| radius_m * f64::from(step) / f64::from(STEPS);
-        let first_blocked = (0..=STEPS).find(|&step| !passes(height_m(step)))?;
+        // One step beyond the rim, where everything is blocked.
+        let first_blocked = (0..=STEPS + 1).find(|&step| !passes(height_m(step)))?;
         let (mut low, mut high) = (height_m(first_blocked.checked_sub(1)?), height_m(first_blocked));
         // As often as there are bits.
         for _ in 0..64 {

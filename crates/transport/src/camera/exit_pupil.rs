@@ -9,9 +9,9 @@ use super::compound_lens::{LensRay, PreparedLens};
 use etalon_optics::Vec3;
 
 /// Rings of the film.
-const RINGS: usize = 64;
+const RINGS: usize = 32;
 /// Cells of a search, along and across the meridian. Half of the pupil is searched: the other is its mirror image.
-const CELLS: [usize; 2] = [32, 16];
+const CELLS: [usize; 2] = [24, 12];
 /// Most searches, each in what the one before has left over. One that finds a pupil shrinks the field by a factor of about ten.
 const MOST_SEARCHES: usize = 24;
 
