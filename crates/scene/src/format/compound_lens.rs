@@ -3,9 +3,9 @@
 use std::ops::Bound;
 use std::sync::Arc;
 
-use super::camera::orientation;
 use super::material::{IndexForm, index, least};
 use super::motion::{KeyframeForm, Stretch, given, shutter_s};
+use super::view::{moving, orientation};
 use crate::files::Files;
 use crate::json::{
     Code, Direction, List, Optional, Positive, Reader, Required, Rule, SceneErrors, Severity, Span, Spanned, read,
@@ -143,7 +143,7 @@ pub(super) fn compound_lens_camera(
     let projection = Projection::CompoundLens(Arc::new(CompoundLens { film_distance_m, ..lens }));
     let position_m = form.position_m?;
     let still = Camera { position_m, forward, up, projection, shutter_s: shutter_s?, motion: None };
-    Some(super::camera::moving(still, placed?))
+    Some(moving(still, placed?))
 }
 
 /// The wavelength for which a film is focused, nm: the helium line d, or that of the range nearest to it.
@@ -233,11 +233,13 @@ fn surface(
     let before = reader.error_count();
     let medium = form.medium.as_ref().and_then(|form| index(form, range_nm, reader));
     let radius = form.radius_mm.clone().checked()?;
+    // A nanometre.
     if let Some(radius) = &radius
-        && (radius.value == 0.0 || radius.value.abs() < 1e-6)
+        && radius.value.abs() < 1e-6
     {
         let hint = "leave the key out for a flat surface";
         reader.error_hint(Code::OutOfRange, radius.at, "a radius of curvature must not be 0", hint);
+        return None;
     }
     let thickness_m = match (&form.thickness_mm, is_last) {
         (Optional::Given(thickness), false) => thickness.value.0 * MM,

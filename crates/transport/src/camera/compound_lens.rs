@@ -13,7 +13,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::exit_pupil::ExitPupil;
+use super::exit_pupil::{ExitPupil, RearEnd};
 use etalon_optics::{RefractiveIndex, Vec3, fresnel, snell};
 use etalon_scene::{CompoundLens, LensCoating, LensSurface};
 
@@ -53,7 +53,7 @@ struct Interface {
 
 /// A ray within a lens.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LensRay {
+struct LensRay {
     pub origin: Vec3<f64>,
     /// A unit vector.
     pub direction: Vec3<f64>,
@@ -101,7 +101,10 @@ impl PreparedLens {
         let middle_nm = 0.5 * (range_nm[0] + range_nm[1]);
         let wavelengths_nm = [range_nm[0], middle_nm, range_nm[1]];
         let checked = if prepared.dispersive { &wavelengths_nm[..] } else { &wavelengths_nm[1..2] };
-        prepared.pupil = ExitPupil::new(&prepared, most_m, checked);
+        let (planes_m, radius_m) = prepared.rear_m();
+        let at_stop = |origin, direction, nm| prepared.at_stop(LensRay { origin, direction }, nm);
+        let rear = RearEnd { planes_m, radius_m, stop_m: prepared.stop_radius_m(), at_stop };
+        prepared.pupil = ExitPupil::new(&rear, most_m, checked);
         let sine_squared = prepared.axial_sine_squared(lens.reference_nm)?;
         prepared.axial_irradiance = std::f64::consts::PI * sine_squared;
         Some(prepared)
@@ -154,7 +157,7 @@ impl PreparedLens {
     }
 
     /// Where a ray from the film meets the stop, whatever other apertures it has passed: x and y, m.
-    pub(super) fn at_stop(&self, mut ray: LensRay, wavelength_nm: f64) -> Option<[f64; 2]> {
+    fn at_stop(&self, mut ray: LensRay, wavelength_nm: f64) -> Option<[f64; 2]> {
         for interface in &self.surfaces[..self.stop] {
             let (at, normal) = interface.meet(&ray)?;
             ray = interface.refract(&ray, at, normal, wavelength_nm, None)?;
@@ -164,12 +167,12 @@ impl PreparedLens {
     }
 
     /// Radius of the stop, m.
-    pub(super) fn stop_radius_m(&self) -> f64 {
+    fn stop_radius_m(&self) -> f64 {
         self.surfaces[self.stop].shape.semi_aperture_m
     }
 
     /// The z of the two planes between which the surface next to the film lies, m, and the radius of its aperture.
-    pub(super) fn rear_m(&self) -> ([f64; 2], f64) {
+    fn rear_m(&self) -> ([f64; 2], f64) {
         let rear = &self.surfaces[0];
         let rim_m = rear.vertex_m - rear.shape.sag_m(rear.most_m2);
         ([rear.vertex_m.min(rim_m), rear.vertex_m.max(rim_m)], rear.shape.semi_aperture_m)
@@ -223,8 +226,8 @@ impl Interface {
         let at = Vec3::new(o.x + d.x * t, o.y + d.y * t, self.vertex_m + d.z * t);
         let slope = self.shape.sag_slope_per_m(at.x * at.x + at.y * at.y);
         // The surface has ended before, or the ray meets its far side.
-        let is_near = aspheric.is_empty() && !(1.0 - k * c * (self.vertex_m - at.z) > 0.0);
-        if is_near || !slope.is_finite() {
+        let is_beyond = aspheric.is_empty() && 1.0 - k * c * (self.vertex_m - at.z) <= 0.0;
+        if is_beyond || !slope.is_finite() {
             return None;
         }
         Some((at, Vec3::new(2.0 * at.x * slope, 2.0 * at.y * slope, 1.0)))

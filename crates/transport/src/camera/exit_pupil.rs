@@ -5,7 +5,6 @@
 //! for rings of the film. Ours change evenly within a ring, and hold the image of the stop alone: other apertures block rays, which then carry
 //! nothing. A rectangle that is too large costs samples and changes no mean; one too small would lose light, so each is found with a margin.
 
-use super::compound_lens::{LensRay, PreparedLens};
 use etalon_optics::Vec3;
 
 /// Rings of the film.
@@ -61,6 +60,18 @@ pub(super) struct ExitPupil {
     rings: Vec<[Window; 2]>,
 }
 
+/// The end of a lens toward the film, in metres.
+pub(super) struct RearEnd<F> {
+    /// The z of the two planes between which the last surface lies.
+    pub planes_m: [f64; 2],
+    /// Radius of its aperture, and of the stop.
+    pub radius_m: f64,
+    pub stop_m: f64,
+    /// Where a ray from a point of the film along a unit vector, at a wavelength in nm, meets the stop, whatever apertures it passes on the
+    /// way: x and y.
+    pub at_stop: F,
+}
+
 /// A point to aim at.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aimed {
@@ -73,12 +84,14 @@ impl ExitPupil {
     pub(super) const NOWHERE: Self = Self { plane_m: 0.0, rings_per_m: 0.0, rings: Vec::new() };
 
     /// Of a film whose points are at most `most_m` from the axis, for light of some wavelengths.
-    pub(super) fn new(lens: &PreparedLens, most_m: f64, wavelengths_nm: &[f64]) -> Self {
-        let ([plane_m, _], _) = lens.rear_m();
+    pub(super) fn new<F>(lens: &RearEnd<F>, most_m: f64, wavelengths_nm: &[f64]) -> Self
+    where
+        F: Fn(Vec3<f64>, Vec3<f64>, f64) -> Option<[f64; 2]>,
+    {
         // Edges and middles of the rings.
         let at = |half: usize| {
             let film_m = most_m * half as f64 / (2 * RINGS) as f64;
-            let found = wavelengths_nm.iter().filter_map(|&nm| find(lens, plane_m, [film_m, most_m], nm));
+            let found = wavelengths_nm.iter().filter_map(|&nm| find(lens, [film_m, most_m], nm));
             found.reduce(|a, b| a.joined(&b))
         };
         let windows: Vec<Option<Window>> = (0..=2 * RINGS).map(at).collect();
@@ -95,6 +108,7 @@ impl ExitPupil {
                 [joined; 2]
             }
         };
+        let [plane_m, _] = lens.planes_m;
         Self { plane_m, rings_per_m: RINGS as f64 / most_m, rings: (0..RINGS).map(ring).collect() }
     }
 
@@ -111,15 +125,17 @@ impl ExitPupil {
 }
 
 /// What a point of the film, at `film_m` of at most `most_m` from the axis, sees of the stop, with a margin.
-fn find(lens: &PreparedLens, plane_m: f64, [film_m, most_m]: [f64; 2], wavelength_nm: f64) -> Option<Window> {
-    let ([_, far_m], radius_m) = lens.rear_m();
+fn find<F>(lens: &RearEnd<F>, [film_m, most_m]: [f64; 2], wavelength_nm: f64) -> Option<Window>
+where
+    F: Fn(Vec3<f64>, Vec3<f64>, f64) -> Option<[f64; 2]>,
+{
+    let &RearEnd { planes_m: [plane_m, far_m], radius_m, stop_m, .. } = lens;
     // The farthest from the axis that a ray from the film to the last surface meets the plane.
     let reach_m = radius_m + most_m * (1.0 - plane_m / far_m);
-    let stop_m = lens.stop_radius_m();
     let from = Vec3::new(film_m, 0.0, 0.0);
     let image = |x: f64, y: f64| {
         let direction = (Vec3::new(x, y, plane_m) - from).normalized();
-        lens.at_stop(LensRay { origin: from, direction }, wavelength_nm)
+        (lens.at_stop)(from, direction, wavelength_nm)
     };
     let mut field = Window { low_m: -reach_m, high_m: reach_m, half_width_m: reach_m };
     for _ in 0..MOST_SEARCHES {
