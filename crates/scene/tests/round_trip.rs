@@ -331,7 +331,7 @@ fn camera(camera: &str, film: &str) -> Camera {
 fn fov_rad(camera: &Camera) -> f64 {
     match camera.projection {
         Projection::Perspective { vertical_fov_rad, .. } => vertical_fov_rad,
-        Projection::Orthographic { .. } => panic!("perspective"),
+        _ => panic!("perspective"),
     }
 }
 

@@ -9,4 +9,4 @@ mod stack;
 
 pub use conductor::{ConductorFresnel, conductor};
 pub use dielectric::{DielectricFresnel, dielectric, dielectric_reflectance, refracted_cosine};
-pub use stack::{Amplitudes, Layer, StackFresnel, stack};
+pub use stack::{Amplitudes, Layer, StackFresnel, stack, stack_leaving};

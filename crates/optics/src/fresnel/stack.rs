@@ -76,7 +76,33 @@ pub fn stack(
         },
         _ => normal_component(substrate, tangential),
     };
-    let (u_i, u_t) = ([incident * cos_i, cos_i / incident], [q_t, q_t.over(m2_t)]);
+    between(tangential, wavelength_nm, [incident * cos_i, cos_i / incident], layers, [q_t, q_t.over(m2_t)])
+}
+
+/// [`stack`] of light that leaves at the cosine `cos_o` into a transparent medium of the index `behind`, from `cos_i` in the first medium.
+/// Where it leaves at a grazing angle `cos_i` alone does not tell how grazing: its last digits are lost.
+#[inline]
+pub fn stack_leaving(
+    (cos_i, cos_o): (f64, f64),
+    wavelength_nm: f64,
+    incident: f64,
+    layers: impl Iterator<Item = Layer>,
+    behind: f64,
+) -> StackFresnel {
+    let tangential = behind * behind * (1.0 - cos_o) * (1.0 + cos_o);
+    let u_t = [behind * cos_o, cos_o / behind].map(Complex::real);
+    between(tangential, wavelength_nm, [incident * cos_i, cos_i / incident], layers, u_t)
+}
+
+/// [`stack`] from the square of the waves' component along the surface and u of the two media, for s and p.
+#[inline(always)]
+fn between(
+    tangential: f64,
+    wavelength_nm: f64,
+    u_i: [f64; 2],
+    layers: impl Iterator<Item = Layer>,
+    u_t: [Complex; 2],
+) -> StackFresnel {
     let mut fields = [(Complex::ONE, u_t[0]), (Complex::ONE, u_t[1])];
     let mut scale = 1.0;
     for Layer { index, thickness_nm } in layers {

@@ -33,8 +33,12 @@ impl Wave {
         wave(product.re / squared, product.im / squared)
     }
 
-    /// By polar coordinates; of arguments in the upper half plane, into the first quadrant.
+    /// By polar coordinates; of arguments in the upper half plane, into the first quadrant. Of a real number it is real or imaginary.
     fn root(self) -> Self {
+        if self.im == 0.0 {
+            let root = self.re.abs().sqrt();
+            return if self.re < 0.0 { wave(0.0, root) } else { wave(root, 0.0) };
+        }
         let (length, angle) = (self.re.hypot(self.im).sqrt(), 0.5 * self.im.atan2(self.re));
         wave(length * angle.cos(), length * angle.sin())
     }
@@ -98,17 +102,28 @@ impl CoatedInterface {
         Self { incident: self.substrate[0], layers, substrate: [self.incident, 0.0] }
     }
 
-    /// (n + ik)², and the normal component q of the wave in units of its number in vacuum.
-    fn medium(&self, [n, k]: [f64; 2], cos: f64) -> (Wave, Wave) {
+    /// (n + ik)², and the normal component q of the wave in units of its number in vacuum, of light that runs at the cosine `cos` in a
+    /// medium of the index `of`.
+    fn medium([n, k]: [f64; 2], [of, cos]: [f64; 2]) -> (Wave, Wave) {
         let square = wave(n, k).times(wave(n, k));
-        let incident = self.incident * self.incident;
-        // q² = (n + ik)² − n₁²(1 − cos²), in an order that keeps every digit of cos in the first medium.
-        (square, square.minus(wave(incident, 0.0)).plus(wave(incident * cos * cos, 0.0)).root())
+        let known = of * of;
+        // q² = (n + ik)² − n₁²(1 − cos²), in an order that keeps every digit of cos in the medium where it is known.
+        (square, square.minus(wave(known, 0.0)).plus(wave(known * cos * cos, 0.0)).root())
     }
 
     /// By the waves that go to and fro in each layer, from the innermost outward.
     #[must_use]
     pub fn waves(&self, wavelength_nm: f64, cos: f64) -> FilmWaves {
+        self.waves_along(wavelength_nm, [self.incident, cos])
+    }
+
+    /// The same for light whose cosine is known behind the layers, where it leaves into a transparent medium.
+    #[must_use]
+    pub fn waves_leaving(&self, wavelength_nm: f64, cos: f64) -> FilmWaves {
+        self.waves_along(wavelength_nm, [self.substrate[0], cos])
+    }
+
+    fn waves_along(&self, wavelength_nm: f64, known: [f64; 2]) -> FilmWaves {
         let outside = [self.incident, 0.0];
         let faces: Vec<[f64; 2]> = std::iter::once(outside)
             .chain(self.layers.iter().map(|[n, k, _]| [*n, *k]))
@@ -117,14 +132,14 @@ impl CoatedInterface {
         let of = |p: bool| {
             // Amplitudes at the face between two media: of E for s, of H for p.
             let face = |from: [f64; 2], to: [f64; 2]| {
-                let ((m1, q1), (m2, q2)) = (self.medium(from, cos), self.medium(to, cos));
+                let ((m1, q1), (m2, q2)) = (Self::medium(from, known), Self::medium(to, known));
                 let (a, b) = if p { (m2.times(q1), m1.times(q2)) } else { (q1, q2) };
                 (a.minus(b).over(a.plus(b)), a.plus(a).over(a.plus(b)))
             };
             let last = faces.len() - 1;
             let (mut r, mut t) = face(faces[last - 1], faces[last]);
             for (j, [n, k, thickness]) in self.layers.iter().enumerate().rev() {
-                let (_, q) = self.medium([*n, *k], cos);
+                let (_, q) = Self::medium([*n, *k], known);
                 let way = wave(TAU * thickness / wavelength_nm, 0.0).times(q);
                 let (once, twice) = (way.phase(), way.plus(way).phase());
                 let (r_face, t_face) = face(faces[j], faces[j + 1]);
@@ -132,19 +147,18 @@ impl CoatedInterface {
                 t = t_face.times(t).times(once).over(orders);
                 r = r_face.plus(r.times(twice)).over(orders);
             }
-            (r, t.times(wave(self.power_scale(p, cos), 0.0)))
+            (r, t.times(wave(self.power_scale(p, known), 0.0)))
         };
         Self::gathered(of(false), of(true))
     }
 
     /// √ of the power that a transmitted amplitude of 1 carries, over that of an incident one.
-    fn power_scale(&self, p: bool, cos: f64) -> f64 {
-        let (m2, q) = self.medium(self.substrate, cos);
-        let (behind, before) = match p {
-            true => (q.over(m2).re, cos / self.incident),
-            false => (q.re, self.incident * cos),
+    fn power_scale(&self, p: bool, known: [f64; 2]) -> f64 {
+        let carried = |medium: [f64; 2]| {
+            let (m2, q) = Self::medium(medium, known);
+            if p { q.over(m2).re } else { q.re }
         };
-        (behind / before).max(0.0).sqrt()
+        (carried(self.substrate) / carried([self.incident, 0.0])).max(0.0).sqrt()
     }
 
     fn gathered((r_s, t_s): (Wave, Wave), (r_p, t_p): (Wave, Wave)) -> FilmWaves {
@@ -157,10 +171,11 @@ impl CoatedInterface {
     #[must_use]
     pub fn by_wave_equation(&self, wavelength_nm: f64, cos: f64) -> FilmWaves {
         let of = |p: bool| {
-            let (m2, q) = self.medium(self.substrate, cos);
+            let known = [self.incident, cos];
+            let (m2, q) = Self::medium(self.substrate, known);
             let mut fields = [wave(1.0, 0.0), if p { q.over(m2) } else { q }];
             for [n, k, thickness] in self.layers.iter().rev() {
-                let (m2, q) = self.medium([*n, *k], cos);
+                let (m2, q) = Self::medium([*n, *k], known);
                 let q2 = q.times(q);
                 let (of_f, of_g) = if p { (m2, q2.over(m2)) } else { (wave(1.0, 0.0), q2) };
                 let depth = TAU * thickness / wavelength_nm;
@@ -187,7 +202,7 @@ impl CoatedInterface {
             let f = fields[0].times(wave(u, 0.0));
             let sum = f.plus(fields[1]);
             let t = wave(2.0 * u, 0.0).over(sum);
-            (f.minus(fields[1]).over(sum), t.times(wave(self.power_scale(p, cos), 0.0)))
+            (f.minus(fields[1]).over(sum), t.times(wave(self.power_scale(p, known), 0.0)))
         };
         Self::gathered(of(false), of(true))
     }

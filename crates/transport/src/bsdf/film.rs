@@ -3,7 +3,7 @@
 //! A film has no extent. Light goes where it would go without one; only its amplitudes are those of the whole stack
 //! ([`etalon_optics::fresnel::stack`]). The wave is as long as the film is thick many times over: no interference is lost to its coherence.
 
-use etalon_optics::fresnel::{Layer, StackFresnel, stack};
+use etalon_optics::fresnel::{Layer, StackFresnel, stack, stack_leaving};
 use etalon_optics::{Complex, Lanes};
 use etalon_scene::ThinFilm;
 
@@ -35,12 +35,29 @@ impl PathFilm {
         uv: [f64; 2],
     ) -> StackFresnel {
         let nm = self.film.at_nm.unwrap_or(wavelength_nm);
+        stack(cos, nm, incident, self.layers(nm, from_outside, uv), substrate)
+    }
+
+    /// [`PathFilm::fresnel`] for light from a medium of the index `within`, where its cosine is `cos_within`, that leaves into vacuum at
+    /// the cosine `cos`, through the last layer first.
+    pub(super) fn fresnel_leaving(
+        &self,
+        wavelength_nm: f64,
+        (cos_within, cos): (f64, f64),
+        within: f64,
+        uv: [f64; 2],
+    ) -> StackFresnel {
+        let nm = self.film.at_nm.unwrap_or(wavelength_nm);
+        stack_leaving((cos_within, cos), nm, within, self.layers(nm, false, uv), 1.0)
+    }
+
+    /// The layers, the one that light meets last first.
+    fn layers(&self, nm: f64, from_outside: bool, uv: [f64; 2]) -> impl Iterator<Item = Layer> {
         let layers = &self.film.layers;
-        let from_innermost = (0..layers.len()).map(|i| {
+        (0..layers.len()).map(move |i| {
             let layer = &layers[if from_outside { layers.len() - 1 - i } else { i }];
             Layer { index: layer.index.eval(nm), thickness_nm: layer.thickness_nm.eval(uv) }
-        });
-        stack(cos, nm, incident, from_innermost, substrate)
+        })
     }
 }
 

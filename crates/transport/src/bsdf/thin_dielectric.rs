@@ -35,7 +35,7 @@ impl ThinDielectric {
             let reflectance = outer.reflection.power();
             return Pane { reflectance, transmittance: 0.0, reflection, transmission: mueller::IDENTITY };
         };
-        let inner = film.fresnel(wavelength_nm, cos_t, (n, Complex::ONE), false, uv);
+        let inner = film.fresnel_leaving(wavelength_nm, (cos_t, cos), n, uv);
         mueller::coated_pane(&outer, &inner)
     }
 

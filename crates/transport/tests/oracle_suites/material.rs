@@ -146,8 +146,7 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
         MaterialKind::ThinDielectric { index, film: Some(film) } => {
             let n = index.eval(wavelength_nm);
             let face = coated(film, 1.0, [n, 0.0], wavelength_nm);
-            let within = (1.0 - (1.0 - cos * cos) / (n * n)).sqrt();
-            let (outer, inner) = (face.waves(wavelength_nm, cos), face.from_behind().waves(wavelength_nm, within));
+            let (outer, inner) = (face.waves(wavelength_nm, cos), face.from_behind().waves_leaving(wavelength_nm, cos));
             let share = |[re, im]: [f64; 2]| re * re + im * im;
             let of = |p: usize| {
                 let (r, inside, t) =
