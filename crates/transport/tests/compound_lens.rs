@@ -52,7 +52,7 @@ fn both_drivers_leave_the_same_film() {
         ("/camera/shutter_s", json!([0, 1])),
         ("/camera/keyframes", json!([{ "time_s": 0 }, { "time_s": 1, "transform": [{ "translate_m": [0.1, 0, 0] }] }])),
     ];
-    let bands = [("/film/bands_nm", json!([400, 700, 50]))];
+    let bands = [("/film/bands_nm", json!([450, 650, 50]))];
     let lone = [("/integrator/sampler", json!("independent"))];
     for medium in [json!(1.5168), json!("N-BK7")] {
         for edits in [&[][..], &grey, &moving, &bands, &lone] {
