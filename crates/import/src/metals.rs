@@ -49,13 +49,17 @@ mod tests {
         assert_eq!(named("Unobtainium"), None);
     }
 
-    /// Gold is yellow, copper red, silver neither: what each reflects head-on near 450 and 650 nm.
+    /// Gold is yellow, copper red, silver and aluminium neither: what each reflects head-on near 450 and 650 nm. Measurements of one metal
+    /// differ by a few per cent, the colours of metals by more.
     #[test]
     fn metals_have_their_colours() {
-        for (symbol, blue, red) in [("Au", 0.38, 0.97), ("Cu", 0.55, 0.95), ("Ag", 0.97, 0.99), ("Al", 0.92, 0.91)] {
-            let metal = named(symbol).unwrap();
-            let found = [450.852, 652.548].map(|nm| reflectance(&metal, nm));
-            assert!((found[0] - blue).abs() < 0.02 && (found[1] - red).abs() < 0.02, "{symbol}: {found:?}");
+        let found = |symbol: &str| [450.852, 652.548].map(|nm| reflectance(&named(symbol).unwrap(), nm));
+        for symbol in ["Au", "Cu"] {
+            let [blue, red] = found(symbol);
+            assert!((0.3..0.6).contains(&blue) && (0.9..1.0).contains(&red), "{symbol}: {blue} {red}");
+        }
+        for symbol in ["Ag", "Al"] {
+            assert!(found(symbol).iter().all(|share| (0.9..1.0).contains(share)), "{symbol}: {:?}", found(symbol));
         }
     }
 }
