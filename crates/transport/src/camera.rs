@@ -2,7 +2,7 @@
 //!
 //! A camera records the radiance along its rays, averaged over the pixel's filter and the lens; there is no cos⁴ fall-off
 //! and no exposure. The ray that belongs to the centre of the lens is the pinhole's ray. Compound lenses are the exception: they record
-//! the irradiance on their film ([`compound_lens`]).
+//! the irradiance on their film (see `camera::compound_lens`).
 
 mod compound_lens;
 mod exit_pupil;
