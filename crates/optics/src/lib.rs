@@ -60,7 +60,7 @@ pub use complex::Complex;
 pub use error::{INDEX_RANGE, OpticsError};
 pub use error_function::scaled_erfc;
 pub use exponential::{exp_neg, neg_ln, one_minus_exp_neg};
-pub use index::{ComplexIndex, OutsideFit, RefractiveIndex};
+pub use index::{ComplexIndex, OutsideFit, RefractiveIndex, reference_nm};
 pub use lanes::Lanes;
 pub use real::Real;
 pub use spectrum::{Illuminant, Spectrum};

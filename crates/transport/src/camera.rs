@@ -113,7 +113,7 @@ impl Camera {
         }
     }
 
-    /// The camera with its compound lens, in a frame of so many units in a metre.
+    /// The camera with its compound lens, in a frame with `per_m` units in a metre.
     pub(crate) fn through(self, lens: Arc<PreparedLens>, aspect: f64, per_m: f64) -> Self {
         let (right, up) = (self.half_right.normalized(), self.half_up.normalized());
         Self { kind: Kind::Compound { lens, right, up, aspect, per_m }, ..self }

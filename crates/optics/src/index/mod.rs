@@ -7,7 +7,7 @@ mod glasses;
 mod refractive;
 
 pub use complex::ComplexIndex;
-pub use refractive::{Cauchy, RefractiveIndex, Sellmeier, SellmeierTerm};
+pub use refractive::{Cauchy, RefractiveIndex, Sellmeier, SellmeierTerm, reference_nm};
 
 use crate::error::OpticsError;
 

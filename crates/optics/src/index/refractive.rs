@@ -9,6 +9,11 @@ const LINE_D_NM: f64 = 587.5618;
 const LINE_F_NM: f64 = 486.1327;
 const LINE_C_NM: f64 = 656.2725;
 
+/// The wavelength, nm, that stands for a range of wavelengths: the helium line d, at which catalogues state indices, or what is nearest to it.
+pub fn reference_nm([first, last]: [f64; 2]) -> f64 {
+    LINE_D_NM.clamp(first, last)
+}
+
 /// Refractive index of a transparent medium, relative to vacuum.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RefractiveIndex {

@@ -3,6 +3,8 @@
 use std::ops::Bound;
 use std::sync::Arc;
 
+use etalon_optics::reference_nm;
+
 use super::material::{IndexForm, index, least};
 use super::motion::{KeyframeForm, Stretch, given, shutter_s};
 use super::view::{moving, orientation};
@@ -144,11 +146,6 @@ pub(super) fn compound_lens_camera(
     let position_m = form.position_m?;
     let still = Camera { position_m, forward, up, projection, shutter_s: shutter_s?, motion: None };
     Some(moving(still, placed?))
-}
-
-/// The wavelength for which a film is focused, nm: the helium line d, or that of the range nearest to it.
-fn reference_nm([first, last]: [f64; 2]) -> f64 {
-    587.5618_f64.clamp(first, last)
 }
 
 /// The lens of a file. What is wrong with it is reported at its name.

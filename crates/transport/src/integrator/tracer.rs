@@ -6,7 +6,7 @@ use crate::integrator::observer::{End, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{MOST_VERTICES, Path, Start, trace};
 use crate::media::MediumStack;
-use crate::plan::{EffectName, reference_nm};
+use crate::plan::EffectName;
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::{SurfaceInteraction, Walk};
@@ -14,7 +14,7 @@ use crate::scene::prepare::Prepared;
 use crate::scene::receiver::Departure;
 use crate::scene::world::{ShadowRays, World};
 use crate::surface::Scattering;
-use etalon_optics::{Frame, Vec3};
+use etalon_optics::{Frame, Vec3, reference_nm};
 use std::ops::Range;
 
 /// Some samples of one pixel.

@@ -14,7 +14,6 @@ mod three_channels;
 pub use missing_light::{Lost, MissingLight, MissingPair};
 pub use study::{Carried, Study, StudyError};
 
-pub(crate) use evidence::middle as reference_nm;
 pub(crate) use grey::OneLaneFilm;
 pub(crate) use study::simulated;
 pub(crate) use three_channels::CHANNELS_NM;

@@ -1,11 +1,11 @@
 //! Renders of what a scene does not call for, and without what it does: for study.
 
-use super::evidence::{self, middle};
+use super::evidence;
 use super::{EffectName, PathLoop, three_channels};
 use crate::bsdf::properties;
 use crate::texture;
 use etalon_optics::colour::colour_matching;
-use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
+use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, reference_nm};
 use etalon_scene::{
     Filter, Image, ImageTexture, LightSampling, MaterialKind, Medium, Mesh, Metal, Object, ParameterMut,
     PolarisingSheet, Projection, Scene, Shape, SpectrumTexture, Texels,
@@ -241,18 +241,18 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
                 *reflectance = grey_texture(reflectance, range_nm);
             }
             ParameterMut::Metal(Metal::Index(index)) => *index = grey_metal(index, range_nm),
-            ParameterMut::Coat(index) => *index = index_at_middle(index, range_nm),
+            ParameterMut::Coat(index) => *index = index_at_reference(index, range_nm),
             ParameterMut::Sheet(PolarisingSheet::Polariser { transmittance, .. }) => {
                 *transmittance = grey(transmittance, range_nm);
             }
             ParameterMut::Sheet(PolarisingSheet::Retarder { retardance_rad, at_nm }) => {
                 if let Some(at_nm) = at_nm.take() {
-                    *retardance_rad *= at_nm / middle(range_nm);
+                    *retardance_rad *= at_nm / reference_nm(range_nm);
                 }
             }
             // See `fix_indices`.
             ParameterMut::Grating(_) => {}
-            ParameterMut::Film(film) => film.at_nm = Some(middle(range_nm)),
+            ParameterMut::Film(film) => film.at_nm = Some(reference_nm(range_nm)),
             // See `fix_indices`.
             ParameterMut::Interface(_) => {}
         }
@@ -264,9 +264,9 @@ pub(super) fn fix_indices(kind: &mut MaterialKind, range_nm: [f64; 2]) {
     for parameter in kind.parameters_mut() {
         match parameter {
             ParameterMut::Interface(media) => {
-                media.into_iter().for_each(|index| *index = index_at_middle(index, range_nm));
+                media.into_iter().for_each(|index| *index = index_at_reference(index, range_nm));
             }
-            ParameterMut::Grating(grating) => grating.at_nm = Some(middle(range_nm)),
+            ParameterMut::Grating(grating) => grating.at_nm = Some(reference_nm(range_nm)),
             _ => {}
         }
     }
@@ -277,7 +277,7 @@ pub(super) fn fix_lens(scene: &mut Scene) {
     let range_nm = scene.integrator.wavelength_range_nm;
     if let Projection::CompoundLens(lens) = &mut scene.camera.projection {
         for surface in &mut Arc::make_mut(lens).surfaces {
-            surface.medium = index_at_middle(&surface.medium, range_nm);
+            surface.medium = index_at_reference(&surface.medium, range_nm);
         }
     }
 }
@@ -291,8 +291,8 @@ fn blacken(kind: &mut MaterialKind) {
     }
 }
 
-pub(super) fn index_at_middle(index: &RefractiveIndex, range_nm: [f64; 2]) -> RefractiveIndex {
-    RefractiveIndex::constant(index.eval(middle(range_nm))).expect("an index of refraction is positive")
+pub(super) fn index_at_reference(index: &RefractiveIndex, range_nm: [f64; 2]) -> RefractiveIndex {
+    RefractiveIndex::constant(index.eval(reference_nm(range_nm))).expect("an index of refraction is positive")
 }
 
 /// The mean over the range, weighted by ȳ (plainly, where the eye sees nothing).
@@ -330,7 +330,7 @@ fn luminances(image: &Image, factor: [f64; 3]) -> Image {
 }
 
 fn grey_metal(index: &ComplexIndex, range_nm: [f64; 2]) -> ComplexIndex {
-    let (n, k) = index.eval(middle(range_nm));
+    let (n, k) = index.eval(reference_nm(range_nm));
     let [first, last] = range_nm;
     ComplexIndex::tabulated(vec![first, last], vec![n; 2], vec![k; 2]).expect("a metal at one wavelength is a metal")
 }

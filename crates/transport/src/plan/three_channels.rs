@@ -2,7 +2,7 @@
 //!
 //! The colours become spectra again, such that each of three wavelengths shows one channel; the kernel looks nowhere else.
 
-use super::study::{StudyError, fix_indices, fix_lens, index_at_middle, lights_mut};
+use super::study::{StudyError, fix_indices, fix_lens, index_at_reference, lights_mut};
 use super::{EffectName, evidence, grey};
 use etalon_optics::colour::rec709_from_xyz;
 use etalon_optics::spectrum::Outside;
@@ -53,7 +53,7 @@ fn colour(kind: &mut MaterialKind, range_nm: [f64; 2]) {
                     *spectrum = shown(spectrum);
                 }
             }
-            ParameterMut::Coat(index) => *index = index_at_middle(index, range_nm),
+            ParameterMut::Coat(index) => *index = index_at_reference(index, range_nm),
             // A film is what it is at the wavelengths of the channels.
             ParameterMut::Metal(Metal::Index(_))
             | ParameterMut::Interface(_)

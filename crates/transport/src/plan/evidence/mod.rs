@@ -12,6 +12,7 @@ pub(super) use polarisation::{UNPOLARISED, polarisation};
 
 use super::EffectName;
 use super::grey::same_shape;
+use etalon_optics::reference_nm;
 use etalon_scene::{Filter, ImageTexture, Light, Material, Object, Projection, Scene, Shape};
 use lights::{is_environment, mis, shadow_rays};
 use materials::{colour, dispersion, interference, nested, specular};
@@ -141,11 +142,6 @@ fn smooth_mesh(object: &Object) -> Option<String> {
     (normals > 0).then(|| format!("\"{}\": {normals} vertices with normals", object.name))
 }
 
-/// The helium line d, at which catalogues state indices, or the wavelength of the range nearest to it.
-pub(crate) fn middle([first, last]: [f64; 2]) -> f64 {
-    587.5618_f64.clamp(first, last)
-}
-
 /// The glass by which the camera's lens parts wavelengths, if it does.
 fn dispersive_lens(scene: &Scene) -> Option<String> {
     let Projection::CompoundLens(lens) = &scene.camera.projection else { return None };
@@ -158,7 +154,7 @@ fn lens(projection: &Projection, range_nm: [f64; 2]) -> Result<String, String> {
         Projection::CompoundLens(lens) => Ok(format!(
             "camera: {} surfaces, focal length {:.5} m, film {:.5} m behind the last",
             lens.surfaces.len(),
-            lens.focal_length_m(middle(range_nm)),
+            lens.focal_length_m(reference_nm(range_nm)),
             lens.film_distance_m
         )),
         Projection::Perspective { lens: Some(lens), .. } if lens.radius_m > 0.0 => {

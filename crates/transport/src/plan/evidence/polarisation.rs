@@ -1,11 +1,11 @@
 //! Whether light is polarised, and by how much it matters that it is not.
 
-use super::{first_surface, media, middle, surface};
+use super::{first_surface, media, surface};
 use crate::bsdf::PathFilm;
 use crate::bsdf::properties;
 use crate::plan::grey::steps;
 use crate::texture;
-use etalon_optics::{Complex, RefractiveIndex, colour::colour_matching, fresnel};
+use etalon_optics::{Complex, RefractiveIndex, colour::colour_matching, fresnel, reference_nm};
 use etalon_scene::{MaterialKind, Metal, Parameter, Scene};
 
 /// Why polarisation is not carried where it could make no difference.
@@ -49,10 +49,10 @@ pub(in crate::plan) fn polarisation(scene: &Scene, asked_for: bool) -> Result<St
 fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
     let of_parameter = |parameter| match parameter {
         Parameter::Interface(media) => {
-            let [interior, exterior] = media.map(|index| index.eval(middle(range_nm)));
+            let [interior, exterior] = media.map(|index| index.eval(reference_nm(range_nm)));
             glass(interior / exterior)
         }
-        Parameter::Coat(index) => glass(index.eval(middle(range_nm))),
+        Parameter::Coat(index) => glass(index.eval(reference_nm(range_nm))),
         Parameter::Metal(Metal::Reflectance(reflectance)) => {
             let mean = texture::mean(reflectance);
             metal(range_nm, |nm| (1.0, Metal::k_of(mean.eval(nm))))
