@@ -6,7 +6,7 @@ use etalon_picture::{ERROR_PREFIX, ErrorInfo, ExrFile};
 use serde::Serialize;
 
 /// By how much a value of a file of 32-bit floats may be off, relative: 64 halves of the last place. A single rounding is off by one of
-/// them; a renderer that adds its samples in 32-bit floats rounds each sum, and 4096 roundings that are up as often as down are off by 64.
+/// them. A renderer that adds its samples in 32-bit floats rounds each sum. 4096 roundings, up as often as down, are off by 64.
 const SINGLE: f64 = 64.0 / (1_u64 << 24) as f64;
 /// The same of 16-bit floats: half of the last place. Their samples are added in more digits.
 const HALF: f64 = 1.0 / (1_u64 << 11) as f64;

@@ -12,10 +12,10 @@ const ROWS: usize = 16;
 const COLUMNS: usize = 32;
 
 /// How well a cell's expectation is wanted: to this many standard deviations of its count. All 512 cells together then hide a
-/// departure of less than √(512/65536)·.03 = .0027 in root mean square, a twentieth of what chance hides.
+/// departure of less than √(512/65536)·0.03 = 0.0027 in root mean square, a twentieth of what chance hides.
 const OF_NOISE: f64 = 0.03;
 
-/// What is small in any cell: 1e-6 of probability is .07 samples of 65536.
+/// What is small in any cell: 1e-6 of probability is 0.07 samples of 65536.
 const LEAST_PROBABILITY: f64 = 1e-6;
 
 /// Most parts that one cell is divided into; each costs some fifty evaluations of the density, where it ends some hundreds.

@@ -112,8 +112,8 @@ impl Lens {
         Self { surfaces: turned.collect(), film: self.film }
     }
 
-    /// A ray from a point of the film toward a point of the last vertex plane: where it leaves the first surface, its direction there, and
-    /// the share of unpolarised light that comes through bare glass.
+    /// Follows a ray from a point of the film toward a point of the last vertex plane. Returns where it leaves the first surface, its
+    /// direction there, and the share of unpolarised light that comes through bare glass.
     pub(super) fn trace(&self, film: [f64; 2], toward: [f64; 2]) -> Option<(Vec3, Vec3, f64)> {
         let count = self.surfaces.len();
         let mut vertex: f64 = self.surfaces[..count - 1].iter().map(|surface| surface.thickness).sum();
@@ -148,8 +148,8 @@ impl Lens {
         Some((origin, direction, share))
     }
 
-    /// Where on the axis' side of the film, x = 0, a ray must begin that leaves the middle of the first surface for a height at a distance
-    /// before it: by bisection over the film, and over the last plane for the ray that meets that middle.
+    /// Where on the film, at x = 0, a ray must begin that leaves the middle of the first surface for a height at a distance before it. It is
+    /// found by bisection over the film, and over the last plane for the ray that meets that middle.
     pub(super) fn traced_height_on_film(&self, object: f64, height: f64, guess: f64) -> f64 {
         let slope_of = |film: f64| {
             let radius = self.surfaces.last().expect("a surface").semi_aperture;

@@ -1,12 +1,13 @@
 //! Whole scenes whose picture is known in closed form.
 //!
-//! A [`Truth`] is data: a scene that any renderer can be taught, the number that the mean of its picture must show, where the
-//! number comes from, a second evaluation by other means, and what plausible mistakes would show instead. [`truths`] lists
+//! A [`Truth`] is data: a scene that any renderer can be taught, and the number that the mean of its picture must show. It says where the
+//! number comes from, and has a second evaluation by other means. It knows what plausible mistakes would show instead. [`truths`] lists
 //! them all, [`judge`] holds a reading to one, [`exchange_files`] writes them down for a renderer in another language.
 //!
-//! The quantity is a mean over pixels, all of them unless the truth names some ([`Truth::crop_px`]), of the radiance (W·m⁻²·sr⁻¹·nm⁻¹) that
-//! arrives at the pixel, or of one of its other Stokes parameters ([`Truth::quantity`]), as a linear sensor reads it whose answer to a constant spectrum of radiance 1 is 1: CIE Y, if normalised that way. Irradiance E is read
-//! off a small Lambert plate of albedo ρ, which shows ρE/π.
+//! The quantity is a mean over pixels: all of them, unless the truth names some ([`Truth::crop_px`]). It is the radiance (W·m⁻²·sr⁻¹·nm⁻¹)
+//! that arrives at the pixel, or one of its other Stokes parameters ([`Truth::quantity`]). A linear sensor reads it, whose answer to a
+//! constant spectrum of radiance 1 is 1: CIE Y, if normalised that way. Irradiance E is read off a small Lambert plate of albedo ρ, which
+//! shows ρE/π.
 
 mod absorption;
 mod beckmann;
@@ -357,8 +358,8 @@ impl Truth {
         self.mistakes.iter().map(|mistake| (mistake.value - self.value).abs()).fold(relative, f64::min)
     }
 
-    /// A bound on the absolute bias of a reading that took this many paths and cut some, though the scene did not end them, none with
-    /// more than `throughput` (largest over the wavelengths): what light found beyond would have been multiplied by.
+    /// A bound on the absolute bias of a reading that took this many paths and cut some, though the scene did not end them. None of these
+    /// had more than `throughput` (largest over the wavelengths), by which light found beyond would have been multiplied.
     ///
     /// The mean of what one of them would still have found is at most its throughput times the [`brightest`](Self::brightest) radiance.
     /// How often paths are cut is known by a count only: if on the mean more were than [`poisson_mean_bound`] allows, so few would have

@@ -164,7 +164,7 @@ impl Decode for MaterialUse {
     }
 }
 
-/// The scene of a file: everything that can be wrong is reported, whatever else is.
+/// The scene of a file, or every error in it.
 pub(crate) fn scene(
     form: &SceneForm,
     size: Option<[u32; 2]>,

@@ -4,8 +4,8 @@
 //! Camera Model for Computer Graphics*). Steinert et al. 2011, *General Spectral Camera Lens Simulation*, trace each wavelength by itself; so
 //! do we: the hero alone goes on where the glass disperses.
 //!
-//! A pixel records the irradiance E on the film, over π sin²θ₀: what a field of radiance 1 would cause on the axis, through the same lens
-//! without losses. θ₀ is the half angle of the cone that reaches the middle of the film at the reference wavelength, traced, not paraxial. So
+//! A pixel records E/(π sin²θ₀). E is the irradiance on the film. π sin²θ₀ is what a field of radiance 1 would cause on the axis, through
+//! the same lens without losses. θ₀ is the half angle of the cone that reaches the middle of the film at the reference wavelength, traced, not paraxial. So
 //! vignetting and cos⁴ are in the picture, the exposure is not: E = π sin²θ₀ · pixel.
 //!
 //! Coordinates: the middle of the film is the origin, z points toward the scene, lengths are metres.
