@@ -23,6 +23,7 @@ mod furnaces;
 mod glass;
 mod gratings;
 mod illumination;
+mod image_files;
 mod images;
 mod instruments;
 mod irradiance;
