@@ -10,6 +10,7 @@ mod blend;
 mod conductor;
 pub(crate) mod dielectric;
 mod film;
+mod glass_losses;
 mod grating;
 pub(crate) mod lambert;
 mod metal;

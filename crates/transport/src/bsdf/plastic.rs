@@ -7,9 +7,9 @@
 //! rough one 1 − R of its facets, tabulated. Facets of the coat that hide each other pass their light to the ground.
 
 use super::albedo::{self, Azimuths, LossTable, Tabulated};
+use super::glass_losses::mean_transmittance;
 use super::microfacet::{Distribution, Facet, Facing, MEAN_ERROR, mean_over_facets};
 use super::mueller::{Lobe, PolarisedLoss};
-use super::rough_dielectric::mean_transmittance;
 use super::{BsdfSample, Properties, Shading};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};

@@ -1,12 +1,12 @@
 //! The rules and tables that materials are prepared with, against closed forms and independent quadrature.
 
 use super::albedo::{Azimuths, LossTable, NODES, extremes, node};
+use super::glass_losses::{glass_table, loss, mean_transmittance, polarised_loss};
 use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Distribution, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::mueller::PolarisedLoss;
 use super::oren_nayar::albedo;
 use super::plastic::let_in;
-use super::rough_dielectric::{glass_table, loss, mean_transmittance, polarised_loss};
 use super::{Bsdf, Shading};
 use etalon_optics::{ComplexIndex, Lanes, Spectrum, Vec3, fresnel};
 use etalon_oracle::laws::{Masking, fresnel_exact, ggx_albedo};

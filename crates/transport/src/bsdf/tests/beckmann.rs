@@ -1,8 +1,8 @@
 //! Beckmann's facets and separable masking: means, tables and draws against independent quadrature.
 
 use super::super::albedo::{Azimuths, LossTable};
+use super::super::glass_losses::{glass_table, loss};
 use super::super::microfacet::{Distribution, MEAN_ERROR, mean_over_facets};
-use super::super::rough_dielectric::{glass_table, loss};
 use super::{gives_back_all_but_little, toward};
 use etalon_optics::Vec3;
 use etalon_oracle::laws::{Masking, anisotropic_ggx_albedo, beckmann_albedo};
