@@ -314,11 +314,11 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("docs/mitsuba-verify.py"),
             ),
             named(
-                "foreign-scenes",
-                "[OPTIONS]",
-                "the same scenes by Mitsuba 3 and by etalon",
-                "minutes",
-                Script("docs/foreign-scenes.py"),
+                "pbrt-twins",
+                "[OPTIONS] [NAME …]",
+                "scenes of pbrt by etalon against the same of Mitsuba by Mitsuba 3",
+                "1 min",
+                Script("tests/peers/mitsuba/pbrt_twins.py"),
             ),
             named(
                 "compare-mitsuba",
