@@ -227,8 +227,8 @@ fn finished_frames_are_kept_and_those_of_other_settings_refused() {
 #[test]
 fn a_signal_keeps_the_finished_frames_and_the_sums_of_the_one_under_way() {
     let [broken, unbroken] = [(); 2].map(|()| tempfile::tempdir().unwrap());
-    // Half a second or so a frame.
-    let line = "render {} --size 96x64 --spp 256 --threads 2 --frames 0:3 --fps 12 --quiet -o {}";
+    // A quarter of a second or so a frame.
+    let line = "render {} --size 96x64 --spp 128 --threads 2 --frames 0:3 --fps 12 --quiet -o {}";
     let in_folder = |folder: &Path| folder.join("f-{frame}.exr");
     etalon_line(line, [&scene(TURNTABLE), &in_folder(unbroken.path())]).expect(0);
     let mut interrupted = 0;

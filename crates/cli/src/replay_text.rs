@@ -16,6 +16,9 @@ pub(crate) fn describe(path: &Replay) -> String {
             Event::Scattering { vertex, position_m, beta } => {
                 writeln!(text, "vertex {vertex}: medium at {} m, throughput {}", list(position_m), list(beta))
             }
+            Event::Fluorescence { vertex, excitation_nm } => {
+                writeln!(text, "  fluorescence at vertex {vertex}, excited at {} nm", list(excitation_nm))
+            }
             Event::Light { vertex, found, radiance, .. } => {
                 writeln!(text, "  light at vertex {vertex} by {found}: {}", list(radiance))
             }

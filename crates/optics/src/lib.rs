@@ -28,6 +28,7 @@
 //! | the CIE 1931 2° observer, XYZ, linear Rec. 709, sRGB, adaptation, CIELAB | [`colour`] |
 //! | glasses and metals, with the range that each is known for | [`index`] |
 //! | reflectance and transmittance, in forms that do not cancel; thin films | [`fresnel`] |
+//! | light that is given back at another wavelength | [`fluorescence`] |
 //! | where refracted light goes | [`snell`] |
 //! | vectors and frames over `f32` or `f64` | [`Vec3`], [`Frame`], [`Real`] |
 //! | one value for each wavelength of a path | [`Lanes`] |
@@ -46,6 +47,7 @@ pub mod complex;
 pub mod error;
 pub mod error_function;
 pub mod exponential;
+pub mod fluorescence;
 pub mod fresnel;
 pub mod index;
 pub mod lanes;
@@ -60,6 +62,7 @@ pub use complex::Complex;
 pub use error::{INDEX_RANGE, OpticsError};
 pub use error_function::scaled_erfc;
 pub use exponential::{exp_neg, neg_ln, one_minus_exp_neg};
+pub use fluorescence::{Fluorescence, Fluorophore, ReradiationMatrix};
 pub use index::{ComplexIndex, OutsideFit, RefractiveIndex, reference_nm};
 pub use lanes::Lanes;
 pub use real::Real;

@@ -5,7 +5,9 @@ mod common;
 use common::{EVERYTHING, Parts, RIGHT};
 use etalon_optics::index::SellmeierTerm;
 use etalon_optics::spectrum::Outside;
-use etalon_optics::{ComplexIndex, Illuminant, OutsideFit, RefractiveIndex, Spectrum};
+use etalon_optics::{
+    ComplexIndex, Fluorescence, Fluorophore, Illuminant, OutsideFit, RefractiveIndex, ReradiationMatrix, Spectrum,
+};
 use etalon_scene::*;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -214,6 +216,20 @@ fn materials_and_spectra() {
     };
     let disc = MaterialKind::Grating { reflectance: Spectrum::Constant(0.75).into(), grating };
     assert_eq!(kind(&scene, "disc"), &disc);
+    let rows = [vec![0.0, 0.002, 0.001], vec![0.001, 0.004, 0.0]];
+    let matrix = ReradiationMatrix::new(vec![400.0, 500.0], vec![500.0, 550.0, 600.0], &rows).unwrap();
+    let vest = MaterialKind::Fluorescent {
+        reflectance: Spectrum::Constant(0.125).into(),
+        fluorescence: Fluorescence::Matrix(matrix),
+    };
+    assert_eq!(kind(&scene, "vest"), &MaterialKind::OneSided { kind: Box::new(vest), side: Side::Front });
+    let emission = Spectrum::tabulated(vec![500.0, 600.0], vec![1.0; 2], Outside::Zero).unwrap();
+    let dye = Fluorophore::new(Spectrum::Constant(0.75), emission, 0.5, scene.integrator.wavelength_range_nm).unwrap();
+    let marker = MaterialKind::Fluorescent {
+        reflectance: Spectrum::ZERO.into(),
+        fluorescence: Fluorescence::Fluorophores(vec![dye]),
+    };
+    assert_eq!(kind(&scene, "marker"), &marker);
     let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
     assert_eq!(kind(&scene, "clay"), &MaterialKind::OneSided { kind: Box::new(clay), side: Side::Back });
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));

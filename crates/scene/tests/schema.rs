@@ -429,6 +429,11 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                         M::Grating { grating, .. } => {
                             grating.period_nm > 0.0 && (0.0..1.0 + 1e-9).contains(&grating.efficiency())
                         }
+                        M::Fluorescent { reflectance, fluorescence } => {
+                            let returned = fluorescence.returned(&[nm], fluorescence.emission_range_nm())[0];
+                            let SpectrumTexture::Uniform(reflectance) = reflectance else { panic!("no image is read") };
+                            returned >= 0.0 && returned + reflectance.eval(nm) <= 1.0 + 1e-6
+                        }
                         M::Blend { parts, by } => {
                             parts.len() >= 2
                                 && parts.is_sorted_by(|a, b| a.0 < b.0)

@@ -19,6 +19,9 @@ pub const CAMERA_SETS: u32 = 2;
 /// Sets that each path vertex owns: (lobe, BSDF 1, BSDF 2, roulette), (light choice, light 1, light 2, mask).
 pub const SETS_PER_VERTEX: u32 = 2;
 
+/// The first of the sets for surfaces that fluoresce, one for each vertex, beyond those of any path: (choice, wavelength, part, –).
+const FLUORESCENCE_SETS: u32 = 1 << 24;
+
 /// Longest Owen-scrambled Sobol point set of the library; further samples come from independent sets.
 pub const SOBOL_POINTS: u32 = 1 << 16;
 
@@ -71,6 +74,11 @@ impl Sampler {
         // The first two dimensions of the sequence are the best stratified together, so they are for the point.
         let [point_1, point_2, choice, decision] = self.set(CAMERA_SETS + vertex * SETS_PER_VERTEX + set);
         [choice, point_1, point_2, decision]
+    }
+
+    /// The numbers of vertex `vertex` where its surface fluoresces: (choice, wavelength, part, –).
+    pub fn fluorescence_set(&self, vertex: u32) -> [f64; 4] {
+        self.set(FLUORESCENCE_SETS + vertex)
     }
 }
 

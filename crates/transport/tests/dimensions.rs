@@ -14,8 +14,8 @@ const KINDS: [SamplerKind; 2] = [SamplerKind::Sobol, SamplerKind::Independent];
 /// Vertices whose numbers are tested.
 const VERTICES: u32 = 3;
 const SETS: usize = (CAMERA_SETS + VERTICES * SETS_PER_VERTEX) as usize;
-/// Film, lens, wavelength, time, two unused, and eight of each vertex.
-const DIMENSIONS: usize = 4 * SETS;
+/// Film, lens, wavelength, time, two unused, and of each vertex eight and four where it fluoresces.
+const DIMENSIONS: usize = 4 * (SETS + VERTICES as usize);
 const REPLICATES: u32 = 4;
 /// Cells along one dimension.
 const CELLS: usize = 8;
@@ -24,8 +24,9 @@ const CELLS: usize = 8;
 fn cells(kind: SamplerKind, seed: u64, pixel: u64, sample: u32) -> [u8; DIMENSIONS] {
     let sampler = Sampler::new(kind, seed, pixel, sample, REPLICATES);
     let mut cells = [0; DIMENSIONS];
-    for (set, cells) in cells.chunks_exact_mut(4).enumerate() {
-        cells.iter_mut().zip(sampler.set(set as u32)).for_each(|(cell, u)| *cell = (u * CELLS as f64) as u8);
+    let sets = (0..SETS as u32).map(|set| sampler.set(set)).chain((0..VERTICES).map(|v| sampler.fluorescence_set(v)));
+    for (set, cells) in sets.zip(cells.chunks_exact_mut(4)) {
+        cells.iter_mut().zip(set).for_each(|(cell, u)| *cell = (u * CELLS as f64) as u8);
     }
     cells
 }

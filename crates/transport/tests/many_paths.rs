@@ -89,13 +89,17 @@ impl Chance {
     }
 
     fn material(&mut self) -> Value {
-        match self.below(10) {
+        match self.below(11) {
             0 => json!({"type": "mirror", "reflectance": self.within(0.3, 1.0)}),
             1 => json!({"type": "dielectric", "interior": self.within(1.1, 2.4)}),
             2 => json!({"type": "dielectric", "interior": "N-SF11"}),
             3 => json!({"type": "conductor", "metal": "Au", "alpha": self.within(0.0, 0.5)}),
             4 => json!({"type": "plastic", "reflectance": self.spectrum(0.9)}),
             5 => json!({"type": "black"}),
+            6 => json!({"type": "fluorescent", "reflectance": self.within(0.0, 0.4), "fluorophores": [{
+                "absorption": {"type": "tabulated", "outside": "zero", "wavelengths_nm": [390, 430, 520], "values": [0.1, self.within(0.2, 0.6), 0]},
+                "emission": {"type": "tabulated", "outside": "zero", "wavelengths_nm": [410, 540, 640], "values": [0, 1, 0.2]},
+                "quantum_yield": self.within(0.3, 1.0)}]}),
             _ => json!({"type": "lambert", "reflectance": self.spectrum(1.0)}),
         }
     }

@@ -3,6 +3,7 @@
 mod basis;
 mod blackbody;
 mod illuminant;
+mod integral;
 mod rgb;
 mod sigmoid;
 mod tabulated;
@@ -10,6 +11,7 @@ mod tabulated;
 pub use basis::RgbBasis;
 pub use blackbody::Blackbody;
 pub use illuminant::{Illuminant, ScaledIlluminant};
+pub use integral::{simpson, whole_nm};
 pub use rgb::{RgbEmission, RgbReflectance};
 pub use sigmoid::Sigmoid;
 pub use tabulated::{Outside, Tabulated};

@@ -97,6 +97,7 @@ impl Claim {
             Self::Scattering => "scattering",
             Self::ThinFilms => "thin-films",
             Self::Gratings => "gratings",
+            Self::Fluorescence => "fluorescence",
             Self::Motion => "motion",
             Self::Masks => "masks",
             Self::LosslessRoughGlass => "lossless-rough-glass",

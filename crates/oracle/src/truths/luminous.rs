@@ -280,7 +280,7 @@ fn skies() -> Vec<Truth> {
         let mut truth = Truth::new(format!("standard-sky-{number}-by-{how}"), &scene, value, "∫ L(Z, χ) cos θ dω, L = L₀ φ(Z) f(χ)/(φ(0) f(Zₛ))")
             .because("The luminance of a standard sky is a gradation by the angle from the zenith times an indicatrix by that from the sun (CIE S 011).")
             .confirmed("midpoints over both angles", 3e-4, move || 3.0 * (sky.irradiance_by_midpoints(normal) + below))
-            .or_else("the uniform sky", 3.0 * (Sky { number: 5, ..sky }.irradiance(normal) + below) + if number == 5 { 0.3 } else { 0.0 })
+            .or_else("the uniform sky", 3.0 * (0.5 * PI * (1.0 + normal[2]) + below) + if number == 5 { 0.3 } else { 0.0 })
             .allows(2e-5 * value, "2e-5 for single precision, 2e-5 for the quadrature")
             .sees(0.005);
         if form.get("sun_direction").is_some() {

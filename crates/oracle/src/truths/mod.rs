@@ -19,6 +19,7 @@ mod enclosures;
 mod exchange;
 mod facets;
 mod films;
+mod fluorescence;
 mod furnaces;
 mod glass;
 mod gratings;
@@ -52,7 +53,11 @@ mod tubes;
 mod view_factors;
 mod water;
 
-use std::{fmt, sync::Arc};
+use std::{
+    fmt,
+    sync::{Arc, LazyLock},
+    thread,
+};
 
 use serde_json::{Value, json};
 
@@ -96,6 +101,8 @@ pub enum Claim {
     ThinFilms,
     /// Gratings send each order of each wavelength in a direction of its own.
     Gratings,
+    /// Surfaces give light back at other wavelengths than those at which they take it in.
+    Fluorescence,
     /// Things move while the shutter is open.
     Motion,
     /// Surfaces let a part of the light pass, also where they coincide with others.
@@ -120,7 +127,7 @@ pub enum Claim {
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 20] = [
+    pub const UNPOLARISED: [Self; 21] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -133,6 +140,7 @@ impl Claim {
         Self::Scattering,
         Self::ThinFilms,
         Self::Gratings,
+        Self::Fluorescence,
         Self::Motion,
         Self::Masks,
         Self::LosslessRoughGlass,
@@ -390,45 +398,54 @@ impl Truth {
 }
 
 /// Every truth, those for polarised light included: filter by [`Truth::applies_to`].
+///
+/// The first call works out their values, which takes about a second; later ones copy the list.
 #[must_use]
 pub fn truths() -> Vec<Truth> {
-    [
-        furnaces::truths(),
-        beckmann::truths(),
-        facets::truths(),
-        enclosures::truths(),
-        illumination::truths(),
-        lamps::truths(),
-        view_factors::truths(),
-        tubes::truths(),
-        glass::truths(),
-        polarised::truths(),
-        solids::truths(),
-        absorption::truths(),
-        water::truths(),
-        prisms::truths(),
-        cameras::truths(),
-        compound_lenses::truths(),
-        dimensions::truths(),
-        motion::truths(),
-        masks::truths(),
-        textures::truths(),
-        relief::truths(),
-        sheets::truths(),
-        films::truths(),
-        gratings::truths(),
-        stokes::truths(),
-        images::truths(),
-        instruments::truths(),
-        sources::truths(),
-        named::truths(),
-        skies::truths(),
-        surfaces::truths(),
-        media::truths(),
-        meters::truths(),
-        luminous::truths(),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    static LIST: LazyLock<Vec<Truth>> = LazyLock::new(|| {
+        // Some groups take much quadrature: on all cores at once.
+        thread::scope(|scope| {
+            let groups = GROUPS.map(|group| scope.spawn(group));
+            groups.into_iter().flat_map(|group| group.join().expect("values are worked out without a panic")).collect()
+        })
+    });
+    LIST.clone()
 }
+
+const GROUPS: [fn() -> Vec<Truth>; 35] = [
+    furnaces::truths,
+    beckmann::truths,
+    facets::truths,
+    enclosures::truths,
+    illumination::truths,
+    lamps::truths,
+    view_factors::truths,
+    tubes::truths,
+    glass::truths,
+    polarised::truths,
+    solids::truths,
+    absorption::truths,
+    water::truths,
+    prisms::truths,
+    cameras::truths,
+    compound_lenses::truths,
+    dimensions::truths,
+    motion::truths,
+    masks::truths,
+    textures::truths,
+    relief::truths,
+    sheets::truths,
+    films::truths,
+    gratings::truths,
+    fluorescence::truths,
+    stokes::truths,
+    images::truths,
+    instruments::truths,
+    sources::truths,
+    named::truths,
+    skies::truths,
+    surfaces::truths,
+    media::truths,
+    meters::truths,
+    luminous::truths,
+];

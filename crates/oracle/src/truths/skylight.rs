@@ -1,6 +1,6 @@
 //! Standard skies of the CIE, by formula, and what comes of them through openings.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::quadrature::rectangle;
 use crate::vector::{Vec3, add, cross, dot, length, normalize, scale, sub};
@@ -55,16 +55,20 @@ impl Sky {
         gradation(cos) * indicatrix(chi) / (gradation(1.0) * indicatrix(self.sun[2].clamp(-1.0, 1.0).acos()))
     }
 
-    /// Irradiance on a plane of this unit normal from the sky alone, for a zenith of radiance 1.
+    /// Irradiance on a plane of this unit normal from the sky alone, for a zenith of radiance 1, to about 2e-5.
     pub(super) fn irradiance(&self, normal: Vec3) -> f64 {
-        let over = |sin: f64, azimuth: f64| {
+        let (across, middle) = (normal[0].hypot(normal[1]), normal[1].atan2(normal[0]));
+        let over = |sin: f64, share: f64| {
             // Over the sine of the elevation, in which solid angle is even; its square, since b/cos Z is steep at the horizon.
             let height = sin * sin;
             let level = (1.0 - height * height).sqrt();
+            // Up to the azimuths at which the plane ends.
+            let half = if across > 0.0 { (-height * normal[2] / (level * across)).clamp(-1.0, 1.0).acos() } else { PI };
+            let azimuth = middle + half * share;
             let toward = [level * azimuth.cos(), level * azimuth.sin(), height];
-            2.0 * sin * self.relative(toward) * dot(toward, normal).max(0.0)
+            2.0 * sin * half * self.relative(toward) * dot(toward, normal).max(0.0)
         };
-        rectangle(over, [0.0, 1.0], [0.0, TAU], 1e-6, 4_000_000).value
+        rectangle(over, [0.0, 1.0], [-1.0, 1.0], 2e-5, 400_000).value
     }
 
     /// The same by midpoints over the angles.

@@ -2,6 +2,7 @@
 
 mod blend;
 mod dielectric;
+mod fluorescent;
 mod grating;
 mod index;
 mod roughness;
@@ -27,6 +28,7 @@ pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
 pub(crate) use dielectric::DielectricMaterial;
 use dielectric::dielectric;
+use fluorescent::{FluorescentMaterial, fluorescent};
 use grating::{GratingMaterial, grating};
 pub(super) use index::{IndexForm, index, least};
 use index::{NamedMetal, complex_index, complex_keys};
@@ -308,6 +310,7 @@ crate::variants! {
         "polariser" => Polariser(PolariserMaterial),
         "retarder" => Retarder(RetarderMaterial),
         "grating" => Grating(GratingMaterial),
+        "fluorescent" => Fluorescent(FluorescentMaterial),
         "blend" => Blend(BlendMaterial),
         "boundary" => Boundary(BoundaryMaterial),
         "black" => Black(BlackMaterial),
@@ -328,6 +331,7 @@ impl MaterialForm {
             Self::Polariser(m) => m.at,
             Self::Retarder(m) => m.at,
             Self::Grating(m) => m.at,
+            Self::Fluorescent(m) => m.at,
             Self::Blend(m) => m.at,
             Self::Boundary(m) => m.at,
             Self::Black(m) => m.at,
@@ -442,6 +446,7 @@ pub(crate) fn material<'f>(
             Some(MaterialKind::PolarisingSheet { axis: retarder.axis?.0, sheet })
         }
         MaterialForm::Grating(form) => grating(form, spectra, files, reader),
+        MaterialForm::Fluorescent(form) => fluorescent(form, spectra, reader),
         MaterialForm::Blend(form) => blend(form, before, spectra, files, reader),
         MaterialForm::Boundary(boundary) => {
             let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;

@@ -2,7 +2,7 @@
 
 use super::{Grating, Medium, NumberTexture, SpectrumTexture, ThinFilm};
 use crate::texture::ImageTexture;
-use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
+use etalon_optics::{ComplexIndex, Fluorescence, RefractiveIndex, Spectrum};
 use std::iter;
 
 /// The least width α of a rough surface's facets. Tests check lobes down to this width.
@@ -177,6 +177,13 @@ pub enum MaterialKind {
         /// What it does.
         grating: Grating,
     },
+    /// Diffuse reflection on both sides, and light that is given back at another wavelength, as diffuse.
+    Fluorescent {
+        /// Share of light reflected at its own wavelength; with what comes back at others at most 1.
+        reflectance: SpectrumTexture,
+        /// What comes back at others.
+        fluorescence: Fluorescence,
+    },
     /// Materials side by side, finer than can be seen: everywhere the two between whose places a number lies, in linear
     /// proportion; the first below its place, the last above.
     Blend {
@@ -271,6 +278,9 @@ macro_rules! parameters {
                 }
                 Self::PolarisingSheet { sheet, .. } => vec![$of::Sheet(sheet)],
                 Self::Grating { reflectance, grating } => vec![$of::Reflectance(reflectance), $of::Grating(grating)],
+                Self::Fluorescent { reflectance, fluorescence } => {
+                    vec![$of::Reflectance(reflectance), $of::Fluorescence(fluorescence)]
+                }
                 Self::Blend { .. } | Self::OneSided { .. } | Self::Boundary | Self::Black => Vec::new(),
             });
             parameters.collect()
@@ -378,6 +388,15 @@ impl MaterialKind {
         }
     }
 
+    /// Makes every surface that fluoresces reflect alone.
+    pub fn remove_fluorescence(&mut self) {
+        for part in self.parts_mut() {
+            if let Self::Fluorescent { reflectance, .. } = part {
+                *part = Self::Lambert { reflectance: reflectance.clone() };
+            }
+        }
+    }
+
     /// Replaces every image that varies something over a surface by one value, for spectra that of `mean` and for numbers the
     /// mean of their texels.
     pub fn flatten(&mut self, mean: &dyn Fn(&ImageTexture) -> Spectrum) {
@@ -422,6 +441,8 @@ pub enum Parameter<'a> {
     Film(&'a ThinFilm),
     /// A grating, which sends each wavelength its own way.
     Grating(&'a Grating),
+    /// What comes back at another wavelength.
+    Fluorescence(&'a Fluorescence),
 }
 
 /// [`Parameter`], to be changed.
@@ -441,6 +462,8 @@ pub enum ParameterMut<'a> {
     Film(&'a mut ThinFilm),
     /// See [`Parameter::Grating`].
     Grating(&'a mut Grating),
+    /// See [`Parameter::Fluorescence`].
+    Fluorescence(&'a mut Fluorescence),
 }
 
 impl<'a> Parameter<'a> {

@@ -194,6 +194,42 @@ fn reflectances_and_emissions() {
 }
 
 #[test]
+fn surfaces_that_fluoresce() {
+    let material =
+        |keys: &str| Parts { materials: &format!("{{\"m\": {{\"type\": \"fluorescent\", {keys}}}}}"), ..RIGHT }.text();
+    let dye = |keys: &str| material(&format!("\"fluorophores\": [{{{keys}}}]"));
+    let found =
+        |text: String| problems(&text).into_iter().map(|p| (p.code, p.json_path, p.message)).collect::<Vec<_>>();
+    // A perfect dye and a white surface: what is reflected and what comes back are more than came in.
+    let bright = "\"reflectance\": 0.6, \"fluorophores\": [{\"absorption\": 0.9, \"emission\": 1}]";
+    let [(code, path, message)] = &found(material(bright))[..] else { panic!("one error") };
+    assert!(*code == Code::OutOfRange && path == "$.materials.m", "{path}");
+    assert!(message.contains("830 nm") && message.contains("0.6000 reflected"), "{message}");
+    let of = |text: String, code: Code, path: &str| {
+        let found = found(text);
+        assert!(found.iter().any(|(c, p, _)| *c == code && p == path), "{found:?}");
+    };
+    of(dye("\"absorption\": 0.5, \"emission\": 0"), Code::OutOfRange, "$.materials.m.fluorophores[0]");
+    of(dye("\"absorption\": 1.5, \"emission\": 1"), Code::Reflectance, "$.materials.m.fluorophores[0].absorption");
+    of(
+        dye("\"absorption\": 0.5, \"emission\": 1, \"quantum_yield\": 2"),
+        Code::OutOfRange,
+        "$.materials.m.fluorophores[0].quantum_yield",
+    );
+    of(material("\"fluorophores\": []"), Code::WrongLength, "$.materials.m.fluorophores");
+    of(material("\"reflectance\": 0.5"), Code::MissingKey, "$.materials.m");
+    let matrix = |rows: &str| {
+        material(&format!(
+            "\"reradiation\": {{\"excitation_nm\": [400, 500], \"emission_nm\": [500, 600], \"per_nm\": {rows}}}"
+        ))
+    };
+    assert_eq!(found(matrix("[[0.001, 0], [0, 0.001]]")), []);
+    of(matrix("[[0.001, 0], [0]]"), Code::OutOfRange, "$.materials.m.reradiation");
+    of(matrix("[[0.001, 0], [0, -1]]"), Code::OutOfRange, "$.materials.m.reradiation.per_nm[1][1]");
+    of(matrix("[[0.1, 0.1], [0.1, 0.1]]"), Code::OutOfRange, "$.materials.m");
+}
+
+#[test]
 fn a_named_spectrum_is_blamed_once_and_where_it_is_written() {
     let problem = error(
         Code::Reflectance,

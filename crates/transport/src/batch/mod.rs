@@ -160,7 +160,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         // In two loops, of which the first becomes vector instructions.
         for lane in lanes(ended) {
             let path = &self.paths.paths[lane];
-            self.seen[lane] = M::seen(self.prepared, &path.wavelengths, path.radiance);
+            self.seen[lane] = M::seen(self.prepared, path.wavelengths_at_camera(), path.radiance);
         }
         for lane in lanes(ended) {
             let xyz = self.seen[lane].map(Lanes::sum);

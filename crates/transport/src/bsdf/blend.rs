@@ -47,6 +47,15 @@ impl Blend {
         PartWeights([(second - 1, 1.0 - share), (second, share)])
     }
 
+    /// The parts that stand at a place, each with the share of the surface that fluoresces there because of it.
+    pub(super) fn fluorescent_parts(&self, at: &Shading<'_>, wo: Vec3<f64>) -> [(&Bsdf, f64); 2] {
+        let PartWeights(shares) = self.shares(at.uv);
+        shares.map(|(part, share)| {
+            let part = &self.parts[part];
+            (part, share * part.fluorescent_share(at, wo))
+        })
+    }
+
     /// See [`Properties`]: what any of the parts has.
     pub(super) fn properties(parts: impl IntoIterator<Item = Properties>) -> Properties {
         let both = |one: Properties, other: Properties| Properties {
@@ -57,6 +66,7 @@ impl Blend {
             polarising_axis: one.polarising_axis || other.polarising_axis,
             takes_tangents: one.takes_tangents || other.takes_tangents,
             takes_medium: one.takes_medium || other.takes_medium,
+            fluoresces: one.fluoresces || other.fluoresces,
             smooth_name: if one.smooth_name.is_empty() { other.smooth_name } else { one.smooth_name },
         };
         parts.into_iter().reduce(both).unwrap_or(Properties { dark: true, ..Properties::default() })

@@ -10,6 +10,7 @@ mod blend;
 mod conductor;
 pub(crate) mod dielectric;
 mod film;
+mod fluorescent;
 mod glass_losses;
 mod grating;
 pub(crate) mod lambert;
@@ -33,6 +34,7 @@ pub use blend::Blend;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use film::PathFilm;
+pub use fluorescent::{Fluorescent, Reradiation};
 pub use grating::Grating;
 pub use lambert::Lambert;
 pub use metal::PathMetal;
@@ -108,6 +110,8 @@ pub enum Bsdf {
     PolarisingSheet(PolarisingSheet),
     /// A diffraction grating.
     Grating(Grating),
+    /// A diffuse surface that also gives light back at other wavelengths.
+    Fluorescent(Fluorescent),
     /// A mixture of others.
     Blend(Blend),
     /// Another on one side.
@@ -130,6 +134,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::ThinDielectric { .. } => ThinDielectric::properties(),
         MaterialKind::PolarisingSheet { sheet, .. } => PolarisingSheet::properties(sheet),
         MaterialKind::Grating { grating, .. } => Grating::properties(grating),
+        MaterialKind::Fluorescent { reflectance, .. } => Fluorescent::properties(reflectance),
         MaterialKind::OneSided { kind, .. } => OneSided::properties(properties(kind)),
         MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
         MaterialKind::Boundary | MaterialKind::Black => {
@@ -179,6 +184,10 @@ impl Bsdf {
             MaterialKind::PolarisingSheet { sheet, .. } => Self::PolarisingSheet(PolarisingSheet::new(sheet, range_nm)),
             MaterialKind::Grating { reflectance, grating } => {
                 Self::Grating(Grating::new(PathTexture::new(reflectance, range_nm), grating.clone()))
+            }
+            MaterialKind::Fluorescent { reflectance, fluorescence } => {
+                let reflectance = PathTexture::new(reflectance, range_nm);
+                Self::Fluorescent(Fluorescent::new(reflectance, fluorescence, range_nm))
             }
             MaterialKind::Blend { parts, by } => {
                 let parts = parts.iter().map(|(place, part)| (*place, Self::new(part, range_nm)));
@@ -237,6 +246,7 @@ impl Bsdf {
             Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, at, wo, wi),
             Self::OrenNayar(rough) => rough.eval(lambda_nm, n, at.uv, wo, wi),
             Self::Plastic(plastic) => plastic.eval(lambda_nm, n, at, wo, wi),
+            Self::Fluorescent(surface) => surface.eval(lambda_nm, n, at, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
             Self::OneSided(one) => one.eval(lambda_nm, n, at, wo, wi),
             Self::Mirror(_)
@@ -268,6 +278,7 @@ impl Bsdf {
             Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at, wo, u),
             Self::OrenNayar(rough) => rough.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
             Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at, wo, u),
+            Self::Fluorescent(surface) => surface.sample(lambda_nm, n, at, wo, [u[1], u[2]]),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, (n, at.uv), wo, u[0]),
             Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
             Self::Grating(grating) => grating.sample(lambda_nm, n, at, wo, u[0]),

@@ -89,7 +89,7 @@ impl Bsdf {
             Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Blend(blend) => blend.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::OneSided(one) => one.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
-            Self::Lambert(_) | Self::OrenNayar(_) | Self::Grating(_) | Self::Black => None,
+            Self::Lambert(_) | Self::OrenNayar(_) | Self::Grating(_) | Self::Fluorescent(_) | Self::Black => None,
         }
     }
 
@@ -109,6 +109,7 @@ impl Bsdf {
             | Self::ThinDielectric(_)
             | Self::PolarisingSheet(_)
             | Self::Grating(_)
+            | Self::Fluorescent(_)
             | Self::Black => {}
         }
     }

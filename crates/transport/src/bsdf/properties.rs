@@ -19,6 +19,8 @@ pub struct Properties {
     pub takes_tangents: bool,
     /// What it does depends on the medium that it stands in.
     pub takes_medium: bool,
+    /// Light of other wavelengths is given back at those of the path.
+    pub fluoresces: bool,
     /// What it is called where a delta is the reason for something.
     pub smooth_name: &'static str,
 }
@@ -33,6 +35,7 @@ impl Properties {
         polarising_axis: false,
         takes_tangents: false,
         takes_medium: false,
+        fluoresces: false,
         smooth_name: "",
     };
 

@@ -20,6 +20,7 @@
 //! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
 pub(crate) mod film_entry;
+mod fluorescence;
 mod medium;
 mod next_event;
 pub mod observer;

@@ -234,8 +234,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let mueller = || vertex.mueller(lambda_nm, wi);
         let found = self.beta * direct * self.lanes.weight();
         let found = self.polarisation.receive_scattered(vertex.wo(), wi, mueller, found);
+        let found = self.gather(found);
         observer.light(self.vertex, Found::ShadowRay { light }, found);
-        self.radiance += found;
     }
 }
 

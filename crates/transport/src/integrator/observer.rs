@@ -28,7 +28,9 @@ pub(crate) trait Observer<const N: usize> {
     fn vertex(&mut self, _vertex: u32, _position: Vec3<f64>, _object: u32, _beta: Lanes<f64, N>) {}
     /// A medium scatters the path: vertex number `vertex`, where, and its throughput so far.
     fn scattering(&mut self, _vertex: u32, _position: Vec3<f64>, _beta: Lanes<f64, N>) {}
-    /// Light is added: at which vertex, how, and how much in each lane.
+    /// Light reaches a vertex at other wavelengths than it leaves it, nm: from here on the path carries these.
+    fn fluoresces(&mut self, _vertex: u32, _excitation_nm: Lanes<f64, N>) {}
+    /// Light is added: at which vertex, how, and how much in each lane at the camera.
     fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<f64, N>) {}
     /// A direction is drawn from a mixture.
     fn direction(&mut self, _mixture: &Mixture) {}

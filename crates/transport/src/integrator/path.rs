@@ -3,6 +3,7 @@
 use super::MOST_VERTICES;
 use crate::film::Counters;
 use crate::integrator::film_entry::Received;
+use crate::integrator::fluorescence::Reradiated;
 use crate::integrator::observer::{End, Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::light::{EnvironmentRadiance, Light, Look, SkyLook};
@@ -49,7 +50,9 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
     pub(super) optical_depth: Option<f64>,
     /// Where a medium scatters it, once it does.
     pub(super) collision: Option<MediumInteraction<'a>>,
-    spectra: SpectrumCache<N>,
+    pub(super) spectra: SpectrumCache<N>,
+    /// What it has at the camera, once a surface has fluoresced: its lanes are then at other wavelengths.
+    pub(super) reradiated: Option<Box<Reradiated<P, N>>>,
 }
 
 /// Where a path begins.
@@ -143,6 +146,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             optical_depth: None,
             collision: None,
             spectra: SpectrumCache::new(),
+            reradiated: None,
         }
     }
 
@@ -168,13 +172,24 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         self.passes = 0;
         self.leave_ray(world);
-        self.spectra.forget(&self.wavelengths.lambda_nm);
+        self.spectra.forget(&self.wavelengths.lambda_nm, true);
+        self.reradiated = None;
+    }
+
+    /// The wavelengths of what it brings to the camera.
+    #[inline(always)]
+    pub(crate) fn wavelengths_at_camera(&self) -> &Wavelengths<N> {
+        self.reradiated.as_ref().map_or(&self.wavelengths, |reradiated| &reradiated.wavelengths)
     }
 
     /// What it brings to the camera.
     #[inline(always)]
     pub(crate) fn received(&self) -> Received<N> {
-        Received { wavelengths: self.wavelengths, radiance: self.radiance, stokes: self.polarisation.received() }
+        let (wavelengths, polarisation) = match &self.reradiated {
+            None => (self.wavelengths, &self.polarisation),
+            Some(reradiated) => (reradiated.wavelengths, &reradiated.polarisation),
+        };
+        Received { wavelengths, radiance: self.radiance, stokes: polarisation.received() }
     }
 
     /// Arrives at what the ray has met, unless a medium scatters the path before: light is absorbed on the way, and found there.
@@ -211,6 +226,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             return Arrival::Ended;
         }
         vertex.prepare_scattering(world);
+        if world.fluoresces {
+            self.fluoresce(world, vertex, sampler, observer);
+        }
         Arrival::Scatters
     }
 
@@ -279,9 +297,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     /// Adds light that the walk has run into.
     #[inline(always)]
     pub(super) fn add(&mut self, observer: &mut impl Observer<N>, how: Found, radiance: Lanes<f64, N>, mis: f64) {
-        let light = self.polarisation.receive(self.beta * radiance * (self.lanes.weight() * mis));
-        observer.light(self.vertex, how, light);
-        self.radiance += light;
+        let found = self.polarisation.receive(self.beta * radiance * (self.lanes.weight() * mis));
+        let found = self.gather(found);
+        observer.light(self.vertex, how, found);
     }
 
     /// Whether the path passes a surface that lets a part of the light through. It then goes on along the same ray, as the same step: a

@@ -51,6 +51,13 @@ pub enum Event {
         /// Throughput of the path up to here at each wavelength.
         beta: Vec<f64>,
     },
+    /// A surface fluoresced: before it light had these wavelengths.
+    Fluorescence {
+        /// At which vertex.
+        vertex: u32,
+        /// Wavelengths that excite it, nm; the first is the hero.
+        excitation_nm: Vec<f64>,
+    },
     /// Light was added.
     Light {
         /// At which vertex.
@@ -116,6 +123,10 @@ impl<const N: usize> Observer<N> for Recorder<'_> {
     fn scattering(&mut self, vertex: u32, position: Vec3<f64>, beta: Lanes<f64, N>) {
         let position_m = self.prepared.frame.to_world_m(position).to_array();
         self.events.push(Event::Scattering { vertex, position_m, beta: widen(beta) });
+    }
+
+    fn fluoresces(&mut self, vertex: u32, excitation_nm: Lanes<f64, N>) {
+        self.events.push(Event::Fluorescence { vertex, excitation_nm: widen(excitation_nm) });
     }
 
     fn light(&mut self, vertex: u32, how: Found, radiance: Lanes<f64, N>) {

@@ -95,6 +95,7 @@ impl<'a> Tracer<'a> {
                 weigh_hits: prepared.lights.can_be_met() || plan.runs(EffectName::Mis),
                 max_depth: max_depth.min(MOST_VERTICES),
                 roulette: integrator.roulette,
+                fluoresces: plan.runs(EffectName::Fluorescence),
                 tables: &prepared.tables,
                 plain_skies: prepared.environments.iter().all(|sky| sky.light.is_none()),
                 guided_targets: &prepared.guided_targets,

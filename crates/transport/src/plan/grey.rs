@@ -6,6 +6,7 @@
 use super::evidence::sources;
 use etalon_optics::Spectrum;
 use etalon_optics::colour::{cie_y_integral_nm, colour_matching};
+use etalon_optics::spectrum::{simpson, whole_nm};
 use etalon_scene::Scene;
 
 /// What the one lane means for the film.
@@ -28,7 +29,7 @@ impl OneLaneFilm {
         // Where nothing shines the picture is black, whatever the shape.
         let shape = sources.first().map_or(&Spectrum::ONE, |(_, spectrum)| *spectrum);
         let mut strongest = (range_nm[0], 0.0);
-        for nm in steps(range_nm).chain(nodes(shape, range_nm)) {
+        for nm in whole_nm(range_nm).chain(shape.kinks_nm(range_nm)) {
             let value = shape.eval(nm);
             if value > strongest.1 {
                 strongest = (nm, value);
@@ -55,14 +56,14 @@ impl OneLaneFilm {
 /// another kind that agree at hundreds of points are the same. The tolerance is the rounding of the spectra's own formulas.
 pub(super) fn same_shape(a: &Spectrum, b: &Spectrum, range_nm: [f64; 2]) -> bool {
     const ROUNDING: f64 = 1e-12;
-    let largest = |s: &Spectrum| steps(range_nm).map(|nm| s.eval(nm)).fold(0.0, f64::max);
+    let largest = |s: &Spectrum| whole_nm(range_nm).map(|nm| s.eval(nm)).fold(0.0, f64::max);
     let (largest_a, largest_b) = (largest(a), largest(b));
     if largest_a == 0.0 || largest_b == 0.0 {
         return largest_a == largest_b;
     }
-    steps(range_nm)
-        .chain(nodes(a, range_nm))
-        .chain(nodes(b, range_nm))
+    whole_nm(range_nm)
+        .chain(a.kinks_nm(range_nm))
+        .chain(b.kinks_nm(range_nm))
         .all(|nm| (a.eval(nm) / largest_a - b.eval(nm) / largest_b).abs() <= ROUNDING)
 }
 
@@ -73,48 +74,20 @@ pub(super) fn xyz_over(spectrum: &Spectrum, range_nm: [f64; 2]) -> [f64; 3] {
     integral(spectrum, range_nm, cie_y_integral_nm(), colour_matching)
 }
 
-/// ∫ S·w dλ over a range, divided by `unit`, by Simpson's rule between all kinks.
+/// ∫ S·w dλ over a range, divided by `unit`.
 fn integral<const N: usize>(
     spectrum: &Spectrum,
     range_nm: [f64; 2],
     unit: f64,
     weights: impl Fn(f64) -> [f64; N],
 ) -> [f64; N] {
-    let mut borders: Vec<f64> = steps(range_nm).chain(nodes(spectrum, range_nm)).collect();
-    borders.sort_by(f64::total_cmp);
     let mut sum = [0.0; N];
-    for w in borders.windows(2) {
-        // A table that is zero outside jumps at its ends; the borders themselves belong to the inside.
-        let inward = 1e-9 * (w[1] - w[0]);
-        for (nm, weight) in [(w[0] + inward, 1.0), (0.5 * (w[0] + w[1]), 4.0), (w[1] - inward, 1.0)] {
-            let value = weight / 6.0 * (w[1] - w[0]) * spectrum.eval(nm) / unit;
-            let weights = weights(nm);
-            (0..N).for_each(|c| sum[c] += value * weights[c]);
-        }
+    for (nm, weight) in simpson(range_nm, spectrum.kinks_nm(range_nm)) {
+        let value = weight * spectrum.eval(nm) / unit;
+        let weights = weights(nm);
+        (0..N).for_each(|c| sum[c] += value * weights[c]);
     }
     sum
-}
-
-/// The ends of a range and the whole nanometres between them.
-pub(super) fn steps([first, last]: [f64; 2]) -> impl Iterator<Item = f64> {
-    let inner = (1..).map(move |i| first.floor() + f64::from(i)).take_while(move |&nm| nm < last);
-    std::iter::once(first).chain(inner).chain(std::iter::once(last))
-}
-
-/// The wavelengths within a range at which a spectrum may have a kink.
-fn nodes(spectrum: &Spectrum, [first, last]: [f64; 2]) -> Vec<f64> {
-    match spectrum {
-        Spectrum::Tabulated(table) => {
-            table.wavelengths_nm().iter().copied().filter(|nm| (first..=last).contains(nm)).collect()
-        }
-        Spectrum::Scaled { spectrum, .. } => nodes(spectrum, [first, last]),
-        // CIE illuminants have theirs at whole nanometres.
-        Spectrum::Constant(_)
-        | Spectrum::Blackbody(_)
-        | Spectrum::Illuminant(_)
-        | Spectrum::RgbReflectance(_)
-        | Spectrum::RgbEmission(_) => Vec::new(),
-    }
 }
 
 #[cfg(test)]

@@ -33,6 +33,8 @@ pub enum EffectName {
     Dispersion,
     /// Thin films reflect some wavelengths more than others: their waves interfere.
     Interference,
+    /// Surfaces give light back at other wavelengths than those that they take it in at.
+    Fluorescence,
     /// The camera's aperture has an extent.
     Lens,
     /// Shadow rays look for direct light.
@@ -69,10 +71,11 @@ pub enum EffectName {
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Interference,
+        Self::Fluorescence,
         Self::Lens,
         Self::ShadowRays,
         Self::Mis,
@@ -97,6 +100,7 @@ impl EffectName {
             Self::Wavelengths => "wavelengths",
             Self::Dispersion => "dispersion",
             Self::Interference => "interference",
+            Self::Fluorescence => "fluorescence",
             Self::Lens => "lens",
             Self::ShadowRays => "shadow-rays",
             Self::Mis => "mis",
@@ -122,6 +126,7 @@ impl EffectName {
             Self::Wavelengths => "every spectrum is replaced by its mean, weighted by the eye: no colours",
             Self::Dispersion => "every index of refraction is that of one wavelength",
             Self::Interference => "thin films are left out: what they coat is bare",
+            Self::Fluorescence => "surfaces that fluoresce only reflect",
             Self::Lens => "everything is in focus",
             Self::ShadowRays => {
                 "lights without a surface are left out; the others are found by chance, with more noise"
@@ -153,6 +158,7 @@ impl EffectName {
             // They are what the surfaces, or the film, are made of.
             Self::SpecularChains
             | Self::Interference
+            | Self::Fluorescence
             | Self::Textures
             | Self::ShadingNormals
             | Self::Masks
@@ -293,6 +299,7 @@ fn reuse_unsupported(scene: &Scene, kernel: &KernelKind, runs: impl Fn(EffectNam
         () if matches!(scene.camera.projection, Projection::CompoundLens(_)) => Some("the camera has a compound lens"),
         () if kernel.polarised => Some("polarisation is traced"),
         () if !kernel.shares_paths => Some("a study decides what paths carry"),
+        () if runs(EffectName::Fluorescence) => Some("surfaces fluoresce"),
         () if runs(EffectName::NestedDielectrics) => Some("dielectrics are nested"),
         () if runs(EffectName::Absorption) => Some("media absorb"),
         () if runs(EffectName::Scattering) => Some("media scatter"),
@@ -352,7 +359,7 @@ impl Plan {
             || parts_lanes(EffectName::Scattering, evidence::media_part_lanes)
         {
             LaneModel::Hero
-        } else if runs(EffectName::Wavelengths) || runs(EffectName::Polarisation) {
+        } else if runs(EffectName::Wavelengths) || runs(EffectName::Polarisation) || runs(EffectName::Fluorescence) {
             LaneModel::Shared
         } else {
             LaneModel::One

@@ -5,6 +5,7 @@ use super::{EffectName, PathLoop, three_channels};
 use crate::bsdf::properties;
 use crate::texture;
 use etalon_optics::colour::colour_matching;
+use etalon_optics::spectrum::whole_nm;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, reference_nm};
 use etalon_scene::{
     Filter, Image, ImageTexture, LightSampling, MaterialKind, Medium, Mesh, Metal, Object, ParameterMut,
@@ -69,8 +70,9 @@ pub enum StudyError {
 impl Study {
     /// Whether an effect is left out if the scene calls for it.
     pub(super) fn leaves_out(&self, name: EffectName) -> bool {
-        // Wavelengths that differ in nothing go the same way.
-        let implied = name == EffectName::Dispersion && self.without.contains(&EffectName::Wavelengths);
+        // Wavelengths that differ in nothing go the same way, and none is given back at another.
+        let implied = matches!(name, EffectName::Dispersion | EffectName::Fluorescence)
+            && self.without.contains(&EffectName::Wavelengths);
         self.without.contains(&name) || implied
     }
 
@@ -138,6 +140,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                     *spectrum = grey(spectrum, range_nm);
                 }
             }
+            leave_out(EffectName::Fluorescence, scene);
             leave_out(EffectName::Dispersion, scene);
             lights_mut(scene).for_each(|spectrum| *spectrum = grey(spectrum, range_nm));
             for emission in objects_mut(scene).filter_map(|object| object.emission.as_mut()) {
@@ -154,6 +157,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             fix_lens(scene);
         }
         EffectName::Interference => scene.materials.iter_mut().for_each(|material| material.kind.remove_films()),
+        EffectName::Fluorescence => scene.materials.iter_mut().for_each(|material| material.kind.remove_fluorescence()),
         EffectName::Lens => match &mut scene.camera.projection {
             Projection::Perspective { lens, .. } => *lens = None,
             Projection::Orthographic { .. } => {}
@@ -252,6 +256,8 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
             }
             // See `fix_indices`.
             ParameterMut::Grating(_) => {}
+            // Taken away before.
+            ParameterMut::Fluorescence(_) => {}
             ParameterMut::Film(film) => film.at_nm = Some(reference_nm(range_nm)),
             // See `fix_indices`.
             ParameterMut::Interface(_) => {}
@@ -298,7 +304,7 @@ pub(super) fn index_at_reference(index: &RefractiveIndex, range_nm: [f64; 2]) ->
 /// The mean over the range, weighted by ȳ (plainly, where the eye sees nothing).
 fn grey(spectrum: &Spectrum, range_nm: [f64; 2]) -> Spectrum {
     let mean = |weight: &dyn Fn(f64) -> f64| {
-        let (sum, total) = super::grey::steps(range_nm)
+        let (sum, total) = whole_nm(range_nm)
             .fold((0.0, 0.0), |(sum, total), nm| (sum + weight(nm) * spectrum.eval(nm), total + weight(nm)));
         (total > 0.0).then(|| sum / total)
     };

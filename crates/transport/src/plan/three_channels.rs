@@ -26,6 +26,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), StudyError> {
     if evidence::of(EffectName::Scattering, scene).is_ok() {
         return refused("media scatter, which three channels do not follow");
     }
+    if evidence::of(EffectName::Fluorescence, scene).is_ok() {
+        return refused("surfaces fluoresce, which three channels do not follow");
+    }
     if scene.film.bands.is_some() {
         return refused("bands hold wavelengths, which three channels do not have");
     }
@@ -59,7 +62,9 @@ fn colour(kind: &mut MaterialKind, range_nm: [f64; 2]) {
             | ParameterMut::Interface(_)
             | ParameterMut::Sheet(_)
             | ParameterMut::Film(_)
-            | ParameterMut::Grating(_) => {}
+            | ParameterMut::Grating(_)
+            // Refused.
+            | ParameterMut::Fluorescence(_) => {}
         }
     }
 }

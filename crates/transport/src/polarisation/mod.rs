@@ -41,6 +41,12 @@ pub trait Polarisation<const N: usize>: Copy {
         light: Lanes<f64, N>,
     ) -> Lanes<f64, N>;
 
+    /// What one unit of unpolarised light that comes in at the path's end is worth in S₀, S₁, S₂ and S₃.
+    fn of_unpolarised(&self) -> [Lanes<f64, N>; 4];
+
+    /// Receives S₁, S₂ and S₃ that were worked out elsewhere.
+    fn record(&mut self, stokes: [Lanes<f64, N>; 3]);
+
     /// S₁, S₂ and S₃ received so far, W·m⁻²·sr⁻¹·nm⁻¹; `None` if polarisation is not carried.
     fn received(&self) -> Option<[Lanes<f64, N>; 3]>;
 }
@@ -75,6 +81,12 @@ impl<const N: usize> Polarisation<N> for Averaged {
     ) -> Lanes<f64, N> {
         light
     }
+
+    fn of_unpolarised(&self) -> [Lanes<f64, N>; 4] {
+        [Lanes::ONE, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO]
+    }
+
+    fn record(&mut self, _: [Lanes<f64, N>; 3]) {}
 
     fn received(&self) -> Option<[Lanes<f64, N>; 3]> {
         None
@@ -147,6 +159,14 @@ impl<const N: usize> Polarisation<N> for Followed<N> {
         let received = aside.receive(light);
         self.received = aside.received;
         received
+    }
+
+    fn of_unpolarised(&self) -> [Lanes<f64, N>; 4] {
+        self.columns[0]
+    }
+
+    fn record(&mut self, stokes: [Lanes<f64, N>; 3]) {
+        (0..3).for_each(|i| self.received[i] += stokes[i]);
     }
 
     fn received(&self) -> Option<[Lanes<f64, N>; 3]> {

@@ -15,7 +15,7 @@ use crate::film::Counters;
 use crate::media::{Interface, Media, MediumStack};
 use crate::scene::shading_tables::{BsdfKind, SmoothInterface};
 use crate::scene::world::{ShadowRays, World};
-use crate::surface::{Scattering, Surface};
+use crate::surface::{FluorescentPart, Scattering, Surface};
 use etalon_geometry::{Hit, Passed, Ray, SurfacePoint};
 use etalon_optics::Vec3;
 
@@ -98,6 +98,21 @@ impl<'a> SurfaceInteraction<'a> {
         if self.kind == BsdfKind::General {
             self.scattering = Some(self.surface.scattering(world.geometry, &self.point, &self.hit, self.interface));
         }
+    }
+
+    /// What of it fluoresces, a part of several drawn with a number in [0, 1).
+    pub(crate) fn fluorescent_part(&self, world: &World<'a>, u: f64) -> Option<FluorescentPart<'a>> {
+        if !self.surface.fluoresces() {
+            return None;
+        }
+        self.surface.scattering(world.geometry, &self.point, &self.hit, self.interface).fluorescent_part(self.wo, u)
+    }
+
+    /// Becomes a white Lambertian surface.
+    pub(crate) fn reradiate(&mut self, world: &World<'a>) {
+        let scattering = self.surface.scattering(world.geometry, &self.point, &self.hit, self.interface);
+        self.scattering = Some(scattering.with(&world.surfaces.white.0));
+        self.kind = BsdfKind::General;
     }
 
     /// What it does to light, where its kind is general.

@@ -16,7 +16,7 @@ use crate::scene::shading_tables::ShadingTables;
 use crate::scene::shapes::{self, GroupShapes, SceneShapes};
 use crate::scene::world::ShadowRays;
 use crate::spectral::PathSpectrum;
-use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
+use crate::surface::{Emission, ObjectSurface, Relief, Surfaces, White};
 use crate::wavelength::WavelengthDistribution;
 use etalon_geometry::{Geometry, SurfaceId};
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
@@ -122,6 +122,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     }
     let mut surfaces = Surfaces {
         bsdfs,
+        white: White::default(),
         properties: scene.materials.iter().map(|material| properties(&material.kind)).collect(),
         interiors: scene
             .materials

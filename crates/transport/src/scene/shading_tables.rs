@@ -138,6 +138,9 @@ fn kind(bsdf: &Bsdf, spectra: &mut Vec<PathSpectrum>, interfaces: &mut Vec<Smoot
     let of = |known: Slot, kind: fn(u8) -> BsdfKind| known.map_or(BsdfKind::General, kind);
     match bsdf {
         Bsdf::Lambert(lambert) => of(lambert.uniform().and_then(|spectrum| slot(spectrum, spectra)), BsdfKind::Lambert),
+        Bsdf::Fluorescent(surface) => {
+            of(surface.reflection().uniform().and_then(|spectrum| slot(spectrum, spectra)), BsdfKind::Lambert)
+        }
         Bsdf::Mirror(mirror) => of(mirror.uniform().and_then(|spectrum| slot(spectrum, spectra)), BsdfKind::Mirror),
         // The general way knows what films do.
         Bsdf::Dielectric(glass) if interfaces.len() < INTERFACES && !glass.is_coated() => {
@@ -177,6 +180,8 @@ fn slot(spectrum: &PathSpectrum, spectra: &mut Vec<PathSpectrum>) -> Slot {
 #[derive(Clone)]
 pub(crate) struct SpectrumCache<const N: usize> {
     valid: u32,
+    /// Whether the wavelengths were drawn from the cells of the tables.
+    from_cells: bool,
     values: [Lanes<f64, N>; SLOTS],
     /// How far wavelengths are from the whole nanometre before.
     past_nm: Lanes<f64, N>,
@@ -186,13 +191,14 @@ pub(crate) struct SpectrumCache<const N: usize> {
 
 impl<const N: usize> SpectrumCache<N> {
     pub(crate) fn new() -> Self {
-        Self { valid: 0, values: [Lanes::ZERO; SLOTS], past_nm: Lanes::ZERO, primaries: None }
+        Self { valid: 0, from_cells: true, values: [Lanes::ZERO; SLOTS], past_nm: Lanes::ZERO, primaries: None }
     }
 
-    /// Another path, of these wavelengths, takes the place.
+    /// Other wavelengths take the place, drawn from the cells of the tables or not.
     #[inline(always)]
-    pub(crate) fn forget(&mut self, lambda_nm: &Lanes<f64, N>) {
+    pub(crate) fn forget(&mut self, lambda_nm: &Lanes<f64, N>, from_cells: bool) {
         self.valid = 0;
+        self.from_cells = from_cells;
         self.past_nm = lambda_nm.map(past_whole);
         self.primaries = None;
     }
@@ -201,7 +207,9 @@ impl<const N: usize> SpectrumCache<N> {
     #[inline(always)]
     pub(crate) fn spectrum(&mut self, slot: u8, tables: &ShadingTables, wavelengths: &Wavelengths<N>) -> Lanes<f64, N> {
         let slot = usize::from(slot) % SLOTS;
-        if let Some(table) = &tables.by_cells[slot] {
+        if let Some(table) = &tables.by_cells[slot]
+            && self.from_cells
+        {
             let [value, step] = table.at(&wavelengths.place);
             return value + self.past_nm * step;
         }

@@ -34,6 +34,8 @@ pub(crate) struct World<'a> {
     /// Most path edges from the camera to a light, at most [`MOST_VERTICES`](crate::integrator::MOST_VERTICES).
     pub max_depth: u32,
     pub roulette: bool,
+    /// Whether some surface gives light back at other wavelengths.
+    pub fluoresces: bool,
     pub tables: &'a ShadingTables,
     /// Whether no shadow ray aims at any of the skies.
     pub plain_skies: bool,

@@ -4,7 +4,7 @@ mod bump_mapping;
 pub(crate) mod quadric_uv;
 pub(crate) mod shading_geometry;
 
-use crate::bsdf::{Bsdf, BsdfSample, Lobe, Properties, Shading};
+use crate::bsdf::{Bsdf, BsdfSample, Lambert, Lobe, Properties, Reradiation, Shading};
 use crate::media::{Interface, Interior, PlacedSolid};
 use crate::polarisation::mueller::Mueller;
 use crate::spectral::PathSpectrum;
@@ -66,6 +66,16 @@ impl Emission {
     }
 }
 
+/// A white Lambertian surface.
+#[derive(Clone, Debug)]
+pub(crate) struct White(pub Bsdf);
+
+impl Default for White {
+    fn default() -> Self {
+        Self(Bsdf::Lambert(Lambert::new(PathSpectrum::Constant(1.0).into())))
+    }
+}
+
 /// Look-up from primitives to what they are made of.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surfaces {
@@ -73,6 +83,8 @@ pub(crate) struct Surfaces {
     pub bsdfs: Vec<Bsdf>,
     /// Properties of each material.
     pub properties: Vec<Properties>,
+    /// How light leaves that surfaces give back at another wavelength: as from a white Lambertian one.
+    pub white: White,
     /// What each material holds, where it states both its sides itself.
     pub interiors: Vec<Option<Interior>>,
     pub objects: Vec<ObjectSurface>,
@@ -198,6 +210,11 @@ impl<'a> Surface<'a> {
         Scattering { bsdf: self.bsdf(), at: shading.between(interface) }
     }
 
+    /// Whether it gives light back at other wavelengths.
+    pub(crate) fn fluoresces(&self) -> bool {
+        self.surfaces.properties[self.material].fluoresces
+    }
+
     /// Whether what the surface does depends on the medium that it stands in.
     pub(crate) fn takes_medium(&self) -> bool {
         self.surfaces.properties[self.material].takes_medium
@@ -223,10 +240,34 @@ impl<'a> Surface<'a> {
     }
 }
 
+/// A part of a surface that fluoresces at one point.
+pub(crate) struct FluorescentPart<'a> {
+    /// The share of the surface that all such parts have.
+    pub share: f64,
+    pub reradiation: &'a Reradiation,
+    /// What it does to light that keeps its wavelength.
+    pub reflection: &'a Lambert,
+    pub uv: [f64; 2],
+}
+
 /// Scattering at one point.
 pub(crate) struct Scattering<'a> {
     bsdf: &'a Bsdf,
     at: Shading<'a>,
+}
+
+impl<'a> Scattering<'a> {
+    /// See [`Bsdf::fluorescent_share`] and [`Bsdf::fluorescent_part`]: the share of the surface, its reradiation, what it reflects, and where.
+    pub(crate) fn fluorescent_part(&self, wo: Vec3<f64>, u: f64) -> Option<FluorescentPart<'a>> {
+        let share = self.bsdf.fluorescent_share(&self.at, wo);
+        let (reradiation, reflection) = self.bsdf.fluorescent_part(&self.at, wo, u).filter(|_| share > 0.0)?;
+        Some(FluorescentPart { share, reradiation, reflection, uv: self.at.uv })
+    }
+
+    /// Another BSDF at the same point.
+    pub(crate) fn with(self, bsdf: &'a Bsdf) -> Self {
+        Self { bsdf, ..self }
+    }
 }
 
 impl Scattering<'_> {

@@ -104,6 +104,7 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
     let cos = wo[2].abs().min(1.0);
     match kind {
         MaterialKind::Lambert { .. }
+        | MaterialKind::Fluorescent { .. }
         | MaterialKind::RoughConductor { .. }
         | MaterialKind::RoughDielectric { .. }
         | MaterialKind::OrenNayar { .. }

@@ -1,6 +1,7 @@
 //! Every material, held to every law of a BSDF.
 
-use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum};
+use etalon_optics::spectrum::Outside;
+use etalon_optics::{ComplexIndex, Fluorescence, Fluorophore, RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite, subjects::Scatters};
 use etalon_scene::{
     FacetDistribution, FacetMasking, FilmIndex, FilmLayer, Grating, Grooves, Image, ImageTexture, InternalReflection,
@@ -98,6 +99,15 @@ fn grating(transmits: bool) -> Material {
     Material::new(MaterialKind::Grating { reflectance: Spectrum::Constant(0.8).into(), grating })
 }
 
+/// What it does to light that keeps its wavelength.
+fn fluorescent() -> Material {
+    let band = |from, to| Spectrum::tabulated(vec![from, to], vec![0.3; 2], Outside::Zero).unwrap();
+    let dye = Fluorophore::new(band(380.0, 450.0), band(500.0, 600.0), 0.9, [360.0, 830.0]).unwrap();
+    let (reflectance, fluorescence) = (Spectrum::Constant(0.6).into(), Fluorescence::Fluorophores(vec![dye]));
+    Material::new(MaterialKind::Fluorescent { reflectance, fluorescence })
+}
+
+scatters_suite!(fluorescent, fluorescent());
 scatters_suite!(reflection_grating, grating(false));
 scatters_suite!(transmission_grating, grating(true));
 scatters_suite!(coated_glass, coated_glass(None));

@@ -88,6 +88,11 @@ fn draw(prepared: &Prepared, view: &CameraView, size: [u32; 2], sample: u32, rep
                 vertices.push(vertex(object, material_of(prepared.scene(), object), *position_m, beta));
             }
             Event::Scattering { position_m, beta, .. } => vertices.push(vertex("medium", None, *position_m, beta)),
+            Event::Fluorescence { .. } => {
+                if let Some(vertex) = vertices.last_mut() {
+                    vertex.object.push_str(" (fluoresces)");
+                }
+            }
             Event::Light { found, luminance, .. } => {
                 let light = vertices.last_mut().map_or(&mut before, |vertex| &mut vertex.light);
                 light.push((found.clone(), *luminance));

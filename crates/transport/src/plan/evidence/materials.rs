@@ -1,8 +1,8 @@
 //! What the materials of surfaces call for.
 
 use crate::bsdf::{Properties, properties};
-use crate::plan::grey::steps;
-use etalon_optics::{ComplexIndex, RefractiveIndex};
+use etalon_optics::spectrum::whole_nm;
+use etalon_optics::{ComplexIndex, Fluorescence, RefractiveIndex};
 use etalon_scene::{Grating, MaterialKind, Metal, Parameter, PolarisingSheet, SpectrumTexture, ThinFilm};
 
 /// The index by which wavelengths go different ways, if there is one.
@@ -33,9 +33,27 @@ pub(super) fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> 
             format!("retardance in degrees {}", spread(range_nm, |nm| retardance_rad.to_degrees() * at_nm / nm))
         }),
         Parameter::Grating(grating) => diffraction(grating),
+        Parameter::Fluorescence(fluorescence) => reradiation(fluorescence, range_nm),
         // What fixes the wavelength treats all alike.
         Parameter::Film(film) => film.at_nm.is_none().then(|| thickness(film)),
     })
+}
+
+/// The most light that a material gives back at other wavelengths, if it gives any back that is rendered.
+pub(super) fn fluorescence(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
+    kind.parameters().into_iter().find_map(|parameter| match parameter {
+        Parameter::Fluorescence(fluorescence) => reradiation(fluorescence, range_nm),
+        _ => None,
+    })
+}
+
+/// `gives back up to 0.62 of light at 450 nm, between 480 and 680 nm`.
+fn reradiation(fluorescence: &Fluorescence, range_nm: [f64; 2]) -> Option<String> {
+    let nm: Vec<f64> = whole_nm(range_nm).collect();
+    let returned = fluorescence.returned(&nm, range_nm);
+    let (nm, most) = nm.iter().zip(returned).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let [first, last] = fluorescence.emission_range_nm();
+    (most > 0.0).then(|| format!("gives back up to {most:.3} of light at {nm} nm, between {first} and {last} nm"))
 }
 
 /// By which period a grating parts wavelengths, if it does.
@@ -109,5 +127,5 @@ pub(super) fn spread(range_nm: [f64; 2], value: impl Fn(f64) -> f64) -> String {
 
 /// The least and the largest value at whole nanometres and at the ends.
 fn extremes(range_nm: [f64; 2], value: impl Fn(f64) -> f64) -> [f64; 2] {
-    steps(range_nm).map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    whole_nm(range_nm).map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }

@@ -15,7 +15,7 @@ use super::grey::same_shape;
 use etalon_optics::reference_nm;
 use etalon_scene::{Filter, ImageTexture, Light, Material, Object, Projection, Scene, Shape};
 use lights::{is_environment, mis, shadow_rays};
-use materials::{colour, dispersion, interference, nested, specular};
+use materials::{colour, dispersion, fluorescence, interference, nested, specular};
 use media::{absorption, coloured, scattering};
 
 /// What calls for an effect (`Ok`), or why nothing does (`Err`).
@@ -30,6 +30,10 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         EffectName::Interference => match first_surface(scene, |material, _| interference(&material.kind)) {
             Some(found) => Ok(found),
             None => nothing("no surface has a thin film"),
+        },
+        EffectName::Fluorescence => match first_surface(scene, |material, range| fluorescence(&material.kind, range)) {
+            Some(found) => Ok(found),
+            None => nothing("no surface gives light back at another wavelength"),
         },
         EffectName::Lens => lens(&scene.camera.projection, scene.integrator.wavelength_range_nm),
         EffectName::ShadowRays => shadow_rays(scene),

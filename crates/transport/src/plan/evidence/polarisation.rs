@@ -3,9 +3,8 @@
 use super::{first_surface, media, surface};
 use crate::bsdf::PathFilm;
 use crate::bsdf::properties;
-use crate::plan::grey::steps;
 use crate::texture;
-use etalon_optics::{Complex, RefractiveIndex, colour::colour_matching, fresnel, reference_nm};
+use etalon_optics::{Complex, RefractiveIndex, colour::colour_matching, fresnel, reference_nm, spectrum::whole_nm};
 use etalon_scene::{MaterialKind, Metal, Parameter, Scene};
 
 /// Why polarisation is not carried where it could make no difference.
@@ -60,7 +59,11 @@ fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
         Parameter::Metal(Metal::Index(index)) => metal(range_nm, |nm| index.eval(nm)),
         // What states a reflectance treats s and p alike; sheets call for polarisation themselves.
         // Films are looked at with what they coat.
-        Parameter::Reflectance(_) | Parameter::Sheet(_) | Parameter::Film(_) | Parameter::Grating(_) => None,
+        Parameter::Reflectance(_)
+        | Parameter::Sheet(_)
+        | Parameter::Film(_)
+        | Parameter::Grating(_)
+        | Parameter::Fluorescence(_) => None,
     };
     let coated = kind.parts().into_iter().filter_map(|part| film(part, range_nm));
     let worst = kind.parameters().into_iter().filter_map(of_parameter).chain(coated);
@@ -131,8 +134,8 @@ fn film(part: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
 
 /// The wavelengths of a range that count for what the eye sees, at least a hundredth of the most; all, if none does.
 fn seen(range_nm: [f64; 2]) -> Vec<f64> {
-    let seen: Vec<f64> = steps(range_nm).filter(|&nm| colour_matching(nm)[1] >= 0.01).collect();
-    if seen.is_empty() { steps(range_nm).collect() } else { seen }
+    let seen: Vec<f64> = whole_nm(range_nm).filter(|&nm| colour_matching(nm)[1] >= 0.01).collect();
+    if seen.is_empty() { whole_nm(range_nm).collect() } else { seen }
 }
 
 /// [`polarises`] of an interface of relative index `n`: reflection at Brewster's angle leaves s alone; and what a plate passes on
