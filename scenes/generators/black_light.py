@@ -92,15 +92,15 @@ def scene():
             ball("green", -0.07, -0.02, 0.055),
             ball("orange", 0.07, 0.02, 0.05),
             ball("red", 0.2, -0.01, 0.055),
-            ball("chalk", 0.0, 0.19, 0.03),
+            ball("chalk", 0.0, 0.09, 0.028),
             {
                 "name": "tube",
                 "shape": tube,
                 "material": {"type": "black"},
-                "emission": {"radiance": table(lambda nm: 12 * gaussian(nm - LAMP_NM, LAMP_WIDTH_NM), 2)},
+                "emission": {"radiance": table(lambda nm: 90 * gaussian(nm - LAMP_NM, LAMP_WIDTH_NM), 2)},
             },
         ],
-        "lights": [{"type": "environment", "name": "night", "radiance": {"type": "illuminant", "name": "D65", "scale": 0.002}}],
+        "lights": [{"type": "environment", "name": "night", "radiance": {"type": "illuminant", "name": "D65", "scale": 0.01}}],
     }
 
 

@@ -47,6 +47,11 @@ impl Blend {
         PartWeights([(second - 1, 1.0 - share), (second, share)])
     }
 
+    /// The parts.
+    pub(super) fn parts_mut(&mut self) -> impl Iterator<Item = &mut Bsdf> {
+        self.parts.iter_mut()
+    }
+
     /// The parts that stand at a place, each with the share of the surface that fluoresces there because of it.
     pub(super) fn fluorescent_parts(&self, at: &Shading<'_>, wo: Vec3<f64>) -> [(&Bsdf, f64); 2] {
         let PartWeights(shares) = self.shares(at.uv);

@@ -24,16 +24,19 @@ pub struct Fluorescent {
 pub struct Reradiation {
     parts: Parts,
     excitation: ExcitationDistribution,
+    /// What light is expected at each wavelength, in any unit.
+    light: PathSpectrum,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Parts {
     /// Of each dye the absorption, the emission, and their factor.
     Fluorophores(Vec<(PathSpectrum, PathSpectrum, f64)>),
     Matrix(ReradiationMatrix),
 }
 
-/// A density over wavelengths of excitation: in proportion to the power that comes back, constant between whole nanometres and kinks.
+/// A density over wavelengths of excitation, constant between whole nanometres and kinks: in proportion to the power that comes back of white light,
+/// and for the other half of that which comes back of the light that is expected.
 #[derive(Debug)]
 struct ExcitationDistribution {
     borders_nm: Vec<f64>,
@@ -82,6 +85,18 @@ impl Fluorescent {
 }
 
 impl Bsdf {
+    /// Says what light there is in the scene, in any unit: what excites a surface is looked for where light is.
+    pub(crate) fn expect_light(&mut self, light: &PathSpectrum) {
+        match self {
+            Self::Fluorescent(surface) => {
+                surface.reradiation = surface.reradiation.take().map(|reradiation| Arc::new(reradiation.under(light)));
+            }
+            Self::Blend(blend) => blend.parts_mut().for_each(|part| part.expect_light(light)),
+            Self::OneSided(one) => one.bsdf_mut().expect_light(light),
+            _ => {}
+        }
+    }
+
     /// The share of the surface that fluoresces, seen along `wo`.
     pub(crate) fn fluorescent_share(&self, at: &Shading<'_>, wo: Vec3<f64>) -> f64 {
         match self {
@@ -129,7 +144,18 @@ impl Reradiation {
                 Parts::Fluorophores(prepared.collect())
             }
         };
-        Some(Self { parts, excitation })
+        Some(Self { parts, excitation, light: PathSpectrum::Constant(1.0) })
+    }
+
+    /// The same under this light: half of all excitation is drawn where it is.
+    fn under(&self, light: &PathSpectrum) -> Self {
+        let parts = self.parts.clone();
+        Self { parts, excitation: self.excitation.toward(light), light: light.clone() }
+    }
+
+    /// What light is expected at wavelengths, in any unit.
+    pub(crate) fn expected_light<const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
+        self.light.lanes(lambda_nm)
     }
 
     /// Wavelengths of excitation, nm, and one over the density of each, nm: the hero's drawn by `u` in [0, 1), the others equal shares of all
@@ -186,6 +212,29 @@ impl ExcitationDistribution {
         }
         cumulative.iter_mut().for_each(|part| *part /= sum);
         Some(Self { borders_nm, cumulative })
+    }
+
+    /// The same density, and for the other half its product with a light.
+    fn toward(&self, light: &PathSpectrum) -> Self {
+        let segments = || self.borders_nm.windows(2).zip(self.cumulative.windows(2));
+        let lit: Vec<f64> =
+            segments().map(|(nm, part)| (part[1] - part[0]) * light.eval(0.5 * (nm[0] + nm[1]))).collect();
+        let all: f64 = lit.iter().sum();
+        if all <= 0.0 {
+            // No lamp excites it: only what other surfaces give back.
+            return Self { borders_nm: self.borders_nm.clone(), cumulative: self.cumulative.clone() };
+        }
+        let mut sum = 0.0;
+        let ends = segments().zip(&lit).map(|((_, part), lit)| {
+            sum += lit / all;
+            0.5 * (part[1] + sum)
+        });
+        let mut cumulative = vec![0.0];
+        cumulative.extend(ends);
+        // Whatever the sums were rounded to.
+        let last = cumulative[cumulative.len() - 1];
+        cumulative.iter_mut().for_each(|part| *part /= last);
+        Self { borders_nm: self.borders_nm.clone(), cumulative }
     }
 
     /// The wavelength up to which a share of all probability lies, nm, and one over its density, nm.

@@ -32,6 +32,11 @@ impl OneSided {
         }
     }
 
+    /// What it does on the side that reflects.
+    pub(super) fn bsdf_mut(&mut self) -> &mut Bsdf {
+        &mut self.bsdf
+    }
+
     /// What a viewer sees of it, on the side that reflects.
     pub(super) fn seen(&self, n: Vec3<f64>, wo: Vec3<f64>) -> Option<&Bsdf> {
         self.is_seen(n, wo).then_some(&self.bsdf)

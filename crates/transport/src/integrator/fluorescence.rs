@@ -76,17 +76,20 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let (excitation_nm, width_nm) = reradiation.draw::<N>(u_wavelength);
         let between = reradiation.between(&excitation_nm, &lambda_nm);
 
-        // How much would go on either way, if all light were white.
+        // How much would go on either way: the mean of the chances under white light and under the light that is expected.
         let mean_width = |lane: usize| share * width_nm[lane] / N as f64;
-        let mut given_back = Lanes::ZERO;
-        (0..N).for_each(|lane| given_back += between[lane] * mean_width(lane));
         let reflected = Lanes::splat(1.0 - share) + reflection.reflectance(&lambda_nm, uv) * share;
-        let [given_back, reflected] = [given_back, reflected].map(|lanes| (self.beta * lanes).sum());
-        let probability = given_back / (given_back + reflected);
-        if probability.is_nan() || u_choice >= probability {
-            if probability > 0.0 {
-                self.beta /= 1.0 - probability;
-            }
+        let chance = |at_path: Lanes<f64, N>, exciting: Lanes<f64, N>| {
+            let mut given_back = Lanes::ZERO;
+            (0..N).for_each(|lane| given_back += between[lane] * (mean_width(lane) * exciting[lane]));
+            let [given_back, reflected] = [given_back, reflected * at_path].map(|lanes| (self.beta * lanes).sum());
+            if given_back > 0.0 { given_back / (given_back + reflected) } else { 0.0 }
+        };
+        let expected = [&lambda_nm, &excitation_nm].map(|nm| reradiation.expected_light(nm));
+        let white = chance(Lanes::ONE, Lanes::ONE);
+        let probability = if white > 0.0 { 0.5 * (white + chance(expected[0], expected[1])) } else { 0.0 };
+        if u_choice >= probability {
+            self.beta /= 1.0 - probability;
             return;
         }
 

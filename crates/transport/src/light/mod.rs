@@ -25,7 +25,7 @@ pub use spot::SpotLight;
 pub use table::LightTable;
 
 pub(crate) use moving::Link;
-pub(crate) use table::visible_sum;
+pub(crate) use table::{visible_sum, weighted_sum};
 
 use crate::frame::SceneFrame;
 use crate::mis::Density;

@@ -132,13 +132,23 @@ impl LightTable {
     /// A table over lights of a scene with this bounding radius; lights that emit nothing within the
     /// wavelengths `range_nm` are left out.
     pub fn new(lights: Vec<Light>, scene_radius: f64, range_nm: [f64; 2], selection: LightSelection) -> Self {
+        Self::weighed(lights, scene_radius, selection, |spectrum| visible_sum(spectrum, range_nm))
+    }
+
+    /// The same where `worth` says how much a spectrum counts; lights of no worth are left out.
+    pub(crate) fn weighed(
+        lights: Vec<Light>,
+        scene_radius: f64,
+        selection: LightSelection,
+        worth: impl Fn(&PathSpectrum) -> f64,
+    ) -> Self {
         // The triangles of a mesh share their spectrum, and come one after the other.
         let mut last: Option<(*const PathSpectrum, f64)> = None;
         let powers = lights.iter().map(|light| {
             let spectrum = light.spectrum();
             let visible = match last {
                 Some((of, visible)) if std::ptr::eq(of, spectrum) => visible,
-                _ => visible_sum(spectrum, range_nm),
+                _ => worth(spectrum),
             };
             last = Some((spectrum, visible));
             light.power_factor(scene_radius) * visible
@@ -153,6 +163,22 @@ impl LightTable {
         };
         let near = if by_place { Near::new(&lights, &powers) } else { None };
         Self { lights, table, near }
+    }
+
+    /// The power of all lights at a wavelength, nm, in a scene of this radius.
+    pub(crate) fn power_at(&self, wavelength_nm: f64, scene_radius: f64) -> f64 {
+        // The triangles of a mesh share their spectrum, and come one after the other.
+        let mut last: Option<(*const PathSpectrum, f64)> = None;
+        let powers = self.lights.iter().map(|light| {
+            let spectrum = light.spectrum();
+            let value = match last {
+                Some((of, value)) if std::ptr::eq(of, spectrum) => value,
+                _ => spectrum.eval(wavelength_nm),
+            };
+            last = Some((spectrum, value));
+            light.power_factor(scene_radius) * value
+        });
+        powers.sum()
     }
 
     /// Whether there is no light to aim at.
@@ -205,10 +231,16 @@ impl LightTable {
 
 /// ∫ S·(x̄ + ȳ + z̄ + floor) by 256 equal steps of the range: only the choice of lights depends on it. The floor keeps
 /// lights whose wavelengths are hardly visible.
-pub(crate) fn visible_sum(spectrum: &PathSpectrum, [first, last]: [f64; 2]) -> f64 {
+pub(crate) fn visible_sum(spectrum: &PathSpectrum, range_nm: [f64; 2]) -> f64 {
+    weighted_sum(spectrum, range_nm, |_| 0.0)
+}
+
+/// The same, where wavelengths count for more than the eye sees of them.
+pub(crate) fn weighted_sum(spectrum: &PathSpectrum, [first, last]: [f64; 2], more: impl Fn(f64) -> f64) -> f64 {
     let steps = 256;
     let at = |i: i32| first + (last - first) * (f64::from(i) + 0.5) / f64::from(steps);
-    (0..steps).map(at).map(|nm| spectrum.eval(nm) * (colour_matching(nm).iter().sum::<f64>() + 1e-3)).sum()
+    let weight = |nm: f64| colour_matching(nm).iter().sum::<f64>() + 1e-3 + more(nm);
+    (0..steps).map(at).map(|nm| spectrum.eval(nm) * weight(nm)).sum()
 }
 
 #[cfg(test)]

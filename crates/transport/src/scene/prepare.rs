@@ -6,7 +6,7 @@ use crate::camera::{Camera, Moving, PreparedLens};
 use crate::film::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame, mapped};
 use crate::guiding::GuidedTargets;
-use crate::light::{Environment, Light, LightTable};
+use crate::light::{Environment, Light, LightTable, weighted_sum};
 use crate::media::{Interior, Media, Medium, Participating, Solid};
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
 use crate::scene::motion::motion;
@@ -19,9 +19,11 @@ use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, ObjectSurface, Relief, Surfaces, White};
 use crate::wavelength::WavelengthDistribution;
 use etalon_geometry::{Geometry, SurfaceId};
+use etalon_optics::spectrum::whole_nm;
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
-use etalon_scene::{EnvironmentImage, LightSampling, MaterialKind, Object, Projection, Scene};
+use etalon_scene::{EnvironmentImage, LightSampling, MaterialKind, Object, Parameter, Projection, Scene};
 use etalon_simd::Level;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// A scene that is ready to be rendered.
@@ -56,6 +58,24 @@ pub struct Prepared {
     /// What a later frame of a sequence may take over.
     groups: Vec<Arc<GroupShapes>>,
     study: Study,
+}
+
+/// The most power that a surface gives back at other wavelengths, of one unit of light at each: light that excites counts for as much as
+/// what the eye sees of it.
+fn returned_by_fluorescence(scene: &Scene, plan: &Plan) -> PathSpectrum {
+    let range_nm = scene.integrator.wavelength_range_nm;
+    if !plan.runs(EffectName::Fluorescence) {
+        return PathSpectrum::Constant(0.0);
+    }
+    let nm: Vec<f64> = whole_nm([range_nm[0].floor(), range_nm[1].ceil()]).collect();
+    let mut most = vec![0.0_f64; nm.len()];
+    for parameter in scene.materials.iter().flat_map(|material| material.kind.parameters()) {
+        if let Parameter::Fluorescence(fluorescence) = parameter {
+            let returned = fluorescence.returned(&nm, range_nm);
+            most.iter_mut().zip(returned).for_each(|(most, returned)| *most = most.max(returned));
+        }
+    }
+    PathSpectrum::tabulate(range_nm, |at| most[((at - nm[0]) as usize).min(nm.len() - 1)])
 }
 
 /// Prepares a scene: its frame, the shapes and the accelerator in it, the table of lights and the plan. Renders nothing. What is the
@@ -94,7 +114,9 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     if plan.forces(EffectName::Environment) {
         environments.push(PathSpectrum::Constant(0.0).into());
     }
-    let lights = LightTable::new(emitters, radius, range_nm, scene.integrator.light_selection);
+    let returned = returned_by_fluorescence(scene, &plan);
+    let worth = |spectrum: &PathSpectrum| weighted_sum(spectrum, range_nm, |nm| returned.eval(nm));
+    let lights = LightTable::weighed(emitters, radius, scene.integrator.light_selection, worth);
     Environment::number(&mut environments, lights.lights());
     let mut light_of: Vec<(SurfaceId, u32)> = lights
         .lights()
@@ -116,6 +138,14 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
                 glass.prepare_media(&media, range_nm);
             }
         }
+    }
+    if plan.runs(EffectName::Fluorescence) {
+        let skies = |nm: f64| {
+            environments.iter().filter(|sky| sky.light.is_none()).map(move |sky| sky.radiance.spectrum().eval(nm))
+        };
+        let light = |nm| lights.power_at(nm, radius) + (PI * radius).powi(2) * skies(nm).sum::<f64>();
+        let light = PathSpectrum::tabulate(range_nm, light);
+        bsdfs.iter_mut().for_each(|bsdf| bsdf.expect_light(&light));
     }
     if plan.runs(EffectName::Polarisation) {
         bsdfs.iter_mut().for_each(Bsdf::prepare_polarisation);
