@@ -3,11 +3,11 @@
 use crate::error::{OpticsError, non_negative, positive};
 
 /// Planck constant, J·s (exact, SI 2019).
-const PLANCK_J_S: f64 = 6.626_070_15e-34;
+pub const PLANCK_J_S: f64 = 6.626_070_15e-34;
 /// Boltzmann constant, J·K⁻¹ (exact, SI 2019).
 const BOLTZMANN_J_K: f64 = 1.380_649e-23;
 /// Speed of light in vacuum, m·s⁻¹ (exact).
-const LIGHT_M_S: f64 = 299_792_458.0;
+pub const LIGHT_M_S: f64 = 299_792_458.0;
 
 /// The root x of x = 5(1 − e⁻ˣ): λ_max·T = hc/(x·k) (Wien's displacement law).
 pub(super) const WIEN_X: f64 = 4.965_114_231_744_276;

@@ -9,7 +9,7 @@ mod sigmoid;
 mod tabulated;
 
 pub use basis::RgbBasis;
-pub use blackbody::Blackbody;
+pub use blackbody::{Blackbody, LIGHT_M_S, PLANCK_J_S};
 pub use illuminant::{Illuminant, ScaledIlluminant};
 pub use integral::{simpson, whole_nm};
 pub use rgb::{RgbEmission, RgbReflectance};
