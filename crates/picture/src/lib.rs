@@ -59,5 +59,5 @@ pub use flip::{PIXELS_PER_DEGREE, flip};
 pub use metrics::{Metrics, RELMSE_FLOOR, compare, rel_mse, rmse};
 pub use picture::{Channel, Picture, Sample, Window};
 pub use plain_file::{open_plain, read_plain};
-pub use png_file::{encode_png, read_png, read_png_text, read_png8, write_png};
+pub use png_file::{Samples16, encode_png, read_png, read_png_text, read_png8, write_png, write_png16};
 pub use srgb::{Clipping, Rgb8, decode_srgb, encode_srgb, encode_srgb8};

@@ -28,6 +28,54 @@ pub fn encode_png(picture: &Rgb8, texts: &[(&str, &str)]) -> Result<Vec<u8>, Pic
     encode(picture, texts, Path::new("(in memory)"))
 }
 
+/// Numbers of 16 bits, row after row from the top: one or three for each pixel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Samples16 {
+    /// Width, pixels.
+    pub width: usize,
+    /// Height, pixels.
+    pub height: usize,
+    /// Numbers for each pixel: 1 (grey) or 3 (colour).
+    pub channels: usize,
+    /// The numbers.
+    pub samples: Vec<u16>,
+}
+
+/// Writes a PNG of 16 bits with the numbers as they are, atomically (see [`write_atomically`]), with a text chunk for each keyword and text. It
+/// says that the numbers are proportional to light (a gamma of 1).
+///
+/// # Errors
+/// As [`write_png`].
+pub fn write_png16(path: &Path, picture: &Samples16, texts: &[(&str, &str)]) -> Result<(), PictureError> {
+    let bytes = encode_bytes16(picture, texts).map_err(|source| PictureError::Png {
+        action: "write",
+        path: path.to_owned(),
+        source: Box::new(source),
+    })?;
+    write_atomically(path, |out| out.write_all(&bytes))
+}
+
+fn encode_bytes16(picture: &Samples16, texts: &[(&str, &str)]) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, side(picture.width), side(picture.height));
+    encoder.set_color(if picture.channels == 3 { png::ColorType::Rgb } else { png::ColorType::Grayscale });
+    encoder.set_depth(png::BitDepth::Sixteen);
+    encoder.set_source_gamma(png::ScaledFloat::new(1.0));
+    for (keyword, text) in texts {
+        encoder.add_itxt_chunk((*keyword).to_owned(), (*text).to_owned())?;
+    }
+    let mut writer = encoder.write_header()?;
+    let samples: Vec<u8> = picture.samples.iter().flat_map(|sample| sample.to_be_bytes()).collect();
+    writer.write_image_data(&samples)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// A side of a PNG. One that is too long becomes one that PNG refuses.
+fn side(pixels: usize) -> u32 {
+    u32::try_from(pixels).unwrap_or(0)
+}
+
 fn encode(picture: &Rgb8, texts: &[(&str, &str)], path: &Path) -> Result<Vec<u8>, PictureError> {
     encode_bytes(picture, texts).map_err(|source| PictureError::Png {
         action: "write",
@@ -37,8 +85,6 @@ fn encode(picture: &Rgb8, texts: &[(&str, &str)], path: &Path) -> Result<Vec<u8>
 }
 
 fn encode_bytes(picture: &Rgb8, texts: &[(&str, &str)]) -> Result<Vec<u8>, png::EncodingError> {
-    // A side too long for PNG becomes one that PNG refuses.
-    let side = |pixels: usize| u32::try_from(pixels).unwrap_or(0);
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, side(picture.width), side(picture.height));
     encoder.set_color(png::ColorType::Rgb);
@@ -169,6 +215,23 @@ mod tests {
         let bytes = std::fs::read(&path).unwrap();
         std::fs::write(&path, &bytes[..bytes.len() - 20]).unwrap();
         assert!(read_png_text(&path, "Comment").is_err(), "it is cut short");
+    }
+
+    #[test]
+    fn numbers_of_16_bits_come_back_as_they_are() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("raw.png");
+        for channels in [1, 3] {
+            let samples: Vec<u16> = (0..6 * channels as u16).map(|i| 257 * i + 4095).collect();
+            let picture = Samples16 { width: 3, height: 2, channels, samples };
+            write_png16(&path, &picture, &[("sensor", "{}")]).unwrap();
+            let image = decode(&path, 16).unwrap();
+            assert_eq!(image.as_flat_samples_u16().unwrap().samples, picture.samples);
+            assert_eq!(usize::from(image.color().channel_count()), channels);
+            assert_eq!(read_png_text(&path, "sensor").unwrap().as_deref(), Some("{}"));
+        }
+        let short = Samples16 { width: 3, height: 2, channels: 1, samples: vec![0; 5] };
+        assert!(write_png16(&path, &short, &[]).is_err());
     }
 
     #[test]
