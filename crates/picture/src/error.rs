@@ -106,6 +106,12 @@ pub enum PictureError {
         /// What it lacks, as a sentence.
         why: String,
     },
+    /// A picture that cannot be exposed on a sensor.
+    #[error("{why}")]
+    Expose {
+        /// What it or the sensor lacks, as a sentence.
+        why: String,
+    },
     /// Two pictures that cannot be compared pixel by pixel.
     #[error("pictures of {} × {} and {} × {} pixels cannot be compared", image.0, image.1, reference.0, reference.1)]
     SizeMismatch {
@@ -119,6 +125,10 @@ pub enum PictureError {
 impl PictureError {
     pub(crate) fn develop(why: impl Into<String>) -> Self {
         Self::Develop { why: why.into() }
+    }
+
+    pub(crate) fn expose(why: impl Into<String>) -> Self {
+        Self::Expose { why: why.into() }
     }
 
     pub(crate) fn io(action: &'static str, path: &Path, source: std::io::Error) -> Self {

@@ -24,6 +24,7 @@
 //! | EXR files, and how a render describes itself in them | [`write_exr`], [`read_exr`], [`Attributes`], [`RenderInfo`] |
 //! | the picture that a screen shows | [`encode_srgb8`], [`write_png`], [`read_png`] |
 //! | exposure, white balance, tone curves, crop and scale, false colour, maps of the error, spectra | [`develop`](mod@develop) |
+//! | digital numbers of an image sensor: quantum efficiency, noise, saturation | [`expose`](mod@expose) |
 //! | the distance of two pictures | [`compare`] (RMSE and relMSE), [`flip`](fn@flip) (what the eye sees) |
 //! | files that appear whole or not at all | [`write_atomically`], [`check_writable`] |
 //! | files that claim to be larger than they may be | [`check_exr_size`], [`open_plain`] |
@@ -37,6 +38,7 @@ mod attribute;
 pub mod develop;
 mod error;
 mod error_info;
+pub mod expose;
 mod exr_header;
 mod exr_read;
 mod exr_size;

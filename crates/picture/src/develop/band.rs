@@ -82,7 +82,7 @@ pub fn band_at(picture: &Picture<f32>, wavelength: f64) -> Result<SpectralBand<'
     let [Some(first), Some(last)] = [bands.first(), bands.last()] else {
         return Err(no_bands());
     };
-    let edges = edges(&bands);
+    let edges = band_edges_nm(&bands);
     if !(edges[0] <= wavelength && wavelength <= edges[bands.len()]) {
         return Err(PictureError::develop(format!(
             "no band holds {wavelength} nm: the {} bands have centres from {} to {} nm",
@@ -103,7 +103,7 @@ pub(crate) fn no_bands() -> PictureError {
 }
 
 /// Where the bands begin and end, nm: one more than there are bands.
-fn edges(bands: &[SpectralBand<'_>]) -> Vec<f64> {
+pub(crate) fn band_edges_nm(bands: &[SpectralBand<'_>]) -> Vec<f64> {
     let centre = |i: usize| bands[i].centre_nm;
     let last = bands.len() - 1;
     if last == 0 {
@@ -117,7 +117,7 @@ fn edges(bands: &[SpectralBand<'_>]) -> Vec<f64> {
 
 /// What a radiance of 1 in each band adds to X, Y and Z.
 pub(crate) fn colour_weights(bands: &[SpectralBand<'_>]) -> Vec<[f64; 3]> {
-    let edges = edges(bands);
+    let edges = band_edges_nm(bands);
     (0..bands.len())
         .map(|i| {
             // The observer is summed in cells of 1 nm; a cell counts by the part of it that the band covers.

@@ -38,6 +38,7 @@ mod tone_curve;
 mod white_balance;
 
 pub use band::{SpectralBand, band_at, bands_of};
+pub(crate) use band::{band_edges_nm, no_bands};
 pub use colour::{colour_of, is_radiance, luminance_unit};
 pub use crop::{Rect, crop};
 pub use error_map::{ErrorKind, luminance_errors};
