@@ -1,6 +1,7 @@
 //! A film as the content of an EXR file: its channels, and what the file says of them.
 
 use etalon_optics::colour;
+use etalon_picture::expose::IMAGE_NUMERICAL_APERTURE;
 use etalon_picture::{
     Attribute, Attributes, ERROR_PREFIX, ErrorInfo, ExrFile, Picture, PictureError, RenderInfo, Window,
 };
@@ -80,6 +81,9 @@ impl FilmFile<'_> {
         let [to_camera, to_ndc] = subject.matrices;
         attributes.insert("worldToCamera".to_owned(), Attribute::Matrix4(to_camera));
         attributes.insert("worldToNDC".to_owned(), Attribute::Matrix4(to_ndc));
+        if let Some(sine) = subject.image_numerical_aperture {
+            attributes.insert(IMAGE_NUMERICAL_APERTURE.to_owned(), Attribute::Double(sine));
+        }
         if let Some(names) = self.object_names {
             let names = serde_json::to_string(names).expect("names are text");
             attributes.insert("objectNames".to_owned(), Attribute::Text(names));

@@ -31,6 +31,9 @@ pub struct Subject {
     pub replicates: u32,
     /// `worldToCamera` and `worldToNDC` of the EXR file, for row vectors, row after row.
     pub matrices: [[f32; 16]; 2],
+    /// Of a compound lens: sin θ₀ of the cone of light that reaches the middle of the film.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub image_numerical_aperture: Option<f64>,
     /// Bands of wavelengths that the film keeps.
     pub bands: Option<KeptBands>,
     /// The plan: effects, kernel, sampler, depth.
@@ -94,6 +97,7 @@ impl Subject {
             seed: scene.integrator.seed,
             replicates: scene.integrator.replicates,
             matrices: matrices::of_camera(&scene.camera, scene.film.width, scene.film.height),
+            image_numerical_aperture: prepared.image_numerical_aperture(),
             bands: scene.film.bands.filter(|_| prepared.band_sums() > 0).map(|bands| KeptBands {
                 first_nm: bands.first_nm,
                 step_nm: bands.step_nm,
@@ -206,6 +210,7 @@ mod tests {
             seed: 3,
             replicates: 4,
             matrices: [[0.0; 16]; 2],
+            image_numerical_aperture: None,
             bands: None,
             guided_targets: [(0.0, 0); 2],
             plan: serde_json::json!({"sampler": "sobol", "approximations": ["lens: everything is in focus"]}),

@@ -110,6 +110,11 @@ impl PreparedLens {
         Some(prepared)
     }
 
+    /// sin θ₀ of the cone of light that reaches the middle of the film.
+    pub(crate) fn axial_sine(&self) -> f64 {
+        (self.axial_irradiance / std::f64::consts::PI).sqrt()
+    }
+
     /// Whether rays of different wavelengths go different ways.
     pub(super) fn is_dispersive(&self) -> bool {
         self.dispersive

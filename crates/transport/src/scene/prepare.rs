@@ -292,6 +292,12 @@ impl Prepared {
         (self.lights.lights().len(), self.lights.chooses_by_place())
     }
 
+    /// Of a camera with a compound lens: sin θ₀ of the cone of light that reaches the middle of the film, traced at the line d. Its pixels
+    /// are irradiances over π sin²θ₀.
+    pub fn image_numerical_aperture(&self) -> Option<f64> {
+        self.lens.as_ref().map(|lens| lens.axial_sine())
+    }
+
     /// The camera that makes the rays.
     pub(crate) fn tracing_camera(&self) -> Camera {
         let film = &self.scene.film;
