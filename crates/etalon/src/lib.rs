@@ -50,6 +50,7 @@
 //! | one path, vertex by vertex | [`Renderer::replay`] |
 //! | frames of a sequence | [`Frame`], `scene.model.set_shutter` |
 //! | exposure, white balance, tone curves | [`picture_files::develop`] |
+//! | digital numbers of an image sensor | [`SensorFile`], [`picture_files::expose`] |
 //!
 //! The same scene and seed give the same pixels for any number of threads and on any processor.
 
@@ -66,6 +67,7 @@ mod quote;
 mod renderer;
 mod report;
 mod scene;
+mod sensor_file;
 mod stokes;
 mod subject;
 
@@ -96,5 +98,6 @@ pub use quote::{Quote, QuoteSettings, QuotedExploration};
 pub use renderer::{Progress, Renderer, Settings};
 pub use report::{ErrorReport, NoisiestTile, PredictionReport, RenderReport, reached_name};
 pub use scene::{Scene, SceneError};
+pub use sensor_file::SensorFile;
 pub use serde_json::json;
 pub use subject::{KeptBands, Subject};
