@@ -9,6 +9,7 @@ mod denoise;
 mod develop;
 mod display;
 mod explain;
+mod expose;
 mod farm;
 mod hostile;
 mod instruction_sets;

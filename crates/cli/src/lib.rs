@@ -70,6 +70,7 @@ enum Command {
     Measure(commands::measure::MeasureArgs),
     Compare(commands::compare::Args),
     Develop(commands::develop::Args),
+    Expose(commands::expose::ExposeArgs),
     View(Box<commands::view::ViewArgs>),
     #[cfg(feature = "denoise")]
     Denoise(commands::denoise::Args),
@@ -104,6 +105,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: Option<PathBuf>) 
         Command::Measure(args) => commands::measure::run(args),
         Command::Compare(args) => commands::compare::run(args),
         Command::Develop(args) => commands::develop::run(args),
+        Command::Expose(args) => commands::expose::run(args),
         Command::View(args) => commands::view::run(*args),
         #[cfg(feature = "denoise")]
         Command::Denoise(args) => commands::denoise::run(args),

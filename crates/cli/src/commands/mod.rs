@@ -6,6 +6,7 @@ pub(crate) mod completions;
 pub(crate) mod denoise;
 pub(crate) mod develop;
 pub(crate) mod explain;
+pub(crate) mod expose;
 pub(crate) mod farm;
 pub(crate) mod figures;
 pub(crate) mod import;

@@ -1,15 +1,34 @@
-//! `etalon schema`: the JSON Schema of scene files, for editors.
+//! `etalon schema`: the JSON Schemas of scene and sensor files, for editors.
+
+use etalon::SensorFile;
 
 use crate::failure::Outcome;
 use crate::print;
 
-/// Print the JSON Schema of scene files, so that an editor can complete and check them.
+/// Print the JSON Schema of scene files or sensor files, so that an editor can complete and check them.
 #[derive(clap::Args)]
-#[command(after_help = "Example:
-  etalon schema > scenes/etalon.schema.json")]
-pub(crate) struct Args {}
+#[command(after_help = "Examples:
+  etalon schema > scenes/etalon.schema.json
+  etalon schema sensor > scenes/sensors/sensor.schema.json")]
+pub(crate) struct Args {
+    /// Kind of file.
+    #[arg(value_enum, default_value_t = SchemaKind::Scene)]
+    kind: SchemaKind,
+}
 
-pub(crate) fn run(_: Args) -> Outcome {
-    print::json(&etalon_scene::schema());
+/// A kind of file with a schema.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum SchemaKind {
+    /// A scene, for most commands.
+    Scene,
+    /// An image sensor, for `etalon expose`.
+    Sensor,
+}
+
+pub(crate) fn run(args: Args) -> Outcome {
+    print::json(&match args.kind {
+        SchemaKind::Scene => etalon_scene::schema(),
+        SchemaKind::Sensor => SensorFile::schema(),
+    });
     Ok(())
 }
