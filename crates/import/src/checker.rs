@@ -1,25 +1,29 @@
 //! Chequerboards of other programs.
 
-use serde_json::{Value, json};
+use etalon_scene::UvMap;
+use serde_json::{Map, Value, json};
 
-use crate::reflectance;
+use crate::{reflectance, uv};
 
 /// A chequerboard of the format, two by two fields in a unit of the texture coordinates, and its mean.
 #[derive(Clone, Debug)]
 pub(crate) struct Checker {
     /// Colours of the lower left field and of its neighbours.
     pub(crate) colours: [[f64; 3]; 2],
-    pub(crate) uv_scale: [f64; 2],
-    pub(crate) uv_offset: [f64; 2],
+    /// How it lies over the coordinates.
+    pub(crate) uv_map: UvMap,
 }
 
 impl Checker {
     /// As a spectrum of the format.
     pub(crate) fn value(&self) -> Value {
         let [first, second] = self.colours.map(written);
-        json!({
-            "type": "checker", "first": first, "second": second, "uv_scale": self.uv_scale, "uv_offset": self.uv_offset,
-        })
+        let mut checker = Map::new();
+        for (key, value) in [("type", json!("checker")), ("first", first), ("second", second)] {
+            checker.insert(key.to_owned(), value);
+        }
+        uv::put(&self.uv_map, &mut checker);
+        Value::Object(checker)
     }
 
     /// What both fields are in the mean.

@@ -49,6 +49,7 @@ mod relief;
 mod round;
 mod sides;
 mod table;
+mod uv;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

@@ -53,7 +53,7 @@ pub use luminaire::Photometry;
 pub use model::*;
 pub use problem::{Code, LoadError, Problem, Related, SceneErrors, Severity, Span, shortened};
 pub use texture::{
-    Channel, Encoding, Image, ImageTexture, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, Texels, TextureFilter, Wrap,
+    Channel, Encoding, Image, ImageTexture, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, Texels, TextureFilter, UvMap, Wrap,
 };
 
 /// The JSON Schema (2020-12) of scene files.

@@ -26,6 +26,42 @@ pub enum TextureFilter {
     Nearest,
 }
 
+/// An affine map from the texture coordinates of a surface to those of an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UvMap {
+    /// Rows of the matrix that the texture coordinates are multiplied by.
+    pub matrix: [[f64; 2]; 2],
+    /// Added after that.
+    pub offset: [f64; 2],
+}
+
+impl UvMap {
+    /// Leaves them as they are.
+    pub const IDENTITY: Self = Self::scaled([1.0; 2], [0.0; 2]);
+
+    /// Factors on them and what is added after that: a factor of 2 shows the image twice.
+    pub const fn scaled([u, v]: [f64; 2], offset: [f64; 2]) -> Self {
+        Self { matrix: [[u, 0.0], [0.0, v]], offset }
+    }
+
+    /// The coordinates of the image at texture coordinates.
+    ///
+    /// Where it neither turns nor shears, the zeros of the matrix change no bit.
+    #[inline]
+    pub fn at(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k| self.matrix[k][0] * u + self.matrix[k][1] * v + self.offset[k])
+    }
+
+    /// How many texels of an image of this size lie along a change of the texture coordinates.
+    pub fn texels_along(&self, [u, v]: [f64; 2], size: [u32; 2]) -> f64 {
+        let along = |k: usize| {
+            let [of_u, of_v] = self.matrix[k].map(|factor| factor * f64::from(size[k]));
+            u * of_u + v * of_v
+        };
+        along(0).hypot(along(1))
+    }
+}
+
 /// An image laid over texture coordinates: (0, 0) is the lower left corner of the image, (1, 1) the upper right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageTexture {
@@ -37,10 +73,8 @@ pub struct ImageTexture {
     pub wrap: [Wrap; 2],
     /// Between texels.
     pub filter: TextureFilter,
-    /// Factors on the texture coordinates: 2 shows the image twice.
-    pub uv_scale: [f64; 2],
-    /// Added to the texture coordinates after that.
-    pub uv_offset: [f64; 2],
+    /// How it lies over them.
+    pub uv_map: UvMap,
     /// Factor on each channel.
     pub factor: [f64; 3],
 }
@@ -53,8 +87,7 @@ impl ImageTexture {
             name: String::new(),
             wrap: [Wrap::Repeat; 2],
             filter: TextureFilter::Bilinear,
-            uv_scale: [1.0; 2],
-            uv_offset: [0.0; 2],
+            uv_map: UvMap::IDENTITY,
             factor: [1.0; 3],
         }
     }
@@ -82,10 +115,10 @@ impl ImageTexture {
     #[inline]
     pub fn eval(&self, uv: [f64; 2]) -> [f64; 3] {
         let size = [self.image.width as usize, self.image.height as usize];
-        let at = |k: usize| uv[k] * self.uv_scale[k] + self.uv_offset[k];
+        let [u, v] = self.uv_map.at(uv);
         // Rows count from the top, v from below.
         let [(x0, x1, x), (y0, y1, y)] =
-            [place(at(0), size[0], self.wrap[0], self.filter), place(1.0 - at(1), size[1], self.wrap[1], self.filter)];
+            [place(u, size[0], self.wrap[0], self.filter), place(1.0 - v, size[1], self.wrap[1], self.filter)];
         let texel = |column, row| self.image.texel(column, row);
         let colour = match self.filter {
             TextureFilter::Nearest => texel(x0, y0),
@@ -145,8 +178,7 @@ mod tests {
             name: String::new(),
             wrap: [wrap; 2],
             filter,
-            uv_scale: [1.0; 2],
-            uv_offset: [0.0; 2],
+            uv_map: UvMap::IDENTITY,
             factor: [1.0; 3],
         }
     }
@@ -195,10 +227,25 @@ mod tests {
     #[test]
     fn coordinates_are_scaled_then_moved_and_colours_multiplied() {
         let mut t = square(Wrap::Clamp, TextureFilter::Bilinear);
-        t.uv_scale = [2.0, 1.0];
-        t.uv_offset = [-0.5, 0.0];
+        t.uv_map = UvMap::scaled([2.0, 1.0], [-0.5, 0.0]);
         t.factor = [3.0, 1.0, 2.0];
         assert_eq!(t.eval([0.5, 0.5]), [1.5, 0.5, 0.5]);
         assert_eq!(t.eval([0.625, 0.5]), [3.0, 0.5, 0.5]);
+    }
+
+    #[test]
+    fn coordinates_are_turned_and_sheared_then_moved() {
+        let mut t = square(Wrap::Clamp, TextureFilter::Nearest);
+        // A quarter of a turn about the middle: (u, v) shows what is at (1 − v, u).
+        t.uv_map = UvMap { matrix: [[0.0, -1.0], [1.0, 0.0]], offset: [1.0, 0.0] };
+        for ([u, v], [column, upper]) in
+            [([0.25, 0.25], [1.0, 0.0]), ([0.75, 0.25], [1.0, 1.0]), ([0.75, 0.75], [0.0, 1.0]), ([0.25, 0.75], [0.0, 0.0])]
+        {
+            assert_eq!(t.eval([u, v]), [column, upper, 0.25], "{u} {v}");
+        }
+        // u is moved along by v.
+        t.uv_map = UvMap { matrix: [[1.0, 0.5], [0.0, 1.0]], offset: [-0.25, 0.0] };
+        assert_eq!((t.eval([0.625, 0.125])[0], t.eval([0.625, 0.375])[0]), (0.0, 1.0));
+        assert_eq!(UvMap { matrix: [[3.0, 1.0], [0.0, 2.0]], offset: [9.0; 2] }.texels_along([0.5, 0.5], [2, 3]), 5.0);
     }
 }

@@ -5,7 +5,7 @@ mod common;
 use common::{Parts, RIGHT};
 use etalon_scene::{
     Bitangent, Code, Encoding, Image, Loaded, MaterialKind, Metal, NumberTexture, Relief, SceneErrors, SpectrumTexture,
-    Texels, TextureFilter, Wrap,
+    Texels, TextureFilter, UvMap, Wrap,
 };
 use std::path::Path;
 
@@ -28,10 +28,27 @@ fn every_key_of_an_image_arrives() {
         panic!("an image")
     };
     assert_eq!((t.wrap, t.filter), ([Wrap::Mirror, Wrap::Clamp], TextureFilter::Nearest));
-    assert_eq!((t.uv_scale, t.uv_offset, t.factor), ([2.0, -3.0], [0.5, 7.0], [0.5, 1.0, 0.0]));
+    assert_eq!((t.uv_map, t.factor), (UvMap::scaled([2.0, -3.0], [0.5, 7.0]), [0.5, 1.0, 0.0]));
     assert_eq!((t.image.width, t.image.height), (2, 2));
     assert_eq!(t.image.texels, Texels::Linear8(vec![[230; 3], [40, 40, 60], [40, 40, 60], [230; 3]]));
     assert_eq!(loaded.files.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["files/chequers.png"]);
+}
+
+#[test]
+fn images_and_patterns_may_lie_turned_and_sheared() {
+    let map = UvMap { matrix: [[0.5, -2.0], [3.0, 0.25]], offset: [0.125, 4.0] };
+    let keys = r#""uv_matrix": [[0.5, -2], [3, 0.25]], "uv_offset": [0.125, 4]"#;
+    // The two texels of a gradient along v have their centres at a quarter and three quarters.
+    let halved = UvMap { matrix: [map.matrix[0], [1.5, 0.125]], offset: [0.125, 2.25] };
+    for (kind, expected) in [
+        (r#""image", "file": "files/chequers.png""#, map),
+        (r#""checker", "first": 0.25, "second": 0.5"#, map),
+        (r#""gradient", "from": 0.25, "to": 0.5, "along": "v""#, halved),
+    ] {
+        let loaded = scene_with(&format!(r#"{{"type": {kind}, {keys}}}"#), SQUARE, r#"{"grey": 0.5}"#).unwrap();
+        let MaterialKind::Lambert { reflectance } = &loaded.scene.materials[0].kind else { panic!("diffuse") };
+        assert_eq!(reflectance.image().expect("an image").uv_map, expected, "{kind}");
+    }
 }
 
 /// The window of the texels that it holds is another than the one that it shows, which is 4 × 4.
@@ -71,6 +88,12 @@ fn what_is_wrong_with_an_image_is_said_where_it_is_named() {
         (r#"{"type": "image", "file": "files/chequers.png", "factor": [2, 1, 1]}"#, SQUARE, Code::Reflectance),
         (r#"{"type": "image", "file": "files/chequers.png", "factor": [-1, 1, 1]}"#, SQUARE, Code::OutOfRange),
         (r#"{"type": "image", "file": "files/chequers.png", "uv_scale": [1e9, 1]}"#, SQUARE, Code::OutOfRange),
+        (r#"{"type": "checker", "first": 0, "second": 1, "uv_matrix": [[1, 0], [-1e9, 1]]}"#, SQUARE, Code::OutOfRange),
+        (
+            r#"{"type": "checker", "first": 0, "second": 1, "uv_matrix": [[1, 0], [0, 1]], "uv_scale": [1, 1]}"#,
+            SQUARE,
+            Code::KeyConflict,
+        ),
     ] {
         let errors = scene_with(reflectance, shape, r#"{"grey": 0.5}"#).expect_err(reflectance);
         assert_eq!(errors.problems[0].code, code, "{errors}");
@@ -96,7 +119,7 @@ fn a_surface_shines_by_an_image_of_any_brightness_but_none_below_0() {
     let white = etalon_optics::Spectrum::illuminant(etalon_optics::Illuminant::D65, 1.0).unwrap();
     assert_eq!(emission.radiance, white);
     let image = emission.image.as_ref().expect("an image");
-    assert_eq!((image.factor, image.uv_scale), ([50.0, 1.0, 0.0], [2.0, 1.0]));
+    assert_eq!((image.factor, image.uv_map), ([50.0, 1.0, 0.0], UvMap::scaled([2.0, 1.0], [0.0; 2])));
     let bare = r#"{"type": "box", "min_m": [0, 0, 0], "max_m": [1, 1, 1]}"#;
     for (radiance, shape, code) in [
         (bright, bare, Code::NoTextureCoordinates),
@@ -120,7 +143,8 @@ fn images_of_opacity_normals_and_heights_arrive() {
         r#""opacity": 0.5, "opacity_image": {"file": "files/chequers.png", "channel": "blue", "cutoff": 0.25, "uv_scale": [2, 3]}"#,
     );
     let image = masked.opacity_image.expect("an image");
-    assert_eq!((masked.opacity, image.cutoff, image.texture.uv_scale), (0.5, Some(0.25), [2.0, 3.0]));
+    let scaled = UvMap::scaled([2.0, 3.0], [0.0; 2]);
+    assert_eq!((masked.opacity, image.cutoff, image.texture.uv_map), (0.5, Some(0.25), scaled));
     // Chequers of (230, 230, 230) and (40, 40, 60), as numbers and not as sRGB.
     assert!((image.texture.image.texel(1, 0)[0] - 60.0 / 255.0).abs() < 1e-6);
     assert_eq!(image.eval([0.1, 0.1]), 1.0);

@@ -1,6 +1,6 @@
 //! Surfaces that shine by an image, against closed forms and against paths that find them without shadow rays.
 
-use etalon_scene::{Image, ImageTexture, LightSampling, Scene, Texels, TextureFilter, Wrap, parse};
+use etalon_scene::{Image, ImageTexture, LightSampling, Scene, Texels, TextureFilter, UvMap, Wrap, parse};
 use etalon_transport::{Control, EffectName, prepare};
 use std::f64::consts::PI;
 
@@ -106,7 +106,7 @@ fn a_lamp_of_two_halves_lights_a_floor_as_its_bright_half_does() {
         let (measured, error) = luminance(&floor(&objects, &groups, [0.5, 0.0], &wrong));
         assert!((measured - truth) / error > 100.0 && (measured - mirrored).abs() < Z * error, "{name}: {measured}");
         // And put right by texture coordinates that run the other way.
-        (wrong.uv_scale, wrong.uv_offset) = ([-1.0, 1.0], [1.0, 0.0]);
+        wrong.uv_map = UvMap::scaled([-1.0, 1.0], [1.0, 0.0]);
         let (measured, error) = luminance(&floor(&objects, &groups, [0.5, 0.0], &wrong));
         assert!((measured - truth).abs() < Z * error, "{name}, turned about: {measured} ± {error} is not {truth}");
     }

@@ -1,6 +1,8 @@
 //! Images on surfaces, against closed forms.
 
-use etalon_scene::{Image, ImageTexture, MaterialKind, Scene, SpectrumTexture, Texels, TextureFilter, Wrap, parse};
+use etalon_scene::{
+    Image, ImageTexture, MaterialKind, Scene, SpectrumTexture, Texels, TextureFilter, UvMap, Wrap, parse,
+};
 use etalon_transport::{Control, prepare};
 use std::sync::Arc;
 
@@ -56,7 +58,7 @@ fn every_texel_shows_its_colour_under_daylight() {
     }
     // A mutant, upside down, is far off.
     let mut upside_down = texture(TextureFilter::Nearest);
-    (upside_down.uv_scale, upside_down.uv_offset) = ([1.0, -1.0], [0.0, 1.0]);
+    upside_down.uv_map = UvMap::scaled([1.0, -1.0], [0.0, 1.0]);
     assert!((picture(SQUARE, upside_down, [4, 2], 64)[0][1] - 0.1).abs() > 0.5);
 }
 

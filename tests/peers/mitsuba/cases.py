@@ -45,7 +45,6 @@ EQUAL_ENERGY = Known(
 )
 PRINCIPLED = Known("approximated: no more diffuse light at grazing angles, Fresnel's equations in place of Schlick's", 0.1)
 CLEAR = Known("approximated: glass has no base colour, and light that crosses the ball is multiplied by 0.6 in Mitsuba", 0.67)
-TURNED = Known("the rotation of texture coordinates is left out, and listed", 0.05)
 
 CASES = [
     of("diffuse", depth=2),
@@ -69,7 +68,8 @@ CASES = [
     of("blend"),
     of("image"),
     of("image-srgb", depth=2),
-    of("image-turned", TURNED),
+    of("image-turned"),
+    of("image-sheared"),
     of("image-sphere"),
     of("image-disk"),
     of("image-cylinder"),
@@ -80,6 +80,7 @@ CASES = [
     of("image-lamp", variant="llvm_ad_rgb"),
     of("image-lamp", EQUAL_ENERGY),
     of("checkerboard"),
+    of("checkerboard-turned"),
     of("bump", sky=0.0001),
     of("bump", BENT, sky=0.3),
     of("normal"),

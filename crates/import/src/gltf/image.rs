@@ -1,14 +1,52 @@
 //! Images of glTF.
 
-use etalon_scene::{Encoding, Image};
+use etalon_scene::{Encoding, Image, UvMap};
 use gltf::image::Source;
 use gltf::texture::WrappingMode;
 use serde_json::{Value, json};
 
 use super::accessor::bytes_of;
 use super::file::resource;
-use super::material::Materials;
-use crate::Builder;
+use super::material::{Materials, decimal};
+use crate::{Builder, uv};
+
+/// `KHR_texture_transform`: texture coordinates, v from above, are scaled, turned and moved.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TextureTransform {
+    scale: [f64; 2],
+    rotation_rad: f64,
+    offset: [f64; 2],
+    tex_coord: Option<u32>,
+}
+
+impl TextureTransform {
+    fn of(transform: &gltf::texture::TextureTransform<'_>) -> Self {
+        Self {
+            scale: transform.scale().map(decimal),
+            rotation_rad: decimal(transform.rotation()),
+            offset: transform.offset().map(decimal),
+            tex_coord: transform.tex_coord(),
+        }
+    }
+
+    /// That of an extension which the library does not read. What is not stated, or not as it should be, is as if there were none.
+    pub(super) fn of_json(value: &Value) -> Self {
+        let number = |value: &Value| value.as_f64().filter(|number| number.is_finite());
+        let pair = |key: &str| Some([number(&value[key][0])?, number(&value[key][1])?]);
+        Self {
+            scale: pair("scale").unwrap_or([1.0; 2]),
+            rotation_rad: number(&value["rotation"]).unwrap_or(0.0),
+            offset: pair("offset").unwrap_or([0.0; 2]),
+            tex_coord: value["texCoord"].as_u64().and_then(|set| u32::try_from(set).ok()),
+        }
+    }
+
+    /// Counter-clockwise as the coordinates lie on the image, whose v points down: (u, v) goes to (u cos + v sin, −u sin + v cos).
+    fn uv_map(&self) -> UvMap {
+        let ([su, sv], (sin, cos)) = (self.scale, self.rotation_rad.sin_cos());
+        UvMap { matrix: [[su * cos, sv * sin], [-su * sin, sv * cos]], offset: self.offset }
+    }
+}
 
 impl Materials {
     /// The image of the format that a texture becomes, and its set of texture coordinates.
@@ -19,14 +57,15 @@ impl Materials {
         buffers: &[Vec<u8>],
         builder: &mut Builder<'_>,
     ) -> Option<(Value, u32)> {
-        self.laid(&info.texture(), info.tex_coord(), info.texture_transform(), place, buffers, builder)
+        let transform = info.texture_transform().as_ref().map(TextureTransform::of);
+        self.laid(&info.texture(), info.tex_coord(), transform, place, buffers, builder)
     }
 
     pub(super) fn laid(
         &mut self,
         texture: &gltf::Texture<'_>,
         mut set: u32,
-        transform: Option<gltf::texture::TextureTransform<'_>>,
+        transform: Option<TextureTransform>,
         place: &str,
         buffers: &[Vec<u8>],
         builder: &mut Builder<'_>,
@@ -46,15 +85,10 @@ impl Materials {
             image["filter"] = json!("nearest");
         }
         if let Some(transform) = transform {
-            let at = format!("{place}.extensions.KHR_texture_transform");
-            set = transform.tex_coord().unwrap_or(set);
-            if transform.rotation() != 0.0 {
-                builder.leave_out(at, "the rotation is ignored");
-            }
-            let ([su, sv], [ou, ov]) = (transform.scale().map(f64::from), transform.offset().map(f64::from));
-            image["uv_scale"] = json!([su, sv]);
-            // glTF counts v from the top: 1 − (sv·(1 − v) + ov).
-            image["uv_offset"] = json!([ou, 1.0 - sv - ov]);
+            set = transform.tex_coord.unwrap_or(set);
+            // Both the image and the surface have v from above there.
+            let uv_map = uv::over_v_from_above(&uv::from_above(&transform.uv_map()));
+            image.as_object_mut().into_iter().for_each(|keys| uv::put(&uv_map, keys));
         }
         Some((image, set))
     }

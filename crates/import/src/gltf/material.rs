@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 use super::accessor::bytes_of;
 use super::clearcoat;
 use super::file::resource;
+use super::image::TextureTransform;
 use super::iridescence::Iridescence;
 use crate::{Builder, light, reflectance};
 
@@ -238,8 +239,9 @@ impl Materials {
         }
         if let Some(map) = material.normal_texture() {
             let at = format!("{place}.normalTexture");
+            let transform = map.extension_value("KHR_texture_transform").map(TextureTransform::of_json);
             let image = self
-                .laid(&map.texture(), map.tex_coord(), None, &at, buffers, builder)
+                .laid(&map.texture(), map.tex_coord(), transform, &at, buffers, builder)
                 .filter(|(_, set)| fits(*set, &at, builder));
             if let Some((image, _)) = image {
                 let mut normals = data_image(image);
@@ -387,7 +389,7 @@ fn linear(texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], builder: &Builder<'_
 }
 
 /// A number as the file writes it, which single precision has rounded.
-fn decimal(value: f32) -> f64 {
+pub(super) fn decimal(value: f32) -> f64 {
     // Shortest digits that stand for the same number.
     value.to_string().parse().unwrap_or(f64::from(value))
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use etalon_scene::Encoding;
+use etalon_scene::{Encoding, UvMap};
 use serde_json::{Value, json};
 
 use super::Walk;
@@ -11,7 +11,7 @@ use crate::checker::{Checker, channels};
 use crate::matrix::rows;
 use crate::number::Number;
 use crate::table::Table;
-use crate::{extension, light, reflectance};
+use crate::{extension, light, reflectance, uv};
 
 /// What a colour is the colour of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -266,15 +266,7 @@ impl Walk<'_, '_, '_> {
                 [0.5; 3]
             });
         }
-        let (mut uv_scale, mut uv_offset) = ([1.0; 2], [0.0; 2]);
-        if let Some(transform) = element.property("to_uv") {
-            let rows = rows(&super::transform::read(transform)?);
-            if rows[0][1] != 0.0 || rows[1][0] != 0.0 {
-                self.builder.leave_out(&transform.place, "the rotation of texture coordinates is ignored");
-            }
-            (uv_scale, uv_offset) = ([rows[0][0], rows[1][1]], [rows[0][3], rows[1][3]]);
-        }
-        Ok(Checker { colours, uv_scale, uv_offset })
+        Ok(Checker { colours, uv_map: to_uv(element)? })
     }
 
     /// The image of the format that a `bitmap` is, and the mean of its texels; `None`, and a note, if it cannot be read.
@@ -284,15 +276,8 @@ impl Walk<'_, '_, '_> {
         let raw = element.flag("raw")?.unwrap_or(false);
         let word = element.string("wrap_mode").unwrap_or("repeat").to_owned();
         let filter = element.string("filter_type").unwrap_or("bilinear").to_owned();
-        // The program counts v from the top of the image: 1 − (sv·v + ov).
-        let (mut scale, mut offset) = ([1.0, -1.0], [0.0, 1.0]);
-        if let Some(transform) = element.property("to_uv") {
-            let rows = rows(&super::transform::read(transform)?);
-            if rows[0][1] != 0.0 || rows[1][0] != 0.0 {
-                self.builder.leave_out(&transform.place, "the rotation of texture coordinates is ignored");
-            }
-            (scale, offset) = ([rows[0][0], -rows[1][1]], [rows[0][3], 1.0 - rows[1][3]]);
-        }
+        // The program counts v from the top of the image.
+        let uv_map = uv::from_above(&to_uv(element)?);
         let wrap = match word.as_str() {
             "mirror" | "clamp" | "repeat" => word.as_str(),
             _ => "repeat",
@@ -300,10 +285,9 @@ impl Walk<'_, '_, '_> {
         let filter = if filter == "nearest" { "nearest" } else { "bilinear" };
         Ok(self.image(&name, raw, place).map(|(file, mean)| {
             let encoding = if raw { "linear" } else { "auto" };
-            let image = json!({
-                "type": "image", "file": file, "encoding": encoding, "wrap": wrap, "filter": filter, "uv_scale": scale,
-                "uv_offset": offset,
-            });
+            let mut image =
+                json!({ "type": "image", "file": file, "encoding": encoding, "wrap": wrap, "filter": filter });
+            image.as_object_mut().into_iter().for_each(|keys| uv::put(&uv_map, keys));
             (image, mean)
         }))
     }
@@ -320,6 +304,13 @@ impl Walk<'_, '_, '_> {
             }
         }
     }
+}
+
+/// The map from texture coordinates to those of a texture. Of a transform in space, what it does to x and y counts.
+fn to_uv(texture: &Element) -> Result<UvMap, String> {
+    let Some(transform) = texture.property("to_uv") else { return Ok(UvMap::IDENTITY) };
+    let [[a, b, _, u], [c, d, _, v], _] = rows(&super::transform::read(transform)?);
+    Ok(UvMap { matrix: [[a, b], [c, d]], offset: [u, v] })
 }
 
 /// The kind of a file, by its name.

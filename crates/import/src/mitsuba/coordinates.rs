@@ -14,6 +14,7 @@ use super::Walk;
 use super::shape::{Dressed, Reach};
 use crate::number::{has_directions, has_image};
 use crate::round::{DISK_OF_TRIANGLES, disk, sphere_turn};
+use crate::uv;
 
 impl Walk<'_, '_, '_> {
     /// A shape of the format and the box around it, with the texture coordinates of Mitsuba's shape if anything of the object follows them.
@@ -91,10 +92,8 @@ pub(super) fn turn_v_over(value: &mut Value) {
 
 /// The same for all values of a map.
 pub(super) fn turn_images_over(map: &mut Map<String, Value>) {
-    let pair = |key: &str| Some([map.get(key)?[0].as_f64()?, map.get(key)?[1].as_f64()?]);
-    if let (Some(scale), Some(offset)) = (pair("uv_scale"), pair("uv_offset")) {
-        map.insert("uv_scale".to_owned(), json!([scale[0], -scale[1]]));
-        map.insert("uv_offset".to_owned(), json!([offset[0], offset[1] + scale[1]]));
+    if let Some(lies) = uv::of(map) {
+        uv::put(&uv::over_v_from_above(&lies), map);
     }
     map.values_mut().for_each(turn_v_over);
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use etalon_optics::colour::luminance_of;
 use etalon_optics::spectrum::Blackbody;
-use etalon_scene::Encoding;
+use etalon_scene::{Encoding, UvMap};
 use serde_json::{Value, json};
 
 use super::Reading;
@@ -230,7 +230,7 @@ impl Reading<'_, '_> {
         let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
         let uv_scale = [0.5 * number("uscale", 1.0)?, 0.5 * number("vscale", 1.0)?];
         let uv_offset = [0.5 * number("udelta", 0.0)?, 0.5 * number("vdelta", 0.0)?];
-        let checker = Checker { colours, uv_scale, uv_offset };
+        let checker = Checker { colours, uv_map: UvMap::scaled(uv_scale, uv_offset) };
         let mapping = list.string("mapping").unwrap_or("uv");
         if mapping != "uv" || list.number("dimension")?.unwrap_or(2.0) != 2.0 {
             self.builder

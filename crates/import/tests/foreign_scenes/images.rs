@@ -1,7 +1,7 @@
 //! Images that say what shines, how rough it is, how much of it is there.
 
 use super::{imported, on_its_side, said, scene};
-use etalon_scene::{MaterialKind, NumberTexture};
+use etalon_scene::{MaterialKind, NumberTexture, SpectrumTexture, UvMap};
 
 #[test]
 fn surfaces_that_shine_by_an_image_arrive() {
@@ -15,10 +15,44 @@ fn surfaces_that_shine_by_an_image_arrive() {
         let scene = scene(&imported);
         let emission = scene.placed_objects().find_map(|object| object.emission.as_ref()).expect("a lamp");
         let image = emission.image.as_ref().unwrap_or_else(|| panic!("{kind}: an image"));
-        assert_eq!((image.factor, image.uv_scale), ([factor; 3], scale), "{kind}");
+        assert_eq!((image.factor, image.uv_map.matrix), ([factor; 3], UvMap::scaled(scale, [0.0; 2]).matrix), "{kind}");
         // The image; a disk of pbrt, whose coordinates are polar, is a mesh.
         assert_eq!(imported.files.len(), if kind == "pbrt" { 2 } else { 1 });
         assert!(!said(&imported).iter().any(|what| what.contains("does not emit")), "{:?}", said(&imported));
+    }
+}
+
+/// The program takes the coordinates of the image from those of the surface by the rows of the matrix, and counts v from the top.
+#[test]
+fn images_of_mitsuba_are_turned_sheared_and_moved() {
+    let map = r#"<transform name="to_uv"><matrix value="0.5 -2 0 0.125  3 0.25 0 4  0 0 1 0  0 0 0 1"/></transform>"#;
+    let turned = r#"<transform name="to_uv"><rotate z="1" angle="30"/><scale x="2" y="3"/><translate x="0.25"/></transform>"#;
+    for (text, [[a, b], [c, d]], [u0, v0]) in [(map, [[0.5, -2.0], [3.0, 0.25]], [0.125, 4.0]), {
+        let (sin, cos) = 30.0_f64.to_radians().sin_cos();
+        (turned, [[2.0 * cos, -2.0 * sin], [3.0 * sin, 3.0 * cos]], [0.25, 0.0])
+    }] {
+        let bitmap = format!("<texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" value=\"chequers.png\"/>{text}</texture>");
+        let scene_of = |shape: &str| {
+            let imported = imported("xml", &format!("<scene version=\"3.0.0\"><shape type=\"{shape}\"><bsdf type=\"diffuse\">{bitmap}</bsdf></shape></scene>"));
+            assert_eq!(said(&imported), Vec::<String>::new());
+            scene(&imported)
+        };
+        for shape in ["rectangle", "sphere"] {
+            let scene = scene_of(shape);
+            let MaterialKind::Lambert { reflectance: SpectrumTexture::Image(image) } =
+                on_its_side(&scene.materials[0].kind)
+            else {
+                panic!("an image")
+            };
+            for [u, v] in [[0.0, 0.0], [0.25, 0.75], [1.0, 0.5]] {
+                // On a sphere v is counted from the pole there.
+                let theirs = if shape == "sphere" { 1.0 - v } else { v };
+                let (right, down) = (a * u + b * theirs + u0, c * u + d * theirs + v0);
+                let [found_right, found_up] = image.uv_map.at([u, v]);
+                let off = (found_right - right).abs() + (found_up - (1.0 - down)).abs();
+                assert!(off < 1e-12, "{shape}: {:?} at {u}, {v}", image.uv_map);
+            }
+        }
     }
 }
 

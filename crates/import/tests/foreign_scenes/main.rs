@@ -14,7 +14,9 @@ mod sides;
 mod spots;
 
 use etalon_import::{Imported, import_bytes};
-use etalon_scene::{EnvironmentProjection, LightKind, MaterialKind, Projection, Scene, Shape, Side, SpectrumTexture};
+use etalon_scene::{
+    EnvironmentProjection, LightKind, MaterialKind, Projection, Scene, Shape, Side, SpectrumTexture, UvMap,
+};
 use proptest::prelude::*;
 
 const PNG: &[u8] = include_bytes!("../../../scene/tests/files/chequers.png");
@@ -117,7 +119,7 @@ fn a_mitsuba_scene_arrives_with_its_camera_shapes_materials_and_lights() {
         panic!("tiles")
     };
     // v is counted from the top there: 1 − (3v + 0.1).
-    assert_eq!((image.uv_scale, image.uv_offset), ([4.0, -3.0], [0.25, 0.9]));
+    assert_eq!(image.uv_map, UvMap::scaled([4.0, -3.0], [0.25, 0.9]));
     assert!(matches!(kind("ball"), MaterialKind::Lambert { .. }));
     let sail = object("sail");
     assert_eq!(sail.opacity, 0.25);

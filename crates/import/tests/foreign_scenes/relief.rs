@@ -2,7 +2,7 @@
 
 use super::{imported, said, scene};
 use etalon_import::{Imported, import_bytes};
-use etalon_scene::{Bitangent, Object, Relief, TextureFilter, Wrap};
+use etalon_scene::{Bitangent, Object, Relief, TextureFilter, UvMap, Wrap};
 
 /// The only object.
 fn object(imported: &Imported) -> Object {
@@ -47,10 +47,8 @@ fn heights_of_mitsuba_count_by_their_luminance() {
         // (40, 40, 60), in the upper right and the lower left: alike, whichever way v is counted.
         assert!((texture.image.texel(1, 0)[0] - dark).abs() < 1e-6, "{:?} is not {dark}", texture.image.texel(1, 0));
         if text.contains("clamp") {
-            assert_eq!(
-                (texture.wrap, texture.uv_scale, texture.uv_offset),
-                ([Wrap::Clamp; 2], [4.0, -3.0], [0.25, 0.9])
-            );
+            let lies = UvMap::scaled([4.0, -3.0], [0.25, 0.9]);
+            assert_eq!((texture.wrap, texture.uv_map), ([Wrap::Clamp; 2], lies));
         }
     }
 }
@@ -63,7 +61,7 @@ fn normals_of_mitsuba_stand_in_its_frame() {
         else {
             panic!("normals")
         };
-        assert_eq!((bitangent, texture.uv_scale), (Bitangent::AcrossU, [1.0, -1.0]));
+        assert_eq!((bitangent, texture.uv_map), (Bitangent::AcrossU, UvMap::scaled([1.0, -1.0], [0.0, 1.0])));
         (texture, strength)
     };
     let raw = "<boolean name=\"raw\" value=\"true\"/>";
@@ -89,7 +87,7 @@ fn maps_of_pbrt_arrive_in_its_axes() {
              \"texture displacement\" \"d\"\n{reversed}NamedMaterial \"m\"\n{MESH}"
         );
         let Relief::Heights { texture, height_m } = relief("pbrt", &text) else { panic!("heights") };
-        assert_eq!((height_m, texture.uv_scale), (height, [4.0, 1.0]));
+        assert_eq!((height_m, texture.uv_map), (height, UvMap::scaled([4.0, 1.0], [0.0; 2])));
         // The mean of (40, 40, 60), by the curve of sRGB.
         let srgb = |byte: f64| ((byte / 255.0 + 0.055) / 1.055).powf(2.4);
         let mean = (2.0 * srgb(40.0) + srgb(60.0)) / 3.0;
@@ -107,8 +105,8 @@ fn maps_of_pbrt_arrive_in_its_axes() {
         );
         let Relief::Normals { texture, strength: stated, bitangent } = relief("pbrt", &text) else { panic!("normals") };
         assert_eq!(
-            (stated, bitangent, texture.uv_scale),
-            (strength, Bitangent::AcrossU, [1.0; 2]),
+            (stated, bitangent, texture.uv_map),
+            (strength, Bitangent::AcrossU, UvMap::IDENTITY),
             "{mirror}{reversed}"
         );
         assert!((texture.image.linear_texels().nth(1).expect("a texel")[2] - 60.0 / 255.0).abs() < 1e-6);

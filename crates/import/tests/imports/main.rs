@@ -8,7 +8,7 @@ mod studio;
 use etalon_import::{Imported, import_bytes};
 use etalon_scene::{
     Light, LightKind, MaterialKind, Metal, NumberTexture, Projection, Scene, Shape, SpectrumTexture, TextureFilter,
-    Wrap,
+    UvMap, Wrap,
 };
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -168,10 +168,10 @@ fn glb_materials_lights_and_cameras_arrive() {
     assert_eq!(*facets, Some(1.0.into()));
     assert_eq!(coat.eval(550.0), 1.5);
     assert_eq!((image.wrap, image.filter), ([Wrap::Clamp, Wrap::Mirror], TextureFilter::Nearest));
-    assert_eq!((image.factor, image.uv_scale), ([0.5, 1.0, 0.25], [2.0, 4.0]));
     // v = 0.25 here is 0.75 from the top: 4·0.75 + 0.5 = 3.5 from the top, so −2.5 here.
-    assert_eq!(0.25 * image.uv_scale[1] + image.uv_offset[1], 1.0 - 3.5);
-    assert_eq!(image.uv_offset[0], 0.25);
+    let from_below = 1.0 - 3.5 - 4.0 * 0.25;
+    assert_eq!(image.factor, [0.5, 1.0, 0.25]);
+    assert_eq!(image.uv_map, UvMap::scaled([2.0, 4.0], [0.25, from_below]));
     let MaterialKind::Dielectric { interior, .. } = kind(1) else { panic!("glass") };
     // n_d and the Abbe number 20/0.5 = 40, from the definition.
     let n = |nm: f64| interior.eval(nm);

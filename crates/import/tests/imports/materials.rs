@@ -1,7 +1,7 @@
 //! What materials of glTF say: roughness, metalness, anisotropy, films, coats, masks.
 
 use super::{PNG, imported, model, scene, widths};
-use etalon_scene::{Encoding, Image, MaterialKind, NumberTexture, Scene, Wrap};
+use etalon_scene::{Encoding, Image, MaterialKind, NumberTexture, Scene, SpectrumTexture, UvMap, Wrap};
 use serde_json::{Value, json};
 
 #[test]
@@ -54,6 +54,35 @@ fn metalness_and_roughness_come_from_their_image() {
 }
 
 #[test]
+fn images_are_scaled_turned_and_moved_as_their_transform_says() {
+    let transform = json!({ "KHR_texture_transform": { "scale": [2, 4], "rotation": 0.5, "offset": [0.25, 0.5] } });
+    let mut model = model();
+    let material = &mut model["materials"][0];
+    material["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = transform.clone();
+    material["normalTexture"]["extensions"] = transform;
+    let imported = imported(&model).unwrap();
+    assert!(!imported.left_out.iter().any(|left| left.place.contains("materials[0]")), "{:?}", imported.left_out);
+    let scene = scene(&imported);
+    let object = &scene.groups[scene.instances[0].group].objects[0];
+    let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(colours), .. } =
+        &scene.materials[object.material].kind
+    else {
+        panic!("an image")
+    };
+    let relief = object.relief.as_ref().expect("a normal map").texture();
+    for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.25, 0.75)] {
+        // There v is counted from the top, and a positive angle turns right into up.
+        let (sin, cos) = 0.5_f64.sin_cos();
+        let [x, y] = [2.0 * u, 4.0 * (1.0 - v)];
+        let [right, down] = [x * cos + y * sin + 0.25, -x * sin + y * cos + 0.5];
+        for map in [colours.uv_map, relief.uv_map] {
+            let [found_right, found_up] = map.at([u, v]);
+            assert!((found_right - right).abs() + (found_up - (1.0 - down)).abs() < 1e-12, "{map:?} at {u}, {v}");
+        }
+    }
+}
+
+#[test]
 fn what_shines_by_an_image_does_so_where_there_are_texture_coordinates() {
     let mut model = model();
     for material in [0, 2] {
@@ -64,7 +93,8 @@ fn what_shines_by_an_image_does_so_where_there_are_texture_coordinates() {
     let scene = scene(&imported);
     let emission = |i: usize| scene.groups[scene.instances[i].group].objects[0].emission.as_ref();
     let image = emission(0).expect("a lamp").image.as_ref().expect("an image");
-    assert_eq!((image.factor, image.uv_scale, image.wrap), ([1.0, 0.5, 0.25], [1.0; 2], [Wrap::Clamp, Wrap::Mirror]));
+    assert_eq!((image.factor, image.wrap), ([1.0, 0.5, 0.25], [Wrap::Clamp, Wrap::Mirror]));
+    assert_eq!(image.uv_map, UvMap::IDENTITY);
     // The strip has no texture coordinates: nothing says which texel shines where.
     assert!(emission(2).is_none());
     assert!(imported.left_out.iter().any(|l| l.what.contains("emission is left out")), "{:?}", imported.left_out);

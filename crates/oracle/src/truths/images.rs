@@ -18,7 +18,7 @@ use crate::{
 
 pub(super) fn truths() -> Vec<Truth> {
     let mut list: Vec<Truth> =
-        KINDS.into_iter().flat_map(|kind| [places(kind), channels(kind), encodings(kind)].concat()).collect();
+        KINDS.into_iter().flat_map(|kind| [places(kind), channels(kind), encodings(kind), vec![turned(kind)]].concat()).collect();
     list.extend(normals());
     list.extend(heights());
     list.extend(skies());
@@ -85,8 +85,13 @@ impl Kind {
     }
 
     fn truth(self, name: &str, scene: &Scene, x: f64, others: &[(&'static str, f64)]) -> Truth {
-        let value = self.shown(x);
-        let mut truth = Truth::new(format!("{}-{name}", self.name()), scene, value, format!("at the number {x}"))
+        let others: Vec<(&'static str, f64)> = others.iter().map(|&(what, other)| (what, self.shown(other))).collect();
+        self.shows(name, scene, (self.shown(x), format!("at the number {x}")), &others)
+    }
+
+    /// A truth by what a picture shows, with its formula.
+    fn shows(self, name: &str, scene: &Scene, (value, formula): (f64, String), others: &[(&'static str, f64)]) -> Truth {
+        let mut truth = Truth::new(format!("{}-{name}", self.name()), scene, value, formula)
             .because("The whole picture shows one number of the image: the opacity of a black sheet before a sky, the share of a blend, or α of a metal.")
             .sees(0.01);
         if self == Self::Opacity {
@@ -102,7 +107,6 @@ impl Kind {
             truth.must_see = 0.04;
         }
         for &(what, other) in others {
-            let other = self.shown(other);
             if (other - value).abs() > 2.5 * apart + 0.01 * value {
                 truth = truth.or_else(what, other);
             }
@@ -115,6 +119,30 @@ impl Kind {
 fn at(mut image: Value, [u, v]: [f64; 2]) -> Value {
     (image["uv_scale"], image["uv_offset"]) = (json!([1e-6, 1e-6]), json!([u, v]));
     image
+}
+
+/// Turned by the angle of a triangle of sides 3, 4 and 5, so that its middle column lies at 0.8 u + 0.6 v = ½ − `shift`.
+fn turn(mut image: Value, shift: f64) -> Value {
+    (image["wrap"], image["filter"]) = (json!("clamp"), json!("nearest"));
+    (image["uv_matrix"], image["uv_offset"]) = (json!([[0.8, 0.6], [-0.6, 0.8]]), json!([shift, 0]));
+    image
+}
+
+/// An image of two texels that lies turned: the line between them cuts a corner off the picture.
+fn turned(kind: Kind) -> Truth {
+    // Of the picture, which shows 0.3 to 0.7, the line 0.8 u + 0.6 v = 0.58 cuts off ½ of one side and ⅔ of the other.
+    let (file, numbers, share) = ("two-numbers.hdr", [0.25, 0.5], 1.0 / 6.0);
+    let scene = kind.scene(turn(json!({ "file": file }), -0.08)).file(file, grey_hdr(2, &numbers));
+    let [left, right] = numbers.map(|x| kind.shown(x));
+    let shown = |share: f64| share * left + (1.0 - share) * right;
+    let formula = "⅙ of the left number's and ⅚ of the right one's".to_owned();
+    // Not turned, the line would be at u = 0.58, of 0.3 to 0.7.
+    kind.shows(
+        "turned",
+        &scene,
+        (shown(share), formula),
+        &[("turned the other way", shown(1.0)), ("not turned", shown(0.7)), ("the right number alone", shown(0.0))],
+    )
 }
 
 const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
@@ -249,6 +277,29 @@ fn normals() -> Vec<Truth> {
             list.push(truth(name, at(map, place), "normals.hdr", radiance_hdr(2, &texels), normal));
         }
     }
+    // Turned about: where each of two texels shows its normal follows, the axes in which it is stated do not.
+    let two = [[0.75, 0.5, 0.875], [0.5, 0.25, 0.75]];
+    let of = |texel: [f64; 3]| texel.map(|x| 2.0 * x - 1.0);
+    let along_the_image = |[x, y, z]: Vec3| [0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y, z];
+    let [left, right] = two.map(|texel| matte(of(texel)));
+    let map = turn(json!({ "file": "two-normals.hdr" }), -0.14);
+    let scene = lit(json!({ "shape": square(), "material": lambert(0.8), "normal_map": map }));
+    // Of the picture, which shows 0.4 to 0.6, the line 0.8 u + 0.6 v = 0.64 cuts off ½ of one side and ⅔ of the other.
+    list.push(
+        Truth::new(
+            "normal-map-turned",
+            &scene.file("two-normals.hdr", radiance_hdr(2, &two)),
+            left / 6.0 + right * 5.0 / 6.0,
+            "⅙ ρ n₁·l + ⅚ ρ n₂·l",
+        )
+        .because(RELIEF)
+        .or_else("turned the other way", left)
+        .or_else("normals turned with the image", {
+            let [left, right] = two.map(|texel| matte(along_the_image(of(texel))));
+            left / 6.0 + right * 5.0 / 6.0
+        })
+        .sees(2e-3),
+    );
     let bytes = [200_u8, 100, 230, 255];
     for encoding in ["linear", "srgb", "auto"] {
         let number = |byte: u8| {
@@ -286,6 +337,16 @@ fn heights() -> Vec<Truth> {
         let name = format!("bump-map-{wrap}-and-{wrap_v}");
         list.push(truth(name, map, "ramp.hdr", grey_hdr(4, &ramp), [factor * along_u, factor_v * along_v]));
     }
+    // Turned about the middle, by the angle of a triangle of sides 3, 4 and 5: u′ = 0.8 u + 0.6 v, v′ = −0.6 u + 0.8 v.
+    let map = json!({
+        "file": "ramp.hdr", "height_m": HEIGHT_M, "wrap": "clamp", "uv_matrix": [[0.8, 0.6], [-0.6, 0.8]], "uv_offset": [-0.2, 0.4],
+    });
+    let turned = |sine: f64| [0.8 * along_u - sine * along_v, sine * along_u + 0.8 * along_v];
+    let turned_map = truth("bump-map-turned".to_owned(), map, "ramp.hdr", grey_hdr(4, &ramp), turned(0.6));
+    let shown = |[x, y]: [f64; 2]| matte([-x, -y, 1.0]);
+    list.push(
+        turned_map.or_else("turned the other way", shown(turned(-0.6))).or_else("not turned", shown([along_u, along_v])),
+    );
     // Each channel with a slope of its own along u.
     let slopes = [2.0, 1.0, 3.0];
     let texels: Vec<[f64; 3]> = (0..4).map(|column| slopes.map(|slope| slope * f64::from(column + 1) / 16.0)).collect();

@@ -1,14 +1,14 @@
 //! Images that give a surface detail: opacity, normals, heights, numbers of its material.
 
 use super::material::Share;
-use super::spectra::FARTHEST_UV;
+use super::uv::uv_map;
 use crate::files::Files;
 use crate::json::{
-    Code, Decode, Node, NonNegative, Optional, Reader, Required, SchemaBuilder, SchemaValue, Span, Spanned,
-    by_json_type,
+    Code, Decode, Node, NonNegative, Optional, Reader, Required, Rule, SchemaBuilder, SchemaValue,
+    Spanned, by_json_type,
 };
 use crate::model::{Bitangent, OpacityImage, Relief};
-use crate::texture::{Channel, Encoding, ImageTexture, TextureFilter, Wrap};
+use crate::texture::{Channel, Encoding, ImageTexture, TextureFilter, UvMap, Wrap};
 
 /// Declares an image over the texture coordinates of a surface: its file, keys of its own, and how it is laid.
 macro_rules! laid_image {
@@ -28,21 +28,21 @@ macro_rules! laid_image {
                 wrap_v: Optional<Wrap>,
                 /// Factors on the texture coordinates: 2 shows the image twice.
                 uv_scale: Required<[f64; 2]> = "[1, 1]",
+                /// Instead: rows of a matrix that the texture coordinates are multiplied by, which may turn and shear the image.
+                uv_matrix: Optional<[[f64; 2]; 2]>,
                 /// Added to the texture coordinates after that.
                 uv_offset: Required<[f64; 2]> = "[0, 0]",
-            }
+            } with [Rule::NotBoth("uv_scale", "uv_matrix")]
         }
 
         impl $name {
             /// Its texels, read as `data` says, laid over texture coordinates.
             fn texture(&self, data: Data, files: &mut Files, reader: &mut Reader<'_>) -> Option<ImageTexture> {
                 let laid = Laid {
-                    at: self.at,
                     file: self.file.as_ref()?,
                     wrap: self.wrap?,
                     wrap_v: self.wrap_v.clone(),
-                    uv_scale: self.uv_scale?,
-                    uv_offset: self.uv_offset?,
+                    uv_map: uv_map(self.uv_scale, &self.uv_matrix, self.uv_offset, self.at, reader),
                 };
                 laid.texture(data, files, reader)
             }
@@ -187,32 +187,21 @@ struct Data {
 
 /// Where an image is laid over texture coordinates.
 struct Laid<'f> {
-    at: Span,
     file: &'f Spanned<String>,
     wrap: Wrap,
     wrap_v: Optional<Wrap>,
-    uv_scale: [f64; 2],
-    uv_offset: [f64; 2],
+    uv_map: Option<UvMap>,
 }
 
 impl Laid<'_> {
     fn texture(self, data: Data, files: &mut Files, reader: &mut Reader<'_>) -> Option<ImageTexture> {
         let image = files.data(self.file, data.channel, data.encoding, reader);
-        for (key, pair) in [("uv_scale", self.uv_scale), ("uv_offset", self.uv_offset)] {
-            if pair.iter().any(|v| v.abs() > FARTHEST_UV) {
-                let message =
-                    format!("{key} is beyond {FARTHEST_UV:e}, where rounding errors are larger than the image");
-                reader.error(Code::OutOfRange, self.at.head(), message);
-                return None;
-            }
-        }
         Some(ImageTexture {
             image: image?,
             name: self.file.value.clone(),
             wrap: [self.wrap, self.wrap_v.checked()?.unwrap_or(self.wrap)],
             filter: data.filter,
-            uv_scale: self.uv_scale,
-            uv_offset: self.uv_offset,
+            uv_map: self.uv_map?,
             factor: [1.0; 3],
         })
     }

@@ -20,6 +20,7 @@ mod photometric;
 mod scene;
 mod spectra;
 mod spectrum;
+mod uv;
 mod view;
 
 pub use material::MOST_BLEND_PARTS;

@@ -13,8 +13,6 @@ use super::spectrum::{
 };
 use crate::json::{Code, List, Named, NamedEntry, Place, Reader, Span, Spanned};
 
-pub(crate) use image::FARTHEST_UV;
-
 /// The largest emission: with the squares of distances, it stays within the single precision of pictures (3·10³⁸).
 pub(crate) const BRIGHTEST: f64 = 1e30;
 

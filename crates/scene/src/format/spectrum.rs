@@ -8,8 +8,8 @@ use etalon_optics::colour::srgb_decode;
 use crate::texture::{Encoding, TextureFilter, Wrap};
 
 use crate::json::{
-    Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, SchemaBuilder, SchemaValue,
-    Span, Spanned, by_json_type,
+    Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, Rule, SchemaBuilder,
+    SchemaValue, Span, Spanned, by_json_type,
 };
 
 crate::number! {
@@ -128,11 +128,13 @@ crate::record! {
         filter: Required<TextureFilter> = r#""bilinear""#,
         /// Factors on the texture coordinates: 2 shows the image twice.
         uv_scale: Required<[f64; 2]> = "[1, 1]",
+        /// Instead: rows of a matrix that the texture coordinates are multiplied by, which may turn and shear the image.
+        uv_matrix: Optional<[[f64; 2]; 2]>,
         /// Added to the texture coordinates after that.
         uv_offset: Required<[f64; 2]> = "[0, 0]",
         /// Factor on each channel.
         factor: Required<[Spanned<Density>; 3]> = "[1, 1, 1]",
-    }
+    } with [Rule::NotBoth("uv_scale", "uv_matrix")]
 }
 
 crate::record! {
@@ -144,9 +146,11 @@ crate::record! {
         second: Required<TextureColour>,
         /// Factors on the texture coordinates: 2 shows four by four fields.
         uv_scale: Required<[f64; 2]> = "[1, 1]",
+        /// Instead: rows of a matrix that the texture coordinates are multiplied by, which may turn and shear the board.
+        uv_matrix: Optional<[[f64; 2]; 2]>,
         /// Added to the texture coordinates after that.
         uv_offset: Required<[f64; 2]> = "[0, 0]",
-    }
+    } with [Rule::NotBoth("uv_scale", "uv_matrix")]
 }
 
 crate::record! {
@@ -160,9 +164,11 @@ crate::record! {
         along: Required<TextureAxis> = r#""u""#,
         /// Factors on the texture coordinates: 2 shows all of it on half a unit.
         uv_scale: Required<[f64; 2]> = "[1, 1]",
+        /// Instead: rows of a matrix that the texture coordinates are multiplied by, which may turn and shear it.
+        uv_matrix: Optional<[[f64; 2]; 2]>,
         /// Added to the texture coordinates after that.
         uv_offset: Required<[f64; 2]> = "[0, 0]",
-    }
+    } with [Rule::NotBoth("uv_scale", "uv_matrix")]
 }
 
 /// A texture coordinate.

@@ -47,7 +47,11 @@ pub(crate) fn bend<'a>(
 /// Derivatives of the first channel by u and v: central differences over a texel, exact where the image is linear.
 fn slopes(texture: &ImageTexture, [u, v]: [f64; 2]) -> [f64; 2] {
     let size = [texture.image.width, texture.image.height].map(f64::from);
-    let step = |k: usize| 0.5 / (size[k] * texture.uv_scale[k].abs().max(f64::MIN_POSITIVE));
+    // Along u or v, half a texel of the image in the direction in which more of them lie.
+    let step = |along: usize| {
+        let texels = [0, 1].map(|k| size[k] * texture.uv_map.matrix[k][along].abs().max(f64::MIN_POSITIVE));
+        0.5 / texels[0].max(texels[1])
+    };
     let height = |u: f64, v: f64| texture.eval([u, v])[0];
     let (du, dv) = (step(0), step(1));
     let slope = |difference: f64, step: f64| if step.is_finite() { difference / (2.0 * step) } else { 0.0 };
@@ -57,7 +61,7 @@ fn slopes(texture: &ImageTexture, [u, v]: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etalon_scene::{Image, Texels, Wrap};
+    use etalon_scene::{Image, Texels, UvMap, Wrap};
     use std::sync::Arc;
 
     /// Eight columns and four rows, whose heights are told by column and row, both from zero and rows from the top.
@@ -65,8 +69,7 @@ mod tests {
         let texels = (0..32).map(|i| [of(f64::from(i % 8), f64::from(i / 8)) as f32; 3]).collect();
         ImageTexture {
             wrap: [Wrap::Clamp; 2],
-            uv_scale,
-            uv_offset,
+            uv_map: UvMap::scaled(uv_scale, uv_offset),
             ..ImageTexture::new(Image::new(8, 4, Texels::F32(texels)))
         }
     }
@@ -88,6 +91,17 @@ mod tests {
             let got = slopes(&step, middle);
             assert!((got[0] - want[0]).abs().max((got[1] - want[1]).abs()) < 1e-12, "{got:?} is not {want:?}");
         }
+    }
+
+    #[test]
+    fn slopes_of_a_turned_and_sheared_ramp_are_those_of_the_surface() {
+        let mut texture = heights(|column, row| 0.25 * column - 0.5 * row, [1.0; 2], [0.0; 2]);
+        let [[a, b], [c, d]] = [[0.75, -0.5], [0.25, 1.5]];
+        texture.uv_map = UvMap { matrix: [[a, b], [c, d]], offset: [0.25, -0.5] };
+        // Slopes 2 along the image and 2 up it, of coordinates that are au + bv and cu + dv: in the middle of it.
+        let got = slopes(&texture, [0.6, 0.55]);
+        let want = [2.0 * a + 2.0 * c, 2.0 * b + 2.0 * d];
+        assert!((got[0] - want[0]).abs().max((got[1] - want[1]).abs()) < 1e-12, "{got:?} is not {want:?}");
     }
 
     #[test]

@@ -107,8 +107,7 @@ impl Coordinates {
     /// what is round, over texture coordinates instead of over the surface.
     pub(crate) fn mean_luminance(&self, primitive: PrimitiveId, texture: &ImageTexture) -> f64 {
         const FINEST: f64 = 64.0;
-        let texels = [0, 1].map(|k| texture.uv_scale[k].abs());
-        let texels = [texels[0] * f64::from(texture.image.width), texels[1] * f64::from(texture.image.height)];
+        let size = [texture.image.width, texture.image.height];
         // Corner and edges in texture coordinates, and whether the half beyond the diagonal counts.
         let (corner, [along_u, along_v], square) = match self {
             Self::Mesh(mesh) if !mesh.mesh.uvs.is_empty() => {
@@ -117,8 +116,7 @@ impl Coordinates {
             }
             _ => ([0.0; 2], [[1.0, 0.0], [0.0, 1.0]], true),
         };
-        let longest =
-            [along_u, along_v].map(|[u, v]| (u * texels[0]).hypot(v * texels[1])).into_iter().fold(1.0, f64::max);
+        let longest = [along_u, along_v].map(|along| texture.uv_map.texels_along(along, size)).into_iter().fold(1.0, f64::max);
         let steps = longest.min(FINEST).ceil() as u32;
         let (mut sum, mut count) = (0.0, 0.0);
         for i in 0..steps {
@@ -205,13 +203,13 @@ impl MeshCoordinates {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etalon_scene::{Image, Texels, TextureFilter};
+    use etalon_scene::{Image, Texels, TextureFilter, UvMap};
 
     fn image(width: u32, height: u32, uv_scale: [f64; 2], of: impl Fn(u32, u32) -> [f32; 3]) -> ImageTexture {
         let texels = (0..width * height).map(|i| of(i % width, i / width)).collect();
         ImageTexture {
             filter: TextureFilter::Nearest,
-            uv_scale,
+            uv_map: UvMap::scaled(uv_scale, [0.0; 2]),
             ..ImageTexture::new(Image::new(width, height, Texels::F32(texels)))
         }
     }

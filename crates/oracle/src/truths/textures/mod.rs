@@ -5,6 +5,7 @@
 mod patterns;
 mod places;
 mod shown;
+mod turned;
 mod values;
 
 use serde_json::{Value, json};
@@ -26,6 +27,7 @@ pub(super) fn truths() -> Vec<Truth> {
     list.extend(values::masks());
     list.push(values::emission());
     list.extend(patterns::patterns());
+    list.extend(turned::turned());
     list
 }
 

@@ -9,12 +9,10 @@ use crate::files::Files;
 use crate::format::spectrum::{
     CheckerSpectrum, GradientSpectrum, ImageSpectrum, SpectrumForm, SpectrumObject, TextureAxis, TextureColour,
 };
+use crate::format::uv::uv_map;
 use crate::json::{Code, Reader, Span};
 use crate::model::SpectrumTexture;
 use crate::texture::{Image, ImageTexture, Texels, TextureFilter, Wrap};
-
-/// The largest factor on texture coordinates, and the largest shift: of sixteen digits, eight are left.
-pub(crate) const FARTHEST_UV: f64 = 1e8;
 
 impl<'f> Spectra<'f> {
     /// The spectrum of a form that may vary over a surface: a reflectance or an emission.
@@ -68,7 +66,7 @@ impl<'f> Spectra<'f> {
     ) -> Option<ImageTexture> {
         let file = form.file.as_ref()?;
         let image = files.image(file, form.encoding?, reader);
-        check_uv(form.uv_scale?, form.uv_offset?, form.at, reader)?;
+        let uv_map = uv_map(form.uv_scale, &form.uv_matrix, form.uv_offset, form.at, reader)?;
         let factor = form.factor.as_ref()?.map(|f| f.value.0);
         if let Some(negative) = factor.iter().find(|f| **f < 0.0) {
             reader.error(Code::OutOfRange, form.at.head(), format!("a factor of {negative} is below 0"));
@@ -94,8 +92,7 @@ impl<'f> Spectra<'f> {
             name: file.value.clone(),
             wrap: [wrap, wrap_v],
             filter: form.filter?,
-            uv_scale: form.uv_scale?,
-            uv_offset: form.uv_offset?,
+            uv_map,
             factor,
         })
     }
@@ -103,14 +100,13 @@ impl<'f> Spectra<'f> {
     /// A chequerboard is an image of two by two texels, each shown as it is.
     fn checker(&mut self, form: &CheckerSpectrum, used: Use, reader: &mut Reader<'_>) -> Option<ImageTexture> {
         let (first, second) = (form.first.as_ref(), form.second.as_ref());
-        check_uv(form.uv_scale?, form.uv_offset?, form.at, reader)?;
+        let uv_map = uv_map(form.uv_scale, &form.uv_matrix, form.uv_offset, form.at, reader)?;
         let [first, second] = [first, second].map(|colour| self.texel(colour?, form.at, used, reader));
         let (first, second) = (first?, second?);
         Some(ImageTexture {
             name: "checker".to_owned(),
             filter: TextureFilter::Nearest,
-            uv_scale: form.uv_scale?,
-            uv_offset: form.uv_offset?,
+            uv_map,
             ..ImageTexture::new(Image::new(2, 2, Texels::F32(vec![second, first, first, second])))
         })
     }
@@ -118,22 +114,22 @@ impl<'f> Spectra<'f> {
     /// An even change is an image of two texels, whose centres lie at 0 and at 1.
     fn gradient(&mut self, form: &GradientSpectrum, used: Use, reader: &mut Reader<'_>) -> Option<ImageTexture> {
         let (from, to) = (form.from.as_ref(), form.to.as_ref());
-        let (along, [scale_u, scale_v], [offset_u, offset_v]) = (form.along?, form.uv_scale?, form.uv_offset?);
-        check_uv([scale_u, scale_v], [offset_u, offset_v], form.at, reader)?;
+        let (along, mut uv_map) =
+            (form.along?, uv_map(form.uv_scale, &form.uv_matrix, form.uv_offset, form.at, reader)?);
         let [from, to] = [from, to].map(|colour| self.texel(colour?, form.at, used, reader));
         let (from, to) = (from?, to?);
         // A texture coordinate t lies at ¼ + ½t of two texels, the whole of one texel shows the same everywhere.
-        let of_two = |scale: f64, offset: f64| (0.5 * scale, 0.5 * offset + 0.25);
-        let ((width, height, texels), (scale_u, offset_u), (scale_v, offset_v)) = match along {
-            TextureAxis::U => ((2, 1, vec![from, to]), of_two(scale_u, offset_u), (scale_v, offset_v)),
+        let (width, height, k, texels) = match along {
+            TextureAxis::U => (2, 1, 0, vec![from, to]),
             // Rows count from the top.
-            TextureAxis::V => ((1, 2, vec![to, from]), (scale_u, offset_u), of_two(scale_v, offset_v)),
+            TextureAxis::V => (1, 2, 1, vec![to, from]),
         };
+        uv_map.matrix[k] = uv_map.matrix[k].map(|factor| 0.5 * factor);
+        uv_map.offset[k] = 0.5 * uv_map.offset[k] + 0.25;
         Some(ImageTexture {
             name: "gradient".to_owned(),
             wrap: [Wrap::Clamp; 2],
-            uv_scale: [scale_u, scale_v],
-            uv_offset: [offset_u, offset_v],
+            uv_map,
             ..ImageTexture::new(Image::new(width, height, Texels::F32(texels)))
         })
     }
@@ -156,15 +152,4 @@ fn possible(role: Role) -> (RangeInclusive<f64>, Code, String) {
         Role::Emission => (0.0..=BRIGHTEST, Code::OutOfRange, format!("not an emission (0 to {BRIGHTEST:e})")),
         _ => (0.0..=1.0, Code::Reflectance, "not a reflectance (0 to 1)".to_owned()),
     }
-}
-
-fn check_uv(scale: [f64; 2], offset: [f64; 2], at: Span, reader: &mut Reader<'_>) -> Option<()> {
-    for (key, pair) in [("uv_scale", scale), ("uv_offset", offset)] {
-        if pair.iter().any(|v| v.abs() > FARTHEST_UV) {
-            let message = format!("{key} is beyond {FARTHEST_UV:e}, where rounding errors are larger than the image");
-            reader.error(Code::OutOfRange, at.head(), message);
-            return None;
-        }
-    }
-    Some(())
 }
