@@ -40,7 +40,7 @@ pub(crate) fn load(
             .map_err(SceneError::from)
             .and_then(|text| Scene::parse_in(text, name, Some(Path::new("")), film_size))
     } else {
-        Scene::load_with(path, film_size, &Options { moment: None, parameters: parameters.to_vec() })
+        Scene::load_with(path, film_size, &Options { parameters: parameters.to_vec(), ..Options::default() })
     };
     let Scene { model, warnings: problems, added, left_out, file_name, text, sha256, files } =
         scene.map_err(refused)?;

@@ -79,14 +79,16 @@ impl Scene {
         Self::load_with(path, size, &Options::default())
     }
 
-    /// As [`Scene::load_sized`], with what a model is asked for: a moment of its animation, parameters. A scene file has neither.
+    /// As [`Scene::load_sized`], with what a model is asked for: a moment of its animation, parameters, a variant. A scene file has none of
+    /// these.
     ///
     /// # Errors
     /// As [`Scene::load`]; also if the file knows nothing of what is asked for.
     pub fn load_with(path: impl AsRef<Path>, size: Option<[u32; 2]>, options: &Options) -> Result<Self, SceneError> {
         let path = path.as_ref();
         if !is_model(path) && *options != Options::default() {
-            let message = "it is a scene file: it has no animations of glTF and no parameters of Mitsuba".to_owned();
+            let message =
+                "it is a scene file: it has no animations and variants of glTF and no parameters of Mitsuba".to_owned();
             return Err(ImportError { path: path.to_owned(), message }.into());
         }
         if is_model(path) {

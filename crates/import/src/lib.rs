@@ -24,7 +24,7 @@
 //! | item | what it does |
 //! |---|---|
 //! | [`import`] | imports a file from the disk |
-//! | [`import_bytes`], [`import_bytes_with`] | import bytes in memory, the latter with [`Options`]: a moment, parameters |
+//! | [`import_bytes`], [`import_bytes_with`] | import bytes in memory, the latter with [`Options`]: a moment, parameters, a variant |
 //! | [`Imported::parse`] | the imported scene as an [`etalon_scene::Scene`] |
 //! | [`Imported::left_out`] | each thing that the model says and the scene does not, or not exactly, with its place in the file |
 //! | [`Imported::taken_over`] | how much the scene has of the model |
@@ -50,6 +50,7 @@ mod round;
 mod sides;
 mod table;
 mod uv;
+mod vertex_colours;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -156,6 +157,8 @@ pub struct Options {
     pub moment: Option<Moment>,
     /// Names and values of parameters of a scene of Mitsuba, which stand for its `<default>`s. Of two of a name the last counts.
     pub parameters: Vec<(String, String)>,
+    /// The variant of the materials of glTF (`KHR_materials_variants`), by its name; left out, the materials that the meshes name.
+    pub variant: Option<String>,
 }
 
 /// Why a model cannot be imported.
@@ -227,6 +230,9 @@ pub fn import_bytes_with(
     if options.moment.is_some() && !matches!(kind, "gltf" | "glb") {
         return Err("a time is asked for, but only animations of glTF can be read".to_owned());
     }
+    if let Some(name) = options.variant.as_ref().filter(|_| !matches!(kind, "gltf" | "glb")) {
+        return Err(format!("the variant \"{name}\" is asked for, but only models of glTF have variants"));
+    }
     if let Some((name, _)) = options.parameters.first().filter(|_| kind != "xml") {
         return Err(format!("the parameter \"{name}\" is given, but only scenes of Mitsuba have parameters"));
     }
@@ -245,13 +251,24 @@ pub fn import_bytes_with(
 fn read(kind: &str, bytes: &[u8], options: &Options, builder: &mut Builder<'_>) -> Result<(), String> {
     match kind {
         "ply" => {
-            let part = read_ply(bytes).map_err(|error| error.to_string())?;
+            let mut part = read_ply(bytes).map_err(|error| error.to_string())?;
             part.left_out.iter().for_each(|what| builder.leave_out("vertices and faces", what.clone()));
-            builder.materials.insert("grey".to_owned(), json!({ "type": "lambert", "reflectance": 0.8 }));
-            builder.add_mesh("mesh", part.mesh, &json!("grey"), None)
+            if part.mesh.colours.is_empty() && !part.face_colours.is_empty() {
+                part.mesh = vertex_colours::of_faces(&part.mesh, &part.face_colours);
+            }
+            if vertex_colours::clamp(&mut part.mesh.colours) {
+                builder
+                    .approximate("vertices and faces", "some colours are no reflectances: they are clamped to 0 to 1");
+            }
+            let (name, reflectance) = match part.mesh.colours.is_empty() {
+                true => ("grey", json!(0.8)),
+                false => ("colours", json!({ "type": "vertex-colours" })),
+            };
+            builder.materials.insert(name.to_owned(), json!({ "type": "lambert", "reflectance": reflectance }));
+            builder.add_mesh("mesh", part.mesh, &json!(name), None)
         }
         "obj" => obj::import(bytes, builder),
-        "gltf" | "glb" => gltf::import(bytes, options.moment.as_ref(), builder),
+        "gltf" | "glb" => gltf::import(bytes, options, builder),
         "xml" => mitsuba::import(bytes, &options.parameters, builder),
         "pbrt" => pbrt::import(bytes, builder),
         other => Err(format!(

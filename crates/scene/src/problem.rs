@@ -145,6 +145,8 @@ codes! {
     ImageFile = "image-file",
     /// An image over a surface without texture coordinates.
     NoTextureCoordinates = "no-texture-coordinates",
+    /// The colours of vertices on a surface whose vertices have none.
+    NoVertexColours = "no-vertex-colours",
     /// Something in a file that is not used (a warning).
     LeftOut = "left-out",
     /// Triangles without area were left out (a warning).

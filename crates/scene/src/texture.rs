@@ -173,14 +173,7 @@ mod tests {
     fn square(wrap: Wrap, filter: TextureFilter) -> ImageTexture {
         let texels = vec![[0.0, 1.0, 0.25], [1.0, 1.0, 0.25], [0.0, 0.0, 0.25], [1.0, 0.0, 0.25]];
         let image = Arc::new(Image::new(2, 2, Texels::F32(texels)));
-        ImageTexture {
-            image,
-            name: String::new(),
-            wrap: [wrap; 2],
-            filter,
-            uv_map: UvMap::IDENTITY,
-            factor: [1.0; 3],
-        }
+        ImageTexture { image, name: String::new(), wrap: [wrap; 2], filter, uv_map: UvMap::IDENTITY, factor: [1.0; 3] }
     }
 
     #[test]
@@ -238,9 +231,12 @@ mod tests {
         let mut t = square(Wrap::Clamp, TextureFilter::Nearest);
         // A quarter of a turn about the middle: (u, v) shows what is at (1 − v, u).
         t.uv_map = UvMap { matrix: [[0.0, -1.0], [1.0, 0.0]], offset: [1.0, 0.0] };
-        for ([u, v], [column, upper]) in
-            [([0.25, 0.25], [1.0, 0.0]), ([0.75, 0.25], [1.0, 1.0]), ([0.75, 0.75], [0.0, 1.0]), ([0.25, 0.75], [0.0, 0.0])]
-        {
+        for ([u, v], [column, upper]) in [
+            ([0.25, 0.25], [1.0, 0.0]),
+            ([0.75, 0.25], [1.0, 1.0]),
+            ([0.75, 0.75], [0.0, 1.0]),
+            ([0.25, 0.75], [0.0, 0.0]),
+        ] {
             assert_eq!(t.eval([u, v]), [column, upper, 0.25], "{u} {v}");
         }
         // u is moved along by v.

@@ -51,10 +51,43 @@ fn a_ply_file_means_the_same_in_each_encoding() {
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         normals: vec![[0.0, 0.0, 1.0]; 4],
         uvs: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+        colours: Vec::new(),
     };
     for encoding in ["ascii", "binary_little_endian", "binary_big_endian"] {
         let part = read_ply(&square(encoding)).unwrap_or_else(|error| panic!("{encoding}: {error}"));
         assert_eq!(part, Part { mesh: expected.clone(), ..Part::default() }, "{encoding}");
+    }
+}
+
+#[test]
+fn colours_of_a_ply_file_are_linear_or_have_the_curve_of_srgb() {
+    let file = |kind: &str, names: [&str; 3], corners: &str, faces: &str, face: &str| {
+        let properties: String = names.iter().map(|name| format!("property {kind} {name}\n")).collect();
+        let (of_vertices, of_faces) =
+            if faces.is_empty() { (properties, String::new()) } else { (String::new(), properties) };
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n{of_vertices}element face 1\n\
+             property list uchar int vertex_indices\n{of_faces}end_header\n0 0 0{corners}\n1 0 0{corners}\n1 1 0{corners}\n0 1 0{corners}\n4 0 1 2 3{face}\n"
+        )
+    };
+    // (188/255) of the curve of sRGB is half of the light, to three digits.
+    let decoded = |value: f64| ((value + 0.055) / 1.055).powf(2.4) as f32;
+    for (kind, names, values, want) in [
+        ("float", ["red", "green", "blue"], " 0.25 0.5 1.5", [0.25, 0.5, 1.5]),
+        ("double", ["r", "g", "b"], " 0.25 0.5 1.5", [0.25, 0.5, 1.5]),
+        ("float", ["color_0", "color_1", "color_2"], " 0.25 0.5 1.5", [0.25, 0.5, 1.5]),
+        ("uchar", ["red", "green", "blue"], " 0 188 255", [0.0, decoded(188.0 / 255.0), 1.0]),
+        ("ushort", ["r", "g", "b"], " 0 40000 65535", [0.0, decoded(40000.0 / 65535.0), 1.0]),
+    ] {
+        let of_vertices = read_ply(file(kind, names, values, "", "").as_bytes()).expect("a mesh");
+        assert_eq!((of_vertices.mesh.colours.len(), of_vertices.face_colours.len()), (4, 0));
+        let near = |found: [f32; 3]| (0..3).all(|c| (found[c] - want[c]).abs() < 1e-6);
+        assert!(of_vertices.mesh.colours.iter().all(|found| near(*found)), "{kind}: {:?}", of_vertices.mesh.colours);
+        // Both triangles of a face have its colour.
+        let of_faces = read_ply(file(kind, names, "", "faces", values).as_bytes()).expect("a mesh");
+        assert_eq!((of_faces.mesh.colours.len(), of_faces.face_colours.len()), (0, 2));
+        assert!(of_faces.face_colours.iter().all(|found| near(*found)), "{kind}: {:?}", of_faces.face_colours);
+        assert!(of_faces.left_out.is_empty(), "{:?}", of_faces.left_out);
     }
 }
 
@@ -283,13 +316,14 @@ proptest! {
     #[test]
     fn a_written_mesh_is_read_back_the_same(
         vertices in prop::collection::vec(prop::array::uniform3(-1e6_f64..1e6), 3..40),
-        extra in any::<[bool; 2]>(),
+        extra in any::<[bool; 3]>(),
         picks in prop::collection::vec(prop::array::uniform3(0_usize..1000), 1..40),
     ) {
         let count = vertices.len();
         let mesh = Mesh {
             normals: if extra[0] { vec![[0.0, 0.6, 0.8]; count] } else { Vec::new() },
             uvs: if extra[1] { (0..count).map(|i| [i as f32 * 0.1, -1.5]).collect() } else { Vec::new() },
+            colours: if extra[2] { (0..count).map(|i| [i as f32 * 0.01, 0.5, 2.0]).collect() } else { Vec::new() },
             triangles: picks.iter().map(|t| t.map(|i| (i % count) as u32)).collect(),
             vertices,
         };

@@ -159,7 +159,7 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
         "vertical_fov_deg",
         "zenith_radiance",
     ];
-    let of_files = ["encoding", "factor", "file", "wrap", "wrap_v"];
+    let of_files = ["encoding", "file", "wrap", "wrap_v"];
     let of_detail = [
         "bitangent",
         "bump_map",
@@ -408,6 +408,7 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                             SpectrumTexture::Uniform(spectrum) => (0.0..=1.0).contains(&spectrum.eval(nm)),
                             // The scene names no files: it is a texture of a few texels that the scene states.
                             SpectrumTexture::Image(texture) => texture.mean().iter().all(|v| (0.0..=1.0).contains(v)),
+                            SpectrumTexture::VertexColours { factor, .. } => factor.iter().all(|f| *f >= 0.0),
                         },
                         M::Conductor { metal: Metal::Index(index), .. }
                         | M::RoughConductor { metal: Metal::Index(index), .. } => index.eval(nm).0 > 0.0,

@@ -20,6 +20,33 @@ pub enum PathTexture {
         /// The mean of its texels.
         mean: [f64; 3],
     },
+    /// The colours of the vertices around, as reflectances.
+    VertexColours {
+        /// Factor on each channel.
+        factor: [f64; 3],
+        /// Whether a grey of the same luminance is shown instead.
+        grey: bool,
+        /// An image by which they are multiplied.
+        image: Option<Box<ImageTexture>>,
+        /// What the channels are at each wavelength.
+        basis: RgbBasis,
+    },
+}
+
+/// A place of a surface, as textures see it.
+#[derive(Clone, Copy, Debug)]
+pub struct TexturePoint {
+    /// Texture coordinates; 0 on a surface without.
+    pub uv: [f64; 2],
+    /// The colour between the vertices around; white on a surface without.
+    pub colour: [f64; 3],
+}
+
+impl TexturePoint {
+    /// Of a surface whose vertices have no colours.
+    pub const fn of_uv(uv: [f64; 2]) -> Self {
+        Self { uv, colour: [1.0; 3] }
+    }
 }
 
 impl PathTexture {
@@ -30,26 +57,49 @@ impl PathTexture {
             SpectrumTexture::Image(texture) => {
                 Self::Image { texture: texture.clone(), basis: RgbBasis::get(), mean: texture.mean() }
             }
+            SpectrumTexture::VertexColours { factor, grey, image } => {
+                Self::VertexColours { factor: *factor, grey: *grey, image: image.clone(), basis: RgbBasis::get() }
+            }
         }
     }
 
-    /// The value at a wavelength, nm, of an image that of its mean colour.
+    /// The value at a wavelength, nm: of an image that of its mean colour, of the colours of vertices that of grey ones.
     pub(crate) fn mean(&self, wavelength_nm: f64) -> f64 {
         match self {
             Self::Uniform(spectrum) => spectrum.eval(wavelength_nm),
             Self::Image { basis, mean, .. } => basis.reflectance(*mean, wavelength_nm),
+            Self::VertexColours { factor, basis, .. } => {
+                basis.reflectance(factor.map(|f| (0.5 * f).min(1.0)), wavelength_nm)
+            }
         }
     }
 
-    /// Values in every lane at texture coordinates.
+    /// Values in every lane at a place.
     #[inline]
-    pub fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> Lanes<f64, N> {
+    pub fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, at: TexturePoint) -> Lanes<f64, N> {
         match self {
             Self::Uniform(spectrum) => spectrum.lanes(lambda_nm),
             Self::Image { texture, basis, .. } => {
-                let rgb = texture.eval(uv);
+                let rgb = texture.eval(at.uv);
                 Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane]))
             }
+            Self::VertexColours { factor, grey, image, basis } => {
+                let mut rgb = [0, 1, 2].map(|c| at.colour[c] * factor[c]);
+                if let Some(image) = image {
+                    let shown = image.eval(at.uv);
+                    rgb = [0, 1, 2].map(|c| rgb[c] * shown[c]);
+                }
+                let rgb = if *grey { [luminance(rgb); 3] } else { rgb };
+                Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane]))
+            }
+        }
+    }
+
+    /// The spectrum, if it is the same everywhere.
+    pub(crate) fn uniform(&self) -> Option<&PathSpectrum> {
+        match self {
+            Self::Uniform(spectrum) => Some(spectrum),
+            Self::Image { .. } | Self::VertexColours { .. } => None,
         }
     }
 }
@@ -66,6 +116,17 @@ pub(crate) fn mean_colour(texture: &ImageTexture) -> Spectrum {
     Spectrum::rgb_reflectance(rgb).expect("a mean of reflectances is one")
 }
 
+/// The reflectance of vertices of one colour, with a factor on its channels.
+pub(crate) fn vertex_colour(factor: [f64; 3], colour: [f64; 3]) -> Spectrum {
+    let rgb = [0, 1, 2].map(|c| (factor[c] * colour[c]).clamp(0.0, 1.0));
+    Spectrum::rgb_reflectance(rgb).expect("it lies from 0 to 1")
+}
+
+/// The luminance of a linear Rec. 709 colour.
+pub(crate) fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
 /// What stands there for an image of what a surface emits.
 pub(crate) fn mean_emission(texture: &ImageTexture) -> Spectrum {
     Spectrum::rgb_emission(texture.mean(), Illuminant::D65).expect("a mean of emissions is one")
@@ -76,5 +137,6 @@ pub(crate) fn mean(reflectance: &SpectrumTexture) -> Cow<'_, Spectrum> {
     match reflectance {
         SpectrumTexture::Uniform(spectrum) => Cow::Borrowed(spectrum),
         SpectrumTexture::Image(texture) => Cow::Owned(mean_colour(texture)),
+        SpectrumTexture::VertexColours { factor, .. } => Cow::Owned(vertex_colour(*factor, [0.5; 3])),
     }
 }

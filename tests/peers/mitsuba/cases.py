@@ -86,6 +86,7 @@ CASES = [
     of("normal"),
     *(of("mesh", format=f) for f in ("obj", "ply", "serialized")),
     of("flat-mesh"),
+    *(of("mesh-colours", attribute=f"{of_what}_color") for of_what in ("vertex", "face")),
     of("instances"),
     of("point"),
     of("spot", beam=16),

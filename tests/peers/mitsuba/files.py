@@ -61,6 +61,18 @@ def write_meshes(folder):
     faces = b"".join(struct.pack("<B3i", 3, *corners) for corners in triangles)
     (folder / "hill.ply").write_bytes(head.encode() + vertices + faces)
 
+    # Smooth colours of the vertices, and one of its own for each face.
+    u, v = uvs.T
+    colours = np.stack([0.1 + 0.8 * u, 0.5 + 0.4 * np.sin(5 * v), 0.9 - 0.6 * u * v], -1)
+    own = np.random.default_rng(11).uniform(0.1, 0.9, (len(triangles), 3))
+    head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n"
+    head += "".join(f"property float {name}\n" for name in "x y z nx ny nz r g b".split())
+    head += f"element face {len(triangles)}\nproperty list uchar int vertex_indices\n"
+    head += "".join(f"property float {name}\n" for name in "rgb") + "end_header\n"
+    vertices = np.concatenate([points, normals, colours], 1).astype("<f4").tobytes()
+    faces = b"".join(struct.pack("<B3i3f", 3, *corners, *colour) for corners, colour in zip(triangles, own))
+    (folder / "hill-colours.ply").write_bytes(head.encode() + vertices + faces)
+
     # Single precision, with normals and texture coordinates, without a name.
     body = struct.pack("<I", 0x1000 | 0x1 | 0x2) + b"\0" + struct.pack("<QQ", len(points), len(triangles))
     body += points.astype("<f4").tobytes() + normals.astype("<f4").tobytes() + uvs.astype("<f4").tobytes()

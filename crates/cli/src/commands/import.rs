@@ -33,6 +33,9 @@ pub(crate) struct Args {
     /// Name of the animation, or its index from 0. Default: the first.
     #[arg(long, value_name = "NAME", requires = "time")]
     animation: Option<String>,
+    /// Name of the variant of a glTF model: another look of it (KHR_materials_variants). Default: the materials that its meshes name.
+    #[arg(long, value_name = "NAME")]
+    variant: Option<String>,
     /// Value of a parameter of a Mitsuba scene, in the place of its <default>. The option may be repeated.
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = crate::args::parameter)]
     define: Vec<(String, String)>,
@@ -126,7 +129,8 @@ pub(crate) fn run(args: Args) -> Outcome {
     let prefix = format!("{stem}-files/");
     let moment =
         args.time.map(|opens_s| Moment { animation: args.animation.clone(), opens_s, shutter_s: args.shutter });
-    let imported = import_model(&args.model, &prefix, &Options { moment, parameters: args.define })?;
+    let options = Options { moment, parameters: args.define, variant: args.variant };
+    let imported = import_model(&args.model, &prefix, &options)?;
     // What would not load is not written.
     let name = args.output.display().to_string();
     imported.parse(&name, None).map_err(refused_scene)?;

@@ -4,10 +4,12 @@ mod accessor;
 mod animation;
 mod camera;
 mod clearcoat;
+mod colours;
 mod file;
 mod image;
 mod iridescence;
 mod material;
+mod variants;
 
 use std::collections::HashMap;
 
@@ -20,7 +22,7 @@ use gltf::mesh::{Mode, Semantic};
 use serde_json::{Value, json};
 
 use crate::number::{WITHOUT_DIRECTIONS, without_directions};
-use crate::{Builder, Moment, light};
+use crate::{Builder, Options, light};
 use accessor::numbers;
 use animation::{Animated, Pose};
 use file::{buffers, check_images, check_lights, check_primitives, parse};
@@ -32,7 +34,8 @@ const MAX_DEPTH: usize = 256;
 /// Things that move within things that move: each takes up to two groups within each other, of which the format knows sixteen.
 const MAX_MOVING: usize = 7;
 
-pub(super) fn import(bytes: &[u8], moment: Option<&Moment>, builder: &mut Builder<'_>) -> Result<(), String> {
+pub(super) fn import(bytes: &[u8], options: &Options, builder: &mut Builder<'_>) -> Result<(), String> {
+    let moment = options.moment.as_ref();
     check_primitives(bytes)?;
     let file = parse(bytes)?;
     check_images(&file)?;
@@ -41,12 +44,15 @@ pub(super) fn import(bytes: &[u8], moment: Option<&Moment>, builder: &mut Builde
     if file.skins().count() > 0 {
         builder.leave_out("$.skins", "they are ignored: the model is as its nodes place it");
     }
+    let variant = variants::asked(&file, options.variant.as_deref(), builder)?;
     let animated = Animated::read(&file, &buffers, moment, builder)?;
     if moment.is_some_and(|moment| moment.shutter_s > 0.0) {
         builder.shutter_s = Some(animated.shutter_s);
     }
     let mut walk = Walk {
         builder,
+        document: &file,
+        variant,
         animated: &animated,
         chain: Vec::new(),
         buffers: &buffers,
@@ -82,6 +88,9 @@ struct MadePart {
 
 struct Walk<'w, 'b> {
     builder: &'w mut Builder<'b>,
+    document: &'w gltf::Document,
+    /// The number of the variant of materials that is asked for.
+    variant: Option<usize>,
     animated: &'w Animated,
     /// What moves around the node: the map from its parent to what moves around that in turn, and its poses.
     chain: Vec<(DAffine3, Vec<(f64, Pose)>)>,
@@ -94,8 +103,8 @@ struct Walk<'w, 'b> {
     uses: Vec<u32>,
 }
 
-impl Walk<'_, '_> {
-    fn node(&mut self, node: &Node<'_>, parent: &DAffine3, depth: usize) -> Result<(), String> {
+impl<'w> Walk<'w, '_> {
+    fn node(&mut self, node: &Node<'w>, parent: &DAffine3, depth: usize) -> Result<(), String> {
         let place = format!("$.nodes[{}]", node.index());
         if depth > MAX_DEPTH {
             return Err(format!("{place}: nodes are nested more than {MAX_DEPTH} deep"));
@@ -114,7 +123,7 @@ impl Walk<'_, '_> {
     }
 
     /// How a node moves, if it does and can.
-    fn motion(&mut self, node: &Node<'_>, parent: &DAffine3, place: &str) -> Option<Vec<(f64, Pose)>> {
+    fn motion(&mut self, node: &Node<'w>, parent: &DAffine3, place: &str) -> Option<Vec<(f64, Pose)>> {
         let poses = self.animated.motion(node)?;
         let sides = poses[0].1.scale.signum();
         let why = if self.chain.len() >= MAX_MOVING {
@@ -133,7 +142,7 @@ impl Walk<'_, '_> {
     /// A node that moves: a group of what is in it, placed by keyframes.
     fn moving(
         &mut self,
-        node: &Node<'_>,
+        node: &Node<'w>,
         parent: &DAffine3,
         poses: Vec<(f64, Pose)>,
         depth: usize,
@@ -170,7 +179,7 @@ impl Walk<'_, '_> {
 
     /// What is in a node, and in those below it. `matrix` leads from its coordinates to the world, or to those of the group that is
     /// being made.
-    fn content(&mut self, node: &Node<'_>, matrix: &DAffine3, depth: usize) -> Result<(), String> {
+    fn content(&mut self, node: &Node<'w>, matrix: &DAffine3, depth: usize) -> Result<(), String> {
         let place = format!("$.nodes[{}]", node.index());
         if let Some(camera) = node.camera() {
             self.camera(&camera, matrix);
@@ -216,8 +225,8 @@ impl Walk<'_, '_> {
     /// Adds a primitive where a node places it; its mesh is made once.
     fn place(
         &mut self,
-        mesh: &gltf::Mesh<'_>,
-        primitive: &gltf::Primitive<'_>,
+        mesh: &gltf::Mesh<'w>,
+        primitive: &gltf::Primitive<'w>,
         name: &str,
         matrix: &DAffine3,
     ) -> Result<(), String> {
@@ -254,14 +263,16 @@ impl Walk<'_, '_> {
         Ok(())
     }
 
-    fn part(&mut self, primitive: &gltf::Primitive<'_>, place: &str) -> Result<Option<MadePart>, String> {
+    fn part(&mut self, primitive: &gltf::Primitive<'w>, place: &str) -> Result<Option<MadePart>, String> {
         let fail = |what: &str| format!("{place}: {what}");
-        let look = self.materials.of(&primitive.material(), self.buffers, self.builder)?;
+        let material = self.material(primitive, place)?;
+        let alpha = material.alpha_mode();
+        let look = self.materials.of(&material, self.buffers, self.builder)?;
         for (semantic, _) in primitive.attributes() {
             let used = match semantic {
                 Semantic::Positions | Semantic::Normals | Semantic::Tangents => true,
                 // Sets that no image uses would be listed for nothing.
-                Semantic::TexCoords(_) => true,
+                Semantic::TexCoords(_) | Semantic::Colors(0) => true,
                 Semantic::Colors(_) | Semantic::Joints(_) | Semantic::Weights(_) => false,
             };
             if !used {
@@ -309,12 +320,14 @@ impl Walk<'_, '_> {
             self.builder.leave_out(place, "it has no triangles, and is left out");
             return Ok(None);
         }
+        let colours = self.colours(primitive, alpha, count, place)?;
         let mesh = Mesh {
             vertices,
             triangles,
             normals: normals.into_iter().map(unit_normal).collect(),
             // glTF counts v from the top of the image.
             uvs: uvs.into_iter().map(|[u, v]| [u as f32, (1.0 - v) as f32]).collect(),
+            colours,
         };
         let mut material = look.material.clone();
         let mut detail = look.detail.clone();
@@ -335,12 +348,15 @@ impl Walk<'_, '_> {
                 material = without;
             }
         }
+        if !mesh.colours.is_empty() {
+            material = self.tinted(material, place)?;
+        }
         let file = self.builder.mesh_file(&mesh);
         Ok(Some(MadePart { file, mesh, material, emission, detail }))
     }
 
     /// Candela and lux become the format's units as they are: a luminance of 1 cd/m² is a radiance of 1.
-    fn light(&mut self, lamp: &gltf::khr_lights_punctual::Light<'_>, node: &Node<'_>, matrix: &DAffine3) {
+    fn light(&mut self, lamp: &gltf::khr_lights_punctual::Light<'_>, node: &Node<'w>, matrix: &DAffine3) {
         use gltf::khr_lights_punctual::Kind;
         let place = format!("$.extensions.KHR_lights_punctual.lights[{}]", lamp.index());
         let spectrum = light(lamp.color().map(|c| f64::from(c).max(0.0)), f64::from(lamp.intensity()).max(0.0));

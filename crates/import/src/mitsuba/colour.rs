@@ -11,7 +11,7 @@ use crate::checker::{Checker, channels};
 use crate::matrix::rows;
 use crate::number::Number;
 use crate::table::Table;
-use crate::{extension, light, reflectance, uv};
+use crate::{extension, light, reflectance, uv, vertex_colours};
 
 /// What a colour is the colour of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -237,6 +237,15 @@ impl Walk<'_, '_, '_> {
             self.builder.approximate(place, "the mean of the chequerboard is used");
             let mean = checker.mean();
             return Ok(if of.is_light() { light(mean, 1.0) } else { checker.mean_reflectance() });
+        }
+        if element.plugin() == "mesh_attribute" {
+            let name = element.string("name").unwrap_or("").to_owned();
+            let scale = element.number("scale")?.unwrap_or(1.0);
+            if of == Of::Texture {
+                return Ok(vertex_colours::attribute(&name, scale));
+            }
+            self.builder.approximate(place, format!("the mesh attribute \"{name}\" cannot stand here: it becomes 0.5"));
+            return Ok(json!(0.5));
         }
         if element.plugin() != "bitmap" {
             let what = element.plugin();

@@ -89,6 +89,8 @@ impl<'a> Walk<'a, '_, '_> {
             match child.tag.as_str() {
                 "integrator" => self.integrator(child)?,
                 "sensor" => self.sensor(child)?,
+                // That of shapes, which refer to it.
+                "emitter" if child.plugin() == "area" && child.attribute("id").is_some() => {}
                 "emitter" => self.emitter(child)?,
                 "shape" if child.plugin() == "shapegroup" => self.group(child)?,
                 _ => continue,

@@ -67,10 +67,8 @@ fn mesh(bytes: &[u8], version: u16) -> Result<(Part, bool), String> {
     if flags & UVS != 0 {
         mesh.uvs = rest.tuples(vertices, double)?.into_iter().map(|uv: [f64; 2]| uv.map(|c| c as f32)).collect();
     }
-    let mut left_out = Vec::new();
     if flags & COLOURS != 0 {
-        let _: Vec<[f64; 3]> = rest.tuples(vertices, double)?;
-        left_out.push("the colours of its vertices are left out".to_owned());
+        mesh.colours = rest.tuples(vertices, double)?.into_iter().map(|rgb: [f64; 3]| rgb.map(|c| c as f32)).collect();
     }
     for i in 0..triangles {
         let corners: [[u8; 4]; 3] = [rest.take()?, rest.take()?, rest.take()?];
@@ -81,7 +79,7 @@ fn mesh(bytes: &[u8], version: u16) -> Result<(Part, bool), String> {
         mesh.triangles.push(corners);
     }
     let name = (!name.is_empty()).then_some(name);
-    Ok((Part { name, material: None, mesh, left_out }, flags & FACE_NORMALS != 0))
+    Ok((Part { name, mesh, ..Part::default() }, flags & FACE_NORMALS != 0))
 }
 
 /// What has not been read yet.

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use etalon_scene::mesh::{Part, read_obj, read_ply};
+use etalon_scene::mesh::{Part, read_obj, read_ply, smooth_normals};
 use glam::DAffine3;
 use serde_json::{Value, json};
 
@@ -15,6 +15,7 @@ use crate::Placed;
 use crate::medium::fill;
 use crate::number::{WITHOUT_DIRECTIONS, has_image, without_directions};
 use crate::relief::without_map;
+use crate::vertex_colours::{self, attribute_of};
 
 /// A mesh file, as files of the scene.
 #[derive(Debug)]
@@ -40,6 +41,8 @@ struct MeshPart {
     bounds: Option<Reach>,
     has_uvs: bool,
     has_normals: bool,
+    /// Whether it has the colours that were asked for.
+    has_colours: bool,
 }
 
 impl<'a> Walk<'a, '_, '_> {
@@ -151,7 +154,8 @@ impl<'a> Walk<'a, '_, '_> {
             return Ok(look.clone());
         }
         let mut look = self.look(element)?;
-        if let Some(id) = element.attribute("id") {
+        // What shows colours of a mesh is another material on each.
+        if let Some(id) = element.attribute("id").filter(|_| attribute_of(&look.material).is_none()) {
             let name = self.builder.material_name(id);
             self.builder.materials.insert(name.clone(), look.material);
             look.material = json!(name);
@@ -180,6 +184,7 @@ impl<'a> Walk<'a, '_, '_> {
     }
 
     fn analytic(&mut self, mut dressed: Dressed, shape: Value, reach: Reach, place: &str) -> Result<(), String> {
+        self.resolve(&mut dressed, None, place);
         let (shape, reach) = self.with_coordinates(&mut dressed, shape, reach, place);
         self.builder.place(&dressed.placed(shape, Some(reach)), place)
     }
@@ -196,7 +201,8 @@ impl<'a> Walk<'a, '_, '_> {
             _ => MeshFormat::Ply,
         };
         let flip_v = element.flag("flip_tex_coords")?.unwrap_or(format == MeshFormat::Obj);
-        let mesh = self.read_mesh(&file, format, flip_v, place)?;
+        let attribute = attribute_of(&dressed.look.material);
+        let mesh = self.read_mesh(&file, (format, flip_v, attribute.as_ref()), place)?;
         let flat = element.flag("face_normals")?.unwrap_or(false) || mesh.flat;
         for part in &mesh.parts {
             let mut dressed = dressed.clone();
@@ -207,6 +213,7 @@ impl<'a> Walk<'a, '_, '_> {
             if (flat || !part.has_normals) && dressed.map.matrix3.determinant() < 0.0 {
                 dressed.flipped = !dressed.flipped;
             }
+            self.resolve(&mut dressed, attribute.as_ref().filter(|_| part.has_colours), place);
             self.without_images(&mut dressed, part.has_uvs, place);
             if !part.has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
                 let what = "it has no texture coordinates for the image of its emission: it does not emit";
@@ -224,8 +231,22 @@ impl<'a> Walk<'a, '_, '_> {
         Ok(())
     }
 
-    fn read_mesh(&mut self, file: &str, format: MeshFormat, flip_v: bool, place: &str) -> Result<Rc<Mesh>, String> {
-        let key = format!("{flip_v} {format:?} {file}");
+    /// Shows the colours of the mesh where they are known; other attributes become grey.
+    fn resolve(&mut self, dressed: &mut Dressed, known: Option<&(String, f64)>, place: &str) {
+        if vertex_colours::resolve(&mut dressed.look.material, known) {
+            let what = "it has no such colours as the mesh_attribute of its material shows: only \"vertex_color\" and \"face_color\" of \
+                        ply and serialized meshes are known, one a shape; the others become 0.5";
+            self.builder.approximate(place, what);
+        }
+    }
+
+    fn read_mesh(
+        &mut self,
+        file: &str,
+        (format, flip_v, attribute): (MeshFormat, bool, Option<&(String, f64)>),
+        place: &str,
+    ) -> Result<Rc<Mesh>, String> {
+        let key = format!("{flip_v} {format:?} {attribute:?} {file}");
         if let Some(mesh) = self.meshes.get(&key) {
             return Ok(mesh.clone());
         }
@@ -254,17 +275,43 @@ impl<'a> Walk<'a, '_, '_> {
                 let [low, high] = bounds.unwrap_or([*v, *v]);
                 Some([std::array::from_fn(|k| low[k].min(v[k])), std::array::from_fn(|k| high[k].max(v[k]))])
             });
+            let has_normals = !part.mesh.normals.is_empty();
+            let has_colours = self.paint(&mut part, attribute, place);
             made.push(MeshPart {
                 file: self.builder.mesh_file(&part.mesh),
                 name: part.name,
                 bounds,
                 has_uvs: !part.mesh.uvs.is_empty(),
-                has_normals: !part.mesh.normals.is_empty(),
+                has_normals,
+                has_colours,
             });
         }
         let mesh = Rc::new(Mesh { parts: made, flat });
         self.meshes.insert(key, mesh.clone());
         Ok(mesh)
+    }
+
+    /// Gives the vertices of a mesh the colours that its material asks for, and no others; whether it has them.
+    fn paint(&mut self, part: &mut Part, attribute: Option<&(String, f64)>, place: &str) -> bool {
+        let of_vertices = std::mem::take(&mut part.mesh.colours);
+        let of_faces = std::mem::take(&mut part.face_colours);
+        let Some((name, factor)) = attribute else { return false };
+        match name.as_str() {
+            "vertex_color" => part.mesh.colours = of_vertices,
+            "face_color" if !of_faces.is_empty() => {
+                // Normals that are made of the triangles around a vertex, while it is one.
+                if part.mesh.normals.is_empty() {
+                    part.mesh.normals = smooth_normals(&part.mesh);
+                }
+                part.mesh = vertex_colours::of_faces(&part.mesh, &of_faces);
+            }
+            _ => {}
+        }
+        part.mesh.colours.iter_mut().flatten().for_each(|channel| *channel *= *factor as f32);
+        if vertex_colours::clamp(&mut part.mesh.colours) {
+            self.builder.approximate(place, "colours of its mesh are no reflectances: they are clamped to 0 to 1");
+        }
+        !part.mesh.colours.is_empty()
     }
 
     /// Takes images away from what has no texture coordinates.
@@ -302,7 +349,7 @@ pub(super) struct Dressed {
     pub look: Look,
     pub emission: Option<Value>,
     pub map: DAffine3,
-    flipped: bool,
+    pub flipped: bool,
 }
 
 /// Two corners of a box.

@@ -182,7 +182,9 @@ impl Reading<'_, '_> {
             return Ok(known.clone());
         }
         let bytes = self.builder.bytes_of(file, place)?;
-        let part = read_ply(&bytes).map_err(|e| format!("{place}: \"{file}\": {e}"))?;
+        let mut part = read_ply(&bytes).map_err(|e| format!("{place}: \"{file}\": {e}"))?;
+        // The program has no materials that show them.
+        part.mesh.colours.clear();
         for what in &part.left_out {
             self.builder.leave_out(place, format!("\"{file}\": {what}"));
         }
@@ -243,7 +245,7 @@ fn vertices(list: &Parameters, place: &str) -> Result<Mesh, String> {
         }
     }
     let normals = normals.into_iter().map(unit_normal).collect();
-    Ok(Mesh { vertices, triangles: Vec::new(), normals, uvs })
+    Ok(Mesh { vertices, normals, uvs, ..Mesh::default() })
 }
 
 /// The corners of the faces; those of the only face if none are stated.

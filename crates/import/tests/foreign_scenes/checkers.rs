@@ -76,7 +76,7 @@ Shape "sphere"
 
 #[test]
 fn a_turned_chequerboard_of_mitsuba_stays_turned() {
-    let turned = crate::imported("xml", &mitsuba(r#"<transform name="to_uv"><rotate z="1" angle="30"/></transform>"#));
+    let turned = imported("xml", &mitsuba(r#"<transform name="to_uv"><rotate z="1" angle="30"/></transform>"#));
     assert!(said(&turned).is_empty(), "{:?}", said(&turned));
     let scene = scene(&turned);
     let (sin, cos) = 30.0_f64.to_radians().sin_cos();

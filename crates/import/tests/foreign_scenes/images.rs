@@ -26,14 +26,22 @@ fn surfaces_that_shine_by_an_image_arrive() {
 #[test]
 fn images_of_mitsuba_are_turned_sheared_and_moved() {
     let map = r#"<transform name="to_uv"><matrix value="0.5 -2 0 0.125  3 0.25 0 4  0 0 1 0  0 0 0 1"/></transform>"#;
-    let turned = r#"<transform name="to_uv"><rotate z="1" angle="30"/><scale x="2" y="3"/><translate x="0.25"/></transform>"#;
+    let turned =
+        r#"<transform name="to_uv"><rotate z="1" angle="30"/><scale x="2" y="3"/><translate x="0.25"/></transform>"#;
     for (text, [[a, b], [c, d]], [u0, v0]) in [(map, [[0.5, -2.0], [3.0, 0.25]], [0.125, 4.0]), {
         let (sin, cos) = 30.0_f64.to_radians().sin_cos();
         (turned, [[2.0 * cos, -2.0 * sin], [3.0 * sin, 3.0 * cos]], [0.25, 0.0])
     }] {
-        let bitmap = format!("<texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" value=\"chequers.png\"/>{text}</texture>");
+        let bitmap = format!(
+            "<texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" value=\"chequers.png\"/>{text}</texture>"
+        );
         let scene_of = |shape: &str| {
-            let imported = imported("xml", &format!("<scene version=\"3.0.0\"><shape type=\"{shape}\"><bsdf type=\"diffuse\">{bitmap}</bsdf></shape></scene>"));
+            let imported = imported(
+                "xml",
+                &format!(
+                    "<scene version=\"3.0.0\"><shape type=\"{shape}\"><bsdf type=\"diffuse\">{bitmap}</bsdf></shape></scene>"
+                ),
+            );
             assert_eq!(said(&imported), Vec::<String>::new());
             scene(&imported)
         };

@@ -36,12 +36,14 @@ fn a_reference_that_leads_somewhere_is_no_loss() {
 <bsdf type="diffuse" id="paint"><ref id="board" name="reflectance"/></bsdf>
 <bsdf type="twosided" id="both"><ref id="paint"/></bsdf>
 <medium type="homogeneous" id="fog"><float name="sigma_t" value="1"/></medium>
-<shape type="rectangle"><ref id="both"/></shape>
+<emitter type="area" id="glow"><float name="radiance" value="2"/></emitter>
+<shape type="rectangle"><ref id="both"/><ref id="glow"/></shape>
 <shape type="rectangle"><ref id="paint" name="bsdf"/><emitter type="area"><ref id="light" name="radiance"/></emitter></shape>
 <shape type="sphere"><bsdf type="null"/><ref id="fog" name="interior"/></shape>
 </scene>"#;
     let imported = imported("xml", text);
     assert!(said(&imported).is_empty(), "{:#?}", said(&imported));
+    assert_eq!(scene(&imported).objects.iter().filter(|object| object.emission.is_some()).count(), 2);
 }
 
 fn rough(plugin: &str, keys: &str) -> (MaterialKind, Vec<String>) {

@@ -12,6 +12,7 @@ mod principled;
 mod relief;
 mod sides;
 mod spots;
+mod vertex_colours;
 
 use etalon_import::{Imported, import_bytes};
 use etalon_scene::{
@@ -39,6 +40,7 @@ fn near(name: &str) -> Result<Vec<u8>, String> {
         "inc.pbrt" => Ok(b"Shape \"sphere\" \"float radius\" 2\n".to_vec()),
         "itself.xml" => Ok(br#"<scene version="3.0.0"><include filename="itself.xml"/></scene>"#.to_vec()),
         "itself.pbrt" => Ok(b"Include \"itself.pbrt\"".to_vec()),
+        "painted.ply" => Ok(vertex_colours::PLY.as_bytes().to_vec()),
         other => Err(format!("there is no {other}")),
     }
 }

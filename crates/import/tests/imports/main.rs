@@ -4,6 +4,7 @@ mod files;
 mod materials;
 mod meshes;
 mod studio;
+mod variants;
 
 use etalon_import::{Imported, import_bytes};
 use etalon_scene::{

@@ -54,6 +54,35 @@ fn metalness_and_roughness_come_from_their_image() {
 }
 
 #[test]
+fn the_colours_of_vertices_multiply_the_base_colour() {
+    let mut model = model();
+    // The four vertices of the first accessor stand for colours: (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0).
+    model["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(0);
+    model["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!(null);
+    let painted = imported(&model).unwrap();
+    assert!(!painted.left_out.iter().any(|l| l.place.contains("COLOR_0")), "{:?}", painted.left_out);
+    let scene = scene(&painted);
+    let object = &scene.groups[scene.instances[0].group].objects[0];
+    assert_eq!(object.shape.vertex_colours()[2], [1.0, 1.0, 0.0]);
+    let factors: Vec<[f64; 3]> = scene.materials[object.material].kind.vertex_colours().collect();
+    assert_eq!(factors, [[0.5, 1.0, 0.25]]);
+    // Beside an image, by which they are multiplied. Glass has no base colour.
+    let mut model = self::model();
+    for primitive in 0..2 {
+        model["meshes"][0]["primitives"][primitive]["attributes"]["COLOR_0"] = json!(0);
+    }
+    let with_image = imported(&model).unwrap();
+    let places: Vec<&str> =
+        with_image.left_out.iter().map(|l| l.place.as_str()).filter(|p| p.contains("COLOR")).collect();
+    assert_eq!(places, ["$.meshes[0].primitives[1].attributes.COLOR_0"]);
+    let scene = self::scene(&with_image);
+    let object = &scene.groups[scene.instances[0].group].objects[0];
+    let kind = &scene.materials[object.material].kind;
+    assert_eq!(kind.vertex_colours().collect::<Vec<_>>(), [[1.0; 3]]);
+    assert_eq!(kind.image().expect("an image").factor, [0.5, 1.0, 0.25]);
+}
+
+#[test]
 fn images_are_scaled_turned_and_moved_as_their_transform_says() {
     let transform = json!({ "KHR_texture_transform": { "scale": [2, 4], "rotation": 0.5, "offset": [0.25, 0.5] } });
     let mut model = model();
@@ -223,10 +252,10 @@ fn clear_coats_and_what_meshes_say_beyond_their_shape() {
     }
     let mut model = model();
     let positions = model["meshes"][0]["primitives"][0]["attributes"]["POSITION"].clone();
-    model["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = positions.clone();
+    model["meshes"][0]["primitives"][0]["attributes"]["COLOR_1"] = positions.clone();
     model["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": positions }]);
     let imported = imported(&model).unwrap();
-    for place in ["$.meshes[0].primitives[0].attributes.COLOR_0", "$.meshes[0].primitives[0].targets"] {
+    for place in ["$.meshes[0].primitives[0].attributes.COLOR_1", "$.meshes[0].primitives[0].targets"] {
         assert!(imported.left_out.iter().any(|l| l.place == place), "{place}: {:#?}", imported.left_out);
     }
 }

@@ -25,6 +25,27 @@ fn a_mesh_alone_gets_a_camera_that_sees_all_of_it_and_light() {
 }
 
 #[test]
+fn a_mesh_alone_shows_the_colours_of_its_vertices_or_faces() {
+    let head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    let colour = "property float red\nproperty float green\nproperty float blue\n";
+    let list = "element face 1\nproperty list uchar int vertex_indices\n";
+    let of_vertices = format!(
+        "{head}{colour}{list}end_header\n0 0 0 0.25 0.5 0.75\n1 0 0 0.25 0.5 0.75\n0 1 0 0.25 0.5 0.75\n3 0 1 2\n"
+    );
+    let of_faces = format!("{head}{list}{colour}end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0.25 0.5 0.75\n");
+    for ply in [of_vertices, of_faces] {
+        let imported = import_bytes("ply", ply.as_bytes(), &nothing, "", "t.ply").unwrap();
+        assert!(imported.left_out.is_empty(), "{:?}", imported.left_out);
+        let scene = scene(&imported);
+        assert_eq!(scene.objects[0].shape.vertex_colours(), [[0.25, 0.5, 0.75]; 3]);
+        let MaterialKind::Lambert { reflectance } = &scene.materials[scene.objects[0].material].kind else {
+            panic!("diffuse")
+        };
+        assert_eq!(reflectance.vertex_colours(), Some([1.0; 3]));
+    }
+}
+
+#[test]
 fn obj_materials_become_paint_mirrors_glass_and_lamps() {
     let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n\
         usemtl paint\nf 1/1 2/2 3/3\nusemtl mirror\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl lamp\nf 1 2 3\nusemtl bare\nf 1 2 3\n";

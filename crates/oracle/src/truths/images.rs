@@ -17,8 +17,10 @@ use crate::{
 };
 
 pub(super) fn truths() -> Vec<Truth> {
-    let mut list: Vec<Truth> =
-        KINDS.into_iter().flat_map(|kind| [places(kind), channels(kind), encodings(kind), vec![turned(kind)]].concat()).collect();
+    let mut list: Vec<Truth> = KINDS
+        .into_iter()
+        .flat_map(|kind| [places(kind), channels(kind), encodings(kind), vec![turned(kind)]].concat())
+        .collect();
     list.extend(normals());
     list.extend(heights());
     list.extend(skies());
@@ -90,7 +92,13 @@ impl Kind {
     }
 
     /// A truth by what a picture shows, with its formula.
-    fn shows(self, name: &str, scene: &Scene, (value, formula): (f64, String), others: &[(&'static str, f64)]) -> Truth {
+    fn shows(
+        self,
+        name: &str,
+        scene: &Scene,
+        (value, formula): (f64, String),
+        others: &[(&'static str, f64)],
+    ) -> Truth {
         let mut truth = Truth::new(format!("{}-{name}", self.name()), scene, value, formula)
             .because("The whole picture shows one number of the image: the opacity of a black sheet before a sky, the share of a blend, or α of a metal.")
             .sees(0.01);
@@ -345,7 +353,9 @@ fn heights() -> Vec<Truth> {
     let turned_map = truth("bump-map-turned".to_owned(), map, "ramp.hdr", grey_hdr(4, &ramp), turned(0.6));
     let shown = |[x, y]: [f64; 2]| matte([-x, -y, 1.0]);
     list.push(
-        turned_map.or_else("turned the other way", shown(turned(-0.6))).or_else("not turned", shown([along_u, along_v])),
+        turned_map
+            .or_else("turned the other way", shown(turned(-0.6)))
+            .or_else("not turned", shown([along_u, along_v])),
     );
     // Each channel with a slope of its own along u.
     let slopes = [2.0, 1.0, 3.0];

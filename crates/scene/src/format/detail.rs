@@ -4,8 +4,8 @@ use super::material::Share;
 use super::uv::uv_map;
 use crate::files::Files;
 use crate::json::{
-    Code, Decode, Node, NonNegative, Optional, Reader, Required, Rule, SchemaBuilder, SchemaValue,
-    Spanned, by_json_type,
+    Code, Decode, Node, NonNegative, Optional, Reader, Required, Rule, SchemaBuilder, SchemaValue, Spanned,
+    by_json_type,
 };
 use crate::model::{Bitangent, OpacityImage, Relief};
 use crate::texture::{Channel, Encoding, ImageTexture, TextureFilter, UvMap, Wrap};

@@ -66,6 +66,8 @@ crate::record! {
         normals: Optional<Spanned<List<Direction>>>,
         /// Texture coordinates for each vertex.
         uvs: Optional<Spanned<List<[f64; 2]>>>,
+        /// A linear Rec. 709 colour for each vertex, shown where a reflectance is of the type "vertex-colours".
+        colours: Optional<Spanned<List<[f64; 3]>>>,
         /// Which normals light is scattered by.
         shading: Required<Shading> = r#""auto""#,
     } with [
@@ -74,6 +76,7 @@ crate::record! {
         Rule::Needs("triangles", &["vertices_m"]),
         Rule::Needs("normals", &["vertices_m"]),
         Rule::Needs("uvs", &["vertices_m"]),
+        Rule::Needs("colours", &["vertices_m"]),
         Rule::Needs("group", &["file"]),
     ]
 }

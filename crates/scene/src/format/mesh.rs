@@ -77,6 +77,10 @@ fn from_file(
     for left_out in parts.iter().flat_map(|part| &part.left_out) {
         reader.warning(Code::LeftOut, file.at, format!("{}: {left_out}", file.value), None);
     }
+    if parts.iter().any(|part| !part.face_colours.is_empty()) {
+        let message = format!("{}: the colours of its faces are not used", file.value);
+        reader.warning(Code::LeftOut, file.at, message, None);
+    }
     let mut mesh = match merged(parts) {
         Some(mesh) => mesh,
         None => return refuse("it has no triangles".to_owned(), reader),
@@ -87,8 +91,8 @@ fn from_file(
     Some(mesh)
 }
 
-/// All parts as one. Normals and texture coordinates are kept where any part has them; vertices of others have normal
-/// (0, 0, 0), which is none, and texture coordinates (0, 0).
+/// All parts as one. Normals, texture coordinates and colours are kept where any part has them; vertices of others have normal
+/// (0, 0, 0), which is none, texture coordinates (0, 0), and are white.
 fn merged(parts: Vec<Part>) -> Option<Mesh> {
     let mut parts = parts.into_iter().map(|part| part.mesh).filter(|mesh| !mesh.triangles.is_empty());
     let mut all = parts.next()?;
@@ -103,6 +107,11 @@ fn merged(parts: Vec<Part>) -> Option<Mesh> {
             all.uvs.resize(all.vertices.len(), [0.0; 2]);
             all.uvs.extend(part.uvs);
             all.uvs.resize(all.vertices.len() + part.vertices.len(), [0.0; 2]);
+        }
+        if !part.colours.is_empty() || !all.colours.is_empty() {
+            all.colours.resize(all.vertices.len(), [1.0; 3]);
+            all.colours.extend(part.colours);
+            all.colours.resize(all.vertices.len() + part.vertices.len(), [1.0; 3]);
         }
         all.vertices.extend(part.vertices);
         all.triangles.extend(part.triangles.into_iter().map(|t| t.map(|i| first + i)));
@@ -131,12 +140,19 @@ fn listed(form: &MeshShape, shading: Shading, object: &str, reader: &mut Reader<
     }
     let normals = for_each_vertex("normals", &form.normals, count, |n| n.0.map(|v| v as f32), reader);
     let uvs = for_each_vertex("uvs", &form.uvs, count, |uv| uv.map(|v| v as f32), reader);
+    let colours = for_each_vertex("colours", &form.colours, count, |colour| colour.map(|v| v as f32), reader);
     if reader.error_count() > before {
         return None;
     }
     // Wrong elements have been reported when they were decoded.
     let triangles: Option<Vec<[u32; 3]>> = triangles.0.iter().map(|t| t.as_ref().map(|t| t.value)).collect();
-    let mut mesh = Mesh { vertices: vertices.clone().complete()?, triangles: triangles?, normals: normals?, uvs: uvs? };
+    let mut mesh = Mesh {
+        vertices: vertices.clone().complete()?,
+        triangles: triangles?,
+        normals: normals?,
+        uvs: uvs?,
+        colours: colours?,
+    };
     keep_those_with_area(&mut mesh, object, form.at.head(), reader)?;
     keep_one_of_each(&mut mesh, object, form.at.head(), reader);
     shade(&mut mesh, shading);

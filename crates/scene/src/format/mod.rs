@@ -20,6 +20,7 @@ mod photometric;
 mod scene;
 mod spectra;
 mod spectrum;
+mod surface;
 mod uv;
 mod view;
 

@@ -15,13 +15,13 @@ use super::names::Names;
 use super::photometric::stated;
 use super::spectra::Spectra;
 use super::spectrum::SpectrumForm;
+use super::surface::{check_colours, check_coordinates, check_tangents};
 use crate::files::Files;
 use crate::json::{
     Code, Decode, Kind, List, Named, Node, NonNegative, Optional, Place, Reader, Required, Rule, SchemaBuilder,
     SchemaValue, Span, Spanned, by_json_type,
 };
-use crate::model::{Emission, EmissionSides, Material, Object, Scene, Shape};
-use crate::texture::ImageTexture;
+use crate::model::{Emission, EmissionSides, Material, Object, Scene};
 
 /// The version of the format that this program reads.
 const VERSION: f64 = 1.0;
@@ -309,6 +309,7 @@ fn object<'f>(
         let material = materials.right.get(material).filter(|_| !materials.wrong);
         let material = material.map(|material| &material.kind);
         check_coordinates(material.and_then(|kind| kind.image()), shape, at, reader);
+        material.into_iter().for_each(|kind| check_colours(kind, shape, at, reader));
         if material.is_some_and(|kind| kind.microfacets().any(|facets| !facets.is_isotropic())) {
             check_tangents(shape, at, reader);
         }
@@ -359,27 +360,6 @@ fn object<'f>(
         relief: relief?,
     })
 }
-
-/// Reports an image over a shape that has no texture coordinates.
-fn check_coordinates(image: Option<&ImageTexture>, shape: &Shape, at: Span, reader: &mut Reader<'_>) {
-    if let Some(image) = image
-        && !shape.has_texture_coordinates()
-    {
-        let message = format!("the shape has no texture coordinates for the image \"{}\"", image.name);
-        reader.error_hint(Code::NoTextureCoordinates, at, message, GIVE_COORDINATES);
-    }
-}
-
-/// Reports facets of two widths on a shape that has no texture coordinates.
-fn check_tangents(shape: &Shape, at: Span, reader: &mut Reader<'_>) {
-    if !shape.has_texture_coordinates() {
-        let message =
-            "the shape has no texture coordinates, from which \"alpha_u\" and \"alpha_v\" have their directions";
-        reader.error_hint(Code::NoTextureCoordinates, at, message, GIVE_COORDINATES);
-    }
-}
-
-const GIVE_COORDINATES: &str = "give the mesh \"uvs\", or use a file with texture coordinates";
 
 /// Odd scenes that can be rendered all the same.
 fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {

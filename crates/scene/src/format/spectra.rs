@@ -110,6 +110,12 @@ impl<'f> Spectra<'f> {
                 );
                 None
             }
+            SpectrumForm::Object(SpectrumObject::VertexColours(colours)) => {
+                let message = "the colours of vertices are not allowed here".to_owned();
+                let hint = "they can give the reflectance of a material";
+                self.complain(Code::KeyConflict, colours.at.head(), message, hint, used, reader);
+                None
+            }
             SpectrumForm::Object(SpectrumObject::Blackbody(body)) => {
                 self.light_only("a black body", body.at, used, reader)?;
                 accept(Spectrum::blackbody(body.temperature_k?.0, body.scale?.0), body.at, reader)

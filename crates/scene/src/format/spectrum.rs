@@ -171,6 +171,16 @@ crate::record! {
     } with [Rule::NotBoth("uv_scale", "uv_matrix")]
 }
 
+crate::record! {
+    /// The colours of the vertices of a mesh, interpolated over each triangle: for what a material reflects.
+    pub(crate) struct VertexColoursSpectrum + comment {
+        /// Factor on each channel.
+        factor: Required<[Spanned<Density>; 3]> = "[1, 1, 1]",
+        /// An image or a pattern by which they are multiplied.
+        image: Optional<Box<SpectrumForm>>,
+    }
+}
+
 /// A texture coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TextureAxis {
@@ -251,6 +261,7 @@ crate::variants! {
         "image" => Image(ImageSpectrum),
         "checker" => Checker(CheckerSpectrum),
         "gradient" => Gradient(GradientSpectrum),
+        "vertex-colours" => VertexColours(VertexColoursSpectrum),
     }
 }
 
@@ -341,6 +352,7 @@ impl SpectrumForm {
             Self::Object(SpectrumObject::Image(s)) => s.at,
             Self::Object(SpectrumObject::Checker(s)) => s.at,
             Self::Object(SpectrumObject::Gradient(s)) => s.at,
+            Self::Object(SpectrumObject::VertexColours(s)) => s.at,
         }
     }
 }

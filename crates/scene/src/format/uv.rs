@@ -4,7 +4,7 @@ use crate::json::{Code, Optional, Reader, Span};
 use crate::texture::UvMap;
 
 /// The largest factor on texture coordinates, and the largest shift: of sixteen digits, eight are left.
-pub(super) const FARTHEST_UV: f64 = 1e8;
+const FARTHEST_UV: f64 = 1e8;
 
 /// The map of the keys `uv_scale`, `uv_matrix` and `uv_offset` of a form at `at`.
 pub(super) fn uv_map(

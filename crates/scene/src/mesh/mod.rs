@@ -29,6 +29,8 @@ pub struct Part {
     pub material: Option<String>,
     /// Its triangles. Some may have no area.
     pub mesh: Mesh,
+    /// Linear Rec. 709 colours of the faces: none, or one for each triangle.
+    pub face_colours: Vec<[f32; 3]>,
     /// What the file says beyond that and is not used, each in a sentence without a full stop.
     pub left_out: Vec<String>,
 }

@@ -97,6 +97,7 @@ fn part(model: tobj::Model, material: Option<String>) -> Result<Option<Part>, Me
             true => texcoords.chunks_exact(2).map(|t| [t[0], t[1]]).collect(),
             false => Vec::new(),
         },
+        colours: Vec::new(),
     };
     for i in 0..mesh.vertices.len() {
         check_vertex(i, mesh.vertices[i], mesh.normals.get_mut(i)).map_err(&fail)?;
@@ -114,7 +115,7 @@ fn part(model: tobj::Model, material: Option<String>) -> Result<Option<Part>, Me
         triangulate(corners, |v| mesh.vertices[v as usize], &mut mesh.triangles);
         start += arity;
     }
-    Ok((!mesh.triangles.is_empty()).then(|| Part { name, material, mesh, left_out: Vec::new() }))
+    Ok((!mesh.triangles.is_empty()).then(|| Part { name, material, mesh, ..Part::default() }))
 }
 
 /// The number of the first line of a material library that states a colour by fewer than three numbers, which the library that

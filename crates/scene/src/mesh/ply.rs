@@ -5,6 +5,8 @@ use ply_rs_bw::ply::{
     BeginList, ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
+use etalon_optics::colour::srgb_decode;
+
 use super::polygon::triangulate;
 use super::{MAX_ELEMENTS, MeshError, Part, check_vertex, one_line};
 use crate::model::Mesh;
@@ -13,7 +15,8 @@ use crate::model::Mesh;
 const MAX_HEADER: usize = 1 << 20;
 
 /// Reads a PLY file: elements `vertex` (`x y z`, perhaps `nx ny nz`, perhaps `u v`, `s t` or `texture_u texture_v`) and
-/// `face` (a list `vertex_indices` or `vertex_index`); polygons are cut into triangles.
+/// `face` (a list `vertex_indices` or `vertex_index`); polygons are cut into triangles. Both may have a colour, `red green blue`, `r g b` or `color_0 color_1 color_2`:
+/// of floating-point type linear, of unsigned type with the curve of sRGB.
 ///
 /// # Errors
 /// If it is no PLY file, ends early, names a vertex that it does not have, or holds a coordinate that is not finite.
@@ -47,9 +50,9 @@ pub fn read_ply(bytes: &[u8]) -> Result<Part, MeshError> {
     if !rest.is_empty() && !blank {
         left_out.push(format!("{} bytes after its last element are not read", rest.len()));
     }
-    let (vertices, normals, uvs) = vertices.ok_or_else(|| MeshError::new("there is no element \"vertex\""))?;
+    let mut mesh = vertices.ok_or_else(|| MeshError::new("there is no element \"vertex\""))?;
     let faces = faces.ok_or_else(|| MeshError::new("there is no element \"face\": the file has only points"))?;
-    let mut mesh = Mesh { vertices, normals, uvs, triangles: Vec::new() };
+    let mut face_colours = Vec::new();
     mesh.triangles.reserve_exact(faces.iter().map(|face| face.len().saturating_sub(2)).sum());
     let mut corners = Vec::new();
     for (i, face) in faces.iter().enumerate() {
@@ -67,6 +70,9 @@ pub fn read_ply(bytes: &[u8]) -> Result<Part, MeshError> {
             left_out.push(format!("face {i} has {} corners; a face needs at least 3", corners.len()));
         }
         triangulate(&corners, |v| mesh.vertices[v as usize], &mut mesh.triangles);
+        if let Some(colour) = faces.colours.get(i) {
+            face_colours.resize(mesh.triangles.len(), *colour);
+        }
         if mesh.triangles.len() > MAX_ELEMENTS {
             return Err(MeshError::new(format!("it has more than {MAX_ELEMENTS} triangles")));
         }
@@ -76,7 +82,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Part, MeshError> {
         left_out.truncate(20);
         left_out.push(format!("{more} more elements or properties are not used"));
     }
-    Ok(Part { mesh, left_out, ..Part::default() })
+    Ok(Part { mesh, face_colours, left_out, ..Part::default() })
 }
 
 /// Where the payload begins.
@@ -155,10 +161,14 @@ fn read_elements<E: PropertyAccess>(
     Parser::new().read_payload_for_element(reader, element, header).map_err(|e| parser_error(&e, lines))
 }
 
-/// Vertices, their normals and texture coordinates.
-type Vertices = (Vec<[f64; 3]>, Vec<[f32; 3]>, Vec<[f32; 2]>);
+/// Whether an element says the colours of what it is about.
+fn has_colours(element: &ElementDef) -> bool {
+    let has = |name: &str| element.properties.iter().any(|(key, _)| key.as_str() == name);
+    COLOUR_NAMES.iter().any(|names| names.iter().copied().all(has))
+}
 
-fn read_vertices(reader: &mut Reader<&[u8]>, element: &ElementDef, header: &Header) -> Result<Vertices, MeshError> {
+/// A mesh without triangles.
+fn read_vertices(reader: &mut Reader<&[u8]>, element: &ElementDef, header: &Header) -> Result<Mesh, MeshError> {
     let has = |name: &str| element.properties.iter().any(|(key, _)| key.as_str() == name);
     if let Some(missing) = ["x", "y", "z"].into_iter().find(|name| !has(name)) {
         return Err(MeshError::new(format!("its vertices have no property \"{missing}\"")));
@@ -167,7 +177,8 @@ fn read_vertices(reader: &mut Reader<&[u8]>, element: &ElementDef, header: &Head
     let uvs = UV_NAMES.iter().any(|names| names.iter().copied().all(has));
     let first_line = reader.line();
     let read = read_elements::<Vertex>(reader, element, header)?;
-    let mut all = (Vec::with_capacity(read.len()), Vec::new(), Vec::new());
+    let colours = has_colours(element);
+    let mut all = Mesh { vertices: Vec::with_capacity(read.len()), ..Mesh::default() };
     for (i, mut vertex) in read.into_iter().enumerate() {
         let uv = vertex.uv;
         check_vertex(i, vertex.position, normals.then_some(&mut vertex.normal))
@@ -179,12 +190,15 @@ fn read_vertices(reader: &mut Reader<&[u8]>, element: &ElementDef, header: &Head
                 line: (header.encoding == Encoding::Ascii).then_some(first_line + i),
                 message,
             })?;
-        all.0.push(vertex.position);
+        all.vertices.push(vertex.position);
         if normals {
-            all.1.push(vertex.normal);
+            all.normals.push(vertex.normal);
         }
         if uvs {
-            all.2.push(uv);
+            all.uvs.push(uv);
+        }
+        if colours {
+            all.colours.push(vertex.colour);
         }
     }
     Ok(all)
@@ -196,18 +210,19 @@ fn read_faces(
     header: &Header,
     left_out: &mut Vec<String>,
 ) -> Result<Faces, MeshError> {
-    let mut found = false;
+    let (mut found, colours) = (false, has_colours(element));
     for (name, property) in &element.properties {
         let whole = |scalar: &ScalarType| !matches!(scalar, ScalarType::Float | ScalarType::Double);
         match &property.data_type {
             PropertyType::List(_, scalar) if is_corners(name.as_str()) && whole(scalar) => found = true,
+            PropertyType::Scalar(_) if colours && channel(name.as_str()).is_some() => {}
             _ => left_out.push(format!("the property \"{name}\" of its faces is not used")),
         }
     }
     if !found {
         return Err(MeshError::new("its faces have no list of whole numbers \"vertex_indices\""));
     }
-    let mut faces = Faces { corners: Vec::new(), ends: Vec::with_capacity(element.count) };
+    let mut faces = Faces { corners: Vec::new(), ends: Vec::with_capacity(element.count), colours: Vec::new() };
     // Some at a time: as the parser gives them, each with a list of its own, they take four times the memory of the file.
     let mut some = element.clone();
     let mut left = element.count;
@@ -217,6 +232,9 @@ fn read_faces(
         for face in read_elements::<Face>(reader, &some, header)? {
             faces.corners.extend(face.indices());
             faces.ends.push(faces.corners.len());
+            if colours {
+                faces.colours.push(face.colour);
+            }
         }
     }
     Ok(faces)
@@ -229,6 +247,8 @@ const FACES_AT_ONCE: usize = 1 << 12;
 struct Faces {
     corners: Vec<i64>,
     ends: Vec<usize>,
+    /// One for each polygon, if there are any.
+    colours: Vec<[f32; 3]>,
 }
 
 impl Faces {
@@ -245,6 +265,25 @@ fn is_corners(name: &str) -> bool {
 /// How files name texture coordinates.
 const UV_NAMES: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 
+/// How files name the channels of colours.
+const COLOUR_NAMES: [[&str; 3]; 3] = [["red", "green", "blue"], ["r", "g", "b"], ["color_0", "color_1", "color_2"]];
+
+/// Which channel of a colour a property says.
+fn channel(name: &str) -> Option<usize> {
+    COLOUR_NAMES.iter().find_map(|names| names.iter().position(|known| *known == name))
+}
+
+/// A channel of a colour in linear terms: integers have the curve of sRGB, as image files do.
+fn channel_value(value: &Property) -> Option<f32> {
+    match value {
+        Property::UChar(v) => Some(srgb_decode(f64::from(*v) / 255.0) as f32),
+        Property::UShort(v) => Some(srgb_decode(f64::from(*v) / 65535.0) as f32),
+        Property::Float(v) => Some(*v),
+        Property::Double(v) => Some(*v as f32),
+        _ => None,
+    }
+}
+
 /// An element of which nothing is kept.
 #[derive(Debug)]
 struct Skipped;
@@ -260,6 +299,7 @@ struct Vertex {
     position: [f64; 3],
     normal: [f32; 3],
     uv: [f32; 2],
+    colour: [f32; 3],
 }
 
 impl PropertyAccess for Vertex {
@@ -268,6 +308,15 @@ impl PropertyAccess for Vertex {
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if let Some(channel) = channel(name) {
+            return match channel_value(&value) {
+                Some(number) => {
+                    self.colour[channel] = number;
+                    PropertyAccessResult::Set
+                }
+                None => PropertyAccessResult::Ignored,
+            };
+        }
         let number = match value {
             Property::Char(v) => f64::from(v),
             Property::UChar(v) => f64::from(v),
@@ -299,6 +348,7 @@ impl PropertyAccess for Vertex {
 struct Face {
     signed: Vec<i32>,
     unsigned: Vec<u32>,
+    colour: [f32; 3],
 }
 
 impl Face {
@@ -321,6 +371,10 @@ impl PropertyAccess for Face {
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if let (Some(channel), Some(number)) = (channel(name), channel_value(&value)) {
+            self.colour[channel] = number;
+            return PropertyAccessResult::Set;
+        }
         if !is_corners(name) {
             return PropertyAccessResult::Ignored;
         }

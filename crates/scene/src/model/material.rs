@@ -366,6 +366,11 @@ impl MaterialKind {
         }
     }
 
+    /// The factors on the colours of the vertices, of each of its parts that shows these.
+    pub fn vertex_colours(&self) -> impl Iterator<Item = [f64; 3]> {
+        self.parameters().into_iter().filter_map(|parameter| parameter.reflectance()?.vertex_colours())
+    }
+
     /// The film that coats it, or one of its parts.
     pub fn film(&self) -> Option<&ThinFilm> {
         self.parameters().into_iter().find_map(|parameter| match parameter {
@@ -398,16 +403,21 @@ impl MaterialKind {
     }
 
     /// Replaces every image that varies something over a surface by one value, for spectra that of `mean` and for numbers the
-    /// mean of their texels.
-    pub fn flatten(&mut self, mean: &dyn Fn(&ImageTexture) -> Spectrum) {
+    /// mean of their texels; and the colours of vertices by that of `of_vertices` of the factor on them.
+    pub fn flatten(&mut self, mean: &dyn Fn(&ImageTexture) -> Spectrum, of_vertices: &dyn Fn([f64; 3]) -> Spectrum) {
         self.flatten_shares();
         for parameter in self.parameters_mut() {
             if let ParameterMut::Film(film) = parameter {
                 film.flatten();
-            } else if let Some(reflectance) = parameter.reflectance()
-                && let Some(image) = reflectance.image()
-            {
-                *reflectance = mean(image).into();
+            } else if let Some(reflectance) = parameter.reflectance() {
+                match reflectance {
+                    SpectrumTexture::Uniform(_) => {}
+                    SpectrumTexture::Image(image) => *reflectance = mean(image).into(),
+                    SpectrumTexture::VertexColours { factor, image, .. } => {
+                        let mean = image.as_ref().map_or([1.0; 3], |image| image.mean());
+                        *reflectance = of_vertices([0, 1, 2].map(|c| factor[c] * mean[c])).into();
+                    }
+                }
             }
         }
     }

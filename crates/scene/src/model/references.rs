@@ -148,7 +148,9 @@ fn check_object(object: &Object, materials: usize, checked: &mut HashSet<*const 
 
 fn check_mesh(mesh: &Mesh, object: &str) -> Result<(), ReferenceError> {
     let (object, count) = (object.to_owned(), mesh.vertices.len());
-    for (what, found) in [("normals", mesh.normals.len()), ("texture coordinates", mesh.uvs.len())] {
+    let lists =
+        [("normals", mesh.normals.len()), ("texture coordinates", mesh.uvs.len()), ("colours", mesh.colours.len())];
+    for (what, found) in lists {
         if found != 0 && found != count {
             return Err(ReferenceError::PerVertex { object, what, found, count });
         }

@@ -59,6 +59,8 @@ pub struct Mesh {
     pub normals: Vec<[f32; 3]>,
     /// Texture coordinates: none, or one pair for each vertex.
     pub uvs: Vec<[f32; 2]>,
+    /// Linear Rec. 709 colours: none, or one for each vertex.
+    pub colours: Vec<[f32; 3]>,
 }
 
 impl Shape {
@@ -77,6 +79,14 @@ impl Shape {
         match self {
             Self::Mesh(mesh) => !mesh.uvs.is_empty(),
             _ => true,
+        }
+    }
+
+    /// The colours of its vertices; empty if it has none.
+    pub fn vertex_colours(&self) -> &[[f32; 3]] {
+        match self {
+            Self::Mesh(mesh) => &mesh.colours,
+            _ => &[],
         }
     }
 

@@ -53,6 +53,15 @@ pub enum SpectrumTexture {
     /// An image, whose colours are reflectances of a linear Rec. 709 colour under D65 in [0, 1]
     /// ([`RgbBasis`](etalon_optics::spectrum::RgbBasis)).
     Image(ImageTexture),
+    /// The colours of the vertices of a mesh, interpolated over each triangle; reflectances like those of an image.
+    VertexColours {
+        /// Factor on each channel.
+        factor: [f64; 3],
+        /// Whether a grey of the same luminance is shown instead.
+        grey: bool,
+        /// An image by which they are multiplied.
+        image: Option<Box<ImageTexture>>,
+    },
 }
 
 impl SpectrumTexture {
@@ -61,6 +70,7 @@ impl SpectrumTexture {
         match self {
             Self::Uniform(spectrum) => spectrum.is_zero(),
             Self::Image(texture) => texture.factor == [0.0; 3],
+            Self::VertexColours { factor, .. } => *factor == [0.0; 3],
         }
     }
 
@@ -69,6 +79,7 @@ impl SpectrumTexture {
         match self {
             Self::Uniform(spectrum) => spectrum.is_constant(),
             Self::Image(texture) => texture.is_grey(),
+            Self::VertexColours { grey, .. } => *grey,
         }
     }
 
@@ -77,6 +88,15 @@ impl SpectrumTexture {
         match self {
             Self::Uniform(_) => None,
             Self::Image(texture) => Some(texture),
+            Self::VertexColours { image, .. } => image.as_deref(),
+        }
+    }
+
+    /// The factor on the colours of the vertices, if it shows these.
+    pub fn vertex_colours(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::VertexColours { factor, .. } => Some(*factor),
+            Self::Uniform(_) | Self::Image(_) => None,
         }
     }
 }

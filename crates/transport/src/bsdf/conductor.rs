@@ -7,6 +7,7 @@ use super::{BsdfSample, Properties};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
+use crate::texture::TexturePoint;
 use etalon_optics::fresnel::StackFresnel;
 use etalon_optics::{Complex, Lanes, Vec3, fresnel};
 use etalon_scene::Metal;
@@ -37,10 +38,10 @@ impl Conductor {
     fn relative_index<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        uv: [f64; 2],
+        place: TexturePoint,
         interface: Option<Interface<'_>>,
     ) -> [(f64, f64); N] {
-        let mut index = self.metal.lanes(lambda_nm, uv);
+        let mut index = self.metal.lanes(lambda_nm, place);
         if let Some(media) = interface {
             for ((n, k), nm) in index.iter_mut().zip(lambda_nm.0) {
                 let around = media.incident.eval(nm);
@@ -55,16 +56,16 @@ impl Conductor {
         &self,
         film: &PathFilm,
         lambda_nm: &Lanes<f64, N>,
-        uv: [f64; 2],
+        place: TexturePoint,
         cos: f64,
         interface: Option<Interface<'_>>,
     ) -> [StackFresnel; N] {
-        let index = self.metal.lanes(lambda_nm, uv);
+        let index = self.metal.lanes(lambda_nm, place);
         std::array::from_fn(|lane| {
             let (nm, (n, k)) = (lambda_nm[lane], index[lane]);
             let around = interface.map_or(1.0, |media| media.incident.eval(nm));
             // Both sides are coated alike.
-            film.fresnel(nm, cos, (around, Complex::new(n, k)), true, uv)
+            film.fresnel(nm, cos, (around, Complex::new(n, k)), true, place.uv)
         })
     }
 
@@ -72,30 +73,30 @@ impl Conductor {
     pub(super) fn mueller<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
-        uv: [f64; 2],
+        place: TexturePoint,
         cos: f64,
         interface: Option<Interface<'_>>,
     ) -> [Matrix; N] {
         if let Some(film) = &self.film {
-            return self.coated(film, lambda_nm, uv, cos, interface).map(|f| mueller::of_waves(&f.reflection));
+            return self.coated(film, lambda_nm, place, cos, interface).map(|f| mueller::of_waves(&f.reflection));
         }
-        self.relative_index(lambda_nm, uv, interface).map(|(n, k)| mueller::conductor_reflection(cos, n, k))
+        self.relative_index(lambda_nm, place, interface).map(|(n, k)| mueller::conductor_reflection(cos, n, k))
     }
 
     pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        uv: [f64; 2],
+        place: TexturePoint,
         wo: Vec3<f64>,
         interface: Option<Interface<'_>>,
     ) -> Option<BsdfSample<N>> {
         // Rounding may carry the product of two unit vectors past 1.
         let cos_o = n.dot(wo).abs().min(1.0);
         let weight = match &self.film {
-            Some(film) => Lanes(self.coated(film, lambda_nm, uv, cos_o, interface).map(|f| f.reflection.power())),
+            Some(film) => Lanes(self.coated(film, lambda_nm, place, cos_o, interface).map(|f| f.reflection.power())),
             None => {
-                let index = self.relative_index(lambda_nm, uv, interface);
+                let index = self.relative_index(lambda_nm, place, interface);
                 Lanes(index.map(|(n, k)| fresnel::conductor(cos_o, n, k).reflectance))
             }
         };

@@ -82,7 +82,7 @@ impl Grating {
         let wi = along + n * (cos2.sqrt_nonnegative().copysign(cos) * to_other_side);
         let together = *order == 0 || self.stated.at_nm.is_some();
         let lane_density = if together { Lanes::ONE } else { Lanes::ONE.hero_only() };
-        let weight = self.reflectance.lanes(lambda_nm, at.uv) * self.efficiency * lane_density;
+        let weight = self.reflectance.lanes(lambda_nm, at.texture_point()) * self.efficiency * lane_density;
         Some(BsdfSample { wi: wi.renormalized(), weight, density: Density::Delta, lane_density, eta: 1.0 })
     }
 }

@@ -3,7 +3,7 @@
 use super::{BsdfSample, Properties};
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
-use crate::texture::PathTexture;
+use crate::texture::{PathTexture, TexturePoint};
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Frame, Lanes, Vec3};
 use etalon_scene::SpectrumTexture;
@@ -28,23 +28,20 @@ impl Lambert {
 
     /// The reflectance, if it is the same everywhere.
     pub(crate) fn uniform(&self) -> Option<&PathSpectrum> {
-        match &self.reflectance {
-            PathTexture::Uniform(spectrum) => Some(spectrum),
-            PathTexture::Image { .. } => None,
-        }
+        self.reflectance.uniform()
     }
 
-    /// At these texture coordinates.
+    /// At a place.
     #[inline]
-    pub(crate) fn reflectance<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> Lanes<f64, N> {
-        self.reflectance.lanes(lambda_nm, uv)
+    pub(crate) fn reflectance<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, place: TexturePoint) -> Lanes<f64, N> {
+        self.reflectance.lanes(lambda_nm, place)
     }
 
     pub(super) fn eval<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        uv: [f64; 2],
+        place: TexturePoint,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
@@ -53,21 +50,21 @@ impl Lambert {
             return (Lanes::ZERO, Lanes::ZERO);
         }
         let pdf = density(cos);
-        (self.reflectance.lanes::<N>(lambda_nm, uv) * pdf, Lanes::splat(pdf))
+        (self.reflectance.lanes::<N>(lambda_nm, place) * pdf, Lanes::splat(pdf))
     }
 
     pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        uv: [f64; 2],
+        place: TexturePoint,
         wo: Vec3<f64>,
         u: [f64; 2],
     ) -> Option<BsdfSample<N>> {
         let (wi, cos_i) = direction(n, wo, u);
         (cos_i > 0.0).then(|| BsdfSample {
             wi,
-            weight: self.reflectance.lanes(lambda_nm, uv),
+            weight: self.reflectance.lanes(lambda_nm, place),
             density: Density::SolidAngle(density(cos_i)),
             lane_density: Lanes::ONE,
             eta: 1.0,

@@ -1,7 +1,7 @@
 //! The index of a metal, prepared for paths.
 
 use crate::spectral::PathSpectrum;
-use crate::texture::PathTexture;
+use crate::texture::{PathTexture, TexturePoint};
 use etalon_optics::{ComplexIndex, Lanes};
 use etalon_scene::Metal;
 
@@ -23,12 +23,12 @@ impl PathMetal {
         }
     }
 
-    /// n and k in every lane at texture coordinates.
+    /// n and k in every lane at a place.
     #[inline]
-    pub(super) fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, uv: [f64; 2]) -> [(f64, f64); N] {
+    pub(super) fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, place: TexturePoint) -> [(f64, f64); N] {
         match self {
             Self::Index(index) => lambda_nm.0.map(|nm| index.eval(nm)),
-            Self::Reflectance(reflectance) => reflectance.lanes::<N>(lambda_nm, uv).0.map(|r| (1.0, Metal::k_of(r))),
+            Self::Reflectance(reflectance) => reflectance.lanes::<N>(lambda_nm, place).0.map(|r| (1.0, Metal::k_of(r))),
         }
     }
 }
@@ -77,7 +77,7 @@ impl OfMetal {
         let index = |nm: f64| match metal {
             PathMetal::Index(index) => Some(index.eval(nm)),
             PathMetal::Reflectance(PathTexture::Uniform(spectrum)) => Some((1.0, Metal::k_of(spectrum.eval(nm)))),
-            PathMetal::Reflectance(PathTexture::Image { .. }) => None,
+            PathMetal::Reflectance(PathTexture::Image { .. } | PathTexture::VertexColours { .. }) => None,
         };
         index(range_nm[0])?;
         Some(Self::Spectrum(PathSpectrum::tabulate(range_nm, |nm| {

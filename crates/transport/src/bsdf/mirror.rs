@@ -3,7 +3,7 @@
 use super::{BsdfSample, Properties};
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
-use crate::texture::PathTexture;
+use crate::texture::{PathTexture, TexturePoint};
 use etalon_optics::{Lanes, Vec3};
 use etalon_scene::SpectrumTexture;
 
@@ -26,23 +26,20 @@ impl Mirror {
 
     /// The reflectance, if it is the same everywhere.
     pub(crate) fn uniform(&self) -> Option<&PathSpectrum> {
-        match &self.reflectance {
-            PathTexture::Uniform(spectrum) => Some(spectrum),
-            PathTexture::Image { .. } => None,
-        }
+        self.reflectance.uniform()
     }
 
     pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        uv: [f64; 2],
+        place: TexturePoint,
         wo: Vec3<f64>,
     ) -> Option<BsdfSample<N>> {
         Some(BsdfSample {
             // Kept at unit length, so that ten thousand reflections do not drift (hard case 33).
             wi: wo.reflected_about(n).renormalized(),
-            weight: self.reflectance.lanes(lambda_nm, uv),
+            weight: self.reflectance.lanes(lambda_nm, place),
             density: Density::Delta,
             lane_density: Lanes::ONE,
             eta: 1.0,

@@ -241,10 +241,10 @@ impl Bsdf {
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         match self {
-            Self::Lambert(lambert) => lambert.eval(lambda_nm, n, at.uv, wo, wi),
+            Self::Lambert(lambert) => lambert.eval(lambda_nm, n, at.texture_point(), wo, wi),
             Self::RoughConductor(metal) => metal.eval(lambda_nm, n, at, wo, wi),
             Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, at, wo, wi),
-            Self::OrenNayar(rough) => rough.eval(lambda_nm, n, at.uv, wo, wi),
+            Self::OrenNayar(rough) => rough.eval(lambda_nm, n, at.texture_point(), wo, wi),
             Self::Plastic(plastic) => plastic.eval(lambda_nm, n, at, wo, wi),
             Self::Fluorescent(surface) => surface.eval(lambda_nm, n, at, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
@@ -270,13 +270,13 @@ impl Bsdf {
         u: [f64; 3],
     ) -> Option<BsdfSample<N>> {
         match self {
-            Self::Lambert(lambert) => lambert.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
-            Self::Mirror(mirror) => mirror.sample(lambda_nm, n, at.uv, wo),
-            Self::Conductor(conductor) => conductor.sample(lambda_nm, n, at.uv, wo, at.media()),
+            Self::Lambert(lambert) => lambert.sample(lambda_nm, n, at.texture_point(), wo, [u[1], u[2]]),
+            Self::Mirror(mirror) => mirror.sample(lambda_nm, n, at.texture_point(), wo),
+            Self::Conductor(conductor) => conductor.sample(lambda_nm, n, at.texture_point(), wo, at.media()),
             Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, (n, at.uv), wo, u[0], at.media()),
             Self::RoughConductor(metal) => metal.sample(lambda_nm, n, at, wo, u),
             Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at, wo, u),
-            Self::OrenNayar(rough) => rough.sample(lambda_nm, n, at.uv, wo, [u[1], u[2]]),
+            Self::OrenNayar(rough) => rough.sample(lambda_nm, n, at.texture_point(), wo, [u[1], u[2]]),
             Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at, wo, u),
             Self::Fluorescent(surface) => surface.sample(lambda_nm, n, at, wo, [u[1], u[2]]),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, (n, at.uv), wo, u[0]),

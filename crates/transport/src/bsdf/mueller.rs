@@ -73,7 +73,7 @@ impl Bsdf {
         let cos = n.dot(wo).abs().min(1.0);
         match self {
             Self::Mirror(_) => Some([mueller::MIRROR; N]),
-            Self::Conductor(metal) => Some(metal.mueller(lambda_nm, at.uv, cos, at.media())),
+            Self::Conductor(metal) => Some(metal.mueller(lambda_nm, at.texture_point(), cos, at.media())),
             Self::Dielectric(glass) => {
                 let side = (n.dot(wo) > 0.0, n.dot(wo) * n.dot(wi) > 0.0);
                 Some(lambda_nm.0.map(|nm| glass.mueller(nm, (cos, at.uv), side, at.media())))

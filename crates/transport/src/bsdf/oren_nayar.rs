@@ -8,7 +8,7 @@
 use super::albedo::{Azimuths, LossTable};
 use super::microfacet::Facing;
 use super::{BsdfSample, Properties};
-use crate::texture::PathTexture;
+use crate::texture::{PathTexture, TexturePoint};
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Lanes, Vec3};
 use etalon_scene::SpectrumTexture;
@@ -41,7 +41,7 @@ impl OrenNayar {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        uv: [f64; 2],
+        place: TexturePoint,
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
@@ -56,7 +56,7 @@ impl OrenNayar {
         let mean_loss = self.loss.average(1.0);
         let several = if mean_loss > 0.0 { self.loss.eval(wo, 1.0) * self.loss.eval(wi, 1.0) / mean_loss } else { 0.0 };
         let pdf = wi.z * FRAC_1_PI;
-        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, uv);
+        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, place);
         let f_cos = Lanes::from_fn(|lane| {
             let rho = reflectance[lane];
             let again = rho * rho * (1.0 - mean_loss) / (1.0 - rho * mean_loss);
@@ -69,12 +69,12 @@ impl OrenNayar {
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
-        uv: [f64; 2],
+        place: TexturePoint,
         wo: Vec3<f64>,
         u: [f64; 2],
     ) -> Option<BsdfSample<N>> {
         let wi = Facing::new(n, wo)?.world(cosine_hemisphere(u));
-        let (f_cos, density) = self.eval(lambda_nm, n, uv, wo, wi);
+        let (f_cos, density) = self.eval(lambda_nm, n, place, wo, wi);
         BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
 }

@@ -158,7 +158,7 @@ impl Plastic {
             return Some(lambda_nm.0.map(|nm| mueller::dielectric_reflection(local_o.z.min(1.0), self.coat.eval(nm))));
         }
         let facets = self.rough.as_ref().map(|rough| rough.distribution.reflection(local_o, local_i));
-        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.uv);
+        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.texture_point());
         Some(std::array::from_fn(|lane| {
             let nm = lambda_nm[lane];
             let index = self.coat.eval(nm);
@@ -205,7 +205,7 @@ impl Plastic {
         let share = self.coat_share(wo);
         let facets = self.rough.as_ref().map(|rough| rough.distribution.reflection(wo, wi));
         let diffuse = wi.z * FRAC_1_PI;
-        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.uv);
+        let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.texture_point());
         // T(µ_o) T(µ_i), and f·|cos θ_i| of the coat's facets.
         let coat = |index: f64| {
             let passed = self.transmittance(wo, index) * self.transmittance(wi, index);

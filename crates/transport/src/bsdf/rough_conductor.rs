@@ -118,7 +118,7 @@ impl RoughConductor {
         let single = self.distribution.reflection(wo, wi);
         let loss = self.loss(wo);
         let several = loss * self.loss(wi);
-        let index = self.metal.lanes(lambda_nm, at.uv);
+        let index = self.metal.lanes(lambda_nm, at.texture_point());
         let f_cos = Lanes::from_fn(|lane| {
             let mut f = self.reflectance(lambda_nm[lane], single.cos, index[lane], at.uv) * single.term;
             if let Some(compensation) = &self.compensation {
@@ -144,7 +144,7 @@ impl RoughConductor {
         let (wo, wi) = (facing.wo, facing.local(wi));
         let single = self.distribution.reflection(wo, wi);
         let several = self.loss(wo) * self.loss(wi);
-        let index = self.metal.lanes(lambda_nm, at.uv);
+        let index = self.metal.lanes(lambda_nm, at.texture_point());
         Some(std::array::from_fn(|lane| {
             let (nm, (eta, k)) = (lambda_nm[lane], index[lane]);
             let facet = self.reflectance(nm, single.cos, (eta, k), at.uv) * single.term;

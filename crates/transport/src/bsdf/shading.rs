@@ -21,6 +21,7 @@
 use super::{Bsdf, BsdfSample};
 use crate::media::Interface;
 use crate::mis::Density;
+use crate::texture::TexturePoint;
 use etalon_optics::{Frame, Lanes, Vec3};
 
 /// A surface point as scattering sees it.
@@ -32,6 +33,8 @@ pub struct Shading<'a> {
     bent: Option<Vec3<f64>>,
     /// Texture coordinates; 0 on a surface without.
     pub uv: [f64; 2],
+    /// The colour between the vertices around; white on a surface without.
+    colour: [f64; 3],
     /// The axis of a polarising sheet; 0 on other surfaces.
     pub axis: Vec3<f64>,
     /// The unit direction of growing u, for materials with a grain; 0 where there is none.
@@ -46,13 +49,34 @@ impl<'a> Shading<'a> {
     /// Of a surface that is what it looks like, without texture coordinates.
     pub fn flat(normal: Vec3<f64>) -> Self {
         let none = Vec3::new(0.0, 0.0, 0.0);
-        Self { normal, bent: None, uv: [0.0; 2], axis: none, tangent: none, mirrored: false, media: None }
+        Self {
+            normal,
+            bent: None,
+            uv: [0.0; 2],
+            colour: [1.0; 3],
+            axis: none,
+            tangent: none,
+            mirrored: false,
+            media: None,
+        }
     }
 
     /// The same with texture coordinates.
     #[must_use]
     pub fn with_uv(self, uv: [f64; 2]) -> Self {
         Self { uv, ..self }
+    }
+
+    /// The same with the colour between the vertices around.
+    #[must_use]
+    pub(crate) fn with_colour(self, colour: [f64; 3]) -> Self {
+        Self { colour, ..self }
+    }
+
+    /// The place as textures see it.
+    #[inline]
+    pub(crate) fn texture_point(&self) -> TexturePoint {
+        TexturePoint { uv: self.uv, colour: self.colour }
     }
 
     /// The same with the axis of a polarising sheet.

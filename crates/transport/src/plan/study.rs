@@ -185,7 +185,10 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         // Sheets do to unpolarised light what they do, and no more.
         EffectName::Polarisation => scene.film.stokes = false,
         EffectName::Textures => {
-            scene.materials.iter_mut().for_each(|material| material.kind.flatten(&texture::mean_colour));
+            let colours = mean_vertex_colours(scene);
+            for (material, colour) in scene.materials.iter_mut().zip(colours) {
+                material.kind.flatten(&texture::mean_colour, &|factor| texture::vertex_colour(factor, colour));
+            }
             for emission in objects_mut(scene).filter_map(|object| object.emission.as_mut()) {
                 if let Some(image) = emission.image.take() {
                     emission.radiance = texture::mean_emission(&image);
@@ -316,7 +319,23 @@ fn grey_texture(reflectance: &SpectrumTexture, range_nm: [f64; 2]) -> SpectrumTe
     match reflectance {
         SpectrumTexture::Uniform(spectrum) => grey(spectrum, range_nm).into(),
         SpectrumTexture::Image(texture) => SpectrumTexture::Image(grey_image(texture)),
+        SpectrumTexture::VertexColours { factor, image, .. } => {
+            SpectrumTexture::VertexColours { factor: *factor, grey: true, image: image.clone() }
+        }
     }
+}
+
+/// For each material the mean colour of the vertices of the objects that are made of it; white where they have none.
+fn mean_vertex_colours(scene: &Scene) -> Vec<[f64; 3]> {
+    let mut sums = vec![([0.0; 3], 0.0); scene.materials.len()];
+    for object in scene.placed_objects() {
+        let (sum, count) = &mut sums[object.material];
+        for colour in object.shape.vertex_colours() {
+            (0..3).for_each(|c| sum[c] += f64::from(colour[c]));
+            *count += 1.0;
+        }
+    }
+    sums.into_iter().map(|(sum, count)| if count > 0.0 { sum.map(|v| v / count) } else { [1.0; 3] }).collect()
 }
 
 /// An image of the luminance of each texel.
@@ -327,10 +346,7 @@ fn grey_image(texture: &ImageTexture) -> ImageTexture {
 
 /// The luminance of each texel, times a factor on each channel.
 fn luminances(image: &Image, factor: [f64; 3]) -> Image {
-    let luminance = |texel: [f64; 3]| {
-        let [r, g, b] = [0, 1, 2].map(|c| texel[c] * factor[c]);
-        [(0.2126 * r + 0.7152 * g + 0.0722 * b) as f32; 3]
-    };
+    let luminance = |texel: [f64; 3]| [texture::luminance([0, 1, 2].map(|c| texel[c] * factor[c])) as f32; 3];
     let Image { width, height, .. } = *image;
     Image::new(width, height, Texels::F32(image.linear_texels().map(luminance).collect()))
 }

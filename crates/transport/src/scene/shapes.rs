@@ -273,7 +273,7 @@ impl Collected {
                         number += 1;
                     }
                 }
-                if !(mesh.normals.is_empty() && mesh.uvs.is_empty()) {
+                if !(mesh.normals.is_empty() && mesh.uvs.is_empty() && mesh.colours.is_empty()) {
                     coordinates = Coordinates::Mesh(MeshCoordinates {
                         mesh: Arc::clone(mesh),
                         first,

@@ -286,7 +286,9 @@ impl Scattering<'_> {
     #[inline]
     pub(crate) fn diffuse<const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Option<Lanes<f64, N>> {
         match self.bsdf {
-            Bsdf::Lambert(lambert) if !self.at.is_bent() => Some(lambert.reflectance(lambda_nm, self.at.uv)),
+            Bsdf::Lambert(lambert) if !self.at.is_bent() => {
+                Some(lambert.reflectance(lambda_nm, self.at.texture_point()))
+            }
             _ => None,
         }
     }

@@ -94,6 +94,10 @@ impl Coordinates {
             Self::Mesh(mesh) => {
                 let normal = mesh.normal(at.surface.primitive, at.uv);
                 let flat = if mesh.mesh.uvs.is_empty() { flat } else { flat.with_uv(self.uv(at)) };
+                let flat = match mesh.colour(at.surface.primitive, at.uv) {
+                    Some(colour) => flat.with_colour(colour),
+                    None => flat,
+                };
                 match normal.map(|normal| at.geometry.placed_normal(at.surface, normal, at.time)) {
                     // Opposite normals may cancel: then the triangle's own stands for them.
                     Some(normal) if normal.length_squared() > 0.0 => flat.bent_to(normal.normalized()),
@@ -116,7 +120,8 @@ impl Coordinates {
             }
             _ => ([0.0; 2], [[1.0, 0.0], [0.0, 1.0]], true),
         };
-        let longest = [along_u, along_v].map(|along| texture.uv_map.texels_along(along, size)).into_iter().fold(1.0, f64::max);
+        let longest =
+            [along_u, along_v].map(|along| texture.uv_map.texels_along(along, size)).into_iter().fold(1.0, f64::max);
         let steps = longest.min(FINEST).ceil() as u32;
         let (mut sum, mut count) = (0.0, 0.0);
         for i in 0..steps {
@@ -172,6 +177,16 @@ impl MeshCoordinates {
         [mean(0), mean(1)]
     }
 
+    /// The colour between those of the corners, if they have any.
+    fn colour(&self, primitive: PrimitiveId, uv: [f64; 2]) -> Option<[f64; 3]> {
+        if self.mesh.colours.is_empty() {
+            return None;
+        }
+        let weights = self.weights(uv);
+        let [a, b, c] = self.corners(primitive).map(|i| self.mesh.colours[i].map(f64::from));
+        Some([0, 1, 2].map(|k| weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k]))
+    }
+
     /// The interpolated normal of any length, in the coordinates of the geometry.
     fn normal(&self, primitive: PrimitiveId, uv: [f64; 2]) -> Option<Vec3<f64>> {
         if self.mesh.normals.is_empty() {
@@ -216,7 +231,7 @@ mod tests {
 
     fn mesh(vertices: Vec<[f64; 3]>, uvs: Vec<[f32; 2]>, linear: DMat3) -> MeshCoordinates {
         let triangles = vec![[0, 1, 2]];
-        let mesh = Arc::new(Mesh { vertices, triangles, normals: Vec::new(), uvs });
+        let mesh = Arc::new(Mesh { vertices, triangles, normals: Vec::new(), uvs, colours: Vec::new() });
         MeshCoordinates { mesh, first: 5, kept: None, normal_to_world: DMat3::IDENTITY, linear, swapped: false }
     }
 

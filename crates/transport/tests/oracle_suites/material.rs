@@ -25,7 +25,9 @@ pub(crate) struct Material {
 fn uniform(texture: &SpectrumTexture) -> &Spectrum {
     match texture {
         SpectrumTexture::Uniform(spectrum) => spectrum,
-        SpectrumTexture::Image(_) => panic!("these materials are the same everywhere"),
+        SpectrumTexture::Image(_) | SpectrumTexture::VertexColours { .. } => {
+            panic!("these materials are the same everywhere")
+        }
     }
 }
 

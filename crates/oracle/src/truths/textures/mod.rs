@@ -7,6 +7,7 @@ mod places;
 mod shown;
 mod turned;
 mod values;
+mod vertices;
 
 use serde_json::{Value, json};
 
@@ -28,6 +29,7 @@ pub(super) fn truths() -> Vec<Truth> {
     list.push(values::emission());
     list.extend(patterns::patterns());
     list.extend(turned::turned());
+    list.extend(vertices::vertices());
     list
 }
 

@@ -69,10 +69,13 @@ pub(super) fn turned() -> Vec<Truth> {
             }))
         })
         .or_else("rows and columns of the matrix exchanged", of_board(0.625))
-        .or_else("sheared the other way", of_board(share(|u, v| {
-            let along = 0.8 * u - 0.6 * v;
-            along - along.floor() < 0.5
-        })))
+        .or_else(
+            "sheared the other way",
+            of_board(share(|u, v| {
+                let along = 0.8 * u - 0.6 * v;
+                along - along.floor() < 0.5
+            })),
+        )
         .sees(0.01),
         Truth::new(
             "gradient-turned",

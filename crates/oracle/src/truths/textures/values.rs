@@ -10,7 +10,7 @@ use crate::truths::scene::{Scene, black, grey_hdr, lambert, parallelogram, radia
 use crate::truths::{Claim, Truth, irradiance, lambert_polygon};
 
 /// What a colour shows under white light: the second row of the matrix of Rec. 709 (IEC 61966-2-1).
-const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+pub(super) const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 pub(super) fn channels() -> Vec<Truth> {
     let colour = [0.75, 0.25, 0.5];

@@ -7,10 +7,11 @@ use etalon_optics::Spectrum;
 use super::{BRIGHTEST, Role, Spectra, Use};
 use crate::files::Files;
 use crate::format::spectrum::{
-    CheckerSpectrum, GradientSpectrum, ImageSpectrum, SpectrumForm, SpectrumObject, TextureAxis, TextureColour,
+    CheckerSpectrum, Density, GradientSpectrum, ImageSpectrum, SpectrumForm, SpectrumObject, TextureAxis,
+    TextureColour, VertexColoursSpectrum,
 };
 use crate::format::uv::uv_map;
-use crate::json::{Code, Reader, Span};
+use crate::json::{Code, Optional, Reader, Span, Spanned};
 use crate::model::SpectrumTexture;
 use crate::texture::{Image, ImageTexture, Texels, TextureFilter, Wrap};
 
@@ -40,6 +41,9 @@ impl<'f> Spectra<'f> {
             SpectrumForm::Object(SpectrumObject::Gradient(form)) => {
                 self.gradient(form, used, reader).map(SpectrumTexture::Image)
             }
+            SpectrumForm::Object(SpectrumObject::VertexColours(form)) if role == Role::Reflectance => {
+                self.vertex_colours(form, files, reader)
+            }
             _ => self.resolve(form, role, reader).map(SpectrumTexture::Uniform),
         }
     }
@@ -54,7 +58,37 @@ impl<'f> Spectra<'f> {
         match self.resolve_texture(form, Role::Emission, files, reader)? {
             SpectrumTexture::Uniform(spectrum) => Some((spectrum, None)),
             SpectrumTexture::Image(image) => Some((self.daylight(1.0, form.at(), reader)?, Some(image))),
+            // Refused where it is resolved.
+            SpectrumTexture::VertexColours { .. } => None,
         }
+    }
+
+    fn vertex_colours(
+        &mut self,
+        form: &'f VertexColoursSpectrum,
+        files: &mut Files,
+        reader: &mut Reader<'_>,
+    ) -> Option<SpectrumTexture> {
+        let factor = factors(form.factor.as_ref()?, form.at, reader);
+        let image = match &form.image {
+            Optional::Absent => None,
+            Optional::Invalid => return None,
+            Optional::Given(inner) => {
+                let SpectrumTexture::Image(image) = self.resolve_texture(inner, Role::Reflectance, files, reader)?
+                else {
+                    let message = "only an image or a pattern can multiply the colours of vertices";
+                    reader.error_hint(
+                        Code::KeyConflict,
+                        inner.at().head(),
+                        message,
+                        "for one colour there is \"factor\"",
+                    );
+                    return None;
+                };
+                Some(Box::new(image))
+            }
+        };
+        Some(SpectrumTexture::VertexColours { factor: factor?, grey: false, image })
     }
 
     fn image(
@@ -67,11 +101,7 @@ impl<'f> Spectra<'f> {
         let file = form.file.as_ref()?;
         let image = files.image(file, form.encoding?, reader);
         let uv_map = uv_map(form.uv_scale, &form.uv_matrix, form.uv_offset, form.at, reader)?;
-        let factor = form.factor.as_ref()?.map(|f| f.value.0);
-        if let Some(negative) = factor.iter().find(|f| **f < 0.0) {
-            reader.error(Code::OutOfRange, form.at.head(), format!("a factor of {negative} is below 0"));
-            return None;
-        }
+        let factor = factors(form.factor.as_ref()?, form.at, reader)?;
         let image = image?;
         let (range, code, not) = possible(used.role);
         let impossible = |texel: [f64; 3]| (0..3).any(|c| !range.contains(&(texel[c] * factor[c])));
@@ -144,6 +174,16 @@ impl<'f> Spectra<'f> {
         self.complain(code, at.head(), format!("the colour {rgb:?} is {not}"), "", used, reader);
         None
     }
+}
+
+/// Factors on the channels of colours.
+fn factors(stated: &[Spanned<Density>; 3], at: Span, reader: &mut Reader<'_>) -> Option<[f64; 3]> {
+    let factor = [0, 1, 2].map(|c| stated[c].value.0);
+    if let Some(negative) = factor.iter().find(|f| **f < 0.0) {
+        reader.error(Code::OutOfRange, at.head(), format!("a factor of {negative} is below 0"));
+        return None;
+    }
+    Some(factor)
 }
 
 /// What texels may be in a role, the code of others, and what these are called.

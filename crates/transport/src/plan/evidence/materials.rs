@@ -90,6 +90,7 @@ fn colour_of_texture(reflectance: &SpectrumTexture, range_nm: [f64; 2]) -> Optio
     (!reflectance.is_grey()).then(|| match reflectance {
         SpectrumTexture::Uniform(spectrum) => format!("reflectance {}", spread(range_nm, |nm| spectrum.eval(nm))),
         SpectrumTexture::Image(texture) => format!("colours of \"{}\"", texture.name),
+        SpectrumTexture::VertexColours { .. } => "colours of vertices".to_owned(),
     })
 }
 

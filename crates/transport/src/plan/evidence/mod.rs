@@ -13,7 +13,7 @@ pub(super) use polarisation::{UNPOLARISED, polarisation};
 use super::EffectName;
 use super::grey::same_shape;
 use etalon_optics::reference_nm;
-use etalon_scene::{Filter, ImageTexture, Light, Material, Object, Projection, Scene, Shape};
+use etalon_scene::{Filter, ImageTexture, Light, Material, MaterialKind, Object, Projection, Scene, Shape};
 use lights::{is_environment, mis, shadow_rays};
 use materials::{colour, dispersion, fluorescence, interference, nested, specular};
 use media::{absorption, coloured, scattering};
@@ -59,7 +59,7 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         EffectName::Absorption => absorption(scene).ok_or_else(|| "no medium absorbs".to_owned()),
         EffectName::Scattering => scattering(scene).ok_or_else(|| "no medium scatters".to_owned()),
         EffectName::Polarisation => polarisation(scene, false),
-        EffectName::Textures => match first_surface(scene, |material, _| material.kind.image().map(size)) {
+        EffectName::Textures => match first_surface(scene, |material, _| textured(&material.kind)) {
             Some(found) => Ok(found),
             None => match scene.placed_objects().find_map(shining_image) {
                 Some((object, image)) => Ok(format!("emission of \"{}\": {}", object.name, size(image))),
@@ -121,6 +121,12 @@ fn mask(object: &Object) -> Option<String> {
         Some(image) => Some(format!("\"{}\": opacity {}", object.name, size(&image.texture))),
         None => (object.opacity < 1.0).then(|| format!("\"{}\": opacity {}", object.name, object.opacity)),
     }
+}
+
+/// What varies a material over a surface, if something does.
+fn textured(kind: &MaterialKind) -> Option<String> {
+    let vertices = || kind.vertex_colours().next().map(|_| "the colours of vertices".to_owned());
+    kind.image().map(size).or_else(vertices)
 }
 
 fn size(texture: &ImageTexture) -> String {
