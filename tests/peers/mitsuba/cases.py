@@ -46,6 +46,9 @@ EQUAL_ENERGY = Known(
 PRINCIPLED = Known("approximated: no more diffuse light at grazing angles, Fresnel's equations in place of Schlick's", 0.1)
 CLEAR = Known("approximated: glass has no base colour, and light that crosses the ball is multiplied by 0.6 in Mitsuba", 0.67)
 
+POLARISED = "llvm_ad_spectral_polarized"
+TILTED = Known("a retarder delays as much at every angle; Mitsuba takes the cosine as a factor", 0.06)
+
 CASES = [
     of("diffuse", depth=2),
     of("spectra"),
@@ -88,6 +91,8 @@ CASES = [
     of("flat-mesh"),
     *(of("mesh-colours", attribute=f"{of_what}_color") for of_what in ("vertex", "face")),
     of("instances"),
+    *(of("polarisers", variant=POLARISED, theta=theta, integrator="volpath", depth=32) for theta in (30, 65)),
+    of("retarder", TILTED, variant=POLARISED, delta=90, integrator="volpath", depth=32),
     of("point"),
     of("spot", beam=16),
     of("spot", beam=8),

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::Walk;
 use super::colour::Of;
 use super::element::Element;
+use super::sheet::{is_sheet, unpolarised};
 use crate::budget::BlendSize;
 use crate::metals;
 use crate::number::{Number, Rough};
@@ -116,6 +117,7 @@ impl Walk<'_, '_, '_> {
                 }
                 look
             }
+            "polarizer" | "retarder" | "circular" => self.sheet(element)?,
             "null" => Look::plain(json!({ "type": "black" }), 0.0),
             "blendbsdf" => {
                 let nested = element.nested("bsdf", self.ids)?;
@@ -123,6 +125,11 @@ impl Walk<'_, '_, '_> {
                     return Err(format!("{place}: a blend has two materials, not {}", nested.len()));
                 };
                 let (mut first, mut second) = (self.look(first)?, self.look(second)?);
+                for part in [&mut first, &mut second].into_iter().filter(|part| is_sheet(&part.material)) {
+                    self.builder.approximate(&place, "a polarising sheet inside a blend changes no polarisation");
+                    let passed = unpolarised(&part.material);
+                    *part = Look::plain(json!({ "type": "black" }), 1.0 - passed);
+                }
                 if without_map(&mut first.detail) | without_map(&mut second.detail) {
                     self.builder.leave_out(&place, "a normal or bump map of a part of a blend is left out");
                 }

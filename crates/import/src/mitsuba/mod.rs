@@ -13,6 +13,7 @@ mod principled;
 mod relief;
 mod serialized;
 mod shape;
+mod sheet;
 mod spot;
 mod transform;
 

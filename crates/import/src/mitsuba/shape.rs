@@ -100,6 +100,7 @@ impl<'a> Walk<'a, '_, '_> {
         let look = self.filled(element, look)?;
         let flipped = element.flag("flip_normals")?.unwrap_or(false);
         let mut dressed = Dressed { name, look, emission, map, flipped };
+        self.place_sheet(&mut dressed, element.plugin(), place);
         match element.plugin() {
             "sphere" => {
                 let center = element.triple("center")?.unwrap_or([0.0; 3]);

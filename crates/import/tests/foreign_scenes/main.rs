@@ -10,6 +10,7 @@ mod media;
 mod parameters;
 mod principled;
 mod relief;
+mod sheets;
 mod sides;
 mod spots;
 mod vertex_colours;
