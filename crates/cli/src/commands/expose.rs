@@ -22,7 +22,7 @@ use summary::{ExposureJson, FrameJson, describe, warnings};
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   etalon expose room.exr --sensor scenes/sensors/colour.sensor.json -o raw.exr -o raw.png
-  etalon expose room.exr --sensor scenes/sensors/mono.sensor.json --frames 0:15 -o raw-{frame:02}.exr")]
+  etalon expose room.exr --sensor mono.sensor.json --frames 0:15 -o raw-{frame:02}.exr")]
 pub(crate) struct ExposeArgs {
     /// Picture with spectral bands, as EXR.
     picture: PathBuf,

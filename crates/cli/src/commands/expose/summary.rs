@@ -6,7 +6,7 @@ use etalon_picture::expose::{ChannelReport, RawFrame, RenderNoise, SensorExposur
 use miette::{Report, Severity, miette};
 use serde::Serialize;
 
-use crate::progress::percent;
+use crate::progress::{percent, two_digits};
 
 /// The noise of a render is small beside that of the sensor up to this share. It then makes the whole noise at most 2 % larger.
 const SMALL: f64 = 0.2;
@@ -183,7 +183,7 @@ fn of_noise(report: &ChannelReport) -> Vec<Report> {
         found.push(miette!(
             severity = Severity::Warning,
             code = "render-noise",
-            help = format!("{times:.1} times the samples bring it to {}", percent(SMALL)),
+            help = format!("{} times the samples bring it to {}", two_digits(times), percent(SMALL)),
             "channel {name}: the noise of the render itself may be {} of the noise of the sensor",
             percent(ratio)
         ));
