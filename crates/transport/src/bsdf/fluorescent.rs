@@ -69,7 +69,7 @@ impl Fluorescent {
         wo: Vec3<f64>,
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
-        self.reflection.eval(lambda_nm, n, at.uv, wo, wi)
+        self.reflection.eval(lambda_nm, n, at.texture_point(), wo, wi)
     }
 
     pub(super) fn sample<const N: usize>(
@@ -80,7 +80,7 @@ impl Fluorescent {
         wo: Vec3<f64>,
         u: [f64; 2],
     ) -> Option<BsdfSample<N>> {
-        self.reflection.sample(lambda_nm, n, at.uv, wo, u)
+        self.reflection.sample(lambda_nm, n, at.texture_point(), wo, u)
     }
 }
 
@@ -311,7 +311,7 @@ mod tests {
         let count = 1000;
         let drawn = (0..count).filter(|i| {
             let (_, reflection) = blend.fluorescent_part(&at, wo, (f64::from(*i) + 0.5) / f64::from(count)).unwrap();
-            reflection.reflectance::<1>(&Lanes([500.0]), [0.0; 2])[0] < 0.4
+            reflection.reflectance::<1>(&Lanes([500.0]), at.texture_point())[0] < 0.4
         });
         assert_eq!(drawn.count(), 600);
         assert_eq!(Bsdf::Black.fluorescent_share(&at, wo), 0.0);

@@ -71,14 +71,14 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     ) {
         let [u_choice, u_wavelength, u_part, _] = sampler.fluorescence_set(self.vertex);
         let Some(part) = vertex.fluorescent_part(world, u_part) else { return };
-        let FluorescentPart { share, reradiation, reflection, uv } = part;
+        let FluorescentPart { share, reradiation, reflection, place } = part;
         let lambda_nm = self.wavelengths.lambda_nm;
         let (excitation_nm, width_nm) = reradiation.draw::<N>(u_wavelength);
         let between = reradiation.between(&excitation_nm, &lambda_nm);
 
         // How much would go on either way: the mean of the chances under white light and under the light that is expected.
         let mean_width = |lane: usize| share * width_nm[lane] / N as f64;
-        let reflected = Lanes::splat(1.0 - share) + reflection.reflectance(&lambda_nm, uv) * share;
+        let reflected = Lanes::splat(1.0 - share) + reflection.reflectance(&lambda_nm, place) * share;
         let chance = |at_path: Lanes<f64, N>, exciting: Lanes<f64, N>| {
             let mut given_back = Lanes::ZERO;
             (0..N).for_each(|lane| given_back += between[lane] * (mean_width(lane) * exciting[lane]));

@@ -9,6 +9,7 @@ use crate::media::{Interface, Interior, PlacedSolid};
 use crate::polarisation::mueller::Mueller;
 use crate::spectral::PathSpectrum;
 use crate::surface::shading_geometry::{At, Coordinates};
+use crate::texture::TexturePoint;
 use etalon_geometry::{Geometry, Hit, SurfaceId, SurfacePoint};
 use etalon_optics::{Lanes, Vec3};
 use etalon_scene::{EmissionSides, ImageTexture, OpacityImage};
@@ -247,7 +248,7 @@ pub(crate) struct FluorescentPart<'a> {
     pub reradiation: &'a Reradiation,
     /// What it does to light that keeps its wavelength.
     pub reflection: &'a Lambert,
-    pub uv: [f64; 2],
+    pub place: TexturePoint,
 }
 
 /// Scattering at one point.
@@ -261,7 +262,7 @@ impl<'a> Scattering<'a> {
     pub(crate) fn fluorescent_part(&self, wo: Vec3<f64>, u: f64) -> Option<FluorescentPart<'a>> {
         let share = self.bsdf.fluorescent_share(&self.at, wo);
         let (reradiation, reflection) = self.bsdf.fluorescent_part(&self.at, wo, u).filter(|_| share > 0.0)?;
-        Some(FluorescentPart { share, reradiation, reflection, uv: self.at.uv })
+        Some(FluorescentPart { share, reradiation, reflection, place: self.at.texture_point() })
     }
 
     /// Another BSDF at the same point.
