@@ -76,7 +76,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let (excitation_nm, width_nm) = reradiation.draw::<N>(u_wavelength);
         let between = reradiation.between(&excitation_nm, &lambda_nm);
 
-        // How much would go on either way: the mean of the chances under white light and under the light that is expected.
+        // How much would go on either way. Under white light no choice makes the path worth more than it was, however often it chooses. The first
+        // surface may choose once by the light that is expected: it often fluoresces in the light of lamps, and reflects little of it.
         let mean_width = |lane: usize| share * width_nm[lane] / N as f64;
         let reflected = Lanes::splat(1.0 - share) + reflection.reflectance(&lambda_nm, place) * share;
         let chance = |at_path: Lanes<f64, N>, exciting: Lanes<f64, N>| {
@@ -87,7 +88,10 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         };
         let expected = [&lambda_nm, &excitation_nm].map(|nm| reradiation.expected_light(nm));
         let white = chance(Lanes::ONE, Lanes::ONE);
-        let probability = if white > 0.0 { 0.5 * (white + chance(expected[0], expected[1])) } else { 0.0 };
+        let probability = match self.vertex {
+            0 if white > 0.0 => 0.5 * (white + chance(expected[0], expected[1])),
+            _ => white,
+        };
         if u_choice >= probability {
             self.beta /= 1.0 - probability;
             return;

@@ -97,12 +97,13 @@ pub(super) fn vertices() -> Vec<Truth> {
 fn times_an_image() -> Truth {
     let file = "two-texels.hdr";
     let image = json!({ "type": "image", "file": file, "filter": "nearest" });
-    let mut shape = square(CORNERS.map(|v| [v; 3]));
+    // Other colours to the left than to the right.
+    let [a, b, c, d] = [0.1, 0.9, 0.6, 0.3];
+    let mut shape = square([a, b, c, d].map(|v| [v; 3]));
     shape["uvs"] = json!([[0, 0], [1, 0], [1, 1], [0, 1]]);
     let scene = view([0.5, 0.5], 1.0)
         .thing(json!({ "shape": shape, "material": matte(json!({ "type": "vertex-colours", "image": image })) }))
         .file(file, grey_hdr(2, &[0.25, 0.75]));
-    let [a, b, c, d] = CORNERS;
     // ∫ over the square where x > ½, of what the colours are: 1 − x, x − y and y below the diagonal, 1 − y, y − x and x above it.
     let right = (5.0 * a + 7.0 * b + 11.0 * c + d) / 48.0;
     let whole = (2.0 * a + b + 2.0 * c + d) / 6.0;
@@ -111,7 +112,8 @@ fn times_an_image() -> Truth {
         .confirmed("midpoints of a million squares", 1e-5, move || {
             let at = |k: u32| (f64::from(k) + 0.5) / 1000.0;
             let shown = |x: f64, y: f64| {
-                let colour = if x > y { lower([x, y]) } else { a * (1.0 - y) + d * (y - x) + c * x };
+                let colour =
+                    if x > y { a * (1.0 - x) + b * (x - y) + c * y } else { a * (1.0 - y) + d * (y - x) + c * x };
                 colour * if x < 0.5 { 0.25 } else { 0.75 }
             };
             (0..1000).flat_map(|i| (0..1000).map(move |j| shown(at(i), at(j)))).sum::<f64>() / 1e6
@@ -119,6 +121,7 @@ fn times_an_image() -> Truth {
         .or_else("the image left out", whole)
         .or_else("the colours left out", 0.5)
         .or_else("the means of both multiplied", 0.5 * whole)
+        .or_else("left and right exchanged", 0.75 * (whole - right) + 0.25 * right)
         .sees(0.01)
 }
 
