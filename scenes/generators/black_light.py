@@ -80,13 +80,18 @@ def scene():
         "objects": [
             {
                 "name": "desk",
-                "shape": {"type": "parallelogram", "origin_m": [-1, 0, 1], "u_m": [2, 0, 0], "v_m": [0, 0, -2]},
+                "shape": {"type": "parallelogram", "origin_m": [-2, 0, 1], "u_m": [4, 0, 0], "v_m": [0, 0, -2]},
                 "material": "desk",
             },
             {
                 "name": "sheet",
                 "shape": {"type": "parallelogram", "origin_m": [-0.3, 0.001, 0.13], "u_m": [0.6, 0, 0], "v_m": [0, 0, -0.3]},
                 "material": "paper",
+            },
+            {
+                "name": "wall",
+                "shape": {"type": "parallelogram", "origin_m": [-2, 0, -0.6], "u_m": [4, 0, 0], "v_m": [0, 2, 0]},
+                "material": "desk",
             },
             ball("blue", -0.2, 0.0, 0.05),
             ball("green", -0.07, -0.02, 0.055),
