@@ -79,6 +79,13 @@ pub(crate) fn wavelength_range_nm(form: &IntegratorForm, reader: &mut Reader<'_>
         reader.error_hint(Code::OutOfRange, range.at, message, "the smaller wavelength comes first");
         return None;
     }
+    Some([first, last])
+}
+
+/// Warns of wavelengths that nobody sees, in a scene where nothing makes visible ones of them.
+pub(crate) fn warn_of_invisible_wavelengths(form: &IntegratorForm, reader: &mut Reader<'_>) {
+    let Some(range) = &form.wavelength_range_nm else { return };
+    let [first, last] = range.value.map(|w| w.0);
     if first < VISIBLE_NM[0] || last > VISIBLE_NM[1] {
         let message = format!(
             "wavelengths outside {} to {} nm are invisible and add nothing to the picture",
@@ -86,7 +93,6 @@ pub(crate) fn wavelength_range_nm(form: &IntegratorForm, reader: &mut Reader<'_>
         );
         reader.warning(Code::InvisibleWavelengths, range.at, message, Some("narrow the range".to_owned()));
     }
-    Some([first, last])
 }
 
 /// The integrator of a form.

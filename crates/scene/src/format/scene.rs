@@ -6,7 +6,7 @@ use super::camera::{CameraForm, FilmForm, camera, film, shutter_of};
 use super::detail::{BumpMapForm, NormalMapForm, OpacityImageForm, bump_map, normal_map, opacity_image};
 use super::geometry::{ShapeForm, Step, check_extent, check_similarity, shape, transform};
 use super::group::{GroupForm, InstanceForm, groups};
-use super::integrator::{IntegratorForm, integrator, wavelength_range_nm};
+use super::integrator::{IntegratorForm, integrator, warn_of_invisible_wavelengths, wavelength_range_nm};
 use super::light::{LightForm, light};
 use super::material::{Before, MaterialForm, Share, material};
 use super::medium::{MediumForm, medium};
@@ -21,7 +21,7 @@ use crate::json::{
     Code, Decode, Kind, List, Named, Node, NonNegative, Optional, Place, Reader, Required, Rule, SchemaBuilder,
     SchemaValue, Span, Spanned, by_json_type,
 };
-use crate::model::{Emission, EmissionSides, Material, Object, Scene};
+use crate::model::{Emission, EmissionSides, Material, Object, Parameter, Scene};
 
 /// The version of the format that this program reads.
 const VERSION: f64 = 1.0;
@@ -215,6 +215,13 @@ pub(crate) fn scene(
 
     let meters = form.meters.as_ref().and_then(|forms| meters(forms, reader));
 
+    let fluoresces =
+        |material: &Material| material.kind.parameters().iter().any(|p| matches!(p, Parameter::Fluorescence(_)));
+    if let Some(form) = &form.integrator
+        && !materials.right.iter().any(fluoresces)
+    {
+        warn_of_invisible_wavelengths(form, reader);
+    }
     files.warn_of_what_is_left_out(reader);
 
     // Whatever is wrong has been reported by now; a wrong list has not become an empty one.

@@ -195,8 +195,7 @@ fn reflectances_and_emissions() {
 
 #[test]
 fn surfaces_that_fluoresce() {
-    let material =
-        |keys: &str| Parts { materials: &format!("{{\"m\": {{\"type\": \"fluorescent\", {keys}}}}}"), ..RIGHT }.text();
+    let material = |keys: &str| materials(&format!("{{\"m\": {{\"type\": \"fluorescent\", {keys}}}}}")).text();
     let dye = |keys: &str| material(&format!("\"fluorophores\": [{{{keys}}}]"));
     let found =
         |text: String| problems(&text).into_iter().map(|p| (p.code, p.json_path, p.message)).collect::<Vec<_>>();
