@@ -235,17 +235,17 @@ fn half_of_a_blend() -> Truth {
     .sees(0.01)
 }
 
-/// From behind, a surface that fluoresces on its front is black.
+/// Two surfaces seen from behind: one fluoresces on its back, the other on its front.
 fn one_side() -> Truth {
-    let mut material = fluorescent(&[yellow(0.8)]);
-    material["sides"] = json!("front");
-    let square = |y: f64, up: bool| {
-        json!({ "type": "parallelogram", "origin_m": if up { [-1.0, y, 0.0] } else { [1.0, y, 0.0] },
-        "u_m": if up { [2.0, 0.0, 0.0] } else { [-2.0, 0.0, 0.0] }, "v_m": [0.0, 1.0, 0.0] })
+    let sided = |sides: &str| {
+        let mut material = fluorescent(&[yellow(0.8)]);
+        material["sides"] = json!(sides);
+        material
     };
+    let square = |y: f64| json!({ "type": "parallelogram", "origin_m": [1.0, y, 0.0], "u_m": [-2.0, 0.0, 0.0], "v_m": [0.0, 1.0, 0.0] });
     let scene = Scene::orthographic([0.0, 0.0, 2.0], [0.0; 3], 1.0)
-        .thing(json!({ "shape": square(0.0, true), "material": material }))
-        .thing(json!({ "shape": square(-1.0, false), "material": material }))
+        .thing(json!({ "shape": square(0.0), "material": sided("back") }))
+        .thing(json!({ "shape": square(-1.0), "material": sided("front") }))
         .light(sky(&band(380.0, 420.0, 1.0)))
         .film(16, 16)
         .spp(256);
@@ -253,7 +253,7 @@ fn one_side() -> Truth {
         "dye-on-one-side",
         &scene,
         0.5 * yellow_light(0.8),
-        "half of ∫Φ dλᵢ: the lower half of the picture shows a back",
+        "half of ∫Φ dλᵢ: the lower half of the picture shows the back of what fluoresces on its front",
     )
     .because(PHOTONS)
     .confirmed("photon by photon", 1e-5, || 0.5 * yellow_photons(0.8))
