@@ -201,8 +201,8 @@ fn behind_a_filter() -> Truth {
     let bare = 5.0 * FRAC_1_PI * yellow_light(0.8);
     Truth::new("dye-behind-a-filter", &scene, bare * through(3.0) * through(0.5), "e^(−0.5·3) on the way in, e^(−0.5·0.5) on the way out, times E/π ∫Φ dλᵢ")
         .because("A slab absorbs light of the wavelength that it has on its way: of the excitation before the plate, of what is given back after it.")
-        .confirmed("photon by photon, a thousand thin layers each way", 1e-3, || {
-            let layers = |per_m: f64| (1.0 - per_m * 0.5e-3_f64).powi(1000);
+        .confirmed("photon by photon, a hundred thousand thin layers each way", 1e-3, || {
+            let layers = |per_m: f64| (1.0 - per_m * 0.5e-5_f64).powi(100_000);
             5.0 / PI * yellow_photons(0.8) * layers(3.0) * layers(0.5)
         })
         .or_else("both ways at the wavelength of excitation", bare * through(3.0) * through(3.0))
