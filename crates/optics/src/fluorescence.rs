@@ -56,7 +56,7 @@ impl Fluorophore {
             return Err(OpticsError::AboveOne { what, value: quantum_yield });
         }
         let extent_nm = emission.support_nm().unwrap_or(range_nm);
-        let photons: f64 = simpson(extent_nm, emission.kinks_nm(extent_nm))
+        let photons: f64 = simpson(emission.borders_nm(extent_nm))
             .into_iter()
             .map(|(nm, weight)| weight * emission.eval(nm) * nm)
             .sum();
@@ -93,7 +93,7 @@ impl Fluorophore {
         if range_nm[0] >= range_nm[1] {
             return 0.0;
         }
-        let nodes = simpson(range_nm, self.emission.kinks_nm(range_nm));
+        let nodes = simpson(self.emission.borders_nm(range_nm));
         nodes.into_iter().map(|(nm, weight)| weight * self.emission.eval(nm)).sum()
     }
 }
@@ -118,6 +118,19 @@ impl ReradiationMatrix {
     /// The wavelengths of excitation, nm.
     pub fn excitation_nm(&self) -> &[f64] {
         &self.excitation_nm
+    }
+
+    /// ∫ Φ dλₒ over a range, for each wavelength of excitation.
+    fn returned(&self, [first, last]: [f64; 2]) -> Vec<f64> {
+        let emission_nm = &self.emission_nm;
+        let range_nm = [first.max(emission_nm[0]), last.min(emission_nm[emission_nm.len() - 1])];
+        if range_nm[0] >= range_nm[1] {
+            return vec![0.0; self.excitation_nm.len()];
+        }
+        let within = emission_nm.iter().copied().filter(|nm| (range_nm[0]..=range_nm[1]).contains(nm));
+        let nodes = simpson(range_nm.into_iter().chain(within));
+        let row = |nm: &f64| nodes.iter().map(|(emission, weight)| weight * self.eval(*nm, *emission)).sum();
+        self.excitation_nm.iter().map(row).collect()
     }
 
     /// Φ, nm⁻¹.
@@ -153,15 +166,10 @@ impl Fluorescence {
         let mut returned = vec![0.0; excitations_nm.len()];
         match self {
             Self::Matrix(matrix) => {
-                let [from, to] = [matrix.emission_nm[0], matrix.emission_nm[matrix.emission_nm.len() - 1]];
-                let emission_nm = [range_nm[0].max(from), range_nm[1].min(to)];
-                if emission_nm[0] < emission_nm[1] {
-                    let kinks =
-                        matrix.emission_nm.iter().copied().filter(|nm| (emission_nm[0]..=emission_nm[1]).contains(nm));
-                    for (nm, weight) in simpson(emission_nm, kinks) {
-                        for (sum, excitation) in returned.iter_mut().zip(excitations_nm) {
-                            *sum += weight * matrix.eval(*excitation, nm);
-                        }
+                let of_rows = matrix.returned(range_nm);
+                for (sum, nm) in returned.iter_mut().zip(excitations_nm) {
+                    if let Some((row, t)) = locate(&matrix.excitation_nm, *nm) {
+                        *sum = lerp(of_rows[row], of_rows[row + 1], t);
                     }
                 }
             }
@@ -217,8 +225,7 @@ mod tests {
         let [returned] = all.returned(&[400.0], [360.0, 830.0])[..] else { panic!("one wavelength, one share") };
         assert!((returned - 400.0 / 550.0).abs() < 1e-12, "{returned}");
         // Photons: power over energy, which goes as λ.
-        let photons: f64 =
-            simpson([500.0, 600.0], []).iter().map(|(nm, w)| w * all.eval(400.0, *nm) * nm / 400.0).sum();
+        let photons: f64 = simpson([500.0, 600.0]).iter().map(|(nm, w)| w * all.eval(400.0, *nm) * nm / 400.0).sum();
         assert!((photons - 1.0).abs() < 1e-9, "{photons}");
         assert_eq!(all.emission_range_nm(), [500.0, 600.0]);
     }

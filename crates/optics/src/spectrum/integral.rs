@@ -18,6 +18,15 @@ impl Spectrum {
         }
     }
 
+    /// The ends of a range and what lies between them, nm, such that between neighbours it is linear, or at most a nanometre long.
+    pub fn borders_nm(&self, range_nm: [f64; 2]) -> Vec<f64> {
+        match self {
+            Self::Tabulated(_) => range_nm.into_iter().chain(self.kinks_nm(range_nm)).collect(),
+            Self::Scaled { spectrum, .. } => spectrum.borders_nm(range_nm),
+            _ => whole_nm(range_nm).collect(),
+        }
+    }
+
     /// The wavelengths outside which it is zero, nm, if it says so.
     pub fn support_nm(&self) -> Option<[f64; 2]> {
         match self {
@@ -34,12 +43,12 @@ pub fn whole_nm([first, last]: [f64; 2]) -> impl Iterator<Item = f64> {
     std::iter::once(first).chain(inner).chain(std::iter::once(last))
 }
 
-/// Simpson's rule over a range of wavelengths: nodes, nm, with their weights, between whole nanometres and the wavelengths at which the
-/// integrand has a kink or jumps.
+/// Simpson's rule over wavelengths: nodes, nm, with their weights, three between any two neighbours of `borders_nm`, which come in any order.
 ///
-/// Exact where that is a cubic or simpler in between; elsewhere better than 1e-9 for a spectrum that does not curve within a nanometre.
-pub fn simpson(range_nm: [f64; 2], kinks_nm: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
-    let mut borders: Vec<f64> = whole_nm(range_nm).chain(kinks_nm).collect();
+/// Exact where the integrand is a cubic or simpler between them. Between whole nanometres better than 1e-9 for a spectrum that does not curve
+/// within a nanometre.
+pub fn simpson(borders_nm: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
+    let mut borders: Vec<f64> = borders_nm.into_iter().collect();
     borders.sort_by(f64::total_cmp);
     let nodes = borders.windows(2).flat_map(|w| {
         // A table that is zero outside jumps at its ends; the borders themselves belong to the inside.

@@ -9,23 +9,30 @@ use crate::texture::PathTexture;
 use etalon_optics::spectrum::{simpson, whole_nm};
 use etalon_optics::{Fluorescence, Lanes, ReradiationMatrix, Vec3};
 use etalon_scene::SpectrumTexture;
-use std::sync::Arc;
 
 /// A surface that reflects and fluoresces, both diffusely.
 #[derive(Clone, Debug)]
 pub struct Fluorescent {
     reflection: Lambert,
     /// `None` where nothing that is rendered excites it.
-    reradiation: Option<Arc<Reradiation>>,
+    reradiation: Option<Reradiation>,
 }
 
 /// Reradiation prepared for paths.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Reradiation {
     parts: Parts,
     excitation: ExcitationDistribution,
-    /// What light is expected at each wavelength, in any unit.
-    light: PathSpectrum,
+}
+
+/// A part of a surface that fluoresces at a point.
+pub(crate) struct FluorescentPart<'a> {
+    /// The share of the surface that all such parts have.
+    pub share: f64,
+    /// What this one gives back.
+    pub reradiation: &'a Reradiation,
+    /// What it does to light that keeps its wavelength.
+    pub reflection: &'a Lambert,
 }
 
 #[derive(Clone, Debug)]
@@ -35,9 +42,9 @@ enum Parts {
     Matrix(ReradiationMatrix),
 }
 
-/// A density over wavelengths of excitation, constant between whole nanometres and kinks: in proportion to the power that comes back of white light,
-/// and for the other half of that which comes back of the light that is expected.
-#[derive(Debug)]
+/// A density over wavelengths of excitation, constant between whole nanometres and kinks. Half of it is in proportion to the power that comes back of
+/// white light, the other half to that of the light that the scene's lamps give; before these are known, all is the former.
+#[derive(Clone, Debug)]
 struct ExcitationDistribution {
     borders_nm: Vec<f64>,
     /// The probability up to each border.
@@ -47,8 +54,7 @@ struct ExcitationDistribution {
 impl Fluorescent {
     /// A surface of this albedo at the wavelength of the light, and this reradiation; of wavelengths within `range_nm`.
     pub fn new(reflectance: PathTexture, fluorescence: &Fluorescence, range_nm: [f64; 2]) -> Self {
-        let reradiation = Reradiation::new(fluorescence, range_nm).map(Arc::new);
-        Self { reflection: Lambert::new(reflectance), reradiation }
+        Self { reflection: Lambert::new(reflectance), reradiation: Reradiation::new(fluorescence, range_nm) }
     }
 
     /// See [`Properties`].
@@ -88,8 +94,8 @@ impl Bsdf {
     /// Says what light there is in the scene, in any unit: what excites a surface is looked for where light is.
     pub(crate) fn expect_light(&mut self, light: &PathSpectrum) {
         match self {
-            Self::Fluorescent(surface) => {
-                surface.reradiation = surface.reradiation.take().map(|reradiation| Arc::new(reradiation.under(light)));
+            Self::Fluorescent(Fluorescent { reradiation: Some(reradiation), .. }) => {
+                reradiation.excitation.draw_half_toward(light);
             }
             Self::Blend(blend) => blend.parts_mut().for_each(|part| part.expect_light(light)),
             Self::OneSided(one) => one.bsdf_mut().expect_light(light),
@@ -98,7 +104,7 @@ impl Bsdf {
     }
 
     /// The share of the surface that fluoresces, seen along `wo`.
-    pub(crate) fn fluorescent_share(&self, at: &Shading<'_>, wo: Vec3<f64>) -> f64 {
+    pub(super) fn fluorescent_share(&self, at: &Shading<'_>, wo: Vec3<f64>) -> f64 {
         match self {
             Self::Fluorescent(surface) => f64::from(u8::from(surface.reradiation.is_some())),
             Self::Blend(blend) => blend.fluorescent_parts(at, wo).iter().map(|(_, share)| share).sum(),
@@ -107,22 +113,22 @@ impl Bsdf {
         }
     }
 
-    /// A part of the surface that fluoresces, drawn by its share with a number in [0, 1): what it gives back, and what it reflects.
-    pub(crate) fn fluorescent_part(&self, at: &Shading<'_>, wo: Vec3<f64>, u: f64) -> Option<(&Reradiation, &Lambert)> {
+    /// What of the surface fluoresces, seen along `wo`: of several parts one, drawn by its share with a number in [0, 1).
+    pub(crate) fn fluorescent_part(&self, at: &Shading<'_>, wo: Vec3<f64>, u: f64) -> Option<FluorescentPart<'_>> {
         match self {
-            Self::Fluorescent(surface) => Some((surface.reradiation.as_deref()?, &surface.reflection)),
+            Self::Fluorescent(Fluorescent { reflection, reradiation }) => {
+                Some(FluorescentPart { share: 1.0, reradiation: reradiation.as_ref()?, reflection })
+            }
             Self::Blend(blend) => {
-                let mut rest = u * self.fluorescent_share(at, wo);
-                let mut last = None;
-                for (part, share) in blend.fluorescent_parts(at, wo).into_iter().filter(|(_, share)| *share > 0.0) {
-                    last = Some((part, (rest / share).min(1.0_f64.next_down())));
-                    if rest < share {
-                        break;
-                    }
-                    rest -= share;
-                }
-                let (part, u) = last?;
-                part.fluorescent_part(at, wo, u)
+                let parts = blend.fluorescent_parts(at, wo);
+                let share = parts[0].1 + parts[1].1;
+                let u = u * share;
+                let (part, of_part, u) = match parts {
+                    [(first, of_first), _] if u < of_first => (first, of_first, u),
+                    [(_, of_first), (second, of_second)] => (second, of_second, u - of_first),
+                };
+                let part = part.fluorescent_part(at, wo, (u / of_part).min(1.0_f64.next_down()))?;
+                Some(FluorescentPart { share, ..part })
             }
             Self::OneSided(one) => one.seen(at.normal, wo)?.fluorescent_part(at, wo, u),
             _ => None,
@@ -144,18 +150,7 @@ impl Reradiation {
                 Parts::Fluorophores(prepared.collect())
             }
         };
-        Some(Self { parts, excitation, light: PathSpectrum::Constant(1.0) })
-    }
-
-    /// The same under this light: half of all excitation is drawn where it is.
-    fn under(&self, light: &PathSpectrum) -> Self {
-        let parts = self.parts.clone();
-        Self { parts, excitation: self.excitation.toward(light), light: light.clone() }
-    }
-
-    /// What light is expected at wavelengths, in any unit.
-    pub(crate) fn expected_light<const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
-        self.light.lanes(lambda_nm)
+        Some(Self { parts, excitation })
     }
 
     /// Wavelengths of excitation, nm, and one over the density of each, nm: the hero's drawn by `u` in [0, 1), the others equal shares of all
@@ -194,11 +189,10 @@ impl Reradiation {
 
 impl ExcitationDistribution {
     fn new(fluorescence: &Fluorescence, range_nm: [f64; 2]) -> Option<Self> {
-        let kinks = fluorescence.kinks_nm(range_nm);
-        let mut borders_nm: Vec<f64> = whole_nm(range_nm).chain(kinks.iter().copied()).collect();
+        let mut borders_nm: Vec<f64> = whole_nm(range_nm).chain(fluorescence.kinks_nm(range_nm)).collect();
         borders_nm.sort_by(f64::total_cmp);
         // What comes back of three wavelengths between any two borders.
-        let nodes = simpson(range_nm, kinks);
+        let nodes = simpson(borders_nm.iter().copied());
         let nm: Vec<f64> = nodes.iter().map(|(nm, _)| *nm).collect();
         let returned = fluorescence.returned(&nm, range_nm);
         let mut cumulative = vec![0.0];
@@ -214,27 +208,24 @@ impl ExcitationDistribution {
         Some(Self { borders_nm, cumulative })
     }
 
-    /// The same density, and for the other half its product with a light.
-    fn toward(&self, light: &PathSpectrum) -> Self {
-        let segments = || self.borders_nm.windows(2).zip(self.cumulative.windows(2));
+    /// Makes half of the density that of its product with a light.
+    fn draw_half_toward(&mut self, light: &PathSpectrum) {
+        let segments = self.borders_nm.windows(2).zip(self.cumulative.windows(2));
         let lit: Vec<f64> =
-            segments().map(|(nm, part)| (part[1] - part[0]) * light.eval(0.5 * (nm[0] + nm[1]))).collect();
+            segments.map(|(nm, part)| (part[1] - part[0]) * light.eval(0.5 * (nm[0] + nm[1]))).collect();
         let all: f64 = lit.iter().sum();
         if all <= 0.0 {
             // No lamp excites it: only what other surfaces give back.
-            return Self { borders_nm: self.borders_nm.clone(), cumulative: self.cumulative.clone() };
+            return;
         }
         let mut sum = 0.0;
-        let ends = segments().zip(&lit).map(|((_, part), lit)| {
+        for (part, lit) in self.cumulative[1..].iter_mut().zip(lit) {
             sum += lit / all;
-            0.5 * (part[1] + sum)
-        });
-        let mut cumulative = vec![0.0];
-        cumulative.extend(ends);
+            *part = 0.5 * (*part + sum);
+        }
         // Whatever the sums were rounded to.
-        let last = cumulative[cumulative.len() - 1];
-        cumulative.iter_mut().for_each(|part| *part /= last);
-        Self { borders_nm: self.borders_nm.clone(), cumulative }
+        let last = self.cumulative[self.cumulative.len() - 1];
+        self.cumulative.iter_mut().for_each(|part| *part /= last);
     }
 
     /// The wavelength up to which a share of all probability lies, nm, and one over its density, nm.
@@ -272,8 +263,10 @@ mod tests {
         for range in [[360.0, 830.0], [400.25, 700.0]] {
             let prepared = Reradiation::new(&dye(), range).unwrap();
             for emission in [470.0, 520.0, 633.0] {
-                let expected: f64 =
-                    simpson(range, dye().kinks_nm(range)).iter().map(|(nm, w)| w * dye().eval(*nm, emission)).sum();
+                let expected: f64 = simpson(whole_nm(range).chain(dye().kinks_nm(range)))
+                    .iter()
+                    .map(|(nm, w)| w * dye().eval(*nm, emission))
+                    .sum();
                 let count = 20_000;
                 let mut mean = 0.0;
                 for i in 0..count {
@@ -285,6 +278,27 @@ mod tests {
                 assert!((mean / expected - 1.0).abs() < 1e-4, "{emission} nm: {mean} is not {expected}");
             }
         }
+    }
+
+    /// Light in a twentieth of the band: half of all lanes and a bit look there, and what they find is the same integral.
+    #[test]
+    fn half_of_what_is_drawn_is_where_the_light_is() {
+        let range = [360.0, 830.0];
+        let line = |nm: f64| f64::from(u8::from((400.0..405.0).contains(&nm)));
+        let mut prepared = Reradiation::new(&dye(), range).unwrap();
+        prepared.excitation.draw_half_toward(&PathSpectrum::tabulate(range, line));
+        let expected: f64 =
+            simpson(whole_nm(range).chain([430.5])).iter().map(|(nm, w)| w * dye().eval(*nm, 520.0)).sum();
+        let (count, mut mean, mut there) = (20_000, 0.0, 0);
+        for i in 0..count {
+            let (nm, width) = prepared.draw::<8>((f64::from(i) + 0.5) / f64::from(count));
+            let phi = prepared.between(&nm, &Lanes::splat(520.0));
+            mean += (0..8).map(|lane| phi[lane][0] * width[lane]).sum::<f64>() / 8.0 / f64::from(count);
+            there += (0..8).filter(|lane| (399.0..406.0).contains(&nm[*lane])).count();
+        }
+        assert!((mean / expected - 1.0).abs() < 1e-4, "{mean} is not {expected}");
+        let share = there as f64 / (8.0 * f64::from(count));
+        assert!((0.5..0.6).contains(&share), "{share}");
     }
 
     #[test]
@@ -307,13 +321,13 @@ mod tests {
         let inner = super::super::Blend::new([(0.0, Bsdf::Black), (1.0, part(0.2))], 0.5.into());
         let blend = Bsdf::Blend(super::super::Blend::new([(0.0, Bsdf::Blend(inner)), (1.0, part(0.6))], 0.25.into()));
         // 0.75 · 0.5 of the one, 0.25 of the other.
-        assert!((blend.fluorescent_share(&at, wo) - 0.625).abs() < 1e-12);
         let count = 1000;
         let drawn = (0..count).filter(|i| {
-            let (_, reflection) = blend.fluorescent_part(&at, wo, (f64::from(*i) + 0.5) / f64::from(count)).unwrap();
-            reflection.reflectance::<1>(&Lanes([500.0]), at.texture_point())[0] < 0.4
+            let part = blend.fluorescent_part(&at, wo, (f64::from(*i) + 0.5) / f64::from(count)).unwrap();
+            assert!((part.share - 0.625).abs() < 1e-12);
+            part.reflection.reflectance::<1>(&Lanes([500.0]), at.texture_point())[0] < 0.4
         });
         assert_eq!(drawn.count(), 600);
-        assert_eq!(Bsdf::Black.fluorescent_share(&at, wo), 0.0);
+        assert!(Bsdf::Black.fluorescent_part(&at, wo, 0.5).is_none());
     }
 }

@@ -34,6 +34,7 @@ pub use blend::Blend;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use film::PathFilm;
+pub(crate) use fluorescent::FluorescentPart;
 pub use fluorescent::{Fluorescent, Reradiation};
 pub use grating::Grating;
 pub use lambert::Lambert;

@@ -12,11 +12,11 @@
 use super::Path;
 use super::observer::Observer;
 use super::wavelength_lanes::WavelengthModel;
+use crate::bsdf::FluorescentPart;
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::SurfaceInteraction;
 use crate::scene::world::World;
-use crate::surface::FluorescentPart;
 use crate::wavelength::Wavelengths;
 use etalon_optics::Lanes;
 
@@ -69,29 +69,25 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         sampler: &Sampler,
         observer: &mut impl Observer<N>,
     ) {
+        if !vertex.surface.fluoresces() {
+            return;
+        }
         let [u_choice, u_wavelength, u_part, _] = sampler.fluorescence_set(self.vertex);
-        let Some(part) = vertex.fluorescent_part(world, u_part) else { return };
-        let FluorescentPart { share, reradiation, reflection, place } = part;
+        let scattering = vertex.scattering_at(world);
+        let Some(part) = scattering.fluorescent_part(vertex.wo, u_part) else { return };
+        let FluorescentPart { share, reradiation, reflection } = part;
         let lambda_nm = self.wavelengths.lambda_nm;
         let (excitation_nm, width_nm) = reradiation.draw::<N>(u_wavelength);
         let between = reradiation.between(&excitation_nm, &lambda_nm);
 
-        // How much would go on either way. Under white light no choice makes the path worth more than it was, however often it chooses. The first
-        // surface may choose once by the light that is expected: it often fluoresces in the light of lamps, and reflects little of it.
+        // How much would go on either way under white light: no choice then makes the path worth more than it was.
         let mean_width = |lane: usize| share * width_nm[lane] / N as f64;
-        let reflected = Lanes::splat(1.0 - share) + reflection.reflectance(&lambda_nm, place) * share;
-        let chance = |at_path: Lanes<f64, N>, exciting: Lanes<f64, N>| {
-            let mut given_back = Lanes::ZERO;
-            (0..N).for_each(|lane| given_back += between[lane] * (mean_width(lane) * exciting[lane]));
-            let [given_back, reflected] = [given_back, reflected * at_path].map(|lanes| (self.beta * lanes).sum());
-            if given_back > 0.0 { given_back / (given_back + reflected) } else { 0.0 }
-        };
-        let expected = [&lambda_nm, &excitation_nm].map(|nm| reradiation.expected_light(nm));
-        let white = chance(Lanes::ONE, Lanes::ONE);
-        let probability = match self.vertex {
-            0 if white > 0.0 => 0.5 * (white + chance(expected[0], expected[1])),
-            _ => white,
-        };
+        let mut given_back = Lanes::ZERO;
+        (0..N).for_each(|lane| given_back += between[lane] * mean_width(lane));
+        let reflectance = reflection.reflectance(&lambda_nm, scattering.texture_point());
+        let reflected = Lanes::splat(1.0 - share) + reflectance * share;
+        let [given_back, reflected] = [given_back, reflected].map(|lanes| (self.beta * lanes).sum());
+        let probability = if given_back > 0.0 { given_back / (given_back + reflected) } else { 0.0 };
         if u_choice >= probability {
             self.beta /= 1.0 - probability;
             return;
@@ -118,7 +114,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             }
         };
         self.go_on_at(excitation_nm, shares, vertex);
-        vertex.reradiate(world);
+        vertex.scatter_as(scattering.with(&world.surfaces.white));
         self.spectra.forget(&self.wavelengths.lambda_nm, false);
         observer.fluoresces(self.vertex, excitation_nm);
     }

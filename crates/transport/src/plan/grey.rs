@@ -82,7 +82,7 @@ fn integral<const N: usize>(
     weights: impl Fn(f64) -> [f64; N],
 ) -> [f64; N] {
     let mut sum = [0.0; N];
-    for (nm, weight) in simpson(range_nm, spectrum.kinks_nm(range_nm)) {
+    for (nm, weight) in simpson(whole_nm(range_nm).chain(spectrum.kinks_nm(range_nm))) {
         let value = weight * spectrum.eval(nm) / unit;
         let weights = weights(nm);
         (0..N).for_each(|c| sum[c] += value * weights[c]);

@@ -15,7 +15,7 @@ use crate::film::Counters;
 use crate::media::{Interface, Media, MediumStack};
 use crate::scene::shading_tables::{BsdfKind, SmoothInterface};
 use crate::scene::world::{ShadowRays, World};
-use crate::surface::{FluorescentPart, Scattering, Surface};
+use crate::surface::{Scattering, Surface};
 use etalon_geometry::{Hit, Passed, Ray, SurfacePoint};
 use etalon_optics::Vec3;
 
@@ -100,19 +100,17 @@ impl<'a> SurfaceInteraction<'a> {
         }
     }
 
-    /// What of it fluoresces, a part of several drawn with a number in [0, 1).
-    pub(crate) fn fluorescent_part(&self, world: &World<'a>, u: f64) -> Option<FluorescentPart<'a>> {
-        if !self.surface.fluoresces() {
-            return None;
+    /// What it does to light, of any kind.
+    pub(crate) fn scattering_at(&self, world: &World<'a>) -> Scattering<'a> {
+        match (self.kind, self.scattering) {
+            (BsdfKind::General, Some(prepared)) => prepared,
+            _ => self.surface.scattering(world.geometry, &self.point, &self.hit, self.interface),
         }
-        self.surface.scattering(world.geometry, &self.point, &self.hit, self.interface).fluorescent_part(self.wo, u)
     }
 
-    /// Becomes a white Lambertian surface.
-    pub(crate) fn reradiate(&mut self, world: &World<'a>) {
-        let scattering = self.surface.scattering(world.geometry, &self.point, &self.hit, self.interface);
-        self.scattering = Some(scattering.with(&world.surfaces.white.0));
-        self.kind = BsdfKind::General;
+    /// Does this to light from now on.
+    pub(crate) fn scatter_as(&mut self, scattering: Scattering<'a>) {
+        (self.kind, self.scattering) = (BsdfKind::General, Some(scattering));
     }
 
     /// What it does to light, where its kind is general.

@@ -1,7 +1,7 @@
 //! From a scene to what the kernels trace. After this nothing fails.
 
 mod earlier;
-use crate::bsdf::{Bsdf, properties};
+use crate::bsdf::{Bsdf, Lambert, properties};
 use crate::camera::{Camera, Moving, PreparedLens};
 use crate::film::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame, mapped};
@@ -16,7 +16,7 @@ use crate::scene::shading_tables::ShadingTables;
 use crate::scene::shapes::{self, GroupShapes, SceneShapes};
 use crate::scene::world::ShadowRays;
 use crate::spectral::PathSpectrum;
-use crate::surface::{Emission, ObjectSurface, Relief, Surfaces, White};
+use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
 use crate::wavelength::WavelengthDistribution;
 use etalon_geometry::{Geometry, SurfaceId};
 use etalon_optics::spectrum::whole_nm;
@@ -152,7 +152,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     }
     let mut surfaces = Surfaces {
         bsdfs,
-        white: White::default(),
+        white: Bsdf::Lambert(Lambert::new(PathSpectrum::Constant(1.0).into())),
         properties: scene.materials.iter().map(|material| properties(&material.kind)).collect(),
         interiors: scene
             .materials

@@ -4,7 +4,7 @@ mod bump_mapping;
 pub(crate) mod quadric_uv;
 pub(crate) mod shading_geometry;
 
-use crate::bsdf::{Bsdf, BsdfSample, Lambert, Lobe, Properties, Reradiation, Shading};
+use crate::bsdf::{Bsdf, BsdfSample, FluorescentPart, Lobe, Properties, Shading};
 use crate::media::{Interface, Interior, PlacedSolid};
 use crate::polarisation::mueller::Mueller;
 use crate::spectral::PathSpectrum;
@@ -67,16 +67,6 @@ impl Emission {
     }
 }
 
-/// A white Lambertian surface.
-#[derive(Clone, Debug)]
-pub(crate) struct White(pub Bsdf);
-
-impl Default for White {
-    fn default() -> Self {
-        Self(Bsdf::Lambert(Lambert::new(PathSpectrum::Constant(1.0).into())))
-    }
-}
-
 /// Look-up from primitives to what they are made of.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surfaces {
@@ -85,7 +75,7 @@ pub(crate) struct Surfaces {
     /// Properties of each material.
     pub properties: Vec<Properties>,
     /// How light leaves that surfaces give back at another wavelength: as from a white Lambertian one.
-    pub white: White,
+    pub white: Bsdf,
     /// What each material holds, where it states both its sides itself.
     pub interiors: Vec<Option<Interior>>,
     pub objects: Vec<ObjectSurface>,
@@ -241,28 +231,17 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// A part of a surface that fluoresces at one point.
-pub(crate) struct FluorescentPart<'a> {
-    /// The share of the surface that all such parts have.
-    pub share: f64,
-    pub reradiation: &'a Reradiation,
-    /// What it does to light that keeps its wavelength.
-    pub reflection: &'a Lambert,
-    pub place: TexturePoint,
-}
-
 /// Scattering at one point.
+#[derive(Clone, Copy)]
 pub(crate) struct Scattering<'a> {
     bsdf: &'a Bsdf,
     at: Shading<'a>,
 }
 
 impl<'a> Scattering<'a> {
-    /// See [`Bsdf::fluorescent_share`] and [`Bsdf::fluorescent_part`]: the share of the surface, its reradiation, what it reflects, and where.
+    /// See [`Bsdf::fluorescent_part`].
     pub(crate) fn fluorescent_part(&self, wo: Vec3<f64>, u: f64) -> Option<FluorescentPart<'a>> {
-        let share = self.bsdf.fluorescent_share(&self.at, wo);
-        let (reradiation, reflection) = self.bsdf.fluorescent_part(&self.at, wo, u).filter(|_| share > 0.0)?;
-        Some(FluorescentPart { share, reradiation, reflection, place: self.at.texture_point() })
+        self.bsdf.fluorescent_part(&self.at, wo, u)
     }
 
     /// Another BSDF at the same point.
@@ -297,6 +276,11 @@ impl Scattering<'_> {
     /// The unit normal to scatter around, on the surface's own outward side.
     pub(crate) fn shading_normal(&self) -> Vec3<f64> {
         self.at.shading_normal()
+    }
+
+    /// Where textures are read.
+    pub(crate) fn texture_point(&self) -> TexturePoint {
+        self.at.texture_point()
     }
 
     /// Texture coordinates.
