@@ -60,13 +60,16 @@ pub(crate) fn run(args: ExposeArgs) -> Outcome {
     let sensor = SensorFile::load(&args.sensor).map_err(refused)?;
     print::warnings(&scene_warnings(&sensor.file_name, &sensor.text, sensor.warnings.clone()));
     let file = read_exr(&args.picture).map_err(|error| Failure::input(Report::from_err(error)))?;
-    let threads = args.threads.map(|threads| threads as usize);
-    let exposure = SensorExposure::new(&file, &sensor.sensor, threads).map_err(|error| cannot(&args.picture, error))?;
+    let threads = args.threads.map_or(0, |threads| threads as usize);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::run(miette!(code = "threads", "cannot start threads: {error}")))?;
+    let exposure = pool.install(|| SensorExposure::new(&file, &sensor.sensor));
+    let exposure = exposure.map_err(|error| cannot(&args.picture, error))?;
 
     let mut told = Vec::new();
     for (place, &number) in frames.numbers().iter().enumerate() {
-        let settings = ExposureSettings { seed: args.seed, frame: number, electrons: args.electrons, threads };
-        let raw = exposure.frame(&settings).map_err(|error| cannot(&args.picture, error))?;
+        let settings = ExposureSettings { seed: args.seed, frame: number, electrons: args.electrons };
+        let raw = pool.install(|| exposure.frame(&settings)).map_err(|error| cannot(&args.picture, error))?;
         let info = RawInfo {
             software: concat!("etalon ", env!("CARGO_PKG_VERSION")).to_owned(),
             sensor_json: sensor.text.clone(),

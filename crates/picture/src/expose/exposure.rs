@@ -1,11 +1,12 @@
 //! The mean electrons of every pixel, and exposures of them.
 
+use rayon::prelude::*;
+
 use super::photons::{electrons_per_radiance, share_outside};
 use super::random::PixelPlace;
 use super::readout::{PixelReading, read_pixel};
 use super::report::{ChannelReport, ChannelSums};
 use super::sensor::{IMAGE_NUMERICAL_APERTURE, Sensor};
-use super::threads::of_pixels;
 use crate::develop::{bands_of, is_radiance};
 use crate::{Attribute, Attributes, ERROR_PREFIX, ExrFile, Picture, PictureError, Window};
 
@@ -44,8 +45,6 @@ pub struct ExposureSettings {
     pub frame: u32,
     /// Whether the electrons are kept beside the digital numbers.
     pub electrons: bool,
-    /// Threads; all cores if not given. The numbers are the same for any number of threads.
-    pub threads: Option<usize>,
 }
 
 /// One exposure.
@@ -75,7 +74,7 @@ impl SensorExposure {
     ///
     /// # Errors
     /// A picture without at least two spectral bands, or with bands beyond the table of a quantum efficiency. A sensor with impossible numbers.
-    pub fn new(file: &ExrFile, sensor: &Sensor, threads: Option<usize>) -> Result<Self, PictureError> {
+    pub fn new(file: &ExrFile, sensor: &Sensor) -> Result<Self, PictureError> {
         sensor.check()?;
         let bands = bands_of(&file.picture);
         if bands.is_empty() {
@@ -119,9 +118,8 @@ impl SensorExposure {
         };
         let planes = kinds.into_iter().map(|channel| {
             let of = |bands: &[&[f32]]| {
-                of_pixels(size[0] * size[1], threads, |i| {
-                    weighted_sum(bands, &weights[exposure.channel_at(channel, i)], i)
-                })
+                let pixel = |i| weighted_sum(bands, &weights[exposure.channel_at(channel, i)], i);
+                (0..size[0] * size[1]).into_par_iter().map(pixel).collect()
             };
             Plane { channel, photo_e: of(&radiance), error_e: errors.as_deref().map(of) }
         });
@@ -154,7 +152,8 @@ impl SensorExposure {
         let mut unusable = vec![false; width * height];
         let mut extra = Vec::new();
         for (number, plane) in self.planes.iter().enumerate() {
-            let readings = of_pixels(width * height, settings.threads, |i| self.read(plane, number, i, settings));
+            let pixels = (0..width * height).into_par_iter();
+            let readings: Vec<_> = pixels.map(|i| self.read(plane, number, i, settings)).collect();
             for (i, reading) in readings.iter().enumerate() {
                 let error_e = plane.error_e.as_ref().map(|errors| errors[i]);
                 match reading {

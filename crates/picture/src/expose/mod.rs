@@ -1,8 +1,8 @@
 //! Exposing: from the radiance of a spectral picture to the digital numbers of an image sensor.
 //!
-//! The sensor is the linear one of the EMVA Standard 1288, *Standard for Characterization of Image Sensors and Cameras*, release 4.0 Linear
-//! (European Machine Vision Association, 2021). [`SensorExposure::new`] finds the mean number of electrons that light raises in each pixel,
-//! µₑ = Σ L_b · π sin²θ · T · A · t · ∫ η(λ) λ/(hc) dλ over the bands b. [`SensorExposure::frame`] makes an exposure of it:
+//! The sensor is the linear one of EMVA Standard 1288 (European Machine Vision Association 2021, *Standard for Characterization of Image Sensors and
+//! Cameras*, release 4.0 Linear). [`SensorExposure::new`] finds the mean number of electrons that light raises in each pixel,
+//! µₑ = Σ L_b · π sin²θ · T · A · t · ∫ η(λ) λ/(hc) dλ, summed over the bands b. [`SensorExposure::frame`] makes an exposure of it:
 //!
 //! 1. photo response nonuniformity (PRNU), a fixed pattern: µₑ (1 + PRNU · z);
 //! 2. shot noise: a Poisson number of this mean and that of the dark current;
@@ -10,11 +10,11 @@
 //! 4. dark signal nonuniformity (DSNU), another fixed pattern, and the noise of the readout, both normal;
 //! 5. the gain, the black level, rounding, and the range of the digital numbers.
 //!
-//! Below saturation the variance of a digital number is therefore (µₑ + µ_d + σ_r²)/g² + 1/12 for a gain of g e⁻/DN: the photon transfer curve,
-//! whose slope over the mean digital number is 1/g.
+//! So the variance of a digital number is (µₑ + µ_d + σ_r²)/g² + 1/12 below saturation, for a gain of g e⁻/DN. This is the photon transfer curve. Its
+//! slope over the mean digital number is 1/g.
 //!
 //! Each random number is a pure function of (seed, pixel, frame, kind), and no function of the platform's mathematics library has a part in
-//! it. So an exposure has the same bytes on every machine and for any number of threads.
+//! it. So an exposure has the same bytes on every machine and for any number of threads, of which it uses all that rayon has.
 //!
 //! ```
 //! use etalon_picture::expose::{ExposureSettings, QuantumEfficiency, Sensor, SensorChannel, SensorExposure};
@@ -42,7 +42,7 @@
 //!     pattern_seed: 0,
 //! };
 //! let file = ExrFile { picture, attributes: Attributes::new() };
-//! let frame = SensorExposure::new(&file, &sensor, None)?.frame(&ExposureSettings::default())?;
+//! let frame = SensorExposure::new(&file, &sensor)?.frame(&ExposureSettings::default())?;
 //! let report = &frame.channels[0];
 //! // 0.01 W/(m² sr nm) over 60 nm, π/64 sr, 11.9 µm², 10 ms, 2.62e18 photons a joule, of which 60 % raise an electron.
 //! assert!((report.mean_photo_e / 5506.0 - 1.0).abs() < 1e-3, "{report:?}");
@@ -60,7 +60,6 @@ mod report;
 mod sensor;
 #[cfg(test)]
 mod tests;
-mod threads;
 
 pub use exposure::{ExposureSettings, RawFrame, SensorExposure, UnusablePixels};
 pub use raw_file::RawInfo;

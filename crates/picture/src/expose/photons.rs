@@ -13,8 +13,8 @@ const NM: f64 = 1e-9;
 /// Mean electrons in a pixel of a channel for a radiance of 1 W·m⁻²·sr⁻¹·nm⁻¹ within each band, whose ends are `edges_nm`, and sin θ:
 /// π sin²θ · T · A · t · ∫ η(λ) λ/(hc) dλ.
 ///
-/// π sin²θ is the irradiance on the axis for a radiance of 1, T the transmittance of the lens, A the area of a pixel and t the exposure time.
-/// λ/(hc) photons carry a joule, and η of them raise an electron.
+/// π sin²θ is the irradiance on the axis for a radiance of 1. T is the transmittance of the lens, A the area of a pixel and t the exposure time.
+/// λ/(hc) photons carry a joule, and the share η of them raises an electron.
 pub(super) fn electrons_per_radiance(
     sensor: &Sensor,
     sine: f64,

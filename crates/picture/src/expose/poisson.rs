@@ -5,8 +5,8 @@
 //! Insurance: Mathematics and Economics 12), which accepts a proposal with exactly the probability that the distribution asks for. Neither is
 //! an approximation by a normal distribution. What is left are the 53 bits of a uniform number and the rounding of a probability.
 //!
-//! The probability of k is that of Loader 2000 (*Fast and Accurate Computation of Binomial Probabilities*): the error of Stirling's formula
-//! and the deviance are computed by themselves, so that no large logarithms cancel. All of it is + − × ÷ √ and the exponential and
+//! The probability of k is computed as in Loader 2000 (*Fast and Accurate Computation of Binomial Probabilities*). The error of Stirling's
+//! formula and the deviance are computed by themselves, so that no large logarithms cancel. All of it is + − × ÷ √ and the exponential and
 //! logarithm of `etalon_optics::exponential`.
 
 use std::f64::consts::TAU;

@@ -128,9 +128,9 @@ impl Sensor {
         (1 << self.bits) - 1
     }
 
-    /// Standard deviation of the temporal noise of a pixel, in electrons: √(µₑ + µ_d + σ_r² + g²/12) for µₑ mean electrons raised by light,
-    /// µ_d by heat, the noise σ_r of the readout and a gain of g e⁻/DN, whose square over 12 is the noise of quantisation. It holds below
-    /// saturation (EMVA 1288, release 4.0 Linear, chapter 2, noise model).
+    /// Standard deviation of the temporal noise of a pixel, in electrons: √(µₑ + µ_d + σ_r² + g²/12). Light raises µₑ electrons on average and heat µ_d,
+    /// σ_r is the noise of the readout, and g²/12 is the noise of quantisation for a gain of g e⁻/DN. It holds below saturation (EMVA 1288,
+    /// release 4.0 Linear, chapter 2, noise model).
     #[must_use]
     pub fn noise_e(&self, photo_e: f64) -> f64 {
         let quantisation = self.gain_e_per_dn * self.gain_e_per_dn / 12.0;

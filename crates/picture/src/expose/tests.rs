@@ -48,8 +48,8 @@ fn flat(width: usize, height: usize, radiance: f32) -> ExrFile {
     ExrFile { picture, attributes: Attributes::new() }
 }
 
-/// Mean electrons for a radiance of 1 in [`flat`] on [`sensor`], by EMVA's rule for one wavelength: 50.34 photons for 1 µm², 1 ms, 1 µm and
-/// 1 µW/cm² (here with more digits), at the middle wavelength, by which photons grow evenly.
+/// Mean electrons for a radiance of 1 in [`flat`] on [`sensor`], by EMVA's rule for one wavelength. That is 50.34 photons for 1 µm², 1 ms, 1 µm and
+/// 1 µW/cm², here with more digits. It is taken at the middle wavelength, since photons grow evenly with it.
 fn electrons_of_radiance_1() -> f64 {
     // f/4: E = πL/(4 · 4²); 60 nm; 100 µW/cm² are 1 W/m².
     let irradiance_uw_cm2 = std::f64::consts::PI / 64.0 * 60.0 * 100.0;
@@ -58,7 +58,7 @@ fn electrons_of_radiance_1() -> f64 {
 
 fn shoot(file: &ExrFile, sensor: &Sensor, seed: u64) -> RawFrame {
     let settings = ExposureSettings { seed, ..ExposureSettings::default() };
-    SensorExposure::new(file, sensor, None).unwrap().frame(&settings).unwrap()
+    SensorExposure::new(file, sensor).unwrap().frame(&settings).unwrap()
 }
 
 fn dn(frame: &RawFrame) -> Vec<f64> {
@@ -112,7 +112,7 @@ fn electrons_of_a_black_body_are_those_of_a_quadrature() {
     let (nodes, values) = ([380.0, 450.3, 560.0, 700.9], [0.1, 0.55, 0.7, 0.2]);
     let sensor = Sensor { channels: vec![channel("G", table(&nodes, &values, Outside::Zero))], bits: 12, ..sensor() };
     let settings = ExposureSettings { electrons: true, ..ExposureSettings::default() };
-    let frame = SensorExposure::new(&file, &sensor, None).unwrap().frame(&settings).unwrap();
+    let frame = SensorExposure::new(&file, &sensor).unwrap().frame(&settings).unwrap();
     let found = f64::from(frame.picture.require("meanPhotoelectrons").unwrap()[0]);
 
     let efficiency = |nm: f64| {
@@ -136,7 +136,7 @@ fn the_lens_of_the_picture_gives_the_cone_of_light_where_the_sensor_states_none(
     file.attributes.insert(IMAGE_NUMERICAL_APERTURE.to_owned(), Attribute::Double(0.25));
     let mean = |sine| {
         let sensor = Sensor { numerical_aperture: sine, ..sensor() };
-        let exposure = SensorExposure::new(&file, &sensor, None).unwrap();
+        let exposure = SensorExposure::new(&file, &sensor).unwrap();
         let frame = exposure.frame(&ExposureSettings::default()).unwrap();
         (exposure.sines(), frame.channels[0].mean_photo_e / (1e-3 * electrons_of_radiance_1()))
     };
@@ -189,9 +189,10 @@ fn an_exposure_has_the_same_bytes_on_any_number_of_threads_and_in_any_part() {
     let sensor = Sensor { prnu: 0.01, dsnu_e: 1.0, ..sensor() };
     let file = flat(37, 29, 1e-3);
     let bytes = |threads| {
-        let exposure = SensorExposure::new(&file, &sensor, Some(threads)).unwrap();
-        let settings = ExposureSettings { seed: 9, frame: 2, electrons: true, threads: Some(threads) };
-        encode_exr(&exposure.frame(&settings).unwrap().picture, &Attributes::new()).unwrap()
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let settings = ExposureSettings { seed: 9, frame: 2, electrons: true };
+        let frame = pool.install(|| SensorExposure::new(&file, &sensor).unwrap().frame(&settings).unwrap());
+        encode_exr(&frame.picture, &Attributes::new()).unwrap()
     };
     let one = bytes(1);
     assert!([2, 3, 16].into_iter().all(|threads| bytes(threads) == one));
@@ -205,7 +206,7 @@ fn an_exposure_has_the_same_bytes_on_any_number_of_threads_and_in_any_part() {
         assert_eq!(*value, whole[(7 + i / 5) * 37 + 11 + i % 5]);
     }
     // Another frame or seed is another exposure.
-    let exposure = SensorExposure::new(&file, &sensor, None).unwrap();
+    let exposure = SensorExposure::new(&file, &sensor).unwrap();
     let next = exposure.frame(&ExposureSettings { seed: 9, frame: 1, ..ExposureSettings::default() }).unwrap();
     assert_ne!(dn(&next), whole);
     assert_ne!(dn(&shoot(&file, &sensor, 10)), whole);
@@ -235,7 +236,7 @@ fn a_mosaic_has_one_channel_a_pixel_and_without_it_each_pixel_has_all() {
     let mut sensor = Sensor { channels, mosaic: Some(mosaic), ..sensor() };
     let file = flat(4, 4, (10_000.0 / electrons_of_radiance_1()) as f32);
     let settings = ExposureSettings { electrons: true, ..ExposureSettings::default() };
-    let frame = SensorExposure::new(&file, &sensor, None).unwrap().frame(&settings).unwrap();
+    let frame = SensorExposure::new(&file, &sensor).unwrap().frame(&settings).unwrap();
     let means = frame.picture.require("meanPhotoelectrons").unwrap();
     for (i, mean) in means.iter().enumerate() {
         let want = [[2000.0, 8000.0], [8000.0, 4000.0]][i / 4 % 2][i % 2];
@@ -305,7 +306,7 @@ fn the_noise_of_the_render_is_told_beside_that_of_the_sensor() {
 
 #[test]
 fn what_cannot_be_exposed_is_refused_with_the_reason() {
-    let refused = |file: &ExrFile, sensor: &Sensor| SensorExposure::new(file, sensor, None).unwrap_err().to_string();
+    let refused = |file: &ExrFile, sensor: &Sensor| SensorExposure::new(file, sensor).unwrap_err().to_string();
     let none = ExrFile { picture: Picture::from_rgb(1, 1, &[[0.5; 3]]).unwrap(), attributes: Attributes::new() };
     assert!(refused(&none, &sensor()).contains("--bands"));
     let mut one = none.clone();
@@ -338,11 +339,11 @@ fn light_beyond_the_bands_is_told_and_a_raw_file_says_what_it_was_made_with() {
     let mut file = flat(1, 1, 1e-3);
     let report = &shoot(&file, &wide, 1).channels[0];
     assert!((report.share_outside - 28_750.0 / 55_000.0).abs() < 1e-12, "{report:?}");
-    assert!(!SensorExposure::new(&file, &wide, None).unwrap().states_unit());
+    assert!(!SensorExposure::new(&file, &wide).unwrap().states_unit());
     for (name, text) in [("emissiveUnits", "W.m^-2.sr^-1"), ("sceneSha256", "abc"), ("frameSettings", "{}")] {
         file.attributes.insert(name.to_owned(), Attribute::Text(text.to_owned()));
     }
-    assert!(SensorExposure::new(&file, &wide, None).unwrap().states_unit());
+    assert!(SensorExposure::new(&file, &wide).unwrap().states_unit());
     let [software, sensor_json, sensor_sha256] = ["etalon 1", "{}", "0f"].map(str::to_owned);
     let info = RawInfo { software, sensor_json, sensor_sha256, seed: u64::MAX, frame: 7 };
     let attributes = info.attributes(&file.attributes);
