@@ -13,6 +13,7 @@ mod absorption;
 mod beckmann;
 mod cameras;
 mod cie171;
+mod claim;
 mod compound_lenses;
 mod dimensions;
 mod enclosures;
@@ -63,6 +64,7 @@ use serde_json::{Value, json};
 
 use crate::statistics::poisson_mean_bound;
 pub use cie171::{LUX, SuiteCase, cie171, section_title};
+pub use claim::Claim;
 pub use exchange::{ExchangeFile, exchange_files};
 pub use irradiance::{
     cylinder_factor, disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
@@ -71,86 +73,6 @@ pub use irradiance::{
 
 pub use judge::{CUT_SHARE, Renders, judge};
 pub use prisms::photometric_weight;
-
-/// What a renderer must be able to do, or claims to do, for a truth to apply to it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Claim {
-    /// Averages the two polarisations at every interface, as renderers that carry plain radiance do.
-    AveragesPolarisation,
-    /// Carries polarised light from interface to interface.
-    CarriesPolarisation,
-    /// Renders a band of wavelengths so narrow that it counts as one, read relative to [`Truth::white_scene`].
-    NarrowBand,
-    /// Refracts each wavelength by its own index.
-    Dispersion,
-    /// Simulates a thin lens.
-    ThinLens,
-    /// Ends every path at a given number of edges.
-    DepthLimit,
-    /// Tells the two sides of an interface inside another medium apart.
-    NestedMedia,
-    /// Its sensor is CIE Y: a wavelength counts as ȳ of the CIE 1931 2° observer.
-    PhotometricSensor,
-    /// Knows which of several solids fills a place that they share: the one of the highest priority, of equal ones the later.
-    Priorities,
-    /// Media absorb what goes through them.
-    Absorption,
-    /// Media scatter what goes through them, emit, and may change from place to place.
-    Scattering,
-    /// Interfaces carry thin films, in which waves interfere.
-    ThinFilms,
-    /// Gratings send each order of each wavelength in a direction of its own.
-    Gratings,
-    /// Surfaces give light back at other wavelengths than those at which they take it in.
-    Fluorescence,
-    /// Things move while the shutter is open.
-    Motion,
-    /// Surfaces let a part of the light pass, also where they coincide with others.
-    Masks,
-    /// Rough dielectrics give back the light that meets several facets.
-    LosslessRoughGlass,
-    /// Rough metals give back the light that meets several facets.
-    LosslessRoughMetal,
-    /// Facets have two widths, along the surface's first texture coordinate and across it.
-    AnisotropicFacets,
-    /// Facets hide each other in reflection by Smith's masking that is correlated in height.
-    CorrelatedMasking,
-    /// Reads the whole scene format of Etalon, with its files, not the neutral form alone.
-    WholeFormat,
-    /// Is read where the truth says, not over the whole picture: [`Truth::crop_px`].
-    StatedPixels,
-    /// Says S₁, S₂ and S₃ of the light that arrives: [`Truth::quantity`].
-    StokesParameters,
-    /// Reads the meters of a scene: [`Quantity::Meters`].
-    Meters,
-}
-
-impl Claim {
-    /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 21] = [
-        Self::AveragesPolarisation,
-        Self::NarrowBand,
-        Self::Dispersion,
-        Self::ThinLens,
-        Self::DepthLimit,
-        Self::NestedMedia,
-        Self::PhotometricSensor,
-        Self::Priorities,
-        Self::Absorption,
-        Self::Scattering,
-        Self::ThinFilms,
-        Self::Gratings,
-        Self::Fluorescence,
-        Self::Motion,
-        Self::Masks,
-        Self::LosslessRoughGlass,
-        Self::LosslessRoughMetal,
-        Self::AnisotropicFacets,
-        Self::CorrelatedMasking,
-        Self::WholeFormat,
-        Self::StatedPixels,
-    ];
-}
 
 /// What is read off a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
