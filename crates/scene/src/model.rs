@@ -15,6 +15,7 @@ mod material;
 mod medium;
 mod meter;
 mod motion;
+mod parameter;
 mod references;
 mod shape;
 mod shutter;
@@ -32,11 +33,12 @@ pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES,
 pub use light::{Light, LightCone, LightKind};
 pub use material::{
     FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets,
-    Parameter, ParameterMut, PolarisingSheet, Side,
+    PolarisingSheet, Side,
 };
 pub use medium::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseTable};
 pub use meter::{Meter, MeterKind, MeterQuantity, Receiver};
 pub use motion::{CameraMotion, Keyframe, Motion};
+pub use parameter::{Parameter, ParameterMut};
 pub use references::ReferenceError;
 pub use shape::{Mesh, Shape};
 pub(crate) use shutter::middle_s;

@@ -6,6 +6,7 @@ mod fluorescent;
 mod grating;
 mod index;
 mod roughness;
+mod sheet;
 mod thin_film;
 
 use etalon_optics::OutsideFit;
@@ -18,10 +19,9 @@ use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
-use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned};
+use crate::json::{Code, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned};
 use crate::model::{
-    FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Medium, Metal,
-    PolarisingSheet, Side,
+    FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Medium, Metal, Side,
 };
 pub(crate) use blend::Before;
 pub use blend::MOST_BLEND_PARTS;
@@ -33,6 +33,7 @@ use grating::{GratingMaterial, grating};
 pub(super) use index::{IndexForm, index, least};
 use index::{NamedMetal, complex_index, complex_keys};
 use roughness::{RoughnessKeys, roughness, roughness_keys};
+use sheet::{PolariserMaterial, RetarderMaterial, polariser, retarder};
 use thin_film::{FilmLayerForm, thin_film};
 
 crate::record! {
@@ -243,32 +244,6 @@ crate::record! {
 }
 
 crate::record! {
-    /// An ideal linear polariser without thickness: light passes straight on, all of it that swings along the axis. It calls for
-    /// polarisation.
-    pub(crate) struct PolariserMaterial + comment {
-        /// Along which light may swing, in the object's own coordinates; only its direction along the surface counts.
-        axis: Required<Direction>,
-        /// Share that passes of light that swings along the axis, from 0 to 1.
-        transmittance: Required<SpectrumForm> = "1",
-        /// What passes of light that swings across the axis, over that share, from 0 (ideal) to 1.
-        extinction: Required<Share> = "0",
-    }
-}
-
-crate::record! {
-    /// A wave plate without thickness: light passes straight on, and what swings across the fast axis is delayed. It calls for
-    /// polarisation.
-    pub(crate) struct RetarderMaterial + comment {
-        /// The fast axis, in the object's own coordinates; only its direction along the surface counts.
-        axis: Required<Direction>,
-        /// The delay: 90 is a quarter of a wave, 180 half of one.
-        retardance_deg: Required<f64>,
-        /// The wavelength at which this is the delay, nm; at others it is in inverse proportion. Left out: at all.
-        at_nm: Optional<Wavelength>,
-    }
-}
-
-crate::record! {
     /// Two materials side by side, finer than can be seen.
     pub(crate) struct BlendMaterial + comment {
         /// The one: the name of one of "materials" that stands before this one, or a material of its own.
@@ -434,17 +409,8 @@ pub(crate) fn material<'f>(
             let film = thin_film(&pane.thin_film, spectra.range_nm, files, reader);
             Some(MaterialKind::ThinDielectric { index: index?, film: film? })
         }
-        MaterialForm::Polariser(polariser) => {
-            let transmittance = spectra.resolve(polariser.transmittance.as_ref()?, Role::Reflectance, reader);
-            let sheet =
-                PolarisingSheet::Polariser { transmittance: transmittance?, extinction: polariser.extinction?.0 };
-            Some(MaterialKind::PolarisingSheet { axis: polariser.axis?.0, sheet })
-        }
-        MaterialForm::Retarder(retarder) => {
-            let at_nm = retarder.at_nm.clone().checked()?.map(|at| at.0);
-            let sheet = PolarisingSheet::Retarder { retardance_rad: retarder.retardance_deg?.to_radians(), at_nm };
-            Some(MaterialKind::PolarisingSheet { axis: retarder.axis?.0, sheet })
-        }
+        MaterialForm::Polariser(form) => polariser(form, spectra, reader),
+        MaterialForm::Retarder(form) => retarder(form),
         MaterialForm::Grating(form) => grating(form, spectra, files, reader),
         MaterialForm::Fluorescent(form) => fluorescent(form, spectra, reader),
         MaterialForm::Blend(form) => blend(form, before, spectra, files, reader),

@@ -68,7 +68,7 @@ impl Emission {
 }
 
 /// Look-up from primitives to what they are made of.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Surfaces {
     /// Scattering of each material.
     pub bsdfs: Vec<Bsdf>,

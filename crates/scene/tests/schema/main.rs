@@ -1,7 +1,11 @@
 //! The schema and the reader agree, and neither breaks on anything.
 
+mod changes;
+#[path = "../common/mod.rs"]
 mod common;
+mod plausible;
 
+use changes::{change, changed, places};
 use common::{EVERYTHING, RIGHT};
 use etalon_scene::{Code, Severity};
 use jsonschema::Validator;
@@ -276,104 +280,6 @@ fn every_type_is_a_list_of_words() {
     }
 }
 
-/// Places in a JSON value: every value below the root.
-fn places(value: &Value, at: String, found: &mut Vec<String>) {
-    match value {
-        Value::Object(members) => {
-            for (key, member) in members {
-                let path = format!("{at}/{key}");
-                found.push(path.clone());
-                places(member, path, found);
-            }
-        }
-        Value::Array(elements) => {
-            for (i, element) in elements.iter().enumerate() {
-                let path = format!("{at}/{i}");
-                found.push(path.clone());
-                places(element, path, found);
-            }
-        }
-        _ => {}
-    }
-}
-
-fn wrong_value() -> impl Strategy<Value = Value> {
-    prop_oneof![
-        Just(json!(null)),
-        Just(json!(true)),
-        Just(json!("grey")),
-        Just(json!([])),
-        Just(json!({})),
-        Just(json!([1, 2, 3])),
-        Just(json!([0, 0, 0])),
-        Just(json!({ "type": "black" })),
-        prop::sample::select(vec![
-            0.0,
-            -0.0,
-            1.0,
-            -1.0,
-            0.5,
-            1e300,
-            -1e300,
-            5e-324,
-            1e-300,
-            179.999,
-            4294967296.0,
-            1e16
-        ])
-        .prop_map(|v| json!(v)),
-    ]
-}
-
-#[derive(Clone, Debug)]
-enum Change {
-    Replace(Value),
-    Remove,
-    Insert(String, Value),
-}
-
-fn change() -> impl Strategy<Value = Change> {
-    prop_oneof![
-        4 => wrong_value().prop_map(Change::Replace),
-        2 => Just(Change::Remove),
-        1 => (prop::sample::select(vec!["radius_m", "type", "comment", "scale", "spp", "nonsense"]), wrong_value())
-            .prop_map(|(key, value)| Change::Insert(key.to_owned(), value)),
-    ]
-}
-
-fn changed(changes: &[(prop::sample::Index, Change)]) -> Value {
-    let mut scene = everything();
-    for (index, change) in changes {
-        let mut all = Vec::new();
-        places(&scene, String::new(), &mut all);
-        if all.is_empty() {
-            break;
-        }
-        let path = index.get(&all);
-        match change {
-            Change::Replace(value) => *scene.pointer_mut(path).expect("there") = value.clone(),
-            Change::Remove => {
-                let (parent, key) = path.rsplit_once('/').expect("a path");
-                match scene.pointer_mut(parent).expect("there") {
-                    Value::Object(members) => {
-                        members.remove(key);
-                    }
-                    Value::Array(elements) => {
-                        elements.remove(key.parse().expect("an index"));
-                    }
-                    _ => {}
-                }
-            }
-            Change::Insert(key, value) => {
-                if let Some(members) = scene.pointer_mut(path).expect("there").as_object_mut() {
-                    members.insert(key.clone(), value.clone());
-                }
-            }
-        }
-    }
-    scene
-}
-
 /// What holds of any outcome: places lie in the text, lines and columns are theirs, an accepted scene keeps its promises.
 fn sane(text: &str) -> Result<(), TestCaseError> {
     let problems = match etalon_scene::parse(text, "test.json") {
@@ -392,59 +298,8 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
             // Everything that is known over the range is a number there.
             let [first, last] = scene.integrator.wavelength_range_nm;
             for material in &scene.materials {
-                use etalon_scene::{MaterialKind as M, Metal, PolarisingSheet, SpectrumTexture};
                 for nm in [first, 0.5 * (first + last), last] {
-                    let kind = match &material.kind {
-                        M::OneSided { kind, .. } => kind,
-                        kind => kind,
-                    };
-                    let good = match kind {
-                        M::Lambert { reflectance }
-                        | M::Mirror { reflectance }
-                        | M::OrenNayar { reflectance, .. }
-                        | M::Plastic { reflectance, .. }
-                        | M::Conductor { metal: Metal::Reflectance(reflectance), .. }
-                        | M::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => match reflectance {
-                            SpectrumTexture::Uniform(spectrum) => (0.0..=1.0).contains(&spectrum.eval(nm)),
-                            // The scene names no files: it is a texture of a few texels that the scene states.
-                            SpectrumTexture::Image(texture) => texture.mean().iter().all(|v| (0.0..=1.0).contains(v)),
-                            SpectrumTexture::VertexColours { factor, .. } => factor.iter().all(|f| *f >= 0.0),
-                        },
-                        M::Conductor { metal: Metal::Index(index), .. }
-                        | M::RoughConductor { metal: Metal::Index(index), .. } => index.eval(nm).0 > 0.0,
-                        M::Dielectric { interior, exterior, .. } | M::RoughDielectric { interior, exterior, .. } => {
-                            interior.eval(nm) > 0.0 && exterior.eval(nm) > 0.0
-                        }
-                        M::ThinDielectric { index, .. } => index.eval(nm) > 0.0,
-                        M::PolarisingSheet { axis, sheet } => {
-                            let good = match sheet {
-                                PolarisingSheet::Polariser { transmittance, extinction } => {
-                                    (0.0..=1.0).contains(&transmittance.eval(nm)) && (0.0..=1.0).contains(extinction)
-                                }
-                                PolarisingSheet::Retarder { retardance_rad, at_nm } => {
-                                    retardance_rad.is_finite() && at_nm.is_none_or(|nm| nm >= 1.0)
-                                }
-                            };
-                            good && (axis.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-12
-                        }
-                        M::Grating { grating, .. } => {
-                            grating.period_nm > 0.0 && (0.0..1.0 + 1e-9).contains(&grating.efficiency())
-                        }
-                        M::Fluorescent { reflectance, fluorescence } => {
-                            let returned = fluorescence.returned(&[nm], fluorescence.emission_range_nm())[0];
-                            let SpectrumTexture::Uniform(reflectance) = reflectance else { panic!("no image is read") };
-                            returned >= 0.0 && returned + reflectance.eval(nm) <= 1.0 + 1e-6
-                        }
-                        M::Blend { parts, by } => {
-                            parts.len() >= 2
-                                && parts.is_sorted_by(|a, b| a.0 < b.0)
-                                && (0.0..=1.0).contains(&by.eval([0.3, 0.7]))
-                        }
-                        M::Boundary => material.medium.is_some(),
-                        M::Black => true,
-                        // One side has no sides of its own.
-                        M::OneSided { .. } => false,
-                    };
+                    let good = plausible::kind(&material.kind, nm, material.medium.is_some());
                     prop_assert!(good, "{material:?} at {nm}");
                     for medium in material.medium.iter().chain(&scene.medium) {
                         let both = [&medium.absorption, &medium.scattering].map(|spectrum| spectrum.eval(nm));
