@@ -1,6 +1,7 @@
 //! Spectra that vary over a surface, as paths meet them.
 
 use crate::spectral::PathSpectrum;
+use etalon_optics::colour::rec709_luminance;
 use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{Illuminant, Lanes, Spectrum};
 use etalon_scene::{ImageTexture, SpectrumTexture};
@@ -89,7 +90,7 @@ impl PathTexture {
                     let shown = image.eval(at.uv);
                     rgb = [0, 1, 2].map(|c| rgb[c] * shown[c]);
                 }
-                let rgb = if *grey { [luminance(rgb); 3] } else { rgb };
+                let rgb = if *grey { [rec709_luminance(rgb); 3] } else { rgb };
                 Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane]))
             }
         }
@@ -120,11 +121,6 @@ pub(crate) fn mean_colour(texture: &ImageTexture) -> Spectrum {
 pub(crate) fn vertex_colour(factor: [f64; 3], colour: [f64; 3]) -> Spectrum {
     let rgb = [0, 1, 2].map(|c| (factor[c] * colour[c]).clamp(0.0, 1.0));
     Spectrum::rgb_reflectance(rgb).expect("it lies from 0 to 1")
-}
-
-/// The luminance of a linear Rec. 709 colour.
-pub(crate) fn luminance([r, g, b]: [f64; 3]) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// What stands there for an image of what a surface emits.

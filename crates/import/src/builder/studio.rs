@@ -3,6 +3,7 @@
 //! Every length is a multiple of the radius of the ball around the model, and every radiance is fixed. So a model looks the same at
 //! any size, and a white surface that faces the key light has a luminance of about 0.7: exposure 0 is right.
 
+use etalon_optics::colour::rec709_luminance;
 use etalon_scene::{Encoding, Image, Mesh};
 use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
@@ -77,10 +78,6 @@ pub(super) fn area(mesh: &Mesh, map: &DAffine3) -> f64 {
     areas.sum()
 }
 
-fn luminance(rgb: [f64; 3]) -> f64 {
-    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
-}
-
 impl Builder<'_> {
     /// Light for a model that has none, or whose lamps are too weak to see it by. Gives what there is to say about it.
     pub(super) fn add_light(&mut self, bounds: [[f64; 3]; 2], camera: &Value) -> Option<String> {
@@ -140,8 +137,10 @@ impl Builder<'_> {
             Some(std::array::from_fn(|c| list.get(c).and_then(Value::as_f64).unwrap_or(0.0)))
         };
         let mean = match radiance["file"].as_str() {
-            Some(file) => self.mean_of_image(file) * colour(&radiance["factor"]).map_or(1.0, luminance),
-            None => colour(&radiance["rgb"]).map_or(f64::NAN, luminance) * radiance["scale"].as_f64().unwrap_or(1.0),
+            Some(file) => self.mean_of_image(file) * colour(&radiance["factor"]).map_or(1.0, rec709_luminance),
+            None => {
+                colour(&radiance["rgb"]).map_or(f64::NAN, rec709_luminance) * radiance["scale"].as_f64().unwrap_or(1.0)
+            }
         };
         if emission["sides"] == "both" { 2.0 * mean } else { mean }
     }
@@ -152,7 +151,7 @@ impl Builder<'_> {
         }
         let bytes = self.files.iter().find(|known| known.name == file).map(|known| &known.bytes);
         let image = bytes.and_then(|bytes| Image::decode(bytes, Encoding::Srgb).ok());
-        let mean = image.map_or(f64::NAN, |(image, _)| luminance(image.mean()));
+        let mean = image.map_or(f64::NAN, |(image, _)| rec709_luminance(image.mean()));
         self.emitting_images.insert(file.to_owned(), mean);
         mean
     }

@@ -1,5 +1,6 @@
 //! Spectra, colours and textures of Mitsuba.
 
+use etalon_optics::colour::rec709_luminance;
 use std::path::Path;
 
 use etalon_scene::{Encoding, UvMap};
@@ -59,8 +60,7 @@ impl Walk<'_, '_, '_> {
             if let Some(keys) = image.as_object_mut() {
                 keys.remove("type");
             }
-            let [r, g, b] = mean.unwrap_or([0.0; 3]);
-            return Ok(Some(Number::Image(image, 0.2126 * r + 0.7152 * g + 0.0722 * b)));
+            return Ok(Some(Number::Image(image, rec709_luminance(mean.unwrap_or([0.0; 3])))));
         }
         let value = self.colour_of(stated, Of::Reflectance)?;
         Ok(Some(Number::Value(match value.as_f64() {

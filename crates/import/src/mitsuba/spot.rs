@@ -1,7 +1,7 @@
 //! Spots of Mitsuba. Between two angles their intensity falls off in proportion to the angle, as that of luminaires does between the angles of
 //! their file.
 
-use etalon_optics::colour::{LUMINOUS_EFFICACY, cie_y_integral_nm, luminance_of};
+use etalon_optics::colour::{LUMINOUS_EFFICACY, cie_y_integral_nm, luminance_of, rec709_luminance};
 use glam::DAffine3;
 use serde_json::{Value, json};
 
@@ -60,7 +60,7 @@ fn luminance(spectrum: &Value) -> Option<f64> {
         (None, _) => spectrum.as_f64(),
         (Some("rgb"), rgb) => {
             let channel = |c: usize| rgb[c].as_f64();
-            Some(scale * (0.2126 * channel(0)? + 0.7152 * channel(1)? + 0.0722 * channel(2)?))
+            Some(scale * rec709_luminance([channel(0)?, channel(1)?, channel(2)?]))
         }
         (Some("illuminant"), _) => Some(scale),
         (Some("tabulated"), _) => {

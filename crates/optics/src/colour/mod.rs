@@ -19,6 +19,6 @@ pub use lab::{lab_from_xyz, xyz_from_lab};
 pub use matrix::{Matrix, inverse, multiply, product};
 pub(crate) use rec709::rgb_to_xyz_matrix;
 pub use rec709::{
-    REC709_FROM_XYZ, REC709_PRIMARIES_XY, REC709_WHITE_XY, XYZ_FROM_REC709, rec709_from_xyz, rec709_to_xyz,
-    srgb_decode, srgb_encode, xyz_from_rgb, xyz_of_chromaticity,
+    REC709_FROM_XYZ, REC709_PRIMARIES_XY, REC709_WHITE_XY, XYZ_FROM_REC709, rec709_from_xyz, rec709_luminance,
+    rec709_to_xyz, srgb_decode, srgb_encode, xyz_from_rgb, xyz_of_chromaticity,
 };

@@ -43,6 +43,12 @@ const fn primaries_to_xyz(p: [[f64; 2]; 3], white: [f64; 3]) -> Matrix {
     m
 }
 
+/// Luminance of a linear Rec. 709 colour by the four digits of the Recommendation (§3.2); of (1, 1, 1) it is 1.
+#[inline(always)]
+pub fn rec709_luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
 /// XYZ of a chromaticity (x, y) with Y = 1: (x/y, 1, (1 − x − y)/y).
 pub const fn xyz_of_chromaticity([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]

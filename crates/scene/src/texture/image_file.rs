@@ -1,5 +1,6 @@
 //! Images, decoded from files.
 
+use etalon_optics::colour::rec709_luminance;
 use std::io::Cursor;
 use std::sync::LazyLock;
 
@@ -140,7 +141,7 @@ impl Image {
             Channel::Green => g,
             Channel::Blue => b,
             Channel::Mean => (r + g + b) / 3.0,
-            Channel::Luminance => 0.2126 * r + 0.7152 * g + 0.0722 * b,
+            Channel::Luminance => rec709_luminance([r, g, b]),
             Channel::Auto | Channel::Alpha | Channel::All => unreachable!("decided above, or below"),
         };
         if channel == Channel::All {

@@ -164,9 +164,3 @@ impl LightSource for EnvironmentLight {
         self.total() * PI * scene_radius * scene_radius
     }
 }
-
-/// Luminance of linear Rec. 709: zero for black only.
-#[inline(always)]
-fn luminance([r, g, b]: [f64; 3]) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
-}

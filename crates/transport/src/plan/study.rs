@@ -4,7 +4,7 @@ use super::evidence;
 use super::{EffectName, PathLoop, three_channels};
 use crate::bsdf::properties;
 use crate::texture;
-use etalon_optics::colour::colour_matching;
+use etalon_optics::colour::{colour_matching, rec709_luminance};
 use etalon_optics::spectrum::whole_nm;
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, reference_nm};
 use etalon_scene::{
@@ -346,7 +346,7 @@ fn grey_image(texture: &ImageTexture) -> ImageTexture {
 
 /// The luminance of each texel, times a factor on each channel.
 fn luminances(image: &Image, factor: [f64; 3]) -> Image {
-    let luminance = |texel: [f64; 3]| [texture::luminance([0, 1, 2].map(|c| texel[c] * factor[c])) as f32; 3];
+    let luminance = |texel: [f64; 3]| [rec709_luminance([0, 1, 2].map(|c| texel[c] * factor[c])) as f32; 3];
     let Image { width, height, .. } = *image;
     Image::new(width, height, Texels::F32(image.linear_texels().map(luminance).collect()))
 }

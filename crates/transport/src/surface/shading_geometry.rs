@@ -5,6 +5,7 @@ use crate::frame::{SceneFrame, mapped};
 use crate::surface::quadric_uv::RoundCoordinates;
 use etalon_geometry::{Geometry, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
+use etalon_optics::colour::rec709_luminance;
 use etalon_scene::{ImageTexture, Mesh};
 use glam::DMat3;
 use std::sync::Arc;
@@ -130,9 +131,8 @@ impl Coordinates {
                 if !square && shares[0] + shares[1] > 1.0 {
                     shares = shares.map(|share| 1.0 - share);
                 }
-                let [r, g, b] =
-                    texture.eval([0, 1].map(|k| corner[k] + shares[0] * along_u[k] + shares[1] * along_v[k]));
-                sum += 0.2126 * r + 0.7152 * g + 0.0722 * b;
+                let uv = [0, 1].map(|k| corner[k] + shares[0] * along_u[k] + shares[1] * along_v[k]);
+                sum += rec709_luminance(texture.eval(uv));
                 count += 1.0;
             }
         }

@@ -6,7 +6,8 @@
 //! variance but that of what they meet.
 
 use super::cumulative::Cumulative;
-use super::{Along, Look, luminance};
+use super::{Along, Look};
+use etalon_optics::colour::rec709_luminance;
 use etalon_optics::{Real, atan2_turns};
 use etalon_scene::Image;
 use std::f64::consts::PI;
@@ -28,8 +29,9 @@ impl EqualArea {
     pub(super) fn new(image: &Image) -> Self {
         let side = image.width as usize;
         let mut columns = Cumulative::new(side, side);
-        let of_rows: Vec<f64> =
-            (0..side).map(|row| columns.push((0..side).map(|column| luminance(image.texel(column, row))))).collect();
+        let of_rows: Vec<f64> = (0..side)
+            .map(|row| columns.push((0..side).map(|column| rec709_luminance(image.texel(column, row)))))
+            .collect();
         let mut rows = Cumulative::new(side, 1);
         let whole = rows.push(of_rows.into_iter());
         Self { side, rows, columns, total: whole * (4.0 * PI / (side * side) as f64) }
@@ -47,7 +49,7 @@ impl EqualArea {
         wi.map(|wi| {
             let [u, v] = square(wi);
             let colour = image.texel(texel(u), texel(v));
-            Look { colour, density: luminance(colour) / self.total }
+            Look { colour, density: rec709_luminance(colour) / self.total }
         })
     }
 

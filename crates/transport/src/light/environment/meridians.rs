@@ -12,7 +12,8 @@
 //! angle and its cosine run between two rows: by at most a factor of two, next to the poles.
 
 use super::cumulative::Cumulative;
-use super::{Along, Look, luminance};
+use super::{Along, Look};
+use etalon_optics::colour::rec709_luminance;
 use etalon_optics::{Real, atan2_turns};
 use etalon_scene::Image;
 use std::f64::consts::{PI, TAU};
@@ -60,7 +61,7 @@ impl Meridians {
         cosines.push(-1.0);
         let mut columns = Cumulative::new(width, height + 1);
         let luminances_of =
-            |row: usize| -> Vec<f64> { (0..width).map(|column| luminance(image.texel(column, row))).collect() };
+            |row: usize| -> Vec<f64> { (0..width).map(|column| rec709_luminance(image.texel(column, row))).collect() };
         let mut luminances: [Vec<f64>; 2] = [Vec::new(), luminances_of(0)];
         let mut of_rows = Vec::with_capacity(height + 1);
         for row in 0..=height {
@@ -118,7 +119,7 @@ impl Meridians {
             for (corner, (column, row)) in
                 corners.iter_mut().zip([(j, upper), (right, upper), (j, lower), (right, lower)])
             {
-                corner[k] = luminance(image.texel(column, row));
+                corner[k] = rec709_luminance(image.texel(column, row));
             }
             (cosines[0][k], cosines[1][k], left[k]) = (self.cosines[row], self.cosines[row + 1], j as f64);
         }
@@ -174,7 +175,7 @@ impl Meridians {
         let upper = mix(image.texel(left, above), image.texel(right, above), place.across);
         let lower = mix(image.texel(left, below), image.texel(right, below), place.across);
         let colour = mix(upper, lower, place.down);
-        let (upper, lower) = (luminance(upper), luminance(lower));
+        let (upper, lower) = (rec709_luminance(upper), rec709_luminance(lower));
         Look { colour, density: (upper + place.down_by_cosine * (lower - upper)) / self.total }
     }
 
