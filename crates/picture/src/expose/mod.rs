@@ -1,7 +1,9 @@
 //! Exposing: from the radiance of a spectral picture to the digital numbers of an image sensor.
 //!
 //! The sensor is the linear one of EMVA Standard 1288 (European Machine Vision Association 2021, *Standard for Characterization of Image Sensors and
-//! Cameras*, release 4.0 Linear). [`SensorExposure::new`] finds the mean number of electrons that light raises in each pixel,
+//! Cameras*, release 4.0 Linear).
+//!
+//! [`SensorExposure::new`] finds the mean number of electrons that light raises in each pixel,
 //! µₑ = Σ L_b · π sin²θ · T · A · t · ∫ η(λ) λ/(hc) dλ, summed over the bands b. [`SensorExposure::frame`] makes an exposure of it:
 //!
 //! 1. photo response nonuniformity (PRNU), a fixed pattern: µₑ (1 + PRNU · z);

@@ -43,7 +43,7 @@ enum Parts {
 }
 
 /// A density over wavelengths of excitation, constant between whole nanometres and kinks. Half of it is in proportion to the power that comes back of
-/// white light, the other half to that of the light that the scene's lamps give; before these are known, all is the former.
+/// white light. The other half is in proportion to that of the light of the scene's lamps. Before these are known, all of it is the former.
 #[derive(Clone, Debug)]
 struct ExcitationDistribution {
     borders_nm: Vec<f64>,

@@ -6,8 +6,8 @@
 //! 1/N Σᵢ Φ(λᵢ, λₖ) L(λᵢ)/p(λᵢ). So the path carries a matrix from its lanes to those of the camera, to which the next surface that fluoresces
 //! multiplies its own.
 //!
-//! **Wavelengths and MIS.** The hero of the new wavelengths is drawn independently of that of the old ones. So the densities of all pairs of
-//! heroes are products, and so is their mean: the weight of the path so far goes into the matrix, and the lanes' own densities begin anew.
+//! **Wavelengths and MIS.** The hero of the new wavelengths is drawn independently of that of the old ones. So the density of each pair of heroes
+//! is a product, and so is the mean over all pairs. The weight of the path so far goes into the matrix, and the lanes' own densities begin anew.
 
 use super::Path;
 use super::observer::Observer;
@@ -26,8 +26,8 @@ pub(super) struct Reradiated<P, const N: usize> {
     pub(super) wavelengths: Wavelengths<N>,
     /// What has been received.
     pub(super) polarisation: P,
-    /// What one unit of radiance in each lane of the path is worth in the lanes of the camera, over its throughput: in S₀, and where polarisation
-    /// is followed in S₁, S₂ and S₃.
+    /// What one unit of radiance in each lane of the path is worth in the lanes of the camera, over its throughput. One matrix for S₀, and where
+    /// polarisation is followed one more each for S₁, S₂ and S₃.
     shares: Vec<[Lanes<f64, N>; N]>,
 }
 
@@ -80,7 +80,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let (excitation_nm, width_nm) = reradiation.draw::<N>(u_wavelength);
         let between = reradiation.between(&excitation_nm, &lambda_nm);
 
-        // How much would go on either way under white light: no choice then makes the path worth more than it was.
+        // How much would go on either way under white light: no choice then makes the lanes together worth more than they were.
         let mean_width = |lane: usize| share * width_nm[lane] / N as f64;
         let mut given_back = Lanes::ZERO;
         (0..N).for_each(|lane| given_back += between[lane] * mean_width(lane));
