@@ -1,8 +1,6 @@
 //! Every error of a file in one run. A reader that stops at its first error fails these tests.
 
-mod common;
-
-use common::{EVERYTHING, RIGHT};
+use crate::common::{EVERYTHING, RIGHT};
 use etalon_scene::json::{self, Code, Problem};
 
 /// Twenty-odd errors, of syntax, of form and of meaning; lines and columns were counted by hand.

@@ -1,8 +1,6 @@
 //! Lenses of many surfaces: what a scene says arrives in SI units, what is wrong is refused with its place.
 
-mod common;
-
-use common::{Parts, RIGHT};
+use crate::common::{Parts, RIGHT};
 use etalon_optics::RefractiveIndex;
 use etalon_scene::{Code, CompoundLens, LensCoating, Loaded, NamedFile, Problem, Projection, SceneErrors};
 

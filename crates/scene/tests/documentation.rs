@@ -1,8 +1,6 @@
 //! docs/scene-format.md says what the reader does, and the scenes of the tutorial and of the how-to pages are right.
 
-mod common;
-
-use common::{Parts, RIGHT};
+use crate::common::{Parts, RIGHT};
 use etalon_scene::{Code, json};
 use serde_json::Value;
 use std::collections::BTreeSet;

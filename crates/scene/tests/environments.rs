@@ -1,8 +1,6 @@
 //! Image environments: what a scene says of them arrives, what is wrong is refused with its place.
 
-mod common;
-
-use common::{Parts, RIGHT};
+use crate::common::{Parts, RIGHT};
 use etalon_optics::{Illuminant, Spectrum};
 use etalon_scene::{Code, EnvironmentImage, LightKind, Loaded, SceneErrors};
 use std::path::Path;

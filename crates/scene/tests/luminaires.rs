@@ -1,8 +1,6 @@
 //! Luminaires, standard skies and photometric units: what a scene says arrives, what is wrong is refused with its place.
 
-mod common;
-
-use common::{Parts, RIGHT};
+use crate::common::{Parts, RIGHT};
 use etalon_scene::{Code, LightKind, Loaded, NamedFile, SceneErrors};
 
 const FILE: &str = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 2 1 2 0 0 0\n1 1 0\n0 45 90\n0 90\n10 20 30\n40 50 60\n";

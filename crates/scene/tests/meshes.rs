@@ -1,8 +1,6 @@
 //! Mesh files: what is right arrives as it is written, what is wrong is refused with its place.
 
-mod common;
-
-use common::{Parts, RIGHT};
+use crate::common::{Parts, RIGHT};
 use etalon_scene::mesh::{Part, read_obj, read_ply, write_ply};
 use etalon_scene::{Code, Loaded, Mesh, NamedFile, SceneErrors, Shape};
 use proptest::prelude::*;

@@ -1,8 +1,6 @@
 //! Words of other programs give a hint wherever the word that stands for them is right, and are never accepted.
 
-mod common;
-
-use common::{EVERYTHING, RIGHT};
+use crate::common::{EVERYTHING, RIGHT};
 use etalon_scene::json::{Answer, NEIGHBOURS, Neighbour, Place};
 use etalon_scene::{Code, Problem};
 use serde_json::{Map, Value, json};

@@ -1,8 +1,6 @@
 //! Images over surfaces: what a scene says of them arrives, what is wrong is refused with its place.
 
-mod common;
-
-use common::{Parts, RIGHT};
+use crate::common::{Parts, RIGHT};
 use etalon_scene::{
     Bitangent, Code, Encoding, Image, Loaded, MaterialKind, Metal, NumberTexture, Relief, SceneErrors, SpectrumTexture,
     Texels, TextureFilter, UvMap, Wrap,

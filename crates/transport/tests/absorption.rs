@@ -7,9 +7,7 @@ use etalon_transport::{EffectName, Study};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
-#[path = "common/rendering.rs"]
-mod rendering;
-use rendering::{mean_y, parse, render};
+use crate::common::rendering::{mean_y, parse, render};
 
 #[test]
 fn truths_hold_and_reject_clear_glass() {

@@ -7,9 +7,7 @@ use etalon_transport::Study;
 use etalon_transport::bsdf::{Bsdf, Shading};
 use serde_json::{Value, json};
 
-#[path = "common/rendering.rs"]
-mod rendering;
-use rendering::{mean_y, parse, render};
+use crate::common::rendering::{mean_y, parse, render};
 
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
 

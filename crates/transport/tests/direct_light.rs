@@ -7,9 +7,7 @@ use etalon_transport::{Carried, PathLoop, Study};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
-#[path = "common/rendering.rs"]
-mod rendering;
-use rendering::{mean_y, parse, render};
+use crate::common::rendering::{mean_y, parse, render};
 
 fn read(scene: &Value) -> f64 {
     mean_y(&render(&parse(&scene.to_string()), &Study::default()))

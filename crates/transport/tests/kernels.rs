@@ -6,11 +6,9 @@ use etalon_scene::Scene;
 use etalon_transport::plan::LaneModel;
 use etalon_transport::{Carried, Control, EffectName, Film, Prepared, Study, prepare_study};
 
-mod common;
-
 /// The ready-made scenes at a size and number of samples that a test can afford.
 fn scenes() -> Vec<(String, Scene)> {
-    common::ready_made([24, 18], 4)
+    crate::common::ready_made([24, 18], 4)
 }
 
 fn prepared(scene: &Scene, force: &[EffectName]) -> Prepared {

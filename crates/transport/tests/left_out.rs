@@ -10,9 +10,7 @@ use etalon_transport::plan::LaneModel;
 use etalon_transport::{EffectName, Study, prepare};
 use serde_json::{Value, json};
 
-#[path = "common/rendering.rs"]
-mod rendering;
-use rendering::{mean_y, parse, render};
+use crate::common::rendering::{mean_y, parse, render};
 
 /// What a material reflects.
 fn reflectance(kind: &mut MaterialKind) -> &mut SpectrumTexture {

@@ -5,11 +5,9 @@ use etalon_scene::{SamplerKind, Scene};
 use etalon_transport::{Control, EffectName, Film, PathLoop, Prepared, Study, prepare_study};
 use serde_json::{Value, json};
 
-mod common;
-
 /// The ready-made scenes, small.
 fn ready_made() -> Vec<(String, Scene)> {
-    common::ready_made([22, 17], 4)
+    crate::common::ready_made([22, 17], 4)
 }
 
 fn render(prepared: &Prepared) -> Film {

@@ -3,9 +3,7 @@
 use etalon_transport::{Film, Study};
 use serde_json::{Value, json};
 
-#[path = "common/rendering.rs"]
-mod rendering;
-use rendering::{mean_y, parse, render};
+use crate::common::rendering::{mean_y, parse, render};
 
 /// A glass with water on a table, under a lamp and a sky: nested solids, mirrors, rough and diffuse surfaces, absorption.
 fn scene(ghosts: &[Value]) -> Value {

@@ -5,9 +5,7 @@ use etalon_scene::{SamplerKind, Scene};
 use etalon_transport::{EffectName, Study, prepare_study};
 use serde_json::{Value, json};
 
-#[path = "common/rendering.rs"]
-mod rendering;
-use rendering::{mean_y, parse, render};
+use crate::common::rendering::{mean_y, parse, render};
 
 fn without() -> Study {
     Study { without: vec![EffectName::Motion], ..Study::default() }

@@ -6,9 +6,7 @@ use etalon_transport::plan::EffectName;
 use etalon_transport::{Film, PrepareError, Study, prepare};
 use serde_json::{Value, json};
 
-#[path = "common/rendering.rs"]
-mod rendering;
-use rendering::{mean_y, parse, render};
+use crate::common::rendering::{mean_y, parse, render};
 
 fn nested_truths() -> Vec<Truth> {
     let nested: Vec<_> = truths().into_iter().filter(|truth| truth.claims.contains(&Claim::Priorities)).collect();

@@ -3,7 +3,6 @@
 use etalon_scene::{PathReuse, Scene};
 use etalon_transport::{Control, Extent, Film, PathLoop, PixelRect, Prepared, Study, prepare_study};
 
-mod common;
 #[path = "../src/integrator/reuse/room.rs"]
 mod room;
 
@@ -22,7 +21,8 @@ fn render(prepared: &Prepared, extent: &Extent) -> Film {
 fn many_paths_at_once_share_as_one_at_a_time_do() {
     let mut covered = 0;
     let blocks = [PathReuse::Block2x2, PathReuse::Block4x2, PathReuse::Block4x4];
-    for ((name, mut scene), reuse) in common::ready_made([13, 10], 4).into_iter().zip(blocks.into_iter().cycle()) {
+    for ((name, mut scene), reuse) in crate::common::ready_made([13, 10], 4).into_iter().zip(blocks.into_iter().cycle())
+    {
         scene.integrator.path_reuse = reuse;
         let study = Study { path_loop: Some(PathLoop::Batch), ..Study::default() };
         let Ok(batch) = prepare_study(&scene, &study) else { continue };

@@ -4,9 +4,7 @@ use etalon_scene::{Image, ImageTexture, MaterialKind, SpectrumTexture, Texels, T
 use etalon_transport::{Study, prepare};
 use serde_json::{Value, json};
 
-#[path = "common/rendering.rs"]
-mod rendering;
-use rendering::{mean_y, parse, render};
+use crate::common::rendering::{mean_y, parse, render};
 
 /// Objects and more, seen from above: x to the right and y upward, 4 m by 2 m about the origin.
 fn scene(more: &[(&str, Value)], size: [u32; 2], spp: u32) -> Value {

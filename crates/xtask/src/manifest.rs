@@ -80,6 +80,7 @@ fn note(manifest: &mut Manifest, section: &str, name: &str, rest: &str) {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
     use std::process::Command;
 
     use super::*;
@@ -95,6 +96,34 @@ mod tests {
         let (_, members) = text.split_once("\"workspace_default_members\":[").unwrap();
         let (members, _) = members.split_once(']').unwrap();
         assert!(members.contains("/crates/cli#") && !members.contains(','), "default members: {members}");
+    }
+
+    /// The crates of others that a selection of `cargo build` compiles, each with its features.
+    fn built(selection: &[&str]) -> HashSet<String> {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let form = ["--offline", "--locked", "--prefix", "none", "--format", "{p} [{f}]"];
+        let output =
+            Command::new(cargo).arg("tree").args(form).args(selection).current_dir(crate::root()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let lines = String::from_utf8(output.stdout).unwrap();
+        lines.lines().map(|line| line.trim_end_matches(" (*)").to_owned()).filter(|line| !line.contains("(/")).collect()
+    }
+
+    /// Ten minutes of two cores: another feature of one small crate, and whoever runs the tests after the program compiles both twice.
+    #[test]
+    fn program_tests_and_package_share_one_build() {
+        let tests = built(&["--workspace", "--edges", "normal,build,dev"]);
+        let name = |line: &str| line.split(' ').next().unwrap().to_owned();
+        let known: HashSet<String> = tests.iter().map(|line| name(line)).collect();
+        let package: &[&str] = &["--package", "etalon-python", "--features", "bindings", "--edges", "normal,build"];
+        for selection in [&["--edges", "normal,build"][..], &["--workspace", "--edges", "normal,build"], package] {
+            let other: Vec<_> =
+                built(selection).difference(&tests).filter(|line| known.contains(&name(line))).cloned().collect();
+            assert!(
+                other.is_empty(),
+                "`cargo build` of {selection:?} compiles anew what the tests have compiled: {other:?}"
+            );
+        }
     }
 
     #[test]

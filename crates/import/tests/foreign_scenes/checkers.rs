@@ -2,7 +2,7 @@
 
 use etalon_scene::{ImageTexture, MaterialKind, Scene, SpectrumTexture};
 
-use crate::{imported, on_its_side, said, scene};
+use super::{imported, on_its_side, said, scene};
 
 fn board(scene: &Scene) -> &ImageTexture {
     match on_its_side(&scene.materials[scene.objects[0].material].kind) {
@@ -35,7 +35,7 @@ fn fields_of_mitsuba_are_half_a_unit_wide() {
         }
     }
     // Left out, they are 0.4 and 0.2.
-    let plain = crate::scene(&crate::imported("xml", &mitsuba("")));
+    let plain = super::scene(&super::imported("xml", &mitsuba("")));
     let near = |a: [f64; 3], b: f64| a.iter().all(|v| (v - b).abs() < 1e-7);
     assert!(near(board(&plain).eval([0.1, 0.1]), 0.4) && near(board(&plain).eval([0.6, 0.1]), 0.2));
 }

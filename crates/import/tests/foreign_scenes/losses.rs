@@ -3,7 +3,7 @@
 use etalon_import::{Loss, import_bytes};
 use etalon_scene::{FacetDistribution, FacetMasking, MaterialKind, Metal, Microfacets};
 
-use crate::{imported, near, on_its_side, refusal, said, scene};
+use super::{imported, near, on_its_side, refusal, said, scene};
 
 #[test]
 fn what_stands_for_something_is_told_from_what_is_left_out() {

@@ -1,19 +1,18 @@
 //! Scenes to test with.
-#![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
 /// A right scene, in parts that a test can replace; each stands in a line of its own.
-pub struct Parts<'a> {
-    pub etalon: &'a str,
-    pub camera: &'a str,
-    pub film: &'a str,
-    pub spectra: &'a str,
-    pub materials: &'a str,
-    pub objects: &'a str,
-    pub lights: &'a str,
-    pub integrator: &'a str,
+pub(crate) struct Parts<'a> {
+    pub(crate) etalon: &'a str,
+    pub(crate) camera: &'a str,
+    pub(crate) film: &'a str,
+    pub(crate) spectra: &'a str,
+    pub(crate) materials: &'a str,
+    pub(crate) objects: &'a str,
+    pub(crate) lights: &'a str,
+    pub(crate) integrator: &'a str,
 }
 
-pub const RIGHT: Parts<'static> = Parts {
+pub(crate) const RIGHT: Parts<'static> = Parts {
     etalon: "1",
     camera: r#"{"type": "perspective", "position_m": [0, 0, 5], "look_at_m": [0, 0, 0], "vertical_fov_deg": 40}"#,
     film: r#"{"width": 64, "height": 48}"#,
@@ -25,7 +24,7 @@ pub const RIGHT: Parts<'static> = Parts {
 };
 
 impl Parts<'_> {
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let Self { etalon, camera, film, spectra, materials, objects, lights, integrator } = self;
         format!(
             "{{\n\"etalon\": {etalon},\n\"camera\": {camera},\n\"film\": {film},\n\"spectra\": {spectra},\n\
@@ -35,4 +34,4 @@ impl Parts<'_> {
 }
 
 /// A scene with every key of the format.
-pub const EVERYTHING: &str = include_str!("everything.json");
+pub(crate) const EVERYTHING: &str = include_str!("everything.json");

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use crate::everything;
+use super::everything;
 
 /// Places in a JSON value: every value below the root.
 pub(crate) fn places(value: &Value, at: String, found: &mut Vec<String>) {

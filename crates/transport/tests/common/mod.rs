@@ -1,5 +1,7 @@
 //! What several tests need.
 
+pub(crate) mod rendering;
+
 use std::path::Path;
 
 use etalon_scene::Scene;

@@ -8,7 +8,7 @@ use etalon_oracle::{
     subjects::Emits,
 };
 
-use crate::lamp::{Form, Lamp};
+use super::lamp::{Form, Lamp};
 
 pub(crate) fn sphere_lamp() -> Lamp {
     let (center, radius) = (Vec3::new(0.0, 0.0, 2.0), 0.5);

@@ -8,7 +8,7 @@ use etalon_scene::{
     MaterialKind, Metal, Microfacets, NumberTexture, PolarisingSheet, Side, SpectrumTexture, Texels, ThinFilm,
 };
 
-use crate::material::Material;
+use super::material::Material;
 
 fn lambert() -> Material {
     Material::new(MaterialKind::Lambert { reflectance: Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap().into() })

@@ -1,12 +1,10 @@
 //! The schema and the reader agree, and neither breaks on anything.
 
 mod changes;
-#[path = "../common/mod.rs"]
-mod common;
 mod plausible;
 
+use crate::common::{EVERYTHING, RIGHT};
 use changes::{change, changed, places};
-use common::{EVERYTHING, RIGHT};
 use etalon_scene::{Code, Severity};
 use jsonschema::Validator;
 use proptest::prelude::*;

@@ -1,13 +1,11 @@
 //! Every kind of error: its code, its path and its place, in a file that is right but for that.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod form;
 mod meaning;
 mod places;
 mod syntax;
 
-use common::{Parts, RIGHT};
+use crate::common::{Parts, RIGHT};
 use etalon_scene::{Code, Problem, Severity};
 
 /// Where `«…»` stands in a text: the text without the marks, and line, column and bytes of what is between them.

@@ -1,11 +1,9 @@
 //! Every field of a file arrives in the model.
 
 mod cameras;
-#[path = "../common/mod.rs"]
-mod common;
 mod materials;
 
-use common::{EVERYTHING, Parts, RIGHT};
+use crate::common::{EVERYTHING, Parts, RIGHT};
 use etalon_optics::index::SellmeierTerm;
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{

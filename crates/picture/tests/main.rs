@@ -1,0 +1,4 @@
+//! Files of pictures, right and broken.
+
+mod exr_round_trip;
+mod limits;
