@@ -55,3 +55,30 @@ pub(crate) enum Found {
 }
 
 impl<const N: usize> Observer<N> for () {}
+
+/// All observers but `()`: a kernel is compiled once for them, and a call costs nothing beside what they do.
+impl<const N: usize> Observer<N> for &mut dyn Observer<N> {
+    fn vertex(&mut self, vertex: u32, position: Vec3<f64>, object: u32, beta: Lanes<f64, N>) {
+        (**self).vertex(vertex, position, object, beta);
+    }
+
+    fn scattering(&mut self, vertex: u32, position: Vec3<f64>, beta: Lanes<f64, N>) {
+        (**self).scattering(vertex, position, beta);
+    }
+
+    fn fluoresces(&mut self, vertex: u32, excitation_nm: Lanes<f64, N>) {
+        (**self).fluoresces(vertex, excitation_nm);
+    }
+
+    fn light(&mut self, vertex: u32, how: Found, radiance: Lanes<f64, N>) {
+        (**self).light(vertex, how, radiance);
+    }
+
+    fn direction(&mut self, mixture: &Mixture) {
+        (**self).direction(mixture);
+    }
+
+    fn end(&mut self, end: End) {
+        (**self).end(end);
+    }
+}

@@ -85,7 +85,8 @@ pub(crate) fn replay<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
 ) -> Replay {
     let mut recorder = Recorder { prepared, events: Vec::new() };
     let tracer = Tracer::new(prepared);
-    let path = tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut recorder);
+    let mut observer: &mut dyn Observer<N> = &mut recorder;
+    let path = tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut observer);
     let Received { wavelengths, radiance, stokes } = path.received();
     for event in &mut recorder.events {
         if let Event::Light { radiance, luminance, .. } = event {

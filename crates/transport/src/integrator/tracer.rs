@@ -60,6 +60,8 @@ pub(crate) struct Tracer<'a> {
     pub(crate) prepared: &'a Prepared,
     pub(crate) camera: Camera,
     pub(crate) world: World<'a>,
+    /// Of the random numbers: that of the scene, but for a trial.
+    pub(crate) seed: u64,
     /// The block of pixels that share paths: alone, one.
     block: [u32; 2],
 }
@@ -76,6 +78,7 @@ impl<'a> Tracer<'a> {
         let masks = plan.runs(EffectName::Masks) || prepared.has_boundaries;
         Self {
             prepared,
+            seed: integrator.seed,
             camera: prepared.tracing_camera(),
             block: prepared.path_reuse().unwrap_or([1, 1]),
             world: World {
@@ -106,7 +109,7 @@ impl<'a> Tracer<'a> {
     pub(crate) fn sampler(&self, x: u32, y: u32, sample: u32) -> Sampler {
         let integrator = &self.prepared.scene.integrator;
         let pixel = u64::from(y) << 32 | u64::from(x);
-        Sampler::new(integrator.sampler, integrator.seed, pixel, sample, integrator.replicates)
+        Sampler::new(integrator.sampler, self.seed, pixel, sample, integrator.replicates)
     }
 
     /// The sampler of what the pixels of a block have in common.

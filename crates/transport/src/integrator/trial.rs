@@ -56,9 +56,10 @@ impl<const N: usize> Observer<N> for Weighed {
     }
 }
 
-/// A trial by one kernel, in some pixels of the picture, evenly spread.
+/// A trial by one kernel, in some pixels of the picture, evenly spread, with random numbers of a seed.
 pub(crate) fn try_guided_targets<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
+    seed: u64,
 ) -> Trial {
     let film = &prepared.scene.film;
     let pixels = u64::from(film.width) * u64::from(film.height);
@@ -66,12 +67,14 @@ pub(crate) fn try_guided_targets<M: WavelengthModel<N>, P: Polarisation<N>, cons
     let tried = PIXELS.min(pixels.div_ceil(4));
     let step = (pixels as f64 / tried as f64).sqrt().ceil() as u32;
     let (rows, columns) = (step / 2..film.height, step / 2..film.width);
-    let tracer = Tracer::new(prepared);
+    let mut tracer = Tracer::new(prepared);
+    tracer.seed = seed;
     let of_pixel = |x: u32, y: u32| {
         let (mut mean, mut squares) = (0.0, [0.0; 1 + SHARES.len()]);
         for sample in 0..SAMPLES {
             let mut path = Weighed { factors: [1.0; _], tried: 1.0, found: [0.0; _] };
-            tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut path);
+            let mut observer: &mut dyn Observer<N> = &mut path;
+            tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut observer);
             // What is not finite the picture reports.
             if !path.found.iter().all(|found| found.is_finite()) {
                 continue;

@@ -27,8 +27,8 @@ pub(crate) struct Kernel {
     pub render_reused: Option<RenderPixels>,
     /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
-    /// Tells what guided targets of caustics would win.
-    pub try_guided_targets: fn(&Prepared) -> Trial,
+    /// Tells what guided targets of caustics would win, by a trial with random numbers of a seed.
+    pub try_guided_targets: fn(&Prepared, u64) -> Trial,
 }
 
 /// The whole table. Everything else is a run-time branch.

@@ -53,8 +53,6 @@ impl Prepared {
         if self.guided_targets.bodies.is_empty() {
             return;
         }
-        let own = self.scene.integrator.seed;
-        self.scene.integrator.seed = seed;
         let mut best = (1.0, GuidedBy::Nothing, 0.0);
         let images = !self.guided_targets.images.is_empty();
         for (guided_by, worth_it, there) in [
@@ -68,7 +66,7 @@ impl Prepared {
                 continue;
             }
             (self.guided_targets.guided_by, self.guided_targets.share) = (guided_by, TRIED);
-            let [alone, shares @ ..] = (self.kernel().try_guided_targets)(self).variances();
+            let [alone, shares @ ..] = (self.kernel().try_guided_targets)(self, seed).variances();
             for (share, variance) in SHARES.into_iter().zip(shares) {
                 let left = variance / alone;
                 if left < worth_it && left < best.0 {
@@ -77,6 +75,5 @@ impl Prepared {
             }
         }
         (_, self.guided_targets.guided_by, self.guided_targets.share) = best;
-        self.scene.integrator.seed = own;
     }
 }
