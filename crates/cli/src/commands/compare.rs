@@ -21,7 +21,7 @@ use crate::print;
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon compare one.exr two.exr --diff difference.png")]
-pub(crate) struct Args {
+pub(crate) struct CompareArgs {
     /// Picture, EXR or PNG.
     image: PathBuf,
     /// Reference picture, EXR or PNG. Relative measures are relative to it.
@@ -59,7 +59,7 @@ struct ComparisonJson<'a> {
     comparison: &'a Comparison,
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: CompareArgs) -> Outcome {
     let read = |path| read(path).map_err(|error| Failure::input(Report::from_err(error)));
     let (image, reference) = (read(&args.image)?, read(&args.reference)?);
     let names = [&args.image, &args.reference].map(|path| path.display().to_string());

@@ -16,7 +16,7 @@ use crate::print;
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon denoise cornell.exr -o smooth.png")]
-pub(crate) struct Args {
+pub(crate) struct DenoiseArgs {
     /// Picture, as EXR.
     image: PathBuf,
     /// File to write: .exr or .png. Repeat the option to write several.
@@ -29,7 +29,7 @@ pub(crate) struct Args {
 /// The attribute that marks a picture as smoothed.
 const DENOISED: &str = "denoised";
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: DenoiseArgs) -> Outcome {
     let mut failure = Failure::default();
     let outputs = output::plan(&args.output, &mut failure);
     std::mem::take(&mut failure).into_outcome()?;

@@ -22,7 +22,7 @@ use crate::print;
   etalon develop cornell.exr --exposure auto --curve agx -o cornell.png
   etalon develop cornell.exr --error-map -o error.png
   etalon develop cornell.exr --spectrum 32,50 -o spectrum.svg")]
-pub(crate) struct Args {
+pub(crate) struct DevelopArgs {
     /// Picture, as EXR.
     image: PathBuf,
     /// File to write: .png, or .svg with --spectrum.
@@ -41,7 +41,7 @@ pub(crate) struct Args {
     developing: Developing,
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: DevelopArgs) -> Outcome {
     check_output(&args)?;
     let file = read_exr(&args.image).map_err(|error| Failure::input(Report::from_err(error)))?;
     let said = match args.spectrum {
@@ -56,7 +56,7 @@ pub(crate) fn run(args: Args) -> Outcome {
 }
 
 /// Refuses a file that is not of the kind that is written, or that cannot be written.
-fn check_output(args: &Args) -> Outcome {
+fn check_output(args: &DevelopArgs) -> Outcome {
     let extension = args.output.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     let (kind, help) = match args.spectrum {
         Some(_) => ("svg", "a plot is an SVG file; browsers show it, and other programs convert it to PNG or PDF"),
@@ -73,7 +73,7 @@ fn check_output(args: &Args) -> Outcome {
     check_writable(&args.output).map_err(|error| Failure::run(Report::from_err(error)))
 }
 
-fn develop(args: &Args, file: &ExrFile) -> Result<String, Failure> {
+fn develop(args: &DevelopArgs, file: &ExrFile) -> Result<String, Failure> {
     check_crop(args, file)?;
     let developed = args.developing.write(&args.output, file, args.crop).map_err(|error| cannot(&args.image, error))?;
     print::warnings(&warn_not_finite(&args.image, &developed));
@@ -83,7 +83,7 @@ fn develop(args: &Args, file: &ExrFile) -> Result<String, Failure> {
 }
 
 /// Refuses a crop that leaves the picture.
-fn check_crop(args: &Args, file: &ExrFile) -> Outcome {
+fn check_crop(args: &DevelopArgs, file: &ExrFile) -> Outcome {
     let Some(crop) = args.crop else { return Ok(()) };
     let size = [file.picture.width(), file.picture.height()];
     crop.check_within(size[0], size[1]).map_err(|error| {
@@ -96,7 +96,7 @@ fn check_crop(args: &Args, file: &ExrFile) -> Outcome {
     })
 }
 
-fn plot_spectrum(args: &Args, file: &ExrFile, region: Rect) -> Result<String, Failure> {
+fn plot_spectrum(args: &DevelopArgs, file: &ExrFile, region: Rect) -> Result<String, Failure> {
     let bands = spectrum_of(file, region).map_err(|error| cannot(&args.image, error))?;
     let name = args.image.file_name().map_or_else(|| args.image.display().to_string(), |n| n.to_string_lossy().into());
     let svg = plot::svg(&name, region, &bands, &file.attributes)

@@ -19,7 +19,7 @@ use crate::print;
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon explain scenes/cornell-glass.json")]
-pub(crate) struct Args {
+pub(crate) struct ExplainArgs {
     /// Scene as JSON, or a model (see `etalon render`).
     scene: PathBuf,
     #[command(flatten)]
@@ -64,7 +64,7 @@ struct Cost {
     pairs: usize,
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: ExplainArgs) -> Outcome {
     let mut loaded = load(&args.scene, args.overrides.film_size(), args.overrides.parameters())?;
     args.overrides.apply(&mut loaded.scene)?;
     print::warnings(&loaded.warnings);

@@ -28,7 +28,7 @@ use crate::state;
 #[command(after_help = "Example:
   etalon farm scenes/cornell.json --shards 64 --spp 1024 --slurm -o job.sh")]
 #[command(group = clap::ArgGroup::new("kind").required(true))]
-pub(crate) struct Args {
+pub(crate) struct FarmArgs {
     /// Scene. All machines must see it, and the folder of the picture, under the same path.
     scene: PathBuf,
     /// Number of shares. Each is one task of the job. With --frames, the default is one for each frame, 10,000 at most.
@@ -90,7 +90,7 @@ impl Job {
 /// How often a task keeps what it has, so that it can be moved to another machine.
 const CHECKPOINT: &str = "60s";
 
-pub(crate) fn run(args: Args, program: Option<PathBuf>) -> Outcome {
+pub(crate) fn run(args: FarmArgs, program: Option<PathBuf>) -> Outcome {
     // A scene with mistakes is found here, not on a hundred machines.
     let mut loaded = load(&args.scene, args.overrides.film_size(), args.overrides.parameters())?;
     args.overrides.apply(&mut loaded.scene)?;

@@ -31,7 +31,7 @@ const FRAME_TIME: Duration = Duration::from_millis(40);
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon figures -o figures")]
-pub(crate) struct Args {
+pub(crate) struct FiguresArgs {
     /// Folder for the images. It is created if it does not exist.
     #[arg(short, long, alias = "outfile", value_name = "DIR", default_value = "figures")]
     output: PathBuf,
@@ -64,7 +64,7 @@ struct FiguresJson<'a> {
     animation: String,
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: FiguresArgs) -> Outcome {
     let published = args.published.clone().or_else(|| Some(PathBuf::from(PUBLISHED)).filter(|path| path.is_dir()));
     std::fs::create_dir_all(&args.output).map_err(|error| {
         Failure::run(Report::from_err(error).wrap_err(format!("cannot create the folder `{}`", args.output.display())))

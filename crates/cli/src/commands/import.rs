@@ -18,7 +18,7 @@ use crate::print;
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon import model.glb -o model.json")]
-pub(crate) struct Args {
+pub(crate) struct ImportArgs {
     /// Model: .glb, .gltf, .obj, .ply, .xml (Mitsuba) or .pbrt.
     model: PathBuf,
     /// Scene to write.
@@ -117,7 +117,7 @@ fn table(left_out: &[LeftOut], loss: Loss) -> Vec<String> {
     things.into_iter().map(words).collect()
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: ImportArgs) -> Outcome {
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     if args.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("json")) || stem.is_empty() {
         return Err(Failure::input(miette!(

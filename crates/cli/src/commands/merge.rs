@@ -25,7 +25,7 @@ use crate::write_outputs::Delivery;
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon merge 1.part 2.part 3.part -o cornell.exr -o cornell.png")]
-pub(crate) struct Args {
+pub(crate) struct MergeArgs {
     /// Parts in any order. A folder stands for all .part files in it.
     #[arg(required_unless_present = "list", value_name = "PART")]
     parts: Vec<PathBuf>,
@@ -58,7 +58,7 @@ struct MergeJson {
     errors: Vec<ProblemJson>,
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: MergeArgs) -> Outcome {
     let mut failure = Failure::default();
     let outputs = output::plan(&args.output, &mut failure);
     let paths = named(&args, &mut failure);
@@ -107,7 +107,7 @@ pub(crate) fn run(args: Args) -> Outcome {
 }
 
 /// The parts that the command line names, one by one, by folders or by a list.
-fn named(args: &Args, failure: &mut Failure) -> Vec<PathBuf> {
+fn named(args: &MergeArgs, failure: &mut Failure) -> Vec<PathBuf> {
     let mut refuse = |path: &Path, why: String| {
         failure.add(Failure::input(miette!(code = "parts", "cannot read `{}`: {why}", path.display())));
     };

@@ -1,4 +1,4 @@
-//! The commands, one a module: an `Args` for clap, and `pub(crate) fn run(args: Args) -> Outcome`.
+//! The commands, one a module: a `…Args` for clap, and `pub(crate) fn run(args: …Args) -> Outcome`.
 
 pub(crate) mod compare;
 pub(crate) mod completions;

@@ -27,7 +27,7 @@ use crate::progress::{duration, percent, two_digits};
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon quote scenes/cornell.json --error 5%,1% --pilot 5s")]
-pub(crate) struct Args {
+pub(crate) struct QuoteArgs {
     /// Scene as JSON, or a model (see `etalon render`).
     scene: PathBuf,
     #[command(flatten)]
@@ -107,7 +107,7 @@ struct CostEstimateJson {
     seconds_interval: [f64; 2],
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: QuoteArgs) -> Outcome {
     let mut loaded = load(&args.scene, args.overrides.film_size(), args.overrides.parameters())?;
     args.overrides.apply(&mut loaded.scene)?;
     print::warnings(&loaded.warnings);
@@ -128,13 +128,13 @@ pub(crate) fn run(args: Args) -> Outcome {
     Ok(())
 }
 
-fn threads(args: &Args) -> usize {
+fn threads(args: &QuoteArgs) -> usize {
     args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize)
 }
 
 /// Pilots a scene that is ready for this many seconds.
 fn quote(
-    args: &Args,
+    args: &QuoteArgs,
     loaded: &LoadedScene,
     prepared: &Prepared,
     (clock, pilot_seconds, prepare_seconds): (&Clock, f64, f64),

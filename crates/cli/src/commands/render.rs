@@ -49,7 +49,7 @@ use watcher::{ProgressKind, Watcher};
   etalon render scenes/cornell.json --spp 64 -o cornell.exr -o cornell.png
   etalon render scenes/cornell.json --error 2% -o cornell.exr
   etalon render scenes/cornell.json --time 30s --exposure auto --curve agx -o cornell.png")]
-pub(crate) struct Args {
+pub(crate) struct RenderArgs {
     /// Scene as JSON. It may also be a model (glTF 2.0, OBJ or PLY) or a scene of Mitsuba 3 (.xml) or pbrt-v4 (.pbrt); see `etalon import`.
     /// `-` reads JSON from standard input.
     scene: PathBuf,
@@ -127,7 +127,7 @@ struct RefusedJson {
     errors: Vec<ProblemJson>,
 }
 
-pub(crate) fn run(mut args: Args) -> Outcome {
+pub(crate) fn run(mut args: RenderArgs) -> Outcome {
     let names_itself = args.output.is_empty() && args.pixel.is_none();
     if names_itself {
         let name = output::of_scene(&args.scene);
@@ -174,7 +174,7 @@ enum Stop {
     Reported(Failure),
 }
 
-fn render(args: &Args) -> Result<(), Stop> {
+fn render(args: &RenderArgs) -> Result<(), Stop> {
     let mut outputs = Vec::new();
     let mut job = set_up(args, &mut outputs).map_err(Stop::Refused)?;
     print::warnings(&job.warnings);
@@ -208,7 +208,7 @@ struct Rendered {
 /// Renders a picture and writes it, and keeps what there is of it if it is interrupted. A frame of a sequence is only written once it is
 /// finished.
 fn render_job(
-    args: &Args,
+    args: &RenderArgs,
     job: &mut Job,
     outputs: &[Output],
     interrupt: &Interrupt,
@@ -294,7 +294,7 @@ struct Done {
 }
 
 /// What ends the render. The scene's own number of samples counts where the command line says nothing.
-fn limits(args: &Args, job: &Job) -> Limits {
+fn limits(args: &RenderArgs, job: &Job) -> Limits {
     let otherwise = args.error.is_some() || args.time.is_some();
     let samples = match args.overrides.spp() {
         Some(spp) => spp,
@@ -305,7 +305,7 @@ fn limits(args: &Args, job: &Job) -> Limits {
 }
 
 /// One path again, vertex by vertex.
-fn replay(args: &Args, pixel: PixelAt, sample: u32) -> Result<(), Stop> {
+fn replay(args: &RenderArgs, pixel: PixelAt, sample: u32) -> Result<(), Stop> {
     let job = set_up(args, &mut Vec::new()).map_err(Stop::Refused)?;
     print::warnings(&job.warnings);
     let path = job.prepared.replay(pixel.x, pixel.y, sample);

@@ -10,7 +10,7 @@ use crate::print;
 #[command(after_help = "Examples:
   etalon schema > scenes/etalon.schema.json
   etalon schema sensor > scenes/sensors/sensor.schema.json")]
-pub(crate) struct Args {
+pub(crate) struct SchemaArgs {
     /// Kind of file.
     #[arg(value_enum, default_value_t = SchemaKind::Scene)]
     kind: SchemaKind,
@@ -25,7 +25,7 @@ enum SchemaKind {
     Sensor,
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: SchemaArgs) -> Outcome {
     print::json(&match args.kind {
         SchemaKind::Scene => etalon_scene::schema(),
         SchemaKind::Sensor => SensorFile::schema(),

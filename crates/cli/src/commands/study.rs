@@ -26,7 +26,7 @@ use measure::{Effort, SceneStudy};
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon study scenes/cornell.json --seconds 1s -o study")]
-pub(crate) struct Args {
+pub(crate) struct StudyArgs {
     /// Scenes as JSON files, or truths of the oracle as truth:NAME (see `etalon verify`). Default: all scenes in the folder `scenes`.
     scenes: Vec<String>,
     /// Folder for study.json, study.md, study.html and the plots. It is created if it does not exist.
@@ -75,7 +75,7 @@ struct Subject {
     truth: Option<f64>,
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: StudyArgs) -> Outcome {
     let threads = args.threads.map_or_else(rayon::current_num_threads, |threads| threads as usize);
     let subjects = subjects(&args)?;
     let io = |error: std::io::Error| {
@@ -122,7 +122,7 @@ pub(crate) fn run(args: Args) -> Outcome {
 }
 
 /// What the command line names, at the size of the study.
-fn subjects(args: &Args) -> Result<Vec<Subject>, Failure> {
+fn subjects(args: &StudyArgs) -> Result<Vec<Subject>, Failure> {
     let names = match args.scenes.as_slice() {
         [] => all_scenes()?,
         given => given.to_vec(),

@@ -25,7 +25,7 @@ use crate::failure::{Failure, Outcome};
   etalon verify --suite cie171
   etalon verify --export truths
   etalon verify --images pictures")]
-pub(crate) struct Args {
+pub(crate) struct VerifyArgs {
     /// Test only scenes whose name contains one of these words. Default: all.
     names: Vec<String>,
     /// Render nothing. Judge the pictures of another renderer in this folder, named NAME.exr.
@@ -55,7 +55,7 @@ pub(crate) struct Args {
     threads: Option<u32>,
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: VerifyArgs) -> Outcome {
     let named =
         |truth: &Truth| args.names.is_empty() || args.names.iter().any(|name| truth.name.contains(name.as_str()));
     let cases: Option<Vec<SuiteCase>> = args.suite.map(suite::Suite::cases);

@@ -24,7 +24,7 @@ use crate::scene_report::{scene_failure, scene_warnings};
 #[derive(clap::Args)]
 #[command(after_help = "Example:
   etalon whitted assignment.json -o picture.png")]
-pub(crate) struct Args {
+pub(crate) struct WhittedArgs {
     /// Scene in the JSON form of the assignment.
     scene: PathBuf,
     /// PNG file to write.
@@ -93,7 +93,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(crate) fn run(args: Args) -> Outcome {
+pub(crate) fn run(args: WhittedArgs) -> Outcome {
     let name = args.scene.display().to_string();
     match set_up(&args) {
         Ok((scene, warnings)) => render_and_write(&args, &name, &scene, warnings),
@@ -107,7 +107,7 @@ pub(crate) fn run(args: Args) -> Outcome {
 }
 
 /// Does all that can fail before the work, and collects all that is wrong.
-fn set_up(args: &Args) -> Result<(Scene, Vec<Report>), Failure> {
+fn set_up(args: &WhittedArgs) -> Result<(Scene, Vec<Report>), Failure> {
     let mut failure = Failure::default();
     let is_png = args.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     if !is_png {
@@ -130,7 +130,7 @@ fn set_up(args: &Args) -> Result<(Scene, Vec<Report>), Failure> {
     }
 }
 
-fn load(args: &Args) -> Result<(Scene, Vec<Report>), Failure> {
+fn load(args: &WhittedArgs) -> Result<(Scene, Vec<Report>), Failure> {
     let name = args.scene.display().to_string();
     let unreadable =
         |error: Report| Failure::input(error.wrap_err(format!("cannot read the scene `{}`", args.scene.display())));
@@ -143,7 +143,7 @@ fn load(args: &Args) -> Result<(Scene, Vec<Report>), Failure> {
     Ok((scene, scene_warnings(&name, &text, warnings)))
 }
 
-fn render_and_write(args: &Args, name: &str, scene: &Scene, mut warnings: Vec<Report>) -> Outcome {
+fn render_and_write(args: &WhittedArgs, name: &str, scene: &Scene, mut warnings: Vec<Report>) -> Outcome {
     let at_least_one = |n: u32| NonZero::new(n).unwrap_or(NonZero::<u32>::MIN);
     let settings = Settings {
         width: at_least_one(args.size.width),

@@ -6,7 +6,7 @@ use etalon_transport::prepare_frame;
 use miette::{Report, miette};
 use serde::Serialize;
 
-use super::{Args, CostEstimateJson, QuoteJson, quote, threads};
+use super::{CostEstimateJson, QuoteArgs, QuoteJson, quote, threads};
 use crate::failure::{Failure, Outcome};
 use crate::frames::{FirstFrame, FrameList};
 use crate::light;
@@ -42,7 +42,7 @@ struct PilotedJson {
 }
 
 /// Quotes a sequence.
-pub(super) fn run(args: &Args, list: &FrameList, mut loaded: LoadedScene) -> Outcome {
+pub(super) fn run(args: &QuoteArgs, list: &FrameList, mut loaded: LoadedScene) -> Outcome {
     let numbers = list.numbers();
     let chosen = spread(numbers.len());
     let first = FirstFrame::of(&loaded.scene);

@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use miette::{Report, miette};
 
-use super::{Args, Done};
+use super::{Done, RenderArgs};
 use crate::failure::Failure;
 use crate::output;
 use crate::state;
 
 /// Keeps what was rendered where the outputs do not: after a signal, and after an output that could not be written. Takes the
 /// checkpoint away where they do.
-pub(super) fn keep(args: &Args, done: &Done, failure: &Failure, begun: bool) -> Option<Result<PathBuf, Failure>> {
+pub(super) fn keep(args: &RenderArgs, done: &Done, failure: &Failure, begun: bool) -> Option<Result<PathBuf, Failure>> {
     let beside = state::checkpoint_path(args.output.first()?);
     if done.header.complete && failure.is_empty() {
         // It may never have been written.
@@ -32,7 +32,7 @@ pub(super) fn keep(args: &Args, done: &Done, failure: &Failure, begun: bool) -> 
 }
 
 /// What must be done with a checkpoint before it is found.
-pub(super) fn moved(args: &Args, kept: &Path) -> String {
+pub(super) fn moved(args: &RenderArgs, kept: &Path) -> String {
     match args.output.first().map(|output| state::checkpoint_path(output)) {
         Some(beside) if beside != kept => format!("move it to `{}`: ", beside.display()),
         _ => String::new(),
@@ -41,7 +41,7 @@ pub(super) fn moved(args: &Args, kept: &Path) -> String {
 
 /// What is said of a render that a signal has ended.
 pub(super) fn interrupted(
-    args: &Args,
+    args: &RenderArgs,
     signal: u8,
     done: &Done,
     written: &[output::Written],

@@ -6,7 +6,7 @@ use etalon_transport::accuracy::{FEWEST_LIT, Region};
 use etalon_transport::{Counters, ImageError, Plan};
 use serde::Serialize;
 
-use super::{Args, Done, Job};
+use super::{Done, Job, RenderArgs};
 use crate::failure::Failure;
 use crate::output::Written;
 use crate::problem_json::{ProblemJson, problem_json, problems_json};
@@ -178,7 +178,7 @@ fn describe_error(error: &ImageError) -> String {
 
 /// The report for machines.
 pub(super) fn json<'a>(
-    args: &Args,
+    args: &RenderArgs,
     job: &'a Job,
     done: &Done,
     written: &'a [Written],

@@ -4,13 +4,13 @@ use etalon::Subject;
 use etalon_control::{Canvas, Shard};
 use miette::{Report, miette};
 
-use super::Args;
+use super::RenderArgs;
 use crate::failure::Failure;
 use crate::state::{self, Kept, StateError};
 
 /// The checkpoint of this render, if there is one. Whatever keeps it from being used goes into `failure`: to begin anew is for
 /// the user to decide, by leaving --resume out.
-pub(super) fn find(args: &Args, subject: &Subject, shard: Shard, failure: &mut Failure) -> Option<Kept> {
+pub(super) fn find(args: &RenderArgs, subject: &Subject, shard: Shard, failure: &mut Failure) -> Option<Kept> {
     let path = state::checkpoint_path(args.output.first()?);
     let kept = match state::read(&path) {
         Ok(kept) => kept,
@@ -45,7 +45,7 @@ pub(super) fn find(args: &Args, subject: &Subject, shard: Shard, failure: &mut F
 }
 
 /// What ends the render must be the same, for it decides how many samples there are.
-fn other_end(args: &Args, kept: &Kept) -> Option<String> {
+fn other_end(args: &RenderArgs, kept: &Kept) -> Option<String> {
     let limits = kept.header.limits;
     let differs = |name: &str, kept: Option<f64>, now: Option<f64>| {
         let word = |value: Option<f64>| value.map_or_else(|| "not given".to_owned(), |value| value.to_string());

@@ -9,7 +9,7 @@ use etalon_control::{Canvas, Limits, Reached, SampleAllocation, SettleError, Set
 use miette::{Report, miette};
 
 use super::watcher::Watcher;
-use super::{Args, Done, Job};
+use super::{Done, Job, RenderArgs};
 use crate::machine::Clock;
 use crate::print;
 use crate::state::{self, Header, Kept, Limited};
@@ -27,7 +27,7 @@ pub(super) struct Run {
 
 impl Run {
     /// Settles how many samples are to be taken, and begins.
-    pub(super) fn new(args: &Args, job: &Job, limits: Limits, watch: &Watcher<'_>) -> Result<Self, SettleError> {
+    pub(super) fn new(args: &RenderArgs, job: &Job, limits: Limits, watch: &Watcher<'_>) -> Result<Self, SettleError> {
         let clock = Clock::start(args.clock, job.threads);
         let shard = args.shard.map_or(Shard::WHOLE, |shard| shard.0);
         let settled = settle(&job.prepared, job.rect, &limits, Some(job.threads), &|| clock.seconds(), watch)?;
@@ -36,7 +36,7 @@ impl Run {
     }
 
     /// Goes on from what was kept.
-    pub(super) fn taken_up(args: &Args, job: &Job, kept: Kept, limits: Limits) -> Result<Self, SettleError> {
+    pub(super) fn taken_up(args: &RenderArgs, job: &Job, kept: Kept, limits: Limits) -> Result<Self, SettleError> {
         let clock = Clock::start(args.clock, job.threads);
         let Header { shard, samples, allocation, reaches, seconds, .. } = kept.header;
         let allocation = allocation.map(|weights| Arc::new(SampleAllocation::new(job.rect, weights)));
@@ -53,7 +53,7 @@ impl Run {
         self.before_s + self.clock.seconds()
     }
 
-    fn header(&self, args: &Args, job: &Job, complete: bool) -> Header {
+    fn header(&self, args: &RenderArgs, job: &Job, complete: bool) -> Header {
         let channels = Channels::new(&args.aov, args.only);
         let Limits { samples, relative_rmse, seconds, .. } = self.limits;
         Header {
@@ -76,7 +76,7 @@ impl Run {
     }
 
     /// Renders to the end, keeping what there is from time to time if that is wanted.
-    pub(super) fn finish(self, args: &Args, job: &Job, watch: &Watcher<'_>) -> Result<Done, SettleError> {
+    pub(super) fn finish(self, args: &RenderArgs, job: &Job, watch: &Watcher<'_>) -> Result<Done, SettleError> {
         watch.goes_on_from(self.canvas.with_film(|film| film.counters.paths));
         let path = args.output.first().map(|output| state::checkpoint_path(output));
         let ended = std::thread::scope(|scope| {

@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::setup::{load_scene, make_ready};
-use super::{Args, Job, Rendered, Stop, listen, render_job, report};
+use super::{Job, RenderArgs, Rendered, Stop, listen, render_job, report};
 use crate::failure::Failure;
 use crate::frame_settings::FrameSettings;
 use crate::frames::{FirstFrame, FrameList, FramePattern, patterns};
@@ -59,7 +59,7 @@ struct Progress {
 }
 
 /// Renders the frames that the options name, but for those that are there when `--resume` is given.
-pub(super) fn render(args: &mut Args, names_itself: bool) -> Result<(), Stop> {
+pub(super) fn render(args: &mut RenderArgs, names_itself: bool) -> Result<(), Stop> {
     let (loaded, plan, first) = set_up(args, names_itself).map_err(Stop::Refused)?;
     let (total, sha256) = (plan.numbers.len(), loaded.sha256.clone());
     let interrupt = listen().map_err(Stop::Refused)?;
@@ -103,7 +103,7 @@ pub(super) fn render(args: &mut Args, names_itself: bool) -> Result<(), Stop> {
 
 /// Renders one frame, and hands the scene and what was prepared of it on to the next.
 fn frame(
-    args: &mut Args,
+    args: &mut RenderArgs,
     (mut loaded, earlier): (LoadedScene, Option<Prepared>),
     (plan, first, place): (&Plan, FirstFrame, usize),
     interrupt: &Interrupt,
@@ -140,7 +140,7 @@ fn frame(
 }
 
 /// Does all that can fail before the first frame, and collects all that is wrong.
-fn set_up(args: &mut Args, names_itself: bool) -> Result<(LoadedScene, Plan, FirstFrame), Failure> {
+fn set_up(args: &mut RenderArgs, names_itself: bool) -> Result<(LoadedScene, Plan, FirstFrame), Failure> {
     let list = args.frames.frames.clone().unwrap_or_else(|| FrameList::from(0));
     let mut failure = Failure::default();
     let numbers = match args.shard.take() {
@@ -205,7 +205,7 @@ impl Plan {
 }
 
 /// What the files of a frame say of it.
-fn settings(args: &Args, loaded: &LoadedScene, first: FirstFrame, number: u32) -> FrameSettings {
+fn settings(args: &RenderArgs, loaded: &LoadedScene, first: FirstFrame, number: u32) -> FrameSettings {
     FrameSettings {
         software: FrameSettings::SOFTWARE,
         sources_sha256: FrameSettings::SOURCES,
@@ -222,7 +222,7 @@ fn settings(args: &Args, loaded: &LoadedScene, first: FirstFrame, number: u32) -
     }
 }
 
-fn report_of(args: &Args, job: &Job, rendered: &Rendered) -> Value {
+fn report_of(args: &RenderArgs, job: &Job, rendered: &Rendered) -> Value {
     let report = report::json(args, job, &rendered.done, &rendered.written, &rendered.failure);
     serde_json::to_value(report).expect("a report is plain data with text keys")
 }

@@ -8,7 +8,7 @@ use etalon_control::canvas::tiles_of;
 use etalon_transport::{PixelRect, Prepared, prepare_frame};
 use miette::{MietteDiagnostic, Report, miette};
 
-use super::{Adaptive, Args, preflight, resume};
+use super::{Adaptive, RenderArgs, preflight, resume};
 use crate::args::{PixelAt, corners_hint};
 use crate::failure::Failure;
 use crate::frames::FirstFrame;
@@ -31,7 +31,7 @@ pub(super) struct Job {
 }
 
 /// Does all that can fail before the work, and collects all that is wrong.
-pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
+pub(super) fn set_up(args: &RenderArgs, outputs: &mut Vec<Output>) -> Result<Job, Failure> {
     let mut failure = Failure::default();
     *outputs = output::plan(&args.output, &mut failure);
     let ready = load_scene(args).and_then(|mut loaded| {
@@ -48,14 +48,14 @@ pub(super) fn set_up(args: &Args, outputs: &mut Vec<Output>) -> Result<Job, Fail
 }
 
 /// The scene, as the options have it.
-pub(super) fn load_scene(args: &Args) -> Result<LoadedScene, Failure> {
+pub(super) fn load_scene(args: &RenderArgs) -> Result<LoadedScene, Failure> {
     let mut loaded = load(&args.scene, args.overrides.film_size(), args.overrides.parameters())?;
     args.overrides.apply(&mut loaded.scene)?;
     Ok(loaded)
 }
 
 /// Where a path of a frame is to be traced again: moves the scene there.
-fn only_frame(args: &Args, loaded: &mut LoadedScene) -> Result<Option<Frame>, Failure> {
+fn only_frame(args: &RenderArgs, loaded: &mut LoadedScene) -> Result<Option<Frame>, Failure> {
     let Some(list) = &args.frames.frames else { return Ok(None) };
     let [number] = list.numbers() else {
         return Err(Failure::input(miette!(
@@ -72,7 +72,7 @@ fn only_frame(args: &Args, loaded: &mut LoadedScene) -> Result<Option<Frame>, Fa
 
 /// Makes a scene ready that is as the options, and the frame, have it. What is the same in an earlier frame is taken over from it.
 pub(super) fn make_ready(
-    args: &Args,
+    args: &RenderArgs,
     outputs: &[Output],
     mut loaded: LoadedScene,
     frame: Option<Frame>,
@@ -181,7 +181,7 @@ pub(super) fn make_ready(
 }
 
 /// Finds what a PNG could not show before there is a picture.
-fn check_developing(args: &Args, subject: &Subject, failure: &mut Failure) {
+fn check_developing(args: &RenderArgs, subject: &Subject, failure: &mut Failure) {
     let rect = subject.crop;
     let mut refuse = |code: &'static str, help: &str, why: String| {
         failure.add(Failure::input(miette!(code = code, help = help, "{why}")));
@@ -214,7 +214,7 @@ fn check_developing(args: &Args, subject: &Subject, failure: &mut Failure) {
 }
 
 /// The first option given that only an EXR can follow.
-fn wants_exr(args: &Args) -> Option<&'static str> {
+fn wants_exr(args: &RenderArgs) -> Option<&'static str> {
     // A PNG can show a band.
     match (args.aov.is_empty(), args.overrides.has_bands() && args.developing.band_nm().is_none()) {
         (false, _) => Some("--aov"),
@@ -236,7 +236,7 @@ pub(crate) fn check_shares(rect: PixelRect, shares: u32) -> Result<(), Failure> 
 }
 
 /// A share must have tiles, and something must come of it.
-fn check_shard(args: &Args, rect: PixelRect, shard: Shard, outputs: &[Output], failure: &mut Failure) {
+fn check_shard(args: &RenderArgs, rect: PixelRect, shard: Shard, outputs: &[Output], failure: &mut Failure) {
     if let Err(too_many) = check_shares(rect, shard.of) {
         failure.add(too_many);
     }

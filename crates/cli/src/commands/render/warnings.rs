@@ -3,21 +3,21 @@
 use etalon_transport::{Counters, Film, MOST_SOLIDS_AT_ONCE, PixelRect};
 use miette::{Report, miette};
 
-use super::Args;
+use super::RenderArgs;
 use crate::light::without_light;
 use crate::shell;
 
 /// Everything that the film and its counters give reason to warn of.
-pub(super) fn of(args: &Args, film: &Film, rect: PixelRect) -> Vec<Report> {
+pub(super) fn of(args: &RenderArgs, film: &Film, rect: PixelRect) -> Vec<Report> {
     counted(args, &film.counters).into_iter().chain(without_light(film, rect)).collect()
 }
 
-fn counted(args: &Args, counters: &Counters) -> Vec<Report> {
+fn counted(args: &RenderArgs, counters: &Counters) -> Vec<Report> {
     nonfinite(args, counters).into_iter().chain(cut_paths(counters)).chain(lost_media(counters)).collect()
 }
 
 /// Says which samples were not finite, and how to see their paths.
-fn nonfinite(args: &Args, counters: &Counters) -> Option<Report> {
+fn nonfinite(args: &RenderArgs, counters: &Counters) -> Option<Report> {
     let first = counters.nonfinite_at.first()?;
     let places: Vec<String> =
         counters.nonfinite_at.iter().map(|at| format!("pixel {},{} sample {}", at.x, at.y, at.sample)).collect();
@@ -84,10 +84,10 @@ mod tests {
     #[derive(Parser)]
     struct Line {
         #[command(flatten)]
-        args: Args,
+        args: RenderArgs,
     }
 
-    fn parse(line: &str) -> Args {
+    fn parse(line: &str) -> RenderArgs {
         Line::try_parse_from(line.split_whitespace()).unwrap_or_else(|error| panic!("{error}")).args
     }
 

@@ -9,7 +9,7 @@ use etalon_scene::{NamedFile, Scene};
 use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
 
-use super::Args;
+use super::VerifyArgs;
 use super::report::{Report, Row};
 use super::series::{Series, Stop};
 use crate::failure::{Failure, Outcome};
@@ -46,7 +46,7 @@ struct Measurement<'a> {
 }
 
 impl<'a> Measurement<'a> {
-    fn new(truth: &'a Truth, args: &Args) -> Result<Self, String> {
+    fn new(truth: &'a Truth, args: &VerifyArgs) -> Result<Self, String> {
         let scene = |json: &str| Self::scene(json, truth, args);
         let threads = args.threads.map(|threads| threads as usize);
         // Distinct for each pair: fewer replicates than 2¹⁶.
@@ -60,7 +60,7 @@ impl<'a> Measurement<'a> {
     }
 
     /// The scene as each replicate renders it.
-    fn scene(json: &str, truth: &Truth, args: &Args) -> Result<Scene, String> {
+    fn scene(json: &str, truth: &Truth, args: &VerifyArgs) -> Result<Scene, String> {
         let named = |file: &SceneFile| NamedFile { name: file.name.clone(), bytes: file.bytes.clone() };
         let files: Vec<NamedFile> = truth.files.iter().map(named).collect();
         let loaded = etalon_scene::parse_with_files(json, "truth", &files, None).map_err(|errors| errors.summary())?;
@@ -128,7 +128,7 @@ fn gcd(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-pub(super) fn run(args: &Args, chosen: Vec<Truth>) -> Outcome {
+pub(super) fn run(args: &VerifyArgs, chosen: Vec<Truth>) -> Outcome {
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::run(Problem::from_err(error).wrap_err("cannot listen to signals")))?;
     // Plain radiance with polarisations averaged at every interface, or with polarisation, each where a truth wants it.
@@ -197,7 +197,7 @@ fn finer(costs: &[Cost], rays_of_all: u64) -> Vec<(usize, u32)> {
 /// Renders and judges one truth, with this many times the samples of the first step, or as many as it takes. `None` if the program was asked
 /// to end before.
 pub(super) fn judged(
-    args: &Args,
+    args: &VerifyArgs,
     truth: &Truth,
     effort: Option<u32>,
     significance: f64,
@@ -228,7 +228,7 @@ pub(super) fn judged(
 /// Takes more samples, never more seeds to choose from, where the reading was too noisy to exclude a known mistake, or for a thorough
 /// run to see what it wants to. Whether it was depends on the noise alone, so that stopping does not favour a verdict.
 fn measured(
-    args: &Args,
+    args: &VerifyArgs,
     measurement: &mut Measurement<'_>,
     significance: f64,
     interrupt: &Interrupt,

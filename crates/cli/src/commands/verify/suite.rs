@@ -9,7 +9,7 @@ use etalon_oracle::truths::{SuiteCase, Truth, cie171, section_title};
 use etalon_picture::write_atomically;
 use miette::Report as Problem;
 
-use super::Args;
+use super::VerifyArgs;
 use super::ours::judged;
 use super::report::{Figures, Report};
 use crate::failure::{Failure, Outcome};
@@ -32,7 +32,7 @@ impl Suite {
 }
 
 /// Our own integrator, held to the points of a suite; the page goes to `page`.
-pub(super) fn run(args: &Args, cases: &[SuiteCase], page: Option<&Path>) -> Outcome {
+pub(super) fn run(args: &VerifyArgs, cases: &[SuiteCase], page: Option<&Path>) -> Outcome {
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::run(Problem::from_err(error).wrap_err("cannot listen to signals")))?;
     let significance = Budget::for_tests(cases.len()).each();
