@@ -47,8 +47,12 @@ fn mean_y(prepared: &Prepared, film: &Film) -> f64 {
 
 /// 5000 pictures of about 60 hits each, as a rule may end them: |z| < 5 is exceeded by chance once in 2·10⁶; a bias of 1.5 %
 /// would be seen with power 0.999.
-fn bias(name: &str, picture: impl Fn(u64) -> f64) -> f64 {
-    let moments: Welford = (0..5000).map(picture).collect();
+fn bias(name: &str, mut prepared: Prepared, picture: impl Fn(&Prepared) -> f64) -> f64 {
+    let of_seed = |seed| {
+        prepared.reseed(seed);
+        picture(&prepared)
+    };
+    let moments: Welford = (0..5000).map(of_seed).collect();
     let error = moments.standard_error();
     assert!(resolvable_bias(error, 6e-7) < 0.016 * SHARE, "{name}: the test sees too little, {}", error / SHARE);
     (moments.mean() - SHARE) / error
@@ -56,12 +60,11 @@ fn bias(name: &str, picture: impl Fn(u64) -> f64) -> f64 {
 
 #[test]
 fn a_picture_whose_samples_a_pilot_chose_is_not_biased() {
-    let z = bias("pilot", |seed| {
-        let prepared = lottery(seed);
+    let z = bias("pilot", lottery(0), |prepared| {
         let limits = Limits { samples: 4096, relative_rmse: Some(1.0), seconds: None, adaptivity: Adaptivity::Never };
-        let done = render_within(&prepared, prepared.whole(None).rect, &limits, Some(1), &|| 0.0, &()).unwrap();
+        let done = render_within(prepared, prepared.whole(None).rect, &limits, Some(1), &|| 0.0, &()).unwrap();
         assert_eq!(done.reached, Reached::Error);
-        mean_y(&prepared, &done.film)
+        mean_y(prepared, &done.film)
     });
     assert!(z.abs() < 5.0, "z {z}");
 }
@@ -69,8 +72,7 @@ fn a_picture_whose_samples_a_pilot_chose_is_not_biased() {
 /// The mutant: a rule that looks at the picture itself.
 #[test]
 fn a_picture_that_ends_when_it_looks_good_itself_would_be_seen_to_be_biased() {
-    let z = bias("own error", |seed| {
-        let prepared = lottery(seed);
+    let z = bias("own error", lottery(0), |prepared| {
         let whole = prepared.whole(Some(1));
         let mut film = prepared.film();
         for first in (0..4096).step_by(4) {
@@ -80,7 +82,7 @@ fn a_picture_that_ends_when_it_looks_good_itself_would_be_seen_to_be_biased() {
                 break;
             }
         }
-        mean_y(&prepared, &film)
+        mean_y(prepared, &film)
     });
     assert!(z.abs() > 5.0, "z {z}: it is right by accident, or the test is blind");
 }
@@ -90,14 +92,13 @@ fn a_picture_that_ends_when_it_looks_good_itself_would_be_seen_to_be_biased() {
 #[test]
 fn a_picture_whose_shares_an_exploration_chose_is_not_biased() {
     let uneven = AtomicU64::new(0);
-    let z = bias("exploration", |seed| {
-        let prepared = lottery_of(seed, 16);
+    let z = bias("exploration", lottery_of(0, 16), |prepared| {
         let limits = Limits { samples: 12, relative_rmse: None, seconds: None, adaptivity: Adaptivity::Always };
         let rect = prepared.whole(None).rect;
-        let done = render_within(&prepared, rect, &limits, Some(1), &|| 0.0, &()).unwrap();
+        let done = render_within(prepared, rect, &limits, Some(1), &|| 0.0, &()).unwrap();
         let [least, most] = done.explored.unwrap().exploration.allocation.least_and_most(done.samples, 4);
         uneven.fetch_add(u64::from(most > least), Ordering::Relaxed);
-        mean_y(&prepared, &done.film)
+        mean_y(prepared, &done.film)
     });
     assert!(uneven.into_inner() > 2500, "shares hardly differ: the test is blind");
     assert!(z.abs() < 5.0, "z {z}");
@@ -106,8 +107,7 @@ fn a_picture_whose_shares_an_exploration_chose_is_not_biased() {
 /// The mutant: the first samples decide where more are taken, and are kept.
 #[test]
 fn a_picture_whose_shares_follow_its_own_samples_would_be_seen_to_be_biased() {
-    let z = bias("own shares", |seed| {
-        let prepared = lottery_of(seed, 16);
+    let z = bias("own shares", lottery_of(0, 16), |prepared| {
         let whole = prepared.whole(Some(1));
         let first = Extent { samples: 0..4, ..whole.clone() };
         let mut film = prepared.render(&first, &|_| Control::Continue).unwrap();
@@ -122,7 +122,7 @@ fn a_picture_whose_shares_follow_its_own_samples_would_be_seen_to_be_biased() {
                 .render_onto(&mut film, &Extent { rect, samples, ..whole.clone() }, &|_| Control::Continue)
                 .unwrap();
         }
-        mean_y(&prepared, &film)
+        mean_y(prepared, &film)
     });
     assert!(z.abs() > 5.0, "z {z}: it is right by accident, or the test is blind");
 }
@@ -139,8 +139,7 @@ impl Watch for CostlyLight {
 
 #[test]
 fn a_deadline_does_not_bias_even_where_light_is_what_takes_time() {
-    let z = bias("deadline", |seed| {
-        let prepared = lottery(seed);
+    let z = bias("deadline", lottery(0), |prepared| {
         let watch = CostlyLight(AtomicU64::new(0));
         let limits = Limits {
             samples: 4096,
@@ -149,9 +148,9 @@ fn a_deadline_does_not_bias_even_where_light_is_what_takes_time() {
             adaptivity: Adaptivity::Never,
         };
         let clock = || watch.0.load(Ordering::Relaxed) as f64;
-        let done = render_within(&prepared, prepared.whole(None).rect, &limits, Some(1), &clock, &watch).unwrap();
+        let done = render_within(prepared, prepared.whole(None).rect, &limits, Some(1), &clock, &watch).unwrap();
         assert_eq!(done.reached, Reached::Time);
-        mean_y(&prepared, &done.film)
+        mean_y(prepared, &done.film)
     });
     assert!(z.abs() < 5.0, "z {z}");
 }
@@ -240,10 +239,11 @@ fn uneven_shares_leave_the_same_bytes_for_any_threads_stages_and_crops() {
 fn a_pilot_sees_the_error_that_the_picture_has_whatever_the_number_of_replicates() {
     for replicates in [1, 2, 3, 4, 8] {
         let mut seen = Welford::new();
+        let mut scene = lottery(0).scene().clone();
+        scene.integrator.replicates = replicates;
+        let mut prepared = prepare(&scene).unwrap();
         for seed in 0..20 {
-            let mut scene = lottery(seed).scene().clone();
-            scene.integrator.replicates = replicates;
-            let prepared = prepare(&scene).unwrap();
+            prepared.reseed(seed);
             let mut pilot = Pilot::new(&prepared, prepared.whole(None).rect, None, Some(2)).unwrap();
             pilot.advance(24, &|| 0.0, &|_| ());
             pilot.advance(96, &|| 0.0, &|_| ());

@@ -3,7 +3,6 @@
 use etalon_oracle::statistics::{Welford, student_two_sided_quantile};
 use etalon_scene::Scene;
 use etalon_transport::accuracy::HEAVY_PIXEL_TAIL;
-use etalon_transport::film::PixelRect;
 use etalon_transport::{Control, Film, prepare};
 use serde_json::{Value, json};
 
@@ -92,11 +91,10 @@ fn coverage(scene: &Scene, samples: u32, seeds: u64) -> Coverage {
     let mut scene = scene.clone();
     scene.integrator.spp = samples;
     let mut films: Vec<Film> = Vec::new();
-    let mut rect = PixelRect { x0: 0, y0: 0, x1: 1, y1: 1 };
+    let mut prepared = prepare(&scene).unwrap();
+    let rect = prepared.whole(None).rect;
     for seed in 0..seeds {
-        scene.integrator.seed = seed;
-        let prepared = prepare(&scene).unwrap();
-        rect = prepared.whole(None).rect;
+        prepared.reseed(seed);
         films.push(prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap());
     }
     // The mean of all renders stands for the truth: its own error, 1/√seeds of theirs, moves coverage by less than 0.1 %.

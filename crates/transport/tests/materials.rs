@@ -151,13 +151,12 @@ fn a_spot_has_its_intensity_and_its_power() {
 
 /// Mean Y over 8 seeds.
 fn read(json: &Value) -> Welford {
-    let (scene, _) = etalon_scene::parse(&json.to_string(), "test").unwrap_or_else(|e| panic!("{e:?}"));
+    let (mut scene, _) = etalon_scene::parse(&json.to_string(), "test").unwrap_or_else(|e| panic!("{e:?}"));
+    scene.integrator.replicates = 1;
+    let mut prepared = prepare(&scene).unwrap();
     let mut estimate = Welford::default();
     for seed in 0..8 {
-        let mut scene = scene.clone();
-        scene.integrator.seed = seed;
-        scene.integrator.replicates = 1;
-        let prepared = prepare(&scene).unwrap();
+        prepared.reseed(seed);
         let whole = prepared.whole(Some(1));
         estimate.push(prepared.render(&whole, &|_| Control::Continue).unwrap().mean_y(whole.rect));
     }

@@ -133,12 +133,12 @@ fn a_stopped_render_keeps_whole_tiles_only() {
 /// Mean Y of the film over independent seeds.
 fn mean_y(scene: &Scene, seeds: std::ops::Range<u64>) -> Welford {
     let mut estimate = Welford::default();
+    // Each seed is a replicate.
+    let mut scene = scene.clone();
+    scene.integrator.replicates = 1;
+    let mut prepared = prepare(&scene).unwrap();
     for seed in seeds {
-        let mut scene = scene.clone();
-        scene.integrator.seed = seed;
-        // Each seed is a replicate.
-        scene.integrator.replicates = 1;
-        let prepared = prepare(&scene).unwrap();
+        prepared.reseed(seed);
         let whole = prepared.whole(None);
         estimate.push(render(&prepared, &whole).mean_y(whole.rect));
     }
