@@ -66,7 +66,7 @@ def test_what_json_cannot_say_is_found_beside_all_else(ball):
 def test_dicts_may_hold_numpy_numbers_and_arrays(ball):
     ball["camera"]["position_m"] = np.array([0, 0, 4], dtype=np.float32)
     ball["film"]["width"] = np.int64(16)
-    ball["objects"][0]["material"]["reflectance"] = np.float64(0.5)
+    ball["objects"][0]["material"]["reflectance"] = np.longdouble(0.5)
     assert etalon.load(ball).size == (16, 24)
 
 
@@ -191,7 +191,7 @@ def test_a_dark_scene_has_no_error_to_reach(ball):
 
 def test_quotes_and_replays_refuse_what_makes_no_sense(ball):
     scene = etalon.load(ball)
-    for wrong in ([], [0.0], [-1], [math.inf], 3):
+    for wrong in ([], [0.0], [-1], [math.inf], 3, "1%", None, np.float32(2)):
         with pytest.raises(SettingError):
             scene.quote(wrong)
     with pytest.raises(SettingError):

@@ -19,7 +19,7 @@ def test_every_truth_is_a_scene_that_can_be_read():
     truths = oracle.truths()
     assert len(truths) > 150 and len({truth.name for truth in truths}) == len(truths)
     for truth in truths:
-        scene = etalon.load(truth.scene)
+        scene = etalon.load(truth.scene, files=truth.files)
         assert scene.size == (truth.width, truth.height)
         assert truth.formula and truth.derivation and math.isfinite(truth.value)
         assert (truth.band_nm is None) == (truth.white_scene is None)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import etalon
+from conftest import ROOT
 
 
 def test_a_picture_knows_its_truth_within_its_error(ball):
@@ -251,6 +252,13 @@ def test_a_replay_adds_up_to_the_pixel(ball):
     picture = scene.render(spp=8)
     # The film adds the same numbers in another order, and is rounded to 32 bits.
     assert np.allclose(etalon.spectra.xyz_to_rgb(mean), picture.rgb[12, 16], rtol=1e-6, atol=1e-7)
+
+
+@pytest.mark.parametrize("name, words", [("fog", "a medium scatters"), ("black-light", "fluorescence, excited at")])
+def test_a_replay_is_told_whatever_happens_on_the_path(name, words):
+    scene = etalon.load(ROOT / f"scenes/{name}.json", size=(24, 16))
+    told = [str(scene.replay(x, y)) for x in range(0, 24, 2) for y in range(0, 16, 2)]
+    assert all("end: " in path for path in told) and any(words in path for path in told)
 
 
 def test_two_seeds_are_within_noise_and_another_scene_differs(ball):

@@ -46,9 +46,14 @@ class Plain:
             return value
         if isinstance(value, str):
             return self._string(str(value), path)
+        if isinstance(value, np.longdouble):
+            # It has no shorter Python number, and `item` gives it back.
+            return self._plain(float(value), path, level)
+        if isinstance(value, np.ndarray) and value.dtype == np.longdouble:
+            return self._plain(value.astype(np.float64).tolist(), path, level)
         if isinstance(value, np.ndarray):
             return self._plain(value.tolist(), path, level)
-        if isinstance(value, np.generic):
+        if isinstance(value, np.generic) and not isinstance(value, np.clongdouble):
             return self._plain(value.item(), path, level)
         if isinstance(value, int):
             return self._integer(int(value), path)

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from . import _etalon
-from ._development import DEFAULTS, Rect, development, rect_of
+from . import _development, _etalon
+from ._development import DEFAULTS, Rect, rect_of
 from ._errors import PictureError, SettingError
 from ._results import ChannelTest, Comparison
 
@@ -279,7 +279,7 @@ class Picture:
         :param axis: how values are spread over the colour bar.
         """
         values = (exposure, white_balance, curve, scale, crop, band_nm, false_colour, error_map, range, axis)
-        given = development(dict(zip(DEFAULTS, values)))
+        given = _development.development(dict(zip(DEFAULTS, values)))
         width, height, pixels, _ = self._native.develop(given)
         return np.frombuffer(pixels, dtype=np.uint8).reshape(height, width, 3)
 
@@ -293,7 +293,7 @@ class Picture:
                 raise SettingError("an EXR file keeps the linear picture: development is for .png")
             self._native.write_exr(name)
         elif ending == ".png":
-            self._native.write_png(name, development(development))
+            self._native.write_png(name, _development.development(development))
         else:
             raise SettingError(f"a picture is saved as .exr or .png, not as {os.path.basename(name)!r}")
 
@@ -356,15 +356,15 @@ class Picture:
 
     def _repr_png_(self) -> bytes | None:
         try:
-            return self._native.png(development({}))
+            return self._native.png(_development.development({}))
         except PictureError:
             return None
 
     def _repr_html_(self) -> str:
         images = []
-        for title, development in (("", {}), ("relative standard error", {"error_map": "relative"})):
+        for title, given in (("", {}), ("relative standard error", {"error_map": "relative"})):
             try:
-                data = base64.b64encode(self._native.png(development(development))).decode()
+                data = base64.b64encode(self._native.png(_development.development(given))).decode()
             except PictureError:
                 # A picture without colour, or without errors.
                 continue

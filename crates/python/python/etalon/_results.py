@@ -123,20 +123,31 @@ class Replay:
     xyz: Floats
     """Shape (3,): what the sample adds to the pixel, CIE XYZ."""
     events: list[dict[str, Any]]
-    """What happened, in order. ``event`` is ``"vertex"`` (with ``object``, ``position_m``, ``beta``), ``"light"`` (with ``found``,
-    ``radiance``) or ``"end"`` (with ``because``)."""
+    """What happened, in order. ``event`` is one of these, with the number ``vertex`` of the place in all but the last:
+
+    - ``"vertex"``, a surface is met: ``object``, ``position_m``, and ``beta``, the throughput of the path so far at each wavelength;
+    - ``"scattering"``, a medium scatters the path: ``position_m``, ``beta``;
+    - ``"fluorescence"``, a surface fluoresces: ``excitation_nm``, the wavelengths that the path carries from here on;
+    - ``"light"``, light is added: ``found`` says how, ``radiance`` how much at each wavelength, ``luminance`` its part of the sample's Y;
+    - ``"end"``: ``because``.
+    """
 
     def __str__(self) -> str:
-        lines = []
-        for event in self.events:
-            if event["event"] == "vertex":
-                x, y, z = event["position_m"]
-                lines.append(f"vertex {event['vertex']}: {event['object']!r} at ({x:.6g}, {y:.6g}, {z:.6g}) m")
-            elif event["event"] == "light":
-                lines.append(f"  light by {event['found']}: {np.mean(event['radiance']):.6g} in the mean")
-            else:
-                lines.append(f"end: {event['because']}")
-        return "\n".join(lines)
+        return "\n".join(map(_told, self.events))
+
+
+def _told(event: dict[str, Any]) -> str:
+    """An event of a replay, in a line."""
+    kind = event["event"]
+    if kind in ("vertex", "scattering"):
+        x, y, z = event["position_m"]
+        what = repr(event["object"]) if kind == "vertex" else "a medium scatters"
+        return f"vertex {event['vertex']}: {what} at ({x:.6g}, {y:.6g}, {z:.6g}) m"
+    if kind == "light":
+        return f"  light by {event['found']}: {np.mean(event['radiance']):.6g} in the mean"
+    if kind == "fluorescence":
+        return f"  fluorescence, excited at {', '.join(f'{nm:.4g}' for nm in event['excitation_nm'])} nm"
+    return f"end: {event['because']}"
 
 
 @dataclass(frozen=True)

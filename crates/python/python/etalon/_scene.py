@@ -237,7 +237,7 @@ class Scene:
     def passes(self, error: float | None = None, **settings: Unpack[Settings]) -> Iterator[Picture]:
         """Renders the scene and gives the picture after each pass; the last is that of :meth:`render`.
 
-        The arguments are those of :meth:`render`. Each picture is that of all samples so far. Only the last has the AOVs of the first
+        The arguments are those of :meth:`render`, without ``progress``. Each picture is that of all samples so far. Only the last has the AOVs of the first
         surface. The render waits as long as a picture is looked at. To stop, leave the loop.
 
         >>> for picture in scene.passes(spp=1024):
@@ -265,7 +265,7 @@ class Scene:
         :raises NoLightError: if the pilot finds no light.
         """
         renderer = self._renderer(size, bands, seed)
-        wanted = [errors] if isinstance(errors, (int, float)) else list(errors)
+        wanted = list(errors) if isinstance(errors, (Sequence, np.ndarray)) and not isinstance(errors, str) else [errors]
         found = json.loads(
             renderer.quote(
                 errors=[relative_error(error) for error in wanted],

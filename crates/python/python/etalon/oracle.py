@@ -40,9 +40,10 @@ class Truth:
     files: dict[str, bytes]
     """Meshes and images that the scene names: contents by name. Most scenes name none."""
     value: float
-    """What the mean over the pixels must be."""
+    """What the mean over the pixels of :attr:`crop_px` must be."""
     quantity: str
-    """What is read: ``"S0"``, the radiance, or the Stokes parameter ``"S1"``, ``"S2"`` or ``"S3"``."""
+    """What is read: ``"S0"``, the radiance; the Stokes parameter ``"S1"``, ``"S2"`` or ``"S3"``; or ``"meters"``, the mean of the
+    scene's meters."""
     crop_px: tuple[int, int, int, int] | None
     """The pixels that are read, columns x0 to x1 and rows y0 to y1; all if None."""
     formula: str
@@ -134,7 +135,7 @@ def judge(
     It fails when the reading differs by more than noise and the truth's tolerance explain, when a sample was not finite, and when the
     noise is so large that one of the known mistakes could pass.
 
-    :param mean: mean over all pixels.
+    :param mean: mean over the pixels of ``crop_px``, or over all if there is none.
     :param error: standard error of ``mean``; 0 for a reading without noise.
     :param degrees_of_freedom: of ``error``; None where it is known well.
     :param nonfinite: samples that were not finite.
