@@ -154,7 +154,7 @@ fn closed_rooms_read_their_truth_whatever_their_size_and_place() {
 }
 
 #[test]
-#[ignore = "minutes: sees a bias of 1e-3; cargo test --release -p etalon-transport --test scales -- --ignored"]
+#[ignore = "minutes: sees a bias of 1e-3; cargo test --release -p etalon-transport --test integration scales -- --ignored"]
 fn closed_rooms_read_their_truth_to_a_thousandth_whatever_their_size_and_place() {
     check_rooms(4 << 20, 1e-3);
 }

@@ -48,7 +48,7 @@ fn functions<R: Real>() -> Vec<Verdict> {
 }
 
 /// The whole of our materials, lights and functions under every law, counted; the count and the closest call are printed by
-/// `cargo test --release -p etalon-transport --test oracle_suites -- --nocapture two_hundred`.
+/// `cargo test --release -p etalon-transport --test integration -- --nocapture two_hundred`.
 #[test]
 #[allow(clippy::print_stdout, reason = "the count is for whoever asks for it")]
 fn more_than_two_hundred_instances_of_laws_hold() {
