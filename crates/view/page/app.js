@@ -1,30 +1,28 @@
 // The page: what it shows follows from the status that the server sends; what is done goes to the server as orders.
 
 import { Camera } from "./camera.js";
+import { Compare } from "./compare.js";
 import { Effects, spoken } from "./effects.js";
 import { Inspector } from "./inspector.js";
+import { Look } from "./look.js";
+import { Marks } from "./marks.js";
 import { Paths } from "./paths.js";
 import { Stage } from "./stage.js";
-import { ask, latest, listen, order, saveAddress } from "./server.js";
+import { latest, listen, order } from "./server.js";
 import { count, digits, html, percent, seconds } from "./format.js";
-import { drawCurve, whenReached } from "./curve.js";
+import { drawCurve } from "./curve.js";
 import { log } from "./log.js";
 
 const element = (id) => document.getElementById(id);
-const MARKS = [0.05, 0.02, 0.01];
 
 let status = null;
 let camera = null;
 let sentStage = 0;
 
-const look = () => ({
-  exposure: element("exposure-auto").checked ? "auto" : element("exposure").value,
-  white: whiteBalance,
-  curve: element("tone").value,
-});
-let whiteBalance = "";
-
-const stage = new Stage(look);
+const look = new Look(() => stage.redraw());
+const stage = new Stage(() => look.settings);
+const compare = new Compare(stage, chooseMap);
+const marks = new Marks((target) => order("control", { target }));
 const effects = new Effects();
 const paths = new Paths();
 const inspector = new Inspector((object) => effects.point(object));
@@ -64,7 +62,8 @@ function update(now) {
   stage.update(now);
   showAccuracy(now);
   effects.update(now);
-  showPinned(now);
+  compare.update(now);
+  document.querySelector("input[name=map][value=samples]").disabled = !now.adaptive_gain && now.is_scene;
   showProblems(now);
   if (before && now.picture !== before.picture) {
     inspector.refresh(now.stage !== before.stage);
@@ -86,7 +85,7 @@ function showAccuracy(now) {
     : now.phase === "picture" ? "This file does not say how wrong its pixels are." : "Nothing is known of the error yet.";
   element("curve").toggleAttribute("hidden", !now.is_scene);
   if (now.is_scene) drawCurve(element("curve"), now);
-  showMarks(now);
+  marks.update(now);
   const parts = [];
   if (now.samples > 0 && now.block === 1) parts.push(`${count(now.samples)} samples a pixel${now.adaptive_gain ? " in the mean, more where the error is larger" : ""}`);
   if (now.seconds > 0) parts.push(`${seconds(now.seconds)}`);
@@ -102,23 +101,6 @@ function showAccuracy(now) {
   element("notes").replaceChildren(...notes.map((note) => html("li", {}, note)));
 }
 
-let marksKey = "";
-function showMarks(now) {
-  element("marks").hidden = !now.is_scene;
-  const errors = [...new Set([...MARKS, ...(now.target ? [now.target] : [])])].sort((a, b) => b - a);
-  const rows = [...errors.map((error) => ({ error, ...whenReached(now, error) })), { error: 0, words: "", reached: false }];
-  const key = JSON.stringify([rows, now.target]);
-  if (key === marksKey) return;
-  marksKey = key;
-  const chosen = now.target ?? 0;
-  element("marks").replaceChildren(...rows.map((row) => {
-    const radio = html("input", { type: "radio", name: "target", value: String(row.error), checked: row.error === chosen });
-    radio.addEventListener("change", () => order("control", { target: row.error }));
-    const name = row.error === 0 ? "go on until I pause" : `stop at ${percent(row.error)}`;
-    return html("label", {}, html("span", {}, radio, name), html("span", { class: row.reached ? "reached" : "" }, row.words));
-  }));
-}
-
 function showProblems(now) {
   const banner = element("banner");
   banner.hidden = now.problems.length === 0;
@@ -130,59 +112,6 @@ function showProblems(now) {
   });
   banner.replaceChildren(html("b", {}, `The scene file has ${lines.length === 1 ? "a mistake" : `${lines.length} mistakes`}.${kept}`), ...lines);
 }
-
-let pinnedNumber = 0;
-let comparedPicture = 0;
-function showPinned(now) {
-  const { pinned } = now;
-  element("unpin").hidden = !pinned;
-  element("split-label").hidden = !pinned;
-  // A coarse picture has fewer pixels than those that follow, so the two cannot be compared.
-  element("pin").disabled = now.block !== 1;
-  element("pin").textContent = pinned ? "Pin this one instead" : "Pin this picture";
-  document.querySelector("input[name=map][value=difference]").disabled = !pinned;
-  document.querySelector("input[name=map][value=samples]").disabled = !now.adaptive_gain && now.is_scene;
-  element("compare-words").hidden = Boolean(pinned);
-  if ((pinned?.number ?? 0) !== pinnedNumber) {
-    pinnedNumber = pinned?.number ?? 0;
-    comparedPicture = 0;
-    element("split-on").checked = false;
-    stage.showPinned(false);
-    if (!pinned && stage.mapKind === "difference") chooseMap("");
-  }
-  if (!pinned) {
-    element("verdict").textContent = "";
-  } else if (now.block === 1 && now.picture !== comparedPicture && now.picture !== pinned.number) {
-    comparedPicture = now.picture;
-    compareNow(pinned);
-  } else if (now.picture === pinned.number) {
-    element("verdict").textContent = `Pinned: ${pinned.title}, ${percent(pinned.relative_rmse)}. Now change something.`;
-  }
-}
-
-const compareNow = latest(async (pinned) => {
-  try {
-    const comparison = await ask("comparison");
-    // The render began again meanwhile: the next picture of all pixels is compared.
-    if (!comparison) {
-      comparedPicture = 0;
-      return;
-    }
-    const words = {
-      equal: "The two pictures are equal.",
-      "within-noise": "The two pictures differ by no more than their noise.",
-      differ: "The two pictures differ by more than their noise.",
-      untested: "The two pictures differ, but the error of some pixels is not known.",
-    }[comparison.verdict];
-    const worst = comparison.test?.channels.map((c) => c.worst).filter(Boolean).sort((a, b) => Math.abs(b.t) - Math.abs(a.t))[0];
-    const most = worst ? ` Largest: ${digits(Math.abs(worst.t), 2)} standard errors, in columns ${worst.crop[0]} to ${worst.crop[1] - 1}, rows ${worst.crop[2]} to ${worst.crop[3] - 1}.` : "";
-    const falseAlarm = comparison.test ? ` Where nothing differs, this test says so wrongly once in ${Math.round(1 / comparison.test.significance)} times.` : "";
-    element("verdict").textContent = `${words}${falseAlarm}${most}${comparison.note ? ` Note: ${comparison.note}.` : ""}`;
-    log("comparison", { verdict: comparison.verdict });
-  } catch (error) {
-    element("verdict").textContent = `Pinned: ${pinned.title}. ${error.message}.`;
-  }
-});
 
 // ---- the camera ----
 
@@ -249,7 +178,7 @@ function setUpPointer() {
     } else if (event.type === "pointerup" && at && !pan) {
       clearTimeout(clicked);
       // A second click soon after is a double click.
-      clicked = setTimeout(() => (picking ? pick(at) : paths.show(at)), 220);
+      clicked = setTimeout(() => (look.picking ? look.pick(at) : paths.show(at)), 220);
     }
   };
   picture.addEventListener("pointerup", end);
@@ -298,17 +227,25 @@ const KEYS = {
   "-": () => camera.dolly(1 / 0.9),
 };
 
+// Whether the element that has the focus needs a key for itself.
+function isOwnKey(focused, key) {
+  if (!focused) return false;
+  if (focused.matches("select")) return true;
+  if (focused.matches("input[type=radio]")) return key === " " || key.startsWith("Arrow");
+  if (focused.matches("input[type=range]")) return key.startsWith("Arrow");
+  return key === " " && focused.matches("input, button, a, summary");
+}
+
 function setUpKeys() {
   document.addEventListener("keydown", (event) => {
-    const inForm = /^(INPUT|SELECT|TEXTAREA)$/.test(document.activeElement?.tagName);
     if (event.ctrlKey || event.metaKey || event.altKey || element("help").open || !status) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (key === "Escape") {
+      look.stopPicking();
       paths.close();
-    } else if (inForm && document.activeElement.type !== "checkbox") {
+    } else if (isOwnKey(document.activeElement, key)) {
       return;
     } else if (key === " ") {
-      if (document.activeElement?.tagName === "BUTTON") return;
       event.preventDefault();
       togglePause();
     } else if (key === "?") {
@@ -316,7 +253,7 @@ function setUpKeys() {
     } else if (key === "m") {
       chooseMap(stage.mapKind ? "" : "of-mean");
     } else if (key === "p") {
-      pin(true);
+      compare.pin(true);
     } else if (key === "r") {
       goHome();
     } else if (key === "f") {
@@ -336,77 +273,29 @@ function togglePause() {
   if (status?.is_scene) order("control", { paused: status.phase !== "paused" });
 }
 
-function pin(pinned) {
-  order("pin", { pinned });
-  log("pin", { pinned });
-}
-
 function chooseMap(kind) {
   document.querySelector(`input[name=map][value="${kind}"]`).checked = true;
   stage.showMap(kind);
-}
-
-let picking = false;
-function pick([x, y]) {
-  picking = false;
-  const side = 9;
-  const place = (at, most) => Math.max(0, Math.min(at - (side - 1) / 2, most - side));
-  whiteBalance = `patch:${place(x, status.size[0])},${place(y, status.size[1])},${side},${side}`;
-  element("clipped").textContent = "";
-  relook();
-}
-
-function relook() {
-  element("exposure").disabled = element("exposure-auto").checked;
-  element("save-png").href = saveAddress("save.png", look());
-  stage.redraw();
 }
 
 function setUpPanel() {
   element("pause").addEventListener("click", togglePause);
   element("home").addEventListener("click", goHome);
   element("help-open").addEventListener("click", () => element("help").showModal());
-  element("pin").addEventListener("click", () => pin(true));
-  element("unpin").addEventListener("click", () => pin(false));
-  element("split-on").addEventListener("change", (event) => stage.showPinned(event.target.checked));
   element("map-opacity").addEventListener("input", (event) => (element("map").style.opacity = event.target.value));
   element("map").style.opacity = element("map-opacity").value;
   for (const radio of document.querySelectorAll("input[name=map]")) {
     radio.addEventListener("change", () => stage.showMap(radio.value));
   }
-  element("exposure").addEventListener("input", relook);
-  element("exposure").addEventListener("dblclick", () => {
-    element("exposure").value = 0;
-    relook();
-  });
-  element("exposure-auto").addEventListener("change", relook);
-  element("tone").addEventListener("change", relook);
-  element("white").addEventListener("change", (event) => {
-    if (event.target.value === "pick") {
-      picking = true;
-      element("clipped").textContent = "Click on something that is to look white.";
-      return;
-    }
-    picking = false;
-    whiteBalance = event.target.value;
-    relook();
-  });
-  stage.onLook = (about) => {
-    if (about.refused) {
-      element("clipped").textContent = about.refused;
-      return;
-    }
-    element("exposure-value").textContent = `${digits(about.exposure_ev, 2)} EV`.replace("unknown", "0");
-    if (!picking) element("clipped").textContent = about.clipped ? `${count(about.clipped)} of ${count(about.pixels)} pixels are too bright or too colourful for the screen.` : "";
-  };
 }
 
 log("begin");
 setUpPointer();
 setUpKeys();
 setUpPanel();
-relook();
+stage.onLook = (about) => look.shown(about);
+look.changed();
 // Not waiting for news: there may be a picture already.
 stage.begin();
-listen(update, () => (element("phase").textContent = "the connection to the server is lost; it is tried again"));
+listen(update, (why) => (element("phase").textContent = why));
 window.addEventListener("resize", () => status && showAccuracy(status));

@@ -2,7 +2,7 @@
 
 import { percent, seconds, svg } from "./format.js";
 
-const MARKS = [0.05, 0.02, 0.01];
+export const MARKS = [0.05, 0.02, 0.01];
 const SPACE = { left: 42, right: 12, top: 10, bottom: 26 };
 
 // Seconds and errors that are named on the axes.

@@ -39,11 +39,35 @@ export async function order(path, body) {
   return (await checked(response)).json();
 }
 
-// Hears of every change. The browser asks again by itself where the connection breaks.
+// How long this waits until it asks a server again that refused.
+const AGAIN_MS = 5000;
+
+// Hears of every change. A browser asks again by itself where the connection breaks. Where the server refuses, this asks again.
 export function listen(onStatus, onLost) {
   const events = new EventSource("ask/events");
   events.onmessage = (event) => onStatus(JSON.parse(event.data));
-  events.onerror = onLost;
+  events.onerror = async () => {
+    if (events.readyState !== EventSource.CLOSED) {
+      onLost("the connection to the server is lost; it is tried again");
+      return;
+    }
+    setTimeout(() => listen(onStatus, onLost), AGAIN_MS);
+    const why = await refusal();
+    if (why) onLost(`${why}; it is tried again every ${AGAIN_MS / 1000} s`);
+  };
+}
+
+// Why the server sends no news, which an EventSource does not tell; null if it now would.
+async function refusal() {
+  const stop = new AbortController();
+  try {
+    const response = await fetch("ask/events", { signal: stop.signal });
+    return response.ok ? null : (await response.text()) || response.statusText;
+  } catch {
+    return "the server does not answer";
+  } finally {
+    stop.abort();
+  }
 }
 
 // Does one thing at a time, and of all that came meanwhile only the last.

@@ -29,6 +29,9 @@ page_files! {
     "inspector.js" as MODULE,
     "paths.js" as MODULE,
     "effects.js" as MODULE,
+    "look.js" as MODULE,
+    "marks.js" as MODULE,
+    "compare.js" as MODULE,
     "log.js" as MODULE,
 }
 
