@@ -57,6 +57,7 @@ mod tests {
             position_m: [1.0, 2.0, 3.0],
             forward: [0.0, 0.0, -1.0],
             up: [0.0, 1.0, 0.0],
+            world_up: [0.0, 1.0, 0.0],
             projection: perspective,
         };
         let [to_camera, to_ndc] = of_camera(&base, 300, 200);

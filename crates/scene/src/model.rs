@@ -118,6 +118,8 @@ pub struct Camera {
     pub forward: [f64; 3],
     /// Unit vector, orthogonal to `forward`, that is up in the picture.
     pub up: [f64; 3],
+    /// Unit vector that the scene calls up, at any angle to `forward`. Keyframes do not turn it. It makes no ray.
+    pub world_up: [f64; 3],
     /// How points project.
     pub projection: Projection,
     /// When the shutter opens and when it closes, s.

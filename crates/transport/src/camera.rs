@@ -257,6 +257,7 @@ mod tests {
             position_m: [1.0, 2.0, 3.0],
             forward: [0.0, 0.0, -1.0],
             up: [0.0, 1.0, 0.0],
+            world_up: [0.0, 1.0, 0.0],
             projection,
             shutter_s: [0.0; 2],
             motion: None,

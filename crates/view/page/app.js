@@ -55,9 +55,10 @@ function update(now) {
   element("pause").textContent = now.phase === "paused" ? "Go on" : "Pause";
   element("home").hidden = !now.is_moved;
   if (now.camera) {
-    camera ??= new Camera(now.camera);
+    const isNew = camera === null;
+    camera ??= new Camera();
     // Another page may have moved it. What this page sent itself comes back late and is not taken.
-    if (!isMoving && now.stage >= sentStage) camera.take(now.camera);
+    if (isNew || (!isMoving && now.stage >= sentStage)) camera.take(now.camera, now.world_up);
   }
   stage.update(now);
   showAccuracy(now);
@@ -92,7 +93,7 @@ function showAccuracy(now) {
   if (now.paths_per_second > 0 && now.is_scene) parts.push(`${count(now.paths_per_second)} paths a second on ${now.threads} threads`);
   if (now.pages > 1) parts.push(`${now.pages} pages look on`);
   element("counts").textContent = parts.join(" · ");
-  element("missing").hidden = now.without.length === 0;
+  element("missing").hidden = now.without.length === 0 || now.phase === "refused";
   element("missing").textContent = `The number is noise alone. It does not count what is switched off: ${now.without.map(spoken).join(", ")}.`;
   const notes = [...now.notes];
   if (error?.heavy_tailed) notes.push("A few very bright samples make up much of the noise: it is probably larger than stated.");
@@ -103,14 +104,18 @@ function showAccuracy(now) {
 
 function showProblems(now) {
   const banner = element("banner");
-  banner.hidden = now.problems.length === 0;
-  if (banner.hidden) return;
+  const key = JSON.stringify([now.problems, now.refusal]);
+  if (banner.dataset.key === key) return;
+  banner.dataset.key = key;
+  banner.hidden = now.problems.length === 0 && !now.refusal;
   const kept = now.picture > 0 ? " You see the last version without." : "";
   const lines = now.problems.map((p) => {
     const place = p.line ? `line ${p.line}, column ${p.column}: ` : "";
     return html("div", {}, `${place}${p.message}${p.hint ? `. ${p.hint}` : ""}`);
   });
-  banner.replaceChildren(html("b", {}, `The scene file has ${lines.length === 1 ? "a mistake" : `${lines.length} mistakes`}.${kept}`), ...lines);
+  const parts = lines.length ? [html("b", {}, `The scene file has ${lines.length === 1 ? "a mistake" : `${lines.length} mistakes`}.${kept}`), ...lines] : [];
+  if (now.refusal) parts.push(html("b", {}, `The scene cannot be rendered so.${now.picture > 0 ? " You see the picture before." : ""}`), html("div", {}, now.refusal));
+  banner.replaceChildren(...parts);
 }
 
 // ---- the camera ----

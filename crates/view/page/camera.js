@@ -15,17 +15,14 @@ function turned(v, axis, angle) {
 }
 
 export class Camera {
-  constructor(view) {
-    this.take(view);
-    // The axis of the world that is up in the first view: orbits turn about it.
-    const largest = view.up.map(Math.abs).indexOf(Math.max(...view.up.map(Math.abs)));
-    this.worldUp = [0, 0, 0];
-    this.worldUp[largest] = Math.sign(view.up[largest]);
+  constructor() {
     this.pivot = null;
   }
 
-  take(view) {
+  // The view, and what the scene calls up: orbits turn about that.
+  take(view, worldUp) {
     this.view = structuredClone(view);
+    this.worldUp = worldUp;
   }
 
   get right() {

@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 const MOST_M: f64 = 1e9;
 /// How far unit vectors may be from unit length and from right angles before they are put right.
 const NEARLY: f64 = 1e-3;
+/// Sine of an angle below which two directions count as being at right angles.
+const ACROSS: f64 = 1e-9;
 
 /// Where the camera stands and how it looks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -151,6 +153,17 @@ impl CameraView {
     }
 }
 
+/// What is up in the world of a scene: what its file states as up. The cameras of converted models state what is up in the picture, at
+/// right angles to the view. For these it is the nearest axis of the world.
+pub(crate) fn world_up(camera: &Camera) -> [f64; 3] {
+    let up = camera.world_up;
+    if dot(up, camera.forward).abs() > ACROSS {
+        return up;
+    }
+    let largest = (0..3).max_by(|&a, &b| up[a].abs().total_cmp(&up[b].abs())).unwrap_or(1);
+    std::array::from_fn(|c| if c == largest { up[c].signum() } else { 0.0 })
+}
+
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|c| a[c] * b[c]).sum()
 }
@@ -196,6 +209,27 @@ mod tests {
         let [from, to] = view.segment([1.0, 2.0, -7.0], [1.0, 12.0, 13.0], size).unwrap();
         assert!(from == [150.0, 100.0] && to[0] == 150.0 && to[1] < 0.0, "{to:?}");
         assert_eq!(view.segment([1.0, 2.0, 4.0], [1.0, 2.0, 5.0], size), None);
+    }
+
+    #[test]
+    fn the_world_keeps_its_up_where_the_camera_looks_down() {
+        let camera = |forward, up, world_up| Camera {
+            position_m: [0.0; 3],
+            forward,
+            up,
+            world_up,
+            projection: Projection::Orthographic { height_m: 1.0 },
+            shutter_s: [0.0; 2],
+            motion: None,
+        };
+        let (down, across) = ([0.0, -0.8, -0.6], [0.0, 0.6, -0.8]);
+        let stated = [0.0, 1.0, 0.0];
+        assert_eq!(world_up(&camera(down, across, stated)), stated);
+        // A converted model states what is up in the picture.
+        let (down, across) = ([0.0, -0.6, -0.8], [0.0, 0.8, -0.6]);
+        assert_eq!(world_up(&camera(down, across, across)), stated);
+        let tilted = [0.6, 0.8, 0.0];
+        assert_eq!(world_up(&camera(down, across, tilted)), tilted);
     }
 
     #[test]

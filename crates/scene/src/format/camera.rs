@@ -196,6 +196,7 @@ pub(crate) fn camera(
                 position_m: form.position_m?,
                 forward,
                 up,
+                world_up: form.up?.value.0,
                 projection: projection?,
                 shutter_s: shutter_s?,
                 motion: None,
@@ -208,8 +209,15 @@ pub(crate) fn camera(
             let shutter_s = shutter_s(form.shutter_s.as_ref(), reader);
             let placed = given(&form.keyframes, shutter_s.unwrap_or_default(), Stretch::Refused, reader);
             let (forward, up) = view?;
-            let still =
-                Camera { position_m: form.position_m?, forward, up, projection, shutter_s: shutter_s?, motion: None };
+            let still = Camera {
+                position_m: form.position_m?,
+                forward,
+                up,
+                world_up: form.up?.value.0,
+                projection,
+                shutter_s: shutter_s?,
+                motion: None,
+            };
             Some(moving(still, placed?))
         }
     }

@@ -9,7 +9,7 @@ use super::coarse::{levels, trace};
 use super::publish::{Publisher, put};
 use super::status::Phase;
 use super::{Live, Stage, Wish};
-use crate::camera::CameraView;
+use crate::camera::{CameraView, world_up};
 use crate::picture::{About, of_coarse};
 
 /// How long the camera must rest before more than a coarse picture is rendered.
@@ -74,8 +74,12 @@ impl Painter {
                 Err(problem) => Err(Halt::Failed(problem)),
             };
             if let Err(Halt::Failed(message)) = painted {
-                let problem = serde_json::json!({ "message": message });
-                self.live.show(|seen| (seen.status.phase, seen.status.problems) = (Phase::Refused, vec![problem]));
+                self.live.show(|seen| {
+                    let status = &mut seen.status;
+                    (status.phase, status.refusal) = (Phase::Refused, Some(message));
+                    // The page shows what is wished, so that the wish can be taken back.
+                    status.without.clone_from(&wish.without);
+                });
             }
             // Until somebody wants another picture.
             self.live.wait(|now| now.stage == wish.stage, Duration::from_secs(3600));
@@ -95,11 +99,18 @@ impl Painter {
         Some((scene, study, loaded.sha256, loaded.warnings))
     }
 
+    /// What is up in the scene, wherever the page moved the camera.
+    fn world_up(&self) -> Option<[f64; 3]> {
+        let loaded = self.live.scene.lock().unwrap_or_else(PoisonError::into_inner);
+        loaded.as_ref().map(|loaded| world_up(&loaded.scene.camera))
+    }
+
     /// Makes the scene ready. Where only the camera moved, nearly everything is taken over from before.
     fn prepare(&self, wish: &Wish) -> Result<(), String> {
         let live = &self.live;
         live.show(|seen| seen.status.phase = Phase::Preparing);
         let (scene, study, scene_sha256, warnings) = self.wished(wish).ok_or("there is no scene")?;
+        let world_up = self.world_up();
         let start = Instant::now();
         let mut place = live.stage.write().unwrap_or_else(PoisonError::into_inner);
         let earlier = place.take().map(|stage| stage.prepared);
@@ -112,6 +123,7 @@ impl Painter {
             status.stage = wish.stage;
             status.camera = Some(CameraView::of(&prepared.scene().camera));
             status.is_moved = wish.camera.is_some();
+            status.world_up = world_up;
             status.without.clone_from(&wish.without);
             status.plan = serde_json::to_value(prepared.plan()).expect("a plan is plain data");
             status.replicates = prepared.scene().integrator.replicates;
@@ -124,6 +136,9 @@ impl Painter {
             status.prepare_seconds = prepare_seconds;
             status.curve.clear();
             status.predicted.clear();
+            status.refusal = None;
+            // They were measured for another picture.
+            status.costs.clear();
             (status.goal_samples, status.adaptive_gain) = (None, None);
             (status.samples, status.seconds, status.paths) = (0, 0.0, 0);
         });

@@ -66,6 +66,8 @@ pub(crate) struct Predicted {
 pub(crate) struct Pinned {
     /// Its number.
     pub number: u64,
+    /// The stage that it shows. Pictures of one stage share their samples, so their difference is not tested.
+    pub stage: u64,
     /// Columns and rows.
     pub size: [usize; 2],
     /// What it shows.
@@ -119,14 +121,18 @@ pub(crate) struct Status {
     pub camera: Option<CameraView>,
     /// Whether the page moved it.
     pub is_moved: bool,
+    /// What the scene calls up: orbits turn about it.
+    pub world_up: Option<[f64; 3]>,
     /// The plan: effects with their reasons.
     pub plan: Value,
     /// Effects that the page left out.
     pub without: Vec<EffectName>,
     /// What each effect costs, once it was asked for.
     pub costs: Vec<EffectCost>,
-    /// Why the scene cannot be shown, or why the edited one is not.
+    /// What is wrong in the edited file, which is not shown.
     pub problems: Vec<Value>,
+    /// Why the scene, with this camera and these effects, cannot be rendered.
+    pub refusal: Option<String>,
     /// What is to be known of the picture, in sentences.
     pub notes: Vec<String>,
     /// The picture that it is compared with.
