@@ -44,6 +44,7 @@ export class Stage {
 
   // Takes over what the server says, and asks for the picture if there is a new one.
   update(status) {
+    this.pinned = status.pinned;
     if (status.size[0] !== this.size[0] || status.size[1] !== this.size[1]) {
       this.size = status.size;
       this.fit();
@@ -112,11 +113,9 @@ export class Stage {
   async #fetchMap() {
     if (!this.mapKind) return;
     const kind = this.mapKind;
-    if (kind === "difference" && this.about?.block !== 1) {
-      element("map").hidden = true;
-      element("legend").hidden = false;
-      element("legend-title").textContent = "A coarse picture is not compared: wait for all pixels.";
-      element("legend-bar").replaceChildren();
+    const obstacle = kind === "difference" ? this.#noDifference() : null;
+    if (obstacle) {
+      this.#refuseMap(obstacle);
       return;
     }
     try {
@@ -128,11 +127,21 @@ export class Stage {
       this.#drawLegend(about.legend);
       log("map", { kind, picture: about.picture, rms: about.legend.rms, range: about.legend.range });
     } catch (error) {
-      element("map").hidden = true;
-      element("legend").hidden = false;
-      element("legend-title").textContent = error.message;
-      element("legend-bar").replaceChildren();
+      this.#refuseMap(error.message);
     }
+  }
+
+  // Why the picture is not compared with the pinned one; null if it is.
+  #noDifference() {
+    if (this.about?.block !== 1) return "A coarse picture is not compared: wait for all pixels.";
+    return this.about.stage === this.pinned?.stage ? "The pinned picture and this one share their samples: change something first." : null;
+  }
+
+  #refuseMap(why) {
+    element("map").hidden = true;
+    element("legend").hidden = false;
+    element("legend-title").textContent = why;
+    element("legend-bar").replaceChildren();
   }
 
   #drawLegend(legend) {

@@ -1,7 +1,11 @@
-//! How a picture is developed: the words of `etalon develop`, from the query of an address.
+//! How a picture is developed: the words of `etalon develop`, from the query of an address. A white that was picked is a colour, not a
+//! patch of pixels: it holds for coarse pictures and for other views as well.
 
-use etalon_picture::develop::{Exposure, MAX_STOPS, Rect, Settings, ToneCurve, White, WhiteBalance};
+use etalon_picture::develop::{Exposure, MAX_STOPS, Settings, ToneCurve, White, WhiteBalance};
 use serde::Deserialize;
+
+/// Before the chromaticity of a white.
+const CHROMATICITY: &str = "xy:";
 
 /// A look, as a page asks for it. What is left out is as in `etalon develop`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
@@ -9,7 +13,7 @@ pub(crate) struct Look {
     /// Stops, or `auto`.
     #[serde(default)]
     pub exposure: String,
-    /// `none`, a light, a temperature such as `3200K`, or `patch:X,Y,W,H`.
+    /// `none`, a light, a temperature such as `3200K`, or a chromaticity such as `xy:0.3127,0.329`.
     #[serde(default)]
     pub white: String,
     /// `linear`, `filmic` or `agx`.
@@ -33,10 +37,12 @@ impl Look {
         };
         let white_balance = match self.white.as_str() {
             "" | "none" => WhiteBalance::None,
-            text => match text.strip_prefix("patch:") {
-                Some(rect) => WhiteBalance::Patch(patch(rect).ok_or("a patch is X,Y,W,H in pixels")?),
-                None => WhiteBalance::Light(White::named(text)?),
-            },
+            text => WhiteBalance::Light(match text.strip_prefix(CHROMATICITY) {
+                Some(xy) => White::Chromaticity(
+                    chromaticity(xy).ok_or("a chromaticity is x,y with x, y and x + y from 0 to 1")?,
+                ),
+                None => White::named(text)?,
+            }),
         };
         let curve = match self.curve.as_str() {
             "" | "linear" => ToneCurve::Linear,
@@ -55,10 +61,15 @@ impl Look {
     }
 }
 
-fn patch(text: &str) -> Option<Rect> {
-    let numbers: Vec<usize> = text.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
-    let &[x, y, width, height] = numbers.as_slice() else { return None };
-    (width > 0 && height > 0).then_some(Rect { x, y, width, height })
+fn chromaticity(text: &str) -> Option<[f64; 2]> {
+    let (x, y) = text.split_once(',')?;
+    let [x, y] = [x.parse::<f64>().ok()?, y.parse::<f64>().ok()?];
+    (x >= 0.0 && y > 0.0 && x + y <= 1.0).then_some([x, y])
+}
+
+/// The white of a look that makes this chromaticity white.
+pub(crate) fn white_of_chromaticity([x, y]: [f64; 2]) -> String {
+    format!("{CHROMATICITY}{x:.5},{y:.5}")
 }
 
 /// A PNG of 8-bit RGB, packed fast rather than small: it goes to a page on this machine.
@@ -96,14 +107,20 @@ mod tests {
         assert_eq!((settings.exposure, settings.curve), (Exposure::Stops(-1.5), ToneCurve::Agx));
         assert_eq!(settings.white_balance, WhiteBalance::Light(White::Temperature(3200.0)));
         assert_eq!(look("auto", "none", "filmic").unwrap().exposure, Exposure::Auto);
-        let patch = look("", "patch:1,2,3,4", "").unwrap().white_balance;
-        assert_eq!(patch, WhiteBalance::Patch(Rect { x: 1, y: 2, width: 3, height: 4 }));
+        let xy = [0.4476, 0.4074];
+        assert_eq!(
+            look("", &white_of_chromaticity(xy), "").unwrap().white_balance,
+            WhiteBalance::Light(White::Chromaticity(xy))
+        );
         for (exposure, white, curve) in [
             ("x", "", ""),
             ("nan", "", ""),
             ("1e9", "", ""),
             ("", "lamp", ""),
-            ("", "patch:1,2,0,4", ""),
+            ("", "xy:0.3", ""),
+            ("", "xy:0.3,0", ""),
+            ("", "xy:0.7,0.4", ""),
+            ("", "xy:nan,0.3", ""),
             ("", "", "log"),
         ] {
             assert!(look(exposure, white, curve).is_err(), "{exposure} {white} {curve}");

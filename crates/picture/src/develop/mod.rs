@@ -49,7 +49,7 @@ pub use palette::palette;
 pub use scale::{MAX_SCALED_PIXELS, scale, scaled_size};
 pub use spectrum::{BandMean, spectrum_of};
 pub use tone_curve::{ToneCurve, agx, agx_curve, filmic};
-pub use white_balance::{TEMPERATURES_K, White, WhiteBalance, white_balance};
+pub use white_balance::{TEMPERATURES_K, White, WhiteBalance, patch_xyz, white_balance};
 
 use etalon_optics::colour::{Matrix, multiply};
 

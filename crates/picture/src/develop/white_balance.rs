@@ -39,6 +39,8 @@ pub enum White {
     Daylight(u16),
     /// A black body of this temperature, K.
     Temperature(f64),
+    /// A light of this CIE 1931 chromaticity x, y. It has no name.
+    Chromaticity([f64; 2]),
 }
 
 impl White {
@@ -98,6 +100,7 @@ impl White {
                 let xyz = xyz_of(|nm| body.eval(nm));
                 xyz.map(|v| v / xyz[1])
             }
+            Self::Chromaticity(xy) => xyz_of_chromaticity(xy),
         }
     }
 }
@@ -125,6 +128,23 @@ pub fn white_balance(white_xyz: [f64; 3]) -> Option<Matrix> {
     Some(product(&REC709_FROM_XYZ, &product(&adapted, &XYZ_FROM_REC709)))
 }
 
+/// The mean XYZ of a patch of a picture in linear Rec. 709. Pixels that are not finite do not count.
+///
+/// # Errors
+/// If the patch is not within the picture, or none of its pixels is finite.
+pub fn patch_xyz<T: Sample>(picture: &Picture<T>, rect: Rect) -> Result<[f64; 3], PictureError> {
+    let patch = crop(picture, rect)?;
+    let (mut sum, mut count) = ([0.0; 3], 0_usize);
+    for rgb in rgb_pixels(&patch)?.filter(|rgb| rgb.iter().all(|v| v.is_finite())) {
+        (0..3).for_each(|c| sum[c] += rgb[c]);
+        count += 1;
+    }
+    if count == 0 {
+        return Err(PictureError::develop(format!("the patch {rect} has no finite pixel")));
+    }
+    Ok(rec709_to_xyz(sum.map(|v| v / count as f64)))
+}
+
 /// The matrix for a picture, or none where nothing changes.
 pub(crate) fn matrix_for<T: Sample>(
     balance: WhiteBalance,
@@ -133,18 +153,7 @@ pub(crate) fn matrix_for<T: Sample>(
     let white = match balance {
         WhiteBalance::None => return Ok(None),
         WhiteBalance::Light(white) => white.xyz(),
-        WhiteBalance::Patch(rect) => {
-            let patch = crop(picture, rect)?;
-            let (mut sum, mut count) = ([0.0; 3], 0_usize);
-            for rgb in rgb_pixels(&patch)?.filter(|rgb| rgb.iter().all(|v| v.is_finite())) {
-                (0..3).for_each(|c| sum[c] += rgb[c]);
-                count += 1;
-            }
-            if count == 0 {
-                return Err(PictureError::develop(format!("the patch {rect} has no finite pixel")));
-            }
-            rec709_to_xyz(sum.map(|v| v / count as f64))
-        }
+        WhiteBalance::Patch(rect) => patch_xyz(picture, rect)?,
     };
     match white_balance(white) {
         Some(matrix) => Ok(Some(matrix)),

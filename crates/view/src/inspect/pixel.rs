@@ -1,5 +1,6 @@
 //! What is known of one pixel: its value with its error, and what is seen there.
 
+use etalon_picture::develop::{Rect, patch_xyz, white_balance};
 use etalon_picture::{Attribute, ERROR_PREFIX, Picture};
 use etalon_scene::Scene;
 use etalon_transport::{PixelRect, Prepared};
@@ -9,6 +10,8 @@ use crate::picture::Snapshot;
 
 /// Camera rays that tell what a pixel shows.
 const RAYS: u32 = 16;
+/// Pixels of the film on each side of a pixel whose colour is to look white.
+const WHITE_REACH: u32 = 4;
 
 /// A pixel of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -70,6 +73,32 @@ pub(crate) fn of_picture(snapshot: &Snapshot, at: [u32; 2]) -> Option<PixelInfo>
         block: snapshot.block,
         object: named_in_file(snapshot, index),
     })
+}
+
+/// The CIE 1931 chromaticity of what is seen about a pixel of the film.
+///
+/// # Errors
+/// A sentence that says why that cannot look white.
+pub(crate) fn white_at(snapshot: &Snapshot, at: [u32; 2]) -> Result<[f64; 2], String> {
+    let patch = patch_at(snapshot, at).ok_or("the pixel is not in the picture")?;
+    let picture = snapshot.colour.as_ref().unwrap_or(&snapshot.file.picture);
+    let xyz = patch_xyz(picture, patch).map_err(|error| error.to_string())?;
+    let is_colour = xyz.iter().all(|v| *v >= 0.0) && white_balance(xyz).is_some();
+    let sum: f64 = xyz.iter().sum();
+    let xy = is_colour.then(|| [xyz[0] / sum, xyz[1] / sum]);
+    xy.ok_or_else(|| "this spot cannot look white: it is black, or its colour is that of no light".to_owned())
+}
+
+/// The pixels of a picture, which may be coarse, about a pixel of the film.
+fn patch_at(snapshot: &Snapshot, at: [u32; 2]) -> Option<Rect> {
+    snapshot.pixel_of(at)?;
+    let size = snapshot.size();
+    let [(x, width), (y, height)] = [0, 1].map(|axis| {
+        let first = (at[axis].saturating_sub(WHITE_REACH) / snapshot.block) as usize;
+        let last = (((at[axis] + WHITE_REACH) / snapshot.block) as usize).min(size[axis] - 1);
+        (first, last - first + 1)
+    });
+    Some(Rect { x, y, width, height })
 }
 
 /// The object as a file tells it, by its number and the list of names.

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::camera::CameraView;
 use crate::live::costs::EffectCost;
+use crate::picture::Snapshot;
 
 /// What the painter does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -74,6 +75,19 @@ pub(crate) struct Pinned {
     pub title: String,
     /// Its relative error.
     pub relative_rmse: Option<f64>,
+}
+
+impl Pinned {
+    /// What a page is told of a picture.
+    pub(crate) fn of(snapshot: &Snapshot) -> Self {
+        Self {
+            number: snapshot.number,
+            stage: snapshot.stage,
+            size: snapshot.size(),
+            title: snapshot.title.clone(),
+            relative_rmse: snapshot.error.as_ref().and_then(|error| error.relative_rmse),
+        }
+    }
 }
 
 /// What the page shows.

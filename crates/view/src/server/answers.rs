@@ -13,7 +13,7 @@ use crate::inspect::maps::{MapKind, comparison as compare, map as map_of};
 use crate::inspect::{paths as drawn, pixel as of_pixel, spectrum as spectra};
 use crate::live::Stage;
 use crate::live::publish::Glance;
-use crate::look::{Look, fast_png};
+use crate::look::{Look, fast_png, white_of_chromaticity};
 use crate::picture::Snapshot;
 
 /// Developed pictures that are kept, for pages with the same look.
@@ -104,6 +104,9 @@ pub(crate) fn picture(app: &App, query: &PictureQuery) -> Result<Response, Refus
 pub(crate) fn map(app: &App, kind: MapKind) -> Result<Response, Refusal> {
     let current = snapshot(app, false)?;
     let pinned = snapshot(app, true).ok();
+    if kind == MapKind::Difference && pinned.as_ref().is_some_and(|pinned| pinned.stage == current.stage) {
+        return Err(cannot("the pinned picture and this one share their samples: change something first"));
+    }
     let map = app.live.overhead.count(Glance::Answer, || map_of(kind, &current, pinned.as_deref())).map_err(cannot)?;
     let about =
         serde_json::json!({ "picture": current.number, "size": current.size(), "legend": map.legend }).to_string();
@@ -125,6 +128,12 @@ pub(crate) fn pixel(app: &App, at: [u32; 2]) -> Result<Response, Refusal> {
         })?;
     }
     Ok(json(&info))
+}
+
+/// The white of a look in which what is seen about a pixel looks white.
+pub(crate) fn white(app: &App, at: [u32; 2]) -> Result<Response, Refusal> {
+    let xy = of_pixel::white_at(&snapshot(app, false)?, at).map_err(cannot)?;
+    Ok(json(&serde_json::json!({ "white": white_of_chromaticity(xy) })))
 }
 
 /// The spectrum of a pixel: that of the picture where it has bands, else by paths of its own.
@@ -153,10 +162,12 @@ pub(crate) fn paths(app: &App, at: [u32; 2], count: u32) -> Result<Response, Ref
     })
 }
 
-/// Whether the picture and the pinned one differ beyond their noise; null while the picture is a coarse one, which has fewer pixels.
+/// Whether the picture and the pinned one differ beyond their noise. Null as long as there is nothing to compare: a coarse picture has
+/// fewer pixels, one of the stage before shows something else, and one of the pinned picture's own stage shares its samples.
 pub(crate) fn comparison(app: &App) -> Result<Response, Refusal> {
     let (current, pinned) = (snapshot(app, false)?, snapshot(app, true)?);
-    if current.block > 1 {
+    let under_way = app.live.seen().status.stage;
+    if current.block > 1 || current.stage != under_way || current.stage == pinned.stage {
         return Ok(json(&serde_json::Value::Null));
     }
     Ok(json(&app.live.overhead.count(Glance::Answer, || compare(&current, &pinned)).map_err(cannot)?))

@@ -23,7 +23,9 @@ use crate::camera::CameraView;
 use crate::inspect::maps::MapKind;
 use crate::inspect::spectrum::SpectralProbe;
 use crate::live::Live;
+use crate::live::status::Pinned;
 use crate::look::Look;
+use crate::picture::Snapshot;
 
 /// Shortest time between two events.
 const EVENT_INTERVAL: Duration = Duration::from_millis(60);
@@ -51,6 +53,7 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/{token}/ask/picture.png", get(picture))
         .route("/{token}/ask/map.png", get(map))
         .route("/{token}/ask/pixel", get(pixel))
+        .route("/{token}/ask/white", get(white))
         .route("/{token}/ask/spectrum", get(spectrum))
         .route("/{token}/ask/paths", get(paths))
         .route("/{token}/ask/comparison", get(comparison))
@@ -187,6 +190,10 @@ async fn pixel(State(app): Shared, Query(query): Query<PixelQuery>) -> Result<Re
     aside(&app, move |app| answers::pixel(app, [query.x, query.y])).await
 }
 
+async fn white(State(app): Shared, Query(query): Query<PixelQuery>) -> Result<Response, Refusal> {
+    aside(&app, move |app| answers::white(app, [query.x, query.y])).await
+}
+
 async fn spectrum(State(app): Shared, Query(query): Query<PixelQuery>) -> Result<Response, Refusal> {
     aside(&app, move |app| answers::spectrum(app, [query.x, query.y], query.count)).await
 }
@@ -307,17 +314,24 @@ struct PinOrder {
     pinned: bool,
 }
 
+/// The picture of now, if it can be compared with those that follow. A coarse one has fewer pixels.
+fn pinnable(app: &App) -> Result<Arc<Snapshot>, Refusal> {
+    let found = app.live.seen().snapshot.clone().filter(|snapshot| snapshot.block == 1);
+    found.ok_or_else(|| (StatusCode::CONFLICT, "there is no picture of all pixels to pin yet".to_owned()))
+}
+
 /// Pins the picture as it is, to be compared with those that follow, or lets it go.
 async fn pin(State(app): Shared, Json(order): Json<PinOrder>) -> Begun {
+    let pinned = order.pinned.then(|| pinnable(&app)).transpose()?;
+    let stage = pinned.as_ref().map(|snapshot| snapshot.stage);
     app.live.show(|seen| {
-        seen.pinned = order.pinned.then(|| seen.snapshot.clone()).flatten();
-        seen.status.pinned = seen.pinned.as_ref().map(|snapshot| crate::live::status::Pinned {
-            number: snapshot.number,
-            size: snapshot.size(),
-            title: snapshot.title.clone(),
-            relative_rmse: snapshot.error.as_ref().and_then(|error| error.relative_rmse),
-        });
+        seen.status.pinned = pinned.as_deref().map(Pinned::of);
+        seen.pinned = pinned;
     });
-    // What is rendered from the next stage on has noise of its own.
-    change(&app, |wish| wish.seed_offset += u64::from(order.pinned))
+    change(&app, |wish| {
+        // What is rendered from the next stage on has noise of its own.
+        wish.seed_offset += u64::from(order.pinned);
+        // A later stage that is under way already shares its noise with the pinned picture, so it begins again.
+        wish.stage += u64::from(stage.is_some_and(|stage| stage != wish.stage));
+    })
 }
