@@ -6,10 +6,12 @@ import { log } from "./log.js";
 
 const element = (id) => document.getElementById(id);
 
+// Rows stay in the page once they are there, so that no click and no focus is lost.
 export class Effects {
   constructor() {
     this.key = "";
     this.here = null;
+    this.rows = new Map();
     element("costs").addEventListener("click", () => {
       log("costs-asked");
       order("control", { costs: true });
@@ -17,17 +19,16 @@ export class Effects {
   }
 
   update(status) {
-    this.isScene = status.is_scene;
     element("effects").hidden = !status.plan?.effects;
     element("costs").hidden = !status.is_scene;
     element("costs").disabled = status.phase === "costs";
-    const key = JSON.stringify([status.plan?.effects, status.costs, status.without, this.here]);
+    const key = JSON.stringify([status.plan?.effects, status.costs, status.without]);
     if (key === this.key || !status.plan?.effects) return;
     this.key = key;
     this.without = status.without;
     const { effects } = status.plan;
     const isListed = (effect) => effect.on || effect.study === "left-out";
-    element("effects-on").replaceChildren(...effects.filter(isListed).map((effect) => this.#item(effect, status.costs)));
+    place(element("effects-on"), effects.filter(isListed).map((effect) => this.#row(effect, status)));
     const off = effects.filter((effect) => !isListed(effect));
     element("effects-off-summary").textContent = `Not needed by this scene (${off.length})`;
     element("effects-off").replaceChildren(...off.map((effect) => html("li", {}, html("label", {}, spoken(effect.name)), html("span", { class: "because" }, effect.because))));
@@ -43,21 +44,41 @@ export class Effects {
     return Boolean(this.here?.some((name) => name && because?.includes(`"${name}"`)));
   }
 
-  #item(effect, costs) {
-    const box = html("input", { type: "checkbox", checked: effect.on, disabled: !this.isScene });
-    box.addEventListener("change", () => {
-      const others = this.without.filter((name) => name !== effect.name);
-      order("effects", { without: box.checked ? others : [...others, effect.name] });
-      log("effect", { name: effect.name, on: box.checked });
-    });
-    const label = html("label", {}, box, spoken(effect.name), effect.study === "left-out" ? html("span", { class: "lost" }, "left out: an approximation") : null);
-    const item = html("li", {}, label, html("span", { class: "because" }, `because: ${effect.because}`));
+  // The row of an effect, with what is known of it now.
+  #row(effect, { is_scene, costs, without }) {
+    if (!this.rows.has(effect.name)) this.rows.set(effect.name, this.#newRow(effect.name));
+    const { item, box, lost, because, cost } = this.rows.get(effect.name);
+    box.disabled = !is_scene;
+    box.checked = effect.on && !without.includes(effect.name);
+    lost.hidden = effect.study !== "left-out";
+    because.textContent = `because: ${effect.because}`;
     item.dataset.because = effect.because;
     item.classList.toggle("is-here", this.#isHere(effect.because));
-    const cost = costs.find((cost) => cost.effect === effect.name);
-    if (cost) item.append(html("span", { class: "cost" }, inWords(cost)));
+    const known = costs.find((cost) => cost.effect === effect.name);
+    cost.textContent = known ? inWords(known) : "";
+    if (known) item.append(cost);
+    else cost.remove();
     return item;
   }
+
+  #newRow(name) {
+    const box = html("input", { type: "checkbox" });
+    box.addEventListener("change", () => {
+      const others = this.without.filter((other) => other !== name);
+      order("effects", { without: box.checked ? others : [...others, name] });
+      log("effect", { name, on: box.checked });
+    });
+    const lost = html("span", { class: "lost" }, "left out: an approximation");
+    const because = html("span", { class: "because" });
+    const item = html("li", {}, html("label", {}, box, spoken(name), lost), because);
+    return { item, box, lost, because, cost: html("span", { class: "cost" }) };
+  }
+}
+
+// Puts these rows into a list, if it does not hold them already.
+function place(list, rows) {
+  const isSame = list.children.length === rows.length && rows.every((row, index) => list.children[index] === row);
+  if (!isSame) list.replaceChildren(...rows);
 }
 
 export function spoken(name) {

@@ -8,6 +8,11 @@ const element = (id) => document.getElementById(id);
 // Paths of the first answer, and of the best.
 const FIRST = 256;
 const MOST = 65536;
+// How long the cursor rests before paths are traced for its spectrum.
+const REST_MS = 120;
+// How long until more paths are asked for, and until then where the server had no time for more.
+const NEXT_MS = 200;
+const WAIT_MS = 1000;
 
 export class Inspector {
   constructor(onObject) {
@@ -25,14 +30,18 @@ export class Inspector {
     clearTimeout(this.rest);
     if (!at) return;
     this.look(at);
-    this.rest = setTimeout(() => this.refine(at, FIRST), 120);
+    this.rest = setTimeout(() => this.refine(at, FIRST), REST_MS);
   }
 
   // The picture changed under the cursor.
   refresh(isNewStage) {
     if (!this.at) return;
     this.look(this.at);
-    if (isNewStage) this.refine(this.at, FIRST);
+    if (!isNewStage) return;
+    // While the camera moves, each picture is one of a new stage.
+    const { at } = this;
+    clearTimeout(this.rest);
+    this.rest = setTimeout(() => this.refine(at, FIRST), REST_MS);
   }
 
   async #look(at) {
@@ -74,7 +83,8 @@ export class Inspector {
       log("spectrum", { at, bands: spectrum.bands.length, samples: spectrum.samples, with_errors: spectrum.bands.filter((b) => b.error !== null).length });
       // The longer the cursor rests, the shorter the bars.
       if (spectrum.samples !== null && spectrum.samples < MOST) {
-        this.rest = setTimeout(() => this.refine(at, Math.min(MOST, 4 * spectrum.samples)), 200);
+        const pause = spectrum.samples < paths ? WAIT_MS : NEXT_MS;
+        this.rest = setTimeout(() => this.refine(at, Math.min(MOST, 4 * spectrum.samples)), pause);
       }
     } catch (error) {
       element("spectrum").replaceChildren();

@@ -1,7 +1,7 @@
 // The paths of a pixel, drawn over the picture and listed vertex by vertex.
 
 import { ask } from "./server.js";
-import { cssColour, digits, html, percent, svg } from "./format.js";
+import { cssColour, digits, html, svg } from "./format.js";
 import { log } from "./log.js";
 
 const element = (id) => document.getElementById(id);
@@ -29,6 +29,9 @@ export class Paths {
       element("paths-at").textContent = at.join(", ");
       element("paths-words").textContent = error.message;
       element("paths-list").replaceChildren();
+      element("overlay").replaceChildren();
+      this.at = at;
+      this.paths = [];
       return;
     }
     this.at = at;
@@ -38,7 +41,7 @@ export class Paths {
     element("paths").hidden = false;
     element("paths-at").textContent = `in column ${at[0]}, row ${at[1]}`;
     const found = paths.filter((p) => p.luminance > 0).length;
-    element("paths-words").textContent = `The first ${paths.length} paths of this pixel, traced here once more; the picture takes the same ones in the same order. ${found} of them found light. Dots are places where a path met a surface; filled dots are places where light was found. A line has the colour of what its path brings.`;
+    element("paths-words").textContent = `The first ${paths.length} paths of this pixel, traced here once more; the picture takes the same ones in the same order. ${found} of them found light. Dots are places where a path met a surface; filled dots are places where light was found. A line has the colour of what its path brings. The weight of a place is the factor by which light from there counts in the pixel. Where chance decides how a path goes on, it may exceed 1.`;
     this.#list();
     this.#draw();
     element("paths").scrollIntoView({ block: "nearest" });
@@ -78,7 +81,7 @@ export class Paths {
       return;
     }
     const vertices = path.vertices.map((vertex) => {
-      const line = html("li", {}, html("b", {}, vertex.object), vertex.material ? ` (${vertex.material})` : "", `, with ${percent(vertex.throughput)} of the light left`);
+      const line = html("li", {}, html("b", {}, vertex.object), vertex.material ? ` (${vertex.material})` : "", `, weight ${digits(vertex.throughput, 2)}`);
       for (const [how, radiance] of vertex.light) {
         line.append(html("span", { class: "found" }, `; brings ${digits(radiance, 3)} ${how === "emitter" ? "as a lamp" : `by ${how.replace("-", " ")}`}`));
       }

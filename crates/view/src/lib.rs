@@ -32,6 +32,7 @@ use std::sync::atomic::AtomicUsize;
 use inspect::spectrum::SpectralProbe;
 use live::painter::Painter;
 use live::publish::{Publisher, put};
+use live::reload::WatchedFiles;
 use live::status::{Phase, Status};
 use live::{Live, Wish, reload};
 use server::routes::App;
@@ -133,7 +134,7 @@ fn begin(source: Source) -> Result<Arc<Live>, ViewError> {
             let size = [film.width, film.height];
             let status = Status { name, is_scene: true, size, target: Some(error), ..Status::default() };
             let wish = Wish { stage: 1, target: Some(error), ..Wish::default() };
-            let files = first.files.clone();
+            let files = WatchedFiles::of(&first);
             let live = Arc::new(Live::new(status, wish, Some(first)));
             reload::start(&live, load, files).map_err(failed)?;
             let publisher = Publisher::start(&live).map_err(failed)?;

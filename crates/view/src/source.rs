@@ -1,6 +1,7 @@
 //! What is viewed: a scene that is rendered, or a picture from a file.
 
 use std::path::PathBuf;
+use std::time::SystemTime;
 
 use etalon_picture::ExrFile;
 use etalon_scene::Scene;
@@ -18,6 +19,8 @@ pub struct LoadedScene {
     pub warnings: Vec<String>,
     /// The files that it was read from, which are looked at for edits.
     pub files: Vec<PathBuf>,
+    /// When reading began. A file that was changed since is read again.
+    pub began: SystemTime,
 }
 
 /// Reads a scene anew. Problems are JSON objects with `message` and, where they are in a file, `file`, `line`, `column` and `json_path`.

@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::net::{IpAddr, Ipv4Addr, TcpStream};
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use etalon_picture::{Attributes, ExrFile, Picture};
 use etalon_view::{LoadedScene, SceneSource, Source, Token, Viewer};
@@ -45,7 +45,8 @@ fn scene_port() -> u16 {
         }"#;
         let load = || {
             let (scene, _) = etalon_scene::parse(text, "ball.json").expect("a valid scene");
-            Ok(LoadedScene { scene, sha256: "0".to_owned(), warnings: Vec::new(), files: Vec::new() })
+            let (sha256, began) = ("0".to_owned(), SystemTime::now());
+            Ok(LoadedScene { scene, sha256, warnings: Vec::new(), files: Vec::new(), began })
         };
         serve(Source::Scene(Box::new(SceneSource {
             name: "ball.json".to_owned(),

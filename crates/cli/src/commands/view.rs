@@ -3,6 +3,7 @@
 use std::io::ErrorKind;
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use etalon_picture::read_exr;
 use etalon_scene::{Film, Scene};
@@ -56,7 +57,7 @@ pub(crate) struct ViewArgs {
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
     /// Address of this machine to listen at, such as 0.0.0.0 for all. It needs --token, because whoever reaches this address and knows the
-    /// token can see the picture and move its camera. Nothing is encrypted.
+    /// token can see the picture and move its camera. Nothing is encrypted. Open the page by an IP address: host names are refused.
     #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), hide_default_value = true)]
     bind: IpAddr,
     /// Token in the address: 16 characters at least, or `random`. Default: random.
@@ -75,14 +76,26 @@ pub(crate) fn run(args: ViewArgs) -> Outcome {
     print::note(&match ip.is_loopback() {
         true => "Open this address in a browser. It works on this machine only. Press Ctrl-C to end.".to_owned(),
         false => format!(
-            "Whoever reaches {ip} and knows this address can see the picture and move its camera. Nothing is encrypted. Press \
-             Ctrl-C to end."
+            "{}Whoever reaches {ip} and knows this address can see the picture and move its camera. Nothing is encrypted. Press \
+             Ctrl-C to end.",
+            elsewhere(ip)
         ),
     });
     if is_opened && let Err(why) = open(viewer.address()) {
         print::note(&format!("No browser could be opened: {why}. Open the address by hand."));
     }
     viewer.run().map_err(|error| Failure::run(Report::from_err(error)))
+}
+
+/// How another machine opens the page, where the printed address is that of this machine alone.
+fn elsewhere(ip: IpAddr) -> &'static str {
+    match ip.is_unspecified() {
+        true => {
+            "This address is for this machine. On another one, write an IP address of this machine in its place; host names are \
+             refused. "
+        }
+        false => "",
+    }
 }
 
 /// The token, which an address that others reach must be given on purpose.
@@ -122,13 +135,14 @@ fn source(args: ViewArgs) -> Result<Source, Failure> {
 
 /// A scene, and the files that it was read from.
 fn load_scene(path: &Path, overrides: &Overrides) -> Result<LoadedScene, Failure> {
+    let began = SystemTime::now();
     let mut loaded = load(path, overrides.film_size(), overrides.parameters())?;
     overrides.apply(&mut loaded.scene)?;
     check_memory(&loaded.scene)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let files = std::iter::once(path.to_owned()).chain(loaded.files.iter().map(|name| folder.join(name))).collect();
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
-    Ok(LoadedScene { scene: loaded.scene, sha256: loaded.sha256, warnings, files })
+    Ok(LoadedScene { scene: loaded.scene, sha256: loaded.sha256, warnings, files, began })
 }
 
 /// Refuses a picture that memory cannot hold, also where an edit makes it so large.

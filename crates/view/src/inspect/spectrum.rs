@@ -5,10 +5,11 @@ use std::time::Instant;
 
 use etalon::KeptBands;
 use etalon_picture::develop::{BandMean, Rect, spectrum_of};
-use etalon_scene::Bands;
-use etalon_transport::{Film, PixelRect, Prepared, TileSums, prepare_frame};
+use etalon_scene::{Bands, Scene};
+use etalon_transport::{Film, PixelRect, Prepared, Study, TileSums, prepare_frame};
 use serde::Serialize;
 
+use crate::live::status::Phase;
 use crate::live::{Live, Stage};
 use crate::picture::Snapshot;
 
@@ -79,22 +80,62 @@ struct UnderWay {
 }
 
 impl SpectralProbe {
-    /// The spectrum of a pixel by this many paths, or as many as there is time for; asked again, it goes on.
+    /// The spectrum of a pixel by this many paths, or as many as there is time for; asked again, it goes on. A render under way pays for
+    /// few paths only.
     ///
     /// # Errors
     /// A sentence that says why there is none.
     pub(crate) fn ask(&self, live: &Live, at: [u32; 2], samples: u32) -> Result<Spectrum, String> {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut place = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        live.overhead.probe(|| {
+            let kept = current(live, &mut place)?;
+            let most_s = if may_go_on(live) { MOST_S } else { 0.0 };
+            Ok(kept.spectrum(at, samples, most_s))
+        })
+    }
+}
+
+/// The scene with bands of the stage under way, which is prepared if it is not kept. The lock of the stage is not held meanwhile: the next
+/// stage waits for it.
+fn current<'a>(live: &Live, place: &'a mut Option<Kept>) -> Result<&'a mut Kept, String> {
+    let origin = {
         let stage = live.stage.read().unwrap_or_else(PoisonError::into_inner);
         let stage = stage.as_ref().ok_or("the scene is not ready")?;
-        let kept = match &mut *kept {
-            Some(kept) if kept.stage == stage.number => kept,
-            place => {
-                let earlier = place.take().map(|kept| kept.prepared);
-                place.insert(Kept::new(stage, earlier)?)
-            }
-        };
-        let Kept { prepared, bands, under_way, .. } = kept;
+        let is_kept = place.as_ref().is_some_and(|kept| kept.stage == stage.number);
+        (!is_kept).then(|| Origin::of(stage))
+    };
+    if let Some(origin) = origin {
+        let earlier = place.take().map(|kept| kept.prepared);
+        *place = Some(Kept::new(origin, earlier)?);
+    }
+    place.as_mut().ok_or_else(|| "the scene is not ready".to_owned())
+}
+
+/// Whether there is time for more than the first paths of a pixel.
+fn may_go_on(live: &Live) -> bool {
+    let is_idle = matches!(live.seen().status.phase, Phase::Done | Phase::Paused);
+    is_idle || live.overhead.may_probe()
+}
+
+/// What a scene with bands is prepared from.
+struct Origin {
+    stage: u64,
+    scene: Scene,
+    study: Study,
+    scene_sha256: String,
+}
+
+impl Origin {
+    fn of(stage: &Stage) -> Self {
+        let Stage { number, scene, study, scene_sha256, .. } = stage;
+        Self { stage: *number, scene: scene.clone(), study: study.clone(), scene_sha256: scene_sha256.clone() }
+    }
+}
+
+impl Kept {
+    /// The spectrum of a pixel by this many paths, or by those that this many seconds allow.
+    fn spectrum(&mut self, at: [u32; 2], samples: u32, most_s: f64) -> Spectrum {
+        let Self { prepared, bands, under_way, .. } = self;
         let mut film = film_of_a_pixel(prepared);
         let corner = rect_of([0, 0]);
         let under_way = match under_way {
@@ -104,7 +145,7 @@ impl SpectralProbe {
         let replicates = prepared.scene().integrator.replicates;
         let goal = samples.clamp(SAMPLES[0], SAMPLES[1]).next_multiple_of(replicates);
         let start = Instant::now();
-        while under_way.samples < goal && (under_way.samples == 0 || start.elapsed().as_secs_f64() < MOST_S) {
+        while under_way.samples < goal && (under_way.samples == 0 || start.elapsed().as_secs_f64() < most_s) {
             let next = (2 * under_way.samples).max(64).next_multiple_of(replicates).min(goal);
             prepared.render_tile(rect_of(at), under_way.samples..next, &mut under_way.sums);
             under_way.samples = next;
@@ -119,11 +160,11 @@ impl SpectralProbe {
                 error: Some(band.error).filter(|error| error.is_finite()),
             }
         };
-        Ok(Spectrum {
+        Spectrum {
             bands: (0..bands.count).map(info).collect(),
             samples: Some(under_way.samples),
             seconds: under_way.seconds,
-        })
+        }
     }
 }
 
@@ -139,8 +180,8 @@ fn film_of_a_pixel(prepared: &Prepared) -> Film {
 
 impl Kept {
     /// The scene of a stage with bands; nothing is traced yet.
-    fn new(stage: &Stage, earlier: Option<Prepared>) -> Result<Self, String> {
-        let mut scene = stage.scene.clone();
+    fn new(origin: Origin, earlier: Option<Prepared>) -> Result<Self, String> {
+        let Origin { stage, mut scene, study, scene_sha256 } = origin;
         if scene.film.bands.is_none() {
             let range_nm = scene.integrator.wavelength_range_nm;
             let seen = [range_nm[0].max(SEEN_NM[0]), range_nm[1].min(SEEN_NM[1])];
@@ -150,12 +191,12 @@ impl Kept {
             let centres = [low + 0.5 * step_nm, low + (count - 0.5) * step_nm, step_nm];
             scene.film.bands = Some(Bands::new(centres, range_nm).map_err(|error| error.to_string())?);
         }
-        let prepared = prepare_frame(&scene, &stage.study, earlier).map_err(|error| error.to_string())?;
+        let prepared = prepare_frame(&scene, &study, earlier).map_err(|error| error.to_string())?;
         if prepared.path_reuse().is_some() {
             return Err("neighbouring pixels share paths, so no pixel has a spectrum of its own".to_owned());
         }
-        let subject = etalon::Subject::new(&prepared, &stage.scene_sha256, rect_of([0, 0]));
+        let subject = etalon::Subject::new(&prepared, &scene_sha256, rect_of([0, 0]));
         let bands = subject.bands.ok_or("paths carry channels here, no wavelengths")?;
-        Ok(Self { stage: stage.number, prepared, bands, under_way: None })
+        Ok(Self { stage, prepared, bands, under_way: None })
     }
 }

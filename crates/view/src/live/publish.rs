@@ -12,7 +12,7 @@ use super::Live;
 use super::status::CurvePoint;
 use crate::picture::{About, Snapshot, of_film};
 
-/// Share of the processor time that looking may take from rendering.
+/// Share of the processor time that looking may take from rendering, and that paths for spectra may take.
 const SHARE: f64 = 0.03;
 /// Processor time for looking that a picture begins with, s: its first moments are looked at most.
 const CREDIT_S: f64 = 0.3;
@@ -24,6 +24,10 @@ const MOST_POINTS: usize = 240;
 pub(crate) struct Overhead {
     /// How many looks, and the nanoseconds of the shortest, by kind.
     looks: [(AtomicU64, AtomicU64); 2],
+    /// Nanoseconds of all threads that rendered.
+    rendered: AtomicU64,
+    /// Nanoseconds of threads that traced paths for spectra. They have a share of their own: a cursor that rests does not stop pictures.
+    probed: AtomicU64,
 }
 
 /// A kind of look.
@@ -49,6 +53,25 @@ impl Overhead {
         done
     }
 
+    /// Traces paths for a spectrum and counts all of the time that this takes.
+    pub(crate) fn probe<T>(&self, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let done = work();
+        self.probed.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+        done
+    }
+
+    /// Counts seconds for which this many threads rendered.
+    pub(crate) fn rendered(&self, seconds: f64, threads: usize) {
+        self.rendered.fetch_add((1e9 * seconds * threads as f64) as u64, Ordering::Relaxed);
+    }
+
+    /// Whether more paths may be traced for a spectrum while the picture is rendered.
+    pub(crate) fn may_probe(&self) -> bool {
+        let [rendered, probed] = [&self.rendered, &self.probed].map(|time| 1e-9 * time.load(Ordering::Relaxed) as f64);
+        may_look(rendered, probed, 1)
+    }
+
     /// Seconds since the last reset.
     pub(crate) fn seconds(&self) -> f64 {
         let of = |(count, least): &(AtomicU64, AtomicU64)| {
@@ -60,6 +83,7 @@ impl Overhead {
     /// Begins again, for another picture.
     pub(crate) fn reset(&self) {
         self.looks.iter().for_each(|(count, _)| count.store(0, Ordering::Relaxed));
+        [&self.rendered, &self.probed].iter().for_each(|time| time.store(0, Ordering::Relaxed));
     }
 }
 
@@ -170,6 +194,16 @@ mod tests {
         }
         assert!(curve.len() <= MOST_POINTS && curve[0].seconds == 0.0 && curve.last().unwrap().seconds == 1999.0);
         assert!(curve.windows(2).all(|pair| pair[0].seconds < pair[1].seconds));
+    }
+
+    #[test]
+    fn spectra_are_paid_by_rendering() {
+        let overhead = Overhead::default();
+        assert!(overhead.may_probe());
+        overhead.probe(|| std::thread::sleep(std::time::Duration::from_secs_f64(1.1 * CREDIT_S)));
+        assert!(!overhead.may_probe() && overhead.seconds() == 0.0);
+        overhead.rendered(100.0, 2);
+        assert!(overhead.may_probe());
     }
 
     #[test]

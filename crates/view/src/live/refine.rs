@@ -275,6 +275,7 @@ impl Paint<'_> {
         })?;
         let (seconds, after) = (start.elapsed().as_secs_f64(), paths(progress));
         progress.seconds += seconds;
+        self.live().overhead.rendered(seconds, self.threads());
         let per_second = (after - before) as f64 / seconds;
         {
             let mut seen = self.live().seen();

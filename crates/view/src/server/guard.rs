@@ -70,7 +70,7 @@ pub(crate) fn check(
     let Some(host) = host.filter(|host| is_address(host)) else {
         return refuse(
             StatusCode::MISDIRECTED_REQUEST,
-            "this server is asked by its address or as localhost, and by no other name",
+            "open this page by the IP address of its machine or as localhost: host names are refused",
         );
     };
     if let Some(origin) = headers.get(header::ORIGIN)

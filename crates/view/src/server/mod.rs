@@ -5,7 +5,7 @@ pub(crate) mod guard;
 pub(crate) mod page;
 pub(crate) mod routes;
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -55,11 +55,31 @@ pub(crate) async fn run(listener: TcpListener, app: Arc<App>) -> std::io::Result
     }
 }
 
-/// The address that a browser opens.
+/// The address that a browser on this machine opens. Where the server listens at every address, it is that of the machine itself.
 pub(crate) fn address_of(bound: SocketAddr, token: &Token) -> String {
-    let host = match bound.ip() {
-        ip if ip.is_unspecified() => format!("127.0.0.1:{}", bound.port()),
-        _ => bound.to_string(),
+    let ip = match bound.ip() {
+        IpAddr::V4(ip) if ip.is_unspecified() => Ipv4Addr::LOCALHOST.into(),
+        IpAddr::V6(ip) if ip.is_unspecified() => Ipv6Addr::LOCALHOST.into(),
+        ip => ip,
     };
-    format!("http://{host}/{}/", token.as_str())
+    format!("http://{}/{}/", SocketAddr::new(ip, bound.port()), token.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_printed_address_can_be_opened_on_this_machine() {
+        let token = Token::new("0123456789abcdef").expect("a valid token");
+        for (bound, host) in [
+            ("127.0.0.1:80", "127.0.0.1:80"),
+            ("0.0.0.0:8420", "127.0.0.1:8420"),
+            ("[::]:8420", "[::1]:8420"),
+            ("192.0.2.7:8420", "192.0.2.7:8420"),
+        ] {
+            let address = address_of(bound.parse().expect("an address"), &token);
+            assert_eq!(address, format!("http://{host}/0123456789abcdef/"));
+        }
+    }
 }
