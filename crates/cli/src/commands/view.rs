@@ -57,7 +57,7 @@ pub(crate) struct ViewArgs {
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
     /// Address of this machine to listen at, such as 0.0.0.0 for all. It needs --token, because whoever reaches this address and knows the
-    /// token can see the picture and move its camera. Nothing is encrypted. Open the page by an IP address: host names are refused.
+    /// token can see the picture and move its camera. Nothing is encrypted.
     #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), hide_default_value = true)]
     bind: IpAddr,
     /// Token in the address: 16 characters at least, or `random`. Default: random.
