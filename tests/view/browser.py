@@ -183,6 +183,24 @@ class Page:
         self.mouse("mousePressed", x, y, button="left", clickCount=1)
         self.mouse("mouseReleased", x, y, button="left", clickCount=1)
 
+    def press(self, selector, while_down=lambda: None):
+        """Presses the mouse button over an element, does something, and lets the button go at the same place."""
+        self.run(f"document.querySelector({json.dumps(selector)}).scrollIntoView({{ block: 'center' }})")
+        x, y = self.run(f"(() => {{ const b = document.querySelector({json.dumps(selector)}).getBoundingClientRect();"
+                        " return [b.left + b.width / 2, b.top + b.height / 2]; })()")
+        self.mouse("mouseMoved", x, y)
+        self.mouse("mousePressed", x, y, button="left", clickCount=1)
+        while_down()
+        self.mouse("mouseReleased", x, y, button="left", clickCount=1)
+
+    def focus(self, selector):
+        self.run(f"document.querySelector({json.dumps(selector)}).focus()")
+
+    def select(self, name, value):
+        """Chooses an entry of a list, as a person does: choosing the one that is chosen already changes nothing."""
+        self.run(f"(() => {{ const e = document.getElementById({json.dumps(name)}); if (e.value === {json.dumps(value)}) return;"
+                 f" e.value = {json.dumps(value)}; e.dispatchEvent(new Event('change')); }})()")
+
     def drag(self, start, end, steps=8, after_step=lambda: time.sleep(0.04), **more):
         (x0, y0), (x1, y1) = self.at(*start), self.at(*end)
         self.mouse("mouseMoved", x0, y0)
@@ -195,7 +213,7 @@ class Page:
         self.mouse("mouseReleased", x1, y1, button="left", clickCount=1, **more)
 
     def key(self, key):
-        code = {"Escape": 27}.get(key, 0)
+        code = {"Escape": 27, " ": 32}.get(key, 0)
         self.call("Input.dispatchKeyEvent", type="keyDown", key=key, windowsVirtualKeyCode=code, text=key if len(key) == 1 else "")
         self.call("Input.dispatchKeyEvent", type="keyUp", key=key, windowsVirtualKeyCode=code)
 

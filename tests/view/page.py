@@ -17,25 +17,9 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from browser import ROOT, Browser, Viewer  # noqa: E402
-
-SCENES = ROOT / "scenes"
-TESTS = []
-
-
-def test(function):
-    TESTS.append(function)
-    return function
-
-
-def settled(page, samples=1, seconds=60):
-    """Waits for a picture of all pixels."""
-    page.wait("a picture of all pixels", f"window.etalonLog?.some(e => e.what === 'error' && e.block === 1 && e.samples >= {samples})", seconds)
-
-
-def ended(page):
-    """Waits until the samples that the pilot planned for the stated error are taken."""
-    page.wait("the end of the render", "document.getElementById('phase')?.dataset.phase === 'done'", 120)
+import controls  # noqa: E402, F401 (its tests add themselves)
+from browser import Browser, Viewer  # noqa: E402
+from suite import SCENES, TESTS, ended, settled, test  # noqa: E402
 
 
 @test
@@ -106,7 +90,8 @@ def click_draws_paths(context):
         paths = page.log("paths")[-1]
         assert paths["paths"] == 24 and paths["vertices"] >= 24, paths
         lines = page.run("document.querySelectorAll('#overlay line').length")
-        assert lines > 20 and "vertices" in page.text("paths-list"), lines
+        told = page.text("paths-list")
+        assert lines > 20 and "vertices" in told and "weight" in told, lines
         page.shot(context.shots, "paths")
         page.key("Escape")
         assert page.run("document.querySelectorAll('#overlay line').length") == 0
@@ -214,7 +199,10 @@ def effects_are_switched_and_compared(context):
         page.choose("#costs")
         page.wait("costs", "[...document.querySelectorAll('#effects-on .cost')].length >= 3", 90)
         page.shot(context.shots, "costs")
-        return f"verdict: {verdict}; costs: " + " | ".join(page.run("[...document.querySelectorAll('#effects-on .cost')].map(e => e.innerText)")[:2])
+        costs = page.run("[...document.querySelectorAll('#effects-on .cost')].map(e => e.innerText)")[:2]
+        page.key("ArrowLeft")
+        page.wait("another picture without costs", "document.querySelectorAll('#effects-on .cost').length === 0")
+        return f"verdict: {verdict}; costs: " + " | ".join(costs)
 
 
 @test

@@ -187,6 +187,13 @@ fn a_picture_from_a_file_is_developed_and_told_pixel_by_pixel() {
     let pixel: serde_json::Value = serde_json::from_slice(&body).unwrap();
     assert!(status == 200 && pixel["rgb"] == serde_json::json!([0.5, 0.25, 0.125]), "{pixel}");
     assert_eq!(get(port, "ask/pixel?x=2&y=0").0, 404);
+    // A spot that is to look white is told as a colour, which a look takes.
+    let (status, _, body) = get(port, "ask/white?x=1&y=0");
+    let spot: serde_json::Value = serde_json::from_slice(&body).unwrap();
+    let white = spot["white"].as_str().unwrap();
+    assert!(status == 200 && white.starts_with("xy:0."), "{spot}");
+    assert_eq!(get(port, &format!("ask/picture.png?white={white}")).0, 200);
+    assert_eq!(get(port, "ask/white?x=2&y=0").0, 422);
     // It has no errors, no bands and no paths.
     for lacking in ["ask/map.png?kind=relative", "ask/spectrum?x=0&y=0", "ask/paths?x=0&y=0&count=3"] {
         assert_eq!(get(port, lacking).0, 422, "{lacking}");
