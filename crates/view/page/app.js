@@ -67,7 +67,7 @@ function update(now) {
   document.querySelector("input[name=map][value=samples]").disabled = !now.adaptive_gain && now.is_scene;
   showProblems(now);
   if (before && now.picture !== before.picture) {
-    inspector.refresh(now.stage !== before.stage);
+    inspector.refresh(now.stage);
     log("error", { picture: now.picture, block: now.block, samples: now.samples, seconds: now.seconds, relative_rmse: now.error?.relative_rmse ?? null, phase: now.phase, stage: now.stage });
   }
   if (before && now.stage !== before.stage && paths.at) paths.close();

@@ -19,6 +19,7 @@ export class Inspector {
     this.at = null;
     this.onObject = onObject;
     this.info = null;
+    this.stage = 0;
     this.look = latest(async (at) => this.#look(at));
     this.refine = latest(async (at, paths) => this.#refine(at, paths));
   }
@@ -34,7 +35,9 @@ export class Inspector {
   }
 
   // The picture changed under the cursor.
-  refresh(isNewStage) {
+  refresh(stage) {
+    const isNewStage = stage !== this.stage;
+    this.stage = stage;
     if (!this.at) return;
     this.look(this.at);
     if (!isNewStage) return;

@@ -87,28 +87,26 @@ impl SpectralProbe {
     /// A sentence that says why there is none.
     pub(crate) fn ask(&self, live: &Live, at: [u32; 2], samples: u32) -> Result<Spectrum, String> {
         let mut place = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let origin = not_kept(live, place.as_ref())?;
         live.overhead.probe(|| {
-            let kept = current(live, &mut place)?;
+            if let Some(origin) = origin {
+                let earlier = place.take().map(|kept| kept.prepared);
+                *place = Some(Kept::new(origin, earlier)?);
+            }
+            let kept = place.as_mut().ok_or("the scene is not ready")?;
             let most_s = if may_go_on(live) { MOST_S } else { 0.0 };
             Ok(kept.spectrum(at, samples, most_s))
         })
     }
 }
 
-/// The scene with bands of the stage under way, which is prepared if it is not kept. The lock of the stage is not held meanwhile: the next
-/// stage waits for it.
-fn current<'a>(live: &Live, place: &'a mut Option<Kept>) -> Result<&'a mut Kept, String> {
-    let origin = {
-        let stage = live.stage.read().unwrap_or_else(PoisonError::into_inner);
-        let stage = stage.as_ref().ok_or("the scene is not ready")?;
-        let is_kept = place.as_ref().is_some_and(|kept| kept.stage == stage.number);
-        (!is_kept).then(|| Origin::of(stage))
-    };
-    if let Some(origin) = origin {
-        let earlier = place.take().map(|kept| kept.prepared);
-        *place = Some(Kept::new(origin, earlier)?);
-    }
-    place.as_mut().ok_or_else(|| "the scene is not ready".to_owned())
+/// What a scene with bands of the stage under way is prepared from; `None` if it is kept. The lock of the stage is not held for long: the
+/// next stage waits for it.
+fn not_kept(live: &Live, kept: Option<&Kept>) -> Result<Option<Origin>, String> {
+    let stage = live.stage.read().unwrap_or_else(PoisonError::into_inner);
+    let stage = stage.as_ref().ok_or("the scene is not ready")?;
+    let is_kept = kept.is_some_and(|kept| kept.stage == stage.number);
+    Ok((!is_kept).then(|| Origin::of(stage)))
 }
 
 /// Whether there is time for more than the first paths of a pixel.
