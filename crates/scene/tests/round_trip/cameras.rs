@@ -56,4 +56,7 @@ fn orthographic_cameras() {
     let camera = camera(text, "{\"width\": 2, \"height\": 1}");
     assert_eq!(camera.projection, Projection::Orthographic { height_m: 4.0 });
     assert_eq!((camera.forward, camera.up), ([0.0, -1.0, 0.0], [0.0, 0.0, -1.0]));
+    // What the scene calls up stays at its angle to the view.
+    let [x, y, z] = camera.world_up;
+    assert!(x == 0.0 && y == -z && (y - 0.5_f64.sqrt()).abs() < 1e-15, "{:?}", camera.world_up);
 }

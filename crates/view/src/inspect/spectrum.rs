@@ -88,7 +88,7 @@ impl SpectralProbe {
     pub(crate) fn ask(&self, live: &Live, at: [u32; 2], samples: u32) -> Result<Spectrum, String> {
         let mut place = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let origin = not_kept(live, place.as_ref())?;
-        live.overhead.probe(|| {
+        live.overhead.probe(|| -> Result<Spectrum, String> {
             if let Some(origin) = origin {
                 let earlier = place.take().map(|kept| kept.prepared);
                 *place = Some(Kept::new(origin, earlier)?);

@@ -57,7 +57,7 @@ pub(crate) async fn run(listener: TcpListener, app: Arc<App>) -> std::io::Result
 
 /// The address that a browser on this machine opens. Where the server listens at every address, it is that of the machine itself.
 pub(crate) fn address_of(bound: SocketAddr, token: &Token) -> String {
-    let ip = match bound.ip() {
+    let ip: IpAddr = match bound.ip() {
         IpAddr::V4(ip) if ip.is_unspecified() => Ipv4Addr::LOCALHOST.into(),
         IpAddr::V6(ip) if ip.is_unspecified() => Ipv6Addr::LOCALHOST.into(),
         ip => ip,
