@@ -132,7 +132,8 @@ pub(crate) fn pixel(app: &App, at: [u32; 2]) -> Result<Response, Refusal> {
 
 /// The white of a look in which what is seen about a pixel looks white.
 pub(crate) fn white(app: &App, at: [u32; 2]) -> Result<Response, Refusal> {
-    let xy = of_pixel::white_at(&snapshot(app, false)?, at).map_err(cannot)?;
+    let picture = snapshot(app, false)?;
+    let xy = of_pixel::white_at(&picture, at).map_err(cannot)?;
     Ok(json(&serde_json::json!({ "white": white_of_chromaticity(xy) })))
 }
 
