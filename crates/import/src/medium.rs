@@ -14,6 +14,40 @@ pub(crate) fn in_unit_box(vol: &mut [u8]) -> Result<(), String> {
     Ok(())
 }
 
+/// The means of the channels of a .vol file: one, or three of a colour.
+///
+/// # Errors
+/// If the file holds no numbers, or others than floats in one or three channels.
+pub(crate) fn means(vol: &[u8]) -> Result<Vec<f64>, String> {
+    let word = |at: usize| vol.get(at..at + 4).map(|bytes| u32::from_le_bytes(bytes.try_into().expect("four bytes")));
+    let (Some(1), Some(channels @ (1 | 3))) = (word(4), word(20)) else {
+        return Err("it is no .vol file of floats in one channel or three".into());
+    };
+    let channels = channels as usize;
+    let values: Vec<f64> = floats(vol).collect();
+    if values.is_empty() || !values.len().is_multiple_of(channels) {
+        return Err("it ends in the middle of its values".into());
+    }
+    let cells = (values.len() / channels) as f64;
+    Ok((0..channels).map(|channel| values.iter().skip(channel).step_by(channels).sum::<f64>() / cells).collect())
+}
+
+/// Makes a .vol file of colours one of numbers: the mean of the three channels of each cell.
+pub(crate) fn without_colour(vol: &mut Vec<u8>) {
+    let values: Vec<f64> = floats(vol).collect();
+    vol.truncate(HEADER);
+    vol[20..24].copy_from_slice(&1_u32.to_le_bytes());
+    vol.extend(values.chunks_exact(3).flat_map(|rgb| ((rgb.iter().sum::<f64>() / 3.0) as f32).to_le_bytes()));
+}
+
+/// Bytes of a .vol file before its values.
+const HEADER: usize = 48;
+
+fn floats(vol: &[u8]) -> impl Iterator<Item = f64> {
+    let values = vol.get(HEADER..).unwrap_or(&[]);
+    values.chunks_exact(4).map(|bytes| f64::from(f32::from_le_bytes(bytes.try_into().expect("four bytes"))))
+}
+
 /// A .vol file of densities, x running first.
 pub(crate) fn vol(cells: [u32; 3], box_m: [[f64; 3]; 2], densities: &[f64]) -> Vec<u8> {
     let mut bytes = b"VOL\x03".to_vec();

@@ -101,7 +101,7 @@ impl Walk<'_, '_, '_> {
         Ok(value)
     }
 
-    fn rgb(&mut self, text: &str, place: &str, of: Of) -> Result<Value, String> {
+    pub(super) fn rgb(&mut self, text: &str, place: &str, of: Of) -> Result<Value, String> {
         let rgb = match numbers(text).map_err(|why| format!("{place}: {why}"))?[..] {
             [grey] => [grey; 3],
             [r, g, b] => [r, g, b],

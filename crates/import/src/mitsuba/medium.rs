@@ -6,7 +6,15 @@ use super::Walk;
 use super::colour::Of;
 use super::element::Element;
 use crate::matrix::steps;
-use crate::medium::{blended, in_unit_box};
+use crate::medium::{blended, in_unit_box, means, without_colour};
+
+/// What a grid says of a medium.
+struct Grid {
+    /// Numbers, from place to place.
+    density: Value,
+    /// What they are to be multiplied by: 1, or the colour of a grid of colours.
+    extinction: Value,
+}
 
 impl<'a> Walk<'a, '_, '_> {
     /// The medium that an element has under a name, such as "interior".
@@ -42,9 +50,9 @@ impl<'a> Walk<'a, '_, '_> {
             "heterogeneous" => {
                 let stated = element.property("sigma_t").ok_or_else(|| format!("{place}: it has no \"sigma_t\""))?;
                 match self.grid(stated)? {
-                    Some(density) => {
+                    Some(Grid { density, extinction }) => {
                         made["density"] = density;
-                        json!(scale)
+                        scaled(extinction, scale)
                     }
                     None => scaled(self.uniform(stated, Of::Coefficient)?, scale),
                 }
@@ -69,6 +77,9 @@ impl<'a> Walk<'a, '_, '_> {
         if target.tag != "volume" {
             return self.colour_of(target, of);
         }
+        if target.plugin() == "gridvolume" {
+            return self.mean_of_grid(target, of);
+        }
         if target.plugin() != "constvolume" {
             let what = format!("the volume \"{}\" becomes the same everywhere, 0.75", target.plugin());
             self.builder.approximate(&target.place, what);
@@ -79,8 +90,19 @@ impl<'a> Walk<'a, '_, '_> {
         self.colour_of(value, of)
     }
 
-    /// The density of a grid of numbers; `None` of what is the same everywhere.
-    fn grid(&mut self, stated: &'a Element) -> Result<Option<Value>, String> {
+    /// The mean of a grid that can only be the same everywhere here.
+    fn mean_of_grid(&mut self, volume: &'a Element, of: Of) -> Result<Value, String> {
+        let place = &volume.place;
+        let name = volume.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+        let means =
+            means(&self.builder.bytes_of(&name, place)?).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
+        self.builder.approximate(place, "a grid becomes the same everywhere, its mean");
+        volume.children.iter().for_each(Element::mark);
+        self.rgb(&words(&means), place, of)
+    }
+
+    /// The density of a grid; `None` of what is the same everywhere.
+    fn grid(&mut self, stated: &'a Element) -> Result<Option<Grid>, String> {
         let volume = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
         if volume.tag != "volume" || volume.plugin() != "gridvolume" {
             return Ok(None);
@@ -89,6 +111,21 @@ impl<'a> Walk<'a, '_, '_> {
         let place = &volume.place;
         let name = volume.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
         let mut bytes = self.builder.bytes_of(&name, place)?;
+        let means = means(&bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
+        let grey = means.iter().sum::<f64>() / means.len() as f64;
+        let extinction = if means.len() == 1 || grey == 0.0 {
+            json!(1)
+        } else {
+            self.builder.approximate(
+                place,
+                "a grid of colours keeps one colour, its mean; its density is the mean of the channels",
+            );
+            let colour: Vec<f64> = means.iter().map(|mean| mean / grey).collect();
+            self.rgb(&words(&colour), place, Of::Coefficient)?
+        };
+        if means.len() == 3 {
+            without_colour(&mut bytes);
+        }
         if !volume.flag("use_grid_bbox")?.unwrap_or(false) {
             in_unit_box(&mut bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
         }
@@ -105,7 +142,7 @@ impl<'a> Walk<'a, '_, '_> {
         if !transform.is_null() {
             density["transform"] = transform;
         }
-        Ok(Some(density))
+        Ok(Some(Grid { density, extinction }))
     }
 
     fn phase(&mut self, element: &'a Element) -> Result<Value, String> {
@@ -158,6 +195,11 @@ impl<'a> Walk<'a, '_, '_> {
         element.list_unused(self.builder);
         Ok(phase)
     }
+}
+
+/// Numbers as the attribute of an element writes them.
+fn words(numbers: &[f64]) -> String {
+    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
 }
 
 /// A spectrum times a factor.

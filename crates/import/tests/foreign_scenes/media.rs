@@ -62,6 +62,32 @@ fn media_of_mitsuba_arrive() {
     assert!(said.len() == 1 && said[0].contains("only glass and \"null\" let light in"), "{said:?}");
 }
 
+/// Two cells, (3, 2, 1) and (0, 1, 2): each cell has the mean of its channels, the grid the colour (1.5, 1.5, 1.5), which is grey.
+/// As an albedo, twice as bright as a colour can be, it is clamped.
+#[test]
+fn grids_of_colours_keep_their_density_and_their_mean_colour() {
+    let of = |albedo: &str| {
+        format!(
+            r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="cube"><bsdf type="null"/>
+  <medium name="interior" type="heterogeneous"><float name="scale" value="2"/>{albedo}
+    <volume name="sigma_t" type="gridvolume"><string name="filename" value="coloured.vol"/></volume></medium></shape></scene>"#
+        )
+    };
+    let first = imported("xml", &of(r#"<float name="albedo" value="1"/>"#));
+    let scattering = scene(&first);
+    let medium = within(&scattering, 0);
+    // Colours become spectra, which have them to three digits.
+    let grey = |found: [f64; 2]| assert!(found[0] < 2e-3 && (found[1] - 2.0).abs() < 2e-3, "{found:?}");
+    grey(coefficients(medium, 550.0));
+    let MediumDensity::Grid(grid) = &medium.density else { panic!("{:?}", medium.density) };
+    assert_eq!((grid.cells, &grid.values[..]), ([1, 1, 2], &[2.0, 1.0][..]));
+    assert!(said(&first).iter().any(|what| what.contains("keeps one colour")), "{:?}", said(&first));
+    let albedo = r#"<volume name="albedo" type="gridvolume"><string name="filename" value="coloured.vol"/></volume>"#;
+    let second = imported("xml", &of(albedo));
+    assert!(said(&second).iter().any(|what| what.contains("its mean")), "{:?}", said(&second));
+    grey(coefficients(within(&scene(&second), 0), 550.0));
+}
+
 #[test]
 fn media_of_pbrt_arrive() {
     let text = r#"MakeNamedMedium "haze" "string type" "homogeneous" "float sigma_a" 0.25 "float sigma_s" 0.5 "float g" -0.3

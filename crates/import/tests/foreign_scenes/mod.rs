@@ -27,16 +27,20 @@ const INCLUDED: &[u8] = br#"<scene version="3.0.0">
   <bsdf type="twosided" id="red"><bsdf type="diffuse"><rgb name="reflectance" value="0.6, 0.1, 0.05"/></bsdf></bsdf>
 </scene>"#;
 
+/// A grid of two cells.
+fn vol(channels: i32, values: &[f32]) -> Vec<u8> {
+    let head = [1, 1, 1, 2, channels].into_iter().flat_map(i32::to_le_bytes);
+    let numbers = [0.0, 0.0, 0.0, 9.0, 9.0, 9.0].iter().chain(values).flat_map(|number: &f32| number.to_le_bytes());
+    b"VOL\x03".iter().copied().chain(head).chain(numbers).collect()
+}
+
 fn near(name: &str) -> Result<Vec<u8>, String> {
     match name {
         "chequers.png" => Ok(PNG.to_vec()),
         "a.obj" => Ok(OBJ.to_vec()),
         "normals.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n".to_vec()),
-        "smoke.vol" => {
-            let head = [1, 1, 1, 2, 1_i32].iter().flat_map(|word| word.to_le_bytes());
-            let numbers = [0.0, 0.0, 0.0, 9.0, 9.0, 9.0, 0.5, 1.5_f32].iter().flat_map(|number| number.to_le_bytes());
-            Ok(b"VOL\x03".iter().copied().chain(head).chain(numbers).collect())
-        }
+        "smoke.vol" => Ok(vol(1, &[0.5, 1.5])),
+        "coloured.vol" => Ok(vol(3, &[3.0, 2.0, 1.0, 0.0, 1.0, 2.0])),
         "inc.xml" => Ok(INCLUDED.to_vec()),
         "inc.pbrt" => Ok(b"Shape \"sphere\" \"float radius\" 2\n".to_vec()),
         "itself.xml" => Ok(br#"<scene version="3.0.0"><include filename="itself.xml"/></scene>"#.to_vec()),
