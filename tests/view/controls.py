@@ -16,9 +16,10 @@ def stop_buttons_keep_click_and_focus(context):
         selector = "input[name=target][value='0.01']"
         page.run(f"window.button = document.querySelector({json.dumps(selector)})")
         page.press(selector, while_down=lambda: pictures_pass(page))
-        assert page.run("window.button.checked && document.activeElement === window.button")
+        state = "[window.button.isConnected, window.button.checked, document.activeElement === window.button]"
+        assert page.run(state) == [True, True, True], page.run(state)
         pictures_pass(page)
-        assert page.run("window.button.isConnected && window.button.checked && document.activeElement === window.button")
+        assert page.run(state) == [True, True, True], page.run(state)
         target = context.status(viewer)["target"]
         assert target == 0.01, target
         values = [float(v) for v in page.run("[...document.querySelectorAll('input[name=target]')].map(e => e.value)")]
