@@ -52,9 +52,11 @@ const PARTS: &[&str] = &[
     "tests/peers/mitsuba/cases.py",
     "tests/peers/mitsuba/files.py",
     "tests/view/browser.py",
+    "tests/view/controls.py",
     "tests/view/measure.py",
     "tests/view/page.py",
     "tests/view/pictures.py",
+    "tests/view/suite.py",
 ];
 
 fn all() -> impl Iterator<Item = &'static Named> {

@@ -256,7 +256,7 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 "python",
                 "[--fuzz [COUNT [SEED]]]",
                 "wheel, types, tests and notebooks of the Python package, or arbitrary dicts for it; needs Python 3.10 and pip",
-                "15 min",
+                "6 min",
                 Script("tests/python.sh"),
             ),
             named(
