@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Renders the pictures of docs/gallery and writes docs/gallery/README.md: each picture with its command, time and error.
 
-    python3 docs/gallery/gallery.py [path of etalon] [--error PERCENT] [--only NAME,NAME] [--threads N]
+    python3 docs/gallery/gallery.py [path of etalon] [--error PERCENT] [--time SECONDS] [--only NAME,NAME] [--threads N]
 
 Renders are kept in target/gallery with their checkpoints. What is finished is not rendered again, and an interrupted render continues.
+docs/gallery/receipts.json has what each picture cost. The page shows the pictures that it names.
 Needs nothing but Python.
 """
 import argparse
@@ -26,31 +27,24 @@ class Picture(NamedTuple):
 
 
 PICTURES = [
-    Picture("bubble", "scenes/bubble.json", ["--exposure", "0.5", "--curve", "agx"],
+    Picture("bubble", "scenes/bubble.json", ["--exposure", "0"],
             "A soap bubble between two windows. No pigment: both faces of a film of water reflect, and the two waves interfere. The film is thin at the "
             "top, where the bubble is black, and thick at the bottom, where the colours grow pale.", size="360x360"),
-    Picture("titanium", "scenes/titanium.json", ["--exposure", "0.3", "--curve", "agx"],
+    Picture("titanium", "scenes/titanium.json", ["--exposure", "1"],
             "Eight rods of titanium. Each has a thicker layer of clear oxide than its left neighbour, from none to 140 nm, and no dye. Each changes its "
             "colour toward its edges, where light crosses the layer at an angle.", size="480x270"),
-    Picture("coatings", "scenes/coatings.json", ["--exposure", "0.5", "--curve", "agx"],
+    Picture("coatings", "scenes/coatings.json", ["--exposure", "0.7"],
             "Four plates of glass mirror a window: bare glass, an anti-reflection coating of one layer, one of three layers, and a mirror of thirteen. "
             "What a plate does not reflect it passes: see the paper behind the fourth.", size="480x270"),
-    Picture("disc", "scenes/disc.json", ["--exposure", "0.3", "--curve", "agx"],
+    Picture("disc", "scenes/disc.json", ["--exposure", "0.7"],
             "A compact disc under two lamps. Its tracks are a grating. The spectra point to the middle, blue nearest to the mirror image of their lamp.",
             error="10%", size="480x320"),
     Picture("black-light", "scenes/black-light.json", ["--exposure", "1", "--curve", "agx"],
-            "A room under a black light, a tube that shines near 368 nm. The balls and the paper give back what they absorb at longer waves. Look at the "
+            "Balls of paint on a sheet of paper under a black light, a tube that shines near 368 nm. They and the paper give back what they absorb at longer waves. Look at the "
             "light of the balls on the paper.", error="10%", size="480x320"),
     Picture("double-gauss", "scenes/double-gauss.json", ["--exposure", "2", "--curve", "agx"],
             "Marbles on a table, through a double Gauss lens of 50 mm at f/2: every ray is traced through its eleven faces. Look at the lanterns far behind: the lens "
             "shows each as the image of its own pupil, round in the middle and cut off toward the corners.", error="10%", size="480x320"),
-    Picture("milk", "scenes/milk.json", ["--exposure", "0.5", "--curve", "agx"],
-            "A glass of milk and one of watered milk. Light goes far within the milk. The watered milk is bluish from the side and reddish where the "
-            "light comes through, since short waves are scattered more.", error="10%", size="320x240"),
-    Picture("cloud", "scenes/cloud.json", ["--exposure", "0", "--curve", "agx"],
-            "A cloud in the afternoon sun. The bright rim and the dark base are light that was scattered a hundred times.", error="10%", size="320x200"),
-    Picture("fog", "scenes/fog.json", ["--exposure", "1", "--curve", "agx"],
-            "A spot behind a row of bars in a misty hall. Look at the shafts of light and at their shadows in the mist.", size="320x200"),
     Picture("movement", "scenes/movement.glb", ["--exposure", "0.7", "--curve", "agx"],
             "The movement of a watch, from a glTF model. Look at the stripes of the bridges, which brushing makes change from bright to dark as they turn "
             "away from the lamp; at the rubies, whose red is the path of the light through them; at the spring, a ribbon of 35 µm."),
@@ -73,19 +67,25 @@ def told(seconds):
     return f"{int(seconds // 60)} min {round(seconds % 60)} s"
 
 
-def render(etalon, picture, threads, error):
-    name = picture.name
+def render(etalon, picture, error, time, threads):
+    """Renders and develops a picture; gives the report of the render."""
     folder = root / "target/gallery"
     folder.mkdir(parents=True, exist_ok=True)
-    file, report = folder / f"{name}-{error.rstrip('%')}.exr", folder / f"{name}-{error.rstrip('%')}.json"
-    words = ["render", picture.scene, "--size", picture.size, "--error", error]
+    limit = error.rstrip("%") + (f"-{time}" if time else "")
+    file, report = folder / f"{picture.name}-{limit}.exr", folder / f"{picture.name}-{limit}.json"
     if not report.exists():
         more = ["--threads", str(threads)] if threads else []
-        command = [etalon, *words, *more, "--clock", "cpu", "--checkpoint", "60s", "--resume", "--json", "-o", file]
+        if file.with_name(file.name + ".checkpoint").exists():
+            more.append("--resume")
+        command = [etalon, *words(picture, error, time), *more, "--clock", "cpu", "--checkpoint", "60s", "--json", "-o", file]
         made = subprocess.run(command, cwd=root, check=True, stdout=subprocess.PIPE, text=True)
         report.write_text(made.stdout)
-    subprocess.run([etalon, "develop", file, *picture.develop, "--quiet", "-o", here / f"{name}.png"], check=True)
-    return "etalon " + " ".join(words) + f" -o {name}.exr", json.loads(report.read_text())
+    subprocess.run([etalon, "develop", file, *picture.develop, "--quiet", "-o", here / f"{picture.name}.png"], check=True)
+    return json.loads(report.read_text())
+
+
+def words(picture, error, time):
+    return ["render", picture.scene, "--size", picture.size, "--error", error, *(["--time", time] if time else [])]
 
 
 def receipt(report):
@@ -97,27 +97,40 @@ def receipt(report):
     return "; ".join(lines)
 
 
+def section(picture, receipt):
+    name = picture.name
+    command = "etalon " + " ".join(words(picture, receipt["error"], receipt["time"])) + f" -o {name}.exr"
+    return (f"## {name.capitalize()}\n\n![{picture.words.split('.')[0]}]({name}.png)\n\n{picture.words}\n\n```sh illustrative\n{command}\n"
+            f"etalon develop {name}.exr {' '.join(picture.develop)} -o {name}.png\n```\n\n{receipt['cost'].capitalize()}.\n")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("etalon", nargs="?", default=root / "target/release/etalon", type=pathlib.Path)
-    parser.add_argument("--only", type=lambda text: text.split(","), help="these pictures; the page is not written")
+    parser.add_argument("--only", type=lambda text: text.split(","), help="these pictures")
     parser.add_argument("--error", help="of all pictures; default: 5%% or 10%%, as the list says")
+    parser.add_argument("--time", help="end each render after this time, such as 90s, with the error that it has then")
     parser.add_argument("--threads", type=int, help="default: all cores; does not change the pictures")
     args = parser.parse_args()
     etalon = args.etalon.resolve()
-    sections = []
+    kept = here / "receipts.json"
+    receipts = json.loads(kept.read_text()) if kept.exists() else {}
     for picture in PICTURES:
-        name, words = picture.name, picture.words
-        if args.only and name not in args.only:
+        if args.only and picture.name not in args.only:
             continue
-        command, report = render(etalon, picture, args.threads, args.error or picture.error)
-        print(f"{name}: {receipt(report)}", flush=True)
-        sections.append(f"## {name.capitalize()}\n\n![{words.split('.')[0]}]({name}.png)\n\n{words}\n\n```sh illustrative\n{command}\n"
-                        f"etalon develop {name}.exr {' '.join(picture.develop)} -o {name}.png\n```\n\n{receipt(report).capitalize()}.\n")
-    if not args.only:
-        head = ("# Gallery\n\nEach picture states its error and what it cost. `python3 docs/gallery/gallery.py` renders them all and writes this page. The models and images\n"
-                "are made by the scripts in [scenes/generators](../../scenes/generators). No picture was denoised or retouched.\n\n")
-        (here / "README.md").write_text(head + "\n".join(sections))
+        error = args.error or picture.error
+        cost = receipt(render(etalon, picture, error, args.time, args.threads))
+        print(f"{picture.name}: {cost}", flush=True)
+        receipts[picture.name] = {"error": error, "time": args.time, "cost": cost}
+        kept.write_text(json.dumps(receipts, indent=2, ensure_ascii=False, sort_keys=True) + "\n")
+        write_page(receipts)
+
+
+def write_page(receipts):
+    head = ("# Gallery\n\nEach picture states its error and what it cost. `python3 docs/gallery/gallery.py` renders them all and writes this page. The models and images\n"
+            "are made by the scripts in [scenes/generators](../../scenes/generators). No picture was denoised or retouched.\n\n")
+    shown = [section(picture, receipts[picture.name]) for picture in PICTURES if picture.name in receipts]
+    (here / "README.md").write_text(head + "\n".join(shown))
 
 
 main()
