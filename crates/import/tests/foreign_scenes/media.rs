@@ -62,8 +62,8 @@ fn media_of_mitsuba_arrive() {
     assert!(said.len() == 1 && said[0].contains("only glass and \"null\" let light in"), "{said:?}");
 }
 
-/// Two cells, (3, 2, 1) and (0, 1, 2): each cell has the mean of its channels, the grid the colour (1.5, 1.5, 1.5), which is grey.
-/// As an albedo, twice as bright as a colour can be, it is clamped.
+/// Two cells, (0.75, 0.375, 0) and (0.375, 0.375, 0): each has the mean of its channels, 0.375 and 0.25. The grid has the colour of their
+/// mean, (1.8, 1.2, 0). As an albedo it is (0.5625, 0.375, 0).
 #[test]
 fn grids_of_colours_keep_their_density_and_their_mean_colour() {
     let of = |albedo: &str| {
@@ -76,16 +76,18 @@ fn grids_of_colours_keep_their_density_and_their_mean_colour() {
     let first = imported("xml", &of(r#"<float name="albedo" value="1"/>"#));
     let scattering = scene(&first);
     let medium = within(&scattering, 0);
-    // Colours become spectra, which have them to three digits.
-    let grey = |found: [f64; 2]| assert!(found[0] < 2e-3 && (found[1] - 2.0).abs() < 2e-3, "{found:?}");
-    grey(coefficients(medium, 550.0));
+    // Channels in the other order would make it blue.
+    let extinction = |nm| coefficients(medium, nm)[1];
+    assert!(extinction(650.0) > 4.0 * extinction(450.0), "{} {}", extinction(650.0), extinction(450.0));
     let MediumDensity::Grid(grid) = &medium.density else { panic!("{:?}", medium.density) };
-    assert_eq!((grid.cells, &grid.values[..]), ([1, 1, 2], &[2.0, 1.0][..]));
+    assert_eq!((grid.cells, &grid.values[..]), ([1, 1, 2], &[0.375, 0.25][..]));
     assert!(said(&first).iter().any(|what| what.contains("keeps one colour")), "{:?}", said(&first));
     let albedo = r#"<volume name="albedo" type="gridvolume"><string name="filename" value="coloured.vol"/></volume>"#;
     let second = imported("xml", &of(albedo));
     assert!(said(&second).iter().any(|what| what.contains("its mean")), "{:?}", said(&second));
-    grey(coefficients(within(&scene(&second), 0), 550.0));
+    // Less is scattered where the albedo is less than 1.
+    let [_, scattered] = coefficients(within(&scene(&second), 0), 650.0);
+    assert!(scattered > 0.0 && scattered < 0.9 * extinction(650.0), "{scattered}");
 }
 
 #[test]

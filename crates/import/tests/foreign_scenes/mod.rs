@@ -40,7 +40,7 @@ fn near(name: &str) -> Result<Vec<u8>, String> {
         "a.obj" => Ok(OBJ.to_vec()),
         "normals.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n".to_vec()),
         "smoke.vol" => Ok(vol(1, &[0.5, 1.5])),
-        "coloured.vol" => Ok(vol(3, &[3.0, 2.0, 1.0, 0.0, 1.0, 2.0])),
+        "coloured.vol" => Ok(vol(3, &[0.75, 0.375, 0.0, 0.375, 0.375, 0.0])),
         "inc.xml" => Ok(INCLUDED.to_vec()),
         "inc.pbrt" => Ok(b"Shape \"sphere\" \"float radius\" 2\n".to_vec()),
         "itself.xml" => Ok(br#"<scene version="3.0.0"><include filename="itself.xml"/></scene>"#.to_vec()),

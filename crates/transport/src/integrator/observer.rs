@@ -56,7 +56,7 @@ pub(crate) enum Found {
 
 impl<const N: usize> Observer<N> for () {}
 
-/// All observers but `()`: a kernel is compiled once for them, and a call costs nothing beside what they do.
+/// For all observers but `()`: so a kernel is compiled twice, with and without an observer. Such a call takes little beside its work.
 impl<const N: usize> Observer<N> for &mut dyn Observer<N> {
     fn vertex(&mut self, vertex: u32, position: Vec3<f64>, object: u32, beta: Lanes<f64, N>) {
         (**self).vertex(vertex, position, object, beta);

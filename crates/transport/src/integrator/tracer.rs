@@ -60,7 +60,7 @@ pub(crate) struct Tracer<'a> {
     pub(crate) prepared: &'a Prepared,
     pub(crate) camera: Camera,
     pub(crate) world: World<'a>,
-    /// Of the random numbers: that of the scene, but for a trial.
+    /// Of the random numbers. A trial has another than the scene.
     pub(crate) seed: u64,
     /// The block of pixels that share paths: alone, one.
     block: [u32; 2],

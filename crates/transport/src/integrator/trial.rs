@@ -18,7 +18,7 @@ const PIXELS: u64 = 1024;
 const SAMPLES: u32 = 16;
 /// Paths that the trial draws more than five times as often as the cosine would do not count. Without guided targets they bear much of the
 /// variance, but are so rare that hardly any picture has them: with them, the trial promises much where nothing is won (two balls in
-/// a room: .1 to .5 of the variance, in truth .9 of the error).
+/// a room: 0.1 to 0.5 of the variance, in truth 0.9 of the error).
 const RARE: f64 = 0.2;
 /// How far around a pixel its level is averaged, in tried pixels.
 const NEAR: usize = 2;

@@ -12,8 +12,8 @@ use crate::plan::kernels::{self, KernelKind, LANES};
 use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::scene::prepare::Prepared;
 
-/// Adds samples to pixels: to their sums, pixel by pixel, in each replicate by replicate; and the rays of all kinds that each took,
-/// unless nobody asks for that.
+/// Adds samples to the sums of pixels: pixel by pixel, and in each pixel replicate by replicate. Where the last slice is not empty, adds
+/// to it the rays that each pixel took.
 pub(crate) type RenderPixels = fn(&Prepared, &[PixelSamples], Sums<'_>, &mut [u64]) -> Counters;
 
 /// The path loop for one model of wavelengths.
@@ -25,7 +25,7 @@ pub(crate) struct Kernel {
     pub render_batch: RenderPixels,
     /// One path at a time where neighbouring pixels share paths, if they can.
     pub render_reused: Option<RenderPixels>,
-    /// Traces sample number `.3` of the pixel (`.1`, `.2`) once more and tells what happened.
+    /// Traces a sample once more and tells what happened. Takes the column and row of its pixel, and its number.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
     /// Tells what guided targets of caustics would win, by a trial with random numbers of a seed.
     pub try_guided_targets: fn(&Prepared, u64) -> Trial,
