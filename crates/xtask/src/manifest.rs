@@ -129,11 +129,11 @@ mod tests {
     /// Where a crate has one program of tests, cargo looks for no others: a file that it does not name would never run.
     #[test]
     fn every_file_of_tests_is_named_in_the_program_of_tests() {
-        let crates = std::fs::read_dir(crate::root().join("crates")).unwrap().map(|entry| entry.unwrap().path());
+        let crates = fs::read_dir(crate::root().join("crates")).unwrap().map(|entry| entry.unwrap().path());
         let mut seen = 0;
         for tests in crates.map(|folder| folder.join("tests")) {
-            let Ok(main) = std::fs::read_to_string(tests.join("main.rs")) else { continue };
-            for path in std::fs::read_dir(&tests).unwrap().map(|entry| entry.unwrap().path()) {
+            let Ok(main) = fs::read_to_string(tests.join("main.rs")) else { continue };
+            for path in fs::read_dir(&tests).unwrap().map(|entry| entry.unwrap().path()) {
                 let is_module = path.extension().is_some_and(|end| end == "rs") || path.join("mod.rs").exists();
                 let name = path.file_stem().unwrap().to_str().unwrap();
                 if is_module && name != "main" {
