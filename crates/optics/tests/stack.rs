@@ -143,6 +143,24 @@ proptest! {
         }
     }
 
+    /// Transparent layers have matrices of real numbers, all others complex ones: both are the same wave.
+    #[test]
+    fn a_layer_that_absorbs_next_to_nothing_is_a_transparent_one(
+        layers in transparent(), cos in 0.0..=1.0_f64, nm in 360.0..830.0_f64, n in 1.0..2.5_f64, behind in 1.0..2.5_f64,
+    ) {
+        let real = coated(cos, nm, n, &layers, Complex::real(behind));
+        let tinted: Vec<Layer> = layers.iter().map(|l| layer(l.index.re, 1e-30, l.thickness_nm)).collect();
+        let complex = coated(cos, nm, n, &tinted, Complex::real(behind));
+        for (a, b) in [
+            (real.reflection.s, complex.reflection.s),
+            (real.reflection.p, complex.reflection.p),
+            (real.transmission.s, complex.transmission.s),
+            (real.transmission.p, complex.transmission.p),
+        ] {
+            prop_assert!((a - b).squared().sqrt() < 1e-13, "{a:?} {b:?}");
+        }
+    }
+
     /// Whatever absorbs takes, and passes as much from either side (of each polarisation, with its phase).
     #[test]
     fn what_absorbs_takes_light_and_passes_as_much_from_either_side(

@@ -54,7 +54,8 @@ pub struct StackFresnel {
 /// F ← F cos δ − i G sin δ/u, G ← G cos δ − i u F sin δ, δ = 2πqd/λ,
 ///
 /// from (1, u) behind the interface; r = (u₁F − G)/(u₁F + G). Matrices are scaled by e^(−Im δ), so that thick layers that absorb do not
-/// overflow. A layer that absorbs nothing has a real cos δ and sin δ, and then R + T = 1 to a few roundings for each layer.
+/// overflow. A layer that absorbs nothing and that light runs through has a real matrix, which costs a fifth: no exponential and one root. Then
+/// R + T = 1 to a few roundings for each layer.
 #[inline]
 pub fn stack(
     cos_i: f64,
@@ -106,21 +107,32 @@ fn between(
     let mut fields = [(Complex::ONE, u_t[0]), (Complex::ONE, u_t[1])];
     let mut scale = 1.0;
     for Layer { index, thickness_nm } in layers {
-        let (q, m2) = normal_component(index, tangential);
         let waves = thickness_nm / wavelength_nm;
-        let in_turns = q.re * waves;
-        let (sin, cos) = f64::sin_cos_turns(in_turns - (in_turns as u64) as f64);
-        let decay = 2.0 * f64::PI * q.im * waves;
-        let (kept, lost) = (0.5 * (1.0 + exp_neg(2.0 * decay)), 0.5 * one_minus_exp_neg(2.0 * decay));
-        scale *= exp_neg(decay);
-        let cos_delta = Complex::new(cos * kept, -sin * lost);
-        let sin_delta = Complex::new(sin * kept, cos * lost);
-        // sin δ/q, which is the optical thickness where the wave runs along the layer.
-        let over_q = if q == Complex::ZERO { Complex::real(2.0 * f64::PI * waves) } else { sin_delta.over(q) };
-        for ((f, g), (u, over_u)) in fields.iter_mut().zip([(q, over_q), (q.over(m2), over_q * m2)]) {
-            let (before_f, before_g) = (*f, *g);
-            *f = before_f * cos_delta - (before_g * over_u).times_i();
-            *g = before_g * cos_delta - (before_f * u * sin_delta).times_i();
+        match crossing(index, tangential) {
+            Crossing::Lossless { q, m2 } => {
+                let (sin, cos) = sin_cos_of_phase(q * waves);
+                let over_q = if q == 0.0 { 2.0 * f64::PI * waves } else { sin / q };
+                for ((f, g), (u_sin, over_u)) in fields.iter_mut().zip([(q * sin, over_q), (q * sin / m2, over_q * m2)])
+                {
+                    let (before_f, before_g) = (*f, *g);
+                    *f = before_f.scaled(cos) - before_g.scaled(over_u).times_i();
+                    *g = before_g.scaled(cos) - before_f.scaled(u_sin).times_i();
+                }
+            }
+            Crossing::Decaying { q, m2 } => {
+                let (sin, cos) = sin_cos_of_phase(q.re * waves);
+                let decay = 2.0 * f64::PI * q.im * waves;
+                let (kept, lost) = (0.5 * (1.0 + exp_neg(2.0 * decay)), 0.5 * one_minus_exp_neg(2.0 * decay));
+                scale *= exp_neg(decay);
+                let cos_delta = Complex::new(cos * kept, -sin * lost);
+                let sin_delta = Complex::new(sin * kept, cos * lost);
+                let over_q = if q == Complex::ZERO { Complex::real(2.0 * f64::PI * waves) } else { sin_delta.over(q) };
+                for ((f, g), (u, over_u)) in fields.iter_mut().zip([(q, over_q), (q.over(m2), over_q * m2)]) {
+                    let (before_f, before_g) = (*f, *g);
+                    *f = before_f * cos_delta - (before_g * over_u).times_i();
+                    *g = before_g * cos_delta - (before_f * u * sin_delta).times_i();
+                }
+            }
         }
     }
     let wave = |k: usize| {
@@ -135,6 +147,30 @@ fn between(
     };
     let ((r_s, t_s), (r_p, t_p)) = (wave(0), wave(1));
     StackFresnel { reflection: Amplitudes { s: r_s, p: r_p }, transmission: Amplitudes { s: t_s, p: t_p } }
+}
+
+/// How a wave crosses a layer: q, and the square of the layer's index.
+enum Crossing {
+    /// The layer is transparent and light runs through it: all its numbers are real.
+    Lossless { q: f64, m2: f64 },
+    /// It absorbs, or the wave is evanescent.
+    Decaying { q: Complex, m2: Complex },
+}
+
+#[inline(always)]
+fn crossing(index: Complex, tangential: f64) -> Crossing {
+    let m2 = index.re * index.re;
+    if index.im == 0.0 && m2 >= tangential {
+        return Crossing::Lossless { q: (m2 - tangential).sqrt_nonnegative(), m2 };
+    }
+    let (q, m2) = normal_component(index, tangential);
+    Crossing::Decaying { q, m2 }
+}
+
+/// Of a phase in turns, at least 0.
+#[inline(always)]
+fn sin_cos_of_phase(turns: f64) -> (f64, f64) {
+    f64::sin_cos_turns(turns - (turns as u64) as f64)
 }
 
 /// q in the first quadrant for an index n + ik, and (n + ik)².
