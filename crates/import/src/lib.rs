@@ -49,6 +49,7 @@ mod relief;
 mod round;
 mod sides;
 mod table;
+mod translucent;
 mod uv;
 mod vertex_colours;
 

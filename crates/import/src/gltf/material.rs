@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 
 use super::accessor::bytes_of;
 use super::clearcoat;
+use super::diffuse_transmission;
 use super::file::resource;
 use super::image::TextureTransform;
 use super::iridescence::Iridescence;
@@ -143,6 +144,7 @@ impl Materials {
         {
             ground = json!({ "type": "lambert", "reflectance": colour });
         }
+        let ground = diffuse_transmission::over(ground, material, place, builder);
         let iridescence = Iridescence::of(material, place, builder);
         let metal = || {
             let bare = part("conductor", &roughness);
@@ -437,9 +439,10 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
     list(weak && opaque, "extensions.KHR_materials_transmission", "a factor below 0.5 becomes opaque");
     let coloured = material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite());
     list(coloured && opaque, "extensions.KHR_materials_volume", "it is ignored: the material does not transmit light");
-    const KNOWN: [&str; 4] = [
+    const KNOWN: [&str; 5] = [
         "KHR_materials_anisotropy",
         "KHR_materials_clearcoat",
+        "KHR_materials_diffuse_transmission",
         "KHR_materials_dispersion",
         "KHR_materials_iridescence",
     ];

@@ -5,6 +5,7 @@ mod animation;
 mod camera;
 mod clearcoat;
 mod colours;
+mod diffuse_transmission;
 mod file;
 mod image;
 mod iridescence;

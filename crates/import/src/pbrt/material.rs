@@ -9,6 +9,7 @@ use crate::metals;
 use crate::number::{Number, Rough};
 use crate::relief::has_map;
 use crate::table::{Table, metal};
+use crate::translucent::{scaled, translucent};
 
 impl Reading<'_, '_> {
     pub(super) fn material(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Look, String> {
@@ -19,6 +20,15 @@ impl Reading<'_, '_> {
             "diffuse" => {
                 let reflectance = self.reflectance(list, "reflectance", true)?.unwrap_or(json!(0.5));
                 json!({ "type": "lambert", "reflectance": reflectance })
+            }
+            "diffusetransmission" => {
+                let scale = list.numbers("scale").and_then(|numbers| numbers.first().copied()).unwrap_or(1.0).max(0.0);
+                let mut share = |name: &str| {
+                    let value = self.reflectance(list, name, true)?.unwrap_or(json!(0.25));
+                    Ok::<_, String>(if scale == 1.0 { value } else { scaled(value, scale) })
+                };
+                let (reflectance, transmittance) = (share("reflectance")?, share("transmittance")?);
+                translucent(reflectance, transmittance, place, self.builder)
             }
             "coateddiffuse" => {
                 let reflectance = self.reflectance(list, "reflectance", true)?.unwrap_or(json!(0.5));

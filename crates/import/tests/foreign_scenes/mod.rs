@@ -13,6 +13,7 @@ mod relief;
 mod sheets;
 mod sides;
 mod spots;
+mod translucent;
 mod vertex_colours;
 
 use etalon_import::{Imported, import_bytes};

@@ -50,6 +50,7 @@ mod sources;
 mod stokes;
 mod surfaces;
 mod textures;
+mod translucent;
 mod tubes;
 mod view_factors;
 mod water;
@@ -334,7 +335,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 35] = [
+const GROUPS: [fn() -> Vec<Truth>; 36] = [
     furnaces::truths,
     beckmann::truths,
     facets::truths,
@@ -367,6 +368,7 @@ const GROUPS: [fn() -> Vec<Truth>; 35] = [
     named::truths,
     skies::truths,
     surfaces::truths,
+    translucent::truths,
     media::truths,
     meters::truths,
     luminous::truths,

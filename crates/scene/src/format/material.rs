@@ -8,6 +8,7 @@ mod index;
 mod roughness;
 mod sheet;
 mod thin_film;
+mod translucent;
 
 use etalon_optics::OutsideFit;
 
@@ -35,6 +36,7 @@ use index::{NamedMetal, complex_index, complex_keys};
 use roughness::{RoughnessKeys, roughness, roughness_keys};
 use sheet::{PolariserMaterial, RetarderMaterial, polariser, retarder};
 use thin_film::{FilmLayerForm, thin_film};
+use translucent::{TranslucentMaterial, translucent};
 
 crate::record! {
     /// Ideal diffuse reflection, on both sides unless "sides" says otherwise.
@@ -280,6 +282,7 @@ crate::variants! {
         "conductor" => Conductor(ConductorMaterial),
         "dielectric" => Dielectric(DielectricMaterial),
         "oren-nayar" => OrenNayar(OrenNayarMaterial),
+        "translucent" => Translucent(TranslucentMaterial),
         "plastic" => Plastic(PlasticMaterial),
         "thin-dielectric" => ThinDielectric(ThinDielectricMaterial),
         "polariser" => Polariser(PolariserMaterial),
@@ -301,6 +304,7 @@ impl MaterialForm {
             Self::Conductor(m) => m.at,
             Self::Dielectric(m) => m.at,
             Self::OrenNayar(m) => m.at,
+            Self::Translucent(m) => m.at,
             Self::Plastic(m) => m.at,
             Self::ThinDielectric(m) => m.at,
             Self::Polariser(m) => m.at,
@@ -380,6 +384,7 @@ pub(crate) fn material<'f>(
             let reflectance = spectra.resolve_texture(rough.reflectance.as_ref()?, Role::Reflectance, files, reader)?;
             Some(rough.sides?.of(MaterialKind::OrenNayar { reflectance, roughness: rough.roughness?.0 }))
         }
+        MaterialForm::Translucent(form) => translucent(form, spectra, files, reader),
         MaterialForm::Plastic(plastic) => {
             let reflectance = plastic
                 .reflectance

@@ -121,6 +121,7 @@ pub const NEIGHBOURS: &[Neighbour] = &[
     // Types of materials.
     word("diffuse matte bsdfdiffuse diffusebsdf", "lambert"),
     word("roughdiffuse", "oren-nayar"),
+    word("diffusetransmission difftrans translucentbsdf bsdftranslucent leaf paper", "translucent"),
     word("metal metallicbsdf", "conductor"),
     row(Keyword, "roughconductor glossy glossybsdf", Word("conductor", "its \"alpha\" makes it rough")),
     row(Keyword, "coatedconductor", Word("conductor", "metals have no coat here")),

@@ -145,6 +145,13 @@ pub enum MaterialKind {
         /// Roughness, in [0, 1].
         roughness: f64,
     },
+    /// Diffuse reflection and diffuse transmission, alike on both sides.
+    Translucent {
+        /// Share of light that comes back, in [0, 1] at every wavelength.
+        reflectance: SpectrumTexture,
+        /// Share that leaves on the other side; the two add up to at most 1.
+        transmittance: SpectrumTexture,
+    },
     /// A diffuse ground under a clear coat, on both sides, seen from vacuum.
     Plastic {
         /// Albedo of the ground, in [0, 1] at every wavelength.
@@ -263,6 +270,9 @@ macro_rules! parameters {
             let parameters = parts.flat_map(|part| match part {
                 Self::Lambert { reflectance } | Self::Mirror { reflectance } | Self::OrenNayar { reflectance, .. } => {
                     vec![$of::Reflectance(reflectance)]
+                }
+                Self::Translucent { reflectance, transmittance } => {
+                    vec![$of::Reflectance(reflectance), $of::Reflectance(transmittance)]
                 }
                 Self::Plastic { reflectance, coat, .. } => vec![$of::Reflectance(reflectance), $of::Coat(coat)],
                 Self::Conductor { metal, film } | Self::RoughConductor { metal, film, .. } => {

@@ -194,6 +194,33 @@ fn reflectances_and_emissions() {
 }
 
 #[test]
+fn sheets_that_give_back_more_than_they_receive() {
+    let image = |factor: f64| format!("{{\"type\": \"image\", \"file\": \"chequers.png\", \"factor\": {factor}}}");
+    let found = |reflectance: &str, transmittance: &str| {
+        let keys =
+            format!("\"type\": \"translucent\", \"reflectance\": {reflectance}, \"transmittance\": {transmittance}");
+        let errors = problems(&materials(&format!("{{\"m\": {{{keys}}}}}")).text());
+        errors.into_iter().map(|p| (p.code, p.json_path, p.message)).collect::<Vec<_>>()
+    };
+    assert_eq!(found("0.5", "0.5"), []);
+    let step = |low: f64, high: f64| {
+        format!(
+            "{{\"type\": \"tabulated\", \"wavelengths_nm\": [360, 500, 501, 830], \"values\": [{low}, {low}, {high}, {high}]}}"
+        )
+    };
+    assert_eq!(found(&step(0.25, 0.75), &step(0.75, 0.25)), []);
+    for (reflectance, transmittance, sum) in
+        [("0.5".to_owned(), "0.625".to_owned(), "1.1250"), (step(0.25, 0.75), step(0.25, 0.5), "1.2500")]
+    {
+        let found = found(&reflectance, &transmittance);
+        let [(Code::OutOfRange, path, message)] = &found[..] else { panic!("one error: {found:?}") };
+        assert!(path == "$.materials.m" && message.contains(sum), "{path}: {message}");
+    }
+    // The image is not there, and nothing is said of its texels.
+    assert!(found(&image(1.0), "0.5").iter().all(|(code, ..)| *code != Code::OutOfRange));
+}
+
+#[test]
 fn surfaces_that_fluoresce() {
     let material = |keys: &str| materials(&format!("{{\"m\": {{\"type\": \"fluorescent\", {keys}}}}}")).text();
     let dye = |keys: &str| material(&format!("\"fluorophores\": [{{{keys}}}]"));

@@ -162,6 +162,8 @@ fn materials_and_spectra() {
     assert_eq!(kind(&scene, "marker"), &marker);
     let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
     assert_eq!(kind(&scene, "clay"), &MaterialKind::OneSided { kind: Box::new(clay), side: Side::Back });
+    let [reflectance, transmittance] = [0.25, 0.625].map(|share| Spectrum::Constant(share).into());
+    assert_eq!(kind(&scene, "leaf"), &MaterialKind::Translucent { reflectance, transmittance });
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
     let toy = MaterialKind::Plastic {
         reflectance,

@@ -26,6 +26,14 @@ pub(crate) fn kind(kind: &M, nm: f64, holds_medium: bool) -> bool {
         M::Dielectric { interior, exterior, .. } | M::RoughDielectric { interior, exterior, .. } => {
             interior.eval(nm) > 0.0 && exterior.eval(nm) > 0.0
         }
+        M::Translucent { reflectance, transmittance } => {
+            let shares = [reflectance, transmittance].map(|texture| match texture {
+                SpectrumTexture::Uniform(spectrum) => spectrum.eval(nm),
+                SpectrumTexture::Image(texture) => texture.mean().into_iter().fold(0.0, f64::max),
+                SpectrumTexture::VertexColours { .. } => 0.0,
+            });
+            shares.iter().all(|share| *share >= 0.0) && shares.iter().sum::<f64>() <= 1.0 + 1e-6
+        }
         M::ThinDielectric { index, .. } => index.eval(nm) > 0.0,
         M::PolarisingSheet { axis, sheet } => {
             let good = match sheet {

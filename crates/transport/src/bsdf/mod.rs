@@ -29,6 +29,7 @@ mod shading;
 #[cfg(test)]
 mod tests;
 mod thin_dielectric;
+mod translucent;
 
 pub use blend::Blend;
 pub use conductor::Conductor;
@@ -50,6 +51,7 @@ pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
 pub use thin_dielectric::ThinDielectric;
+pub use translucent::Translucent;
 
 use crate::mis::Density;
 use crate::texture::PathTexture;
@@ -103,6 +105,8 @@ pub enum Bsdf {
     RoughDielectric(RoughDielectric),
     /// Rough diffuse reflection.
     OrenNayar(OrenNayar),
+    /// Diffuse reflection and transmission.
+    Translucent(Translucent),
     /// A coated diffuse surface.
     Plastic(Plastic),
     /// A thin pane.
@@ -131,6 +135,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::RoughConductor { facets, .. } => RoughConductor::properties(facets),
         MaterialKind::RoughDielectric { facets, .. } => RoughDielectric::properties(facets),
         MaterialKind::OrenNayar { reflectance, .. } => OrenNayar::properties(reflectance),
+        MaterialKind::Translucent { reflectance, transmittance } => Translucent::properties(reflectance, transmittance),
         MaterialKind::Plastic { facets, .. } => Plastic::properties(facets.as_ref()),
         MaterialKind::ThinDielectric { .. } => ThinDielectric::properties(),
         MaterialKind::PolarisingSheet { sheet, .. } => PolarisingSheet::properties(sheet),
@@ -172,6 +177,11 @@ impl Bsdf {
             }
             MaterialKind::OrenNayar { reflectance, roughness } => {
                 Self::OrenNayar(OrenNayar::new(PathTexture::new(reflectance, range_nm), *roughness))
+            }
+            MaterialKind::Translucent { reflectance, transmittance } => {
+                let [reflectance, transmittance] =
+                    [reflectance, transmittance].map(|texture| PathTexture::new(texture, range_nm));
+                Self::Translucent(Translucent::new(reflectance, transmittance))
             }
             MaterialKind::Plastic { reflectance, coat, facets, internal_reflection } => {
                 let reflectance = PathTexture::new(reflectance, range_nm);
@@ -246,6 +256,7 @@ impl Bsdf {
             Self::RoughConductor(metal) => metal.eval(lambda_nm, n, at, wo, wi),
             Self::RoughDielectric(glass) => glass.eval(lambda_nm, n, at, wo, wi),
             Self::OrenNayar(rough) => rough.eval(lambda_nm, n, at.texture_point(), wo, wi),
+            Self::Translucent(sheet) => sheet.eval(lambda_nm, n, at.texture_point(), wo, wi),
             Self::Plastic(plastic) => plastic.eval(lambda_nm, n, at, wo, wi),
             Self::Fluorescent(surface) => surface.eval(lambda_nm, n, at, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
@@ -278,6 +289,7 @@ impl Bsdf {
             Self::RoughConductor(metal) => metal.sample(lambda_nm, n, at, wo, u),
             Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at, wo, u),
             Self::OrenNayar(rough) => rough.sample(lambda_nm, n, at.texture_point(), wo, [u[1], u[2]]),
+            Self::Translucent(sheet) => sheet.sample(lambda_nm, n, at.texture_point(), wo, u),
             Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at, wo, u),
             Self::Fluorescent(surface) => surface.sample(lambda_nm, n, at, wo, [u[1], u[2]]),
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, (n, at.uv), wo, u[0]),

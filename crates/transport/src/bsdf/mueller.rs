@@ -10,7 +10,7 @@
 //! | thin film | that of the stack's complex amplitudes, in place of the bare interface's |
 //! | plastic | its coat's, and light that its ground depolarised, which the coat polarises on its way out |
 //! | polariser, retarder | by its axis, whatever the plane of incidence |
-//! | diffuse surface, grating | depolarises |
+//! | diffuse surface, translucent sheet, grating | depolarises |
 //! | blend | the sum of its parts, each by its share of the light |
 //!
 //! Around a shading normal ([`Shading`]) the matrix is that of the directions as the BSDF takes them, in the frame of the real
@@ -89,7 +89,12 @@ impl Bsdf {
             Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Blend(blend) => blend.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::OneSided(one) => one.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
-            Self::Lambert(_) | Self::OrenNayar(_) | Self::Grating(_) | Self::Fluorescent(_) | Self::Black => None,
+            Self::Lambert(_)
+            | Self::OrenNayar(_)
+            | Self::Translucent(_)
+            | Self::Grating(_)
+            | Self::Fluorescent(_)
+            | Self::Black => None,
         }
     }
 
@@ -106,6 +111,7 @@ impl Bsdf {
             | Self::Dielectric(_)
             | Self::RoughConductor(_)
             | Self::OrenNayar(_)
+            | Self::Translucent(_)
             | Self::ThinDielectric(_)
             | Self::PolarisingSheet(_)
             | Self::Grating(_)

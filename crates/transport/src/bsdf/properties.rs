@@ -124,6 +124,10 @@ mod tests {
         for (kind, side) in [(11, Side::Front), (12, Side::Back), (14, Side::Front)] {
             kinds.push(MaterialKind::OneSided { kind: Box::new(kinds[kind].clone()), side });
         }
+        for (r, t) in [(0.5, 0.25), (0.0, 0.5), (0.0, 0.0)] {
+            let [reflectance, transmittance] = [r, t].map(|share| Spectrum::Constant(share).into());
+            kinds.push(MaterialKind::Translucent { reflectance, transmittance });
+        }
         let both = |first: usize, second: usize| MaterialKind::blend(kinds[first].clone(), kinds[second].clone(), 0.5);
         let blends = [both(0, 1), both(1, 3), both(5, 6), both(0, 0), both(7, 17)];
         kinds.extend(blends);

@@ -110,6 +110,7 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
         | MaterialKind::RoughConductor { .. }
         | MaterialKind::RoughDielectric { .. }
         | MaterialKind::OrenNayar { .. }
+        | MaterialKind::Translucent { .. }
         | MaterialKind::Boundary
         | MaterialKind::Black => Vec::new(),
         MaterialKind::PolarisingSheet { sheet, .. } => {

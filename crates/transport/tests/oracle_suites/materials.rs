@@ -146,6 +146,14 @@ fn oren_nayar(rho: f64, roughness: f64) -> Material {
     Material::new(MaterialKind::OrenNayar { reflectance: Spectrum::Constant(rho).into(), roughness })
 }
 
+/// Green is passed, and more of it than is reflected.
+fn leaf() -> Material {
+    Material::new(MaterialKind::Translucent {
+        reflectance: Spectrum::rgb_reflectance([0.1, 0.3, 0.05]).unwrap().into(),
+        transmittance: Spectrum::rgb_reflectance([0.05, 0.6, 0.0]).unwrap().into(),
+    })
+}
+
 fn pane() -> Material {
     Material::new(MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5), film: None })
 }
@@ -227,6 +235,7 @@ scatters_suite!(smooth_plastic_coloured_once, coloured_once(0.7, 0.0));
 scatters_suite!(rough_plastic_coloured_once, coloured_once(0.7, 0.4));
 scatters_suite!(oren_nayar, oren_nayar(0.5, 0.4));
 scatters_suite!(white_oren_nayar, oren_nayar(1.0, 1.0));
+scatters_suite!(leaf, leaf());
 scatters_suite!(pane, pane());
 
 /// A tinted polariser that is not quite one.

@@ -68,6 +68,7 @@ fn more_than_two_hundred_instances_of_laws_hold() {
         MaterialKind::Mirror { reflectance: Spectrum::Constant(0.9).into() },
         MaterialKind::Conductor { metal: Metal::Reflectance(colour.into()), film: None },
         MaterialKind::OrenNayar { reflectance: grey(), roughness: 0.5 },
+        MaterialKind::Translucent { reflectance: grey(), transmittance: Spectrum::Constant(0.2).into() },
         MaterialKind::Plastic {
             reflectance: grey(),
             coat: RefractiveIndex::Constant(1.5),
