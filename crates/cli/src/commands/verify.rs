@@ -23,6 +23,7 @@ use crate::failure::{Failure, Outcome};
 #[command(after_help = "Examples:
   etalon verify eye-in-glass
   etalon verify --suite cie171
+  etalon verify --suite rami
   etalon verify --export truths
   etalon verify --images pictures")]
 pub(crate) struct VerifyArgs {
@@ -72,9 +73,9 @@ pub(crate) fn run(args: VerifyArgs) -> Outcome {
         ))),
         (Some(folder), _) => export::run(folder, &chosen),
         (None, Some(folder)) => pictures::run(folder, &chosen, args.json),
-        (None, None) => match &cases {
-            Some(cases) => suite::run(&args, cases, args.page.as_deref()),
-            None => ours::run(&args, chosen),
+        (None, None) => match (args.suite, &cases) {
+            (Some(suite), Some(cases)) => suite::run(&args, suite, cases),
+            _ => ours::run(&args, chosen),
         },
     }
 }

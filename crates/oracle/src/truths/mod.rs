@@ -40,6 +40,7 @@ mod motion;
 mod named;
 mod polarised;
 mod prisms;
+mod rami;
 mod relief;
 mod scene;
 mod sheets;
@@ -48,6 +49,7 @@ mod skylight;
 mod solids;
 mod sources;
 mod stokes;
+mod suite_case;
 mod surfaces;
 mod textures;
 mod translucent;
@@ -64,13 +66,15 @@ use std::{
 use serde_json::{Value, json};
 
 use crate::statistics::poisson_mean_bound;
-pub use cie171::{LUX, SuiteCase, cie171, section_title};
+pub use cie171::{LUX, cie171};
 pub use claim::Claim;
 pub use exchange::{ExchangeFile, exchange_files};
 pub use irradiance::{
     cylinder_factor, disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
     walsh_reflectance,
 };
+pub use rami::rami;
+pub use suite_case::SuiteCase;
 
 pub use judge::{CUT_SHARE, Renders, judge};
 pub use prisms::photometric_weight;

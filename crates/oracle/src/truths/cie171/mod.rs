@@ -11,7 +11,7 @@ mod reflection;
 use serde_json::{Value, json};
 
 use super::{
-    Truth,
+    SuiteCase, Truth,
     meters::measured,
     scene::{Scene, black, parallelogram},
 };
@@ -20,24 +20,8 @@ use crate::vector::{Vec3, scale};
 /// 683.002 lm/W · ∫ȳ dλ, lx per W·m⁻²·nm⁻¹ of a constant spectrum.
 pub const LUX: f64 = 683.002 * 106.856_917;
 
-/// One point of a section of the report.
-#[derive(Clone, Debug)]
-pub struct SuiteCase {
-    /// The section: `5.2` to `5.14`.
-    pub section: &'static str,
-    /// What is measured, and where.
-    pub point: String,
-    /// The unit of the page.
-    pub unit: &'static str,
-    /// What a reading is multiplied by to be in this unit.
-    pub factor: f64,
-    /// The scene and the expected reading.
-    pub truth: Truth,
-}
-
 /// What a section tests.
-#[must_use]
-pub fn section_title(section: &str) -> &'static str {
+fn section_title(section: &str) -> &'static str {
     match section {
         "5.2" => "Point sources",
         "5.3" => "Area sources",
@@ -76,7 +60,7 @@ fn screen(scene: Scene, origin: Vec3, u: Vec3, v: Vec3) -> Scene {
 }
 
 fn case(section: &'static str, point: String, unit: &'static str, factor: f64, truth: Truth) -> SuiteCase {
-    SuiteCase { section, point, unit, factor, truth: truth.sees(0.005) }
+    SuiteCase { section, title: section_title(section), point, unit, factor, truth: truth.sees(0.005) }
 }
 
 /// Corners of a parallelogram, relative to a point.
