@@ -33,6 +33,12 @@ def page_loads_and_picture_sharpens(context):
         errors = [e for e in page.log("error") if e["relative_rmse"]]
         own = [e["relative_rmse"] for e in errors if e["block"] == 1]
         assert len(own) >= 2 and own[-1] < own[0] and own[-1] < 0.035, own
+        assert "Typical error of a pixel" in page.text("error-words"), page.text("error-words")
+        interval = page.text("error-interval")
+        assert re.match(r"95 % sure: \S+ % to \S+ %$", interval) or context.status(viewer)["error"]["heavy_tailed"], interval
+        largest = page.text("error-largest")
+        assert re.match(r"Largest error of a tile: \S+ % of the mean brightness, in columns \d+ to \d+, rows \d+ to \d+\.$", largest), largest
+        assert "since the start" in page.text("counts"), page.text("counts")
         marks = page.text("marks")
         assert "reached after" in marks and re.search(r"1\.0 %", marks), marks
         assert page.run("document.querySelectorAll('#curve polyline').length") >= 2
@@ -56,9 +62,19 @@ def map_lies_over_the_picture(context):
         rms = page.log("map")[-1]["rms"]
         error = page.log("error")[-1]["relative_rmse"]
         assert abs(rms / error - 1) < 1e-3, (rms, error)
+        words = page.text("legend-title")
+        assert "Yellow: large error. Dark: small error." in words and "Box:" in words, words
+        boxes = "[...document.querySelectorAll('#tile-box rect')].map(e => ['x', 'width', 'y', 'height'].map(a => Number(e.getAttribute(a))))"
+        x0, x1, y0, y1 = context.status(viewer)["error"]["noisiest"]["crop"]
+        assert page.run(boxes) == [[x0, x1 - x0, y0, y1 - y0]] * 2, page.run(boxes)
         page.shot(context.shots, "map")
+        page.run("(() => { const e = document.getElementById('map-opacity'); e.value = 0.5; e.dispatchEvent(new Event('input')); })()")
+        assert page.text("map-opacity-value") == "50 %" and page.run("!document.getElementById('map-mixed').hidden")
         page.choose("input[name=map][value=relative]")
         page.wait("the other map", "window.etalonLog.some(e => e.what === 'map' && e.kind === 'relative')")
+        page.choose("input[name=map][value='']")
+        assert page.run("document.getElementById('map-opacity').disabled && document.getElementById('map-mixed').hidden")
+        assert page.run(boxes) == [], page.run(boxes)
         return f"root mean square {rms:.4f}, error {error:.4f}"
 
 
@@ -190,8 +206,12 @@ def effects_are_switched_and_compared(context):
         page.wait("the notes", "document.getElementById('notes').innerText.includes('specular-chains')")
         verdict = page.log("comparison")[-1]["verdict"]
         assert verdict == "differ", verdict
+        assert "difference in standard errors" in page.text("map-kind"), page.text("map-kind")
         page.choose("input[name=map][value=difference]")
         page.wait("the map", "window.etalonLog.some(e => e.what === 'map' && e.kind === 'difference')")
+        page.wait("the sentence", "document.getElementById('verdict').innerText.includes('Largest difference: this picture is')")
+        assert page.run("document.querySelectorAll('#tile-box rect').length") == 2 or "whole picture" in page.text("verdict")
+        assert "Colours stop at ±5." in page.text("legend-title"), page.text("legend-title")
         page.choose("#split-on")
         time.sleep(0.5)
         page.shot(context.shots, "compare")

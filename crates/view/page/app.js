@@ -9,7 +9,7 @@ import { Marks } from "./marks.js";
 import { Paths } from "./paths.js";
 import { Stage } from "./stage.js";
 import { latest, listen, order } from "./server.js";
-import { count, digits, html, percent, seconds } from "./format.js";
+import { count, digits, html, percent, seconds, tileName } from "./format.js";
 import { drawCurve } from "./curve.js";
 import { log } from "./log.js";
 
@@ -36,7 +36,7 @@ const PHASES = {
   rendering: "rendering",
   done: "the samples planned for the stated error are taken",
   paused: "paused",
-  costs: "measuring what each effect costs; the picture waits",
+  costs: "measuring what each effect costs; the picture is paused",
   picture: "a picture from a file",
   refused: "the scene cannot be rendered",
 };
@@ -64,7 +64,7 @@ function update(now) {
   showAccuracy(now);
   effects.update(now);
   compare.update(now);
-  document.querySelector("input[name=map][value=samples]").disabled = !now.adaptive_gain && now.is_scene;
+  showSamplesMap(now);
   showProblems(now);
   if (before && now.picture !== before.picture) {
     inspector.refresh(now.stage);
@@ -73,31 +73,39 @@ function update(now) {
   if (before && now.stage !== before.stage && paths.at) paths.close();
 }
 
+function showSamplesMap(now) {
+  const isEven = !now.adaptive_gain && now.is_scene;
+  document.querySelector("input[name=map][value=samples]").disabled = isEven;
+  element("map-samples").title = isEven ? "Every pixel has the same number of samples" : "Samples of each pixel over their mean";
+}
+
 function showAccuracy(now) {
   const error = now.error;
   element("error").textContent = percent(error?.relative_rmse);
   const interval = error?.interval_95;
   const ends = interval?.map(percent);
-  element("error-interval").textContent = !interval || error.heavy_tailed ? "" : ends[0] === ends[1] ? "known to two digits" : `between ${ends[0]} and ${ends[1]}, 95 % sure`;
-  const share = percent(error?.relative_rmse);
-  const kind = now.block > 1 ? `of a coarse picture, whose pixels stand for ${now.block} × ${now.block}` : "of the picture";
+  element("error-interval").textContent = !interval || error.heavy_tailed ? "" : `95 % sure: ${ends[0]} to ${ends[1]}`;
+  const kind = now.block > 1 ? `The picture is coarse: its pixels stand for ${now.block} × ${now.block} each.` : "Some pixels are better and some are worse: see the map.";
   element("error-words").textContent = error?.relative_rmse != null
-    ? `noise ${kind}: a pixel, dark or bright, is off by about ${share} of the mean brightness, which is ${digits(error.mean_y, 3)}.`
+    ? `Typical error of a pixel: ${percent(error.relative_rmse)} of the mean brightness. ${kind} The mean brightness is Y\u00a0=\u00a0${digits(error.mean_y, 3)}.`
     : now.phase === "picture" ? "This file does not say how wrong its pixels are." : "Nothing is known of the error yet.";
+  const tile = error?.noisiest;
+  element("error-largest").hidden = !now.is_scene;
+  element("error-largest").textContent = tile?.relative_rmse > 0 ? `Largest error of a tile: ${percent(tile.relative_rmse)} of the mean brightness, in ${tileName(tile.crop)}.` : "";
   element("curve").toggleAttribute("hidden", !now.is_scene);
   if (now.is_scene) drawCurve(element("curve"), now);
   marks.update(now);
   const parts = [];
   if (now.samples > 0 && now.block === 1) parts.push(`${count(now.samples)} samples a pixel${now.adaptive_gain ? " in the mean, more where the error is larger" : ""}`);
-  if (now.seconds > 0) parts.push(`${seconds(now.seconds)}`);
+  if (now.seconds > 0) parts.push(`${seconds(now.seconds)} since the start`);
   if (now.paths_per_second > 0 && now.is_scene) parts.push(`${count(now.paths_per_second)} paths a second on ${now.threads} threads`);
   if (now.pages > 1) parts.push(`${now.pages} pages look on`);
   element("counts").textContent = parts.join(" · ");
   element("missing").hidden = now.without.length === 0 || now.phase === "refused";
-  element("missing").textContent = `The number is noise alone. It does not count what is switched off: ${now.without.map(spoken).join(", ")}.`;
+  element("missing").textContent = `This error comes from chance alone. It does not count what is switched off: ${now.without.map(spoken).join(", ")}.`;
   const notes = [...now.notes];
-  if (error?.heavy_tailed) notes.push("A few very bright samples make up much of the noise: it is probably larger than stated.");
-  else if (error?.heavy_tailed_pixels) notes.push("A few samples are very bright: the ± of single pixels understates their error. The number of the whole picture can be trusted.");
+  if (error?.heavy_tailed) notes.push("A few very bright samples make up much of the error: it is probably larger than stated.");
+  else if (error?.heavy_tailed_pixels) notes.push("A few samples are very bright: the ± of single pixels understates their error. The error of the picture can be trusted.");
   for (const lost of now.plan?.approximations ?? []) notes.push(`An approximation, without ${lost}.`);
   element("notes").replaceChildren(...notes.map((note) => html("li", {}, note)));
 }
@@ -280,17 +288,31 @@ function togglePause() {
 
 function chooseMap(kind) {
   document.querySelector(`input[name=map][value="${kind}"]`).checked = true;
+  showMap(kind);
+}
+
+function showMap(kind) {
   stage.showMap(kind);
+  showOpacity();
+}
+
+function showOpacity() {
+  const opacity = Number(element("map-opacity").value);
+  const isOn = stage.mapKind !== "";
+  element("map").style.opacity = opacity;
+  element("map-opacity").disabled = !isOn;
+  element("map-opacity-value").textContent = `${Math.round(100 * opacity)} %`;
+  element("map-mixed").hidden = !isOn || opacity === 1;
 }
 
 function setUpPanel() {
   element("pause").addEventListener("click", togglePause);
   element("home").addEventListener("click", goHome);
   element("help-open").addEventListener("click", () => element("help").showModal());
-  element("map-opacity").addEventListener("input", (event) => (element("map").style.opacity = event.target.value));
-  element("map").style.opacity = element("map-opacity").value;
+  element("map-opacity").addEventListener("input", showOpacity);
+  showOpacity();
   for (const radio of document.querySelectorAll("input[name=map]")) {
-    radio.addEventListener("change", () => stage.showMap(radio.value));
+    radio.addEventListener("change", () => showMap(radio.value));
   }
 }
 

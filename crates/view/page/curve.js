@@ -1,6 +1,6 @@
 // The error of the picture against time, both on logarithmic axes: measured, and predicted.
 
-import { percent, seconds, svg } from "./format.js";
+import { percent, roundedSeconds, seconds, svg } from "./format.js";
 
 export const MARKS = [0.05, 0.02, 0.01];
 const SPACE = { left: 42, right: 12, top: 10, bottom: 26 };
@@ -49,7 +49,7 @@ export function drawCurve(element, status) {
     const inside = svg("clipPath", { id: "inside" });
     inside.append(svg("rect", { x: SPACE.left, y: SPACE.top, width: width - SPACE.left - SPACE.right, height: bottom - SPACE.top }));
     parts.push(inside);
-    parts.push(svg("polygon", { points: [...upper, ...lower].join(" "), fill: "#7fb2d6", opacity: 0.1, "clip-path": "url(#inside)" }));
+    parts.push(svg("polygon", { points: [...upper, ...lower].join(" "), fill: "#7fb2d6", opacity: 0.3, "clip-path": "url(#inside)" }));
     const points = predicted.map((p) => `${x(p.seconds)},${y(p.relative_rmse)}`).join(" ");
     parts.push(svg("polyline", { points, fill: "none", stroke: "#7fb2d6", "stroke-dasharray": "5 4", "stroke-width": 1.5, "clip-path": "url(#inside)" }));
     for (const p of predicted.filter((p) => (MARKS.includes(p.relative_rmse) || p.relative_rmse === status.target) && shown(p.seconds))) {
@@ -64,7 +64,7 @@ export function drawCurve(element, status) {
   if (band.length > 1) {
     const upper = band.map((p) => `${x(p.seconds)},${y(p.interval[1])}`);
     const lower = band.map((p) => `${x(p.seconds)},${y(p.interval[0])}`).reverse();
-    parts.push(svg("polygon", { points: [...upper, ...lower].join(" "), fill: "#e0a458", opacity: 0.25 }));
+    parts.push(svg("polygon", { points: [...upper, ...lower].join(" "), fill: "#e0a458", opacity: 0.3 }));
   }
   parts.push(svg("polyline", { points: own.map((p) => `${x(p.seconds)},${y(p.relative_rmse)}`).join(" "), fill: "none", stroke: "#e0a458", "stroke-width": 2, "stroke-linejoin": "round" }));
   for (const p of measured.filter((p) => p.block > 1)) {
@@ -73,15 +73,16 @@ export function drawCurve(element, status) {
   const last = own.at(-1);
   if (last) parts.push(svg("circle", { cx: x(last.seconds), cy: y(last.relative_rmse), r: 4, fill: "#e0a458" }));
 
-  // What the lines are.
-  const names = [["#e0a458", "error so far", ""]];
-  if (measured.some((p) => p.block > 1)) names.push(["#e0a458", "coarse pictures", null]);
-  if (predicted.length > 1) names.push(["#7fb2d6", "predicted, 95 % sure", "5 4"]);
+  // What the lines are: in the lower left corner, because errors fall.
+  const names = [["#e0a458", "error of the picture", ""]];
+  if (measured.some((p) => p.block > 1)) names.push(["#e0a458", "coarse pictures (not comparable)", null]);
+  if (predicted.length > 1) names.push(["#7fb2d6", "prediction (band: 95 % sure)", "5 4"]);
+  const left = SPACE.left + 8;
   names.forEach(([colour, name, dash], index) => {
-    const at = SPACE.top + 8 + 15 * index;
-    if (dash === null) parts.push(svg("circle", { cx: width - 142, cy: at, r: 3, fill: "none", stroke: colour }));
-    else line([width - 152, at], [width - 132, at], { stroke: colour, "stroke-width": 2, "stroke-dasharray": dash });
-    text([width - 126, at + 4], name, { class: "backed" });
+    const at = bottom - 10 - 15 * (names.length - 1 - index);
+    if (dash === null) parts.push(svg("circle", { cx: left + 10, cy: at, r: 3, fill: "none", stroke: colour }));
+    else line([left, at], [left + 20, at], { stroke: colour, "stroke-width": 2, "stroke-dasharray": dash });
+    text([left + 26, at + 4], name, { class: "backed" });
   });
   element.replaceChildren(...parts);
 }
@@ -96,20 +97,25 @@ function ahead(status) {
     const after = points.findIndex((p) => p.relative_rmse < status.target);
     const like = points[after];
     const share = samples / like.samples;
-    points.splice(after, 0, { relative_rmse: status.target, samples, seconds: like.seconds * share, seconds_interval: like.seconds_interval.map((t) => t * share) });
+    points.splice(after, 0, { relative_rmse: status.target, samples, seconds: like.seconds * share, seconds_interval: like.seconds_interval.map((t) => (t === null ? null : t * share)) });
   }
   if (!begun) return points.filter((p) => p.seconds > 0);
-  return points.filter((p) => p.samples > status.samples).map((p) => {
+  // The line goes on from the newest measured point.
+  const newest = status.curve.filter((p) => p.block === 1 && p.relative_rmse > 0 && p.seconds > 0).at(-1);
+  const isAhead = (p) => p.samples > status.samples && p.relative_rmse < (newest?.relative_rmse ?? Infinity);
+  const later = points.filter(isAhead).map((p) => {
     const seconds = status.seconds + ((p.samples - status.samples) * pixels) / status.paths_per_second;
-    return { ...p, seconds, seconds_interval: p.seconds_interval.map((t) => Math.max(status.seconds, (t * seconds) / p.seconds)) };
+    const atRate = (t) => (t === null ? null : Math.max(status.seconds, (t * seconds) / p.seconds));
+    return { ...p, seconds, seconds_interval: p.seconds_interval.map(atRate) };
   });
+  return newest && later.length > 0 ? [{ ...newest, seconds_interval: [newest.seconds, newest.seconds] }, ...later] : later;
 }
 
 function widened(low, high, factor) {
   return high > 1.5 * low ? [low / factor, high * factor] : [low / 2, high * 2];
 }
 
-// When each mark is reached, in words: from the samples that it is predicted to take and the rate of now.
+// When each mark is reached, in words, and how sure that is: from the samples that it is predicted to take and the rate of now.
 export function whenReached(status, error) {
   const passed = crossing(status.curve.filter((p) => p.block === 1), error);
   const reached = status.error?.relative_rmse <= error && status.block === 1;
@@ -121,9 +127,16 @@ export function whenReached(status, error) {
   if (predicted === null) return { words: status.phase === "pilot" || status.phase === "coarse" ? "estimate follows" : "no estimate", reached: false };
   const left = (predicted - status.samples * (status.block === 1 ? 1 : 0)) * status.size[0] * status.size[1];
   const rate = status.paths_per_second;
-  if (rate > 0 && status.block === 1 && left > 0) return { words: `in ${seconds(left / rate)}, at ${seconds(status.seconds + left / rate)}`, reached: false };
+  if (rate > 0 && status.block === 1 && left > 0) {
+    const rest = left / rate;
+    // As they are written, now and the rest add up to the end.
+    const end = roundedSeconds(status.seconds) + roundedSeconds(rest);
+    const interval = ahead(status).find((p) => p.relative_rmse === error)?.seconds_interval ?? [null];
+    const sure = interval.includes(null) ? "" : `${percent(error)} after ${seconds(interval[0])} to ${seconds(interval[1])} (95 % sure)`;
+    return { words: `${seconds(rest)} from now (${seconds(end)} after the start)`, sure, reached: false };
+  }
   const known = status.predicted.find((p) => p.relative_rmse === error);
-  return { words: known ? `about ${seconds(Math.max(0, known.seconds - status.seconds))} more` : "soon", reached: false };
+  return { words: known ? `about ${seconds(Math.max(0, known.seconds - status.seconds))} from now` : "soon", reached: false };
 }
 
 // When the curve passed an error, as a power of it between the two points about it.

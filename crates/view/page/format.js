@@ -39,12 +39,26 @@ function superscript(number) {
 
 export function seconds(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "unknown";
+  const shown = roundedSeconds(value);
   if (value < 0.0995) return `${Math.round(1000 * value)} ms`;
   if (value < 9.95) return `${value.toFixed(1)} s`;
-  if (value < 120) return `${Math.round(value)} s`;
-  if (value < 3600) return `${Math.floor(value / 60)} min ${Math.round(value % 60)} s`.replace(" 0 s", "");
-  if (value < 172800) return `${Math.floor(value / 3600)} h ${Math.round((value % 3600) / 60)} min`.replace(" 0 min", "");
-  return `${Math.round(value / 86400)} days`;
+  if (shown < 120) return `${shown} s`;
+  if (shown < 3600) return `${Math.floor(shown / 60)} min ${shown % 60} s`.replace(" 0 s", "");
+  if (shown < 172800) return `${Math.floor(shown / 3600)} h ${(shown % 3600) / 60} min`.replace(" 0 min", "");
+  return `${shown / 86400} days`;
+}
+
+// The number of seconds that `seconds` writes of a value.
+export function roundedSeconds(value) {
+  const steps = [[0.0995, 0.001], [9.95, 0.1], [3599.5, 1], [172770, 60], [Infinity, 86400]];
+  const [, step] = steps.find(([end]) => value < end) ?? steps.at(-1);
+  return Math.round(value / step) * step;
+}
+
+// The pixels of a tile. Its right and bottom ends are not part of it.
+export function tileName([left, right, top, bottom]) {
+  const range = (name, begin, end) => (end - begin > 1 ? `${name}s ${begin} to ${end - 1}` : `${name} ${begin}`);
+  return `${range("column", left, right)}, ${range("row", top, bottom)}`;
 }
 
 export function count(value) {

@@ -23,13 +23,19 @@ export class Marks {
     // A choice that the server has not heard of yet stays.
     if (target !== this.target) this.rows.get(target).radio.checked = true;
     this.target = target;
+    element("marks-sure").hidden = !status.is_scene;
+    element("marks-sure").textContent = "";
     for (const [error, row] of this.rows) {
-      if (error !== ENDLESS) this.#tell(row, whenReached(status, error));
+      if (error === ENDLESS) continue;
+      const found = whenReached(status, error);
+      this.#tell(row, found);
+      if (error === target) element("marks-sure").textContent = found.sure ?? "";
     }
   }
 
-  #tell({ when }, { words, reached }) {
+  #tell({ when }, { words, sure, reached }) {
     if (when.textContent !== words) when.textContent = words;
+    when.title = sure ?? "";
     when.classList.toggle("reached", reached);
   }
 

@@ -29,7 +29,7 @@ export class Paths {
       element("paths-at").textContent = at.join(", ");
       element("paths-words").textContent = error.message;
       element("paths-list").replaceChildren();
-      element("overlay").replaceChildren();
+      element("path-lines").replaceChildren();
       this.at = at;
       this.paths = [];
       return;
@@ -51,7 +51,7 @@ export class Paths {
   close() {
     this.at = null;
     element("paths").hidden = true;
-    element("overlay").replaceChildren();
+    element("path-lines").replaceChildren();
   }
 
   #colour(path) {
@@ -121,6 +121,6 @@ export class Paths {
     }
     parts.push(svg("circle", { cx: this.at[0] + 0.5, cy: this.at[1] + 0.5, r: 8 * px, fill: "none", stroke: "#000", "stroke-width": 3 * px }));
     parts.push(svg("circle", { cx: this.at[0] + 0.5, cy: this.at[1] + 0.5, r: 8 * px, fill: "none", stroke: "#fff", "stroke-width": 1.5 * px }));
-    overlay.replaceChildren(...parts);
+    element("path-lines").replaceChildren(...parts);
   }
 }

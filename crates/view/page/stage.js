@@ -14,6 +14,9 @@ export class Stage {
     this.stageNumber = 0;
     this.mapKind = "";
     this.split = 0.5;
+    // The tiles of the largest error and of the largest difference, as columns and rows.
+    this.noisiest = null;
+    this.mostDifferent = null;
     this.picture = element("picture");
     this.frame = element("frame");
     this.fetchPicture = latest(async (number) => this.#fetchPicture(number));
@@ -45,6 +48,7 @@ export class Stage {
   // Takes over what the server says, and asks for the picture if there is a new one.
   update(status) {
     this.pinned = status.pinned;
+    this.noisiest = status.error?.noisiest?.crop ?? null;
     if (status.size[0] !== this.size[0] || status.size[1] !== this.size[1]) {
       this.size = status.size;
       this.fit();
@@ -53,6 +57,7 @@ export class Stage {
       this.asked = status.picture;
       this.fetchPicture(status.picture);
     }
+    this.#drawBox();
   }
 
   // The first picture, if there is one.
@@ -107,7 +112,29 @@ export class Stage {
     this.mapKind = kind;
     element("map").hidden = true;
     element("legend").hidden = true;
+    this.#drawBox();
     if (kind) this.fetchMap();
+  }
+
+  // The tile of the largest difference from the pinned picture; null if there is none.
+  showDifference(tile) {
+    this.mostDifferent = tile;
+    this.#drawBox();
+  }
+
+  // A box around the tile that the map is about, and its name in the legend. Lines have the same width at all sizes of the picture.
+  #drawBox() {
+    element("tile-box").replaceChildren();
+    if (element("map").hidden) return;
+    const isDifference = this.mapKind === "difference";
+    const tile = isDifference ? this.mostDifferent : this.noisiest;
+    const unit = this.mapKind === "relative" ? " relative to the mean brightness" : "";
+    const box = ` Box: the tile with the largest ${isDifference ? "difference" : "error"}${unit}.`;
+    element("legend-title").textContent = `${this.legendTitle}${tile ? box : ""}`;
+    if (!tile) return;
+    const [left, right, top, bottom] = tile;
+    const place = { x: left, y: top, width: right - left, height: bottom - top, fill: "none", "vector-effect": "non-scaling-stroke" };
+    element("tile-box").replaceChildren(svg("rect", { ...place, stroke: "#000", "stroke-width": 4 }), svg("rect", { ...place, stroke: "#fff", "stroke-width": 2 }));
   }
 
   async #fetchMap() {
@@ -125,6 +152,7 @@ export class Stage {
       element("map").hidden = false;
       element("legend").hidden = false;
       this.#drawLegend(about.legend);
+      this.#drawBox();
       log("map", { kind, picture: about.picture, rms: about.legend.rms, range: about.legend.range });
     } catch (error) {
       this.#refuseMap(error.message);
@@ -142,18 +170,20 @@ export class Stage {
     element("legend").hidden = false;
     element("legend-title").textContent = why;
     element("legend-bar").replaceChildren();
+    this.#drawBox();
   }
 
   #drawLegend(legend) {
+    const colours = "Yellow: large error. Dark: small error.";
     const titles = {
-      relative: `Standard error of each pixel, in percent of the pixel. Root mean square ${percent(legend.rms)}.`,
-      "of-mean": `Standard error of each pixel, in percent of the mean brightness. Its root mean square, ${percent(legend.rms)}, is the error of the picture.`,
-      samples: "Samples of each pixel, in units of their mean.",
-      difference: "This picture less the pinned one, in standard errors. Single pixels of strong colour come by chance; regions of one colour do not.",
+      relative: `Standard error of each pixel, in percent of the pixel. ${colours} The root mean square is ${percent(legend.rms)}.`,
+      "of-mean": `Standard error of each pixel, in percent of the mean brightness. ${colours} The root mean square, ${percent(legend.rms)}, is the error of the picture.`,
+      samples: "Samples of each pixel, in units of their mean. Yellow: many samples. Dark: few samples.",
+      difference: `This picture minus the pinned picture, in standard errors. Blue: this picture is darker. Red: it is brighter. Colours stop at ±${digits(legend.range[1], 1)}. Single pixels of strong colour come by chance; regions of one colour do not.`,
     };
     let title = titles[legend.kind];
     if (legend.unknown) title += ` Green: unknown (${legend.unknown} pixels).`;
-    element("legend-title").textContent = title;
+    this.legendTitle = title;
     const bar = element("legend-bar");
     const [left, width] = [16, 308];
     const parts = legend.colours.map((colour, i) =>
