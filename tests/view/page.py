@@ -90,7 +90,11 @@ def cursor_tells_pixel_and_spectrum(context):
         assert spectrum["bands"] >= 30 and spectrum["with_errors"] == spectrum["bands"], spectrum
         page.wait("a better one", "window.etalonLog.some(e => e.what === 'spectrum' && e.samples >= 4096)")
         assert page.run("document.querySelectorAll('#spectrum rect').length") > 40
+        assert "They are not part of the picture." in page.text("spectrum-words"), page.text("spectrum-words")
+        assert "red, linear Rec. 709" in page.text("pixel-values"), page.text("pixel-values")
+        assert page.text("pixel-what") == f"object {pixel['object']}, material {pixel['material']}", page.text("pixel-what")
         assert page.run("document.querySelectorAll('#effects-on li.is-here').length") >= 1
+        assert "(needed here)" in page.text("effects-on"), page.text("effects-on")
         page.shot(context.shots, "pixel")
         return f"{pixel['object']} of {pixel['material']}, {spectrum['bands']} bands"
 
@@ -107,7 +111,8 @@ def click_draws_paths(context):
         assert paths["paths"] == 24 and paths["vertices"] >= 24, paths
         lines = page.run("document.querySelectorAll('#overlay line').length")
         told = page.text("paths-list")
-        assert lines > 20 and "vertices" in told and "weight" in told, lines
+        assert lines > 20 and "hits;" in told and "weight" in told and "path 1\n" in told, (lines, told)
+        assert "found light" in page.text("paths-legend")
         page.shot(context.shots, "paths")
         page.key("Escape")
         assert page.run("document.querySelectorAll('#overlay line').length") == 0
@@ -206,6 +211,7 @@ def effects_are_switched_and_compared(context):
         page.wait("the notes", "document.getElementById('notes').innerText.includes('specular-chains')")
         verdict = page.log("comparison")[-1]["verdict"]
         assert verdict == "differ", verdict
+        assert "you switched it off" in page.text("effects-on"), page.text("effects-on")
         assert "difference in standard errors" in page.text("map-kind"), page.text("map-kind")
         page.choose("input[name=map][value=difference]")
         page.wait("the map", "window.etalonLog.some(e => e.what === 'map' && e.kind === 'difference')")

@@ -51,7 +51,8 @@ export class Effects {
     box.disabled = !is_scene;
     box.checked = effect.on && !without.includes(effect.name);
     lost.hidden = effect.study !== "left-out";
-    because.textContent = `because: ${effect.because}`;
+    lost.textContent = `${without.includes(effect.name) ? "you switched it off" : "the command line switched it off"}: the picture is now an approximation`;
+    because.textContent = `${effect.study === "forced" ? "not needed" : "needed because"}: ${effect.because}`;
     item.dataset.because = effect.because;
     item.classList.toggle("is-here", this.#isHere(effect.because));
     const known = costs.find((cost) => cost.effect === effect.name);
@@ -68,9 +69,10 @@ export class Effects {
       order("effects", { without: box.checked ? others : [...others, name] });
       log("effect", { name, on: box.checked });
     });
-    const lost = html("span", { class: "lost" }, "left out: an approximation");
+    const lost = html("span", { class: "lost" });
     const because = html("span", { class: "because" });
-    const item = html("li", {}, html("label", {}, box, spoken(name), lost), because);
+    const here = html("span", { class: "here", title: "The object under the cursor, or its material, is the reason" }, "(needed here)");
+    const item = html("li", {}, html("label", {}, box, spoken(name), here), lost, because);
     return { item, box, lost, because, cost: html("span", { class: "cost" }) };
   }
 }
@@ -85,18 +87,18 @@ export function spoken(name) {
   return name === "mis" ? "multiple importance sampling" : name.replaceAll("-", " ");
 }
 
-// 1.3 → "30 % more", 0.8 → "20 % less", 4 → "4.0 times".
+// 1.3 → "30 % longer", 0.8 → "20 % less time", 4 → "4.0 times as long".
 function times(ratio) {
-  if (ratio > 2 || ratio < 0.5) return `${digits(ratio, 2)} times the time`;
+  if (ratio > 2 || ratio < 0.5) return `${digits(ratio, 2)} times as long`;
   const change = Math.abs(ratio - 1);
-  if (change < 0.02) return "the same time within 2 %";
-  return `${percent(change)} ${ratio > 1 ? "more" : "less"} time`;
+  if (change < 0.02) return "the same time (within 2 %)";
+  return ratio > 1 ? `${percent(change)} longer` : `${percent(change)} less time`;
 }
 
 function inWords(cost) {
   if (cost.problem) return `Its cost cannot be measured: ${cost.problem}`;
-  const perPath = `With it a path takes ${times(cost.path_time)}`;
-  if (cost.time_to_error === null) return `${perPath}.`;
-  const sure = cost.uncertainty === null ? "" : ` (± ${percent(cost.uncertainty)})`;
-  return `${perPath}, and reaching the same error takes ${times(cost.time_to_error)}${sure}.`;
+  const perPath = `A path takes ${times(cost.path_time)} with it.`;
+  if (cost.time_to_error === null) return perPath;
+  const sure = cost.uncertainty === null ? "" : ` This time is known to ± ${percent(cost.uncertainty)}.`;
+  return `${perPath} The same error takes ${times(cost.time_to_error)} to reach.${sure}`;
 }

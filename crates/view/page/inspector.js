@@ -58,7 +58,7 @@ export class Inspector {
     element("pixel-some").hidden = false;
     const scale = 1 / Math.max(1, ...info.rgb);
     const words = info.object
-      ? [html("b", {}, info.object.object), info.object.material ? ` of ${info.object.material}` : ""]
+      ? ["object ", html("b", {}, info.object.object), ...(info.object.material ? [", material ", html("b", {}, info.object.material)] : [])]
       : [html("span", {}, "nothing is met there")];
     const swatch = html("span", { class: "swatch" });
     swatch.style.background = cssColour(info.rgb, scale);
@@ -69,8 +69,8 @@ export class Inspector {
       const ofMean = info.mean_luminance > 0 ? `, ${percent(info.luminance_error / info.mean_luminance)} of the mean` : "";
       rows.push(["± is", `one standard error: ${percent(info.luminance_error / info.luminance)} of the pixel${ofMean}`]);
     }
-    ["red", "green", "blue"].forEach((name, c) => rows.push([name, withError(info.rgb[c], info.rgb_error?.[c])]));
-    if (info.samples !== null) rows.push(["samples", count(info.samples)]);
+    ["red", "green", "blue"].forEach((name, c) => rows.push([`${name}, linear Rec. 709`, withError(info.rgb[c], info.rgb_error?.[c])]));
+    if (info.samples !== null) rows.push(["samples in the picture", count(info.samples)]);
     if (info.object?.depth_m) rows.push(["distance from the eye", `${digits(info.object.depth_m, 4)} m`]);
     const cells = rows.map(([name, value]) => html("tr", {}, html("td", {}, name), html("td", {}, value)));
     element("pixel-values").replaceChildren(...cells);
@@ -129,10 +129,11 @@ export class Inspector {
       }
     }
     chart.replaceChildren(...parts);
-    const unit = "Radiance in W/(m² sr nm).";
-    element("spectrum-words").textContent = spectrum.samples === null
-      ? `${unit} Bands of the picture; thin vertical lines are one standard error.`
-      : `${unit} ${spectrum.samples} paths of this pixel alone, traced in ${seconds(spectrum.seconds)}; thin vertical lines are one standard error. Rest here, and they shrink.`;
+    const source = spectrum.samples === null
+      ? "bands of the picture."
+      : `from ${spectrum.samples} extra paths of this pixel, traced in ${seconds(spectrum.seconds)}. They are not part of the picture.`;
+    const more = spectrum.samples === null ? "" : spectrum.samples < MOST ? " Hold the cursor still, and the lines get shorter." : " This is the most that is traced.";
+    element("spectrum-words").textContent = `Radiance in W/(m² sr nm). Spectrum: ${source} Thin vertical lines are one standard error.${more}`;
   }
 }
 

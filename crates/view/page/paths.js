@@ -9,9 +9,14 @@ const COUNT = 24;
 // Why a path ended.
 const ENDS = {
   escaped: "left the scene",
-  roulette: "dropped by chance (roulette)",
+  roulette: "dropped by chance",
   absorbed: "absorbed",
+  "throughput below the floor": "its weight became too small",
+  "throughput not finite": "its weight is not finite",
+  "limit on depth": "reached the limit of hits",
 };
+const WEIGHT = "The weight of a place is the factor by which light from there counts in the pixel. It may exceed 1 where chance decides how a path goes on.";
+const FIRST = "The picture takes the same paths in the same order. The brightness of the pixel is the mean of what its paths add.";
 
 export class Paths {
   constructor() {
@@ -28,6 +33,8 @@ export class Paths {
       element("paths").hidden = false;
       element("paths-at").textContent = at.join(", ");
       element("paths-words").textContent = error.message;
+      element("paths-words").title = "";
+      element("paths-legend").hidden = true;
       element("paths-list").replaceChildren();
       element("path-lines").replaceChildren();
       this.at = at;
@@ -41,7 +48,9 @@ export class Paths {
     element("paths").hidden = false;
     element("paths-at").textContent = `in column ${at[0]}, row ${at[1]}`;
     const found = paths.filter((p) => p.luminance > 0).length;
-    element("paths-words").textContent = `The first ${paths.length} paths of this pixel, traced here once more; the picture takes the same ones in the same order. ${found} of them found light. Dots are places where a path met a surface; filled dots are places where light was found. A line has the colour of what its path brings. The weight of a place is the factor by which light from there counts in the pixel. Where chance decides how a path goes on, it may exceed 1.`;
+    element("paths-words").textContent = `These are the first ${paths.length} paths of this pixel, traced once more. ${found} of them found light. A line has the colour of the light that its path adds.`;
+    element("paths-words").title = FIRST;
+    element("paths-legend").hidden = false;
     this.#list();
     this.#draw();
     element("paths").scrollIntoView({ block: "nearest" });
@@ -63,8 +72,11 @@ export class Paths {
     const items = this.paths.map((path, index) => {
       const dot = html("span", { class: "dot" });
       dot.style.background = path.luminance > 0 ? this.#colour(path) : "transparent";
-      const words = path.luminance > 0 ? `brings Y = ${digits(path.luminance, 3)}` : "found no light";
-      const head = html("div", { class: "head" }, dot, html("span", {}, `path ${path.sample}`), html("span", { class: path.luminance > 0 ? "" : "lost" }, `${words}; ${path.vertices.length} ${path.vertices.length === 1 ? "vertex" : "vertices"}, ${ENDS[path.end] ?? path.end}`));
+      const words = path.luminance > 0 ? `adds brightness ${digits(path.luminance, 3)} (Y)` : "found no light";
+      const hits = `${path.vertices.length} ${path.vertices.length === 1 ? "hit" : "hits"}`;
+      // Samples count from 0, as in commands and files. People count paths from 1.
+      const name = html("span", { title: `sample ${path.sample} of the pixel` }, `path ${path.sample + 1}`);
+      const head = html("div", { class: "head" }, dot, name, html("span", { class: path.luminance > 0 ? "" : "lost" }, `${words}; ${hits}; ${ENDS[path.end] ?? path.end}`));
       const item = html("li", {}, head);
       item.addEventListener("pointerenter", () => this.#choose(index, item));
       item.addEventListener("click", () => this.#open(path, item));
@@ -81,9 +93,9 @@ export class Paths {
       return;
     }
     const vertices = path.vertices.map((vertex) => {
-      const line = html("li", {}, html("b", {}, vertex.object), vertex.material ? ` (${vertex.material})` : "", `, weight ${digits(vertex.throughput, 2)}`);
+      const line = html("li", {}, html("b", {}, vertex.object), vertex.material ? ` (${vertex.material})` : "", ", ", html("span", { title: WEIGHT }, `weight ${digits(vertex.throughput, 2)}`));
       for (const [how, radiance] of vertex.light) {
-        line.append(html("span", { class: "found" }, `; brings ${digits(radiance, 3)} ${how === "emitter" ? "as a lamp" : `by ${how.replace("-", " ")}`}`));
+        line.append(html("span", { class: "found" }, `; adds ${digits(radiance, 3)} ${how === "emitter" ? "as a lamp" : `by ${how.replace("-", " ")}`}`));
       }
       return line;
     });
