@@ -70,8 +70,10 @@ pub(super) fn cases() -> Vec<SuiteCase> {
                     .confirmed("a walk from leaf to leaf, 400,000 times", 0.006, move || {
                         walked(spectral, sun_deg)[usize::from(!above_ground)]
                     })
-                    .or_else("a black ground", mistake)
                     .allows(1e-4 * value, "a phase function that is linear over half a degree; single precision");
+                // Red light that the canopy sends back to the ground is too little to be told from none.
+                let known = spectral.ground * diffuse.reflected > 0.01;
+                let truth = if known { truth.or_else("a black ground", mistake) } else { truth };
                 list.push(case(
                     "turbid",
                     "A canopy without size of leaves",
@@ -104,7 +106,8 @@ fn scene(spectral: Spectral, sun_deg: Option<f64>, meter: Value) -> Scene {
         .object(level_square([0.0, 0.0, -HEIGHT_M], 9e3, true), lambert(spectral.ground))
         .thing(canopy);
     match sun_deg {
-        None => scene.sky(1.0 / PI),
+        // Only paths that leave find it.
+        None => scene.sky(1.0 / PI).spp(1 << 21),
         Some(deg) => {
             let (sine, cosine) = deg.to_radians().sin_cos();
             scene.directional_light([sine, 0.0, -cosine], 1.0 / cosine)
