@@ -6,8 +6,8 @@
     etalon verify --images pictures
 
 Builds a Mitsuba scene from each exported scene, renders it with independent seeds until the noise is low enough for the truth
-(or the seconds are over), and writes NAME.exr with channels Y and Variance.Y. What Mitsuba cannot be told is listed with the
-reason and left out. Needs `pip install mitsuba==3.9.1`; the llvm variants need LLVM 19 (apt-get install libllvm19) and
+(or the seconds are over), and writes NAME.exr with channels Y and Variance.Y. Meters are read by rays that begin on them, and
+written as meters.Y. What Mitsuba cannot be told is listed with the reason and left out. Needs `pip install mitsuba==3.9.1`; the llvm variants need LLVM 19 (apt-get install libllvm19) and
 DRJIT_LIBLLVM_PATH set to its library.
 """
 import argparse
@@ -22,12 +22,26 @@ PASSES = 32  # independent seeds behind each variance
 STANDARD_ERRORS = 9.0
 
 
+# Luminous efficacy of a constant spectrum, 683.002 lm/W times the integral of the 1931 observer's y: photometric values become such.
+LUX = 683.002 * 106.856917
+PHOTOMETRIC = {"intensity_cd": "intensity", "illuminance_lx": "irradiance", "luminance_cd_per_m2": "radiance"}
+
 # Claims that a translation of the neutral form to Mitsuba cannot meet. Its facets hide each other independently, by G₁G₁.
 UNSUPPORTED = {"motion", "correlated-masking", "whole-format"}
 
 
 class Unsupported(Exception):
     pass
+
+
+def radiometric(thing):
+    """With values of a constant spectrum in place of photometric ones."""
+    if "spectrum" in thing:
+        raise Unsupported("photometric units of a spectrum")
+    plain = {PHOTOMETRIC.get(key, key): value / LUX if key in PHOTOMETRIC else value for key, value in thing.items()}
+    if "flux_lm" in plain:
+        plain["intensity"] = plain.pop("flux_lm") / (4 * np.pi * LUX)
+    return plain
 
 
 def unit(v):
@@ -44,14 +58,21 @@ class Translator:
         d = {
             "type": "scene",
             "integrator": {"type": "path", "max_depth": s["integrator"].get("max_depth", -1)},
-            "sensor": self.sensor(s["camera"], s["film"]),
         }
+        # The light that lamps send to a meter is added by itself: no ray meets lights without a surface.
+        if "meters" in s:
+            d["integrator"]["hide_emitters"] = True
+        if "meters" not in s:
+            d["sensor"] = self.sensor(s["camera"], s["film"])
         for i, thing in enumerate(s["objects"]):
             for j, shape in enumerate(self.object(thing)):
                 d[f"object{i}_{j}"] = shape
         for i, light in enumerate(s["lights"]):
             d[f"light{i}"] = self.light(light)
-        if not s["objects"]:
+        for part in ("groups", "instances", "medium"):
+            if part in s:
+                raise Unsupported(part)
+        if not s["objects"] and "meters" not in s:
             # A scene without shapes has no extent, which Mitsuba's sky wants to know: a black speck behind the eye.
             away = np.array(s["camera"]["position_m"]) * 2 - np.array(s["camera"]["look_at_m"])
             d["speck"] = {"type": "sphere", "center": away.tolist(), "radius": 1e-3, "bsdf": self.bsdf({"type": "black"})}
@@ -121,7 +142,7 @@ class Translator:
 
     def object(self, thing):
         bsdf = self.bsdf(thing["material"])
-        emission = thing.get("emission")
+        emission = radiometric(thing["emission"]) if "emission" in thing else None
         if emission is None:
             return [shape | {"bsdf": bsdf} for shape in self.shapes(thing["shape"], False)]
         lit = {"bsdf": bsdf, "emitter": {"type": "area", "radiance": self.number(emission["radiance"])}}
@@ -184,6 +205,9 @@ class Translator:
         return {"type": kind, "to_world": self.T(m)}
 
     def light(self, s):
+        s = radiometric(s)
+        if s["type"] not in ("environment", "point", "directional") or "sky" in s or "image" in s:
+            raise Unsupported("a light of the type " + s["type"])
         if s["type"] == "environment":
             return {"type": "constant", "radiance": self.number(s["radiance"])}
         if s["type"] == "point":
@@ -234,6 +258,56 @@ def measure(mi, scene, truth, seconds):
             spp, sums, squares, count = 4 * spp, 0.0, 0.0, 0
 
 
+def place(mi, meter, sampler):
+    """Places on a meter, its normal, and its area, which is 1 for a point."""
+    if meter["type"] == "irradiance":
+        normal = unit(np.array(meter["normal"], float))
+        return mi.Point3f(*map(float, meter["position_m"])), mi.Normal3f(*normal.tolist()), 1.0
+    if meter["type"] != "flux":
+        raise Unsupported("a meter of the type " + meter["type"])
+    corner, u, v = (np.array(meter[key], float) for key in ("origin_m", "u_m", "v_m"))
+    normal, at = np.cross(u, v), sampler.next_2d()
+    places = mi.Point3f(*corner.tolist()) + at.x * mi.Vector3f(*u.tolist()) + at.y * mi.Vector3f(*v.tolist())
+    return places, mi.Normal3f(*unit(normal).tolist()), np.linalg.norm(normal)
+
+
+def read_meter(mi, scene, integrator, meter, sampler, count):
+    """One reading by so many rays: what lamps send to the meter, and what its surroundings do."""
+    import drjit as dr
+
+    places, normal, area = place(mi, meter, sampler)
+    # Off a surface that the meter may lie on, by what single precision can tell.
+    at = dr.zeros(mi.SurfaceInteraction3f, count)
+    at.p, at.n = places + 1e-5 * normal, normal
+    lamp, irradiance = scene.sample_emitter_direction(at, sampler.next_2d(), True)
+    direct = irradiance[0] * dr.maximum(0.0, dr.dot(lamp.d, normal))
+    ways = mi.Frame3f(normal).to_world(mi.warp.square_to_cosine_hemisphere(sampler.next_2d()))
+    radiance, _, _ = integrator.sample(scene, sampler, mi.RayDifferential3f(mi.Ray3f(at.p, ways)))
+    return area * float(np.mean(np.array(direct, dtype=np.float64) + np.pi * np.array(radiance[0], dtype=np.float64)))
+
+
+def measure_meters(mi, scene, meters, truth, seconds):
+    """The mean of all readings and its variance, from PASSES seeds; more rays until the noise will do."""
+    need = truth["must_resolve"]
+    need = None if need is None else max(need - truth["tolerance"], 0.5 * need)
+    integrator, count, seed, start = scene.integrator(), 1 << 14, 0, time.perf_counter()
+    while True:
+        readings = []
+        for _ in range(PASSES):
+            reading = 0.0
+            for meter in meters:
+                seed += 1
+                sampler = mi.load_dict({"type": "independent"})
+                sampler.seed(seed, count)
+                reading += read_meter(mi, scene, integrator, meter, sampler, count) / len(meters)
+            readings.append(reading)
+        mean, variance = np.mean(readings), np.var(readings, ddof=1) / PASSES
+        spent = time.perf_counter() - start
+        if need is None or STANDARD_ERRORS * np.sqrt(variance) <= need or 5 * spent > seconds or not np.isfinite(mean):
+            return np.full((1, 1), mean), np.full((1, 1), variance), PASSES * count, spent
+        count *= 4
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("truths", type=pathlib.Path)
@@ -255,17 +329,23 @@ def main():
     polarised = "polarized" in args.variant
     for truth in json.loads((args.truths / "truths.json").read_text())["truths"]:
         name, claims = truth["name"], truth["claims"]
-        for claim in UNSUPPORTED & set(claims):
+        # What is measured needs the whole format; what Mitsuba cannot be told of it is seen when it is translated.
+        unsupported = UNSUPPORTED & set(claims) - ({"whole-format"} if truth["quantity"] == "meters" else set())
+        for claim in unsupported:
             print(f"{name}: not supported: {claim}", flush=True)
-        if UNSUPPORTED & set(claims):
+        if unsupported:
             continue
         if args.names and not any(part in name for part in args.names):
             continue
         if ("averages-polarisation" if polarised else "carries-polarisation") in claims:
             continue
         try:
-            scene = Translator(mi, truth["band_nm"]).load(json.loads((args.truths / truth["scene"]).read_text()))
-            mean, variance, spp, spent = measure(mi, scene, truth, args.seconds)
+            said = json.loads((args.truths / truth["scene"]).read_text())
+            scene = Translator(mi, truth["band_nm"]).load(said)
+            if "meters" in said:
+                mean, variance, spp, spent = measure_meters(mi, scene, said["meters"], truth, args.seconds)
+            else:
+                mean, variance, spp, spent = measure(mi, scene, truth, args.seconds)
         except Unsupported as why:
             print(f"{name}: not supported: {why}", flush=True)
             continue
@@ -273,8 +353,9 @@ def main():
             print(f"{name}: refused: {str(why).splitlines()[0]}", flush=True)
             continue
         # A variant of one wavelength answers 1 to a radiance of 1 in any band: no white picture is needed.
+        prefix = "meters." if "meters" in said else ""
         channels = np.stack([mean, variance], axis=-1).astype(np.float32)
-        bitmap = mi.Bitmap(channels, mi.Bitmap.PixelFormat.MultiChannel, ["Y", "Variance.Y"])
+        bitmap = mi.Bitmap(channels, mi.Bitmap.PixelFormat.MultiChannel, [prefix + "Y", "Variance." + prefix + "Y"])
         bitmap.write(str(args.pictures / truth["picture"]))
         print(f"{name}: {mean.mean():.8g}, {truth['value']:.8g} is true, {spp} paths a pixel in {spent:.1f} s", flush=True)
 

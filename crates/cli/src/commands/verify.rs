@@ -41,6 +41,9 @@ pub(crate) struct VerifyArgs {
     /// Write a page with what was read of the suite to this file.
     #[arg(long, value_name = "FILE", requires = "suite", conflicts_with_all = ["export", "images"])]
     page: Option<PathBuf>,
+    /// Add what another renderer read to the page, from its pictures in this folder: "My renderer 2.0=pictures".
+    #[arg(long, value_name = "NAME=DIR", requires = "page", value_parser = suite::Peer::parse)]
+    peer: Vec<suite::Peer>,
     /// Print one JSON object on standard output instead of a table.
     #[arg(long)]
     json: bool,

@@ -54,6 +54,20 @@ pub(super) fn run(folder: &Path, chosen: &[Truth], json: bool) -> Outcome {
     failure.into_outcome()
 }
 
+/// What another renderer read, of those of these truths that there are pictures of, by their names.
+pub(super) fn readings(folder: &Path, chosen: &[Truth]) -> Result<BTreeMap<String, Reading>, Failure> {
+    let files = Files::in_folder(folder, chosen)?;
+    let mut readings = BTreeMap::new();
+    for truth in chosen {
+        if let Some(pictures) = files.pictures.get(&truth.name) {
+            let reading = reading(truth, pictures, files.pictures.get(&white(&truth.name)))
+                .map_err(|why| Failure::input(miette!(code = "picture", "{}: {why}", truth.name)))?;
+            readings.insert(truth.name.clone(), reading);
+        }
+    }
+    Ok(readings)
+}
+
 /// Under which name the picture of white goes.
 fn white(truth: &str) -> String {
     format!("{truth}.white")

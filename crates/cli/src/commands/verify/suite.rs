@@ -5,11 +5,14 @@ use etalon_oracle::statistics::Budget;
 use etalon_oracle::truths::{SuiteCase, Truth, cie171, rami};
 use etalon_picture::write_atomically;
 use miette::Report as Problem;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
 use super::VerifyArgs;
 use super::ours::judged;
-use super::report::{Figures, Report};
+use super::pictures::readings;
+use super::report::{Figures, Report, Row};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 
@@ -48,11 +51,50 @@ impl Suite {
     }
 }
 
+/// Another renderer, and the folder of its pictures.
+#[derive(Clone, Debug)]
+pub(super) struct Peer {
+    name: String,
+    folder: PathBuf,
+}
+
+impl Peer {
+    /// `NAME=DIR`.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((name, folder)) if !name.is_empty() && !folder.is_empty() => {
+                Ok(Self { name: name.to_owned(), folder: folder.into() })
+            }
+            _ => Err("it is written NAME=DIR".to_owned()),
+        }
+    }
+}
+
+/// What another renderer read of some points, by their names.
+struct PeerReadings<'a> {
+    name: &'a str,
+    figures: BTreeMap<String, Figures>,
+}
+
+impl<'a> PeerReadings<'a> {
+    fn of(peer: &'a Peer, truths: &[Truth], significance: f64) -> Result<Self, Failure> {
+        let mut read = readings(&peer.folder, truths)?;
+        let of = |truth: &Truth| {
+            let reading = read.remove(&truth.name)?;
+            Some((truth.name.clone(), Row::new(truth, Ok(reading), significance).figures()))
+        };
+        Ok(Self { name: &peer.name, figures: truths.iter().filter_map(of).collect() })
+    }
+}
+
 /// Our own integrator, held to the points of a suite; the page goes to `page`.
 pub(super) fn run(args: &VerifyArgs, suite: Suite, cases: &[SuiteCase]) -> Outcome {
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::run(Problem::from_err(error).wrap_err("cannot listen to signals")))?;
     let significance = Budget::for_tests(cases.len()).each();
+    let truths: Vec<Truth> = cases.iter().map(|case| case.truth.clone()).collect();
+    let peers = args.peer.iter().map(|peer| PeerReadings::of(peer, &truths, significance));
+    let peers = peers.collect::<Result<Vec<_>, Failure>>()?;
     let mut report = Report::new(!args.json).with_seed(args.seed).of(cases.len());
     let mut lines = Vec::with_capacity(cases.len());
     for (index, case) in cases.iter().enumerate() {
@@ -65,7 +107,7 @@ pub(super) fn run(args: &VerifyArgs, suite: Suite, cases: &[SuiteCase]) -> Outco
         report.push(row);
     }
     if let Some(page) = args.page.as_deref() {
-        let text = written(suite, args.seed, &lines);
+        let text = written(suite, args.seed, &lines, &peers);
         write_atomically(page, |out| out.write_all(text.as_bytes()))
             .map_err(|error| Failure::run(Problem::from_err(error)))?;
     }
@@ -77,13 +119,11 @@ Each reading is the mean of 64 independent replicates; `±` is its standard erro
 found. *z* is the difference over the standard error, `–` where the reading has no noise.
 ";
 
-fn written(suite: Suite, seed: u64, lines: &[(&SuiteCase, Figures)]) -> String {
+fn written(suite: Suite, seed: u64, lines: &[(&SuiteCase, Figures)], peers: &[PeerReadings<'_>]) -> String {
     let (name, [head, notes]) = (suite.name(), suite.words());
     let passed = lines.iter().filter(|(_, figures)| figures.pass).count();
-    let finds = |figures: &Figures| figures.resolvable_bias / figures.truth.abs();
     let worst = lines.iter().map(|(_, figures)| finds(figures)).fold(0.0, f64::max);
-    let noisy = |figures: &Figures| (figures.standard_error > 1e-9 * figures.truth.abs()).then(|| figures.deviation());
-    let largest = lines.iter().filter_map(|(_, figures)| noisy(figures)).map(f64::abs).fold(0.0, f64::max);
+    let largest = largest_deviation(lines.iter().map(|(_, figures)| figures));
     let mut text = format!("{head}{READINGS}");
     // Writing to a String cannot fail.
     let _ = write!(
@@ -91,34 +131,74 @@ fn written(suite: Suite, seed: u64, lines: &[(&SuiteCase, Figures)]) -> String {
         "\n```sh\netalon verify --suite {name} --seed {seed} --page docs/benchmarks/{name}.md\n```\n\n\
          {passed} of {} points pass. The largest |z| is {largest:.2}. The coarsest reading would have shown a bias of {:.2} %.\n\n\
          Another renderer can be held to the same points: `etalon verify --suite {name} --export DIR` writes the scenes and the expected readings,\n\
-         `etalon verify --suite {name} --images DIR` judges what it read (see [your own renderer](../how-to/your-own-renderer.md)).\n",
+         `etalon verify --suite {name} --images DIR` judges what it read (see [your own renderer](../how-to/your-own-renderer.md)), and \
+         `--peer NAME=DIR`\nadds it to this page.\n",
         lines.len(),
         100.0 * worst
     );
+    for PeerReadings { name, figures } in peers {
+        let (count, largest) = (figures.len(), largest_deviation(figures.values()));
+        let coarsest = figures.values().map(finds).fold(0.0, f64::max);
+        let _ = write!(
+            text,
+            "\n{name} was held to {count} of the points; the others have what it cannot be told. Its largest |z| is {largest:.2}, its coarsest reading\n\
+             would have shown a bias of {:.2} %.\n",
+            100.0 * coarsest
+        );
+    }
     let mut section = "";
     for (case, figures) in lines {
+        let of_section = |peer: &&PeerReadings<'_>| {
+            let here = lines.iter().filter(|(other, _)| other.section == case.section);
+            here.into_iter().any(|(other, _)| peer.figures.contains_key(&other.truth.name))
+        };
+        let peers: Vec<_> = peers.iter().filter(of_section).collect();
         if case.section != section {
             section = case.section;
+            let columns: String = peers.iter().map(|peer| format!(" {} | z |", peer.name)).collect();
+            let rules = "---:|".repeat(5 + 2 * peers.len());
             let _ = write!(
                 text,
-                "\n## {section} {}\n\n{}.\n\n| point | expected | measured | difference | z | finds |\n|---|---:|---:|---:|---:|---:|\n",
+                "\n## {section} {}\n\n{}.\n\n| point | expected | measured | difference | z | finds |{columns}\n|---|{rules}\n",
                 case.title, case.truth.formula
             );
         }
-        let shown = |value: f64| value * case.factor;
-        let z = noisy(figures).map_or("–".to_owned(), |z| format!("{z:.2}"));
+        let measured = |figures: &Figures| {
+            let shown = |value: f64| value * case.factor;
+            format!("{:.4} ± {:.4}", shown(figures.measured), shown(figures.standard_error))
+        };
+        let z = |figures: &Figures| deviation(figures).map_or("–".to_owned(), |z| format!("{z:.2}"));
+        let of_peer = |peer: &&PeerReadings<'_>| match peer.figures.get(&case.truth.name) {
+            Some(figures) => format!(" {} | {} |", measured(figures), z(figures)),
+            None => " – | – |".to_owned(),
+        };
         let _ = writeln!(
             text,
-            "| {} | {:.4}{} | {:.4} ± {:.4} | {:+.3} % | {z} | {:.2} %{} |",
+            "| {} | {:.4}{} | {} | {:+.3} % | {} | {:.2} %{} |{}",
             case.point,
-            shown(figures.truth),
+            figures.truth * case.factor,
             if case.unit.is_empty() { String::new() } else { format!(" {}", case.unit) },
-            shown(figures.measured),
-            shown(figures.standard_error),
+            measured(figures),
             100.0 * (figures.measured / figures.truth - 1.0),
+            z(figures),
             100.0 * finds(figures),
-            if figures.pass { "" } else { ", **fails**" }
+            if figures.pass { "" } else { ", **fails**" },
+            peers.iter().map(of_peer).collect::<String>()
         );
     }
     text + "\n" + notes
+}
+
+/// The smallest relative bias that would have been found.
+fn finds(figures: &Figures) -> f64 {
+    figures.resolvable_bias / figures.truth.abs()
+}
+
+/// The difference over the standard error, of a reading that has noise.
+fn deviation(figures: &Figures) -> Option<f64> {
+    (figures.standard_error > 1e-9 * figures.truth.abs()).then(|| figures.deviation())
+}
+
+fn largest_deviation<'a>(figures: impl Iterator<Item = &'a Figures>) -> f64 {
+    figures.filter_map(deviation).map(f64::abs).fold(0.0, f64::max)
 }
