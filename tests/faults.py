@@ -268,7 +268,7 @@ def main():
     parser.add_argument("command", choices=["list", "check", "build", "run", "table"])
     parser.add_argument("names", nargs="*", help="of faults, for run; a file, for table")
     parser.add_argument("--by", choices=["verify", "tests", "both"], default="both")
-    parser.add_argument("--tests", default="", metavar="OPTIONS", help="as cargo test takes them, such as '--lib --test kernels'")
+    parser.add_argument("--tests", default="", metavar="OPTIONS", help="as cargo test takes them, such as '--lib --test integration'")
     parser.add_argument("--truths", nargs="*", default=[], metavar="WORD", help="words of the names of truths; all by default")
     parser.add_argument("--all", action="store_true", help="do not stop at the first truth or test that fails")
     parser.add_argument("--timeout", type=float, default=3600, metavar="SECONDS", help="for one program of tests")

@@ -6,7 +6,7 @@
 #   tests/mutants.sh [--results] [--limit N] [--quick SECONDS] FILE … -- TESTS
 # --limit tries only so many mutants, evenly; --quick leaves out tests that take longer. What they would have noticed is asked of them with
 # the mutant's number: MUTANT=7 target/mutants/build/release/deps/PROGRAM --exact TEST.
-#   tests/mutants.sh crates/transport/src/guiding/hull.rs -- --lib --test many_paths
+#   tests/mutants.sh crates/transport/src/guiding/hull.rs -- --lib --test integration
 set -eu
 
 here=$(cd "$(dirname "$0")/.." && pwd)

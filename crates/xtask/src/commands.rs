@@ -201,4 +201,18 @@ mod tests {
             "tests without a name: {missing:?}; names without a test: {gone:?}"
         );
     }
+
+    #[test]
+    fn programs_of_tests_that_commands_name_exist() {
+        for command in all() {
+            let Ignored { package, target: ["--test", program], .. } = command.action else { continue };
+            let folder = crate::root().join("crates").join(package.trim_start_matches("etalon-"));
+            let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+            let tests = folder.join("tests");
+            let of_own = [format!("{program}.rs"), format!("{program}/main.rs")];
+            let exists = manifest.contains(&format!("name = \"{program}\""))
+                || !manifest.contains("autotests = false") && of_own.iter().any(|file| tests.join(file).is_file());
+            assert!(exists, "{}: {package} has no tests called {program}", command.name);
+        }
+    }
 }

@@ -11,7 +11,7 @@ pub(crate) fn run(root: &Path, arguments: &[String]) -> Result<ExitCode, String>
         _ => return Err("takes nothing but --write".to_owned()),
     };
     let mut command = Command::new("cargo");
-    command.args(["test", "--release", "--workspace", "--test", "vocabulary"]).current_dir(root);
+    command.args(["test", "--release", "-p", "etalon-scene", "--test", "integration", "vocabulary"]).current_dir(root);
     if write {
         command.env("ETALON_UPDATE_SNAPSHOTS", "1");
     }

@@ -176,18 +176,14 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 "",
                 "rooms of 1 µm to 1000 km show their radiance to 10⁻³",
                 "16 min",
-                Ignored {
-                    package: "etalon-transport",
-                    target: &["--test", "scales"],
-                    name: "closed_rooms_read_their_truth",
-                },
+                Ignored { package: "etalon-transport", target: INTEGRATION, name: "closed_rooms_read_their_truth" },
             ),
             named(
                 "coverage",
                 "",
                 "how often error bars hold the truth: table of docs/accuracy.md",
                 "minutes",
-                Ignored { package: "etalon-transport", target: &["--test", "coverage"], name: "coverage_over_lamps" },
+                Ignored { package: "etalon-transport", target: INTEGRATION, name: "coverage_over_lamps" },
             ),
             named(
                 "compare-pairs",
