@@ -1,8 +1,8 @@
 //! Diffuse reflection and diffuse transmission, alike on both sides: leaves, paper, cloth, lampshades.
 //!
 //! f = ρ/π on the side of `wo` and τ/π on the other, with ρ + τ ≤ 1: the leaf of canopy models (J. Ross 1981, *The Radiation Regime and
-//! Architecture of Plant Stands*). The side is chosen in proportion to the sums of ρ and of τ over the lanes, so that each lane finds light
-//! wherever its own goes; there the direction is drawn in proportion to the cosine.
+//! Architecture of Plant Stands*). The side is chosen in proportion to the sums of ρ and of τ over the lanes: so each lane finds light
+//! wherever its own goes. The direction is drawn in proportion to the cosine.
 
 use super::lambert::{density, direction, toward};
 use super::{BsdfSample, Properties};

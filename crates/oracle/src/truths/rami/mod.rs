@@ -1,8 +1,8 @@
-//! Canopies in the manner of RAMI, the intercomparison of models of light in vegetation (Pinty et al. 2001 and 2004, Widlowski et al. 2007):
-//! leaves are disks that reflect and pass light diffusely, with normals of every direction alike.
+//! Canopies in the manner of RAMI, the intercomparison of models of light in vegetation (Pinty et al. 2001 and 2004, Widlowski et al. 2007).
+//! Leaves are disks that reflect and pass light diffusely, with normals of every direction alike.
 //!
-//! RAMI compares models with each other. Here only what has an answer of its own is asked: where nothing absorbs, all light comes back; and a
-//! canopy of leaves too small to cast shadows on single leaves is a slab of radiative transfer.
+//! RAMI compares models with each other. Here only what has an answer of its own is asked. Where nothing absorbs, all light comes back. A
+//! canopy of very small leaves is a slab of radiative transfer.
 
 mod leaves;
 mod turbid;

@@ -115,8 +115,8 @@ fn scene(spectral: Spectral, sun_deg: Option<f64>, meter: Value) -> Scene {
     }
 }
 
-/// What comes back and what reaches the ground of one unit of light, by walking from leaf to leaf: no phase function, but leaves whose normals are
-/// drawn, met in proportion to what is seen of them.
+/// What comes back and what reaches the ground of one unit of light, by walking from leaf to leaf. There is no phase function: the normals of leaves
+/// are drawn, in proportion to what the light sees of them.
 fn walked(spectral: Spectral, sun_deg: Option<f64>) -> [f64; 2] {
     const WALKS: u32 = 400_000;
     let mut random = Uniform::new(7);
