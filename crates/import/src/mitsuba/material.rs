@@ -12,6 +12,8 @@ use crate::number::{Number, Rough};
 use crate::relief::{has_map, without_map};
 use crate::sides::change_sides;
 use crate::table::{Table, metal};
+use crate::translucent::scaled;
+use etalon_optics::fresnel;
 
 /// Indices of refraction that Mitsuba has names for, as its documentation lists them.
 const INDICES: [(&str, f64); 21] = [
@@ -151,7 +153,10 @@ impl Walk<'_, '_, '_> {
             plugin => {
                 let mut material = self.material(element, plugin, &place)?;
                 // What reflects only is black from behind there.
-                if matches!(plugin, "diffuse" | "conductor" | "roughconductor" | "plastic" | "roughplastic") {
+                if matches!(
+                    plugin,
+                    "diffuse" | "conductor" | "roughconductor" | "plastic" | "roughplastic" | "pplastic"
+                ) {
                     material["sides"] = json!("front");
                 }
                 Look::of(material)
@@ -215,17 +220,29 @@ impl Walk<'_, '_, '_> {
                 plastic
             }
             "principled" => self.principled(element)?,
-            "principledthin" => {
-                self.builder.approximate(place, format!("\"{plugin}\" becomes diffuse, with its base colour"));
-                let reflectance = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
-                json!({ "type": "lambert", "reflectance": reflectance })
-            }
+            "principledthin" => self.principled_thin(element)?,
+            "pplastic" => self.polarised_plastic(element)?,
             other => {
                 self.builder.approximate(place, format!("the material \"{other}\" is not known: it becomes grey"));
                 element.children.iter().for_each(Element::mark);
                 grey()
             }
         })
+    }
+
+    /// Rough plastic whose light is lost if it is reflected down again below the coat.
+    fn polarised_plastic(&mut self, element: &Element) -> Result<Value, String> {
+        let reflectance = self.colour(element, "diffuse_reflectance", Of::Texture)?.unwrap_or(json!(0.5));
+        let coat = self.index(element, "int_ior", 1.49)? / self.index(element, "ext_ior", 1.000_277)?;
+        self.untinted(element, &["specular_reflectance"])?;
+        let what = "\"pplastic\" becomes a rough coat over a base: there light enters and leaves as through a smooth coat, here through its facets";
+        self.builder.approximate(&element.place, what);
+        // Of a base that colours light once T T ρ/(π T_avg) leaves, of this one T T ρ/π.
+        let reflectance = scaled(reflectance, diffuse_transmittance(coat));
+        let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat,
+            "internal_reflection": "uncoloured" });
+        self.put_facets(element, &mut plastic)?;
+        Ok(plastic)
     }
 
     fn conductor(&mut self, element: &Element, rough: bool) -> Result<Value, String> {
@@ -327,4 +344,15 @@ impl Walk<'_, '_, '_> {
             Number::Image(image, _) => Rough::image(image, "alpha"),
         })
     }
+}
+
+/// The share of diffuse light that a smooth interface of this relative index lets in: ∫2µT(µ)dµ.
+fn diffuse_transmittance(eta: f64) -> f64 {
+    // The midpoint rule errs by less than 1e-6.
+    const STEPS: u32 = 4096;
+    let at = |step: u32| {
+        let mu = (f64::from(step) + 0.5) / f64::from(STEPS);
+        2.0 * mu * (1.0 - fresnel::dielectric_reflectance(mu, eta).0) / f64::from(STEPS)
+    };
+    (0..STEPS).map(at).sum()
 }

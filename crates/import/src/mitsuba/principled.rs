@@ -6,6 +6,7 @@ use super::Walk;
 use super::colour::Of;
 use super::element::Element;
 use crate::number::{Number, Rough};
+use crate::translucent::{scaled, translucent};
 
 /// Parts that nothing here stands for, by the number that says how much there is of them.
 const WITHOUT: [&str; 4] = ["sheen", "spec_tint", "flatness", "clearcoat"];
@@ -24,6 +25,22 @@ const APPROXIMATED: &str = "\"principled\" becomes a coat over a diffuse base, b
                             brighter at grazing angles, and glass has no base colour";
 
 impl Walk<'_, '_, '_> {
+    /// A sheet that reflects and passes light diffusely, by half of its `diff_trans`.
+    pub(super) fn principled_thin(&mut self, element: &Element) -> Result<Value, String> {
+        let place = &element.place;
+        let what = "\"principledthin\" becomes a diffuse sheet: its light is not brighter at grazing angles, and it is never clear";
+        self.builder.approximate(place, what);
+        let base = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
+        let passed = match self.number(element, "diff_trans")? {
+            Some(share) => 0.5 * share.mean("diff_trans", place, self.builder).clamp(0.0, 2.0),
+            None => 0.0,
+        };
+        if passed == 0.0 {
+            return Ok(json!({ "type": "lambert", "reflectance": base }));
+        }
+        Ok(translucent(scaled(base.clone(), 1.0 - passed), scaled(base, passed), place, self.builder))
+    }
+
     /// A coat over a diffuse base; a metal, by the share `metallic`; glass, by the share `spec_trans` of what is no metal.
     pub(super) fn principled(&mut self, element: &Element) -> Result<Value, String> {
         let place = &element.place;

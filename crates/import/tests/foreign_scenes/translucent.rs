@@ -35,6 +35,26 @@ fn diffuse_transmission_of_pbrt() {
 }
 
 #[test]
+fn thin_principled_sheets_of_mitsuba() {
+    let of = |keys: &str| {
+        let sheet = format!("<bsdf type=\"principledthin\"><rgb name=\"base_color\" value=\"0.5\"/>{keys}</bsdf>");
+        let model =
+            imported("xml", &format!("<scene version=\"3.0.0\"><shape type=\"rectangle\">{sheet}</shape></scene>"));
+        assert_eq!(
+            model.left_out.len(),
+            2,
+            "that it is approximated, and that there is no light: {:?}",
+            model.left_out
+        );
+        let scene = scene(&model);
+        scene.materials[scene.objects[0].material].kind.clone()
+    };
+    assert!(matches!(of(""), MaterialKind::Lambert { .. }));
+    assert_eq!(shares(&of("<float name=\"diff_trans\" value=\"0.5\"/>")), [0.375, 0.125]);
+    assert_eq!(shares(&of("<float name=\"diff_trans\" value=\"2\"/>")), [0.0, 0.5]);
+}
+
+#[test]
 fn diffuse_transmission_of_gltf() {
     let of = |specular: f64, extension: Value| {
         let positions: Vec<u8> =
