@@ -31,6 +31,7 @@ fn materials_and_spectra() {
             "cloud",
             "drops",
             "clay",
+            "leaf",
             "toy",
             "pane",
             "coated",
