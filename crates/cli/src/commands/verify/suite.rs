@@ -125,14 +125,15 @@ fn written(suite: Suite, seed: u64, lines: &[(&SuiteCase, Figures)], peers: &[Pe
     let worst = lines.iter().map(|(_, figures)| finds(figures)).fold(0.0, f64::max);
     let largest = largest_deviation(lines.iter().map(|(_, figures)| figures));
     let mut text = format!("{head}{READINGS}");
+    let of_peers: String = peers.iter().map(|peer| format!(" --peer \"{}=DIR\"", peer.name)).collect();
     // Writing to a String cannot fail.
     let _ = write!(
         text,
-        "\n```sh\netalon verify --suite {name} --seed {seed} --page docs/benchmarks/{name}.md\n```\n\n\
+        "\n```sh\netalon verify --suite {name} --seed {seed}{of_peers} --page docs/benchmarks/{name}.md\n```\n\n\
          {passed} of {} points pass. The largest |z| is {largest:.2}. The coarsest reading would have shown a bias of {:.2} %.\n\n\
-         Another renderer can be held to the same points: `etalon verify --suite {name} --export DIR` writes the scenes and the expected readings,\n\
-         `etalon verify --suite {name} --images DIR` judges what it read (see [your own renderer](../how-to/your-own-renderer.md)), and \
-         `--peer NAME=DIR`\nadds it to this page.\n",
+         Another renderer can be held to the same points. `etalon verify --suite {name} --export DIR` writes the scenes and the expected readings.\n\
+         `etalon verify --suite {name} --images DIR` judges what it read. `--peer NAME=DIR` adds it to this page. See [your own\n\
+         renderer](../how-to/your-own-renderer.md).\n",
         lines.len(),
         100.0 * worst
     );
@@ -149,8 +150,8 @@ fn written(suite: Suite, seed: u64, lines: &[(&SuiteCase, Figures)], peers: &[Pe
     let mut section = "";
     for (case, figures) in lines {
         let of_section = |peer: &&PeerReadings<'_>| {
-            let here = lines.iter().filter(|(other, _)| other.section == case.section);
-            here.into_iter().any(|(other, _)| peer.figures.contains_key(&other.truth.name))
+            let mut here = lines.iter().filter(|(other, _)| other.section == case.section);
+            here.any(|(other, _)| peer.figures.contains_key(&other.truth.name))
         };
         let peers: Vec<_> = peers.iter().filter(of_section).collect();
         if case.section != section {
