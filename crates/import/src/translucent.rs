@@ -20,18 +20,25 @@ pub(crate) fn translucent(reflectance: Value, transmittance: Value, place: &str,
     json!({ "type": "translucent", "reflectance": reflectance, "transmittance": transmittance })
 }
 
-/// A reflectance times a factor, where it is a number, a colour or an image; others stay as they are.
+/// A reflectance times a factor: a number, a colour, a table, an image, a chequerboard or the colours of vertices.
 pub(crate) fn scaled(mut value: Value, factor: f64) -> Value {
     if let Some(number) = value.as_f64() {
         return json!(number * factor);
     }
-    let key = match value["type"].as_str() {
-        Some("rgb") => "rgb",
-        Some("image") => "factor",
-        _ => return value,
+    if let Some(numbers) = value.as_array() {
+        return numbers.iter().map(|number| scaled(number.clone(), factor)).collect();
+    }
+    let keys: &[&str] = match value["type"].as_str() {
+        Some("rgb") => &["rgb"],
+        Some("tabulated") => &["values"],
+        Some("checker") => &["first", "second"],
+        Some("image" | "vertex-colours") => &["factor"],
+        _ => &[],
     };
-    let before = |c: usize| value[key][c].as_f64().or_else(|| value[key].as_f64()).unwrap_or(1.0);
-    value[key] = json!([0, 1, 2].map(|c| before(c) * factor));
+    for key in keys {
+        let before = value.get(key).cloned().unwrap_or(json!([1.0, 1.0, 1.0]));
+        value[*key] = scaled(before, factor);
+    }
     value
 }
 
@@ -43,4 +50,28 @@ fn channels(value: &Value) -> Option<[f64; 3]> {
         Some([channel(0)?, channel(1)?, channel(2)?])
     };
     number.or_else(rgb)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_reflectance_is_scaled() {
+        for (before, after) in [
+            (json!(0.5), json!(0.25)),
+            (json!({ "type": "rgb", "rgb": [0.5, 1.0, 0.0] }), json!({ "type": "rgb", "rgb": [0.25, 0.5, 0.0] })),
+            (
+                json!({ "type": "tabulated", "values": [1.0, 0.5] }),
+                json!({ "type": "tabulated", "values": [0.5, 0.25] }),
+            ),
+            (json!({ "type": "image" }), json!({ "type": "image", "factor": [0.5, 0.5, 0.5] })),
+            (
+                json!({ "type": "checker", "first": [1.0, 0.5, 0.0], "second": 0.5 }),
+                json!({ "type": "checker", "first": [0.5, 0.25, 0.0], "second": 0.25 }),
+            ),
+        ] {
+            assert_eq!(scaled(before, 0.5), after);
+        }
+    }
 }
