@@ -54,7 +54,7 @@ pub struct StackFresnel {
 /// F ← F cos δ − i G sin δ/u, G ← G cos δ − i u F sin δ, δ = 2πqd/λ,
 ///
 /// from (1, u) behind the interface; r = (u₁F − G)/(u₁F + G). Matrices are scaled by e^(−Im δ), so that thick layers that absorb do not
-/// overflow. A layer that absorbs nothing and that light runs through has a real matrix, which costs a fifth: no exponential and one root. Then
+/// overflow. A layer that absorbs nothing and that light runs through has a real matrix: one root and no exponential. Then
 /// R + T = 1 to a few roundings for each layer.
 #[inline]
 pub fn stack(
