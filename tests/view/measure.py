@@ -37,13 +37,13 @@ def against_command_line(context, path, error, rounds=3):
             threads = viewer.cpu_seconds()
             server = sum(v for name, v in threads.items() if re.match(r"view-(answer|picture|files)|etalon$", name))
             shares.append(server / threads["all"])
-            reached = page.log("error")[-1]
+            reached = context.status(viewer)
         start = time.monotonic()
         out = subprocess.run([context.etalon, "render", path, "--error", error, "-o", f"{context.folder.name}/x.exr", "--json"],
                              check=True, capture_output=True, text=True).stdout
         theirs.append(time.monotonic() - start)
         report = json.loads(out)
-        print(f"{path.stem} to {error}: view {ours[-1]:.1f} s ({reached['samples']} samples, error {reached['relative_rmse']:.4f}), "
+        print(f"{path.stem} to {error}: view {ours[-1]:.1f} s ({reached['samples']} samples, error {reached['error']['relative_rmse']:.4f}), "
               f"render {theirs[-1]:.1f} s ({report['spp']} samples, error {report['error']['relative_rmse']:.4f}); "
               f"server's share of processor time {100 * shares[-1]:.1f} %", flush=True)
     print(f"ratio of sums: {sum(ours) / sum(theirs):.3f}; largest share {100 * max(shares):.1f} %")

@@ -21,7 +21,7 @@ pub(crate) struct Level {
 }
 
 /// Camera paths of each coarse picture, and the smallest side of its blocks.
-const PATHS: [(u64, u32); 3] = [(1 << 15, 8), (1 << 16, 4), (1 << 18, 4)];
+const PATHS: [(u64, u32); 2] = [(1 << 15, 8), (1 << 17, 4)];
 
 /// The coarse pictures of a film of this size, each with more paths than the one before: first smaller blocks, then more samples. Films
 /// that are hardly larger than their blocks have fewer.

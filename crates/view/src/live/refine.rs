@@ -289,7 +289,9 @@ impl Paint<'_> {
         let is_first = progress.done == 0;
         progress.done = reach;
         progress.is_shown = false;
-        if is_first || may_look(progress.seconds, self.live().overhead.seconds(), self.threads()) {
+        // The last picture is shown before the page is told that the render has ended.
+        let is_last = self.live().seen().status.goal_samples.is_some_and(|goal| reach >= goal);
+        if !is_last && (is_first || may_look(progress.seconds, self.live().overhead.seconds(), self.threads())) {
             self.publish(progress, false);
         }
         Ok(())
