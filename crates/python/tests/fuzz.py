@@ -82,7 +82,7 @@ def mutate(scene: dict[str, Any], words: list[str], rng: random.Random) -> Any:
     return scene
 
 
-def check(scene: Any, render: bool) -> str:
+def check(scene: Any) -> str:
     """What became of it, in a word. Anything that no caller expects is raised."""
     try:
         loaded = etalon.load(scene)
@@ -90,8 +90,6 @@ def check(scene: Any, render: bool) -> str:
         assert error.errors and all(problem.path.startswith("$") and problem.message for problem in error.problems)
         assert str(error)
         return "refused"
-    if not render:
-        return "read"
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -111,7 +109,7 @@ def run(count: int, seed: int = 1, *, tell: bool = False) -> dict[str, int]:
     for number in range(count):
         scene = mutate(rng.choice(scenes), words, rng)
         try:
-            word = check(scene, render=number % 10 == 0)
+            word = check(scene)
         except BaseException:
             print(f"number {number} of seed {seed}: {scene!r}", file=sys.stderr)
             raise
