@@ -2,6 +2,7 @@
 //!
 //! A pixel shows the irradiance on the film over π sin²θ₀, θ₀ the half angle of the cone of light on the middle of the film.
 
+mod axial_colour;
 mod fields;
 
 use serde_json::{Value, json};
@@ -19,6 +20,7 @@ const N: f64 = 1.5168;
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = image_scales();
     list.extend(colours());
+    list.push(axial_colour::truth());
     list.extend(fields::truths());
     list.extend(losses());
     list.extend(aspheres());
