@@ -38,7 +38,7 @@ pub(crate) struct VerifyArgs {
     /// Test a public suite of test cases instead of our own.
     #[arg(long, value_enum, value_name = "SUITE")]
     suite: Option<suite::Suite>,
-    /// Write a page with what was read of the suite to this file.
+    /// Write a page with what was read of the suite to this file, and its drawing beside it, with the ending .svg.
     #[arg(long, value_name = "FILE", requires = "suite", conflicts_with_all = ["export", "images"])]
     page: Option<PathBuf>,
     /// Add what another renderer read to the page, from its pictures in this folder: "My renderer 2.0=pictures".

@@ -1,5 +1,7 @@
 //! Public suites of test cases, and the page with what we read.
 
+mod plot;
+
 use clap::ValueEnum;
 use etalon_oracle::statistics::Budget;
 use etalon_oracle::truths::{SuiteCase, Truth, cie171, rami};
@@ -7,7 +9,7 @@ use etalon_picture::write_atomically;
 use miette::Report as Problem;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::VerifyArgs;
 use super::ours::judged;
@@ -39,6 +41,14 @@ impl Suite {
         match self {
             Self::Cie171 => "cie171",
             Self::Rami => "rami",
+        }
+    }
+
+    /// Its name in words.
+    fn title(self) -> &'static str {
+        match self {
+            Self::Cie171 => "CIE 171:2006, sections 5.2 to 5.14",
+            Self::Rami => "RAMI: canopies of leaves",
         }
     }
 
@@ -87,7 +97,7 @@ impl<'a> PeerReadings<'a> {
     }
 }
 
-/// Our own integrator, held to the points of a suite; the page goes to `page`.
+/// Our own integrator, held to the points of a suite; the page goes to `page`, its drawing beside it.
 pub(super) fn run(args: &VerifyArgs, suite: Suite, cases: &[SuiteCase]) -> Outcome {
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::run(Problem::from_err(error).wrap_err("cannot listen to signals")))?;
@@ -107,9 +117,13 @@ pub(super) fn run(args: &VerifyArgs, suite: Suite, cases: &[SuiteCase]) -> Outco
         report.push(row);
     }
     if let Some(page) = args.page.as_deref() {
-        let text = written(suite, args.seed, &lines, &peers);
-        write_atomically(page, |out| out.write_all(text.as_bytes()))
-            .map_err(|error| Failure::run(Problem::from_err(error)))?;
+        let drawing = page.with_extension("svg");
+        let text = written(suite, args.seed, &lines, &peers, &drawing);
+        let svg = plot::plot(suite.title(), &lines, &peers);
+        for (path, text) in [(page, text), (&drawing, svg)] {
+            write_atomically(path, |out| out.write_all(text.as_bytes()))
+                .map_err(|error| Failure::run(Problem::from_err(error)))?;
+        }
     }
     report.finish()
 }
@@ -119,7 +133,13 @@ Each reading is the mean of 64 independent replicates; `±` is its standard erro
 found. *z* is the difference over the standard error, `–` where the reading has no noise.
 ";
 
-fn written(suite: Suite, seed: u64, lines: &[(&SuiteCase, Figures)], peers: &[PeerReadings<'_>]) -> String {
+fn written(
+    suite: Suite,
+    seed: u64,
+    lines: &[(&SuiteCase, Figures)],
+    peers: &[PeerReadings<'_>],
+    drawing: &Path,
+) -> String {
     let (name, [head, notes]) = (suite.name(), suite.words());
     let passed = lines.iter().filter(|(_, figures)| figures.pass).count();
     let worst = lines.iter().map(|(_, figures)| finds(figures)).fold(0.0, f64::max);
@@ -147,6 +167,11 @@ fn written(suite: Suite, seed: u64, lines: &[(&SuiteCase, Figures)], peers: &[Pe
             100.0 * coarsest
         );
     }
+    let _ = write!(
+        text,
+        "\n![The difference of each reading from the truth, in standard errors and in percent]({})\n",
+        drawing.file_name().unwrap_or_default().to_string_lossy()
+    );
     let mut section = "";
     for (case, figures) in lines {
         let of_section = |peer: &&PeerReadings<'_>| {
