@@ -3,6 +3,7 @@
 //! Van de Hulst (1963); Hansen & Travis, *Light Scattering in Planetary Atmospheres*, Space Science Reviews 16 (1974), §3. Only means over
 //! the azimuth are followed, which is all that fluxes, and beams along the normal, need.
 
+use super::layer::{Layer, Matrix};
 use super::phase::legendre;
 use crate::quadrature::gauss_legendre;
 
@@ -26,9 +27,7 @@ pub struct Fluxes {
 pub struct Slab {
     /// Cosine and weight of each direction: ∫₀¹ f dμ = Σ w f. The last is that of a beam, of the weight 0.
     nodes: Vec<(f64, f64)>,
-    /// Radiance that leaves along a direction, for each radiance that comes in along another; weights are included.
-    reflection: Matrix,
-    transmission: Matrix,
+    layer: Layer,
 }
 
 impl Slab {
@@ -38,18 +37,18 @@ impl Slab {
         let mut nodes: Vec<(f64, f64)> =
             gauss_legendre(NODES).iter().map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect();
         nodes.push((beam_cosine, 0.0));
-        let mut slab = Self::thin(nodes, depth * f64::from(-DOUBLINGS).exp2(), albedo, moments);
-        (0..DOUBLINGS).for_each(|_| slab.double());
-        slab
+        let [onward, turned] = Self::scattered(&nodes, albedo, moments);
+        let cosines: Vec<f64> = nodes.iter().map(|node| node.0).collect();
+        let mut layer = Layer::thin(depth * f64::from(-DOUBLINGS).exp2(), &cosines, &onward, &turned);
+        (0..DOUBLINGS).for_each(|_| layer.double());
+        Self { nodes, layer }
     }
 
-    /// A thin layer, by the trapezoidal rule: radiance in it is the mean of that at its faces. What scatters without loss loses nothing.
-    fn thin(nodes: Vec<(f64, f64)>, depth: f64, albedo: f64, moments: &[f64]) -> Self {
-        let count = nodes.len();
+    /// What scatters onward and what is turned, by a phase function averaged over the azimuth.
+    fn scattered(nodes: &[(f64, f64)], albedo: f64, moments: &[f64]) -> [Matrix; 2] {
         // Nodes resolve polynomials of the degree 2·NODES − 1.
         let moments = &moments[..moments.len().min(2 * NODES)];
         let polynomials: Vec<Vec<f64>> = nodes.iter().map(|node| legendre(node.0, moments.len())).collect();
-        // The phase function averaged over the azimuth, light going on to the same side or turned to the other.
         let phase = |i: usize, j: usize, turned: bool| -> f64 {
             let terms = moments.iter().zip(&polynomials[i]).zip(&polynomials[j]).enumerate();
             terms
@@ -59,32 +58,15 @@ impl Slab {
                 })
                 .sum()
         };
-        // μ dD/dτ = −D + S₊D + S₋U for light D that goes down and U that goes up, and the same the other way round. Over a layer of the
-        // depth δ, with a = 1 + ½δ(1 − S₊)/μ and b = ½δS₋/μ: aD₁ = (2 − a)D₀ + b(U₀ + U₁), aU₀ = (2 − a)U₁ + b(D₀ + D₁).
-        let (mut a, mut b) = (Matrix::zero(count), Matrix::zero(count));
-        for i in 0..count {
-            let half = 0.5 * depth / nodes[i].0;
-            for j in 0..count {
-                let scattered = 0.5 * albedo * nodes[j].1;
-                *a.at(i, j) = -half * scattered * phase(i, j, false);
-                *b.at(i, j) = half * scattered * phase(i, j, true);
+        [false, true].map(|turned| {
+            let mut matrix = Matrix::zero(nodes.len());
+            for i in 0..nodes.len() {
+                for (j, node) in nodes.iter().enumerate() {
+                    *matrix.at(i, j) = 0.5 * albedo * node.1 * phase(i, j, turned);
+                }
             }
-            *a.at(i, i) += 1.0 + half;
-        }
-        // No light comes in from below: U₀ = a⁻¹b(D₀ + D₁), and gD₁ = (2 − g)D₀ with g = a − ba⁻¹b.
-        let turned = a.solve(&b);
-        let g = a.minus(&b.times(&turned));
-        let twice_inverse = g.solve(&Matrix::one(count).scaled(2.0));
-        Self { reflection: turned.times(&twice_inverse), transmission: twice_inverse.minus(&Matrix::one(count)), nodes }
-    }
-
-    /// Puts two of it on each other.
-    fn double(&mut self) {
-        let (r, t) = (&self.reflection, &self.transmission);
-        // Down between them, D = (1 − RR)⁻¹T; up, U = RD.
-        let down = Matrix::one(r.size).minus(&r.times(r)).solve(t);
-        let up = r.times(&down);
-        (self.reflection, self.transmission) = (t.times(&up).plus(r), t.times(&down));
+            matrix
+        })
     }
 
     /// What becomes of diffuse light, the same from all directions.
@@ -94,7 +76,7 @@ impl Slab {
             let leaving = (0..matrix.size).map(|i| matrix.row(i).iter().sum::<f64>());
             self.nodes.iter().zip(leaving).map(|((mu, w), radiance)| 2.0 * w * mu * radiance).sum()
         };
-        Fluxes { reflected: flux(&self.reflection), transmitted: flux(&self.transmission) }
+        Fluxes { reflected: flux(&self.layer.reflection), transmitted: flux(&self.layer.transmission) }
     }
 
     /// What becomes of the beam: by reciprocity what an eye sees along it of diffuse light of radiance 1, on the side of the light and on
@@ -102,85 +84,7 @@ impl Slab {
     #[must_use]
     pub fn of_beam(&self) -> Fluxes {
         let seen = |matrix: &Matrix| matrix.row(self.nodes.len() - 1).iter().sum();
-        Fluxes { reflected: seen(&self.reflection), transmitted: seen(&self.transmission) }
-    }
-}
-
-/// A square matrix, by rows.
-#[derive(Clone, Debug)]
-struct Matrix {
-    size: usize,
-    values: Vec<f64>,
-}
-
-impl Matrix {
-    fn zero(size: usize) -> Self {
-        Self { size, values: vec![0.0; size * size] }
-    }
-
-    fn at(&mut self, row: usize, column: usize) -> &mut f64 {
-        &mut self.values[row * self.size + column]
-    }
-
-    fn row(&self, row: usize) -> &[f64] {
-        &self.values[row * self.size..][..self.size]
-    }
-
-    fn plus(mut self, other: &Self) -> Self {
-        self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a += b);
-        self
-    }
-
-    fn times(&self, other: &Self) -> Self {
-        let mut product = Self::zero(self.size);
-        for i in 0..self.size {
-            for k in 0..self.size {
-                let factor = self.values[i * self.size + k];
-                let row = &mut product.values[i * self.size..][..self.size];
-                row.iter_mut().zip(other.row(k)).for_each(|(sum, value)| *sum += factor * value);
-            }
-        }
-        product
-    }
-
-    fn one(size: usize) -> Self {
-        let mut one = Self::zero(size);
-        (0..size).for_each(|i| *one.at(i, i) = 1.0);
-        one
-    }
-
-    fn scaled(mut self, factor: f64) -> Self {
-        self.values.iter_mut().for_each(|value| *value *= factor);
-        self
-    }
-
-    fn minus(mut self, other: &Self) -> Self {
-        self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a -= b);
-        self
-    }
-
-    /// The solution X of self·X = right, by elimination. The matrices here are 1 and smaller numbers beside it: no pivots are needed.
-    fn solve(&self, right: &Self) -> Self {
-        let (mut left, mut right) = (self.clone(), right.clone());
-        let size = self.size;
-        for column in 0..size {
-            let pivot = left.values[column * size + column];
-            for row in 0..size {
-                let factor = left.values[row * size + column] / pivot;
-                if row == column || factor == 0.0 {
-                    continue;
-                }
-                for k in 0..size {
-                    left.values[row * size + k] -= factor * left.values[column * size + k];
-                    right.values[row * size + k] -= factor * right.values[column * size + k];
-                }
-            }
-        }
-        for row in 0..size {
-            let pivot = left.values[row * size + row];
-            right.values[row * size..][..size].iter_mut().for_each(|value| *value /= pivot);
-        }
-        right
+        Fluxes { reflected: seen(&self.layer.reflection), transmitted: seen(&self.layer.transmission) }
     }
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::{
-    Claim, Truth,
+    Claim, Truth, air, densities,
     scene::{Scene, black, block, glass, level_square, rough_glass, solid, sphere},
 };
 use crate::transfer::{
@@ -19,21 +19,21 @@ pub(super) fn truths() -> Vec<Truth> {
     list.extend(slabs());
     list.extend(scattered_once_in_slabs());
     list.extend([glow_of_a_lamp(), mean_way_in_a_ball(), glowing_ball(), glowing_fog()]);
-    list.extend(atmospheres());
-    list.extend(polarised_by_air());
+    list.extend(densities::truths());
+    list.extend(air::truths());
     list.into_iter().map(|truth| truth.claims(Claim::Scattering)).collect()
 }
 
 /// The boundary of a medium without an interface.
-fn boundary(medium: &Value) -> Value {
+pub(super) fn boundary(medium: &Value) -> Value {
     json!({ "type": "boundary", "medium": medium })
 }
 
-fn medium(scattering_per_m: f64, absorption_per_m: f64, phase: &Value) -> Value {
+pub(super) fn medium(scattering_per_m: f64, absorption_per_m: f64, phase: &Value) -> Value {
     json!({ "scattering_per_m": scattering_per_m, "absorption_per_m": absorption_per_m, "phase": phase })
 }
 
-fn isotropic() -> Value {
+pub(super) fn isotropic() -> Value {
     json!({ "type": "isotropic" })
 }
 
@@ -54,7 +54,7 @@ fn ball(material: Value) -> Scene {
 }
 
 /// A .vol file of a grid over a box.
-fn vol(cells: [i32; 3], box_m: [[f32; 3]; 2], values: &[f32]) -> Vec<u8> {
+pub(super) fn vol(cells: [i32; 3], box_m: [[f32; 3]; 2], values: &[f32]) -> Vec<u8> {
     let mut bytes = b"VOL\x03".to_vec();
     [1, cells[0], cells[1], cells[2], 1].iter().for_each(|word| bytes.extend(word.to_le_bytes()));
     box_m.as_flattened().iter().chain(values).for_each(|number| bytes.extend(number.to_le_bytes()));
@@ -348,75 +348,4 @@ fn glowing_fog() -> Truth {
         .or_else("emission of the whole extinction", 5.0)
         .sees(5e-3)
         .no_brighter_than(1.0)
-}
-
-fn atmospheres() -> Vec<Truth> {
-    let (per_m, height, top) = (0.6, 2.0, 3.0_f64);
-    let lamp = |z: f64| level_square([0.0, 0.0, z], 50.0, z < 0.0);
-    let mut air = medium(0.0, per_m, &isotropic());
-    air["density"] = json!({ "type": "exponential", "scale_height_m": height, "up": [0, 0, 3] });
-    let mut list = Vec::new();
-    for (name, degrees) in [("through-air-straight-up", 0.0_f64), ("through-air-at-60-degrees", 60.0)] {
-        let (sine, cosine) = degrees.to_radians().sin_cos();
-        let column = height * -(-top / height).exp_m1() / cosine;
-        let value = (-per_m * column).exp();
-        let scene = Scene::orthographic([0.0; 3], [sine, 0.0, cosine], 1e-3).whole("medium", air.clone()).lamp(
-            lamp(top),
-            black(),
-            1.0,
-            "front",
-        );
-        let truth = Truth::new(name, &scene, value, "exp(−σ₀H(1 − e^(−h/H))/cos θ)")
-            .because("The integral of e^(−s cos θ/H) over the way up to the height h.")
-            .confirmed("a sum over the way", 1e-8, move || {
-                let n = 100_000;
-                let step = top / cosine / f64::from(n);
-                let sum: f64 = (0..n).map(|i| (-(f64::from(i) + 0.5) * step * cosine / height).exp()).sum();
-                (-per_m * sum * step).exp()
-            })
-            .or_else("the same density everywhere", (-per_m * top / cosine).exp())
-            .or_else("to the end of the air", (-per_m * height / cosine).exp())
-            .sees(5e-3);
-        list.push(truth);
-    }
-    list
-}
-
-/// Light that air has scattered by a right angle swings across the plane of both ways.
-fn polarised_by_air() -> Vec<Truth> {
-    let (depth, per_m) = (0.5_f64, 0.4_f64);
-    let air = medium(per_m, 0.0, &json!({ "type": "rayleigh" }));
-    // Light along x, seen along z: it swings along y. It comes to a slab of endless height through nothing: by a shield of 1 m from the face.
-    let seen = 3.0 / (16.0 * PI) * PI * (1.0 - (-per_m * depth).exp()) * (-per_m * 0.5_f64).exp();
-    let scene = |degrees: f64| {
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        Scene::orthographic([0.0, 0.0, 3.0], [0.0; 3], 1e-3)
-            .thing(json!({
-                "shape": block([-0.5, -10.0, -depth], [0.5, 10.0, 0.0]), "material": boundary(&air),
-            }))
-            .thing(json!({
-                "shape": level_square([0.0, 0.0, 1.0], 1.0, true),
-                "material": { "type": "polariser", "axis": [cos, sin, 0.0] },
-            }))
-            .directional_light([1.0, 0.0, 0.0], PI)
-            .depth(3)
-            .spp(64)
-    };
-    let truth = |name: &str, degrees: f64| {
-        let across = degrees.to_radians().sin().powi(2);
-        let truth = Truth::new(name, &scene(degrees), across * seen, "sin²φ · 3σ/(16π) E ∫ e^(−σs) ds e^(−σa)")
-            .because("Scattered by a right angle, light swings across the plane of scattering alone; a polariser at φ to that plane passes sin²φ.")
-            .claims(Claim::CarriesPolarisation)
-            .sees(5e-3);
-        match degrees {
-            0.0 => truth.or_else("light not polarised", 0.5 * seen).or_else("polarised within the plane", seen),
-            45.0 => truth.or_else("nothing passes", 0.0),
-            _ => truth.or_else("light not polarised", 0.5 * seen).or_else("polarised within the plane", 0.0),
-        }
-    };
-    vec![
-        truth("air-at-a-right-angle-by-a-polariser-across", 90.0),
-        truth("air-at-a-right-angle-by-a-polariser-along", 0.0),
-        truth("air-at-a-right-angle-by-a-slanting-polariser", 45.0),
-    ]
 }

@@ -10,11 +10,13 @@
 //! shows ρE/π.
 
 mod absorption;
+mod air;
 mod beckmann;
 mod cameras;
 mod cie171;
 mod claim;
 mod compound_lenses;
+mod densities;
 mod dimensions;
 mod enclosures;
 mod exchange;

@@ -1,0 +1,161 @@
+//! Air: what it scatters is polarised, and scattered again.
+
+use std::f64::consts::PI;
+
+use serde_json::json;
+
+use super::{
+    Claim, Quantity, Truth,
+    media::{boundary, medium},
+    scene::{Scene, block, lambert, level_square},
+};
+use crate::transfer::{Air, AirByOrders, Leaving};
+
+pub(super) fn truths() -> Vec<Truth> {
+    let mut list = by_a_polariser();
+    list.extend(slabs());
+    list
+}
+
+/// Light that air has scattered by a right angle swings across the plane of both ways.
+fn by_a_polariser() -> Vec<Truth> {
+    let (depth, per_m) = (0.5_f64, 0.4_f64);
+    let air = medium(per_m, 0.0, &json!({ "type": "rayleigh" }));
+    // Light along x, seen along z: it swings along y. It comes to a slab of endless height through nothing: by a shield of 1 m from the face.
+    let seen = 3.0 / (16.0 * PI) * PI * (1.0 - (-per_m * depth).exp()) * (-per_m * 0.5_f64).exp();
+    let scene = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        Scene::orthographic([0.0, 0.0, 3.0], [0.0; 3], 1e-3)
+            .thing(json!({
+                "shape": block([-0.5, -10.0, -depth], [0.5, 10.0, 0.0]), "material": boundary(&air),
+            }))
+            .thing(json!({
+                "shape": level_square([0.0, 0.0, 1.0], 1.0, true),
+                "material": { "type": "polariser", "axis": [cos, sin, 0.0] },
+            }))
+            .directional_light([1.0, 0.0, 0.0], PI)
+            .depth(3)
+            .spp(64)
+    };
+    let truth = |name: &str, degrees: f64| {
+        let across = degrees.to_radians().sin().powi(2);
+        let truth = Truth::new(name, &scene(degrees), across * seen, "sin²φ · 3σ/(16π) E ∫ e^(−σs) ds e^(−σa)")
+            .because("Scattered by a right angle, light swings across the plane of scattering alone; a polariser at φ to that plane passes sin²φ.")
+            .claims(Claim::CarriesPolarisation)
+            .sees(5e-3);
+        match degrees {
+            0.0 => truth.or_else("light not polarised", 0.5 * seen).or_else("polarised within the plane", seen),
+            45.0 => truth.or_else("nothing passes", 0.0),
+            _ => truth.or_else("light not polarised", 0.5 * seen).or_else("polarised within the plane", 0.0),
+        }
+    };
+    vec![
+        truth("air-at-a-right-angle-by-a-polariser-across", 90.0),
+        truth("air-at-a-right-angle-by-a-polariser-along", 0.0),
+        truth("air-at-a-right-angle-by-a-slanting-polariser", 45.0),
+    ]
+}
+
+/// A slab of air above a ground: its depth, cosines of sun and eye, azimuth between the ways of both, degrees, albedo of the ground.
+struct Case {
+    name: &'static str,
+    depth: f64,
+    sun: f64,
+    leaving: Leaving,
+    eye: f64,
+    azimuth_deg: f64,
+    ground: f64,
+}
+
+impl Case {
+    /// The eye looks along x and z. Its picture's right is y, and its upper side lies in the vertical plane.
+    fn scene(&self) -> Scene {
+        let &Self { depth, sun, leaving, eye, azimuth_deg, ground, .. } = self;
+        let air = medium(1.0, 0.0, &json!({ "type": "rayleigh" }));
+        let (sine, side) = ((1.0 - eye * eye).sqrt(), (1.0 - sun * sun).sqrt());
+        let (sin, cos) = azimuth_deg.to_radians().sin_cos();
+        let (position, up) = match leaving {
+            Leaving::Upward => ([sine, 0.0, eye], [-eye, 0.0, sine]),
+            Leaving::Downward => ([sine, 0.0, -depth - eye], [eye, 0.0, sine]),
+        };
+        let look_at = [0.0, 0.0, if leaving == Leaving::Upward { 0.0 } else { -depth }];
+        let scene = Scene::orthographic(position, look_at, 1e-3)
+            .up(up)
+            .thing(json!({ "shape": block([-1e4, -1e4, -depth], [1e4, 1e4, 0.0]), "material": boundary(&air) }))
+            .directional_light([side * cos, -side * sin, -sun], PI)
+            .film(8, 8)
+            .spp(32)
+            .set("film", "stokes", json!(true));
+        if ground > 0.0 {
+            scene.object(level_square([0.0, 0.0, -depth - 2.0], 1e4, true), lambert(ground))
+        } else {
+            scene
+        }
+    }
+
+    /// S₀, S₁ and S₂ of the picture, of I, Q and U in the vertical plane: what swings along its rows swings across that plane.
+    fn in_the_picture(&self, [i, q, u]: [f64; 3]) -> [f64; 3] {
+        [i, -q, if self.leaving == Leaving::Upward { -u } else { u }]
+    }
+
+    fn truths(&self) -> Vec<Truth> {
+        let &Self { name, depth, sun, leaving, eye, azimuth_deg, ground } = self;
+        let azimuth = azimuth_deg.to_radians();
+        let seen = |slab: &Air| self.in_the_picture(slab.seen(sun, leaving, eye, azimuth, ground));
+        let values = seen(&Air::new(depth, &[sun, eye]));
+        let forgetful = seen(&Air::unpolarised(depth, &[sun, eye]));
+        let scene = self.scene();
+        let parameters = [Quantity::Radiance, Quantity::Stokes1, Quantity::Stokes2];
+        let mut list = Vec::new();
+        for (k, parameter) in parameters.into_iter().enumerate() {
+            let of_orders = Self { ..*self };
+            let truth = Truth::new(
+                if k == 0 { name.to_owned() } else { format!("{name}-s{k}") },
+                &scene,
+                values[k],
+                format!("doubling for I, Q and U: τ = {depth}, μ₀ = {sun}, μ = {eye}, φ = {azimuth_deg}°, A = {ground}"),
+            )
+            .because(
+                "Air scatters as dipoles do and absorbs nothing. Light that was scattered once is polarised, which changes how much of it goes where \
+                 when it is scattered again. The irradiance across the sun's beam is π.",
+            )
+            .confirmed("the tensor of the field on a grid of depths, scattering by scattering", 2e-5, move || {
+                let slab = AirByOrders::new(depth, sun, ground);
+                of_orders.in_the_picture(slab.seen(leaving, eye, azimuth))[k]
+            })
+            .reads(parameter)
+            .claims(Claim::CarriesPolarisation)
+            .allows(1e-6 * values[0], "the slab is 2·10⁴ m wide, not endless; single precision")
+            // What is polarised has less of light, and as much noise.
+            .sees(if k == 0 { 0.03 } else { 0.06 });
+            list.push(match k {
+                0 => truth.or_else("polarisation forgotten before light is scattered again", forgetful[0]),
+                _ => truth.or_else("the other sign", -values[k]).or_else("light not polarised", 0.0),
+            });
+        }
+        list
+    }
+}
+
+/// The situations of Coulson, Dave & Sekera (1960), whose tables Natraj, Li & Yung (2009) corrected, and of Natraj & Hovenier (2011).
+fn slabs() -> Vec<Truth> {
+    use Leaving::{Downward, Upward};
+    let case = |name, depth, sun, leaving, eye, azimuth_deg, ground| Case {
+        name,
+        depth,
+        sun,
+        leaving,
+        eye,
+        azimuth_deg,
+        ground,
+    };
+    [
+        case("air-of-depth-0.5-from-above", 0.5, 0.2, Upward, 0.8, 60.0, 0.0),
+        case("air-of-depth-0.5-from-below", 0.5, 0.8, Downward, 0.4, 120.0, 0.25),
+        case("air-of-depth-1-above-a-bright-ground", 1.0, 0.2, Upward, 0.8, 60.0, 0.8),
+        case("air-of-depth-4-from-above", 4.0, 0.8, Upward, 0.4, 60.0, 0.0),
+    ]
+    .iter()
+    .flat_map(Case::truths)
+    .collect()
+}
