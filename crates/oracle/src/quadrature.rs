@@ -8,6 +8,12 @@ use crate::vector::{Vec3, add, frame, normalize, scale};
 
 pub(crate) use steps::{Clue, nonnegative};
 
+/// The n-point Gauss–Legendre rule over (0, 1).
+#[must_use]
+pub fn gauss_legendre_half(n: usize) -> Vec<(f64, f64)> {
+    gauss_legendre(n).iter().map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect()
+}
+
 /// Nodes in (−1, 1) and weights of the n-point Gauss–Legendre rule, by Newton's method on the Legendre recurrence.
 #[must_use]
 pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {

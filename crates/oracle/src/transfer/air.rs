@@ -1,12 +1,12 @@
 //! Slabs that scatter light as small dipoles do, with its polarisation: doubling of thin layers for the Stokes parameters I, Q and U.
 //!
-//! Lord Rayleigh (1871); Chandrasekhar, *Radiative Transfer* (1950), §16. What scatters so has parts along the azimuth φ that go with 1,
-//! cos φ and cos 2φ alone, and each is a slab of its own. Light that is unpolarised at first never gets a circular part.
+//! Lord Rayleigh (1871); Chandrasekhar, *Radiative Transfer* (1950), §16. Radiance has three Fourier terms in the azimuth φ: 1, cos φ and
+//! cos 2φ; U has their sines. They do not mix, so each is doubled alone. Light that is unpolarised at first never gets a circular part.
 
 use std::f64::consts::{PI, TAU};
 
 use super::layer::{Layer, Matrix};
-use crate::quadrature::gauss_legendre;
+use crate::quadrature::gauss_legendre_half;
 use crate::vector::{Vec3, dot};
 
 /// Directions of the quadrature in each hemisphere.
@@ -68,7 +68,7 @@ impl Air {
         Self::of(depth, cosines, dipole)
     }
 
-    /// What a renderer makes of it that forgets the polarisation of light before it is scattered again.
+    /// The same slab for a renderer that drops polarisation at each scattering.
     #[must_use]
     pub fn unpolarised(depth: f64, cosines: &[f64]) -> Self {
         Self::of(depth, cosines, |to, from| {
@@ -78,21 +78,22 @@ impl Air {
         })
     }
 
-    fn of(depth: f64, cosines: &[f64], turned: impl Fn([Vec3; 3], [Vec3; 3]) -> Mueller) -> Self {
-        let mut nodes: Vec<(f64, f64)> =
-            gauss_legendre(NODES).iter().map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect();
-        nodes.extend(cosines.iter().map(|&cosine| (cosine, LOOKED_ALONG)));
+    fn of(depth: f64, cosines: &[f64], phase_matrix: impl Fn([Vec3; 3], [Vec3; 3]) -> Mueller) -> Self {
+        let mut nodes = gauss_legendre_half(NODES);
+        // Once for suns and once for eyes, so that no eye looks into the sun's own beam.
+        nodes.extend(cosines.iter().chain(cosines).map(|&cosine| (cosine, LOOKED_ALONG)));
         let rows: Vec<f64> = nodes.iter().flat_map(|node| [node.0; PARAMETERS]).collect();
         let modes = [0, 1, 2].map(|mode| {
-            let [onward, turned] = [Leaving::Downward, Leaving::Upward].map(|to| scattered(&nodes, to, mode, &turned));
-            let mut layer = Layer::thin(depth * f64::from(-DOUBLINGS).exp2(), &rows, &onward, &turned);
+            let [onward, backward] =
+                [Leaving::Downward, Leaving::Upward].map(|to| scattered(&nodes, to, mode, &phase_matrix));
+            let mut layer = Layer::thin(depth * f64::from(-DOUBLINGS).exp2(), &rows, &onward, &backward);
             (0..DOUBLINGS).for_each(|_| layer.double());
             layer
         });
         Self { nodes, modes }
     }
 
-    /// I, Q and U of the light that leaves at a cosine and an azimuth, under a sun at another cosine and the azimuth 0, whose irradiance
+    /// I, Q and U of the light that leaves at a cosine and an azimuth, without the sun's own beam, under a sun at another cosine and the azimuth 0, whose irradiance
     /// across its beam is π. Q is what swings in the vertical plane, less what swings across it. Both azimuths are those that light goes
     /// toward. Below is a diffuse ground of this albedo.
     ///
@@ -100,10 +101,9 @@ impl Air {
     /// If the slab was not made for one of the cosines.
     #[must_use]
     pub fn seen(&self, sun: f64, leaving: Leaving, cosine: f64, azimuth: f64, ground: f64) -> [f64; PARAMETERS] {
-        let node = |cosine: f64| {
-            self.nodes.iter().rposition(|node| node.0 == cosine).expect("the slab was made for this cosine")
-        };
-        let (sun, eye) = (node(sun), node(cosine));
+        let nodes = || self.nodes.iter().map(|node| node.0);
+        let sun = nodes().position(|node| node == sun).expect("the slab was made for this sun");
+        let eye = nodes().rposition(|node| node == cosine).expect("the slab was made for this eye");
         // Radiance of the sun's direction, over its weight, in the part that goes round so often.
         let of_sun = |mode: usize| if mode == 0 { 0.5 } else { 1.0 } / self.nodes[sun].1;
         let mut sum = [0.0; PARAMETERS];
@@ -137,9 +137,9 @@ fn scattered(
     nodes: &[(f64, f64)],
     to: Leaving,
     mode: usize,
-    turned: &impl Fn([Vec3; 3], [Vec3; 3]) -> Mueller,
+    phase_matrix: &impl Fn([Vec3; 3], [Vec3; 3]) -> Mueller,
 ) -> Matrix {
-    // Enough for a sum of cosines up to 2φ.
+    // Enough for products of two such terms, up to cos 4φ.
     const AZIMUTHS: usize = 6;
     let mut matrix = Matrix::zero(PARAMETERS * nodes.len());
     for (i, out) in nodes.iter().enumerate() {
@@ -148,9 +148,9 @@ fn scattered(
             for k in 0..AZIMUTHS {
                 let azimuth = TAU * k as f64 / AZIMUTHS as f64;
                 let (sin, cos) = (mode as f64 * azimuth).sin_cos();
-                let turned = turned(frame(to, out.0, azimuth), from);
+                let scattered = phase_matrix(frame(to, out.0, azimuth), from);
                 // ∫ over the azimuths of what comes in: I and Q go with cos mφ, U with sin mφ.
-                for (row, values) in turned.iter().enumerate() {
+                for (row, values) in scattered.iter().enumerate() {
                     for (column, value) in values.iter().enumerate() {
                         let along = match (row == 2, column == 2) {
                             (false, true) => -sin,
@@ -201,11 +201,11 @@ mod tests {
         for (depth, sun, ground) in [(0.5, 0.2, 0.0), (0.5, 0.6, 0.8), (1.0, 0.8, 0.25)] {
             let (doubled, summed) = (Air::new(depth, &[sun, 0.4]), AirByOrders::new(depth, sun, ground));
             for leaving in [Leaving::Upward, Leaving::Downward] {
-                for azimuth in [0.0, 1.0, 2.5] {
-                    let found = doubled.seen(sun, leaving, 0.4, azimuth, ground);
+                for (eye, azimuth) in [(0.4, 0.0), (0.4, 1.0), (0.4, 2.5), (sun, 1.0)] {
+                    let found = doubled.seen(sun, leaving, eye, azimuth, ground);
                     near(
                         found,
-                        summed.seen(leaving, 0.4, azimuth),
+                        summed.seen(leaving, eye, azimuth),
                         1e-5,
                         &format!("{depth} {sun} {ground} {leaving:?}"),
                     );

@@ -6,7 +6,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::air::{Leaving, frame};
-use crate::quadrature::gauss_legendre;
+use crate::quadrature::gauss_legendre_half;
 use crate::vector::{Vec3, dot};
 
 /// Layers of the grid, and directions: by cosine in each hemisphere, and along the azimuth.
@@ -64,9 +64,8 @@ impl AirByOrders {
     #[must_use]
     pub fn new(depth: f64, sun: f64, ground: f64) -> Self {
         let step = depth / LAYERS as f64;
-        let half: Vec<(f64, f64)> = gauss_legendre(NODES)
-            .iter()
-            .map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w))
+        let half: Vec<(f64, f64)> = gauss_legendre_half(NODES)
+            .into_iter()
             // μ = x²: more directions near the horizon, where radiance changes fastest.
             .map(|(x, w)| (x * x, 2.0 * x * w))
             .collect();

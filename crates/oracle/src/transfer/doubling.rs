@@ -5,7 +5,7 @@
 
 use super::layer::{Layer, Matrix};
 use super::phase::legendre;
-use crate::quadrature::gauss_legendre;
+use crate::quadrature::gauss_legendre_half;
 
 /// Directions of the quadrature in each hemisphere.
 const NODES: usize = 48;
@@ -34,12 +34,11 @@ impl Slab {
     /// Of this optical depth, albedo and Legendre moments of its phase function (of the mean 1), for a beam of this cosine to the normal.
     #[must_use]
     pub fn new(depth: f64, albedo: f64, moments: &[f64], beam_cosine: f64) -> Self {
-        let mut nodes: Vec<(f64, f64)> =
-            gauss_legendre(NODES).iter().map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect();
+        let mut nodes = gauss_legendre_half(NODES);
         nodes.push((beam_cosine, 0.0));
-        let [onward, turned] = Self::scattered(&nodes, albedo, moments);
+        let [onward, backward] = Self::scattered(&nodes, albedo, moments);
         let cosines: Vec<f64> = nodes.iter().map(|node| node.0).collect();
-        let mut layer = Layer::thin(depth * f64::from(-DOUBLINGS).exp2(), &cosines, &onward, &turned);
+        let mut layer = Layer::thin(depth * f64::from(-DOUBLINGS).exp2(), &cosines, &onward, &backward);
         (0..DOUBLINGS).for_each(|_| layer.double());
         Self { nodes, layer }
     }

@@ -10,9 +10,9 @@ pub(super) struct Layer {
 
 impl Layer {
     /// A thin layer, by the trapezoidal rule: radiance in it is the mean of that at its faces. What scatters without loss loses nothing.
-    /// Each row has the cosine of its direction. `onward` and `turned` are what scatters, in all directions of one side with their weights,
-    /// toward the same side and toward the other.
-    pub(super) fn thin(depth: f64, cosines: &[f64], onward: &Matrix, turned: &Matrix) -> Self {
+    /// Each row has the cosine of its direction. `onward` and `backward` are the scattering matrices to the same hemisphere and to the other;
+    /// columns include the weights of the quadrature.
+    pub(super) fn thin(depth: f64, cosines: &[f64], onward: &Matrix, backward: &Matrix) -> Self {
         let count = cosines.len();
         // μ dD/dτ = −D + S₊D + S₋U for light D that goes down and U that goes up, and the same the other way round. Over a layer of the
         // depth δ, with a = 1 + ½δ(1 − S₊)/μ and b = ½δS₋/μ: aD₁ = (2 − a)D₀ + b(U₀ + U₁), aU₀ = (2 − a)U₁ + b(D₀ + D₁).
@@ -21,15 +21,15 @@ impl Layer {
             let half = 0.5 * depth / cosines[i];
             for j in 0..count {
                 *a.at(i, j) = -half * onward.row(i)[j];
-                *b.at(i, j) = half * turned.row(i)[j];
+                *b.at(i, j) = half * backward.row(i)[j];
             }
             *a.at(i, i) += 1.0 + half;
         }
         // No light comes in from below: U₀ = a⁻¹b(D₀ + D₁), and gD₁ = (2 − g)D₀ with g = a − ba⁻¹b.
-        let turned = a.solve(&b);
-        let g = a.minus(&b.times(&turned));
+        let reflected = a.solve(&b);
+        let g = a.minus(&b.times(&reflected));
         let twice_inverse = g.solve(&Matrix::one(count).scaled(2.0));
-        Self { reflection: turned.times(&twice_inverse), transmission: twice_inverse.minus(&Matrix::one(count)) }
+        Self { reflection: reflected.times(&twice_inverse), transmission: twice_inverse.minus(&Matrix::one(count)) }
     }
 
     /// Puts two of it on each other.

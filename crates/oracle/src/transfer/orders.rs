@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::doubling::Fluxes;
-use crate::quadrature::gauss_legendre;
+use crate::quadrature::gauss_legendre_half;
 
 /// Layers of the grid, and directions in each hemisphere.
 const LAYERS: usize = 400;
@@ -34,9 +34,8 @@ struct Solver {
 
 impl Solver {
     fn new(depth: f64, albedo: f64, phase: impl Fn(f64) -> f64) -> Self {
-        let half: Vec<(f64, f64)> = gauss_legendre(NODES)
-            .iter()
-            .map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w))
+        let half: Vec<(f64, f64)> = gauss_legendre_half(NODES)
+            .into_iter()
             // μ = x²: more directions near the horizon, where radiance changes fastest.
             .map(|(x, w)| (x * x, 2.0 * x * w))
             .collect();

@@ -98,12 +98,12 @@ impl Case {
         [i, -q, if self.leaving == Leaving::Upward { -u } else { u }]
     }
 
-    fn truths(&self) -> Vec<Truth> {
+    /// With the slab, and the same of a renderer that drops polarisation.
+    fn truths(&self, [slab, forgetful]: &[Air; 2]) -> Vec<Truth> {
         let &Self { name, depth, sun, leaving, eye, azimuth_deg, ground } = self;
         let azimuth = azimuth_deg.to_radians();
         let seen = |slab: &Air| self.in_the_picture(slab.seen(sun, leaving, eye, azimuth, ground));
-        let values = seen(&Air::new(depth, &[sun, eye]));
-        let forgetful = seen(&Air::unpolarised(depth, &[sun, eye]));
+        let (values, forgetful) = (seen(slab), seen(forgetful));
         let scene = self.scene();
         let parameters = [Quantity::Radiance, Quantity::Stokes1, Quantity::Stokes2];
         let mut list = Vec::new();
@@ -149,13 +149,20 @@ fn slabs() -> Vec<Truth> {
         azimuth_deg,
         ground,
     };
-    [
+    let cases = [
         case("air-of-depth-0.5-from-above", 0.5, 0.2, Upward, 0.8, 60.0, 0.0),
         case("air-of-depth-0.5-from-below", 0.5, 0.8, Downward, 0.4, 120.0, 0.25),
         case("air-of-depth-1-above-a-bright-ground", 1.0, 0.2, Upward, 0.8, 60.0, 0.8),
         case("air-of-depth-4-from-above", 4.0, 0.8, Upward, 0.4, 60.0, 0.0),
-    ]
-    .iter()
-    .flat_map(Case::truths)
-    .collect()
+    ];
+    const COSINES: [f64; 3] = [0.2, 0.4, 0.8];
+    let of_depth = |depth: f64| {
+        let slabs = [Air::new(depth, &COSINES), Air::unpolarised(depth, &COSINES)];
+        cases
+            .iter()
+            .filter(move |case| case.depth == depth)
+            .flat_map(move |case| case.truths(&slabs))
+            .collect::<Vec<_>>()
+    };
+    [0.5, 1.0, 4.0].into_iter().flat_map(of_depth).collect()
 }

@@ -23,7 +23,7 @@ pub(crate) struct Level {
 /// Camera paths of each coarse picture, and the smallest side of its blocks.
 const PATHS: [(u64, u32); 2] = [(1 << 15, 8), (1 << 17, 4)];
 
-/// The coarse pictures of a film of this size, each with more paths than the one before: first smaller blocks, then more samples. Films
+/// The coarse pictures of a film of this size, each with more paths than the one before: each with smaller blocks or more samples. Films
 /// that are hardly larger than their blocks have fewer.
 pub(crate) fn levels([width, height]: [u32; 2], replicates: u32) -> Vec<Level> {
     let mut levels: Vec<Level> = Vec::new();

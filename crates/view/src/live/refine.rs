@@ -120,6 +120,7 @@ impl Paint<'_> {
             let wish = self.live().wish();
             if wish.costs && progress.done > 0 {
                 self.live().change(|wish| wish.costs = false);
+                self.publish_if_new(&mut progress);
                 self.measure_costs();
                 continue;
             }
@@ -241,9 +242,7 @@ impl Paint<'_> {
 
     /// Shows what there is and waits for another wish.
     fn rest(&mut self, wish: &Wish, progress: &mut Progress) {
-        if !progress.is_shown {
-            self.publish(progress, true);
-        }
+        self.publish_if_new(progress);
         self.phase(if wish.paused { Phase::Paused } else { Phase::Done });
         let (stage, live) = (self.stage, Arc::clone(&self.painter.live));
         let is_same =
@@ -289,12 +288,19 @@ impl Paint<'_> {
         let is_first = progress.done == 0;
         progress.done = reach;
         progress.is_shown = false;
-        // The last picture is shown before the page is told that the render has ended.
+        // `rest` shows the last picture, before it tells the page that the render has ended.
         let is_last = self.live().seen().status.goal_samples.is_some_and(|goal| reach >= goal);
         if !is_last && (is_first || may_look(progress.seconds, self.live().overhead.seconds(), self.threads())) {
             self.publish(progress, false);
         }
         Ok(())
+    }
+
+    /// Shows what there is before it returns, if it is not shown yet.
+    fn publish_if_new(&self, progress: &mut Progress) {
+        if !progress.is_shown {
+            self.publish(progress, true);
+        }
     }
 
     /// Shows what there is, now or, where the render goes on, beside it.

@@ -99,6 +99,14 @@ impl<'a> PeerReadings<'a> {
 
 /// Our own integrator, held to the points of a suite; the page goes to `page`, its drawing beside it.
 pub(super) fn run(args: &VerifyArgs, suite: Suite, cases: &[SuiteCase]) -> Outcome {
+    let drawing = args.page.as_deref().map(|page| page.with_extension("svg"));
+    if drawing.is_some() && drawing == args.page {
+        return Err(Failure::input(miette::miette!(
+            help = "the page is Markdown: give it the ending .md, say",
+            "--page {} has the ending of the drawing beside the page",
+            args.page.as_deref().unwrap_or(Path::new("")).display()
+        )));
+    }
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::run(Problem::from_err(error).wrap_err("cannot listen to signals")))?;
     let significance = Budget::for_tests(cases.len()).each();
@@ -116,8 +124,7 @@ pub(super) fn run(args: &VerifyArgs, suite: Suite, cases: &[SuiteCase]) -> Outco
         lines.push((case, row.figures()));
         report.push(row);
     }
-    if let Some(page) = args.page.as_deref() {
-        let drawing = page.with_extension("svg");
+    if let Some((page, drawing)) = args.page.as_deref().zip(drawing) {
         let text = written(suite, args.seed, &lines, &peers, &drawing);
         let svg = plot::plot(suite.title(), &lines, &peers);
         for (path, text) in [(page, text), (&drawing, svg)] {
@@ -169,7 +176,7 @@ fn written(
     }
     let _ = write!(
         text,
-        "\n![The difference of each reading from the truth, in standard errors and in percent]({})\n",
+        "\n![The difference of each reading from the truth, in standard errors and in percent](<{}>)\n",
         drawing.file_name().unwrap_or_default().to_string_lossy()
     );
     let mut section = "";
@@ -205,7 +212,7 @@ fn written(
             figures.truth * case.factor,
             if case.unit.is_empty() { String::new() } else { format!(" {}", case.unit) },
             measured(figures),
-            100.0 * (figures.measured / figures.truth - 1.0),
+            100.0 * difference(figures),
             z(figures),
             100.0 * finds(figures),
             if figures.pass { "" } else { ", **fails**" },
@@ -213,6 +220,11 @@ fn written(
         );
     }
     text + "\n" + notes
+}
+
+/// The relative difference from the truth.
+fn difference(figures: &Figures) -> f64 {
+    figures.measured / figures.truth - 1.0
 }
 
 /// The smallest relative bias that would have been found.

@@ -67,7 +67,7 @@ pub(super) fn truth() -> Truth {
         "compound-lens-axial-colour",
         &scene,
         value,
-        "∫ȳ min(1, (R/(a(1 + s(A + dC)/(B + dD))))²) dλ/∫ȳ dλ, (A, B, C, D) the axial matrix at λ",
+        "∫ȳ min(1, (R/(a(1 + s(A + dC)/(B + dD))))²) dλ/∫ȳ dλ, (A, B, C, D) the axial matrix at λ, R and s the lamp's radius and distance, a the stop's radius, d the film's distance",
     )
     .because(
         "The middle of the film is the focus of 500 nm. There it sees a small distant lamp of white light through all of the stop. Other wavelengths \
