@@ -38,9 +38,9 @@ def render(etalon, scene, size, percent, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("etalon", nargs="?", default=root / "target/release/etalon", type=pathlib.Path)
-    parser.add_argument("--scene", default="scenes/cornell-glass.json")
-    parser.add_argument("--size", default="512x512")
-    parser.add_argument("--crop", default="100,250,176,240")
+    parser.add_argument("--scene", default="scenes/cornell.json")
+    parser.add_argument("--size", default="400x400")
+    parser.add_argument("--crop", default="170,150,176,240")
     parser.add_argument("--develop", default="", help="more options of etalon develop")
     args = parser.parse_args()
     etalon = args.etalon.resolve()
