@@ -25,11 +25,13 @@ fn combined(terms: &[(f64, &Field)]) -> Field {
 
 /// What of a field swings across a direction.
 fn across(direction: Vec3, field: &Field) -> Field {
-    let along: Vec3 = std::array::from_fn(|i| dot(field[i], direction));
-    let both = dot(along, direction);
+    // Fields are symmetric but for rounding, which must not grow from one scattering to the next: so both products.
+    let right: Vec3 = std::array::from_fn(|i| dot(field[i], direction));
+    let left: Vec3 = std::array::from_fn(|j| (0..3).map(|i| direction[i] * field[i][j]).sum());
+    let both = dot(right, direction);
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
-            field[i][j] - direction[i] * along[j] - along[i] * direction[j] + direction[i] * direction[j] * both
+            field[i][j] - direction[i] * left[j] - right[i] * direction[j] + direction[i] * direction[j] * both
         })
     })
 }
