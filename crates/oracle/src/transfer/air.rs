@@ -30,8 +30,8 @@ pub enum Leaving {
     Downward,
 }
 
-/// The direction of light at this cosine to the vertical, and the axis across it in the vertical plane through it; the other axis is
-/// horizontal. The axes of one side are mirror images of those of the other.
+/// The direction of light at this cosine to the vertical, and two axes across it: one in the vertical plane, one horizontal. The axes of one side
+/// are mirror images of those of the other.
 pub(super) fn frame(leaving: Leaving, cosine: f64, azimuth: f64) -> [Vec3; 3] {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     let (sin, cos) = azimuth.sin_cos();
@@ -39,8 +39,8 @@ pub(super) fn frame(leaving: Leaving, cosine: f64, azimuth: f64) -> [Vec3; 3] {
     [[sine * cos, sine * sin, up * cosine], [cosine * cos, cosine * sin, -up * sine], [-sin, cos, 0.0]]
 }
 
-/// How a dipole turns I, Q and U between two directions: the wave that it sends along an axis is that part of the wave that shakes it. Of the
-/// mean 1 over the sphere for unpolarised light.
+/// The phase matrix of a dipole between two directions. The wave that it sends along an axis is that part of the wave that shakes it. For
+/// unpolarised light its mean over the sphere is 1.
 fn dipole(to: [Vec3; 3], from: [Vec3; 3]) -> Mueller {
     let [a, b, c, d] = [(1, 1), (1, 2), (2, 1), (2, 2)].map(|(i, j)| dot(to[i], from[j]));
     let (a2, b2, c2, d2) = (a * a, b * b, c * c, d * d);
@@ -57,7 +57,7 @@ fn dipole(to: [Vec3; 3], from: [Vec3; 3]) -> Mueller {
 pub struct Air {
     /// Cosine and weight of each direction: ∫₀¹ f dμ = Σ w f.
     nodes: Vec<(f64, f64)>,
-    /// By how often they go round along the azimuth.
+    /// One for each Fourier term in the azimuth.
     modes: [Layer; 3],
 }
 
@@ -93,9 +93,9 @@ impl Air {
         Self { nodes, modes }
     }
 
-    /// I, Q and U of the light that leaves at a cosine and an azimuth, without the sun's own beam, under a sun at another cosine and the azimuth 0, whose irradiance
-    /// across its beam is π. Q is what swings in the vertical plane, less what swings across it. Both azimuths are those that light goes
-    /// toward. Below is a diffuse ground of this albedo.
+    /// I, Q and U of the light that leaves at a cosine and an azimuth, without the sun's own beam. The sun stands at the cosine `sun` and the
+    /// azimuth 0, and its irradiance across its beam is π. Q is what swings in the vertical plane, less what swings across it. Azimuths are
+    /// those that light goes toward. Below is a diffuse ground of the albedo `ground`.
     ///
     /// # Panics
     /// If the slab was not made for one of the cosines.

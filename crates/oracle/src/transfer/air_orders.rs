@@ -1,7 +1,7 @@
 //! Air once more, scattering by scattering on a grid of depths, without Stokes parameters.
 //!
-//! A dipole is shaken by the field at its place. All that it needs to know of the light there is the mean of E Eᵀ, a tensor of three by
-//! three, summed over all directions; it sends the part across each direction.
+//! A dipole is shaken by the field at its place. The mean of E Eᵀ, summed over all directions of light, says all of it: a tensor of three by
+//! three. The dipole sends toward each direction the part of the field across it.
 
 use std::f64::consts::{PI, TAU};
 
@@ -98,6 +98,7 @@ impl AirByOrders {
                 (0..9).map(|i| (a[i / 3][i % 3] - b[i / 3][i % 3]).abs()).fold(0.0, f64::max)
             };
             let changed = next.iter().zip(&slab.sources).map(change).fold(0.0, f64::max);
+            assert!(next.iter().flatten().flatten().all(|value| value.is_finite()), "the field is not finite");
             (slab.sources, slab.shine) = (next, ground / PI * irradiance);
             if changed < SMALL {
                 return slab;
