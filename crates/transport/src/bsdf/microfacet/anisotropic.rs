@@ -11,9 +11,10 @@
 //! | seen no more | s·P + µ = 0 |
 //! | reflected light meets the horizon | P² − 2s·P/µ = 1 |
 //!
-//! At P = 0.1, at P = 1 and, in powers of P, half way from there to the horizon the integrand bends. With cuts there Gauss's rule of ten
-//! points suffices along an azimuth. Polar angles are measured by the tangent t of their half: the sine is 2t/(1 + t²), the cosine
-//! (1 − t²)/(1 + t²), and dθ = 2dt/(1 + t²). So a node costs no function of an angle.
+//! At P = 0.1, at P = 1 and, in powers of P, half way from there to the horizon the integrand bends. There are cuts there. Polar angles are
+//! measured by the tangent t of their half: the sine is 2t/(1 + t²), the cosine (1 − t²)/(1 + t²), and dθ = 2dt/(1 + t²). So a node costs no
+//! function of an angle. Gauss's rule of ten points was held to that of eighty for 6000 random directions, widths and azimuths of GGX. Along an
+//! azimuth it errs by at most 8e-6, in 99 of 100 cases by less than 3e-6, in half of them by less than 2e-9.
 //!
 //! Over the azimuth the integrand changes fastest in two places: where s·P changes its sign, and where P is shortest. Nodes crowd there.
 
