@@ -137,7 +137,8 @@ pub(super) fn run(args: &VerifyArgs, suite: Suite, cases: &[SuiteCase]) -> Outco
 
 const READINGS: &str = "
 Each reading is the mean of 64 independent replicates; `±` is its standard error. *Finds* is the smallest relative bias that the test would have
-found. *z* is the difference over the standard error, `–` where the reading has no noise.
+found. *z* is the difference over the standard error, `–` where the reading has no noise. All points begin with the same seed. Points that differ
+little, such as one room under two skies, use the same random numbers, so their differences go together.
 ";
 
 fn written(
