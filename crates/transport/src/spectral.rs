@@ -115,6 +115,8 @@ impl PathSpectrum {
         match self {
             Self::Constant(value) => Lanes::splat(*value),
             Self::Grid { first_nm, steps } => Lanes::from_fn(|lane| interpolate(*first_nm, steps, lambda_nm[lane])),
+            // All lanes at once: imported scenes have most of their colours as RGB.
+            Self::Symbolic(Spectrum::RgbReflectance(colour)) => colour.lanes(lambda_nm),
             Self::Band { .. } | Self::Symbolic(_) => Lanes::from_fn(|lane| self.eval(lambda_nm[lane])),
         }
     }

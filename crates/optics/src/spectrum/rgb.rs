@@ -2,6 +2,7 @@
 
 use super::sigmoid::{Sigmoid, fit};
 use super::{Illuminant, Spectrum};
+use crate::Lanes;
 use crate::colour::{
     CIE_RANGE_NM, REC709_FROM_XYZ, cie_y_integral_nm, colour_matching_rows, inverse, multiply, rgb_to_xyz_matrix,
     xyz_of,
@@ -94,6 +95,15 @@ impl RgbReflectance {
     #[inline]
     pub fn eval(&self, wavelength_nm: f64) -> f64 {
         self.shape.eval(wavelength_nm)
+    }
+
+    /// Reflectance in every lane.
+    #[inline(always)]
+    pub fn lanes<const N: usize>(&self, wavelengths_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
+        match &self.shape {
+            Shape::Flat(v) => Lanes::splat(*v),
+            Shape::Smooth(s) => Lanes::from_fn(|lane| s.eval(wavelengths_nm[lane])),
+        }
     }
 
     pub(super) fn max_over(&self, range_nm: [f64; 2]) -> f64 {

@@ -37,7 +37,7 @@ fn argument(wavelength_nm: f64) -> f64 {
 
 impl Sigmoid {
     /// Value at a wavelength in nm, in [0, 1]: one square root and one division.
-    #[inline]
+    #[inline(always)]
     pub fn eval(&self, wavelength_nm: f64) -> f64 {
         let [c0, c1, c2] = self.coefficients;
         let t = argument(wavelength_nm);

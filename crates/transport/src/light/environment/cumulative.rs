@@ -49,14 +49,45 @@ impl Cumulative {
     /// The entry of a row that `u` in [0, 1) chooses, and where between its ends `u` lies, in [0, 1).
     #[inline]
     pub(super) fn choose(&self, row: usize, u: f64) -> (usize, f64) {
-        let first = row * self.width;
-        let sums = &self.sums[first..first + self.width];
-        let guide = &self.guide[first..first + self.width];
+        let [chosen] = self.choose_each(&[row], &[u]);
+        chosen
+    }
+
+    /// The same for several rows and numbers. In loops of one access to memory each: most of them miss the cache, and so do not wait for one
+    /// another.
+    #[inline(always)]
+    pub(super) fn choose_each<const W: usize>(&self, rows: &[usize; W], u: &[f64; W]) -> [(usize, f64); W] {
+        let mut ranges = [(0, 0); W];
+        for k in 0..W {
+            ranges[k] = self.guided(rows[k], u[k]);
+        }
+        let mut first = [0.0; W];
+        for k in 0..W {
+            first[k] = self.sums[rows[k] * self.width + ranges[k].0];
+        }
+        let mut chosen = [(0, 0.0); W];
+        for k in 0..W {
+            chosen[k] = self.within(rows[k], ranges[k], first[k], u[k]);
+        }
+        chosen
+    }
+
+    /// The first and the last entry of a row that `u` may choose.
+    #[inline(always)]
+    fn guided(&self, row: usize, u: f64) -> (usize, usize) {
+        let guide = &self.guide[row * self.width..][..self.width];
         let part = ((u * self.width as f64) as usize).min(self.width - 1);
         // Rounding may put `u` into a neighbour of its part.
         let from = guide[part.saturating_sub(1)] as usize;
-        let to = guide.get(part + 2).map_or(self.width - 1, |&after| after as usize);
-        let entry = from + sums[from..to].partition_point(|&sum| sum <= u);
+        (from, guide.get(part + 2).map_or(self.width - 1, |&after| after as usize))
+    }
+
+    /// The entry that `u` chooses among some, the first of which ends at `first`.
+    #[inline(always)]
+    fn within(&self, row: usize, (from, to): (usize, usize), first: f64, u: f64) -> (usize, f64) {
+        let sums = &self.sums[row * self.width..][..self.width];
+        let entry =
+            if from == to || u < first { from } else { from + 1 + sums[from + 1..to].partition_point(|&sum| sum <= u) };
         let start = if entry == 0 { 0.0 } else { sums[entry - 1] };
         let within = (u - start) / (sums[entry] - start);
         (entry, if within.is_finite() { within.clamp(0.0, f64::ONE_MINUS_EPSILON) } else { 0.5 })

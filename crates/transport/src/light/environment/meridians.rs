@@ -102,18 +102,11 @@ impl Meridians {
     #[inline(always)]
     pub(in crate::light) fn sample<const W: usize>(&self, image: &Image, u: [&[f64; W]; 2]) -> [Along; W] {
         // In several loops: those without branches become vector instructions, and what misses the cache is asked for at once.
-        let (mut cells, mut within) = ([[0; 2]; W], [[0.0; 2]; W]);
-        for k in 0..W {
-            let (row, u1) = self.rows.choose(0, u[1][k]);
-            (cells[k][0], within[k][1]) = (row, u1);
-        }
-        for k in 0..W {
-            let (column, u0) = self.columns.choose(cells[k][0], u[0][k]);
-            (cells[k][1], within[k][0]) = (column, u0);
-        }
+        let rows = self.rows.choose_each(&[0; W], u[1]);
+        let columns = self.columns.choose_each(&rows.map(|(row, _)| row), u[0]);
         let (mut corners, mut cosines, mut left) = ([[0.0; W]; 4], [[0.0; W]; 2], [0.0; W]);
         for k in 0..W {
-            let [row, j] = cells[k];
+            let (row, j) = (rows[k].0, columns[k].0);
             let right = if j + 1 == self.width { 0 } else { j + 1 };
             let [upper, lower] = self.rows_around(row);
             for (corner, (column, row)) in
@@ -126,7 +119,7 @@ impl Meridians {
         let mut wi = [Along::UP; W];
         for k in 0..W {
             let [a, b, c, d] = [corners[0][k], corners[1][k], corners[2][k], corners[3][k]];
-            let [u0, u1] = within[k];
+            let (u0, u1) = (columns[k].1, rows[k].1);
             let down = linear(u1, a + b, c + d);
             let across = linear(u0, a + down * (c - a), b + down * (d - b));
             let cos = cosines[0][k] + down * (cosines[1][k] - cosines[0][k]);
