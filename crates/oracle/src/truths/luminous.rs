@@ -66,6 +66,12 @@ fn units() -> Vec<Truth> {
             "E",
         ),
         (
+            "lumens-of-a-beam",
+            json!({ "type": "beam", "position_m": [0, 0, 2], "direction": [0, 0, -1], "radius_m": 0.5, "flux_lm": 1200, "spectrum": hot }),
+            1200.0 / (PI * 0.25),
+            "Φ/(πw²)",
+        ),
+        (
             "candela-per-square-metre-of-a-sky",
             json!({ "type": "environment", "luminance_cd_per_m2": 500, "spectrum": hot }),
             500.0 * PI,

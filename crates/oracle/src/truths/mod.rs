@@ -11,6 +11,7 @@
 
 mod absorption;
 mod air;
+mod beams;
 mod beckmann;
 mod cameras;
 mod cie171;
@@ -341,7 +342,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 36] = [
+const GROUPS: [fn() -> Vec<Truth>; 37] = [
     furnaces::truths,
     beckmann::truths,
     facets::truths,
@@ -371,6 +372,7 @@ const GROUPS: [fn() -> Vec<Truth>; 36] = [
     images::truths,
     instruments::truths,
     sources::truths,
+    beams::truths,
     named::truths,
     skies::truths,
     surfaces::truths,

@@ -11,7 +11,7 @@ use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{Code, Direction, NonNegative, Optional, Reader, Required, Rule, Spanned, Whole};
 use crate::linear::unit;
-use crate::model::{CieSky, EnvironmentImage, EnvironmentProjection, Light, LightKind};
+use crate::model::{Beam, BeamProfile, CieSky, EnvironmentImage, EnvironmentProjection, Light, LightKind};
 use crate::texture::Encoding;
 
 crate::record! {
@@ -102,6 +102,40 @@ crate::record! {
     } with [Rule::OneOf(&["irradiance", "illuminance_lx"]), Rule::NotBoth("irradiance", "spectrum")]
 }
 
+crate::number! {
+    /// Radius of a beam in metres.
+    pub(crate) struct BeamRadius in (Bound::Excluded(0.0), Bound::Unbounded);
+}
+
+crate::number! {
+    /// Half of the angle by which a beam widens, in degrees.
+    pub(crate) struct BeamAngle in (Bound::Included(0.0), Bound::Excluded(90.0));
+}
+
+crate::record! {
+    /// A beam of light that begins at an aperture, such as of a laser or a collimator.
+    pub(crate) struct BeamLight + comment {
+        /// Its name, for messages.
+        name: Optional<String>,
+        /// Middle of the aperture, m.
+        position_m: Required<[f64; 3]>,
+        /// The direction of the axis; only the direction counts.
+        direction: Required<Direction>,
+        /// Radius at the aperture, m; of a Gaussian profile that at which irradiance has fallen to 1/e² of that on the axis.
+        radius_m: Required<BeamRadius>,
+        /// Angle between the axis and the rays at this radius, degrees; 0 is a parallel beam.
+        half_angle_deg: Required<BeamAngle> = "0",
+        /// How irradiance falls across the beam.
+        profile: Required<BeamProfile> = r#""uniform""#,
+        /// Power, W·nm⁻¹. Either this or `flux_lm`.
+        power: Optional<Box<SpectrumForm>>,
+        /// Luminous flux, lm.
+        flux_lm: Optional<Spanned<NonNegative>>,
+        /// The spectrum of what is stated in photometric units, to any scale; the same at every wavelength if left out.
+        spectrum: Optional<Box<SpectrumForm>>,
+    } with [Rule::OneOf(&["power", "flux_lm"]), Rule::NotBoth("power", "spectrum")]
+}
+
 crate::record! {
     /// Radiance from infinitely far: the same from every direction, as an image says, or as a standard sky.
     pub(crate) struct EnvironmentLight + comment {
@@ -176,6 +210,7 @@ crate::variants! {
         "spot" => Spot(SpotLight),
         "luminaire" => Luminaire(LuminaireLight),
         "directional" => Directional(DirectionalLight),
+        "beam" => Beam(BeamLight),
         "environment" => Environment(EnvironmentLight),
     }
 }
@@ -219,6 +254,18 @@ pub(crate) fn light<'f>(
             let irradiance = stated(&light.irradiance, &keys, &light.spectrum, spectra, reader)?;
             (&light.name, LightKind::Directional { direction: light.direction?.0, irradiance })
         }
+        LightForm::Beam(beam) => {
+            let power = stated(&beam.power, &[(&beam.flux_lm, 1.0)], &beam.spectrum, spectra, reader)?;
+            let kind = Beam {
+                position_m: beam.position_m?,
+                direction: beam.direction?.0,
+                radius_m: beam.radius_m?.0,
+                half_angle_rad: beam.half_angle_deg?.0.to_radians(),
+                profile: beam.profile?,
+                power,
+            };
+            (&beam.name, LightKind::Beam(kind))
+        }
         LightForm::Environment(light) => {
             let given = [light.radiance.is_present(), light.luminance_cd_per_m2.is_present()];
             let kind = match (given, &light.image, &light.sky) {
@@ -241,6 +288,13 @@ pub(crate) fn light<'f>(
     let name = name.clone().checked()?.unwrap_or_else(|| format!("lights[{index}]"));
     Some(Light { name, kind })
 }
+
+crate::keywords!(BeamProfile {
+    /// The same irradiance up to the radius, none beyond.
+    "uniform" => Self::Uniform,
+    /// exp(−2r²/w²), with the radius w; it ends where this is 1e-12.
+    "gaussian" => Self::Gaussian,
+});
 
 crate::keywords!(EnvironmentProjection {
     /// Longitude along its rows, latitude along its columns; the first row is a band that begins at the pole.

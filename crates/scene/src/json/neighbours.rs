@@ -160,6 +160,7 @@ pub const NEIGHBOURS: &[Neighbour] = &[
     word("distant sun distantlight sunlight", "directional"),
     word("omni pointlight", "point"),
     word("spotlight", "spot"),
+    word("laser collimator collimated laserbeam", "beam"),
     row(Keyword, "area arealight diffuse diffusearea rectlight", Advice("directional", SURFACE_LIGHT)),
     // Types of spectra, and how images are read.
     word("uniform float", "constant"),

@@ -57,6 +57,8 @@ pub enum LightKind {
         /// Irradiance on a plane at right angles to it, W·m⁻²·nm⁻¹.
         irradiance: Spectrum,
     },
+    /// A beam, parallel or widening, that begins at an aperture.
+    Beam(Beam),
     /// The same radiance from every direction at infinity.
     Environment {
         /// Radiance, W·m⁻²·sr⁻¹·nm⁻¹.
@@ -66,6 +68,33 @@ pub enum LightKind {
     ImageEnvironment(EnvironmentImage),
     /// A standard sky of the CIE.
     Sky(CieSky),
+}
+
+/// A beam of light, such as of a laser or a collimator. Its rays are parallel, or come from one point behind the aperture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beam {
+    /// Middle of the aperture, m.
+    pub position_m: [f64; 3],
+    /// Unit vector along the axis.
+    pub direction: [f64; 3],
+    /// Radius at the aperture, m; of a Gaussian profile that at which irradiance has fallen to 1/e² of that on the axis.
+    pub radius_m: f64,
+    /// Angle between the axis and the rays that leave the aperture at this radius, rad; in [0, π/2).
+    pub half_angle_rad: f64,
+    /// How irradiance falls across the beam.
+    pub profile: BeamProfile,
+    /// Power, W·nm⁻¹.
+    pub power: Spectrum,
+}
+
+/// How the irradiance of a beam falls across it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BeamProfile {
+    /// The same up to the radius, nothing beyond.
+    #[default]
+    Uniform,
+    /// exp(−2r²/w²), with the radius w.
+    Gaussian,
 }
 
 /// A cone that holds all the light of a point.
@@ -87,6 +116,7 @@ impl LightKind {
                 intensity
             }
             Self::Directional { irradiance, .. } => irradiance,
+            Self::Beam(beam) => &beam.power,
             Self::Environment { radiance } => radiance,
             Self::ImageEnvironment(image) => &image.white,
             Self::Sky(sky) => &sky.zenith,
@@ -100,17 +130,22 @@ impl LightKind {
                 intensity
             }
             Self::Directional { irradiance, .. } => irradiance,
+            Self::Beam(beam) => &mut beam.power,
             Self::Environment { radiance } => radiance,
             Self::ImageEnvironment(image) => &mut image.white,
             Self::Sky(sky) => &mut sky.zenith,
         }
     }
 
-    /// Whether its light comes from a single point or a single direction. Then no path runs into it: only shadow rays find it. Every
+    /// Whether its light comes to each place from a single direction. Then no path runs into it: only shadow rays find it. Every
     /// other light without a surface is at infinity, where paths find it that leave the scene.
     pub fn is_delta(&self) -> bool {
         match self {
-            Self::Point { .. } | Self::Spot { .. } | Self::Luminaire { .. } | Self::Directional { .. } => true,
+            Self::Point { .. }
+            | Self::Spot { .. }
+            | Self::Luminaire { .. }
+            | Self::Directional { .. }
+            | Self::Beam(_) => true,
             Self::Environment { .. } | Self::ImageEnvironment(_) | Self::Sky(_) => false,
         }
     }

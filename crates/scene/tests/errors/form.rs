@@ -271,7 +271,7 @@ fn words_that_cannot_stand_there() {
         Code::UnknownWord,
         "$.lights[0].type",
         "\"directional\"",
-        lights("[{\"type\": «\"laser\"», \"radiance\": 1}]"),
+        lights("[{\"type\": «\"aurora\"», \"radiance\": 1}]"),
     );
     error(Code::WrongType, "$.lights[0].type", lights("[{\"type\": «4», \"radiance\": 1}]"));
 }

@@ -123,6 +123,18 @@ fn objects_and_lights() {
     );
     assert_eq!(scene.lights[0].name, "bulb");
     assert_eq!(scene.lights[2].name, "lights[2]");
+    let LightKind::Beam(laser) = &scene.lights[10].kind else { panic!("a beam") };
+    let wanted = Beam {
+        position_m: [1.0, 2.0, 3.0],
+        direction: [0.0, -1.0, 0.0],
+        radius_m: 0.125,
+        half_angle_rad: std::f64::consts::FRAC_PI_4,
+        profile: BeamProfile::Gaussian,
+        power: Spectrum::Constant(0.25),
+    };
+    assert_eq!(laser, &wanted);
+    let LightKind::Beam(parallel) = &scene.lights[11].kind else { panic!("a beam") };
+    assert_eq!((parallel.half_angle_rad, parallel.profile), (0.0, BeamProfile::Uniform));
 }
 
 #[test]
@@ -324,6 +336,7 @@ fn light_in_photometric_units() {
     for (value, want) in values.iter().zip([100.0, 800.0 / whole, 800.0 / spot, 5e4, 100.0, 3000.0]) {
         close(*value, want);
     }
+    close(values[7], 60.0);
     let LightKind::Sky(sky) = &scene.lights[9].kind else { panic!("a sky") };
     assert_eq!((sky.number, sky.up, sky.ground), (12, [0.0, 1.0, 0.0], 0.125));
     close(sky.sun[1], 0.6);

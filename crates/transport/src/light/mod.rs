@@ -4,6 +4,7 @@
 //! for a sampled direction and for one that the BSDF found: the two can not disagree.
 
 mod area;
+mod beam;
 mod directional;
 mod environment;
 mod luminaire;
@@ -15,6 +16,7 @@ mod table;
 mod tree;
 
 pub use area::{AreaLight, Emitter, ImageOf};
+pub use beam::BeamLight;
 pub use directional::DirectionalLight;
 pub use environment::{EnvironmentLight, Look};
 pub use luminaire::LuminaireLight;
@@ -119,6 +121,8 @@ pub enum Light {
     Luminaire(LuminaireLight),
     /// Parallel light.
     Directional(DirectionalLight),
+    /// A beam that begins at an aperture.
+    Beam(BeamLight),
     /// An image of everything around.
     Environment(Arc<EnvironmentLight>),
     /// A standard sky.
@@ -135,6 +139,7 @@ macro_rules! each {
             Light::Spot($light) => $result,
             Light::Luminaire($light) => $result,
             Light::Directional($light) => $result,
+            Light::Beam($light) => $result,
             Light::Environment($light) => {
                 let $light = $light.as_ref();
                 $result
@@ -231,6 +236,7 @@ impl Light {
                 toward: -Vec3::from_array(*direction),
                 irradiance: spectrum(irradiance),
             }),
+            LightKind::Beam(beam) => Self::Beam(BeamLight::new(beam, spectrum(&beam.power), frame)),
             // A black sky is none, nor is a dark luminaire.
             _ if kind.is_zero() => return (None, None),
             LightKind::Luminaire { .. } => return (None, None),
