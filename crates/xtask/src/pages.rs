@@ -106,8 +106,17 @@ fn links(text: &str) -> Vec<Link> {
         let mut rest = without_code(&content);
         while let Some(at) = rest.find("](") {
             rest = rest.split_off(at + 2);
-            let Some(end) = rest.find(')') else { break };
-            let target = rest[..end].split_whitespace().next().unwrap_or_default();
+            // Between < and > a target may have spaces and brackets.
+            let target = match rest.strip_prefix('<') {
+                Some(within) => {
+                    let Some((target, _)) = within.split_once('>') else { break };
+                    target
+                }
+                None => {
+                    let Some((target, _)) = rest.split_once(')') else { break };
+                    target.split_whitespace().next().unwrap_or_default()
+                }
+            };
             let elsewhere = target.contains("://") || target.starts_with("mailto:") || target.is_empty();
             if !elsewhere {
                 found.push(Link { line, target: target.to_owned() });
@@ -203,9 +212,9 @@ mod tests {
 
     #[test]
     fn links_are_found_outside_of_code_only() {
-        let text = "a [b](c.md) ![d](e.png) `[f](g.md)` [`h`](i.md#j)\n```\n[k](l.md)\n```\n[m](https://n.o) [p](#q)";
+        let text = "a [b](c.md) ![d](e.png) `[f](g.md)` [`h`](i.md#j)\n```\n[k](l.md)\n```\n[m](https://n.o) [p](#q) ![r](<s (t).svg>)";
         let found: Vec<String> = links(text).into_iter().map(|link| format!("{}:{}", link.line, link.target)).collect();
-        assert_eq!(found, ["1:c.md", "1:e.png", "1:i.md#j", "5:#q"]);
+        assert_eq!(found, ["1:c.md", "1:e.png", "1:i.md#j", "5:#q", "5:s (t).svg"]);
     }
 
     #[test]
