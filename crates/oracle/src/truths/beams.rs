@@ -62,7 +62,16 @@ impl Beam {
         across * -(axis[2] + slope * side[2])
     }
 
-    /// The same from the aperture: where the rays of two short edges on the plate left it, and the flux between them.
+    /// The irradiance of the aperture itself at a distance from the axis: the profile, over its integral by quadrature.
+    fn at_the_aperture(&self, distance_m: f64) -> f64 {
+        let profile = |r: f64| if self.gaussian { (-2.0 * (r / self.radius_m).powi(2)).exp() } else { 1.0 };
+        // A Gaussian one has lost all but 1e-31 of its power at six radii.
+        let reach_m = if self.gaussian { 6.0 * self.radius_m } else { self.radius_m };
+        let whole = crate::quadrature::interval(|r| 2.0 * PI * r * profile(r), 0.0, reach_m, 1e-12).value;
+        POWER * profile(distance_m) / whole
+    }
+
+    /// The same as [`Beam::irradiance`], from the aperture: where the rays of two short edges on the plate left it, and the flux between them.
     fn by_the_aperture(&self) -> f64 {
         let widening = self.half_angle_deg.to_radians().tan();
         let ([axis, side], position) = (self.axes(), self.position());
@@ -77,7 +86,7 @@ impl Beam {
         let along = |plus: [f64; 2], minus: [f64; 2]| [0, 1].map(|k| (plus[k] - minus[k]) / (2.0 * h));
         let (dx, dy) = (along(left_at(h, 0.0), left_at(-h, 0.0)), along(left_at(0.0, h), left_at(0.0, -h)));
         let [a, b] = left_at(0.0, 0.0);
-        self.across(a.hypot(b), self.radius_m) * (dx[0] * dy[1] - dx[1] * dy[0]).abs()
+        self.at_the_aperture(a.hypot(b)) * (dx[0] * dy[1] - dx[1] * dy[0]).abs()
     }
 
     fn scene(&self) -> Scene {
