@@ -1,6 +1,6 @@
 //! Lights without a surface.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::ops::Bound;
 
 use glam::DVec3;
@@ -256,10 +256,18 @@ pub(crate) fn light<'f>(
         }
         LightForm::Beam(beam) => {
             let power = stated(&beam.power, &[(&beam.flux_lm, 1.0)], &beam.spectrum, spectra, reader)?;
+            let radius_m = beam.radius_m?.0;
+            // A Gaussian beam has twice the mean on its axis.
+            let brightest = 2.0 * power.max_over(spectra.range_nm?) / (PI * radius_m * radius_m);
+            if brightest > BRIGHTEST || brightest.is_nan() {
+                let message = format!("an irradiance of {brightest:e} is more than {BRIGHTEST:e}");
+                reader.error(Code::OutOfRange, beam.at.head(), message);
+                return None;
+            }
             let kind = Beam {
                 position_m: beam.position_m?,
                 direction: beam.direction?.0,
-                radius_m: beam.radius_m?.0,
+                radius_m,
                 half_angle_rad: beam.half_angle_deg?.0.to_radians(),
                 profile: beam.profile?,
                 power,

@@ -242,6 +242,13 @@ fn numbers_out_of_range() {
     );
     error(
         Code::OutOfRange,
+        "$.lights[0]",
+        lights(
+            "[«{»\"type\": \"beam\", \"position_m\": [0, 3, 0], \"direction\": [0, -1, 0], \"radius_m\": 1e-200, \"power\": 1}]",
+        ),
+    );
+    error(
+        Code::OutOfRange,
         "$.objects[0]",
         objects(&shaped("{\"type\": \"sphere\", \"radius_m\": 1}", "[{\"scale\": 1e200}]").replacen('{', "«{»", 1)),
     );
