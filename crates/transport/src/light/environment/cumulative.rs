@@ -46,15 +46,8 @@ impl Cumulative {
         whole
     }
 
-    /// The entry of a row that `u` in [0, 1) chooses, and where between its ends `u` lies, in [0, 1).
-    #[inline]
-    pub(super) fn choose(&self, row: usize, u: f64) -> (usize, f64) {
-        let [chosen] = self.choose_each(&[row], &[u]);
-        chosen
-    }
-
-    /// The same for several rows and numbers. In loops of one access to memory each: most of them miss the cache, and so do not wait for one
-    /// another.
+    /// The entry of each row that its `u` in [0, 1) chooses, and where between the ends of the entry `u` lies, in [0, 1). In loops of one access
+    /// to memory each: most accesses miss the cache, and so they do not wait for one another.
     #[inline(always)]
     pub(super) fn choose_each<const W: usize>(&self, rows: &[usize; W], u: &[f64; W]) -> [(usize, f64); W] {
         let mut ranges = [(0, 0); W];
@@ -119,7 +112,7 @@ mod tests {
             let parts = (0..weights.len()).map(|part| part as f64 / weights.len() as f64);
             let near = sums.iter().copied().chain(parts).flat_map(|sum| [sum.next_down(), sum, sum.next_up()]);
             for u in us.iter().copied().chain(near).filter(|u| (0.0..1.0).contains(u)) {
-                let (entry, within) = table.choose(1, u);
+                let [(entry, within)] = table.choose_each(&[1], &[u]);
                 prop_assert_eq!(entry, searched(&sums, u), "{}", u);
                 prop_assert!((0.0..1.0).contains(&within));
             }

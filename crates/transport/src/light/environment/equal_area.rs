@@ -56,14 +56,10 @@ impl EqualArea {
     /// The directions that each `u` in [0, 1)² draws.
     #[inline(always)]
     pub(super) fn sample<const W: usize>(&self, u: [&[f64; W]; 2]) -> [Along; W] {
-        std::array::from_fn(|k| self.sample_one([u[0][k], u[1][k]]))
-    }
-
-    fn sample_one(&self, u: [f64; 2]) -> Along {
-        let (row, down) = self.rows.choose(0, u[1]);
-        let (column, across) = self.columns.choose(row, u[0]);
-        let share = |texel: usize, within: f64| (texel as f64 + within) / self.side as f64;
-        direction([share(column, across), share(row, down)])
+        let rows = self.rows.choose_each(&[0; W], u[1]);
+        let columns = self.columns.choose_each(&rows.map(|(row, _)| row), u[0]);
+        let share = |(texel, within): (usize, f64)| (texel as f64 + within) / self.side as f64;
+        std::array::from_fn(|k| direction([share(columns[k]), share(rows[k])]))
     }
 }
 
