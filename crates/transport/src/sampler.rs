@@ -22,6 +22,9 @@ pub const SETS_PER_VERTEX: u32 = 2;
 /// The first of the sets for surfaces that fluoresce, one for each vertex, beyond those of any path: (choice, wavelength, part, –).
 const FLUORESCENCE_SETS: u32 = 1 << 24;
 
+/// The first of the sets for specular connections, one for each vertex, beyond those: (seed 1, seed 2, kind of seed, light).
+const CONNECTION_SETS: u32 = 1 << 25;
+
 /// Longest Owen-scrambled Sobol point set of the library; further samples come from independent sets.
 pub const SOBOL_POINTS: u32 = 1 << 16;
 
@@ -79,6 +82,29 @@ impl Sampler {
     /// The numbers of vertex `vertex` where its surface fluoresces: (choice, wavelength, part, –).
     pub fn fluorescence_set(&self, vertex: u32) -> [f64; 4] {
         self.set(FLUORESCENCE_SETS + vertex)
+    }
+
+    /// The first numbers of the specular connection of vertex `vertex`: (light, kind of seed, seed 1, seed 2).
+    pub fn connection_set(&self, vertex: u32) -> [f64; 4] {
+        let [seed_1, seed_2, kind, light] = self.set(CONNECTION_SETS + vertex);
+        [light, kind, seed_1, seed_2]
+    }
+
+    /// The further numbers of that connection, of which nobody knows beforehand how many there will be.
+    pub fn connection_numbers(&self, vertex: u32) -> NumberStream {
+        NumberStream(mix(self.pixel_seed ^ (u64::from(CONNECTION_SETS + vertex) << 32 | u64::from(self.sample))))
+    }
+}
+
+/// Sets of independent numbers, each found by its own number.
+#[derive(Clone, Copy, Debug)]
+pub struct NumberStream(u64);
+
+impl NumberStream {
+    /// Set number `number`, each of its numbers in [0, 1).
+    pub fn set(&self, number: u64) -> [f64; 4] {
+        let mut generator = Xoshiro256PlusPlus::seed_from_u64(mix(self.0 ^ mix(number)));
+        std::array::from_fn(|_| unit_interval(generator.next_u64()))
     }
 }
 

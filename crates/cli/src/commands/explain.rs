@@ -10,7 +10,6 @@ use miette::Report;
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
-use crate::light;
 use crate::load::load;
 use crate::overrides::Overrides;
 use crate::print;
@@ -71,7 +70,6 @@ pub(crate) fn run(args: ExplainArgs) -> Outcome {
     let study = args.overrides.study();
     let prepared = prepared(&loaded.scene, &study)?;
     let plan = prepared.plan();
-    print::warnings(&light::missing(&plan.missing_light));
     let costs = if args.measure { measure(&loaded.scene, &study, &prepared)? } else { Vec::new() };
     if args.json {
         let scene = args.scene.display().to_string();
@@ -114,9 +112,6 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
         let share = format!("up to {:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
         let images_word = if images == 1 { "image of a lamp in a ball" } else { "images of lamps in balls" };
         lines.push(format!("{:<18} {share} {images} {images_word}: a trial found less noise", "caustics"));
-    }
-    for pair in light::missing_pairs(&plan.missing_light) {
-        lines.push(format!("{:<18} {pair}", "missing light"));
     }
     for lost in &plan.approximations {
         lines.push(format!("{:<18} without {lost}", "approximation"));

@@ -15,7 +15,6 @@ use miette::{Report, miette};
 use crate::args::percentage;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::light;
 use crate::load::load;
 use crate::print;
 use table::{Readings, csv};
@@ -73,7 +72,6 @@ pub(crate) fn run(args: MeasureArgs) -> Outcome {
     apply(&args, &mut loaded.scene);
     let study = Study { polarised: args.polarised, ..Study::default() };
     let reader = MeterReader::new(&loaded.scene, &study).map_err(refused)?;
-    print::warnings(&light::missing(&reader.prepared().plan().missing_light));
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::run(Report::from_err(error).wrap_err("cannot listen to signals")))?;
     let settings = MeasureSettings {

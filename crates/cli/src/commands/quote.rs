@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::args::{Adaptive, percentage};
 use crate::failure::{Failure, Outcome};
 use crate::frames::FrameArgs;
-use crate::light::{self, NO_LIGHT_HELP};
+use crate::light::NO_LIGHT_HELP;
 use crate::load::{LoadedScene, load};
 use crate::machine::{Clock, ClockKind, Machine};
 use crate::overrides::Overrides;
@@ -118,7 +118,6 @@ pub(crate) fn run(args: QuoteArgs) -> Outcome {
     let prepared = prepare_study(&loaded.scene, &args.overrides.study())
         .map_err(|error| Failure::input(Report::from_err(error)))?;
     let prepare_seconds = clock.seconds();
-    print::warnings(&light::missing(&prepared.plan().missing_light));
     let quote = quote(&args, &loaded, &prepared, (&clock, args.pilot, prepare_seconds))?;
     if args.json {
         print::json(&quote);

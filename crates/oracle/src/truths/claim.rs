@@ -31,6 +31,8 @@ pub enum Claim {
     Gratings,
     /// Surfaces give light back at other wavelengths than those at which they take it in.
     Fluorescence,
+    /// Finds the light of lamps without area that mirrors and smooth interfaces hand on.
+    SpecularConnections,
     /// Things move while the shutter is open.
     Motion,
     /// Surfaces let a part of the light pass, also where they coincide with others.
@@ -55,7 +57,7 @@ pub enum Claim {
 
 impl Claim {
     /// What a renderer meets that has everything but polarisation: plain radiance, averaged at every interface.
-    pub const UNPOLARISED: [Self; 21] = [
+    pub const UNPOLARISED: [Self; 22] = [
         Self::AveragesPolarisation,
         Self::NarrowBand,
         Self::Dispersion,
@@ -69,6 +71,7 @@ impl Claim {
         Self::ThinFilms,
         Self::Gratings,
         Self::Fluorescence,
+        Self::SpecularConnections,
         Self::Motion,
         Self::Masks,
         Self::LosslessRoughGlass,

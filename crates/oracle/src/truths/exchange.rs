@@ -98,6 +98,7 @@ impl Claim {
             Self::ThinFilms => "thin-films",
             Self::Gratings => "gratings",
             Self::Fluorescence => "fluorescence",
+            Self::SpecularConnections => "specular-connections",
             Self::Motion => "motion",
             Self::Masks => "masks",
             Self::LosslessRoughGlass => "lossless-rough-glass",

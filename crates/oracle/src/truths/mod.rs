@@ -17,6 +17,7 @@ mod cameras;
 mod cie171;
 mod claim;
 mod compound_lenses;
+mod connections;
 mod densities;
 mod dimensions;
 mod enclosures;
@@ -342,7 +343,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 37] = [
+const GROUPS: [fn() -> Vec<Truth>; 38] = [
     furnaces::truths,
     beckmann::truths,
     facets::truths,
@@ -373,6 +374,7 @@ const GROUPS: [fn() -> Vec<Truth>; 37] = [
     instruments::truths,
     sources::truths,
     beams::truths,
+    connections::truths,
     named::truths,
     skies::truths,
     surfaces::truths,

@@ -102,7 +102,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
     /// Sends a shadow ray from each path that scatters and sees lights, and adds what it finds.
     #[inline(always)]
     pub(super) fn add_light(&mut self, scatters: Mask) {
-        let (paths, world, draws) = (&mut self.paths, self.world, &mut self.lights);
+        let (paths, world) = (&self.paths, self.world);
         let mut shared = 0;
         for lane in lanes(scatters) {
             shared |= Mask::from(vertex(&paths.at, lane).sees_lights) << lane;
@@ -110,6 +110,26 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         if shared == 0 || world.lights.is_empty() {
             return;
         }
+        self.add_direct_light(shared);
+        if self.world.specular_connections.is_some() {
+            self.connect(shared);
+        }
+    }
+
+    /// Adds the light of lamps without area that comes by way of mirrors and smooth interfaces, path by path.
+    fn connect(&mut self, shared: Mask) {
+        for lane in lanes(shared) {
+            let before = self.counters.rays + self.counters.shadow_rays;
+            let (path, vertex) = (&mut self.paths.paths[lane], vertex(&self.paths.at, lane));
+            path.connect(self.world, vertex, self.paths.samplers.lane(lane), &mut self.counters, &mut ());
+            let rays = self.counters.rays + self.counters.shadow_rays - before;
+            self.paths.ray_count[lane] += rays as u32;
+        }
+    }
+
+    #[inline(always)]
+    fn add_direct_light(&mut self, mut shared: Mask) {
+        let (paths, world, draws) = (&mut self.paths, self.world, &mut self.lights);
         let mut numbers = [[0.0; W]; 4];
         let lights = world.lights.lights();
         let chooses = lights.len() > 1;

@@ -120,6 +120,24 @@ impl Dielectric {
         }
     }
 
+    /// The probability of reflection at a wavelength.
+    pub(super) fn reflection_probability(
+        &self,
+        wavelength_nm: f64,
+        (n, uv): (Vec3<f64>, [f64; 2]),
+        wo: Vec3<f64>,
+        interface: Option<Interface<'_>>,
+    ) -> f64 {
+        let above = n.dot(wo) > 0.0;
+        let cos = n.dot(wo).abs().min(1.0);
+        match &self.film {
+            Some(film) => {
+                PowerShares::of(&self.coated(film, (wavelength_nm, cos, uv), above, interface)).reflection_probability()
+            }
+            None => fresnel::dielectric_reflectance(cos, self.eta(wavelength_nm, above, interface)).0,
+        }
+    }
+
     pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,

@@ -140,7 +140,7 @@ impl<'a> Shading<'a> {
     }
 
     /// The viewer on its own side of the shading normal's horizon (rule 3).
-    fn viewer(&self, wo: Vec3<f64>) -> Vec3<f64> {
+    pub(super) fn viewer(&self, wo: Vec3<f64>) -> Vec3<f64> {
         let n = self.shading_normal();
         let cos = n.dot(wo);
         if cos * self.normal.dot(wo) < 0.0 { (wo - n * (2.0 * cos)).renormalized() } else { wo }

@@ -53,6 +53,19 @@ impl ThinDielectric {
         if reflects { pane.reflection } else { pane.transmission }
     }
 
+    /// The probability of reflection at a wavelength.
+    pub(super) fn reflection_probability(
+        &self,
+        wavelength_nm: f64,
+        (n, uv): (Vec3<f64>, [f64; 2]),
+        wo: Vec3<f64>,
+    ) -> f64 {
+        let cos = n.dot(wo).abs().min(1.0);
+        let Some(film) = &self.film else { return mueller::pane(cos, self.reference).reflectance };
+        let pane = self.coated(film, wavelength_nm, cos, uv);
+        PowerShares { reflected: pane.reflectance, transmitted: pane.transmittance }.reflection_probability()
+    }
+
     pub(super) fn sample<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,

@@ -52,6 +52,29 @@ impl Hull {
     }
 }
 
+impl Hull {
+    /// A place within, for `u` in [0, 1)³; of a large body, one that is not much farther from a point than the body is.
+    pub(super) fn place_near(&self, from: Vec3<f64>, u: [f64; 3]) -> Vec3<f64> {
+        /// How much farther.
+        const FARTHER: f64 = 3.0;
+        let from = from.to_array();
+        let nearest = [0, 1, 2].map(|axis: usize| from[axis].clamp(self.min[axis], self.max[axis]));
+        let squared: f64 = (0..3).map(|axis| (from[axis] - nearest[axis]).powi(2)).sum();
+        // Nothing is known of how far the surface is from a point within.
+        let reach = if squared > 0.0 { FARTHER * squared.sqrt() } else { f64::INFINITY };
+        Vec3::from_array([0, 1, 2].map(|axis: usize| {
+            let low = self.min[axis].max(nearest[axis] - reach);
+            let high = self.max[axis].min(nearest[axis] + reach);
+            low + (high - low) * u[axis]
+        }))
+    }
+
+    /// Whether some face is seen from a point.
+    pub(super) fn is_outside(&self, from: Vec3<f64>) -> bool {
+        self.faces([from.x, from.y, from.z]).total > 0.0
+    }
+}
+
 impl DirectionTarget for Hull {
     #[inline(always)]
     fn is_seen(&self, from: Vec3<f64>, n: Vec3<f64>) -> bool {

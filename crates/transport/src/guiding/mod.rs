@@ -28,7 +28,7 @@ pub(crate) use specular_image::{Ball, Eye, Shows, SpecularImage};
 
 use crate::bsdf::Bsdf;
 use crate::light::{LightTable, visible_sum};
-use crate::surface::Surfaces;
+use crate::surface::{ObjectSurface, Surfaces};
 use etalon_geometry::{Aabb, Geometry, Primitive, PrimitiveId, ShapeSampler, SphereSampler};
 use etalon_optics::Vec3;
 
@@ -88,6 +88,22 @@ impl GuidedTarget {
         }
     }
 
+    /// A place of the box around it, for `u` in [0, 1)³; of a large body, one that is not much farther from a point than the body is.
+    pub(crate) fn place_near(&self, from: Vec3<f64>, u: [f64; 3]) -> Vec3<f64> {
+        match self {
+            Self::Sphere(sphere) => sphere.centre + Vec3::from_array(u.map(|u| (2.0 * u - 1.0) * sphere.radius)),
+            Self::Box(hull) => hull.place_near(from, u),
+        }
+    }
+
+    /// Whether a point is outside of it, so that it can be aimed at.
+    pub(crate) fn can_be_aimed_at(&self, from: Vec3<f64>) -> bool {
+        match self {
+            Self::Sphere(sphere) => (sphere.centre - from).length_squared() > sphere.radius * sphere.radius,
+            Self::Box(hull) => hull.is_outside(from),
+        }
+    }
+
     fn size(&self) -> f64 {
         match self {
             Self::Sphere(sphere) => 2.0 * sphere.radius,
@@ -128,29 +144,19 @@ impl GuidedTargets {
         if !lights.lights().iter().any(|light| light.emitter().is_some()) {
             return Self::default();
         }
+        let bodies = specular_bodies(surfaces, geometry, |of| {
+            surfaces.properties[of.material].is_specular() && of.emission.is_none()
+        });
+        let mut balls: Vec<_> = bodies
+            .iter()
+            .filter_map(|(body, bsdf)| match body {
+                GuidedTarget::Sphere(ball) => Some((*ball, *bsdf)),
+                GuidedTarget::Box(_) => None,
+            })
+            .collect();
         // With whether they bend light.
-        let mut bodies: Vec<(GuidedTarget, bool)> = Vec::new();
-        let mut boxes: Vec<(u32, Aabb, bool)> = Vec::new();
-        let mut balls = Vec::new();
-        for (i, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {
-            let Some(of_object) = surfaces.objects.get(object as usize) else { continue };
-            let bsdf = &surfaces.bsdfs[of_object.material];
-            let is_specular = surfaces.properties[of_object.material].is_specular();
-            if !is_specular || of_object.emission.is_some() {
-                continue;
-            }
-            let bends = matches!(bsdf, Bsdf::Dielectric(_));
-            match (geometry.primitive(PrimitiveId(i as u32)), boxes.last_mut()) {
-                (Primitive::Sphere(sphere), _) => {
-                    let ball = sphere.sampler();
-                    bodies.push((GuidedTarget::Sphere(ball), bends));
-                    balls.push((ball, bsdf));
-                }
-                (part, Some((of, body, _))) if *of == object => *body = body.union(part.bounds()),
-                (part, _) => boxes.push((object, part.bounds(), bends)),
-            }
-        }
-        bodies.extend(boxes.into_iter().map(|(_, body, bends)| (GuidedTarget::Box(body.into()), bends)));
+        let mut bodies: Vec<(GuidedTarget, bool)> =
+            bodies.into_iter().map(|(body, bsdf)| (body, matches!(bsdf, Bsdf::Dielectric(_)))).collect();
         bodies.sort_by(|a, b| b.0.size().total_cmp(&a.0.size()));
         bodies.truncate(MOST_BODIES);
         balls.sort_by(|a, b| b.0.radius.total_cmp(&a.0.radius));
@@ -204,6 +210,30 @@ impl GuidedTargets {
     pub(crate) fn aim(&self) -> bool {
         self.guided_by != GuidedBy::Nothing
     }
+}
+
+/// The spheres, then the boxes around other bodies, of the scene's own objects that `are` such, and what they do to light.
+pub(crate) fn specular_bodies<'a>(
+    surfaces: &'a Surfaces,
+    geometry: &Geometry,
+    are: impl Fn(&ObjectSurface) -> bool,
+) -> Vec<(GuidedTarget, &'a Bsdf)> {
+    let mut bodies = Vec::new();
+    let mut boxes: Vec<(u32, Aabb, &Bsdf)> = Vec::new();
+    for (i, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {
+        let Some(of_object) = surfaces.objects.get(object as usize) else { continue };
+        if !are(of_object) {
+            continue;
+        }
+        let bsdf = &surfaces.bsdfs[of_object.material];
+        match (geometry.primitive(PrimitiveId(i as u32)), boxes.last_mut()) {
+            (Primitive::Sphere(sphere), _) => bodies.push((GuidedTarget::Sphere(sphere.sampler()), bsdf)),
+            (part, Some((of, body, _))) if *of == object => *body = body.union(part.bounds()),
+            (part, _) => boxes.push((object, part.bounds(), bsdf)),
+        }
+    }
+    bodies.extend(boxes.into_iter().map(|(_, body, bsdf)| (GuidedTarget::Box(body.into()), bsdf)));
+    bodies
 }
 
 /// The wavelength at which balls of glass are looked through, nm: one in the middle, from which images differ little.

@@ -150,6 +150,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             {
                 self.add_light(world, vertex, &draw, &next, &visible, observer);
             }
+            self.connect(world, vertex, sampler, counters, observer);
         }
         let [_, u1, u2, u_roulette] = sampler.vertex_set(self.vertex, 0);
         // The phase function over its own density: throughput stays as it is.

@@ -204,7 +204,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         Visibility { share: 0.0, transmittance: None }
     }
 
-    fn transmittance(&self, world: &World<'a>, stack: &MediumStack<'a>, way: &Way) -> Lanes<f64, N> {
+    pub(super) fn transmittance(&self, world: &World<'a>, stack: &MediumStack<'a>, way: &Way) -> Lanes<f64, N> {
         let lambda_nm = &self.wavelengths.lambda_nm;
         let through =
             |participating: &Participating<'a>| participating.transmittance(world.media, stack, lambda_nm, way);

@@ -52,6 +52,11 @@ pub(crate) enum Found {
         /// Index into the table of lights.
         light: u32,
     },
+    /// A chain of mirrors and smooth interfaces was found that leads to the light of this index.
+    SpecularConnection {
+        /// Index into the table of lights.
+        light: u32,
+    },
 }
 
 impl<const N: usize> Observer<N> for () {}

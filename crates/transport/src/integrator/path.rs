@@ -334,6 +334,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
     }
 
+    /// Whether its last step was from a vertex that scatters into every direction.
+    pub(super) fn is_indirect(&self) -> bool {
+        matches!(self.step, Step::Shared { .. })
+    }
+
     /// A spectrum of the tables at the path's wavelengths.
     #[inline(always)]
     pub(super) fn spectrum(&mut self, world: &World<'a>, slot: u8) -> Lanes<f64, N> {

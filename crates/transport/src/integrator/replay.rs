@@ -62,7 +62,7 @@ pub enum Event {
     Light {
         /// At which vertex.
         vertex: u32,
-        /// How it was found: `emitter`, `environment`, `medium` or `shadow-ray to light k`.
+        /// How it was found: `emitter`, `environment`, `medium`, `shadow-ray to light k` or `specular-connection to light k`.
         found: String,
         /// How much, at each wavelength.
         radiance: Vec<f64>,
@@ -136,6 +136,7 @@ impl<const N: usize> Observer<N> for Recorder<'_> {
             Found::Environment => "environment".to_owned(),
             Found::Medium => "medium".to_owned(),
             Found::ShadowRay { light } => format!("shadow-ray to light {light}"),
+            Found::SpecularConnection { light } => format!("specular-connection to light {light}"),
         };
         // The luminance follows once the wavelengths are known that the path has kept.
         self.events.push(Event::Light { vertex, found, radiance: widen(radiance), luminance: 0.0 });

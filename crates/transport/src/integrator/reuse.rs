@@ -328,6 +328,7 @@ fn trace_gathering<'a, M: WavelengthModel<N>, const N: usize>(
         reuse_path.arrive(world, &vertex, &mut path.radiance);
         if vertex.sees_lights {
             path.direct_light(world, &vertex, sampler, counters, observer);
+            path.connect(world, &vertex, sampler, counters, observer);
         }
         let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
         let Some(direction) = path.sample_direction(world, &vertex, [u_lobe, u1, u2], observer) else { break };

@@ -61,6 +61,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         // Direct light: one shadow ray toward one light.
         if vertex.sees_lights {
             self.direct_light(world, vertex, sampler, counters, observer);
+            self.connect(world, vertex, sampler, counters, observer);
         }
 
         // Scattering: in which direction does the walk go on?

@@ -12,7 +12,7 @@ use crate::polarisation::Polarisation;
 use crate::scene::interaction::SurfaceInteraction;
 use crate::scene::shading_tables::BsdfKind;
 use crate::scene::world::World;
-use etalon_optics::{Lanes, Vec3};
+use etalon_optics::{Lanes, Vec3, fresnel};
 
 /// A direction that was drawn from a surface.
 pub(crate) enum Direction<const N: usize> {
@@ -96,6 +96,21 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 observer.direction(&mixture);
                 Some(Direction::General { sample, guiding: mixture.factor(1.0) })
             }
+        }
+    }
+
+    /// The probability of reflection at a smooth interface or pane, of the hero; `None` at other surfaces.
+    pub(super) fn reflection_probability(&self, world: &World<'a>, vertex: &SurfaceInteraction<'a>) -> Option<f64> {
+        match vertex.kind {
+            BsdfKind::Lambert(_) | BsdfKind::Mirror(_) => None,
+            BsdfKind::Dielectric(number) => {
+                let [interior, exterior] =
+                    vertex.indices(&world.tables.interfaces[usize::from(number)], self.hero_nm());
+                let eta = if vertex.meets_front() { interior / exterior } else { exterior / interior };
+                let cos = vertex.point.normal.dot(vertex.wo).abs().min(1.0);
+                Some(fresnel::dielectric_reflectance(cos, eta).0)
+            }
+            BsdfKind::General => vertex.scattering().reflection_probability(self.hero_nm(), vertex.wo),
         }
     }
 

@@ -101,6 +101,7 @@ impl<'a> Tracer<'a> {
                 fluoresces: plan.runs(EffectName::Fluorescence),
                 tables: &prepared.tables,
                 plain_skies: prepared.environments.iter().all(|sky| sky.light.is_none()),
+                specular_connections: prepared.specular_connections.as_ref(),
                 guided_targets: &prepared.guided_targets,
             },
         }

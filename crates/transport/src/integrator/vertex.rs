@@ -7,6 +7,7 @@ use crate::media::{MediumInteraction, MediumStack};
 use crate::polarisation::Polarisation;
 use crate::polarisation::mueller::Mueller;
 use crate::scene::interaction::SurfaceInteraction;
+use crate::scene::world::World;
 use etalon_geometry::SurfacePoint;
 use etalon_optics::{Lanes, Vec3};
 
@@ -24,6 +25,14 @@ pub(crate) trait Vertex<'a> {
         path: &Path<'a, M, P, N>,
         wi: Vec3<f64>,
     ) -> MediumStack<'a>;
+
+    /// f·|cos θ| of a direction, sr⁻¹; in a medium its phase function.
+    fn f_cos<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        path: &mut Path<'a, M, P, N>,
+        world: &World<'a>,
+        wi: Vec3<f64>,
+    ) -> Lanes<f64, N>;
 
     /// What it does to polarisation; `None` if it depolarises.
     fn mueller<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Option<Mueller<N>>;
@@ -52,6 +61,15 @@ impl<'a> Vertex<'a> for SurfaceInteraction<'a> {
         }
     }
 
+    fn f_cos<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        path: &mut Path<'a, M, P, N>,
+        world: &World<'a>,
+        wi: Vec3<f64>,
+    ) -> Lanes<f64, N> {
+        path.eval(world, self, wi).0
+    }
+
     #[inline(always)]
     fn mueller<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Option<Mueller<N>> {
         self.scattering().mueller(lambda_nm, self.wo, wi, Lobe::SolidAngle)
@@ -73,6 +91,15 @@ impl<'a> Vertex<'a> for MediumInteraction<'a> {
         _: Vec3<f64>,
     ) -> MediumStack<'a> {
         self.stack
+    }
+
+    fn f_cos<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        _: &mut Path<'a, M, P, N>,
+        _: &World<'a>,
+        wi: Vec3<f64>,
+    ) -> Lanes<f64, N> {
+        Lanes::splat(self.medium.phase.density(-self.wo.dot(wi)))
     }
 
     fn mueller<const N: usize>(&self, _: &Lanes<f64, N>, wi: Vec3<f64>) -> Option<Mueller<N>> {

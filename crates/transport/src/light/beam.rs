@@ -4,12 +4,12 @@
 //! ray at the angle α to the axis brings E/cos α to a surface at right angles to it, so that the flux through every such plane is Φ. Rays
 //! do not diffract: far from its waist, this is the beam of a laser.
 
-use super::{LightSample, LightSource, Target};
+use super::{LightSample, LightSource, Source, Target};
 use crate::frame::SceneFrame;
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
-use etalon_geometry::SurfaceId;
-use etalon_optics::{Vec3, exp_neg};
+use etalon_geometry::{Ray, SurfaceId};
+use etalon_optics::{Frame, Real, Vec3, exp_neg};
 use etalon_scene::{Beam, BeamProfile};
 use std::f64::consts::PI;
 
@@ -49,6 +49,15 @@ impl BeamLight {
         }
     }
 
+    /// A ray of the beam, for `u` in [0, 1)²; where most of its light is, though not in proportion to it.
+    pub(crate) fn ray(&self, u: [f64; 2]) -> Ray<f64> {
+        let (sin, cos) = f64::sin_cos_turns(u[1]);
+        let frame = Frame::from_normal(self.axis);
+        let across = (frame.s * cos + frame.t * sin) * u[0].sqrt();
+        let direction = self.axis + across * self.tangent;
+        Ray::free(self.position + across * self.radius, direction / direction.length())
+    }
+
     /// p at a squared distance from the axis, in units of the squared radius.
     fn share(&self, squared: f64) -> f64 {
         match self.profile {
@@ -85,6 +94,13 @@ impl LightSource for BeamLight {
             target: Target::Point(start),
             surface: SurfaceId::NONE,
             scale,
+        })
+    }
+
+    fn source(&self) -> Option<Source> {
+        Some(match self.tangent > 0.0 {
+            true => Source::Point(self.position - self.axis * (self.radius / self.tangent)),
+            false => Source::Direction(-self.axis),
         })
     }
 

@@ -1,6 +1,6 @@
 //! Parallel light: irradiance E on a plane at right angles to it.
 
-use super::{LightSample, LightSource, Target};
+use super::{LightSample, LightSource, Source, Target};
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::SurfaceId;
@@ -26,6 +26,10 @@ impl LightSource for DirectionalLight {
             surface: SurfaceId::NONE,
             scale: 1.0,
         })
+    }
+
+    fn source(&self) -> Option<Source> {
+        Some(Source::Direction(self.toward))
     }
 
     fn spectrum(&self) -> &PathSpectrum {

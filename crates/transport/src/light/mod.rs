@@ -74,6 +74,36 @@ pub struct LightSample {
     pub colour: Option<[f64; 3]>,
 }
 
+/// Where all light of a lamp without area comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Source {
+    /// From a point, though the lamp may begin elsewhere.
+    Point(Vec3<f64>),
+    /// From infinity, in the direction of this unit vector.
+    Direction(Vec3<f64>),
+}
+
+impl Source {
+    /// The unit vector toward it.
+    pub(crate) fn toward(&self, from: Vec3<f64>) -> Vec3<f64> {
+        match self {
+            Self::Point(point) => {
+                let way = *point - from;
+                way / way.length()
+            }
+            Self::Direction(toward) => *toward,
+        }
+    }
+
+    /// How far it is.
+    pub(crate) fn distance(&self, from: Vec3<f64>) -> f64 {
+        match self {
+            Self::Point(point) => Target::Point(*point).distance(from),
+            Self::Direction(_) => f64::INFINITY,
+        }
+    }
+}
+
 /// What each kind of light answers; see the methods of [`Light`].
 trait LightSource {
     fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample>;
@@ -97,6 +127,11 @@ trait LightSource {
     /// Its position, if it is a point.
     fn position(&self) -> Option<Vec3<f64>> {
         None
+    }
+
+    /// Where its light comes from, if it has no area.
+    fn source(&self) -> Option<Source> {
+        self.position().map(Source::Point)
     }
 
     /// Where it is and where it shines, with a power of 1; `None` if it is nowhere, or not always at one place.
@@ -174,6 +209,11 @@ impl Light {
     #[inline]
     pub(crate) fn position(&self) -> Option<Vec3<f64>> {
         each!(self, light => LightSource::position(light))
+    }
+
+    /// Where its light comes from, if it has no area.
+    pub(crate) fn source(&self) -> Option<Source> {
+        each!(self, light => LightSource::source(light))
     }
 
     /// What an emitting surface emits; `None` for a light without a surface.

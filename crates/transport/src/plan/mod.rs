@@ -7,11 +7,9 @@
 mod evidence;
 mod grey;
 pub(crate) mod kernels;
-mod missing_light;
 mod study;
 mod three_channels;
 
-pub use missing_light::{Lost, MissingLight, MissingPair};
 pub use study::{Carried, Study, StudyError};
 
 pub(crate) use grey::OneLaneFilm;
@@ -45,6 +43,8 @@ pub enum EffectName {
     Environment,
     /// Mirrors, metals and glass hand light on in single directions.
     SpecularChains,
+    /// Light of lamps without area is looked for by way of mirrors and smooth interfaces.
+    SpecularConnections,
     /// Solids of different media touch, overlap or hold each other.
     NestedDielectrics,
     /// Media absorb light on its way, or emit some.
@@ -71,7 +71,7 @@ pub enum EffectName {
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Interference,
@@ -81,6 +81,7 @@ impl EffectName {
         Self::Mis,
         Self::Environment,
         Self::SpecularChains,
+        Self::SpecularConnections,
         Self::NestedDielectrics,
         Self::Absorption,
         Self::Scattering,
@@ -106,6 +107,7 @@ impl EffectName {
             Self::Mis => "mis",
             Self::Environment => "environment",
             Self::SpecularChains => "specular-chains",
+            Self::SpecularConnections => "specular-connections",
             Self::NestedDielectrics => "nested-dielectrics",
             Self::Absorption => "absorption",
             Self::Scattering => "scattering",
@@ -134,6 +136,9 @@ impl EffectName {
             Self::Mis => "the mean is the same, with more noise where shadow rays sample badly",
             Self::Environment => "light from infinity is left out",
             Self::SpecularChains => "mirrors, metals and glass are black",
+            Self::SpecularConnections => {
+                "what mirrors and glass throw of lamps without area on other surfaces is missing"
+            }
             Self::NestedDielectrics => "each solid is treated as if it stood in vacuum",
             Self::Absorption => "media take no light away and emit none, however thick they are",
             Self::Scattering => "light goes straight through media: no fog, no milk",
@@ -157,6 +162,7 @@ impl EffectName {
             Self::NestedDielectrics | Self::Absorption | Self::Polarisation | Self::Motion => true,
             // They are what the surfaces, or the film, are made of.
             Self::SpecularChains
+            | Self::SpecularConnections
             | Self::Interference
             | Self::Fluorescence
             | Self::Textures
@@ -289,8 +295,6 @@ pub struct Plan {
     pub effects: Vec<Effect>,
     /// What a study left out although the scene calls for it, with what the picture lacks: it is an approximation.
     pub approximations: Vec<String>,
-    /// Light of the scene that no path finds.
-    pub missing_light: MissingLight,
 }
 
 /// Why the pixels of a scene cannot share paths; `None` if they can.
@@ -401,11 +405,6 @@ impl Plan {
             stokes: runs(EffectName::Polarisation) && (study.polarised || scene.film.stokes),
             effects,
             approximations,
-            missing_light: match study.without.as_slice() {
-                [] => missing_light::of(scene),
-                // What is left out is missing for that reason.
-                _ => missing_light::of(&simulated(scene, study)),
-            },
         })
     }
 

@@ -6,6 +6,7 @@ use crate::camera::{Camera, Moving, PreparedLens};
 use crate::film::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame, mapped};
 use crate::guiding::GuidedTargets;
+use crate::integrator::specular::SpecularConnections;
 use crate::light::{Environment, Light, LightTable, weighted_sum};
 use crate::media::{Interior, Media, Medium, Participating, Solid};
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
@@ -51,6 +52,7 @@ pub struct Prepared {
     pub(crate) filter: FilterSampler,
     pub(crate) tables: ShadingTables,
     pub(crate) guided_targets: GuidedTargets,
+    pub(crate) specular_connections: Option<SpecularConnections>,
     plan: Plan,
     /// Those of the shapes, then those of the view.
     pub(crate) warnings: Vec<String>,
@@ -116,7 +118,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     }
     let returned = returned_by_fluorescence(scene, &plan);
     let worth = |spectrum: &PathSpectrum| weighted_sum(spectrum, range_nm, |nm| returned.eval(nm));
-    let lights = LightTable::weighed(emitters, radius, scene.integrator.light_selection, worth);
+    let lights = LightTable::weighed(emitters, radius, scene.integrator.light_selection, &worth);
     Environment::number(&mut environments, lights.lights());
     let mut light_of: Vec<(SurfaceId, u32)> = lights
         .lights()
@@ -189,6 +191,11 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         None => GuidedTargets::new(&surfaces, &geometry, &lights, range_nm),
         _ => GuidedTargets::default(),
     };
+    let specular_connections = plan.runs(EffectName::SpecularConnections).then(|| {
+        SpecularConnections::new(&surfaces, &geometry, &lights, |deltas| {
+            LightTable::weighed(deltas, radius, scene.integrator.light_selection, &worth)
+        })
+    });
     let wavelengths = match &scene.film.bands {
         Some(bands) => WavelengthDistribution::for_bands(range_nm, bands),
         None => WavelengthDistribution::new(range_nm),
@@ -216,6 +223,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         filter: FilterSampler::new(&scene.film.filter),
         tables,
         guided_targets,
+        specular_connections: specular_connections.flatten(),
         plan,
         shape_warnings: warnings.len(),
         warnings,

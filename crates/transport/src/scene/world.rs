@@ -1,6 +1,7 @@
 //! The scene as paths see it.
 
 use crate::guiding::GuidedTargets;
+use crate::integrator::specular::SpecularConnections;
 use crate::light::{Environment, EnvironmentLight, LightTable};
 use crate::media::{Media, Participating};
 use crate::scene::shading_tables::ShadingTables;
@@ -39,6 +40,8 @@ pub(crate) struct World<'a> {
     pub tables: &'a ShadingTables,
     /// Whether no shadow ray aims at any of the skies.
     pub plain_skies: bool,
+    /// The lamps without area whose light is looked for by way of mirrors and smooth interfaces, if it is.
+    pub specular_connections: Option<&'a SpecularConnections>,
     /// What diffuse surfaces draw directions toward.
     pub guided_targets: &'a GuidedTargets,
 }

@@ -262,6 +262,11 @@ impl Scattering<'_> {
         self.bsdf.eval(lambda_nm, &self.at, wo, wi)
     }
 
+    /// See [`Bsdf::reflection_probability`].
+    pub(crate) fn reflection_probability(&self, wavelength_nm: f64, wo: Vec3<f64>) -> Option<f64> {
+        self.bsdf.reflection_probability(wavelength_nm, &self.at, wo)
+    }
+
     /// The reflectance, if it is Lambert's around the surface's own normal.
     #[inline]
     pub(crate) fn diffuse<const N: usize>(&self, lambda_nm: &Lanes<f64, N>) -> Option<Lanes<f64, N>> {

@@ -9,7 +9,6 @@ use serde::Serialize;
 use super::{CostEstimateJson, QuoteArgs, QuoteJson, quote, threads};
 use crate::failure::{Failure, Outcome};
 use crate::frames::{FirstFrame, FrameList};
-use crate::light;
 use crate::load::LoadedScene;
 use crate::machine::Clock;
 use crate::print;
@@ -54,9 +53,6 @@ pub(super) fn run(args: &QuoteArgs, list: &FrameList, mut loaded: LoadedScene) -
         let prepared = prepare_frame(&loaded.scene, &args.overrides.study(), earlier.take())
             .map_err(|error| Failure::input(Report::from_err(error).wrap_err(format!("frame {frame}"))))?;
         let prepare_seconds = clock.seconds();
-        if piloted.is_empty() {
-            print::warnings(&light::missing(&prepared.plan().missing_light));
-        }
         let pilot_seconds = args.pilot / chosen.len() as f64;
         let quote =
             quote(args, &loaded, &prepared, (&clock, pilot_seconds, prepare_seconds)).map_err(|mut failure| {

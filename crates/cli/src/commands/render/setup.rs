@@ -12,7 +12,6 @@ use super::{Adaptive, RenderArgs, preflight, resume};
 use crate::args::{PixelAt, corners_hint};
 use crate::failure::Failure;
 use crate::frames::FirstFrame;
-use crate::light;
 use crate::load::{LoadedScene, load};
 use crate::output::{self, Output};
 use crate::state::Kept;
@@ -134,7 +133,6 @@ pub(super) fn make_ready(
             .iter()
             .map(|warning| miette!(severity = miette::Severity::Warning, code = "prepare", "{warning}")),
     );
-    warnings.extend(light::missing(&prepared.plan().missing_light));
     warnings.extend(prepared.plan().approximations.iter().map(|lost| {
         miette!(
             severity = miette::Severity::Warning,

@@ -9,7 +9,7 @@ pub(super) fn is_environment(kind: &LightKind) -> bool {
 }
 
 /// Whether only a shadow ray finds the light.
-pub(in crate::plan) fn is_target(kind: &LightKind) -> bool {
+pub(super) fn is_target(kind: &LightKind) -> bool {
     kind.is_delta() && !kind.is_zero()
 }
 

@@ -5,8 +5,9 @@ mod materials;
 mod media;
 mod motion;
 mod polarisation;
+mod specular_connections;
 
-pub(super) use lights::{is_target, sources};
+pub(super) use lights::sources;
 pub(super) use media::parts_lanes as media_part_lanes;
 pub(super) use polarisation::{UNPOLARISED, polarisation};
 
@@ -17,6 +18,7 @@ use etalon_scene::{Filter, ImageTexture, Light, Material, MaterialKind, Object, 
 use lights::{is_environment, mis, shadow_rays};
 use materials::{colour, dispersion, fluorescence, interference, nested, specular};
 use media::{absorption, coloured, scattering};
+use specular_connections::specular_connections;
 
 /// What calls for an effect (`Ok`), or why nothing does (`Err`).
 pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
@@ -52,6 +54,7 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             Some(found) => Ok(found),
             None => nothing("no mirror, metal or glass"),
         },
+        EffectName::SpecularConnections => specular_connections(scene),
         EffectName::NestedDielectrics => match first_surface(scene, |material, _| nested(&material.kind)) {
             Some(found) => Ok(found),
             None => nothing("no dielectric carries a priority"),

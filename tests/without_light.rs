@@ -1,11 +1,11 @@
-//! Pictures in which light is missing, as a user meets them: the warnings, and an error that is unknown.
+//! Pictures in which no sample found light, as a user meets them: the warning, and an error that is unknown.
 
 use std::path::{Path, PathBuf};
 
 use etalon_picture::{Attribute, read_exr};
 use serde_json::{Value, json};
 
-use crate::support::{entries, etalon_line, pixel_bits};
+use crate::support::{entries, etalon_line};
 
 /// A floor under a camera, of 16 × 16 pixels, with these materials, objects and lights beside.
 fn scene(folder: &Path, name: &str, materials: Value, objects: Value, lights: Value) -> PathBuf {
@@ -30,20 +30,6 @@ fn scene(folder: &Path, name: &str, materials: Value, objects: Value, lights: Va
 fn black(folder: &Path) -> PathBuf {
     let ball = json!([{"material": "paper", "shape": {"type": "sphere", "radius_m": 1}}]);
     scene(folder, "black.json", json!({}), ball, json!([{"type": "point", "position_m": [0, 3, 0], "intensity": 1}]))
-}
-
-/// A prism lies before a spot on the table, as a caustic is shown in school.
-fn prism(folder: &Path, lights: Value) -> PathBuf {
-    let glass = json!({"flint": {"type": "dielectric", "interior": 1.7}});
-    let prism = json!([{"name": "prism", "material": "flint", "shape": {"type": "mesh",
-        "vertices_m": [[-0.02, 0.0005, 0.0173], [0.02, 0.0005, 0.0173], [0, 0.0005, -0.0173],
-            [-0.02, 0.02, 0.0173], [0.02, 0.02, 0.0173], [0, 0.02, -0.0173]],
-        "triangles": [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]]}}]);
-    scene(folder, "prism.json", glass, prism, lights)
-}
-
-fn spot() -> Value {
-    json!({"type": "spot", "name": "torch", "position_m": [-0.1, 0.01, 0], "direction": [1, 0, 0], "intensity": 100, "half_angle_deg": 2})
 }
 
 const WITHOUT_LIGHT: &str = "no sample found light";
@@ -123,53 +109,4 @@ fn a_study_of_a_black_scene_claims_no_error() {
     }
     let text = std::fs::read_to_string(output.join("study.md")).unwrap();
     assert!(text.contains("error unknown (no sample found light)") && !text.contains("NaN"), "{text}");
-}
-
-/// Named with the lamp and the glass, also where another lamp lights the picture, and at no place where nothing is missing.
-#[test]
-fn light_that_no_path_finds_is_named_with_lamp_and_glass() {
-    let folder = tempfile::tempdir().unwrap();
-    let output = folder.path().join("a.exr");
-    let said =
-        "light of \"torch\" that \"prism\" reflects or transmits (material \"flint\": a smooth interface of two media)";
-    let sky = json!({"type": "environment", "name": "sky", "radiance": 1});
-    for lights in [json!([spot()]), json!([sky, spot()])] {
-        let prism = prism(folder.path(), lights);
-        let ran = etalon_line("explain {}", [&prism]).expect(0).says([
-            "some light is missing",
-            said,
-            "`etalon explain --json`",
-        ]);
-        assert!(ran.stdout.contains(&format!("missing light      {said}")), "{}", ran.stdout);
-        etalon_line("quote {} --pilot 0.01s --error 90%", [&prism]).says([said]);
-        let report = etalon_line("render {} -o {} --json", [&prism, &output]).expect(0).says([said]).json();
-        assert_eq!(report["warnings"][0]["code"], "missing-light");
-        let pair = json!({"light": "torch", "object": "prism", "material": "flint",
-            "surface": "a smooth interface of two media", "lost": "reflected-and-transmitted"});
-        let missing = json!({"pairs": 1, "listed": [pair]});
-        let Attribute::Text(plan) = &pixel_bits(&output).1.attributes["plan"] else { panic!("the plan is no text") };
-        let plan: Value = serde_json::from_str(plan).unwrap();
-        let explained = etalon_line("explain {} --json", [&prism]).expect(0).json();
-        assert_eq!(
-            [&report["plan"], &plan, &explained["plan"]].map(|plan| plan["missing_light"].clone()),
-            [0; 3].map(|_| missing.clone())
-        );
-    }
-    let prism = prism(folder.path(), json!([sky]));
-    let ran = etalon_line("explain {}", [&prism]).expect(0);
-    assert_eq!((ran.stderr.as_str(), ran.stdout.contains("missing light")), ("", false));
-}
-
-/// Hundreds of pairs are one warning of a few lines.
-#[test]
-fn many_pairs_are_told_in_few_lines() {
-    let folder = tempfile::tempdir().unwrap();
-    let lamp = json!({"type": "point", "position_m": [0, 3, 0], "intensity": 1});
-    let ran = etalon_line("explain {}", [&prism(folder.path(), Value::from(vec![lamp; 300]))]).expect(0);
-    assert_eq!(ran.stderr.matches("light of \"").count(), 8, "{}", ran.stderr);
-    assert!(
-        ran.stderr.contains("and 292 more pairs of a lamp and a surface") && ran.stderr.len() < 2000,
-        "{}",
-        ran.stderr
-    );
 }

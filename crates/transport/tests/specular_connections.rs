@@ -1,8 +1,8 @@
-//! Light that no path finds: what the plan says of it is what pictures show, and a picture without light knows nothing of its error.
+//! Specular connections: the plan calls for them where pictures show that light comes by them, they find the light that closed forms tell, and a
+//! picture without light knows nothing of its error.
 
 use etalon_scene::Scene;
-use etalon_transport::plan::Lost;
-use etalon_transport::{Control, ImageError, PathLoop, Prepared, Study, prepare_study};
+use etalon_transport::{Control, EffectName, ImageError, PathLoop, Prepared, Study, prepare_study};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -51,7 +51,8 @@ fn below(material: Value, lamp: Lamp) -> Value {
     room(
         material,
         lamp,
-        lights(lamp, 1.0, [0.0, 1.0, 0.0]),
+        // Straight up, the floor would hide parallel light from itself.
+        lights(lamp, 1.0, [-0.3, 1.0, 0.0]),
         [0.0, 1.0, 0.0],
         json!([
         {"name": "sheet", "material": "smooth", "shape": {"type": "parallelogram",
@@ -82,8 +83,16 @@ fn room(material: Value, lamp: Lamp, lights: Value, at: [f64; 3], mut objects: V
 
 /// On both loops, where there are two.
 fn prepared(scene: &Scene) -> Vec<Prepared> {
-    let loops =
-        [PathLoop::Scalar, PathLoop::Batch].map(|path_loop| Study { path_loop: Some(path_loop), ..Study::default() });
+    prepared_without(scene, &[])
+}
+
+/// The same without some effects.
+fn prepared_without(scene: &Scene, without: &[EffectName]) -> Vec<Prepared> {
+    let loops = [PathLoop::Scalar, PathLoop::Batch].map(|path_loop| Study {
+        path_loop: Some(path_loop),
+        without: without.to_vec(),
+        ..Study::default()
+    });
     let prepared: Vec<_> = loops.iter().filter_map(|study| prepare_study(scene, study).ok()).collect();
     assert!(!prepared.is_empty());
     prepared
@@ -101,99 +110,101 @@ fn error(prepared: &Prepared) -> ImageError {
     error
 }
 
-/// What lets light pass, and what of it is missing.
-fn sheets() -> Vec<(Value, Option<Lost>)> {
+/// What lets light pass, and whether in single directions.
+fn sheets() -> Vec<(Value, bool)> {
     vec![
-        (json!({"type": "dielectric", "interior": 1.5}), Some(Lost::ReflectedAndTransmitted)),
-        (json!({"type": "thin-dielectric", "index": 1.5}), Some(Lost::ReflectedAndTransmitted)),
-        (json!({"type": "polariser", "axis": [1, 0, 0]}), Some(Lost::Transmitted)),
-        (json!({"type": "retarder", "axis": [1, 0, 0], "retardance_deg": 90}), Some(Lost::Transmitted)),
-        (json!({"type": "dielectric", "interior": 1.5, "alpha": 0.3}), None),
+        (json!({"type": "dielectric", "interior": 1.5}), true),
+        (json!({"type": "thin-dielectric", "index": 1.5}), true),
+        (json!({"type": "polariser", "axis": [1, 0, 0]}), true),
+        (json!({"type": "retarder", "axis": [1, 0, 0], "retardance_deg": 90}), true),
+        (json!({"type": "dielectric", "interior": 1.5, "alpha": 0.3}), false),
     ]
 }
 
-/// What reflects light, and what of it is missing.
-fn mirrors() -> Vec<(Value, Option<Lost>)> {
+/// What reflects light, and whether in single directions.
+fn mirrors() -> Vec<(Value, bool)> {
     vec![
-        (json!({"type": "mirror"}), Some(Lost::Reflected)),
-        (json!({"type": "conductor", "metal": "Au"}), Some(Lost::Reflected)),
-        (json!({"type": "conductor", "reflectance": 0.9}), Some(Lost::Reflected)),
-        (json!({"type": "dielectric", "interior": 1.5}), Some(Lost::ReflectedAndTransmitted)),
-        (json!({"type": "thin-dielectric", "index": 1.5}), Some(Lost::ReflectedAndTransmitted)),
-        (json!({"type": "conductor", "metal": "Au", "alpha": 0.3}), None),
-        (json!({"type": "plastic", "reflectance": 0.5, "alpha": 0.3}), None),
-        (json!({"type": "lambert", "reflectance": 0.5}), None),
+        (json!({"type": "mirror"}), true),
+        (json!({"type": "conductor", "metal": "Au"}), true),
+        (json!({"type": "conductor", "reflectance": 0.9}), true),
+        (json!({"type": "dielectric", "interior": 1.5}), true),
+        (json!({"type": "thin-dielectric", "index": 1.5}), true),
+        (json!({"type": "conductor", "metal": "Au", "alpha": 0.3}), false),
+        (json!({"type": "plastic", "reflectance": 0.5, "alpha": 0.3}), false),
+        (json!({"type": "lambert", "reflectance": 0.5}), false),
     ]
 }
 
-/// The plan says that a lamp's light is missing exactly where it is: the picture is black, and lit with a lamp that has an area or a
-/// surface that is rough.
+/// The plan calls for connections exactly where they find light: without them the picture is black.
 #[test]
-fn what_the_plan_says_is_missing_is_missing() {
-    let scenes = sheets().into_iter().map(|(kind, lost)| (behind as fn(Value, Lamp) -> Value, kind, lost));
+fn connections_are_called_for_where_they_find_light() {
+    let scenes = sheets().into_iter().map(|(kind, smooth)| (behind as fn(Value, Lamp) -> Value, kind, smooth));
     let scenes =
-        scenes.chain(mirrors().into_iter().map(|(kind, lost)| (below as fn(Value, Lamp) -> Value, kind, lost)));
-    for (place, kind, lost) in scenes {
+        scenes.chain(mirrors().into_iter().map(|(kind, smooth)| (below as fn(Value, Lamp) -> Value, kind, smooth)));
+    for (place, kind, smooth) in scenes {
         for lamp in WITHOUT_AREA {
-            for prepared in prepared(&parse(&place(kind.clone(), lamp))) {
-                let missing = &prepared.plan().missing_light;
-                let error = error(&prepared);
-                match lost {
-                    Some(lost) => {
-                        assert_eq!((missing.pairs, missing.listed.len()), (1, 1), "{kind} {lamp:?}");
-                        let pair = &missing.listed[0];
-                        assert_eq!(
-                            (pair.light.as_str(), pair.object.as_str(), pair.material.as_str()),
-                            ("lamp", "sheet", "smooth")
-                        );
-                        assert_eq!(pair.lost, lost);
-                    }
-                    None => assert_eq!(missing.pairs, 0, "{kind} {lamp:?}"),
-                }
-                assert_eq!(error.found_light(), lost.is_none(), "{kind} {lamp:?}");
+            let scene = parse(&place(kind.clone(), lamp));
+            for prepared in prepared(&scene) {
+                assert_eq!(prepared.plan().runs(EffectName::SpecularConnections), smooth, "{kind} {lamp:?}");
+                assert!(error(&prepared).found_light(), "{kind} {lamp:?}");
+            }
+            for prepared in prepared_without(&scene, &[EffectName::SpecularConnections]) {
+                assert_eq!(error(&prepared).found_light(), !smooth, "{kind} {lamp:?}");
             }
         }
         for prepared in prepared(&parse(&place(kind.clone(), Lamp::Sphere))) {
-            assert_eq!(prepared.plan().missing_light.pairs, 0);
+            assert!(!prepared.plan().runs(EffectName::SpecularConnections));
             assert!(error(&prepared).is_known(), "{kind} under a lamp with an area");
         }
     }
 }
 
-/// A smooth coat is a part of what the surface reflects: the rest is found, and another lamp too.
+/// Why they are called for, and that both loops find the same light to the bit.
 #[test]
-fn missing_light_is_named_although_other_light_is_found() {
+fn a_smooth_coat_and_a_second_lamp_call_for_them_too() {
     let coated = parse(&below(json!({"type": "plastic", "reflectance": 0.5}), Lamp::Point));
     let mut scene = below(json!({"type": "mirror"}), Lamp::Point);
     scene["lights"].as_array_mut().unwrap().push(json!({"type": "environment", "radiance": 1}));
     for (scene, surface) in [(coated, "a smooth coat"), (parse(&scene), "a mirror")] {
-        for prepared in prepared(&scene) {
-            let missing = &prepared.plan().missing_light;
-            assert_eq!((missing.pairs, missing.listed[0].surface), (1, surface));
-            assert!(error(&prepared).is_known());
-        }
+        let films: Vec<_> = prepared(&scene)
+            .iter()
+            .map(|prepared| {
+                let effects = &prepared.plan().effects;
+                let effect = effects.iter().find(|effect| effect.name == EffectName::SpecularConnections).unwrap();
+                assert_eq!(effect.because, format!("light \"lamp\" by way of \"sheet\", {surface}"));
+                prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap()
+            })
+            .collect();
+        let [scalar, batch] = &films[..] else { panic!("there are two loops") };
+        let rect = etalon_transport::PixelRect { x0: 0, y0: 0, x1: 8, y1: 8 };
+        assert_eq!(scalar.tile(rect), batch.tile(rect));
+        assert_eq!(scalar.counters, batch.counters);
     }
 }
 
-/// Lamps and surfaces that are no pair: outside the cone of a spot, dark, black or fully transparent; of paths too short to show it.
+/// Lamps and surfaces that call for nothing: outside the cone of a spot, dark, black or fully transparent; of paths too short to show it.
 #[test]
-fn what_can_certainly_not_be_missing_is_not_named() {
-    let pairs = |change: &dyn Fn(&mut Value)| {
+fn what_certainly_sees_no_lamp_calls_for_nothing() {
+    let called_for = |change: &dyn Fn(&mut Value)| {
         let mut scene = behind(json!({"type": "mirror"}), Lamp::Spot);
         scene["objects"][0]["shape"] = json!({"type": "sphere", "center_m": [0, 1, 0], "radius_m": 0.5});
         change(&mut scene);
-        prepared(&parse(&scene))[0].plan().missing_light.pairs
+        prepared(&parse(&scene))[0].plan().runs(EffectName::SpecularConnections)
     };
-    assert_eq!(pairs(&|_| ()), 1);
-    assert_eq!(pairs(&|scene| scene["lights"][0]["intensity"] = 0.into()), 0);
-    assert_eq!(pairs(&|scene| scene["materials"]["smooth"]["reflectance"] = 0.into()), 0);
-    assert_eq!(pairs(&|scene| scene["objects"][0]["opacity"] = 0.into()), 0);
-    assert_eq!(pairs(&|scene| scene["integrator"]["max_depth"] = 2.into()), 0);
-    assert_eq!(pairs(&|scene| scene["integrator"]["max_depth"] = 3.into()), 1);
+    assert!(called_for(&|_| ()));
+    assert!(!called_for(&|scene| scene["lights"][0]["intensity"] = 0.into()));
+    assert!(!called_for(&|scene| scene["materials"]["smooth"]["reflectance"] = 0.into()));
+    assert!(!called_for(&|scene| scene["objects"][0]["opacity"] = 0.into()));
+    assert!(!called_for(&|scene| scene["integrator"]["max_depth"] = 2.into()));
+    assert!(called_for(&|scene| scene["integrator"]["max_depth"] = 3.into()));
     // From 1 m away, a ball of 0.5 m reaches 30° from its middle, and the cone 60°: to 90° they meet.
-    for (degrees, expected) in [(89.9_f64, 1), (90.1, 0)] {
+    for (degrees, expected) in [(89.9_f64, true), (90.1, false)] {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        assert_eq!(pairs(&|scene| scene["lights"][0]["direction"] = json!([sin, -cos, 0.0])), expected, "{degrees}°");
+        assert_eq!(
+            called_for(&|scene| scene["lights"][0]["direction"] = json!([sin, -cos, 0.0])),
+            expected,
+            "{degrees}°"
+        );
     }
     // A mesh by the ball around its box, a cylinder by the one around its ends.
     let beside = json!([1, 0, 0]);
@@ -205,46 +216,22 @@ fn what_can_certainly_not_be_missing_is_not_named() {
     ];
     for shape in shapes {
         let with = |direction: &Value| {
-            pairs(&|scene| {
+            called_for(&|scene| {
                 scene["objects"][0]["shape"] = shape.clone();
                 scene["lights"][0]["direction"] = direction.clone();
                 scene["lights"][0]["half_angle_deg"] = 30.into();
             })
         };
-        assert_eq!((with(&json!([0, -1, 0])), with(&beside)), (1, 0), "{shape}");
+        assert_eq!((with(&json!([0, -1, 0])), with(&beside)), (true, false), "{shape}");
     }
     // What an instance places is anywhere.
-    let placed = pairs(&|scene| {
+    let placed = called_for(&|scene| {
         scene["lights"][0]["direction"] = json!([0, 1, 0]);
         let sheet = scene["objects"].as_array_mut().unwrap().remove(0);
         scene["groups"] = json!({"things": {"objects": [sheet]}});
         scene["instances"] = json!([{"group": "things"}]);
     });
-    assert_eq!(placed, 1);
-}
-
-/// What a study leaves out is an approximation, not missing light.
-#[test]
-fn what_a_study_leaves_out_is_not_named() {
-    use etalon_transport::EffectName::{Environment, ShadowRays, SpecularChains};
-    let scene = parse(&below(json!({"type": "mirror"}), Lamp::Point));
-    for (without, pairs) in [(ShadowRays, 0), (SpecularChains, 0), (Environment, 1)] {
-        let study = Study { without: vec![without], ..Study::default() };
-        assert_eq!(prepare_study(&scene, &study).unwrap().plan().missing_light.pairs, pairs, "{without}");
-    }
-}
-
-/// However many lamps and surfaces there are, the plan lists 64 pairs and counts the rest.
-#[test]
-fn many_pairs_are_counted() {
-    let mut scene = behind(json!({"type": "mirror"}), Lamp::Point);
-    let more = |what: &Value, count: usize| Value::from(vec![what.clone(); count]);
-    scene["lights"] = more(&scene["lights"][0], 30);
-    let objects = scene["objects"].clone();
-    scene["objects"] = more(&objects[0], 20);
-    scene["objects"].as_array_mut().unwrap().push(objects[1].clone());
-    let missing = prepared(&parse(&scene))[0].plan().missing_light.clone();
-    assert_eq!((missing.pairs, missing.listed.len()), (600, 64));
+    assert!(placed);
 }
 
 fn materials() -> impl Strategy<Value = (Value, bool)> {
@@ -259,11 +246,16 @@ fn materials() -> impl Strategy<Value = (Value, bool)> {
     ]
 }
 
+/// Whether a material of [`materials`] scatters in every direction.
+fn scatters_everywhere(kind: &Value) -> bool {
+    matches!(kind["type"].as_str(), Some("plastic" | "lambert" | "conductor"))
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever stands around, as long as all of it is dark nothing is known of the error; lit by the sky as well it is, and each lamp
-    /// without area is a pair with each smooth ball.
+    /// Whatever stands around, as long as all of it is dark nothing is known of the error; lit by the sky as well it is. A lamp without area, a
+    /// smooth ball and one that scatters in every direction call for connections.
     #[test]
     fn a_scene_is_known_as_far_as_it_is_lit(
         balls in prop::collection::vec((materials(), [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0], 0.1..0.5), 1..6),
@@ -289,15 +281,16 @@ proptest! {
         };
         for prepared in prepared(&scene(&lights)) {
             prop_assert!(!error(&prepared).is_known());
-            prop_assert_eq!(prepared.plan().missing_light.pairs, 0);
+            prop_assert!(!prepared.plan().runs(EffectName::SpecularConnections));
         }
         lights.iter_mut().for_each(|light| light["intensity"] = json!(1e-3));
         lights.push(json!({"type": "environment", "radiance": 1}));
-        let smooth = balls.iter().filter(|((_, smooth), ..)| *smooth).count();
+        let smooth = balls.iter().any(|((_, smooth), ..)| *smooth);
+        let lit = balls.iter().any(|((kind, _), ..)| scatters_everywhere(kind));
         for prepared in prepared(&scene(&lights)) {
             let error = error(&prepared);
             prop_assert!(error.is_known() && error.has_interval());
-            prop_assert_eq!(prepared.plan().missing_light.pairs, (smooth * lamps.len()) as u64);
+            prop_assert_eq!(prepared.plan().runs(EffectName::SpecularConnections), smooth && lit && !lamps.is_empty());
         }
     }
 }

@@ -1,78 +1,41 @@
-//! Light that no path finds: what a lamp without area sends straight to a smooth surface.
+//! A lamp without area whose light some mirror or smooth interface hands on.
 //!
 //! A path from the camera never meets a point, and never has the one direction of parallel light by chance. Only a shadow ray finds such
 //! lamps: from a surface that scatters into every direction, along a straight line that nothing blocks. A mirror or a smooth
 //! interface does not scatter into every direction, and blocks the shadow rays of what is behind it. So whatever such a surface
-//! reflects, refracts or lets pass of such a lamp is missing: the lamp and the surface are a pair of the plan.
+//! reflects, refracts or lets pass of such a lamp must be searched for ([`specular`](crate::integrator::specular)).
 //!
-//! A pair is listed unless it is certain that no light of the lamp reaches the surface: outside the cone of a spot. What stands
+//! A scene calls for it unless it is certain that no light of any such lamp reaches such a surface: outside the cone of a spot. What stands
 //! between the two is not asked.
 
-use super::evidence::is_target;
+use super::lights::{is_target, shadow_rays};
 use crate::bsdf::properties;
 use crate::frame::Affine;
 use etalon_geometry::Aabb;
 use etalon_optics::Vec3;
 use etalon_scene::{LightCone, MaterialKind, Mesh, Object, Scene, Shape};
-use serde::Serialize;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Pairs that a plan lists; the others are counted.
-const MOST_LISTED: usize = 64;
 /// Fewest edges of a path from a lamp by a smooth surface and another one to the camera.
 const FEWEST_EDGES: u32 = 3;
 /// Pairs of spots and surfaces of which it is asked whether the one shines on the other; of more, each counts.
 const MOST_ASKED: usize = 1 << 22;
 
-/// Pairs of a lamp without area and a smooth surface, whose light is missing from the picture.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct MissingLight {
-    /// All pairs, by the order of the lamps, then of the objects.
-    pub pairs: u64,
-    /// The first of them, 64 at most.
-    pub listed: Vec<MissingPair>,
-}
-
-/// A lamp without area and a smooth surface.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct MissingPair {
-    /// Name of the light.
-    pub light: String,
-    /// Name of the object that has the surface.
-    pub object: String,
-    /// Name of its material.
-    pub material: String,
-    /// What is smooth about it, such as "a mirror".
-    pub surface: &'static str,
-    /// What it does to the light that is missing.
-    pub lost: Lost,
-}
-
-/// What a smooth surface does to light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Lost {
-    /// It reflects some.
-    Reflected,
-    /// It lets some pass, bent or straight.
-    Transmitted,
-    /// Both.
-    ReflectedAndTransmitted,
-}
-
-/// What a scene asks for that no path finds.
-pub(super) fn of(scene: &Scene) -> MissingLight {
-    let mut missing = MissingLight::default();
+/// The first lamp without area and the first smooth surface that it may shine on; or why there are none.
+pub(super) fn specular_connections(scene: &Scene) -> Result<String, String> {
+    let none = |why: &str| Err(why.to_owned());
     // A meter's plate stands for the other surface.
     let fewest = FEWEST_EDGES - u32::from(!scene.receivers.is_empty());
     if scene.integrator.max_depth.is_some_and(|depth| depth < fewest) {
-        // No picture of so few edges shows it.
-        return missing;
+        return none("no path is long enough for a lamp, a mirror or glass, and another surface");
+    }
+    if shadow_rays(scene).is_err() {
+        return none("no diffuse surface and no medium on which a mirror or glass could throw light");
     }
     let lamps: Vec<_> = scene.lights.iter().filter(|light| is_target(&light.kind)).collect();
     if lamps.is_empty() {
-        return missing;
+        return none("every lamp has an area");
     }
     let smooth = smooth_objects(scene);
     let cones = lamps.iter().filter(|lamp| lamp.kind.cone().is_some()).count();
@@ -86,21 +49,11 @@ pub(super) fn of(scene: &Scene) -> MissingLight {
     for lamp in lamps {
         let cone = lamp.kind.cone();
         let lit = |ball: &Option<Ball>| cone.zip(*ball).is_none_or(|(cone, ball)| may_light(&cone, ball));
-        let reached = smooth.iter().zip(&balls).filter(|(_, ball)| lit(ball));
-        for (Smooth { object, surface, lost, .. }, _) in reached {
-            missing.pairs += 1;
-            if missing.listed.len() < MOST_LISTED {
-                missing.listed.push(MissingPair {
-                    light: lamp.name.clone(),
-                    object: object.name.clone(),
-                    material: scene.materials[object.material].name.clone(),
-                    surface,
-                    lost: *lost,
-                });
-            }
+        if let Some((Smooth { object, surface, .. }, _)) = smooth.iter().zip(&balls).find(|(_, ball)| lit(ball)) {
+            return Ok(format!("light \"{}\" by way of \"{}\", {surface}", lamp.name, object.name));
         }
     }
-    missing
+    none("no lamp without area shines on a mirror, metal or glass")
 }
 
 /// An object with a smooth surface.
@@ -109,7 +62,6 @@ struct Smooth<'a> {
     /// Whether it stands in the scene itself, and only there.
     stands: bool,
     surface: &'static str,
-    lost: Lost,
 }
 
 fn smooth_objects(scene: &Scene) -> Vec<Smooth<'_>> {
@@ -117,23 +69,16 @@ fn smooth_objects(scene: &Scene) -> Vec<Smooth<'_>> {
     let objects = scene.placed_objects().enumerate().filter(|(_, object)| object.opacity > 0.0);
     objects
         .filter_map(|(index, object)| {
-            let (surface, lost) = of_materials[object.material]?;
-            Some(Smooth { object, stands: index < scene.objects.len(), surface, lost })
+            let surface = of_materials[object.material]?;
+            Some(Smooth { object, stands: index < scene.objects.len(), surface })
         })
         .collect()
 }
 
 /// The part of a material that sends light on in single directions, if it has one; of several the name of the first.
-fn smooth_part(kind: &MaterialKind) -> Option<(&'static str, Lost)> {
-    let of_parts = kind.parts().into_iter().map(properties);
-    let parts: Vec<_> = of_parts.filter(|part| part.has_delta() && !part.dark).collect();
-    let lost = match (parts.iter().any(|part| part.delta_reflection), parts.iter().any(|part| part.delta_transmission))
-    {
-        (true, false) => Lost::Reflected,
-        (false, true) => Lost::Transmitted,
-        _ => Lost::ReflectedAndTransmitted,
-    };
-    Some((parts.first()?.smooth_name, lost))
+fn smooth_part(kind: &MaterialKind) -> Option<&'static str> {
+    let parts = kind.parts().into_iter().map(properties);
+    parts.into_iter().find(|part| part.has_delta() && !part.dark).map(|part| part.smooth_name)
 }
 
 /// A ball around an object in the world.

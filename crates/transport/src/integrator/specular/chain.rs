@@ -1,0 +1,247 @@
+//! A chain of mirrors and smooth interfaces, as a function of the direction in which it begins.
+
+use super::solve::Root;
+use crate::film::Counters;
+use crate::integrator::vertex::Vertex;
+use crate::integrator::wavelength_lanes::WavelengthModel;
+use crate::integrator::{Direction, MOST_VERTICES, Path};
+use crate::light::Light;
+use crate::media::{MediumStack, Way};
+use crate::mis::Density;
+use crate::polarisation::Polarisation;
+use crate::sampler::NumberStream;
+use crate::scene::interaction::SurfaceInteraction;
+use crate::scene::shading_tables::BsdfKind;
+use crate::scene::world::World;
+use etalon_geometry::{Ray, SurfaceId};
+use etalon_optics::{Lanes, Vec3};
+
+/// Vertices that every chain may have, and the probability of each further one.
+const SURE_VERTICES: u32 = 8;
+const GOES_ON: f64 = 0.5;
+
+/// The share of the chains that are reflected where some light is, and some passes.
+const REFLECTS: f64 = 0.2;
+
+/// A chain of mirrors and smooth interfaces that begins at a vertex of a path.
+pub(super) struct Chain<'c, 'a, V, M, P, const N: usize> {
+    world: &'c World<'a>,
+    /// Where it begins.
+    vertex: &'c V,
+    /// What the path has there.
+    start: State<'a, M, P, N>,
+    /// Walks along the chain.
+    walker: Path<'a, M, P, N>,
+    /// The numbers by which its vertices choose among their lobes.
+    numbers: NumberStream,
+    /// Vertices that it may have.
+    most: u32,
+}
+
+/// What a lamp of unit spectrum sends along a chain to the camera.
+pub(super) struct Brought<const N: usize> {
+    /// S₀.
+    pub light: Lanes<f64, N>,
+    /// S₁, S₂ and S₃, where polarisation is followed.
+    pub stokes: Option<[Lanes<f64, N>; 3]>,
+    /// How strong it is where the chain begins, over what the lamp would bring from as far away without it.
+    pub concentration: f64,
+}
+
+/// What a path has before the chain.
+struct State<'a, M, P, const N: usize> {
+    beta: Lanes<f64, N>,
+    lanes: M,
+    polarisation: P,
+    stack: MediumStack<'a>,
+}
+
+/// A mirror or smooth interface that the walk has come to, before it goes on.
+struct Met<'a, const N: usize> {
+    vertex: SurfaceInteraction<'a>,
+    /// What media have let through up to there, times the probability of its lobe over that with which it was chosen.
+    weight: Lanes<f64, N>,
+    /// Where it goes on, and the number that chose among its lobes.
+    direction: Direction<N>,
+    u_lobe: f64,
+}
+
+/// A vertex of a chain, and how it goes on from there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Link {
+    pub surface: SurfaceId,
+    pub position: Vec3<f64>,
+    /// Unit vector.
+    pub direction: Vec3<f64>,
+}
+
+impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Chain<'c, 'a, V, M, P, N> {
+    /// That of a path at a vertex. `u_length` in [0, 1) says how many vertices it may have.
+    pub(super) fn new(
+        path: &Path<'a, M, P, N>,
+        world: &'c World<'a>,
+        vertex: &'c V,
+        numbers: NumberStream,
+        u_length: f64,
+    ) -> Self {
+        let mut walker = Path::idle();
+        walker.wavelengths = path.wavelengths;
+        walker.vertex = path.vertex;
+        walker.spectra = path.spectra.clone();
+        let start = State { beta: path.beta, lanes: path.lanes, polarisation: path.polarisation, stack: path.stack };
+        let mut most = SURE_VERTICES;
+        let mut left = u_length;
+        while left < GOES_ON && most < MOST_VERTICES {
+            left /= GOES_ON;
+            most += 1;
+        }
+        // Edges of the path: to this vertex, to each of the chain, and to the lamp.
+        let most = most.min(world.max_depth.saturating_sub(path.vertex + 2));
+        Self { world, vertex, start, walker, numbers, most }
+    }
+
+    /// Follows the chain that begins in a direction. `each` hears of its vertices, and says whether to go on.
+    pub(super) fn follow(&mut self, wi: Vec3<f64>, counters: &mut Counters, mut each: impl FnMut(&Link) -> bool) {
+        let mut ray = self.begin(wi);
+        for number in 0..self.most {
+            let Some(Met { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { return };
+            ray = self.go_on(&vertex, direction, u_lobe);
+            let link =
+                Link { surface: vertex.point.surface, position: vertex.point.position, direction: ray.direction };
+            if !each(&link) {
+                return;
+            }
+        }
+    }
+
+    /// The last vertex of the chain that a ray of a lamp follows, and how many it has.
+    pub(super) fn of_lamp(&mut self, ray: &Ray<f64>, counters: &mut Counters) -> Option<(Vec3<f64>, u32)> {
+        let mut ray = Ray { time: self.vertex.point().time, ..*ray };
+        self.begin(ray.direction);
+        self.walker.stack = self.world.media_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
+        let mut last = None;
+        for count in 1..=self.most {
+            // Mostly there are two, which the chain meets in the other order.
+            let number = if count <= 2 { 2 - count } else { count - 1 };
+            let Some(Met { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { break };
+            last = Some((vertex.point.position, count));
+            ray = self.go_on(&vertex, direction, u_lobe);
+        }
+        last
+    }
+
+    /// What comes along a root's chain; `None` if nothing comes through.
+    pub(super) fn bring(&mut self, root: &Root, light: &Light, counters: &mut Counters) -> Option<Brought<N>> {
+        let f_cos = self.vertex.f_cos(&mut self.walker, self.world, root.wi);
+        if f_cos.is_zero() {
+            return None;
+        }
+        let mut ray = self.begin(root.wi);
+        let lambda_nm = self.walker.wavelengths.lambda_nm;
+        self.walker.beta *= f_cos;
+        let wo = self.vertex.wo();
+        self.walker.polarisation.follow(wo, root.wi, || self.vertex.mueller(&lambda_nm, root.wi));
+        let mut walked = 0.0;
+        for number in 0..self.most {
+            let Met { vertex, weight, direction, u_lobe } = self.next(&ray, number, counters)?;
+            self.walker.beta *= weight;
+            walked += (vertex.point.position - ray.origin).length();
+            if number + 1 < root.vertices {
+                ray = self.go_on(&vertex, direction, u_lobe);
+                continue;
+            }
+            let sample = light.sample(vertex.point.position, [0.0; 2], vertex.point.time)?;
+            let visible = self.walker.visibility(self.world, &vertex, &sample, counters)?;
+            self.go_on(&vertex, direction, u_lobe);
+            // A chain may be as long with this probability.
+            let continued = GOES_ON.powi(root.vertices.saturating_sub(SURE_VERTICES) as i32);
+            let scale = sample.scale * visible.share / (root.determinant.abs() * continued);
+            let walker = &self.walker;
+            let light = walker.beta * visible.transmittance.unwrap_or(Lanes::ONE) * (walker.lanes.weight() * scale);
+            if light.is_zero() {
+                return None;
+            }
+            let distance = sample.target.distance(vertex.point.position);
+            let spread = if distance.is_finite() { (walked + distance) / distance } else { 1.0 };
+            let of_chain = walker.beta.max_lane() / (self.start.beta * f_cos).max_lane();
+            let [s0, others @ ..] = walker.polarisation.of_unpolarised();
+            return Some(Brought {
+                light: light * s0,
+                stokes: P::FOLLOWED.then(|| others.map(|s| light * s)),
+                concentration: of_chain * spread * spread / root.determinant.abs(),
+            });
+        }
+        None
+    }
+
+    /// The walker back at the beginning, and the ray in a direction.
+    fn begin(&mut self, wi: Vec3<f64>) -> Ray<f64> {
+        let State { beta, lanes, polarisation, stack } = &self.start;
+        let walker = &mut self.walker;
+        (walker.beta, walker.lanes, walker.polarisation, walker.stack) = (*beta, *lanes, *polarisation, *stack);
+        walker.leave_ray(self.world);
+        if self.world.follows_media() {
+            walker.stack = self.vertex.media_toward(walker, wi);
+        }
+        self.vertex.point().spawn(wi)
+    }
+
+    /// The mirror or smooth interface that the ray meets next; `None` if it meets none.
+    fn next(&mut self, ray: &Ray<f64>, number: u32, counters: &mut Counters) -> Option<Met<'a, N>> {
+        let Self { world, walker, .. } = self;
+        let [mut u_lobe, u1, u2, mut u_mask] = self.numbers.set(u64::from(number));
+        let (mut weight, mut start) = (Lanes::ONE, ray.origin);
+        for _ in 0..MOST_VERTICES {
+            counters.rays += 1;
+            let mut met = world.intersect(ray, &mut walker.walk, &mut walker.stack, counters)?;
+            if world.participating.is_some() {
+                walker.stack.meet(met.surface.interior(), met.meets_front());
+                let way =
+                    Way { origin: start, direction: ray.direction, length: (met.point.position - start).length() };
+                weight *= walker.transmittance(world, &walker.stack, &way);
+            }
+            if world.masks {
+                let opacity = met.surface.opacity(world.geometry, &met.point, &met.hit);
+                if u_mask >= opacity {
+                    u_mask = (u_mask - opacity) / (1.0 - opacity);
+                    start = met.point.position;
+                    walker.walk.pass(&met, &mut walker.stack);
+                    continue;
+                }
+            }
+            met.prepare_scattering(world);
+            if let Some(reflectance) = walker.reflection_probability(world, &met) {
+                // The same choice from wherever the chain comes, so that Newton's method finds its root from afar: the first lobe or the last.
+                let (reflects, probability) = match reflectance < 1.0 {
+                    true if u_lobe < REFLECTS => (true, reflectance / REFLECTS),
+                    true => (false, (1.0 - reflectance) / (1.0 - REFLECTS)),
+                    false => (true, 1.0),
+                };
+                u_lobe = if reflects { 0.0 } else { 1.0_f64.next_down() };
+                weight *= probability;
+            }
+            let direction = match met.kind {
+                BsdfKind::Lambert(_) => return None,
+                BsdfKind::Mirror(_) | BsdfKind::Dielectric(_) => {
+                    walker.sample_direction(world, &met, [u_lobe, u1, u2], &mut ())?
+                }
+                BsdfKind::General => {
+                    let lambda_nm = &walker.wavelengths.lambda_nm;
+                    let sample = met.scattering().sample(lambda_nm, met.wo, [u_lobe, u1, u2])?;
+                    if sample.density != Density::Delta {
+                        return None;
+                    }
+                    Direction::General { sample, guiding: 1.0 }
+                }
+            };
+            return Some(Met { vertex: met, weight, direction, u_lobe });
+        }
+        None
+    }
+
+    /// Takes the step from a vertex of the chain.
+    fn go_on(&mut self, vertex: &SurfaceInteraction<'a>, direction: Direction<N>, u_lobe: f64) -> Ray<f64> {
+        let taken = self.walker.scatter(self.world, vertex, direction, u_lobe);
+        vertex.point.spawn(taken.wi)
+    }
+}

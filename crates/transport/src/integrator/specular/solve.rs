@@ -1,0 +1,311 @@
+//! Newton's method: the direction in which a chain points at a lamp.
+
+use super::chain::Chain;
+use crate::film::Counters;
+use crate::integrator::vertex::Vertex;
+use crate::integrator::wavelength_lanes::WavelengthModel;
+use crate::light::Source;
+use crate::polarisation::Polarisation;
+use etalon_geometry::SurfaceId;
+use etalon_optics::{Frame, Vec3};
+
+/// Times that a derivative is found by differences before the search is given up.
+const MOST_DERIVATIVES: u32 = 8;
+/// Times that a step is shortened to a quarter which leads away from the lamp.
+const MOST_HALVINGS: u32 = 3;
+/// The longest step, rad.
+const LONGEST_STEP: f64 = 1.0;
+/// A step of Newton's method so short that the next would be lost in rounding, rad: its square is.
+const LAST_STEP: f64 = 1e-7;
+/// Half of the difference between the directions by which derivatives are found, rad: what is neglected is its square, and rounding is divided
+/// by it. Where a chain meets other surfaces on both sides, the next are tried.
+const DIFFERENCES: [f64; 3] = [1e-5, 1e-6, 1e-7];
+/// How far two directions may be apart that are the same root, rad. Each is found within a tenth of this.
+const SAME: f64 = 1e-6;
+
+/// Where a search begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seed {
+    pub direction: Vec3<f64>,
+    pub chooses: Chooses,
+}
+
+/// How many vertices a chain is to have.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Chooses {
+    /// As a number in [0, 1) chooses, by how near to the lamp the chain points.
+    By(f64),
+    /// So many.
+    This(u32),
+}
+
+/// A direction in which a chain points at a lamp.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Root {
+    pub wi: Vec3<f64>,
+    /// Vertices of the chain.
+    pub vertices: u32,
+    /// det ∂r/∂ω.
+    pub determinant: f64,
+}
+
+/// A direction beside a root.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Approached {
+    wi: Vec3<f64>,
+    end: End,
+    vertices: u32,
+}
+
+impl Approached {
+    /// Whether it is beside this root.
+    pub(super) fn is_beside(&self, root: &Root) -> bool {
+        self.vertices == root.vertices && (self.wi - root.wi).length_squared() < SAME * SAME
+    }
+}
+
+/// Where a chain ends: its last vertex, and the surfaces of all, as one number.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    position: Vec3<f64>,
+    direction: Vec3<f64>,
+    surfaces: u64,
+}
+
+impl End {
+    /// What is right of the lamp's direction, with its length the sine of the angle between that and the chain's; beyond a right angle 2 less the
+    /// sine, so that it grows with the angle.
+    fn miss(&self, source: &Source) -> Vec3<f64> {
+        let toward = source.toward(self.position);
+        let cos = toward.dot(self.direction);
+        let across = toward - self.direction * cos;
+        if cos >= 0.0 {
+            return across;
+        }
+        let sin = across.length();
+        if sin > 0.0 { across * ((2.0 - sin) / sin) } else { Frame::from_normal(self.direction).s * 2.0 }
+    }
+
+    /// The miss along the tangents of a frame.
+    fn miss_along(&self, source: &Source, toward: &Frame<f64>) -> [f64; 2] {
+        let miss = self.miss(source);
+        [miss.dot(toward.s), miss.dot(toward.t)]
+    }
+}
+
+/// The step that the derivative r′ promises to lead to a root; `None` if it promises none.
+fn newton_step([[ss, st], [ts, tt]]: &Matrix, [r_s, r_t]: [f64; 2]) -> Option<[f64; 2]> {
+    let determinant = ss * tt - st * ts;
+    let step = [(st * r_t - tt * r_s) / determinant, (ts * r_s - ss * r_t) / determinant];
+    step.iter().all(|s| s.is_finite()).then_some(step)
+}
+
+/// Makes a derivative tell the change of r that a step has made (Broyden 1965, eq. 4.5).
+fn improve(derivative: &mut Matrix, step: [f64; 2], change: [f64; 2]) {
+    let squared = step[0] * step[0] + step[1] * step[1];
+    for (row, change) in derivative.iter_mut().zip(change) {
+        let wrong = change - (row[0] * step[0] + row[1] * step[1]);
+        (0..2).for_each(|axis| row[axis] += wrong * step[axis] / squared);
+    }
+}
+
+fn length([a, b]: [f64; 2]) -> f64 {
+    (a * a + b * b).sqrt()
+}
+
+/// A direction beside another one by two small angles.
+fn beside(frame: &Frame<f64>, [a, b]: [f64; 2]) -> Vec3<f64> {
+    let moved = frame.n + frame.s * a + frame.t * b;
+    moved / moved.length()
+}
+
+/// Folds a surface into the number of those before.
+fn with(surfaces: u64, surface: SurfaceId) -> u64 {
+    crate::sampler::mix(surfaces ^ (u64::from(surface.primitive.0) << 32 | u64::from(surface.instance)))
+}
+
+impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Chain<'_, 'a, V, M, P, N> {
+    /// The root to which a direction leads.
+    pub(super) fn solve(&mut self, seed: &Seed, source: &Source, counters: &mut Counters) -> Option<Root> {
+        let Approached { wi, end, vertices } = self.approach(seed, source, counters)?;
+        let (at, toward) = (Frame::from_normal(wi), Frame::from_normal(end.direction));
+        let derivative = self.derivative((&at, &toward), (vertices, source), end.surfaces, counters)?;
+        let step = newton_step(&derivative, end.miss_along(source, &toward))?;
+        let [[ss, st], [ts, tt]] = derivative;
+        Some(Root { wi: beside(&at, step), vertices, determinant: ss * tt - st * ts })
+    }
+
+    /// Comes so near to a root that one more step of Newton's method finds it.
+    ///
+    /// The derivative is found by differences once, then improved by each step (Broyden 1965, *A Class of Methods for Solving Nonlinear
+    /// Simultaneous Equations*), and found anew where a step does not halve the miss.
+    pub(super) fn approach(&mut self, seed: &Seed, source: &Source, counters: &mut Counters) -> Option<Approached> {
+        let vertices = self.vertices(seed, source, counters)?;
+        let mut wi = seed.direction;
+        let mut end = self.end(wi, vertices, counters)?;
+        for _ in 0..MOST_DERIVATIVES {
+            let (at, toward) = (Frame::from_normal(wi), Frame::from_normal(end.direction));
+            let mut miss = end.miss_along(source, &toward);
+            let mut derivative = self.rough_derivative((&at, &toward), (vertices, source), miss, counters)?;
+            let mut angles = [0.0; 2];
+            loop {
+                let step = newton_step(&derivative, miss)?;
+                if length(step) < LAST_STEP {
+                    return Some(Approached { wi, end, vertices });
+                }
+                let before = length(miss);
+                let mut part = (LONGEST_STEP / length(step)).min(1.0);
+                let mut halvings = 0;
+                let taken = loop {
+                    let taken = step.map(|s| s * part);
+                    let moved = beside(&at, [angles[0] + taken[0], angles[1] + taken[1]]);
+                    if let Some(there) = self.end(moved, vertices, counters)
+                        && there.miss(source).length() < before
+                    {
+                        (wi, end) = (moved, there);
+                        break taken;
+                    }
+                    halvings += 1;
+                    if halvings == MOST_HALVINGS {
+                        return None;
+                    }
+                    part *= 0.25;
+                };
+                let now = end.miss_along(source, &toward);
+                // Beyond half a right angle the frame of the last derivative says little.
+                if length(now) > 0.5 * before || end.direction.dot(toward.n) < 0.7 || halvings > 0 {
+                    break;
+                }
+                improve(&mut derivative, taken, [now[0] - miss[0], now[1] - miss[1]]);
+                miss = now;
+                angles = [angles[0] + taken[0], angles[1] + taken[1]];
+            }
+        }
+        None
+    }
+
+    /// ∂r/∂ω by one-sided differences; `miss` is that in the middle.
+    fn rough_derivative(
+        &mut self,
+        (at, toward): (&Frame<f64>, &Frame<f64>),
+        (vertices, source): (u32, &Source),
+        miss: [f64; 2],
+        counters: &mut Counters,
+    ) -> Option<Matrix> {
+        let h = DIFFERENCES[0];
+        let mut columns = [[0.0; 2]; 2];
+        for (axis, column) in columns.iter_mut().enumerate() {
+            let beside = |h: f64| beside(at, if axis == 0 { [h, 0.0] } else { [0.0, h] });
+            let (h, end) = match self.end(beside(h), vertices, counters) {
+                Some(end) => (h, end),
+                None => (-h, self.end(beside(-h), vertices, counters)?),
+            };
+            let [s, t] = end.miss_along(source, toward);
+            *column = [(s - miss[0]) / h, (t - miss[1]) / h];
+        }
+        let [[ss, ts], [st, tt]] = columns;
+        Some([[ss, st], [ts, tt]])
+    }
+
+    /// After how many vertices the chain of a seed is to point at the lamp. All have a chance, the more the less the chain misses the lamp there. A
+    /// chain that meets another vertex before the lamp is taken for farther away.
+    fn vertices(&mut self, seed: &Seed, source: &Source, counters: &mut Counters) -> Option<u32> {
+        /// What a chance is worth where the chain points at the lamp, and where it is blocked.
+        const NEAR: f64 = 1e-6;
+        const BLOCKED: f64 = 0.01;
+        let u = match seed.chooses {
+            Chooses::By(u) => u,
+            Chooses::This(vertices) => return Some(vertices),
+        };
+        let mut chances = Vec::new();
+        let mut before: Option<(Vec3<f64>, f64)> = None;
+        self.follow(seed.direction, counters, |link| {
+            if let (Some((position, distance)), Some(chance)) = (before, chances.last_mut())
+                && (link.position - position).length() < distance
+            {
+                *chance *= BLOCKED;
+            }
+            let end = End { position: link.position, direction: link.direction, surfaces: 0 };
+            before = Some((link.position, source.distance(link.position)));
+            chances.push(1.0 / (end.miss(source).length_squared() + NEAR));
+            true
+        });
+        let mut left = u * chances.iter().sum::<f64>();
+        let chosen = chances.iter().position(|chance| {
+            left -= chance;
+            left < 0.0
+        });
+        // Rounding may leave some.
+        chosen.or(chances.len().checked_sub(1)).map(|last| last as u32 + 1)
+    }
+
+    /// Where the chain in a direction is after some vertices.
+    fn end(&mut self, wi: Vec3<f64>, vertices: u32, counters: &mut Counters) -> Option<End> {
+        let (mut count, mut surfaces, mut end) = (0, 0, None);
+        self.follow(wi, counters, |link| {
+            count += 1;
+            surfaces = with(surfaces, link.surface);
+            if count == vertices {
+                end = Some(End { position: link.position, direction: link.direction, surfaces });
+            }
+            count < vertices
+        });
+        end
+    }
+
+    /// ∂r/∂ω by central differences. Where the chain meets other surfaces on the sides than it does in the middle, two differences must agree, as they
+    /// do where these surfaces are one.
+    fn derivative(
+        &mut self,
+        frames: (&Frame<f64>, &Frame<f64>),
+        of: (u32, &Source),
+        surfaces: u64,
+        counters: &mut Counters,
+    ) -> Option<Matrix> {
+        let mut before: Option<Matrix> = None;
+        for h in DIFFERENCES {
+            let Some((derivative, same)) = self.difference(h, frames, of, surfaces, counters) else { continue };
+            if same || before.is_some_and(|before| agree(&before, &derivative)) {
+                return Some(derivative);
+            }
+            before = Some(derivative);
+        }
+        None
+    }
+
+    /// The changes along `toward.s` and `toward.t` with each of the two angles about `at`, over these, and whether the chain meets `surfaces` on all sides.
+    fn difference(
+        &mut self,
+        h: f64,
+        (at, toward): (&Frame<f64>, &Frame<f64>),
+        (vertices, source): (u32, &Source),
+        surfaces: u64,
+        counters: &mut Counters,
+    ) -> Option<(Matrix, bool)> {
+        let (mut columns, mut same) = ([[0.0; 2]; 2], true);
+        for (axis, column) in columns.iter_mut().enumerate() {
+            let mut sides = [[0.0; 2]; 2];
+            for (side, angle) in sides.iter_mut().zip([h, -h]) {
+                let angles = if axis == 0 { [angle, 0.0] } else { [0.0, angle] };
+                let end = self.end(beside(at, angles), vertices, counters)?;
+                same &= end.surfaces == surfaces;
+                *side = end.miss_along(source, toward);
+            }
+            *column = [0, 1].map(|row| (sides[0][row] - sides[1][row]) / (2.0 * h));
+        }
+        let [[ss, ts], [st, tt]] = columns;
+        Some(([[ss, st], [ts, tt]], same))
+    }
+}
+
+/// By rows.
+type Matrix = [[f64; 2]; 2];
+
+/// Whether two derivatives are the same but for what is neglected.
+fn agree(a: &Matrix, b: &Matrix) -> bool {
+    /// More than the error of any difference, and less than what a kink makes of it.
+    const APART: f64 = 1e-4;
+    let pairs = || a.iter().flatten().zip(b.iter().flatten());
+    let apart = pairs().map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    apart <= APART * pairs().map(|(a, b)| a.abs().max(b.abs())).fold(0.0, f64::max)
+}
