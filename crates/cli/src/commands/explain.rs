@@ -102,19 +102,19 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     let plan = prepared.plan();
     let mut lines: Vec<String> = plan.effects.iter().map(|effect| line(effect, costs)).collect();
     lines.push(String::new());
-    lines.extend(how(prepared).into_iter().map(|(what, value)| format!("{what:<18} {value}")));
+    lines.extend(how(prepared).into_iter().map(|(what, value)| format!("{what:<20} {value}")));
     if let (share, bodies @ 1..) = prepared.guided_targets() {
         let share = format!("{:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
         let objects = if bodies == 1 { "object that mirrors or refracts" } else { "objects that mirror or refract" };
-        lines.push(format!("{:<18} {share} {bodies} {objects}: a trial found less noise", "caustics"));
+        lines.push(format!("{:<20} {share} {bodies} {objects}: a trial found less noise", "caustics"));
     }
     if let (share, images @ 1..) = prepared.specular_light_images() {
         let share = format!("up to {:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
         let images_word = if images == 1 { "image of a lamp in a ball" } else { "images of lamps in balls" };
-        lines.push(format!("{:<18} {share} {images} {images_word}: a trial found less noise", "caustics"));
+        lines.push(format!("{:<20} {share} {images} {images_word}: a trial found less noise", "caustics"));
     }
     for lost in &plan.approximations {
-        lines.push(format!("{:<18} without {lost}", "approximation"));
+        lines.push(format!("{:<20} without {lost}", "approximation"));
     }
     lines.join("\n")
 }
@@ -131,7 +131,7 @@ fn line(effect: &Effect, costs: &[Cost]) -> String {
         let [low, high] = cost.quartiles.map(percent);
         format!(" (would cost {}, quartiles {low} to {high})", percent(cost.ratio))
     });
-    format!("{:<18} {state:<4} {study}{}{cost}", effect.name, effect.because)
+    format!("{:<20} {state:<4} {study}{}{cost}", effect.name, effect.because)
 }
 
 fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {

@@ -118,7 +118,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     }
     let returned = returned_by_fluorescence(scene, &plan);
     let worth = |spectrum: &PathSpectrum| weighted_sum(spectrum, range_nm, |nm| returned.eval(nm));
-    let lights = LightTable::weighed(emitters, radius, scene.integrator.light_selection, &worth);
+    let lights = LightTable::weighed(emitters, radius, scene.integrator.light_selection, worth);
     Environment::number(&mut environments, lights.lights());
     let mut light_of: Vec<(SurfaceId, u32)> = lights
         .lights()
@@ -193,7 +193,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     };
     let specular_connections = plan.runs(EffectName::SpecularConnections).then(|| {
         SpecularConnections::new(&surfaces, &geometry, &lights, |deltas| {
-            LightTable::weighed(deltas, radius, scene.integrator.light_selection, &worth)
+            LightTable::weighed(deltas, radius, scene.integrator.light_selection, worth)
         })
     });
     let wavelengths = match &scene.film.bands {
