@@ -14,12 +14,14 @@
 //! The share is taken from the light that comes in otherwise. Whether that pays is a matter of the scene, and is tried before the
 //! picture, with random numbers of which it uses none ([`tune`](crate::render::tune)).
 
+mod connections;
 mod hull;
 mod mixture;
 mod specular_image;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use connections::{FROM_LAMP, SeedNumbers, SpecularConnections};
 pub(crate) use hull::Hull;
 pub(crate) use mixture::{
     Aimed, Mixture, VisibleImages, density_of, is_within, place_within, share_of, specular_image_share,

@@ -29,7 +29,7 @@ pub mod replay;
 pub(crate) mod reuse;
 mod scalar;
 mod scatter;
-pub(crate) mod specular;
+mod specular;
 pub(crate) mod tracer;
 pub(crate) mod trial;
 mod vertex;

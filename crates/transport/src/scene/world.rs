@@ -1,7 +1,6 @@
 //! The scene as paths see it.
 
-use crate::guiding::GuidedTargets;
-use crate::integrator::specular::SpecularConnections;
+use crate::guiding::{GuidedTargets, SpecularConnections};
 use crate::light::{Environment, EnvironmentLight, LightTable};
 use crate::media::{Media, Participating};
 use crate::scene::shading_tables::ShadingTables;

@@ -57,7 +57,7 @@ struct State<'a, M, P, const N: usize> {
 }
 
 /// A mirror or smooth interface that the walk has come to, before it goes on.
-struct Met<'a, const N: usize> {
+struct ChainVertex<'a, const N: usize> {
     vertex: SurfaceInteraction<'a>,
     /// What media have let through up to there, times the probability of its lobe over that with which it was chosen.
     weight: Lanes<f64, N>,
@@ -104,7 +104,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
     pub(super) fn follow(&mut self, wi: Vec3<f64>, counters: &mut Counters, mut each: impl FnMut(&Link) -> bool) {
         let mut ray = self.begin(wi);
         for number in 0..self.most {
-            let Some(Met { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { return };
+            let Some(ChainVertex { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { return };
             ray = self.go_on(&vertex, direction, u_lobe);
             let link =
                 Link { surface: vertex.point.surface, position: vertex.point.position, direction: ray.direction };
@@ -123,7 +123,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         for count in 1..=self.most {
             // Mostly there are two, which the chain meets in the other order.
             let number = if count <= 2 { 2 - count } else { count - 1 };
-            let Some(Met { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { break };
+            let Some(ChainVertex { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { break };
             last = Some((vertex.point.position, count));
             ray = self.go_on(&vertex, direction, u_lobe);
         }
@@ -143,7 +143,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         self.walker.polarisation.follow(wo, root.wi, || self.vertex.mueller(&lambda_nm, root.wi));
         let mut walked = 0.0;
         for number in 0..self.most {
-            let Met { vertex, weight, direction, u_lobe } = self.next(&ray, number, counters)?;
+            let ChainVertex { vertex, weight, direction, u_lobe } = self.next(&ray, number, counters)?;
             self.walker.beta *= weight;
             walked += (vertex.point.position - ray.origin).length();
             if number + 1 < root.vertices {
@@ -187,7 +187,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
     }
 
     /// The mirror or smooth interface that the ray meets next; `None` if it meets none.
-    fn next(&mut self, ray: &Ray<f64>, number: u32, counters: &mut Counters) -> Option<Met<'a, N>> {
+    fn next(&mut self, ray: &Ray<f64>, number: u32, counters: &mut Counters) -> Option<ChainVertex<'a, N>> {
         let Self { world, walker, .. } = self;
         let [mut u_lobe, u1, u2, mut u_mask] = self.numbers.set(u64::from(number));
         let (mut weight, mut start) = (Lanes::ONE, ray.origin);
@@ -234,7 +234,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
                     Direction::General { sample, guiding: 1.0 }
                 }
             };
-            return Some(Met { vertex: met, weight, direction, u_lobe });
+            return Some(ChainVertex { vertex: met, weight, direction, u_lobe });
         }
         None
     }

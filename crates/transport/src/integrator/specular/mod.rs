@@ -24,17 +24,13 @@ mod solve;
 use super::Path;
 use super::vertex::Vertex;
 use crate::film::Counters;
-use crate::guiding::{GuidedTarget, specular_bodies};
+use crate::guiding::{FROM_LAMP, SeedNumbers, SpecularConnections};
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::light::{Light, LightTable, Source};
 use crate::polarisation::Polarisation;
 use crate::sampler::{NumberStream, Sampler};
 use crate::scene::world::World;
-use crate::surface::Surfaces;
 use chain::Chain;
-use etalon_geometry::{Geometry, Ray};
-use etalon_optics::{Real, Vec3};
 use solve::{Chooses, Seed};
 
 /// Most directions that are drawn to learn how probable a root is.
@@ -49,91 +45,10 @@ const SEED_SETS: u64 = 1 << 41;
 /// The first of those with further numbers of the same.
 const FURTHER_SEED_SETS: u64 = 1 << 42;
 
-/// The lamps and surfaces of a scene between which light goes by specular chains.
-#[derive(Clone, Debug)]
-pub(crate) struct SpecularConnections {
-    /// Lamps without area, and their numbers among all.
-    lights: LightTable,
-    numbers: Vec<u32>,
-    /// Mirrors and bodies of glass, toward which directions are drawn.
-    bodies: Vec<GuidedTarget>,
-    /// A distance from any of them beyond which there is nothing.
-    reach: f64,
-}
-
-impl SpecularConnections {
-    /// Those of a scene; `table` makes a table of some lights. `None` if it has no lamp without area.
-    pub(crate) fn new(
-        surfaces: &Surfaces,
-        geometry: &Geometry,
-        lights: &LightTable,
-        table: impl FnOnce(Vec<Light>) -> LightTable,
-    ) -> Option<Self> {
-        let deltas = lights.lights().iter().enumerate().filter(|(_, light)| light.source().is_some());
-        let (numbers, deltas): (Vec<u32>, Vec<Light>) = deltas.map(|(i, light)| (i as u32, light.clone())).unzip();
-        if deltas.is_empty() {
-            return None;
-        }
-        let bodies = specular_bodies(surfaces, geometry, |of| surfaces.properties[of.material].has_delta());
-        let bodies = bodies.into_iter().map(|(body, _)| body).collect();
-        let reach = geometry.bounds().map_or(1.0, |bounds| bounds.extent().length());
-        Some(Self { lights: table(deltas), numbers, bodies, reach })
-    }
-
-    /// Where the search may begin from a point: straight toward the lamp, toward a body, or anywhere.
-    fn seed(&self, from: Vec3<f64>, source: &Source, u: &SeedNumbers) -> Seed {
-        let direction = match (u.kind, self.body(u)) {
-            (..STRAIGHT, _) => source.toward(from),
-            (..TOWARD_BODIES, Some(body)) if body.can_be_aimed_at(from) => body.aim(from, u.point),
-            _ => anywhere(u.point),
-        };
-        Seed { direction, chooses: Chooses::By(u.vertices) }
-    }
-
-    /// A ray of a lamp that may come to a point by way of a mirror or glass.
-    fn lamp_ray(&self, from: Vec3<f64>, light: &Light, source: &Source, u: &SeedNumbers) -> Option<Ray<f64>> {
-        if let Light::Beam(beam) = light {
-            return Some(beam.ray(u.point));
-        }
-        let through = self.body(u)?.place_near(from, [u.point[0], u.point[1], u.vertices]);
-        let (origin, direction) = match source {
-            Source::Point(point) => (*point, through - *point),
-            Source::Direction(toward) => (through + *toward * self.reach, -*toward),
-        };
-        Some(Ray::free(origin, direction / direction.length()))
-    }
-
-    fn body(&self, u: &SeedNumbers) -> Option<&GuidedTarget> {
-        self.bodies.get((u.body * self.bodies.len() as f64) as usize)
-    }
-}
-
-/// Shares of the seeds: those up to the first number are where a ray of the lamp leaves its last mirror or interface, those up to the next straight
-/// toward the lamp, and toward bodies; the rest is anywhere.
-const FROM_LAMP: f64 = 0.4;
-const STRAIGHT: f64 = 0.6;
-const TOWARD_BODIES: f64 = 0.9;
-
-/// A direction, all alike.
-fn anywhere([u1, u2]: [f64; 2]) -> Vec3<f64> {
-    let (sin, cos) = f64::sin_cos_turns(u2);
-    let z = 1.0 - 2.0 * u1;
-    let across = (1.0 - z * z).max(0.0).sqrt();
-    Vec3::new(across * cos, across * sin, z)
-}
-
 /// The numbers by which a connection is made.
 struct Numbers {
     first: [f64; 4],
     further: NumberStream,
-}
-
-/// The numbers by which a search begins.
-struct SeedNumbers {
-    kind: f64,
-    body: f64,
-    point: [f64; 2],
-    vertices: f64,
 }
 
 impl Numbers {
@@ -193,7 +108,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let seed = |trial: u32, chain: &mut Chain<'_, 'a, _, M, P, N>, counters: &mut Counters| {
             let u = numbers.of_seed(trial);
             if u.kind >= FROM_LAMP {
-                return Some(connections.seed(from, &source, &u));
+                let direction = connections.direction(from, &source, &u);
+                return Some(Seed { direction, chooses: Chooses::By(u.vertices) });
             }
             let (last, vertices) = chain.of_lamp(&connections.lamp_ray(from, light, &source, &u)?, counters)?;
             let way = last - from;
