@@ -137,7 +137,7 @@ fn panes() -> Vec<Truth> {
             .claims(Claim::AveragesPolarisation)
             .sees(0.01),
         Truth::new(
-            "lamp-above-a-plate-polarised",
+            "lamp-above-a-plate-in-polarised-light",
             &Plate::scene(),
             shown(polarised),
             "the mean of that for s and for p",
