@@ -294,3 +294,77 @@ proptest! {
         }
     }
 }
+
+/// Mean Y of a picture, and its standard error by the scatter of replicates, pixels taken for independent.
+fn mean_y(scene: &Value) -> (f64, f64) {
+    let prepared = &prepared(&parse(scene))[1];
+    let film = prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap();
+    let pixels = film.pixels().count() as f64;
+    let mean = film.pixels().map(|pixel| pixel.xyz()[1]).sum::<f64>() / pixels;
+    let variance = film.pixels().map(|pixel| pixel.variance(|xyz| xyz).unwrap().0[1]).sum::<f64>();
+    (mean, variance.sqrt() / pixels)
+}
+
+/// A chain may begin behind the surface that a path has met. What is there absorbs, whether the solid has a priority or not. |z| < 5 fails by
+/// chance in 6e-7 of all runs. Without absorption on the chain there would be six times as much light.
+#[test]
+fn a_chain_through_a_rough_surface_is_in_the_medium_behind_it() {
+    let scene = |priority: bool| {
+        let mut glass =
+            json!({"type": "dielectric", "interior": 1.3, "alpha": 0.4, "medium": {"absorption_per_m": 1.5}});
+        if priority {
+            glass["priority"] = 1.into();
+        }
+        json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0, 3, 0], "look_at_m": [0, 0, 0], "up": [0, 0, 1], "height_m": 0.5},
+            "film": {"width": 16, "height": 16},
+            "materials": {"glass": glass, "mirror": {"type": "mirror"}},
+            "objects": [
+                {"name": "block", "material": "glass", "shape": {"type": "box", "min_m": [-2, -1, -2], "max_m": [2, 1, 2]}},
+                {"name": "mirror", "material": "mirror",
+                    "shape": {"type": "disk", "center_m": [0, 0.3, 0], "normal": [0, 1, 0], "radius_m": 1}}
+            ],
+            "lights": [{"type": "spot", "name": "lamp", "position_m": [0.1, 0.8, 0], "direction": [0, -1, 0], "half_angle_deg": 50, "intensity": 1}],
+            "integrator": {"spp": 256, "max_depth": 3}
+        })
+    };
+    let [(plain, error), (nested, nested_error)] = [false, true].map(|priority| mean_y(&scene(priority)));
+    assert!(plain > 20.0 * error, "{plain} ± {error}");
+    assert!((plain - nested).abs() < 5.0 * error.hypot(nested_error), "{plain} ± {error}, {nested} ± {nested_error}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// A flat mirror shows a lamp behind itself. |z| < 5 fails by chance in 6e-7 of the cases; that the patch is no point makes 0.2 %.
+    #[test]
+    fn a_mirror_shows_the_image_of_a_lamp(
+        tilt in [-0.4..0.4_f64, -0.4..0.4],
+        height in 1.5..3.0_f64,
+        lamp in [-0.8..0.8_f64, 0.6..1.0, -0.8..0.8],
+        reflectance in 0.3..1.0_f64,
+    ) {
+        let length = (1.0 + tilt[0] * tilt[0] + tilt[1] * tilt[1]).sqrt();
+        // Downward, toward the patch and the lamp.
+        let normal = [tilt[0] / length, -1.0 / length, tilt[1] / length];
+        let depth = (0..3).map(|k| (lamp[k] - [0.0, height, 0.0][k]) * normal[k]).sum::<f64>();
+        prop_assume!(depth > 0.05);
+        let image = [0, 1, 2].map(|k| lamp[k] - 2.0 * depth * normal[k]);
+        let shown = |at: [f64; 3]| at[1] / at.map(|c| c * c).iter().sum::<f64>().powf(1.5);
+        let expected = 0.5 / std::f64::consts::PI * (shown(lamp) + reflectance * shown(image));
+        let (mean, error) = mean_y(&json!({
+            "etalon": 1,
+            "camera": {"type": "orthographic", "position_m": [0.05, 0.3, 0], "look_at_m": [0, 0, 0], "up": [0, 0, 1], "height_m": 0.02},
+            "film": {"width": 8, "height": 8},
+            "materials": {"grey": {"type": "lambert", "reflectance": 0.5}, "mirror": {"type": "mirror", "reflectance": reflectance}},
+            "objects": [
+                {"material": "grey", "shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 1, 0], "radius_m": 0.1}},
+                {"material": "mirror", "shape": {"type": "disk", "center_m": [0, height, 0], "normal": normal, "radius_m": 60}}
+            ],
+            "lights": [{"type": "point", "position_m": lamp, "intensity": 1}],
+            "integrator": {"spp": 256, "max_depth": 3}
+        }));
+        prop_assert!((mean - expected).abs() < 5.0 * error + 2e-3 * expected, "{mean} ± {error}, not {expected}");
+    }
+}

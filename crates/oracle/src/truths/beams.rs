@@ -6,15 +6,11 @@ use serde_json::json;
 
 use super::{
     Truth,
-    scene::{PLATE_ALBEDO, Scene},
+    scene::{Scene, shown},
 };
 use crate::vector::{Vec3, cross, dot, normalize};
 
 const POWER: f64 = 3.0;
-
-fn shown(irradiance: f64) -> f64 {
-    PLATE_ALBEDO * irradiance / PI
-}
 
 /// A beam whose aperture, of the radius `radius_m`, is 2 m before the plate along the axis; the axis misses the plate by `aside_m`.
 #[derive(Clone, Copy)]

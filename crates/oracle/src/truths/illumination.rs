@@ -8,16 +8,11 @@ use super::{
         disk_by_quadrature, disk_irradiance, lambert_polygon, parallelogram_by_quadrature, rectangle_corner_factor,
         signed_polygon, sphere_by_quadrature, sphere_irradiance, triangle_by_quadrature,
     },
-    scene::{PLATE_ALBEDO, Scene, black, block, disk, level_square, mesh, mirror, parallelogram, sphere},
+    scene::{PLATE_ALBEDO, Scene, black, block, disk, level_square, mesh, mirror, parallelogram, shown, sphere},
 };
 use crate::vector::Vec3;
 
 const UP: Vec3 = [0.0, 0.0, 1.0];
-
-/// What the plate shows under an irradiance.
-fn shown(irradiance: f64) -> f64 {
-    PLATE_ALBEDO * irradiance / PI
-}
 
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = spheres();

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::{
     Claim, Truth,
-    scene::{PLATE_ALBEDO, Scene, black, disk, parallelogram, sphere},
+    scene::{Scene, black, disk, parallelogram, shown, sphere},
 };
 use crate::quadrature::{interval, rectangle};
 
@@ -150,11 +150,6 @@ fn circling_camera() -> Truth {
         })
         .or_else("as the shutter opens", share * sine)
         .or_else("in the middle of the time", 0.0)
-}
-
-/// What a plate shows under this irradiance.
-fn shown(irradiance: f64) -> f64 {
-    PLATE_ALBEDO * irradiance / PI
 }
 
 fn receding_sphere() -> Truth {

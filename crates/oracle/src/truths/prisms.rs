@@ -12,8 +12,8 @@ use crate::{
 };
 
 /// Sellmeier's coefficients of N-BK7, λ in µm (Schott's data sheet).
-const BK7_B: [f64; 3] = [1.039_612_12, 0.231_792_344, 1.010_469_45];
-const BK7_C: [f64; 3] = [0.006_000_698_67, 0.020_017_914_4, 103.560_653];
+pub(super) const BK7_B: [f64; 3] = [1.039_612_12, 0.231_792_344, 1.010_469_45];
+pub(super) const BK7_C: [f64; 3] = [0.006_000_698_67, 0.020_017_914_4, 103.560_653];
 
 pub(super) fn bk7(wavelength_nm: f64) -> f64 {
     let square = (wavelength_nm * 1e-3).powi(2);
@@ -21,7 +21,7 @@ pub(super) fn bk7(wavelength_nm: f64) -> f64 {
 }
 
 /// Half the least deviation of a prism of 60°: asin(n·sin 30°) − 30°.
-fn half_deviation(n: f64) -> f64 {
+pub(super) fn half_deviation(n: f64) -> f64 {
     (0.5 * n).asin() - 30.0_f64.to_radians()
 }
 
@@ -65,18 +65,20 @@ fn share(design_nm: f64, index: f64) -> f64 {
     (0.5 - DISTANCE_M * error.tan() / BEAM_M).clamp(0.0, 1.0)
 }
 
+/// The direction after a face whose normal points against `d`, where `eta` = n_transmitted / n_incident: Snell's law in vector form.
+pub(super) fn refracted(d: Vec3, normal: Vec3, eta: f64) -> Vec3 {
+    let c = -dot(d, normal);
+    let along = c / eta - (1.0 - (1.0 - c * c) / (eta * eta)).sqrt();
+    normalize(add(scale(1.0 / eta, d), scale(along, normal)))
+}
+
 /// The deviation by Snell's law in vector form at both faces.
 fn traced_deviation(n: f64) -> f64 {
-    let refract = |d: Vec3, normal: Vec3, eta: f64| {
-        let c = -dot(d, normal);
-        let along = c / eta - (1.0 - (1.0 - c * c) / (eta * eta)).sqrt();
-        normalize(add(scale(1.0 / eta, d), scale(along, normal)))
-    };
     let half = half_deviation(n);
     let d = [half.cos(), half.sin(), 0.0];
     let (s, c) = 30.0_f64.to_radians().sin_cos();
-    let inside = refract(d, [-c, s, 0.0], n);
-    let out = refract(inside, [-c, -s, 0.0], 1.0 / n);
+    let inside = refracted(d, [-c, s, 0.0], n);
+    let out = refracted(inside, [-c, -s, 0.0], 1.0 / n);
     dot(d, out).acos()
 }
 

@@ -30,6 +30,11 @@ pub(super) struct Scene {
 pub(super) const PLATE_ALBEDO: f64 = 0.5;
 const PLATE_HALF_SIDE_M: f64 = 5e-4;
 
+/// What the plate shows under an irradiance.
+pub(super) fn shown(irradiance: f64) -> f64 {
+    PLATE_ALBEDO * irradiance / std::f64::consts::PI
+}
+
 impl Scene {
     fn new(camera: Value) -> Self {
         Self {

@@ -6,16 +6,12 @@ use serde_json::{Value, json};
 
 use super::{
     Truth, lambert_polygon,
-    scene::{PLATE_ALBEDO, Scene, black, lambert, level_square, sphere},
+    scene::{Scene, black, lambert, level_square, shown, sphere},
     sphere_irradiance,
 };
 use crate::vector::Vec3;
 
 const UP: Vec3 = [0.0, 0.0, 1.0];
-
-fn shown(irradiance: f64) -> f64 {
-    PLATE_ALBEDO * irradiance / PI
-}
 
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = spots();

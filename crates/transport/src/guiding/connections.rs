@@ -6,21 +6,22 @@ use crate::surface::Surfaces;
 use etalon_geometry::{Geometry, Ray};
 use etalon_optics::{Real, Vec3};
 
-/// Shares of the seeds: those up to the first number are where a ray of the lamp leaves its last mirror or interface, those up to the next straight
-/// toward the lamp, and toward bodies; the rest is anywhere.
-pub(crate) const FROM_LAMP: f64 = 0.4;
+// The kinds of searches, as a number in [0, 1) chooses. Below the first bound, a search begins toward the place where a ray of the lamp leaves its
+// last mirror or interface; below the second straight toward the lamp; below the third toward a body; otherwise in any direction.
+const FROM_LAMP: f64 = 0.4;
 const STRAIGHT: f64 = 0.6;
 const TOWARD_BODIES: f64 = 0.9;
 
 /// The numbers by which a search begins.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeedNumbers {
-    /// Which kind of seed.
+    /// Chooses the kind of search.
     pub kind: f64,
+    /// Chooses a mirror or a body of glass.
     pub body: f64,
-    /// A point of what is aimed at.
+    /// Choose a point of it.
     pub point: [f64; 2],
-    /// How many vertices the chain is to have; of a seed from the lamp one more number of a point.
+    /// Chooses how many vertices the chain is to have; of a ray of the lamp, the third coordinate of the point.
     pub vertices: f64,
 }
 
@@ -64,7 +65,7 @@ impl SpecularConnections {
         }
     }
 
-    /// A ray of a lamp that may come to a point by way of a mirror or glass.
+    /// A ray of a lamp that may come to a point by way of a mirror or glass, if a search is to begin by one.
     pub(crate) fn lamp_ray(
         &self,
         from: Vec3<f64>,
@@ -72,6 +73,9 @@ impl SpecularConnections {
         source: &Source,
         u: &SeedNumbers,
     ) -> Option<Ray<f64>> {
+        if u.kind >= FROM_LAMP {
+            return None;
+        }
         if let Light::Beam(beam) = light {
             return Some(beam.ray(u.point));
         }
@@ -88,7 +92,7 @@ impl SpecularConnections {
     }
 }
 
-/// A direction, all alike.
+/// A direction, of which all are equally likely.
 fn anywhere([u1, u2]: [f64; 2]) -> Vec3<f64> {
     let (sin, cos) = f64::sin_cos_turns(u2);
     let z = 1.0 - 2.0 * u1;

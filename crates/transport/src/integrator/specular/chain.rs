@@ -28,8 +28,8 @@ pub(super) struct Chain<'c, 'a, V, M, P, const N: usize> {
     world: &'c World<'a>,
     /// Where it begins.
     vertex: &'c V,
-    /// What the path has there.
-    start: State<'a, M, P, N>,
+    /// The path, which is there.
+    path: &'c Path<'a, M, P, N>,
     /// Walks along the chain.
     walker: Path<'a, M, P, N>,
     /// The numbers by which its vertices choose among their lobes.
@@ -46,14 +46,6 @@ pub(super) struct Brought<const N: usize> {
     pub stokes: Option<[Lanes<f64, N>; 3]>,
     /// How strong it is where the chain begins, over what the lamp would bring from as far away without it.
     pub concentration: f64,
-}
-
-/// What a path has before the chain.
-struct State<'a, M, P, const N: usize> {
-    beta: Lanes<f64, N>,
-    lanes: M,
-    polarisation: P,
-    stack: MediumStack<'a>,
 }
 
 /// A mirror or smooth interface that the walk has come to, before it goes on.
@@ -78,7 +70,7 @@ pub(super) struct Link {
 impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Chain<'c, 'a, V, M, P, N> {
     /// That of a path at a vertex. `u_length` in [0, 1) says how many vertices it may have.
     pub(super) fn new(
-        path: &Path<'a, M, P, N>,
+        path: &'c Path<'a, M, P, N>,
         world: &'c World<'a>,
         vertex: &'c V,
         numbers: NumberStream,
@@ -88,7 +80,6 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         walker.wavelengths = path.wavelengths;
         walker.vertex = path.vertex;
         walker.spectra = path.spectra.clone();
-        let start = State { beta: path.beta, lanes: path.lanes, polarisation: path.polarisation, stack: path.stack };
         let mut most = SURE_VERTICES;
         let mut left = u_length;
         while left < GOES_ON && most < MOST_VERTICES {
@@ -97,7 +88,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         }
         // Edges of the path: to this vertex, to each of the chain, and to the lamp.
         let most = most.min(world.max_depth.saturating_sub(path.vertex + 2));
-        Self { world, vertex, start, walker, numbers, most }
+        Self { world, vertex, path, walker, numbers, most }
     }
 
     /// Follows the chain that begins in a direction. `each` hears of its vertices, and says whether to go on.
@@ -163,7 +154,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             }
             let distance = sample.target.distance(vertex.point.position);
             let spread = if distance.is_finite() { (walked + distance) / distance } else { 1.0 };
-            let of_chain = walker.beta.max_lane() / (self.start.beta * f_cos).max_lane();
+            let of_chain = walker.beta.max_lane() / (self.path.beta * f_cos).max_lane();
             let [s0, others @ ..] = walker.polarisation.of_unpolarised();
             return Some(Brought {
                 light: light * s0,
@@ -176,12 +167,12 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
 
     /// The walker back at the beginning, and the ray in a direction.
     fn begin(&mut self, wi: Vec3<f64>) -> Ray<f64> {
-        let State { beta, lanes, polarisation, stack } = &self.start;
-        let walker = &mut self.walker;
-        (walker.beta, walker.lanes, walker.polarisation, walker.stack) = (*beta, *lanes, *polarisation, *stack);
+        let (walker, path) = (&mut self.walker, self.path);
+        (walker.beta, walker.lanes, walker.polarisation) = (path.beta, path.lanes, path.polarisation);
         walker.leave_ray(self.world);
         if self.world.follows_media() {
-            walker.stack = self.vertex.media_toward(walker, wi);
+            // The path knows what is behind the surface that it has met.
+            walker.stack = self.vertex.media_toward(path, wi);
         }
         self.vertex.point().spawn(wi)
     }

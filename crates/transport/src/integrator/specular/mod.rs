@@ -24,7 +24,7 @@ mod solve;
 use super::Path;
 use super::vertex::Vertex;
 use crate::film::Counters;
-use crate::guiding::{FROM_LAMP, SeedNumbers, SpecularConnections};
+use crate::guiding::{SeedNumbers, SpecularConnections};
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
@@ -107,11 +107,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let mut chain = Chain::new(self, world, vertex, numbers.further, u_length);
         let seed = |trial: u32, chain: &mut Chain<'_, 'a, _, M, P, N>, counters: &mut Counters| {
             let u = numbers.of_seed(trial);
-            if u.kind >= FROM_LAMP {
+            let Some(lamp_ray) = connections.lamp_ray(from, light, &source, &u) else {
                 let direction = connections.direction(from, &source, &u);
                 return Some(Seed { direction, chooses: Chooses::By(u.vertices) });
-            }
-            let (last, vertices) = chain.of_lamp(&connections.lamp_ray(from, light, &source, &u)?, counters)?;
+            };
+            let (last, vertices) = chain.of_lamp(&lamp_ray, counters)?;
             let way = last - from;
             Some(Seed { direction: way / way.length(), chooses: Chooses::This(vertices) })
         };

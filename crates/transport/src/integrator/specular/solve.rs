@@ -11,8 +11,8 @@ use etalon_optics::{Frame, Vec3};
 
 /// Times that a derivative is found by differences before the search is given up.
 const MOST_DERIVATIVES: u32 = 8;
-/// Times that a step is shortened to a quarter which leads away from the lamp.
-const MOST_HALVINGS: u32 = 3;
+/// Times that a step is tried which leads away from the lamp: whole, then a quarter as long each time.
+const MOST_TRIES: u32 = 3;
 /// The longest step, rad.
 const LONGEST_STEP: f64 = 1.0;
 /// A step of Newton's method so short that the next would be lost in rounding, rad: its square is.
@@ -20,7 +20,7 @@ const LAST_STEP: f64 = 1e-7;
 /// Half of the difference between the directions by which derivatives are found, rad: what is neglected is its square, and rounding is divided
 /// by it. Where a chain meets other surfaces on both sides, the next are tried.
 const DIFFERENCES: [f64; 3] = [1e-5, 1e-6, 1e-7];
-/// How far two directions may be apart that are the same root, rad. Each is found within a tenth of this.
+/// A direction that is nearer to a root than this, rad, has led to it. Two roots are farther apart.
 const SAME: f64 = 1e-6;
 
 /// Where a search begins.
@@ -73,8 +73,8 @@ struct End {
 }
 
 impl End {
-    /// What is right of the lamp's direction, with its length the sine of the angle between that and the chain's; beyond a right angle 2 less the
-    /// sine, so that it grows with the angle.
+    /// The part of the lamp's direction that is at right angles to the chain's: its length is the sine of the angle between them. Beyond a right
+    /// angle it is 2 less the sine, so that it grows with the angle.
     fn miss(&self, source: &Source) -> Vec3<f64> {
         let toward = source.toward(self.position);
         let cos = toward.dot(self.direction);
@@ -93,14 +93,14 @@ impl End {
     }
 }
 
-/// The step that the derivative r′ promises to lead to a root; `None` if it promises none.
+/// The step to the root of a linear function with this derivative and this miss; `None` if it has none.
 fn newton_step([[ss, st], [ts, tt]]: &Matrix, [r_s, r_t]: [f64; 2]) -> Option<[f64; 2]> {
     let determinant = ss * tt - st * ts;
     let step = [(st * r_t - tt * r_s) / determinant, (ts * r_s - ss * r_t) / determinant];
     step.iter().all(|s| s.is_finite()).then_some(step)
 }
 
-/// Makes a derivative tell the change of r that a step has made (Broyden 1965, eq. 4.5).
+/// Changes a derivative as little as possible so that it gives the change of r that a step has made (Broyden 1965, eq. 4.5).
 fn improve(derivative: &mut Matrix, step: [f64; 2], change: [f64; 2]) {
     let squared = step[0] * step[0] + step[1] * step[1];
     for (row, change) in derivative.iter_mut().zip(change) {
@@ -131,6 +131,10 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         let (at, toward) = (Frame::from_normal(wi), Frame::from_normal(end.direction));
         let derivative = self.derivative((&at, &toward), (vertices, source), end.surfaces, counters)?;
         let step = newton_step(&derivative, end.miss_along(source, &toward))?;
+        if length(step) >= SAME {
+            // The derivative that led here was of a kink. A trial that ended here would not count either.
+            return None;
+        }
         let [[ss, st], [ts, tt]] = derivative;
         Some(Root { wi: beside(&at, step), vertices, determinant: ss * tt - st * ts })
     }
@@ -155,7 +159,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
                 }
                 let before = length(miss);
                 let mut part = (LONGEST_STEP / length(step)).min(1.0);
-                let mut halvings = 0;
+                let mut tries = 1;
                 let taken = loop {
                     let taken = step.map(|s| s * part);
                     let moved = beside(&at, [angles[0] + taken[0], angles[1] + taken[1]]);
@@ -165,15 +169,15 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
                         (wi, end) = (moved, there);
                         break taken;
                     }
-                    halvings += 1;
-                    if halvings == MOST_HALVINGS {
+                    if tries == MOST_TRIES {
                         return None;
                     }
+                    tries += 1;
                     part *= 0.25;
                 };
                 let now = end.miss_along(source, &toward);
                 // Beyond half a right angle the frame of the last derivative says little.
-                if length(now) > 0.5 * before || end.direction.dot(toward.n) < 0.7 || halvings > 0 {
+                if length(now) > 0.5 * before || end.direction.dot(toward.n) < 0.7 || tries > 1 {
                     break;
                 }
                 improve(&mut derivative, taken, [now[0] - miss[0], now[1] - miss[1]]);
@@ -207,8 +211,8 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         Some([[ss, st], [ts, tt]])
     }
 
-    /// After how many vertices the chain of a seed is to point at the lamp. All have a chance, the more the less the chain misses the lamp there. A
-    /// chain that meets another vertex before the lamp is taken for farther away.
+    /// After how many vertices the chain of a seed is to point at the lamp. Every number has a chance. It is large where the chain nearly points at the
+    /// lamp, and small where the chain meets another vertex first.
     fn vertices(&mut self, seed: &Seed, source: &Source, counters: &mut Counters) -> Option<u32> {
         /// What a chance is worth where the chain points at the lamp, and where it is blocked.
         const NEAR: f64 = 1e-6;
