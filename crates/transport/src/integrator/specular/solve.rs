@@ -33,9 +33,9 @@ pub(super) struct Seed {
 /// How many vertices a chain is to have.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Chooses {
-    /// As a number in [0, 1) chooses, by how near to the lamp the chain points.
+    /// A number in [0, 1) chooses it, by how near to the lamp the chain points.
     By(f64),
-    /// So many.
+    /// This number.
     This(u32),
 }
 
@@ -141,8 +141,8 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
 
     /// Comes so near to a root that one more step of Newton's method finds it.
     ///
-    /// The derivative is found by differences once, then improved by each step (Broyden 1965, *A Class of Methods for Solving Nonlinear
-    /// Simultaneous Equations*), and found anew where a step does not halve the miss.
+    /// The derivative is found by differences, and improved by each step (Broyden 1965, *A Class of Methods for Solving Nonlinear Simultaneous
+    /// Equations*). It is found anew where a step does not halve the miss.
     pub(super) fn approach(&mut self, seed: &Seed, source: &Source, counters: &mut Counters) -> Option<Approached> {
         let vertices = self.vertices(seed, source, counters)?;
         let mut wi = seed.direction;
@@ -214,7 +214,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
     /// After how many vertices the chain of a seed is to point at the lamp. Every number has a chance. It is large where the chain nearly points at the
     /// lamp, and small where the chain meets another vertex first.
     fn vertices(&mut self, seed: &Seed, source: &Source, counters: &mut Counters) -> Option<u32> {
-        /// What a chance is worth where the chain points at the lamp, and where it is blocked.
+        /// Added to the squared miss, so that no chance is infinite; and the factor of a chance where the chain is blocked.
         const NEAR: f64 = 1e-6;
         const BLOCKED: f64 = 0.01;
         let u = match seed.chooses {
@@ -305,9 +305,9 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
 /// By rows.
 type Matrix = [[f64; 2]; 2];
 
-/// Whether two derivatives are the same but for what is neglected.
+/// Whether two derivatives agree within their errors.
 fn agree(a: &Matrix, b: &Matrix) -> bool {
-    /// More than the error of any difference, and less than what a kink makes of it.
+    /// More than the error of a difference, and less than a kink changes it.
     const APART: f64 = 1e-4;
     let pairs = || a.iter().flatten().zip(b.iter().flatten());
     let apart = pairs().map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
