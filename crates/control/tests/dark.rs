@@ -26,7 +26,7 @@ fn floor(objects: &Value, lights: &Value, integrator: &Value) -> Prepared {
     prepare(&scene).unwrap()
 }
 
-/// A ball around the camera and a lamp outside, a lamp that faces away, and light through glass alone.
+/// A ball around the camera and a lamp outside, a lamp that faces away, and a spot behind glass that faces away.
 fn black() -> [Prepared; 3] {
     let ball = json!({"material": "grey", "shape": {"type": "sphere", "radius_m": 1}});
     let point = json!({"type": "point", "position_m": [0, 2, 0], "intensity": 1});
@@ -35,8 +35,9 @@ fn black() -> [Prepared; 3] {
         "shape": {"type": "disk", "center_m": [0, 1, 0], "normal": [0, 1, 0], "radius_m": 1}});
     let glass = json!({"material": "glass",
         "shape": {"type": "parallelogram", "origin_m": [-50, 1, 50], "u_m": [100, 0, 0], "v_m": [0, 0, -100]}});
+    // Connections through the glass are searched for, and those that are found carry nothing.
     let spot =
-        json!({"type": "spot", "position_m": [0, 2, 0], "direction": [0, -1, 0], "half_angle_deg": 60, "intensity": 1});
+        json!({"type": "spot", "position_m": [0, 2, 0], "direction": [0, 1, 0], "half_angle_deg": 60, "intensity": 1});
     let spp = json!({"spp": 64});
     [
         floor(&json!([ball]), &json!([point]), &spp),
