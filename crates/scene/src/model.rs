@@ -4,6 +4,7 @@
 //! may rely on everything that `docs/scene-format.md` lists as an error being absent from it.
 
 mod compound_lens;
+mod daylight;
 mod detail;
 mod emission;
 mod environment;
@@ -24,6 +25,7 @@ mod thin_film;
 mod varying;
 
 pub use compound_lens::{CompoundLens, LensCoating, LensSurface};
+pub use daylight::{DaylightLook, DaylightPattern, DaylightSky};
 pub use detail::{Bitangent, OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};
@@ -42,7 +44,7 @@ pub use parameter::{Parameter, ParameterMut};
 pub use references::ReferenceError;
 pub use shape::{Mesh, Shape};
 pub(crate) use shutter::middle_s;
-pub use sky::{CieSky, SkyCoefficients};
+pub use sky::{CieSky, Perez, SkyCoefficients};
 pub use thin_film::{FilmIndex, FilmLayer, ThinFilm};
 pub use varying::{NumberTexture, SpectrumTexture};
 

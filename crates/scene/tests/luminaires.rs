@@ -74,6 +74,31 @@ fn what_is_wrong_is_said() {
         Code::OutOfRange,
         "below the horizon",
     );
+    wrong(
+        r#"[{ "type": "environment", "daylight": { "sun_direction": [1, -0.1, 0] } }]"#,
+        Code::OutOfRange,
+        "below the horizon",
+    );
+    wrong(
+        r#"[{ "type": "environment", "daylight": { "sun_direction": [1, 0.1, 0] } }]"#,
+        Code::OutOfRange,
+        "a sun as low as this",
+    );
+    wrong(
+        r#"[{ "type": "environment", "daylight": { "turbidity": 1, "sun_direction": [1, 1, 0] } }]"#,
+        Code::OutOfRange,
+        "a turbidity of 1",
+    );
+    wrong(
+        r#"[{ "type": "environment", "daylight": { "sun_direction": [1, 1, 0], "scale": 1e35 } }]"#,
+        Code::OutOfRange,
+        "more than",
+    );
+    wrong(
+        r#"[{ "type": "environment", "radiance": { "type": "daylight", "temperature_k": 3000 } }]"#,
+        Code::OutOfRange,
+        "3000 K",
+    );
     wrong(r#"[{ "type": "environment", "sky": { "cie_type": 17, "zenith_radiance": 1 } }]"#, Code::OutOfRange, "17");
     assert!(
         scene_with(r#"[{ "type": "environment", "sky": { "cie_type": 16, "zenith_luminance_cd_per_m2": 9 } }]"#)

@@ -1,6 +1,7 @@
 //! Spectra as paths meet them: tabulated once, so that no path calls the platform's mathematics library.
 
 use crate::wavelength::cells::CellTable;
+use etalon_optics::colour::daylight_components;
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{Lanes, Spectrum};
 
@@ -30,6 +31,23 @@ pub enum PathSpectrum {
     },
     /// A spectrum that may have detail between the nanometres and needs no mathematics library, evaluated as it is.
     Symbolic(Spectrum),
+}
+
+/// What a light's spectrum is multiplied by at each wavelength, where it is not the same in all directions or at all places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Colour {
+    /// Shares of red, green and blue, of an image.
+    Rgb([f64; 3]),
+    /// Daylight of the weights M₁ and M₂ of its components, over the first component: 1 + (M₁S₁ + M₂S₂)/S₀.
+    Daylight([f64; 2]),
+}
+
+/// Daylight of these weights over its first component, in every lane.
+pub(crate) fn daylight<const N: usize>([m1, m2]: [f64; 2], lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
+    Lanes::from_fn(|lane| {
+        let [s0, s1, s2] = daylight_components(lambda_nm[lane]);
+        1.0 + (m1 * s1 + m2 * s2) / s0
+    })
 }
 
 impl PathSpectrum {

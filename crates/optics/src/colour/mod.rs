@@ -14,7 +14,9 @@ pub use cie::{
     CIE_RANGE_NM, LUMINOUS_EFFICACY, cie_y_integral_nm, colour_matching, illuminant_a, illuminant_d65, luminance_of,
     xyz_of,
 };
-pub use daylight::daylight_chromaticity;
+pub use daylight::{
+    daylight_chromaticity, daylight_components, daylight_luminances, daylight_wavelengths_nm, daylight_weights,
+};
 pub use lab::{lab_from_xyz, xyz_from_lab};
 pub use matrix::{Matrix, inverse, multiply, product};
 pub(crate) use rec709::rgb_to_xyz_matrix;

@@ -16,6 +16,7 @@ pub use rgb::{RgbEmission, RgbReflectance};
 pub use sigmoid::Sigmoid;
 pub use tabulated::{Outside, Tabulated};
 
+use crate::colour::{daylight_components, daylight_wavelengths_nm};
 use crate::error::{OpticsError, non_negative};
 
 /// A spectrum: reflectance (dimensionless), radiance (W·m⁻²·sr⁻¹·nm⁻¹) or another density, by where it is used.
@@ -71,6 +72,15 @@ impl Spectrum {
     /// See [`ScaledIlluminant::new`].
     pub fn illuminant(illuminant: Illuminant, scale: f64) -> Result<Self, OpticsError> {
         ScaledIlluminant::new(illuminant, scale).map(Self::Illuminant)
+    }
+
+    /// Daylight of the weights M₁ and M₂ of its components, as the table of those has it: 100 at 560 nm; zero outside 300 to 830 nm.
+    ///
+    /// Fails if it is negative somewhere: far from the locus of daylight.
+    pub fn daylight([m1, m2]: [f64; 2]) -> Result<Self, OpticsError> {
+        let value = |[s0, s1, s2]: [f64; 3]| s0 + m1 * s1 + m2 * s2;
+        let values = daylight_wavelengths_nm().map(|nm| value(daylight_components(nm))).collect();
+        Self::tabulated(daylight_wavelengths_nm().collect(), values, Outside::Zero)
     }
 
     /// See [`RgbReflectance::new`].

@@ -18,6 +18,7 @@ mod cie171;
 mod claim;
 mod compound_lenses;
 mod connections;
+mod daylight;
 mod densities;
 mod dimensions;
 mod enclosures;
@@ -343,7 +344,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 38] = [
+const GROUPS: [fn() -> Vec<Truth>; 39] = [
     furnaces::truths,
     beckmann::truths,
     facets::truths,
@@ -382,4 +383,5 @@ const GROUPS: [fn() -> Vec<Truth>; 38] = [
     media::truths,
     meters::truths,
     luminous::truths,
+    daylight::truths,
 ];

@@ -9,8 +9,8 @@ use etalon_oracle::{
 
 use crate::renderer::Tracer;
 
-/// Truths in the neutral form of whole pictures that apply to a renderer without polarisation, thermal spectra, priorities, motion and
-/// facets of two widths.
+/// Truths in the neutral form of whole pictures that apply to a renderer without polarisation, thermal spectra, priorities, motion,
+/// facets of two widths and connections.
 fn readable() -> Vec<Truth> {
     let claims: Vec<_> = Claim::UNPOLARISED
         .into_iter()
@@ -21,6 +21,7 @@ fn readable() -> Vec<Truth> {
                 Claim::Scattering,
                 Claim::Motion,
                 Claim::AnisotropicFacets,
+                Claim::SpecularConnections,
                 Claim::WholeFormat,
                 Claim::StatedPixels,
             ];

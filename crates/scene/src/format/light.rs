@@ -5,14 +5,14 @@ use std::ops::Bound;
 
 use glam::DVec3;
 
+use super::environment::{EnvironmentLight, environment};
 use super::photometric::{photometric, stated};
 use super::spectra::{BRIGHTEST, Spectra};
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
-use crate::json::{Code, Direction, NonNegative, Optional, Reader, Required, Rule, Spanned, Whole};
+use crate::json::{Code, Direction, NonNegative, Optional, Reader, Required, Rule, Spanned};
 use crate::linear::unit;
-use crate::model::{Beam, BeamProfile, CieSky, EnvironmentImage, EnvironmentProjection, Light, LightKind};
-use crate::texture::Encoding;
+use crate::model::{Beam, BeamProfile, Light, LightKind};
 
 crate::record! {
     /// The same intensity in every direction, from a point.
@@ -136,73 +136,6 @@ crate::record! {
     } with [Rule::OneOf(&["power", "flux_lm"]), Rule::NotBoth("power", "spectrum")]
 }
 
-crate::record! {
-    /// Radiance from infinitely far: the same from every direction, as an image says, or as a standard sky.
-    pub(crate) struct EnvironmentLight + comment {
-        /// Its name, for messages.
-        name: Optional<String>,
-        /// Radiance from every direction, W·m⁻²·sr⁻¹·nm⁻¹. Either this, `luminance_cd_per_m2`, `image` or `sky`.
-        radiance: Optional<Box<SpectrumForm>>,
-        /// Luminance from every direction, cd·m⁻².
-        luminance_cd_per_m2: Optional<Spanned<NonNegative>>,
-        /// The spectrum of a luminance, to any scale; the same at every wavelength if left out.
-        spectrum: Optional<Box<SpectrumForm>>,
-        /// An image of all directions.
-        image: Optional<EnvironmentImageForm>,
-        /// A standard sky of the CIE.
-        sky: Optional<SkyForm>,
-    } with [
-        Rule::OneOf(&["radiance", "luminance_cd_per_m2", "image", "sky"]),
-        Rule::Needs("spectrum", &["luminance_cd_per_m2"]),
-    ]
-}
-
-crate::record! {
-    /// One of the sixteen standard skies (CIE S 011, ISO 15469), without the sun itself.
-    pub(crate) struct SkyForm + comment {
-        /// Its number: 1 to 15, or 16, the traditional overcast sky.
-        cie_type: Required<Whole<1, 16>>,
-        /// Toward the sun; only the direction counts. The skies 1, 3, 5 and 16 do without it.
-        sun_direction: Optional<Spanned<Direction>>,
-        /// Toward the zenith; only the direction counts.
-        up: Required<Direction> = "[0, 1, 0]",
-        /// Radiance of the zenith, W·m⁻²·sr⁻¹·nm⁻¹. Either this or `zenith_luminance_cd_per_m2`.
-        zenith_radiance: Optional<Box<SpectrumForm>>,
-        /// Luminance of the zenith, cd·m⁻².
-        zenith_luminance_cd_per_m2: Optional<Spanned<NonNegative>>,
-        /// The spectrum of a luminance, to any scale; the same at every wavelength if left out.
-        spectrum: Optional<Box<SpectrumForm>>,
-        /// Radiance from below the horizon, in units of that of the zenith.
-        ground: Required<Spanned<NonNegative>> = "0",
-    } with [
-        Rule::OneOf(&["zenith_radiance", "zenith_luminance_cd_per_m2"]),
-        Rule::Needs("spectrum", &["zenith_luminance_cd_per_m2"]),
-    ]
-}
-
-crate::record! {
-    /// An image of all directions.
-    pub(crate) struct EnvironmentImageForm + comment {
-        /// An EXR, HDR, PNG or JPEG file, relative to this file's folder.
-        file: Required<Spanned<String>>,
-        /// How its numbers are to be read.
-        encoding: Required<Encoding> = r#""auto""#,
-        /// How directions stand in it.
-        projection: Required<EnvironmentProjection> = r#""latitude-longitude""#,
-        /// Factor on the radiance; of 1, white (1, 1, 1) has the luminance of the constant spectrum 1.
-        scale: Required<NonNegative> = "1",
-        /// The direction of the image's upper edge, or in the middle of an equal-area square.
-        up: Required<Spanned<Direction>> = "[0, 1, 0]",
-        /// The direction in the middle of the image, or of the middle of the lower edge of an equal-area square; only its part
-        /// across `up` counts.
-        forward: Required<Spanned<Direction>> = "[0, 0, -1]",
-        /// Whether left and right of the image change places.
-        mirrored: Required<bool> = "false",
-        /// Turns the whole about `up`, counter-clockwise when `up` points at the viewer, degrees.
-        rotation_deg: Required<f64> = "0",
-    }
-}
-
 crate::variants! {
     /// A light without a surface.
     pub(crate) enum LightForm by "type" {
@@ -274,24 +207,7 @@ pub(crate) fn light<'f>(
             };
             (&beam.name, LightKind::Beam(kind))
         }
-        LightForm::Environment(light) => {
-            let given = [light.radiance.is_present(), light.luminance_cd_per_m2.is_present()];
-            let kind = match (given, &light.image, &light.sky) {
-                ([true, false] | [false, true], Optional::Absent, Optional::Absent) => {
-                    let keys = [(&light.luminance_cd_per_m2, 1.0)];
-                    let radiance = stated(&light.radiance, &keys, &light.spectrum, spectra, reader)?;
-                    LightKind::Environment { radiance }
-                }
-                ([false, false], Optional::Given(image), Optional::Absent) => {
-                    LightKind::ImageEnvironment(environment_image(image, spectra, files, reader)?)
-                }
-                ([false, false], Optional::Absent, Optional::Given(form)) => {
-                    LightKind::Sky(sky(form, spectra, reader)?)
-                }
-                _ => return None,
-            };
-            (&light.name, kind)
-        }
+        LightForm::Environment(light) => (&light.name, environment(light, spectra, files, reader)?),
     };
     let name = name.clone().checked()?.unwrap_or_else(|| format!("lights[{index}]"));
     Some(Light { name, kind })
@@ -304,20 +220,11 @@ crate::keywords!(BeamProfile {
     "gaussian" => Self::Gaussian,
 });
 
-crate::keywords!(EnvironmentProjection {
-    /// Longitude along its rows, latitude along its columns; the first row is a band that begins at the pole.
-    "latitude-longitude" => Self::LatitudeLongitude,
-    /// The same with the centres of the first and the last row at the poles.
-    "latitude-longitude-at-poles" => Self::LatitudeLongitudeAtPoles,
-    /// A square whose texels are all of the same solid angle (Clarberg 2008), each of its own colour.
-    "equal-area" => Self::EqualArea,
-});
-
 /// Below this sine of the angle between `up` and `forward`, the turn of an image hangs on digits that nobody meant.
 const PARALLEL: f64 = 1e-6;
 
 /// The unit vector of the part of `forward` across the unit vector `axis`, a key of this name.
-fn across(axis: DVec3, key: &str, forward: Spanned<Direction>, reader: &mut Reader<'_>) -> Option<DVec3> {
+pub(super) fn across(axis: DVec3, key: &str, forward: Spanned<Direction>, reader: &mut Reader<'_>) -> Option<DVec3> {
     let toward = DVec3::from(forward.value.0);
     let across = toward - axis * toward.dot(axis);
     if across.length() < PARALLEL {
@@ -358,82 +265,4 @@ fn luminaire<'f>(
         photometry,
         intensity: intensity?,
     })
-}
-
-fn sky<'f>(form: &'f SkyForm, spectra: &mut Spectra<'f>, reader: &mut Reader<'_>) -> Option<CieSky> {
-    let keys = [(&form.zenith_luminance_cd_per_m2, 1.0)];
-    let zenith = stated(&form.zenith_radiance, &keys, &form.spectrum, spectra, reader);
-    let up = form.up?.0;
-    let sun = form.sun_direction.clone().checked()?;
-    let number = form.cie_type?.0 as u8;
-    let sky =
-        CieSky { number, up, sun: sun.map_or(up, |sun| sun.value.0), zenith: zenith?, ground: form.ground?.value.0 };
-    if sky.needs_sun() && sun.is_none() {
-        let message = format!("the sky {number} depends on where the sun is");
-        reader.error_hint(Code::MissingKey, form.at.head(), message, "add \"sun_direction\"");
-        return None;
-    }
-    let height = DVec3::from(sky.sun).dot(DVec3::from(up));
-    if let Some(sun) = sun.filter(|_| height < 0.0) {
-        let hint = "the standard describes skies by day";
-        reader.error_hint(Code::OutOfRange, sun.at, "the sun is below the horizon", hint);
-        return None;
-    }
-    if sky.ground * sky.zenith.max_over(spectra.range_nm?) > BRIGHTEST {
-        reader.error(Code::OutOfRange, form.ground?.at, format!("the ground is brighter than {BRIGHTEST:e}"));
-        return None;
-    }
-    Some(sky)
-}
-
-fn environment_image(
-    form: &EnvironmentImageForm,
-    spectra: &mut Spectra<'_>,
-    files: &mut Files,
-    reader: &mut Reader<'_>,
-) -> Option<EnvironmentImage> {
-    let file = form.file.as_ref()?;
-    let image = form.encoding.and_then(|encoding| files.image(file, encoding, reader));
-    let axes = form.up.zip(form.forward).and_then(|(up, forward)| {
-        let up = DVec3::from(up.value.0);
-        let forward = across(up, "up", forward, reader)?;
-        let right = forward.cross(up);
-        let (sin, cos) = form.rotation_deg?.to_radians().sin_cos();
-        let turned = |along: f64, across: f64| forward * along + right * across;
-        let hand = if form.mirrored? { -1.0 } else { 1.0 };
-        Some([turned(cos, -sin), turned(sin, cos) * hand, up].map(|axis| axis.to_array()))
-    });
-    let white = spectra.daylight(form.scale?.0, form.at, reader);
-    let (image, projection) = (image?, form.projection?);
-    let wrong = match projection {
-        EnvironmentProjection::EqualArea if image.width != image.height => Some("an equal-area image is a square"),
-        EnvironmentProjection::LatitudeLongitudeAtPoles if image.height < 2 => Some("two poles need two rows"),
-        _ => None,
-    };
-    if let Some(wrong) = wrong {
-        let message = format!("{}: {wrong}, and this is {} × {}", file.value, image.width, image.height);
-        reader.error(Code::OutOfRange, file.at, message);
-        return None;
-    }
-    let texel_at = |i: usize| (i % image.width as usize, i / image.width as usize);
-    if let Some(i) = image.linear_texels().position(|texel| texel.iter().any(|v| *v < 0.0)) {
-        let (column, row) = texel_at(i);
-        let message = format!("{}: the texel in column {column}, row {row} is below 0", file.value);
-        reader.error(Code::NegativeEmission, file.at, message);
-        return None;
-    }
-    let ([forward, right, up], white) = (axes?, white?);
-    let brightest = white.max_over(spectra.range_nm?);
-    if let Some(i) = image.linear_texels().position(|t| t.iter().any(|v| v * brightest > BRIGHTEST)) {
-        let (column, row) = texel_at(i);
-        let message = format!("{}: the texel in column {column}, row {row} is more than {BRIGHTEST:e}", file.value);
-        reader.error_hint(
-            Code::OutOfRange,
-            file.at,
-            message,
-            "pictures store single-precision numbers, which cannot hold it",
-        );
-        return None;
-    }
-    Some(EnvironmentImage { image, name: file.value.clone(), projection, forward, right, up, white })
 }

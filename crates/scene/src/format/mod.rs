@@ -6,6 +6,7 @@
 mod camera;
 mod compound_lens;
 mod detail;
+mod environment;
 mod geometry;
 mod group;
 mod integrator;

@@ -4,12 +4,16 @@ mod image;
 
 use std::collections::{HashMap, HashSet};
 
+use etalon_optics::colour::{
+    LUMINOUS_EFFICACY, cie_y_integral_nm, daylight_chromaticity, daylight_luminances, daylight_weights, luminance_of,
+};
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{Illuminant, OpticsError, Spectrum};
 
 use super::names::Names;
 use super::spectrum::{
-    Density, OutsideTable, RgbSpectrum, SpectrumForm, SpectrumObject, TabulatedSpectrum, check_table, of_bytes, sound,
+    DaylightSpectrum, Density, OutsideTable, RgbSpectrum, SpectrumForm, SpectrumObject, TabulatedSpectrum, check_table,
+    of_bytes, sound,
 };
 use crate::json::{Code, List, Named, NamedEntry, Place, Reader, Span, Spanned};
 
@@ -126,6 +130,7 @@ impl<'f> Spectra<'f> {
                 self.covered(illuminant_range_nm(name), illuminant.at, "the illuminant", "", used, reader);
                 accept(Spectrum::illuminant(name, illuminant.scale?.0), illuminant.at, reader)
             }
+            SpectrumForm::Object(SpectrumObject::Daylight(daylight)) => self.cie_daylight(daylight, used, reader),
         }?;
         let largest = spectrum.max_over(self.range_nm?);
         if largest > BRIGHTEST || largest.is_nan() {
@@ -183,6 +188,31 @@ impl<'f> Spectra<'f> {
         let used = Use { role: Role::Emission, at: None };
         self.covered(illuminant_range_nm(Illuminant::D65), at, "daylight", "", used, reader);
         accept(Spectrum::illuminant(Illuminant::D65, scale), at, reader)
+    }
+
+    fn cie_daylight(&mut self, form: &DaylightSpectrum, used: Use, reader: &mut Reader<'_>) -> Option<Spectrum> {
+        self.light_only("daylight", form.at, used, reader)?;
+        let (temperature, scale) = (form.temperature_k?, form.scale?.0);
+        let Some(chromaticity) = daylight_chromaticity(temperature.value.0) else {
+            let message = format!("there is no daylight of {} K", temperature.value.0);
+            let hint = "daylight has from 4000 to 25000 K; below, use a \"blackbody\"";
+            self.complain(Code::OutOfRange, temperature.at, message, hint, used, reader);
+            return None;
+        };
+        self.covered(illuminant_range_nm(Illuminant::D65), form.at, "daylight", "", used, reader);
+        let daylight = Spectrum::daylight(daylight_weights(chromaticity)).and_then(|spectrum| {
+            let luminance = luminance_of(|nm| spectrum.eval(nm));
+            spectrum.scaled(scale / luminance)
+        });
+        accept(daylight, form.at, reader)
+    }
+
+    /// The component S₀ of daylight whose luminance is that of so many cd·m⁻², for what is written at `at`.
+    pub(crate) fn mean_daylight(&mut self, luminance: f64, at: Span, reader: &mut Reader<'_>) -> Option<Spectrum> {
+        let used = Use { role: Role::Emission, at: None };
+        self.covered(illuminant_range_nm(Illuminant::D65), at, "daylight", "", used, reader);
+        let per_unit = LUMINOUS_EFFICACY * cie_y_integral_nm() * daylight_luminances()[0];
+        accept(Spectrum::daylight([0.0; 2]).and_then(|mean| mean.scaled(luminance / per_unit)), at, reader)
     }
 
     /// Reports what is wrong with a spectrum as it is used: where it is written, and once.

@@ -92,6 +92,16 @@ crate::record! {
     }
 }
 
+crate::record! {
+    /// Daylight by its correlated colour temperature (CIE 15): D50 has 5003 K, D55 5503 K, D65 6504 K, D75 7504 K. Emission only.
+    pub(crate) struct DaylightSpectrum + comment {
+        /// Correlated colour temperature, K: from 4000 to 25000.
+        temperature_k: Required<Spanned<Positive>>,
+        /// The constant spectrum of the same luminance.
+        scale: Required<NonNegative> = "1",
+    }
+}
+
 crate::keywords!(Illuminant {
     /// Average daylight, 6504 K.
     "D65" => Self::D65,
@@ -257,6 +267,7 @@ crate::variants! {
         "tabulated" => Tabulated(TabulatedSpectrum),
         "blackbody" => Blackbody(BlackbodySpectrum),
         "illuminant" => Illuminant(IlluminantSpectrum),
+        "daylight" => Daylight(DaylightSpectrum),
         "rgb" => Rgb(RgbSpectrum),
         "image" => Image(ImageSpectrum),
         "checker" => Checker(CheckerSpectrum),
@@ -348,6 +359,7 @@ impl SpectrumForm {
             Self::Object(SpectrumObject::Tabulated(s)) => s.at,
             Self::Object(SpectrumObject::Blackbody(s)) => s.at,
             Self::Object(SpectrumObject::Illuminant(s)) => s.at,
+            Self::Object(SpectrumObject::Daylight(s)) => s.at,
             Self::Object(SpectrumObject::Rgb(s)) => s.at,
             Self::Object(SpectrumObject::Image(s)) => s.at,
             Self::Object(SpectrumObject::Checker(s)) => s.at,

@@ -282,7 +282,7 @@ pub const NEIGHBOURS: &[Neighbour] = &[
     row(Metal, "copper metalcueta metalcuk", Word("Cu", "")),
     row(Metal, "aluminium aluminum metalaleta metalalk", Word("Al", "")),
     // Names that other programs define by themselves.
-    row(Spectrum, "d65 daylight", Write("{\"type\": \"illuminant\", \"name\": \"D65\"}")),
+    row(Spectrum, "d65", Write("{\"type\": \"illuminant\", \"name\": \"D65\"}")),
     row(Spectrum, "a", Write("{\"type\": \"illuminant\", \"name\": \"A\"}")),
     row(Spectrum, "e", Write("{\"type\": \"illuminant\", \"name\": \"E\"}")),
     row(Spectrum, "black", Write("0")),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use etalon_optics::Spectrum;
 
-use super::{CieSky, EnvironmentImage};
+use super::{CieSky, DaylightSky, EnvironmentImage};
 use crate::luminaire::Photometry;
 
 /// A light without a surface.
@@ -68,6 +68,8 @@ pub enum LightKind {
     ImageEnvironment(EnvironmentImage),
     /// A standard sky of the CIE.
     Sky(CieSky),
+    /// A sky with the colours of daylight.
+    Daylight(DaylightSky),
 }
 
 /// A beam of light, such as of a laser or a collimator. Its rays are parallel, or come from one point behind the aperture.
@@ -109,7 +111,7 @@ pub struct LightCone {
 }
 
 impl LightKind {
-    /// The spectrum of what it sends; of an image, that of its white.
+    /// The spectrum of what it sends; of an image that of its white, of a sky that of its zenith or of its mean daylight.
     pub fn spectrum(&self) -> &Spectrum {
         match self {
             Self::Point { intensity, .. } | Self::Spot { intensity, .. } | Self::Luminaire { intensity, .. } => {
@@ -120,6 +122,7 @@ impl LightKind {
             Self::Environment { radiance } => radiance,
             Self::ImageEnvironment(image) => &image.white,
             Self::Sky(sky) => &sky.zenith,
+            Self::Daylight(sky) => &sky.mean,
         }
     }
 
@@ -134,6 +137,7 @@ impl LightKind {
             Self::Environment { radiance } => radiance,
             Self::ImageEnvironment(image) => &mut image.white,
             Self::Sky(sky) => &mut sky.zenith,
+            Self::Daylight(sky) => &mut sky.mean,
         }
     }
 
@@ -146,7 +150,7 @@ impl LightKind {
             | Self::Luminaire { .. }
             | Self::Directional { .. }
             | Self::Beam(_) => true,
-            Self::Environment { .. } | Self::ImageEnvironment(_) | Self::Sky(_) => false,
+            Self::Environment { .. } | Self::ImageEnvironment(_) | Self::Sky(_) | Self::Daylight(_) => false,
         }
     }
 
@@ -182,7 +186,16 @@ impl LightKind {
 
     /// Whether shadow rays aim at it although it is everywhere at infinity: it is not the same from all directions.
     pub fn is_uneven_sky(&self) -> bool {
-        matches!(self, Self::ImageEnvironment(_) | Self::Sky(_))
+        matches!(self, Self::ImageEnvironment(_) | Self::Sky(_) | Self::Daylight(_))
+    }
+
+    /// Whether its spectrum is not the same in all directions.
+    pub fn has_colours(&self) -> bool {
+        match self {
+            Self::ImageEnvironment(sky) => !sky.image.is_grey(),
+            Self::Daylight(sky) => !sky.mean.is_zero(),
+            _ => false,
+        }
     }
 
     /// Whether it sends nothing.

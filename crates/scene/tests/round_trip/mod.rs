@@ -341,6 +341,11 @@ fn light_in_photometric_units() {
     assert_eq!((sky.number, sky.up, sky.ground), (12, [0.0, 1.0, 0.0], 0.125));
     close(sky.sun[1], 0.6);
     assert!(sky.needs_sun());
+    close(values[9], 5.0);
+    let LightKind::Daylight(sky) = &scene.lights[12].kind else { panic!("a sky") };
+    assert_eq!((sky.turbidity, sky.up, sky.ground), (4.0, [0.0, 1.0, 0.0], 0.25));
+    close(sky.sun[1], 0.6);
+    close(of(&sky.mean), 0.5);
     let panel = scene.objects.iter().find(|object| object.name == "panel").expect("it is there");
     close(of(&panel.emission.as_ref().expect("it shines").radiance), 500.0);
     assert!(!scene.lights[5].kind.spectrum().is_zero() && scene.lights[5].kind.spectrum().is_constant());

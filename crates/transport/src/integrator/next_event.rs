@@ -13,6 +13,7 @@ use crate::polarisation::Polarisation;
 use crate::scene::interaction::{SurfaceInteraction, Walk};
 use crate::scene::shading_tables::BsdfKind;
 use crate::scene::world::World;
+use crate::spectral::Colour;
 use etalon_geometry::{Ray, SurfacePoint};
 use etalon_optics::Lanes;
 use etalon_scene::LightSampling;
@@ -242,10 +243,10 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 impl World<'_> {
     /// The colour that an image gives an emitting surface at the point that a shadow ray aims at.
     #[inline(always)]
-    fn colour_of_emitter(&self, light: u32, target: Target, time: f64) -> Option<[f64; 3]> {
+    fn colour_of_emitter(&self, light: u32, target: Target, time: f64) -> Option<Colour> {
         let emitter = self.lights.lights()[light as usize].emitter()?;
         let (image, Target::Point(position)) = (emitter.image?, target) else { return None };
-        self.surfaces.emitted(image.object, self.geometry, (emitter.surface, position), time)?.colour
+        self.surfaces.emitted(image.object, self.geometry, (emitter.surface, position), time)?.colour.map(Colour::Rgb)
     }
 
     /// The share of light that comes through where masks are all that a shadow ray may pass: in any order.

@@ -14,6 +14,7 @@ use crate::sampler::Sampler;
 use crate::scene::interaction::{SurfaceInteraction, Walk};
 use crate::scene::shading_tables::SpectrumCache;
 use crate::scene::world::World;
+use crate::spectral::Colour;
 use crate::wavelength::Wavelengths;
 use etalon_geometry::{Ray, SurfaceId};
 use etalon_optics::{Lanes, Vec3};
@@ -263,12 +264,12 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 EnvironmentRadiance::Image(image) => {
                     let Look { colour, density } = sky.take().unwrap_or_else(|| image.look(ray.direction));
                     let mis = self.weight_of_hit(world, None, || environment.light, |_, _| density);
-                    (self.coloured(white, Some(colour)), mis)
+                    (self.coloured(white, Some(Colour::Rgb(colour))), mis)
                 }
                 EnvironmentRadiance::Sky(of) => {
-                    let SkyLook { relative, density } = of.look(ray.direction);
+                    let SkyLook { relative, colour, density } = of.look(ray.direction);
                     let mis = self.weight_of_hit(world, None, || environment.light, |_, _| density);
-                    (white * relative, mis)
+                    (self.coloured(white, colour) * relative, mis)
                 }
             };
             self.add(observer, Found::Environment, radiance, mis);
@@ -290,7 +291,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let mis = self.weight_of_hit(world, Some(point.surface), || surface.light(point.surface), density);
         let slot = world.tables.objects[surface.object as usize].emission;
         let white = self.spectra.of(slot, emitted.radiance, world.tables, &self.wavelengths);
-        let radiance = self.coloured(white, emitted.colour);
+        let radiance = self.coloured(white, emitted.colour.map(Colour::Rgb));
         self.add(observer, Found::Emitter, radiance, mis);
     }
 
@@ -354,7 +355,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     /// A white in the colour that an image gives it.
     #[inline(always)]
-    pub(super) fn coloured(&mut self, white: Lanes<f64, N>, colour: Option<[f64; 3]>) -> Lanes<f64, N> {
+    pub(super) fn coloured(&mut self, white: Lanes<f64, N>, colour: Option<Colour>) -> Lanes<f64, N> {
         match colour {
             None => white,
             Some(colour) => white * self.spectra.colour(colour, &self.wavelengths.lambda_nm),

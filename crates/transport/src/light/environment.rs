@@ -6,7 +6,7 @@ pub(super) mod meridians;
 
 use super::{LightSample, LightSource, Target};
 use crate::mis::Density;
-use crate::spectral::PathSpectrum;
+use crate::spectral::{Colour, PathSpectrum};
 use equal_area::EqualArea;
 use etalon_geometry::SurfaceId;
 use etalon_optics::Vec3;
@@ -131,7 +131,7 @@ impl Look {
     #[inline(always)]
     pub(crate) fn sample(self, wi: Vec3<f64>) -> Option<LightSample> {
         (self.density > 0.0).then_some(LightSample {
-            colour: Some(self.colour),
+            colour: Some(Colour::Rgb(self.colour)),
             wi,
             density: Density::SolidAngle(self.density),
             target: Target::Infinity,

@@ -31,7 +31,7 @@ pub(crate) use table::{visible_sum, weighted_sum};
 
 use crate::frame::SceneFrame;
 use crate::mis::Density;
-use crate::spectral::PathSpectrum;
+use crate::spectral::{Colour, PathSpectrum};
 use etalon_geometry::SurfaceId;
 use etalon_optics::{Spectrum, Vec3};
 use etalon_scene::{EnvironmentImage, LightKind};
@@ -70,8 +70,8 @@ pub struct LightSample {
     pub surface: SurfaceId,
     /// What the light's spectrum is multiplied by: 1 for radiance, 1/d² for a point's intensity.
     pub scale: f64,
-    /// The colour that an image of everything around shows there, in shares of the light's spectrum.
-    pub colour: Option<[f64; 3]>,
+    /// What the light's spectrum is multiplied by at each wavelength, if it is not the same in all directions.
+    pub colour: Option<Colour>,
 }
 
 /// Where all light of a lamp without area comes from.
@@ -160,7 +160,7 @@ pub enum Light {
     Beam(BeamLight),
     /// An image of everything around.
     Environment(Arc<EnvironmentLight>),
-    /// A standard sky.
+    /// A sky by formula.
     Sky(Arc<SkyLight>),
     /// A shape whose surface emits and that moves.
     Moving(MovingLight),
@@ -280,11 +280,8 @@ impl Light {
             // A black sky is none, nor is a dark luminaire.
             _ if kind.is_zero() => return (None, None),
             LightKind::Luminaire { .. } => return (None, None),
-            LightKind::Sky(sky) => {
-                let light = Arc::new(SkyLight::new(sky, range_nm));
-                let radiance = EnvironmentRadiance::Sky(Arc::clone(&light));
-                return (Some(Self::Sky(light)), Some(Environment { radiance, light: None }));
-            }
+            LightKind::Sky(sky) => return Self::of_sky(SkyLight::new(sky, range_nm)),
+            LightKind::Daylight(sky) => return Self::of_sky(SkyLight::daylight(sky, range_nm)),
             LightKind::Environment { radiance } => return (None, Some(spectrum(radiance).into())),
             LightKind::ImageEnvironment(image) => {
                 let light = known(image).unwrap_or_else(|| Arc::new(EnvironmentLight::new(image, range_nm)));
@@ -293,6 +290,12 @@ impl Light {
             }
         };
         (Some(target), None)
+    }
+
+    fn of_sky(light: SkyLight) -> (Option<Self>, Option<Environment>) {
+        let light = Arc::new(light);
+        let radiance = EnvironmentRadiance::Sky(Arc::clone(&light));
+        (Some(Self::Sky(light)), Some(Environment { radiance, light: None }))
     }
 }
 
@@ -312,7 +315,7 @@ pub(crate) enum EnvironmentRadiance {
     Uniform(PathSpectrum),
     /// As an image says.
     Image(Arc<EnvironmentLight>),
-    /// As a standard sky.
+    /// As a formula says.
     Sky(Arc<SkyLight>),
 }
 
@@ -343,12 +346,12 @@ impl EnvironmentRadiance {
         }
     }
 
-    /// The spectrum, of an image that of its white.
+    /// The spectrum, of an image that of its white, of a sky that of [`Light::spectrum`].
     pub(crate) fn spectrum(&self) -> &PathSpectrum {
         match self {
             Self::Uniform(spectrum) => spectrum,
             Self::Image(light) => light.white(),
-            Self::Sky(light) => light.zenith(),
+            Self::Sky(light) => LightSource::spectrum(light.as_ref()),
         }
     }
 }

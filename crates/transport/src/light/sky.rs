@@ -1,4 +1,4 @@
-//! A standard sky of the CIE: its radiance by formula, directions drawn by a table of it.
+//! Skies by formula: the standard skies of the CIE and daylight. Directions are drawn by a table of the luminance.
 //!
 //! The table has a row at the zenith and one at the horizon, and is interpolated as an image of everything around is. It gives the density
 //! of directions and no light, so its coarseness costs noise alone.
@@ -7,86 +7,118 @@ use super::environment::Along;
 use super::environment::meridians::Meridians;
 use super::{LightSample, LightSource, Target};
 use crate::mis::Density;
-use crate::spectral::PathSpectrum;
+use crate::spectral::{Colour, PathSpectrum};
 use etalon_geometry::SurfaceId;
-use etalon_optics::{Frame, Real, Vec3, atan2_turns, exp_neg};
-use etalon_scene::{CieSky, Image, SkyCoefficients, Texels};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use etalon_optics::{Frame, Real, Vec3};
+use etalon_scene::{CieSky, DaylightLook, DaylightPattern, DaylightSky, Image, Perez, Texels};
+use std::f64::consts::PI;
 
 /// Columns and rows of the table; a row lies at the horizon.
 const TABLE: [u32; 2] = [256, 129];
 
-/// A standard sky.
+/// A sky by formula.
 #[derive(Clone, Debug)]
 pub struct SkyLight {
-    zenith: PathSpectrum,
-    shape: Shape,
+    spectrum: PathSpectrum,
+    pattern: Pattern,
     /// The zenith, and two axes of the horizon.
     axes: Frame<f64>,
     table: Image,
     map: Meridians,
 }
 
-/// Radiance by direction, relative to the zenith.
+/// Radiance by direction.
 #[derive(Clone, Copy, Debug)]
-struct Shape {
-    up: Vec3<f64>,
-    sun: Vec3<f64>,
-    /// `None` of the traditional overcast sky.
-    coefficients: Option<SkyCoefficients>,
-    /// e^(dπ/2).
-    at_right_angles: f64,
-    /// One over what the formula gives at the zenith.
-    scale: f64,
-    /// From below the horizon.
-    ground: f64,
+enum Pattern {
+    /// Of one colour, relative to the zenith.
+    Cie {
+        up: Vec3<f64>,
+        /// `None` of the traditional overcast sky.
+        perez: Option<Perez>,
+        /// From below the horizon.
+        ground: f64,
+    },
+    /// Of the colours of daylight, relative to the mean daylight of the sky's spectrum.
+    Daylight(DaylightPattern),
 }
 
-impl Shape {
-    fn new(sky: &CieSky) -> Self {
-        let coefficients = sky.coefficients();
-        let at_right_angles = coefficients.map_or(0.0, |k| exp_neg(-k.d * FRAC_PI_2));
-        let up = Vec3::from_array(sky.up);
-        let sun = Vec3::from_array(sky.sun);
-        let raw = Self { up, sun, coefficients, at_right_angles, scale: 1.0, ground: sky.ground };
-        Self { scale: 1.0 / raw.eval(up), ..raw }
-    }
+/// Radiance in a direction, relative to the sky's spectrum.
+struct Shown {
+    relative: f64,
+    colour: Option<Colour>,
+    /// In what directions are drawn by, to any scale.
+    luminance: f64,
+}
 
-    /// Relative to the zenith.
+impl From<f64> for Shown {
+    fn from(relative: f64) -> Self {
+        Self { relative, colour: None, luminance: relative }
+    }
+}
+
+impl From<DaylightLook> for Shown {
+    fn from(DaylightLook { luminance, mean, weights }: DaylightLook) -> Self {
+        Self { relative: mean, colour: Some(Colour::Daylight(weights)), luminance }
+    }
+}
+
+impl Pattern {
     #[inline]
-    fn eval(&self, wi: Vec3<f64>) -> f64 {
-        let cos = wi.dot(self.up);
-        if cos < 0.0 { self.ground } else { self.at(wi, cos) }
+    fn eval(&self, wi: Vec3<f64>) -> Shown {
+        match self {
+            Self::Cie { up, .. } => {
+                let cos = wi.dot(*up);
+                if cos < 0.0 { self.ground() } else { self.at(wi, cos) }
+            }
+            Self::Daylight(pattern) => pattern.look(wi).into(),
+        }
     }
 
     /// The same in a direction above the horizon, of this cosine to the zenith.
-    fn at(&self, wi: Vec3<f64>, cos: f64) -> f64 {
-        let Some(SkyCoefficients { a, b, c, d, e }) = self.coefficients else {
-            return (1.0 + 2.0 * cos) / 3.0;
-        };
-        // At the horizon the exponential is 0, as its limit.
-        let gradation = 1.0 + a * exp_neg(-b / cos);
-        let toward = wi.dot(self.sun);
-        let chi = atan2_turns(wi.cross(self.sun).length(), toward) * TAU;
-        let indicatrix = 1.0 + c * (exp_neg(-d * chi) - self.at_right_angles) + e * toward * toward;
-        gradation * indicatrix * self.scale
+    fn at(&self, wi: Vec3<f64>, cos: f64) -> Shown {
+        match self {
+            Self::Cie { perez: Some(perez), .. } => perez.at(wi, cos).into(),
+            Self::Cie { perez: None, .. } => ((1.0 + 2.0 * cos) / 3.0).into(),
+            Self::Daylight(pattern) => pattern.at(wi, cos).into(),
+        }
+    }
+
+    /// The same from below the horizon.
+    fn ground(&self) -> Shown {
+        match self {
+            Self::Cie { ground, .. } => (*ground).into(),
+            Self::Daylight(pattern) => pattern.ground().into(),
+        }
     }
 }
 
 /// What a sky shows in a direction.
 #[derive(Clone, Copy, Debug)]
 pub struct SkyLook {
-    /// Its radiance, relative to the zenith.
+    /// Its radiance, relative to the sky's spectrum.
     pub relative: f64,
+    /// Its colour, where it is not everywhere the same.
+    pub colour: Option<Colour>,
     /// The density in sr⁻¹ with which shadow rays are drawn in this direction.
     pub density: f64,
 }
 
 impl SkyLight {
-    /// The light of a sky, at wavelengths within `range_nm`.
+    /// The light of a standard sky, at wavelengths within `range_nm`.
     pub fn new(sky: &CieSky, range_nm: [f64; 2]) -> Self {
-        let shape = Shape::new(sky);
-        let axes = Frame::from_normal(shape.up);
+        let up = Vec3::from_array(sky.up);
+        let pattern = Pattern::Cie { up, perez: sky.perez(), ground: sky.ground };
+        Self::of_pattern(pattern, up, PathSpectrum::new(&sky.zenith, range_nm))
+    }
+
+    /// The light of a sky with the colours of daylight, at wavelengths within `range_nm`.
+    pub fn daylight(sky: &DaylightSky, range_nm: [f64; 2]) -> Self {
+        let pattern = Pattern::Daylight(sky.pattern());
+        Self::of_pattern(pattern, Vec3::from_array(sky.up), PathSpectrum::new(&sky.mean, range_nm))
+    }
+
+    fn of_pattern(pattern: Pattern, up: Vec3<f64>, spectrum: PathSpectrum) -> Self {
+        let axes = Frame::from_normal(up);
         let [columns, rows] = TABLE;
         let texels = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))).map(|(row, column)| {
             // The horizon's own row counts as above it.
@@ -96,12 +128,13 @@ impl SkyLight {
             let (sin, cos) = f64::sin_cos_turns(turns);
             let (level, height) = if horizon { (1.0, 0.0) } else { (polar.sin(), polar.cos()) };
             let along = Along { forward: -cos * level, right: -sin * level, up: height };
-            let relative = if 2 * row + 1 > rows { sky.ground } else { shape.at(world(&axes, along), height) };
-            [relative as f32; 3]
+            let below = 2 * row + 1 > rows;
+            let shown = if below { pattern.ground() } else { pattern.at(world(&axes, along), height) };
+            [shown.luminance as f32; 3]
         });
         let table = Image::new(columns, rows, Texels::F32(texels.collect()));
         let map = Meridians::new(&table, true);
-        Self { zenith: PathSpectrum::new(&sky.zenith, range_nm), shape, axes, table, map }
+        Self { spectrum, pattern, axes, table, map }
     }
 
     /// What the sky shows in the direction `wi`.
@@ -109,12 +142,8 @@ impl SkyLight {
     pub fn look(&self, wi: Vec3<f64>) -> SkyLook {
         let along = Along { forward: wi.dot(self.axes.s), right: wi.dot(self.axes.t), up: wi.dot(self.axes.n) };
         let [look] = self.map.look(&self.table, &[along]);
-        SkyLook { relative: self.shape.eval(wi), density: look.density }
-    }
-
-    /// The radiance of the zenith, W·m⁻²·sr⁻¹·nm⁻¹.
-    pub fn zenith(&self) -> &PathSpectrum {
-        &self.zenith
+        let Shown { relative, colour, .. } = self.pattern.eval(wi);
+        SkyLook { relative, colour, density: look.density }
     }
 }
 
@@ -126,10 +155,10 @@ impl LightSource for SkyLight {
     fn sample(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
         let [along] = self.map.sample(&self.table, [&[u[0]], &[u[1]]]);
         let wi = world(&self.axes, along).renormalized();
-        let SkyLook { relative, density } = self.look(wi);
+        let SkyLook { relative, colour, density } = self.look(wi);
         // The interpolated table reaches below the horizon, where there may be no light.
         (density > 0.0 && relative > 0.0).then_some(LightSample {
-            colour: None,
+            colour,
             wi,
             density: Density::SolidAngle(density),
             target: Target::Infinity,
@@ -142,9 +171,9 @@ impl LightSource for SkyLight {
         self.look(wi).density
     }
 
-    /// That of the zenith.
+    /// That of the zenith, of daylight its mean.
     fn spectrum(&self) -> &PathSpectrum {
-        &self.zenith
+        &self.spectrum
     }
 
     fn can_be_met(&self) -> bool {

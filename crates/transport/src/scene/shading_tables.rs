@@ -2,7 +2,7 @@
 
 use crate::bsdf::{Bsdf, Dielectric, Properties};
 use crate::light::{Environment, LightTable};
-use crate::spectral::PathSpectrum;
+use crate::spectral::{Colour, PathSpectrum, daylight};
 use crate::surface::shading_geometry::Coordinates;
 use crate::surface::{ObjectSurface, Surfaces};
 use crate::wavelength::cells::CellTable;
@@ -220,9 +220,13 @@ impl<const N: usize> SpectrumCache<N> {
         self.values[slot]
     }
 
-    /// A colour of an image as a reflectance.
+    /// What a light of this colour has its spectrum multiplied by.
     #[inline(always)]
-    pub(crate) fn colour(&mut self, [r, g, b]: [f64; 3], lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
+    pub(crate) fn colour(&mut self, colour: Colour, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
+        let [r, g, b] = match colour {
+            Colour::Rgb(rgb) => rgb,
+            Colour::Daylight(weights) => return daylight(weights, lambda_nm),
+        };
         let [red, green, blue] = match self.primaries {
             Some(primaries) => primaries,
             None => *self.primaries.insert(RgbBasis::get().lanes(lambda_nm)),

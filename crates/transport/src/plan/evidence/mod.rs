@@ -186,12 +186,11 @@ fn wavelengths(scene: &Scene) -> Result<String, String> {
     if let Some(found) = coloured(scene).or_else(|| dispersive_lens(scene)) {
         return Ok(found);
     }
-    for light in &scene.lights {
-        if let Some(sky) = light.kind.image()
-            && !sky.image.is_grey()
-        {
-            return Ok(format!("light \"{}\": colours of \"{}\"", light.name, sky.name));
-        }
+    if let Some(Light { name, kind }) = scene.lights.iter().find(|light| light.kind.has_colours()) {
+        return Ok(match kind.image() {
+            Some(sky) => format!("light \"{name}\": colours of \"{}\"", sky.name),
+            None => format!("light \"{name}\": colours of daylight"),
+        });
     }
     let coloured = |(_, image): &(&Object, &ImageTexture)| !image.is_grey();
     if let Some((object, image)) = scene.placed_objects().filter_map(shining_image).find(coloured) {
