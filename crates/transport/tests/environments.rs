@@ -6,9 +6,10 @@ use etalon_optics::{Illuminant, Lanes, Spectrum, Vec3};
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::{Emits, Emitted};
 use etalon_oracle::{Uniform, Verdict, emits_suite, laws};
-use etalon_scene::{CieSky, EnvironmentImage, EnvironmentProjection, Image, LightKind, LightSampling, Scene, Texels};
-use etalon_transport::light::{EnvironmentLight, Light, SkyLight, Target};
+use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image, LightKind, LightSampling, Scene, Texels};
+use etalon_transport::light::{EnvironmentLight, Light, Target};
 use etalon_transport::mis::Density;
+use etalon_transport::spectral::Colour;
 use etalon_transport::{Control, prepare};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -51,7 +52,7 @@ impl Emits for Sky {
         let s = Light::Environment(Arc::new(self.light.clone())).sample(Vec3::from_array(from_m), u, 0.0)?;
         let Density::SolidAngle(pdf) = s.density else { panic!("an image has no delta") };
         assert_eq!((s.target, s.surface, s.scale), (Target::Infinity, SurfaceId::NONE, 1.0));
-        assert_eq!(s.colour, Some(self.light.look(s.wi).colour));
+        assert_eq!(s.colour, Some(Colour::Rgb(self.light.look(s.wi).colour)));
         Some(Emitted {
             wi: s.wi.to_array(),
             distance_m: f64::INFINITY,
@@ -431,63 +432,5 @@ fn white_is_daylight_and_primaries_add_up_to_it() {
         let want = daylight.eval(lambda[lane]);
         assert!((of([1.0; 3])[lane] / want - 1.0).abs() < 1e-13);
         assert!((parts[lane] / want - 1.0).abs() < 1e-13);
-    }
-}
-
-/// A standard sky, as the oracle sees a light at infinity.
-struct Standard {
-    light: SkyLight,
-    irradiance: fn([f64; 3]) -> Option<f64>,
-}
-
-fn standard(number: u8, ground: f64, irradiance: fn([f64; 3]) -> Option<f64>) -> Standard {
-    let sun = Vec3::new(0.6, 0.3, 0.5).normalized().to_array();
-    let up = Vec3::new(0.2, -0.3, 1.0).normalized().to_array();
-    let sky = CieSky { number, up, sun, zenith: Spectrum::ONE, ground };
-    Standard { light: SkyLight::new(&sky, RANGE_NM), irradiance }
-}
-
-impl Emits for Standard {
-    fn sample(&self, from_m: [f64; 3], u: [f64; 2]) -> Option<Emitted> {
-        let s = Light::Sky(Arc::new(self.light.clone())).sample(Vec3::from_array(from_m), u, 0.0)?;
-        let Density::SolidAngle(pdf) = s.density else { panic!("a sky has no delta") };
-        assert_eq!((s.target, s.surface, s.colour), (Target::Infinity, SurfaceId::NONE, None));
-        assert_eq!(s.scale, self.light.look(s.wi).relative);
-        Some(Emitted { wi: s.wi.to_array(), distance_m: f64::INFINITY, radiance: s.scale, pdf })
-    }
-
-    fn pdf(&self, _: [f64; 3], wi: [f64; 3]) -> f64 {
-        self.light.look(Vec3::from_array(wi)).density
-    }
-
-    fn radiance(&self, _: [f64; 3], wi: [f64; 3]) -> f64 {
-        self.light.look(Vec3::from_array(wi)).relative
-    }
-
-    fn irradiance(&self, _: [f64; 3], normal: [f64; 3]) -> Option<f64> {
-        (self.irradiance)(normal)
-    }
-}
-
-// Skies with a bright ground, so that every direction that the table knows is drawn; the table has creases along its rows and columns.
-emits_suite!(clear_sky, standard(12, 0.5, |_| None), from: [[0.0; 3]], pdf_tolerance: 1e-3);
-emits_suite!(even_sky, standard(5, 1.0, |_| Some(PI)), from: [[0.0; 3]], pdf_tolerance: 1e-5);
-
-#[test]
-fn standard_skies_are_one_at_the_zenith_and_shine_everywhere_above_the_horizon() {
-    for number in 1..=16 {
-        let Standard { light, .. } = standard(number, 0.0, |_| None);
-        let up = Vec3::new(0.2, -0.3, 1.0).normalized();
-        assert!((light.look(up).relative - 1.0).abs() < 1e-14, "{number}");
-        for i in 0..2000 {
-            let [u, v] = [f64::from(i) / 2000.0, (f64::from(i) * 0.618_033_988_749).fract()];
-            let wi = etalon_transport::warp::uniform_sphere([u, v]);
-            let look = light.look(wi);
-            if wi.dot(up) >= 0.0 {
-                assert!(look.relative > 0.0 && look.density > 0.0, "{number}: {wi:?} {look:?}");
-            } else {
-                assert_eq!(look.relative, 0.0, "{number}: {wi:?}");
-            }
-        }
     }
 }

@@ -37,5 +37,6 @@ mod rough;
 mod scales;
 mod shading;
 mod shapes;
+mod skies;
 mod specular_connections;
 mod textures;

@@ -41,7 +41,7 @@ fn media_of_mitsuba_arrive() {
     let scene = scene(&imported);
     near(coefficients(scene.medium.as_ref().expect("haze"), 500.0), [0.01, 0.01]);
     let fog = within(&scene, 0);
-    assert_eq!(scene.materials[scene.objects[0].material].kind, MaterialKind::Boundary);
+    assert_eq!(scene.materials[scene.objects[0].material].kind, MaterialKind::Boundary { priority: None });
     near(coefficients(fog, 500.0), [6.0 * 0.2, 6.0 * 0.8]);
     assert_eq!(fog.phase, PhaseFunction::HenyeyGreenstein { g: 0.6 });
     let glass = within(&scene, 1);
@@ -123,6 +123,6 @@ AttributeEnd
         // The world is mirrored, as its camera does not.
         assert_eq!(grid.transform.linear[0][0], -1.0);
     }
-    assert_eq!(scene.materials[scene.objects[0].material].kind, MaterialKind::Boundary);
+    assert_eq!(scene.materials[scene.objects[0].material].kind, MaterialKind::Boundary { priority: None });
     assert_eq!(said(&imported), Vec::<String>::new());
 }

@@ -225,7 +225,8 @@ fn looks() -> Vec<Truth> {
     for (turbidity, (place, toward)) in [2.0, 3.0, 6.0, 3.5].into_iter().zip(places) {
         let sky = Daylight::new(turbidity, sun);
         let meter = json!({ "type": "radiance", "position_m": [0, 0, 0], "direction": toward, "full_angle_deg": 0.01 });
-        let scene = || measured(&[meter.clone()]).light(json!({ "type": "environment", "daylight": sky.json() }));
+        let scene =
+            || measured(std::slice::from_ref(&meter)).light(json!({ "type": "environment", "daylight": sky.json() }));
         let value = sky.luminance(toward) / LUX;
         let zenith = Daylight::new(turbidity + 1.0, sun).luminance(toward) / LUX;
         list.push(

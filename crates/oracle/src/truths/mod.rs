@@ -43,6 +43,7 @@ mod media;
 mod meters;
 mod motion;
 mod named;
+mod nested_media;
 mod polarised;
 mod prisms;
 mod rami;
@@ -344,7 +345,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 39] = [
+const GROUPS: [fn() -> Vec<Truth>; 40] = [
     furnaces::truths,
     beckmann::truths,
     facets::truths,
@@ -381,6 +382,7 @@ const GROUPS: [fn() -> Vec<Truth>; 39] = [
     surfaces::truths,
     translucent::truths,
     media::truths,
+    nested_media::truths,
     meters::truths,
     luminous::truths,
     daylight::truths,

@@ -20,7 +20,7 @@ use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
-use crate::json::{Code, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned};
+use crate::json::{Code, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole};
 use crate::model::{
     FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Medium, Metal, Side,
 };
@@ -266,6 +266,9 @@ crate::record! {
     pub(crate) struct BoundaryMaterial + comment {
         /// What fills the side that the surface normal points away from (the inside of a sphere or a closed mesh).
         medium: Required<Box<MediumForm>>,
+        /// Among closed solids that have one: where several overlap, what has the highest priority fills the place; of equal priorities, the
+        /// object that comes later. The index of refraction is that of the dielectrics among them.
+        priority: Optional<Whole<0, { u32::MAX as u64 }>>,
     }
 }
 
@@ -421,7 +424,8 @@ pub(crate) fn material<'f>(
         MaterialForm::Blend(form) => blend(form, before, spectra, files, reader),
         MaterialForm::Boundary(boundary) => {
             let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;
-            return Some(Made { kind: MaterialKind::Boundary, medium: Some(medium) });
+            let priority = boundary.priority.clone().checked()?.map(|priority| priority.0 as u32);
+            return Some(Made { kind: MaterialKind::Boundary { priority }, medium: Some(medium) });
         }
         MaterialForm::Black(_) => Some(MaterialKind::Black),
     };

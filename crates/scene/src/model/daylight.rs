@@ -101,8 +101,8 @@ impl DaylightSky {
         up.cross(sun).length().atan2(up.dot(sun))
     }
 
-    /// A wavelength in the range, nm, at which the spectrum of some direction is less than this share of its largest value, if there is one. The chromaticities of the model
-    /// leave those of daylight where the sun is low: then spectra have negative values.
+    /// A wavelength in the range, nm, at which the spectrum of some direction is not more than this share of its largest value, if there
+    /// is one. The chromaticities of the model leave those of daylight where the sun is low: then spectra have negative values.
     pub fn dark_nm(&self, range_nm: [f64; 2], share: f64) -> Option<f64> {
         let pattern = self.pattern();
         let [up, sun] = [self.up, self.sun].map(Vec3::from_array);
@@ -120,9 +120,8 @@ impl DaylightSky {
             let [m1, m2] = pattern.look(wi).weights;
             let value = |[s0, s1, s2]: [f64; 3]| s0 + m1 * s1 + m2 * s2;
             let largest = rows.iter().map(|(_, row)| value(*row)).fold(0.0, f64::max);
-            rows.iter()
-                .find(|(_, row)| value(*row).partial_cmp(&(share * largest)) != Some(std::cmp::Ordering::Greater))
-                .map(|(nm, _)| *nm)
+            let is_dark = |value: f64| value.is_nan() || value <= share * largest;
+            rows.iter().find(|(_, row)| is_dark(value(*row))).map(|(nm, _)| *nm)
         })
     }
 }

@@ -207,7 +207,10 @@ pub enum MaterialKind {
         side: Side,
     },
     /// No surface at all, only the boundary of a medium: light passes as if it were not there.
-    Boundary,
+    Boundary {
+        /// Among solids that have one: it then takes part in what fills a place, and the index there is that of the others.
+        priority: Option<u32>,
+    },
     /// Reflects nothing (an emitter that is only a light, an absorber).
     Black,
 }
@@ -291,7 +294,7 @@ macro_rules! parameters {
                 Self::Fluorescent { reflectance, fluorescence } => {
                     vec![$of::Reflectance(reflectance), $of::Fluorescence(fluorescence)]
                 }
-                Self::Blend { .. } | Self::OneSided { .. } | Self::Boundary | Self::Black => Vec::new(),
+                Self::Blend { .. } | Self::OneSided { .. } | Self::Boundary { .. } | Self::Black => Vec::new(),
             });
             parameters.collect()
         }
@@ -299,11 +302,12 @@ macro_rules! parameters {
 }
 
 impl MaterialKind {
-    /// The medium and the priority of the closed solid that it bounds, if it bounds one.
-    pub fn solid(&self) -> Option<(&RefractiveIndex, u32)> {
+    /// The index, if it has one of its own, and the priority of the closed solid that it bounds, if it bounds one.
+    pub fn solid(&self) -> Option<(Option<&RefractiveIndex>, u32)> {
         match self {
             Self::Dielectric { interior, priority: Some(priority), .. }
-            | Self::RoughDielectric { interior, priority: Some(priority), .. } => Some((interior, *priority)),
+            | Self::RoughDielectric { interior, priority: Some(priority), .. } => Some((Some(interior), *priority)),
+            Self::Boundary { priority: Some(priority) } => Some((None, *priority)),
             _ => None,
         }
     }
@@ -324,7 +328,7 @@ impl MaterialKind {
         match self {
             Self::Dielectric { interior, exterior, priority: None, .. }
             | Self::RoughDielectric { interior, exterior, priority: None, .. } => Some([exterior, interior]),
-            Self::Boundary => Some([&RefractiveIndex::VACUUM; 2]),
+            Self::Boundary { priority: None } => Some([&RefractiveIndex::VACUUM; 2]),
             Self::Blend { parts, .. } => {
                 let (_, first) = parts.first()?;
                 let media = first.media()?;

@@ -193,7 +193,8 @@ fn materials_and_spectra() {
         source: Some(Spectrum::blackbody(5000.0, 1e-3).expect("right")),
         density: MediumDensity::Uniform,
     };
-    assert_eq!((medium("cloud"), kind(&scene, "cloud")), (Some(cloud), &MaterialKind::Boundary));
+    assert_eq!(kind(&scene, "drops"), &MaterialKind::Boundary { priority: Some(5) });
+    assert_eq!((medium("cloud"), kind(&scene, "cloud")), (Some(cloud), &MaterialKind::Boundary { priority: None }));
     let air = scene.medium.as_ref().expect("it has one");
     assert_eq!((&air.scattering, &air.phase), (&Spectrum::Constant(1e-5), &PhaseFunction::Rayleigh));
     let exponential = ExponentialDensity { base_m: [0.0, -1.0, 0.0], up: [0.0, 0.0, 1.0], scale_height_m: 8000.0 };

@@ -55,7 +55,7 @@ pub(crate) fn kind(kind: &M, nm: f64, holds_medium: bool) -> bool {
         M::Blend { parts, by } => {
             parts.len() >= 2 && parts.is_sorted_by(|a, b| a.0 < b.0) && (0.0..=1.0).contains(&by.eval([0.3, 0.7]))
         }
-        M::Boundary => holds_medium,
+        M::Boundary { .. } => holds_medium,
         M::Black => true,
         // One side has no sides of its own.
         M::OneSided { .. } => false,

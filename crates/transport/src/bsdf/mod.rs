@@ -143,7 +143,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::Fluorescent { reflectance, .. } => Fluorescent::properties(reflectance),
         MaterialKind::OneSided { kind, .. } => OneSided::properties(properties(kind)),
         MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
-        MaterialKind::Boundary | MaterialKind::Black => {
+        MaterialKind::Boundary { .. } | MaterialKind::Black => {
             Properties { solid_angle: false, dark: true, ..Properties::SOLID_ANGLE }
         }
     }
@@ -206,7 +206,7 @@ impl Bsdf {
             }
             MaterialKind::OneSided { kind, side } => Self::OneSided(OneSided::new(Self::new(kind, range_nm), *side)),
             // Paths pass a boundary before they ask what it does.
-            MaterialKind::Boundary | MaterialKind::Black => Self::Black,
+            MaterialKind::Boundary { .. } | MaterialKind::Black => Self::Black,
         }
     }
 

@@ -190,7 +190,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             };
             transmittance *= self.transmittance(world, &stack, &Way { origin: start, direction: sample.wi, length });
             let Some(met) = met else { return Visibility { share, transmittance: Some(transmittance) } };
-            let opacity = met.surface.opacity(world.geometry, &met.point, &met.hit);
+            let opacity = met.opacity(world);
             if met.point.surface == ray.aims_at || met.hit.t >= arrives && opacity == 1.0 {
                 return Visibility { share, transmittance: Some(transmittance) };
             }

@@ -307,7 +307,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     /// shadow ray would have passed here too.
     #[inline(always)]
     fn passes(&mut self, world: &World<'a>, vertex: &SurfaceInteraction<'a>, sampler: &Sampler) -> bool {
-        let opacity = vertex.surface.opacity(world.geometry, &vertex.point, &vertex.hit);
+        let opacity = vertex.opacity(world);
         if opacity == 1.0 || self.passes == MOST_VERTICES {
             return false;
         }

@@ -163,7 +163,7 @@ impl<'a> Tracer<'a> {
         for _ in 0..MOST_VERTICES {
             let met = self.world.intersect(&ray, &mut walk, &mut stack, counters)?;
             let (hit, point, surface) = (&met.hit, &met.point, &met.surface);
-            let opacity = if self.world.masks { surface.opacity(&self.prepared.geometry, point, hit) } else { 1.0 };
+            let opacity = if self.world.masks { met.opacity(&self.world) } else { 1.0 };
             if u_mask >= opacity {
                 u_mask = (u_mask - opacity) / (1.0 - opacity);
                 walk.pass(&met, &mut stack);

@@ -28,7 +28,7 @@ pub struct SkyLight {
 }
 
 /// Radiance by direction.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Pattern {
     /// Of one colour, relative to the zenith.
     Cie {
@@ -39,7 +39,7 @@ enum Pattern {
         ground: f64,
     },
     /// Of the colours of daylight, relative to the mean daylight of the sky's spectrum.
-    Daylight(DaylightPattern),
+    Daylight(Box<DaylightPattern>),
 }
 
 /// Radiance in a direction, relative to the sky's spectrum.
@@ -113,7 +113,7 @@ impl SkyLight {
 
     /// The light of a sky with the colours of daylight, at wavelengths within `range_nm`.
     pub fn daylight(sky: &DaylightSky, range_nm: [f64; 2]) -> Self {
-        let pattern = Pattern::Daylight(sky.pattern());
+        let pattern = Pattern::Daylight(Box::new(sky.pattern()));
         Self::of_pattern(pattern, Vec3::from_array(sky.up), PathSpectrum::new(&sky.mean, range_nm))
     }
 

@@ -8,6 +8,7 @@
 //! same media. A boundary that does not change the medium is no surface at all: paths and shadow rays go through it, and it
 //! is no vertex. Boundaries of solids may coincide, as where glass holds water. They are met together
 //! ([`interaction`](crate::scene::interaction)), as one interface between the medium before all of them and the medium behind.
+//! The boundary of a medium may carry a priority too. It has no index: at each place that of the dielectrics holds.
 //!
 //! **A dielectric that states both its sides** says it itself: a path that meets it from within has come through its interior, and one
 //! that goes through it goes on in there, or leaves it. What such a body holds is surrounded by its interior as long as it is not itself
@@ -37,7 +38,8 @@ pub const DEPTH: usize = 16;
 #[derive(Clone, Debug)]
 pub(crate) struct Solid {
     pub priority: u32,
-    pub index: RefractiveIndex,
+    /// `None` of the boundary of a medium, which is no surface.
+    pub index: Option<RefractiveIndex>,
     /// What fills it, if that does anything to light.
     pub medium: Option<Medium>,
 }
@@ -156,6 +158,20 @@ impl Media {
         stack.iter().max_by_key(|&place| self.rank(place))
     }
 
+    /// The solid whose index holds at a point: the one that would fill it if there were no boundaries of media.
+    fn refracting(&self, stack: &MediumStack<'_>) -> Option<PlacedSolid> {
+        stack.iter().filter(|&place| self.index(place).is_some()).max_by_key(|&place| self.rank(place))
+    }
+
+    fn index(&self, place: PlacedSolid) -> Option<&RefractiveIndex> {
+        self.solid(place.0)?.index.as_ref()
+    }
+
+    /// Whether the same solid fills two places.
+    pub(crate) fn filled_alike(&self, here: &MediumStack<'_>, there: &MediumStack<'_>) -> bool {
+        self.filling(here) == self.filling(there)
+    }
+
     /// Which of two solids at one place fills it: the greater.
     fn rank(&self, place: PlacedSolid) -> (Option<u32>, PlacedSolid) {
         (self.solid(place.0).map(|solid| solid.priority), place)
@@ -167,9 +183,9 @@ impl Media {
         self.filling(stack).and_then(|place| self.solid(place.0))
     }
 
-    /// The index of what fills a place.
+    /// The index at a place.
     pub(crate) fn medium(&self, stack: &MediumStack<'_>) -> &RefractiveIndex {
-        self.filling_solid(stack).map_or(&VACUUM, |solid| &solid.index)
+        self.refracting(stack).and_then(|place| self.index(place)).unwrap_or(&VACUUM)
     }
 
     /// Whether an object is the boundary of a solid.
@@ -178,10 +194,10 @@ impl Media {
     }
 
     /// The object whose material decides what an interface does, between what holds the path before it and behind it: of the
-    /// solids whose medium lies on either side, and that begin or end here, the one of the highest priority. `None` if the
-    /// medium does not change: there is no interface.
+    /// solids whose index lies on either side, and that begin or end here, the one of the highest priority. `None` if the same
+    /// solid's index holds behind: there is no interface.
     pub(crate) fn deciding(&self, before: &MediumStack<'_>, behind: &MediumStack<'_>) -> Option<Option<u32>> {
-        let (near, far) = (self.filling(before), self.filling(behind));
+        let (near, far) = (self.refracting(before), self.refracting(behind));
         if near == far {
             return None;
         }

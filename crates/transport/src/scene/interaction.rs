@@ -30,6 +30,8 @@ pub(crate) struct SurfaceInteraction<'a> {
     pub interface: Option<Interface<'a>>,
     /// Whether a path that goes on through it crosses boundaries of solids.
     pub crosses: bool,
+    /// Whether it is no surface, only a place where one medium ends and another begins.
+    pub is_open: bool,
     pub kind: BsdfKind,
     /// Whether shadow rays are sent from here.
     pub sees_lights: bool,
@@ -48,6 +50,7 @@ impl<'a> SurfaceInteraction<'a> {
             surface,
             interface: None,
             crosses: false,
+            is_open: false,
             kind: BsdfKind::General,
             sees_lights: false,
             scattering: None,
@@ -70,13 +73,19 @@ impl<'a> SurfaceInteraction<'a> {
         surface: Surface<'a>,
     ) {
         (self.hit, self.point, self.wo, self.surface) = (hit, point, -ray_direction, surface);
-        (self.interface, self.crosses) = (None, false);
+        (self.interface, self.crosses, self.is_open) = (None, false, false);
     }
 
     /// Whether the path met the side that the normal points into.
     #[inline(always)]
     pub(crate) fn meets_front(&self) -> bool {
         self.point.normal.dot(self.wo) > 0.0
+    }
+
+    /// The share of light that meets it.
+    #[inline(always)]
+    pub(crate) fn opacity(&self, world: &World<'a>) -> f64 {
+        if self.is_open { 0.0 } else { self.surface.opacity(world.geometry, &self.point, &self.hit) }
     }
 
     /// Whether a direction leads to the other side of the surface.
@@ -259,17 +268,21 @@ impl<'w> World<'w> {
                 (self.surfaces.placed_solid(&member.point), member.point.normal.dot(ray.direction) < 0.0)
             });
             walk.beyond = stack.crossed(crossings, &mut counters.lost_media);
-            if let Some(deciding) = media.deciding(stack, &walk.beyond) {
+            let deciding = media.deciding(stack, &walk.beyond);
+            let is_open =
+                deciding.is_none() && self.participating.is_some() && !media.filled_alike(stack, &walk.beyond);
+            if is_open || deciding.is_some() {
                 let number = walk.group.iter().position(|member| member.hit == first).expect("it is of its group");
                 let (hit, point) = leaving_group(&walk.group, number);
                 let mut surface = self.surfaces.of(&point);
-                if let Some(object) = deciding {
+                if let Some(Some(object)) = deciding {
                     surface.material = self.surfaces.material_of(object);
                 }
                 let interface = Interface { incident: media.medium(stack), transmitted: media.medium(&walk.beyond) };
                 return Some(SurfaceInteraction {
                     interface: Some(interface),
                     crosses: true,
+                    is_open,
                     ..SurfaceInteraction::new(ray.direction, hit, point, surface)
                 });
             }

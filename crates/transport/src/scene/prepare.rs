@@ -129,7 +129,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     let mut bsdfs: Vec<Bsdf> = scene.materials.iter().map(|material| Bsdf::new(&material.kind, range_nm)).collect();
     if plan.runs(EffectName::NestedDielectrics) {
         let mut media: Vec<RefractiveIndex> = Vec::new();
-        for (index, _) in scene.materials.iter().filter_map(|material| material.kind.solid()) {
+        for index in scene.materials.iter().filter_map(|material| material.kind.solid()?.0) {
             if !media.contains(index) {
                 media.push(index.clone());
             }
@@ -172,7 +172,10 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
                     sides: e.sides,
                     image: e.image.clone(),
                 }),
-                opacity: if scene.materials[o.material].kind == MaterialKind::Boundary { 0.0 } else { o.opacity },
+                opacity: match scene.materials[o.material].kind {
+                    MaterialKind::Boundary { priority: None } => 0.0,
+                    _ => o.opacity,
+                },
                 opacity_image: o.opacity_image.clone(),
                 relief: o.relief.clone().map(|image| Relief { image, per_m: frame.per_m() }),
                 coordinates,
@@ -201,8 +204,9 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     };
     let drawn = matches!(plan.lane_model, LaneModel::Shared | LaneModel::Hero).then_some(&wavelengths);
     let tables = ShadingTables::new(&surfaces, &lights, &environments, drawn, plan.runs(EffectName::Polarisation));
-    let has_boundaries =
-        scene.placed_objects().any(|object| scene.materials[object.material].kind == MaterialKind::Boundary);
+    let has_boundaries = scene
+        .placed_objects()
+        .any(|object| matches!(scene.materials[object.material].kind, MaterialKind::Boundary { .. }));
     let media = plan.runs(EffectName::NestedDielectrics).then(|| media(scene, &frame)).transpose()?;
     Ok(Prepared {
         frame,
@@ -269,7 +273,7 @@ fn media(scene: &Scene, frame: &SceneFrame) -> Result<Media, PrepareError> {
             None => {
                 let medium = scene.materials[object.material].medium.as_ref();
                 let medium = medium.and_then(|medium| Medium::new(medium, range_nm, frame));
-                Ok(Some(Solid { priority, index: index.clone(), medium }))
+                Ok(Some(Solid { priority, index: index.cloned(), medium }))
             }
             Some(why) => Err(PrepareError::OpenSolid { object: object.name.clone(), why }),
         }

@@ -111,7 +111,7 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
         | MaterialKind::RoughDielectric { .. }
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Translucent { .. }
-        | MaterialKind::Boundary
+        | MaterialKind::Boundary { .. }
         | MaterialKind::Black => Vec::new(),
         MaterialKind::PolarisingSheet { sheet, .. } => {
             let weight = match sheet {

@@ -192,7 +192,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
                 weight *= walker.transmittance(world, &walker.stack, &way);
             }
             if world.masks {
-                let opacity = met.surface.opacity(world.geometry, &met.point, &met.hit);
+                let opacity = met.opacity(world);
                 if u_mask >= opacity {
                     u_mask = (u_mask - opacity) / (1.0 - opacity);
                     start = met.point.position;
