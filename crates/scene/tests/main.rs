@@ -7,6 +7,7 @@ mod documentation;
 mod environments;
 mod errors;
 mod luminaires;
+mod media;
 mod meshes;
 mod neighbours;
 mod round_trip;

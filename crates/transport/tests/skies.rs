@@ -84,7 +84,7 @@ fn standard_skies_are_one_at_the_zenith_and_shine_everywhere_above_the_horizon()
     }
 }
 
-/// The sky is bluer away from the sun than at the horizon below it, and of the zenith's colour below the horizon.
+/// The sky is bluer at a right angle to the sun than toward it and at the horizon, and of the zenith's colour below that.
 #[test]
 fn daylight_is_blue_away_from_the_sun_and_shows_its_ground() {
     let Sky { light, .. } = daylight(2.5, 0.25);
@@ -93,8 +93,9 @@ fn daylight_is_blue_away_from_the_sun_and_shows_its_ground() {
         Some(Colour::Daylight([first, _])) => first,
         other => panic!("{other:?}"),
     };
-    let opposite = (up - sun).normalized();
-    assert!(first(opposite) > first(up) && first(up) > first(sun));
+    let at_right_angles = (up - sun * up.dot(sun)).normalized();
+    let level = (sun - up * (up.dot(sun) - 0.02)).normalized();
+    assert!(first(at_right_angles) > first(sun) && first(at_right_angles) > first(level));
     let [zenith, ground] = [up, -up].map(|wi| light.look(wi));
     assert_eq!(ground.colour, zenith.colour);
     assert!((ground.relative / zenith.relative - 0.25).abs() < 1e-14);

@@ -44,6 +44,7 @@ mod meters;
 mod motion;
 mod named;
 mod nested_media;
+mod phase_matrices;
 mod polarised;
 mod prisms;
 mod rami;
@@ -345,7 +346,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 40] = [
+const GROUPS: [fn() -> Vec<Truth>; 41] = [
     furnaces::truths,
     beckmann::truths,
     facets::truths,
@@ -383,6 +384,7 @@ const GROUPS: [fn() -> Vec<Truth>; 40] = [
     translucent::truths,
     media::truths,
     nested_media::truths,
+    phase_matrices::truths,
     meters::truths,
     luminous::truths,
     daylight::truths,

@@ -3,8 +3,7 @@
 use serde_json::{Value, json};
 
 use super::media::{isotropic, medium};
-use super::meters::measured;
-use super::scene::{Scene, black, block, level_square, solid, sphere};
+use super::scene::{Scene, black, block, level_square, shown, solid, sphere};
 use super::{Claim, Truth};
 use crate::laws::fresnel_exact;
 use crate::transfer::{Slab, by_scattering_orders};
@@ -47,7 +46,9 @@ fn absorbing() -> Vec<Truth> {
     let through = |per_m: f64| (-(HAZE * 2.8 + per_m * 1.2)).exp();
     let both = |per_m: f64| (-(HAZE * 4.0 + per_m * 1.2)).exp();
     let truth = |name: &str, parts: [(Value, Value); 2], per_m: f64| {
-        let scene = parts.into_iter().fold(above_a_lamp(0.0), |scene, (shape, material)| scene.object(shape, material));
+        let scene = parts.into_iter().fold(above_a_lamp(0.0), |scene, (shape, material)| {
+            scene.thing(json!({ "shape": shape, "material": material }))
+        });
         Truth::new(name, &scene, through(per_m), format!("e^(−(0.2·2.8 + {per_m}·1.2))"))
             .because("Of media that overlap, the one of the highest priority fills the place, of equal priorities that of the later object.")
             .confirmed("the shares of three layers", 1e-12, move || {
@@ -82,7 +83,7 @@ fn with_glass() -> Vec<Truth> {
         let inside = (1.0 - (sine / 1.5).powi(2)).sqrt();
         let around = (-SMOKE * 3.5 / cosine).exp();
         let scene = above_a_lamp(tilt_deg)
-            .object(slab(-2.0, 2.0), boundary(&clear(SMOKE), 1))
+            .thing(json!({ "shape": slab(-2.0, 2.0), "material": boundary(&clear(SMOKE), 1) }))
             .object(glass.0.clone(), glass.1.clone());
         let truth = Truth::new(
             format!("glass-in-smoke-at-{tilt_deg}-degrees"),
@@ -105,7 +106,9 @@ fn with_glass() -> Vec<Truth> {
     const DARK: f64 = 3.0;
     let r = fresnel_exact(1.0, 1.5).reflectance();
     let tau = (-DARK * 0.3_f64).exp();
-    let scene = above_a_lamp(0.0).object(glass.0, glass.1).object(slab(-0.1, 0.2), boundary(&clear(DARK), 4));
+    let scene = above_a_lamp(0.0)
+        .object(glass.0, glass.1)
+        .thing(json!({ "shape": slab(-0.1, 0.2), "material": boundary(&clear(DARK), 4) }));
     list.push(
         Truth::new("smoke-in-glass", &scene, plate(r, tau), "(1 − R)²τ/(1 − R²τ²), τ = e^(−3·0.3)")
             .because("The boundary of a medium is no surface: where it is in glass, the index is that of the glass.")
@@ -121,22 +124,21 @@ fn with_glass() -> Vec<Truth> {
     list
 }
 
-/// A lamp in a cloud in haze, and a meter outside of both.
+/// A lamp in a cloud in haze, and a plate outside of both.
 fn shadow_ray() -> Truth {
-    // From 0.7 m beyond the cloud's middle to the meter 5 m away: 0.3 m of cloud, then haze up to 3 m, then nothing.
-    let depth = 2.0 * 0.3 + 0.4 * 2.0;
-    let value = 50.0 / 25.0 * f64::exp(-depth);
-    let meter = json!({ "type": "irradiance", "position_m": [0, 0, 5.7], "normal": [0, 0, -1] });
-    let scene = measured(&[meter])
-        .object(sphere([0.0; 3], 1.0), boundary(&clear(2.0), 9))
-        .object(sphere([0.0; 3], 3.0), boundary(&clear(0.4), 3))
-        .point_light([0.0, 0.0, 0.7], 50.0);
-    Truth::new("meter-outside-of-a-cloud-in-haze", &scene, value, "I/d² e^(−(2·0.3 + 0.4·2))")
+    // From 0.7 m below the cloud's middle to the plate 5 m below: 0.3 m of cloud, then haze up to 3 m, then nothing.
+    let at = |cloud: f64, haze: f64| shown(50.0 / 25.0 * f64::exp(-(2.0 * cloud + 0.4 * haze)));
+    let scene = Scene::light_meter()
+        .thing(json!({ "shape": sphere([0.0, 0.0, 5.7], 1.0), "material": boundary(&clear(2.0), 9) }))
+        .thing(json!({ "shape": sphere([0.0, 0.0, 5.7], 3.0), "material": boundary(&clear(0.4), 3) }))
+        .point_light([0.0, 0.0, 5.0], 50.0);
+    Truth::new("plate-below-a-cloud-in-haze", &scene, at(0.3, 2.0), "ρ/π · I/d² e^(−(2·0.3 + 0.4·2))")
         .because("A shadow ray loses in each medium what it absorbs over its part of the way.")
-        .confirmed("the shares of two layers", 1e-12, || 2.0 * f64::exp(-0.6) * f64::exp(-0.8))
-        .or_else("the haze from the lamp on", 2.0 * f64::exp(-0.4 * 2.3))
-        .or_else("the cloud to the end of the haze", 2.0 * f64::exp(-2.0 * 2.3))
-        .or_else("no haze", 2.0 * f64::exp(-0.6))
+        .confirmed("the shares of two layers", 1e-12, || shown(2.0 * f64::exp(-0.6) * f64::exp(-0.8)))
+        .or_else("the haze from the lamp on", at(0.0, 2.3))
+        .or_else("the cloud to the end of the haze", at(2.3, 0.0))
+        .or_else("no haze", at(0.3, 0.0))
+        .allows(1e-6 * at(0.3, 2.0), "the plate is 1 mm wide")
         .sees(0.01)
         .claims(Claim::Absorption)
 }

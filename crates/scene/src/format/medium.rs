@@ -10,7 +10,7 @@ use etalon_optics::Spectrum;
 
 use crate::files::Files;
 use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned};
-use crate::model::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseTable};
+use crate::model::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseMatrix, PhaseTable};
 
 crate::record! {
     /// What fills a space, and what it does to light on its way.
@@ -91,9 +91,25 @@ crate::record! {
     pub(crate) struct TabulatedPhase + comment {
         /// Angles of scattering in degrees, increasing from 0 (forward) to 180 (back).
         angles_deg: Required<Spanned<List<ScatteringAngle>>>,
-        /// Values at these angles, in any unit.
+        /// Values at these angles, in any unit: F₁₁ of the scattering matrix.
         values: Required<Spanned<List<NonNegative>>>,
-    }
+        /// F₁₂ at these angles, in the same unit. Without a matrix, scattered light is unpolarised.
+        f12: Optional<Spanned<List<f64>>>,
+        /// F₃₃.
+        f33: Optional<Spanned<List<f64>>>,
+        /// F₃₄.
+        f34: Optional<Spanned<List<f64>>>,
+        /// F₂₂, of what are no spheres: of these it is F₁₁.
+        f22: Optional<Spanned<List<f64>>>,
+        /// F₄₄, of what are no spheres: of these it is F₃₃.
+        f44: Optional<Spanned<List<f64>>>,
+    } with [
+        Rule::Needs("f12", &["f33", "f34"]),
+        Rule::Needs("f33", &["f12", "f34"]),
+        Rule::Needs("f34", &["f12", "f33"]),
+        Rule::Needs("f22", &["f12"]),
+        Rule::Needs("f44", &["f12"]),
+    ]
 }
 
 crate::variants! {
@@ -241,8 +257,43 @@ fn table(form: &TabulatedPhase, reader: &mut Reader<'_>) -> Option<PhaseTable> {
         180.0 => -1.0,
         other => other.to_radians().cos(),
     };
+    let matrix = matrix(form, &degrees, &numbers, reader)?;
     Some(PhaseTable {
         cosines: degrees.iter().rev().map(|degrees| cosine(*degrees)).collect(),
         values: numbers.into_iter().rev().collect(),
+        matrix,
     })
+}
+
+/// The other elements of a table's matrix, if it has them; all by increasing cosine.
+fn matrix(form: &TabulatedPhase, degrees: &[f64], f11: &[f64], reader: &mut Reader<'_>) -> Option<Option<PhaseMatrix>> {
+    let mut read = |elements: &Optional<Spanned<List<f64>>>| -> Option<Option<Vec<f64>>> {
+        let Some(elements) = elements.clone().checked()? else { return Some(None) };
+        let numbers = elements.value.0.iter().copied().collect::<Option<Vec<_>>>()?;
+        if numbers.len() != degrees.len() {
+            let message = format!("{} angles have {} values", degrees.len(), numbers.len());
+            reader.error(Code::WrongLength, elements.at, message);
+            return None;
+        }
+        Some(Some(numbers))
+    };
+    let elements = [&form.f12, &form.f33, &form.f34, &form.f22, &form.f44].map(&mut read);
+    let [f12, f33, f34, f22, f44] = elements;
+    let (Some(f12), Some(f33), Some(f34)) = (f12?, f33?, f34?) else { return Some(None) };
+    let (f22, f44) = (f22?.unwrap_or_else(|| f11.to_vec()), f44?.unwrap_or_else(|| f33.clone()));
+    // Light cannot be more than wholly polarised, whatever comes in; tables have few digits.
+    const ROUNDED: f64 = 1e-3;
+    for (i, degrees) in degrees.iter().enumerate() {
+        let limit = (f11[i] + f22[i]).powi(2) * (1.0 + ROUNDED);
+        let across = (f33[i] + f44[i]).powi(2) + 4.0 * (f34[i] * f34[i] + f12[i] * f12[i]);
+        let wide = f11[i] * (1.0 + ROUNDED);
+        if across > limit || [f22[i], f33[i], f44[i]].iter().any(|f| f.abs() > wide) {
+            let message = format!("the matrix at {degrees}° makes more polarised light than there is light");
+            let hint = "of spheres, f12² + f33² + f34² is at most the square of the value";
+            reader.error_hint(Code::OutOfRange, form.at.head(), message, hint);
+            return None;
+        }
+    }
+    let turned = |numbers: Vec<f64>| numbers.into_iter().rev().collect();
+    Some(Some(PhaseMatrix { f12: turned(f12), f22: turned(f22), f33: turned(f33), f34: turned(f34), f44: turned(f44) }))
 }

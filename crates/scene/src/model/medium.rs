@@ -86,6 +86,35 @@ pub struct PhaseTable {
     pub cosines: Vec<f64>,
     /// Values there, 0 or above and not all 0, in any unit.
     pub values: Vec<f64>,
+    /// What it does to polarisation; without it, scattered light is unpolarised.
+    pub matrix: Option<PhaseMatrix>,
+}
+
+/// The elements of a scattering matrix beside the first, at the cosines and in the unit of a [`PhaseTable`] (Bohren & Huffman, *Absorption and
+/// Scattering of Light by Small Particles*, 1983, §3.3, §13.6: of particles in any orientation, each with its mirror image): ((F₁₁, F₁₂), (F₁₂, F₂₂)) of I
+/// and Q, ((F₃₃, F₃₄), (−F₃₄, F₄₄)) of U and V. Q is what swings within the plane of scattering less what swings across it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhaseMatrix {
+    /// F₁₂.
+    pub f12: Vec<f64>,
+    /// F₂₂; of spheres F₁₁.
+    pub f22: Vec<f64>,
+    /// F₃₃.
+    pub f33: Vec<f64>,
+    /// F₃₄.
+    pub f34: Vec<f64>,
+    /// F₄₄; of spheres F₃₃.
+    pub f44: Vec<f64>,
+}
+
+impl PhaseTable {
+    /// The largest degree of polarisation that it gives unpolarised light, |F₁₂|/F₁₁, in [0, 1]; 0 without a matrix.
+    pub fn most_polarised(&self) -> f64 {
+        let Some(matrix) = &self.matrix else { return 0.0 };
+        let degrees =
+            self.values.iter().zip(&matrix.f12).filter(|(f11, _)| **f11 > 0.0).map(|(f11, f12)| f12.abs() / f11);
+        degrees.fold(0.0, f64::max)
+    }
 }
 
 impl Medium {

@@ -90,7 +90,8 @@ impl Phase {
     pub(crate) fn mueller<const N: usize>(&self, wo: Vec3<f64>, wi: Vec3<f64>) -> Option<Mueller<N>> {
         let matrix: Matrix = match &self.0 {
             Kind::Rayleigh => rayleigh::mueller(-wo.dot(wi)),
-            Kind::Isotropic | Kind::HenyeyGreenstein(_) | Kind::Double(..) | Kind::Tabulated(_) => return None,
+            Kind::Tabulated(table) => table.mueller(-wo.dot(wi))?,
+            Kind::Isotropic | Kind::HenyeyGreenstein(_) | Kind::Double(..) => return None,
         };
         let across = wo.cross(wi);
         // Straight on or back: any x will do.

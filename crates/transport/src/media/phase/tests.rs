@@ -4,7 +4,7 @@ use super::*;
 use etalon_scene::PhaseTable;
 
 fn all() -> Vec<(Phase, f64)> {
-    let table = PhaseTable { cosines: vec![-1.0, -0.2, 0.5, 1.0], values: vec![2.0, 0.0, 1.0, 5.0] };
+    let table = PhaseTable { cosines: vec![-1.0, -0.2, 0.5, 1.0], values: vec![2.0, 0.0, 1.0, 5.0], matrix: None };
     // ∫c(a + bc) over each piece of the table, over ∫(a + bc).
     let piece = |[c, d]: [f64; 2], [p, q]: [f64; 2]| {
         let b = (q - p) / (d - c);

@@ -58,9 +58,13 @@ pub(super) fn scatters_everywhere(scene: &Scene) -> Option<String> {
 /// The first medium that polarises what it scatters, and by how much it matters: light that is scattered twice by right angles comes through
 /// where the planes of scattering are parallel, and not where they are crossed.
 pub(super) fn polarises(scene: &Scene) -> Option<String> {
-    let polarises = |medium: &Medium, _| {
-        let rayleigh = medium.scatters() && medium.phase == PhaseFunction::Rayleigh;
-        rayleigh.then(|| "by up to a factor of 2 after two scatterings by right angles".to_owned())
+    let polarises = |medium: &Medium, _| match &medium.phase {
+        _ if !medium.scatters() => None,
+        PhaseFunction::Rayleigh => Some("by up to a factor of 2 after two scatterings by right angles".to_owned()),
+        PhaseFunction::Tabulated(table) if table.matrix.is_some() => {
+            Some(format!("scattered light is up to {:.0} % polarised", 100.0 * table.most_polarised()))
+        }
+        _ => None,
     };
     first_medium(scene, polarises)
 }

@@ -1,0 +1,152 @@
+//! Scattering matrices from tables: what polarised light becomes that is scattered once by a right angle.
+//!
+//! Expectations follow the field itself: amplitudes S₁ across the plane of scattering and S₂ within it, of waves e^(−iωt) (Bohren & Huffman
+//! 1983, eq. 3.12). The scene is given the matrix that they make (eq. 3.16).
+
+use std::f64::consts::PI;
+
+use serde_json::{Value, json};
+
+use super::media::{boundary, medium};
+use super::scene::{Scene, block, parallelogram};
+use super::{Claim, Quantity, Truth};
+
+/// A complex number: its real and its imaginary part.
+type Complex = [f64; 2];
+
+fn times([a, b]: Complex, [c, d]: Complex) -> Complex {
+    [a * c - b * d, a * d + b * c]
+}
+
+fn phase(degrees: f64) -> Complex {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    [cos, sin]
+}
+
+/// What scatters: amplitudes at a right angle, and the light that it scatters beside, unpolarised, over F₁₁ of the amplitudes.
+#[derive(Clone, Copy)]
+struct Particle {
+    across: Complex,
+    within: Complex,
+    beside: f64,
+}
+
+impl Particle {
+    /// F₁₁, F₁₂, F₂₂, F₃₃, F₃₄ and F₄₄.
+    fn matrix(&self) -> [f64; 6] {
+        let squared = |z: Complex| z[0] * z[0] + z[1] * z[1];
+        let [s1, s2] = [squared(self.across), squared(self.within)];
+        let product = times(self.across, [self.within[0], -self.within[1]]);
+        let mean = 0.5 * (s1 + s2);
+        [mean * (1.0 + self.beside), 0.5 * (s2 - s1), mean, product[0], -product[1], product[0]]
+    }
+
+    /// A table that has this matrix at a right angle, and passes all light on as it is forward and back.
+    fn table(&self) -> Value {
+        let at = self.matrix();
+        let row = |k: usize, end: f64| json!([end, at[k], end]);
+        json!({
+            "type": "tabulated", "angles_deg": [0, 90, 180], "values": row(0, 1.0), "f12": row(1, 0.0), "f22": row(2, 1.0),
+            "f33": row(3, 1.0), "f34": row(4, 0.0), "f44": row(5, 1.0),
+        })
+    }
+
+    /// The table's value at a right angle, sr⁻¹.
+    fn density(&self) -> f64 {
+        let [f11, ..] = self.matrix();
+        f11 / (2.0 * PI * (1.0 + f11))
+    }
+
+    /// S₀ to S₃ in a picture whose rows lie within the plane of scattering, for light of intensity 1 whose field this is across that plane
+    /// and within it.
+    fn scattered(&self, [across, within]: [Complex; 2]) -> [f64; 4] {
+        // Seen from where it goes, the field within the plane points to the left.
+        let [left, up] = [times(within, self.within), times(across, self.across)];
+        let right = [-left[0], -left[1]];
+        let squared = |z: Complex| z[0] * z[0] + z[1] * z[1];
+        let product = times(right, [up[0], -up[1]]);
+        let [f11, ..] = self.matrix();
+        let mean = f11 / (1.0 + self.beside);
+        [
+            (squared(right) + squared(up) + mean * self.beside) / f11,
+            (squared(right) - squared(up)) / f11,
+            2.0 * product[0] / f11,
+            2.0 * product[1] / f11,
+        ]
+    }
+}
+
+const DEPTH: f64 = 0.5;
+const PER_M: f64 = 0.4;
+/// Sheets before the air, 2 m in size.
+fn sheet(x: f64) -> Value {
+    parallelogram([x, -1.0, -1.25], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0])
+}
+
+pub(super) fn truths() -> Vec<Truth> {
+    let sphere = Particle { across: [1.0, 0.0], within: times([0.6, 0.0], phase(50.0)), beside: 0.0 };
+    let grain = Particle { beside: 0.7, ..sphere };
+    let half = 0.5_f64.sqrt();
+    // Light along x, seen along z. Its field across the plane of scattering lies along y, that within it along z.
+    let slanting = json!({ "type": "polariser", "axis": [0, 1, 1] });
+    let across = json!({ "type": "polariser", "axis": [0, 1, 0] });
+    // It delays what swings within the plane by a quarter of a period.
+    let quarter = json!({ "type": "retarder", "axis": [0, 1, 0], "retardance_deg": 90 });
+    let [one, none, part] = [[1.0, 0.0], [0.0, 0.0], [half, 0.0]];
+    let mut list = Vec::new();
+    for (name, particle, sheets, field) in [
+        (
+            "circular-light-scattered-by-spheres",
+            sphere,
+            vec![quarter, slanting.clone()],
+            [part, times(part, phase(90.0))],
+        ),
+        ("slanting-light-scattered-by-spheres", sphere, vec![slanting.clone()], [part, part]),
+        ("light-across-scattered-by-grains", grain, vec![across], [one, none]),
+        ("slanting-light-scattered-by-grains", grain, vec![slanting], [part, part]),
+    ] {
+        let seen = particle.scattered(field);
+        // Half of the irradiance passes the polariser; the light comes to a slab of endless height through 0.5 m of it.
+        let single = 0.5 * particle.density() * PI * (1.0 - (-PER_M * DEPTH).exp()) * (-PER_M * 0.5_f64).exp();
+        // Two sheets are harder to find a way through than one.
+        let sees = if sheets.len() > 1 { 0.1 } else { 0.05 };
+        let deepest = 2 + sheets.len() as u32;
+        let mut scene = Scene::orthographic([0.0, 0.0, 3.0], [0.0; 3], 1e-3)
+            .thing(json!({
+                "shape": block([-0.5, -0.9, -DEPTH], [0.5, 0.9, 0.0]), "material": boundary(&medium(PER_M, 0.0, &particle.table())),
+            }))
+            .directional_light([1.0, 0.0, 0.0], PI)
+            .depth(deepest)
+            .film(8, 8)
+            .spp(64)
+            .set("film", "stokes", json!(true));
+        for (number, material) in sheets.into_iter().enumerate() {
+            scene = scene.thing(json!({ "shape": sheet(-1.0 - number as f64), "material": material }));
+        }
+        for (k, quantity) in
+            [Quantity::Radiance, Quantity::Stokes1, Quantity::Stokes2, Quantity::Stokes3].into_iter().enumerate()
+        {
+            let value = single * seen[k];
+            if k > 0 && seen[k].abs() < 1e-6 {
+                continue;
+            }
+            let name = if k == 0 { name.to_owned() } else { format!("{name}-s{k}") };
+            let truth = Truth::new(name, &scene, value, "p(90°) E/2 ∫ e^(−σs) σ ds e^(−σa) over the field's S")
+                .because(
+                    "Spheres multiply the field across the plane of scattering and that within it by two complex numbers; grains of any \
+                     orientation add light that is not polarised.",
+                )
+                .reads(quantity)
+                .claims(Claim::CarriesPolarisation)
+                .claims(Claim::SpecularConnections)
+                .claims(Claim::Scattering)
+                .allows(1e-5 * single, "single precision; the picture is 1 mm wide")
+                .sees(sees);
+            list.push(match k {
+                0 => truth.or_else("nothing comes through the sheets", 0.0),
+                _ => truth.or_else("the other sign", -value).or_else("light not polarised", 0.0),
+            });
+        }
+    }
+    list
+}
