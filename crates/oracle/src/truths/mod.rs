@@ -37,6 +37,7 @@ mod irradiance;
 mod judge;
 mod lamps;
 mod lens_tracer;
+mod lit_fog;
 mod luminous;
 mod masks;
 mod media;
@@ -346,7 +347,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 41] = [
+const GROUPS: [fn() -> Vec<Truth>; 42] = [
     furnaces::truths,
     beckmann::truths,
     facets::truths,
@@ -384,6 +385,7 @@ const GROUPS: [fn() -> Vec<Truth>; 41] = [
     translucent::truths,
     media::truths,
     nested_media::truths,
+    lit_fog::truths,
     phase_matrices::truths,
     meters::truths,
     luminous::truths,

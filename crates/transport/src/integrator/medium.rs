@@ -6,7 +6,7 @@ use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::light::Light;
-use crate::media::{Coefficients, Equiangular, Medium, MediumInteraction, Stretch, Way, free_point, optical_depth};
+use crate::media::{Coefficients, LitPart, Medium, MediumInteraction, Stretch, Way, free_point, optical_depth};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::SurfaceInteraction;
@@ -48,7 +48,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         // Sets from the other end than those of surfaces, which are what they are without media.
         let [coarse, fine, u_light, u_place] = sampler.set(u32::MAX - self.vertex);
         let lit = MediumWay { medium, coefficients, way, unit_m: participating.unit_m };
-        if world.point_lights && self.vertex + 1 < world.max_depth {
+        if world.lights_parts && self.vertex + 1 < world.max_depth {
             self.add_light_beside(world, &lit, ray, [u_light, u_place], counters, observer);
         }
         let depth = self.optical_depth.get_or_insert_with(|| optical_depth([coarse, fine]));
@@ -83,7 +83,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let position = way.origin + way.direction * distance;
         // Boundaries that change no medium may lie between the place and what the ray has met.
         let stack = self.walk.media_before((position - ray.origin).length()).unwrap_or(self.stack);
-        let density = if world.point_lights { self.lanes.mean_density(lit.scattered_at(distance)) } else { 0.0 };
+        let density = if world.lights_parts { self.lanes.mean_density(lit.scattered_at(distance)) } else { 0.0 };
         MediumInteraction {
             point: free_point(position, ray.time),
             wo: -ray.direction,
@@ -95,8 +95,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
     }
 
-    /// Adds the light of a point lamp that a place of the way sends on toward the path's origin. The place is chosen by the angle at which the
-    /// lamp sees it. The balance heuristic weighs it against places where the path is scattered.
+    /// Adds the light of a lamp without area that a place of the way sends on toward the path's origin. The place is chosen where the lamp
+    /// shines. The balance heuristic weighs it against places where the path is scattered.
     fn add_light_beside(
         &mut self,
         world: &World<'a>,
@@ -117,9 +117,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             return;
         };
         let phase = vertex.medium.phase.density(-vertex.wo.dot(sample.wi));
-        let by_angle = probability * seen.density(distance);
+        let by_lamp = probability * seen.density(distance);
         let by_scattering = vertex.density * world.lights.probability(light, vertex.point.position);
-        let weight = sample.scale / (by_angle + by_scattering);
+        let weight = sample.scale / (by_lamp + by_scattering);
         let f_cos = lit.scattered_toward(distance) * phase;
         if f_cos.is_zero() {
             return;
@@ -176,11 +176,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let mut weight = light_weight(world.light_sampling, sample.density, sample.scale, *probability, density);
         let lamp = &world.lights.lights()[*light as usize];
         let coefficients = || vertex.medium.coefficients(&self.wavelengths.lambda_nm);
-        if let (true, Some(participating)) = (lamp.position().is_some(), &world.participating)
+        if let (true, Some(participating)) = (lamp.lights_parts(), &world.participating)
             && let Some(seen) = beside(lamp, &coefficients(), &vertex.way, participating.unit_m)
         {
-            let by_angle = world.lights.probability(*light as usize, vertex.way.origin) * seen.density(vertex.distance);
-            weight /= 1.0 + by_angle / (vertex.density * probability);
+            let by_lamp = world.lights.probability(*light as usize, vertex.way.origin) * seen.density(vertex.distance);
+            weight /= 1.0 + by_lamp / (vertex.density * probability);
         }
         (density > 0.0).then(|| NextEvent { f_cos: Lanes::splat(density), weight })
     }
@@ -214,16 +214,11 @@ impl<const N: usize> MediumWay<'_, N> {
     }
 }
 
-/// A way as a point lamp sees it that is not too deep in the medium: light that is scattered too often to come from there is found as well
-/// without its place.
-fn beside<const N: usize>(
-    light: &Light,
-    coefficients: &Coefficients<N>,
-    way: &Way,
-    unit_m: f64,
-) -> Option<Equiangular> {
-    /// Optical depth between the lamp and the way.
+/// The part of a way that a lamp without area lights, if it is not too deep in the medium: light that is scattered too often to come from
+/// there is found as well without its place.
+fn beside<const N: usize>(light: &Light, coefficients: &Coefficients<N>, way: &Way, unit_m: f64) -> Option<LitPart> {
+    /// Optical depth between the lamp and the way, or in a beam along the way.
     const DEEPEST: f64 = 4.0;
-    let seen = Equiangular::new(way, light.position()?)?;
-    (coefficients.extinction.max_lane() * seen.beside() * unit_m < DEEPEST).then_some(seen)
+    let lit = LitPart::new(light, way)?;
+    (coefficients.extinction.max_lane() * lit.beside() * unit_m < DEEPEST).then_some(lit)
 }

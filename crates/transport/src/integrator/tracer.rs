@@ -5,6 +5,7 @@ use crate::film::{Counters, PixelRect};
 use crate::integrator::observer::{End, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{MOST_VERTICES, Path, Start, trace};
+use crate::light::Light;
 use crate::media::MediumStack;
 use crate::plan::EffectName;
 use crate::polarisation::Polarisation;
@@ -93,8 +94,8 @@ impl<'a> Tracer<'a> {
                 masks,
                 meets_groups: masks || media.is_some(),
                 moves: plan.runs(EffectName::Motion),
-                point_lights: prepared.shadow_rays() != ShadowRays::Never
-                    && prepared.lights.lights().iter().any(|light| light.position().is_some()),
+                lights_parts: prepared.shadow_rays() != ShadowRays::Never
+                    && prepared.lights.lights().iter().any(Light::lights_parts),
                 weigh_hits: prepared.lights.can_be_met() || plan.runs(EffectName::Mis),
                 max_depth: max_depth.min(MOST_VERTICES),
                 roulette: integrator.roulette,

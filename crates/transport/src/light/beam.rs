@@ -4,8 +4,10 @@
 //! ray at the angle α to the axis brings E/cos α to a surface at right angles to it, so that the flux through every such plane is Φ. Rays
 //! do not diffract: far from its waist, this is the beam of a laser.
 
+use super::cone::Cone;
 use super::{LightSample, LightSource, Source, Target};
 use crate::frame::SceneFrame;
+use crate::media::Way;
 use crate::mis::Density;
 use crate::spectral::PathSpectrum;
 use etalon_geometry::{Ray, SurfaceId};
@@ -15,6 +17,9 @@ use std::f64::consts::PI;
 
 /// 2r²/w² at which a Gaussian profile ends: −ln 1e-12.
 const LARGEST_EXPONENT: f64 = 27.631_021_115_928_547;
+
+/// Radii of a Gaussian beam within which 99 % of its light are.
+const MOST_OF_A_GAUSSIAN: f64 = 1.5;
 
 /// A beam.
 #[derive(Clone, Debug)]
@@ -102,6 +107,15 @@ impl LightSource for BeamLight {
             true => Source::Point(self.position - self.axis * (self.radius / self.tangent)),
             false => Source::Direction(-self.axis),
         })
+    }
+
+    fn lit_part(&self, way: &Way) -> Option<[f64; 2]> {
+        let wide = match self.profile {
+            BeamProfile::Uniform => 1.0,
+            BeamProfile::Gaussian => MOST_OF_A_GAUSSIAN,
+        };
+        let (radius, tangent) = (wide * self.radius, wide * self.tangent);
+        Cone { position: self.position, axis: self.axis, radius, tangent }.part(way)
     }
 
     fn spectrum(&self) -> &PathSpectrum {

@@ -5,6 +5,7 @@
 
 mod area;
 mod beam;
+mod cone;
 mod directional;
 mod environment;
 mod luminaire;
@@ -30,6 +31,7 @@ pub(crate) use moving::Link;
 pub(crate) use table::{visible_sum, weighted_sum};
 
 use crate::frame::SceneFrame;
+use crate::media::Way;
 use crate::mis::Density;
 use crate::spectral::{Colour, PathSpectrum};
 use etalon_geometry::SurfaceId;
@@ -134,6 +136,11 @@ trait LightSource {
         self.position().map(Source::Point)
     }
 
+    /// The part of a way that its light comes to, as distances along it, if it has no area and begins somewhere.
+    fn lit_part(&self, way: &Way) -> Option<[f64; 2]> {
+        self.position().map(|_| [0.0, way.length])
+    }
+
     /// Where it is and where it shines, with a power of 1; `None` if it is nowhere, or not always at one place.
     fn bounds(&self) -> Option<LightBounds> {
         None
@@ -209,6 +216,16 @@ impl Light {
     #[inline]
     pub(crate) fn position(&self) -> Option<Vec3<f64>> {
         each!(self, light => LightSource::position(light))
+    }
+
+    /// The part of a way that its light comes to, as distances along it, if it has no area and begins somewhere.
+    pub(crate) fn lit_part(&self, way: &Way) -> Option<[f64; 2]> {
+        each!(self, light => LightSource::lit_part(light, way))
+    }
+
+    /// Whether ways have a part that its light comes to: see [`Light::lit_part`].
+    pub(crate) fn lights_parts(&self) -> bool {
+        self.position().is_some() || matches!(self, Self::Beam(_))
     }
 
     /// Where its light comes from, if it has no area.

@@ -3,8 +3,10 @@
 //! I(θ) = I₀·(3x² − 2x³) with x = (cos θ − cos θ_outer)/(cos θ_inner − cos θ_outer) cut to [0, 1]: I₀ within the inner angle,
 //! nothing beyond the outer. Its power is 2πI₀·(1 − ½cos θ_inner − ½cos θ_outer).
 
+use super::cone::Cone;
 use super::tree::LightBounds;
 use super::{LightSample, LightSource, PointLight};
+use crate::media::Way;
 use crate::spectral::PathSpectrum;
 use etalon_optics::Vec3;
 
@@ -53,6 +55,15 @@ impl LightSource for SpotLight {
 
     fn position(&self) -> Option<Vec3<f64>> {
         Some(self.point.position)
+    }
+
+    fn lit_part(&self, way: &Way) -> Option<[f64; 2]> {
+        let [_, outer] = self.cosines;
+        if outer <= 0.0 {
+            return Some([0.0, way.length]);
+        }
+        let tangent = ((1.0 - outer) * (1.0 + outer)).sqrt() / outer;
+        Cone { position: self.point.position, axis: self.axis, radius: 0.0, tangent }.part(way)
     }
 
     fn bounds(&self) -> Option<LightBounds> {

@@ -19,8 +19,8 @@ pub(crate) struct Equiangular {
 }
 
 impl Equiangular {
-    /// `None` where the point lies on the way's line, or sees it at no angle.
-    pub(crate) fn new(way: &Way, point: Vec3<f64>) -> Option<Self> {
+    /// The part of a way between two distances; `None` where the point lies on its line, or sees it at no angle.
+    pub(crate) fn new(way: &Way, [from, to]: [f64; 2], point: Vec3<f64>) -> Option<Self> {
         let toward = point - way.origin;
         let nearest = toward.dot(way.direction);
         let beside = (toward - way.direction * nearest).length();
@@ -31,7 +31,7 @@ impl Equiangular {
             true => 0.25,
             false => atan2_turns(distance - nearest, beside),
         };
-        let ends = [angle(0.0), angle(way.length)];
+        let ends = [angle(from), angle(to)];
         (ends[1] > ends[0]).then_some(Self { nearest, beside, ends })
     }
 
@@ -65,7 +65,7 @@ mod tests {
         let point = Vec3::new(0.5, -0.2, 0.3);
         for length in [2.0, f64::INFINITY] {
             let way = Way { origin: Vec3::new(0.1, 0.2, -0.5), direction, length };
-            let seen = Equiangular::new(&way, point).expect("it is beside the way");
+            let seen = Equiangular::new(&way, [0.0, length], point).expect("it is beside the way");
             // The share of the light before the distance that is drawn by u is u.
             let mut share = 0.0;
             let mut at = 0.0;
@@ -80,6 +80,6 @@ mod tests {
             }
         }
         let on_the_line = Way { origin: point, direction, length: 1.0 };
-        assert!(Equiangular::new(&on_the_line, point).is_none());
+        assert!(Equiangular::new(&on_the_line, [0.0, 1.0], point).is_none());
     }
 }

@@ -27,8 +27,8 @@ pub(crate) struct World<'a> {
     pub meets_groups: bool,
     /// Whether something moves while the shutter is open.
     pub moves: bool,
-    /// Whether shadow rays are sent to lamps that are points.
-    pub point_lights: bool,
+    /// Whether shadow rays are sent to lamps without area of which ways through media have a lit part.
+    pub lights_parts: bool,
     /// Whether light that the walk runs into may have been found by a shadow ray too.
     pub weigh_hits: bool,
     /// Most path edges from the camera to a light, at most [`MOST_VERTICES`](crate::integrator::MOST_VERTICES).

@@ -1,0 +1,127 @@
+//! Fog in beams and in the light of spots: what one ray through them shows of light that is scattered once.
+
+use std::f64::consts::PI;
+
+use serde_json::{Value, json};
+
+use super::media::{isotropic, medium};
+use super::scene::Scene;
+use super::{Claim, Truth};
+use crate::quadrature::interval;
+use crate::vector::{Vec3, dot, length, normalize, scale, sub};
+
+/// 1/m.
+const SCATTERING: f64 = 0.08;
+const ABSORPTION: f64 = 0.04;
+const EYE_M: f64 = 3.0;
+
+/// A lamp in the fog: its form, and the fluence per area that it brings to a place without fog, with the way to there.
+struct Lamp {
+    name: &'static str,
+    form: Value,
+    brings: Box<dyn Fn(Vec3) -> [f64; 2] + Send + Sync>,
+    /// Heights of the ray between which there is light, m.
+    lit: [f64; 2],
+}
+
+impl Lamp {
+    /// L = ∫ σₛ/4π · E e^(−σ(s + d)) ds along a ray that comes down from the eye.
+    fn seen(&self, share: impl Fn(f64) -> f64) -> f64 {
+        let [first, last] = self.lit;
+        let extinction = SCATTERING + ABSORPTION;
+        let along = |z: f64| {
+            let [brought, way] = (self.brings)([0.0, 0.0, z]);
+            SCATTERING / (4.0 * PI) * brought * (-extinction * (way + EYE_M - z)).exp() * share(z)
+        };
+        interval(along, first, last, 1e-9).value
+    }
+
+    /// The same by midpoints.
+    fn seen_by_midpoints(&self) -> f64 {
+        let [first, last] = self.lit;
+        let extinction = SCATTERING + ABSORPTION;
+        let steps = 200_000;
+        let step = (last - first) / f64::from(steps);
+        let at = |i: u32| first + (f64::from(i) + 0.5) * step;
+        let value = |z: f64| {
+            let [brought, way] = (self.brings)([0.0, 0.0, z]);
+            brought * (-extinction * (way + EYE_M - z)).exp()
+        };
+        SCATTERING / (4.0 * PI) * step * (0..steps).map(|i| value(at(i))).sum::<f64>()
+    }
+
+    fn truth(self) -> Truth {
+        let scene = Scene::orthographic([0.0, 0.0, EYE_M], [0.0; 3], 1e-3)
+            .whole("medium", medium(SCATTERING, ABSORPTION, &isotropic()))
+            .light(self.form.clone())
+            .depth(2)
+            .spp(256);
+        let value = self.seen(|_| 1.0);
+        let [first, last] = self.lit;
+        let middle = 0.5 * (first + last);
+        let half = self.seen(|z| if z > middle { 1.0 } else { 0.0 });
+        let clear = self.seen(|z| ((SCATTERING + ABSORPTION) * (EYE_M - z)).exp());
+        Truth::new(self.name, &scene, value, "∫ σₛ/4π E e^(−σ(s + d)) ds")
+            .because("Fog that scatters once sends 1/4π of what it takes from each beam of light into each direction.")
+            .confirmed("midpoints along the ray", 1e-6, move || self.seen_by_midpoints())
+            .or_else("half of the light's width", half)
+            .or_else("no fog before the eye", clear)
+            .sees(0.02)
+            .allows(2e-5 * value, "single precision; the picture is 1 mm wide")
+            .claims(Claim::Scattering)
+    }
+}
+
+/// A beam of the power 1 W/nm: where its aperture is, its axis, radius, tangent, and whether it is Gaussian.
+fn beam(name: &'static str, position: Vec3, axis: Vec3, [radius, half_angle_deg]: [f64; 2], gaussian: bool) -> Lamp {
+    let axis = normalize(axis);
+    let tangent = half_angle_deg.to_radians().tan();
+    let brings = move |place: Vec3| {
+        let from = sub(place, position);
+        let depth = dot(from, axis);
+        let across = sub(from, scale(depth, axis));
+        let width = radius + depth * tangent;
+        let squared = dot(across, across) / (width * width);
+        let profile = match gaussian {
+            true => 2.0 * (-2.0 * squared).exp(),
+            false if squared <= 1.0 => 1.0,
+            false => 0.0,
+        };
+        // The ray left the aperture nearer to the axis, by as much as the beam was narrower.
+        let way = length(sub(from, scale(radius / width, across)));
+        [profile / (PI * width * width) * way / depth, way]
+    };
+    let form = json!({
+        "type": "beam", "position_m": position, "direction": axis, "radius_m": radius, "half_angle_deg": half_angle_deg,
+        "profile": if gaussian { "gaussian" } else { "uniform" }, "power": 1,
+    });
+    // Across the axis of an even beam, exactly; of a Gaussian one, as far as there is anything.
+    let lit = if gaussian { [-2.5, 2.5] } else { [-radius, radius] };
+    Lamp { name, form, brings: Box::new(brings), lit }
+}
+
+fn spot() -> Lamp {
+    let position = [-2.0, 0.2, 0.3];
+    let axis = normalize([1.0, 0.0, -0.1]);
+    let [inner, outer] = [8.0_f64, 20.0].map(|degrees| degrees.to_radians().cos());
+    let brings = move |place: Vec3| {
+        let way = sub(place, position);
+        let distance = length(way);
+        let x = ((dot(way, axis) / distance - outer) / (inner - outer)).clamp(0.0, 1.0);
+        [5.0 * x * x * (3.0 - 2.0 * x) / (distance * distance), distance]
+    };
+    let form = json!({
+        "type": "spot", "position_m": position, "direction": axis, "inner_half_angle_deg": 8, "half_angle_deg": 20, "intensity": 5,
+    });
+    Lamp { name: "fog-in-a-spot", form, brings: Box::new(brings), lit: [-1.2, 1.4] }
+}
+
+pub(super) fn truths() -> Vec<Truth> {
+    [
+        beam("fog-in-a-beam", [-2.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.2, 0.0], false),
+        beam("fog-in-a-gaussian-beam-that-widens", [-1.5, 0.1, -0.5], [1.0, 0.0, 0.3], [0.1, 3.0], true),
+        spot(),
+    ]
+    .map(Lamp::truth)
+    .into()
+}
