@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::media::{isotropic, medium};
-use super::scene::Scene;
+use super::scene::{Scene, block, glass, triangular_prism};
 use super::{Claim, Truth};
+use crate::laws::fresnel_exact;
 use crate::quadrature::interval;
 use crate::vector::{Vec3, dot, length, normalize, scale, sub};
 
@@ -22,6 +23,8 @@ struct Lamp {
     brings: Box<dyn Fn(Vec3) -> [f64; 2] + Send + Sync>,
     /// Heights of the ray between which there is light, m.
     lit: [f64; 2],
+    /// A body of glass that the light goes through first.
+    through: Option<Value>,
 }
 
 impl Lamp {
@@ -54,21 +57,30 @@ impl Lamp {
         let scene = Scene::orthographic([0.0, 0.0, EYE_M], [0.0; 3], 1e-3)
             .whole("medium", medium(SCATTERING, ABSORPTION, &isotropic()))
             .light(self.form.clone())
-            .depth(2)
             .spp(256);
+        // Both faces of a body are met.
+        let scene = match &self.through {
+            Some(shape) => scene.object(shape.clone(), glass(INDEX)).depth(4).film(8, 8),
+            None => scene.depth(2),
+        };
+        let passes = self.through.is_some();
         let value = self.seen(|_| 1.0);
         let [first, last] = self.lit;
         let middle = 0.5 * (first + last);
         let half = self.seen(|z| if z > middle { 1.0 } else { 0.0 });
         let clear = self.seen(|z| ((SCATTERING + ABSORPTION) * (EYE_M - z)).exp());
-        Truth::new(self.name, &scene, value, "∫ σₛ/4π E e^(−σ(s + d)) ds")
+        let truth = Truth::new(self.name, &scene, value, "∫ σₛ/4π E e^(−σ(s + d)) ds")
             .because("Fog that scatters once sends 1/4π of what it takes from each beam of light into each direction.")
             .confirmed("midpoints along the ray", 1e-6, move || self.seen_by_midpoints())
             .or_else("half of the light's width", half)
             .or_else("no fog before the eye", clear)
-            .sees(0.02)
+            .sees(if passes { 0.1 } else { 0.02 })
             .allows(2e-5 * value, "single precision; the picture is 1 mm wide")
-            .claims(Claim::Scattering)
+            .claims(Claim::Scattering);
+        match passes {
+            true => truth.claims(Claim::SpecularConnections).claims(Claim::AveragesPolarisation),
+            false => truth,
+        }
     }
 }
 
@@ -97,7 +109,7 @@ fn beam(name: &'static str, position: Vec3, axis: Vec3, [radius, half_angle_deg]
     });
     // Across the axis of an even beam, exactly; of a Gaussian one, as far as there is anything.
     let lit = if gaussian { [-2.5, 2.5] } else { [-radius, radius] };
-    Lamp { name, form, brings: Box::new(brings), lit }
+    Lamp { name, form, brings: Box::new(brings), lit, through: None }
 }
 
 fn spot() -> Lamp {
@@ -113,14 +125,55 @@ fn spot() -> Lamp {
     let form = json!({
         "type": "spot", "position_m": position, "direction": axis, "inner_half_angle_deg": 8, "half_angle_deg": 20, "intensity": 5,
     });
-    Lamp { name: "fog-in-a-spot", form, brings: Box::new(brings), lit: [-1.2, 1.4] }
+    Lamp { name: "fog-in-a-spot", form, brings: Box::new(brings), lit: [-1.2, 1.4], through: None }
+}
+
+/// Radius of the beams that go through glass, and its index.
+const RADIUS_M: f64 = 0.05;
+const INDEX: f64 = 1.5;
+
+/// A beam that has gone through glass on its way of so many metres in fog, which passed this share of it.
+fn behind(name: &'static str, shape: Value, [position, axis]: [Vec3; 2], share: f64, way_m: f64) -> Lamp {
+    let form = json!({ "type": "beam", "position_m": position, "direction": axis, "radius_m": RADIUS_M, "power": 1 });
+    let brought = share / (PI * RADIUS_M * RADIUS_M);
+    Lamp { name, form, brings: Box::new(move |_| [brought, way_m]), lit: [-RADIUS_M, RADIUS_M], through: Some(shape) }
+}
+
+/// A plate that is met head-on, and a prism that turns the beam as little as it can: then the beam stays round.
+fn behind_glass() -> [Lamp; 2] {
+    let head_on = fresnel_exact(1.0, INDEX).transmittance();
+    let plate = block([-1.0, -1.0, -1.0], [-0.8, 1.0, 1.0]);
+    // Within the prism light goes along x, at 30° to the normals of both faces.
+    let outside = (0.5 * INDEX).asin();
+    let turned = outside - 30_f64.to_radians();
+    let (sin, cos) = turned.sin_cos();
+    // Faces are met at (∓0.25 m, 0); the eye's ray is 0.8 m behind the second. It is the origin.
+    let [x, y] = [0.25 + 0.8 * cos, -0.8 * sin];
+    let height = 0.75_f64.sqrt();
+    let corners = [[-0.5, -0.5 * height], [0.5, -0.5 * height], [0.0, 0.5 * height]].map(|[u, v]| [u - x, v - y]);
+    let entered = [-0.25 - x, -y];
+    let position = [entered[0] - cos, entered[1] - sin, 0.0];
+    let share = fresnel_exact(outside.cos(), INDEX).transmittance();
+    [
+        behind("fog-behind-a-plate", plate, [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]], head_on * head_on, 1.8),
+        behind(
+            "fog-behind-a-prism",
+            triangular_prism(corners, [-0.5, 0.5]),
+            [position, [cos, sin, 0.0]],
+            share * share,
+            1.8,
+        ),
+    ]
 }
 
 pub(super) fn truths() -> Vec<Truth> {
+    let [plate, prism] = behind_glass();
     [
         beam("fog-in-a-beam", [-2.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.2, 0.0], false),
         beam("fog-in-a-gaussian-beam-that-widens", [-1.5, 0.1, -0.5], [1.0, 0.0, 0.3], [0.1, 3.0], true),
         spot(),
+        plate,
+        prism,
     ]
     .map(Lamp::truth)
     .into()

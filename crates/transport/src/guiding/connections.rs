@@ -56,6 +56,11 @@ impl SpecularConnections {
         Some(Self { lights: table(deltas), numbers, bodies, reach })
     }
 
+    /// Whether there are beams among the lamps.
+    pub(crate) fn has_beams(&self) -> bool {
+        self.lights.lights().iter().any(|light| matches!(light, Light::Beam(_)))
+    }
+
     /// A direction from a point by which a search may begin: straight toward the lamp, toward a body, or any.
     pub(crate) fn direction(&self, from: Vec3<f64>, source: &Source, u: &SeedNumbers) -> Vec3<f64> {
         match (u.kind, self.body(u)) {

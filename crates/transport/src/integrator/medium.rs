@@ -1,6 +1,7 @@
 //! Paths in media: the way along a ray, and the step that the walk takes where a medium scatters it.
 
 use super::path::Step;
+use super::specular::PassedBeams;
 use super::{LightDraw, NextEvent, Path, light_weight};
 use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
@@ -51,6 +52,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if world.lights_parts && self.vertex + 1 < world.max_depth {
             self.add_light_beside(world, &lit, ray, [u_light, u_place], counters, observer);
         }
+        let mut beams = PassedBeams::default();
+        if let Some(connections) = world.specular_connections.filter(|connections| connections.has_beams())
+            && self.vertex + 2 < world.max_depth
+        {
+            beams = self.passed_beams(world, connections, &lit, ray, sampler, counters);
+            self.connect_in_beam(world, connections, (&lit, &beams), ray, sampler, counters, observer);
+        }
         let depth = self.optical_depth.get_or_insert_with(|| optical_depth([coarse, fine]));
         match Stretch::follow(&lit.coefficients, column_m, depth) {
             Stretch::Passed { weight, lane_density } => {
@@ -60,7 +68,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             }
             Stretch::Scattered { column_m, weight, lane_density } => {
                 let distance = medium.distance(&way, column_m / participating.unit_m);
-                let vertex = self.medium_interaction(world, &lit, ray, distance);
+                let mut vertex = self.medium_interaction(world, &lit, ray, distance);
+                vertex.density_of_beams = beams.density(distance);
                 self.beta *= weight;
                 self.lanes.follow(lane_density);
                 self.stack = vertex.stack;
@@ -72,7 +81,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     }
 
     /// The place at a distance along a way.
-    fn medium_interaction(
+    pub(super) fn medium_interaction(
         &self,
         world: &World<'a>,
         lit: &MediumWay<'a, N>,
@@ -92,6 +101,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             way,
             distance,
             density,
+            density_of_beams: 0.0,
         }
     }
 
@@ -150,7 +160,12 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             {
                 self.add_light(world, vertex, &draw, &next, &visible, observer);
             }
+            let beta = self.beta;
+            if vertex.density_of_beams > 0.0 {
+                self.beta *= vertex.density / (vertex.density + vertex.density_of_beams);
+            }
             self.connect(world, vertex, sampler, counters, observer);
+            self.beta = beta;
         }
         let [_, u1, u2, u_roulette] = sampler.vertex_set(self.vertex, 0);
         // The phase function over its own density: throughput stays as it is.
@@ -187,10 +202,10 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 }
 
 /// A way through a medium that scatters.
-struct MediumWay<'a, const N: usize> {
+pub(in crate::integrator) struct MediumWay<'a, const N: usize> {
     medium: &'a Medium,
     coefficients: Coefficients<N>,
-    way: Way,
+    pub(super) way: Way,
     /// Metres in a unit of the frame.
     unit_m: f64,
 }
@@ -209,7 +224,7 @@ impl<const N: usize> MediumWay<'_, N> {
     }
 
     /// The share of light that a unit's length scatters at a distance and that comes to the beginning.
-    fn scattered_toward(&self, distance: f64) -> Lanes<f64, N> {
+    pub(super) fn scattered_toward(&self, distance: f64) -> Lanes<f64, N> {
         self.through(distance) * self.coefficients.scattering
     }
 }

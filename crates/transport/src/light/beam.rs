@@ -63,6 +63,18 @@ impl BeamLight {
         Ray::free(self.position + across * self.radius, direction / direction.length())
     }
 
+    /// The part of a way that the beam lights after mirrors and glass have sent its middle ray on along `passed`; nearly, since glass
+    /// stretches beams.
+    pub(crate) fn passed_part(&self, passed: &Ray<f64>, way: &Way) -> Option<[f64; 2]> {
+        /// So much wider, and a tangent more.
+        const STRETCHED: f64 = 2.0;
+        const SPREADS: f64 = 1e-3;
+        let depth = (passed.origin - self.position).length();
+        let radius = STRETCHED * (self.radius + depth * self.tangent);
+        let tangent = STRETCHED * self.tangent + SPREADS;
+        Cone { position: passed.origin, axis: passed.direction, radius, tangent }.part(way)
+    }
+
     /// p at a squared distance from the axis, in units of the squared radius.
     fn share(&self, squared: f64) -> f64 {
         match self.profile {

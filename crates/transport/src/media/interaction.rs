@@ -20,6 +20,8 @@ pub(crate) struct MediumInteraction<'a> {
     pub distance: f64,
     /// The density with which the path is scattered there, the mean over the lanes, per unit of the frame; 0 where no lamp is a point.
     pub density: f64,
+    /// The density with which a place there is chosen for the light of beams behind mirrors and glass.
+    pub density_of_beams: f64,
 }
 
 /// A point of no surface.

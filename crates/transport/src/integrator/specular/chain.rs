@@ -36,6 +36,8 @@ pub(super) struct Chain<'c, 'a, V, M, P, const N: usize> {
     numbers: NumberStream,
     /// Vertices that it may have.
     most: u32,
+    /// Whether it is refracted wherever it can be, whatever the numbers say.
+    refracts: bool,
 }
 
 /// What a lamp of unit spectrum sends along a chain to the camera.
@@ -88,7 +90,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         }
         // Edges of the path: to this vertex, to each of the chain, and to the lamp.
         let most = most.min(world.max_depth.saturating_sub(path.vertex + 2));
-        Self { world, vertex, path, walker, numbers, most }
+        Self { world, vertex, path, walker, numbers, most, refracts: false }
     }
 
     /// Follows the chain that begins in a direction. `each` hears of its vertices, and says whether to go on.
@@ -119,6 +121,22 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             ray = self.go_on(&vertex, direction, u_lobe);
         }
         last
+    }
+
+    /// The ray on which a ray of a lamp leaves the last mirror or interface that it meets, refracted wherever it can be; `None` if it meets none.
+    pub(super) fn passed(&mut self, ray: &Ray<f64>, counters: &mut Counters) -> Option<Ray<f64>> {
+        let mut ray = Ray { time: self.vertex.point().time, ..*ray };
+        self.begin(ray.direction);
+        self.walker.stack = self.world.media_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
+        self.refracts = true;
+        let mut passed = None;
+        for number in 0..self.most {
+            let Some(ChainVertex { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { break };
+            ray = self.go_on(&vertex, direction, u_lobe);
+            passed = Some(ray);
+        }
+        self.refracts = false;
+        passed
     }
 
     /// What comes along a root's chain; `None` if nothing comes through.
@@ -179,8 +197,11 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
 
     /// The mirror or smooth interface that the ray meets next; `None` if it meets none.
     fn next(&mut self, ray: &Ray<f64>, number: u32, counters: &mut Counters) -> Option<ChainVertex<'a, N>> {
-        let Self { world, walker, .. } = self;
+        let Self { world, walker, refracts, .. } = self;
         let [mut u_lobe, u1, u2, mut u_mask] = self.numbers.set(u64::from(number));
+        if *refracts {
+            u_lobe = 1.0_f64.next_down();
+        }
         let (mut weight, mut start) = (Lanes::ONE, ray.origin);
         for _ in 0..MOST_VERTICES {
             counters.rays += 1;

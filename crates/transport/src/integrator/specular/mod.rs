@@ -19,6 +19,7 @@
 //! The estimate is unbiased if every root can be found from some direction, which holds where r is smooth around it.
 
 mod chain;
+mod passed_beam;
 mod solve;
 
 use super::Path;
@@ -31,6 +32,7 @@ use crate::polarisation::Polarisation;
 use crate::sampler::{NumberStream, Sampler};
 use crate::scene::world::World;
 use chain::Chain;
+pub(crate) use passed_beam::PassedBeams;
 use solve::{Chooses, Seed};
 
 /// Most directions that are drawn to learn how probable a root is.
@@ -73,7 +75,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         observer: &mut impl Observer<N>,
     ) {
         if let Some(connections) = world.specular_connections {
-            self.connect_by(world, connections, vertex, sampler, counters, observer);
+            let first = sampler.connection_set(self.vertex);
+            let numbers = Numbers { first, further: sampler.connection_numbers(self.vertex) };
+            self.connect_by(world, connections, vertex, numbers, counters, observer);
         }
     }
 
@@ -83,7 +87,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         world: &World<'a>,
         connections: &SpecularConnections,
         vertex: &impl Vertex<'a>,
-        sampler: &Sampler,
+        numbers: Numbers,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
@@ -91,8 +95,6 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if self.vertex + 2 >= world.max_depth {
             return;
         }
-        let numbers =
-            Numbers { first: sampler.connection_set(self.vertex), further: sampler.connection_numbers(self.vertex) };
         let [u_made, u_length, u_kept, _] = numbers.further.set(CONNECTION_SET);
         // What a path sees directly is seen best.
         let made = if self.is_indirect() { MADE_INDIRECTLY } else { 1.0 };
