@@ -45,6 +45,9 @@ PICTURES = [
     Picture("double-gauss", "scenes/double-gauss.json", ["--exposure", "2", "--curve", "agx"],
             "Marbles on a table, through a double Gauss lens of 50 mm at f/2: every ray is traced through its eleven faces. Look at the lanterns far behind: the lens "
             "shows each as the image of its own pupil, round in the middle and cut off toward the corners.", error="10%", size="480x320"),
+    Picture("prism-in-smoke", "scenes/prism-in-smoke.json", ["--exposure", "5"],
+            "A beam of white light goes through a prism in a smoky room. The spectrum stands in the air: smoke scatters each colour where the glass has "
+            "sent it. The beam has no area; paths find it through the glass.", error="10%", size="480x270"),
     Picture("movement", "scenes/movement.glb", ["--exposure", "0.7", "--curve", "agx"],
             "The movement of a watch, from a glTF model. Look at the stripes of the bridges, which brushing makes change from bright to dark as they turn "
             "away from the lamp; at the rubies, whose red is the path of the light through them; at the spring, a ribbon of 35 µm."),
