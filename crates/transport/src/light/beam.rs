@@ -70,7 +70,7 @@ impl BeamLight {
         const STRETCHED: f64 = 2.0;
         const SPREADS: f64 = 1e-3;
         let depth = (passed.origin - self.position).length();
-        let radius = STRETCHED * (self.radius + depth * self.tangent);
+        let radius = STRETCHED * (depth * self.tangent + self.radius);
         let tangent = STRETCHED * self.tangent + SPREADS;
         Cone { position: passed.origin, axis: passed.direction, radius, tangent }.part(way)
     }
