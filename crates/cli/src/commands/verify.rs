@@ -27,7 +27,7 @@ use crate::failure::{Failure, Outcome};
   etalon verify --export truths
   etalon verify --images pictures")]
 pub(crate) struct VerifyArgs {
-    /// Test only scenes whose name contains one of these words. Default: all.
+    /// Test only scenes whose name contains one of these words, or that need one of these abilities, such as scattering. Default: all.
     names: Vec<String>,
     /// Render nothing. Judge the pictures of another renderer in this folder, named NAME.exr.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["seed", "thorough", "threads"])]
@@ -60,8 +60,10 @@ pub(crate) struct VerifyArgs {
 }
 
 pub(crate) fn run(args: VerifyArgs) -> Outcome {
-    let named =
-        |truth: &Truth| args.names.is_empty() || args.names.iter().any(|name| truth.name.contains(name.as_str()));
+    let is_of = |truth: &Truth, word: &str| {
+        truth.name.contains(word) || truth.claims.iter().any(|claim| claim.name() == word)
+    };
+    let named = |truth: &Truth| args.names.is_empty() || args.names.iter().any(|word| is_of(truth, word));
     let cases: Option<Vec<SuiteCase>> = args.suite.map(suite::Suite::cases);
     let cases = cases.map(|cases| cases.into_iter().filter(|case| named(&case.truth)).collect::<Vec<_>>());
     let chosen: Vec<Truth> = match &cases {
@@ -71,7 +73,7 @@ pub(crate) fn run(args: VerifyArgs) -> Outcome {
     match (&args.export, &args.images) {
         _ if chosen.is_empty() => Err(Failure::input(miette!(
             code = "unknown-truth",
-            "no scene has a name that contains one of {:?}",
+            "no scene has a name that contains one of {:?}, and none needs it",
             args.names
         ))),
         (Some(folder), _) => export::run(folder, &chosen),
