@@ -33,6 +33,11 @@ fn tables_of_phase_functions_are_whole_and_possible() {
         Code::OutOfRange,
         "more polarised light than there is light",
     );
+    wrong(
+        &format!(r#"{angles}, "values": [1, 1, 1], "f12": [0, 0, 0], "f44": [1, 0.5, -1], {whole}"#),
+        Code::OutOfRange,
+        "at 90°",
+    );
     let right = format!(r#"{angles}, "values": [1, 0.5, 1], "f12": [0, -0.5, 0], {whole}"#);
     assert!(etalon_scene::parse(&with_table(&right), "test.json").is_ok());
 }

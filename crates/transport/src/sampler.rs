@@ -22,7 +22,8 @@ pub const SETS_PER_VERTEX: u32 = 2;
 /// The first of the sets for surfaces that fluoresce, one for each vertex, beyond those of any path: (choice, wavelength, part, –).
 const FLUORESCENCE_SETS: u32 = 1 << 24;
 
-/// The first of the sets for specular connections, one for each vertex, beyond those: (seed 1, seed 2, kind of seed, light).
+/// The first of the sets for specular connections, one for each vertex, beyond those: (seed 1, seed 2, kind of seed, light). Numbers for
+/// places in beams behind glass follow in the same way, from the largest number of vertices on.
 const CONNECTION_SETS: u32 = 1 << 25;
 
 /// Longest Owen-scrambled Sobol point set of the library; further samples come from independent sets.

@@ -60,9 +60,8 @@ pub(crate) struct VerifyArgs {
 }
 
 pub(crate) fn run(args: VerifyArgs) -> Outcome {
-    let is_of = |truth: &Truth, word: &str| {
-        truth.name.contains(word) || truth.claims.iter().any(|claim| claim.name() == word)
-    };
+    let is_of =
+        |truth: &Truth, word: &str| truth.name.contains(word) || truth.claims.iter().any(|claim| claim.name() == word);
     let named = |truth: &Truth| args.names.is_empty() || args.names.iter().any(|word| is_of(truth, word));
     let cases: Option<Vec<SuiteCase>> = args.suite.map(suite::Suite::cases);
     let cases = cases.map(|cases| cases.into_iter().filter(|case| named(&case.truth)).collect::<Vec<_>>());

@@ -99,9 +99,9 @@ crate::record! {
         f33: Optional<Spanned<List<f64>>>,
         /// F₃₄.
         f34: Optional<Spanned<List<f64>>>,
-        /// F₂₂, of what are no spheres: of these it is F₁₁.
+        /// F₂₂, for particles that are not spheres; of spheres it is F₁₁.
         f22: Optional<Spanned<List<f64>>>,
-        /// F₄₄, of what are no spheres: of these it is F₃₃.
+        /// F₄₄, for particles that are not spheres; of spheres it is F₃₃.
         f44: Optional<Spanned<List<f64>>>,
     } with [
         Rule::Needs("f12", &["f33", "f34"]),
@@ -287,9 +287,10 @@ fn matrix(form: &TabulatedPhase, degrees: &[f64], f11: &[f64], reader: &mut Read
         let limit = (f11[i] + f22[i]).powi(2) * (1.0 + ROUNDED);
         let across = (f33[i] + f44[i]).powi(2) + 4.0 * (f34[i] * f34[i] + f12[i] * f12[i]);
         let wide = f11[i] * (1.0 + ROUNDED);
-        if across > limit || [f22[i], f33[i], f44[i]].iter().any(|f| f.abs() > wide) {
+        let uneven = (f33[i] - f44[i]).abs() > f11[i] - f22[i] + ROUNDED * f11[i];
+        if across > limit || uneven || [f22[i], f33[i], f44[i]].iter().any(|f| f.abs() > wide) {
             let message = format!("the matrix at {degrees}° makes more polarised light than there is light");
-            let hint = "of spheres, f12² + f33² + f34² is at most the square of the value";
+            let hint = "of spheres, f12² + f33² + f34² is at most the square of the value, and f44 is f33";
             reader.error_hint(Code::OutOfRange, form.at.head(), message, hint);
             return None;
         }

@@ -69,7 +69,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             Stretch::Scattered { column_m, weight, lane_density } => {
                 let distance = medium.distance(&way, column_m / participating.unit_m);
                 let mut vertex = self.medium_interaction(world, &lit, ray, distance);
-                vertex.density_of_beams = beams.density(distance);
+                let in_beams = beams.density(distance);
+                if in_beams > 0.0 {
+                    let hero = lit.scattered_at(distance)[0];
+                    vertex.share_of_connections = hero / (hero + in_beams);
+                }
                 self.beta *= weight;
                 self.lanes.follow(lane_density);
                 self.stack = vertex.stack;
@@ -101,7 +105,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             way,
             distance,
             density,
-            density_of_beams: 0.0,
+            share_of_connections: 1.0,
         }
     }
 
@@ -161,9 +165,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 self.add_light(world, vertex, &draw, &next, &visible, observer);
             }
             let beta = self.beta;
-            if vertex.density_of_beams > 0.0 {
-                self.beta *= vertex.density / (vertex.density + vertex.density_of_beams);
-            }
+            self.beta *= vertex.share_of_connections;
             self.connect(world, vertex, sampler, counters, observer);
             self.beta = beta;
         }
@@ -219,7 +221,7 @@ impl<const N: usize> MediumWay<'_, N> {
     }
 
     /// The density with which paths are scattered at a distance, in each lane, per unit of the frame.
-    fn scattered_at(&self, distance: f64) -> Lanes<f64, N> {
+    pub(super) fn scattered_at(&self, distance: f64) -> Lanes<f64, N> {
         self.through(distance) * self.coefficients.extinction
     }
 

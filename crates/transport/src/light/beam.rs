@@ -63,11 +63,12 @@ impl BeamLight {
         Ray::free(self.position + across * self.radius, direction / direction.length())
     }
 
-    /// The part of a way that the beam lights after mirrors and glass have sent its middle ray on along `passed`; nearly, since glass
-    /// stretches beams.
+    /// The part of a way that the beam lights after mirrors and glass have sent its middle ray on along `passed`: nearly, since glass
+    /// stretches beams. The beam has come at least as far as `passed` begins from the aperture.
     pub(crate) fn passed_part(&self, passed: &Ray<f64>, way: &Way) -> Option<[f64; 2]> {
-        /// So much wider, and a tangent more.
+        /// Factor on the radius and the tangent.
         const STRETCHED: f64 = 2.0;
+        /// Added to the tangent, for what glass spreads.
         const SPREADS: f64 = 1e-3;
         let depth = (passed.origin - self.position).length();
         let radius = STRETCHED * (depth * self.tangent + self.radius);
@@ -128,6 +129,10 @@ impl LightSource for BeamLight {
         };
         let (radius, tangent) = (wide * self.radius, wide * self.tangent);
         Cone { position: self.position, axis: self.axis, radius, tangent }.part(way)
+    }
+
+    fn lights_parts(&self) -> bool {
+        true
     }
 
     fn spectrum(&self) -> &PathSpectrum {

@@ -141,6 +141,11 @@ trait LightSource {
         self.position().map(|_| [0.0, way.length])
     }
 
+    /// Whether there may be such a part.
+    fn lights_parts(&self) -> bool {
+        self.position().is_some()
+    }
+
     /// Where it is and where it shines, with a power of 1; `None` if it is nowhere, or not always at one place.
     fn bounds(&self) -> Option<LightBounds> {
         None
@@ -225,7 +230,7 @@ impl Light {
 
     /// Whether ways have a part that its light comes to: see [`Light::lit_part`].
     pub(crate) fn lights_parts(&self) -> bool {
-        self.position().is_some() || matches!(self, Self::Beam(_))
+        each!(self, light => LightSource::lights_parts(light))
     }
 
     /// Where its light comes from, if it has no area.

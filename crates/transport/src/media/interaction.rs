@@ -18,10 +18,11 @@ pub(crate) struct MediumInteraction<'a> {
     /// The way through the medium on which it lies, and how far along it.
     pub way: Way,
     pub distance: f64,
-    /// The density with which the path is scattered there, the mean over the lanes, per unit of the frame; 0 where no lamp is a point.
+    /// The density with which the path is scattered there, the mean over the lanes, per unit of the frame; 0 where no lamp lights parts of ways.
     pub density: f64,
-    /// The density with which a place there is chosen for the light of beams behind mirrors and glass.
-    pub density_of_beams: f64,
+    /// The share of what connections find from here that counts; the rest is found from places that are chosen in beams behind mirrors and
+    /// glass.
+    pub share_of_connections: f64,
 }
 
 /// A point of no surface.

@@ -175,8 +175,9 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         EffectName::SpecularChains => scene.materials.iter_mut().for_each(|material| blacken(&mut material.kind)),
         EffectName::NestedDielectrics => {
             for material in &mut scene.materials {
-                if let MaterialKind::Dielectric { priority, .. } | MaterialKind::RoughDielectric { priority, .. } =
-                    &mut material.kind
+                if let MaterialKind::Dielectric { priority, .. }
+                | MaterialKind::RoughDielectric { priority, .. }
+                | MaterialKind::Boundary { priority } = &mut material.kind
                 {
                     *priority = None;
                 }

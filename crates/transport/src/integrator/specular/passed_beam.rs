@@ -2,9 +2,10 @@
 //!
 //! A path that is scattered where its medium says meets a narrow beam by chance. So a second place of each way is chosen, in the beam, and a
 //! connection is made from there; the balance heuristic weighs it against the first. Where the beam goes is known from its middle ray alone,
-//! at the wavelength of the hero. What lies beside is left to the first place.
+//! at the wavelength of the hero. What lies beside is left to the first place. Since each hero has a beam of its own, its own density of
+//! being scattered is what is weighed against, not the mean over the lanes.
 
-use super::{Numbers, Path};
+use super::{Numbers, Path, SEED_SETS};
 use crate::film::Counters;
 use crate::guiding::SpecularConnections;
 use crate::integrator::MOST_VERTICES;
@@ -52,7 +53,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
     ) -> PassedBeams {
         let start = self.medium_interaction(world, lit, ray, 0.0);
-        let mut chain = Chain::new(self, world, &start, sampler.connection_numbers(self.vertex), 1.0);
+        // Numbers of their own: the parts must not hang on what connections draw.
+        let numbers = sampler.connection_numbers(2 * MOST_VERTICES + self.vertex);
+        let mut chain = Chain::new(self, world, &start, numbers, 1.0);
         let parts = connections.lights.lights().iter().filter_map(|light| {
             let Light::Beam(beam) = light else { return None };
             let passed = chain.passed(&beam.ray([0.0; 2]), counters)?;
@@ -80,13 +83,17 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             return;
         }
         let vertex = self.medium_interaction(world, lit, ray, distance);
-        let weight = 1.0 / (beams.density(distance) + vertex.density);
-        let beta = self.beta;
-        self.beta *= lit.scattered_toward(distance) * weight;
-        if !self.beta.is_zero() {
-            let numbers = Numbers { first: further.set(0), further };
-            self.connect_by(world, connections, &vertex, numbers, counters, observer);
+        // As if the hero had been scattered there, but for the density with which the place was found.
+        let densities = lit.scattered_at(distance);
+        let hero = densities[0];
+        if hero <= 0.0 {
+            return;
         }
-        self.beta = beta;
+        let (beta, lanes) = (self.beta, self.lanes);
+        self.beta *= lit.scattered_toward(distance) * (1.0 / (beams.density(distance) + hero));
+        self.lanes.follow(densities * (1.0 / hero));
+        let numbers = Numbers { first: further.set(SEED_SETS), further };
+        self.connect_by(world, connections, &vertex, numbers, counters, observer);
+        (self.beta, self.lanes) = (beta, lanes);
     }
 }

@@ -57,7 +57,7 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
         EffectName::SpecularConnections => specular_connections(scene),
         EffectName::NestedDielectrics => match first_surface(scene, |material, _| nested(&material.kind)) {
             Some(found) => Ok(found),
-            None => nothing("no dielectric carries a priority"),
+            None => nothing("no solid carries a priority"),
         },
         EffectName::Absorption => absorption(scene).ok_or_else(|| "no medium absorbs".to_owned()),
         EffectName::Scattering => scattering(scene).ok_or_else(|| "no medium scatters".to_owned()),
