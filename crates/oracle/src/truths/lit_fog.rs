@@ -4,17 +4,21 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 
-use super::media::{isotropic, medium};
-use super::scene::{Scene, block, glass, triangular_prism};
+use super::media::{boundary, isotropic, medium};
+use super::scene::{Scene, block, glass, sphere, triangular_prism};
 use super::{Claim, Truth};
 use crate::laws::fresnel_exact;
 use crate::quadrature::interval;
 use crate::vector::{Vec3, dot, length, normalize, scale, sub};
 
-/// 1/m.
-const SCATTERING: f64 = 0.08;
-const ABSORPTION: f64 = 0.04;
 const EYE_M: f64 = 3.0;
+
+/// Scattering and absorption of thin fog everywhere, 1/m.
+const THIN: [f64; 2] = [0.08, 0.04];
+
+/// The same of a ball of fog around the origin, in which light is scattered there as soon as it is looked for in a beam; its radius, m.
+const THICK: [f64; 2] = [3.0, 0.2];
+const BALL_M: f64 = 0.4;
 
 /// A lamp in the fog: its form, and the fluence per area that it brings to a place without fog, with the way to there.
 struct Lamp {
@@ -23,18 +27,27 @@ struct Lamp {
     brings: Box<dyn Fn(Vec3) -> [f64; 2] + Send + Sync>,
     /// Heights of the ray between which there is light, m.
     lit: [f64; 2],
-    /// A body of glass that the light goes through first.
+    /// A body of glass that the light goes through first, before it comes to a ball of fog.
     through: Option<Value>,
 }
 
 impl Lamp {
+    fn fog(&self) -> [f64; 2] {
+        if self.through.is_some() { THICK } else { THIN }
+    }
+
+    /// Height at which the eye's ray comes into the fog, m.
+    fn top(&self) -> f64 {
+        if self.through.is_some() { BALL_M } else { EYE_M }
+    }
+
     /// L = ∫ σₛ/4π · E e^(−σ(s + d)) ds along a ray that comes down from the eye.
     fn seen(&self, share: impl Fn(f64) -> f64) -> f64 {
         let [first, last] = self.lit;
-        let extinction = SCATTERING + ABSORPTION;
+        let ([scattering, absorption], top) = (self.fog(), self.top());
         let along = |z: f64| {
             let [brought, way] = (self.brings)([0.0, 0.0, z]);
-            SCATTERING / (4.0 * PI) * brought * (-extinction * (way + EYE_M - z)).exp() * share(z)
+            scattering / (4.0 * PI) * brought * (-(scattering + absorption) * (way + top - z)).exp() * share(z)
         };
         interval(along, first, last, 1e-9).value
     }
@@ -42,33 +55,36 @@ impl Lamp {
     /// The same by midpoints.
     fn seen_by_midpoints(&self) -> f64 {
         let [first, last] = self.lit;
-        let extinction = SCATTERING + ABSORPTION;
+        let ([scattering, absorption], top) = (self.fog(), self.top());
         let steps = 200_000;
         let step = (last - first) / f64::from(steps);
         let at = |i: u32| first + (f64::from(i) + 0.5) * step;
         let value = |z: f64| {
             let [brought, way] = (self.brings)([0.0, 0.0, z]);
-            brought * (-extinction * (way + EYE_M - z)).exp()
+            brought * (-(scattering + absorption) * (way + top - z)).exp()
         };
-        SCATTERING / (4.0 * PI) * step * (0..steps).map(|i| value(at(i))).sum::<f64>()
+        scattering / (4.0 * PI) * step * (0..steps).map(|i| value(at(i))).sum::<f64>()
     }
 
     fn truth(self) -> Truth {
-        let scene = Scene::orthographic([0.0, 0.0, EYE_M], [0.0; 3], 1e-3)
-            .whole("medium", medium(SCATTERING, ABSORPTION, &isotropic()))
-            .light(self.form.clone())
-            .spp(256);
-        // Both faces of a body are met.
+        let scene = Scene::orthographic([0.0, 0.0, EYE_M], [0.0; 3], 1e-3).light(self.form.clone()).spp(256);
+        let ([scattering, absorption], top) = (self.fog(), self.top());
+        let fog = medium(scattering, absorption, &isotropic());
+        // Both faces of a body are met; what the ball scatters twice would take another edge.
         let scene = match &self.through {
-            Some(shape) => scene.object(shape.clone(), glass(INDEX)).depth(4).film(8, 8),
-            None => scene.depth(2),
+            Some(shape) => scene
+                .object(shape.clone(), glass(INDEX))
+                .thing(json!({ "shape": sphere([0.0; 3], BALL_M), "material": boundary(&fog) }))
+                .depth(4)
+                .film(8, 8),
+            None => scene.whole("medium", fog).depth(2),
         };
         let passes = self.through.is_some();
         let value = self.seen(|_| 1.0);
         let [first, last] = self.lit;
         let middle = 0.5 * (first + last);
         let half = self.seen(|z| if z > middle { 1.0 } else { 0.0 });
-        let clear = self.seen(|z| ((SCATTERING + ABSORPTION) * (EYE_M - z)).exp());
+        let clear = self.seen(|z| ((scattering + absorption) * (top - z)).exp());
         let truth = Truth::new(self.name, &scene, value, "∫ σₛ/4π E e^(−σ(s + d)) ds")
             .because("Fog that scatters once sends 1/4π of what it takes from each beam of light into each direction.")
             .confirmed("midpoints along the ray", 1e-6, move || self.seen_by_midpoints())
@@ -132,11 +148,17 @@ fn spot() -> Lamp {
 const RADIUS_M: f64 = 0.05;
 const INDEX: f64 = 1.5;
 
-/// A beam that has gone through glass on its way of so many metres in fog, which passed this share of it.
-fn behind(name: &'static str, shape: Value, [position, axis]: [Vec3; 2], share: f64, way_m: f64) -> Lamp {
+/// A beam that has gone through glass, which passed this share of it, and comes through the middle of the ball.
+fn behind(name: &'static str, shape: Value, [position, axis]: [Vec3; 2], share: f64) -> Lamp {
     let form = json!({ "type": "beam", "position_m": position, "direction": axis, "radius_m": RADIUS_M, "power": 1 });
     let brought = share / (PI * RADIUS_M * RADIUS_M);
-    Lamp { name, form, brings: Box::new(move |_| [brought, way_m]), lit: [-RADIUS_M, RADIUS_M], through: Some(shape) }
+    Lamp {
+        name,
+        form,
+        brings: Box::new(move |[_, _, z]| [brought, (BALL_M * BALL_M - z * z).sqrt()]),
+        lit: [-RADIUS_M, RADIUS_M],
+        through: Some(shape),
+    }
 }
 
 /// A plate that is met head-on, and a prism that turns the beam as little as it can: then the beam stays round.
@@ -155,13 +177,12 @@ fn behind_glass() -> [Lamp; 2] {
     let position = [entered[0] - cos, entered[1] - sin, 0.0];
     let share = fresnel_exact(outside.cos(), INDEX).transmittance();
     [
-        behind("fog-behind-a-plate", plate, [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]], head_on * head_on, 1.8),
+        behind("fog-behind-a-plate", plate, [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]], head_on * head_on),
         behind(
             "fog-behind-a-prism",
             triangular_prism(corners, [-0.5, 0.5]),
             [position, [cos, sin, 0.0]],
             share * share,
-            1.8,
         ),
     ]
 }
