@@ -6,8 +6,8 @@ use super::{LightDraw, NextEvent, Path, light_weight};
 use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::light::Light;
-use crate::media::{Coefficients, LitPart, Medium, MediumInteraction, Stretch, Way, free_point, optical_depth};
+use crate::light::{Light, LitPart};
+use crate::media::{Coefficients, Medium, MediumInteraction, Stretch, Way, free_point, optical_depth};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::SurfaceInteraction;
@@ -57,7 +57,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             && self.vertex + 2 < world.max_depth
         {
             beams = self.passed_beams(world, connections, &lit, ray, sampler, counters);
-            self.connect_in_beam(world, connections, (&lit, &beams), ray, sampler, counters, observer);
+            self.connect_in_beam(world, (&lit, &beams), ray, sampler, counters, observer);
         }
         let depth = self.optical_depth.get_or_insert_with(|| optical_depth([coarse, fine]));
         match Stretch::follow(&lit.coefficients, column_m, depth) {

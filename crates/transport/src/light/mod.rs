@@ -8,6 +8,7 @@ mod beam;
 mod cone;
 mod directional;
 mod environment;
+mod lit_part;
 mod luminaire;
 mod moving;
 mod point;
@@ -27,6 +28,7 @@ pub use sky::{SkyLight, SkyLook};
 pub use spot::SpotLight;
 pub use table::LightTable;
 
+pub(crate) use lit_part::LitPart;
 pub(crate) use moving::Link;
 pub(crate) use table::{visible_sum, weighted_sum};
 

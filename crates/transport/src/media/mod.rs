@@ -17,15 +17,13 @@
 mod density;
 mod equiangular;
 mod interaction;
-mod lit_part;
 mod medium;
 mod participating;
 mod phase;
 
 pub(crate) use density::Way;
-use equiangular::Equiangular;
+pub(crate) use equiangular::Equiangular;
 pub(crate) use interaction::{MediumInteraction, free_point};
-pub(crate) use lit_part::LitPart;
 pub(crate) use medium::{Coefficients, Medium};
 pub(crate) use participating::{Participating, Stretch, optical_depth};
 

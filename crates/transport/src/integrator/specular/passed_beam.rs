@@ -69,13 +69,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     pub(in crate::integrator) fn connect_in_beam(
         &mut self,
         world: &World<'a>,
-        connections: &SpecularConnections,
         (lit, beams): (&MediumWay<'a, N>, &PassedBeams),
         ray: &Ray<f64>,
         sampler: &Sampler,
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
+        let Some(connections) = world.specular_connections else { return };
         let further = sampler.connection_numbers(MOST_VERTICES + self.vertex);
         let [u_part, u_place, ..] = further.set(PLACE_SET);
         let Some(distance) = beams.distance([u_part, u_place]) else { return };

@@ -1,8 +1,8 @@
 //! Places of a ray that are chosen for the light of one lamp without area: evenly within a beam, by the angle at which a point sees them
 //! otherwise.
 
-use super::{Equiangular, Way};
-use crate::light::Light;
+use super::Light;
+use crate::media::{Equiangular, Way};
 
 /// The part of a way that a lamp's light comes to.
 #[derive(Clone, Copy, Debug)]
