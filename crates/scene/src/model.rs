@@ -25,7 +25,7 @@ mod thin_film;
 mod varying;
 
 pub use compound_lens::{CompoundLens, LensCoating, LensSurface};
-pub use daylight::{DaylightLook, DaylightPattern, DaylightSky};
+pub use daylight::{DaylightExtremes, DaylightLook, DaylightPattern, DaylightSky};
 pub use detail::{Bitangent, OpacityImage, Relief};
 pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};

@@ -72,7 +72,7 @@ pub(crate) fn run(args: VerifyArgs) -> Outcome {
     match (&args.export, &args.images) {
         _ if chosen.is_empty() => Err(Failure::input(miette!(
             code = "unknown-truth",
-            "no scene has a name that contains one of {:?}, and none needs it",
+            "no scene has a name that contains one of {:?}, and none needs such an ability",
             args.names
         ))),
         (Some(folder), _) => export::run(folder, &chosen),

@@ -29,6 +29,8 @@ struct Lamp {
     lit: [f64; 2],
     /// A body of glass that the light goes through first, before it comes to a ball of fog.
     through: Option<Value>,
+    /// Another lamp, which does not light the ray.
+    aside: Option<Value>,
 }
 
 impl Lamp {
@@ -79,6 +81,10 @@ impl Lamp {
                 .film(8, 8),
             None => scene.whole("medium", fog).depth(2),
         };
+        let scene = match &self.aside {
+            Some(lamp) => scene.light(lamp.clone()),
+            None => scene,
+        };
         let passes = self.through.is_some();
         let value = self.seen(|_| 1.0);
         let [first, last] = self.lit;
@@ -125,7 +131,7 @@ fn beam(name: &'static str, position: Vec3, axis: Vec3, [radius, half_angle_deg]
     });
     // Across the axis of an even beam, exactly; of a Gaussian one, as far as there is anything.
     let lit = if gaussian { [-2.5, 2.5] } else { [-radius, radius] };
-    Lamp { name, form, brings: Box::new(brings), lit, through: None }
+    Lamp { name, form, brings: Box::new(brings), lit, through: None, aside: None }
 }
 
 fn spot() -> Lamp {
@@ -141,7 +147,7 @@ fn spot() -> Lamp {
     let form = json!({
         "type": "spot", "position_m": position, "direction": axis, "inner_half_angle_deg": 8, "half_angle_deg": 20, "intensity": 5,
     });
-    Lamp { name: "fog-in-a-spot", form, brings: Box::new(brings), lit: [-1.2, 1.4], through: None }
+    Lamp { name: "fog-in-a-spot", form, brings: Box::new(brings), lit: [-1.2, 1.4], through: None, aside: None }
 }
 
 /// Radius of the beams that go through glass, and its index.
@@ -158,11 +164,12 @@ fn behind(name: &'static str, shape: Value, [position, axis]: [Vec3; 2], share: 
         brings: Box::new(move |[_, _, z]| [brought, (BALL_M * BALL_M - z * z).sqrt()]),
         lit: [-RADIUS_M, RADIUS_M],
         through: Some(shape),
+        aside: None,
     }
 }
 
 /// A plate that is met head-on, and a prism that turns the beam as little as it can: then the beam stays round.
-fn behind_glass() -> [Lamp; 2] {
+fn behind_glass() -> [Lamp; 3] {
     let head_on = fresnel_exact(1.0, INDEX).transmittance();
     let plate = block([-1.0, -1.0, -1.0], [-0.8, 1.0, 1.0]);
     // Within the prism light goes along x, at 30° to the normals of both faces.
@@ -176,8 +183,13 @@ fn behind_glass() -> [Lamp; 2] {
     let entered = [-0.25 - x, -y];
     let position = [entered[0] - cos, entered[1] - sin, 0.0];
     let share = fresnel_exact(outside.cos(), INDEX).transmittance();
+    let along = [1.0, 0.0, 0.0];
+    let lit = |name| behind(name, plate.clone(), [[-2.0, 0.0, 0.0], along], head_on * head_on);
+    // As strong, above the ball.
+    let above = behind("", plate.clone(), [[-2.0, 0.0, 0.7], along], 1.0).form;
     [
-        behind("fog-behind-a-plate", plate, [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]], head_on * head_on),
+        lit("fog-behind-a-plate"),
+        Lamp { aside: Some(above), ..lit("fog-beside-another-beam-behind-a-plate") },
         behind(
             "fog-behind-a-prism",
             triangular_prism(corners, [-0.5, 0.5]),
@@ -188,12 +200,13 @@ fn behind_glass() -> [Lamp; 2] {
 }
 
 pub(super) fn truths() -> Vec<Truth> {
-    let [plate, prism] = behind_glass();
+    let [plate, beside, prism] = behind_glass();
     [
         beam("fog-in-a-beam", [-2.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.2, 0.0], false),
         beam("fog-in-a-gaussian-beam-that-widens", [-1.5, 0.1, -0.5], [1.0, 0.0, 0.3], [0.1, 3.0], true),
         spot(),
         plate,
+        beside,
         prism,
     ]
     .map(Lamp::truth)

@@ -1,6 +1,5 @@
 //! Light from infinity: everywhere the same, by an image, or by the formula of a sky.
 
-use etalon_optics::Vec3;
 use glam::DVec3;
 
 use super::light::across;
@@ -9,11 +8,11 @@ use super::spectra::{BRIGHTEST, Spectra};
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
 use crate::json::{Code, Direction, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
-use crate::model::{CieSky, DaylightSky, EnvironmentImage, EnvironmentProjection, LightKind};
+use crate::model::{CieSky, DaylightExtremes, DaylightSky, EnvironmentImage, EnvironmentProjection, LightKind};
 use crate::texture::Encoding;
 
 crate::record! {
-    /// Radiance from infinitely far: the same from every direction, as an image says, or as a standard sky.
+    /// Radiance from infinitely far: the same from every direction, as an image says, or as a sky by formula.
     pub(crate) struct EnvironmentLight + comment {
         /// Its name, for messages.
         name: Optional<String>,
@@ -166,8 +165,8 @@ fn by_day(up: [f64; 3], sun: Spanned<Direction>, reader: &mut Reader<'_>) -> Opt
     Some(())
 }
 
-/// The least share of its largest value that a spectrum of daylight may fall to where it is looked at: between those directions it varies
-/// by far less.
+/// The least share of its largest value to which a spectrum of daylight may fall in the directions that are tried. From one of these to the
+/// next it changes by far less.
 const DARKEST_DAYLIGHT: f64 = 0.01;
 
 fn daylight(form: &DaylightForm, spectra: &mut Spectra<'_>, reader: &mut Reader<'_>) -> Option<DaylightSky> {
@@ -181,13 +180,12 @@ fn daylight(form: &DaylightForm, spectra: &mut Spectra<'_>, reader: &mut Reader<
     by_day(up, sun, reader)?;
     let mean = spectra.mean_daylight(form.scale?.0, form.at, reader)?;
     let sky = DaylightSky { turbidity: turbidity.value.0, up, sun: sun.value.0, ground: ground.value.0, mean };
-    if let Some(nm) = sky.dark_nm(spectra.range_nm?, DARKEST_DAYLIGHT) {
-        let message = format!("with a sun as low as this, the model leaves no light at {nm} nm");
+    let DaylightExtremes { brightest, darkest, darkest_nm } = sky.extremes(spectra.range_nm?);
+    if darkest.is_nan() || darkest < DARKEST_DAYLIGHT {
+        let message = format!("with a sun as low as this, the model leaves no light at {darkest_nm} nm");
         reader.error_hint(Code::OutOfRange, sun.at, message, "raise the sun, or state another turbidity");
         return None;
     }
-    let pattern = sky.pattern();
-    let brightest = pattern.look(Vec3::from_array(sun.value.0)).mean.max(pattern.ground().mean);
     let brightest = brightest * sky.mean.max_over(spectra.range_nm?);
     if brightest > BRIGHTEST {
         let message = format!("a radiance of {brightest:e} is more than {BRIGHTEST:e}");

@@ -266,8 +266,8 @@ crate::record! {
     pub(crate) struct BoundaryMaterial + comment {
         /// What fills the side that the surface normal points away from (the inside of a sphere or a closed mesh).
         medium: Required<Box<MediumForm>>,
-        /// Among closed solids that have one: where several overlap, what has the highest priority fills the place; of equal priorities, the
-        /// object that comes later. The index of refraction is that of the dielectrics among them.
+        /// Makes it one of the closed solids with priorities. Where several overlap, the one of the highest priority fills the place; of equal
+        /// priorities, the object that comes later. The index of refraction is that of the dielectrics among them.
         priority: Optional<Whole<0, { u32::MAX as u64 }>>,
     }
 }

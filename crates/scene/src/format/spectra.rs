@@ -207,7 +207,7 @@ impl<'f> Spectra<'f> {
         accept(daylight, form.at, reader)
     }
 
-    /// The component S₀ of daylight whose luminance is that of so many cd·m⁻², for what is written at `at`.
+    /// The component S₀ of daylight with a luminance in cd·m⁻², for what is written at `at`.
     pub(crate) fn mean_daylight(&mut self, luminance: f64, at: Span, reader: &mut Reader<'_>) -> Option<Spectrum> {
         let used = Use { role: Role::Emission, at: None };
         self.covered(illuminant_range_nm(Illuminant::D65), at, "daylight", "", used, reader);

@@ -2,7 +2,7 @@
 
 use super::{Perez, SkyCoefficients};
 use etalon_optics::colour::{daylight_components, daylight_luminances, daylight_wavelengths_nm, daylight_weights};
-use etalon_optics::{Spectrum, Vec3};
+use etalon_optics::{Frame, Spectrum, Vec3};
 
 /// The sky of Preetham, Shirley and Smits, *A practical analytic model for daylight*, SIGGRAPH 1999, without the sun itself: luminance and
 /// chromaticity by direction, and CIE daylight of each chromaticity.
@@ -39,6 +39,17 @@ pub struct DaylightLook {
     pub mean: f64,
     /// The weights M₁ and M₂ of its daylight.
     pub weights: [f64; 2],
+}
+
+/// How large the spectra of a [`DaylightSky`] are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DaylightExtremes {
+    /// The largest factor on [`DaylightSky::mean`].
+    pub brightest: f64,
+    /// The least value of a spectrum, over the largest of the same.
+    pub darkest: f64,
+    /// Where that is, nm.
+    pub darkest_nm: f64,
 }
 
 /// A number that is linear in the turbidity: its factor, and what is added.
@@ -101,12 +112,13 @@ impl DaylightSky {
         up.cross(sun).length().atan2(up.dot(sun))
     }
 
-    /// A wavelength in the range, nm, at which the spectrum of some direction is not more than this share of its largest value, if there
-    /// is one. The chromaticities of the model leave those of daylight where the sun is low: then spectra have negative values.
-    pub fn dark_nm(&self, range_nm: [f64; 2], share: f64) -> Option<f64> {
+    /// What its spectra are at most and at least, over a grid of directions 2° by 4° and toward the sun, at wavelengths in the range.
+    ///
+    /// The chromaticities of the model leave those of daylight where the sun is low. Then spectra have negative values.
+    pub fn extremes(&self, range_nm: [f64; 2]) -> DaylightExtremes {
         let pattern = self.pattern();
         let [up, sun] = [self.up, self.sun].map(Vec3::from_array);
-        let axes = etalon_optics::Frame::from_normal(up);
+        let axes = Frame::from_normal(up);
         let directions = (0..=45).flat_map(|row| (0..90).map(move |column| [row, column])).map(|[row, column]| {
             let (height, azimuth) = (f64::from(2 * row).to_radians(), f64::from(4 * column).to_radians());
             let level = axes.s * azimuth.cos() + axes.t * azimuth.sin();
@@ -116,13 +128,20 @@ impl DaylightSky {
             .filter(|nm| (range_nm[0] - 10.0..=range_nm[1] + 10.0).contains(nm))
             .map(|nm| (nm, daylight_components(nm)))
             .collect();
-        directions.chain([sun]).find_map(|wi| {
-            let [m1, m2] = pattern.look(wi).weights;
+        let looks = directions.chain([sun]).map(|wi| pattern.look(wi)).chain([pattern.ground]);
+        let mut extremes = DaylightExtremes { brightest: 0.0, darkest: f64::INFINITY, darkest_nm: 0.0 };
+        for DaylightLook { mean, weights: [m1, m2], .. } in looks {
             let value = |[s0, s1, s2]: [f64; 3]| s0 + m1 * s1 + m2 * s2;
             let largest = rows.iter().map(|(_, row)| value(*row)).fold(0.0, f64::max);
-            let is_dark = |value: f64| value.is_nan() || value <= share * largest;
-            rows.iter().find(|(_, row)| is_dark(value(*row))).map(|(nm, _)| *nm)
-        })
+            for &(nm, row) in &rows {
+                extremes.brightest = extremes.brightest.max(mean * value(row) / row[0]);
+                let share = value(row) / largest;
+                if share.is_nan() || share < extremes.darkest {
+                    (extremes.darkest, extremes.darkest_nm) = (share, nm);
+                }
+            }
+        }
+        extremes
     }
 }
 

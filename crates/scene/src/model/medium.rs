@@ -90,9 +90,11 @@ pub struct PhaseTable {
     pub matrix: Option<PhaseMatrix>,
 }
 
-/// The elements of a scattering matrix beside the first, at the cosines and in the unit of a [`PhaseTable`] (Bohren & Huffman, *Absorption and
-/// Scattering of Light by Small Particles*, 1983, §3.3, §13.6: of particles in any orientation, each with its mirror image): ((F₁₁, F₁₂), (F₁₂, F₂₂)) of I
-/// and Q, ((F₃₃, F₃₄), (−F₃₄, F₄₄)) of U and V. Q is what swings within the plane of scattering less what swings across it.
+/// The elements of a scattering matrix beside the first, at the cosines and in the unit of a [`PhaseTable`].
+///
+/// The matrix is ((F₁₁, F₁₂), (F₁₂, F₂₂)) of I and Q, and ((F₃₃, F₃₄), (−F₃₄, F₄₄)) of U and V. Q is the light that swings within the plane of
+/// scattering, less the light that swings across it. Particles in every orientation, with as many mirror images, have such a matrix (Bohren
+/// & Huffman, *Absorption and Scattering of Light by Small Particles*, 1983, §13.6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhaseMatrix {
     /// F₁₂.

@@ -33,8 +33,8 @@ pub struct SkyCoefficients {
     pub e: f64,
 }
 
-/// The formula of Perez, Seals and Michalsky (*All-weather model for sky luminance distribution*, Solar Energy 50, 1993), which the skies of
-/// the CIE and other models share, by direction: (1 + a e^(b/cos Z)) (1 + c (e^(dχ) − offset) + e cos²χ) times a scale.
+/// Perez's formula, (1 + a e^(b/cos Z)) (1 + c (e^(dχ) − offset) + e cos²χ) times a scale (Perez, Seals & Michalsky, *All-weather model for
+/// sky luminance distribution*, Solar Energy 50, 1993). The skies of the CIE and other models share it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perez {
     up: Vec3<f64>,

@@ -31,6 +31,8 @@ pub(crate) struct SpecularConnections {
     /// Lamps without area, and their numbers among all.
     pub(crate) lights: LightTable,
     pub(crate) numbers: Vec<u32>,
+    /// Whether there are beams among them.
+    pub(crate) has_beams: bool,
     /// Mirrors and bodies of glass, toward which directions are drawn.
     bodies: Vec<GuidedTarget>,
     /// A distance from any of them beyond which there is nothing.
@@ -50,15 +52,11 @@ impl SpecularConnections {
         if deltas.is_empty() {
             return None;
         }
+        let has_beams = deltas.iter().any(|light| matches!(light, Light::Beam(_)));
         let bodies = specular_bodies(surfaces, geometry, |of| surfaces.properties[of.material].has_delta());
         let bodies = bodies.into_iter().map(|(body, _)| body).collect();
         let reach = geometry.bounds().map_or(1.0, |bounds| bounds.extent().length());
-        Some(Self { lights: table(deltas), numbers, bodies, reach })
-    }
-
-    /// Whether there are beams among the lamps.
-    pub(crate) fn has_beams(&self) -> bool {
-        self.lights.lights().iter().any(|light| matches!(light, Light::Beam(_)))
+        Some(Self { lights: table(deltas), numbers, has_beams, bodies, reach })
     }
 
     /// A direction from a point by which a search may begin: straight toward the lamp, toward a body, or any.

@@ -53,7 +53,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             self.add_light_beside(world, &lit, ray, [u_light, u_place], counters, observer);
         }
         let mut beams = PassedBeams::default();
-        if let Some(connections) = world.specular_connections.filter(|connections| connections.has_beams())
+        if let Some(connections) = world.specular_connections.filter(|connections| connections.has_beams)
             && self.vertex + 2 < world.max_depth
         {
             beams = self.passed_beams(world, connections, &lit, ray, sampler, counters);
@@ -231,8 +231,8 @@ impl<const N: usize> MediumWay<'_, N> {
     }
 }
 
-/// The part of a way that a lamp without area lights, if it is not too deep in the medium: light that is scattered too often to come from
-/// there is found as well without its place.
+/// The part of a way that a lamp without area lights, if it is not too deep in the medium. Beyond that, other light prevails, and a place
+/// chosen for this lamp gains nothing.
 fn beside<const N: usize>(light: &Light, coefficients: &Coefficients<N>, way: &Way, unit_m: f64) -> Option<LitPart> {
     /// Optical depth between the lamp and the way, or in a beam along the way.
     const DEEPEST: f64 = 4.0;

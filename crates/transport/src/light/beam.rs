@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 /// 2r²/w² at which a Gaussian profile ends: −ln 1e-12.
 const LARGEST_EXPONENT: f64 = 27.631_021_115_928_547;
 
-/// Radii of a Gaussian beam within which 99 % of its light are.
+/// The radius within which 99 % of the light of a Gaussian beam are, over w.
 const MOST_OF_A_GAUSSIAN: f64 = 1.5;
 
 /// A beam.

@@ -193,9 +193,9 @@ impl Media {
         self.solid(object).is_some()
     }
 
-    /// The object whose material decides what an interface does, between what holds the path before it and behind it: of the
-    /// solids whose index lies on either side, and that begin or end here, the one of the highest priority. `None` if the same
-    /// solid's index holds behind: there is no interface.
+    /// The object whose material decides what an interface does, between what holds the path before it and behind it. It is one of the
+    /// solids whose index lies on either side, and which begin or end here: the one of the highest priority. `None` if the same solid's
+    /// index holds on both sides. Then there is no interface.
     pub(crate) fn deciding(&self, before: &MediumStack<'_>, behind: &MediumStack<'_>) -> Option<Option<u32>> {
         let (near, far) = (self.refracting(before), self.refracting(behind));
         if near == far {

@@ -50,8 +50,8 @@ impl Tabulated {
         (first + (last - first) * t) / (2.0 * PI)
     }
 
-    /// What it does to polarisation, over its first element, in frames whose x is across the plane of scattering: there Q has the other sign
-    /// than in the frames of the table, whose first axis lies in that plane. `None` if it depolarises.
+    /// What it does to polarisation, over its first element, in frames whose x is across the plane of scattering. The first axis of the
+    /// table's frames lies in that plane, so Q has the other sign there. `None` if it depolarises.
     #[inline]
     pub(super) fn mueller(&self, cos: f64) -> Option<Matrix> {
         let rows = self.matrices.as_ref()?;
