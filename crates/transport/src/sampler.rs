@@ -98,7 +98,7 @@ impl Sampler {
 }
 
 /// Sets of independent numbers, each found by its own number.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct NumberStream(u64);
 
 impl NumberStream {

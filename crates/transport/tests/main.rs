@@ -32,6 +32,7 @@ mod pbrt_scenes;
 mod placed;
 mod polarised;
 mod references;
+mod refracted_shadow_rays;
 mod renders;
 mod rough;
 mod scales;

@@ -144,7 +144,9 @@ fn panes() -> Vec<Truth> {
             shown(bare * of_both(|r| (1.0 - r) / (1.0 + r))),
             "(ρ/π) I h/d³ ½Σ (1 − R)/(1 + R) of s and p",
         )
-        .because("Light goes straight on; Σ (1 − R)² R²ᵏ = (1 − R)/(1 + R) of each polarisation comes through both faces.")
+        .because(
+            "Light goes straight on; Σ (1 − R)² R²ᵏ = (1 − R)/(1 + R) of each polarisation comes through both faces.",
+        )
         .confirmed("the passes to and fro, one by one", 1e-12, move || {
             shown(bare * of_both(|r| (0..30).map(|k| (1.0 - r).powi(2) * r.powi(2 * k)).sum()))
         })

@@ -36,6 +36,7 @@ mod instruments;
 mod irradiance;
 mod judge;
 mod lamps;
+mod lamps_behind_glass;
 mod lens_tracer;
 mod lit_fog;
 mod luminous;
@@ -347,7 +348,8 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 42] = [
+const GROUPS: [fn() -> Vec<Truth>; 43] = [
+    lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
     facets::truths,

@@ -208,19 +208,48 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
                     Some(path.unobstructed(world, vertex, &draw.sample))
                 };
                 paths.ray_count[lane] += (self.counters.rays + self.counters.shadow_rays - before) as u32;
-                if let Some(visible) = visible {
-                    path.add_light(world, vertex, &draw, &next[lane], &visible, &mut ());
+                match visible {
+                    Some(visible) => path.add_light(world, vertex, &draw, &next[lane], &visible, &mut ()),
+                    None => {
+                        let before = self.counters.rays;
+                        path.add_refracted_light(
+                            world,
+                            vertex,
+                            &draw,
+                            paths.samplers.lane(lane),
+                            &mut self.counters,
+                            &mut (),
+                        );
+                        paths.ray_count[lane] += (self.counters.rays - before) as u32;
+                    }
                 }
             }
             return;
         }
         self.counters.shadow_rays += u64::from(asks.count_ones());
         lanes(asks).for_each(|lane| paths.ray_count[lane] += 1);
-        for lane in lanes(self.unoccluded(asks, |t_max| t_max)) {
+        let unoccluded = self.unoccluded(asks, |t_max| t_max);
+        for lane in lanes(unoccluded) {
             let Some(draw) = self.lights.draw(lane) else { continue };
             let (path, vertex) = (&mut self.paths.paths[lane], vertex(&self.paths.at, lane));
             let visible = path.unobstructed(world, vertex, &draw.sample);
             path.add_light(world, vertex, &draw, &next[lane], &visible, &mut ());
+        }
+        if world.refracting_bodies.is_some() {
+            for lane in lanes(asks & !unoccluded) {
+                let Some(draw) = self.lights.draw(lane) else { continue };
+                let (path, vertex) = (&mut self.paths.paths[lane], vertex(&self.paths.at, lane));
+                let before = self.counters.rays;
+                path.add_refracted_light(
+                    world,
+                    vertex,
+                    &draw,
+                    self.paths.samplers.lane(lane),
+                    &mut self.counters,
+                    &mut (),
+                );
+                self.paths.ray_count[lane] += (self.counters.rays - before) as u32;
+            }
         }
     }
 

@@ -17,6 +17,7 @@
 mod connections;
 mod hull;
 mod mixture;
+mod refracting_bodies;
 mod specular_image;
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,7 @@ pub(crate) use hull::Hull;
 pub(crate) use mixture::{
     Aimed, Mixture, VisibleImages, density_of, is_within, place_within, share_of, specular_image_share,
 };
+pub(crate) use refracting_bodies::RefractingBodies;
 pub(crate) use specular_image::{Ball, Eye, Shows, SpecularImage};
 
 use crate::bsdf::Bsdf;

@@ -159,10 +159,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if sees_lights {
             let [u_light, u1, u2, _] = sampler.vertex_set(self.vertex, 1);
             if let Some(draw) = world.sample_light(&vertex.point, u_light, [u1, u2])
+                && !self.add_light_outside(world, vertex, &draw, sampler, counters, observer)
                 && let Some(next) = self.next_event_in_medium(world, vertex, &draw)
-                && let Some(visible) = self.visibility(world, vertex, &draw.sample, counters)
             {
-                self.add_light(world, vertex, &draw, &next, &visible, observer);
+                match self.visibility(world, vertex, &draw.sample, counters) {
+                    Some(visible) => self.add_light(world, vertex, &draw, &next, &visible, observer),
+                    None => self.add_refracted_light(world, vertex, &draw, sampler, counters, observer),
+                }
             }
             let beta = self.beta;
             self.beta *= vertex.share_of_connections;
@@ -175,7 +178,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.polarisation.follow(vertex.wo, wi, || vertex.medium.phase.mueller(vertex.wo, wi));
         self.guiding = 1.0;
         self.step = match sees_lights {
-            true => Step::Shared { from: vertex.point.position, leaves: vertex.point.surface, density },
+            true => Step::Shared { from: vertex.point.position, leaves: vertex.point.surface, density, through: None },
             false => Step::Unshared,
         };
         self.leave_ray(world);

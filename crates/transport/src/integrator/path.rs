@@ -6,13 +6,13 @@ use crate::integrator::film_entry::Received;
 use crate::integrator::fluorescence::Reradiated;
 use crate::integrator::observer::{End, Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::light::{EnvironmentRadiance, Light, Look, SkyLook};
+use crate::light::{Environment, EnvironmentRadiance, Light, Look, SkyLook};
 use crate::media::{MediumInteraction, MediumStack};
 use crate::mis::power_heuristic;
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::{SurfaceInteraction, Walk};
-use crate::scene::shading_tables::SpectrumCache;
+use crate::scene::shading_tables::{Slot, SpectrumCache};
 use crate::scene::world::World;
 use crate::spectral::Colour;
 use crate::wavelength::Wavelengths;
@@ -85,7 +85,17 @@ pub(super) enum Step {
     /// From the camera or by a delta: no shadow ray could have found what it finds.
     Unshared,
     /// Drawn with this density, the mean over the lanes, from this point of this primitive, where a shadow ray was sent too.
-    Shared { from: Vec3<f64>, leaves: SurfaceId, density: f64 },
+    /// If the path has gone through smooth interfaces since, the density is that of coming through.
+    Shared { from: Vec3<f64>, leaves: SurfaceId, density: f64, through: Option<Through> },
+}
+
+/// Smooth interfaces that a path has gone through since its last vertex that scatters.
+#[derive(Clone, Copy)]
+pub(super) struct Through {
+    /// The direction in which it left that vertex.
+    pub wi: Vec3<f64>,
+    /// How many.
+    pub interfaces: u32,
 }
 
 /// What a ray meets.
@@ -258,22 +268,58 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     ) {
         for (environment, slot) in world.environments.iter().zip(&world.tables.environments) {
             counters.environment_lookups += 1;
-            let white = self.spectra.of(*slot, environment.radiance.spectrum(), world.tables, &self.wavelengths);
-            let (radiance, mis) = match &environment.radiance {
-                EnvironmentRadiance::Uniform(_) => (white, 1.0),
-                EnvironmentRadiance::Image(image) => {
-                    let Look { colour, density } = sky.take().unwrap_or_else(|| image.look(ray.direction));
-                    let mis = self.weight_of_hit(world, None, || environment.light, |_, _| density);
-                    (self.coloured(white, Some(Colour::Rgb(colour))), mis)
-                }
-                EnvironmentRadiance::Sky(of) => {
-                    let SkyLook { relative, colour, density } = of.look(ray.direction);
-                    let mis = self.weight_of_hit(world, None, || environment.light, |_, _| density);
-                    (self.coloured(white, colour) * relative, mis)
-                }
+            let (radiance, density) = self.radiance_from(world, environment, *slot, ray, &mut sky);
+            let mis = match density {
+                None => 1.0,
+                Some(density) => self.weight_of_hit(world, ray, None, || environment.light, |_, _| density),
             };
             self.add(observer, Found::Environment, radiance, mis);
         }
+    }
+
+    /// What a sky shows along a ray, and the density with which shadow rays take its direction, if they do.
+    #[inline(always)]
+    fn radiance_from(
+        &mut self,
+        world: &World<'a>,
+        environment: &Environment,
+        slot: Slot,
+        ray: &Ray<f64>,
+        sky: &mut Option<Look>,
+    ) -> (Lanes<f64, N>, Option<f64>) {
+        let white = self.spectra.of(slot, environment.radiance.spectrum(), world.tables, &self.wavelengths);
+        match &environment.radiance {
+            EnvironmentRadiance::Uniform(_) => (white, None),
+            EnvironmentRadiance::Image(image) => {
+                let Look { colour, density } = sky.take().unwrap_or_else(|| image.look(ray.direction));
+                (self.coloured(white, Some(Colour::Rgb(colour))), Some(density))
+            }
+            EnvironmentRadiance::Sky(of) => {
+                let SkyLook { relative, colour, density } = of.look(ray.direction);
+                (self.coloured(white, colour) * relative, Some(density))
+            }
+        }
+    }
+
+    /// What the sky of a light shows along a ray.
+    pub(super) fn radiance_of_sky(&mut self, world: &World<'a>, ray: &Ray<f64>, light: u32) -> Option<Lanes<f64, N>> {
+        let skies = world.environments.iter().zip(&world.tables.environments);
+        let (sky, slot) = skies.into_iter().find(|(sky, _)| sky.light == Some(light))?;
+        Some(self.radiance_from(world, sky, *slot, ray, &mut None).0)
+    }
+
+    /// What a surface emits toward where the path came from.
+    #[inline(always)]
+    pub(super) fn radiance_of_surface(
+        &mut self,
+        world: &World<'a>,
+        vertex: &SurfaceInteraction<'a>,
+    ) -> Option<Lanes<f64, N>> {
+        let SurfaceInteraction { hit, point, surface, wo, .. } = vertex;
+        let emitted = surface.emission_along(world.geometry, point, hit, *wo)?;
+        let slot = world.tables.objects[surface.object as usize].emission;
+        let white = self.spectra.of(slot, emitted.radiance, world.tables, &self.wavelengths);
+        Some(self.coloured(white, emitted.colour.map(Colour::Rgb)))
     }
 
     /// Adds the light that the surface emits.
@@ -285,13 +331,10 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         vertex: &SurfaceInteraction<'a>,
         observer: &mut impl Observer<N>,
     ) {
-        let SurfaceInteraction { hit, point, surface, wo, .. } = vertex;
-        let Some(emitted) = surface.emission_along(world.geometry, point, hit, *wo) else { return };
+        let Some(radiance) = self.radiance_of_surface(world, vertex) else { return };
+        let SurfaceInteraction { point, surface, .. } = vertex;
         let density = |light: &Light, from| light.density(from, ray.direction, ray.time);
-        let mis = self.weight_of_hit(world, Some(point.surface), || surface.light(point.surface), density);
-        let slot = world.tables.objects[surface.object as usize].emission;
-        let white = self.spectra.of(slot, emitted.radiance, world.tables, &self.wavelengths);
-        let radiance = self.coloured(white, emitted.colour.map(Colour::Rgb));
+        let mis = self.weight_of_hit(world, ray, Some(point.surface), || surface.light(point.surface), density);
         self.add(observer, Found::Emitter, radiance, mis);
     }
 
@@ -318,6 +361,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         // What is left of the number is uniform again.
         self.u_mask = Some((u - opacity) / (1.0 - opacity));
         self.passes += 1;
+        if matches!(self.step, Step::Shared { through: Some(_), .. }) {
+            self.step = Step::Unshared;
+        }
         self.passed_at = Some(vertex.point.position);
         self.walk.pass(vertex, &mut self.stack);
         true
@@ -337,7 +383,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     /// Whether its last step was from a vertex that scatters into every direction.
     pub(super) fn is_indirect(&self) -> bool {
-        matches!(self.step, Step::Shared { .. })
+        matches!(self.step, Step::Shared { through: None, .. })
     }
 
     /// A spectrum of the tables at the path's wavelengths.
@@ -368,18 +414,23 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     fn weight_of_hit(
         &self,
         world: &World<'a>,
+        ray: &Ray<f64>,
         on: Option<SurfaceId>,
         light: impl Fn() -> Option<u32>,
         density_of: impl Fn(&Light, Vec3<f64>) -> f64,
     ) -> f64 {
-        let Step::Shared { from, leaves, density } = self.step else { return 1.0 };
+        let Step::Shared { from, leaves, density, through } = self.step else { return 1.0 };
         // The far side of the sphere that it left: see `next_event`.
         if !world.weigh_hits || on == Some(leaves) {
             return 1.0;
         }
         let Some(light) = light() else { return 1.0 };
         let light = light as usize;
-        let of_direction = density_of(&world.lights.lights()[light], from);
+        let of_light = &world.lights.lights()[light];
+        let of_direction = match through {
+            None => density_of(of_light, from),
+            Some(Through { wi, .. }) => world.density_toward(of_light, from, wi, ray.time),
+        };
         match world.light_sampling {
             // No shadow ray could have found it.
             _ if of_direction == 0.0 => 1.0,

@@ -89,9 +89,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let [u_light, u1, u2, _] = sampler.vertex_set(self.vertex, 1);
         if let Some(draw) = world.sample_light(&vertex.point, u_light, [u1, u2])
             && let Some(next) = self.next_event(world, vertex, &draw)
-            && let Some(visible) = self.visibility(world, vertex, &draw.sample, counters)
         {
-            self.add_light(world, vertex, &draw, &next, &visible, observer);
+            match self.visibility(world, vertex, &draw.sample, counters) {
+                Some(visible) => self.add_light(world, vertex, &draw, &next, &visible, observer),
+                None => self.add_refracted_light(world, vertex, &draw, sampler, counters, observer),
+            }
         }
     }
 }

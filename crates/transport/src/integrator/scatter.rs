@@ -171,12 +171,16 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.polarisation.follow(*wo, wi, || vertex.scattering().mueller(&self.wavelengths.lambda_nm, *wo, wi, lobe));
         let mean_of_hero = self.lanes.follow(sample.lane_density);
         self.eta_squared *= sample.eta * sample.eta;
-        self.step = Step::Unshared;
+        self.step = if world.refracting_bodies.is_some() && delta {
+            self.step_through(world, vertex, wi)
+        } else {
+            Step::Unshared
+        };
         if let Density::SolidAngle(density) = sample.density {
             self.guiding = guiding.min(1.0);
             if vertex.sees_lights {
                 let density = density * mean_of_hero;
-                self.step = Step::Shared { from: point.position, leaves: point.surface, density };
+                self.step = Step::Shared { from: point.position, leaves: point.surface, density, through: None };
             }
         }
         self.leave_ray(world);

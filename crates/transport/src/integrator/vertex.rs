@@ -26,13 +26,14 @@ pub(crate) trait Vertex<'a> {
         wi: Vec3<f64>,
     ) -> MediumStack<'a>;
 
-    /// f·|cos θ| of a direction, sr⁻¹; in a medium its phase function.
-    fn f_cos<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    /// f·|cos θ| of a direction, sr⁻¹, in a medium its phase function; and the mean over the lanes of the density with which the walk would
+    /// draw it, sr⁻¹.
+    fn eval<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         &self,
         path: &mut Path<'a, M, P, N>,
         world: &World<'a>,
         wi: Vec3<f64>,
-    ) -> Lanes<f64, N>;
+    ) -> (Lanes<f64, N>, f64);
 
     /// What it does to polarisation; `None` if it depolarises.
     fn mueller<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wi: Vec3<f64>) -> Option<Mueller<N>>;
@@ -61,13 +62,13 @@ impl<'a> Vertex<'a> for SurfaceInteraction<'a> {
         }
     }
 
-    fn f_cos<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    fn eval<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         &self,
         path: &mut Path<'a, M, P, N>,
         world: &World<'a>,
         wi: Vec3<f64>,
-    ) -> Lanes<f64, N> {
-        path.eval(world, self, wi).0
+    ) -> (Lanes<f64, N>, f64) {
+        path.eval(world, self, wi)
     }
 
     #[inline(always)]
@@ -93,13 +94,14 @@ impl<'a> Vertex<'a> for MediumInteraction<'a> {
         self.stack
     }
 
-    fn f_cos<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    fn eval<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         &self,
         _: &mut Path<'a, M, P, N>,
         _: &World<'a>,
         wi: Vec3<f64>,
-    ) -> Lanes<f64, N> {
-        Lanes::splat(self.medium.phase.density(-self.wo.dot(wi)))
+    ) -> (Lanes<f64, N>, f64) {
+        let density = self.medium.phase.density(-self.wo.dot(wi));
+        (Lanes::splat(density), density)
     }
 
     fn mueller<const N: usize>(&self, _: &Lanes<f64, N>, wi: Vec3<f64>) -> Option<Mueller<N>> {

@@ -60,6 +60,12 @@ pub(crate) struct MediumStack<'a> {
 impl<'a> MediumStack<'a> {
     pub(crate) const NOTHING: Self = Self { places: [(0, 0); DEPTH], len: 0, body: None };
 
+    /// Whether anything is in it.
+    #[inline(always)]
+    pub(crate) fn is_in_a_body(&self) -> bool {
+        self.len > 0 || self.body.is_some()
+    }
+
     /// Corrects it before a dielectric that states both its sides. Met from within, it is known to be its interior.
     #[inline(always)]
     pub(crate) fn meet(&mut self, interior: Option<&'a Interior>, from_front: bool) {

@@ -45,6 +45,8 @@ pub enum EffectName {
     SpecularChains,
     /// Light of lamps without area is looked for by way of mirrors and smooth interfaces.
     SpecularConnections,
+    /// Shadow rays go through glass.
+    RefractedShadows,
     /// Solids of different media touch, overlap or hold each other.
     NestedDielectrics,
     /// Media absorb light on its way, or emit some.
@@ -71,7 +73,7 @@ pub enum EffectName {
 
 impl EffectName {
     /// All of them, in the order of a plan.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Wavelengths,
         Self::Dispersion,
         Self::Interference,
@@ -82,6 +84,7 @@ impl EffectName {
         Self::Environment,
         Self::SpecularChains,
         Self::SpecularConnections,
+        Self::RefractedShadows,
         Self::NestedDielectrics,
         Self::Absorption,
         Self::Scattering,
@@ -108,6 +111,7 @@ impl EffectName {
             Self::Environment => "environment",
             Self::SpecularChains => "specular-chains",
             Self::SpecularConnections => "specular-connections",
+            Self::RefractedShadows => "refracted-shadows",
             Self::NestedDielectrics => "nested-dielectrics",
             Self::Absorption => "absorption",
             Self::Scattering => "scattering",
@@ -139,6 +143,7 @@ impl EffectName {
             Self::SpecularConnections => {
                 "what mirrors and glass throw of lamps without area on other surfaces is missing"
             }
+            Self::RefractedShadows => "the mean is the same, with more noise where light comes through glass",
             Self::NestedDielectrics => "each solid is treated as if it stood in vacuum",
             Self::Absorption => "media take no light away and emit none, however thick they are",
             Self::Scattering => "light goes straight through media: no fog, no milk",
@@ -163,6 +168,7 @@ impl EffectName {
             // They are what the surfaces, or the film, are made of.
             Self::SpecularChains
             | Self::SpecularConnections
+            | Self::RefractedShadows
             | Self::Interference
             | Self::Fluorescence
             | Self::Textures

@@ -170,8 +170,8 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
         // The integrator's setting, which `Study::light_sampling` has changed.
         EffectName::Mis => {}
         EffectName::Environment => scene.lights.retain(|light| light.kind.is_delta()),
-        // A strategy of the integrator, which the plan leaves out.
-        EffectName::SpecularConnections => {}
+        // Strategies of the integrator, which the plan leaves out.
+        EffectName::SpecularConnections | EffectName::RefractedShadows => {}
         EffectName::SpecularChains => scene.materials.iter_mut().for_each(|material| blacken(&mut material.kind)),
         EffectName::NestedDielectrics => {
             for material in &mut scene.materials {

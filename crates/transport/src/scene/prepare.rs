@@ -5,7 +5,7 @@ use crate::bsdf::{Bsdf, Lambert, properties};
 use crate::camera::{Camera, Moving, PreparedLens};
 use crate::film::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame, mapped};
-use crate::guiding::{GuidedTargets, SpecularConnections};
+use crate::guiding::{GuidedTargets, RefractingBodies, SpecularConnections};
 use crate::light::{Environment, Light, LightTable, weighted_sum};
 use crate::media::{Interior, Media, Medium, Participating, Solid};
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
@@ -52,6 +52,7 @@ pub struct Prepared {
     pub(crate) tables: ShadingTables,
     pub(crate) guided_targets: GuidedTargets,
     pub(crate) specular_connections: Option<SpecularConnections>,
+    pub(crate) refracting_bodies: Option<RefractingBodies>,
     plan: Plan,
     /// Those of the shapes, then those of the view.
     pub(crate) warnings: Vec<String>,
@@ -198,6 +199,10 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
             LightTable::weighed(deltas, radius, scene.integrator.light_selection, worth)
         })
     });
+    // A study may weigh shadow rays otherwise.
+    let refracting_bodies = (plan.runs(EffectName::RefractedShadows)
+        && scene.integrator.light_sampling == LightSampling::Mis)
+        .then(|| RefractingBodies::new(&surfaces, &geometry));
     let wavelengths = match &scene.film.bands {
         Some(bands) => WavelengthDistribution::for_bands(range_nm, bands),
         None => WavelengthDistribution::new(range_nm),
@@ -227,6 +232,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         tables,
         guided_targets,
         specular_connections: specular_connections.flatten(),
+        refracting_bodies: refracting_bodies.flatten(),
         plan,
         shape_warnings: warnings.len(),
         warnings,

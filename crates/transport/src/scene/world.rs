@@ -1,6 +1,6 @@
 //! The scene as paths see it.
 
-use crate::guiding::{GuidedTargets, SpecularConnections};
+use crate::guiding::{GuidedTargets, RefractingBodies, SpecularConnections};
 use crate::light::{Environment, EnvironmentLight, LightTable};
 use crate::media::{Media, Participating};
 use crate::scene::shading_tables::ShadingTables;
@@ -41,6 +41,8 @@ pub(crate) struct World<'a> {
     pub plain_skies: bool,
     /// The lamps without area whose light is looked for by way of mirrors and smooth interfaces, if it is.
     pub specular_connections: Option<&'a SpecularConnections>,
+    /// The glass that shadow rays go through, if they do.
+    pub refracting_bodies: Option<&'a RefractingBodies>,
     /// What diffuse surfaces draw directions toward.
     pub guided_targets: &'a GuidedTargets,
 }

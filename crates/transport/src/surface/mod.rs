@@ -159,6 +159,11 @@ impl<'a> Surface<'a> {
         Some(light_of[place].1)
     }
 
+    /// Whether it emits light.
+    pub(crate) fn shines(&self) -> bool {
+        self.own.emission.is_some()
+    }
+
     /// What it holds, where it states both its sides itself.
     pub(crate) fn interior(&self) -> Option<&'a Interior> {
         self.surfaces.interiors[self.own.material].as_ref()

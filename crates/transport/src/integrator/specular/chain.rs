@@ -1,5 +1,6 @@
 //! A chain of mirrors and smooth interfaces, as a function of the direction in which it begins.
 
+use super::refracted_shadow::{MOST_INTERFACES, is_clear};
 use super::solve::Root;
 use crate::film::Counters;
 use crate::integrator::vertex::Vertex;
@@ -48,6 +49,16 @@ pub(super) struct Brought<const N: usize> {
     pub stokes: Option<[Lanes<f64, N>; 3]>,
     /// How strong it is where the chain begins, over what the lamp would bring from as far away without it.
     pub concentration: f64,
+}
+
+/// What a shadow ray brings through smooth interfaces.
+pub(super) struct ShadowPassed<const N: usize> {
+    /// S₀ of radiance times throughput.
+    pub light: Lanes<f64, N>,
+    /// S₁, S₂ and S₃, where polarisation is followed.
+    pub stokes: Option<[Lanes<f64, N>; 3]>,
+    /// The probability with which the walk would have passed the interfaces.
+    pub probability: f64,
 }
 
 /// A mirror or smooth interface that the walk has come to, before it goes on.
@@ -141,7 +152,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
 
     /// What comes along a root's chain; `None` if nothing comes through.
     pub(super) fn bring(&mut self, root: &Root, light: &Light, counters: &mut Counters) -> Option<Brought<N>> {
-        let f_cos = self.vertex.f_cos(&mut self.walker, self.world, root.wi);
+        let (f_cos, _) = self.vertex.eval(&mut self.walker, self.world, root.wi);
         if f_cos.is_zero() {
             return None;
         }
@@ -181,6 +192,82 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             });
         }
         None
+    }
+
+    /// That of a shadow ray, which is refracted wherever it can be.
+    pub(super) fn shadow(path: &'c Path<'a, M, P, N>, world: &'c World<'a>, vertex: &'c V) -> Self {
+        let mut walker = Path::idle();
+        walker.wavelengths = path.wavelengths;
+        walker.vertex = path.vertex;
+        walker.spectra = path.spectra.clone();
+        let most = MOST_INTERFACES.min(world.max_depth.saturating_sub(path.vertex + 2));
+        Self { world, vertex, path, walker, numbers: NumberStream::default(), most, refracts: true }
+    }
+
+    /// What a light sends to the beginning along a shadow ray through smooth interfaces; `None` if the ray does not come to it. `goes_on`
+    /// decides with which probability the ray goes on after each of its parts, for what is left of its light.
+    pub(super) fn pass(
+        &mut self,
+        wi: Vec3<f64>,
+        light: u32,
+        mut goes_on: impl FnMut(Lanes<f64, N>) -> f64,
+        counters: &mut Counters,
+    ) -> Option<ShadowPassed<N>> {
+        let mut ray = self.begin(wi);
+        let (wo, lambda_nm) = (self.vertex.wo(), self.walker.wavelengths.lambda_nm);
+        self.walker.polarisation.follow(wo, wi, || self.vertex.mueller(&lambda_nm, wi));
+        let mut probability = 1.0;
+        for number in 0..=self.most {
+            let Self { world, walker, .. } = self;
+            counters.rays += 1;
+            let met = world.intersect(&ray, &mut walker.walk, &mut walker.stack, counters);
+            if world.participating.is_some() {
+                if let Some(met) = &met {
+                    walker.stack.meet(met.surface.interior(), met.meets_front());
+                }
+                let length = met.as_ref().map_or(f64::INFINITY, |met| (met.point.position - ray.origin).length());
+                let way = Way { origin: ray.origin, direction: ray.direction, length };
+                walker.beta *= walker.transmittance(world, &walker.stack, &way);
+                let survival = goes_on(walker.beta);
+                if survival == 0.0 {
+                    return None;
+                }
+                walker.beta /= survival;
+            }
+            let Some(mut met) = met else {
+                let radiance = walker.radiance_of_sky(world, &ray, light);
+                return radiance.map(|radiance| self.came_through(radiance, probability));
+            };
+            if met.surface.light(met.point.surface) == Some(light) {
+                let radiance = walker.radiance_of_surface(world, &met);
+                return radiance.map(|radiance| self.came_through(radiance, probability));
+            }
+            if number == self.most || !is_clear(world, &met) {
+                return None;
+            }
+            met.prepare_scattering(world);
+            let transmitted = 1.0 - walker.reflection_probability(world, &met)?;
+            if transmitted == 0.0 {
+                return None;
+            }
+            let u_lobe = 1.0_f64.next_down();
+            let direction = walker.sample_direction(world, &met, [u_lobe, 0.5, 0.5], &mut ())?;
+            let next = self.go_on(&met, direction, u_lobe);
+            if !met.goes_through(next.direction) {
+                return None;
+            }
+            self.walker.beta *= transmitted;
+            probability *= transmitted;
+            ray = next;
+        }
+        None
+    }
+
+    fn came_through(&self, radiance: Lanes<f64, N>, probability: f64) -> ShadowPassed<N> {
+        let walker = &self.walker;
+        let light = walker.beta * radiance * walker.lanes.weight();
+        let [s0, others @ ..] = walker.polarisation.of_unpolarised();
+        ShadowPassed { light: light * s0, stokes: P::FOLLOWED.then(|| others.map(|s| light * s)), probability }
     }
 
     /// The walker back at the beginning, and the ray in a direction.

@@ -20,6 +20,7 @@
 
 mod chain;
 mod passed_beam;
+mod refracted_shadow;
 mod solve;
 
 use super::Path;

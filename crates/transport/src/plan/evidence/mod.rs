@@ -55,6 +55,7 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             None => nothing("no mirror, metal or glass"),
         },
         EffectName::SpecularConnections => specular_connections(scene),
+        EffectName::RefractedShadows => refracted_shadow_rays(scene),
         EffectName::NestedDielectrics => match first_surface(scene, |material, _| nested(&material.kind)) {
             Some(found) => Ok(found),
             None => nothing("no solid carries a priority"),
@@ -97,6 +98,30 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
                 Ok(format!("film: {} bands of {} nm over {first}–{last} nm", bands.count, bands.step_nm))
             }
         },
+    }
+}
+
+/// Glass through which a shadow ray may find what the walk finds too.
+fn refracted_shadow_rays(scene: &Scene) -> Result<String, String> {
+    if mis(scene).is_err() {
+        return Err("no light is found both by shadow rays and by paths".to_owned());
+    }
+    if scene.integrator.path_reuse.block_px().is_some() {
+        return Err("pixels share paths".to_owned());
+    }
+    let smooth = |object: &&Object| {
+        object.opacity == 1.0
+            && matches!(
+                scene.materials[object.material].kind,
+                MaterialKind::Dielectric { .. } | MaterialKind::ThinDielectric { .. }
+            )
+    };
+    match scene.placed_objects().find(smooth) {
+        Some(object) => {
+            let material = &scene.materials[object.material];
+            Ok(format!("material \"{}\" of \"{}\": shadow rays go through", material.name, object.name))
+        }
+        None => Err("no smooth glass that stands alone".to_owned()),
     }
 }
 

@@ -1,0 +1,157 @@
+//! Shadow rays that glass refracts: direct light of lamps with an area, and of skies, behind smooth interfaces and panes.
+//!
+//! A shadow ray is drawn straight toward a light. Where glass blocks it, it goes on through the glass, refracted at each interface, and counts
+//! if it comes to the same light in the end. That is a second way to draw a direction that the walk may take too, which then passes each
+//! interface with the probability of its transmittance. Both are weighed by their densities (Veach 1997, §9.2.4):
+//!
+//! - of the shadow ray: the probability of the light times the density of the direction toward it, as seen without the glass;
+//! - of the walk: the density of the direction times the product of the transmittances, for the wavelength that decides.
+//!
+//! So light behind a pane, in a bulb or outside of a glass of water is found by shadow rays where these are good at it: where glass turns light
+//! little. Where it concentrates light, the walk finds most of it, as before.
+//!
+//! Neither counts reflections within the glass, nor surfaces of which only a part is there. Such light is the walk's alone.
+
+use super::chain::Chain;
+use crate::film::Counters;
+use crate::integrator::observer::{Found, Observer};
+use crate::integrator::path::{Step, Through};
+use crate::integrator::vertex::Vertex;
+use crate::integrator::wavelength_lanes::WavelengthModel;
+use crate::integrator::{LightDraw, Path, light_weight};
+use crate::light::Light;
+use crate::mis::Density;
+use crate::polarisation::Polarisation;
+use crate::sampler::Sampler;
+use crate::scene::interaction::SurfaceInteraction;
+use crate::scene::world::World;
+use etalon_geometry::{Ray, SurfaceId};
+use etalon_optics::{Lanes, Vec3};
+
+/// Most interfaces that a shadow ray goes through.
+pub(super) const MOST_INTERFACES: u32 = 8;
+/// Where media leave less of its light than this, a shadow ray goes on with a probability in proportion.
+const FAINT: f64 = 0.25;
+/// The number of the set before those that decide this.
+const SHADOW_SETS: u64 = 1 << 43;
+
+impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
+    /// Adds the light that comes along a shadow ray from a point within glass or a liquid, where no other shadow ray arrives. False if the point is
+    /// elsewhere.
+    #[inline]
+    pub(crate) fn add_light_outside(
+        &mut self,
+        world: &World<'a>,
+        vertex: &impl Vertex<'a>,
+        draw: &LightDraw,
+        sampler: &Sampler,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) -> bool {
+        let inside = world.refracting_bodies.is_some()
+            && !world.masks
+            && matches!(draw.sample.density, Density::SolidAngle(_))
+            && world.follows_media()
+            && vertex.media_toward(self, draw.sample.wi).is_in_a_body();
+        if inside {
+            self.follow_shadow_ray(world, vertex, draw, sampler, counters, observer);
+        }
+        inside
+    }
+
+    /// Adds the light that comes along a shadow ray through the glass that is in its way, if glass is.
+    #[inline]
+    pub(crate) fn add_refracted_light(
+        &mut self,
+        world: &World<'a>,
+        vertex: &impl Vertex<'a>,
+        draw: &LightDraw,
+        sampler: &Sampler,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) {
+        let Some(bodies) = world.refracting_bodies else { return };
+        let (from, sample) = (vertex.point().position, &draw.sample);
+        if bodies.may_be_met(from, sample.wi, sample.target.distance(from)) {
+            self.follow_shadow_ray(world, vertex, draw, sampler, counters, observer);
+        }
+    }
+
+    #[inline(never)]
+    fn follow_shadow_ray(
+        &mut self,
+        world: &World<'a>,
+        vertex: &impl Vertex<'a>,
+        draw: &LightDraw,
+        sampler: &Sampler,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) {
+        let Density::SolidAngle(_) = draw.sample.density else { return };
+        let wi = draw.sample.wi;
+        let (f_cos, of_walk) = vertex.eval(self, world, wi);
+        let before = self.beta.max_lane();
+        let numbers = sampler.connection_numbers(self.vertex);
+        let mut part = SHADOW_SETS;
+        let goes_on = |left: Lanes<f64, N>| {
+            let survival = (left.max_lane() / (before * FAINT)).min(1.0);
+            part += 1;
+            if survival == 1.0 || numbers.set(part)[0] < survival { survival } else { 0.0 }
+        };
+        let Some(passed) = Chain::shadow(self, world, vertex).pass(wi, draw.light, goes_on, counters) else { return };
+        let of_walk = of_walk * passed.probability;
+        let weight = light_weight(world.light_sampling, draw.sample.density, 1.0, draw.probability, of_walk);
+        let factor = f_cos * weight;
+        if let Some(stokes) = passed.stokes {
+            self.polarisation.record(stokes.map(|s| s * factor));
+        }
+        let found = self.gather(passed.light * factor);
+        observer.light(self.vertex, Found::ShadowRay { light: draw.light }, found);
+    }
+
+    /// What the last step is after an interface that the path goes through in the direction `wi`: still one that a shadow ray may have taken, if
+    /// all surfaces since are such.
+    pub(in crate::integrator) fn step_through(
+        &self,
+        world: &World<'a>,
+        vertex: &SurfaceInteraction<'a>,
+        wi: Vec3<f64>,
+    ) -> Step {
+        let Step::Shared { from, leaves, density, through } = self.step else { return Step::Unshared };
+        if self.passed_at.is_some() || !is_clear(world, vertex) || !vertex.goes_through(wi) {
+            return Step::Unshared;
+        }
+        let Some(reflectance) = self.reflection_probability(world, vertex) else { return Step::Unshared };
+        let through = through.unwrap_or(Through { wi: -vertex.wo, interfaces: 0 });
+        if through.interfaces == MOST_INTERFACES {
+            return Step::Unshared;
+        }
+        let through = Some(Through { interfaces: through.interfaces + 1, ..through });
+        Step::Shared { from, leaves, density: density * (1.0 - reflectance), through }
+    }
+}
+
+/// Whether the walk and shadow rays may go through a surface alike: it is all there, and does not shine.
+pub(super) fn is_clear<'a>(world: &World<'a>, vertex: &SurfaceInteraction<'a>) -> bool {
+    !vertex.surface.shines() && (!world.masks || vertex.opacity(world) == 1.0)
+}
+
+impl<'a> World<'a> {
+    /// The density with which a straight shadow ray toward a light takes a direction, sr⁻¹, that may lead past the light. 0 of lights that
+    /// refracted shadow rays do not look for.
+    pub(in crate::integrator) fn density_toward(
+        &self,
+        light: &Light,
+        from: Vec3<f64>,
+        wi: Vec3<f64>,
+        time: f64,
+    ) -> f64 {
+        if let Some(emitter) = light.emitter() {
+            let SurfaceId { instance, primitive } = emitter.surface;
+            if instance != 0 || !self.geometry.meets(primitive, &Ray { time, ..Ray::free(from, wi) }) {
+                return 0.0;
+            }
+        }
+        light.density(from, wi, time)
+    }
+}
