@@ -51,7 +51,7 @@ fn scene(lamp: &Value, materials: &Value, objects: &[Value]) -> Value {
         "camera": {"type": "perspective", "position_m": [0, 1.2, 3.5], "look_at_m": [0, 0.5, 0], "vertical_fov_deg": 40},
         "film": {"width": 24, "height": 18},
         "materials": all, "objects": list, "lights": lights,
-        "integrator": {"spp": 1024}
+        "integrator": {"spp": 512}
     })
 }
 
@@ -133,11 +133,12 @@ fn between() -> Vec<(&'static str, Value, Vec<Value>)> {
     ]
 }
 
-/// 84 comparisons of a mean, |z| < 5: a right renderer fails by chance in 5e-5 of all runs. The worst standard error is 2 %.
+/// 42 comparisons of a mean, |z| < 5: a right renderer fails by chance in 2.4e-5 of all runs. The worst standard error is 3 %.
 #[test]
 fn they_change_no_mean() {
-    for (what, materials, objects) in between() {
-        for (lamp_name, lamp) in lamps() {
+    for (number, (what, materials, objects)) in between().into_iter().enumerate() {
+        // Each with two of the lamps.
+        for (lamp_name, lamp) in lamps().into_iter().skip(number % 2).step_by(2) {
             let scene = scene(&lamp, &materials, &objects);
             let with = prepared(&scene, &[], PathLoop::Batch);
             assert!(with.plan().runs(EffectName::RefractedShadows), "{what}, {lamp_name}");
@@ -147,7 +148,7 @@ fn they_change_no_mean() {
                 let z = (a - b) / a_error.hypot(b_error);
                 assert!(z.abs() < 5.0, "{what}, {lamp_name}, {channel}: {a} ± {a_error}, {b} ± {b_error} without");
                 assert!(
-                    a_error < 0.02 * a && b_error < 0.02 * b,
+                    a_error < 0.03 * a && b_error < 0.03 * b,
                     "{what}, {lamp_name}: ± {a_error} of {a}, ± {b_error} of {b}"
                 );
             }

@@ -10,8 +10,6 @@ mod primitive;
 mod statistics;
 mod wide_tree;
 
-use crate::Ray;
-use crate::query::Query;
 use crate::small_scene::SmallScene;
 use crate::{Aabb, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
@@ -82,11 +80,6 @@ impl Geometry {
     /// The primitive of an id. Panics if the id is none of this geometry's.
     pub fn primitive(&self, id: PrimitiveId) -> &Primitive {
         &self.primitives[id.0 as usize]
-    }
-
-    /// Whether a ray meets a primitive, whatever else is in its way. Panics as [`Geometry::primitive`] does.
-    pub fn meets(&self, id: PrimitiveId, ray: &Ray<f64>) -> bool {
-        Query::new(ray).is_some_and(|query| self.primitive(id).intersect(&query, ray.t_max, false).is_some())
     }
 
     /// Number of primitives.

@@ -1,6 +1,6 @@
 //! Paths in media: the way along a ray, and the step that the walk takes where a medium scatters it.
 
-use super::path::Step;
+use super::path::{Since, Step};
 use super::specular::PassedBeams;
 use super::{LightDraw, NextEvent, Path, light_weight};
 use crate::film::Counters;
@@ -178,7 +178,12 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.polarisation.follow(vertex.wo, wi, || vertex.medium.phase.mueller(vertex.wo, wi));
         self.guiding = 1.0;
         self.step = match sees_lights {
-            true => Step::Shared { from: vertex.point.position, leaves: vertex.point.surface, density, through: None },
+            true => Step::Shared {
+                from: vertex.point.position,
+                leaves: vertex.point.surface,
+                density,
+                since: Since::Nothing,
+            },
             false => Step::Unshared,
         };
         self.leave_ray(world);

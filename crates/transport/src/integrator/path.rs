@@ -86,13 +86,23 @@ pub(super) enum Step {
     Unshared,
     /// Drawn with this density, the mean over the lanes, from this point of this primitive, where a shadow ray was sent too.
     /// If the path has gone through smooth interfaces since, the density is that of coming through.
-    Shared { from: Vec3<f64>, leaves: SurfaceId, density: f64, through: Option<Through> },
+    Shared { from: Vec3<f64>, leaves: SurfaceId, density: f64, since: Since },
 }
 
-/// Smooth interfaces that a path has gone through since its last vertex that scatters.
+/// What a path has met since its last vertex that scatters.
+#[derive(Clone, Copy)]
+pub(super) enum Since {
+    Nothing,
+    /// A surface of which only a part is there, which it has passed. Behind it, shadow rays go straight only.
+    Mask,
+    /// Smooth interfaces, which it has gone through.
+    Interfaces(Through),
+}
+
+/// Smooth interfaces that a path has gone through.
 #[derive(Clone, Copy)]
 pub(super) struct Through {
-    /// The direction in which it left that vertex.
+    /// The direction in which it left its last vertex that scatters.
     pub wi: Vec3<f64>,
     /// How many.
     pub interfaces: u32,
@@ -361,8 +371,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         // What is left of the number is uniform again.
         self.u_mask = Some((u - opacity) / (1.0 - opacity));
         self.passes += 1;
-        if matches!(self.step, Step::Shared { through: Some(_), .. }) {
-            self.step = Step::Unshared;
+        if opacity > 0.0
+            && let Step::Shared { since, .. } = &mut self.step
+        {
+            match since {
+                Since::Interfaces(_) => self.step = Step::Unshared,
+                Since::Nothing | Since::Mask => *since = Since::Mask,
+            }
         }
         self.passed_at = Some(vertex.point.position);
         self.walk.pass(vertex, &mut self.stack);
@@ -383,7 +398,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     /// Whether its last step was from a vertex that scatters into every direction.
     pub(super) fn is_indirect(&self) -> bool {
-        matches!(self.step, Step::Shared { through: None, .. })
+        matches!(self.step, Step::Shared { since: Since::Nothing | Since::Mask, .. })
     }
 
     /// A spectrum of the tables at the path's wavelengths.
@@ -419,18 +434,17 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         light: impl Fn() -> Option<u32>,
         density_of: impl Fn(&Light, Vec3<f64>) -> f64,
     ) -> f64 {
-        let Step::Shared { from, leaves, density, through } = self.step else { return 1.0 };
+        let Step::Shared { from, leaves, density, since } = self.step else { return 1.0 };
         // The far side of the sphere that it left: see `next_event`.
         if !world.weigh_hits || on == Some(leaves) {
             return 1.0;
         }
         let Some(light) = light() else { return 1.0 };
+        if let Since::Interfaces(Through { wi, .. }) = since {
+            return power_heuristic(density, world.density_toward(light, from, wi, ray.time));
+        }
         let light = light as usize;
-        let of_light = &world.lights.lights()[light];
-        let of_direction = match through {
-            None => density_of(of_light, from),
-            Some(Through { wi, .. }) => world.density_toward(of_light, from, wi, ray.time),
-        };
+        let of_direction = density_of(&world.lights.lights()[light], from);
         match world.light_sampling {
             // No shadow ray could have found it.
             _ if of_direction == 0.0 => 1.0,

@@ -1,6 +1,6 @@
 //! The walk's next step: a direction from a surface, what it is worth, and whether the path goes on.
 
-use super::path::Step;
+use super::path::{Since, Step};
 use super::{Path, ROULETTE_FROM_VERTEX, ROULETTE_THROUGHPUT, THROUGHPUT_FLOOR};
 use crate::bsdf::dielectric::{Turn, turn};
 use crate::bsdf::{BsdfSample, Lobe, lambert};
@@ -180,7 +180,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             self.guiding = guiding.min(1.0);
             if vertex.sees_lights {
                 let density = density * mean_of_hero;
-                self.step = Step::Shared { from: point.position, leaves: point.surface, density, through: None };
+                self.step =
+                    Step::Shared { from: point.position, leaves: point.surface, density, since: Since::Nothing };
             }
         }
         self.leave_ray(world);

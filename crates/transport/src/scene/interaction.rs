@@ -88,6 +88,12 @@ impl<'a> SurfaceInteraction<'a> {
         if self.is_open { 0.0 } else { self.surface.opacity(world.geometry, &self.point, &self.hit) }
     }
 
+    /// The same, known without a look where there are no masks.
+    #[inline(always)]
+    pub(crate) fn share_that_stops(&self, world: &World<'a>) -> f64 {
+        if world.masks { self.opacity(world) } else { 1.0 }
+    }
+
     /// Whether a direction leads to the other side of the surface.
     #[inline(always)]
     pub(crate) fn goes_through(&self, wi: Vec3<f64>) -> bool {

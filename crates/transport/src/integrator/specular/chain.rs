@@ -1,6 +1,6 @@
 //! A chain of mirrors and smooth interfaces, as a function of the direction in which it begins.
 
-use super::refracted_shadow::{MOST_INTERFACES, is_clear};
+use super::refracted_shadow::MOST_INTERFACES;
 use super::solve::Root;
 use crate::film::Counters;
 use crate::integrator::vertex::Vertex;
@@ -57,7 +57,9 @@ pub(super) struct ShadowPassed<const N: usize> {
     pub light: Lanes<f64, N>,
     /// S₁, S₂ and S₃, where polarisation is followed.
     pub stokes: Option<[Lanes<f64, N>; 3]>,
-    /// The probability with which the walk would have passed the interfaces.
+    /// How many interfaces it went through.
+    pub interfaces: u32,
+    /// The probability with which the walk would have passed them.
     pub probability: f64,
 }
 
@@ -205,7 +207,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
     }
 
     /// What a light sends to the beginning along a shadow ray through smooth interfaces; `None` if the ray does not come to it. `goes_on`
-    /// decides with which probability the ray goes on after each of its parts, for what is left of its light.
+    /// decides with which probability the ray goes on after each of its parts, by the share that media have let through.
     pub(super) fn pass(
         &mut self,
         wi: Vec3<f64>,
@@ -216,8 +218,9 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         let mut ray = self.begin(wi);
         let (wo, lambda_nm) = (self.vertex.wo(), self.walker.wavelengths.lambda_nm);
         self.walker.polarisation.follow(wo, wi, || self.vertex.mueller(&lambda_nm, wi));
-        let mut probability = 1.0;
-        for number in 0..=self.most {
+        let (mut start, mut interfaces, mut probability) = (ray.origin, 0, 1.0);
+        let mut left = Lanes::ONE;
+        for _ in 0..MOST_VERTICES {
             let Self { world, walker, .. } = self;
             counters.rays += 1;
             let met = world.intersect(&ray, &mut walker.walk, &mut walker.stack, counters);
@@ -225,25 +228,38 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
                 if let Some(met) = &met {
                     walker.stack.meet(met.surface.interior(), met.meets_front());
                 }
-                let length = met.as_ref().map_or(f64::INFINITY, |met| (met.point.position - ray.origin).length());
-                let way = Way { origin: ray.origin, direction: ray.direction, length };
-                walker.beta *= walker.transmittance(world, &walker.stack, &way);
-                let survival = goes_on(walker.beta);
+                let length = met.as_ref().map_or(f64::INFINITY, |met| (met.point.position - start).length());
+                left *= walker.transmittance(
+                    world,
+                    &walker.stack,
+                    &Way { origin: start, direction: ray.direction, length },
+                );
+                let survival = goes_on(left);
                 if survival == 0.0 {
                     return None;
                 }
-                walker.beta /= survival;
+                left /= survival;
             }
             let Some(mut met) = met else {
-                let radiance = walker.radiance_of_sky(world, &ray, light);
-                return radiance.map(|radiance| self.came_through(radiance, probability));
+                let radiance = walker.radiance_of_sky(world, &ray, light)?;
+                return Some(self.came_through(radiance * left, interfaces, probability));
             };
-            if met.surface.light(met.point.surface) == Some(light) {
-                let radiance = walker.radiance_of_surface(world, &met);
-                return radiance.map(|radiance| self.came_through(radiance, probability));
+            let is_of_light = match interfaces {
+                0 => met.surface.light(met.point.surface) == Some(light),
+                _ => world.is_of(&met.surface, met.point.surface, light),
+            };
+            if is_of_light {
+                let radiance = walker.radiance_of_surface(world, &met)?;
+                return Some(self.came_through(radiance * left, interfaces, probability));
             }
-            if number == self.most || !is_clear(world, &met) {
-                return None;
+            match met.share_that_stops(world) {
+                0.0 => {
+                    start = met.point.position;
+                    walker.walk.pass(&met, &mut walker.stack);
+                    continue;
+                }
+                1.0 if interfaces < self.most && !met.surface.shines() => {}
+                _ => return None,
             }
             met.prepare_scattering(world);
             let transmitted = 1.0 - walker.reflection_probability(world, &met)?;
@@ -258,16 +274,22 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             }
             self.walker.beta *= transmitted;
             probability *= transmitted;
-            ray = next;
+            interfaces += 1;
+            (ray, start) = (next, next.origin);
         }
         None
     }
 
-    fn came_through(&self, radiance: Lanes<f64, N>, probability: f64) -> ShadowPassed<N> {
+    fn came_through(&self, radiance: Lanes<f64, N>, interfaces: u32, probability: f64) -> ShadowPassed<N> {
         let walker = &self.walker;
         let light = walker.beta * radiance * walker.lanes.weight();
         let [s0, others @ ..] = walker.polarisation.of_unpolarised();
-        ShadowPassed { light: light * s0, stokes: P::FOLLOWED.then(|| others.map(|s| light * s)), probability }
+        ShadowPassed {
+            light: light * s0,
+            stokes: P::FOLLOWED.then(|| others.map(|s| light * s)),
+            interfaces,
+            probability,
+        }
     }
 
     /// The walker back at the beginning, and the ray in a direction.

@@ -15,16 +15,17 @@
 use super::chain::Chain;
 use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
-use crate::integrator::path::{Step, Through};
+use crate::integrator::path::{Since, Step, Through};
 use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::integrator::{LightDraw, Path, light_weight};
-use crate::light::Light;
-use crate::mis::Density;
+use crate::integrator::{LightDraw, Path};
+use crate::light::Emitter;
+use crate::mis::{Density, power_heuristic};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::SurfaceInteraction;
 use crate::scene::world::World;
+use crate::surface::Surface;
 use etalon_geometry::{Ray, SurfaceId};
 use etalon_optics::{Lanes, Vec3};
 
@@ -87,20 +88,27 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
-        let Density::SolidAngle(_) = draw.sample.density else { return };
+        let Density::SolidAngle(density) = draw.sample.density else { return };
         let wi = draw.sample.wi;
         let (f_cos, of_walk) = vertex.eval(self, world, wi);
-        let before = self.beta.max_lane();
         let numbers = sampler.connection_numbers(self.vertex);
         let mut part = SHADOW_SETS;
         let goes_on = |left: Lanes<f64, N>| {
-            let survival = (left.max_lane() / (before * FAINT)).min(1.0);
+            let survival = (left.max_lane() / FAINT).min(1.0);
             part += 1;
             if survival == 1.0 || numbers.set(part)[0] < survival { survival } else { 0.0 }
         };
         let Some(passed) = Chain::shadow(self, world, vertex).pass(wi, draw.light, goes_on, counters) else { return };
         let of_walk = of_walk * passed.probability;
-        let weight = light_weight(world.light_sampling, draw.sample.density, 1.0, draw.probability, of_walk);
+        // As straight, if nothing was in the way.
+        let density = match passed.interfaces {
+            0 => density * draw.probability,
+            _ => world.density_toward(draw.light, vertex.point().position, wi, vertex.point().time),
+        };
+        if density == 0.0 {
+            return;
+        }
+        let weight = power_heuristic(density, of_walk) / density;
         let factor = f_cos * weight;
         if let Some(stokes) = passed.stokes {
             self.polarisation.record(stokes.map(|s| s * factor));
@@ -117,41 +125,55 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         vertex: &SurfaceInteraction<'a>,
         wi: Vec3<f64>,
     ) -> Step {
-        let Step::Shared { from, leaves, density, through } = self.step else { return Step::Unshared };
-        if self.passed_at.is_some() || !is_clear(world, vertex) || !vertex.goes_through(wi) {
+        let Step::Shared { from, leaves, density, since } = self.step else { return Step::Unshared };
+        if vertex.surface.shines() || vertex.share_that_stops(world) < 1.0 || !vertex.goes_through(wi) {
             return Step::Unshared;
         }
+        let through = match since {
+            Since::Nothing => Through { wi: -vertex.wo, interfaces: 0 },
+            Since::Interfaces(through) if through.interfaces < MOST_INTERFACES => through,
+            Since::Interfaces(_) | Since::Mask => return Step::Unshared,
+        };
         let Some(reflectance) = self.reflection_probability(world, vertex) else { return Step::Unshared };
-        let through = through.unwrap_or(Through { wi: -vertex.wo, interfaces: 0 });
-        if through.interfaces == MOST_INTERFACES {
-            return Step::Unshared;
-        }
-        let through = Some(Through { interfaces: through.interfaces + 1, ..through });
-        Step::Shared { from, leaves, density: density * (1.0 - reflectance), through }
+        let since = Since::Interfaces(Through { interfaces: through.interfaces + 1, ..through });
+        Step::Shared { from, leaves, density: density * (1.0 - reflectance), since }
     }
 }
 
-/// Whether the walk and shadow rays may go through a surface alike: it is all there, and does not shine.
-pub(super) fn is_clear<'a>(world: &World<'a>, vertex: &SurfaceInteraction<'a>) -> bool {
-    !vertex.surface.shines() && (!world.masks || vertex.opacity(world) == 1.0)
-}
-
 impl<'a> World<'a> {
-    /// The density with which a straight shadow ray toward a light takes a direction, sr⁻¹, that may lead past the light. 0 of lights that
-    /// refracted shadow rays do not look for.
-    pub(in crate::integrator) fn density_toward(
-        &self,
-        light: &Light,
-        from: Vec3<f64>,
-        wi: Vec3<f64>,
-        time: f64,
-    ) -> f64 {
-        if let Some(emitter) = light.emitter() {
-            let SurfaceId { instance, primitive } = emitter.surface;
-            if instance != 0 || !self.geometry.meets(primitive, &Ray { time, ..Ray::free(from, wi) }) {
-                return 0.0;
+    /// The density with which straight shadow rays take a direction, sr⁻¹, toward a light: of a lamp toward all parts of the object that it is a
+    /// part of, such as the triangles of a mesh. 0 of lights that refracted shadow rays do not look for.
+    pub(in crate::integrator) fn density_toward(&self, light: u32, from: Vec3<f64>, wi: Vec3<f64>, time: f64) -> f64 {
+        let of_light = |light: u32| {
+            let probability = self.lights.probability(light as usize, from);
+            probability * self.lights.lights()[light as usize].density(from, wi, time)
+        };
+        let Some(emitter) = self.lights.lights()[light as usize].emitter() else { return of_light(light) };
+        let Some(lamp) = self.lamp(emitter) else { return 0.0 };
+        let (mut density, mut counted) = (0.0, Vec::new());
+        let ray = Ray { time, ..Ray::free(from, wi) };
+        self.geometry.all_hits(&ray, 0.0, |hit| {
+            let surface = self.surfaces.of(&self.geometry.surface(&ray, &hit));
+            let light = if surface.object == lamp { surface.light(hit.surface) } else { None };
+            // A curved surface may be met twice.
+            if let Some(light) = light.filter(|light| !counted.contains(light)) {
+                counted.push(light);
+                density += of_light(light);
             }
-        }
-        light.density(from, wi, time)
+            ray.t_max
+        });
+        density
+    }
+
+    /// The object that a lamp is, unless an instance places it.
+    fn lamp(&self, emitter: &Emitter) -> Option<u32> {
+        let SurfaceId { instance, primitive } = emitter.surface;
+        if instance != 0 { None } else { self.surfaces.object_of.first()?.get(primitive.0 as usize).copied() }
+    }
+
+    /// Whether a surface is of the light that a shadow ray looks for, so that it may count.
+    pub(super) fn is_of(&self, surface: &Surface<'_>, point: SurfaceId, light: u32) -> bool {
+        let lamp = self.lights.lights()[light as usize].emitter().and_then(|emitter| self.lamp(emitter));
+        lamp == Some(surface.object) && surface.light(point).is_some()
     }
 }
