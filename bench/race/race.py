@@ -31,6 +31,7 @@ import tempfile
 import numpy as np
 
 import draw
+import hard
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -245,6 +246,16 @@ def ratios(result):
     return of
 
 
+def times(result, targets=(0.05, 0.01)):
+    """CPU seconds to some relative errors: the root of relMSE, on the line through the two last levels."""
+    lines = ["| scene | entry | %s |" % " | ".join("s to %g %%" % (100 * t) for t in targets), "|---|---|" + "---:|" * len(targets)]
+    for path, done in result["scenes"].items():
+        for name, e in done["entries"].items():
+            seconds = [time_to(e["levels"], t * t) for t in targets]
+            lines.append("| %s | %s | %s |" % (os.path.basename(path), name, " | ".join("%.3g" % s if s else "" for s in seconds)))
+    return "\n".join(lines) + "\n"
+
+
 def log_draw(result, seed, drawn):
     """Adds a draw to the log, and says its median and its worst."""
     against = ratios(result)
@@ -277,13 +288,14 @@ def main():
     parser.add_argument("--scenes", type=split, default=list(SPP), help="of " + ", ".join(SPP))
     parser.add_argument("--entries", type=split, help="of " + ", ".join(ENTRIES))
     parser.add_argument("--draw", type=int, metavar="N", help="draw N scenes instead, and log them")
+    parser.add_argument("--hard", action="store_true", help="render the six scenes of hard.py instead")
     parser.add_argument("--seed", help="seed of the draw; default: the first eight digits of the commit")
     parser.add_argument("--spp", type=lambda text: [int(n) for n in text.split(",")], help="samples a pixel, the same for each scene")
     parser.add_argument("--rounds", type=int, default=5, help="independent renders at each number of samples, at least 2")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--out", default=str(ROOT / "out/race"))
     args = parser.parse_args()
-    args.entries = args.entries or (DRAWN_ENTRIES if args.draw else list(ENTRIES))
+    args.entries = args.entries or (DRAWN_ENTRIES if args.draw or args.hard else list(ENTRIES))
     for given, known in ((args.scenes, SPP), (args.entries, ENTRIES)):
         unknown = [name for name in given if name not in known]
         if unknown:
@@ -299,6 +311,9 @@ def main():
         for about in drawn:
             about["path"] = os.path.join(folder, about["name"] + ".xml")
         args.scenes = [about["path"] for about in drawn]
+    if args.hard:
+        folder = os.path.join(args.out, "hard")
+        args.scenes = [os.path.join(folder, name + ".xml") for name in hard.write(folder)]
     with tempfile.TemporaryDirectory(prefix="race-") as folder:
         for scene in args.scenes:
             print(scene, flush=True)
@@ -310,6 +325,8 @@ def main():
                     f.write(text)
                 os.replace(path + ".tmp", path)
     print(report(result))
+    if args.hard:
+        print(times(result))
     if args.draw:
         print(log_draw(result, seed, drawn))
 

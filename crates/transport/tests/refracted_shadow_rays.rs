@@ -10,7 +10,9 @@ fn parse(scene: &Value) -> Scene {
 }
 
 fn prepared(scene: &Value, without: &[EffectName], path_loop: PathLoop) -> Prepared {
-    let study = Study { path_loop: Some(path_loop), without: without.to_vec(), ..Study::default() };
+    // No trial decides otherwise.
+    let study =
+        Study { path_loop: Some(path_loop), without: without.to_vec(), by_cosine_alone: true, ..Study::default() };
     prepare_study(&parse(scene), &study).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -44,6 +44,7 @@ const fn named(
 #[cfg(test)]
 const PARTS: &[&str] = &[
     "bench/race/draw.py",
+    "bench/race/hard.py",
     "bench/race/peer_cycles.py",
     "bench/race/peer_luxcore.py",
     "bench/race/peer_mitsuba.py",

@@ -103,6 +103,13 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     let mut lines: Vec<String> = plan.effects.iter().map(|effect| line(effect, costs)).collect();
     lines.push(String::new());
     lines.extend(how(prepared).into_iter().map(|(what, value)| format!("{what:<20} {value}")));
+    if plan.runs(EffectName::RefractedShadows) {
+        let what = match prepared.refracts_shadow_rays() {
+            true => "go through glass: a trial found less noise for the time",
+            false => "stop at glass: a trial found no less noise for the time",
+        };
+        lines.push(format!("{:<20} {what}", "shadow rays"));
+    }
     if let (share, bodies @ 1..) = prepared.guided_targets() {
         let share = format!("{:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
         let objects = if bodies == 1 { "object that mirrors or refracts" } else { "objects that mirror or refract" };

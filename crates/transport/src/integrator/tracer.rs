@@ -102,7 +102,7 @@ impl<'a> Tracer<'a> {
                 fluoresces: plan.runs(EffectName::Fluorescence),
                 tables: &prepared.tables,
                 plain_skies: prepared.environments.iter().all(|sky| sky.light.is_none()),
-                refracting_bodies: prepared.refracting_bodies.as_ref(),
+                refracting_bodies: prepared.refracting_bodies.as_ref().filter(|_| prepared.refracts_shadow_rays()),
                 specular_connections: prepared.specular_connections.as_ref(),
                 guided_targets: &prepared.guided_targets,
             },

@@ -1,4 +1,4 @@
-//! A trial of guided sampling: the variance that each share of guided directions would leave.
+//! Trials before a picture: the variance that each share of guided directions would leave, and the rays that it takes.
 
 use crate::film::Counters;
 use crate::guiding::{GuidedBy, Mixture};
@@ -29,6 +29,8 @@ pub(crate) struct Trial {
     columns: usize,
     /// Pixel by pixel: the mean radiance, and its mean square without guided targets and with each of [`SHARES`].
     moments: Vec<(f64, [f64; 1 + SHARES.len()])>,
+    /// Rays that were cast.
+    pub rays: u64,
 }
 
 /// What a path comes to under no share and under each of [`SHARES`], if it is the same path.
@@ -70,11 +72,11 @@ pub(crate) fn try_guided_targets<M: WavelengthModel<N>, P: Polarisation<N>, cons
     let mut tracer = Tracer::new(prepared);
     tracer.seed = seed;
     let of_pixel = |x: u32, y: u32| {
-        let (mut mean, mut squares) = (0.0, [0.0; 1 + SHARES.len()]);
+        let (mut mean, mut squares, mut counters) = (0.0, [0.0; 1 + SHARES.len()], Counters::default());
         for sample in 0..SAMPLES {
             let mut path = Weighed { factors: [1.0; _], tried: 1.0, found: [0.0; _] };
             let mut observer: &mut dyn Observer<N> = &mut path;
-            tracer.sample::<M, P, N>(x, y, sample, &mut Counters::default(), &mut observer);
+            tracer.sample::<M, P, N>(x, y, sample, &mut counters, &mut observer);
             // What is not finite the picture reports.
             if !path.found.iter().all(|found| found.is_finite()) {
                 continue;
@@ -87,16 +89,22 @@ pub(crate) fn try_guided_targets<M: WavelengthModel<N>, P: Polarisation<N>, cons
                 *square += found * found * (path.tried / factor) / f64::from(SAMPLES);
             }
         }
-        (mean, squares)
+        ((mean, squares), counters.rays + counters.shadow_rays)
     };
     // In the order of the pixels, whichever thread they are tried by.
     let rows: Vec<u32> = rows.step_by(step as usize).collect();
     let of_row = |y: u32| columns.clone().step_by(step as usize).map(move |x| (x, y));
-    let moments = rows.into_par_iter().flat_map_iter(|y| of_row(y).map(|(x, y)| of_pixel(x, y))).collect();
-    Trial { columns: columns.clone().step_by(step as usize).count(), moments }
+    let (moments, rays): (Vec<_>, Vec<u64>) =
+        rows.into_par_iter().flat_map_iter(|y| of_row(y).map(|(x, y)| of_pixel(x, y))).unzip();
+    Trial { columns: columns.clone().step_by(step as usize).count(), moments, rays: rays.into_iter().sum() }
 }
 
 impl Trial {
+    /// The light of all pixels.
+    pub(crate) fn light(&self) -> f64 {
+        self.moments.iter().map(|(mean, _)| mean).sum()
+    }
+
     /// Variances over the square of the level around, with a hundredth of the picture's mean square lest black pixels count alone, in
     /// the sum over pixels.
     pub(crate) fn variances(&self) -> [f64; 1 + SHARES.len()] {

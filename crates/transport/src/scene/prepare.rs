@@ -53,6 +53,8 @@ pub struct Prepared {
     pub(crate) guided_targets: GuidedTargets,
     pub(crate) specular_connections: Option<SpecularConnections>,
     pub(crate) refracting_bodies: Option<RefractingBodies>,
+    /// Whether a trial found no use in what goes through them.
+    pub(crate) shadow_rays_stop_at_glass: bool,
     plan: Plan,
     /// Those of the shapes, then those of the view.
     pub(crate) warnings: Vec<String>,
@@ -233,6 +235,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         guided_targets,
         specular_connections: specular_connections.flatten(),
         refracting_bodies: refracting_bodies.flatten(),
+        shadow_rays_stop_at_glass: false,
         plan,
         shape_warnings: warnings.len(),
         warnings,
@@ -373,6 +376,11 @@ impl Prepared {
     pub fn guided_targets(&self) -> (f64, usize) {
         let (bodies, each) = self.guided_targets.bodies_aimed_at();
         (each * bodies.len() as f64, bodies.len())
+    }
+
+    /// Whether shadow rays go through glass.
+    pub fn refracts_shadow_rays(&self) -> bool {
+        self.refracting_bodies.is_some() && !self.shadow_rays_stop_at_glass
     }
 
     /// The largest share that is drawn toward images of lamps in smooth balls, and the number of images; 0 where that does not pay.
