@@ -441,7 +441,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         let Some(light) = light() else { return 1.0 };
         if let Since::Interfaces(Through { wi, .. }) = since {
-            return power_heuristic(density, world.density_toward(light, from, wi, ray.time));
+            return power_heuristic(density, world.density_toward(light, (from, leaves), wi, ray.time));
         }
         let light = light as usize;
         let of_direction = density_of(&world.lights.lights()[light], from);

@@ -246,6 +246,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             };
             let is_of_light = match interfaces {
                 0 => met.surface.light(met.point.surface) == Some(light),
+                _ if met.point.surface == self.vertex.point().surface => false,
                 _ => world.is_of(&met.surface, met.point.surface, light),
             };
             if is_of_light {

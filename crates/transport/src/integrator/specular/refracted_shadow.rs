@@ -103,7 +103,10 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         // As straight, if nothing was in the way.
         let density = match passed.interfaces {
             0 => density * draw.probability,
-            _ => world.density_toward(draw.light, vertex.point().position, wi, vertex.point().time),
+            _ => {
+                let point = vertex.point();
+                world.density_toward(draw.light, (point.position, point.surface), wi, point.time)
+            }
         };
         if density == 0.0 {
             return;
@@ -143,7 +146,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 impl<'a> World<'a> {
     /// The density with which straight shadow rays take a direction, sr⁻¹, toward a light: of a lamp toward all parts of the object that it is a
     /// part of, such as the triangles of a mesh. 0 of lights that refracted shadow rays do not look for.
-    pub(in crate::integrator) fn density_toward(&self, light: u32, from: Vec3<f64>, wi: Vec3<f64>, time: f64) -> f64 {
+    pub(in crate::integrator) fn density_toward(
+        &self,
+        light: u32,
+        (from, leaves): (Vec3<f64>, SurfaceId),
+        wi: Vec3<f64>,
+        time: f64,
+    ) -> f64 {
         let of_light = |light: u32| {
             let probability = self.lights.probability(light as usize, from);
             probability * self.lights.lights()[light as usize].density(from, wi, time)
@@ -155,8 +164,8 @@ impl<'a> World<'a> {
         self.geometry.all_hits(&ray, 0.0, |hit| {
             let surface = self.surfaces.of(&self.geometry.surface(&ray, &hit));
             let light = if surface.object == lamp { surface.light(hit.surface) } else { None };
-            // A curved surface may be met twice.
-            if let Some(light) = light.filter(|light| !counted.contains(light)) {
+            // No surface is aimed at from itself, and a curved one may be met twice.
+            if let Some(light) = light.filter(|light| hit.surface != leaves && !counted.contains(light)) {
                 counted.push(light);
                 density += of_light(light);
             }
