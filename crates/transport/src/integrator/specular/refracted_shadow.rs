@@ -144,8 +144,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 }
 
 impl<'a> World<'a> {
-    /// The density with which straight shadow rays take a direction, sr⁻¹, toward a light: of a lamp toward all parts of the object that it is a
-    /// part of, such as the triangles of a mesh. 0 of lights that refracted shadow rays do not look for.
+    /// The density with which straight shadow rays toward a light take a direction, sr⁻¹. All parts of a lamp count together, such as the
+    /// triangles of a mesh. 0 of lights that refracted shadow rays do not look for.
     pub(in crate::integrator) fn density_toward(
         &self,
         light: u32,
