@@ -19,6 +19,7 @@
 //! must not depend on which lane is the hero, or the two no longer add up to one for the lanes together. So what meets a
 //! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
+mod emission;
 pub(crate) mod film_entry;
 mod fluorescence;
 mod medium;

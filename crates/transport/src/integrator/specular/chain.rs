@@ -91,16 +91,25 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         numbers: NumberStream,
         u_length: f64,
     ) -> Self {
-        let mut walker = Path::idle();
-        walker.wavelengths = path.wavelengths;
-        walker.vertex = path.vertex;
-        walker.spectra = path.spectra.clone();
         let mut most = SURE_VERTICES;
         let mut left = u_length;
         while left < GOES_ON && most < MOST_VERTICES {
             left /= GOES_ON;
             most += 1;
         }
+        Self::of(path, world, vertex, numbers, most)
+    }
+
+    /// That of a shadow ray, which is refracted wherever it can be.
+    pub(super) fn shadow(path: &'c Path<'a, M, P, N>, world: &'c World<'a>, vertex: &'c V) -> Self {
+        Self::of(path, world, vertex, NumberStream::default(), MOST_INTERFACES)
+    }
+
+    fn of(path: &'c Path<'a, M, P, N>, world: &'c World<'a>, vertex: &'c V, numbers: NumberStream, most: u32) -> Self {
+        let mut walker = Path::idle();
+        walker.wavelengths = path.wavelengths;
+        walker.vertex = path.vertex;
+        walker.spectra = path.spectra.clone();
         // Edges of the path: to this vertex, to each of the chain, and to the lamp.
         let most = most.min(world.max_depth.saturating_sub(path.vertex + 2));
         Self { world, vertex, path, walker, numbers, most, refracts: false }
@@ -194,16 +203,6 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             });
         }
         None
-    }
-
-    /// That of a shadow ray, which is refracted wherever it can be.
-    pub(super) fn shadow(path: &'c Path<'a, M, P, N>, world: &'c World<'a>, vertex: &'c V) -> Self {
-        let mut walker = Path::idle();
-        walker.wavelengths = path.wavelengths;
-        walker.vertex = path.vertex;
-        walker.spectra = path.spectra.clone();
-        let most = MOST_INTERFACES.min(world.max_depth.saturating_sub(path.vertex + 2));
-        Self { world, vertex, path, walker, numbers: NumberStream::default(), most, refracts: true }
     }
 
     /// What a light sends to the beginning along a shadow ray through smooth interfaces; `None` if the ray does not come to it. `goes_on`
