@@ -111,8 +111,9 @@ fn placed_lamps_glass_and_metal_render_as_if_they_were_written_out() {
         ),
     ] {
         let placed = room(&json!([]), &groups, &instances);
-        // Connections look for bodies of the scene's own, too.
-        let [a, b] = [&written, &placed].map(|scene| render_without(scene, &[EffectName::SpecularConnections]));
+        // Connections look for bodies of the scene's own, and shadow rays through glass for lamps of its own.
+        let without = [EffectName::SpecularConnections, EffectName::RefractedShadows];
+        let [a, b] = [&written, &placed].map(|scene| render_without(scene, &without));
         let largest = a.pixels().map(|p| p.xyz()[1]).fold(0.0, f64::max);
         let differing = a.pixels().zip(b.pixels()).filter(|(p, q)| {
             // Paths differ by roundings, which mirrors and lenses of the scene do not make larger than this; now and then

@@ -119,8 +119,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         density_of: impl Fn(&Light, Vec3<f64>) -> f64,
     ) -> f64 {
         let Step::Shared { from, leaves, density, since } = self.step else { return 1.0 };
-        // The far side of the sphere that it left: see `next_event`.
-        if !world.weigh_hits || on == Some(leaves) {
+        // The far side of the sphere that it left: see `next_event`. Shadow rays do not aim at the far side of one that it has passed, either.
+        let passed = if let Since::Mask(shines) = since { on == Some(shines) } else { false };
+        if !world.weigh_hits || on == Some(leaves) || passed {
             return 1.0;
         }
         let Some(light) = light() else { return 1.0 };

@@ -91,8 +91,9 @@ pub(super) enum Step {
 #[derive(Clone, Copy)]
 pub(super) enum Since {
     Nothing,
-    /// A surface of which only a part is there, which it has passed. Behind it, shadow rays go straight only.
-    Mask,
+    /// Surfaces of which only a part is there, or that shine, which it has passed. Behind them, shadow rays go straight only. With the last that
+    /// shines.
+    Mask(SurfaceId),
     /// Smooth interfaces, which it has gone through.
     Interfaces(Through),
 }
@@ -264,7 +265,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         true
     }
 
-    /// Whether the path passes a surface that lets a part of the light through. It then goes on along the same ray, as the same step: a
+    /// Whether the path passes a surface that lets a part of the light through. It then goes on along the same ray: a straight
     /// shadow ray would have passed here too.
     #[inline(always)]
     fn passes(&mut self, world: &World<'a>, vertex: &SurfaceInteraction<'a>, sampler: &Sampler) -> bool {
@@ -279,12 +280,16 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         // What is left of the number is uniform again.
         self.u_mask = Some((u - opacity) / (1.0 - opacity));
         self.passes += 1;
-        if opacity > 0.0
+        let shines = vertex.surface.shines();
+        if (opacity > 0.0 || shines)
             && let Step::Shared { since, .. } = &mut self.step
         {
             match since {
                 Since::Interfaces(_) => self.step = Step::Unshared,
-                Since::Nothing | Since::Mask => *since = Since::Mask,
+                Since::Mask(_) if !shines => {}
+                Since::Nothing | Since::Mask(_) => {
+                    *since = Since::Mask(if shines { vertex.point.surface } else { SurfaceId::NONE });
+                }
             }
         }
         self.passed_at = Some(vertex.point.position);
@@ -306,7 +311,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     /// Whether its last step was from a vertex that scatters into every direction.
     pub(super) fn is_indirect(&self) -> bool {
-        matches!(self.step, Step::Shared { since: Since::Nothing | Since::Mask, .. })
+        matches!(self.step, Step::Shared { since: Since::Nothing | Since::Mask(_), .. })
     }
 
     /// A spectrum of the tables at the path's wavelengths.

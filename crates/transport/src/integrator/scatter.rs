@@ -172,7 +172,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let mean_of_hero = self.lanes.follow(sample.lane_density);
         self.eta_squared *= sample.eta * sample.eta;
         self.step = if world.refracting_bodies.is_some() && delta {
-            self.step_through(world, vertex, wi)
+            self.step_through(world, vertex, (wi, &sample.lane_density))
         } else {
             Step::Unshared
         };

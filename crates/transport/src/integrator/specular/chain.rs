@@ -1,6 +1,6 @@
 //! A chain of mirrors and smooth interfaces, as a function of the direction in which it begins.
 
-use super::refracted_shadow::MOST_INTERFACES;
+use super::refracted_shadow::{MOST_INTERFACES, pass_alike};
 use super::solve::Root;
 use crate::film::Counters;
 use crate::integrator::vertex::Vertex;
@@ -253,7 +253,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
                 return Some(self.came_through(radiance * left, interfaces, probability));
             }
             match met.share_that_stops(world) {
-                0.0 => {
+                0.0 if !met.surface.shines() => {
                     start = met.point.position;
                     walker.walk.pass(&met, &mut walker.stack);
                     continue;
@@ -268,6 +268,11 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             }
             let u_lobe = 1.0_f64.next_down();
             let direction = walker.sample_direction(world, &met, [u_lobe, 0.5, 0.5], &mut ())?;
+            if let Direction::General { sample, .. } = &direction
+                && !pass_alike(&sample.lane_density)
+            {
+                return None;
+            }
             let next = self.go_on(&met, direction, u_lobe);
             if !met.goes_through(next.direction) {
                 return None;

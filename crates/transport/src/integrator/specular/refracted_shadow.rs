@@ -126,21 +126,31 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         &self,
         world: &World<'a>,
         vertex: &SurfaceInteraction<'a>,
-        wi: Vec3<f64>,
+        (wi, lane_density): (Vec3<f64>, &Lanes<f64, N>),
     ) -> Step {
         let Step::Shared { from, leaves, density, since } = self.step else { return Step::Unshared };
-        if vertex.surface.shines() || vertex.share_that_stops(world) < 1.0 || !vertex.goes_through(wi) {
+        if vertex.surface.shines()
+            || vertex.share_that_stops(world) < 1.0
+            || !vertex.goes_through(wi)
+            || !pass_alike(lane_density)
+        {
             return Step::Unshared;
         }
         let through = match since {
             Since::Nothing => Through { wi: -vertex.wo, interfaces: 0 },
             Since::Interfaces(through) if through.interfaces < MOST_INTERFACES => through,
-            Since::Interfaces(_) | Since::Mask => return Step::Unshared,
+            Since::Interfaces(_) | Since::Mask(_) => return Step::Unshared,
         };
         let Some(reflectance) = self.reflection_probability(world, vertex) else { return Step::Unshared };
         let since = Since::Interfaces(Through { interfaces: through.interfaces + 1, ..through });
         Step::Shared { from, leaves, density: density * (1.0 - reflectance), since }
     }
+}
+
+/// Whether an interface lets all wavelengths pass with the same probability, or the hero's alone. Films may not: the weights would then depend on
+/// which wavelength is the hero.
+pub(super) fn pass_alike<const N: usize>(lane_density: &Lanes<f64, N>) -> bool {
+    *lane_density == Lanes::ONE || *lane_density == Lanes::ONE.hero_only()
 }
 
 impl<'a> World<'a> {
@@ -171,7 +181,8 @@ impl<'a> World<'a> {
             }
             ray.t_max
         });
-        density
+        // From a point in its plane, a lamp has no density.
+        if density.is_finite() { density } else { 0.0 }
     }
 
     /// The object that a lamp is, unless an instance places it.
