@@ -28,7 +28,7 @@ fn irradiance(up_to: f64, transmittance: impl Fn(f64) -> f64) -> f64 {
 
 /// π Σ T Δ(sin²θ) over rings of a lamp, whose light arrives by the sine that `sine` says.
 fn by_rings(radius_m: f64, sine: impl Fn(f64) -> f64, transmittance: impl Fn(f64) -> f64) -> f64 {
-    const RINGS: u32 = 4000;
+    const RINGS: u32 = 12_000;
     let at = |ring: f64| sine(radius_m * ring / f64::from(RINGS));
     let of_ring = |ring: u32| {
         let [near, middle, far] = [0.0, 0.5, 1.0].map(|part| at(f64::from(ring) + part));
