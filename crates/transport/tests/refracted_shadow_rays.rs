@@ -51,7 +51,7 @@ fn scene(lamp: &Value, materials: &Value, objects: &[Value]) -> Value {
     json!({
         "etalon": 1,
         "camera": {"type": "perspective", "position_m": [0, 1.2, 3.5], "look_at_m": [0, 0.5, 0], "vertical_fov_deg": 40},
-        "film": {"width": 24, "height": 18},
+        "film": {"width": 16, "height": 12},
         "materials": all, "objects": list, "lights": lights,
         "integrator": {"spp": 512}
     })
@@ -149,7 +149,7 @@ fn between() -> Vec<(&'static str, Value, Vec<Value>)> {
     ]
 }
 
-/// 48 comparisons of a mean, |z| < 5: a right renderer fails by chance in 2.7e-5 of all runs. The worst standard error is 3 %.
+/// 48 comparisons of a mean, |z| < 5: a right renderer fails by chance in 2.7e-5 of all runs. The worst standard error is 5 %.
 #[test]
 fn they_change_no_mean() {
     for (number, (what, materials, objects)) in between().into_iter().enumerate() {
@@ -164,7 +164,7 @@ fn they_change_no_mean() {
                 let z = (a - b) / a_error.hypot(b_error);
                 assert!(z.abs() < 5.0, "{what}, {lamp_name}, {channel}: {a} ± {a_error}, {b} ± {b_error} without");
                 assert!(
-                    a_error < 0.03 * a && b_error < 0.03 * b,
+                    a_error < 0.05 * a && b_error < 0.05 * b,
                     "{what}, {lamp_name}: ± {a_error} of {a}, ± {b_error} of {b}"
                 );
             }
@@ -226,7 +226,7 @@ fn they_are_called_for_where_they_find_light() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 10, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A lamp in a bulb of any thickness and index lights the room as it does without the effect. |z| < 5 fails by chance in 6e-7 of the cases.
     #[test]
@@ -252,6 +252,7 @@ proptest! {
             scene["instances"] = json!([{"group": "bulbs"}]);
         }
         scene["integrator"]["seed"] = seed.into();
+        scene["integrator"]["spp"] = 256.into();
         let [(a, a_error), (b, b_error)] =
             [&[][..], &[EffectName::RefractedShadows]].map(|without| means(&prepared(&scene, without, PathLoop::Batch))[1]);
         let z = (a - b) / a_error.hypot(b_error);

@@ -121,7 +121,7 @@ fn refracted_shadow_rays(scene: &Scene) -> Result<String, String> {
             let material = &scene.materials[object.material];
             Ok(format!("material \"{}\" of \"{}\": shadow rays go through", material.name, object.name))
         }
-        None => Err("no smooth glass that stands alone".to_owned()),
+        None => Err("no smooth glass of opacity 1".to_owned()),
     }
 }
 
