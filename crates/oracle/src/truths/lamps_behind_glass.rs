@@ -13,6 +13,7 @@ pub(super) fn truths() -> Vec<Truth> {
     let mut list = behind_a_pane();
     list.extend(behind_a_plate());
     list.push(above_water());
+    list.push(two_lamps_above_water());
     list
 }
 
@@ -176,6 +177,43 @@ fn behind_a_plate() -> Vec<Truth> {
         truth("disk-lamp-behind-a-plate", averaged).claims(Claim::AveragesPolarisation),
         truth("disk-lamp-behind-a-plate-in-polarised-light", polarised).claims(Claim::CarriesPolarisation),
     ]
+}
+
+/// The same below two lamps, of which the lower hides the middle of the upper. Light that leaves the water beside the lower one comes from the
+/// upper one, though it is aimed at the lower.
+fn two_lamps_above_water() -> Truth {
+    const DEEP_M: f64 = 0.5;
+    /// Height above the water, radius and radiance of each.
+    const LAMPS: [[f64; 3]; 2] = [[0.5, 0.4, 1.0], [0.7, 0.9, 4.0]];
+    let scene = LAMPS.iter().fold(
+        Scene::light_meter()
+            .object(block([-FAR_M, -FAR_M, -1.0], [FAR_M, FAR_M, DEEP_M]), glass(WATER))
+            .object(level_square([0.0, 0.0, -0.5], 0.9 * FAR_M, true), black())
+            .spp(1 << 10),
+        |scene, &[above, radius, radiance]| {
+            scene.lamp(disk([0.0, 0.0, DEEP_M + above], [0.0, 0.0, -1.0], radius), black(), radiance, "front")
+        },
+    );
+    let aside = |above: f64| move |sine: f64| above * tangent(sine) + DEEP_M * tangent(sine / WATER);
+    let passes = |cosine: f64| 1.0 - fresnel_exact(cosine, WATER).reflectance();
+    let [[lower, lower_radius, dark], [upper, upper_radius, bright]] = LAMPS;
+    let rims = [solve(aside(lower), lower_radius).asin(), solve(aside(upper), upper_radius).asin()];
+    let value = shown(
+        dark * irradiance(rims[0], passes) + bright * (irradiance(rims[1], passes) - irradiance(rims[0], passes)),
+    );
+    Truth::new("two-disk-lamps-above-water", &scene, value, "(ρ/π) 2π (∫ L₁ (1 − R) cos θ sin θ dθ + ∫ L₂ (1 − R) cos θ sin θ dθ)")
+        .because("As below one lamp. The lower lamp fills the directions up to its rim, the upper one those from there to its own.")
+        .confirmed("rings of each lamp", 1e-6, move || {
+            // Where the upper lamp begins beside the lower.
+            let begins = aside(upper)(solve(aside(lower), lower_radius));
+            let of_upper = |radius: f64| by_rings(radius, |radius| solve(aside(upper), radius), passes);
+            let of_lower = by_rings(lower_radius, |radius| solve(aside(lower), radius), passes);
+            shown(dark * of_lower + bright * (of_upper(upper_radius) - of_upper(begins)))
+        })
+        .or_else("dark", 0.0)
+        .or_else("the lower lamp alone", shown(dark * irradiance(rims[0], passes)))
+        .or_else("the upper lamp whole", shown(bright * irradiance(rims[1], passes)))
+        .sees(0.01)
 }
 
 /// The meter lies in water, a lamp hangs above it.
