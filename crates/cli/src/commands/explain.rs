@@ -105,7 +105,7 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     lines.extend(how(prepared).into_iter().map(|(what, value)| format!("{what:<20} {value}")));
     if plan.runs(EffectName::RefractedShadows) {
         let what = match prepared.refracts_shadow_rays() {
-            true => "go through glass: a trial found less noise for the time",
+            true => "go through glass",
             false => "stop at glass: a trial found no less noise for the time",
         };
         lines.push(format!("{:<20} {what}", "shadow rays"));

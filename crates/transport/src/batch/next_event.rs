@@ -196,10 +196,9 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             if world.media.is_some() && world.participating.is_none() && !world.moves {
                 meets = asks & !self.unoccluded(asks, beyond_target);
             }
-            let (paths, draws) = (&mut self.paths, &self.lights);
             for lane in lanes(asks) {
-                let Some(draw) = draws.draw(lane) else { continue };
-                let (path, vertex) = (&mut paths.paths[lane], vertex(&paths.at, lane));
+                let Some(draw) = self.lights.draw(lane) else { continue };
+                let (path, vertex) = (&mut self.paths.paths[lane], vertex(&self.paths.at, lane));
                 let before = self.counters.rays + self.counters.shadow_rays;
                 let visible = if meets >> lane & 1 == 1 {
                     path.visibility(world, vertex, &draw.sample, &mut self.counters)
@@ -207,21 +206,10 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
                     self.counters.shadow_rays += 1;
                     Some(path.unobstructed(world, vertex, &draw.sample))
                 };
-                paths.ray_count[lane] += (self.counters.rays + self.counters.shadow_rays - before) as u32;
+                self.paths.ray_count[lane] += (self.counters.rays + self.counters.shadow_rays - before) as u32;
                 match visible {
                     Some(visible) => path.add_light(world, vertex, &draw, &next[lane], &visible, &mut ()),
-                    None => {
-                        let before = self.counters.rays;
-                        path.add_refracted_light(
-                            world,
-                            vertex,
-                            &draw,
-                            paths.samplers.lane(lane),
-                            &mut self.counters,
-                            &mut (),
-                        );
-                        paths.ray_count[lane] += (self.counters.rays - before) as u32;
-                    }
+                    None => self.add_refracted_light(lane, &draw),
                 }
             }
             return;
@@ -237,20 +225,20 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         }
         if world.refracting_bodies.is_some() {
             for lane in lanes(asks & !unoccluded) {
-                let Some(draw) = self.lights.draw(lane) else { continue };
-                let (path, vertex) = (&mut self.paths.paths[lane], vertex(&self.paths.at, lane));
-                let before = self.counters.rays;
-                path.add_refracted_light(
-                    world,
-                    vertex,
-                    &draw,
-                    self.paths.samplers.lane(lane),
-                    &mut self.counters,
-                    &mut (),
-                );
-                self.paths.ray_count[lane] += (self.counters.rays - before) as u32;
+                if let Some(draw) = self.lights.draw(lane) {
+                    self.add_refracted_light(lane, &draw);
+                }
             }
         }
+    }
+
+    /// Adds the light that comes to a path through the glass in the way of its shadow ray.
+    fn add_refracted_light(&mut self, lane: usize, draw: &LightDraw) {
+        let before = self.counters.rays;
+        let (path, vertex) = (&mut self.paths.paths[lane], vertex(&self.paths.at, lane));
+        let sampler = self.paths.samplers.lane(lane);
+        path.add_refracted_light(self.world, vertex, draw, sampler, &mut self.counters, &mut ());
+        self.paths.ray_count[lane] += (self.counters.rays - before) as u32;
     }
 
     /// Which shadow rays meet nothing up to where `end` says that they end.

@@ -159,10 +159,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if sees_lights {
             let [u_light, u1, u2, _] = sampler.vertex_set(self.vertex, 1);
             if let Some(draw) = world.sample_light(&vertex.point, u_light, [u1, u2])
-                && !self.add_light_outside(world, vertex, &draw, sampler, counters, observer)
                 && let Some(next) = self.next_event_in_medium(world, vertex, &draw)
             {
-                match self.visibility(world, vertex, &draw.sample, counters) {
+                let visible = match self.starts_within_body(world, vertex, &draw) {
+                    true => None,
+                    false => self.visibility(world, vertex, &draw.sample, counters),
+                };
+                match visible {
                     Some(visible) => self.add_light(world, vertex, &draw, &next, &visible, observer),
                     None => self.add_refracted_light(world, vertex, &draw, sampler, counters, observer),
                 }

@@ -14,6 +14,7 @@
 
 use super::chain::Chain;
 use crate::film::Counters;
+use crate::guiding::RefractingBodies;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::path::{Since, Step, Through};
 use crate::integrator::vertex::Vertex;
@@ -37,27 +38,14 @@ const FAINT: f64 = 0.25;
 const SHADOW_SETS: u64 = 1 << 43;
 
 impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
-    /// Adds the light that comes along a shadow ray from a point within glass or a liquid, where no other shadow ray arrives. False if the point is
-    /// elsewhere.
+    /// Whether a shadow ray starts within a body and may meet glass, as in milk in a glass. [`Path::add_refracted_light`] then finds all light
+    /// that arrives, that of a lamp in the same body too. No other shadow ray need be sent.
     #[inline]
-    pub(crate) fn add_light_outside(
-        &mut self,
-        world: &World<'a>,
-        vertex: &impl Vertex<'a>,
-        draw: &LightDraw,
-        sampler: &Sampler,
-        counters: &mut Counters,
-        observer: &mut impl Observer<N>,
-    ) -> bool {
-        let inside = world.refracting_bodies.is_some()
+    pub(crate) fn starts_within_body(&self, world: &World<'a>, vertex: &impl Vertex<'a>, draw: &LightDraw) -> bool {
+        may_meet_glass(world, vertex, draw)
             && !world.masks
             && matches!(draw.sample.density, Density::SolidAngle(_))
-            && world.follows_media()
-            && vertex.media_toward(self, draw.sample.wi).is_in_a_body();
-        if inside {
-            self.follow_shadow_ray(world, vertex, draw, sampler, counters, observer);
-        }
-        inside
+            && vertex.media_toward(self, draw.sample.wi).is_in_a_body()
     }
 
     /// Adds the light that comes along a shadow ray through the glass that is in its way, if glass is.
@@ -71,9 +59,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
-        let Some(bodies) = world.refracting_bodies else { return };
-        let (from, sample) = (vertex.point().position, &draw.sample);
-        if bodies.may_be_met(from, sample.wi, sample.target.distance(from)) {
+        if may_meet_glass(world, vertex, draw) {
             self.follow_shadow_ray(world, vertex, draw, sampler, counters, observer);
         }
     }
@@ -145,6 +131,14 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let since = Since::Interfaces(Through { interfaces: through.interfaces + 1, ..through });
         Step::Shared { from, leaves, density: density * (1.0 - reflectance), since }
     }
+}
+
+/// Whether glass may be in the way of a shadow ray.
+#[inline]
+fn may_meet_glass<'a>(world: &World<'a>, vertex: &impl Vertex<'a>, draw: &LightDraw) -> bool {
+    let (from, sample) = (vertex.point().position, &draw.sample);
+    let meets = |bodies: &RefractingBodies| bodies.may_be_met(from, sample.wi, sample.target.distance(from));
+    world.refracting_bodies.is_some_and(meets)
 }
 
 /// Whether an interface lets all wavelengths pass with the same probability, or the hero's alone. Films may not: the weights would then depend on
