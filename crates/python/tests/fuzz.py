@@ -44,8 +44,8 @@ def places(value: Any, seen: set[int] | None = None) -> list[tuple[Any, Any]]:
 
 
 def seeds() -> list[dict[str, Any]]:
-    """Scenes that say much in few words."""
-    truths = [truth.scene for truth in etalon.oracle.truths()]
+    """Scenes that say much in few words and name no file beside them."""
+    truths = [truth.scene for truth in etalon.oracle.truths() if not truth.files]
     files = [SCENES / f"{name}.json" for name in ("furnace", "metals", "rough", "thin-lens", "polarisers", "prism", "veach-mis")]
     texts = [path.read_text(encoding="utf-8") for path in files if path.exists()]
     return [scene for scene in truths if len(json.dumps(scene)) < 4000] + [
