@@ -112,14 +112,11 @@ impl Mul for DoubleDouble {
 impl Div for DoubleDouble {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        // Long division, three digits of base 2⁵³.
+        // Long division, two digits of base 2⁵³: to 15 · 2⁻¹⁰⁶ (their algorithm 17).
         let first = self.hi / other.hi;
         let rest = self - other * Self::from(first);
-        let second = rest.hi / other.hi;
-        let rest = rest - other * Self::from(second);
-        let third = rest.hi / other.hi;
-        let (hi, lo) = quick_two_sum(first, second);
-        Self { hi, lo } + Self::from(third)
+        let (hi, lo) = quick_two_sum(first, rest.hi / other.hi);
+        Self { hi, lo }
     }
 }
 

@@ -105,16 +105,18 @@ fn invert_falling(tail: impl Fn(f64) -> f64, p: f64, mut low: f64, mut high: f64
     if !(p > 0.0 && p < 1.0) {
         return f64::NAN;
     }
-    // 200 halvings exhaust the 53 bits of any bracket used here.
-    for _ in 0..200 {
+    loop {
         let middle = 0.5 * (low + high);
+        let lies_between = low < middle && middle < high;
+        if !lies_between {
+            return middle;
+        }
         if tail(middle) > p {
             low = middle;
         } else {
             high = middle;
         }
     }
-    0.5 * (low + high)
 }
 
 #[cfg(test)]

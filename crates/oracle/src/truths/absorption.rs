@@ -8,7 +8,10 @@ use super::{
     Claim, Truth,
     scene::{Scene, black, block, glass, level_square, solid, sphere},
 };
-use crate::{laws::fresnel_exact, quadrature::rectangle};
+use crate::{
+    laws::fresnel_exact,
+    quadrature::{interval, rectangle},
+};
 
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = plates();
@@ -115,22 +118,21 @@ fn ball_without_refraction() -> Truth {
 
 fn ball_of_glass() -> Truth {
     const PER_M: f64 = 0.9;
-    let lit = |sin_squared: f64| {
-        let cosine = (1.0 - sin_squared).max(0.0).sqrt();
+    let lit = |cosine: f64| {
         let r = fresnel_exact(cosine, 1.5).reflectance();
-        let tau = (-2.0 * PER_M * RADIUS_M * (1.0 - sin_squared / 2.25).sqrt()).exp();
+        let tau = (-2.0 * PER_M * RADIUS_M * (1.0 - (1.0 - cosine * cosine) / 2.25).sqrt()).exp();
         (r, tau)
     };
-    let whole = |u: f64, _: f64| {
-        let (r, tau) = lit(u);
-        r + (1.0 - r).powi(2) * tau / (1.0 - r * tau)
+    // d(sin²θ) = 2 cos θ d(cos θ), but for the sign.
+    let over_disk = |seen: &dyn Fn(f64, f64) -> f64| {
+        let at = |cosine: f64| {
+            let (r, tau) = lit(cosine);
+            2.0 * cosine * seen(r, tau)
+        };
+        framed(interval(at, 0.0, 1.0, 1e-10).value)
     };
-    let value = framed(rectangle(whole, [0.0, 1.0], [0.0, 1.0], 1e-9, 800_000).value);
-    let clear_inside = |u: f64, _: f64| {
-        let (r, tau) = lit(u);
-        r + (1.0 - r) * tau
-    };
-    let once = framed(rectangle(clear_inside, [0.0, 1.0], [0.0, 1.0], 1e-9, 800_000).value);
+    let value = over_disk(&|r, tau| r + (1.0 - r).powi(2) * tau / (1.0 - r * tau));
+    let once = over_disk(&|r, tau| r + (1.0 - r) * tau);
     Truth::new(
         "absorbing-ball-of-glass",
         &ball_scene(1.5, PER_M),
@@ -143,7 +145,7 @@ fn ball_of_glass() -> Truth {
     )
     .confirmed("the beams one by one, over the distance from the axis", 1e-6, move || {
         let beams = |b: f64, _: f64| {
-            let (r, tau) = lit(b * b);
+            let (r, tau) = lit((1.0 - b * b).max(0.0).sqrt());
             let inside: f64 = (0..60).map(|k| (1.0 - r).powi(2) * tau * (r * tau).powi(k)).sum();
             2.0 * b * (r + inside)
         };

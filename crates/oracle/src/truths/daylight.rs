@@ -82,19 +82,22 @@ struct Daylight {
     turbidity: f64,
     sun: Vec3,
     ground: f64,
+    /// Y (cd·m⁻²), x and y: of the zenith, over the formula's value there; and the numbers of the formula.
+    perez: [(f64, [f64; 5]); 3],
     /// ∫ S ȳ/∫ ȳ of the components.
     weighed: [f64; 3],
 }
 
+/// Perez's formula of the cosine of the angle from the zenith and the angle γ from the sun.
+fn formula([a, b, c, d, e]: [f64; 5], cos: f64, gamma: f64) -> f64 {
+    let gradation = if cos > 0.0 { 1.0 + a * (b / cos).exp() } else { 1.0 };
+    gradation * (1.0 + c * (d * gamma).exp() + e * gamma.cos().powi(2))
+}
+
 impl Daylight {
     fn new(turbidity: f64, sun: Vec3) -> Self {
-        Self { turbidity, sun, ground: 0.0, weighed: [0, 1, 2].map(weighed) }
-    }
-
-    /// Y (cd·m⁻²), x and y.
-    fn colour(&self, toward: Vec3) -> [f64; 3] {
-        let t = self.turbidity;
-        let theta_s = self.sun[2].clamp(-1.0, 1.0).acos();
+        let t = turbidity;
+        let theta_s = sun[2].clamp(-1.0, 1.0).acos();
         let chi = (4.0 / 9.0 - t / 120.0) * (PI - 2.0 * theta_s);
         let (s1, s2, s3) = (theta_s, theta_s * theta_s, theta_s.powi(3));
         let zenith = [
@@ -129,12 +132,20 @@ impl Daylight {
                 -0.0109 * t + 0.0529,
             ],
         ];
+        let perez = [0, 1, 2].map(|i| (zenith[i] / formula(numbers[i], 1.0, theta_s), numbers[i]));
+        Self { turbidity, sun, ground: 0.0, perez, weighed: [0, 1, 2].map(weighed) }
+    }
+
+    /// Y (cd·m⁻²), x and y.
+    fn colour(&self, toward: Vec3) -> [f64; 3] {
+        [0, 1, 2].map(|part| self.part(part, toward))
+    }
+
+    /// One of them.
+    fn part(&self, part: usize, toward: Vec3) -> f64 {
         let gamma = dot(toward, self.sun).clamp(-1.0, 1.0).acos();
-        let perez = |[a, b, c, d, e]: [f64; 5], cos: f64, gamma: f64| {
-            let gradation = if cos > 0.0 { 1.0 + a * (b / cos).exp() } else { 1.0 };
-            gradation * (1.0 + c * (d * gamma).exp() + e * gamma.cos().powi(2))
-        };
-        [0, 1, 2].map(|i| zenith[i] * perez(numbers[i], toward[2], gamma) / perez(numbers[i], 1.0, theta_s))
+        let (level, numbers) = self.perez[part];
+        level * formula(numbers, toward[2], gamma)
     }
 
     /// Spectral radiance per nm, in units of cd·m⁻² over 683.002 lm/W ∫ȳ.
@@ -151,7 +162,7 @@ impl Daylight {
     }
 
     fn luminance(&self, toward: Vec3) -> f64 {
-        if toward[2] < 0.0 { self.ground * self.colour([0.0, 0.0, 1.0])[0] } else { self.colour(toward)[0] }
+        if toward[2] < 0.0 { self.ground * self.part(0, [0.0, 0.0, 1.0]) } else { self.part(0, toward) }
     }
 
     /// ∫ L cos θ over the upper half of the sky, on a plane of this normal.

@@ -290,7 +290,7 @@ fn skies() -> Vec<Truth> {
             .allows(2e-5 * value, "2e-5 for single precision, 2e-5 for the quadrature")
             .sees(0.005);
         if form.get("sun_direction").is_some() {
-            let turned = Sky { sun: [-sky.sun[0], -sky.sun[1], sky.sun[2]], ..sky };
+            let turned = Sky { ground: sky.ground, ..Sky::new(sky.number, [-sky.sun[0], -sky.sun[1], sky.sun[2]]) };
             truth = truth.or_else("the sun on the other side", 3.0 * (turned.irradiance(normal) + below));
         }
         list.push(truth);

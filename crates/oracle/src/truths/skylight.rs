@@ -33,11 +33,24 @@ pub(super) struct Sky {
     pub sun: Vec3,
     /// Radiance from below the horizon, over that of the zenith.
     pub ground: f64,
+    /// φ(0) f(Zₛ).
+    pub zenith: f64,
 }
 
 impl Sky {
     pub(super) fn new(number: usize, sun: Vec3) -> Self {
-        Self { number, sun: normalize(sun), ground: 0.0 }
+        let mut sky = Self { number, sun: normalize(sun), ground: 0.0, zenith: 1.0 };
+        sky.zenith = sky.formula(1.0, sky.sun[2].clamp(-1.0, 1.0).acos());
+        sky
+    }
+
+    /// φ(Z) f(χ) of cos Z and of χ, the angle from the sun.
+    fn formula(&self, cos: f64, chi: f64) -> f64 {
+        let Some(&[a, b, c, d, e]) = SKIES.get(self.number - 1) else {
+            return (1.0 + 2.0 * cos) / 3.0;
+        };
+        let gradation = if cos > 0.0 { 1.0 + a * (b / cos).exp() } else { 1.0 };
+        gradation * (1.0 + c * ((d * chi).exp() - (d * FRAC_PI_2).exp()) + e * chi.cos().powi(2))
     }
 
     /// Radiance from a direction over that of the zenith: φ(Z) f(χ)/(φ(0) f(Zₛ)).
@@ -46,13 +59,8 @@ impl Sky {
         if cos < 0.0 {
             return self.ground;
         }
-        let Some(&[a, b, c, d, e]) = SKIES.get(self.number - 1) else {
-            return (1.0 + 2.0 * cos) / 3.0;
-        };
-        let gradation = |cos: f64| if cos > 0.0 { 1.0 + a * (b / cos).exp() } else { 1.0 };
-        let indicatrix = |chi: f64| 1.0 + c * ((d * chi).exp() - (d * FRAC_PI_2).exp()) + e * chi.cos().powi(2);
         let chi = length(cross(toward, self.sun)).atan2(dot(toward, self.sun));
-        gradation(cos) * indicatrix(chi) / (gradation(1.0) * indicatrix(self.sun[2].clamp(-1.0, 1.0).acos()))
+        self.formula(cos, chi) / self.zenith
     }
 
     /// Irradiance on a plane of this unit normal from the sky alone, for a zenith of radiance 1, to about 2e-5.

@@ -32,26 +32,20 @@ impl Round {
         if self.mirrors { 0..=0 } else { 0..=Self::CHORDS }
     }
 
-    /// Where a ray arrives that comes in `b` beside the middle, the derivative of that by b, and the share of light; `None` if the ray does not go
-    /// down. It takes some chords inside. Without any it is reflected outside. It leaves as far from the middle as it came, turned by
+    /// Where a ray arrives that comes in `b` beside the middle, and the derivative of that by b; `None` if the ray does not go down. It takes
+    /// some chords inside. Without any it is reflected outside. It leaves as far from the middle as it came, turned by
     /// D = 2(i − t) + (k − 1)(π − 2t) after k chords.
-    fn ray(&self, b: f64, chords: i32) -> Option<(f64, f64, f64)> {
+    fn arrives(&self, b: f64, chords: i32) -> Option<(f64, f64)> {
         let (r, h) = (Self::RADIUS_M, Self::ABOVE_M);
         let i = (b / r).asin();
         let i_grows = 1.0 / (r * i.cos());
-        let powers = fresnel_exact(i.cos(), INDEX);
-        let reflectance = if self.mirrors { 0.9 } else { powers.reflectance() };
-        let (turned, turned_grows, share) = if chords == 0 {
-            (2.0 * i - PI, 2.0 * i_grows, reflectance)
+        let (turned, turned_grows) = if chords == 0 {
+            (2.0 * i - PI, 2.0 * i_grows)
         } else {
             let t = (b / (r * INDEX)).asin();
             let t_grows = 1.0 / (r * INDEX * t.cos());
             let more = f64::from(chords - 1);
-            (
-                2.0 * (i - t) + more * (PI - 2.0 * t),
-                2.0 * (i_grows - t_grows) - 2.0 * more * t_grows,
-                (1.0 - reflectance).powi(2) * reflectance.powi(chords - 1),
-            )
+            (2.0 * (i - t) + more * (PI - 2.0 * t), 2.0 * (i_grows - t_grows) - 2.0 * more * t_grows)
         };
         let (sine, cosine) = turned.sin_cos();
         if cosine <= 0.0 {
@@ -60,7 +54,16 @@ impl Round {
         let x = (b - h * sine) / cosine;
         let grows =
             ((1.0 - h * cosine * turned_grows) * cosine + (b - h * sine) * sine * turned_grows) / (cosine * cosine);
-        Some((x, grows, share))
+        Some((x, grows))
+    }
+
+    /// The share of light that a ray keeps which comes in `b` beside the middle and takes some chords inside.
+    fn share(&self, b: f64, chords: i32) -> f64 {
+        if self.mirrors {
+            return 0.9;
+        }
+        let reflectance = fresnel_exact((b / Self::RADIUS_M).asin().cos(), INDEX).reflectance();
+        if chords == 0 { reflectance } else { (1.0 - reflectance).powi(2) * reflectance.powi(chords - 1) }
     }
 
     /// Irradiance at the meter, of 1 in the light.
@@ -71,22 +74,23 @@ impl Round {
         let at = |step: usize| Self::RADIUS_M * (step as f64 + 0.5) / (STEPS as f64 + 1.0);
         let mut sum = if x > Self::RADIUS_M { 1.0 } else { 0.0 };
         for chords in orders {
-            let miss = |b: f64, side: f64| self.ray(b, chords).map(|(arrives, ..)| arrives - side * x);
-            for (step, side) in (0..STEPS).flat_map(|step| [(step, 1.0), (step, -1.0)]) {
-                let (mut low, mut high) = (at(step), at(step + 1));
-                let (Some(below), Some(above)) = (miss(low, side), miss(high, side)) else { continue };
-                if below * above > 0.0 {
+            let arrives = |b: f64| self.arrives(b, chords).map(|(arrives, _)| arrives);
+            let ends: Vec<_> = (0..=STEPS).map(|step| arrives(at(step))).collect();
+            for (step, side) in (0..STEPS).flat_map(|step| [(step, x), (step, -x)]) {
+                let (Some(below), Some(above)) = (ends[step], ends[step + 1]) else { continue };
+                if (below - side) * (above - side) > 0.0 {
                     continue;
                 }
+                let (mut low, mut high) = (at(step), at(step + 1));
                 for _ in 0..60 {
                     let middle = 0.5 * (low + high);
-                    let Some(there) = miss(middle, side) else { break };
-                    if (there > 0.0) == (above > 0.0) { high = middle } else { low = middle }
+                    let Some(there) = arrives(middle) else { break };
+                    if (there > side) == (above > side) { high = middle } else { low = middle }
                 }
                 let b = 0.5 * (low + high);
-                let Some((_, grows, share)) = self.ray(b, chords) else { continue };
+                let Some((_, grows)) = self.arrives(b, chords) else { continue };
                 let spread = if self.is_rod { 1.0 } else { b / x };
-                sum += share * spread / grows.abs();
+                sum += self.share(b, chords) * spread / grows.abs();
             }
         }
         sum
