@@ -20,6 +20,7 @@ mod instruments;
 mod kernels;
 mod left_out;
 mod lights;
+mod lights_add_up;
 mod many_paths;
 mod masks;
 mod materials;

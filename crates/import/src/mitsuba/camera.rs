@@ -107,6 +107,13 @@ impl<'a> Walk<'a, '_, '_> {
         if !camera["lens"].is_object() {
             element.property("focus_distance");
         }
+        for name in ["principal_point_offset_x", "principal_point_offset_y"] {
+            // Exporters write zeros.
+            let offset = element.number(name)?.unwrap_or(0.0);
+            if offset != 0.0 {
+                self.builder.leave_out(&place, format!("{name} = {offset} is ignored"));
+            }
+        }
         for sampler in element.nested("sampler", self.ids)? {
             if let Some(count) = sampler.number("sample_count")?.filter(|count| *count >= 1.0) {
                 self.builder.integrator.insert("spp".to_owned(), json!(count as u64));

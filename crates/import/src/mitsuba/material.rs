@@ -248,20 +248,22 @@ impl Walk<'_, '_, '_> {
     fn conductor(&mut self, element: &Element, rough: bool) -> Result<Value, String> {
         let place = &element.place;
         let tint = self.colour(element, "specular_reflectance", Of::Reflectance)?;
-        let mut value = match element.string("material") {
-            Some("none") if rough => {
-                if tint.is_some() {
-                    self.builder
-                        .leave_out(place, "a rough mirror's tint is that of a metal: at grazing angles it pales");
-                }
-                let mut value = json!({ "type": "conductor", "reflectance": tint.unwrap_or(json!(1.0)) });
-                self.put_facets(element, &mut value)?;
-                value["multiple_scattering"] = json!("lost");
-                return Ok(value);
+        // Without a name it is "none", too: η = 0 and k = 1, which reflect all light. An eta or a k of its own takes the place of these.
+        let own = match element.string("material") {
+            Some("none") | None => self.own_metal(element)?,
+            Some(symbol) => Some(self.named_metal(symbol, place)),
+        };
+        let Some(mut value) = own else {
+            if !rough {
+                return Ok(json!({ "type": "mirror", "reflectance": tint.unwrap_or(json!(1.0)) }));
             }
-            Some("none") => return Ok(json!({ "type": "mirror", "reflectance": tint.unwrap_or(json!(1.0)) })),
-            Some(symbol) => self.named_metal(symbol, place),
-            None => self.own_metal(element)?.unwrap_or_else(|| self.named_metal("Cu", place)),
+            if tint.is_some() {
+                self.builder.leave_out(place, "a rough mirror's tint is that of a metal: at grazing angles it pales");
+            }
+            let mut value = json!({ "type": "conductor", "reflectance": tint.unwrap_or(json!(1.0)) });
+            self.put_facets(element, &mut value)?;
+            value["multiple_scattering"] = json!("lost");
+            return Ok(value);
         };
         if tint.is_some_and(|tint| tint != json!(1.0)) {
             self.builder.leave_out(place, "specular_reflectance is ignored");
@@ -286,7 +288,10 @@ impl Walk<'_, '_, '_> {
     /// A metal by its own eta and k.
     fn own_metal(&mut self, element: &Element) -> Result<Option<Value>, String> {
         let (eta, k) = (self.colour(element, "eta", Of::Emission)?, self.colour(element, "k", Of::Emission)?);
-        let (Some(eta), Some(k)) = (eta, k) else { return Ok(None) };
+        let (eta, k) = match (eta, k) {
+            (None, None) => return Ok(None),
+            (eta, k) => (eta.unwrap_or(json!(0.0)), k.unwrap_or(json!(1.0))),
+        };
         let (Some(eta), Some(k)) = (Table::of_spectrum(&eta), Table::of_spectrum(&k)) else {
             self.builder.approximate(&element.place, "eta and k as colours are ignored: the metal becomes aluminium");
             return Ok(Some(json!({ "type": "conductor", "metal": "Al" })));

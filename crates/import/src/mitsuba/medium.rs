@@ -1,12 +1,13 @@
 //! Media of Mitsuba.
 
+use glam::DAffine3;
 use serde_json::{Value, json};
 
 use super::Walk;
 use super::colour::Of;
 use super::element::Element;
 use crate::matrix::steps;
-use crate::medium::{blended, in_unit_box, means, without_colour};
+use crate::medium::{blended, in_unit_box, means, vol, without_colour};
 
 /// What a grid says of a medium.
 struct Grid {
@@ -54,7 +55,10 @@ impl<'a> Walk<'a, '_, '_> {
                         made["density"] = density;
                         scaled(extinction, scale)
                     }
-                    None => scaled(self.uniform(stated, Of::Coefficient)?, scale),
+                    None => {
+                        made["density"] = self.box_of_ones(stated)?;
+                        scaled(self.uniform(stated, Of::Coefficient)?, scale)
+                    }
                 }
             }
             other => return Err(format!("{place}: the medium \"{other}\" is not known")),
@@ -68,6 +72,19 @@ impl<'a> Walk<'a, '_, '_> {
         element.property("majorant_resolution_factor");
         element.list_unused(self.builder);
         Ok(made)
+    }
+
+    /// The density of what is the same everywhere in its volume: there, too, such a medium ends at the box from 0 to 1 of that volume.
+    fn box_of_ones(&mut self, stated: &'a Element) -> Result<Value, String> {
+        let volume = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
+        let map = if volume.tag == "volume" { self.placement(volume)? } else { DAffine3::IDENTITY };
+        let file = self.builder.add_file("density", "vol", vol([2; 3], [[0.0; 3], [1.0; 3]], &[1.0; 8]));
+        let mut density = json!({ "type": "grid", "file": file });
+        let transform = steps(&map);
+        if !transform.is_null() {
+            density["transform"] = transform;
+        }
+        Ok(density)
     }
 
     /// A spectrum that is the same everywhere, as itself or as a volume.

@@ -41,6 +41,29 @@ fn plane_of_focus(name: &str, crop_px: [u32; 4], value: f64) -> Truth {
         .reads_pixels(crop_px)
 }
 
+/// A black screen that ends the view just before the plane from which rays start, and a lamp beyond.
+fn near_planes() -> Vec<Truth> {
+    let (screen_m, near_m, radiance) = (1.9_f64, 2.0, 3.0);
+    let large = |z: f64| parallelogram([-20.0, -20.0, z], [40.0, 0.0, 0.0], [0.0, 40.0, 0.0]);
+    // Of a square picture, the disk in which a ray is shorter than 2 m where it meets the screen.
+    let tangent = ((near_m / screen_m).powi(2) - 1.0).sqrt() / 30_f64.to_radians().tan();
+    let by_length = radiance * PI * tangent * tangent / 4.0;
+    let eye = [0.0, 0.0, 0.0];
+    let ahead = [0.0, 0.0, -1.0];
+    [
+        ("near-plane-of-a-pinhole", Scene::pinhole(eye, ahead, 60.0)),
+        ("near-plane-of-a-lens", Scene::lens(eye, ahead, 60.0, 0.1, 3.0)),
+    ]
+    .map(|(name, scene)| {
+        let scene = scene.near(near_m).object(large(-screen_m), black()).lamp(large(-5.0), black(), radiance, "front");
+        Truth::new(name, &scene, radiance, "3")
+            .because("Rays start on a plane across the view, 2 m away: what is nearer is not there, also far from the axis, where rays to it are longer.")
+            .or_else("nothing is cut off", 0.0)
+            .or_else("what is within 2 m along the ray is cut off", by_length)
+    })
+    .into()
+}
+
 pub(super) fn truths() -> Vec<Truth> {
     let because = "Rays from a lens point p through the focus point on the axis pass depth z at p(1 − z/z_f): over the lens they fill a circle of \
          radius a|z − z_f|/z_f evenly.";
@@ -98,7 +121,7 @@ pub(super) fn truths() -> Vec<Truth> {
         .film(64, 32)
         .spp(512)
         .lamp(parallelogram([-0.4, -0.4, -1.0], [0.4, 0.0, 0.0], [0.0, 0.4, 0.0]), black(), 1.0, "front");
-    vec![
+    let mut list = vec![
         spot("lens-spot-behind-focus", 5.0, 0.01),
         spot("lens-spot-before-focus", 1.25, 0.002),
         Truth::new("lens-share-of-the-aperture", &view().lamp(
@@ -142,7 +165,9 @@ pub(super) fn truths() -> Vec<Truth> {
             .or_else("field of view taken as horizontal", 0.32)
             .or_else("pixels not square", 0.16)
             .sees(0.02),
-    ]
+    ];
+    list.extend(near_planes());
+    list
 }
 
 #[cfg(test)]

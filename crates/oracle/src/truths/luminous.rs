@@ -7,9 +7,10 @@ use serde_json::{Value, json};
 use super::cie171::LUX;
 use super::meters::measured;
 use super::prisms::CIE_Y;
-use super::scene::{black, disk};
-use super::skylight::{Sky, direction};
-use super::{Claim, Truth, disk_irradiance};
+use super::scene::{black, disk, sphere};
+use super::skylight::{Sky, by_midpoints, direction};
+use super::{Claim, Truth, disk_irradiance, sphere_irradiance};
+use crate::quadrature::{Cone, directions};
 use crate::vector::{Vec3, cross, dot, length, normalize, sub};
 
 pub(super) fn truths() -> Vec<Truth> {
@@ -253,6 +254,39 @@ fn luminaires() -> Vec<Truth> {
         .collect()
 }
 
+/// The same beside a lamp, which hides a part of the sky.
+fn beside_a_lamp(normal: Vec3) -> Vec<Truth> {
+    const LAMP: f64 = 40.0;
+    let sky = Sky::new(12, direction(35.0, 20.0));
+    let (toward, distance_m, radius_m) = (direction(50.0, 250.0), 2.0, 0.5);
+    let beta = dot(toward, normal).acos();
+    let from_lamp = LAMP * sphere_irradiance(radius_m, distance_m, beta);
+    let hidden = |direction: Vec3| sky.relative(direction) * dot(direction, normal);
+    let hidden = directions(hidden, Cone::new(toward, (radius_m / distance_m).asin()), 1e-7, 100_000).value;
+    let from_sky = 3.0 * (sky.irradiance(normal) - hidden);
+    let form = json!({ "cie_type": 12, "up": UP, "zenith_radiance": 3, "sun_direction": sky.sun });
+    ["mis", "light"]
+        .map(|how| {
+            let scene = measured(&[meter([0.0; 3], normal)])
+                .light(json!({ "type": "environment", "sky": form }))
+                .lamp(sphere(toward.map(|c| distance_m * c), radius_m), black(), LAMP, "front")
+                .light_sampling(how);
+            let value = from_sky + from_lamp;
+            let formula = "∫ L(Z, χ) cos θ dω beside the lamp + L′ π(R/d)² cos β";
+            Truth::new(format!("standard-sky-beside-a-lamp-by-{how}"), &scene, value, formula)
+                .because("Light adds up: the lamp's own, and that of the sky from where the lamp is not.")
+                .confirmed("midpoints over both angles", 1e-3, move || {
+                    let rim = (1.0 - (radius_m / distance_m).powi(2)).sqrt();
+                    by_midpoints(normal, |d| if dot(d, toward) > rim { LAMP } else { 3.0 * sky.relative(d) })
+                })
+                .or_else("the sky counted twice", 2.0 * from_sky + from_lamp)
+                .or_else("the sky seen through the lamp", value + 3.0 * hidden)
+                .allows(2e-5 * value, "2e-5 for single precision, 2e-5 for the quadrature")
+                .sees(0.005)
+        })
+        .into()
+}
+
 /// Tilted meters in the open under some of the skies.
 fn skies() -> Vec<Truth> {
     let normal = normalize([0.5, -0.3, 0.6]);
@@ -295,6 +329,7 @@ fn skies() -> Vec<Truth> {
         }
         list.push(truth);
     }
+    list.extend(beside_a_lamp(normal));
     // In photometric units, the zenith elsewhere: a meter that faces it.
     let up = normalize([0.3, 1.0, -0.2]);
     let lux = 4000.0 * 7.0 * PI / 9.0;

@@ -127,6 +127,13 @@ impl Scene {
         scene
     }
 
+    /// The camera cuts off what is nearer.
+    pub(super) fn near(mut self, near_m: f64) -> Self {
+        self.camera["near_m"] = json!(near_m);
+        self.whole_format = true;
+        self
+    }
+
     /// A Lambert plate of albedo ½ at the origin that faces +z, seen in parallel rays from 60° off its normal, from so near
     /// that nothing comes between; it shows E/(2π). It is smaller than 1e-3 m, so that E is the same all over it to 1e-6 when
     /// nothing is nearer than 1 m.

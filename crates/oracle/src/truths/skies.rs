@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 
 use super::{
     Claim, Truth,
-    scene::{PLATE_ALBEDO, Scene, grey_hdr},
+    scene::{PLATE_ALBEDO, Scene, black, grey_hdr, sphere},
+    sphere_irradiance,
 };
 use crate::{
     quadrature::{Cone, directions, interval},
@@ -16,6 +17,7 @@ use crate::{
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = seen();
     list.extend(on_a_plate());
+    list.extend(beside_a_lamp());
     list.into_iter().map(|truth| truth.claims(Claim::PhotometricSensor)).collect()
 }
 
@@ -152,29 +154,74 @@ fn seen() -> Vec<Truth> {
         .collect()
 }
 
+const BRIGHT: f64 = 32.0;
+const UPRIGHT: Pose = Pose { up: [0.0, 0.0, 1.0], forward: [0.6, -0.8, 0.0], rotation_deg: 0.0, mirrored: false };
+
+/// ∫ over polar angles of the tent of a row about a centre, constant beyond it toward the pole, times cos θ sin θ.
+fn of_row(row: f64) -> f64 {
+    let centre = (row + 0.5) * PI / 4.0;
+    let tent = move |theta: f64| {
+        let off = (theta - centre) / (PI / 4.0);
+        let weight = if row == 0.0 && off < 0.0 { 1.0 } else { (1.0 - off.abs()).max(0.0) };
+        weight * theta.cos() * theta.sin()
+    };
+    let up_to = |from: f64, to: f64| interval(tent, from, to, 1e-12).value;
+    let last = (centre + PI / 4.0).min(0.5 * PI);
+    up_to(0.0, centre) + up_to(centre, last)
+}
+
+fn shown(irradiance: f64) -> f64 {
+    PLATE_ALBEDO * irradiance / PI
+}
+
+/// A light meter under an image of which one texel shines, and a lamp on the other side, where the image is black.
+fn beside_a_lamp() -> Vec<Truth> {
+    const LAMP: f64 = 150.0;
+    let (tilt, distance_m, radius_m) = (40_f64.to_radians(), 2.0, 0.3);
+    let mut image = vec![0.0; 32];
+    image[8 + 3] = BRIGHT;
+    let from_sky = BRIGHT * TAU / 8.0 * of_row(1.0);
+    let from_lamp = LAMP * sphere_irradiance(radius_m, distance_m, tilt);
+    let level = scale(-tilt.sin(), UPRIGHT.forward);
+    let toward = [level[0], level[1], tilt.cos()];
+    let lamp = sphere(scale(distance_m, toward), radius_m);
+    ["mis", "light", "bsdf"]
+        .map(|how| {
+            let image = image.clone();
+            let scene = Scene::light_meter()
+                .light(pose_json(UPRIGHT, json!({ "file": "bright-3-1.hdr", "projection": "latitude-longitude" })))
+                .file("bright-3-1.hdr", grey_hdr(8, &image))
+                .lamp(lamp.clone(), black(), LAMP, "front")
+                .light_sampling(how)
+                .spp(4096);
+            let value = shown(from_sky + from_lamp);
+            let formula = "(ρ/π)(L 2π/8 ∫ tent(θ) cos θ sin θ dθ + L′ π(R/d)² cos β)";
+            Truth::new(format!("sky-with-one-bright-texel-beside-a-lamp-by-{how}"), &scene, value, formula)
+                .because("Light adds up: what a sky throws on a plate does not depend on a lamp that hides a black part of it.")
+                .confirmed("quadrature over the directions above", 1e-3, move || {
+                    let cone = Cone { axis: [0.0, 0.0, 1.0], one_minus_cos: 1.0 };
+                    let rim = (1.0 - (radius_m / distance_m).powi(2)).sqrt();
+                    let radiance = |d: Vec3| {
+                        if dot(d, toward) > rim { LAMP } else { by_latitude(&image, false, UPRIGHT.along(d)) }
+                    };
+                    shown(directions(|d: Vec3| radiance(d) * d[2].max(0.0), cone, 1e-3, 3_000_000).value)
+                })
+                .or_else("the sky counted twice", shown(2.0 * from_sky + from_lamp))
+                .or_else("the lamp counted twice", shown(from_sky + 2.0 * from_lamp))
+                .sees(0.01)
+        })
+        .into()
+}
+
 /// A light meter under an image of which one texel shines.
 fn on_a_plate() -> Vec<Truth> {
-    const BRIGHT: f64 = 32.0;
-    let upright = Pose { up: [0.0, 0.0, 1.0], forward: [0.6, -0.8, 0.0], rotation_deg: 0.0, mirrored: false };
-    let shown = |irradiance: f64| PLATE_ALBEDO * irradiance / PI;
+    let upright = UPRIGHT;
     let meter = |file: &str, width: usize, texels: &[f64], projection: &str, how: &'static str| {
         Scene::light_meter()
             .light(pose_json(upright, json!({ "file": file, "projection": projection })))
             .file(file, grey_hdr(width, texels))
             .light_sampling(how)
             .spp(4096)
-    };
-    // ∫ over polar angles of the tent of a row about a centre, constant beyond it toward the pole, times cos θ sin θ.
-    let of_row = |row: f64| {
-        let centre = (row + 0.5) * PI / 4.0;
-        let tent = move |theta: f64| {
-            let off = (theta - centre) / (PI / 4.0);
-            let weight = if row == 0.0 && off < 0.0 { 1.0 } else { (1.0 - off.abs()).max(0.0) };
-            weight * theta.cos() * theta.sin()
-        };
-        let up_to = |from: f64, to: f64| interval(tent, from, to, 1e-12).value;
-        let last = (centre + PI / 4.0).min(0.5 * PI);
-        up_to(0.0, centre) + up_to(centre, last)
     };
     let mut list = Vec::new();
     for (name, column, row, how) in [

@@ -81,20 +81,25 @@ impl Sky {
 
     /// The same by midpoints over the angles.
     pub(super) fn irradiance_by_midpoints(&self, normal: Vec3) -> f64 {
-        let (rows, columns) = (1500, 600);
-        let over = |row: u32| {
-            let zenith = FRAC_PI_2 * (f64::from(row) + 0.5) / f64::from(rows);
-            let sum: f64 = (0..columns)
-                .map(|column| {
-                    let azimuth = TAU * (f64::from(column) + 0.5) / f64::from(columns);
-                    let toward = [zenith.sin() * azimuth.cos(), zenith.sin() * azimuth.sin(), zenith.cos()];
-                    self.relative(toward) * dot(toward, normal).max(0.0)
-                })
-                .sum();
-            sum * zenith.sin()
-        };
-        (0..rows).map(over).sum::<f64>() * (FRAC_PI_2 / f64::from(rows)) * (TAU / f64::from(columns))
+        by_midpoints(normal, |toward| self.relative(toward))
     }
+}
+
+/// Irradiance on a plane of this unit normal from above, by midpoints over the angles.
+pub(super) fn by_midpoints(normal: Vec3, radiance: impl Fn(Vec3) -> f64) -> f64 {
+    let (rows, columns) = (1500, 600);
+    let over = |row: u32| {
+        let zenith = FRAC_PI_2 * (f64::from(row) + 0.5) / f64::from(rows);
+        let sum: f64 = (0..columns)
+            .map(|column| {
+                let azimuth = TAU * (f64::from(column) + 0.5) / f64::from(columns);
+                let toward = [zenith.sin() * azimuth.cos(), zenith.sin() * azimuth.sin(), zenith.cos()];
+                radiance(toward) * dot(toward, normal).max(0.0)
+            })
+            .sum();
+        sum * zenith.sin()
+    };
+    (0..rows).map(over).sum::<f64>() * (FRAC_PI_2 / f64::from(rows)) * (TAU / f64::from(columns))
 }
 
 /// A parallelogram that light comes through, seen from one side.

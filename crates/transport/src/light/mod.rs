@@ -346,14 +346,13 @@ pub(crate) enum EnvironmentRadiance {
 impl Environment {
     /// States the numbers of skies among the lights that shadow rays aim at. Both have them in the order of the scene.
     pub(crate) fn number(skies: &mut [Self], lights: &[Light]) {
-        let mut skies = skies.iter_mut();
         for (index, light) in lights.iter().enumerate() {
-            let is_same = |sky: &&mut Self| match (&sky.radiance, light) {
+            let is_same = |sky: &Self| match (&sky.radiance, light) {
                 (EnvironmentRadiance::Image(of), Light::Environment(light)) => Arc::ptr_eq(of, light),
                 (EnvironmentRadiance::Sky(of), Light::Sky(light)) => Arc::ptr_eq(of, light),
                 _ => false,
             };
-            if let Some(sky) = skies.find(is_same) {
+            if let Some(sky) = skies.iter_mut().find(|sky| sky.light.is_none() && is_same(sky)) {
                 sky.light = Some(index as u32);
             }
         }
