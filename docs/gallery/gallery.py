@@ -48,6 +48,18 @@ PICTURES = [
     Picture("prism-in-smoke", "scenes/prism-in-smoke.json", ["--exposure", "5"],
             "A beam of white light goes through a prism in a smoky room. The spectrum stands in the air: smoke scatters each colour where the glass has "
             "sent it. The beam has no area; paths find it through the glass.", error="10%", size="480x270"),
+    Picture("fog", "scenes/fog.json", ["--exposure", "0"],
+            "A spot behind a row of bars in a misty hall. Look at the shafts of light between the bars, at their shadows in the mist, and at how far "
+            "lamps and walls fade away.", size="480x300"),
+    Picture("wax", "scenes/wax.json", ["--exposure", "0"],
+            "Candles of wax and a block of soap with a warm lamp behind it. Look at the thin parts: light that goes through them comes out warm, since "
+            "long waves are absorbed less. All of it is scattering inside a rough interface.", size="480x360"),
+    Picture("cloud", "scenes/cloud.json", ["--exposure", "0"],
+            "A cloud of drops in the afternoon sun. Light is scattered a hundred times in it: look at the rim toward the sun, at the dark base, and at "
+            "the blue of the sky in the shadows.", size="480x300"),
+    Picture("milk", "scenes/milk.json", ["--exposure", "0"],
+            "A glass of milk and one of watered milk. Short waves are scattered more: the watered milk is bluish where light comes from the side, and "
+            "reddish where light comes through.", error="10%", size="320x240"),
     Picture("movement", "scenes/movement.glb", ["--exposure", "0.7", "--curve", "agx"],
             "The movement of a watch, from a glTF model. Look at the stripes of the bridges, which brushing makes change from bright to dark as they turn "
             "away from the lamp; at the rubies, whose red is the path of the light through them; at the spring, a ribbon of 35 µm."),

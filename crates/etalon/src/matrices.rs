@@ -59,6 +59,7 @@ mod tests {
             up: [0.0, 1.0, 0.0],
             world_up: [0.0, 1.0, 0.0],
             projection: perspective,
+            near_m: 0.0,
         };
         let [to_camera, to_ndc] = of_camera(&base, 300, 200);
         assert_eq!(times([4.0, 2.5, -7.0], &to_camera), [3.0, 0.5, 10.0]);

@@ -124,6 +124,8 @@ pub struct Camera {
     pub world_up: [f64; 3],
     /// How points project.
     pub projection: Projection,
+    /// Where rays start: this far along `forward` from the eye, m; what is nearer is cut off.
+    pub near_m: f64,
     /// When the shutter opens and when it closes, s.
     pub shutter_s: [f64; 2],
     /// Where it is at all times, if the scene states keyframes. Whether it moves while the shutter is open: [`CameraMotion::moves`].

@@ -27,6 +27,8 @@ pub struct Camera {
     /// Half its height.
     half_up: Vec3<f64>,
     kind: Kind,
+    /// Distance along `forward` of the plane from which rays start.
+    near: f64,
     moving: Option<Moving>,
 }
 
@@ -109,6 +111,7 @@ impl Camera {
             half_right: right * (half_height * aspect),
             half_up: up * half_height,
             kind,
+            near: camera.near_m,
             moving: None,
         }
     }
@@ -215,6 +218,12 @@ impl Camera {
         }
     }
 
+    /// The ray from an eye, cut off at the near plane.
+    #[inline(always)]
+    fn from_near(&self, eye: Vec3<f64>, direction: Vec3<f64>) -> Ray<f64> {
+        Ray::free(eye + direction * (self.near / direction.dot(self.forward)), direction)
+    }
+
     #[inline(always)]
     fn across(&self, film: [f64; 2]) -> Vec3<f64> {
         self.half_right * film[0] + self.half_up * film[1]
@@ -232,12 +241,12 @@ impl Camera {
         // From the lens point to the point in focus, relative to the lens's centre: the scene's origin and the
         // eye's position do not enter, so a distant focus loses no bits.
         let focus = (self.forward + self.across(film)) * focus_distance;
-        Ray::free(self.position + lens, (focus - lens).normalized())
+        self.from_near(self.position + lens, (focus - lens).normalized())
     }
 
     #[inline(always)]
     fn through_pinhole(&self, film: [f64; 2]) -> Ray<f64> {
-        Ray::free(self.position, (self.forward + self.across(film)).normalized())
+        self.from_near(self.position, (self.forward + self.across(film)).normalized())
     }
 
     #[inline(always)]
@@ -259,6 +268,7 @@ mod tests {
             up: [0.0, 1.0, 0.0],
             world_up: [0.0, 1.0, 0.0],
             projection,
+            near_m: 0.0,
             shutter_s: [0.0; 2],
             motion: None,
         }
@@ -297,6 +307,26 @@ mod tests {
                 prop_assert_eq!(a.direction, b.direction);
                 prop_assert_eq!(a.origin, b.origin);
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn rays_start_on_the_near_plane(
+            x in -1.0..1.0_f64, y in -1.0..1.0_f64, u in 0.0..1.0_f64, v in 0.0..1.0_f64, radius in 0.0..1.0_f64, near in 0.0..100.0_f64,
+        ) {
+            let lens = Some(ThinLens { radius_m: radius, focus_distance_m: 3.0 });
+            let of = |near_m: f64| {
+                let projection = Projection::Perspective { vertical_fov_rad: 0.8, lens: lens.clone() };
+                Camera::new(&scene::Camera { near_m, ..camera(projection) }, 300, 200, false).ray([x, y], [u, v])
+            };
+            let (whole, cut) = (of(0.0), of(near));
+            prop_assert_eq!(whole.direction, cut.direction);
+            // A few roundings of numbers as large as the distance and the position.
+            let rounding = 8.0 * f64::EPSILON * (2.0 * near + 4.0);
+            prop_assert!((3.0 - near - cut.origin.z).abs() <= rounding, "{:?}", cut.origin);
+            let way = cut.origin - whole.origin;
+            prop_assert!((way - whole.direction * way.length()).length() <= 2.0 * rounding, "{way:?}");
         }
     }
 

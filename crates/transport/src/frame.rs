@@ -73,7 +73,7 @@ impl SceneFrame {
             Projection::CompoundLens(lens) => Projection::CompoundLens(lens.clone()),
         };
         let position_m = self.point(Vec3::from_array(camera.position_m)).to_array();
-        Camera { position_m, projection, ..camera.clone() }
+        Camera { position_m, projection, near_m: camera.near_m * self.per_m, ..camera.clone() }
     }
 
     /// A shape of the world in the frame.

@@ -1,48 +1,58 @@
 //! Light adds up: a picture with two lights is the sum of the pictures with one of them, whatever the lights are.
 
-use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image, LightKind, Scene, Texels};
+use crate::common::chance::made;
+use etalon_scene::Scene;
 use etalon_transport::{Control, prepare};
 use serde_json::{Value, json};
-use std::sync::Arc;
 
 /// What shines.
 #[derive(Clone)]
 enum Shines {
     Light(Value),
-    /// A sky that is an image.
-    Image(Arc<Image>),
     /// A body, which is dark where only the other light shines.
     Body(Value),
-}
-
-fn image(bright: usize) -> Shines {
-    let texels = (0..32).map(|i| [if i == bright { 8.0 } else { 0.2 }; 3]).collect();
-    Shines::Image(Arc::new(Image::new(8, 4, Texels::F32(texels))))
 }
 
 fn kinds() -> Vec<(&'static str, Shines)> {
     let sun = json!([0.5, 0.6, 0.3]);
     vec![
         ("constant sky", Shines::Light(json!({"type": "environment", "radiance": 0.5}))),
-        ("image", image(10)),
-        ("another image", image(13)),
-        ("standard sky", Shines::Light(json!({"type": "environment", "sky": {"cie_type": 12, "zenith_radiance": 0.4, "sun_direction": sun}}))),
-        ("daylight", Shines::Light(json!({"type": "environment", "daylight": {"turbidity": 3, "scale": 3e-4, "sun_direction": sun}}))),
+        ("image", Shines::Light(json!({"type": "environment", "name": "image 10", "radiance": 1}))),
+        ("another image", Shines::Light(json!({"type": "environment", "name": "image 13", "radiance": 1}))),
+        (
+            "standard sky",
+            Shines::Light(
+                json!({"type": "environment", "sky": {"cie_type": 12, "zenith_radiance": 0.4, "sun_direction": sun}}),
+            ),
+        ),
+        (
+            "daylight",
+            Shines::Light(
+                json!({"type": "environment", "daylight": {"turbidity": 3, "scale": 3, "sun_direction": sun}}),
+            ),
+        ),
         ("point", Shines::Light(json!({"type": "point", "position_m": [0.4, 1.1, 0.8], "intensity": 1}))),
         ("parallel", Shines::Light(json!({"type": "directional", "direction": [-0.3, -1, -0.2], "irradiance": 1}))),
         ("ball", Shines::Body(json!({"type": "sphere", "center_m": [-0.5, 0.9, 0.2], "radius_m": 0.2}))),
-        ("disk", Shines::Body(json!({"type": "disk", "center_m": [0.5, 0.8, -0.3], "normal": [0, -1, 0], "radius_m": 0.3}))),
+        (
+            "disk",
+            Shines::Body(json!({"type": "disk", "center_m": [0.5, 0.8, -0.3], "normal": [0, -1, 0], "radius_m": 0.3})),
+        ),
         (
             "mesh",
-            Shines::Body(json!({"type": "mesh", "vertices_m": [[-0.4, 1, -0.9], [0.4, 1, -0.9], [0.4, 1, -0.5], [-0.4, 1, -0.5]], "triangles": [[0, 1, 2], [0, 2, 3]]})),
+            Shines::Body(
+                json!({"type": "mesh", "vertices_m": [[-0.4, 1, -0.9], [0.4, 1, -0.9], [0.4, 1, -0.5], [-0.4, 1, -0.5]], "triangles": [[0, 1, 2], [0, 2, 3]]}),
+            ),
         ),
     ]
 }
 
 /// A floor beneath all bodies, of which those shine that are in `on`, as the other kinds in it do.
 fn scene(kinds: &[(&str, Shines)], on: &[usize], sampling: &str) -> Scene {
-    let mut objects = vec![json!({"material": "floor", "shape": {"type": "parallelogram", "origin_m": [-1, 0, 1], "u_m": [2, 0, 0], "v_m": [0, 0, -2]}})];
-    let (mut lights, mut images) = (Vec::new(), Vec::new());
+    let mut objects = vec![
+        json!({"material": "floor", "shape": {"type": "parallelogram", "origin_m": [-1, 0, 1], "u_m": [2, 0, 0], "v_m": [0, 0, -2]}}),
+    ];
+    let mut lights = Vec::new();
     for (index, (_, shines)) in kinds.iter().enumerate() {
         match shines {
             Shines::Body(shape) => {
@@ -54,13 +64,9 @@ fn scene(kinds: &[(&str, Shines)], on: &[usize], sampling: &str) -> Scene {
             }
             _ if !on.contains(&index) => {}
             Shines::Light(light) => lights.push(light.clone()),
-            Shines::Image(image) => {
-                images.push((lights.len(), Arc::clone(image)));
-                lights.push(json!({"type": "environment", "radiance": 1}));
-            }
         }
     }
-    let text = json!({
+    made(&json!({
         "etalon": 1,
         "camera": {"type": "perspective", "position_m": [0, 0.5, 2], "look_at_m": [0, 0, 0], "vertical_fov_deg": 30},
         "film": {"width": 12, "height": 8},
@@ -68,20 +74,7 @@ fn scene(kinds: &[(&str, Shines)], on: &[usize], sampling: &str) -> Scene {
         "objects": objects,
         "lights": lights,
         "integrator": {"spp": 256, "light_sampling": sampling}
-    });
-    let mut scene = etalon_scene::parse(&text.to_string(), "test").unwrap_or_else(|errors| panic!("{errors}")).0;
-    for (place, image) in images {
-        scene.lights[place].kind = LightKind::ImageEnvironment(EnvironmentImage {
-            image,
-            name: "image".to_owned(),
-            projection: EnvironmentProjection::LatitudeLongitude,
-            forward: [1.0, 0.0, 0.0],
-            right: [0.0, 0.0, 1.0],
-            up: [0.0, 1.0, 0.0],
-            white: etalon_optics::Spectrum::ONE,
-        });
-    }
-    scene
+    }))
 }
 
 /// Mean luminance of the picture, and its variance by the scatter of replicates.
@@ -111,7 +104,10 @@ fn the_picture_of_two_lights_is_the_sum_of_theirs() {
                 let z = (both - sum) / error;
                 assert!(z.abs() < 5.0, "{names:?} by {sampling}: {both} is not {sum}, z = {z}");
                 let lesser = alone[first].0.min(alone[second].0);
-                assert!(6.0 * error < 0.2 * lesser, "{names:?} by {sampling}: {error} is too much noise beside {lesser}");
+                assert!(
+                    6.0 * error < 0.2 * lesser,
+                    "{names:?} by {sampling}: {error} is too much noise beside {lesser}"
+                );
             }
         }
     }

@@ -17,6 +17,7 @@ mod foreign_relief;
 mod frames;
 mod hard_cases;
 mod instruments;
+mod invariances;
 mod kernels;
 mod left_out;
 mod lights;

@@ -219,6 +219,7 @@ mod tests {
             up,
             world_up,
             projection: Projection::Orthographic { height_m: 1.0 },
+            near_m: 0.0,
             shutter_s: [0.0; 2],
             motion: None,
         };

@@ -100,7 +100,13 @@ impl<'a> Walk<'a, '_, '_> {
                 element.number("focus_distance")?.ok_or_else(|| format!("{place}: it has no focus_distance"))?;
             camera["lens"] = json!({ "radius_m": radius, "focus_distance_m": focus });
         }
-        // Nothing is cut off near or far.
+        // What is written beside the default counts: that is a hundredth of a unit.
+        if camera["type"] == "perspective"
+            && let Some(near) = element.number("near_clip")?.filter(|near| *near > 0.01)
+        {
+            camera["near_m"] = json!(near * to_world.matrix3.z_axis.length());
+        }
+        // Nothing is cut off far away.
         for harmless in ["near_clip", "far_clip", "shutter_open", "shutter_close"] {
             element.property(harmless);
         }

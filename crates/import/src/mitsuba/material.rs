@@ -290,7 +290,8 @@ impl Walk<'_, '_, '_> {
         let (eta, k) = (self.colour(element, "eta", Of::Emission)?, self.colour(element, "k", Of::Emission)?);
         let (eta, k) = match (eta, k) {
             (None, None) => return Ok(None),
-            (eta, k) => (eta.unwrap_or(json!(0.0)), k.unwrap_or(json!(1.0))),
+            // As good as 0, which no scene may have.
+            (eta, k) => (eta.unwrap_or(json!(1e-9)), k.unwrap_or(json!(1.0))),
         };
         let (Some(eta), Some(k)) = (Table::of_spectrum(&eta), Table::of_spectrum(&k)) else {
             self.builder.approximate(&element.place, "eta and k as colours are ignored: the metal becomes aluminium");

@@ -62,6 +62,28 @@ fn media_of_mitsuba_arrive() {
     assert!(said.len() == 1 && said[0].contains("only glass and \"null\" let light in"), "{said:?}");
 }
 
+/// A heterogeneous medium ends where its volume does, which is the box from 0 to 1, even if it is the same everywhere in it.
+#[test]
+fn a_volume_that_is_the_same_everywhere_ends_at_its_box() {
+    let of = |stated: &str| {
+        let text = format!(
+            r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"><bsdf type="null"/>
+  <medium name="interior" type="heterogeneous"><float name="albedo" value="0.5"/>{stated}</medium></shape></scene>"#
+        );
+        let imported = imported("xml", &text);
+        let scene = scene(&imported);
+        let medium = within(&scene, 0);
+        near(coefficients(medium, 500.0), [1.5, 1.5]);
+        let MediumDensity::Grid(grid) = &medium.density else { panic!("{:?}", medium.density) };
+        assert_eq!((grid.box_m, grid.values.iter().all(|value| *value == 1.0)), ([[0.0; 3], [1.0; 3]], true));
+        grid.transform.linear[0][0]
+    };
+    assert_eq!(of(r#"<float name="sigma_t" value="3"/>"#), 1.0);
+    let volume = r#"<volume name="sigma_t" type="constvolume"><float name="value" value="3"/>
+      <transform name="to_world"><scale value="2"/></transform></volume>"#;
+    assert_eq!(of(volume), 2.0);
+}
+
 /// Two cells, (0.75, 0.375, 0) and (0.375, 0.375, 0): each has the mean of its channels, 0.375 and 0.25. The grid has the colour of their
 /// mean, (1.8, 1.2, 0). As an albedo it is (0.5625, 0.375, 0).
 #[test]

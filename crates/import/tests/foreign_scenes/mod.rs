@@ -7,6 +7,7 @@ mod coordinates;
 mod images;
 mod losses;
 mod media;
+mod metals;
 mod parameters;
 mod principled;
 mod relief;

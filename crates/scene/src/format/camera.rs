@@ -37,6 +37,8 @@ crate::record! {
         sensor_width_m: Optional<Positive>,
         /// A thin lens; without it, the camera is a pinhole and everything is in focus.
         lens: Optional<Lens>,
+        /// What is nearer than this plane is cut off: its distance along the viewing direction, m.
+        near_m: Required<NonNegative> = "0",
         /// When the shutter opens and when it closes, s.
         shutter_s: Required<Spanned<[f64; 2]>> = "[0, 0]",
         /// How the camera moves: its placement at some times.
@@ -198,6 +200,7 @@ pub(crate) fn camera(
                 up,
                 world_up: form.up?.value.0,
                 projection: projection?,
+                near_m: form.near_m?.0,
                 shutter_s: shutter_s?,
                 motion: None,
             };
@@ -215,6 +218,7 @@ pub(crate) fn camera(
                 up,
                 world_up: form.up?.value.0,
                 projection,
+                near_m: 0.0,
                 shutter_s: shutter_s?,
                 motion: None,
             };

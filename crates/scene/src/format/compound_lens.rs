@@ -144,8 +144,16 @@ pub(super) fn compound_lens_camera(
     let (forward, up) = view?;
     let projection = Projection::CompoundLens(Arc::new(CompoundLens { film_distance_m, ..lens }));
     let position_m = form.position_m?;
-    let still =
-        Camera { position_m, forward, up, world_up: form.up?.value.0, projection, shutter_s: shutter_s?, motion: None };
+    let still = Camera {
+        position_m,
+        forward,
+        up,
+        world_up: form.up?.value.0,
+        projection,
+        near_m: 0.0,
+        shutter_s: shutter_s?,
+        motion: None,
+    };
     Some(moving(still, placed?))
 }
 
