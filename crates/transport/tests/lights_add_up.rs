@@ -58,7 +58,7 @@ fn scene(kinds: &[(&str, Shines)], on: &[usize], sampling: &str) -> Scene {
             Shines::Body(shape) => {
                 let mut body = json!({"material": "black", "shape": shape});
                 if on.contains(&index) {
-                    body["emission"] = json!({"radiance": 4, "sides": "both"});
+                    body["emission"] = json!({"radiance": 8, "sides": "both"});
                 }
                 objects.push(body);
             }
