@@ -1,5 +1,6 @@
 //! Values by wavelength, as files of other programs state them.
 
+use etalon_optics::spectrum::RgbBasis;
 use serde_json::{Value, json};
 
 /// Wavelengths, nm, and values, in the order of the file.
@@ -20,6 +21,14 @@ impl Table {
         }
         let list = |key: &str| spectrum[key].as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>();
         Some(Self(list("wavelengths_nm")?.into_iter().zip(list("values")?).collect()))
+    }
+
+    /// Of a colour of the format: the smooth spectrum that has it, in steps of 5 nm; `None` of anything else.
+    pub(crate) fn of_colour(spectrum: &Value) -> Option<Self> {
+        let rgb: Vec<f64> = spectrum["rgb"].as_array()?.iter().filter_map(Value::as_f64).collect();
+        let rgb: [f64; 3] = rgb.try_into().ok()?;
+        let basis = RgbBasis::get();
+        Some(Self((72..=166).map(|step| 5.0 * f64::from(step)).map(|nm| (nm, basis.reflectance(rgb, nm))).collect()))
     }
 
     /// As a spectrum of the format.

@@ -287,16 +287,23 @@ impl Walk<'_, '_, '_> {
 
     /// A metal by its own eta and k.
     fn own_metal(&mut self, element: &Element) -> Result<Option<Value>, String> {
-        let (eta, k) = (self.colour(element, "eta", Of::Emission)?, self.colour(element, "k", Of::Emission)?);
+        let (eta, k) = (self.colour(element, "eta", Of::Coefficient)?, self.colour(element, "k", Of::Coefficient)?);
         let (eta, k) = match (eta, k) {
             (None, None) => return Ok(None),
-            // As good as 0, which no scene may have.
-            (eta, k) => (eta.unwrap_or(json!(1e-9)), k.unwrap_or(json!(1.0))),
+            (eta, k) => (eta.unwrap_or(json!(0.0)), k.unwrap_or(json!(1.0))),
         };
-        let (Some(eta), Some(k)) = (Table::of_spectrum(&eta), Table::of_spectrum(&k)) else {
-            self.builder.approximate(&element.place, "eta and k as colours are ignored: the metal becomes aluminium");
-            return Ok(Some(json!({ "type": "conductor", "metal": "Al" })));
+        let mut table = |value: &Value| {
+            Table::of_spectrum(value).or_else(|| {
+                self.builder
+                    .approximate(&element.place, "a colour as eta or k becomes a smooth spectrum of that colour");
+                Table::of_colour(value)
+            })
         };
+        let (Some(mut eta), Some(k)) = (table(&eta), table(&k)) else {
+            return Err(format!("{}: eta and k are no spectra", element.place));
+        };
+        // As good as 0, which no scene may have.
+        eta.0.iter_mut().for_each(|(_, n)| *n = n.max(1e-9));
         Ok(Some(metal(&eta, &k)))
     }
 

@@ -5,9 +5,13 @@ use etalon_scene::{MaterialKind, Metal, SpectrumTexture};
 use super::{imported, on_its_side, said, scene};
 
 fn metal(bsdf: &str) -> MaterialKind {
+    listed(bsdf, &[])
+}
+
+fn listed(bsdf: &str, losses: &[&str]) -> MaterialKind {
     let text = format!("<scene version=\"3.0.0\"><shape type=\"sphere\">{bsdf}</shape></scene>");
     let imported = imported("xml", &text);
-    assert_eq!(said(&imported), Vec::<String>::new());
+    assert_eq!(said(&imported), losses);
     let scene = scene(&imported);
     on_its_side(&scene.materials[scene.objects[0].material].kind).clone()
 }
@@ -38,4 +42,17 @@ fn a_metal_of_its_own_has_what_is_left_out_of_none() {
     };
     assert_eq!(index("<spectrum name=\"k\" value=\"3\"/>"), (1e-9, 3.0));
     assert_eq!(index("<spectrum name=\"eta\" value=\"0.5\"/>"), (0.5, 1.0));
+}
+
+/// Gold's, per channel of a renderer of three: red is reflected more than blue.
+#[test]
+fn an_index_as_a_colour_becomes_a_smooth_spectrum() {
+    let bsdf = "<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"0.143, 0.375, 1.442\"/><rgb name=\"k\" value=\"3.983, 2.386, 1.603\"/></bsdf>";
+    let loss = "line 1: a colour as eta or k becomes a smooth spectrum of that colour";
+    let kind = listed(bsdf, &[loss]);
+    let MaterialKind::Conductor { metal: Metal::Index(index), .. } = kind else { panic!("{kind:?}") };
+    for (nm, [n, k]) in [(640.0, [0.143, 3.983]), (450.0, [1.442, 1.603])] {
+        let found = index.eval(nm);
+        assert!((found.0 - n).abs() < 0.15 && (found.1 - k).abs() < 0.4, "{nm} nm: {found:?}");
+    }
 }
