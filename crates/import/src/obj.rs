@@ -193,7 +193,7 @@ fn image(words: &str, place: &str, builder: &mut Builder<'_>) -> Option<String> 
             Some(builder.add_file("image", &kind, bytes))
         }
         Ok(_) => {
-            builder.leave_out(place, format!("map_Kd \"{name}\" is not PNG, JPEG, EXR or HDR"));
+            builder.leave_out(place, format!("map_Kd \"{name}\" is not PNG, JPEG, BMP, EXR or HDR"));
             None
         }
         Err(why) => {

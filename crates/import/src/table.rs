@@ -31,6 +31,12 @@ impl Table {
         Some(Self((72..=166).map(|step| 5.0 * f64::from(step)).map(|nm| (nm, basis.reflectance(rgb, nm))).collect()))
     }
 
+    /// All values times a factor.
+    pub(crate) fn times(mut self, factor: f64) -> Self {
+        self.0.iter_mut().for_each(|(_, value)| *value *= factor);
+        self
+    }
+
     /// As a spectrum of the format.
     pub(crate) fn spectrum(&self, outside: &str) -> Value {
         let (wavelengths, values): (Vec<f64>, Vec<f64>) = self.0.iter().copied().unzip();

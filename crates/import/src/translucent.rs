@@ -1,20 +1,24 @@
 //! Sheets that scatter light to both sides.
 
+use etalon_optics::Spectrum;
 use serde_json::{Value, json};
 
 use crate::Builder;
+use crate::table::Table;
 
-/// The material of two shares. Where these are known to add up to more than 1, both are lowered alike.
+/// The material of two shares. Where these are known to add up to more than 1 at some wavelength, both are lowered alike.
 pub(crate) fn translucent(reflectance: Value, transmittance: Value, place: &str, builder: &mut Builder<'_>) -> Value {
-    let most = match (channels(&reflectance), channels(&transmittance)) {
-        (Some(r), Some(t)) => [0, 1, 2].map(|c| r[c] + t[c]).into_iter().fold(0.0, f64::max),
-        _ => 0.0,
-    };
     let mut shares = [reflectance, transmittance];
-    if most > 1.0 {
-        builder
-            .approximate(place, format!("reflectance and transmittance add up to {most:.3}: both are divided by it"));
-        shares = shares.map(|share| scaled(share, 1.0 / most));
+    if let [Some(reflected), Some(passed)] = [0, 1].map(|i| table(&shares[i])) {
+        let most = reflected.0.iter().map(|&(nm, share)| share + passed.at(nm)).fold(0.0, f64::max);
+        // Beyond rounding.
+        if most > 1.0 + 1e-9 {
+            builder.approximate(
+                place,
+                format!("reflectance and transmittance add up to {most:.3}: both are divided by it"),
+            );
+            shares = [reflected, passed].map(|share| share.times(1.0 / most).spectrum("clamp"));
+        }
     }
     let [reflectance, transmittance] = shares;
     json!({ "type": "translucent", "reflectance": reflectance, "transmittance": transmittance })
@@ -29,7 +33,11 @@ pub(crate) fn scaled(mut value: Value, factor: f64) -> Value {
         return numbers.iter().map(|number| scaled(number.clone(), factor)).collect();
     }
     let keys: &[&str] = match value["type"].as_str() {
-        Some("rgb") => &["rgb"],
+        // The colour of a part of a saturated colour would be another spectrum, up to as bright in deep red.
+        Some("rgb") => match table(&value) {
+            Some(table) => return table.times(factor).spectrum("clamp"),
+            None => &["rgb"],
+        },
         Some("tabulated") => &["values"],
         Some("checker") => &["first", "second"],
         Some("image" | "vertex-colours") => &["factor"],
@@ -42,14 +50,16 @@ pub(crate) fn scaled(mut value: Value, factor: f64) -> Value {
     value
 }
 
-/// The channels of a number or a colour.
-fn channels(value: &Value) -> Option<[f64; 3]> {
-    let number = value.as_f64().map(|number| [number; 3]);
+/// A number, a colour or a table by wavelength, in steps of 5 nm.
+fn table(value: &Value) -> Option<Table> {
     let rgb = || {
         let channel = |c: usize| value["rgb"][c].as_f64();
-        Some([channel(0)?, channel(1)?, channel(2)?])
+        Spectrum::rgb_reflectance([channel(0)?, channel(1)?, channel(2)?]).ok()
     };
-    number.or_else(rgb)
+    let colour = rgb();
+    let stated = Table::of_spectrum(value);
+    let at = |nm: f64| Some((nm, colour.as_ref().map(|c| c.eval(nm)).or_else(|| Some(stated.as_ref()?.at(nm)))?));
+    (72..=166).map(|step| at(5.0 * f64::from(step))).collect::<Option<_>>().map(Table)
 }
 
 #[cfg(test)]
@@ -60,7 +70,6 @@ mod tests {
     fn every_kind_of_reflectance_is_scaled() {
         for (before, after) in [
             (json!(0.5), json!(0.25)),
-            (json!({ "type": "rgb", "rgb": [0.5, 1.0, 0.0] }), json!({ "type": "rgb", "rgb": [0.25, 0.5, 0.0] })),
             (
                 json!({ "type": "tabulated", "values": [1.0, 0.5] }),
                 json!({ "type": "tabulated", "values": [0.5, 0.25] }),
@@ -73,5 +82,14 @@ mod tests {
         ] {
             assert_eq!(scaled(before, 0.5), after);
         }
+    }
+
+    /// A saturated red reflects nearly all of deep red, and so does one half as bright: half of its spectrum is not that of half its colour.
+    #[test]
+    fn a_part_of_a_colour_is_a_part_of_its_spectrum() {
+        let red = json!({ "type": "rgb", "rgb": [0.7, 0.1, 0.1] });
+        let (whole, half) = (table(&red).unwrap(), table(&scaled(red, 0.5)).unwrap());
+        assert!(whole.at(700.0) > 0.9 && whole.0.len() == half.0.len());
+        assert!(whole.0.iter().zip(&half.0).all(|(a, b)| (0.5 * a.1 - b.1).abs() < 1e-12));
     }
 }

@@ -218,9 +218,9 @@ impl Camera {
         }
     }
 
-    /// The ray from an eye, cut off at the near plane.
+    /// The ray from an eye, without what is before the near plane.
     #[inline(always)]
-    fn from_near(&self, eye: Vec3<f64>, direction: Vec3<f64>) -> Ray<f64> {
+    fn cut_off(&self, eye: Vec3<f64>, direction: Vec3<f64>) -> Ray<f64> {
         Ray::free(eye + direction * (self.near / direction.dot(self.forward)), direction)
     }
 
@@ -241,12 +241,12 @@ impl Camera {
         // From the lens point to the point in focus, relative to the lens's centre: the scene's origin and the
         // eye's position do not enter, so a distant focus loses no bits.
         let focus = (self.forward + self.across(film)) * focus_distance;
-        self.from_near(self.position + lens, (focus - lens).normalized())
+        self.cut_off(self.position + lens, (focus - lens).normalized())
     }
 
     #[inline(always)]
     fn through_pinhole(&self, film: [f64; 2]) -> Ray<f64> {
-        self.from_near(self.position, (self.forward + self.across(film)).normalized())
+        self.cut_off(self.position, (self.forward + self.across(film)).normalized())
     }
 
     #[inline(always)]

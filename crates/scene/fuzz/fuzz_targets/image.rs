@@ -1,4 +1,4 @@
-//! Arbitrary bytes as an image: PNG, JPEG, EXR or HDR.
+//! Arbitrary bytes as an image: PNG, JPEG, BMP, EXR or HDR.
 #![no_main]
 
 use etalon_scene::{Channel, Encoding, Image};

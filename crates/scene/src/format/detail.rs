@@ -19,7 +19,7 @@ macro_rules! laid_image {
         crate::record! {
             $(#[doc = $doc])+
             pub(crate) struct $name + comment {
-                /// A PNG, JPEG, EXR or HDR file, relative to this file's folder.
+                /// A PNG, JPEG, BMP, EXR or HDR file, relative to this file's folder.
                 file: Required<Spanned<String>>,
                 $($own)*
                 /// What the image shows beyond its edges.

@@ -126,7 +126,7 @@ crate::record! {
 crate::record! {
     /// An image over the texture coordinates of a surface: for what a material reflects or a surface emits.
     pub(crate) struct ImageSpectrum + comment {
-        /// A PNG, JPEG, EXR or HDR file, relative to this file's folder.
+        /// A PNG, JPEG, BMP, EXR or HDR file, relative to this file's folder.
         file: Required<Spanned<String>>,
         /// How its numbers are to be read.
         encoding: Required<Encoding> = r#""auto""#,

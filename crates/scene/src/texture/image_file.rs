@@ -104,7 +104,7 @@ impl Image {
         image
     }
 
-    /// Decodes a PNG, JPEG, EXR or HDR file, told apart by its first bytes. What it says beyond three channels is left
+    /// Decodes a PNG, JPEG, BMP, EXR or HDR file, told apart by its first bytes. What it says beyond three channels is left
     /// out: the second value says what.
     ///
     /// # Errors
@@ -156,7 +156,7 @@ impl Image {
         let failed = |error: image::ImageError| error.to_string();
         let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
         let Some(format) = reader.format() else {
-            return Err("it is not a PNG, JPEG, EXR or HDR file".to_owned());
+            return Err("it is not a PNG, JPEG, BMP, EXR or HDR file".to_owned());
         };
         let length = bytes.len() as u64;
         let mut limits = Limits::default();
@@ -316,6 +316,8 @@ mod tests {
         assert_eq!(srgb.texel(2, 1)[1..], [0.0, 1.0]);
         let (linear, _) = Image::decode(&png, Encoding::Linear).unwrap();
         assert_eq!(linear.texel(1, 1), [188.0 / 255.0, 0.0, 1.0]);
+        let (bmp, _) = Image::decode(&encoded(&grey, ImageFormat::Bmp), Encoding::Linear).unwrap();
+        assert_eq!(bmp.texel(1, 1), linear.texel(1, 1));
 
         let float = DynamicImage::ImageRgb32F(image::Rgb32FImage::from_pixel(2, 2, image::Rgb([0.5, 2.0, 0.125])));
         for format in [ImageFormat::OpenExr, ImageFormat::Hdr] {
