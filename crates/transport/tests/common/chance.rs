@@ -72,7 +72,7 @@ impl Chance {
             5 => json!({"type": "black"}),
             7 => json!({"type": "oren-nayar", "reflectance": self.spectrum(0.9), "roughness": self.within(0.0, 1.0)}),
             8 => {
-                json!({"type": "translucent", "reflectance": self.spectrum(0.45), "transmittance": self.spectrum(0.45)})
+                json!({"type": "translucent", "reflectance": self.within(0.0, 0.5), "transmittance": self.within(0.0, 0.5)})
             }
             9 => json!({"type": "thin-dielectric", "index": self.within(1.1, 2.0)}),
             10 => json!({"type": "dielectric", "interior": self.within(1.1, 2.0), "alpha": self.within(0.05, 0.5)}),
