@@ -281,7 +281,11 @@ fn read(kind: &str, bytes: &[u8], options: &Options, builder: &mut Builder<'_>) 
 
 /// A colour as a reflectance of the format: a number if it is grey. Channels are brought into [0, 1].
 fn reflectance(rgb: [f64; 3]) -> Value {
-    let rgb = rgb.map(|v| v.clamp(0.0, 1.0));
+    coefficient(rgb.map(|v| v.clamp(0.0, 1.0)))
+}
+
+/// A colour whose channels may exceed 1 as a spectrum of the format: of grey, its number.
+fn coefficient(rgb: [f64; 3]) -> Value {
     if rgb[0] == rgb[1] && rgb[1] == rgb[2] { json!(rgb[0]) } else { json!({ "type": "rgb", "rgb": rgb }) }
 }
 

@@ -41,11 +41,13 @@ mod tests {
 
     #[test]
     fn every_metal_is_a_table_of_the_visible_range() {
-        for symbol in ["Ag", "Al", "Au", "Cr", "Cu", "W", "Cu_palik", "Na_palik", "a-C", "TiN", "Ir"] {
+        // The last two are measured up to 826.5 nm; what is beyond is as there.
+        let first = ["Ag", "Al", "Au", "Cr", "Cu", "W", "Na_palik", "a-C", "Ir"].map(|symbol| (symbol, 830.0));
+        for (symbol, most_nm) in first.into_iter().chain(["Cu_palik", "TiN"].map(|symbol| (symbol, 826.0))) {
             let metal = named(symbol).unwrap();
             let wavelengths: Vec<f64> =
                 metal["wavelengths_nm"].as_array().unwrap().iter().map(|nm| nm.as_f64().unwrap()).collect();
-            assert!(wavelengths[0] < 360.0 && wavelengths[wavelengths.len() - 1] > 826.0, "{symbol}");
+            assert!(wavelengths[0] < 360.0 && wavelengths[wavelengths.len() - 1] > most_nm, "{symbol}");
             assert!(wavelengths.is_sorted_by(|a, b| a < b), "{symbol}");
             assert_eq!([&metal["n"], &metal["k"]].map(|list| list.as_array().unwrap().len()), [wavelengths.len(); 2]);
         }

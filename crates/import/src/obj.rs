@@ -189,7 +189,7 @@ fn image(words: &str, place: &str, builder: &mut Builder<'_>) -> Option<String> 
     }
     let kind = super::extension(Path::new(name));
     let added = match (builder.near)(name) {
-        Ok(bytes) if matches!(kind.as_str(), "png" | "jpg" | "jpeg" | "exr" | "hdr") => {
+        Ok(bytes) if matches!(kind.as_str(), "png" | "jpg" | "jpeg" | "bmp" | "exr" | "hdr") => {
             Some(builder.add_file("image", &kind, bytes))
         }
         Ok(_) => {

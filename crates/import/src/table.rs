@@ -23,12 +23,17 @@ impl Table {
         Some(Self(list("wavelengths_nm")?.into_iter().zip(list("values")?).collect()))
     }
 
-    /// Of a colour of the format: the smooth spectrum that has it, in steps of 5 nm; `None` of anything else.
+    /// Of a function, from 360 to 830 nm in steps of 5 nm.
+    pub(crate) fn of_function(value: impl Fn(f64) -> f64) -> Self {
+        Self((72..=166).map(|step| 5.0 * f64::from(step)).map(|nm| (nm, value(nm))).collect())
+    }
+
+    /// Of a colour of the format, whose channels may exceed 1: the smooth spectrum that has it; `None` of anything else.
     pub(crate) fn of_colour(spectrum: &Value) -> Option<Self> {
         let rgb: Vec<f64> = spectrum["rgb"].as_array()?.iter().filter_map(Value::as_f64).collect();
         let rgb: [f64; 3] = rgb.try_into().ok()?;
         let basis = RgbBasis::get();
-        Some(Self((72..=166).map(|step| 5.0 * f64::from(step)).map(|nm| (nm, basis.reflectance(rgb, nm))).collect()))
+        Some(Self::of_function(|nm| basis.reflectance(rgb, nm)))
     }
 
     /// All values times a factor.

@@ -33,7 +33,7 @@ pub(crate) fn scaled(mut value: Value, factor: f64) -> Value {
         return numbers.iter().map(|number| scaled(number.clone(), factor)).collect();
     }
     let keys: &[&str] = match value["type"].as_str() {
-        // The colour of a part of a saturated colour would be another spectrum, up to as bright in deep red.
+        // A tenth of a saturated red may have a spectrum as bright in deep red as the whole: the spectrum is scaled, not the channels.
         Some("rgb") => match table(&value) {
             Some(table) => return table.times(factor).spectrum("clamp"),
             None => &["rgb"],
@@ -50,16 +50,14 @@ pub(crate) fn scaled(mut value: Value, factor: f64) -> Value {
     value
 }
 
-/// A number, a colour or a table by wavelength, in steps of 5 nm.
+/// A number, a colour or a table by wavelength.
 fn table(value: &Value) -> Option<Table> {
-    let rgb = || {
-        let channel = |c: usize| value["rgb"][c].as_f64();
-        Spectrum::rgb_reflectance([channel(0)?, channel(1)?, channel(2)?]).ok()
-    };
-    let colour = rgb();
-    let stated = Table::of_spectrum(value);
-    let at = |nm: f64| Some((nm, colour.as_ref().map(|c| c.eval(nm)).or_else(|| Some(stated.as_ref()?.at(nm)))?));
-    (72..=166).map(|step| at(5.0 * f64::from(step))).collect::<Option<_>>().map(Table)
+    if let Some(stated) = Table::of_spectrum(value) {
+        return Some(Table::of_function(|nm| stated.at(nm)));
+    }
+    let channel = |c: usize| value["rgb"][c].as_f64();
+    let colour = Spectrum::rgb_reflectance([channel(0)?, channel(1)?, channel(2)?]).ok()?;
+    Some(Table::of_function(|nm| colour.eval(nm)))
 }
 
 #[cfg(test)]

@@ -218,12 +218,6 @@ impl Camera {
         }
     }
 
-    /// The ray from an eye, without what is before the near plane.
-    #[inline(always)]
-    fn cut_off(&self, eye: Vec3<f64>, direction: Vec3<f64>) -> Ray<f64> {
-        Ray::free(eye + direction * (self.near / direction.dot(self.forward)), direction)
-    }
-
     #[inline(always)]
     fn across(&self, film: [f64; 2]) -> Vec3<f64> {
         self.half_right * film[0] + self.half_up * film[1]
@@ -240,13 +234,14 @@ impl Camera {
         let lens = right * x + up * y;
         // From the lens point to the point in focus, relative to the lens's centre: the scene's origin and the
         // eye's position do not enter, so a distant focus loses no bits.
-        let focus = (self.forward + self.across(film)) * focus_distance;
-        self.cut_off(self.position + lens, (focus - lens).normalized())
+        let way = (self.forward + self.across(film)) * focus_distance - lens;
+        Ray::free(self.position + lens + way * (self.near / focus_distance), way.normalized())
     }
 
     #[inline(always)]
     fn through_pinhole(&self, film: [f64; 2]) -> Ray<f64> {
-        self.cut_off(self.position, (self.forward + self.across(film)).normalized())
+        let way = self.forward + self.across(film);
+        Ray::free(self.position + way * self.near, way.normalized())
     }
 
     #[inline(always)]

@@ -87,8 +87,8 @@ fn mean(scene: &Scene) -> (f64, f64) {
     (mean, variance / (pixels * pixels))
 }
 
-/// 45 pairs in two ways. |z| < 5 is missed by chance once in 10⁴ such runs. Errors of 0.2 to 3 % of the lesser light would be seen at 6 σ; one
-/// light counted twice is 100 %.
+/// 45 pairs in two ways. By chance one of them has |z| > 5 in one run of 2 · 10⁴. A fifth of the lesser light is more than 6 standard errors in
+/// every pair. A light counted twice is all of it.
 #[test]
 fn the_picture_of_two_lights_is_the_sum_of_theirs() {
     let kinds = kinds();

@@ -73,9 +73,12 @@ impl<'a> Walk<'a, '_, '_> {
         let mut camera = json!({
             "position_m": to_world.translation.to_array(), "direction": forward.to_array(), "up": up.to_array(),
         });
+        // Mitsuba's own default.
+        let near = element.number("near_clip")?.unwrap_or(0.01);
         match element.plugin() {
             "perspective" | "thinlens" => {
                 camera["type"] = json!("perspective");
+                camera["near_m"] = json!(near * to_world.matrix3.z_axis.length());
                 let (key, degrees) = field_of_view(element, aspect)?;
                 camera[key] = json!(degrees);
             }
@@ -84,7 +87,6 @@ impl<'a> Walk<'a, '_, '_> {
                 // From −1 to 1 across the width, times the scale of the transform.
                 let width = 2.0 * to_world.matrix3.x_axis.length();
                 camera["height_m"] = json!(width / aspect);
-                let near = element.number("near_clip")?.unwrap_or(0.01);
                 let start = to_world.translation + to_world.matrix3.z_axis * near;
                 camera["position_m"] = json!(start.to_array());
             }
@@ -100,14 +102,8 @@ impl<'a> Walk<'a, '_, '_> {
                 element.number("focus_distance")?.ok_or_else(|| format!("{place}: it has no focus_distance"))?;
             camera["lens"] = json!({ "radius_m": radius, "focus_distance_m": focus });
         }
-        // What is written beside the default counts: that is a hundredth of a unit.
-        if camera["type"] == "perspective"
-            && let Some(near) = element.number("near_clip")?.filter(|near| *near > 0.01)
-        {
-            camera["near_m"] = json!(near * to_world.matrix3.z_axis.length());
-        }
         // Nothing is cut off far away.
-        for harmless in ["near_clip", "far_clip", "shutter_open", "shutter_close"] {
+        for harmless in ["far_clip", "shutter_open", "shutter_close"] {
             element.property(harmless);
         }
         if !camera["lens"].is_object() {

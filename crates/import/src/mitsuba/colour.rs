@@ -12,7 +12,7 @@ use crate::checker::{Checker, channels};
 use crate::matrix::rows;
 use crate::number::Number;
 use crate::table::Table;
-use crate::{extension, light, reflectance, uv, vertex_colours};
+use crate::{coefficient, extension, light, reflectance, uv, vertex_colours};
 
 /// What a colour is the colour of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +48,11 @@ impl Walk<'_, '_, '_> {
 
     /// A number from 0 to 1 that an element has under a name, perhaps by an image. A colour counts by the mean of its channels.
     pub(super) fn number(&mut self, element: &Element, name: &str) -> Result<Option<Number>, String> {
+        self.number_of(element, name, Of::Reflectance)
+    }
+
+    /// The same of a number that may be as large as `of` says.
+    pub(super) fn number_of(&mut self, element: &Element, name: &str, of: Of) -> Result<Option<Number>, String> {
         let Some(stated) = element.property(name) else { return Ok(None) };
         let target = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
         if target.tag == "texture" && target.plugin() == "bitmap" {
@@ -62,7 +67,7 @@ impl Walk<'_, '_, '_> {
             }
             return Ok(Some(Number::Image(image, rec709_luminance(mean.unwrap_or([0.0; 3])))));
         }
-        let value = self.colour_of(stated, Of::Reflectance)?;
+        let value = self.colour_of(stated, of)?;
         Ok(Some(Number::Value(match value.as_f64() {
             Some(number) => number,
             None => {
@@ -118,7 +123,7 @@ impl Walk<'_, '_, '_> {
                 if rgb.iter().any(|v| *v < 0.0) {
                     self.builder.approximate(place, "negative coefficients become 0");
                 }
-                json!({ "type": "rgb", "rgb": rgb.map(|v| v.max(0.0)) })
+                coefficient(rgb.map(|v| v.max(0.0)))
             }
             Of::Texture | Of::Reflectance => {
                 if rgb.iter().any(|v| !(0.0..=1.0).contains(v)) {
@@ -236,7 +241,11 @@ impl Walk<'_, '_, '_> {
             }
             self.builder.approximate(place, "the mean of the chequerboard is used");
             let mean = checker.mean();
-            return Ok(if of.is_light() { light(mean, 1.0) } else { checker.mean_reflectance() });
+            return Ok(match of {
+                Of::Emission => light(mean, 1.0),
+                Of::Coefficient => coefficient(mean),
+                _ => checker.mean_reflectance(),
+            });
         }
         if element.plugin() == "mesh_attribute" {
             let name = element.string("name").unwrap_or("").to_owned();
@@ -266,7 +275,11 @@ impl Walk<'_, '_, '_> {
 
     /// The chequerboard that a texture is. As ours, its fields are half a unit wide, the first at (0, 0).
     fn checkerboard(&mut self, element: &Element, of: Of) -> Result<Checker, String> {
-        let of = if of.is_light() { Of::Emission } else { Of::Reflectance };
+        let of = match of {
+            Of::Emission | Of::Shining => Of::Emission,
+            Of::Coefficient => Of::Coefficient,
+            Of::Reflectance | Of::Texture => Of::Reflectance,
+        };
         let mut colours = [[0.4; 3], [0.2; 3]];
         for (colour, name) in colours.iter_mut().zip(["color0", "color1"]) {
             let Some(value) = self.colour(element, name, of)? else { continue };

@@ -32,14 +32,8 @@ impl Walk<'_, '_, '_> {
         self.builder.approximate(place, what);
         let base = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
         // From 0 to 2; a texture counts by its mean.
-        let passes = match element.property("diff_trans") {
-            Some(stated) if stated.tag == "float" => element.number("diff_trans")?.unwrap_or(0.0),
-            Some(_) => match self.number(element, "diff_trans")? {
-                Some(share) => share.mean("diff_trans", place, self.builder),
-                None => 0.0,
-            },
-            None => 0.0,
-        };
+        let passes = self.number_of(element, "diff_trans", Of::Coefficient)?;
+        let passes = passes.map_or(0.0, |share| share.mean("diff_trans", place, self.builder));
         let passed = 0.5 * passes.clamp(0.0, 2.0);
         if passed == 0.0 {
             return Ok(json!({ "type": "lambert", "reflectance": base }));

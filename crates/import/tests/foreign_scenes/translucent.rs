@@ -49,10 +49,10 @@ fn thin_principled_sheets_of_mitsuba() {
     assert!(matches!(of(""), MaterialKind::Lambert { .. }));
     assert_eq!(shares(&of("<float name=\"diff_trans\" value=\"0.5\"/>")), [0.375, 0.125]);
     assert_eq!(shares(&of("<float name=\"diff_trans\" value=\"2\"/>")), [0.0, 0.5]);
-    // Of squares of 0.4 and 0.2 the mean is 0.3.
-    let squares = "<texture name=\"diff_trans\" type=\"checkerboard\"><float name=\"color0\" value=\"0.4\"/><float name=\"color1\" value=\"0.2\"/></texture>";
+    // Of squares of 0.4 and 1.4 the mean is 0.9, of which half passes.
+    let squares = "<texture name=\"diff_trans\" type=\"checkerboard\"><float name=\"color0\" value=\"0.4\"/><float name=\"color1\" value=\"1.4\"/></texture>";
     let [reflected, transmitted] = shares(&listed(squares, 2));
-    assert!((reflected - 0.425).abs() < 1e-6 && (transmitted - 0.075).abs() < 1e-6, "{reflected} {transmitted}");
+    assert!((reflected - 0.275).abs() < 1e-6 && (transmitted - 0.225).abs() < 1e-6, "{reflected} {transmitted}");
 }
 
 #[test]

@@ -76,6 +76,30 @@ fn obj_materials_become_paint_mirrors_glass_and_lamps() {
     assert_eq!(self::scene(&lost).objects.len(), 1 + 3);
 }
 
+/// A BMP file of one red pixel: 14 bytes of head, 40 of description, blue, green, red and a byte that fills the row.
+#[test]
+fn an_image_of_an_obj_file_may_be_a_bmp_file() {
+    let mut bmp = b"BM".to_vec();
+    for number in [58_u32, 0, 54, 40, 1, 1, 1 | 24 << 16, 0, 4, 2835, 2835, 0, 0, 0x00ff_0000] {
+        bmp.extend(number.to_le_bytes());
+    }
+    let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl paint\nf 1/1 2/2 3/3\n";
+    let near = |name: &str| match name {
+        "a.mtl" => Ok(b"newmtl paint\nmap_Kd red.bmp\n".to_vec()),
+        "red.bmp" => Ok(bmp.clone()),
+        other => nothing(other),
+    };
+    let imported = import_bytes("obj", obj.as_bytes(), &near, "x/", "a.obj").unwrap();
+    assert!(imported.left_out.is_empty(), "{:?}", imported.left_out);
+    let scene = scene(&imported);
+    let MaterialKind::Lambert { reflectance: SpectrumTexture::Image(image) } =
+        &scene.materials[scene.objects[0].material].kind
+    else {
+        panic!("an image")
+    };
+    assert_eq!(image.image.texel(0, 0), [1.0, 0.0, 0.0]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
