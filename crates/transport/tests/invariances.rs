@@ -6,7 +6,7 @@ use etalon_transport::{Control, prepare};
 use serde_json::{Value, json};
 
 /// Scenes that are tried; `INVARIANCES=1000` tries as many.
-const SCENES: usize = 12;
+const SCENES: usize = 24;
 
 /// Mean X, Y and Z of a picture, and their variances by the scatter of replicates.
 fn means(scene: &Value, spp: u32, seed: u64) -> [(f64, f64); 3] {

@@ -324,7 +324,8 @@ fn skies() -> Vec<Truth> {
             .allows(2e-5 * value, "2e-5 for single precision, 2e-5 for the quadrature")
             .sees(0.005);
         if form.get("sun_direction").is_some() {
-            let turned = Sky { ground: sky.ground, ..Sky::new(sky.number, [-sky.sun[0], -sky.sun[1], sky.sun[2]]) };
+            let mut turned = Sky::new(number, [-sky.sun[0], -sky.sun[1], sky.sun[2]]);
+            turned.ground = ground;
             truth = truth.or_else("the sun on the other side", 3.0 * (turned.irradiance(normal) + below));
         }
         list.push(truth);

@@ -34,7 +34,7 @@ pub(super) struct Sky {
     /// Radiance from below the horizon, over that of the zenith.
     pub ground: f64,
     /// φ(0) f(Zₛ).
-    pub zenith: f64,
+    zenith: f64,
 }
 
 impl Sky {

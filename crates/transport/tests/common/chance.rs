@@ -150,7 +150,7 @@ impl Chance {
                 }
                 if index == 0 || self.below(4) == 0 {
                     let sides = ["front", "back", "both"][self.below(3)];
-                    object["emission"] = json!({"radiance": self.within(0.5, 20.0), "sides": sides});
+                    object["emission"] = json!({"radiance": self.within(0.5, 5.0), "sides": sides});
                 }
                 object
             })
