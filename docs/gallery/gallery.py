@@ -51,13 +51,13 @@ PICTURES = [
     Picture("fog", "scenes/fog.json", ["--exposure", "0"],
             "A spot behind a row of bars in a misty hall. Look at the shafts of light between the bars, at their shadows in the mist, and at how far "
             "lamps and walls fade away.", size="480x300"),
-    Picture("wax", "scenes/wax.json", ["--exposure", "0"],
+    Picture("wax", "scenes/wax.json", ["--exposure", "1", "--curve", "agx"],
             "Candles of wax and a block of soap with a warm lamp behind it. Look at the thin parts: light that goes through them comes out warm, since "
             "long waves are absorbed less. All of it is scattering inside a rough interface.", size="480x360"),
-    Picture("cloud", "scenes/cloud.json", ["--exposure", "0"],
+    Picture("cloud", "scenes/cloud.json", ["--exposure", "-1", "--curve", "agx"],
             "A cloud of drops in the afternoon sun. Light is scattered a hundred times in it: look at the rim toward the sun, at the dark base, and at "
             "the blue of the sky in the shadows.", size="480x300"),
-    Picture("milk", "scenes/milk.json", ["--exposure", "0"],
+    Picture("milk", "scenes/milk.json", ["--exposure", "0.5"],
             "A glass of milk and one of watered milk. Short waves are scattered more: the watered milk is bluish where light comes from the side, and "
             "reddish where light comes through.", error="10%", size="320x240"),
     Picture("movement", "scenes/movement.glb", ["--exposure", "0.7", "--curve", "agx"],
