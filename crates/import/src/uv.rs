@@ -32,8 +32,13 @@ pub(crate) fn from_above(map: &UvMap) -> UvMap {
 
 /// The same over texture coordinates whose v is counted from above.
 pub(crate) fn over_v_from_above(map: &UvMap) -> UvMap {
-    let ([[a, b], [c, d]], [u, v]) = (map.matrix, map.offset);
-    UvMap { matrix: [[a, -b], [c, -d]], offset: [u + b, v + d] }
+    after(map, &UvMap::scaled([1.0, -1.0], [0.0, 1.0]))
+}
+
+/// One map after another.
+pub(crate) fn after(map: &UvMap, first: &UvMap) -> UvMap {
+    let product = |row: usize, column: usize| (0..2).map(|k| map.matrix[row][k] * first.matrix[k][column]).sum();
+    UvMap { matrix: [0, 1].map(|row| [0, 1].map(|column| product(row, column))), offset: map.at(first.offset) }
 }
 
 #[cfg(test)]
@@ -60,5 +65,7 @@ mod tests {
         let [u, v] = TURNED.at(uv);
         assert_eq!(from_above(&TURNED).at(uv), [u, 1.0 - v]);
         assert_eq!(over_v_from_above(&TURNED).at([uv[0], 1.0 - uv[1]]), [u, v]);
+        let first = UvMap { matrix: [[0.0, 0.5], [-2.0, 1.0]], offset: [0.25, -0.5] };
+        assert_eq!(after(&TURNED, &first).at(uv), TURNED.at(first.at(uv)));
     }
 }

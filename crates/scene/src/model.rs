@@ -21,6 +21,7 @@ mod references;
 mod shape;
 mod shutter;
 mod sky;
+mod slide;
 mod thin_film;
 mod varying;
 
@@ -45,6 +46,7 @@ pub use references::ReferenceError;
 pub use shape::{Mesh, Shape};
 pub(crate) use shutter::middle_s;
 pub use sky::{CieSky, Perez, SkyCoefficients};
+pub use slide::{EvenOn, SlideLight};
 pub use thin_film::{FilmIndex, FilmLayer, ThinFilm};
 pub use varying::{NumberTexture, SpectrumTexture};
 

@@ -32,6 +32,13 @@ fn kinds() -> Vec<(&'static str, Shines)> {
             ),
         ),
         ("point", Shines::Light(json!({"type": "point", "position_m": [0.4, 1.1, 0.8], "intensity": 1}))),
+        (
+            "slide",
+            Shines::Light(
+                json!({"type": "point", "position_m": [-0.3, 1, 0.9], "intensity": 2, "slide": {"direction": [0.3, -1, -0.9], "horizontal_fov_deg": 70,
+                    "image": {"type": "checker", "first": [1, 0.3, 0.1], "second": 0.4, "uv_scale": [1.5, 1.5]}}}),
+            ),
+        ),
         ("parallel", Shines::Light(json!({"type": "directional", "direction": [-0.3, -1, -0.2], "irradiance": 1}))),
         ("ball", Shines::Body(json!({"type": "sphere", "center_m": [-0.5, 0.9, 0.2], "radius_m": 0.2}))),
         (

@@ -96,6 +96,8 @@ CASES = [
     of("point"),
     of("spot", beam=16),
     of("spot", beam=8),
+    *(of("spot-texture", beam=beam, variant="llvm_ad_rgb") for beam in (8, 25)),
+    *(of("projector", axis=axis, variant="llvm_ad_rgb") for axis in ("x", "y", "diagonal")),
     of("directional"),
     of("envmap"),
     of("envmap-mirror"),

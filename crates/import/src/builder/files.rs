@@ -15,6 +15,8 @@ pub(super) struct KnownImage {
     file: String,
     /// The mean of its texels.
     mean: [f64; 3],
+    /// Columns and rows.
+    size: [u32; 2],
     /// What of it is not used.
     left_out: Option<String>,
 }
@@ -57,11 +59,16 @@ impl Builder<'_> {
                 read
             }
         };
-        let KnownImage { file, mean, left_out } = known?;
+        let KnownImage { file, mean, left_out, .. } = known?;
         if let Some(what) = left_out {
             self.leave_out(place, what);
         }
         Ok((file, mean))
+    }
+
+    /// Columns and rows of an image that was read, by the file that the scene names.
+    pub(crate) fn image_size(&self, file: &str) -> Option<[u32; 2]> {
+        self.images.values().flatten().find(|known| known.file == file).map(|known| known.size)
     }
 
     fn read_image(&mut self, name: &str, encoding: Encoding, place: &str) -> Result<KnownImage, String> {
@@ -75,6 +82,7 @@ impl Builder<'_> {
                 file
             }
         };
-        Ok(KnownImage { file, mean: image.mean(), left_out })
+        let size = [image.width, image.height];
+        Ok(KnownImage { file, mean: image.mean(), size, left_out })
     }
 }

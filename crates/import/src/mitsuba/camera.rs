@@ -184,7 +184,7 @@ impl<'a> Walk<'a, '_, '_> {
 }
 
 /// The key of the format for an angle of view, and the angle in degrees.
-fn field_of_view(element: &Element, aspect: f64) -> Result<(&'static str, f64), String> {
+pub(super) fn field_of_view(element: &Element, aspect: f64) -> Result<(&'static str, f64), String> {
     let place = &element.place;
     let axis = element.string("fov_axis").unwrap_or("x");
     let diagonal_to_vertical =

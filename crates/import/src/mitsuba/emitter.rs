@@ -40,6 +40,7 @@ impl Walk<'_, '_, '_> {
                 json!({ "type": "point", "position_m": position, "intensity": intensity })
             }
             "spot" => self.spot(element)?,
+            "projector" => self.projector(element)?,
             "directional" => {
                 let irradiance = self.colour(element, "irradiance", Of::Emission)?.unwrap_or_else(one);
                 let direction = match element.triple("direction")? {

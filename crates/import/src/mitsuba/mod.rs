@@ -14,6 +14,7 @@ mod relief;
 mod serialized;
 mod shape;
 mod sheet;
+mod slide;
 mod spot;
 mod transform;
 

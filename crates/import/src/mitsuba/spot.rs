@@ -17,13 +17,27 @@ impl Walk<'_, '_, '_> {
         let intensity = self.colour(element, "intensity", Of::Emission)?.unwrap_or_else(d65);
         let to_world = self.placement(element)?;
         let cutoff = element.number("cutoff_angle")?.unwrap_or(20.0);
+        let mut lamp = self.bare_spot(element, &to_world, &intensity, cutoff)?;
+        if let Some(image) = self.colour(element, "texture", Of::Texture)? {
+            self.put_slide_of_spot(&mut lamp, image, &to_world, cutoff, &element.place);
+        }
+        Ok(lamp)
+    }
+
+    fn bare_spot(
+        &mut self,
+        element: &Element,
+        to_world: &DAffine3,
+        intensity: &Value,
+        cutoff: f64,
+    ) -> Result<Value, String> {
         let beam = element.number("beam_width")?.unwrap_or(0.75 * cutoff).min(cutoff);
         if beam < cutoff
             && cutoff <= 90.0
             && beam >= 0.0
-            && let Some(luminance) = luminance(&intensity).filter(|luminance| *luminance > 0.0)
+            && let Some(luminance) = luminance(intensity).filter(|luminance| *luminance > 0.0)
         {
-            return Ok(self.luminaire(&to_world, &intensity, luminance, [beam, cutoff]));
+            return Ok(self.luminaire(to_world, intensity, luminance, [beam, cutoff]));
         }
         if beam < cutoff {
             let what = "between beam_width and cutoff_angle the light falls off by another curve";

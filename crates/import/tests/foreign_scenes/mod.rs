@@ -13,6 +13,7 @@ mod principled;
 mod relief;
 mod sheets;
 mod sides;
+mod slides;
 mod spots;
 mod translucent;
 mod vertex_colours;

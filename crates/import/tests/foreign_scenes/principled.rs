@@ -50,7 +50,7 @@ fn materials_and_lights_that_are_not_known_are_listed_by_their_names() {
             "measured",
         ),
         ("<shape type=\"sphere\"><bsdf type=\"hair\"/></shape>", "hair"),
-        ("<shape type=\"sphere\"/><emitter type=\"projector\"/>", "projector"),
+        ("<shape type=\"sphere\"/><emitter type=\"collimated\"/>", "collimated"),
         ("<shape type=\"sphere\"/><shape type=\"bsplinecurve\"/>", "bsplinecurve"),
     ] {
         let said = said(&imported("xml", &format!("<scene version=\"3.0.0\">{element}</scene>")));

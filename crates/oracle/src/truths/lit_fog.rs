@@ -9,7 +9,7 @@ use super::scene::{Scene, block, glass, sphere, triangular_prism};
 use super::{Claim, Truth};
 use crate::laws::fresnel_exact;
 use crate::quadrature::interval;
-use crate::vector::{Vec3, dot, length, normalize, scale, sub};
+use crate::vector::{Vec3, cross, dot, length, normalize, scale, sub};
 
 const EYE_M: f64 = 3.0;
 
@@ -150,6 +150,38 @@ fn spot() -> Lamp {
     Lamp { name: "fog-in-a-spot", form, brings: Box::new(brings), lit: [-1.2, 1.4], through: None, aside: None }
 }
 
+/// A gradient that a projector throws into the fog.
+fn projector() -> Lamp {
+    let position = [-2.0, 0.2, 0.3];
+    let axis = normalize([1.0, 0.0, -0.1]);
+    // Up is along the eye's ray, as nearly as it can be.
+    let right = normalize(cross(axis, [0.0, 0.0, 1.0]));
+    let up = cross(right, axis);
+    let [across, height] = [0.4_f64, 0.3];
+    let brings = move |place: Vec3| {
+        let way = sub(place, position);
+        let [x, y, depth] = [right, up, axis].map(|axis| dot(way, axis));
+        let (u, v) = (0.5 + 0.5 * x / (depth * across), 0.5 + 0.5 * y / (depth * height));
+        let distance = length(way);
+        // 5 C/cos³θ/r², which is asked for within the picture only.
+        let shows = if (0.0..=1.0).contains(&u) { 0.1 + 0.9 * v } else { f64::NAN };
+        [5.0 * shows * distance / depth.powi(3), distance]
+    };
+    // Where the ray crosses the planes through the lamp and the lower, and the upper edge: their normals are up ∓ height · axis.
+    let lit = [-height, height].map(|tangent| {
+        let normal = sub(up, scale(tangent, axis));
+        dot(position, normal) / normal[2]
+    });
+    let form = json!({
+        "type": "point", "position_m": position, "intensity": 5,
+        "slide": {
+            "image": { "type": "gradient", "from": 0.1, "to": 1, "along": "v" }, "direction": axis, "up": [0, 0, 1],
+            "horizontal_fov_deg": 2.0 * across.atan().to_degrees(), "aspect": across / height,
+        },
+    });
+    Lamp { name: "fog-in-the-light-of-a-projector", form, brings: Box::new(brings), lit, through: None, aside: None }
+}
+
 /// Radius of the beams that go through glass, and its index.
 const RADIUS_M: f64 = 0.05;
 const INDEX: f64 = 1.5;
@@ -205,6 +237,7 @@ pub(super) fn truths() -> Vec<Truth> {
         beam("fog-in-a-beam", [-2.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.2, 0.0], false),
         beam("fog-in-a-gaussian-beam-that-widens", [-1.5, 0.1, -0.5], [1.0, 0.0, 0.3], [0.1, 3.0], true),
         spot(),
+        projector(),
         plate,
         beside,
         prism,

@@ -55,6 +55,7 @@ mod scene;
 mod sheets;
 mod skies;
 mod skylight;
+mod slides;
 mod solids;
 mod sources;
 mod stokes;
@@ -348,7 +349,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 43] = [
+const GROUPS: [fn() -> Vec<Truth>; 44] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -379,6 +380,7 @@ const GROUPS: [fn() -> Vec<Truth>; 43] = [
     images::truths,
     instruments::truths,
     sources::truths,
+    slides::truths,
     beams::truths,
     connections::truths,
     named::truths,

@@ -205,7 +205,7 @@ fn environment_image(
     let image = form.encoding.and_then(|encoding| files.image(file, encoding, reader));
     let axes = form.up.zip(form.forward).and_then(|(up, forward)| {
         let up = DVec3::from(up.value.0);
-        let forward = across(up, "up", forward, reader)?;
+        let forward = across(up, "up", "forward", forward, reader)?;
         let right = forward.cross(up);
         let (sin, cos) = form.rotation_deg?.to_radians().sin_cos();
         let turned = |along: f64, across: f64| forward * along + right * across;

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::environment::{EnvironmentLight, environment};
 use super::photometric::{photometric, stated};
+use super::slide::{SlideForm, behind_slide};
 use super::spectra::{BRIGHTEST, Spectra};
 use super::spectrum::SpectrumForm;
 use crate::files::Files;
@@ -29,6 +30,8 @@ crate::record! {
         flux_lm: Optional<Spanned<NonNegative>>,
         /// The spectrum of what is stated in photometric units, to any scale; the same at every wavelength if left out.
         spectrum: Optional<Box<SpectrumForm>>,
+        /// An image before it.
+        slide: Optional<SlideForm>,
     } with [Rule::OneOf(&["intensity", "intensity_cd", "flux_lm"]), Rule::NotBoth("intensity", "spectrum")]
 }
 
@@ -63,6 +66,8 @@ crate::record! {
         half_angle_deg: Required<HalfAngle>,
         /// Angle from the axis at which the intensity begins to fall, degrees; four fifths of the other if left out.
         inner_half_angle_deg: Optional<Spanned<InnerAngle>>,
+        /// An image before it.
+        slide: Optional<SlideForm>,
     } with [Rule::OneOf(&["intensity", "intensity_cd", "flux_lm"]), Rule::NotBoth("intensity", "spectrum")]
 }
 
@@ -83,6 +88,8 @@ crate::record! {
         scale: Required<NonNegative> = "1",
         /// The spectrum of its light, to any scale; the same at every wavelength if left out.
         spectrum: Optional<Box<SpectrumForm>>,
+        /// An image before it.
+        slide: Optional<SlideForm>,
     }
 }
 
@@ -160,7 +167,8 @@ pub(crate) fn light<'f>(
         LightForm::Point(point) => {
             let keys = [(&point.intensity_cd, 1.0), (&point.flux_lm, 0.5 / TAU)];
             let intensity = stated(&point.intensity, &keys, &point.spectrum, spectra, reader)?;
-            (&point.name, LightKind::Point { position_m: point.position_m?, intensity })
+            let lamp = LightKind::Point { position_m: point.position_m?, intensity };
+            (&point.name, behind_slide(lamp, &point.slide, spectra, files, reader)?)
         }
         LightForm::Spot(spot) => {
             let outer = spot.half_angle_deg?.0;
@@ -179,9 +187,13 @@ pub(crate) fn light<'f>(
             let keys = [(&spot.intensity_cd, 1.0), (&spot.flux_lm, 1.0 / (TAU * of_cones))];
             let intensity = stated(&spot.intensity, &keys, &spot.spectrum, spectra, reader)?;
             let (position_m, axis) = (spot.position_m?, spot.direction?.0);
-            (&spot.name, LightKind::Spot { position_m, axis, half_angles_rad, intensity })
+            let lamp = LightKind::Spot { position_m, axis, half_angles_rad, intensity };
+            (&spot.name, behind_slide(lamp, &spot.slide, spectra, files, reader)?)
         }
-        LightForm::Luminaire(light) => (&light.name, luminaire(light, spectra, files, reader)?),
+        LightForm::Luminaire(light) => {
+            let lamp = luminaire(light, spectra, files, reader)?;
+            (&light.name, behind_slide(lamp, &light.slide, spectra, files, reader)?)
+        }
         LightForm::Directional(light) => {
             let keys = [(&light.illuminance_lx, 1.0)];
             let irradiance = stated(&light.irradiance, &keys, &light.spectrum, spectra, reader)?;
@@ -223,13 +235,19 @@ crate::keywords!(BeamProfile {
 /// Below this sine of the angle between `up` and `forward`, the turn of an image hangs on digits that nobody meant.
 const PARALLEL: f64 = 1e-6;
 
-/// The unit vector of the part of `forward` across the unit vector `axis`, a key of this name.
-pub(super) fn across(axis: DVec3, key: &str, forward: Spanned<Direction>, reader: &mut Reader<'_>) -> Option<DVec3> {
-    let toward = DVec3::from(forward.value.0);
+/// The unit vector of the part of a direction, the key `of`, across the unit vector `axis`, the key `to`.
+pub(super) fn across(
+    axis: DVec3,
+    to: &str,
+    of: &str,
+    direction: Spanned<Direction>,
+    reader: &mut Reader<'_>,
+) -> Option<DVec3> {
+    let toward = DVec3::from(direction.value.0);
     let across = toward - axis * toward.dot(axis);
     if across.length() < PARALLEL {
-        let hint = format!("give a \"forward\" across \"{key}\"");
-        reader.error_hint(Code::DegenerateView, forward.at, format!("\"forward\" is along \"{key}\""), hint);
+        let hint = format!("give a \"{of}\" across \"{to}\"");
+        reader.error_hint(Code::DegenerateView, direction.at, format!("\"{of}\" is along \"{to}\""), hint);
         return None;
     }
     // Once more, since rounding left a little along the axis.
@@ -246,7 +264,7 @@ fn luminaire<'f>(
     let photometry = files.photometry(form.file.as_ref()?, reader);
     let axes = form.nadir.zip(form.forward).and_then(|(nadir, forward)| {
         let nadir = DVec3::from(nadir.value.0);
-        let forward = across(nadir, "nadir", forward, reader)?;
+        let forward = across(nadir, "nadir", "forward", forward, reader)?;
         // A quarter turn on, counter-clockwise seen from above.
         Some([nadir, forward, forward.cross(nadir)].map(|axis| axis.to_array()))
     });

@@ -19,6 +19,7 @@ mod motion;
 mod names;
 mod photometric;
 mod scene;
+mod slide;
 mod spectra;
 mod spectrum;
 mod surface;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use etalon_optics::Spectrum;
 
-use super::{CieSky, DaylightSky, EnvironmentImage};
+use super::{CieSky, DaylightSky, EnvironmentImage, SlideLight};
 use crate::luminaire::Photometry;
 
 /// A light without a surface.
@@ -50,6 +50,8 @@ pub enum LightKind {
         /// Radiant intensity that 1 cd of the table stands for, W·sr⁻¹·nm⁻¹.
         intensity: Spectrum,
     },
+    /// One of these points with an image before it.
+    Slide(Box<SlideLight>),
     /// Parallel light.
     Directional {
         /// Unit vector in which the light travels.
@@ -118,6 +120,7 @@ impl LightKind {
                 intensity
             }
             Self::Directional { irradiance, .. } => irradiance,
+            Self::Slide(slide) => slide.lamp.spectrum(),
             Self::Beam(beam) => &beam.power,
             Self::Environment { radiance } => radiance,
             Self::ImageEnvironment(image) => &image.white,
@@ -133,6 +136,7 @@ impl LightKind {
                 intensity
             }
             Self::Directional { irradiance, .. } => irradiance,
+            Self::Slide(slide) => slide.lamp.spectrum_mut(),
             Self::Beam(beam) => &mut beam.power,
             Self::Environment { radiance } => radiance,
             Self::ImageEnvironment(image) => &mut image.white,
@@ -148,6 +152,7 @@ impl LightKind {
             Self::Point { .. }
             | Self::Spot { .. }
             | Self::Luminaire { .. }
+            | Self::Slide(_)
             | Self::Directional { .. }
             | Self::Beam(_) => true,
             Self::Environment { .. } | Self::ImageEnvironment(_) | Self::Sky(_) | Self::Daylight(_) => false,
@@ -170,9 +175,41 @@ impl LightKind {
         }
     }
 
-    /// The cone beyond which it sends nothing, if there is one.
+    /// The slide before it, if there is one.
+    pub fn slide(&self) -> Option<&SlideLight> {
+        match self {
+            Self::Slide(slide) => Some(slide),
+            _ => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn slide_mut(&mut self) -> Option<&mut SlideLight> {
+        match self {
+            Self::Slide(slide) => Some(slide),
+            _ => None,
+        }
+    }
+
+    /// Where it is, m, if it is a point.
+    pub fn position_m(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::Point { position_m, .. } | Self::Spot { position_m, .. } | Self::Luminaire { position_m, .. } => {
+                Some(*position_m)
+            }
+            Self::Slide(slide) => slide.lamp.position_m(),
+            _ => None,
+        }
+    }
+
+    /// A cone beyond which it sends nothing, if there is one.
     pub fn cone(&self) -> Option<LightCone> {
         match *self {
+            // Either cone holds all of its light.
+            Self::Slide(ref slide) => {
+                let cones = slide.cone().into_iter().chain(slide.lamp.cone());
+                cones.min_by(|a, b| a.half_angle_rad.total_cmp(&b.half_angle_rad))
+            }
             Self::Spot { position_m, axis, half_angles_rad: [_, half_angle_rad], .. } => {
                 Some(LightCone { position_m, axis, half_angle_rad })
             }
@@ -194,6 +231,7 @@ impl LightKind {
         match self {
             Self::ImageEnvironment(sky) => !sky.image.is_grey(),
             Self::Daylight(sky) => !sky.mean.is_zero(),
+            Self::Slide(slide) => !slide.image.is_grey(),
             _ => false,
         }
     }
@@ -202,6 +240,9 @@ impl LightKind {
     pub fn is_zero(&self) -> bool {
         if matches!(self, Self::Luminaire { photometry, .. } if photometry.most_cd() == 0.0) {
             return true;
+        }
+        if let Self::Slide(slide) = self {
+            return slide.is_zero();
         }
         self.image().map_or_else(|| self.spectrum().is_zero(), EnvironmentImage::is_zero)
     }

@@ -101,6 +101,9 @@ impl Scene {
             if let Some(environment) = light.kind.image() {
                 check_image(&environment.image, || format!("light \"{}\"", light.name))?;
             }
+            if let Some(slide) = light.kind.slide() {
+                check_image(&slide.image.image, || format!("light \"{}\"", light.name))?;
+            }
         }
         Ok(())
     }

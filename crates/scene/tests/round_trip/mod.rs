@@ -135,6 +135,12 @@ fn objects_and_lights() {
     assert_eq!(laser, &wanted);
     let LightKind::Beam(parallel) = &scene.lights[11].kind else { panic!("a beam") };
     assert_eq!((parallel.half_angle_rad, parallel.profile), (0.0, BeamProfile::Uniform));
+    let slide = scene.lights[14].kind.slide().expect("a slide");
+    assert_eq!((slide.direction, slide.right, slide.up), ([0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]));
+    let [right, up] = slide.tangents;
+    assert!((right - 1.0).abs() < 1e-15 && up == 0.5 * right && slide.even_on == EvenOn::Sphere);
+    assert_eq!(slide.image.eval([0.25, 0.25]), [1.0; 3]);
+    assert_eq!(scene.lights[15].kind.slide().expect("a slide").even_on, EvenOn::Screen);
 }
 
 #[test]

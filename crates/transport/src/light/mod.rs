@@ -13,6 +13,7 @@ mod luminaire;
 mod moving;
 mod point;
 mod sky;
+mod slide;
 mod spot;
 mod table;
 mod tree;
@@ -25,6 +26,7 @@ pub use luminaire::LuminaireLight;
 pub use moving::MovingLight;
 pub use point::PointLight;
 pub use sky::{SkyLight, SkyLook};
+pub use slide::SlideLight;
 pub use spot::SpotLight;
 pub use table::LightTable;
 
@@ -168,6 +170,8 @@ pub enum Light {
     Spot(SpotLight),
     /// A point with a table of intensities.
     Luminaire(LuminaireLight),
+    /// One of these points with an image before it.
+    Slide(Box<SlideLight>),
     /// Parallel light.
     Directional(DirectionalLight),
     /// A beam that begins at an aperture.
@@ -187,6 +191,10 @@ macro_rules! each {
             Light::Point($light) => $result,
             Light::Spot($light) => $result,
             Light::Luminaire($light) => $result,
+            Light::Slide($light) => {
+                let $light = $light.as_ref();
+                $result
+            }
             Light::Directional($light) => $result,
             Light::Beam($light) => $result,
             Light::Environment($light) => {
@@ -304,6 +312,11 @@ impl Light {
             // A black sky is none, nor is a dark luminaire.
             _ if kind.is_zero() => return (None, None),
             LightKind::Luminaire { .. } => return (None, None),
+            LightKind::Slide(slide) => {
+                let (lamp, _) = Self::of_scene(&slide.lamp, frame, range_nm, known);
+                let light = lamp.and_then(|lamp| SlideLight::new(lamp, slide));
+                return (light.map(|light| Self::Slide(Box::new(light))), None);
+            }
             LightKind::Sky(sky) => return Self::of_sky(SkyLight::new(sky, range_nm)),
             LightKind::Daylight(sky) => return Self::of_sky(SkyLight::daylight(sky, range_nm)),
             LightKind::Environment { radiance } => return (None, Some(spectrum(radiance).into())),

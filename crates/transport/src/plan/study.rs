@@ -150,6 +150,9 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 if let Some(image) = light.kind.image_mut() {
                     image.image = Arc::new(luminances(&image.image, [1.0; 3]));
                 }
+                if let Some(slide) = light.kind.slide_mut() {
+                    slide.image = grey_image(&slide.image);
+                }
             }
         }
         EffectName::Dispersion => {

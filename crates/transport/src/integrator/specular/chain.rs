@@ -14,6 +14,7 @@ use crate::sampler::NumberStream;
 use crate::scene::interaction::SurfaceInteraction;
 use crate::scene::shading_tables::BsdfKind;
 use crate::scene::world::World;
+use crate::spectral::Colour;
 use etalon_geometry::{Ray, SurfaceId};
 use etalon_optics::{Lanes, Vec3};
 
@@ -43,6 +44,8 @@ pub(super) struct Chain<'c, 'a, V, M, P, const N: usize> {
 
 /// What a lamp of unit spectrum sends along a chain to the camera.
 pub(super) struct Brought<const N: usize> {
+    /// What the light's spectrum is multiplied by at each wavelength, if it is not the same in all directions.
+    pub colour: Option<Colour>,
     /// S₀.
     pub light: Lanes<f64, N>,
     /// S₁, S₂ and S₃, where polarisation is followed.
@@ -197,6 +200,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             let of_chain = walker.beta.max_lane() / (self.path.beta * f_cos).max_lane();
             let [s0, others @ ..] = walker.polarisation.of_unpolarised();
             return Some(Brought {
+                colour: sample.colour,
                 light: light * s0,
                 stokes: P::FOLLOWED.then(|| others.map(|s| light * s)),
                 concentration: of_chain * spread * spread / root.determinant.abs(),

@@ -138,7 +138,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             return;
         };
         let number = connections.numbers[index];
-        let factor = self.spectrum_of_light(world, number) * (f64::from(trials) / (probability * kept * made));
+        let white = self.spectrum_of_light(world, number);
+        let factor = self.coloured(white, brought.colour) * (f64::from(trials) / (probability * kept * made));
         if let Some(stokes) = brought.stokes {
             self.polarisation.record(stokes.map(|s| s * factor));
         }

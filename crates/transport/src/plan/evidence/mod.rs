@@ -212,9 +212,10 @@ fn wavelengths(scene: &Scene) -> Result<String, String> {
         return Ok(found);
     }
     if let Some(Light { name, kind }) = scene.lights.iter().find(|light| light.kind.has_colours()) {
-        return Ok(match kind.image() {
-            Some(sky) => format!("light \"{name}\": colours of \"{}\"", sky.name),
-            None => format!("light \"{name}\": colours of daylight"),
+        return Ok(match (kind.image(), kind.slide()) {
+            (Some(sky), _) => format!("light \"{name}\": colours of \"{}\"", sky.name),
+            (None, Some(slide)) => format!("light \"{name}\": colours of \"{}\"", slide.image.name),
+            (None, None) => format!("light \"{name}\": colours of daylight"),
         });
     }
     let coloured = |(_, image): &(&Object, &ImageTexture)| !image.is_grey();
