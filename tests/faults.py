@@ -132,7 +132,8 @@ def copy(faults):
 
 def cargo(*options, capture=False):
     """Runs cargo in the copy."""
-    environment = {**os.environ, "CARGO_TARGET_DIR": str(BUILD)}
+    # The exchange leaves parentheses that are not needed.
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(BUILD), "RUSTFLAGS": "-A warnings"}
     command = ["cargo", *options]
     ran = subprocess.run(command, cwd=COPY, env=environment, stdout=subprocess.PIPE if capture else None, text=True)
     if ran.returncode != 0:

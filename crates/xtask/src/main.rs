@@ -9,6 +9,8 @@ mod allowed;
 mod architecture;
 mod commands;
 mod duplicate_types;
+#[cfg(test)]
+mod faults;
 mod glossary;
 mod import_cycles;
 mod manifest;
