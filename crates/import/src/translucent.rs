@@ -50,6 +50,24 @@ pub(crate) fn scaled(mut value: Value, factor: f64) -> Value {
     value
 }
 
+/// The square root of a reflectance that is no image, at each wavelength.
+pub(crate) fn root(value: &Value) -> Option<Value> {
+    if let Some(number) = value.as_f64() {
+        return Some(json!(number.sqrt()));
+    }
+    if let Some(numbers) = value.as_array() {
+        return numbers.iter().map(root).collect();
+    }
+    if value["type"] == "checker" {
+        let mut board = value.clone();
+        (board["first"], board["second"]) = (root(&value["first"])?, root(&value["second"])?);
+        return Some(board);
+    }
+    let mut root = table(value)?;
+    root.0.iter_mut().for_each(|(_, share)| *share = share.sqrt());
+    Some(root.spectrum("clamp"))
+}
+
 /// A number, a colour or a table by wavelength.
 fn table(value: &Value) -> Option<Table> {
     if let Some(stated) = Table::of_spectrum(value) {
@@ -80,6 +98,17 @@ mod tests {
         ] {
             assert_eq!(scaled(before, 0.5), after);
         }
+    }
+
+    #[test]
+    fn a_root_times_itself_is_the_reflectance() {
+        assert_eq!(root(&json!(0.25)), Some(json!(0.5)));
+        let board = json!({ "type": "checker", "first": [0.25, 1.0, 0.0], "second": 0.25 });
+        assert_eq!(root(&board).unwrap()["first"], json!([0.5, 1.0, 0.0]));
+        let green = json!({ "type": "rgb", "rgb": [0.1, 0.6, 0.2] });
+        let (whole, part) = (table(&green).unwrap(), table(&root(&green).unwrap()).unwrap());
+        assert!([420.0, 550.0, 640.0].iter().all(|nm| (part.at(*nm).powi(2) - whole.at(*nm)).abs() < 1e-12));
+        assert_eq!(root(&json!({ "type": "image", "file": "a" })), None);
     }
 
     /// A saturated red reflects nearly all of deep red, and so does one half as bright: half of its spectrum is not that of half its colour.

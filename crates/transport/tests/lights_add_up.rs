@@ -94,7 +94,7 @@ fn mean(scene: &Scene) -> (f64, f64) {
     (mean, variance / (pixels * pixels))
 }
 
-/// 45 pairs in two ways. By chance one of them has |z| > 5 in one run of 2 · 10⁴. A fifth of the lesser light is more than 6 standard errors in
+/// 55 pairs in two ways. By chance one of them has |z| > 5 in one run of 1.6 · 10⁴. A fifth of the lesser light is more than 6 standard errors in
 /// every pair. A light counted twice is all of it.
 #[test]
 fn the_picture_of_two_lights_is_the_sum_of_theirs() {

@@ -44,7 +44,7 @@ EQUAL_ENERGY = Known(
     0.14,
 )
 PRINCIPLED = Known("approximated: no more diffuse light at grazing angles, Fresnel's equations in place of Schlick's", 0.1)
-CLEAR = Known("approximated: glass has no base colour, and light that crosses the ball is multiplied by 0.6 in Mitsuba", 0.67)
+PANE = Known("Mitsuba takes the mean of both polarisations before it adds the passes to and fro inside a pane", 0.02)
 
 POLARISED = "llvm_ad_spectral_polarized"
 TILTED = Known("a retarder delays as much at every angle; Mitsuba takes the cosine as a factor", 0.06)
@@ -60,13 +60,17 @@ CASES = [
     *(of("metal", metal=metal) for metal in ("Ag", "Al", "Au", "Cr", "Cu", "W")),
     of("mirror"),
     *(of("principled", PRINCIPLED, metallic=metal, glass=0) for metal in (0, 1)),
-    of("principled", CLEAR, samples=3, metallic=0, glass=1),
+    of("principled", samples=3, metallic=0, glass=1),
     *(of("rough-metal", distribution=d, alpha=a) for d in ("ggx", "beckmann") for a in (0.1, 0.4)),
     of("brushed", samples=2),
     of("glass", kind="dielectric"),
     of("glass", kind="thindielectric", samples=3),
     of("named-glass"),
     *(of("rough-glass", distribution=d, alpha=0.3) for d in ("ggx", "beckmann")),
+    of("tinted-glass", samples=3, kind="dielectric"),
+    of("tinted-glass", PANE, samples=3, kind="thindielectric"),
+    of("tinted-rough-glass"),
+    *(of("tinted-metal", metal=metal) for metal in ("Au", "none")),
     of("mask", depth=32),
     of("blend"),
     of("image"),

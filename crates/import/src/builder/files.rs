@@ -71,6 +71,11 @@ impl Builder<'_> {
         self.images.values().flatten().find(|known| known.file == file).map(|known| known.size)
     }
 
+    /// The mean of the texels of an image that was read.
+    pub(crate) fn image_mean(&self, file: &str) -> Option<[f64; 3]> {
+        self.images.values().flatten().find(|known| known.file == file).map(|known| known.mean)
+    }
+
     fn read_image(&mut self, name: &str, encoding: Encoding, place: &str) -> Result<KnownImage, String> {
         let bytes = self.bytes_of(name, place)?;
         let (image, left_out) = Image::decode(&bytes, encoding)?;

@@ -187,9 +187,9 @@ impl Walk<'_, '_, '_> {
             "dielectric" | "roughdielectric" => {
                 let (interior, exterior) =
                     (self.index(element, "int_ior", 1.5046)?, self.index(element, "ext_ior", 1.000_277)?);
-                self.untinted(element, &["specular_reflectance", "specular_transmittance"])?;
                 let mut glass = json!({ "type": "dielectric", "interior": interior, "exterior": exterior,
                     "multiple_scattering": "lost" });
+                self.put_tints(element, &mut glass)?;
                 if plugin == "roughdielectric" {
                     self.put_facets(element, &mut glass)?;
                 }
@@ -197,8 +197,9 @@ impl Walk<'_, '_, '_> {
             }
             "thindielectric" => {
                 let ratio = self.index(element, "int_ior", 1.5046)? / self.index(element, "ext_ior", 1.000_277)?;
-                self.untinted(element, &["specular_reflectance", "specular_transmittance"])?;
-                json!({ "type": "thin-dielectric", "index": ratio })
+                let mut pane = json!({ "type": "thin-dielectric", "index": ratio });
+                self.put_tints(element, &mut pane)?;
+                pane
             }
             "conductor" | "roughconductor" => self.conductor(element, plugin == "roughconductor")?,
             "plastic" | "roughplastic" => {
@@ -247,7 +248,7 @@ impl Walk<'_, '_, '_> {
 
     fn conductor(&mut self, element: &Element, rough: bool) -> Result<Value, String> {
         let place = &element.place;
-        let tint = self.colour(element, "specular_reflectance", Of::Reflectance)?;
+        let tint = self.colour(element, "specular_reflectance", Of::Texture)?;
         // Without a name it is "none", too: η = 0 and k = 1, which reflect all light. An eta or a k of its own takes the place of these.
         let own = match element.string("material") {
             Some("none") | None => self.own_metal(element)?,
@@ -257,17 +258,13 @@ impl Walk<'_, '_, '_> {
             if !rough {
                 return Ok(json!({ "type": "mirror", "reflectance": tint.unwrap_or(json!(1.0)) }));
             }
-            if tint.is_some() {
-                self.builder.leave_out(place, "a rough mirror's tint is that of a metal: at grazing angles it pales");
-            }
-            let mut value = json!({ "type": "conductor", "reflectance": tint.unwrap_or(json!(1.0)) });
+            let mut value = json!({ "type": "conductor", "reflectance": 1.0 });
+            put_tint(&mut value, "reflected_tint", tint);
             self.put_facets(element, &mut value)?;
             value["multiple_scattering"] = json!("lost");
             return Ok(value);
         };
-        if tint.is_some_and(|tint| tint != json!(1.0)) {
-            self.builder.leave_out(place, "specular_reflectance is ignored");
-        }
+        put_tint(&mut value, "reflected_tint", tint);
         if rough {
             self.put_facets(element, &mut value)?;
         }
@@ -305,6 +302,16 @@ impl Walk<'_, '_, '_> {
         // As good as 0, which no scene may have.
         eta.0.iter_mut().for_each(|(_, n)| *n = n.max(1e-9));
         Ok(Some(metal(&eta, &k)))
+    }
+
+    /// States what is left of what glass reflects and passes.
+    fn put_tints(&mut self, element: &Element, glass: &mut Value) -> Result<(), String> {
+        for (name, key) in [("specular_reflectance", "reflected_tint"), ("specular_transmittance", "transmitted_tint")]
+        {
+            let tint = self.colour(element, name, Of::Texture)?;
+            put_tint(glass, key, tint);
+        }
+        Ok(())
     }
 
     fn untinted(&mut self, element: &Element, names: &[&str]) -> Result<(), String> {
@@ -356,6 +363,12 @@ impl Walk<'_, '_, '_> {
             Number::Value(alpha) => Rough::width(alpha),
             Number::Image(image, _) => Rough::image(image, "alpha"),
         })
+    }
+}
+
+fn put_tint(material: &mut Value, key: &str, tint: Option<Value>) {
+    if let Some(tint) = tint.filter(|tint| *tint != json!(1.0)) {
+        material[key] = tint;
     }
 }
 

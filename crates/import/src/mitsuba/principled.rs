@@ -6,7 +6,8 @@ use super::Walk;
 use super::colour::Of;
 use super::element::Element;
 use crate::number::{Number, Rough};
-use crate::translucent::{scaled, translucent};
+use crate::reflectance;
+use crate::translucent::{root, scaled, translucent};
 
 /// Parts that nothing here stands for, by the number that says how much there is of them.
 const WITHOUT: [&str; 4] = ["sheen", "spec_tint", "flatness", "clearcoat"];
@@ -22,7 +23,7 @@ const OF_THEM: [&str; 6] = [
 
 /// What is said of every such material.
 const APPROXIMATED: &str = "\"principled\" becomes a coat over a diffuse base, blended with metal and glass: diffuse light is not \
-                            brighter at grazing angles, and glass has no base colour";
+                            brighter at grazing angles";
 
 impl Walk<'_, '_, '_> {
     /// A sheet that reflects and passes light diffusely, by half of its `diff_trans`.
@@ -83,9 +84,14 @@ impl Walk<'_, '_, '_> {
                 json!({ "type": "plastic", "reflectance": base, "coat": index, "internal_reflection": "uncoloured" });
             part(coated, rough.clone())
         };
+        // Each face passes as much.
+        let tint = if opaque { Value::Null } else { self.root_of_base(&base, place) };
         let glass = || {
-            let glass =
+            let mut glass =
                 json!({ "type": "dielectric", "interior": index, "exterior": 1, "multiple_scattering": "lost" });
+            if tint != json!(1.0) {
+                glass["transmitted_tint"] = tint.clone();
+            }
             part(glass, rough.clone())
         };
         let ground = mixed(coated, glass, transmits);
@@ -97,6 +103,15 @@ impl Walk<'_, '_, '_> {
         let made = mixed(ground, metal, metallic);
         self.builder.spend(&made, place)?;
         Ok(made)
+    }
+
+    /// The square root of a base colour; of an image that of its mean.
+    fn root_of_base(&mut self, base: &Value, place: &str) -> Value {
+        root(base).unwrap_or_else(|| {
+            self.builder.approximate(place, "an image as base colour of glass becomes its mean");
+            let mean = base["file"].as_str().and_then(|file| self.builder.image_mean(file));
+            reflectance(mean.unwrap_or([0.5; 3]).map(f64::sqrt))
+        })
     }
 
     /// α is the square of `roughness`; with `anisotropic` a, it is divided along u and multiplied across it by √(1 − 0.9 a).

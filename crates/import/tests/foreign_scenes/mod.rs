@@ -15,6 +15,7 @@ mod sheets;
 mod sides;
 mod slides;
 mod spots;
+mod tints;
 mod translucent;
 mod vertex_colours;
 

@@ -62,6 +62,7 @@ mod stokes;
 mod suite_case;
 mod surfaces;
 mod textures;
+mod tints;
 mod translucent;
 mod tubes;
 mod view_factors;
@@ -349,7 +350,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 44] = [
+const GROUPS: [fn() -> Vec<Truth>; 45] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -386,6 +387,7 @@ const GROUPS: [fn() -> Vec<Truth>; 44] = [
     named::truths,
     skies::truths,
     surfaces::truths,
+    tints::truths,
     translucent::truths,
     media::truths,
     nested_media::truths,

@@ -8,6 +8,7 @@ mod index;
 mod roughness;
 mod sheet;
 mod thin_film;
+mod tint;
 mod translucent;
 
 use etalon_optics::OutsideFit;
@@ -36,6 +37,7 @@ use index::{NamedMetal, complex_index, complex_keys};
 use roughness::{RoughnessKeys, roughness, roughness_keys};
 use sheet::{PolariserMaterial, RetarderMaterial, polariser, retarder};
 use thin_film::{FilmLayerForm, thin_film};
+use tint::tinted;
 use translucent::{TranslucentMaterial, translucent};
 
 crate::record! {
@@ -92,6 +94,8 @@ crate::record! {
         multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
         /// Layers that coat it, in which light interferes with itself: from the outermost to the innermost.
         thin_film: Optional<Spanned<List<FilmLayerForm>>>,
+        /// Share of the light that it reflects, from 0 to 1, that is left; all if left out.
+        reflected_tint: Optional<SpectrumForm>,
         /// Which sides reflect; another is black.
         sides: Required<MaterialSides> = r#""both""#,
     } with [
@@ -242,6 +246,10 @@ crate::record! {
         /// Layers that coat both of its faces, in which light interferes with itself: from the outermost to the innermost. Their indices,
         /// too, are relative to what surrounds the pane.
         thin_film: Optional<Spanned<List<FilmLayerForm>>>,
+        /// Share of the light that it reflects, from 0 to 1, that is left; all if left out.
+        reflected_tint: Optional<SpectrumForm>,
+        /// Share of the light that it passes, from 0 to 1, that is left; all if left out.
+        transmitted_tint: Optional<SpectrumForm>,
     }
 }
 
@@ -380,6 +388,8 @@ pub(crate) fn material<'f>(
                     Some(facets) => MaterialKind::RoughConductor { metal, facets, compensated, film },
                 }
             });
+            let tints = [&conductor.reflected_tint, &Optional::Absent];
+            let kind = tinted(kind, tints, spectra, files, reader)?;
             Some(conductor.sides?.of(kind))
         }
         MaterialForm::Dielectric(form) => return dielectric(form, spectra, files, reader),
@@ -415,7 +425,8 @@ pub(crate) fn material<'f>(
         MaterialForm::ThinDielectric(pane) => {
             let index = pane.index.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let film = thin_film(&pane.thin_film, spectra.range_nm, files, reader);
-            Some(MaterialKind::ThinDielectric { index: index?, film: film? })
+            let kind = MaterialKind::ThinDielectric { index: index?, film: film? };
+            tinted(kind, [&pane.reflected_tint, &pane.transmitted_tint], spectra, files, reader)
         }
         MaterialForm::Polariser(form) => polariser(form, spectra, reader),
         MaterialForm::Retarder(form) => retarder(form),

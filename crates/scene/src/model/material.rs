@@ -206,6 +206,15 @@ pub enum MaterialKind {
         /// The side.
         side: Side,
     },
+    /// A metal, an interface or a pane, of whose light a share is left.
+    Tinted {
+        /// What it is without.
+        kind: Box<MaterialKind>,
+        /// Share that is left of what it reflects, in [0, 1] at every wavelength.
+        reflected: SpectrumTexture,
+        /// Share that is left of what it passes.
+        transmitted: SpectrumTexture,
+    },
     /// No surface at all, only the boundary of a medium: light passes as if it were not there.
     Boundary {
         /// Among solids that have one: it then takes part in what fills a place, and the index there is that of the others.
@@ -266,11 +275,10 @@ pub enum PolarisingSheet {
 
 /// Makes a function that lists the parameters of a material: each material states its own here, once.
 macro_rules! parameters {
-    ($(#[$doc:meta])* $name:ident, $of:ident, $parts:ident, ($($by:tt)+)) => {
+    ($(#[$doc:meta])* $name:ident, $of:ident, $iter:ident, ($($by:tt)+)) => {
         $(#[$doc])*
         pub fn $name($($by)+ self) -> Vec<$of<'_>> {
-            let parts = self.$parts().into_iter();
-            let parameters = parts.flat_map(|part| match part {
+            match self {
                 Self::Lambert { reflectance } | Self::Mirror { reflectance } | Self::OrenNayar { reflectance, .. } => {
                     vec![$of::Reflectance(reflectance)]
                 }
@@ -294,9 +302,14 @@ macro_rules! parameters {
                 Self::Fluorescent { reflectance, fluorescence } => {
                     vec![$of::Reflectance(reflectance), $of::Fluorescence(fluorescence)]
                 }
-                Self::Blend { .. } | Self::OneSided { .. } | Self::Boundary { .. } | Self::Black => Vec::new(),
-            });
-            parameters.collect()
+                Self::Blend { parts, .. } => parts.$iter().flat_map(|(_, part)| part.$name()).collect(),
+                Self::OneSided { kind, .. } => kind.$name(),
+                Self::Tinted { kind, reflected, transmitted } => {
+                    let tints = [$of::Reflectance(reflected), $of::Reflectance(transmitted)];
+                    tints.into_iter().chain(kind.$name()).collect()
+                }
+                Self::Boundary { .. } | Self::Black => Vec::new(),
+            }
         }
     };
 }
@@ -308,6 +321,7 @@ impl MaterialKind {
             Self::Dielectric { interior, priority: Some(priority), .. }
             | Self::RoughDielectric { interior, priority: Some(priority), .. } => Some((Some(interior), *priority)),
             Self::Boundary { priority: Some(priority) } => Some((None, *priority)),
+            Self::Tinted { kind, .. } => kind.solid(),
             _ => None,
         }
     }
@@ -329,12 +343,29 @@ impl MaterialKind {
             Self::Dielectric { interior, exterior, priority: None, .. }
             | Self::RoughDielectric { interior, exterior, priority: None, .. } => Some([exterior, interior]),
             Self::Boundary { priority: None } => Some([&RefractiveIndex::VACUUM; 2]),
+            Self::Tinted { kind, .. } => kind.media(),
             Self::Blend { parts, .. } => {
                 let (_, first) = parts.first()?;
                 let media = first.media()?;
                 parts.iter().all(|(_, part)| part.media() == Some(media)).then_some(media)
             }
             _ => None,
+        }
+    }
+
+    /// What it is without a tint.
+    pub fn untinted(&self) -> &Self {
+        match self {
+            Self::Tinted { kind, .. } => kind.untinted(),
+            kind => kind,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn untinted_mut(&mut self) -> &mut Self {
+        match self {
+            Self::Tinted { kind, .. } => kind.untinted_mut(),
+            kind => kind,
         }
     }
 
@@ -347,7 +378,7 @@ impl MaterialKind {
     pub fn parts(&self) -> Vec<&Self> {
         match self {
             Self::Blend { parts, .. } => parts.iter().flat_map(|(_, part)| part.parts()).collect(),
-            Self::OneSided { kind, .. } => kind.parts(),
+            Self::OneSided { kind, .. } | Self::Tinted { kind, .. } => kind.parts(),
             other => vec![other],
         }
     }
@@ -356,19 +387,19 @@ impl MaterialKind {
     pub fn parts_mut(&mut self) -> Vec<&mut Self> {
         match self {
             Self::Blend { parts, .. } => parts.iter_mut().flat_map(|(_, part)| part.parts_mut()).collect(),
-            Self::OneSided { kind, .. } => kind.parts_mut(),
+            Self::OneSided { kind, .. } | Self::Tinted { kind, .. } => kind.parts_mut(),
             other => vec![other],
         }
     }
 
     parameters! {
         /// The numbers by which it treats wavelengths, of a blend those of all its parts.
-        parameters, Parameter, parts, (&)
+        parameters, Parameter, iter, (&)
     }
 
     parameters! {
         /// As [`MaterialKind::parameters`], to be changed.
-        parameters_mut, ParameterMut, parts_mut, (&mut)
+        parameters_mut, ParameterMut, iter_mut, (&mut)
     }
 
     /// The first image that varies it over a surface.
@@ -437,7 +468,7 @@ impl MaterialKind {
     }
 
     fn flatten_shares(&mut self) {
-        if let Self::OneSided { kind, .. } = self {
+        if let Self::OneSided { kind, .. } | Self::Tinted { kind, .. } = self {
             kind.flatten_shares();
         }
         if let Self::Blend { parts, by } = self {

@@ -115,6 +115,9 @@ fn check_material(kind: &MaterialKind, material: &Material) -> Result<(), Refere
     if let MaterialKind::OneSided { kind, .. } = kind {
         return check_material(kind, material);
     }
+    if let MaterialKind::Tinted { kind: of, .. } = kind {
+        check_material(of, material)?;
+    }
     if let MaterialKind::Blend { parts, by } = kind {
         if parts.is_empty() {
             return Err(ReferenceError::EmptyBlend { material: material.name.clone() });

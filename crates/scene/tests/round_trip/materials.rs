@@ -45,6 +45,8 @@ fn materials_and_spectra() {
             "dusty",
             "painted",
             "slope",
+            "stained",
+            "bronzed",
             "objects[4].material"
         ]
     );
@@ -137,7 +139,7 @@ fn materials_and_spectra() {
         index: RefractiveIndex::Constant(1.5),
         film: film(vec![layer(100.0, clear(RefractiveIndex::Constant(1.38)))]),
     };
-    assert_eq!(kind(&scene, "coated pane"), &pane);
+    assert_eq!(kind(&scene, "coated pane").untinted(), &pane);
     let grating = Grating {
         period_nm: 1600.0,
         orders: vec![(0, 0.5), (-2, 0.25)],
@@ -173,6 +175,16 @@ fn materials_and_spectra() {
         internal_reflection: InternalReflection::Uncoloured,
     };
     assert_eq!(kind(&scene, "toy"), &toy);
+    let tinted = |kind, shares: [f64; 2]| {
+        let [reflected, transmitted] = shares.map(|share| Spectrum::Constant(share).into());
+        MaterialKind::Tinted { kind: Box::new(kind), reflected, transmitted }
+    };
+    let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::Constant(1.0));
+    let stained = MaterialKind::Dielectric { interior, exterior, priority: None, film: None };
+    assert_eq!(kind(&scene, "stained"), &tinted(stained, [0.75, 0.25]));
+    let silver = MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named("Ag").unwrap()), film: None };
+    let bronzed = MaterialKind::OneSided { kind: Box::new(tinted(silver, [0.5, 1.0])), side: Side::Front };
+    assert_eq!(kind(&scene, "bronzed"), &bronzed);
     assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7"), film: None });
     let sheet = PolarisingSheet::Polariser { transmittance: Spectrum::Constant(0.75), extinction: 0.125 };
     assert_eq!(kind(&scene, "film"), &MaterialKind::PolarisingSheet { axis: [0.0, 1.0, 0.0], sheet });

@@ -9,6 +9,14 @@ pub(crate) fn kind(kind: &M, nm: f64, holds_medium: bool) -> bool {
         kind => kind,
     };
     match kind {
+        M::Tinted { kind: of, reflected, transmitted } => {
+            let share = |tint: &SpectrumTexture| match tint {
+                SpectrumTexture::Uniform(spectrum) => (0.0..=1.0).contains(&spectrum.eval(nm)),
+                SpectrumTexture::Image(texture) => texture.mean().iter().all(|v| (0.0..=1.0).contains(v)),
+                SpectrumTexture::VertexColours { factor, .. } => factor.iter().all(|f| *f >= 0.0),
+            };
+            share(reflected) && share(transmitted) && self::kind(of, nm, holds_medium)
+        }
         M::Lambert { reflectance }
         | M::Mirror { reflectance }
         | M::OrenNayar { reflectance, .. }

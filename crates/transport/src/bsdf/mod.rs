@@ -29,6 +29,7 @@ mod shading;
 #[cfg(test)]
 mod tests;
 mod thin_dielectric;
+mod tinted;
 mod translucent;
 
 pub use blend::Blend;
@@ -51,6 +52,7 @@ pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
 pub use thin_dielectric::ThinDielectric;
+pub use tinted::Tinted;
 pub use translucent::Translucent;
 
 use crate::mis::Density;
@@ -121,6 +123,8 @@ pub enum Bsdf {
     Blend(Blend),
     /// Another on one side.
     OneSided(OneSided),
+    /// Another whose light is coloured.
+    Tinted(Tinted),
     /// No scattering at all.
     Black,
 }
@@ -142,6 +146,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::Grating { grating, .. } => Grating::properties(grating),
         MaterialKind::Fluorescent { reflectance, .. } => Fluorescent::properties(reflectance),
         MaterialKind::OneSided { kind, .. } => OneSided::properties(properties(kind)),
+        MaterialKind::Tinted { kind, .. } => Tinted::properties(properties(kind)),
         MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
         MaterialKind::Boundary { .. } | MaterialKind::Black => {
             Properties { solid_angle: false, dark: true, ..Properties::SOLID_ANGLE }
@@ -205,6 +210,11 @@ impl Bsdf {
                 Self::Blend(Blend::new(parts, by.clone()))
             }
             MaterialKind::OneSided { kind, side } => Self::OneSided(OneSided::new(Self::new(kind, range_nm), *side)),
+            MaterialKind::Tinted { kind, reflected, transmitted } => {
+                let [reflected, transmitted] =
+                    [reflected, transmitted].map(|texture| PathTexture::new(texture, range_nm));
+                Self::Tinted(Tinted::new(Self::new(kind, range_nm), reflected, transmitted))
+            }
             // Paths pass a boundary before they ask what it does.
             MaterialKind::Boundary { .. } | MaterialKind::Black => Self::Black,
         }
@@ -248,7 +258,29 @@ impl Bsdf {
         match self {
             Self::Dielectric(glass) => Some(glass.reflection_probability(wavelength_nm, (n, at.uv), wo, at.media())),
             Self::ThinDielectric(pane) => Some(pane.reflection_probability(wavelength_nm, (n, at.uv), wo)),
+            Self::Tinted(tinted) => tinted.bsdf().reflection_probability(wavelength_nm, at, wo),
             _ => None,
+        }
+    }
+
+    /// Whether it has a [`Bsdf::reflection_probability`].
+    pub(crate) fn is_smooth_glass(&self) -> bool {
+        matches!(self.untinted(), Self::Dielectric(_) | Self::ThinDielectric(_))
+    }
+
+    /// What it is without a tint.
+    fn untinted(&self) -> &Self {
+        match self {
+            Self::Tinted(tinted) => tinted.bsdf().untinted(),
+            bsdf => bsdf,
+        }
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn untinted_mut(&mut self) -> &mut Self {
+        match self {
+            Self::Tinted(tinted) => tinted.bsdf_mut().untinted_mut(),
+            bsdf => bsdf,
         }
     }
 
@@ -272,6 +304,7 @@ impl Bsdf {
             Self::Fluorescent(surface) => surface.eval(lambda_nm, n, at, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
             Self::OneSided(one) => one.eval(lambda_nm, n, at, wo, wi),
+            Self::Tinted(tinted) => tinted.eval(lambda_nm, n, at, wo, wi),
             Self::Mirror(_)
             | Self::Conductor(_)
             | Self::Dielectric(_)
@@ -308,6 +341,7 @@ impl Bsdf {
             Self::Grating(grating) => grating.sample(lambda_nm, n, at, wo, u[0]),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
             Self::OneSided(one) => one.sample(lambda_nm, n, at, wo, u),
+            Self::Tinted(tinted) => tinted.sample(lambda_nm, n, at, wo, u),
             Self::Black => None,
         }
     }

@@ -89,6 +89,7 @@ impl Bsdf {
             Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Blend(blend) => blend.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::OneSided(one) => one.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
+            Self::Tinted(tinted) => tinted.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Lambert(_)
             | Self::OrenNayar(_)
             | Self::Translucent(_)
@@ -105,6 +106,7 @@ impl Bsdf {
             Self::Plastic(plastic) => plastic.prepare_polarisation(),
             Self::Blend(blend) => blend.prepare_polarisation(),
             Self::OneSided(one) => one.prepare_polarisation(),
+            Self::Tinted(tinted) => tinted.bsdf_mut().prepare_polarisation(),
             Self::Lambert(_)
             | Self::Mirror(_)
             | Self::Conductor(_)

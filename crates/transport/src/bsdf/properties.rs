@@ -121,6 +121,10 @@ mod tests {
             let internal_reflection = InternalReflection::Coloured;
             kinds.push(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection });
         }
+        for kind in [1, 2, 3, 7] {
+            let [reflected, transmitted] = [0.5, 0.25].map(|share| Spectrum::Constant(share).into());
+            kinds.push(MaterialKind::Tinted { kind: Box::new(kinds[kind].clone()), reflected, transmitted });
+        }
         for (kind, side) in [(11, Side::Front), (12, Side::Back), (14, Side::Front)] {
             kinds.push(MaterialKind::OneSided { kind: Box::new(kinds[kind].clone()), side });
         }

@@ -1,6 +1,5 @@
 //! Where shadow rays may meet smooth interfaces that refract them.
 
-use crate::bsdf::Bsdf;
 use crate::surface::{ObjectSurface, Surfaces};
 use etalon_geometry::{Aabb, Geometry, PrimitiveId};
 use etalon_optics::Vec3;
@@ -20,8 +19,7 @@ pub(crate) struct RefractingBodies {
 impl RefractingBodies {
     /// Those of a scene; `None` if it has none.
     pub(crate) fn new(surfaces: &Surfaces, geometry: &Geometry) -> Option<Self> {
-        let refracts =
-            |of: &ObjectSurface| matches!(surfaces.bsdfs[of.material], Bsdf::Dielectric(_) | Bsdf::ThinDielectric(_));
+        let refracts = |of: &ObjectSurface| surfaces.bsdfs[of.material].is_smooth_glass();
         let is_body = |object: u32| surfaces.objects.get(object as usize).is_some_and(refracts);
         let mut bodies: Vec<(u32, Aabb)> = Vec::new();
         for (number, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {

@@ -1,8 +1,8 @@
 //! A slide: an image before a lamp at a point, which sends nothing beside it.
 //!
-//! Toward a direction at the angle θ to that of the slide's middle, the intensity is I(ω)·C(u, v)/cos³θ if an even screen is asked for, and
-//! I(ω)·C(u, v) otherwise, with the intensity I of the lamp alone and the colour C of the image. A screen across the slide's direction at the
-//! distance d receives I·cos³θ/d² from a bare lamp, hence I·C/d² through a slide for even screens.
+//! I is the intensity of the lamp alone, C the colour of the image, θ the angle to the slide's middle. Through a slide the intensity is
+//! I(ω)·C(u, v), or I(ω)·C(u, v)/cos³θ for even screens. A screen across the slide's direction at the distance d receives I·cos³θ/d² from a
+//! bare lamp. So it receives I·C/d² through a slide for even screens.
 
 use super::tree::LightBounds;
 use super::{Light, LightSample, LightSource};

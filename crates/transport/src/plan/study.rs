@@ -180,7 +180,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             for material in &mut scene.materials {
                 if let MaterialKind::Dielectric { priority, .. }
                 | MaterialKind::RoughDielectric { priority, .. }
-                | MaterialKind::Boundary { priority } = &mut material.kind
+                | MaterialKind::Boundary { priority } = material.kind.untinted_mut()
                 {
                     *priority = None;
                 }

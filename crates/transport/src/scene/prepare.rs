@@ -138,7 +138,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
             }
         }
         for (bsdf, material) in bsdfs.iter_mut().zip(&scene.materials) {
-            if let (Bsdf::RoughDielectric(glass), Some(_)) = (bsdf, material.kind.solid()) {
+            if let (Bsdf::RoughDielectric(glass), Some(_)) = (bsdf.untinted_mut(), material.kind.solid()) {
                 glass.prepare_media(&media, range_nm);
             }
         }

@@ -91,6 +91,12 @@ impl Chance {
         }
     }
 
+    fn slide(&mut self) -> Value {
+        let colour = [self.within(0.0, 1.0), self.within(0.0, 1.0), self.within(0.0, 1.0)];
+        let image = json!({"type": "checker", "first": colour, "second": 0.2, "uv_scale": [2, 2]});
+        json!({"image": image, "direction": self.point(1.0), "horizontal_fov_deg": self.within(20.0, 100.0)})
+    }
+
     pub(crate) fn medium(&mut self) -> Value {
         let phase = match self.below(3) {
             0 => json!({"type": "rayleigh"}),

@@ -18,7 +18,7 @@ pub const MOST_BLEND_PARTS: usize = 8 * MOST_WIDTHS;
 fn parts(kind: &MaterialKind) -> usize {
     match kind {
         MaterialKind::Blend { parts: several, .. } => several.iter().map(|(_, part)| parts(part)).sum(),
-        MaterialKind::OneSided { kind, .. } => parts(kind),
+        MaterialKind::OneSided { kind, .. } | MaterialKind::Tinted { kind, .. } => parts(kind),
         _ => 1,
     }
 }

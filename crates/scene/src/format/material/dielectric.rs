@@ -7,6 +7,7 @@ use super::super::spectrum::SpectrumForm;
 use super::index::{IndexForm, index};
 use super::roughness::{Roughness, RoughnessKeys, roughness, roughness_keys};
 use super::thin_film::{FilmLayerForm, thin_film};
+use super::tint::tinted;
 use super::{Alpha, Made, MultipleScattering, Width};
 use crate::files::Files;
 use crate::json::{Code, List, Optional, Positive, Reader, Required, Rule, Spanned, Whole};
@@ -38,6 +39,10 @@ crate::record! {
         multiple_scattering: Optional<Spanned<MultipleScattering>>,
         /// Layers between the two media, in which light interferes with itself: the first is met first from the exterior.
         thin_film: Optional<Spanned<List<FilmLayerForm>>>,
+        /// Share of the light that it reflects, from 0 to 1, that is left; all if left out.
+        reflected_tint: Optional<SpectrumForm>,
+        /// Share of the light that it passes, from 0 to 1, that is left; all if left out.
+        transmitted_tint: Optional<SpectrumForm>,
         /// For a closed solid that touches, overlaps or holds other solids: where several overlap, the one of the highest
         /// priority fills the place; of equal priorities, the object that comes later. It replaces `exterior`.
         priority: Optional<Whole<0, { u32::MAX as u64 }>>,
@@ -100,6 +105,7 @@ pub(super) fn dielectric<'f>(
             Some(facets) => MaterialKind::RoughDielectric { interior, exterior, facets, compensated, priority, film },
         }
     });
+    let kind = tinted(kind, [&form.reflected_tint, &form.transmitted_tint], spectra, files, reader)?;
     Some(Made { kind, medium: medium? })
 }
 

@@ -112,7 +112,7 @@ fn refracted_shadow_rays(scene: &Scene) -> Result<String, String> {
     let smooth = |object: &&Object| {
         object.opacity == 1.0
             && matches!(
-                scene.materials[object.material].kind,
+                scene.materials[object.material].kind.untinted(),
                 MaterialKind::Dielectric { .. } | MaterialKind::ThinDielectric { .. }
             )
     };
