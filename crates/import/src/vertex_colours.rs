@@ -34,12 +34,15 @@ pub(crate) fn resolve(material: &mut Value, known: Option<&(String, f64)>) -> bo
     map.values_mut().map(|value| resolve(value, known)).filter(|other| *other).count() > 0
 }
 
-/// Multiplies what a material reflects by the colours of the vertices; whether it reflects anything so.
+/// Multiplies what a material reflects, and what glass passes, by the colours of the vertices; whether there is anything of this.
 pub(crate) fn tint(material: &mut Value) -> bool {
     let Value::Object(map) = material else { return false };
     let mut found = false;
+    if map.get("type").is_some_and(|kind| kind == "dielectric") {
+        map.entry("transmitted_tint").or_insert(json!(1.0));
+    }
     for (key, value) in map.iter_mut() {
-        if key != "reflectance" {
+        if !matches!(key.as_str(), "reflectance" | "transmitted_tint") {
             found |= tint(value);
             continue;
         }

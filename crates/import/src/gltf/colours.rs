@@ -47,7 +47,7 @@ impl Walk<'_, '_> {
         let own = material.as_str().and_then(|name| self.builder.materials.get(name));
         let mut tinted = own.unwrap_or(&material).clone();
         if !tint(&mut tinted) {
-            self.builder.leave_out(format!("{place}.attributes.COLOR_0"), "clear glass has no base colour");
+            self.builder.leave_out(format!("{place}.attributes.COLOR_0"), "its material has no base colour");
         }
         self.builder.spend(&tinted, place)?;
         Ok(tinted)

@@ -76,8 +76,6 @@ impl Materials {
     ) -> (Value, Option<u32>) {
         let surface = material.pbr_metallic_roughness();
         list_unhonoured(material, place, builder);
-        let [r, g, b, _] = surface.base_color_factor().map(decimal);
-        let base = [r, g, b].map(|v| v.clamp(0.0, 1.0));
         let (metallic, roughness) = (surface.metallic_factor(), surface.roughness_factor());
         if let Some(transmission) = material.transmission()
             && transmission.transmission_factor() >= 0.5
@@ -86,17 +84,18 @@ impl Materials {
             if transmission.transmission_factor() < 1.0 || transmission.transmission_texture().is_some() {
                 builder.approximate(&at, "it becomes fully transmitting");
             }
-            if base != [1.0; 3] || surface.base_color_texture().is_some() {
-                builder.leave_out(format!("{place}.pbrMetallicRoughness"), "clear glass has no base colour");
-            }
             clearcoat::roughness(material, false, place, builder);
             let interior = index(material, place, builder);
             let mut glass = json!({ "type": "dielectric", "interior": interior });
-            let mut uv_set = None;
+            let (base, mut uv_set) = self.base_colour(&surface, place, buffers, builder);
+            let tinted = base != json!(1.0);
+            if tinted {
+                glass["transmitted_tint"] = base;
+            }
             let numbers = self.numbers(&surface, place, &mut uv_set, buffers, builder);
             let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
             let anisotropy = Anisotropy::of(material, &roughness, place, builder);
-            if !roughness.put_as_roughness(anisotropy.as_ref(), &mut glass) {
+            if !roughness.put_as_roughness(anisotropy.as_ref(), &mut glass) && !tinted {
                 uv_set = None;
             }
             if let Some(volume) = material.volume()
@@ -113,18 +112,7 @@ impl Materials {
             }
             return (glass, uv_set);
         }
-        let at = format!("{place}.pbrMetallicRoughness");
-        let texture = surface.base_color_texture();
-        let image = texture.and_then(|info| self.image(&info, &format!("{at}.baseColorTexture"), buffers, builder));
-        let (colour, mut uv_set) = match image {
-            Some((mut image, set)) => {
-                if base != [1.0; 3] {
-                    image["factor"] = json!(base);
-                }
-                (image, Some(set))
-            }
-            None => (reflectance(base), None),
-        };
+        let (colour, mut uv_set) = self.base_colour(&surface, place, buffers, builder);
         let numbers = self.numbers(&surface, place, &mut uv_set, buffers, builder);
         let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
         let anisotropy = Anisotropy::of(material, &roughness, place, builder);

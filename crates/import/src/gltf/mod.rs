@@ -2,6 +2,7 @@
 
 mod accessor;
 mod animation;
+mod base_colour;
 mod camera;
 mod clearcoat;
 mod colours;

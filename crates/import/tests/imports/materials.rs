@@ -66,7 +66,7 @@ fn the_colours_of_vertices_multiply_the_base_colour() {
     assert_eq!(object.shape.vertex_colours()[2], [1.0, 1.0, 0.0]);
     let factors: Vec<[f64; 3]> = scene.materials[object.material].kind.vertex_colours().collect();
     assert_eq!(factors, [[0.5, 1.0, 0.25]]);
-    // Beside an image, by which they are multiplied. Glass has no base colour.
+    // Beside an image, by which they are multiplied.
     let mut model = self::model();
     for primitive in 0..2 {
         model["meshes"][0]["primitives"][primitive]["attributes"]["COLOR_0"] = json!(0);
@@ -74,7 +74,7 @@ fn the_colours_of_vertices_multiply_the_base_colour() {
     let with_image = imported(&model).unwrap();
     let places: Vec<&str> =
         with_image.left_out.iter().map(|l| l.place.as_str()).filter(|p| p.contains("COLOR")).collect();
-    assert_eq!(places, ["$.meshes[0].primitives[1].attributes.COLOR_0"]);
+    assert_eq!(places, Vec::<&str>::new());
     let scene = self::scene(&with_image);
     let object = &scene.groups[scene.instances[0].group].objects[0];
     let kind = &scene.materials[object.material].kind;

@@ -214,13 +214,19 @@ fn what_is_not_honoured_is_listed_with_its_path() {
     for expected in [
         "$.animations[0]",
         "$.skins",
-        "$.materials[1].pbrMetallicRoughness",
         "$.materials[2].extensions.KHR_materials_sheen",
         "$.extensions.KHR_lights_punctual.lights[2]",
         "$.meshes[0].primitives[3]",
     ] {
         assert!(places.contains(&expected), "{expected} is not among {places:#?}");
     }
+    // Glass passes its base colour.
+    let scene = scene(&imported);
+    let red = scene.materials.iter().find_map(|material| match &material.kind {
+        MaterialKind::Tinted { transmitted: SpectrumTexture::Uniform(tint), .. } => Some(tint.clone()),
+        _ => None,
+    });
+    assert!(red.is_some_and(|tint| tint.eval(650.0) > 0.9 && tint.eval(500.0) < 0.1));
     // The scene to edit says so too.
     assert!(imported.text.contains("left out: $.materials[2].extensions.KHR_materials_sheen"));
 }

@@ -155,7 +155,7 @@ fn point() -> Truth {
     let lamp: Vec3 = [1.5, 0.0, 2.0];
     let distance = dot(lamp, lamp).sqrt();
     let value = TINT * shown(2.0 / distance.powi(3) * through_a_pane(2.0 / distance));
-    let scene = pane(Scene::light_meter(), TINT).point_light(lamp, 1.0).spp(1 << 10);
+    let scene = pane(Scene::light_meter(), TINT).point_light(lamp, 1.0).spp(1 << 8);
     Truth::new("lamp-behind-a-tinted-pane", &scene, value, "t (ρ/π) I h/d³ ½Σ (1 − R)/(1 + R) of s and p")
         .because("A tint multiplies what a lamp without area sends through a pane.")
         .confirmed("the passes to and fro, one by one", 1e-9, move || {
