@@ -18,7 +18,7 @@ const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// One of our materials, with what the oracle cannot ask a [`Bsdf`] for.
 pub(crate) struct Material {
-    kind: MaterialKind,
+    pub(super) kind: MaterialKind,
     bsdf: Bsdf,
 }
 
@@ -87,7 +87,8 @@ impl Scatters for Material {
     fn wavelengths_nm(&self) -> Vec<f64> {
         match &self.kind {
             // Seconds a wavelength.
-            MaterialKind::RoughConductor { .. }
+            MaterialKind::Tinted { .. }
+            | MaterialKind::RoughConductor { .. }
             | MaterialKind::RoughDielectric { .. }
             | MaterialKind::Plastic { .. }
             | MaterialKind::Blend { .. } => vec![550.0],
@@ -202,6 +203,13 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
                 Vec::new()
             }
         }
+        MaterialKind::Tinted { kind, reflected, transmitted } => {
+            let tint = |l: DeltaLobe| {
+                let share = if l.wi[2] * wo[2] > 0.0 { reflected } else { transmitted };
+                DeltaLobe { weight: l.weight * uniform(share).eval(wavelength_nm), ..l }
+            };
+            deltas(kind, wo, wavelength_nm).into_iter().map(tint).collect()
+        }
         MaterialKind::Mirror { reflectance } => {
             vec![DeltaLobe { wi: mirrored, weight: uniform(reflectance).eval(wavelength_nm), probability: 1.0 }]
         }
@@ -266,6 +274,7 @@ fn index(kind: &MaterialKind, above: bool, wavelength_nm: f64) -> f64 {
             if above { exterior } else { interior }.eval(wavelength_nm)
         }
         MaterialKind::Blend { parts, .. } => index(&parts[0].1, above, wavelength_nm),
+        MaterialKind::Tinted { kind, .. } => index(kind, above, wavelength_nm),
         _ => 1.0,
     }
 }

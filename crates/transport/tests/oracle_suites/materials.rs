@@ -368,6 +368,14 @@ fn silvered() -> MaterialKind {
 scatters_suite!(clay_from_the_front, one_sided(clay(), Side::Front));
 scatters_suite!(mirror_from_the_back, one_sided(silvered(), Side::Back));
 
+fn tinted(of: Material) -> Material {
+    let [reflected, transmitted] = [0.75, 0.5].map(|share| Spectrum::Constant(share).into());
+    Material::new(MaterialKind::Tinted { kind: Box::new(of.kind.clone()), reflected, transmitted })
+}
+
+scatters_suite!(tinted_rough_glass, tinted(rough_glass("N-BK7", "vacuum", 0.4, false)));
+scatters_suite!(tinted_glass, tinted(glass("N-BK7", "vacuum")));
+
 /// No other has a grain but the sheets, whose axis is in their Mueller matrices alone.
 #[test]
 fn every_material_is_the_same_turned_about_its_normal() {
