@@ -1,9 +1,14 @@
 //! Chequerboards of other programs.
 
+use std::io::Cursor;
+
+use etalon_optics::colour::rec709_luminance;
 use etalon_scene::UvMap;
+use image::{ImageBuffer, ImageFormat, Luma};
 use serde_json::{Map, Value, json};
 
-use crate::{reflectance, uv};
+use crate::number::Number;
+use crate::{Builder, reflectance, uv};
 
 /// A chequerboard of the format, two by two fields in a unit of the texture coordinates, and its mean.
 #[derive(Clone, Debug)]
@@ -32,10 +37,35 @@ impl Checker {
         [0, 1, 2].map(|c| 0.5 * (first[c] + second[c]))
     }
 
+    /// As numbers from 0 to 1, which are an image of their own in steps of 1/65535. A colour counts by its luminance.
+    pub(crate) fn numbers(&self, builder: &mut Builder<'_>) -> Number {
+        let [first, second] = self.colours.map(rec709_luminance);
+        if first == second {
+            return Number::Value(first);
+        }
+        let mut image = Map::new();
+        image.insert("file".to_owned(), json!(builder.add_file("checker", "png", png([first, second]))));
+        for (key, word) in [("channel", "luminance"), ("encoding", "linear"), ("filter", "nearest")] {
+            image.insert(key.to_owned(), json!(word));
+        }
+        uv::put(&self.uv_map, &mut image);
+        Number::Image(Value::Object(image), 0.5 * (first + second))
+    }
+
     /// As a reflectance of the format that is the same everywhere.
     pub(crate) fn mean_reflectance(&self) -> Value {
         reflectance(self.mean())
     }
+}
+
+/// Two by two fields, of which the first is lower left.
+fn png([first, second]: [f64; 2]) -> Vec<u8> {
+    let grey = |share: f64| (share.clamp(0.0, 1.0) * f64::from(u16::MAX)).round() as u16;
+    let fields = [second, first, first, second].map(grey).to_vec();
+    let image = ImageBuffer::<Luma<u16>, _>::from_raw(2, 2, fields).expect("four texels");
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, ImageFormat::Png).expect("memory takes every byte");
+    bytes.into_inner()
 }
 
 fn written(rgb: [f64; 3]) -> Value {

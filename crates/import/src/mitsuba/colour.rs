@@ -67,6 +67,12 @@ impl Walk<'_, '_, '_> {
             }
             return Ok(Some(Number::Image(image, rec709_luminance(mean.unwrap_or([0.0; 3])))));
         }
+        if target.tag == "texture" && target.plugin() == "checkerboard" && of == Of::Reflectance {
+            target.mark();
+            let board = self.checkerboard(target, of)?;
+            target.list_unused(self.builder);
+            return Ok(Some(board.numbers(self.builder)));
+        }
         let value = self.colour_of(stated, of)?;
         Ok(Some(Number::Value(match value.as_f64() {
             Some(number) => number,

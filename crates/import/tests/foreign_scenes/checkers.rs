@@ -89,3 +89,29 @@ fn a_turned_chequerboard_of_mitsuba_stays_turned() {
         }
     }
 }
+
+#[test]
+fn chequerboards_of_numbers_are_images_of_their_own() {
+    let board = r#"<texture type="checkerboard" name="NAME"><float name="color0" value="0.25"/><float name="color1" value="0.75"/>
+        <transform name="to_uv"><scale x="2" y="3"/></transform></texture>"#;
+    let blend = format!(
+        r#"<scene version="3.0.0"><shape type="rectangle"><bsdf type="blendbsdf">{}<bsdf type="diffuse"/><bsdf type="plastic"/>
+        </bsdf></shape></scene>"#,
+        board.replace("NAME", "weight")
+    );
+    let imported = imported("xml", &blend);
+    assert!(said(&imported).is_empty(), "{:?}", said(&imported));
+    let scene = scene(&imported);
+    let MaterialKind::Blend { by, .. } = &scene.materials[scene.objects[0].material].kind else { panic!("a blend") };
+    for (u, v) in [(0.1, 0.1), (0.3, 0.1), (0.1, 0.2), (0.4, 0.3), (0.9, 0.95)] {
+        let [x, y] = [2.0 * u, 3.0 * v].map(|t: f64| t - t.floor() > 0.5);
+        let expected = if x == y { 0.25 } else { 0.75 };
+        assert!((by.eval([u, v]) - expected).abs() < 1e-5, "{u} {v}: {}", by.eval([u, v]));
+    }
+    let rough = format!(
+        r#"<scene version="3.0.0"><shape type="rectangle"><bsdf type="roughconductor">{}</bsdf></shape></scene>"#,
+        board.replace("NAME", "alpha")
+    );
+    let rough = super::imported("xml", &rough);
+    assert!(said(&rough).is_empty() && rough.text.contains("roughness_image"), "{:?}", said(&rough));
+}
