@@ -12,6 +12,7 @@ use sha2::{Digest, Sha256};
 use crate::grid::{self, Grid};
 use crate::json::{Code, Reader, Spanned, did_you_mean, listed};
 use crate::luminaire::{Photometry, read_photometry};
+use crate::measured::{MeasuredBrdf, read_measured};
 use crate::mesh::Shading;
 use crate::model::Mesh;
 use crate::texture::{Channel, Encoding, Image};
@@ -65,6 +66,7 @@ pub(crate) struct Files<'f> {
     data: HashMap<(String, Channel, Encoding), Option<Arc<Image>>>,
     grids: HashMap<String, Option<Grid>>,
     photometries: HashMap<String, Option<Arc<Photometry>>>,
+    measured: HashMap<String, Option<Arc<MeasuredBrdf>>>,
     /// What of images is not used as colours.
     left_out: Vec<(Spanned<String>, String)>,
     used: Vec<FileUse>,
@@ -92,6 +94,7 @@ impl<'f> Files<'f> {
             data: HashMap::new(),
             grids: HashMap::new(),
             photometries: HashMap::new(),
+            measured: HashMap::new(),
             left_out: Vec::new(),
             used: Vec::new(),
             noted: HashSet::new(),
@@ -213,6 +216,27 @@ impl<'f> Files<'f> {
                 .map(Arc::new)
         });
         self.photometries.insert(name.value.clone(), made.clone());
+        made
+    }
+
+    /// The measured BRDF of a file; why there is none is reported at the name.
+    pub(crate) fn measured(&mut self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Arc<MeasuredBrdf>> {
+        if let Some(known) = self.measured.get(&name.value) {
+            return known.clone();
+        }
+        let made = self.bytes(name, reader).and_then(|bytes| match read_measured(&bytes) {
+            Ok((brdf, changed)) => {
+                if let Some(what) = changed {
+                    reader.warning(Code::LeftOut, name.at, format!("{}: {what}", name.value), None);
+                }
+                Some(Arc::new(brdf))
+            }
+            Err(why) => {
+                reader.error(Code::File, name.at, format!("{}: {why}", name.value));
+                None
+            }
+        });
+        self.measured.insert(name.value.clone(), made.clone());
         made
     }
 

@@ -40,6 +40,7 @@ mod grid;
 pub mod json;
 pub mod linear;
 mod luminaire;
+mod measured;
 pub mod mesh;
 pub mod model;
 mod problem;
@@ -50,6 +51,9 @@ use std::path::Path;
 pub use files::{FileUse, MAX_FILE_BYTES, NamedFile, read_file};
 pub use format::MOST_BLEND_PARTS;
 pub use luminaire::Photometry;
+pub use measured::{
+    MeasuredArray, MeasuredArrays, MeasuredBrdf, MeasuredSurface, Slices, Symmetry, Table, Warp, read_measured,
+};
 pub use model::*;
 pub use problem::{Code, LoadError, Problem, Related, SceneErrors, Severity, Span, shortened};
 pub use texture::{

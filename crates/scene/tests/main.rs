@@ -7,6 +7,7 @@ mod documentation;
 mod environments;
 mod errors;
 mod luminaires;
+mod measured;
 mod media;
 mod meshes;
 mod neighbours;

@@ -5,6 +5,7 @@ mod dielectric;
 mod fluorescent;
 mod grating;
 mod index;
+mod measured;
 mod roughness;
 mod sheet;
 mod thin_film;
@@ -34,6 +35,7 @@ use fluorescent::{FluorescentMaterial, fluorescent};
 use grating::{GratingMaterial, grating};
 pub(super) use index::{IndexForm, index, least};
 use index::{NamedMetal, complex_index, complex_keys};
+use measured::{MeasuredMaterial, measured};
 use roughness::{RoughnessKeys, roughness, roughness_keys};
 use sheet::{PolariserMaterial, RetarderMaterial, polariser, retarder};
 use thin_film::{FilmLayerForm, thin_film};
@@ -300,6 +302,7 @@ crate::variants! {
         "retarder" => Retarder(RetarderMaterial),
         "grating" => Grating(GratingMaterial),
         "fluorescent" => Fluorescent(FluorescentMaterial),
+        "measured" => Measured(MeasuredMaterial),
         "blend" => Blend(BlendMaterial),
         "boundary" => Boundary(BoundaryMaterial),
         "black" => Black(BlackMaterial),
@@ -322,6 +325,7 @@ impl MaterialForm {
             Self::Retarder(m) => m.at,
             Self::Grating(m) => m.at,
             Self::Fluorescent(m) => m.at,
+            Self::Measured(m) => m.at,
             Self::Blend(m) => m.at,
             Self::Boundary(m) => m.at,
             Self::Black(m) => m.at,
@@ -432,6 +436,7 @@ pub(crate) fn material<'f>(
         MaterialForm::Retarder(form) => retarder(form),
         MaterialForm::Grating(form) => grating(form, spectra, files, reader),
         MaterialForm::Fluorescent(form) => fluorescent(form, spectra, reader),
+        MaterialForm::Measured(form) => measured(form, files, reader),
         MaterialForm::Blend(form) => blend(form, before, spectra, files, reader),
         MaterialForm::Boundary(boundary) => {
             let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;

@@ -21,7 +21,7 @@ use crate::json::{
     Code, Decode, Kind, List, Named, Node, NonNegative, Optional, Place, Reader, Required, Rule, SchemaBuilder,
     SchemaValue, Span, Spanned, by_json_type,
 };
-use crate::model::{Emission, EmissionSides, Material, Object, Parameter, Scene};
+use crate::model::{Emission, EmissionSides, Material, MaterialKind, Object, Parameter, Scene};
 
 /// The version of the format that this program reads.
 const VERSION: f64 = 1.0;
@@ -317,7 +317,7 @@ fn object<'f>(
         let material = material.map(|material| &material.kind);
         check_coordinates(material.and_then(|kind| kind.image()), shape, at, reader);
         material.into_iter().for_each(|kind| check_colours(kind, shape, at, reader));
-        if material.is_some_and(|kind| kind.microfacets().any(|facets| !facets.is_isotropic())) {
+        if material.is_some_and(MaterialKind::has_grain) {
             check_tangents(shape, at, reader);
         }
     }

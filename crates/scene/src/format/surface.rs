@@ -37,8 +37,7 @@ pub(super) fn check_colours(material: &MaterialKind, shape: &Shape, at: Span, re
 /// Reports facets of two widths on a shape that has no texture coordinates.
 pub(super) fn check_tangents(shape: &Shape, at: Span, reader: &mut Reader<'_>) {
     if !shape.has_texture_coordinates() {
-        let message =
-            "the shape has no texture coordinates, from which \"alpha_u\" and \"alpha_v\" have their directions";
+        let message = "the shape has no texture coordinates, from which the material's grain has its direction";
         reader.error_hint(Code::NoTextureCoordinates, at, message, GIVE_COORDINATES);
     }
 }

@@ -1,6 +1,7 @@
 //! Materials: what surfaces do to light.
 
 use super::{Grating, Medium, NumberTexture, Parameter, ParameterMut, SpectrumTexture, ThinFilm};
+use crate::measured::MeasuredSurface;
 use crate::texture::ImageTexture;
 use etalon_optics::{ComplexIndex, Fluorescence, RefractiveIndex, Spectrum};
 use std::iter;
@@ -191,6 +192,11 @@ pub enum MaterialKind {
         /// What comes back at others.
         fluorescence: Fluorescence,
     },
+    /// A measured BRDF, alike on both sides.
+    Measured {
+        /// What was measured, and how it lies.
+        surface: MeasuredSurface,
+    },
     /// Materials side by side, finer than can be seen: everywhere the two between whose places a number lies, in linear
     /// proportion; the first below its place, the last above.
     Blend {
@@ -302,6 +308,7 @@ macro_rules! parameters {
                 Self::Fluorescent { reflectance, fluorescence } => {
                     vec![$of::Reflectance(reflectance), $of::Fluorescence(fluorescence)]
                 }
+                Self::Measured { surface } => vec![$of::Measured(surface)],
                 Self::Blend { parts, .. } => parts.$iter().flat_map(|(_, part)| part.$name()).collect(),
                 Self::OneSided { kind, .. } => kind.$name(),
                 Self::Tinted { kind, reflected, transmitted } => {
@@ -334,6 +341,12 @@ impl MaterialKind {
             | Self::Plastic { facets: Some(facets), .. } => Some(facets),
             _ => None,
         })
+    }
+
+    /// Whether what it does, or a part of it, depends on the direction in which u grows on the surface.
+    pub fn has_grain(&self) -> bool {
+        self.parts().into_iter().any(|part| matches!(part, Self::Measured { surface } if !surface.is_isotropic()))
+            || self.microfacets().any(|facets| !facets.is_isotropic())
     }
 
     /// The media before and behind an interface that has no priority; of materials side by side those of all, if they are

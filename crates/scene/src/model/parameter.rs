@@ -1,6 +1,7 @@
 //! The numbers of materials that may depend on the wavelength.
 
 use super::{Grating, Metal, PolarisingSheet, SpectrumTexture, ThinFilm};
+use crate::measured::MeasuredSurface;
 use crate::texture::ImageTexture;
 use etalon_optics::{Fluorescence, RefractiveIndex};
 
@@ -24,6 +25,8 @@ pub enum Parameter<'a> {
     Grating(&'a Grating),
     /// What comes back at another wavelength.
     Fluorescence(&'a Fluorescence),
+    /// What was measured at some wavelengths.
+    Measured(&'a MeasuredSurface),
 }
 
 /// [`Parameter`], to be changed.
@@ -45,6 +48,8 @@ pub enum ParameterMut<'a> {
     Grating(&'a mut Grating),
     /// See [`Parameter::Fluorescence`].
     Fluorescence(&'a mut Fluorescence),
+    /// See [`Parameter::Measured`].
+    Measured(&'a mut MeasuredSurface),
 }
 
 impl<'a> Parameter<'a> {

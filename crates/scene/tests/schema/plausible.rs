@@ -63,6 +63,7 @@ pub(crate) fn kind(kind: &M, nm: f64, holds_medium: bool) -> bool {
         M::Blend { parts, by } => {
             parts.len() >= 2 && parts.is_sorted_by(|a, b| a.0 < b.0) && (0.0..=1.0).contains(&by.eval([0.3, 0.7]))
         }
+        M::Measured { surface } => surface.rotation_rad.is_finite() && surface.at_nm.is_none(),
         M::Boundary { .. } => holds_medium,
         M::Black => true,
         // One side has no sides of its own.

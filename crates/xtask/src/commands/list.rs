@@ -231,7 +231,7 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 "fuzz-parsers",
                 "SECONDS [PARSER …]",
                 "arbitrary bytes for every parser; needs cargo-fuzz",
-                "8 × SECONDS",
+                "9 × SECONDS",
                 Script("tests/fuzz-parsers.sh"),
             ),
             named(
