@@ -2,7 +2,7 @@
 //! scenes made up by chance.
 
 use crate::common::chance::{Chance, made};
-use etalon_scene::{SamplerKind, Scene};
+use etalon_scene::{NamedFile, SamplerKind, Scene, parse_with_files};
 use etalon_transport::{Control, EffectName, Film, PathLoop, Prepared, Study, prepare_study};
 
 /// The ready-made scenes, small.
@@ -59,4 +59,37 @@ fn many_paths_at_once_leave_the_film_of_one_at_a_time_on_scenes_made_up_by_chanc
         let study = Study { polarised: chance.below(4) == 0, ..Study::default() };
         agrees(&format!("scene {number}: {json:#}"), &scene, &study);
     }
+}
+
+/// In blends, on one side, turned, below lamps, with and without polarisation.
+#[test]
+fn many_paths_at_once_leave_the_film_of_one_at_a_time_on_measured_surfaces() {
+    let truths = etalon_oracle::truths::truths();
+    let file = |name: &str| {
+        let truth = truths.iter().find(|truth| truth.name == name).expect("a truth");
+        NamedFile { name: format!("{name}.bsdf"), bytes: truth.files[0].bytes.clone() }
+    };
+    let files = [file("measured-brdf-of-a-colour-in-the-sun"), file("measured-grain-in-the-sun")];
+    let [colour, grain] = [0, 1].map(|i| files[i].name.clone());
+    let text = format!(
+        r#"{{
+        "etalon": 1, "film": {{ "width": 22, "height": 17 }}, "integrator": {{ "spp": 4 }},
+        "camera": {{ "type": "perspective", "position_m": [0, 1, 4], "look_at_m": [0, 0, 0], "vertical_fov_deg": 45 }},
+        "materials": {{
+            "colour": {{ "type": "measured", "file": "{colour}" }},
+            "grain": {{ "type": "measured", "file": "{grain}", "sides": "both", "tangent_rotation_deg": 20 }},
+            "mixed": {{ "type": "blend", "first": "grain", "second": {{ "type": "conductor", "metal": "Au" }}, "weight": 0.4 }}
+        }},
+        "objects": [
+            {{ "shape": {{ "type": "sphere", "center_m": [-1, 0, 0], "radius_m": 1 }}, "material": "colour" }},
+            {{ "shape": {{ "type": "sphere", "center_m": [1, 0, 0], "radius_m": 0.9 }}, "material": "mixed" }},
+            {{ "shape": {{ "type": "parallelogram", "origin_m": [-4, -1, 4], "u_m": [8, 0, 0], "v_m": [0, 0, -8] }}, "material": "grain" }},
+            {{ "shape": {{ "type": "sphere", "center_m": [1, 3, 1], "radius_m": 0.4 }}, "material": {{ "type": "black" }},
+               "emission": {{ "radiance": 20 }} }}
+        ],
+        "lights": [{{ "type": "environment", "radiance": 0.3 }}, {{ "type": "directional", "direction": [-1, -2, -1], "irradiance": 2 }}] }}"#
+    );
+    let scene = parse_with_files(&text, "measured", &files, None).unwrap_or_else(|errors| panic!("{errors}")).scene;
+    agrees("measured surfaces", &scene, &Study::default());
+    agrees("measured surfaces, polarised", &scene, &Study { polarised: true, ..Study::default() });
 }

@@ -14,6 +14,7 @@ mod fluorescent;
 mod glass_losses;
 mod grating;
 pub(crate) mod lambert;
+mod measured;
 mod metal;
 mod microfacet;
 mod mirror;
@@ -40,6 +41,7 @@ pub(crate) use fluorescent::FluorescentPart;
 pub use fluorescent::{Fluorescent, Reradiation};
 pub use grating::Grating;
 pub use lambert::Lambert;
+pub use measured::Measured;
 pub use metal::PathMetal;
 pub use mirror::Mirror;
 pub use mueller::Lobe;
@@ -119,6 +121,8 @@ pub enum Bsdf {
     Grating(Grating),
     /// A diffuse surface that also gives light back at other wavelengths.
     Fluorescent(Fluorescent),
+    /// A measured surface.
+    Measured(Measured),
     /// A mixture of others.
     Blend(Blend),
     /// Another on one side.
@@ -145,6 +149,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::PolarisingSheet { sheet, .. } => PolarisingSheet::properties(sheet),
         MaterialKind::Grating { grating, .. } => Grating::properties(grating),
         MaterialKind::Fluorescent { reflectance, .. } => Fluorescent::properties(reflectance),
+        MaterialKind::Measured { surface } => Measured::properties(surface),
         MaterialKind::OneSided { kind, .. } => OneSided::properties(properties(kind)),
         MaterialKind::Tinted { kind, .. } => Tinted::properties(properties(kind)),
         MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
@@ -205,6 +210,7 @@ impl Bsdf {
                 let reflectance = PathTexture::new(reflectance, range_nm);
                 Self::Fluorescent(Fluorescent::new(reflectance, fluorescence, range_nm))
             }
+            MaterialKind::Measured { surface } => Self::Measured(Measured::new(surface)),
             MaterialKind::Blend { parts, by } => {
                 let parts = parts.iter().map(|(place, part)| (*place, Self::new(part, range_nm)));
                 Self::Blend(Blend::new(parts, by.clone()))
@@ -302,6 +308,7 @@ impl Bsdf {
             Self::Translucent(sheet) => sheet.eval(lambda_nm, n, at.texture_point(), wo, wi),
             Self::Plastic(plastic) => plastic.eval(lambda_nm, n, at, wo, wi),
             Self::Fluorescent(surface) => surface.eval(lambda_nm, n, at, wo, wi),
+            Self::Measured(measured) => measured.eval(lambda_nm, n, at, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
             Self::OneSided(one) => one.eval(lambda_nm, n, at, wo, wi),
             Self::Tinted(tinted) => tinted.eval(lambda_nm, n, at, wo, wi),
@@ -339,6 +346,7 @@ impl Bsdf {
             Self::ThinDielectric(pane) => pane.sample(lambda_nm, (n, at.uv), wo, u[0]),
             Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
             Self::Grating(grating) => grating.sample(lambda_nm, n, at, wo, u[0]),
+            Self::Measured(measured) => measured.sample(lambda_nm, n, at, wo, [u[1], u[2]]),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
             Self::OneSided(one) => one.sample(lambda_nm, n, at, wo, u),
             Self::Tinted(tinted) => tinted.sample(lambda_nm, n, at, wo, u),

@@ -77,8 +77,26 @@ mod tests {
     use crate::mis::Density;
     use etalon_optics::{ComplexIndex, Lanes, RefractiveIndex, Spectrum, Vec3};
     use etalon_scene::{
-        FilmIndex, FilmLayer, InternalReflection, MaterialKind, Metal, PolarisingSheet as Sheet, Side, ThinFilm,
+        FilmIndex, FilmLayer, InternalReflection, MaterialKind, MeasuredArrays, MeasuredBrdf, MeasuredSurface, Metal,
+        PolarisingSheet as Sheet, Side, ThinFilm,
     };
+
+    /// A measured BRDF whose tables have one value each.
+    fn measured(spectra: f32) -> MaterialKind {
+        let arrays = MeasuredArrays {
+            theta_i: vec![0.0],
+            phi_i: vec![0.0],
+            wavelengths_nm: vec![550.0],
+            ndf: ([2, 2], vec![1.0; 4]),
+            sigma: ([2, 2], vec![1.0; 4]),
+            vndf: ([1, 1, 2, 2], vec![1.0; 4]),
+            luminance: ([1, 1, 2, 2], vec![1.0; 4]),
+            spectra: ([1, 1, 1, 2, 2], vec![spectra; 4]),
+            jacobian: true,
+        };
+        let brdf = MeasuredBrdf::new(arrays).unwrap();
+        MaterialKind::Measured { surface: MeasuredSurface { brdf: brdf.into(), rotation_rad: 0.0, at_nm: None } }
+    }
 
     fn kinds() -> Vec<MaterialKind> {
         let (interior, exterior) = (RefractiveIndex::Constant(1.5), RefractiveIndex::VACUUM);
@@ -135,6 +153,7 @@ mod tests {
         let both = |first: usize, second: usize| MaterialKind::blend(kinds[first].clone(), kinds[second].clone(), 0.5);
         let blends = [both(0, 1), both(1, 3), both(5, 6), both(0, 0), both(7, 17)];
         kinds.extend(blends);
+        kinds.extend([measured(0.5), measured(0.0)]);
         // Some nanometres of silver pass a part and reflect a part; also on a metal that would reflect nothing.
         let film = || {
             let index = FilmIndex::Absorbing(ComplexIndex::named("Ag").unwrap());

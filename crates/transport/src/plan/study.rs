@@ -268,6 +268,7 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
             // Taken away before.
             ParameterMut::Fluorescence(_) => {}
             ParameterMut::Film(film) => film.at_nm = Some(reference_nm(range_nm)),
+            ParameterMut::Measured(surface) => surface.at_nm = Some(reference_nm(range_nm)),
             // See `fix_indices`.
             ParameterMut::Interface(_) => {}
         }

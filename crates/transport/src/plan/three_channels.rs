@@ -62,6 +62,8 @@ fn colour(kind: &mut MaterialKind, range_nm: [f64; 2]) {
             | ParameterMut::Interface(_)
             | ParameterMut::Sheet(_)
             | ParameterMut::Film(_)
+            // So is what was measured.
+            | ParameterMut::Measured(_)
             | ParameterMut::Grating(_)
             // Refused.
             | ParameterMut::Fluorescence(_) => {}

@@ -89,6 +89,7 @@ impl Scatters for Material {
             // Seconds a wavelength.
             MaterialKind::Tinted { .. }
             | MaterialKind::RoughConductor { .. }
+            | MaterialKind::Measured { .. }
             | MaterialKind::RoughDielectric { .. }
             | MaterialKind::Plastic { .. }
             | MaterialKind::Blend { .. } => vec![550.0],
@@ -112,6 +113,7 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
         | MaterialKind::RoughDielectric { .. }
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Translucent { .. }
+        | MaterialKind::Measured { .. }
         | MaterialKind::Boundary { .. }
         | MaterialKind::Black => Vec::new(),
         MaterialKind::PolarisingSheet { sheet, .. } => {

@@ -10,6 +10,7 @@ mod lamp;
 mod lamps;
 mod material;
 mod materials;
+mod measured;
 
 use lamps::{disk_lamp, parallelogram_lamp, sphere_lamp, triangle_lamp};
 use material::Material;

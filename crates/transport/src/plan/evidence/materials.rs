@@ -3,7 +3,9 @@
 use crate::bsdf::{Properties, properties};
 use etalon_optics::spectrum::whole_nm;
 use etalon_optics::{ComplexIndex, Fluorescence, RefractiveIndex};
-use etalon_scene::{Grating, MaterialKind, Metal, Parameter, PolarisingSheet, SpectrumTexture, ThinFilm};
+use etalon_scene::{
+    Grating, MaterialKind, MeasuredSurface, Metal, Parameter, PolarisingSheet, SpectrumTexture, ThinFilm,
+};
 
 /// The index by which wavelengths go different ways, if there is one.
 pub(super) fn dispersion(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> {
@@ -36,6 +38,7 @@ pub(super) fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> 
         Parameter::Fluorescence(fluorescence) => reradiation(fluorescence, range_nm),
         // What fixes the wavelength treats all alike.
         Parameter::Film(film) => film.at_nm.is_none().then(|| thickness(film)),
+        Parameter::Measured(surface) => surface.is_coloured().then(|| measured(surface)),
     })
 }
 
@@ -54,6 +57,12 @@ fn reradiation(fluorescence: &Fluorescence, range_nm: [f64; 2]) -> Option<String
     let (nm, most) = nm.iter().zip(returned).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let [first, last] = fluorescence.emission_range_nm();
     (most > 0.0).then(|| format!("gives back up to {most:.3} of light at {nm} nm, between {first} and {last} nm"))
+}
+
+/// `measured at 195 wavelengths, from 360 to 1000 nm`.
+fn measured(surface: &MeasuredSurface) -> String {
+    let nm = surface.brdf.wavelengths_nm();
+    format!("measured at {} wavelengths, from {:.0} to {:.0} nm", nm.len(), nm[0], nm[nm.len() - 1])
 }
 
 /// By which period a grating parts wavelengths, if it does.
