@@ -41,6 +41,8 @@ mod lens_tracer;
 mod lit_fog;
 mod luminous;
 mod masks;
+mod measured;
+mod measured_files;
 mod media;
 mod meters;
 mod motion;
@@ -350,7 +352,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 45] = [
+const GROUPS: [fn() -> Vec<Truth>; 46] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -389,6 +391,7 @@ const GROUPS: [fn() -> Vec<Truth>; 45] = [
     surfaces::truths,
     tints::truths,
     translucent::truths,
+    measured::truths,
     media::truths,
     nested_media::truths,
     lit_fog::truths,
