@@ -97,10 +97,12 @@ pub(crate) fn without_directions(value: &mut Value) -> bool {
     }
 }
 
-/// Whether facets of a material of the format have two widths.
+/// Whether facets of a material of the format have two widths, or a measured one has a grain.
 pub(crate) fn has_directions(value: &Value) -> bool {
     match value {
-        Value::Object(map) => map.contains_key("alpha_u") || map.values().any(has_directions),
+        Value::Object(map) => {
+            map.contains_key("alpha_u") || map.contains_key("tangent_rotation_deg") || map.values().any(has_directions)
+        }
         _ => false,
     }
 }

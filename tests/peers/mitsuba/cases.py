@@ -62,6 +62,7 @@ CASES = [
     *(of("principled", PRINCIPLED, metallic=metal, glass=0) for metal in (0, 1)),
     of("principled", samples=3, metallic=0, glass=1),
     *(of("rough-metal", distribution=d, alpha=a) for d in ("ggx", "beckmann") for a in (0.1, 0.4)),
+    *(of("measured", what=what) for what in ("isotropic", "half-a-turn", "two-mirrors")),
     of("brushed", samples=2),
     of("glass", kind="dielectric"),
     of("glass", kind="thindielectric", samples=3),

@@ -81,6 +81,54 @@ def write_meshes(folder):
     (folder / "hill.serialized").write_bytes(mesh + struct.pack("<QI", 0, 1))
 
 
+def write_measured(path, phi_i):
+    """A measured BRDF in the format of the RGL material database: glossy facets, whose colour changes with the angle."""
+    theta_i = np.linspace(0, np.pi / 2, 6)
+    wavelengths = np.linspace(360, 830, 11)
+    nodes = np.linspace(0, 1, 24)
+    y, x = np.meshgrid(nodes, nodes, indexing="ij")
+    theta, phi = np.pi / 2 * x**2, np.pi * (2 * y - 1)
+    facet = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
+    # An isotropic material has no direction of its own.
+    widths = (0.5, 0.5) if len(phi_i) == 1 else (0.6, 0.35)
+    slopes = (facet[..., 0] / widths[0]) ** 2 + (facet[..., 1] / widths[1]) ** 2
+    ndf = 1 / (np.pi * widths[0] * widths[1] * (slopes + facet[..., 2] ** 2) ** 2)
+    stretch = (facet[..., 0] * widths[0]) ** 2 + (facet[..., 1] * widths[1]) ** 2 + facet[..., 2] ** 2
+    sigma = 0.5 * (facet[..., 2] + np.sqrt(stretch))
+    vndf, luminance, spectra = [], [], []
+    for azimuth in phi_i:
+        for angle in theta_i:
+            light = np.array([np.sin(angle) * np.cos(azimuth), np.sin(angle) * np.sin(azimuth), np.cos(angle)])
+            # Density over the square: a little of it everywhere, so that none is lost between the nodes.
+            seen = ndf * np.maximum(facet @ light, 0) * 2 * np.pi**2 * x * np.sin(theta)
+            vndf.append(seen + 0.02 * seen.max() * (x + 0.05))
+            shape = 0.6 + 0.3 * np.sin(3 * x + angle) * np.cos(np.pi * (2 * y - 1) + azimuth)
+            luminance.append(0.3 + 0.7 * shape)
+            spectra.append([shape * (0.5 + 0.3 * np.cos(nm / 60 + 2 * x)) for nm in wavelengths])
+    lights = (len(phi_i), len(theta_i))
+    fields = {
+        "description": np.frombuffer(b"made up", np.uint8),
+        "theta_i": theta_i,
+        "phi_i": np.array(phi_i),
+        "ndf": ndf,
+        "sigma": sigma,
+        "vndf": np.reshape(vndf, (*lights, 24, 24)),
+        "luminance": np.reshape(luminance, (*lights, 24, 24)),
+        "spectra": np.reshape(spectra, (*lights, len(wavelengths), 24, 24)),
+        "wavelengths": wavelengths,
+        "jacobian": np.ones(1, np.uint8),
+    }
+    fields = {name: field if field.dtype == np.uint8 else field.astype("<f4") for name, field in fields.items()}
+    at = 18 + sum(13 + len(name) + 8 * field.ndim for name, field in fields.items())
+    head = b"tensor_file\0\x01\0" + struct.pack("<I", len(fields))
+    for name, field in fields.items():
+        kind = 1 if field.dtype == np.uint8 else 10
+        head += struct.pack("<H", len(name)) + name.encode() + struct.pack("<HBQ", field.ndim, kind, at)
+        head += struct.pack(f"<{field.ndim}Q", *field.shape)
+        at += field.nbytes
+    path.write_bytes(head + b"".join(field.tobytes() for field in fields.values()))
+
+
 def write_all(folder):
     rng = np.random.default_rng(7)
     write_exr(folder / "picture.exr", {c: t for t in [rng.uniform(0.1, 0.9, (5, 7))] for c in "RGB"})
@@ -95,6 +143,9 @@ def write_all(folder):
     vectors = dict(zip("RGB", (x, y, np.sqrt(1 - x * x - y * y))))
     write_exr(folder / "normals.exr", {c: 0.5 + 0.5 * part for c, part in vectors.items()})
     write_meshes(folder)
+    write_measured(folder / "isotropic.bsdf", [0])
+    write_measured(folder / "half-a-turn.bsdf", np.linspace(-np.pi, 0, 7))
+    write_measured(folder / "two-mirrors.bsdf", np.linspace(-np.pi, -np.pi / 2, 4))
     cells = rng.uniform(0, 1, (4, 5, 3)).astype("<f4")
     box = struct.pack("<6f", 0, 0, 0, 1, 1, 1)
     (folder / "cloud.vol").write_bytes(b"VOL\x03" + struct.pack("<5i", 1, 3, 5, 4, 1) + box + cells.tobytes())

@@ -43,6 +43,16 @@ impl Builder<'_> {
         (self.near)(&name).map_err(|why| format!("{place}: \"{name}\" cannot be read: {why}"))
     }
 
+    /// Adds a copy of a file that the model names, once, and gives the name that the scene has for it.
+    pub(crate) fn copy(&mut self, kind: &str, name: &str, bytes: Vec<u8>) -> String {
+        if let Some(Some(file)) = self.known.get(name) {
+            return file.clone();
+        }
+        let file = self.add_file(kind, &extension(Path::new(name)), bytes);
+        self.known.insert(name.to_owned(), Some(file.clone()));
+        file
+    }
+
     /// Adds the file of an image, once, and gives its name in the scene and the mean of its texels.
     pub(crate) fn image_file(
         &mut self,

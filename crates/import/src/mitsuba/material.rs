@@ -14,6 +14,7 @@ use crate::sides::change_sides;
 use crate::table::{Table, metal};
 use crate::translucent::scaled;
 use etalon_optics::fresnel;
+use etalon_scene::{Symmetry, read_measured};
 
 /// Indices of refraction that Mitsuba has names for, as its documentation lists them.
 const INDICES: [(&str, f64); 21] = [
@@ -155,7 +156,7 @@ impl Walk<'_, '_, '_> {
                 // What reflects only is black from behind there.
                 if matches!(
                     plugin,
-                    "diffuse" | "conductor" | "roughconductor" | "plastic" | "roughplastic" | "pplastic"
+                    "diffuse" | "conductor" | "roughconductor" | "plastic" | "roughplastic" | "pplastic" | "measured"
                 ) {
                     material["sides"] = json!("front");
                 }
@@ -223,6 +224,7 @@ impl Walk<'_, '_, '_> {
             "principled" => self.principled(element)?,
             "principledthin" => self.principled_thin(element)?,
             "pplastic" => self.polarised_plastic(element)?,
+            "measured" => self.measured(element)?,
             other => {
                 self.builder.approximate(place, format!("the material \"{other}\" is not known: it becomes grey"));
                 element.children.iter().for_each(Element::mark);
@@ -244,6 +246,19 @@ impl Walk<'_, '_, '_> {
             "internal_reflection": "uncoloured" });
         self.put_facets(element, &mut plastic)?;
         Ok(plastic)
+    }
+
+    /// A measured BRDF, whose file is copied.
+    fn measured(&mut self, element: &Element) -> Result<Value, String> {
+        let place = &element.place;
+        let name = element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?;
+        let bytes = self.builder.bytes_of(name, place)?;
+        let (brdf, _) = read_measured(&bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
+        let mut material = json!({ "type": "measured", "file": self.builder.copy("measured", name, bytes) });
+        if brdf.symmetry() != Symmetry::Isotropic {
+            material["tangent_rotation_deg"] = json!(0);
+        }
+        Ok(material)
     }
 
     fn conductor(&mut self, element: &Element, rough: bool) -> Result<Value, String> {

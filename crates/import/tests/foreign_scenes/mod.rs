@@ -6,6 +6,7 @@ mod checkers;
 mod coordinates;
 mod images;
 mod losses;
+mod measured;
 mod media;
 mod metals;
 mod parameters;
@@ -26,6 +27,8 @@ use etalon_scene::{
 use proptest::prelude::*;
 
 const PNG: &[u8] = include_bytes!("../../../scene/tests/files/chequers.png");
+const BSDF: &[u8] = include_bytes!("../../../scene/tests/files/paint.bsdf");
+const GRAIN: &[u8] = include_bytes!("../../../scene/tests/files/grain.bsdf");
 const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
 const INCLUDED: &[u8] = br#"<scene version="3.0.0">
   <bsdf type="twosided" id="red"><bsdf type="diffuse"><rgb name="reflectance" value="0.6, 0.1, 0.05"/></bsdf></bsdf>
@@ -41,6 +44,9 @@ fn vol(channels: i32, values: &[f32]) -> Vec<u8> {
 fn near(name: &str) -> Result<Vec<u8>, String> {
     match name {
         "chequers.png" => Ok(PNG.to_vec()),
+        "paint.bsdf" => Ok(BSDF.to_vec()),
+        "cut.bsdf" => Ok(BSDF[..99].to_vec()),
+        "grain.bsdf" => Ok(GRAIN.to_vec()),
         "a.obj" => Ok(OBJ.to_vec()),
         "normals.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n".to_vec()),
         "smoke.vol" => Ok(vol(1, &[0.5, 1.5])),

@@ -46,8 +46,8 @@ fn parts_of_it_that_nothing_stands_for_are_listed() {
 fn materials_and_lights_that_are_not_known_are_listed_by_their_names() {
     for (element, name) in [
         (
-            "<shape type=\"sphere\"><bsdf type=\"measured\"><string name=\"filename\" value=\"a.bsdf\"/></bsdf></shape>",
-            "measured",
+            "<shape type=\"sphere\"><bsdf type=\"measured_polarized\"><string name=\"filename\" value=\"a.pbsdf\"/></bsdf></shape>",
+            "measured_polarized",
         ),
         ("<shape type=\"sphere\"><bsdf type=\"hair\"/></shape>", "hair"),
         ("<shape type=\"sphere\"/><emitter type=\"collimated\"/>", "collimated"),

@@ -1,0 +1,51 @@
+//! Measured materials of Mitsuba.
+
+use etalon_scene::{MaterialKind, Side};
+
+use super::{BSDF, imported, refusal, said, scene};
+
+const MEASURED: &str = "<bsdf type=\"measured\"><string name=\"filename\" value=\"paint.bsdf\"/></bsdf>";
+
+/// A scene of spheres, each with one of these materials.
+fn spheres(materials: &[&str]) -> String {
+    let shapes: String = materials.iter().map(|bsdf| format!("<shape type=\"sphere\">{bsdf}</shape>")).collect();
+    format!("<scene version=\"3.0.0\">{shapes}</scene>")
+}
+
+#[test]
+fn a_measured_material_arrives_with_its_file_on_the_side_that_was_measured() {
+    let both = format!("<bsdf type=\"twosided\">{MEASURED}</bsdf>");
+    let imported = imported("xml", &spheres(&[MEASURED, &both]));
+    // The file is copied once.
+    assert_eq!(imported.files.iter().filter(|file| file.bytes == BSDF).count(), 1);
+    let scene = scene(&imported);
+    assert_eq!(said(&imported), Vec::<String>::new());
+    let kind = |object: usize| &scene.materials[scene.objects[object].material].kind;
+    let MaterialKind::OneSided { kind: front, side: Side::Front } = kind(0) else { panic!("{:?}", kind(0)) };
+    let (MaterialKind::Measured { surface }, MaterialKind::Measured { surface: both }) = (&**front, kind(1)) else {
+        panic!("{front:?}, {:?}", kind(1))
+    };
+    assert_eq!(surface, both);
+    assert_eq!((surface.brdf.wavelengths_nm(), surface.rotation_rad), (&[400.0, 550.0, 700.0][..], 0.0));
+}
+
+#[test]
+fn a_file_that_is_missing_or_wrong_is_named() {
+    let of = |name: &str| spheres(&[&MEASURED.replace("paint.bsdf", name)]);
+    assert!(refusal("xml", &of("none.bsdf")).contains("none.bsdf"));
+    assert!(refusal("xml", &spheres(&["<bsdf type=\"measured\"/>"])).contains("no \"filename\""));
+    let cut = refusal("xml", &of("cut.bsdf"));
+    assert!(cut.contains("\"cut.bsdf\": its field") && cut.contains("does not fit"), "{cut}");
+}
+
+/// The pole of a sphere is z there, and y here: only a grain makes a difference.
+#[test]
+fn a_grain_lies_as_it_does_in_mitsuba() {
+    let linear = |name: &str| {
+        let scene = scene(&imported("xml", &spheres(&[&MEASURED.replace("paint.bsdf", name)])));
+        scene.objects[0].transform.linear
+    };
+    let unturned = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    assert_eq!(linear("paint.bsdf"), unturned);
+    assert_ne!(linear("grain.bsdf"), unturned);
+}
