@@ -94,13 +94,19 @@ impl ImageTexture {
 
     /// Whether it is black.
     pub fn is_zero(&self) -> bool {
-        self.image.linear_texels().all(|texel| (0..3).all(|c| texel[c] * self.factor[c] == 0.0))
+        self.most() == [0.0; 3]
     }
 
     /// Whether its three channels are the same everywhere.
     pub fn is_grey(&self) -> bool {
         let [r, g, b] = self.factor;
         r == g && g == b && self.image.is_grey()
+    }
+
+    /// The largest number of each channel, without its sign, times the factor.
+    pub fn most(&self) -> [f64; 3] {
+        let most = self.image.most();
+        [0, 1, 2].map(|c| most[c] * self.factor[c])
     }
 
     /// The mean of its texels, times the factor.

@@ -68,6 +68,9 @@ pub struct MeasuredBrdf {
     luminance: Warp,
     spectra: Table,
     jacobian: bool,
+    /// Found once: large tables take long to look through.
+    grey: bool,
+    zero: bool,
 }
 
 /// An array of a measured BRDF: its extents, of which the last runs first, and its values.
@@ -155,7 +158,24 @@ impl MeasuredBrdf {
         let slices = lights.checked_mul(colours).ok_or("\"spectra\" has too many slices")?;
         let spectra = Table::new("spectra", [columns, rows], slices, values)?.check_sign("spectra")?;
         let jacobian = arrays.jacobian;
-        Ok(Self { theta_i, phi_i, wavelengths_nm, symmetry, ndf, sigma, vndf, luminance, spectra, jacobian })
+        let of_lights: Vec<&[f32]> = spectra.slices().collect();
+        let grey = of_lights.chunks(colours).all(|light| light.iter().all(|slice| *slice == light[0]));
+        let zero = of_lights.iter().all(|slice| slice.iter().all(|value| *value == 0.0));
+        drop(of_lights);
+        Ok(Self {
+            theta_i,
+            phi_i,
+            wavelengths_nm,
+            symmetry,
+            ndf,
+            sigma,
+            vndf,
+            luminance,
+            spectra,
+            jacobian,
+            grey,
+            zero,
+        })
     }
 
     /// How it looks when it is turned.
@@ -209,14 +229,12 @@ impl MeasuredBrdf {
 
     /// Whether it treats all wavelengths alike.
     pub fn is_grey(&self) -> bool {
-        let colours = self.wavelengths_nm.len();
-        let slices: Vec<&[f32]> = self.spectra.slices().collect();
-        slices.chunks(colours).all(|light| light.iter().all(|slice| slice == &light[0]))
+        self.grey
     }
 
     /// Whether it reflects nothing.
     pub fn is_zero(&self) -> bool {
-        self.spectra.slices().all(|slice| slice.iter().all(|value| *value == 0.0))
+        self.zero
     }
 }
 

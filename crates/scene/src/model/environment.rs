@@ -45,6 +45,6 @@ pub struct EnvironmentImage {
 impl EnvironmentImage {
     /// Whether no light comes from it.
     pub fn is_zero(&self) -> bool {
-        self.white.is_zero() || self.image.linear_texels().all(|texel| texel == [0.0; 3])
+        self.white.is_zero() || self.image.most() == [0.0; 3]
     }
 }

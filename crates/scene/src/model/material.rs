@@ -420,6 +420,9 @@ impl MaterialKind {
         match self {
             Self::Blend { parts, by } => parts.iter().find_map(|(_, part)| part.image()).or_else(|| by.image()),
             Self::OneSided { kind, .. } => kind.image(),
+            Self::Tinted { kind, reflected, transmitted } => {
+                reflected.image().or_else(|| transmitted.image()).or_else(|| kind.image())
+            }
             kind => kind.parameters().into_iter().find_map(Parameter::image),
         }
     }

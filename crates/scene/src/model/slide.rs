@@ -47,9 +47,7 @@ impl SlideLight {
 
     /// At most what the intensity of the lamp is multiplied by.
     pub(crate) fn most(&self) -> f64 {
-        let of_texel =
-            |texel: [f64; 3]| [0, 1, 2].map(|c| texel[c] * self.image.factor[c]).into_iter().fold(0.0, f64::max);
-        let largest = self.image.image.linear_texels().map(of_texel).fold(0.0, f64::max);
+        let largest = self.image.most().into_iter().fold(0.0, f64::max);
         let [x, y] = self.tangents;
         match self.even_on {
             EvenOn::Screen => largest * (1.0 + x * x + y * y).powf(1.5),

@@ -24,6 +24,7 @@ pub struct Image {
     pub texels: Texels,
     /// What is asked of all of them, by each part of each material that shows the image: found once.
     mean: [f64; 3],
+    most: [f64; 3],
     grey: bool,
 }
 
@@ -92,14 +93,16 @@ impl Image {
             Texels::F32(texels) => texels.len(),
         };
         assert_eq!(count, width as usize * height as usize, "texels of an image of {width} × {height}");
-        let mut image = Self { width, height, texels, mean: [0.0; 3], grey: true };
-        let mut sum = [0.0; 3];
+        let mut image = Self { width, height, texels, mean: [0.0; 3], most: [0.0; 3], grey: true };
+        let (mut sum, mut most) = ([0.0; 3], [0.0_f64; 3]);
         let mut grey = true;
         for texel in image.linear_texels() {
             (0..3).for_each(|c| sum[c] += texel[c]);
+            (0..3).for_each(|c| most[c] = most[c].max(texel[c].abs()));
             grey &= texel[0] == texel[1] && texel[1] == texel[2];
         }
         image.mean = sum.map(|v| v / (f64::from(width) * f64::from(height)));
+        image.most = most;
         image.grey = grey;
         image
     }
@@ -262,6 +265,11 @@ impl Image {
     /// The mean of all texels.
     pub fn mean(&self) -> [f64; 3] {
         self.mean
+    }
+
+    /// The largest number of each channel, without its sign.
+    pub fn most(&self) -> [f64; 3] {
+        self.most
     }
 
     /// Whether every texel has three equal channels.
